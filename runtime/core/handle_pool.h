@@ -1,0 +1,95 @@
+// Slots with generations: what turns a public id {index1, generation} into a value, and tells a
+// stale id from a wrong one. Indices are reused lowest first, so runs repeat slot for slot.
+#pragma once
+#include "core/error.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory_resource>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace fw::core {
+
+// Id is a public struct {uint32_t index1, generation}; zero is null.
+template <class Id, class Value>
+class HandlePool {
+   public:
+    HandlePool(const char* noun, std::pmr::memory_resource* memory)
+        : noun_(noun), slots_(memory), free_(memory) {}
+
+    template <class... Arguments>
+    Id create(Arguments&&... arguments) {
+        uint32_t index = 0;
+        if (!free_.empty()) {
+            index = free_.back();  // sorted descending: the lowest index is last
+            Slot& slot = slots_[index];
+            slot.value.emplace(std::forward<Arguments>(arguments)...);
+            free_.pop_back();
+        } else {
+            index = uint32_t(slots_.size());
+            free_.reserve(slots_.size() + 1);  // so that destroy never allocates
+            slots_.emplace_back();
+            try {
+                slots_.back().value.emplace(std::forward<Arguments>(arguments)...);
+            } catch (...) {
+                slots_.pop_back();
+                throw;
+            }
+        }
+        ++live_;
+        return Id{index + 1, slots_[index].generation};
+    }
+
+    // Null when the id is null, stale or from nowhere.
+    Value* find(Id id) noexcept {
+        if (id.index1 == 0 || id.index1 > slots_.size()) return nullptr;
+        Slot& slot = slots_[id.index1 - 1];
+        return slot.value && slot.generation == id.generation ? &*slot.value : nullptr;
+    }
+    const Value* find(Id id) const noexcept { return const_cast<HandlePool*>(this)->find(id); }
+
+    // As find, but throws Error in plain words.
+    Value& get(Id id) {
+        if (Value* value = find(id)) return *value;
+        if (id.index1 == 0) fail(FW_ERROR_STALE_ID, "%s id is null.", noun_);
+        if (id.index1 > slots_.size())
+            fail(FW_ERROR_STALE_ID, "%s %u does not exist; there are %zu slots.", noun_, id.index1,
+                 slots_.size());
+        fail(FW_ERROR_STALE_ID,
+             "%s %u (generation %u) is already destroyed; the slot is at generation %u.", noun_,
+             id.index1, id.generation, slots_[id.index1 - 1].generation);
+    }
+
+    void destroy(Id id) {
+        (void)get(id);
+        Slot& slot = slots_[id.index1 - 1];
+        slot.value.reset();
+        ++slot.generation;
+        const uint32_t index = id.index1 - 1;
+        free_.insert(std::lower_bound(free_.begin(), free_.end(), index, std::greater<>()), index);
+        --live_;
+    }
+
+    [[nodiscard]] uint32_t live() const noexcept { return live_; }
+    [[nodiscard]] uint32_t slotCount() const noexcept { return uint32_t(slots_.size()); }
+    // Null for an empty slot. For loops in slot order.
+    Value* at(uint32_t index) noexcept {
+        return slots_[index].value ? &*slots_[index].value : nullptr;
+    }
+    Id idOf(uint32_t index) const noexcept { return Id{index + 1, slots_[index].generation}; }
+
+   private:
+    struct Slot {
+        uint32_t generation = 1;
+        std::optional<Value> value;
+    };
+    const char* noun_;
+    std::pmr::vector<Slot> slots_;
+    std::pmr::vector<uint32_t> free_;
+    uint32_t live_ = 0;
+};
+
+}  // namespace fw::core

@@ -1,0 +1,104 @@
+// The burn domain: what the bake makes of a triangle mesh. A unique-UV atlas of texels with rest
+// positions, normals and areas, links across chart borders, tiles and who reads them. Immutable,
+// shared by all objects that use the mesh; integers wherever the simulation reads. Doubles and
+// floats are for the bake, drawing and queries only.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace fw::mesh {
+
+constexpr uint32_t kNone = 0xFFFFFFFFu;
+constexpr uint32_t kTileSide = 8;  // texels; a tile is 8x8 = 64 lanes, lane = (y % 8) * 8 + x % 8
+// Ring order: counter-clockwise, odd = diagonal. All link records use it.
+constexpr std::array<int, 8> kRingX{1, 1, 0, -1, -1, -1, 0, 1};
+constexpr std::array<int, 8> kRingY{0, 1, 1, 1, 0, -1, -1, -1};
+
+// Flags in TexelPosition::materialFlags, above the material index (bits 0..7).
+enum TexelFlag : uint32_t {
+    kTexelReal = 0x100,    // owned by a triangle: takes part in the simulation
+    kTexelRim = 0x200,     // neighbours come from a link record, not from the image
+    kTexelForced = 0x400,  // sub-texel part: position is the closest point of its triangle
+};
+
+struct TexelPosition {  // 8 bytes, RGBA16_UINT: rest position in units of `quantum` from `origin`
+    uint16_t x = 0, y = 0, z = 0, materialFlags = 0;
+};
+
+struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/shared/burn.h)
+    uint32_t seamMaskLow = 0;  // texels of this tile that some other tile reads through a link
+    uint32_t seamMaskHigh = 0;
+    uint32_t readerStart = 0;  // into readers
+    uint32_t readerCount = 0;
+    uint32_t rimMaskLow = 0;   // texels of this tile with a link record
+    uint32_t rimMaskHigh = 0;
+    uint32_t rimBase = 0;      // record of a rim texel = rimBase + popcount(rimMask below its lane)
+    uint32_t reserved = 0;
+};
+
+// A corner of the drawn mesh; 48 bytes. Vertices are split where the atlas is cut.
+struct RenderVertex {
+    float position[3] = {};      // m, rest, object space
+    uint32_t normal = 0;         // signed 11:11:10 xyz (x in the low bits)
+    float atlasUv[2] = {};       // burn atlas, in TEXELS (texel centre = i + 0.5)
+    float textureUv[2] = {};     // the mesh's own UV 0 (0 if none)
+    float detail[2] = {};        // m, y along the grain; see BurnDomain::hasDetail
+    uint32_t tint = 0xFFFFFFFFu; // RGBA8 linear, multiplies the base colour
+    uint32_t material = 0;       // material index of the triangle
+};
+
+struct BakeReport {            // for people and tests; never read by the simulation
+    double meshArea = 0;       // m^2, non-degenerate triangles
+    double texelArea = 0;      // m^2, sum over texels
+    double milliseconds = 0;   // of the whole bake
+    double linkMin = 0, linkMax = 0;      // in texel sides
+    double aspectP99 = 0, aspectMax = 0;  // texel stretch
+    uint32_t vertices = 0, triangles = 0, charts = 0;
+    uint32_t degenerate = 0, openEdges = 0, nonManifoldEdges = 0, seamEdges = 0;
+    uint32_t realTexels = 0, forcedTexels = 0, rimTexels = 0, overlaps = 0;
+    uint32_t linksOpen = 0, linksLost = 0, readerless = 0;
+    uint32_t usedOwnUv = 0;    // 1: the mesh's UVs; 0: our packing
+    uint32_t rechartedTriangles = 0;
+};
+
+struct BurnDomain {
+    explicit BurnDomain(std::pmr::memory_resource* memory)
+        : texels(memory), normals(memory), areas(memory), thickness(memory), slowness(memory),
+          triangleOf(memory), links(memory), readers(memory), tiles(memory), vertices(memory),
+          indices(memory) {}
+
+    uint32_t width = 0, height = 0;  // texels, multiples of 8
+    uint32_t tilesX = 0, tilesY = 0;
+    float quantum = 0;               // m per position unit; every link is shorter than 8191 units
+    float origin[3] = {};            // m, object space, of position 0,0,0
+    float texelSide = 0;             // m, nominal h = 1 / density
+    float linkShort = 0;             // m, 5th percentile of the texel's shorter side (for substeps)
+    float linkMax = 0;               // m, longest link (a doused band must be wider)
+    float boundsLow[3] = {}, boundsHigh[3] = {};  // m, object space
+    uint32_t materialCount = 0;      // 1 + highest material index
+    uint32_t hasDetail = 0;          // 1: RenderVertex::detail is given; 0: shade triplanar
+
+    std::pmr::vector<TexelPosition> texels;   // width * height, row-major
+    std::pmr::vector<uint32_t> normals;       // signed 11:11:10 xyz, per texel
+    std::pmr::vector<float> areas;            // m^2 per texel; sum = mesh area within 1 %
+    std::pmr::vector<uint16_t> thickness;     // 0.1 mm by an inward ray; 0xFFFF: none hit
+    std::pmr::vector<uint16_t> slowness;      // Q7 noise factor per texel, 128 = 1; 0 = not real
+    std::pmr::vector<uint32_t> triangleOf;    // per texel: drawn triangle (index / 3), or kNone
+    std::pmr::vector<uint32_t> links;         // 8 texel indices (or kNone) per rim record
+    std::pmr::vector<uint32_t> readers;       // tiles, see TileStatic
+    std::pmr::vector<TileStatic> tiles;       // tilesX * tilesY
+    std::pmr::vector<RenderVertex> vertices;  // what is drawn, split at chart borders
+    std::pmr::vector<uint32_t> indices;       // 3 per triangle
+    BakeReport report;
+
+    [[nodiscard]] uint32_t texelCount() const noexcept { return width * height; }
+    [[nodiscard]] uint32_t tileCount() const noexcept { return tilesX * tilesY; }
+    [[nodiscard]] bool real(uint32_t texel) const noexcept {
+        return (texels[texel].materialFlags & kTexelReal) != 0;
+    }
+};
+
+}  // namespace fw::mesh
