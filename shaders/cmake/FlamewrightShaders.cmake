@@ -1,0 +1,67 @@
+# Compiles GLSL to SPIR-V words and gathers them in one object library.
+# Not a shader language front end: glslangValidator does the work and writes the dependency files.
+
+find_program(FW_GLSLANG glslangValidator REQUIRED)
+
+# flamewright_shaders(target entry...)
+# An entry is one string:
+#   "burn/arrival.comp"                                  -> name "arrival.comp"
+#   "burn/arrival.comp AS arrival_published.comp A=1 B"  -> a variant compiled with -DA=1 -DB
+function(flamewright_shaders target)
+    set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
+    file(MAKE_DIRECTORY ${generated})
+    set(includes "")
+    set(rows "")
+    set(headers "")
+    set(names "")
+    foreach(entry IN LISTS ARGN)
+        separate_arguments(words UNIX_COMMAND "${entry}")
+        list(POP_FRONT words path)
+        get_filename_component(name ${path} NAME)
+        if(words)
+            list(POP_FRONT words as name)
+            if(NOT as STREQUAL "AS" OR NOT name)
+                message(FATAL_ERROR "shader entry \"${entry}\": expected \"path [AS name [DEFINE...]]\"")
+            endif()
+        endif()
+        if(name IN_LIST names)
+            message(FATAL_ERROR "shader entry \"${entry}\": the name ${name} is already taken")
+        endif()
+        list(APPEND names ${name})
+        set(source ${CMAKE_CURRENT_SOURCE_DIR}/${path}.glsl)
+        if(NOT EXISTS ${source})
+            message(FATAL_ERROR "shader entry \"${entry}\": ${source} does not exist")
+        endif()
+        if(NOT path MATCHES "\\.(comp|vert|frag)$")
+            message(FATAL_ERROR "shader entry \"${entry}\": the stage is none of comp, vert, frag")
+        endif()
+        set(stage ${CMAKE_MATCH_1})
+        list(TRANSFORM words PREPEND "-D")
+        string(MAKE_C_IDENTIFIER "k_${name}" variable)
+        set(header ${generated}/${name}.inc)
+        add_custom_command(
+            OUTPUT ${header}
+            COMMAND ${FW_GLSLANG} --quiet -V --target-env vulkan1.0 -S ${stage}
+                    -I${CMAKE_CURRENT_SOURCE_DIR} ${words}
+                    --vn ${variable} --depfile ${header}.d -o ${header} ${source}
+            DEPENDS ${source}
+            DEPFILE ${header}.d
+            COMMENT "Shader ${name}"
+            VERBATIM)
+        list(APPEND headers ${header})
+        string(APPEND includes "#include \"${name}.inc\"\n")
+        string(APPEND rows "    {\"${name}\", ${variable}},\n")
+    endforeach()
+
+    set(FW_SHADER_INCLUDES "${includes}")
+    set(FW_SHADER_ROWS "${rows}")
+    list(LENGTH names FW_SHADER_COUNT)
+    configure_file(${CMAKE_CURRENT_SOURCE_DIR}/cmake/shaders_embedded.cpp.in
+                   ${generated}/shaders_embedded.cpp @ONLY)
+    configure_file(${CMAKE_CURRENT_SOURCE_DIR}/cmake/shaders_embedded.h.in
+                   ${generated}/shaders_embedded.h @ONLY)
+    add_library(${target} OBJECT ${generated}/shaders_embedded.cpp ${headers})
+    target_include_directories(${target} PUBLIC ${generated})
+    set_target_properties(${target} PROPERTIES
+        POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
