@@ -1,0 +1,450 @@
+/* flamewright/flamewright.h: the stable C ABI. C11 and C++20; no Vulkan and no C++ in here.
+ *
+ * Units: metre, second, kilogram, kelvin, degree Celsius only where a name says so.
+ * Matrices: column-major, column vectors, not jittered. Colour: linear Rec.709, scene-referred.
+ * Thread tags: [any] any thread; [world] one thread at a time per world; [record] as [world], and
+ * the caller owns the command buffer. Callbacks may come from any thread and must not call back in.
+ * Everything behind a pointer is copied before a call returns. Output goes to the caller's memory.
+ * A negative result failed and changed nothing; fw*_GetLastMessage and the log say why.
+ * Reserved fields are zero. Ids are null when zero. See plugin/docs for the host's checklist. */
+#ifndef FLAMEWRIGHT_FLAMEWRIGHT_H
+#define FLAMEWRIGHT_FLAMEWRIGHT_H
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define FW_CALL __cdecl
+#else
+#define FW_CALL
+#endif
+#ifndef FW_API /* the build sets the export attribute; hosts need nothing */
+#define FW_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define FW_ABI_VERSION 1u /* grows only when an old host can no longer work */
+#define FW_VERSION_MAJOR 0u
+#define FW_VERSION_MINOR 1u
+#define FW_VERSION_PATCH 0u
+
+/* ---- objects and ids --------------------------------------------------------------------- */
+
+typedef struct FwContext FwContext; /* few, heavy, owned by the host: opaque pointers */
+typedef struct FwWorld FwWorld;
+struct FwVulkanHost; /* flamewright_vulkan.h */
+
+/* many: generational ids by value; all-zero is null */
+typedef struct FwMaterialId { uint32_t index1, generation; } FwMaterialId;
+typedef struct FwImageId { uint32_t index1, generation; } FwImageId;
+typedef struct FwMeshId { uint32_t index1, generation; } FwMeshId;
+typedef struct FwBurnableMeshId { uint32_t index1, generation; } FwBurnableMeshId;
+typedef struct FwTargetId { uint32_t index1, generation; } FwTargetId;
+typedef struct FwQueryId { uint32_t index1, generation; } FwQueryId;
+
+/* ---- results, log, memory ------------------------------------------------------------------ */
+
+typedef enum FwResult {
+    FW_NOT_READY = 1, /* pipelines or readback still on their way; nothing was recorded */
+    FW_OK = 0,
+    FW_ERROR_INVALID_ARGUMENT = -1,
+    FW_ERROR_STALE_ID = -2,
+    FW_ERROR_VERSION = -3, /* structSize or abiVersion that this library cannot serve */
+    FW_ERROR_OUT_OF_MEMORY = -4,
+    FW_ERROR_UNSUPPORTED_DEVICE = -5,
+    FW_ERROR_DEVICE_LOST = -6,
+    FW_ERROR_BAD_DATA = -7, /* a mesh or cooked file that cannot be used */
+    FW_ERROR_WRONG_BACKEND = -8, /* the call needs another backend */
+    FW_ERROR_INTERNAL = -9,
+    FW_RESULT_FORCE32 = 0x7fffffff
+} FwResult;
+
+typedef struct FwErrorInfo { int32_t result; char message[508]; } FwErrorInfo; /* the caller's */
+
+typedef enum FwLogLevel {
+    FW_LOG_DEBUG = 0, FW_LOG_INFO = 1, FW_LOG_WARNING = 2, FW_LOG_ERROR = 3,
+    FW_LOG_LEVEL_FORCE32 = 0x7fffffff
+} FwLogLevel;
+
+/* Frozen. Copied at context creation; null members take the library's own. `allocate` returns null
+ * when there is no memory; `release` gets back what allocate was asked for. */
+typedef struct FwCallbacks {
+    void* userData;
+    void (FW_CALL* log)(void* userData, int32_t level, const char* message);
+    void* (FW_CALL* allocate)(void* userData, size_t size, size_t alignment);
+    void (FW_CALL* release)(void* userData, void* memory, size_t size, size_t alignment);
+} FwCallbacks;
+
+/* Static text for a result, never null. [any] */
+FW_API const char* FW_CALL fwResultName(int32_t result);
+/* major << 22 | minor << 12 | patch of the library in use. [any] */
+FW_API uint32_t FW_CALL fwGetVersion(void);
+
+/* ---- defs ------------------------------------------------------------------------------------ */
+/* Take a def from its fwDefault...() and change what you need. structSize is the host's sizeof; a
+ * newer library gives fields it does not find their default, a newer host gets FW_ERROR_VERSION if
+ * bytes that the library does not know are not zero. */
+
+typedef enum FwDefType {
+    FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
+    FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
+    FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
+    FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104,
+    FW_DEF_TYPE_FORCE32 = 0x7fffffff
+} FwDefType;
+/* Writes defaults for the first structSize bytes, and zero for what this library does not know;
+ * never a byte past structSize. Unknown types are zeroed but for structSize. [any] */
+FW_API void FW_CALL fwInitDef(uint32_t defType, void* def, uint32_t structSize);
+
+/* ---- context --------------------------------------------------------------------------------- */
+
+typedef enum FwBackend {
+    FW_BACKEND_VULKAN = 0, /* the device in FwContextDef::vulkan, or our own if that is null */
+    FW_BACKEND_CPU = 1,    /* simulation only, no device: servers, tools, tests */
+    FW_BACKEND_FORCE32 = 0x7fffffff
+} FwBackend;
+
+typedef struct FwContextDef {
+    uint32_t structSize, abiVersion; /* set for you */
+    uint32_t backend;                /* FwBackend, default FW_BACKEND_VULKAN */
+    uint32_t flags;                  /* 0 */
+    FwCallbacks callbacks;
+    const struct FwVulkanHost* vulkan; /* null: the library makes its own instance and device */
+    uint64_t gpuMemoryBudget;          /* bytes; 0: no cap. Creation fails beyond it. */
+} FwContextDef;
+static inline FwContextDef fwDefaultContextDef(void) {
+    FwContextDef d; fwInitDef(FW_DEF_CONTEXT, &d, (uint32_t)sizeof d);
+    d.abiVersion = FW_ABI_VERSION; return d;
+}
+/* On failure *context is null and *error (may be null) says why. [any] */
+FW_API FwResult FW_CALL fwCreateContext(const FwContextDef* def, FwContext** context, FwErrorInfo* error);
+/* Frees everything of it, worlds included, even after a lost device. The host has waited for its
+ * last frame. Null is fine. [any, nothing else may use the context] */
+FW_API void FW_CALL fwDestroyContext(FwContext* context);
+
+typedef struct FwContextInfo {
+    uint32_t structSize;
+    uint32_t backend;                 /* FwBackend in use */
+    uint32_t apiVersion;              /* Vulkan version declared by the host; 0 on the cpu backend */
+    uint32_t ownDevice;               /* 1: we made the device */
+    uint32_t gpuTimers;               /* 1: pass timers are available */
+    uint32_t debugLabels;             /* 1: debug-utils labels and names are in use */
+    uint64_t gpuMemoryUsed, gpuMemoryBudget; /* bytes */
+    uint64_t cpuMemoryUsed;           /* bytes alive through the allocator */
+    char deviceName[256];
+} FwContextInfo;
+/* Fills up to info->structSize bytes. [any] */
+FW_API FwResult FW_CALL fwContext_GetInfo(FwContext* context, FwContextInfo* info);
+/* Text of the last failure on this context; returns the length needed without the zero. [any] */
+FW_API size_t FW_CALL fwContext_GetLastMessage(FwContext* context, char* text, size_t capacity);
+/* Builds whatever pipelines are missing, may take long: a loading screen or a worker thread.
+ * FW_OK when all is ready. Calling it is optional only on an own device. [any] */
+FW_API FwResult FW_CALL fwContext_Prepare(FwContext* context);
+
+typedef struct FwMemoryRow { /* one component's GPU memory */
+    char name[48];
+    uint64_t bytes, capacity; /* in use, and reserved for it */
+} FwMemoryRow;
+/* Writes at most capacity rows, returns how many there are. [any] */
+FW_API uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows, uint32_t capacity);
+
+/* ---- world ------------------------------------------------------------------------------------- */
+
+typedef struct FwWorldDef {
+    uint32_t structSize, flags; /* 0 */
+    float up[3];                /* unit vector, default 0,1,0 */
+    float paceFactor;           /* [0.1, 1000], default 1: how much faster than wood fire spreads
+                                   and burns out. Games use 5 to 30. */
+    float wind[3];              /* m/s, default 0 */
+    float wetResistance;        /* reserved, 0 */
+    uint32_t seed;              /* of everything cosmetic and of noise */
+    uint32_t maxStepsPerFrame;  /* [1, 64], default 8: time beyond it is dropped and counted */
+    uint32_t maxLights;         /* [0, 64], default 16 */
+    uint32_t maxFlames;         /* [0, 65536], default 4096 flame quads alive */
+    uint64_t userData;
+} FwWorldDef;
+static inline FwWorldDef fwDefaultWorldDef(void) {
+    FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;
+}
+FW_API FwResult FW_CALL fwCreateWorld(FwContext* context, const FwWorldDef* def, FwWorld** world); /* [any] */
+FW_API void FW_CALL fwDestroyWorld(FwWorld* world); /* null is fine [world] */
+FW_API size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t capacity); /* [any] */
+/* Uniform wind, m/s, world space, each component within +-120. Filtered over a material's link
+ * time before it reaches a front. [world] */
+FW_API FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]);
+
+/* ---- materials ------------------------------------------------------------------------------------ */
+
+typedef enum FwMaterialPreset {
+    FW_MATERIAL_NONCOMBUSTIBLE = 0, FW_MATERIAL_PINE = 1, FW_MATERIAL_PAINTED_WOOD = 2,
+    FW_MATERIAL_NEWSPAPER = 3, FW_MATERIAL_PAPER = 4, FW_MATERIAL_COTTON = 5,
+    FW_MATERIAL_POLYESTER = 6, FW_MATERIAL_DRY_LEAF = 7, FW_MATERIAL_GREEN_LEAF = 8,
+    FW_MATERIAL_THATCH = 9, FW_MATERIAL_DRY_GRASS = 10, FW_MATERIAL_PLYWOOD = 11,
+    FW_MATERIAL_LEATHER = 12, FW_MATERIAL_PLASTIC = 13, FW_MATERIAL_PRESET_COUNT = 14,
+    FW_MATERIAL_PRESET_FORCE32 = 0x7fffffff
+} FwMaterialPreset;
+
+typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md */
+    uint32_t structSize;
+    uint32_t look;        /* FwMaterialPreset whose appearance is used */
+    float spreadRate;     /* m/s on a flat horizontal sheet in still air, [0, 1]; 0: cannot burn */
+    float windGain;       /* drive per m/s of wind along the surface, [0, 16] */
+    float upGain;         /* drive of a vertical surface, [0, 16] */
+    float headGain;       /* head speed = spreadRate * (1 + headGain * min(drive, driveMax)) [0, 255] */
+    float backGain;       /* back speed = spreadRate / (1 + backGain * drive) [0, 255] */
+    float driveMax;       /* [0, 63] */
+    float lengthToBreadth;/* largest length/breadth of the burnt ellipse, [1, 4]; default 2 */
+    float ceilingGain;    /* speed-up below a ceiling, [0, 4]; default 0.3 */
+    float burnTime;       /* s a texel flames; <= 0: thick fuel, flames without end */
+    float moisture;       /* kg water per kg dry fuel, [0, 2] */
+    float extinctionMoisture; /* moisture at which it no longer spreads, (0, 2] */
+    float thickness;      /* m, of the visible rim and of the consumption, >= 0 */
+    float heatOfCombustion;   /* J/kg */
+    float burningFlux;    /* kg/m^2/s while it flames */
+    float baseColor[3];   /* linear albedo of the fresh material, where no image is given */
+    float baseRoughness;  /* [0, 1] */
+} FwMaterialDef;
+static inline FwMaterialDef fwDefaultMaterialDef(void) { /* pine */
+    FwMaterialDef d; fwInitDef(FW_DEF_MATERIAL, &d, (uint32_t)sizeof d); return d;
+}
+/* Overwrites all but structSize with a preset. [any] */
+FW_API FwResult FW_CALL fwInitMaterialPreset(FwMaterialDef* def, uint32_t preset);
+FW_API const char* FW_CALL fwMaterialPresetName(uint32_t preset); /* [any] */
+FW_API FwResult FW_CALL fwWorld_CreateMaterial(FwWorld*, const FwMaterialDef* def, FwMaterialId* id); /* [world] */
+FW_API FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld*, FwMaterialId id); /* users keep their copy [world] */
+
+/* ---- images: base colours --------------------------------------------------------------------------- */
+
+typedef struct FwImageDef {
+    uint32_t structSize, flags; /* flags: 0 */
+    uint32_t width, height;     /* [1, 8192] */
+    const void* pixels;         /* RGBA8, rows top first, tightly packed; sRGB colour, linear alpha */
+} FwImageDef;
+static inline FwImageDef fwDefaultImageDef(void) {
+    FwImageDef d; fwInitDef(FW_DEF_IMAGE, &d, (uint32_t)sizeof d); return d;
+}
+FW_API FwResult FW_CALL fwWorld_CreateImage(FwWorld*, const FwImageDef* def, FwImageId* id); /* [world] */
+FW_API FwResult FW_CALL fwWorld_DestroyImage(FwWorld*, FwImageId id); /* objects fall back to their base colour [world] */
+
+/* ---- meshes: baked once, shared by any number of objects ----------------------------------------------- */
+
+typedef struct FwMeshDef {
+    uint32_t structSize, flags;    /* FwMeshFlags */
+    const float* positions;        /* 3 per vertex, m, required unless cooked */
+    const float* normals;          /* 3 per vertex, or null: computed */
+    const float* uvs;              /* 2 per vertex, or null */
+    const float* details;          /* 2 per vertex, m on the surface, y along the grain, or null */
+    const uint32_t* colors;        /* RGBA8 linear per vertex, or null: white */
+    const void* indices;           /* 3 per triangle */
+    const uint8_t* triangleMaterials; /* 1 per triangle, [0, 7], or null: 0 */
+    uint32_t vertexCount, indexCount;
+    uint32_t indexSize;            /* bytes: 2 or 4 (default) */
+    uint32_t mapSize;              /* largest side of the burn map in texels, [8, 4096], default 512 */
+    float texelsPerMetre;          /* wished density, (0, 4096], default 128; lowered to fit mapSize */
+    float noiseAmplitude;          /* raggedness of the front, [0, 0.5], default 0.15 */
+    float noiseFeature;            /* m, default 0.012 */
+    uint32_t noiseSeed;
+    const void* cooked;            /* from fwCookMesh; then the arrays above are not read */
+    uint64_t cookedSize;           /* bytes */
+} FwMeshDef;
+typedef enum FwMeshFlags {
+    FW_MESH_TRUST_UVS = 1, /* use the UVs as the burn map's even if they overlap or stretch */
+    FW_MESH_FLAGS_FORCE32 = 0x7fffffff
+} FwMeshFlags;
+static inline FwMeshDef fwDefaultMeshDef(void) {
+    FwMeshDef d; fwInitDef(FW_DEF_MESH, &d, (uint32_t)sizeof d); return d;
+}
+typedef struct FwMeshInfo {
+    uint32_t structSize;
+    uint32_t mapWidth, mapHeight, texels, charts;
+    uint32_t vertices, triangles, degenerateTriangles, openEdges, nonManifoldEdges;
+    uint32_t usedOwnUvs, reserved;
+    float area, texelArea;         /* m^2 */
+    float boundsLow[3], boundsHigh[3]; /* m */
+    float texelsPerMetre, bakeMilliseconds;
+} FwMeshInfo;
+/* Bakes the burn domain: up to seconds for 100k triangles. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateMesh(FwWorld*, const FwMeshDef* def, FwMeshId* id);
+FW_API FwResult FW_CALL fwWorld_DestroyMesh(FwWorld*, FwMeshId id); /* refused while an object uses it [world] */
+FW_API FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld*, FwMeshId id, FwMeshInfo* info); /* [world] */
+/* The bake alone, for a tool, a cache or a worker thread. Call with buffer null for the size, or
+ * with enough room; *size is what is (or would be) written. [any] */
+FW_API FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* def, void* buffer, uint64_t* size);
+
+/* ---- burnable meshes: what burns ------------------------------------------------------------------------ */
+
+typedef enum FwBurnableFlags {
+    FW_BURNABLE_HIDDEN = 1,     /* simulated, not drawn by us */
+    FW_BURNABLE_TWO_SIDED = 2,  /* draw back faces too */
+    FW_BURNABLE_PUBLISHED = 4,  /* spread by the published 16-tap kernel, for comparison */
+    FW_BURNABLE_NO_HOLES = 8,   /* never consumed */
+    FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
+} FwBurnableFlags;
+
+typedef struct FwBurnableMeshDef {
+    uint32_t structSize, flags;       /* FwBurnableFlags */
+    FwMeshId mesh;
+    FwMaterialId materials[8];        /* by triangle material; null: noncombustible */
+    FwImageId baseColor;              /* null: the material's base colour and procedural detail */
+    float transform[16];              /* object to world, rigid and uniform scale; default identity */
+    float moisture;                   /* added to the materials' own, [0, 2] */
+    float tint[3];                    /* multiplies the base colour, default 1,1,1 */
+    const uint8_t* multiplier;        /* speed multiplier over the burn map, 128 = 1, 0 = cannot burn */
+    uint32_t multiplierWidth, multiplierHeight; /* resampled (nearest) to the burn map */
+    uint64_t userData;                /* comes back in events */
+} FwBurnableMeshDef;
+static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
+    FwBurnableMeshDef d; fwInitDef(FW_DEF_BURNABLE_MESH, &d, (uint32_t)sizeof d); return d;
+}
+FW_API FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld*, const FwBurnableMeshDef* def, FwBurnableMeshId* id); /* [world] */
+FW_API FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld*, FwBurnableMeshId id); /* [world] */
+/* Rigid with uniform scale; wind and gravity follow the new pose at the next latch. [world] */
+FW_API FwResult FW_CALL fwWorld_SetTransform(FwWorld*, FwBurnableMeshId id, const float transform[16]);
+FW_API FwResult FW_CALL fwWorld_SetHidden(FwWorld*, FwBurnableMeshId id, uint32_t hidden); /* [world] */
+
+typedef enum FwIgnitionKind {
+    FW_IGNITE = 0,      /* receptive texels catch fire now */
+    FW_WET = 1,         /* wets: burning texels go out, wet ones cannot catch until dried */
+    FW_DRY = 2,         /* dries what was wetted */
+    FW_EXTINGUISH = 3,  /* puts out, leaves dry: may catch again from a live neighbour */
+    FW_IGNITION_KIND_FORCE32 = 0x7fffffff
+} FwIgnitionKind;
+typedef struct FwIgnitionDef { /* a ball against one object or all of them */
+    uint32_t structSize;
+    uint32_t kind;            /* FwIgnitionKind */
+    FwBurnableMeshId object;  /* null: every object the ball touches */
+    float position[3];        /* m, world */
+    float radius;             /* m, >= 0; the nearest texel within reach counts at least */
+    float delay;              /* s from now, [0, 3600] */
+    uint32_t reserved[3];
+} FwIgnitionDef;
+static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
+    FwIgnitionDef d; fwInitDef(FW_DEF_IGNITION, &d, (uint32_t)sizeof d); return d;
+}
+/* Queued; takes effect in the simulation step whose window holds its time. *texels (may be null)
+ * gets how many texels it addresses; zero is fine and not an error. [world] */
+FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint32_t* texels);
+
+/* ---- running ---------------------------------------------------------------------------------------------- */
+
+/* Advances the simulation by deltaTime s, [0, 10]. cpu backend: at once. Own device: submits and
+ * waits. Lent device: use fwWorld_RecordOutside instead (FW_ERROR_WRONG_BACKEND). [world] */
+FW_API FwResult FW_CALL fwWorld_Step(FwWorld*, float deltaTime);
+
+typedef struct FwView { /* what a camera and its light are; all lengths m */
+    uint32_t structSize, flags;       /* 0 */
+    float view[16], projection[16];   /* Vulkan clip space: y down, depth 0..1 */
+    float sunDirection[3];            /* towards the sun, unit */
+    float sunColor[3];                /* radiance x pi/2 into a Lambert/pi surface; cd/m^2-like */
+    float ambientSky[3], ambientGround[3]; /* hemisphere about world up */
+    float exposure;                   /* pre-exposure multiplied into linear output, > 0, default 1 */
+    float emissionScale;              /* of glow and flames against the scene's light, default 1 */
+    float time;                       /* s, for flicker and breathing only */
+    float reserved[3];
+} FwView;
+static inline FwView fwDefaultView(void) {
+    FwView d; fwInitDef(FW_DEF_VIEW, &d, (uint32_t)sizeof d); return d;
+}
+
+typedef struct FwOffscreenDef { /* own device only: the smallest way to a picture */
+    uint32_t structSize, width, height, reserved; /* pixels, [1, 8192] */
+    FwView view;
+    float background[4];              /* linear */
+    void* pixels;                     /* out: RGBA8 sRGB, rows top first, width*height*4 bytes */
+} FwOffscreenDef;
+static inline FwOffscreenDef fwDefaultOffscreenDef(void) {
+    FwOffscreenDef d; fwInitDef(FW_DEF_OFFSCREEN, &d, (uint32_t)sizeof d); return d;
+}
+/* Renders the world and waits for it. [world] */
+FW_API FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld*, const FwOffscreenDef* def);
+
+/* ---- what a game asks ---------------------------------------------------------------------------------------- */
+
+typedef enum FwEventType {
+    FW_EVENT_IGNITED = 1,       /* the object's first texel burns; value: s since world start */
+    FW_EVENT_BURNT_OUT = 2,     /* nothing of it burns or waits to burn; value: burnt fraction */
+    FW_EVENT_EXTINGUISHED = 3,  /* as above, but by dousing */
+    FW_EVENT_TAG_REACHED = 4,   /* the front reached a tagged point; value: s since world start */
+    FW_EVENT_FRONT_LIMITED = 5, /* the front is faster than the substeps can follow; value: count */
+    FW_EVENT_TIME_DROPPED = 6,  /* more steps were due than maxStepsPerFrame; value: s dropped */
+    FW_EVENT_TYPE_FORCE32 = 0x7fffffff
+} FwEventType;
+typedef struct FwEvent {        /* 64 bytes for ever */
+    uint32_t type, tag;         /* FwEventType; tag: the host's number of a tagged point */
+    uint64_t userData;          /* the object's */
+    FwBurnableMeshId object;
+    uint64_t frameIndex;        /* the frame whose work raised it */
+    float position[3], value;
+    uint64_t reserved[2];
+} FwEvent;
+/* Oldest first; returns how many were written, 0 when there are no more. At most 4096 wait; then
+ * the oldest are dropped and the next one says so in the log. [world] */
+FW_API uint32_t FW_CALL fwWorld_PollEvents(FwWorld*, FwEvent* events, uint32_t capacity);
+/* Raises FW_EVENT_TAG_REACHED once when the texel nearest to `position` (m, world) burns. [world] */
+FW_API FwResult FW_CALL fwWorld_TagPoint(FwWorld*, FwBurnableMeshId id, const float position[3], uint32_t tag);
+
+typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU, now on the cpu */
+    uint32_t structSize, reserved;
+    uint64_t frameIndex;
+    uint32_t texels;           /* that can burn */
+    uint32_t ignited, burning; /* texels that ever caught; that flame now */
+    uint32_t frontTiles;       /* tiles on which the front can still move */
+    float burntFraction;       /* ignited / texels */
+    float burningArea;         /* m^2 */
+    float power;               /* W */
+    float reserved1;
+} FwObjectState;
+FW_API FwResult FW_CALL fwWorld_GetObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state); /* [world] */
+
+typedef enum FwPointStateKind {
+    FW_POINT_UNBURNT = 0, FW_POINT_BURNING = 1, FW_POINT_BURNT = 2, FW_POINT_WET = 3,
+    FW_POINT_EXTINGUISHED = 4, FW_POINT_INERT = 5, FW_POINT_STATE_KIND_FORCE32 = 0x7fffffff
+} FwPointStateKind;
+typedef struct FwPointState {
+    uint32_t structSize;
+    uint32_t kind;             /* FwPointStateKind */
+    uint64_t frameIndex;       /* the answer is of this frame */
+    float age;                 /* s since it caught; < 0: not yet */
+    float distance;            /* m from the asked point to the texel */
+    float position[3];         /* m, world, of the texel */
+    float reserved;
+} FwPointState;
+/* Asks for the texel nearest to `position` (m, world). The answer comes with a later frame's
+ * readback (at once on the cpu backend) and stays until fetched once; at most 1024 are open. [world] */
+FW_API FwResult FW_CALL fwWorld_RequestPoint(FwWorld*, FwBurnableMeshId id, const float position[3], FwQueryId* query);
+/* FW_NOT_READY until the answer is here; FW_OK writes it and frees the query. [world] */
+FW_API FwResult FW_CALL fwWorld_FetchPoint(FwWorld*, FwQueryId query, FwPointState* state);
+
+typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host's own lighting */
+    float position[3];         /* m, world */
+    float radius;              /* m, of the source */
+    float color[3];            /* linear, luminance 1 */
+    float intensity;           /* relative radiant intensity, W/sr of the visible part */
+    float power;               /* W, whole heat release */
+    float reserved[3];
+    uint32_t id, reserved1;    /* stable while the same fire burns */
+    uint64_t frameIndex;
+} FwLight;
+/* The strongest fires, as of the last readback. Returns how many were written. [world] */
+FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t capacity);
+
+typedef struct FwWorldStats {
+    uint32_t structSize, reserved;
+    uint64_t steps, tick;          /* of the simulation; a tick is 2^-12 s */
+    uint64_t readbackFrame;        /* newest frame whose readback has come */
+    uint32_t objects, burningObjects, meshes, materials;
+    uint32_t frontTiles, runTiles; /* waiting, and run in the last step */
+    uint32_t burningTiles, flames;
+    uint32_t lateClamps, droppedSteps;
+    uint64_t texels;               /* of all objects' burn maps */
+} FwWorldStats;
+FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [world] */
+
+#ifdef __cplusplus
+} /* extern "C" */
+static_assert(sizeof(FwErrorInfo) == 512 && sizeof(FwEvent) == 64 && sizeof(FwLight) == 64,
+              "frozen sizes");
+#endif
+#endif

@@ -1,0 +1,39 @@
+/* flamewright/flamewright_debug.h: UNSTABLE. Timers, maps, counters and switches for editors, tests
+ * and benches. May change with any version; never needed by a game. */
+#ifndef FLAMEWRIGHT_FLAMEWRIGHT_DEBUG_H
+#define FLAMEWRIGHT_FLAMEWRIGHT_DEBUG_H
+#include "flamewright/flamewright.h"
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct FwPassTime { char name[32]; double milliseconds; uint64_t frameIndex; uint32_t count, reserved; } FwPassTime;
+/* GPU (or cpu backend) time per pass of the newest timed frame; returns how many there are. [world] */
+FW_API uint32_t FW_CALL fwDebug_GetPassTimes(FwWorld*, FwPassTime* times, uint32_t capacity);
+
+/* Asks for the ignition ticks of an object. A later frame's readback brings them (cpu: at once). [world] */
+FW_API FwResult FW_CALL fwDebug_RequestBurnMap(FwWorld*, FwBurnableMeshId id);
+/* FW_NOT_READY until it is here. Writes min(capacity, texels) words, row-major; *count: all of them;
+ * *hash: FNV-1a over the words; *tick: the simulation tick it was taken at. [world] */
+FW_API FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld*, FwBurnableMeshId id, uint32_t* ticks, uint64_t capacity,
+                                             uint64_t* count, uint64_t* hash, uint64_t* tick);
+
+typedef enum FwDebugSwitch {
+    FW_DEBUG_DENSE = 1,             /* run every tile of burning objects each step */
+    FW_DEBUG_SHUFFLE = 2,           /* cpu: run due tiles in a random order */
+    FW_DEBUG_NO_SEAM_WAKE = 4,      /* mutants: each must make a test fail */
+    FW_DEBUG_WRONG_READERS = 8,
+    FW_DEBUG_NO_WIND_WAKE = 16,
+    FW_DEBUG_NEVER_IDLE = 32,       /* record the passes even when nothing burns */
+    FW_DEBUG_SWITCH_FORCE32 = 0x7fffffff
+} FwDebugSwitch;
+FW_API FwResult FW_CALL fwDebug_SetSwitches(FwWorld*, uint32_t switches); /* [world] */
+/* Adds exactly `count` texel events at the next step, without a ball: {texel, kind} pairs. [world] */
+FW_API FwResult FW_CALL fwDebug_PushTexels(FwWorld*, FwBurnableMeshId id, uint32_t kind, const uint32_t* texels, uint32_t count);
+/* Rest positions (3 floats each, m, object space) and flags (1 = real) of the burn map. [world] */
+FW_API FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld*, FwMeshId id, float* positions, uint32_t* flags, uint64_t capacityTexels, uint64_t* count);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

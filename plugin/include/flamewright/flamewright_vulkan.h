@@ -1,0 +1,150 @@
+/* flamewright/flamewright_vulkan.h: what a Vulkan host lends. Nothing here becomes ours; no handle
+ * is remembered past the call it came with, but for the device and registered render passes.
+ *
+ * A frame: fwWorld_RecordOutside (compute, copies, barriers; outside any pass), then, in the host's
+ * own render pass, fwWorld_RecordInside (draws only). Or fwWorld_RecordComposite: our own pass over
+ * host images. After each of them treat as undefined, in that command buffer: bound graphics and
+ * compute pipelines, descriptor sets 0..1, push constants, vertex and index buffers (bindings 0..1),
+ * viewport, scissor. All else (render pass, queries, labels, other dynamic state) is as you left it. */
+#ifndef FLAMEWRIGHT_FLAMEWRIGHT_VULKAN_H
+#define FLAMEWRIGHT_FLAMEWRIGHT_VULKAN_H
+#include "flamewright/flamewright.h"
+#ifndef VK_VERSION_1_0
+#include <vulkan/vulkan_core.h> /* types only: we call through getInstanceProcAddr */
+#endif
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Needs Vulkan 1.0 and nothing else. What else you enabled must be declared here, for Vulkan cannot
+ * be asked; anything not declared counts as off. */
+typedef struct FwVulkanHost {
+    uint32_t structSize;
+    uint32_t apiVersion;                 /* of the instance and device as created; 0: VK_API_VERSION_1_0 */
+    PFN_vkGetInstanceProcAddr getInstanceProcAddr; /* required */
+    VkInstance instance;
+    VkPhysicalDevice physicalDevice;
+    VkDevice device;
+    uint32_t queueFamilyIndex;           /* family of the queue that will run our commands; graphics + compute */
+    uint32_t enabledExtensionCount;
+    const char* const* enabledExtensions;  /* device extensions */
+    uint32_t enabledInstanceExtensionCount;
+    uint32_t reserved;
+    const char* const* enabledInstanceExtensions;
+    const VkPhysicalDeviceFeatures* enabledFeatures; /* null: none */
+    const void* enabledFeatureChain;     /* VkPhysicalDeviceFeatures2-style pNext chain, or null */
+    VkPipelineCache pipelineCache;       /* optional; used, never destroyed */
+    const VkAllocationCallbacks* allocationCallbacks; /* optional; must outlive the context */
+} FwVulkanHost;
+static inline FwVulkanHost fwDefaultVulkanHost(void) {
+    FwVulkanHost d; fwInitDef(FW_DEF_VULKAN_HOST, &d, (uint32_t)sizeof d); return d;
+}
+
+/* For a host that makes its device after asking: what we would use if it were there. All optional. */
+typedef struct FwVulkanWishes {
+    uint32_t structSize;
+    uint32_t minimumApiVersion;          /* VK_API_VERSION_1_0 */
+    uint32_t extensionCount, instanceExtensionCount;
+    const char* const* extensions;       /* static strings */
+    const char* const* instanceExtensions;
+    VkPhysicalDeviceFeatures features;   /* VK_TRUE where wished */
+    VkQueueFlags queueFlags;             /* required of the queue family */
+} FwVulkanWishes;
+/* [any], before any context exists */
+FW_API FwResult FW_CALL fwQueryVulkanWishes(FwVulkanWishes* wishes);
+
+typedef enum FwDepthMode {
+    FW_DEPTH_NONE = 0,      /* the target has no depth */
+    FW_DEPTH_TEST = 1,      /* tested and written in the host's pass */
+    FW_DEPTH_TEST_ONLY = 2, /* tested, never written by us */
+    FW_DEPTH_SAMPLED = 3,   /* composite only: sampled, not attached */
+    FW_DEPTH_MODE_FORCE32 = 0x7fffffff
+} FwDepthMode;
+typedef enum FwOutputEncoding {
+    FW_OUTPUT_LINEAR = 0,  /* float target, linear, multiplied by FwView::exposure */
+    FW_OUTPUT_SRGB_VIEW = 1,   /* linear values into an sRGB view; tone mapped by us */
+    FW_OUTPUT_DISPLAY_UNORM = 2, /* UNORM target shown as it is: tone mapped and sRGB-encoded by us */
+    FW_OUTPUT_ENCODING_FORCE32 = 0x7fffffff
+} FwOutputEncoding;
+
+typedef struct FwVulkanTargetDef {
+    uint32_t structSize;
+    uint32_t subpass;
+    VkRenderPass renderPass;       /* the host's; null only with FW_TARGET_COMPOSITE */
+    VkFormat colorFormat, depthFormat; /* depthFormat UNDEFINED if none */
+    uint32_t samples;              /* 1, 2, 4, 8, 16 */
+    uint32_t colorAttachmentCount; /* of the subpass, [1, 8]; we write the first, mask the others off */
+    uint32_t viewMask;             /* 0; anything else is refused in this version */
+    uint32_t depthMode;            /* FwDepthMode */
+    uint32_t reversedDepth;        /* 1: near is 1 */
+    uint32_t encoding;             /* FwOutputEncoding */
+    uint32_t flags;                /* FwTargetFlags */
+    uint32_t reserved;
+} FwVulkanTargetDef;
+typedef enum FwTargetFlags {
+    FW_TARGET_COMPOSITE = 1, /* for fwWorld_RecordComposite: we make the pass */
+    FW_TARGET_FLAGS_FORCE32 = 0x7fffffff
+} FwTargetFlags;
+static inline FwVulkanTargetDef fwDefaultVulkanTargetDef(void) {
+    FwVulkanTargetDef d; fwInitDef(FW_DEF_VULKAN_TARGET, &d, (uint32_t)sizeof d); return d;
+}
+/* Makes the target's pipelines. Register again when the pass or sample count changes. [any, also
+ * while recording: nothing is recorded] */
+FW_API FwResult FW_CALL fwContext_RegisterTarget(FwContext*, const FwVulkanTargetDef* def, FwTargetId* id);
+FW_API FwResult FW_CALL fwContext_UnregisterTarget(FwContext*, FwTargetId id); /* the host has waited [any] */
+
+typedef enum FwFrameFlags {
+    FW_FRAME_SECONDARY = 1,      /* commandBuffer is a secondary one */
+    FW_FRAME_SLOT_PACING = 2,    /* frameSlot/framesInFlight are given instead of completedFrameIndex */
+    FW_FRAME_FLAGS_FORCE32 = 0x7fffffff
+} FwFrameFlags;
+typedef struct FwVulkanFrame {
+    uint32_t structSize, flags;      /* FwFrameFlags */
+    VkCommandBuffer commandBuffer;   /* recording */
+    uint64_t frameIndex;             /* starts at 1, grows by one for each frame */
+    uint64_t completedFrameIndex;    /* the GPU is done with this one and all before: we may reuse */
+    uint32_t frameSlot, framesInFlight; /* slot pacing: the slot's last use is done; 0 in flight is refused */
+    float deltaTime;                 /* s, [0, 10]; RecordOutside only */
+    uint32_t reserved;
+} FwVulkanFrame;
+static inline FwVulkanFrame fwDefaultVulkanFrame(void) {
+    FwVulkanFrame d; fwInitDef(FW_DEF_VULKAN_FRAME, &d, (uint32_t)sizeof d); return d;
+}
+
+/* Simulates and prepares the drawing: uploads, compute, readback copies, all in `commandBuffer`,
+ * outside any render pass, once per frame. A secondary buffer is fine. Ends with the barriers that
+ * our draws need. Never submits, waits, maps with a stall, allocates or builds pipelines after
+ * warm-up; FW_NOT_READY (nothing recorded) before fwContext_Prepare is through. [record] */
+FW_API FwResult FW_CALL fwWorld_RecordOutside(FwWorld*, const FwVulkanFrame* frame, const FwView* view);
+/* Draws into the host's pass: no barrier, dispatch, copy or pass begins. Needs no same-frame
+ * RecordOutside; then it shows the last one. Viewport in pixels. [record] */
+FW_API FwResult FW_CALL fwWorld_RecordInside(FwWorld*, const FwVulkanFrame* frame, FwTargetId target,
+                                            const FwView* view, const VkViewport* viewport);
+
+typedef struct FwVulkanImage { /* frozen */
+    VkImage image;
+    VkImageView view;
+    VkImageLayout layoutBefore, layoutAfter;
+    VkPipelineStageFlags stageBefore, stageAfter;
+    VkAccessFlags accessBefore, accessAfter;
+} FwVulkanImage;
+typedef struct FwVulkanComposite {
+    uint32_t structSize, flags;       /* 0 */
+    uint32_t width, height;           /* pixels, >= 1; of both images */
+    FwVulkanImage color;              /* usage COLOR_ATTACHMENT */
+    FwVulkanImage depth;              /* usage DEPTH_STENCIL_ATTACHMENT, or SAMPLED in that mode */
+} FwVulkanComposite;
+static inline FwVulkanComposite fwDefaultVulkanComposite(void) {
+    FwVulkanComposite d; fwInitDef(FW_DEF_VULKAN_COMPOSITE, &d, (uint32_t)sizeof d); return d;
+}
+/* Our own pass over host images (primary buffer, outside any pass): we do the barriers from `before`
+ * to our use and to `after`. Zero extents record nothing. [record] */
+FW_API FwResult FW_CALL fwWorld_RecordComposite(FwWorld*, const FwVulkanFrame* frame, FwTargetId target,
+                                               const FwView* view, const FwVulkanComposite* images);
+/* Tell us the device is lost: nothing more is recorded, destroy still frees. [any] */
+FW_API void FW_CALL fwContext_NotifyDeviceLost(FwContext*);
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+#endif
