@@ -1,0 +1,108 @@
+// The narrow interface that the world sees: where the burn simulation runs. Two of them: vk
+// (records into a command buffer) and cpu (the same integers, at once, no device). Plain data in,
+// readbacks out; a backend decides nothing about the game.
+#pragma once
+#include "mesh/burn_domain.h"
+#include "shared/burn.h"
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace fw::gpu {
+
+struct ObjectInit {
+    uint32_t mesh = 0;   // slot
+    BurnObject record;   // bases are the backend's to fill
+    std::span<const BurnMaterial> materials;  // kMaterialsPerObject
+    // Per texel Q7, 0 = cannot burn; empty: the mesh's own with nothing painted. Width of the map.
+    std::span<const uint16_t> slowness;
+};
+
+struct MaterialUpdate {  // new records of one object at a step's start (a wind or pose latch)
+    uint32_t object = 0;
+    BurnMaterial materials[kMaterialsPerObject];
+    uint32_t window = 0;  // correction window, ticks
+    uint32_t substepShift = 0;
+};
+
+struct StepPlan {          // one fixed step of 1/32 s
+    uint32_t now = 0;      // tick at its start
+    uint32_t substepShift = 0;  // log2 of its iterations: the largest of the objects that burn
+    bool reduce = false;   // also count burning texels and rebuild BurnTiles
+    std::span<const TexelEvent> events;           // sorted by (object, texel, order)
+    std::span<const MaterialUpdate> materials;    // applied first; each object's tiles wake
+};
+
+struct Probe {
+    uint32_t object = 0, texel = 0;
+};
+
+struct FramePlan {
+    uint64_t frameIndex = 0;
+    std::span<const StepPlan> steps;
+    std::span<const Probe> probes;        // answered in this frame's readback, in order
+    std::span<const uint32_t> burnMaps;   // object slots whose whole state is read back
+    uint32_t switches = 0;                // FwDebugSwitch
+    uint32_t endTick = 0;                 // tick after the last step
+};
+
+struct BurnMap {
+    uint32_t object = 0;
+    std::span<const uint32_t> ticks;
+};
+
+struct Readback {  // valid until the next call of nextReadback
+    uint64_t frameIndex = 0;
+    uint32_t endTick = 0;
+    std::span<const ObjectCounters> objects;  // by object slot
+    std::span<const uint32_t> answers;        // of the probes of that frame
+    std::span<const BurnMap> burnMaps;
+    std::span<const BurnLight> lights;
+    uint32_t frontTiles = 0;    // length of the front list: 0 and no events = idle
+    uint32_t runTiles = 0;      // tiles run in the frame
+    uint32_t burningTiles = 0;
+    uint32_t flames = 0;
+};
+
+struct PassTime {
+    char name[32] = {};
+    double milliseconds = 0;
+    uint64_t frameIndex = 0;
+    uint32_t count = 0;
+};
+
+struct MemoryRow {
+    const char* name = "";
+    uint64_t bytes = 0, capacity = 0;
+};
+
+class Backend {
+   public:
+    virtual ~Backend() = default;
+
+    // Creation: unchanged when they throw (core::Error, std::bad_alloc). Slots are the caller's
+    // numbers, dense from 0. A domain outlives its mesh.
+    virtual void createMesh(uint32_t slot, const mesh::BurnDomain& domain) = 0;
+    virtual void destroyMesh(uint32_t slot) noexcept = 0;
+    virtual void createObject(uint32_t slot, const ObjectInit& init) = 0;
+    virtual void destroyObject(uint32_t slot) noexcept = 0;
+    // Pose, tint and flags; the rest of the record stays.
+    virtual void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
+                               uint32_t flags) = 0;
+    // RGBA8 sRGB. The cpu backend keeps nothing.
+    virtual void createImage(uint32_t slot, uint32_t width, uint32_t height,
+                             std::span<const std::byte> pixels) = 0;
+    virtual void destroyImage(uint32_t slot) noexcept = 0;
+
+    // Runs (cpu) or records (vk, between its begin and end of the outside part) a frame's steps.
+    virtual void run(const FramePlan& plan) = 0;
+    // Oldest finished readback not yet given, or null. Never waits.
+    virtual const Readback* nextReadback() = 0;
+
+    virtual std::span<const PassTime> passTimes() = 0;
+    virtual void memoryRows(std::pmr::vector<MemoryRow>& out) = 0;
+};
+
+}  // namespace fw::gpu

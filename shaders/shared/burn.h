@@ -1,0 +1,195 @@
+// The burn simulation's data as every backend and shader sees it: texel codes, records, lists,
+// bindings. Times are ticks of 2^-12 s. Pure maths is in front.h.
+#ifndef FW_SHARED_BURN_H
+#define FW_SHARED_BURN_H
+#include "shared/types.h"
+
+// Bindings of set 0, one number per resource in every pass. A pass's layout holds only what it uses.
+#define FW_BIND_OBJECTS 0     // BurnObject[], by object slot
+#define FW_BIND_MATERIALS 1   // BurnMaterial[], 8 per object slot
+#define FW_BIND_TEXELS 2      // uvec2[]: position xyz u16, material | flags u16 (per mesh)
+#define FW_BIND_NORMALS 3     // uint[]: signed 11:11:10 (per mesh)
+#define FW_BIND_SLOWNESS 4    // uint[]: two u16 Q7 factors per word (per mesh or per object)
+#define FW_BIND_LINKS 5       // uint[]: 8 texel indices per rim record (per mesh)
+#define FW_BIND_READERS 6     // uint[]: tiles (per mesh)
+#define FW_BIND_TILES 7       // TileStatic as 2 x uvec4 (per mesh)
+#define FW_BIND_STATE 8       // uint[]: ignition tick or code (per object)
+#define FW_BIND_TILE_STATE 9  // TileState[] (per object)
+#define FW_BIND_LIST_A 10     // uint[]: front list, world tile ids (ping)
+#define FW_BIND_LIST_B 11     // uint[]: front list (pong)
+#define FW_BIND_RUN 12        // uint[]: due tiles of this iteration
+#define FW_BIND_SCRATCH 13    // uint[]: 64 words per due tile
+#define FW_BIND_MASKS 14      // uvec2[]: changed texels per due tile
+#define FW_BIND_COUNTERS 15   // IterationCounters[]
+#define FW_BIND_EVENTS 16     // TexelEvent[]
+#define FW_BIND_WAKE_GROUPS 17  // uvec2[]: object slot, first tile of 64
+#define FW_BIND_OBJECT_COUNTERS 18  // ObjectCounters[]
+#define FW_BIND_BURN_A 19     // uint[]: tiles that flame (ping)
+#define FW_BIND_BURN_B 20     // uint[]: tiles that flame (pong)
+#define FW_BIND_BURN_TILES 21 // BurnTile[]: what `reduce` says of each of them
+#define FW_BIND_PREDICT 22    // uint[]: arrival ticks for looking at, ahead of the front too
+#define FW_BIND_GRADIENT 23   // uint[]: packHalf2x16 gradient of the above, s/texel
+#define FW_BIND_PREDICT_LIST_A 24
+#define FW_BIND_PREDICT_LIST_B 25
+#define FW_BIND_PROBES 26     // uvec2[]: object slot, texel
+#define FW_BIND_ANSWERS 27    // uint[]: state of each probe
+#define FW_BIND_PUBLISHED 28  // float[]: S planes of objects in as-published mode
+#define FW_BIND_LIGHTS 29     // BurnLight[]
+#define FW_BIND_LIGHT_CELLS 30  // uint[]: hash grid of burning cells
+#define FW_BIND_FLAMES 31     // FlameQuad[]
+#define FW_BIND_DRAW_ARGS 32  // indirect draw of the flames
+#define FW_BIND_VIEW 33       // uniform ViewParams
+#define FW_BIND_LOOKS 34      // MaterialLook[]
+#define FW_BIND_COUNT 35
+
+FW_SHARED_BEGIN
+
+FW_SHARED_CONST uint kNoneTexel = 0xFFFFFFFFu;
+// Codes of a texel's state; below kLiveEnd it is an ignition tick (a source).
+FW_SHARED_CONST uint kNever = 0xFFFFFFFFu;   // unburnt, receptive
+FW_SHARED_CONST uint kInert = 0xFFFFFFFEu;   // cannot burn, or no texel: a barrier
+FW_SHARED_CONST uint kWet = 0xFFFFFFFDu;     // unburnt, water film: a barrier
+FW_SHARED_CONST uint kOut = 0xFFFFFFFCu;     // extinguished and dry: receptive
+FW_SHARED_CONST uint kOutWet = 0xFFFFFFFBu;  // extinguished, water film: a barrier
+FW_SHARED_CONST uint kLiveEnd = 0xFFFFFFF0u;
+
+FW_SHARED_CONST uint kTicksPerSecond = 4096u;
+FW_SHARED_CONST uint kStepTicks = 128u;      // 1/32 s
+FW_SHARED_CONST uint kMaxSubsteps = 8u;
+FW_SHARED_CONST uint kMaterialsPerObject = 8u;
+
+FW_SHARED_CONST uint kTexelReal = 0x100u;    // as mesh::TexelFlag
+FW_SHARED_CONST uint kTexelRim = 0x200u;
+
+// BurnObject::flags
+FW_SHARED_CONST uint kObjectLive = 1u;
+FW_SHARED_CONST uint kObjectPublished = 2u;
+FW_SHARED_CONST uint kObjectTwoSided = 4u;
+FW_SHARED_CONST uint kObjectNoHoles = 8u;
+FW_SHARED_CONST uint kObjectHidden = 16u;
+FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinates
+
+// TileState::flag
+FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
+FW_SHARED_CONST uint kTileTouched = 2u;      // an input changed: due now
+FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
+FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list
+
+// TexelEvent::kind, as FwIgnitionKind
+FW_SHARED_CONST uint kEventIgnite = 0u;
+FW_SHARED_CONST uint kEventWet = 1u;
+FW_SHARED_CONST uint kEventDry = 2u;
+FW_SHARED_CONST uint kEventExtinguish = 3u;
+
+struct BurnObject {   // everything a pass needs to find an object's planes
+    uint texelBase;   // into texels, normals (per mesh)
+    uint stateBase;   // into state, predict, gradient
+    uint slowBase;    // into slowness, in WORDS
+    uint tileBase;    // into tiles (per mesh)
+    uint worldTileBase;  // into tileState; a world tile id = worldTileBase + local tile
+    uint linkBase;    // into links, in records
+    uint readerBase;  // into readers
+    uint flags;
+    uint width;       // texels
+    uint height;
+    uint tilesX;
+    uint tileCount;
+    uint window;      // correction window, ticks
+    uint substepShift;  // log2 of its substeps per step, 0..3
+    uint horizon;     // ticks that the prediction looks ahead
+    uint image;       // base-colour image slot + 1, 0: none
+    vec4 originQuantum;  // m: rest position = origin + quantum * xyz
+    vec4 worldRow0;   // object to world, rows of a 3x4 matrix
+    vec4 worldRow1;
+    vec4 worldRow2;
+    vec4 tint;        // rgb; w: mean texel area, m^2, world scale
+};
+FW_SHARED_SIZE(BurnObject, 144)
+
+struct BurnMaterial { // integers of the spread law for one material on one object; see front.h
+    uint sigma0;      // slowness at R0: Q22 ticks per 1/8 position unit
+    uint headGain;    // Q8
+    uint backGain;    // Q8
+    uint driveMax;    // Q10
+    uint breadthMax;  // Q8, largest back/head slowness ratio
+    uint burnTicks;   // ticks a texel flames; kNoneTexel: without end
+    uint ceiling;     // Q8 speed-up of a surface that faces down
+    uint look;        // row of the looks table
+    int driveX;       // Q10, object space: windGain * wind + upGain * up
+    int driveY;
+    int driveZ;
+    uint flags;       // 1: can burn
+    float powerPerArea;  // W/m^2 while it flames (looks, lights, queries)
+    float timeScale;  // look seconds per second: pace and spread rate against the look's own
+    float thickness;  // m
+    float roughness;
+    vec4 baseColor;   // linear albedo; w unused
+    uvec4 upCeiling;  // xyz: up in object space as int Q10 bits; w: 0
+};
+FW_SHARED_SIZE(BurnMaterial, 96)
+
+struct TileState {
+    uint wake;        // earliest pending arrival, ticks; kNever: none
+    uint flag;
+    uint lastChange;  // end tick of the last window that changed it
+    uint object;      // object slot
+};
+FW_SHARED_SIZE(TileState, 16)
+
+struct IterationCounters {  // one per iteration of a frame, zeroed before it; [0].list is carried over
+    uint runX; uint runY; uint runZ; uint runCount;     // indirect groups of arrival, commit
+    uint listX; uint listY; uint listZ; uint listCount; // indirect groups of schedule, and its size
+};
+FW_SHARED_SIZE(IterationCounters, 32)
+
+struct TexelEvent {   // sorted by (object, texel, order); one batch per step
+    uint object;      // slot
+    uint texel;       // index in the object's map
+    uint kind;
+    uint tick;        // of an ignition
+};
+FW_SHARED_SIZE(TexelEvent, 16)
+
+struct ObjectCounters {
+    uint ignited;     // texels that are sources now: exact, kept by events and commit
+    uint burning;     // of the last reduce: texels that flame
+    uint frontTiles;  // of the last reduce: tiles of the front list
+    uint lateClamps;  // since ever
+    uint lastIgnition;  // latest ignition tick seen
+    uint burningTiles;
+    uint reserved0; uint reserved1;
+};
+FW_SHARED_SIZE(ObjectCounters, 32)
+
+struct BurnTile {     // one burning 8x8 tile, for flames and lights (cosmetic)
+    vec4 positionArea;  // world m; flaming area m^2
+    vec4 normalPower;   // world normal; W
+    uint object; uint tile; uint texels; uint age;  // slot, local tile, flaming texels, mean age ticks
+};
+FW_SHARED_SIZE(BurnTile, 48)
+
+struct BurnLight {    // as FwLight
+    vec4 positionRadius;
+    vec4 colorIntensity;
+    float power; uint id; uint reserved0; uint reserved1;
+};
+FW_SHARED_SIZE(BurnLight, 48)
+
+FW_SHARED_FN bool isSource(uint t) { return t < kLiveEnd; }
+FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }
+FW_SHARED_FN bool isBarrier(uint t) { return t == kInert || t == kWet || t == kOutWet; }
+
+// What one event makes of one texel. `now`: start tick of the step that applies it.
+FW_SHARED_FN uint applyEvent(uint t, uint kind, uint tick, uint now) {
+    if (kind == kEventIgnite)
+        return (isReceptive(t) || (isSource(t) && tick < t && t > now)) ? tick : t;
+    if (kind == kEventWet) {
+        if (t == kNever) return kWet;
+        return (isSource(t) || t == kOut) ? kOutWet : t;
+    }
+    if (kind == kEventDry) return t == kWet ? kNever : (t == kOutWet ? kOut : t);
+    return isSource(t) ? kOut : t;  // extinguish
+}
+
+FW_SHARED_END
+#endif
