@@ -1,0 +1,36 @@
+#!/bin/bash
+# Compiles every header alone, with nothing included before it: the C headers as C11 and C++20, all
+# others as C++20. Public headers must be clean under strict warnings.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+strict=(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+runtime=(-I"$root/runtime" -I"$root/shaders" -I"$root/plugin/include" -DVK_NO_PROTOTYPES -fno-rtti)
+
+compile() {
+    "$@" >/dev/null || { echo "does not compile alone: $*" && return 1; }
+}
+
+# check FILE: every language the header promises.
+check() {
+    local file=$1
+    case $file in
+        */plugin/include/*.hpp)
+            compile c++ -x c++ -std=c++20 -fsyntax-only "${strict[@]}" -Wno-pragma-once-outside-header \
+                -I"$root/plugin/include" "$file"
+            ;;
+        */plugin/include/*.h)
+            compile cc -x c -std=c11 -fsyntax-only "${strict[@]}" -I"$root/plugin/include" "$file"
+            compile c++ -x c++ -std=c++20 -fsyntax-only "${strict[@]}" \
+                -I"$root/plugin/include" "$file"
+            ;;
+        *) compile c++ -x c++ -std=c++20 -fsyntax-only -w "${runtime[@]}" "$file" ;;
+    esac
+}
+
+if [[ $# -eq 1 ]]; then
+    check "$1"
+    exit
+fi
+find "$root"/plugin/include "$root"/runtime "$root"/shaders/shared -name '*.h' -o -name '*.hpp' |
+    sort | xargs -P "$(nproc)" -n 1 bash "$0"
+echo "every header compiles alone"

@@ -1,0 +1,106 @@
+#!/bin/bash
+# Checks the layering: which room may include which, who may name Vulkan, what no file may hold.
+# Before it trusts itself it breaks every rule once in a tree of its own and must notice each.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+
+# room | what its quoted includes with a folder may start with
+rules='
+runtime/core|core/|flamewright/flamewright.h
+runtime/fire|fire/|core/|shared/|flamewright/flamewright.h
+runtime/mesh|mesh/|core/|shared/|flamewright/flamewright.h
+runtime/components|components/|core/|fire/|mesh/|shared/|flamewright/flamewright.h
+runtime/world|world/|components/|core/|fire/|mesh/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
+runtime/gpu|gpu/|core/|fire/|mesh/|shared/|flamewright/flamewright.h
+plugin/src|flamewright/|world/|core/
+plugin/include|flamewright/
+shaders/shared|shared/
+samples|flamewright/|common/|import/
+editor|flamewright/|import/|tools/
+'
+
+sources() {
+    find "$1" -type f \( -name '*.h' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.c' \) 2>/dev/null || true
+}
+
+# Lines of a file without // comments and without strings: "path:line:text".
+code_lines() {
+    local file
+    while read -r file; do
+        sed -e 's|//.*||' -e 's|/\*.*\*/||g' -e '/^ *#/!s|"[^"]*"||g' "$file" | sed "s|^|$file: |"
+    done
+}
+
+# Prints one line per broken rule in the tree $1.
+check_tree() {
+    local tree=$1 rule room allowed
+    while read -r rule; do
+        [[ -n $rule ]] || continue
+        room=${rule%%|*}
+        allowed=${rule#*|}
+        sources "$tree/$room" | while read -r file; do
+            sed -n 's/^ *# *include *"\([^"]*\)".*/\1/p' "$file" | while read -r include; do
+                if [[ $include == *..* ]]; then
+                    echo "$file includes \"$include\": no include climbs out of its folder"
+                elif [[ $include == */* ]] && ! grep -E -q "^(${allowed//./\\.})" <<<"$include"; then
+                    # A path inside the file's own room, seen from its own folder, is fine too.
+                    [[ -f $(dirname "$file")/$include ]] ||
+                        echo "$file includes \"$include\": $room may include only $allowed"
+                fi
+            done
+        done
+    done <<<"$rules"
+
+    local rooms=("$tree"/runtime/{core,fire,mesh,components,world} "$tree/runtime/gpu/cpu"
+        "$tree/runtime/gpu/backend.h" "$tree/plugin/include/flamewright/flamewright.h"
+        "$tree/plugin/include/flamewright/flamewright_debug.h")
+    for room in "${rooms[@]}"; do
+        sources "$room" | code_lines | grep -E '\b(Vk|vk|PFN_vk)[A-Z][A-Za-z]+|include *<vulkan' |
+            sed 's/$/   <- names Vulkan outside gpu\/vk, gpu\/passes and the edge/' || true
+    done
+
+    # The library is safe to load many times in one process: nothing global that changes.
+    for room in runtime plugin/src; do
+        sources "$tree/$room" | code_lines | grep -E '\bthread_local\b|\bdynamic_cast\b|\btypeid\b' |
+            sed 's/$/   <- not in the library/' || true
+    done
+    for room in plugin runtime shaders samples editor tests; do
+        sources "$tree/$room" | while read -r file; do
+            grep -H -n -E '\b(TO''DO|FIX''ME|XX''X)\b' "$file" || true
+            grep -H -n -E '^using namespace std' "$file" || true
+        done
+    done
+}
+
+broken=$(mktemp -d)
+trap 'rm -rf "$broken"' EXIT
+mkdir -p "$broken"/runtime/{core,fire,mesh,components,world,gpu/cpu} "$broken"/plugin/{src,include/flamewright} \
+    "$broken"/{shaders/shared,samples/a,editor/import}
+echo '#include "fire/law.h"' >"$broken/runtime/core/a.h"
+echo '#include "mesh/bake.h"' >"$broken/runtime/fire/a.h"
+echo '#include "world/world.h"' >"$broken/runtime/mesh/a.h"
+echo '#include "gpu/vk/device.h"' >"$broken/runtime/components/a.cpp"
+echo '#include "gpu/vk/device.h"' >"$broken/runtime/world/a.cpp"
+echo 'int f(VkDevice device);' >"$broken/runtime/world/b.h"
+echo 'int f(VkDevice device);' >"$broken/runtime/gpu/backend.h"
+echo '#include "components/a.h"' >"$broken/runtime/gpu/cpu/a.cpp"
+echo '#include "gpu/vk/device.h"' >"$broken/plugin/src/a.cpp"
+echo '#include "core/error.h"' >"$broken/plugin/include/flamewright/flamewright.h"
+echo '#include "core/hash.h"' >"$broken/shaders/shared/a.h"
+echo '#include "core/hash.h"' >"$broken/samples/a/main.cpp"
+echo '#include "../../runtime/core/hash.h"' >"$broken/editor/import/a.cpp"
+echo 'thread_local int x;' >"$broken/runtime/world/c.cpp"
+expected=14
+noticed=$(check_tree "$broken" | wc -l)
+if [[ $noticed -ne $expected ]]; then
+    check_tree "$broken"
+    echo "the self-test breaks $expected rules and the check notices $noticed"
+    exit 1
+fi
+
+problems=$(check_tree "$root")
+if [[ -n $problems ]]; then
+    echo "$problems"
+    exit 1
+fi
+echo "layers hold in $(for room in plugin runtime shaders samples editor; do sources "$root/$room"; done | wc -l) files"

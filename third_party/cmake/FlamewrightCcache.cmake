@@ -1,0 +1,11 @@
+# Compiles through ccache when it is there, in a build of our own and where nobody chose a launcher.
+if(PROJECT_IS_TOP_LEVEL)
+    find_program(FW_CCACHE ccache)
+    if(FW_CCACHE)
+        foreach(language C CXX)
+            if(NOT CMAKE_${language}_COMPILER_LAUNCHER)
+                set(CMAKE_${language}_COMPILER_LAUNCHER ${FW_CCACHE})
+            endif()
+        endforeach()
+    endif()
+endif()

@@ -1,0 +1,66 @@
+#!/bin/bash
+# Installs the Debian 12 packages this project needs, and only those that are missing. Says what it
+# installs. With nothing missing it returns at once and needs no network.
+# Usage: third_party/install.sh [--samples]     (--samples: leave out what only the tests need)
+set -euo pipefail
+
+packages=(
+    g++ cmake ninja-build ccache pkg-config binutils
+    glslang-tools
+    libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
+    libglm-dev
+    libglfw3-dev
+    libtinygltf-dev
+    libopenimageio-dev openimageio-tools libimath-dev
+    assimp-testmodels
+)
+test_packages=(
+    libgtest-dev libgmock-dev libbenchmark-dev
+    spirv-tools
+    xvfb
+)
+
+case "${1:-}" in
+    --samples) ;;
+    "") packages+=("${test_packages[@]}") ;;
+    *)
+        echo "usage: $0 [--samples]" >&2
+        exit 2
+        ;;
+esac
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "install: dpkg is not here, so this is not Debian. Install these packages' equivalents by" >&2
+    echo "install: hand: ${packages[*]}" >&2
+    exit 1
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+    # A package of another architecture beside ours makes dpkg print the status twice.
+    [[ $status == installed* ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -eq 0 ]] && exit 0
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+    if ! command -v sudo >/dev/null; then
+        echo "install: missing Debian packages: ${missing[*]}" >&2
+        echo "install: not root and sudo is absent; run as root: apt-get install ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+
+echo "install: installing missing Debian packages: ${missing[*]}"
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y)
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! { "${apt[@]}" update && "${apt[@]}" install --no-install-recommends "${missing[@]}"; } \
+    >"$log" 2>&1; then
+    tail -n 30 "$log" >&2
+    echo "install: apt-get failed (its last lines are above)" >&2
+    exit 1
+fi
+echo "install: done"

@@ -1,0 +1,26 @@
+# Sourced by samples/run, tests/run and .ci/run: installs, configures and builds. Not run by itself.
+# shellcheck shell=bash
+
+fw_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+# Prints "name: text" on stderr and leaves with status 2, for wrong arguments.
+fw_usage_error() {
+    echo "$(basename "$(dirname "$0")")/$(basename "$0"): $1" >&2
+    exit 2
+}
+
+# fw_build PRESET TARGET...: configures (quietly, unless it fails) and builds into build/PRESET.
+# The environment variable FW_WARNINGS_AS_ERRORS (ON or OFF) passes through to CMake.
+fw_build() {
+    local preset=$1
+    shift
+    local log="$fw_root/build/$preset-configure.log"
+    mkdir -p "$fw_root/build"
+    if ! (cd "$fw_root" && cmake --preset "$preset" \
+        "-DFW_WARNINGS_AS_ERRORS=${FW_WARNINGS_AS_ERRORS:-OFF}") >"$log" 2>&1; then
+        cat "$log" >&2
+        echo "configuring build/$preset failed (output above)" >&2
+        return 1
+    fi
+    cmake --build "$fw_root/build/$preset" --parallel "$(nproc)" --target "$@"
+}
