@@ -1,0 +1,76 @@
+// Every embedded shader is valid SPIR-V 1.0 and asks for no device feature: the Vulkan 1.0 floor.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "shaders_embedded.h"
+
+namespace {
+
+using fw::gpu::embeddedShaders;
+using fw::gpu::ShaderCode;
+
+constexpr std::uint32_t kMagic = 0x07230203u;
+constexpr std::uint32_t kVersion10 = 0x00010000u;
+constexpr std::size_t kHeaderWords = 5;
+constexpr std::uint32_t kOpCapability = 17;
+// Capabilities that Vulkan 1.0 gives without any feature enabled.
+const std::set<std::uint32_t> kFreeCapabilities{
+    0,   // Matrix
+    1,   // Shader
+    43,  // Sampled1D
+    44,  // Image1D
+    46,  // SampledBuffer
+    47,  // ImageBuffer
+    50,  // ImageQuery
+    51,  // DerivativeControl
+};
+
+TEST(EmbeddedShaders, NamesAreUniqueAndFound) {
+    std::set<std::string> names;
+    for (const ShaderCode& shader : embeddedShaders()) {
+        EXPECT_TRUE(names.insert(shader.name).second) << shader.name << " is there twice";
+        EXPECT_EQ(fw::gpu::findShader(shader.name), &shader);
+    }
+    EXPECT_EQ(fw::gpu::findShader("no such shader.comp"), nullptr);
+}
+
+TEST(EmbeddedShaders, NeedNoDeviceFeature) {
+    if (embeddedShaders().empty()) GTEST_SKIP() << "no shader is embedded";
+    for (const ShaderCode& shader : embeddedShaders()) {
+        ASSERT_GT(shader.words.size(), kHeaderWords) << shader.name;
+        EXPECT_EQ(shader.words[0], kMagic) << shader.name;
+        EXPECT_EQ(shader.words[1], kVersion10) << shader.name;
+        std::size_t at = kHeaderWords;
+        while (at < shader.words.size() && (shader.words[at] & 0xffffu) == kOpCapability) {
+            EXPECT_TRUE(kFreeCapabilities.contains(shader.words[at + 1]))
+                << shader.name << " needs SPIR-V capability " << shader.words[at + 1];
+            at += shader.words[at] >> 16;
+        }
+    }
+}
+
+TEST(EmbeddedShaders, PassTheValidator) {
+    if (embeddedShaders().empty()) GTEST_SKIP() << "no shader is embedded";
+    if (std::system("command -v spirv-val >/dev/null") != 0) GTEST_SKIP() << "spirv-val is not here";
+    const std::filesystem::path file =
+        std::filesystem::path(::testing::TempDir()) / "flamewright_shader.spv";
+    for (const ShaderCode& shader : embeddedShaders()) {
+        {
+            std::ofstream out(file, std::ios::binary);
+            out.write(reinterpret_cast<const char*>(shader.words.data()),
+                      static_cast<std::streamsize>(shader.words.size_bytes()));
+            ASSERT_TRUE(out.good()) << "cannot write " << file;
+        }
+        const std::string command = "spirv-val --target-env vulkan1.0 '" + file.string() + "'";
+        EXPECT_EQ(std::system(command.c_str()), 0) << shader.name;
+    }
+    std::filesystem::remove(file);
+}
+
+}  // namespace
