@@ -11,7 +11,7 @@ packages=(
     libglm-dev
     libglfw3-dev
     libtinygltf-dev
-    libopenimageio-dev openimageio-tools libimath-dev
+    libopenimageio-dev libimath-dev zlib1g-dev
     assimp-testmodels
 )
 test_packages=(
