@@ -1,0 +1,59 @@
+#!/bin/bash
+# Runs one sample for a few small frames under the validation layer, synchronization checks included.
+# Usage: sample.sh NAME headless|window, with the build folder in FW_BUILD_FOLDER. Fails on any
+# validation message, and headless on a run that leaves no picture.
+set -euo pipefail
+name=$1
+mode=$2
+binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/samples/$name/$name"
+if [[ ! -x $binary ]]; then
+    echo "$name is not built"
+    exit 77
+fi
+
+work=$(mktemp -d)
+server=
+cleanup() {
+    [[ -z $server ]] || kill "$server" 2>/dev/null || true
+    rm -rf "$work"
+}
+trap cleanup EXIT
+
+export VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation
+export VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT
+arguments=(--frames 6 --size 320x180 --seed 7 --out "$work/out")
+case $name in
+    02_burning_mesh)
+        model=/usr/share/assimp/models/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb
+        [[ -f $model ]] || { echo "$model is not here (package assimp-testmodels)" && exit 77; }
+        arguments+=("$model")
+        ;;
+esac
+if [[ $mode == headless ]]; then
+    unset DISPLAY WAYLAND_DISPLAY
+    arguments+=(--headless)
+else
+    command -v Xvfb >/dev/null || { echo "Xvfb is not here (package xvfb)" && exit 77; }
+    Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$work/display" 2>"$work/xvfb.log" &
+    server=$!
+    for _ in $(seq 100); do
+        [[ -s $work/display ]] && break
+        sleep 0.1
+    done
+    [[ -s $work/display ]] || { cat "$work/xvfb.log" && echo "Xvfb does not start" && exit 1; }
+    DISPLAY=:$(cat "$work/display")
+    export DISPLAY
+fi
+
+status=0
+timeout 300 "$binary" "${arguments[@]}" >"$work/log" 2>&1 || status=$?
+cat "$work/log"
+[[ $status -eq 0 ]] || { echo "$name left with status $status" && exit 1; }
+if grep -E -q 'VUID-|UNASSIGNED-|SYNC-HAZARD|Validation (Error|Warning)' "$work/log"; then
+    echo "$name: the validation layer complains"
+    exit 1
+fi
+if [[ $mode == headless && -z $(find "$work/out" -name '*.png' -size +0 2>/dev/null) ]]; then
+    echo "$name left no picture in --out"
+    exit 1
+fi
