@@ -1,0 +1,62 @@
+// What a pass is: a name, a shader, what it uses. The backend derives set layouts, barriers, timers
+// and labels from it. Pass files hold one `const ComputePass` or `const DrawPass` each.
+#pragma once
+#include "shared/burn.h"
+
+#include <cstdint>
+#include <span>
+
+namespace fw::gpu {
+
+// Resources are numbered by their binding (FW_BIND_*), so one list says both. Beyond them, what no
+// shader binds:
+enum Resource : uint32_t {
+    kResourceVertices = FW_BIND_COUNT,  // RenderVertex[]
+    kResourceIndices,                   // uint[]
+    kResourceCount,
+};
+
+enum class Access : uint8_t {
+    read,          // storage buffer, compute
+    write,         // storage buffer, compute; also read-modify-write and atomics
+    indirect,      // arguments of a dispatch or draw
+    drawRead,      // storage buffer, vertex and fragment shaders
+    vertexInput,   // vertex or index data
+    uniformView,   // the view's uniform block, dynamic offset: FW_BIND_VIEW only
+    copyRead,
+    copyWrite,
+};
+
+struct Use {
+    uint32_t resource;
+    Access access;
+};
+
+struct ComputePass {
+    const char* name;    // label, timer
+    const char* shader;  // in the embedded table: "arrival.comp"
+    std::span<const Use> uses;
+    uint32_t pushBytes;  // <= 128
+};
+
+enum class VertexInput : uint8_t {
+    none,  // the vertex shader makes its own from gl_VertexIndex and storage buffers
+    mesh,  // mesh::RenderVertex: 0 position vec3, 1 normal uint, 2 atlas vec2, 3 texture uv vec2,
+           // 4 detail vec2, 5 tint RGBA8 as vec4, 6 material uint
+};
+enum class Blend : uint8_t { opaque, premultiplied, additive };
+
+// Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1).
+struct DrawPass {
+    const char* name;
+    const char* vertexShader;
+    const char* fragmentShader;
+    std::span<const Use> uses;  // drawRead, uniformView, indirect; set 0
+    VertexInput vertexInput;
+    Blend blend;
+    bool writeDepth;    // only where the target allows it
+    bool objectImage;   // set 1 binding 0: combined image sampler, the object's base colour
+    uint32_t pushBytes; // vertex and fragment, <= 128
+};
+
+}  // namespace fw::gpu

@@ -1,0 +1,104 @@
+// The vk backend as its users see it: a Context per device, a VkBackend per world. It records into
+// the host's command buffers, or submits by itself on a device of its own. Parts: table, device,
+// memory, frame_ring, barriers, descriptors, pipelines, timers.
+#pragma once
+#include "core/log.h"
+#include "flamewright/flamewright_vulkan.h"
+#include "gpu/backend.h"
+
+namespace fw::gpu::vk {
+
+// One per FwContext. Errors are core::Error or std::bad_alloc, and leave things unchanged.
+class Context {
+   public:
+    // `host` null: own instance and device, through libvulkan.so.1. `host` is copied; its device,
+    // pipeline cache and allocation callbacks must outlive the context. `log` and `memory`, too.
+    // gpuMemoryBudget: bytes, 0: none.
+    Context(const FwVulkanHost* host, uint64_t gpuMemoryBudget, std::pmr::memory_resource* memory,
+            const core::Log& log);
+    ~Context();  // after its backends. Never waits; a host has waited before.
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    void prepare();                             // [any] builds the missing pipelines
+    [[nodiscard]] bool ready() const noexcept;  // [any]
+    FwTargetId registerTarget(const FwVulkanTargetDef& def);  // [any]
+    void unregisterTarget(FwTargetId id);                     // [any] the host has waited
+    void notifyDeviceLost() noexcept;                         // [any]
+    [[nodiscard]] bool deviceLost() const noexcept;           // [any]
+
+    // All of FwContextInfo but backend and cpuMemoryUsed. [any]
+    void fillInfo(FwContextInfo& info) const noexcept;
+    [[nodiscard]] bool ownDevice() const noexcept;
+    // What a host may enable for us; structSize stays. [any]
+    static void wishes(FwVulkanWishes& wishes) noexcept;
+
+    struct State;
+    [[nodiscard]] State& state() noexcept { return *state_; }
+
+   private:
+    State* state_ = nullptr;
+    std::pmr::memory_resource* memory_ = nullptr;
+};
+
+struct WorldLimits {
+    uint32_t maxLights = 16;   // [0, 64]
+    uint32_t maxFlames = 4096; // [0, 65536]
+    uint32_t seed = 1;         // of everything cosmetic
+};
+
+// One per FwWorld.
+//
+// Lent device:  if (!beginOutside(frame)) return FW_NOT_READY;   may throw: bad frame
+//               run(plan);                                       exactly once, may be without steps
+//               endOutside(view);
+//               recordInside(...) / recordComposite(...)         any number of times, or none
+// Own device:   beginOwn(); run(plan); endOwn();                 submits and waits
+//               renderOffscreen(def);                            what the world looks like now
+// cancelOutside() after a begin whose run threw; nothing was recorded then.
+class VkBackend final : public Backend {
+   public:
+    VkBackend(Context& context, const WorldLimits& limits, std::pmr::memory_resource* memory,
+              const core::Log& log);
+    ~VkBackend() override;  // the host has waited; never waits itself
+    VkBackend(const VkBackend&) = delete;
+    VkBackend& operator=(const VkBackend&) = delete;
+
+    void createMesh(uint32_t slot, const mesh::BurnDomain& domain) override;
+    void destroyMesh(uint32_t slot) noexcept override;
+    void createObject(uint32_t slot, const ObjectInit& init) override;
+    void destroyObject(uint32_t slot) noexcept override;
+    void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
+                       uint32_t flags) override;
+    void createImage(uint32_t slot, uint32_t width, uint32_t height,
+                     std::span<const std::byte> pixels) override;
+    void destroyImage(uint32_t slot) noexcept override;
+
+    // Checks pacing and opens the frame. False: pipelines are not built yet. Throws core::Error:
+    // FW_ERROR_INVALID_ARGUMENT for pacing, FW_ERROR_DEVICE_LOST once latched.
+    bool beginOutside(const FwVulkanFrame& frame);
+    void run(const FramePlan& plan) override;
+    void endOutside(const FwView& view);
+    void cancelOutside() noexcept;
+    // False: nothing to draw with yet (pipelines missing); nothing recorded.
+    bool recordInside(const FwVulkanFrame& frame, FwTargetId target, const FwView& view,
+                      const VkViewport& viewport);
+    bool recordComposite(const FwVulkanFrame& frame, FwTargetId target, const FwView& view,
+                         const FwVulkanComposite& images);
+
+    void beginOwn();  // builds pipelines that are missing
+    void endOwn();    // throws FW_ERROR_DEVICE_LOST
+    void renderOffscreen(const FwOffscreenDef& def);
+
+    const Readback* nextReadback() override;
+    std::span<const PassTime> passTimes() override;
+    void memoryRows(std::pmr::vector<MemoryRow>& out) override;
+
+    struct State;
+
+   private:
+    State* state_ = nullptr;
+    std::pmr::memory_resource* memory_ = nullptr;
+};
+
+}  // namespace fw::gpu::vk
