@@ -1,0 +1,60 @@
+// The kit: every model of the village, by name.
+// Metres, y up, front = +z, origin on the ground with a little root below it for slopes.
+#pragma once
+
+#include <vector>
+
+#include "model.h"
+
+namespace village {
+
+enum class Kit : int {
+    kCottage,
+    kLonghouse,
+    kRoundHut,
+    kBarn,
+    kWindmill,
+    kRailFence,
+    kWattle,
+    kBrokenRail,
+    kOak,
+    kPoplar,
+    kPine,
+    kDeadTree,
+    kAutumnOak,
+    kBush,
+    kRoundBale,
+    kHayrick,
+    kBales,
+    kDryGrass,
+    kWheat,
+    kReeds,
+    kFlowers,
+    kBarrel,
+    kCrate,
+    kHayCart,
+    kWell,
+    kMarketStall,
+    kScarecrow,
+    kLampPost,
+    kWoodpile,
+    kGateArch,
+    kBrazier,
+    kStrawMan,
+    kYuleGoat,
+    kLogKnight,
+    kWickerGiant,
+    kFlamethrower,
+    kEmberMortar,
+    kWaterCannon,
+    kWindFan,
+    kFarOak,
+    kFarPine,
+    kFarAutumnOak,
+    kCount,
+};
+
+// All models in the order of Kit. Deterministic.
+std::vector<Model> makeKit();
+
+}  // namespace village
