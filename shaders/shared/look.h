@@ -1,0 +1,138 @@
+// What the passes that draw share: the record of a burning material's look, the view, one flame
+// quad. Lengths in m, times in look seconds (see BurnMaterial::timeScale), temperatures in K.
+#ifndef FW_SHARED_LOOK_H
+#define FW_SHARED_LOOK_H
+#include "shared/types.h"
+
+FW_SHARED_BEGIN
+
+// How the fresh material is drawn where no image is given.
+FW_SHARED_CONST uint kBasePlain = 0u;
+FW_SHARED_CONST uint kBaseWood = 1u;
+FW_SHARED_CONST uint kBasePaint = 2u;
+FW_SHARED_CONST uint kBasePaper = 3u;
+FW_SHARED_CONST uint kBasePrint = 4u;
+FW_SHARED_CONST uint kBaseWeave = 5u;
+FW_SHARED_CONST uint kBaseLeaf = 6u;
+FW_SHARED_CONST uint kBaseStraw = 7u;
+FW_SHARED_CONST uint kBaseLeather = 8u;
+FW_SHARED_CONST uint kBasePlastic = 9u;
+FW_SHARED_CONST uint kBaseStone = 10u;
+
+// Layers of the look texture array: 512^2 RGBA8, tiling, with mips.
+FW_SHARED_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
+FW_SHARED_CONST float kLayerChar = 1.0f;    // R primary crack distance, G secondary, B id, A pillow
+FW_SHARED_CONST float kLayerRelief = 2.0f;  // slopes: RG of the cracks, BA of crumpling
+FW_SHARED_CONST float kLookTextureSide = 512.0f;
+FW_SHARED_CONST float kCrackSlopeRange = 12.0f;   // per cell, at texel value 1
+FW_SHARED_CONST float kCrumpleSlopeRange = 48.0f; // per tile, at texel value 1
+
+struct MaterialLook {        // zero switches a feature off
+    float spreadRate;        // m/s at which the seconds below were tuned
+    float warpLarge;         // m, raggedness of the front, features of about 60 mm
+    float warpSmall;         // m, features of about 8 mm
+    float jitter;            // s, weight of the delay per strand, vein or thread
+
+    float scorchWidth;       // m, browned band ahead of the front
+    float scorchGain;        // strength of browning at the front
+    float charTime;          // s, from the front to black
+    float blister;           // m, height of paint blisters and bubbles
+
+    vec4 charColor;          // w: roughness of char
+
+    float sheen;             // [0, 1] graphite gleam of char
+    float cellX;             // m, char block across the grain
+    float cellY;             // m, along the grain
+    float crackWidth;        // m, when open
+
+    float crackDepth;        // m
+    float crackTime;         // s, when cracks are open
+    float crumple;           // m, wrinkles of charred sheets
+    float isotropic;         // 0 blocks along the grain, 1 irregular cells
+
+    float faceKelvin;        // K, face of the char just behind the front
+    float facePeak;          // s
+    float faceDecay;         // s
+    float crackKelvin;       // K, floor of the cracks
+
+    float crackLife;         // s, Gaussian
+    float glowVariation;     // K
+    float wormKelvin;        // K, crawling sparks in thin char
+    float ashMax;            // [0, 1]
+
+    float ashStart;          // s
+    float ashEnd;            // s
+    float holeTime;          // s from ignition to a hole
+    float holeVariation;     // s
+
+    vec4 ashColor;           // w: m, thickness of a paint film that peels
+
+    float rimKelvin;         // K at the edge of a hole
+    float rimWidth;          // m, e-folding length of that
+    float thickness;         // m, of the rim
+    float lip;               // m, bead of molten material
+
+    float curl;              // tilt of the normal at the rim
+    float wetDark;           // exponent added when soaked
+    float wetGloss;          // [0, 1]
+    float melt;              // [0, 1] gloss and flow instead of char
+
+    float holeTiles;         // tiles per metre of the hole noise
+    float holeFine;          // [0, 1] weight of crumbs
+    float drip;              // stretch of the hole noise along y, 1: none
+    float blur;              // m, smallest noise footprint
+
+    vec4 wiltColor;          // w: m, width of the wilted band of living tissue
+
+    uint base;               // kBase...
+    float baseScale;         // of the procedural pattern, 1
+    float flame;             // of flame height, 1 wood
+    float smoke;             // of smoke, 1 wood
+};
+FW_SHARED_SIZE(MaterialLook, 224)
+
+struct ViewParams {          // uniform block, one per view
+    vec4 clip0;              // columns of camera-relative world to clip space
+    vec4 clip1;
+    vec4 clip2;
+    vec4 clip3;
+    vec4 eye;                // m, world; w: m per pixel at clip w = 1
+    vec4 forward;            // unit; w: 1 perspective, 0 orthographic
+    vec4 sunDirection;       // towards the sun; w: exposure
+    vec4 sunColor;           // w: emission scale
+    vec4 ambientSky;         // w: s, cosmetic time, wrapped at 4096
+    vec4 ambientGround;      // w: ticks into the running tick, [0, 1)
+    vec4 up;                 // world up; w: pace factor of the world
+    vec4 wind;               // m/s; w: 0
+    uint now;                // tick
+    uint lightCount;         // most lights, also the size of the list
+    uint flameCapacity;      // most flame quads
+    uint seed;
+    vec4 viewport;           // px: x, y, width, height
+};
+FW_SHARED_SIZE(ViewParams, 224)
+
+// Emission of 40 cd/m^2 shows as 1 in the host's linear units, at emission scale 1.
+FW_SHARED_CONST float kWhiteLuminance = 40.0f;
+
+struct FlameQuad {
+    vec4 baseHeight;         // m, world, foot of the quad; w: height m
+    vec4 axisWidth;          // unit, foot to tip; w: half width m
+    float opacity;           // [0, 1]
+    float phase;             // s of scroll, already offset by its seed
+    float kelvin;            // K of the hottest part
+    uint kind;               // seed << 1 | smoke
+};
+FW_SHARED_SIZE(FlameQuad, 48)
+
+// Draw arguments of the flames, then the order they are drawn in: farthest first.
+FW_SHARED_CONST uint kFlameOrder = 8u;       // first word of the order
+FW_SHARED_CONST uint kFlameCapacity = 4096u; // hard limit of quads drawn
+
+// Hash grid of burning cells: kLightCellHeader words, then cells of kLightCellWords.
+FW_SHARED_CONST uint kLightCells = 4096u;
+FW_SHARED_CONST uint kLightCellWords = 8u;   // key, W, 3 weighted offsets, normal up, tiles, object
+FW_SHARED_CONST uint kLightCellHeader = 16u; // [0] quads wished for, in 1/16
+
+FW_SHARED_END
+#endif
