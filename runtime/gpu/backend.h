@@ -46,6 +46,8 @@ struct FramePlan {
     std::span<const uint32_t> burnMaps;   // object slots whose whole state is read back
     uint32_t switches = 0;                // FwDebugSwitch
     uint32_t endTick = 0;                 // tick after the last step
+    float wind[3] = {};                   // m/s, world; for looks only
+    float tickFraction = 0;               // into the running tick, [0, 1); for looks only
 };
 
 struct BurnMap {

@@ -47,6 +47,8 @@ enum class VertexInput : uint8_t {
 enum class Blend : uint8_t { opaque, premultiplied, additive };
 
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1).
+// Set 1 of every draw pass: 0 the object's base colour (sampler2D, white if none), 1 the look
+// textures (sampler2DArray, repeating, with mips). ViewParams: set 0, FW_BIND_VIEW.
 struct DrawPass {
     const char* name;
     const char* vertexShader;
@@ -55,7 +57,7 @@ struct DrawPass {
     VertexInput vertexInput;
     Blend blend;
     bool writeDepth;    // only where the target allows it
-    bool objectImage;   // set 1 binding 0: combined image sampler, the object's base colour
+    bool cull;          // back faces, but for two-sided objects
     uint32_t pushBytes; // vertex and fragment, <= 128
 };
 

@@ -45,6 +45,8 @@ struct WorldLimits {
     uint32_t maxLights = 16;   // [0, 64]
     uint32_t maxFlames = 4096; // [0, 65536]
     uint32_t seed = 1;         // of everything cosmetic
+    float up[3] = {0, 1, 0};   // world up
+    float paceFactor = 1;      // as FwWorldDef
 };
 
 // One per FwWorld.
