@@ -1,0 +1,18 @@
+// How each material preset looks while it burns: the rows of the looks table that shaders read.
+// Tuned by eye on lit pictures; nothing authoritative depends on it.
+#pragma once
+#include "shared/look.h"
+
+#include <cstdint>
+
+namespace fw::components {
+
+constexpr uint32_t kLookCount = 14;  // FW_MATERIAL_PRESET_COUNT
+
+// Row of a FwMaterialPreset; a number beyond the table gets row 0, which never burns.
+[[nodiscard]] gpu::MaterialLook materialLook(uint32_t preset) noexcept;
+// m/s at which the row's seconds were tuned; 0: never burns. BurnMaterial::timeScale is
+// spread rate (pace included) over this.
+[[nodiscard]] float lookSpreadRate(uint32_t preset) noexcept;
+
+}  // namespace fw::components

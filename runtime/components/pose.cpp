@@ -1,0 +1,95 @@
+#include "components/pose.h"
+
+#include "core/error.h"
+
+#include <cmath>
+
+namespace fw::components {
+
+void checkValue(float value, const char* field, float low, float high) {
+    if (!(value >= low && value <= high))  // also catches NaN
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %g; the limits are [%g, %g].", field,
+                   double(value), double(low), double(high));
+}
+
+void checkValues(const float* values, unsigned count, const char* field, float low, float high) {
+    for (unsigned i = 0; i < count; ++i)
+        if (!(values[i] >= low && values[i] <= high))
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "%s[%u] is %g; the limits are [%g, %g].", field,
+                       i, double(values[i]), double(low), double(high));
+}
+
+Pose makePose(const float transform[16], const char* field) {
+    constexpr float kFar = 1e6f;          // m
+    constexpr double kTolerance = 1e-3;   // of the scale
+    checkValues(transform, 16, field, -kFar, kFar);
+    const float lastRow[4] = {transform[3], transform[7], transform[11], transform[15]};
+    for (unsigned i = 0; i < 4; ++i)
+        if (std::fabs(double(lastRow[i]) - (i == 3 ? 1.0 : 0.0)) > 1e-6)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%s[%u] is %g; the last row of the matrix is 0 0 0 1.", field, i * 4 + 3,
+                       double(lastRow[i]));
+    double column[3][3], length[3];
+    for (int c = 0; c < 3; ++c) {
+        double sum = 0;
+        for (int r = 0; r < 3; ++r) {
+            column[c][r] = double(transform[c * 4 + r]);
+            sum += column[c][r] * column[c][r];
+        }
+        length[c] = std::sqrt(sum);
+    }
+    const double scale = (length[0] + length[1] + length[2]) / 3;
+    if (!(scale >= 1e-3 && scale <= 1e3))
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has scale %g; the limits are [0.001, 1000].",
+                   field, scale);
+    for (int c = 0; c < 3; ++c)
+        if (std::fabs(length[c] - scale) > kTolerance * scale)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%s scales axis %d by %g and the mean is %g; scale is uniform within 0.1 %%.",
+                       field, c, length[c], scale);
+    for (int c = 0; c < 3; ++c) {
+        const int d = (c + 1) % 3;
+        double dot = 0;
+        for (int r = 0; r < 3; ++r) dot += column[c][r] * column[d][r];
+        if (std::fabs(dot) > kTolerance * scale * scale)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%s is sheared: axes %d and %d have cosine %g; the limit is 0.001.", field,
+                       c, d, dot / (scale * scale));
+    }
+    const double determinant =
+        column[0][0] * (column[1][1] * column[2][2] - column[1][2] * column[2][1]) -
+        column[1][0] * (column[0][1] * column[2][2] - column[0][2] * column[2][1]) +
+        column[2][0] * (column[0][1] * column[1][2] - column[0][2] * column[1][1]);
+    if (determinant <= 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s mirrors: its determinant is %g; it is positive for a rigid pose.", field,
+                   determinant);
+    Pose pose;
+    pose.scale = float(scale);
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) pose.rotation[r][c] = float(column[c][r] / length[c]);
+        pose.translation[r] = transform[12 + r];
+    }
+    return pose;
+}
+
+void toWorld(const Pose& pose, const float point[3], float (&out)[3]) noexcept {
+    for (int r = 0; r < 3; ++r)
+        out[r] = pose.scale * (pose.rotation[r][0] * point[0] + pose.rotation[r][1] * point[1] +
+                               pose.rotation[r][2] * point[2]) +
+                 pose.translation[r];
+}
+
+void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept {
+    float from[3];
+    for (int i = 0; i < 3; ++i) from[i] = (point[i] - pose.translation[i]) / pose.scale;
+    directionToObject(pose, from, out);
+}
+
+void directionToObject(const Pose& pose, const float vector[3], float (&out)[3]) noexcept {
+    for (int c = 0; c < 3; ++c)
+        out[c] = pose.rotation[0][c] * vector[0] + pose.rotation[1][c] * vector[1] +
+                 pose.rotation[2][c] * vector[2];
+}
+
+}  // namespace fw::components

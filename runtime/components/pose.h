@@ -1,0 +1,26 @@
+// Where an object stands: a rotation, one scale and a translation, checked once on entry.
+#pragma once
+#include "flamewright/flamewright.h"
+
+namespace fw::components {
+
+struct Pose {
+    float rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // rows, object to world, no scale
+    float scale = 1;                                           // [1e-3, 1e3]
+    float translation[3] = {};                                 // m, within +-1e6
+};
+
+// Throws core::Error naming `field`, the value and the limit unless every value is finite, the
+// last row is 0 0 0 1, and the upper 3x3 is a rotation times one scale within 1e-3.
+Pose makePose(const float transform[16], const char* field);
+
+void toWorld(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
+void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
+// Directions: rotation only.
+void directionToObject(const Pose& pose, const float vector[3], float (&out)[3]) noexcept;
+
+// Throws unless all `count` values are finite and within [low, high]: "field[i] is v; ...".
+void checkValues(const float* values, unsigned count, const char* field, float low, float high);
+void checkValue(float value, const char* field, float low, float high);
+
+}  // namespace fw::components

@@ -1,0 +1,52 @@
+// The clip matrix works on positions relative to the eye, so that it stays precise far from the
+// world's origin.
+#include "components/view_params.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::components {
+
+using gpu::vec4;
+using glm::vec3;
+
+gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noexcept {
+    const auto load = [](const float m[16]) {
+        glm::mat4 out;
+        for (int c = 0; c < 4; ++c) {
+            for (int r = 0; r < 4; ++r) out[c][r] = m[4 * c + r];
+        }
+        return out;
+    };
+    const glm::mat4 toView = load(view.view), projection = load(view.projection);
+    const glm::mat3 rotation(toView);  // rigid: the inverse is the transpose
+    const vec3 eye = -(glm::transpose(rotation) * vec3(toView[3]));
+    const glm::mat4 clip = projection * glm::mat4(rotation);
+
+    gpu::ViewParams p{};
+    p.clip0 = clip[0];
+    p.clip1 = clip[1];
+    p.clip2 = clip[2];
+    p.clip3 = clip[3];
+    const float height = std::max(inputs.viewport[3], 1.0f);
+    const float zoom = std::max(std::fabs(projection[1][1]), 1e-6f);
+    p.eye = vec4(eye, 2.0f / (zoom * height));
+    const vec3 forward(-rotation[0][2], -rotation[1][2], -rotation[2][2]);
+    p.forward = vec4(forward, projection[2][3] != 0.0f ? 1.0f : 0.0f);
+    const auto rgb = [](const float v[3], float w) { return vec4(v[0], v[1], v[2], w); };
+    p.sunDirection = rgb(view.sunDirection, view.exposure);
+    p.sunColor = rgb(view.sunColor, view.emissionScale);
+    p.ambientSky = rgb(view.ambientSky, std::fmod(view.time, 4096.0f));
+    p.ambientGround = rgb(view.ambientGround, inputs.tickFraction);
+    p.up = rgb(inputs.up, inputs.paceFactor);
+    p.wind = rgb(inputs.wind, 0.0f);
+    p.now = inputs.now;
+    p.lightCount = inputs.lightCount;
+    p.flameCapacity = std::min(inputs.flameCapacity, gpu::kFlameCapacity);
+    p.seed = inputs.seed;
+    p.viewport = vec4(inputs.viewport[0], inputs.viewport[1], inputs.viewport[2],
+                      inputs.viewport[3]);
+    return p;
+}
+
+}  // namespace fw::components
