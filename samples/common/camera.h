@@ -1,0 +1,95 @@
+// Cameras for the samples: right-handed world, y up, Vulkan clip space (y down, depth 0 to 1).
+// Matrices are column-major and not jittered, as the plugin wants them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace sample {
+
+struct Camera {
+    glm::vec3 eye{0.0f, 1.0f, 3.0f};  // m
+    glm::vec3 target{0.0f};           // m
+    glm::vec3 up{0.0f, 1.0f, 0.0f};
+    float fieldOfView = 0.7f;  // rad, vertical
+    float nearPlane = 0.05f;   // m
+    float farPlane = 200.0f;   // m
+};
+
+inline glm::mat4 viewMatrix(const Camera& camera) {
+    return glm::lookAtRH(camera.eye, camera.target, camera.up);
+}
+
+// `reversed`: near is 1 and far is 0, which spends float depth where it is needed.
+inline glm::mat4 projectionMatrix(const Camera& camera, float aspect, bool reversed = false) {
+    const float scale = 1.0f / std::tan(0.5f * camera.fieldOfView);
+    const float near = reversed ? camera.farPlane : camera.nearPlane;
+    const float far = reversed ? camera.nearPlane : camera.farPlane;
+    glm::mat4 result(0.0f);
+    result[0][0] = scale / aspect;
+    result[1][1] = -scale;
+    result[2][2] = far / (near - far);
+    result[2][3] = -1.0f;
+    result[3][2] = near * far / (near - far);
+    return result;
+}
+
+// Around a point: drag turns, wheel zooms.
+struct OrbitCamera {
+    glm::vec3 target{0.0f};    // m
+    float distance = 3.0f;     // m
+    float yaw = 0.5f;          // rad, 0 looks along -z
+    float pitch = 0.25f;       // rad above the horizon
+    float fieldOfView = 0.6f;  // rad
+
+    Camera camera() const {
+        Camera result;
+        result.target = target;
+        result.eye = target + distance * glm::vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
+                                                   std::cos(yaw) * std::cos(pitch));
+        result.fieldOfView = fieldOfView;
+        result.nearPlane = std::max(0.002f, 0.02f * distance);
+        result.farPlane = 60.0f * distance;
+        return result;
+    }
+    void turn(float dx, float dy) {  // pixels
+        yaw -= 0.008f * dx;
+        pitch = std::clamp(pitch + 0.008f * dy, -0.1f, 1.5f);
+    }
+    void zoom(float notches) { distance *= std::pow(0.9f, notches); }
+};
+
+// Above a map: keys or drag move over the ground, wheel zooms, the view tilts with height.
+struct StrategyCamera {
+    glm::vec3 focus{0.0f};   // m, on the ground
+    float distance = 40.0f;  // m, kept in [nearest, farthest]
+    float nearest = 8.0f, farthest = 90.0f;
+    float yaw = 0.0f;          // rad
+    float fieldOfView = 0.6f;  // rad
+
+    Camera camera() const {
+        const float height = (distance - nearest) / std::max(1.0f, farthest - nearest);
+        const float pitch = 0.55f + 0.45f * std::clamp(height, 0.0f, 1.0f);
+        Camera result;
+        result.target = focus;
+        result.eye = focus + distance * glm::vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
+                                                  std::cos(yaw) * std::cos(pitch));
+        result.fieldOfView = fieldOfView;
+        result.nearPlane = 0.5f;
+        result.farPlane = 600.0f;
+        return result;
+    }
+    // Along the ground, in the camera's frame: right and forward, m.
+    void move(float right, float forward) {
+        const glm::vec3 ahead(-std::sin(yaw), 0.0f, -std::cos(yaw));
+        const glm::vec3 side(std::cos(yaw), 0.0f, -std::sin(yaw));
+        focus += right * side + forward * ahead;
+    }
+    void zoom(float notches) {
+        distance = std::clamp(distance * std::pow(0.9f, notches), nearest, farthest);
+    }
+};
+
+}  // namespace sample

@@ -1,0 +1,120 @@
+// See fire_host.h.
+#include "common/fire_host.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+namespace sample {
+namespace {
+
+void FW_CALL printLog(void*, int32_t level, const char* message) {
+    if (level < FW_LOG_WARNING) return;
+    std::fprintf(stderr, "\nflamewright %s: %s\n", level >= FW_LOG_ERROR ? "error" : "warning",
+                 message);
+}
+
+}  // namespace
+
+FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef) {
+    // The device goes over as it was made. What is not said here counts as not enabled.
+    FwVulkanHost lent = fwDefaultVulkanHost();
+    lent.apiVersion = host.made.apiVersion;
+    lent.getInstanceProcAddr = vkGetInstanceProcAddr;
+    lent.instance = host.instance;
+    lent.physicalDevice = host.physicalDevice;
+    lent.device = host.device;
+    lent.queueFamilyIndex = host.queueFamily;
+    lent.enabledExtensions = host.made.deviceExtensions.data();
+    lent.enabledExtensionCount = static_cast<uint32_t>(host.made.deviceExtensions.size());
+    lent.enabledInstanceExtensions = host.made.instanceExtensions.data();
+    lent.enabledInstanceExtensionCount = static_cast<uint32_t>(host.made.instanceExtensions.size());
+    lent.enabledFeatures = &host.made.features;
+    lent.enabledFeatureChain = host.made.featureChain;
+
+    FwContextDef def = fwDefaultContextDef();
+    def.callbacks.log = printLog;
+    def.vulkan = &lent;
+    FwErrorInfo error{};
+    if (fwCreateContext(&def, &context, &error) != FW_OK) {
+        throw Failure(std::string("fwCreateContext: ") + error.message);
+    }
+    try {
+        check(fwContext_Prepare(context), "fwContext_Prepare");  // a loading screen's work
+        check(fwCreateWorld(context, &worldDef, &world), "fwCreateWorld");
+    } catch (...) {
+        fwDestroyContext(context);
+        throw;
+    }
+}
+
+FireHost::~FireHost() { fwDestroyContext(context); }
+
+void FireHost::registerTarget(const Stage& stage) {
+    if (target.index1 != 0) check(fwContext_UnregisterTarget(context, target), "unregister");
+    FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
+    def.renderPass = stage.scenePass;
+    def.subpass = 0;
+    def.colorFormat = stage.made.colorFormat;
+    def.depthFormat = stage.depthFormat;
+    def.samples = static_cast<uint32_t>(stage.made.samples);
+    def.colorAttachmentCount = 1;
+    def.depthMode = FW_DEPTH_TEST;
+    def.reversedDepth = stage.made.reversedDepth ? 1u : 0u;
+    def.encoding = FW_OUTPUT_DISPLAY_UNORM;
+    if (stage.made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB) def.encoding = FW_OUTPUT_SRGB_VIEW;
+    if (stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT) def.encoding = FW_OUTPUT_LINEAR;
+    check(fwContext_RegisterTarget(context, &def, &target), "fwContext_RegisterTarget");
+    check(fwContext_Prepare(context), "fwContext_Prepare");
+}
+
+FwVulkanFrame FireHost::describe(const StageFrame& frame, VkCommandBuffer secondary) const {
+    FwVulkanFrame described = fwDefaultVulkanFrame();
+    if (secondary) described.flags |= FW_FRAME_SECONDARY;
+    described.commandBuffer = secondary ? secondary : frame.commands;
+    described.frameIndex = frame.frameIndex;
+    described.completedFrameIndex = frame.completedFrameIndex;
+    described.deltaTime = frame.deltaTime;
+    return described;
+}
+
+void FireHost::recordOutside(const StageFrame& frame, const FwView& view,
+                             VkCommandBuffer secondary) {
+    const FwVulkanFrame described = describe(frame, secondary);
+    const FwResult result = fwWorld_RecordOutside(world, &described, &view);
+    if (result != FW_NOT_READY) check(result, "fwWorld_RecordOutside");
+    countPasses();
+}
+
+void FireHost::recordInside(const StageFrame& frame, const FwView& view,
+                            VkCommandBuffer secondary) {
+    const FwVulkanFrame described = describe(frame, secondary);
+    const FwResult result = fwWorld_RecordInside(world, &described, target, &view, &frame.viewport);
+    if (result != FW_NOT_READY) check(result, "fwWorld_RecordInside");
+}
+
+void FireHost::check(FwResult result, const char* what) const {
+    if (result == FW_OK) return;
+    // The world knows best what went wrong in it; creation has only the context to ask.
+    char text[1024] = "";
+    if (world) fwWorld_GetLastMessage(world, text, sizeof text);
+    if (!text[0]) fwContext_GetLastMessage(context, text, sizeof text);
+    throw Failure(std::string(what) + ": " + (text[0] ? text : fwResultName(result)));
+}
+
+void FireHost::countPasses() {
+    FwPassTime times[64];
+    const uint32_t count = std::min(fwDebug_GetPassTimes(world, times, 64), 64u);
+    if (count == 0 || times[0].frameIndex == lastTimed_) return;
+    lastTimed_ = times[0].frameIndex;
+    for (uint32_t i = 0; i < count; ++i) {
+        auto found = std::find_if(costs_.begin(), costs_.end(),
+                                  [&](const PassCost& cost) { return cost.name == times[i].name; });
+        if (found == costs_.end()) found = costs_.insert(costs_.end(), {times[i].name, 0.0, 0});
+        found->milliseconds =
+            (found->milliseconds * found->frames + times[i].milliseconds) / (found->frames + 1);
+        ++found->frames;
+    }
+}
+
+}  // namespace sample

@@ -1,0 +1,48 @@
+// All that an engine with its own Vulkan device writes to have fire: lend the device, prepare,
+// register the pass, then two calls a frame. Read this and fire_host.cpp as documentation.
+#pragma once
+
+#include <vector>
+
+#include "common/progress.h"
+#include "common/stage.h"
+#include "flamewright/flamewright.h"
+#include "flamewright/flamewright_debug.h"
+#include "flamewright/flamewright_vulkan.h"
+
+namespace sample {
+
+class FireHost {
+ public:
+    // Lends the device, builds the pipelines, makes the world. Throws Failure with the reason.
+    FireHost(const VulkanHost& host, const FwWorldDef& worldDef);
+    ~FireHost();  // the device must be idle: destroy it after the stage, or wait first
+    FireHost(const FireHost&) = delete;
+    FireHost& operator=(const FireHost&) = delete;
+
+    // Tells the plugin about the stage's scene pass. Once, and again if the pass changes.
+    void registerTarget(const Stage& stage);
+    // Outside any pass, before it, once per frame: simulates. `secondary` may be null.
+    void recordOutside(const StageFrame& frame, const FwView& view,
+                       VkCommandBuffer secondary = VK_NULL_HANDLE);
+    // Inside the scene pass: draws.
+    void recordInside(const StageFrame& frame, const FwView& view,
+                      VkCommandBuffer secondary = VK_NULL_HANDLE);
+    // Throws Failure("<what>: <why>") unless result is FW_OK.
+    void check(FwResult result, const char* what) const;
+
+    // Mean milliseconds per pass over the frames so far, for the summary.
+    std::vector<PassCost> passCosts() const { return costs_; }
+
+    FwContext* context = nullptr;
+    FwWorld* world = nullptr;
+    FwTargetId target{};
+
+ private:
+    FwVulkanFrame describe(const StageFrame& frame, VkCommandBuffer secondary) const;
+    void countPasses();
+    std::vector<PassCost> costs_;
+    uint64_t lastTimed_ = 0;
+};
+
+}  // namespace sample

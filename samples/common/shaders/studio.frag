@@ -1,0 +1,50 @@
+// Rough grey plaster under the sun, the sky and the fires, with the object's shadow on the floor.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "studio_block.glsl"
+layout(constant_id = 0) const int displayValues = 0;  // 0 linear, 1 tone mapped, 2 and encoded
+layout(location = 0) in vec3 worldPosition;
+layout(location = 1) in vec3 worldNormal;
+layout(location = 0) out vec4 color;
+layout(set = 0, binding = 1) uniform sampler2D plaster;
+layout(set = 0, binding = 2) uniform sampler2D shadow;
+
+vec3 display(vec3 c) {
+    c = c * (c + 0.0245786) / (c * (0.983729 * c + 0.4329510) + 0.238081);
+    if (displayValues == 1) return clamp(c, 0.0, 1.0);
+    return pow(clamp(c, 0.0, 1.0), vec3(1.0 / 2.2));
+}
+
+void main() {
+    vec3 n = normalize(worldNormal);
+    vec3 local = worldPosition - block.center.xyz;
+    float scale = 1.0 / block.sunColor.w;
+    // Unrolled wall: the arc length along it and the height; the floor from above.
+    vec2 wall = vec2(atan(local.x, local.z) * block.center.w, local.y);
+    vec2 uv = mix(local.xz, wall, step(0.05 * block.center.w, local.y)) * scale;
+    float coarse = texture(plaster, uv * 0.37).r;
+    float fine = texture(plaster, uv * 2.1).g;
+    vec3 albedo = mix(vec3(0.150, 0.145, 0.140), vec3(0.20, 0.215, 0.24),
+                      smoothstep(0.0, 0.3, local.y * scale));
+    albedo *= 0.72 + 0.42 * coarse + 0.14 * fine;
+    vec2 place = local.xz / (2.0 * block.ambientSky.w) + 0.5;
+    vec2 shade = vec2(1.0);
+    if (all(greaterThan(place, vec2(0.0))) && all(lessThan(place, vec2(1.0)))) {
+        shade = 1.0 - texture(shadow, place).rg * smoothstep(0.5, 0.9, n.y);
+    }
+    // A room falls off into the dark away from the lamp; this is what keeps eyes on the object.
+    float pool = 1.0 / (1.0 + 0.55 * dot(local, local) * scale * scale / 9.0);
+    vec3 light = block.sunColor.rgb * max(0.0, dot(n, block.sunDirection.xyz)) * shade.x * pool;
+    light += mix(block.ambientGround.rgb, block.ambientSky.rgb, 0.5 + 0.5 * n.y) * shade.y *
+             (0.35 + 0.65 * pool);
+    int fires = int(block.ambientGround.w);
+    for (int i = 0; i < fires; ++i) {
+        vec3 to = block.firePlace[i].xyz - worldPosition;
+        float squared = dot(to, to) + block.firePlace[i].w;
+        light += block.fireColor[i].rgb * (0.2 + 0.8 * max(0.0, dot(n, to) * inversesqrt(squared))) *
+                 mix(1.0, shade.y, 0.6) / squared;
+    }
+    vec3 c = albedo * light * block.sunDirection.w;
+    if (displayValues != 0) c = display(c);
+    color = vec4(c, 1.0);
+}

@@ -1,0 +1,605 @@
+// See stage.h.
+#include "common/stage.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+
+namespace sample {
+namespace {
+
+#include "post.frag.h"
+#include "post.vert.h"
+
+struct PostPush {
+    float mode, exposure, bloom, vignette, mips, aspect;
+};
+
+double clockSeconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+}  // namespace
+
+VkPipeline makePipeline(const VulkanHost& host, const PipelineRequest& request) {
+    VkPipelineShaderStageCreateInfo stages[2]{};
+    stages[0].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+    stages[0].module = request.vertex;
+    stages[0].pName = "main";
+    stages[0].pSpecializationInfo = request.specialization;
+    stages[1] = stages[0];
+    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
+    stages[1].module = request.fragment;
+    VkPipelineVertexInputStateCreateInfo vertexInput{};
+    vertexInput.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    vertexInput.vertexBindingDescriptionCount = static_cast<uint32_t>(request.bindings.size());
+    vertexInput.pVertexBindingDescriptions = request.bindings.data();
+    vertexInput.vertexAttributeDescriptionCount = static_cast<uint32_t>(request.attributes.size());
+    vertexInput.pVertexAttributeDescriptions = request.attributes.data();
+    VkPipelineInputAssemblyStateCreateInfo assembly{};
+    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    VkPipelineViewportStateCreateInfo viewport{};
+    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+    viewport.viewportCount = 1;
+    viewport.scissorCount = 1;
+    VkPipelineRasterizationStateCreateInfo raster{};
+    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+    raster.polygonMode = VK_POLYGON_MODE_FILL;
+    raster.cullMode = request.cull;
+    raster.frontFace = request.frontFace;
+    raster.lineWidth = 1.0f;
+    VkPipelineMultisampleStateCreateInfo multisample{};
+    multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+    multisample.rasterizationSamples = request.samples;
+    VkPipelineDepthStencilStateCreateInfo depth{};
+    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+    depth.depthTestEnable = request.depthTest;
+    depth.depthWriteEnable = request.depthWrite;
+    depth.depthCompareOp = request.depthCompare;
+    VkPipelineColorBlendAttachmentState attachment{};
+    attachment.colorWriteMask = 0xf;
+    if (request.blend || request.additive) {
+        attachment.blendEnable = VK_TRUE;
+        attachment.srcColorBlendFactor = VK_BLEND_FACTOR_ONE;
+        attachment.dstColorBlendFactor =
+            request.additive ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+        attachment.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+        attachment.dstAlphaBlendFactor = attachment.dstColorBlendFactor;
+    }
+    VkPipelineColorBlendStateCreateInfo blend{};
+    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+    blend.attachmentCount = 1;
+    blend.pAttachments = &attachment;
+    const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    VkPipelineDynamicStateCreateInfo dynamic{};
+    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+    dynamic.dynamicStateCount = 2;
+    dynamic.pDynamicStates = dynamics;
+    VkGraphicsPipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+    info.stageCount = 2;
+    info.pStages = stages;
+    info.pVertexInputState = &vertexInput;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &multisample;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &blend;
+    info.pDynamicState = &dynamic;
+    info.layout = request.layout;
+    info.renderPass = request.pass;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    checkVulkan(
+        vkCreateGraphicsPipelines(host.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateGraphicsPipelines");
+    return pipeline;
+}
+
+Stage::Stage(const VulkanHost& host, const Options& options, const StageRequest& request,
+             uint32_t frames)
+    : made(request), host_(host), fps_(options.fps), frameLimit_(frames) {
+    depthFormat = host.depthFormat();
+    extent_ = {options.width, options.height};
+    if (host.made.windowed) {
+        window_ = std::make_unique<Window>(host, made.title, options.width, options.height);
+        outputFormat_ = window_->format;
+        extent_ = window_->extent;
+        windowGeneration_ = window_->generation;
+    }
+    slots_.resize(std::clamp(made.framesInFlight, 1u, 4u));
+    for (Slot& slot : slots_) {
+        VkCommandPoolCreateInfo poolInfo{};
+        poolInfo.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+        poolInfo.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+        poolInfo.queueFamilyIndex = host.queueFamily;
+        checkVulkan(vkCreateCommandPool(host.device, &poolInfo, nullptr, &slot.pool),
+                    "vkCreateCommandPool");
+        VkCommandBufferAllocateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+        info.commandPool = slot.pool;
+        info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+        info.commandBufferCount = 1;
+        checkVulkan(vkAllocateCommandBuffers(host.device, &info, &slot.commands),
+                    "vkAllocateCommandBuffers");
+        VkFenceCreateInfo fenceInfo{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr,
+                                    VK_FENCE_CREATE_SIGNALED_BIT};
+        checkVulkan(vkCreateFence(host.device, &fenceInfo, nullptr, &slot.fence), "vkCreateFence");
+        VkSemaphoreCreateInfo semaphoreInfo{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, nullptr, 0};
+        checkVulkan(vkCreateSemaphore(host.device, &semaphoreInfo, nullptr, &slot.available),
+                    "vkCreateSemaphore");
+    }
+    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    makePasses();
+    makePost();
+    makeTargets();
+    lastClock_ = clockSeconds();
+}
+
+Stage::~Stage() {
+    vkDeviceWaitIdle(host_.device);
+    dropTargets();
+    for (Slot& slot : slots_) {
+        vkDestroyCommandPool(host_.device, slot.pool, nullptr);
+        vkDestroyFence(host_.device, slot.fence, nullptr);
+        vkDestroySemaphore(host_.device, slot.available, nullptr);
+    }
+    vkDestroyPipeline(host_.device, postPipeline_, nullptr);
+    vkDestroyPipelineLayout(host_.device, postLayout_, nullptr);
+    vkDestroyDescriptorPool(host_.device, descriptorPool_, nullptr);
+    vkDestroyDescriptorSetLayout(host_.device, postSetLayout_, nullptr);
+    vkDestroySampler(host_.device, sampler_, nullptr);
+    vkDestroyRenderPass(host_.device, postPass_, nullptr);
+    vkDestroyRenderPass(host_.device, scenePass, nullptr);
+}
+
+void Stage::makePasses() {
+    const bool multisampled = made.samples != VK_SAMPLE_COUNT_1_BIT;
+    const bool scenic = made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT;
+    const VkImageLayout afterScene =
+        scenic ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    // Attachments: 0 what is drawn to, 1 depth, 2 the resolved colour when multisampled.
+    std::array<VkAttachmentDescription, 3> attachments{};
+    attachments[0].format = made.colorFormat;
+    attachments[0].samples = made.samples;
+    attachments[0].loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    attachments[0].storeOp =
+        multisampled ? VK_ATTACHMENT_STORE_OP_DONT_CARE : VK_ATTACHMENT_STORE_OP_STORE;
+    attachments[0].stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    attachments[0].stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    attachments[0].finalLayout =
+        multisampled ? VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL : afterScene;
+    attachments[1] = attachments[0];
+    attachments[1].format = depthFormat;
+    attachments[1].storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    attachments[1].finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    attachments[2] = attachments[0];
+    attachments[2].samples = VK_SAMPLE_COUNT_1_BIT;
+    attachments[2].loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    attachments[2].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    attachments[2].finalLayout = afterScene;
+    const VkAttachmentReference color{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    const VkAttachmentReference depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+    const VkAttachmentReference resolve{2, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &color;
+    subpass.pDepthStencilAttachment = &depth;
+    subpass.pResolveAttachments = multisampled ? &resolve : nullptr;
+    constexpr VkPipelineStageFlags kDepthStages =
+        VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+    std::array<VkSubpassDependency, 2> dependencies{};
+    dependencies[0].srcSubpass = VK_SUBPASS_EXTERNAL;
+    dependencies[0].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | kDepthStages |
+                                   VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
+                                   VK_PIPELINE_STAGE_TRANSFER_BIT;
+    dependencies[0].srcAccessMask =
+        VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    dependencies[0].dstStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | kDepthStages;
+    dependencies[0].dstAccessMask =
+        VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
+        VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
+    dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    dependencies[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    dependencies[1].dstStageMask =
+        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    dependencies[1].dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
+    VkRenderPassCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+    info.attachmentCount = multisampled ? 3 : 2;
+    info.pAttachments = attachments.data();
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
+    info.dependencyCount = static_cast<uint32_t>(dependencies.size());
+    info.pDependencies = dependencies.data();
+    checkVulkan(vkCreateRenderPass(host_.device, &info, nullptr, &scenePass), "vkCreateRenderPass");
+
+    VkAttachmentDescription output{};
+    output.format = outputFormat_;
+    output.samples = VK_SAMPLE_COUNT_1_BIT;
+    output.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    output.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    output.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    output.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    output.finalLayout =
+        window_ ? VK_IMAGE_LAYOUT_PRESENT_SRC_KHR : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    subpass.pDepthStencilAttachment = nullptr;
+    subpass.pResolveAttachments = nullptr;
+    dependencies[0].srcStageMask =
+        VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    dependencies[0].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    dependencies[0].dstStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    dependencies[0].dstAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    dependencies[1].dstStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    dependencies[1].dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+    info.attachmentCount = 1;
+    info.pAttachments = &output;
+    checkVulkan(vkCreateRenderPass(host_.device, &info, nullptr, &postPass_), "vkCreateRenderPass");
+}
+
+void Stage::makePost() {
+    VkDescriptorSetLayoutBinding binding{};
+    binding.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    binding.descriptorCount = 1;
+    binding.stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
+    VkDescriptorSetLayoutCreateInfo setInfo{};
+    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    setInfo.bindingCount = 1;
+    setInfo.pBindings = &binding;
+    checkVulkan(vkCreateDescriptorSetLayout(host_.device, &setInfo, nullptr, &postSetLayout_),
+                "vkCreateDescriptorSetLayout");
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
+    VkDescriptorPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    poolInfo.maxSets = 1;
+    poolInfo.poolSizeCount = 1;
+    poolInfo.pPoolSizes = &size;
+    checkVulkan(vkCreateDescriptorPool(host_.device, &poolInfo, nullptr, &descriptorPool_),
+                "vkCreateDescriptorPool");
+    VkDescriptorSetAllocateInfo allocation{};
+    allocation.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    allocation.descriptorPool = descriptorPool_;
+    allocation.descriptorSetCount = 1;
+    allocation.pSetLayouts = &postSetLayout_;
+    checkVulkan(vkAllocateDescriptorSets(host_.device, &allocation, &postSet_),
+                "vkAllocateDescriptorSets");
+    const VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(PostPush)};
+    VkPipelineLayoutCreateInfo layoutInfo{};
+    layoutInfo.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    layoutInfo.setLayoutCount = 1;
+    layoutInfo.pSetLayouts = &postSetLayout_;
+    layoutInfo.pushConstantRangeCount = 1;
+    layoutInfo.pPushConstantRanges = &range;
+    checkVulkan(vkCreatePipelineLayout(host_.device, &layoutInfo, nullptr, &postLayout_),
+                "vkCreatePipelineLayout");
+    PipelineRequest request;
+    request.pass = postPass_;
+    request.layout = postLayout_;
+    request.vertex = host_.createShader(kPostVert, sizeof kPostVert);
+    request.fragment = host_.createShader(kPostFrag, sizeof kPostFrag);
+    request.depthTest = request.depthWrite = false;
+    postPipeline_ = makePipeline(host_, request);
+    vkDestroyShaderModule(host_.device, request.vertex, nullptr);
+    vkDestroyShaderModule(host_.device, request.fragment, nullptr);
+}
+
+void Stage::makeTargets() {
+    const bool scenic = made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT;
+    const bool multisampled = made.samples != VK_SAMPLE_COUNT_1_BIT;
+    sceneMips_ = 1;
+    if (scenic && made.bloom > 0) {
+        while (sceneMips_ < 5 && (std::min(extent_.width, extent_.height) >> sceneMips_) >= 2) {
+            ++sceneMips_;
+        }
+    }
+    ImageRequest request;
+    request.width = extent_.width;
+    request.height = extent_.height;
+    request.mips = sceneMips_;
+    request.format = made.colorFormat;
+    request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                    VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    color_ = host_.createImage(request);
+    request.mips = 1;
+    request.samples = made.samples;
+    if (multisampled) {
+        request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        multisampled_ = host_.createImage(request);
+    }
+    request.format = depthFormat;
+    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    if (depthFormat == VK_FORMAT_D24_UNORM_S8_UINT) request.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
+    depth_ = host_.createImage(request);
+
+    const std::array<VkImageView, 3> views = {
+        multisampled ? multisampled_.firstMip : color_.firstMip, depth_.view, color_.firstMip};
+    VkFramebufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+    info.renderPass = scenePass;
+    info.attachmentCount = multisampled ? 3 : 2;
+    info.pAttachments = views.data();
+    info.width = extent_.width;
+    info.height = extent_.height;
+    info.layers = 1;
+    checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &sceneFramebuffer_),
+                "vkCreateFramebuffer");
+
+    std::vector<VkImageView> outputs;
+    if (window_) {
+        outputs = window_->views;
+    } else {
+        ImageRequest output;
+        output.width = extent_.width;
+        output.height = extent_.height;
+        output.format = outputFormat_;
+        output.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+        output_ = host_.createImage(output);
+        outputs = {output_.view};
+        for (Slot& slot : slots_) {
+            slot.readback = host_.createBuffer(VkDeviceSize{extent_.width} * extent_.height * 4,
+                                               VK_BUFFER_USAGE_TRANSFER_DST_BIT, true);
+        }
+    }
+    info.renderPass = postPass_;
+    info.attachmentCount = 1;
+    for (VkImageView view : outputs) {
+        info.pAttachments = &view;
+        VkFramebuffer framebuffer = VK_NULL_HANDLE;
+        checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &framebuffer),
+                    "vkCreateFramebuffer");
+        outputFramebuffers_.push_back(framebuffer);
+    }
+    const VkDescriptorImageInfo image{sampler_, color_.view,
+                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = postSet_;
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    write.pImageInfo = &image;
+    vkUpdateDescriptorSets(host_.device, 1, &write, 0, nullptr);
+}
+
+void Stage::dropTargets() {
+    for (VkFramebuffer framebuffer : outputFramebuffers_) {
+        vkDestroyFramebuffer(host_.device, framebuffer, nullptr);
+    }
+    outputFramebuffers_.clear();
+    vkDestroyFramebuffer(host_.device, sceneFramebuffer_, nullptr);
+    for (Image* image : {&color_, &multisampled_, &depth_, &output_}) host_.destroy(*image);
+    for (Slot& slot : slots_) host_.destroy(slot.readback);
+}
+
+void Stage::collect(Slot& slot) {
+    if (!slot.pending) return;
+    slot.pending = false;
+    if (!onPicture || window_) return;
+    Picture picture{extent_.width, extent_.height, {}};
+    const auto* bytes = static_cast<const uint8_t*>(slot.readback.mapped);
+    picture.rgba.assign(bytes, bytes + size_t{extent_.width} * extent_.height * 4);
+    onPicture(slot.number, std::move(picture));
+}
+
+bool Stage::next(StageFrame& frame) {
+    frame.input = {};
+    bool over = frameLimit_ != 0 && number_ >= frameLimit_;
+    if (!over && window_) over = !window_->poll(frame.input);
+    if (over) {
+        // Deliver what is still on its way, oldest first.
+        for (size_t i = 0; i < slots_.size(); ++i) {
+            Slot& slot = slots_[(frameIndex_ + i) % slots_.size()];
+            checkVulkan(vkWaitForFences(host_.device, 1, &slot.fence, VK_TRUE, ~0ull),
+                        "vkWaitForFences");
+            collect(slot);
+        }
+        return false;
+    }
+    Slot& slot = slots_[frameIndex_ % slots_.size()];
+    checkVulkan(vkWaitForFences(host_.device, 1, &slot.fence, VK_TRUE, ~0ull), "vkWaitForFences");
+    completed_ = std::max(completed_, slot.frameIndex);
+    collect(slot);
+    if (window_) {
+        window_->limitRate(fps_);
+        while (!window_->acquire(slot.available, imageIndex_)) {
+            window_->limitRate(20.0);
+            if (!window_->poll(frame.input)) {
+                checkVulkan(vkDeviceWaitIdle(host_.device), "vkDeviceWaitIdle");
+                return false;
+            }
+        }
+        if (window_->generation != windowGeneration_) {
+            windowGeneration_ = window_->generation;
+            checkVulkan(vkDeviceWaitIdle(host_.device), "vkDeviceWaitIdle");
+            dropTargets();
+            extent_ = window_->extent;
+            makeTargets();
+        }
+    }
+    checkVulkan(vkResetFences(host_.device, 1, &slot.fence), "vkResetFences");
+    checkVulkan(vkResetCommandPool(host_.device, slot.pool, 0), "vkResetCommandPool");
+    slot.secondariesUsed = 0;
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    checkVulkan(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
+
+    const double now = clockSeconds();
+    frame.deltaTime = window_ ? static_cast<float>(std::clamp(now - lastClock_, 0.0, 0.1))
+                              : static_cast<float>(1.0 / fps_);
+    lastClock_ = now;
+    frame.time = time_;
+    time_ += frame.deltaTime;
+    frame.commands = slot.commands;
+    frame.slot = static_cast<uint32_t>(frameIndex_ % slots_.size());
+    frame.framesInFlight = static_cast<uint32_t>(slots_.size());
+    frame.frameIndex = ++frameIndex_;
+    frame.completedFrameIndex = completed_;
+    frame.number = number_++;
+    frame.extent = extent_;
+    frame.viewport = {0, 0, static_cast<float>(extent_.width), static_cast<float>(extent_.height),
+                      0, 1};
+    slot.frameIndex = frame.frameIndex;
+    slot.number = frame.number;
+    return true;
+}
+
+void Stage::beginScene(const StageFrame& frame, bool secondaries) {
+    std::array<VkClearValue, 2> clear{};
+    std::memcpy(clear[0].color.float32, made.clearColor, sizeof made.clearColor);
+    clear[1].depthStencil = {made.reversedDepth ? 0.0f : 1.0f, 0};
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = scenePass;
+    info.framebuffer = sceneFramebuffer_;
+    info.renderArea = {{0, 0}, extent_};
+    info.clearValueCount = static_cast<uint32_t>(clear.size());
+    info.pClearValues = clear.data();
+    vkCmdBeginRenderPass(
+        frame.commands, &info,
+        secondaries ? VK_SUBPASS_CONTENTS_SECONDARY_COMMAND_BUFFERS : VK_SUBPASS_CONTENTS_INLINE);
+    if (secondaries) return;
+    const VkRect2D scissor{{0, 0}, extent_};
+    vkCmdSetViewport(frame.commands, 0, 1, &frame.viewport);
+    vkCmdSetScissor(frame.commands, 0, 1, &scissor);
+}
+
+void Stage::endScene(const StageFrame& frame) { vkCmdEndRenderPass(frame.commands); }
+
+// Halves the scene again and again; the last pass adds the small ones back as bloom.
+void Stage::spreadLight(const StageFrame& frame) {
+    for (uint32_t mip = 1; mip < sceneMips_; ++mip) {
+        imageBarrier(frame.commands, color_.image, VK_IMAGE_LAYOUT_UNDEFINED,
+                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0,
+                     VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, mip, 1);
+        VkImageBlit blit{};
+        blit.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1};
+        blit.srcOffsets[1] = {static_cast<int32_t>(std::max(1u, extent_.width >> (mip - 1))),
+                              static_cast<int32_t>(std::max(1u, extent_.height >> (mip - 1))), 1};
+        blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
+        blit.dstOffsets[1] = {static_cast<int32_t>(std::max(1u, extent_.width >> mip)),
+                              static_cast<int32_t>(std::max(1u, extent_.height >> mip)), 1};
+        vkCmdBlitImage(frame.commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                       color_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,
+                       VK_FILTER_LINEAR);
+        imageBarrier(frame.commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                     VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                     VK_ACCESS_TRANSFER_READ_BIT, mip, 1);
+    }
+    imageBarrier(frame.commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                 VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                 VK_ACCESS_SHADER_READ_BIT);
+}
+
+void Stage::finish(const StageFrame& frame) {
+    Slot& slot = slots_[frame.slot];
+    const bool scenic = made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT;
+    const bool srgb =
+        made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB || made.colorFormat == VK_FORMAT_B8G8R8A8_SRGB;
+    if (scenic) spreadLight(frame);
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = postPass_;
+    info.framebuffer = outputFramebuffers_[window_ ? imageIndex_ : 0];
+    info.renderArea = {{0, 0}, extent_};
+    vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+    const VkRect2D scissor{{0, 0}, extent_};
+    vkCmdSetViewport(frame.commands, 0, 1, &frame.viewport);
+    vkCmdSetScissor(frame.commands, 0, 1, &scissor);
+    vkCmdBindPipeline(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, postPipeline_);
+    vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, postLayout_, 0, 1,
+                            &postSet_, 0, nullptr);
+    const PostPush push{scenic ? 0.0f
+                        : srgb ? 1.0f
+                               : 2.0f,
+                        made.exposure,
+                        made.bloom,
+                        made.vignette,
+                        static_cast<float>(sceneMips_),
+                        static_cast<float>(extent_.width) / static_cast<float>(extent_.height)};
+    vkCmdPushConstants(frame.commands, postLayout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
+                       &push);
+    vkCmdDraw(frame.commands, 3, 1, 0, 0);
+    vkCmdEndRenderPass(frame.commands);
+    if (!window_) {
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageExtent = {extent_.width, extent_.height, 1};
+        vkCmdCopyImageToBuffer(frame.commands, output_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                               slot.readback.buffer, 1, &region);
+        VkMemoryBarrier barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+        barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+        vkCmdPipelineBarrier(frame.commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+    }
+    checkVulkan(vkEndCommandBuffer(frame.commands), "vkEndCommandBuffer");
+
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &frame.commands;
+    const VkPipelineStageFlags waitStage = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    VkSemaphore rendered = VK_NULL_HANDLE;
+    if (window_) {
+        rendered = window_->rendered(imageIndex_);
+        submit.waitSemaphoreCount = 1;
+        submit.pWaitSemaphores = &slot.available;
+        submit.pWaitDstStageMask = &waitStage;
+        submit.signalSemaphoreCount = 1;
+        submit.pSignalSemaphores = &rendered;
+    }
+    checkVulkan(vkQueueSubmit(host_.queue, 1, &submit, slot.fence), "vkQueueSubmit");
+    slot.pending = true;
+    if (window_) window_->present(imageIndex_);
+}
+
+VkCommandBuffer Stage::beginSecondary(const StageFrame& frame, bool insideScene) {
+    Slot& slot = slots_[frame.slot];
+    if (slot.secondariesUsed == slot.secondaries.size()) {
+        VkCommandBufferAllocateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+        info.commandPool = slot.pool;
+        info.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
+        info.commandBufferCount = 1;
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        checkVulkan(vkAllocateCommandBuffers(host_.device, &info, &commands),
+                    "vkAllocateCommandBuffers");
+        slot.secondaries.push_back(commands);
+    }
+    VkCommandBuffer commands = slot.secondaries[slot.secondariesUsed++];
+    VkCommandBufferInheritanceInfo inheritance{};
+    inheritance.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO;
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    begin.pInheritanceInfo = &inheritance;
+    if (insideScene) {
+        inheritance.renderPass = scenePass;
+        inheritance.framebuffer = sceneFramebuffer_;
+        begin.flags |= VK_COMMAND_BUFFER_USAGE_RENDER_PASS_CONTINUE_BIT;
+    }
+    checkVulkan(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+    if (insideScene) {
+        const VkRect2D scissor{{0, 0}, extent_};
+        vkCmdSetViewport(commands, 0, 1, &frame.viewport);
+        vkCmdSetScissor(commands, 0, 1, &scissor);
+    }
+    return commands;
+}
+
+void Stage::executeSecondary(const StageFrame& frame, VkCommandBuffer commands) {
+    checkVulkan(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+    vkCmdExecuteCommands(frame.commands, 1, &commands);
+}
+
+}  // namespace sample

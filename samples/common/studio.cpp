@@ -1,0 +1,342 @@
+// See studio.h.
+#include "common/studio.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/type_ptr.hpp>
+
+namespace sample {
+namespace {
+
+#include "studio.frag.h"
+#include "studio.vert.h"
+
+constexpr uint32_t kMostFires = 8;
+constexpr uint32_t kShadowSide = 256;  // texels
+
+struct Block {  // studio_block.glsl
+    glm::mat4 viewProjection;
+    glm::vec4 sunDirection, sunColor, ambientSky, ambientGround, center;
+    glm::vec4 firePlace[kMostFires], fireColor[kMostFires];
+};
+
+struct Vertex {
+    glm::vec3 position, normal;
+};
+
+uint32_t mixBits(uint32_t x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+// Tiling value noise with smooth steps: `cells` cells across the unit square.
+float valueNoise(float u, float v, int cells, uint32_t seed) {
+    const float x = u * static_cast<float>(cells), y = v * static_cast<float>(cells);
+    const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
+    const float fx = x - std::floor(x), fy = y - std::floor(y);
+    auto at = [&](int i, int j) {
+        const auto a = static_cast<uint32_t>((i % cells + cells) % cells);
+        const auto b = static_cast<uint32_t>((j % cells + cells) % cells);
+        return static_cast<float>(mixBits(a * 7919u ^ mixBits(b + seed * 977u))) / 4294967296.0f;
+    };
+    const float sx = fx * fx * (3 - 2 * fx), sy = fy * fy * (3 - 2 * fy);
+    return glm::mix(glm::mix(at(ix, iy), at(ix + 1, iy), sx),
+                    glm::mix(at(ix, iy + 1), at(ix + 1, iy + 1), sx), sy);
+}
+
+std::vector<uint8_t> plasterPixels(uint32_t side) {
+    std::vector<uint8_t> pixels(size_t{side} * side * 4, 255);
+    for (uint32_t y = 0; y < side; ++y) {
+        for (uint32_t x = 0; x < side; ++x) {
+            const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(side);
+            const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(side);
+            float coarse = 0, fine = 0, weight = 0.5f;
+            for (int octave = 0; octave < 5; ++octave) {
+                const auto seed = static_cast<uint32_t>(octave);
+                coarse += weight * valueNoise(u, v, 3 << octave, seed + 1);
+                fine += weight * valueNoise(u, v, 16 << std::min(octave, 3), seed + 31);
+                weight *= 0.55f;
+            }
+            uint8_t* to = &pixels[(size_t{y} * side + x) * 4];
+            to[0] = static_cast<uint8_t>(std::clamp(coarse * 255.0f, 0.0f, 255.0f));
+            to[1] = static_cast<uint8_t>(std::clamp(fine * 255.0f, 0.0f, 255.0f));
+        }
+    }
+    return pixels;
+}
+
+void blur(std::vector<float>& field, uint32_t side, int radius) {
+    std::vector<float> other(field.size());
+    const auto n = static_cast<int>(side);
+    for (int pass = 0; pass < 3; ++pass) {
+        for (int axis = 0; axis < 2; ++axis) {
+            for (int a = 0; a < n; ++a) {
+                auto at = [&](int b) {
+                    return static_cast<size_t>(axis == 0 ? a * n + b : b * n + a);
+                };
+                float sum = 0;
+                for (int b = -radius; b <= radius; ++b) sum += b >= 0 && b < n ? field[at(b)] : 0;
+                for (int b = 0; b < n; ++b) {
+                    other[at(b)] = sum / static_cast<float>(2 * radius + 1);
+                    if (b - radius >= 0) sum -= field[at(b - radius)];
+                    if (b + radius + 1 < n) sum += field[at(b + radius + 1)];
+                }
+            }
+            field.swap(other);
+        }
+    }
+}
+
+void fillTriangle(std::vector<float>& field, uint32_t side, glm::vec2 a, glm::vec2 b, glm::vec2 c) {
+    const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
+    const auto last = static_cast<float>(side) - 1;
+    if (!(high.x >= 0 && high.y >= 0 && low.x <= last && low.y <= last)) return;
+    const auto x0 = static_cast<uint32_t>(std::max(0.0f, low.x));
+    const auto y0 = static_cast<uint32_t>(std::max(0.0f, low.y));
+    const auto x1 = static_cast<uint32_t>(std::min(last, high.x));
+    const auto y1 = static_cast<uint32_t>(std::min(last, high.y));
+    auto edge = [](glm::vec2 p, glm::vec2 q, glm::vec2 r) {
+        return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+    };
+    const float area = edge(a, b, c);
+    for (uint32_t y = y0; y <= y1; ++y) {
+        for (uint32_t x = x0; x <= x1; ++x) {
+            const glm::vec2 p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+            const float u = edge(a, b, p), v = edge(b, c, p), w = edge(c, a, p);
+            const bool inside = area >= 0 ? u >= 0 && v >= 0 && w >= 0 : u <= 0 && v <= 0 && w <= 0;
+            if (inside) field[size_t{y} * side + x] = 1.0f;
+        }
+    }
+}
+
+}  // namespace
+
+void duskLight(FwView& view) {
+    const glm::vec3 sun = glm::normalize(glm::vec3(-0.5f, 0.75f, 0.65f));
+    const float sunColor[3] = {66.0f, 57.2f, 46.2f};
+    const float sky[3] = {13.0f, 16.0f, 22.0f}, ground[3] = {9.0f, 8.0f, 7.0f};
+    std::memcpy(view.sunDirection, glm::value_ptr(sun), sizeof view.sunDirection);
+    std::memcpy(view.sunColor, sunColor, sizeof sunColor);
+    std::memcpy(view.ambientSky, sky, sizeof sky);
+    std::memcpy(view.ambientGround, ground, sizeof ground);
+    view.exposure = 1.0f / 40.0f;
+}
+
+void setCamera(FwView& view, const glm::mat4& viewMatrix, const glm::mat4& projection) {
+    std::memcpy(view.view, glm::value_ptr(viewMatrix), sizeof view.view);
+    std::memcpy(view.projection, glm::value_ptr(projection), sizeof view.projection);
+}
+
+Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, float size)
+    : host_(host), center_(center), size_(size) {
+    // A profile turned around the vertical: flat floor, a quarter circle, wall.
+    constexpr int kAround = 64;
+    const float radius = 7.0f * size, bend = 2.2f * size;
+    std::vector<glm::vec4> profile = {{0, 0, 0, 1}, {2 * size, 0, 0, 1}};  // r, y, normal r, y
+    for (int i = 0; i <= 8; ++i) {
+        const float angle = glm::half_pi<float>() * static_cast<float>(i) / 8.0f;
+        profile.push_back({radius - bend + bend * std::sin(angle), bend - bend * std::cos(angle),
+                           -std::sin(angle), std::cos(angle)});
+    }
+    profile.push_back({radius, 6 * size, -1, 0});
+    std::vector<Vertex> vertices;
+    std::vector<uint32_t> indices;
+    for (int i = 0; i <= kAround; ++i) {
+        const float angle = glm::two_pi<float>() * static_cast<float>(i) / kAround;
+        const float s = std::sin(angle), c = std::cos(angle);
+        for (const glm::vec4& p : profile) {
+            vertices.push_back(
+                {center + glm::vec3(p.x * s, p.y, p.x * c), {p.z * s, p.w, p.z * c}});
+        }
+    }
+    const auto rows = static_cast<uint32_t>(profile.size());
+    for (uint32_t i = 0; i < kAround; ++i) {
+        for (uint32_t j = 0; j + 1 < rows; ++j) {
+            const uint32_t a = i * rows + j, b = a + rows;
+            for (uint32_t k : {a, b, a + 1, a + 1, b, b + 1}) indices.push_back(k);
+        }
+    }
+    indexCount_ = static_cast<uint32_t>(indices.size());
+    vertices_ = host.createFilledBuffer(vertices.data(), vertices.size() * sizeof(Vertex),
+                                        VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+    indices_ = host.createFilledBuffer(indices.data(), indices.size() * sizeof(uint32_t),
+                                       VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    plaster_ = host.createTexture(512, 512, plasterPixels(512).data(), false);
+    const uint8_t none[4] = {0, 0, 0, 255};
+    shadow_ = host.createTexture(1, 1, none, false);
+    repeat_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+    clamp_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+
+    VkDescriptorSetLayoutBinding bindings[3]{};
+    bindings[0].descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    bindings[0].descriptorCount = 1;
+    bindings[0].stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    for (uint32_t i = 1; i < 3; ++i) {
+        bindings[i].binding = i;
+        bindings[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        bindings[i].descriptorCount = 1;
+        bindings[i].stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
+    }
+    VkDescriptorSetLayoutCreateInfo setInfo{};
+    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    setInfo.bindingCount = 3;
+    setInfo.pBindings = bindings;
+    checkVulkan(vkCreateDescriptorSetLayout(host.device, &setInfo, nullptr, &setLayout_),
+                "vkCreateDescriptorSetLayout");
+    const uint32_t slots = stage.made.framesInFlight;
+    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, slots},
+                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * slots}};
+    VkDescriptorPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    poolInfo.maxSets = slots;
+    poolInfo.poolSizeCount = 2;
+    poolInfo.pPoolSizes = sizes;
+    checkVulkan(vkCreateDescriptorPool(host.device, &poolInfo, nullptr, &pool_),
+                "vkCreateDescriptorPool");
+    const std::vector<VkDescriptorSetLayout> layouts(slots, setLayout_);
+    sets_.resize(slots);
+    VkDescriptorSetAllocateInfo allocation{};
+    allocation.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    allocation.descriptorPool = pool_;
+    allocation.descriptorSetCount = slots;
+    allocation.pSetLayouts = layouts.data();
+    checkVulkan(vkAllocateDescriptorSets(host.device, &allocation, sets_.data()),
+                "vkAllocateDescriptorSets");
+    for (uint32_t i = 0; i < slots; ++i) {
+        blocks_.push_back(
+            host.createBuffer(sizeof(Block), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, true));
+    }
+    writeSets();
+
+    VkPipelineLayoutCreateInfo layoutInfo{};
+    layoutInfo.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    layoutInfo.setLayoutCount = 1;
+    layoutInfo.pSetLayouts = &setLayout_;
+    checkVulkan(vkCreatePipelineLayout(host.device, &layoutInfo, nullptr, &layout_),
+                "vkCreatePipelineLayout");
+    const int32_t display = stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT ? 0
+                            : stage.made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB     ? 1
+                                                                                    : 2;
+    const VkSpecializationMapEntry entry{0, 0, sizeof display};
+    const VkSpecializationInfo specialization{1, &entry, sizeof display, &display};
+    PipelineRequest request;
+    request.pass = stage.scenePass;
+    request.layout = layout_;
+    request.samples = stage.made.samples;
+    request.depthCompare = stage.depthCompare();
+    request.vertex = host.createShader(kStudioVert, sizeof kStudioVert);
+    request.fragment = host.createShader(kStudioFrag, sizeof kStudioFrag);
+    request.bindings = {{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX}};
+    request.attributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
+                          {1, 0, VK_FORMAT_R32G32B32_SFLOAT, sizeof(glm::vec3)}};
+    request.specialization = &specialization;
+    pipeline_ = makePipeline(host, request);
+    vkDestroyShaderModule(host.device, request.vertex, nullptr);
+    vkDestroyShaderModule(host.device, request.fragment, nullptr);
+}
+
+Studio::~Studio() {
+    vkDeviceWaitIdle(host_.device);
+    vkDestroyPipeline(host_.device, pipeline_, nullptr);
+    vkDestroyPipelineLayout(host_.device, layout_, nullptr);
+    vkDestroyDescriptorPool(host_.device, pool_, nullptr);
+    vkDestroyDescriptorSetLayout(host_.device, setLayout_, nullptr);
+    vkDestroySampler(host_.device, repeat_, nullptr);
+    vkDestroySampler(host_.device, clamp_, nullptr);
+    for (Buffer* buffer : {&vertices_, &indices_}) host_.destroy(*buffer);
+    for (Buffer& buffer : blocks_) host_.destroy(buffer);
+    for (Image* image : {&plaster_, &shadow_}) host_.destroy(*image);
+}
+
+void Studio::writeSets() {
+    for (size_t i = 0; i < sets_.size(); ++i) {
+        const VkDescriptorBufferInfo buffer{blocks_[i].buffer, 0, VK_WHOLE_SIZE};
+        const VkDescriptorImageInfo images[] = {
+            {repeat_, plaster_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+            {clamp_, shadow_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
+        VkWriteDescriptorSet writes[3]{};
+        for (uint32_t k = 0; k < 3; ++k) {
+            writes[k].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+            writes[k].dstSet = sets_[i];
+            writes[k].dstBinding = k;
+            writes[k].descriptorCount = 1;
+            writes[k].descriptorType = k == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                              : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+            if (k == 0) writes[k].pBufferInfo = &buffer;
+            if (k > 0) writes[k].pImageInfo = &images[k - 1];
+        }
+        vkUpdateDescriptorSets(host_.device, 3, writes, 0, nullptr);
+    }
+}
+
+void Studio::castShadow(std::span<const float> positions, std::span<const uint32_t> indices,
+                        const glm::mat4& transform, glm::vec3 sunDirection) {
+    constexpr float kReach = 2.0f;  // half side of the map, in object sizes
+    std::vector<float> sun(size_t{kShadowSide} * kShadowSide, 0.0f), contact = sun;
+    const float half = kReach * size_;
+    const glm::vec3 toSun = sunDirection / std::max(0.2f, sunDirection.y);
+    auto toMap = [&](glm::vec3 p) {
+        return glm::vec2((p.x / half) * 0.5f + 0.5f, (p.z / half) * 0.5f + 0.5f) *
+               static_cast<float>(kShadowSide);
+    };
+    for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+        glm::vec3 p[3];
+        for (size_t k = 0; k < 3; ++k) {
+            const float* from = &positions[size_t{indices[i + k]} * 3];
+            p[k] = glm::vec3(transform * glm::vec4(from[0], from[1], from[2], 1.0f)) - center_;
+        }
+        glm::vec2 cast[3], below[3];
+        for (int k = 0; k < 3; ++k) {
+            cast[k] = toMap(p[k] - toSun * p[k].y);
+            below[k] = toMap(p[k]);
+        }
+        fillTriangle(sun, kShadowSide, cast[0], cast[1], cast[2]);
+        if (std::min({p[0].y, p[1].y, p[2].y}) < 0.3f * size_) {
+            fillTriangle(contact, kShadowSide, below[0], below[1], below[2]);
+        }
+    }
+    blur(sun, kShadowSide, 3);
+    blur(contact, kShadowSide, 6);
+    std::vector<uint8_t> pixels(size_t{kShadowSide} * kShadowSide * 4, 255);
+    for (size_t i = 0; i < sun.size(); ++i) {
+        pixels[i * 4] = static_cast<uint8_t>(std::clamp(sun[i] * 225.0f, 0.0f, 255.0f));
+        pixels[i * 4 + 1] = static_cast<uint8_t>(std::clamp(contact[i] * 200.0f, 0.0f, 255.0f));
+    }
+    vkDeviceWaitIdle(host_.device);
+    host_.destroy(shadow_);
+    shadow_ = host_.createTexture(kShadowSide, kShadowSide, pixels.data(), false);
+    writeSets();
+}
+
+void Studio::draw(const StageFrame& frame, VkCommandBuffer commands, const FwView& view,
+                  std::span<const FwLight> fires) {
+    Block block{};
+    block.viewProjection = glm::make_mat4(view.projection) * glm::make_mat4(view.view);
+    block.sunDirection = glm::vec4(glm::make_vec3(view.sunDirection), view.exposure);
+    block.sunColor = glm::vec4(glm::make_vec3(view.sunColor), size_);
+    block.ambientSky = glm::vec4(glm::make_vec3(view.ambientSky), 2.0f * size_);
+    const size_t count = std::min<size_t>(fires.size(), kMostFires);
+    block.ambientGround = glm::vec4(glm::make_vec3(view.ambientGround), static_cast<float>(count));
+    block.center = glm::vec4(center_, 7.0f * size_);
+    for (size_t i = 0; i < count; ++i) {
+        const FwLight& fire = fires[i];
+        const float radius = std::max(fire.radius, 0.05f * size_);
+        block.firePlace[i] = glm::vec4(glm::make_vec3(fire.position), radius * radius);
+        block.fireColor[i] =
+            glm::vec4(glm::make_vec3(fire.color) * fire.intensity * fireGain, 0.0f);
+    }
+    std::memcpy(blocks_[frame.slot].mapped, &block, sizeof block);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1,
+                            &sets_[frame.slot], 0, nullptr);
+    const VkDeviceSize zero = 0;
+    vkCmdBindVertexBuffers(commands, 0, 1, &vertices_.buffer, &zero);
+    vkCmdBindIndexBuffer(commands, indices_.buffer, 0, VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(commands, indexCount_, 1, 0, 0, 0);
+}
+
+}  // namespace sample

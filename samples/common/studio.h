@@ -1,0 +1,52 @@
+// A photographer's backdrop drawn by the host, in the host's pass, before the plugin draws: floor,
+// wall, one soft shadow, and the light of the fires as the plugin reports it.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "common/stage.h"
+#include "flamewright/flamewright.h"
+
+namespace sample {
+
+class Studio {
+ public:
+    // `center` is on the floor; `size` is about the object's largest side, m.
+    Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, float size);
+    ~Studio();
+    Studio(const Studio&) = delete;
+    Studio& operator=(const Studio&) = delete;
+
+    // Casts the mesh's shadow onto the floor, softly, once.
+    void castShadow(std::span<const float> positions, std::span<const uint32_t> indices,
+                    const glm::mat4& transform, glm::vec3 sunDirection);
+    // `view` carries the camera and the light. `commands`: in the scene pass.
+    void draw(const StageFrame& frame, VkCommandBuffer commands, const FwView& view,
+              std::span<const FwLight> fires);
+
+    float fireGain = 1.0f;  // irradiance at 1 m per unit of FwLight::intensity
+
+ private:
+    void writeSets();
+    const VulkanHost& host_;
+    glm::vec3 center_;
+    float size_;
+    uint32_t indexCount_ = 0;
+    Buffer vertices_, indices_;
+    std::vector<Buffer> blocks_;  // one for each frame in flight
+    Image plaster_, shadow_;
+    VkSampler repeat_ = VK_NULL_HANDLE, clamp_ = VK_NULL_HANDLE;
+    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    std::vector<VkDescriptorSet> sets_;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+// Evening light in a studio, the light in which fire reads best; fills all but the matrices.
+void duskLight(FwView& view);
+void setCamera(FwView& view, const glm::mat4& viewMatrix, const glm::mat4& projection);
+
+}  // namespace sample
