@@ -32,6 +32,8 @@ BurnDomain bake(const BakeInput& input, std::pmr::memory_resource* memory);
 uint64_t bakeKey(const BakeInput& input) noexcept;
 std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
                                         std::pmr::memory_resource* memory);
+// The key it was written with. Throws core::Error (truncated, wrong magic or version).
+uint64_t cookedKey(std::span<const std::byte> bytes);
 // Throws core::Error (truncated, wrong magic, version, checksum, or any index out of range).
 BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory);
 

@@ -39,6 +39,11 @@ struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/sha
     uint32_t reserved = 0;
 };
 
+struct TileBounds {            // of a tile's real texels, in position units; low > high: none
+    uint16_t low[3] = {0xFFFF, 0xFFFF, 0xFFFF};
+    uint16_t high[3] = {0, 0, 0};
+};
+
 // A corner of the drawn mesh; 48 bytes. Vertices are split where the atlas is cut.
 struct RenderVertex {
     float position[3] = {};      // m, rest, object space
@@ -67,8 +72,8 @@ struct BakeReport {            // for people and tests; never read by the simula
 struct BurnDomain {
     explicit BurnDomain(std::pmr::memory_resource* memory)
         : texels(memory), normals(memory), areas(memory), thickness(memory), slowness(memory),
-          triangleOf(memory), links(memory), readers(memory), tiles(memory), vertices(memory),
-          indices(memory) {}
+          triangleOf(memory), links(memory), readers(memory), tiles(memory),
+          tileBounds(memory), vertices(memory), indices(memory) {}
 
     uint32_t width = 0, height = 0;  // texels, multiples of 8
     uint32_t tilesX = 0, tilesY = 0;
@@ -90,6 +95,7 @@ struct BurnDomain {
     std::pmr::vector<uint32_t> links;         // 8 texel indices (or kNone) per rim record
     std::pmr::vector<uint32_t> readers;       // tiles, see TileStatic
     std::pmr::vector<TileStatic> tiles;       // tilesX * tilesY
+    std::pmr::vector<TileBounds> tileBounds;  // per tile, for queries; not stored when cooked
     std::pmr::vector<RenderVertex> vertices;  // what is drawn, split at chart borders
     std::pmr::vector<uint32_t> indices;       // 3 per triangle
     BakeReport report;

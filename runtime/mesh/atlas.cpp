@@ -1,0 +1,184 @@
+#include "mesh/atlas.h"
+
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+constexpr double kMargin = 2;            // texels left free around the mesh's own layout
+constexpr double kAspectLimit = 2.02;    // 2 : 1 with room for rounding
+constexpr double kDensityLimit = 4;      // texel area against the mean: within 1/4 .. 4
+constexpr double kBadAreaLimit = 0.01;   // own UVs stand if less of the surface is worse than that
+constexpr double kOverlapLimit = 0.001;  // and fewer texels than this lie twice
+constexpr double kIslandBadLimit = 0.1;  // an island with more bad area is cut anew as a whole
+constexpr double kIslandTexels = 16;     // a smaller island is joined to our charts
+
+struct Extent2 {
+    glm::dvec2 low{1e300}, high{-1e300};
+    void add(const Triangle& t) {
+        for (const glm::dvec2& u : t.uv) {
+            low = glm::min(low, u);
+            high = glm::max(high, u);
+        }
+    }
+    [[nodiscard]] glm::dvec2 size() const { return high - low; }
+};
+
+uint32_t roundUp8(double texels) { return (uint32_t(std::ceil(texels)) + 7) & ~7u; }
+
+// Bad: no area in the atlas, stretched, or far denser or sparser than texels of `meanArea` m^2.
+bool badTexels(const Triangle& t, double meanArea) {
+    const TexelShape shape = texelShape(t);
+    if (!shape.usable || shape.longer > kAspectLimit * shape.shorter) return true;
+    const double ratio = shape.longer * shape.shorter / meanArea;
+    return ratio > kDensityLimit || ratio < 1 / kDensityLimit;
+}
+
+// The mesh's own layout at the asked density, or lower if it must be. uv becomes texels.
+AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
+    Extent2 extent;
+    for (const Triangle& t : surface.triangles) extent.add(t);
+    const double side = double(input.maxSide & ~7u) - 2 * kMargin - 1e-6;
+    const double perUnit = std::sqrt(surface.area / uvAreaSum);  // m per UV unit
+    const glm::dvec2 size = extent.size() * perUnit;
+    AtlasPlan plan;
+    plan.ownUv = true;
+    plan.density = std::min(input.texelsPerMetre, side / std::max(size.x, size.y));
+    plan.width = roundUp8(size.x * plan.density + 2 * kMargin);
+    plan.height = roundUp8(size.y * plan.density + 2 * kMargin);
+    const double scale = perUnit * plan.density;
+    for (Triangle& t : surface.triangles)
+        for (glm::dvec2& u : t.uv) u = (u - extent.low) * scale + kMargin;
+    return plan;
+}
+
+bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& plan,
+               std::pmr::memory_resource* memory) {
+    double badArea = 0, texels = 0;
+    uint64_t conflicts = 0;
+    Coverage coverage(memory);
+    coverage.clear(plan.width, plan.height);
+    const double meanArea = 1 / (plan.density * plan.density);
+    for (const Triangle& t : surface.triangles) {
+        if (badTexels(t, meanArea)) badArea += t.area;
+        conflicts += coverage.add(t, {0, 0}, 1);
+        texels += std::abs(uvArea(t));
+    }
+    const double fill = texels / (double(plan.width) * plan.height);
+    const bool wasteful = plan.density < 0.5 * input.texelsPerMetre && fill < 0.25;
+    return badArea <= kBadAreaLimit * surface.area && double(conflicts) <= kOverlapLimit * texels &&
+           !wasteful;
+}
+
+// Brings every island to the surface's own scale (uv in metres), marks the triangles that cannot
+// stay in it with chart kNone and numbers the islands that remain. Returns how many do.
+uint32_t keepIslands(Surface& surface, double density, double longest,
+                     std::pmr::memory_resource* memory) {
+    const Groups groups = groupByChart(surface, surface.chartCount, memory);
+    Coverage coverage(memory);
+    uint32_t kept = 0;
+    for (uint32_t island = 0; island < surface.chartCount; ++island) {
+        const auto members = groups.of(island);
+        double area = 0, flat = 0, bad = 0;
+        for (uint32_t i : members) {
+            area += surface.triangles[i].area;
+            flat += std::abs(uvArea(surface.triangles[i]));
+        }
+        const double scale = flat > 1e-9 ? std::sqrt(area / flat) : 0;
+        Extent2 extent;
+        for (uint32_t i : members) {
+            for (glm::dvec2& u : surface.triangles[i].uv) u *= scale;
+            extent.add(surface.triangles[i]);
+        }
+        const glm::dvec2 size = extent.size();
+        const bool usable = scale > 0 && area * density * density >= kIslandTexels &&
+                            std::max(size.x, size.y) <= longest;
+        if (usable) coverage.clear(uint32_t(size.x * density) + 2, uint32_t(size.y * density) + 2);
+        for (uint32_t i : members) {
+            Triangle& t = surface.triangles[i];
+            t.chart = kept;
+            if (usable) {
+                for (glm::dvec2& u : t.uv) u *= density;  // judge in texels
+                const bool stretched = badTexels(t, 1 / (density * density));
+                for (glm::dvec2& u : t.uv) u /= density;
+                if (!stretched && coverage.add(t, -extent.low, density) == 0) continue;
+            }
+            t.chart = kNone;
+            bad += t.area;
+        }
+        if (!usable || bad > kIslandBadLimit * area)
+            for (uint32_t i : members) surface.triangles[i].chart = kNone;
+        else
+            ++kept;
+    }
+    return kept;
+}
+
+}  // namespace
+
+uint32_t Coverage::add(const Triangle& t, glm::dvec2 offset, double scale) {
+    Triangle moved;
+    glm::dvec2 low(1e300), high(-1e300);
+    for (int k = 0; k < 3; ++k) {
+        moved.uv[k] = (t.uv[k] + offset) * scale;
+        low = glm::min(low, moved.uv[k]);
+        high = glm::max(high, moved.uv[k]);
+    }
+    const int x0 = std::max(0, int(std::floor(low.x))), y0 = std::max(0, int(std::floor(low.y)));
+    const int x1 = std::min(int(width_) - 1, int(std::floor(high.x)));
+    const int y1 = std::min(int(height_) - 1, int(std::floor(high.y)));
+    uint32_t conflicts = 0;
+    for (int pass = 0; pass < 2 && conflicts == 0; ++pass)  // look first, then mark
+        for (int y = y0; y <= y1; ++y)
+            for (int x = x0; x <= x1; ++x) {
+                glm::dvec3 w;
+                if (!weightsAt(moved, {x + 0.5, y + 0.5}, w)) return 0;
+                if (std::min({w.x, w.y, w.z}) < 1e-6) continue;
+                uint8_t& owner = owner_[size_t(y) * width_ + size_t(x)];
+                if (pass == 0)
+                    conflicts += owner;
+                else
+                    owner = 1;
+            }
+    return conflicts;
+}
+
+Groups groupByChart(const Surface& surface, uint32_t charts, std::pmr::memory_resource* memory) {
+    Groups groups(memory);
+    groups.start.assign(size_t(charts) + 2, 0);
+    for (const Triangle& t : surface.triangles) ++groups.start[size_t(t.chart) + 2];
+    for (size_t c = 2; c < groups.start.size(); ++c) groups.start[c] += groups.start[c - 1];
+    groups.items.resize(surface.triangles.size());
+    for (uint32_t i = 0; i < surface.triangles.size(); ++i)
+        groups.items[groups.start[size_t(surface.triangles[i].chart) + 1]++] = i;
+    groups.start.pop_back();
+    return groups;
+}
+
+AtlasPlan layAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_resource* memory) {
+    double uvAreaSum = 0;
+    for (const Triangle& t : surface.triangles) uvAreaSum += std::abs(uvArea(t));
+    const bool hasUv = !input.uvs.empty() && uvAreaSum > 1e-18;
+    if (hasUv) {
+        const AtlasPlan own = scaleOwn(surface, input, uvAreaSum);
+        if (input.trustUvs || ownIsGood(surface, input, own, memory)) return own;
+    }
+    // Tests are made at a density the atlas can hold.
+    const double side = double(input.maxSide & ~7u);
+    const double density = std::min(input.texelsPerMetre, side / std::sqrt(surface.area));
+    const double texels = surface.area * density * density;
+    const double longest = std::clamp(1.5 * std::sqrt(texels), 32.0, side) / density * 0.95;
+
+    pairEdges(surface, hasUv, memory);
+    const uint32_t kept = hasUv ? keepIslands(surface, density, longest, memory) : 0;
+    std::pmr::vector<uint32_t> pool(memory);
+    for (uint32_t i = 0; i < surface.triangles.size(); ++i)
+        if (!hasUv || surface.triangles[i].chart == kNone) pool.push_back(i);
+    const uint32_t recharted = uint32_t(pool.size());
+    const uint32_t charts = growCharts(surface, pool, kept, density, longest, memory);
+    AtlasPlan plan = packCharts(surface, charts, input.texelsPerMetre, input.maxSide, memory);
+    plan.recharted = recharted;
+    return plan;
+}
+
+}  // namespace fw::mesh

@@ -1,0 +1,113 @@
+#include "mesh/bake.h"
+
+#include "mesh/atlas.h"
+#include "mesh/texels.h"
+
+#include <chrono>
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+constexpr double kLongestLink = 8000;    // units; the front's squares hold 8191
+constexpr double kUnitsPerTexel = 1024;  // finer positions would only make links overflow
+
+// Positions, normals, flags: what the simulation reads of each texel.
+void quantise(const Surface& surface, const TexelGrid& grid, BurnDomain& domain) {
+    const double quantum =
+        std::max({surface.extent / 65535, grid.side / kUnitsPerTexel, grid.linkMax / kLongestLink});
+    domain.quantum = float(quantum);
+    if (double(domain.quantum) < quantum) domain.quantum = std::nextafter(domain.quantum, 1e30f);
+    const auto units = [&](float metres) {
+        const double u = std::floor(double(metres) / double(domain.quantum) + 0.5);
+        return uint16_t(std::clamp(u, 0.0, 65535.0));
+    };
+    domain.texels.resize(grid.count());
+    domain.normals.resize(grid.count());
+    domain.areas.resize(grid.count());
+    domain.triangleOf.assign(grid.count(), kNone);
+    for (uint32_t i = 0; i < grid.count(); ++i) {
+        if (!grid.real(i)) continue;
+        const Triangle& t = surface.triangles[grid.owner[i]];
+        const glm::vec3 p = grid.position[i];
+        domain.texels[i] = {units(p.x), units(p.y), units(p.z),
+                            uint16_t(grid.flags[i] | t.material)};
+        domain.normals[i] = packNormal(t.normal);
+        domain.areas[i] = float(grid.area[i]);
+        domain.triangleOf[i] = grid.owner[i];
+    }
+}
+
+// Texel sides and stretch over the real texels.
+void measureShapes(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_resource* memory) {
+    std::pmr::vector<double> shorter(memory), aspects(memory);
+    for (uint32_t i = 0; i < grid.count(); ++i) {
+        if (!grid.real(i)) continue;
+        domain.report.texelArea += grid.area[i];
+        const TexelShape& shape = grid.shapes[grid.owner[i]];
+        if (!shape.usable || !(shape.shorter > 0)) continue;
+        shorter.push_back(shape.shorter);
+        aspects.push_back(shape.longer / shape.shorter);
+    }
+    domain.linkShort = domain.texelSide;
+    if (shorter.empty()) return;
+    std::sort(shorter.begin(), shorter.end());
+    std::sort(aspects.begin(), aspects.end());
+    domain.linkShort = float(shorter[shorter.size() / 20]);
+    domain.report.aspectP99 = aspects[aspects.size() * 99 / 100];
+    domain.report.aspectMax = aspects.back();
+}
+
+void fillHeader(const BakeInput& input, const Surface& surface, const AtlasPlan& plan,
+                const TexelGrid& grid, BurnDomain& domain) {
+    domain.width = plan.width;
+    domain.height = plan.height;
+    domain.tilesX = plan.width / kTileSide;
+    domain.tilesY = plan.height / kTileSide;
+    domain.texelSide = float(grid.side);
+    domain.linkMax = float(grid.linkMax);
+    for (int k = 0; k < 3; ++k) {
+        domain.origin[k] = domain.boundsLow[k] = float(surface.low[k]);
+        domain.boundsHigh[k] = float(surface.high[k]);
+    }
+    BakeReport& report = domain.report;
+    for (const Triangle& t : surface.triangles)
+        domain.materialCount = std::max(domain.materialCount, t.material + 1);
+    report.meshArea = surface.area;
+    report.vertices = uint32_t(input.positions.size() / 3);
+    report.triangles = uint32_t(surface.triangles.size());
+    report.charts = surface.chartCount;
+    report.degenerate = surface.degenerate;
+    report.openEdges = surface.openEdges;
+    report.nonManifoldEdges = surface.nonManifoldEdges;
+    report.seamEdges = surface.seamEdges;
+    report.usedOwnUv = plan.ownUv;
+    report.rechartedTriangles = plan.recharted;
+}
+
+}  // namespace
+
+BurnDomain bake(const BakeInput& input, std::pmr::memory_resource* memory) {
+    const auto start = std::chrono::steady_clock::now();
+    validate(input);
+    BurnDomain domain(memory);
+    Surface surface = collectSurface(input, 0.5 / (input.texelsPerMetre * kUnitsPerTexel), memory);
+    const AtlasPlan plan = layAtlas(surface, input, memory);
+    pairEdges(surface, true, memory);
+    TexelGrid grid =
+        rasterise(surface, plan.width, plan.height, plan.density, domain.report, memory);
+    linkTexels(surface, grid, domain.report, memory);
+    fillHeader(input, surface, plan, grid, domain);
+    quantise(surface, grid, domain);
+    measureShapes(grid, domain, memory);
+    buildTiles(grid, domain, memory);
+    buildTileBounds(domain);
+    bakeThickness(surface, grid, domain.thickness, memory);
+    bakeSlowness(input, grid, surface.low, surface.extent, domain.slowness);
+    buildDrawn(input, surface, domain, memory);
+    domain.report.milliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return domain;
+}
+
+}  // namespace fw::mesh

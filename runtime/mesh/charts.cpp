@@ -1,0 +1,254 @@
+// Our own charts: discs grown over neighbours whose normals agree, flattened by projection.
+// No unwrap by minimisation: a plane keeps stretch under 2 : 1 by its angle alone, and the front
+// measures distances in 3D, so a seam more costs nothing but a few link records.
+#include "mesh/atlas.h"
+
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+constexpr double kGrowCosine = 0.74;    // smoothed normal against the chart's axis
+constexpr double kRoughCosine = 0.55;   // the triangle's own normal against it
+constexpr double kProjectCosine = 0.5;  // aspect 2
+constexpr double kAbsorbCosine = 0.6;
+constexpr double kSmallTexels = 32;  // charts below this are given to their neighbours
+constexpr double kTestSide = 4096;   // texels, largest image of the overlap test
+constexpr int kRounds = 6;           // then every triangle left becomes a chart of its own
+
+struct Chart {
+    glm::dvec3 axis{0, 0, 1};
+    double area = 0;
+};
+
+struct Candidate {
+    double distance;  // m^2, from the seed
+    uint32_t triangle;
+    bool operator<(const Candidate& o) const {  // for std::push_heap: nearest first
+        return distance != o.distance ? distance > o.distance : triangle > o.triangle;
+    }
+};
+
+glm::dvec3 unit(glm::dvec3 v, glm::dvec3 otherwise) {
+    const double l = glm::length(v);
+    return l > 1e-300 ? v / l : otherwise;
+}
+glm::dvec3 centre(const Triangle& t) {
+    return (t.position[0] + t.position[1] + t.position[2]) / 3.0;
+}
+
+// Two rounds of averaging over edge neighbours: scanned surfaces are rough.
+void smoothNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& smooth,
+                   std::pmr::memory_resource* memory) {
+    const auto& triangles = surface.triangles;
+    std::pmr::vector<glm::dvec3> next(triangles.size(), memory);
+    smooth.resize(triangles.size());
+    for (size_t i = 0; i < triangles.size(); ++i) smooth[i] = triangles[i].normal;
+    for (int round = 0; round < 2; ++round) {
+        for (size_t i = 0; i < triangles.size(); ++i) {
+            glm::dvec3 sum = smooth[i] * triangles[i].area;
+            for (uint32_t n : triangles[i].neighbour)
+                if (n != kNone) sum += smooth[n] * triangles[n].area;
+            next[i] = unit(sum, triangles[i].normal);
+        }
+        smooth.swap(next);
+    }
+}
+
+class Grower {
+ public:
+    Grower(Surface& surface, std::pmr::memory_resource* memory)
+        : triangles_(surface.triangles),
+          smooth_(memory),
+          heap_(memory),
+          charts_(memory),
+          inPool_(surface.triangles.size(), 0, memory) {
+        smoothNormals(surface, smooth_, memory);
+    }
+
+    // Gives every triangle of the pool a chart number, from `first`. Returns the number after.
+    uint32_t grow(std::span<const uint32_t> pool, uint32_t first, double smallArea) {
+        charts_.clear();
+        std::fill(inPool_.begin(), inPool_.end(), uint8_t(0));
+        for (uint32_t i : pool) {
+            inPool_[i] = 1;
+            triangles_[i].chart = kNone;
+        }
+        for (uint32_t seed : pool)
+            if (triangles_[seed].chart == kNone) growOne(seed, first + uint32_t(charts_.size()));
+        absorbSmall(pool, first, smallArea);
+        return first + uint32_t(charts_.size());
+    }
+
+ private:
+    void growOne(uint32_t seed, uint32_t chart) {
+        const glm::dvec3 from = centre(triangles_[seed]);
+        glm::dvec3 sum(0), axis = smooth_[seed];
+        if (glm::dot(axis, triangles_[seed].normal) < kRoughCosine) axis = triangles_[seed].normal;
+        double area = 0;
+        heap_.clear();
+        heap_.push_back({0, seed});
+        while (!heap_.empty()) {
+            std::pop_heap(heap_.begin(), heap_.end());
+            const uint32_t i = heap_.back().triangle;
+            heap_.pop_back();
+            Triangle& t = triangles_[i];
+            if (t.chart != kNone) continue;
+            if (i != seed && (glm::dot(smooth_[i], axis) < kGrowCosine ||
+                              glm::dot(t.normal, axis) < kRoughCosine))
+                continue;
+            t.chart = chart;
+            sum += t.normal * t.area;
+            area += t.area;
+            if (area > 0) axis = unit(sum + axis * (0.1 * area), axis);
+            for (uint32_t n : t.neighbour) {
+                if (n == kNone || !inPool_[n] || triangles_[n].chart != kNone) continue;
+                const glm::dvec3 d = centre(triangles_[n]) - from;
+                heap_.push_back({glm::dot(d, d), n});
+                std::push_heap(heap_.begin(), heap_.end());
+            }
+        }
+        charts_.push_back({unit(sum, axis), area});
+    }
+
+    void absorbSmall(std::span<const uint32_t> pool, uint32_t first, double smallArea) {
+        bool moved = true;
+        for (int pass = 0; pass < 12 && moved; ++pass) {
+            moved = false;
+            for (uint32_t i : pool) {
+                Triangle& t = triangles_[i];
+                Chart& mine = charts_[t.chart - first];
+                if (mine.area >= smallArea) continue;
+                uint32_t best = kNone;
+                double bestCosine = kAbsorbCosine;
+                for (uint32_t n : t.neighbour) {
+                    if (n == kNone || !inPool_[n] || triangles_[n].chart == t.chart) continue;
+                    const Chart& other = charts_[triangles_[n].chart - first];
+                    const double cosine = glm::dot(t.normal, other.axis);
+                    if (other.area <= mine.area || cosine <= bestCosine) continue;
+                    best = triangles_[n].chart;
+                    bestCosine = cosine;
+                }
+                if (best == kNone) continue;
+                mine.area -= t.area;
+                charts_[best - first].area += t.area;
+                t.chart = best;
+                moved = true;
+            }
+        }
+    }
+
+    std::pmr::vector<Triangle>& triangles_;
+    std::pmr::vector<glm::dvec3> smooth_;
+    std::pmr::vector<Candidate> heap_;
+    std::pmr::vector<Chart> charts_;
+    std::pmr::vector<uint8_t> inPool_;
+};
+
+// Flattens chart members onto the plane of their mean normal, at the surface's own scale. A
+// triangle too steep for it loses its chart.
+void flatten(Surface& surface, std::span<const uint32_t> members) {
+    glm::dvec3 sum(0);
+    for (uint32_t i : members) sum += surface.triangles[i].normal * surface.triangles[i].area;
+    const glm::dvec3 axis = unit(sum, surface.triangles[members[0]].normal);
+    const glm::dvec3 size = glm::abs(axis);
+    const glm::dvec3 helper = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
+                              : size.y <= size.z                   ? glm::dvec3(0, 1, 0)
+                                                                   : glm::dvec3(0, 0, 1);
+    const glm::dvec3 u = glm::normalize(glm::cross(helper, axis)), v = glm::cross(axis, u);
+    double area = 0, flat = 0;
+    for (uint32_t i : members) {
+        Triangle& t = surface.triangles[i];
+        const double cosine = glm::dot(t.normal, axis);
+        if (cosine < kProjectCosine && members.size() > 1) {
+            t.chart = kNone;
+            continue;
+        }
+        for (int k = 0; k < 3; ++k)
+            t.uv[k] = {glm::dot(t.position[k], u), glm::dot(t.position[k], v)};
+        area += t.area;
+        flat += t.area * cosine;
+    }
+    const double scale = flat > 0 ? std::sqrt(area / flat) : 1;
+    for (uint32_t i : members)
+        for (glm::dvec2& uv : surface.triangles[i].uv) uv *= scale;
+}
+
+// A chart longer than `longest` becomes several along its longer side. Returns charts after.
+uint32_t splitLong(Surface& surface, std::span<const uint32_t> members, uint32_t nextChart,
+                   double longest) {
+    glm::dvec2 low(1e300), high(-1e300);
+    for (uint32_t i : members)
+        if (surface.triangles[i].chart != kNone)
+            for (const glm::dvec2& u : surface.triangles[i].uv) {
+                low = glm::min(low, u);
+                high = glm::max(high, u);
+            }
+    const glm::dvec2 size = high - low;
+    const double side = std::max(size.x, size.y);
+    if (!(side > longest)) return nextChart;
+    const int axis = size.x >= size.y ? 0 : 1;
+    const uint32_t pieces = uint32_t(std::min(double(members.size()), std::ceil(side / longest)));
+    for (uint32_t i : members) {
+        Triangle& t = surface.triangles[i];
+        if (t.chart == kNone) continue;
+        const double along = (t.uv[0][axis] + t.uv[1][axis] + t.uv[2][axis]) / 3 - low[axis];
+        const uint32_t piece = std::min(pieces - 1, uint32_t(along / side * pieces));
+        if (piece > 0) t.chart = nextChart + piece - 1;
+    }
+    return nextChart + pieces - 1;
+}
+
+}  // namespace
+
+uint32_t growCharts(Surface& surface, std::pmr::vector<uint32_t>& pool, uint32_t firstChart,
+                    double density, double longest, std::pmr::memory_resource* memory) {
+    if (pool.empty()) return firstChart;
+    Grower grower(surface, memory);
+    Coverage coverage(memory);
+    std::pmr::vector<uint32_t> order(memory), starts(memory);
+    for (int round = 0; round < kRounds && !pool.empty(); ++round) {
+        uint32_t next = grower.grow(pool, firstChart, kSmallTexels / (density * density));
+        // Members by chart, in the pool's order.
+        const uint32_t grown = next - firstChart;
+        starts.assign(size_t(grown) + 1, 0);
+        for (uint32_t i : pool) ++starts[surface.triangles[i].chart - firstChart + 1];
+        for (size_t c = 1; c < starts.size(); ++c) starts[c] += starts[c - 1];
+        order.resize(pool.size());
+        for (uint32_t i : pool) order[starts[surface.triangles[i].chart - firstChart]++] = i;
+        for (uint32_t c = 0, begin = 0; c < grown; begin = starts[c++]) {
+            const std::span<const uint32_t> members(order.data() + begin, starts[c] - begin);
+            if (members.empty()) continue;
+            flatten(surface, members);
+            glm::dvec2 low(1e300), high(-1e300);
+            for (uint32_t i : members)
+                for (const glm::dvec2& u : surface.triangles[i].uv) {
+                    if (surface.triangles[i].chart == kNone) break;
+                    low = glm::min(low, u);
+                    high = glm::max(high, u);
+                }
+            if (members.size() > 1 && low.x <= high.x) {
+                const glm::dvec2 size = high - low;
+                const double scale = std::min(density, kTestSide / std::max(size.x, size.y));
+                coverage.clear(uint32_t(size.x * scale) + 2, uint32_t(size.y * scale) + 2);
+                for (uint32_t i : members) {
+                    Triangle& t = surface.triangles[i];
+                    if (t.chart != kNone && coverage.add(t, -low, scale) > 0) t.chart = kNone;
+                }
+            }
+            next = splitLong(surface, members, next, longest);
+        }
+        pool.clear();
+        for (uint32_t i : order)
+            if (surface.triangles[i].chart == kNone) pool.push_back(i);
+        std::sort(pool.begin(), pool.end());
+        firstChart = next;
+    }
+    for (uint32_t i : pool) {
+        surface.triangles[i].chart = firstChart++;
+        flatten(surface, {&i, 1});
+    }
+    return firstChart;
+}
+
+}  // namespace fw::mesh

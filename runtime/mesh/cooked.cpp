@@ -1,0 +1,357 @@
+// The cooked form of a burn domain: bytes in a fixed order, little-endian, checksummed.
+//   header: u32 magic 'FWBD', u32 version, u64 key, u64 payload bytes, u64 FNV-1a of the payload
+//   payload: the scalars, the counts, then every array, in the order of `transfer` below
+// The reader trusts nothing: a file with a right checksum but absurd indices is refused too.
+#include "core/error.h"
+#include "core/hash.h"
+#include "mesh/texels.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace fw::mesh {
+namespace {
+
+constexpr uint32_t kMagic = 0x44425746;  // "FWBD"
+constexpr uint32_t kVersion = 1;         // of the format
+constexpr uint32_t kBakeVersion = 1;     // of the algorithm: part of the key
+constexpr size_t kHeaderBytes = 32;
+constexpr uint64_t kFnvPrime = 1099511628211ull;
+
+uint64_t hashBytes(std::span<const std::byte> bytes, uint64_t hash = core::kFnvOffset) {
+    for (std::byte b : bytes) {
+        hash ^= uint64_t(b);
+        hash *= kFnvPrime;
+    }
+    return hash;
+}
+
+template <typename T>
+struct WordsOf {  // how many bits a number travels in
+    using Type = std::conditional_t<sizeof(T) == 8, uint64_t,
+                                    std::conditional_t<sizeof(T) == 4, uint32_t, uint16_t>>;
+};
+
+class Writer {
+ public:
+    static constexpr bool kReads = false;
+    explicit Writer(std::pmr::vector<std::byte>& out) : out_(out) {}
+    template <typename T>
+    void number(const T& value) {
+        const auto word = std::bit_cast<typename WordsOf<T>::Type>(value);
+        for (size_t k = 0; k < sizeof(T); ++k) out_.push_back(std::byte(word >> (8 * k)));
+    }
+
+ private:
+    std::pmr::vector<std::byte>& out_;
+};
+
+class Reader {
+ public:
+    static constexpr bool kReads = true;
+    explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    template <typename T>
+    void number(T& value) {
+        if (left() < sizeof(T))
+            core::fail(FW_ERROR_BAD_DATA, "The cooked mesh ends after %zu bytes of its payload.",
+                       bytes_.size());
+        typename WordsOf<T>::Type word = 0;
+        for (size_t k = 0; k < sizeof(T); ++k)
+            word =
+                decltype(word)(word | decltype(word)(decltype(word)(bytes_[at_ + k]) << (8 * k)));
+        at_ += sizeof(T);
+        value = std::bit_cast<T>(word);
+    }
+    [[nodiscard]] size_t left() const { return bytes_.size() - at_; }
+
+ private:
+    std::span<const std::byte> bytes_;
+    size_t at_ = 0;
+};
+
+// One description of every record for both directions.
+template <typename Stream, typename T>
+requires std::is_arithmetic_v<T>
+void record(Stream& s, T& value) { s.number(value); }
+template <typename Stream>
+void record(Stream& s, std::conditional_t<Stream::kReads, TexelPosition, const TexelPosition>& t) {
+    s.number(t.x), s.number(t.y), s.number(t.z), s.number(t.materialFlags);
+}
+template <typename Stream>
+void record(Stream& s, std::conditional_t<Stream::kReads, TileStatic, const TileStatic>& t) {
+    s.number(t.seamMaskLow), s.number(t.seamMaskHigh), s.number(t.readerStart);
+    s.number(t.readerCount), s.number(t.rimMaskLow), s.number(t.rimMaskHigh), s.number(t.rimBase);
+    s.number(t.reserved);
+}
+template <typename Stream>
+void record(Stream& s, std::conditional_t<Stream::kReads, RenderVertex, const RenderVertex>& v) {
+    for (auto& c : v.position) s.number(c);
+    s.number(v.normal);
+    for (auto& c : v.atlasUv) s.number(c);
+    for (auto& c : v.textureUv) s.number(c);
+    for (auto& c : v.detail) s.number(c);
+    s.number(v.tint), s.number(v.material);
+}
+template <typename Stream, typename Report>
+void reportRecord(Stream& s, Report& r) {  // all but the time: equal inputs, equal bytes
+    s.number(r.meshArea), s.number(r.texelArea), s.number(r.linkMin), s.number(r.linkMax);
+    s.number(r.aspectP99), s.number(r.aspectMax), s.number(r.vertices), s.number(r.triangles);
+    s.number(r.charts), s.number(r.degenerate), s.number(r.openEdges);
+    s.number(r.nonManifoldEdges), s.number(r.seamEdges), s.number(r.realTexels);
+    s.number(r.forcedTexels), s.number(r.rimTexels), s.number(r.overlaps), s.number(r.linksOpen);
+    s.number(r.linksLost), s.number(r.readerless), s.number(r.usedOwnUv);
+    s.number(r.rechartedTriangles);
+}
+
+struct Counts {
+    uint32_t linkWords = 0, readers = 0, vertices = 0, indices = 0;
+};
+
+// Bytes a record takes in the file.
+constexpr size_t kTexelBytes = sizeof(TexelPosition) + 4 + 4 + 2 + 2 + 4;
+
+template <typename Stream, typename Domain>
+void scalars(Stream& s, Domain& d, Counts& counts) {
+    s.number(d.width), s.number(d.height), s.number(d.quantum), s.number(d.texelSide);
+    s.number(d.linkShort), s.number(d.linkMax), s.number(d.materialCount), s.number(d.hasDetail);
+    for (int k = 0; k < 3; ++k)
+        s.number(d.origin[k]), s.number(d.boundsLow[k]), s.number(d.boundsHigh[k]);
+    s.number(counts.linkWords), s.number(counts.readers);
+    s.number(counts.vertices), s.number(counts.indices);
+    reportRecord(s, d.report);
+}
+
+template <typename Stream, typename Domain>
+void arrays(Stream& s, Domain& d) {
+    const auto all = [&](auto& array) {
+        for (auto& element : array) record(s, element);
+    };
+    all(d.texels), all(d.normals), all(d.areas), all(d.thickness), all(d.slowness);
+    all(d.triangleOf), all(d.tiles), all(d.links), all(d.readers), all(d.vertices);
+    all(d.indices);
+}
+
+[[noreturn]] void refuse(const char* what, uint64_t element, uint64_t value, uint64_t limit) {
+    core::fail(FW_ERROR_BAD_DATA, "%s %llu of the cooked mesh is %llu; it must be less than %llu.",
+               what, static_cast<unsigned long long>(element),
+               static_cast<unsigned long long>(value), static_cast<unsigned long long>(limit));
+}
+void require(bool holds, const char* what, uint64_t element) {
+    if (!holds)
+        core::fail(FW_ERROR_BAD_DATA, "%s (element %llu) of the cooked mesh is not consistent.",
+                   what, static_cast<unsigned long long>(element));
+}
+bool usable(float v) { return std::isfinite(v) && std::abs(v) < 1e7f; }
+
+// Every index in range and every promise of burn_domain.h that others rely on.
+void checkTexels(const BurnDomain& d) {
+    for (uint32_t i = 0; i < d.texelCount(); ++i) {
+        const uint32_t flags = d.texels[i].materialFlags;
+        require((flags & ~uint32_t(0xFF | kTexelReal | kTexelRim | kTexelForced)) == 0 &&
+                    ((flags & kTexelReal) != 0 || flags == 0),
+                "Flags of a texel", i);
+        if ((flags & 0xFF) >= d.materialCount)
+            refuse("Material of texel", i, flags & 0xFF, d.materialCount);
+        require((d.slowness[i] != 0) == d.real(i), "Slowness of a texel", i);
+        require(std::isfinite(d.areas[i]) && d.areas[i] >= 0, "Area of a texel", i);
+        if (d.real(i) ? d.triangleOf[i] >= d.indices.size() / 3 : d.triangleOf[i] != kNone)
+            refuse("Triangle of texel", i, d.triangleOf[i], d.indices.size() / 3);
+        if (!d.real(i) || (flags & kTexelRim)) continue;
+        const uint32_t x = i % d.width, y = i / d.width;
+        bool whole = x > 0 && y > 0 && x + 1 < d.width && y + 1 < d.height;
+        for (size_t k = 0; k < 8 && whole; ++k)
+            whole = d.real(uint32_t(int(i) + kRingY[k] * int(d.width) + kRingX[k]));
+        require(whole, "Ring of a texel without a link record", i);
+    }
+}
+
+void checkTiles(const BurnDomain& d) {
+    uint32_t records = 0, readers = 0;
+    for (uint32_t t = 0; t < d.tileCount(); ++t) {
+        const TileStatic& tile = d.tiles[t];
+        const uint64_t rim = uint64_t(tile.rimMaskHigh) << 32 | tile.rimMaskLow;
+        require(tile.rimBase == records, "First link record of a tile", t);
+        require(tile.readerStart == readers && tile.readerCount <= d.readers.size() - readers,
+                "Readers of a tile", t);
+        records += uint32_t(std::popcount(rim));
+        readers += tile.readerCount;
+        const uint32_t corner = t / d.tilesX * kTileSide * d.width + t % d.tilesX * kTileSide;
+        for (uint32_t lane = 0; lane < 64; ++lane) {
+            const uint32_t texel = corner + lane / kTileSide * d.width + lane % kTileSide;
+            const bool isRim = (d.texels[texel].materialFlags & kTexelRim) != 0;
+            require(isRim == ((rim >> lane & 1) != 0), "Rim mask of a tile", t);
+        }
+    }
+    require(uint64_t(records) * 8 == d.links.size(), "Number of link records", records);
+    require(readers == d.readers.size(), "Number of readers", readers);
+    for (size_t i = 0; i < d.readers.size(); ++i)
+        if (d.readers[i] >= d.tileCount()) refuse("Reader", i, d.readers[i], d.tileCount());
+    for (size_t i = 0; i < d.links.size(); ++i) {
+        if (d.links[i] == kNone) continue;
+        if (d.links[i] >= d.texelCount()) refuse("Link", i, d.links[i], d.texelCount());
+        require(d.real(d.links[i]), "Target of a link", i);
+    }
+}
+
+void checkDrawn(const BurnDomain& d) {
+    for (size_t i = 0; i < d.indices.size(); ++i)
+        if (d.indices[i] >= d.vertices.size()) refuse("Index", i, d.indices[i], d.vertices.size());
+    for (size_t i = 0; i < d.vertices.size(); ++i) {
+        const RenderVertex& v = d.vertices[i];
+        bool finite = true;
+        for (float c : v.position) finite &= usable(c);
+        for (float c : v.textureUv) finite &= usable(c);
+        for (float c : v.detail) finite &= usable(c);
+        finite &= v.atlasUv[0] >= 0 && v.atlasUv[0] <= float(d.width) && v.atlasUv[1] >= 0 &&
+                  v.atlasUv[1] <= float(d.height);
+        require(finite, "A vertex", i);
+        if (v.material >= d.materialCount)
+            refuse("Material of vertex", i, v.material, d.materialCount);
+    }
+}
+
+void checkScalars(const BurnDomain& d) {
+    for (uint32_t side : {d.width, d.height})
+        if (side < 8 || side > 4096 || side % 8 != 0)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The cooked mesh's atlas is %u x %u texels; sides must be multiples of 8 in "
+                       "[8, 4096].",
+                       d.width, d.height);
+    const auto size = [](float v) { return std::isfinite(v) && v > 0 && v < 1e7f; };
+    require(size(d.quantum) && size(d.texelSide) && size(d.linkShort), "Size of a texel", 0);
+    require(usable(d.linkMax) && d.linkMax >= 0 && d.linkMax <= 8191 * d.quantum, "Longest link",
+            0);
+    require(d.materialCount >= 1 && d.materialCount <= 8, "Number of materials", d.materialCount);
+    require(d.hasDetail <= 1, "Detail flag", d.hasDetail);
+    for (int k = 0; k < 3; ++k)
+        require(usable(d.origin[k]) && usable(d.boundsLow[k]) && usable(d.boundsHigh[k]) &&
+                    d.boundsLow[k] <= d.boundsHigh[k],
+                "Bounds", uint64_t(k));
+}
+
+uint64_t hashMore(uint64_t hash, const void* data, size_t bytes) {
+    const uint64_t size = bytes;
+    hash = hashBytes(std::as_bytes(std::span(&size, 1)), hash);
+    return hashBytes({static_cast<const std::byte*>(data), bytes}, hash);
+}
+
+}  // namespace
+
+uint64_t bakeKey(const BakeInput& input) noexcept {
+    uint64_t hash = core::kFnvOffset;
+    const auto add = [&](const auto& array) {
+        hash = hashMore(hash, array.data(), array.size_bytes());
+    };
+    const auto addValue = [&](auto value) { hash = hashMore(hash, &value, sizeof value); };
+    addValue(kBakeVersion);
+    add(input.positions), add(input.normals), add(input.uvs), add(input.details);
+    add(input.tints), add(input.indices), add(input.triangleMaterials);
+    addValue(input.texelsPerMetre), addValue(input.maxSide), addValue(input.noiseAmplitude);
+    addValue(input.noiseFeature), addValue(input.noiseSeed), addValue(uint8_t(input.trustUvs));
+    return hash;
+}
+
+std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
+                                        std::pmr::memory_resource* memory) {
+    std::pmr::vector<std::byte> out(memory);
+    out.reserve(kHeaderBytes + 512 + domain.texelCount() * kTexelBytes +
+                domain.tiles.size() * sizeof(TileStatic) + domain.links.size() * 4 +
+                domain.readers.size() * 4 + domain.vertices.size() * sizeof(RenderVertex) +
+                domain.indices.size() * 4);
+    out.resize(kHeaderBytes);
+    Writer writer(out);
+    Counts counts{uint32_t(domain.links.size()), uint32_t(domain.readers.size()),
+                  uint32_t(domain.vertices.size()), uint32_t(domain.indices.size())};
+    scalars(writer, domain, counts);
+    arrays(writer, domain);
+
+    std::pmr::vector<std::byte> header(memory);
+    header.reserve(kHeaderBytes);
+    Writer headerWriter(header);
+    headerWriter.number(kMagic);
+    headerWriter.number(kVersion);
+    headerWriter.number(key);
+    headerWriter.number(uint64_t(out.size() - kHeaderBytes));
+    headerWriter.number(hashBytes(std::span(out).subspan(kHeaderBytes)));
+    std::copy(header.begin(), header.end(), out.begin());
+    return out;
+}
+
+uint64_t cookedKey(std::span<const std::byte> bytes) {
+    if (bytes.size() < kHeaderBytes)
+        core::fail(FW_ERROR_BAD_DATA, "The cooked mesh has %zu bytes; its header alone has %zu.",
+                   bytes.size(), kHeaderBytes);
+    Reader header(bytes.first(kHeaderBytes));
+    uint32_t magic = 0, version = 0;
+    uint64_t key = 0;
+    header.number(magic);
+    header.number(version);
+    header.number(key);
+    if (magic != kMagic)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The cooked mesh begins with 0x%08X; 0x%08X (\"FWBD\") is expected.", magic,
+                   kMagic);
+    if (version != kVersion)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The cooked mesh has format version %u; this library reads version %u.", version,
+                   kVersion);
+    return key;
+}
+
+BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory) {
+    cookedKey(bytes);
+    Reader header(bytes.subspan(16));
+    uint64_t size = 0, checksum = 0;
+    header.number(size);
+    header.number(checksum);
+    const auto payload = bytes.subspan(kHeaderBytes);
+    if (size != payload.size())
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The cooked mesh has %zu bytes of payload; its header says "
+                   "%llu.",
+                   payload.size(), static_cast<unsigned long long>(size));
+    const uint64_t found = hashBytes(payload);
+    if (found != checksum)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The cooked mesh's checksum is 0x%016llX; its header says 0x%016llX.",
+                   static_cast<unsigned long long>(found),
+                   static_cast<unsigned long long>(checksum));
+
+    BurnDomain domain(memory);
+    Reader reader(payload);
+    Counts counts;
+    scalars(reader, domain, counts);
+    checkScalars(domain);
+    domain.tilesX = domain.width / kTileSide;
+    domain.tilesY = domain.height / kTileSide;
+    // Sizes before memory: what the arrays need must be exactly what is left.
+    const uint64_t texels = domain.texelCount();
+    const uint64_t expected = texels * kTexelBytes +
+                              uint64_t(domain.tileCount()) * sizeof(TileStatic) +
+                              (uint64_t(counts.linkWords) + counts.readers + counts.indices) * 4 +
+                              uint64_t(counts.vertices) * sizeof(RenderVertex);
+    if (expected != reader.left())
+        core::fail(FW_ERROR_BAD_DATA, "The cooked mesh's arrays need %llu bytes; it has %zu.",
+                   static_cast<unsigned long long>(expected), reader.left());
+    require(counts.linkWords % 8 == 0 && counts.indices % 3 == 0, "Number of links or indices", 0);
+    domain.texels.resize(texels);
+    domain.normals.resize(texels);
+    domain.areas.resize(texels);
+    domain.thickness.resize(texels);
+    domain.slowness.resize(texels);
+    domain.triangleOf.resize(texels);
+    domain.tiles.resize(domain.tileCount());
+    domain.links.resize(counts.linkWords);
+    domain.readers.resize(counts.readers);
+    domain.vertices.resize(counts.vertices);
+    domain.indices.resize(counts.indices);
+    arrays(reader, domain);
+    checkTexels(domain);
+    checkTiles(domain);
+    checkDrawn(domain);
+    buildTileBounds(domain);
+    return domain;
+}
+
+}  // namespace fw::mesh

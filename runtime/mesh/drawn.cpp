@@ -1,0 +1,108 @@
+// The drawn mesh: input corners with their place in the atlas, split where the atlas is cut.
+#include "mesh/texels.h"
+
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace fw::mesh {
+namespace {
+
+constexpr double kCreaseCosine = 0.5;  // 60 degrees
+
+uint32_t rootOf(std::pmr::vector<uint32_t>& parent, uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+// Normal of every corner: shared over edges that bend less than the crease angle.
+void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normals,
+                    std::pmr::memory_resource* memory) {
+    const auto& triangles = surface.triangles;
+    std::pmr::vector<uint32_t> parent(triangles.size() * 3, memory);
+    std::iota(parent.begin(), parent.end(), 0u);
+    for (uint32_t i = 0; i < triangles.size(); ++i)
+        for (uint32_t e = 0; e < 3; ++e) {
+            const uint32_t n = triangles[i].neighbour[e];
+            if (n == kNone || n < i) continue;
+            if (glm::dot(triangles[i].normal, triangles[n].normal) < kCreaseCosine) continue;
+            for (uint32_t corner : {e, (e + 1) % 3})
+                for (uint32_t other = 0; other < 3; ++other)
+                    if (triangles[n].point[other] == triangles[i].point[corner])
+                        parent[rootOf(parent, i * 3 + corner)] = rootOf(parent, n * 3 + other);
+        }
+    normals.assign(parent.size(), glm::dvec3(0));
+    for (uint32_t i = 0; i < triangles.size(); ++i)
+        for (uint32_t k = 0; k < 3; ++k) {  // weighted by sine of the corner over its edge lengths
+            const Triangle& t = triangles[i];
+            const glm::dvec3 a = t.position[(k + 1) % 3] - t.position[k];
+            const glm::dvec3 b = t.position[(k + 2) % 3] - t.position[k];
+            const double scale = std::max(1e-300, glm::dot(a, a) * glm::dot(b, b));
+            normals[rootOf(parent, i * 3 + k)] += t.normal * (2 * t.area / scale);
+        }
+    for (uint32_t i = 0; i < normals.size(); ++i) {
+        const glm::dvec3 sum = normals[rootOf(parent, i)];
+        if (rootOf(parent, i) != i) normals[i] = sum;
+    }
+    for (uint32_t i = 0; i < normals.size(); ++i) {
+        const double length = glm::length(normals[i]);
+        normals[i] = length > 1e-300 ? normals[i] / length : triangles[i / 3].normal;
+    }
+}
+
+}  // namespace
+
+uint32_t packNormal(glm::dvec3 normal) {
+    const auto field = [](double v, int limit) {
+        return uint32_t(std::clamp(int(std::floor(v * (limit + 1) + 0.5)), -limit, limit));
+    };
+    return (field(normal.x, 1023) & 0x7FFu) | (field(normal.y, 1023) & 0x7FFu) << 11 |
+           (field(normal.z, 511) & 0x3FFu) << 22;
+}
+
+void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& domain,
+                std::pmr::memory_resource* memory) {
+    std::pmr::vector<glm::dvec3> computed(memory);
+    if (input.normals.empty()) computeNormals(surface, computed, memory);
+    // Every input vertex keeps a chain of the corners made of it.
+    std::pmr::vector<uint32_t> first(input.positions.size() / 3, kNone, memory), next(memory);
+    domain.indices.reserve(surface.triangles.size() * 3);
+    for (uint32_t i = 0; i < surface.triangles.size(); ++i) {
+        const Triangle& t = surface.triangles[i];
+        for (uint32_t k = 0; k < 3; ++k) {
+            const size_t source = t.corner[k];
+            RenderVertex v;
+            glm::dvec3 normal = t.normal;
+            if (!input.normals.empty()) {
+                const glm::dvec3 given(input.normals[source * 3], input.normals[source * 3 + 1],
+                                       input.normals[source * 3 + 2]);
+                const double length = glm::length(given);
+                if (length > 1e-12) normal = given / length;
+            } else {
+                normal = computed[i * 3 + k];
+            }
+            v.normal = packNormal(normal);
+            for (size_t c = 0; c < 3; ++c) v.position[c] = input.positions[source * 3 + c];
+            for (int c = 0; c < 2; ++c) v.atlasUv[c] = float(t.uv[k][c]);
+            for (size_t c = 0; c < 2; ++c) {
+                if (!input.uvs.empty()) v.textureUv[c] = input.uvs[source * 2 + c];
+                if (!input.details.empty()) v.detail[c] = input.details[source * 2 + c];
+            }
+            if (!input.tints.empty()) v.tint = input.tints[source];
+            v.material = t.material;
+            uint32_t same = first[source];
+            while (same != kNone && std::memcmp(&domain.vertices[same], &v, sizeof v) != 0)
+                same = next[same];
+            if (same == kNone) {
+                same = uint32_t(domain.vertices.size());
+                domain.vertices.push_back(v);
+                next.push_back(first[source]);
+                first[source] = same;
+            }
+            domain.indices.push_back(same);
+        }
+    }
+    domain.hasDetail = !input.details.empty();
+}
+
+}  // namespace fw::mesh

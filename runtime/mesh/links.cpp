@@ -1,0 +1,361 @@
+// Ring links: whom a texel reads where the atlas is cut. Found by walking over the surface from the
+// texel by one texel step; never by trusting what happens to lie beside it in the image.
+#include "mesh/texels.h"
+
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+constexpr int kWalkSteps = 200;       // triangles crossed by one walk, at most
+constexpr int kReaches = 3;           // a chart too small to own a texel is stepped over
+constexpr int kSearch = 3;            // texels around a landing place that owns none
+constexpr double kStepLimit = 3;      // texel sides: a longer Jacobian step is cut
+constexpr double kFoldedSlack = 1.5;  // texel sides: a link longer than 2 steps + this is refused
+
+struct Walk {
+    uint32_t triangle;
+    glm::dvec3 weights;
+    bool landed = false, open = false;
+};
+
+glm::dvec3 unitOr0(glm::dvec3 v) {
+    const double l = glm::length(v);
+    return l > 0 ? v / l : glm::dvec3(0);
+}
+
+// From a point of a triangle along a step in its plane (m), unfolding at every edge by in-plane
+// direction: winding does not matter.
+Walk walkSurface(const Surface& surface, uint32_t triangle, glm::dvec3 weights, glm::dvec3 step) {
+    Walk walk{triangle, weights};
+    glm::dvec3& w = walk.weights;
+    int entry = -1;
+    for (int crossing = 0; crossing < kWalkSteps; ++crossing) {
+        const Triangle& t = surface.triangles[walk.triangle];
+        const glm::dvec3 normal =
+            glm::cross(t.position[1] - t.position[0], t.position[2] - t.position[0]);
+        const double square = glm::dot(normal, normal);
+        double change[3], until = 1;
+        int exit = -1;  // the corner opposite the edge through which we leave
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 edge = t.position[(k + 2) % 3] - t.position[(k + 1) % 3];
+            change[k] = glm::dot(glm::cross(normal, edge), step) / square;
+            if (!(change[k] < -1e-15) || (k + 1) % 3 == entry) continue;
+            const double when = std::max(0.0, -w[k] / change[k]);
+            if (when >= until) continue;
+            until = when;
+            exit = k;
+        }
+        for (int k = 0; k < 3; ++k) w[k] += change[k] * until;
+        if (exit < 0) {
+            w = glm::max(w, glm::dvec3(0));
+            w /= w.x + w.y + w.z;
+            walk.landed = true;
+            return walk;
+        }
+        const int e = (exit + 1) % 3, a = e, b = (e + 1) % 3;
+        step *= 1 - until;
+        if (t.neighbour[e] == kNone) {
+            walk.open = true;
+            return walk;
+        }
+        const double along = std::clamp(w[b] / std::max(1e-30, w[a] + w[b]), 0.0, 1.0);
+        const Triangle& other = surface.triangles[t.neighbour[e]];
+        const int f = t.neighbourEdge[e];
+        int fa = f, fb = (f + 1) % 3;
+        if (other.point[fa] != t.point[a]) std::swap(fa, fb);
+        const glm::dvec3 edge = unitOr0(t.position[b] - t.position[a]);
+        glm::dvec3 outward = t.position[exit] - t.position[a];
+        outward = -unitOr0(outward - edge * glm::dot(outward, edge));
+        glm::dvec3 inward = other.position[3 - fa - fb] - other.position[fa];
+        inward = unitOr0(inward - edge * glm::dot(inward, edge));
+        step = edge * glm::dot(step, edge) + inward * std::max(0.0, glm::dot(step, outward));
+        w = glm::dvec3(0);
+        w[fa] = 1 - along;
+        w[fb] = along;
+        walk.triangle = t.neighbour[e];
+        entry = f;
+    }
+    return walk;
+}
+
+// Chart borders in the atlas, listed by the texels they pass.
+class Borders {
+ public:
+    Borders(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory)
+        : grid_(grid), pieces_(memory), near_(grid.count(), 0, memory) {
+        for (const Triangle& t : surface.triangles)
+            for (int e = 0; e < 3; ++e)
+                if (t.neighbour[e] == kNone || t.seam[e]) add(t.uv[e], t.uv[(e + 1) % 3]);
+        std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
+            return a.texel != b.texel ? a.texel < b.texel : a.order < b.order;
+        });
+        for (const Piece& piece : pieces_) {
+            const int x = int(piece.texel % grid.width), y = int(piece.texel / grid.width);
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx)
+                    if (grid.inside(x + dx, y + dy)) near_[grid.at(x + dx, y + dy)] = 1;
+        }
+    }
+
+    [[nodiscard]] bool near(uint32_t texel) const { return near_[texel] != 0; }
+
+    // Does the segment between two texel centres (neighbours) cross a border?
+    [[nodiscard]] bool between(uint32_t i, uint32_t j) const {
+        const glm::dvec2 p(i % grid_.width + 0.5, i / grid_.width + 0.5);
+        const glm::dvec2 q(j % grid_.width + 0.5, j / grid_.width + 0.5);
+        const int x0 = int(std::min(p.x, q.x)), x1 = int(std::max(p.x, q.x));
+        const int y0 = int(std::min(p.y, q.y)), y1 = int(std::max(p.y, q.y));
+        for (int y = y0; y <= y1; ++y)
+            for (int x = x0; x <= x1; ++x)
+                if (crossedIn(grid_.at(x, y), p, q)) return true;
+        return false;
+    }
+
+ private:
+    struct Piece {
+        uint32_t texel, order;
+        glm::dvec2 a, b;
+    };
+
+    void add(glm::dvec2 a, glm::dvec2 b) {
+        const int samples = 2 + int(4 * glm::length(b - a));
+        uint32_t last = kNone;
+        for (int k = 0; k <= samples; ++k) {
+            const glm::dvec2 p = a + (b - a) * (double(k) / samples);
+            if (!grid_.inside(int(std::floor(p.x)), int(std::floor(p.y)))) continue;
+            const uint32_t texel = grid_.at(int(p.x), int(p.y));
+            if (texel != last) pieces_.push_back({texel, uint32_t(pieces_.size()), a, b});
+            last = texel;
+        }
+    }
+
+    [[nodiscard]] bool crossedIn(uint32_t texel, glm::dvec2 p, glm::dvec2 q) const {
+        auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), texel,
+                                      [](const Piece& a, uint32_t b) { return a.texel < b; });
+        for (; piece != pieces_.end() && piece->texel == texel; ++piece) {
+            const double a = cross2(q - p, piece->a - p), b = cross2(q - p, piece->b - p);
+            const glm::dvec2 d = piece->b - piece->a;
+            const double c = cross2(d, p - piece->a), e = cross2(d, q - piece->a);
+            if (((a > 0) != (b > 0)) && ((c > 0) != (e > 0))) return true;
+        }
+        return false;
+    }
+
+    const TexelGrid& grid_;
+    std::pmr::vector<Piece> pieces_;
+    std::pmr::vector<uint8_t> near_;
+};
+
+class Linker {
+ public:
+    Linker(const Surface& surface, TexelGrid& grid, BakeReport& report,
+           std::pmr::memory_resource* memory)
+        : surface_(surface),
+          grid_(grid),
+          report_(report),
+          borders_(surface, grid, memory),
+          memory_(memory) {}
+
+    void run() {
+        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
+            if (grid_.real(texel)) linkOne(texel);
+        dropDeaf();
+        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
+            if (grid_.real(texel) && grid_.linkRecord[texel] != kNone) answerReaders(texel);
+        measure();
+    }
+
+ private:
+    // One texel step in ring direction k, in metres on the texel's own triangle.
+    [[nodiscard]] glm::dvec3 stepOf(uint32_t texel, size_t k) const {
+        const Triangle& t = surface_.triangles[grid_.owner[texel]];
+        const TexelShape& shape = grid_.shapes[grid_.owner[texel]];
+        glm::dvec3 step;
+        if (!shape.usable) {  // no Jacobian: an even step
+            const glm::dvec3 u = unitOr0(t.position[1] - t.position[0]);
+            step =
+                (u * double(kRingX[k]) + glm::cross(t.normal, u) * double(kRingY[k])) * grid_.side;
+        } else {  // to the neighbour's centre, also from a forced texel's point off its own
+            const glm::dvec2 target(int(texel % grid_.width) + kRingX[k] + 0.5,
+                                    int(texel / grid_.width) + kRingY[k] + 0.5);
+            const glm::dvec2 offset = target - uvAt(t, grid_.weightsOf(texel));
+            step = shape.alongU * offset.x + shape.alongV * offset.y;
+        }
+        return step;
+    }
+    [[nodiscard]] glm::dvec3 cut(glm::dvec3 step) const {
+        const double length = glm::length(step), limit = kStepLimit * grid_.side;
+        return length > limit ? step * (limit / length) : step;
+    }
+
+    [[nodiscard]] bool plain(uint32_t i, uint32_t j, size_t k) const {
+        if (j == kNone || !grid_.real(j) || grid_.chart[j] != grid_.chart[i]) return false;
+        if ((grid_.flags[i] | grid_.flags[j]) & kTexelForced) return false;
+        if (borders_.near(i) && borders_.between(i, j)) return false;
+        // Sheets of a folded chart lie side by side in the image and far apart in space.
+        const double reach =
+            std::max(glm::length(stepOf(i, k)), glm::length(stepOf(j, (k + 4) & 7)));
+        return grid_.distance(i, j) <= 2 * reach + kFoldedSlack * grid_.side;
+    }
+
+    void linkOne(uint32_t texel) {
+        const int x = int(texel % grid_.width), y = int(texel / grid_.width);
+        uint32_t ring[8];
+        bool rim = false;
+        for (size_t k = 0; k < 8; ++k) {
+            const int nx = x + kRingX[k], ny = y + kRingY[k];
+            ring[k] = grid_.inside(nx, ny) ? grid_.at(nx, ny) : kNone;
+            if (plain(texel, ring[k], k)) continue;
+            rim = true;
+            ring[k] = across(texel, k);
+        }
+        if (!rim) return;
+        grid_.linkRecord[texel] = uint32_t(grid_.links.size() / 8);
+        grid_.flags[texel] |= kTexelRim;
+        grid_.links.insert(grid_.links.end(), ring, ring + 8);
+    }
+
+    // The texel one step away over the surface, or kNone.
+    uint32_t across(uint32_t texel, size_t k) {
+        const glm::dvec3 step = cut(stepOf(texel, k));
+        bool open = false;
+        for (int reach = 1; reach <= kReaches; ++reach) {
+            const Walk walk = walkSurface(surface_, grid_.owner[texel], grid_.weightsOf(texel),
+                                          step * double(reach));
+            open |= walk.open;
+            if (!walk.landed) break;
+            const uint32_t found = landing(walk, texel);
+            if (found == texel) break;
+            if (found == kNone) continue;
+            const double limit = 2 * reach * glm::length(step) + kFoldedSlack * grid_.side;
+            if (grid_.distance(texel, found) > limit) break;
+            return found;
+        }
+        ++(open ? report_.linksOpen : report_.linksLost);
+        return kNone;
+    }
+
+    // The real texel of the landing chart at, or nearest in space to, the landing point.
+    [[nodiscard]] uint32_t landing(const Walk& walk, uint32_t self) const {
+        const Triangle& t = surface_.triangles[walk.triangle];
+        const glm::dvec2 uv = uvAt(t, walk.weights);
+        const int x = int(std::floor(uv.x)), y = int(std::floor(uv.y));
+        if (grid_.inside(x, y)) {
+            const uint32_t texel = grid_.at(x, y);
+            if (grid_.real(texel) && grid_.chart[texel] == t.chart) return texel;
+        }
+        const glm::dvec3 point = positionAt(t, walk.weights) - surface_.low;
+        uint32_t best = kNone;
+        double nearest = 36 * grid_.side * grid_.side;
+        for (int r = 1; r <= kSearch && best == kNone; ++r)
+            for (int dy = -r; dy <= r; ++dy)
+                for (int dx = -r; dx <= r; ++dx) {
+                    if (!grid_.inside(x + dx, y + dy)) continue;
+                    const uint32_t texel = grid_.at(x + dx, y + dy);
+                    if (texel == self || !grid_.real(texel) || grid_.chart[texel] != t.chart)
+                        continue;
+                    const glm::dvec3 d = glm::dvec3(grid_.position[texel]) - point;
+                    if (glm::dot(d, d) >= nearest) continue;
+                    nearest = glm::dot(d, d);
+                    best = texel;
+                }
+        return best;
+    }
+
+    // A forced texel that reads nobody could never burn: it leaves, its area goes to a neighbour.
+    // One that is alone on its piece of the surface (a leaf) stays: other objects may light it.
+    void dropDeaf() {
+        AreaHeir heir(surface_, grid_, memory_);
+        std::pmr::vector<uint32_t> dropped(memory_);
+        bool again = true;
+        while (again) {
+            again = false;
+            for (uint32_t i = 0; i < grid_.count(); ++i) {
+                if (!grid_.real(i) || !(grid_.flags[i] & kTexelForced)) continue;
+                bool hears = false;
+                for (int k = 0; k < 8; ++k) {
+                    const uint32_t j = grid_.ring(i, k);
+                    hears |= j != kNone && grid_.real(j);
+                }
+                if (hears) continue;
+                const uint16_t flags = grid_.flags[i];
+                grid_.flags[i] = 0;
+                const uint32_t to = heir.onSurface(grid_.owner[i]);
+                if (to == kNone) {
+                    grid_.flags[i] = flags;
+                    continue;
+                }
+                grid_.area[to] += grid_.area[i];
+                grid_.area[i] = 0;
+                grid_.owner[i] = grid_.chart[i] = kNone;
+                again = true;
+            }
+        }
+        for (uint32_t& link : grid_.links)
+            if (link != kNone && !grid_.real(link)) link = kNone;
+    }
+
+    // i reads j and j, a rim texel, does not read i: use a spare slot of j, beside the ring
+    // neighbour that lies nearest to i.
+    void answerReaders(uint32_t i) {
+        for (int k = 0; k < 8; ++k) {
+            const uint32_t j = grid_.ring(i, k);
+            if (j == kNone || grid_.linkRecord[j] == kNone) continue;
+            uint32_t* ring = &grid_.links[size_t(grid_.linkRecord[j]) * 8];
+            if (std::find(ring, ring + 8, i) != ring + 8) continue;
+            int slot = -1;
+            double nearest = 2 * grid_.side;
+            for (int q = 0; q < 8; ++q) {
+                const bool spare = ring[q] == kNone || std::count(ring, ring + 8, ring[q]) > 1;
+                for (int beside : {1, 7}) {
+                    const uint32_t neighbour = ring[(q + beside) & 7];
+                    if (!spare || neighbour == kNone) continue;
+                    const double distance = grid_.distance(neighbour, i);
+                    if (distance >= nearest) continue;
+                    nearest = distance;
+                    slot = q;
+                }
+            }
+            if (slot >= 0) ring[slot] = i;
+        }
+    }
+
+    void measure() {
+        std::pmr::vector<uint8_t> heard(grid_.count(), 0, memory_);
+        double shortest = 1e300, longest = 0;
+        for (uint32_t i = 0; i < grid_.count(); ++i) {
+            if (!grid_.real(i)) continue;
+            ++report_.realTexels;
+            report_.forcedTexels += (grid_.flags[i] & kTexelForced) != 0;
+            report_.rimTexels += (grid_.flags[i] & kTexelRim) != 0;
+            for (int k = 0; k < 8; ++k) {
+                const uint32_t j = grid_.ring(i, k);
+                if (j == kNone) continue;
+                heard[j] = 1;
+                shortest = std::min(shortest, grid_.distance(i, j));
+                longest = std::max(longest, grid_.distance(i, j));
+            }
+        }
+        for (uint32_t i = 0; i < grid_.count(); ++i)
+            report_.readerless += grid_.real(i) && !heard[i];
+        grid_.linkMax = longest;
+        report_.linkMin = longest > 0 ? shortest / grid_.side : 0;
+        report_.linkMax = longest / grid_.side;
+    }
+
+    const Surface& surface_;
+    TexelGrid& grid_;
+    BakeReport& report_;
+    Borders borders_;
+    std::pmr::memory_resource* memory_;
+};
+
+}  // namespace
+
+void linkTexels(const Surface& surface, TexelGrid& grid, BakeReport& report,
+                std::pmr::memory_resource* memory) {
+    Linker(surface, grid, report, memory).run();
+}
+
+}  // namespace fw::mesh

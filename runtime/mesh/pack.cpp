@@ -1,0 +1,227 @@
+// Packs charts of any outline: each falls onto the skyline of those before it, tallest first.
+#include "core/error.h"
+#include "mesh/atlas.h"
+
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+constexpr int kEmpty = 0x3FFFFFFF;
+constexpr int kTurns = 16;  // orientations tried per chart, over a quarter turn
+
+struct Piece {
+    glm::dvec2 size{0};  // m
+    uint32_t chart = 0;
+    uint32_t columns = 0;   // texels, with one free texel around
+    uint32_t profile = 0;   // into bottoms and tops
+    int height = 0;         // texels, likewise
+    uint32_t x = 0, y = 0;  // placed here
+};
+
+// Turns a chart so that its box is smallest and upright, and moves it to the origin.
+Piece layPiece(Surface& surface, std::span<const uint32_t> members, uint32_t chart) {
+    glm::dvec2 bestCosSin(1, 0);
+    double bestArea = 1e300;
+    for (int turn = 0; turn < kTurns; ++turn) {
+        const double s = double(turn) / kTurns;  // tangent of the half angle: no libm needed
+        const glm::dvec2 cs((1 - s * s) / (1 + s * s), 2 * s / (1 + s * s));
+        glm::dvec2 low(1e300), high(-1e300);
+        for (uint32_t i : members)
+            for (const glm::dvec2& u : surface.triangles[i].uv) {
+                const glm::dvec2 p(u.x * cs.x - u.y * cs.y, u.x * cs.y + u.y * cs.x);
+                low = glm::min(low, p);
+                high = glm::max(high, p);
+            }
+        const double area = (high.x - low.x) * (high.y - low.y);
+        if (area >= bestArea * (1 - 1e-9)) continue;
+        bestArea = area;
+        bestCosSin = cs;
+        if (high.x - low.x > high.y - low.y) bestCosSin = {-cs.y, cs.x};  // a quarter turn more
+    }
+    glm::dvec2 low(1e300), high(-1e300);
+    for (uint32_t i : members)
+        for (glm::dvec2& u : surface.triangles[i].uv) {
+            u = {u.x * bestCosSin.x - u.y * bestCosSin.y, u.x * bestCosSin.y + u.y * bestCosSin.x};
+            low = glm::min(low, u);
+            high = glm::max(high, u);
+        }
+    for (uint32_t i : members)
+        for (glm::dvec2& u : surface.triangles[i].uv) u -= low;
+    Piece piece;
+    piece.chart = chart;
+    piece.size = high - low;
+    return piece;
+}
+
+class Packer {
+ public:
+    Packer(Surface& surface, uint32_t charts, std::pmr::memory_resource* memory)
+        : surface_(surface),
+          groups_(groupByChart(surface, charts, memory)),
+          pieces_(memory),
+          bottoms_(memory),
+          tops_(memory),
+          plainBottoms_(memory),
+          plainTops_(memory),
+          skyline_(memory) {
+        for (uint32_t c = 0; c < charts; ++c)
+            if (!groups_.of(c).empty()) pieces_.push_back(layPiece(surface, groups_.of(c), c));
+        std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
+            return a.size.y != b.size.y ? a.size.y > b.size.y : a.chart < b.chart;
+        });
+    }
+
+    [[nodiscard]] size_t pieces() const { return pieces_.size(); }
+
+    // Column outlines of all charts at this density. Returns the texels they take, borders
+    // included.
+    double outline(double density) {
+        bottoms_.clear();
+        tops_.clear();
+        double cells = 0;
+        widest_ = tallest_ = 0;
+        for (Piece& piece : pieces_) {
+            const uint32_t inner = uint32_t(piece.size.x * density) + 1;
+            plainBottoms_.assign(inner, kEmpty);
+            plainTops_.assign(inner, -kEmpty);
+            for (uint32_t i : groups_.of(piece.chart))
+                for (int e = 0; e < 3; ++e)
+                    traceEdge(surface_.triangles[i].uv[e] * density,
+                              surface_.triangles[i].uv[(e + 1) % 3] * density);
+            piece.columns = inner + 2;
+            piece.profile = uint32_t(bottoms_.size());
+            piece.height = 0;
+            for (int c = -1; c <= int(inner); ++c) {  // one texel wider all around; origin at 1, 1
+                int bottom = kEmpty, top = -kEmpty;
+                for (int n = std::max(0, c - 1); n <= std::min(int(inner) - 1, c + 1); ++n) {
+                    bottom = std::min(bottom, plainBottoms_[size_t(n)]);
+                    top = std::max(top, plainTops_[size_t(n)] + 2);
+                }
+                bottoms_.push_back(bottom);
+                tops_.push_back(top);
+                piece.height = std::max(piece.height, top + 1);
+                if (top >= bottom) cells += top - bottom + 1;
+            }
+            widest_ = std::max(widest_, piece.columns);
+            tallest_ = std::max(tallest_, uint32_t(piece.height));
+        }
+        return cells;
+    }
+
+    [[nodiscard]] double longest() const {  // m; pieces stand upright
+        return pieces_.empty() ? 0 : pieces_.front().size.y;
+    }
+    [[nodiscard]] uint32_t widest() const { return widest_ + 2; }
+    [[nodiscard]] uint32_t tallest() const { return tallest_ + 2; }
+
+    // Drops all pieces into a strip of this width. Returns its height, or 0 beyond `limit`.
+    uint32_t drop(uint32_t width, uint32_t limit) {
+        skyline_.assign(width, 1);
+        int used = 0;
+        for (Piece& piece : pieces_) {
+            const int* bottoms = &bottoms_[piece.profile];
+            const int* tops = &tops_[piece.profile];
+            const int columns = int(piece.columns);
+            int bestY = kEmpty, bestX = -1;
+            int64_t bestWaste = 0;
+            for (int x = 1; x + columns < int(width); ++x) {
+                int y = 1;
+                for (int c = 0; c < columns && y <= bestY; ++c)
+                    y = std::max(y, skyline_[size_t(x + c)] - bottoms[c]);
+                if (y > bestY) continue;
+                int64_t waste = 0;
+                for (int c = 0; c < columns; ++c)
+                    if (tops[c] >= bottoms[c]) waste += y + bottoms[c] - skyline_[size_t(x + c)];
+                if (y == bestY && waste >= bestWaste) continue;
+                bestY = y;
+                bestX = x;
+                bestWaste = waste;
+            }
+            if (bestX < 0 || uint32_t(bestY + piece.height) + 1 > limit) return 0;
+            piece.x = uint32_t(bestX);
+            piece.y = uint32_t(bestY);
+            for (int c = 0; c < columns; ++c)
+                if (tops[c] >= bottoms[c]) skyline_[size_t(bestX + c)] = bestY + tops[c] + 1;
+            used = std::max(used, bestY + piece.height + 1);
+        }
+        return uint32_t(used);
+    }
+
+    void commit(double density) {
+        for (const Piece& piece : pieces_)
+            for (uint32_t i : groups_.of(piece.chart))
+                for (glm::dvec2& u : surface_.triangles[i].uv)
+                    u = u * density + glm::dvec2(piece.x + 1, piece.y + 1);
+    }
+
+ private:
+    // Widens the plain outline by the texels that the segment a-b touches.
+    void traceEdge(glm::dvec2 a, glm::dvec2 b) {
+        if (a.x > b.x) std::swap(a, b);
+        const int last = int(plainBottoms_.size()) - 1;
+        const int c0 = std::clamp(int(std::floor(a.x)), 0, last);
+        const int c1 = std::clamp(int(std::floor(b.x)), 0, last);
+        const double slope = b.x > a.x ? (b.y - a.y) / (b.x - a.x) : 0;
+        for (int c = c0; c <= c1; ++c) {
+            const double enter = c == c0 ? a.y : a.y + (c - a.x) * slope;
+            const double leave = c == c1 ? b.y : a.y + (c + 1 - a.x) * slope;
+            int& bottom = plainBottoms_[size_t(c)];
+            int& top = plainTops_[size_t(c)];
+            bottom = std::min(bottom, int(std::floor(std::max(0.0, std::min(enter, leave)))));
+            top = std::max(top, int(std::floor(std::max(0.0, std::max(enter, leave)))));
+        }
+    }
+
+    Surface& surface_;
+    Groups groups_;
+    std::pmr::vector<Piece> pieces_;
+    std::pmr::vector<int> bottoms_, tops_, plainBottoms_, plainTops_, skyline_;
+    uint32_t widest_ = 0, tallest_ = 0;
+};
+
+uint32_t roundUp8(uint32_t texels) { return (texels + 7) & ~7u; }
+
+}  // namespace
+
+AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t maxSide,
+                     std::pmr::memory_resource* memory) {
+    Packer packer(surface, charts, memory);
+    const uint32_t side = maxSide & ~7u;
+    const double room = double(side) * side;
+    // Nine texels is the least a chart takes: one and its border.
+    const double least = 9.0 * double(packer.pieces());
+    // An upper bound first, so that absurd sizes cost no memory.
+    density = std::min({density, double(side) / std::sqrt(surface.area),
+                        (double(side) - 4) / std::max(packer.longest(), 1e-9)});
+    for (int attempt = 0; attempt < 400 && least <= room; ++attempt) {
+        const double cells = packer.outline(density);
+        if (packer.widest() <= side && packer.tallest() <= side && cells <= room) {
+            const double square = std::sqrt(cells * 1.12) + 4;
+            const uint32_t width = std::min(
+                side, std::max({roundUp8(packer.widest()), roundUp8(uint32_t(square)), 8u}));
+            for (uint32_t w : {width, side}) {
+                const uint32_t height = packer.drop(w, side);
+                if (height == 0) continue;
+                packer.commit(density);
+                AtlasPlan plan;
+                plan.width = w;
+                plan.height = roundUp8(height);
+                plan.density = density;
+                return plan;
+            }
+        }
+        const double over = std::max(
+            {cells / room, double(packer.widest()) / side, double(packer.tallest()) / side});
+        if (over > 1.05)
+            density /= std::sqrt(over);
+        else
+            density *= attempt < 40 ? 0.975 : 0.85;
+        if (cells < least * 1.05 && attempt > 60) break;
+    }
+    core::fail(FW_ERROR_INVALID_ARGUMENT,
+               "The mesh falls into %zu charts; an atlas of %u x %u texels has no room for them.",
+               packer.pieces(), side, side);
+}
+
+}  // namespace fw::mesh

@@ -1,0 +1,92 @@
+// Texels near a point. Integers after the point is brought to position units, so that every
+// machine picks the same texels. Nothing is built: tiles are skipped by their bounds.
+#include "mesh/texels.h"
+
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+struct Units {  // int64: 2^20 units away is far outside any mesh, squares fit easily
+    int64_t at[3];
+};
+
+int64_t toUnits(double metres, double quantum) {
+    return int64_t(std::floor(std::clamp(metres / quantum, -1048576.0, 1048576.0) + 0.5));
+}
+Units unitsOf(const BurnDomain& domain, const float point[3]) {
+    Units units{};
+    for (int k = 0; k < 3; ++k) {
+        const double d = double(point[k]) - double(domain.origin[k]);
+        units.at[k] = std::isfinite(d) ? toUnits(d, double(domain.quantum)) : 1048576;
+    }
+    return units;
+}
+int64_t squareTo(const TexelPosition& p, const Units& u) {
+    const int64_t x = p.x - u.at[0], y = p.y - u.at[1], z = p.z - u.at[2];
+    return x * x + y * y + z * z;
+}
+int64_t squareTo(const TileBounds& b, const Units& u) {
+    int64_t sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int64_t d = std::max({b.low[k] - u.at[k], u.at[k] - b.high[k], int64_t(0)});
+        sum += d * d;
+    }
+    return sum;
+}
+
+// Calls visit(texel, square) for the real texels within a square distance that may shrink.
+template <typename Visit>
+void visitWithin(const BurnDomain& domain, const Units& point, const int64_t& limit, Visit visit) {
+    for (uint32_t t = 0; t < domain.tileCount(); ++t) {
+        const TileBounds& bounds = domain.tileBounds[t];
+        if (bounds.low[0] > bounds.high[0] || squareTo(bounds, point) > limit) continue;
+        const uint32_t corner =
+            t / domain.tilesX * kTileSide * domain.width + t % domain.tilesX * kTileSide;
+        for (uint32_t lane = 0; lane < kTileSide * kTileSide; ++lane) {
+            const uint32_t texel = corner + lane / kTileSide * domain.width + lane % kTileSide;
+            if (!domain.real(texel)) continue;
+            const int64_t square = squareTo(domain.texels[texel], point);
+            if (square <= limit) visit(texel, square);
+        }
+    }
+}
+
+uint32_t nearestWithin(const BurnDomain& domain, const Units& point, int64_t limit) {
+    uint32_t best = kNone;
+    visitWithin(domain, point, limit, [&](uint32_t texel, int64_t square) {
+        if (best != kNone && square == limit && texel > best) return;
+        best = texel;
+        limit = square;
+    });
+    return best;
+}
+
+int64_t squareOf(const BurnDomain& domain, float metres) {
+    if (!(metres >= 0)) return 0;  // also NaN
+    const int64_t units = toUnits(double(metres), double(domain.quantum));
+    return units * units;
+}
+
+}  // namespace
+
+uint32_t nearestTexel(const BurnDomain& domain, const float point[3], float maxDistance) {
+    // Half a unit of rounding on each side must not lose a texel that is just in reach.
+    const int64_t reach = squareOf(domain, maxDistance);
+    return nearestWithin(domain, unitsOf(domain, point), reach + 2);
+}
+
+void texelsNear(const BurnDomain& domain, const float point[3], float radius,
+                std::pmr::vector<uint32_t>& out) {
+    out.clear();
+    const uint32_t centre =
+        nearestWithin(domain, unitsOf(domain, point), std::numeric_limits<int64_t>::max());
+    if (centre == kNone) return;
+    const TexelPosition& p = domain.texels[centre];
+    const int64_t limit = squareOf(domain, radius);
+    visitWithin(domain, {{p.x, p.y, p.z}}, limit,
+                [&](uint32_t texel, int64_t) { out.push_back(texel); });
+    std::sort(out.begin(), out.end());
+}
+
+}  // namespace fw::mesh

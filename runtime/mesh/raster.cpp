@@ -1,0 +1,265 @@
+// Texels from triangles: a texel is owned by the triangle that holds its centre; parts too thin
+// for a centre are forced; area is exact by clipping, whoever owns the texel.
+#include "mesh/texels.h"
+
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+struct Part {  // a piece of a triangle in a texel that its chart does not own
+    uint32_t texel, triangle;
+    double area;  // m^2
+};
+
+struct Box {
+    int x0, y0, x1, y1;
+};
+Box boxOf(const Triangle& t, const TexelGrid& grid) {
+    const glm::dvec2 low = glm::min(t.uv[0], glm::min(t.uv[1], t.uv[2]));
+    const glm::dvec2 high = glm::max(t.uv[0], glm::max(t.uv[1], t.uv[2]));
+    return {std::max(0, int(std::floor(low.x))), std::max(0, int(std::floor(low.y))),
+            std::min(int(grid.width) - 1, int(std::floor(high.x))),
+            std::min(int(grid.height) - 1, int(std::floor(high.y)))};
+}
+
+// Area in texels^2 of a triangle within the texel at x, y.
+double clippedArea(const Triangle& t, int x, int y) {
+    glm::dvec2 from[12], to[12];
+    int count = 3;
+    for (int k = 0; k < 3; ++k) from[k] = t.uv[k] - glm::dvec2(x, y);
+    for (int edge = 0; edge < 4 && count > 0; ++edge) {
+        const auto inside = [edge](glm::dvec2 p) {
+            return edge == 0 ? p.x : edge == 1 ? 1 - p.x : edge == 2 ? p.y : 1 - p.y;
+        };
+        int kept = 0;
+        for (int i = 0; i < count; ++i) {
+            const glm::dvec2 p = from[i], q = from[(i + 1) % count];
+            const double a = inside(p), b = inside(q);
+            if (a >= 0) to[kept++] = p;
+            if ((a > 0) != (b > 0) && a != b) to[kept++] = p + (q - p) * (a / (a - b));
+        }
+        count = kept;
+        std::copy(to, to + count, from);
+    }
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += cross2(from[i], from[(i + 1) % count]);
+    return std::abs(sum) / 2;
+}
+
+// Weights of the point of the triangle closest, in the atlas, to a point outside it.
+glm::dvec3 closestWeights(const Triangle& t, glm::dvec2 p) {
+    glm::dvec3 weights(1, 0, 0);
+    if (weightsAt(t, p, weights) && weights.x >= 0 && weights.y >= 0 && weights.z >= 0)
+        return weights;
+    double nearest = 1e300;
+    for (int e = 0; e < 3; ++e) {
+        const glm::dvec2 a = t.uv[e], d = t.uv[(e + 1) % 3] - a;
+        const double dd = glm::dot(d, d);
+        const double s = dd > 0 ? std::clamp(glm::dot(p - a, d) / dd, 0.0, 1.0) : 0;
+        const double distance = glm::length(a + d * s - p);
+        if (distance >= nearest) continue;
+        nearest = distance;
+        weights = glm::dvec3(0);
+        weights[e] = 1 - s;
+        weights[(e + 1) % 3] = s;
+    }
+    return weights;
+}
+
+class Rasteriser {
+ public:
+    Rasteriser(const Surface& surface, TexelGrid& grid, BakeReport& report,
+               std::pmr::memory_resource* memory)
+        : surface_(surface), grid_(grid), report_(report), parts_(memory), memory_(memory) {}
+
+    void run() {
+        ownTexels();
+        measureAreas();
+        forceTexels();
+        giveParts();
+        placeTexels();
+    }
+
+ private:
+    void ownTexels() {
+        for (uint32_t i = 0; i < surface_.triangles.size(); ++i) {
+            const Triangle& t = surface_.triangles[i];
+            const Box box = boxOf(t, grid_);
+            for (int y = box.y0; y <= box.y1; ++y)
+                for (int x = box.x0; x <= box.x1; ++x) {
+                    glm::dvec3 w;
+                    if (!weightsAt(t, {x + 0.5, y + 0.5}, w)) continue;
+                    if (std::min({w.x, w.y, w.z}) < -1e-9) continue;
+                    const uint32_t texel = grid_.at(x, y);
+                    if (grid_.owner[texel] == kNone)
+                        own(texel, i, w);
+                    else if (std::min({w.x, w.y, w.z}) > 1e-6)
+                        ++report_.overlaps;
+                }
+        }
+    }
+
+    void own(uint32_t texel, uint32_t triangle, glm::dvec3 weights) {
+        grid_.owner[texel] = triangle;
+        grid_.chart[texel] = surface_.triangles[triangle].chart;
+        grid_.weights[texel] = glm::vec2(float(weights.x), float(weights.y));
+        grid_.flags[texel] = kTexelReal;
+    }
+
+    void measureAreas() {
+        for (uint32_t i = 0; i < surface_.triangles.size(); ++i) {
+            const Triangle& t = surface_.triangles[i];
+            const double flat = std::abs(uvArea(t));
+            const Box box = boxOf(t, grid_);
+            if (flat < 1e-9) {  // no area in the atlas: its whole area is a part somewhere near
+                const glm::dvec2 at = t.uv[0];
+                const int x = std::clamp(int(at.x), 0, int(grid_.width) - 1);
+                const int y = std::clamp(int(at.y), 0, int(grid_.height) - 1);
+                parts_.push_back({grid_.at(x, y), i, t.area});
+                continue;
+            }
+            for (int y = box.y0; y <= box.y1; ++y)
+                for (int x = box.x0; x <= box.x1; ++x) {
+                    const double area = clippedArea(t, x, y) * (t.area / flat);
+                    if (!(area > 0)) continue;
+                    const uint32_t texel = grid_.at(x, y);
+                    if (grid_.chart[texel] == t.chart)
+                        grid_.area[texel] += area;
+                    else
+                        parts_.push_back({texel, i, area});
+                }
+        }
+        std::sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) {
+            if (a.texel != b.texel) return a.texel < b.texel;
+            return a.area != b.area ? a.area > b.area : a.triangle < b.triangle;
+        });
+    }
+
+    // A part whose chart owns no texel beside it would not burn: it gets its texel. Decided for all
+    // from the state before, so that the order does not matter.
+    void forceTexels() {
+        std::pmr::vector<Part> forced(memory_);
+        for (const Part& part : parts_) {
+            if (grid_.owner[part.texel] != kNone) continue;
+            if (!forced.empty() && forced.back().texel == part.texel) continue;
+            const int x = int(part.texel % grid_.width), y = int(part.texel / grid_.width);
+            bool beside = false;
+            for (size_t k = 0; k < 8; k += 2)
+                beside |= grid_.inside(x + kRingX[k], y + kRingY[k]) &&
+                          grid_.chart[grid_.at(x + kRingX[k], y + kRingY[k])] ==
+                              surface_.triangles[part.triangle].chart;
+            if (!beside) forced.push_back(part);
+        }
+        for (const Part& part : forced) {
+            const glm::dvec2 middle(part.texel % grid_.width + 0.5, part.texel / grid_.width + 0.5);
+            own(part.texel, part.triangle,
+                closestWeights(surface_.triangles[part.triangle], middle));
+            grid_.flags[part.texel] |= kTexelForced;
+        }
+    }
+
+    void giveParts() {
+        std::pmr::vector<uint32_t> heirOf(surface_.chartCount, kNone, memory_);
+        AreaHeir heir(surface_, grid_, memory_);
+        for (const Part& part : parts_) {
+            const uint32_t chart = surface_.triangles[part.triangle].chart;
+            const int px = int(part.texel % grid_.width), py = int(part.texel / grid_.width);
+            uint32_t best = kNone;
+            int nearest = 1 << 30;
+            for (int dy = -3; dy <= 3; ++dy)
+                for (int dx = -3; dx <= 3; ++dx) {
+                    if (!grid_.inside(px + dx, py + dy)) continue;
+                    const uint32_t texel = grid_.at(px + dx, py + dy);
+                    if (grid_.chart[texel] != chart || dx * dx + dy * dy >= nearest) continue;
+                    nearest = dx * dx + dy * dy;
+                    best = texel;
+                }
+            if (best == kNone) {
+                if (heirOf[chart] == kNone)
+                    heirOf[chart] = heir.anywhere(part.triangle, part.texel);
+                best = heirOf[chart];
+            }
+            if (best != kNone) grid_.area[best] += part.area;
+        }
+    }
+
+    void placeTexels() {
+        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
+            if (grid_.owner[texel] != kNone)
+                grid_.position[texel] = glm::vec3(
+                    positionAt(surface_.triangles[grid_.owner[texel]], grid_.weightsOf(texel)) -
+                    surface_.low);
+    }
+
+    const Surface& surface_;
+    TexelGrid& grid_;
+    BakeReport& report_;
+    std::pmr::vector<Part> parts_;
+    std::pmr::memory_resource* memory_;
+};
+
+}  // namespace
+
+AreaHeir::AreaHeir(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory)
+    : surface_(surface),
+      grid_(grid),
+      texelOf_(surface.triangles.size(), kNone, memory),
+      visited_(surface.triangles.size(), 0, memory),
+      queue_(memory) {
+    for (uint32_t texel = 0; texel < grid.count(); ++texel)
+        if (grid.owner[texel] != kNone) texelOf_[grid.owner[texel]] = texel;
+}
+
+uint32_t AreaHeir::onSurface(uint32_t from) {
+    ++stamp_;
+    queue_.assign(1, from);
+    visited_[from] = stamp_;
+    for (size_t head = 0; head < queue_.size(); ++head) {
+        const uint32_t texel = texelOf_[queue_[head]];
+        if (texel != kNone && grid_.real(texel)) return texel;
+        for (uint32_t n : surface_.triangles[queue_[head]].neighbour)
+            if (n != kNone && visited_[n] != stamp_) {
+                visited_[n] = stamp_;
+                queue_.push_back(n);
+            }
+    }
+    return kNone;
+}
+
+uint32_t AreaHeir::anywhere(uint32_t from, uint32_t hint) {
+    const uint32_t near = onSurface(from);
+    if (near != kNone) return near;
+    // Nothing on this piece of the surface: the nearest in the image, by rings of growing size.
+    const int x = int(hint % grid_.width), y = int(hint / grid_.width);
+    for (int r = 0; r < int(std::max(grid_.width, grid_.height)); ++r)
+        for (int dy = -r; dy <= r; ++dy)
+            for (int dx = -r; dx <= r; dx += std::abs(dy) == r ? 1 : std::max(1, 2 * r)) {
+                if (!grid_.inside(x + dx, y + dy)) continue;
+                const uint32_t texel = grid_.at(x + dx, y + dy);
+                if (grid_.real(texel)) return texel;
+            }
+    return kNone;
+}
+
+TexelGrid rasterise(const Surface& surface, uint32_t width, uint32_t height, double density,
+                    BakeReport& report, std::pmr::memory_resource* memory) {
+    TexelGrid grid(memory);
+    grid.width = width;
+    grid.height = height;
+    grid.side = 1 / density;
+    const size_t count = size_t(width) * height;
+    grid.owner.assign(count, kNone);
+    grid.chart.assign(count, kNone);
+    grid.position.assign(count, glm::vec3(0));
+    grid.weights.assign(count, glm::vec2(0));
+    grid.area.assign(count, 0);
+    grid.flags.assign(count, 0);
+    grid.linkRecord.assign(count, kNone);
+    grid.shapes.reserve(surface.triangles.size());
+    for (const Triangle& t : surface.triangles) grid.shapes.push_back(texelShape(t));
+    Rasteriser(surface, grid, report, memory).run();
+    return grid;
+}
+
+}  // namespace fw::mesh

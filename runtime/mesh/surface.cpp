@@ -1,0 +1,239 @@
+// Welds vertices, drops triangles without area, finds who borders whom.
+#include "mesh/surface.h"
+
+#include "core/error.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace fw::mesh {
+namespace {
+
+constexpr double kExtentLow = 1e-4, kExtentHigh = 1e5;  // m, longest side of a mesh
+constexpr double kUvTouch = 1e-3;    // texels: corners closer than this are one corner
+constexpr size_t kPairSearch = 256;  // candidates per edge; only absurd fans have more triangles
+
+glm::dvec3 positionOf(const BakeInput& input, uint32_t vertex) {
+    const float* p = &input.positions[size_t(vertex) * 3];
+    return {p[0], p[1], p[2]};
+}
+
+uint64_t cellHash(int64_t x, int64_t y, int64_t z) {
+    uint64_t h = uint64_t(x) * 0x9E3779B97F4A7C15ull;
+    h = (h ^ (h >> 29) ^ uint64_t(y)) * 0xBF58476D1CE4E5B9ull;
+    h = (h ^ (h >> 32) ^ uint64_t(z)) * 0x94D049BB133111EBull;
+    return h ^ (h >> 31);
+}
+
+// Point of every vertex: vertices closer than `distance` to an earlier point share it.
+uint32_t weld(const BakeInput& input, double distance, std::pmr::vector<uint32_t>& pointOf,
+              std::pmr::memory_resource* memory) {
+    const uint32_t vertices = uint32_t(input.positions.size() / 3);
+    uint32_t buckets = 64;
+    while (buckets < vertices) buckets *= 2;
+    std::pmr::vector<uint32_t> head(buckets, kNone, memory);
+    std::pmr::vector<uint32_t> next(memory), first(memory);  // per point; first = its vertex
+    next.reserve(vertices);
+    first.reserve(vertices);
+    pointOf.assign(vertices, kNone);
+    for (uint32_t v = 0; v < vertices; ++v) {
+        const glm::dvec3 p = positionOf(input, v);
+        const glm::dvec3 cell =
+            glm::dvec3(std::floor(p.x / (2 * distance)), std::floor(p.y / (2 * distance)),
+                       std::floor(p.z / (2 * distance)));
+        uint32_t found = kNone;  // the lowest point in reach: independent of the hash
+        for (int d = 0; d < 27; ++d) {
+            const uint64_t h =
+                cellHash(int64_t(cell.x) + d % 3 - 1, int64_t(cell.y) + d / 3 % 3 - 1,
+                         int64_t(cell.z) + d / 9 - 1);
+            for (uint32_t q = head[h & (buckets - 1)]; q != kNone; q = next[q])
+                if (q < found && glm::length(positionOf(input, first[q]) - p) < distance) found = q;
+        }
+        if (found == kNone) {
+            found = uint32_t(first.size());
+            const uint64_t h = cellHash(int64_t(cell.x), int64_t(cell.y), int64_t(cell.z));
+            first.push_back(v);
+            next.push_back(head[h & (buckets - 1)]);
+            head[h & (buckets - 1)] = found;
+        }
+        pointOf[v] = found;
+    }
+    return uint32_t(first.size());
+}
+
+struct EdgeUse {
+    uint32_t low, high, triangle, edge;
+    bool sameEdge(const EdgeUse& o) const { return low == o.low && high == o.high; }
+    bool operator<(const EdgeUse& o) const {
+        if (low != o.low) return low < o.low;
+        if (high != o.high) return high < o.high;
+        return triangle != o.triangle ? triangle < o.triangle : edge < o.edge;
+    }
+};
+
+bool near(glm::dvec2 a, glm::dvec2 b) { return glm::length(a - b) < kUvTouch; }
+
+struct Fit {
+    bool continuous, opposite;
+    int score() const { return continuous * 2 + opposite; }
+};
+Fit fitOf(const Surface& surface, const EdgeUse& a, const EdgeUse& b, bool uvMeaningful) {
+    const Triangle& ta = surface.triangles[a.triangle];
+    const Triangle& tb = surface.triangles[b.triangle];
+    const uint32_t a1 = (a.edge + 1) % 3, b1 = (b.edge + 1) % 3;
+    const bool opposite = ta.point[a.edge] == tb.point[b1];
+    const glm::dvec2 start = tb.uv[opposite ? b1 : b.edge], end = tb.uv[opposite ? b.edge : b1];
+    // The two sheets must also lie on different sides of the edge in the atlas.
+    const bool sides = (uvArea(ta) > 0) == (opposite == (uvArea(tb) > 0));
+    return {uvMeaningful && sides && near(ta.uv[a.edge], start) && near(ta.uv[a1], end), opposite};
+}
+
+uint32_t rootOf(std::pmr::vector<uint32_t>& parent, uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+}  // namespace
+
+bool weightsAt(const Triangle& t, glm::dvec2 uv, glm::dvec3& weights) {
+    const double area = cross2(t.uv[1] - t.uv[0], t.uv[2] - t.uv[0]);
+    if (std::abs(area) < 1e-12) return false;
+    weights.x = cross2(t.uv[1] - uv, t.uv[2] - uv) / area;
+    weights.y = cross2(t.uv[2] - uv, t.uv[0] - uv) / area;
+    weights.z = 1 - weights.x - weights.y;
+    return true;
+}
+
+TexelShape texelShape(const Triangle& t) {
+    TexelShape shape;
+    const glm::dvec2 e1 = t.uv[1] - t.uv[0], e2 = t.uv[2] - t.uv[0];
+    const double determinant = cross2(e1, e2);
+    if (std::abs(determinant) < 1e-9) return shape;
+    const glm::dvec3 a = t.position[1] - t.position[0], b = t.position[2] - t.position[0];
+    shape.alongU = (a * e2.y - b * e1.y) / determinant;
+    shape.alongV = (b * e1.x - a * e2.x) / determinant;
+    const double uu = glm::dot(shape.alongU, shape.alongU);
+    const double uv = glm::dot(shape.alongU, shape.alongV);
+    const double vv = glm::dot(shape.alongV, shape.alongV);
+    const double root = std::sqrt((uu - vv) * (uu - vv) / 4 + uv * uv);
+    shape.longer = std::sqrt((uu + vv) / 2 + root);
+    // area per texel / longer: stable where the difference of squares is not
+    shape.shorter = t.area / std::abs(determinant * 0.5) / std::max(shape.longer, 1e-300);
+    shape.usable = true;
+    return shape;
+}
+
+Surface collectSurface(const BakeInput& input, double weldDistance,
+                       std::pmr::memory_resource* memory) {
+    Surface surface(memory);
+    const size_t count = input.indices.size() / 3;
+    surface.low = glm::dvec3(1e300);
+    surface.high = glm::dvec3(-1e300);
+    for (uint32_t index : input.indices) {
+        surface.low = glm::min(surface.low, positionOf(input, index));
+        surface.high = glm::max(surface.high, positionOf(input, index));
+    }
+    const glm::dvec3 size = surface.high - surface.low;
+    surface.extent = std::max({size.x, size.y, size.z});
+    if (!(surface.extent >= kExtentLow && surface.extent <= kExtentHigh))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The mesh's longest side is %g m; it must lie in [%g, %g] m.", surface.extent,
+                   kExtentLow, kExtentHigh);
+
+    std::pmr::vector<uint32_t> pointOf(memory);
+    surface.pointCount =
+        weld(input, std::max(weldDistance, surface.extent / 131070), pointOf, memory);
+    surface.triangles.reserve(count);
+    for (size_t i = 0; i < count; ++i) {
+        Triangle t;
+        t.source = uint32_t(i);
+        for (int k = 0; k < 3; ++k) {
+            t.corner[k] = input.indices[i * 3 + size_t(k)];
+            t.point[k] = pointOf[t.corner[k]];
+            t.position[k] = positionOf(input, t.corner[k]);
+            if (!input.uvs.empty())
+                t.uv[k] = {input.uvs[size_t(t.corner[k]) * 2],
+                           input.uvs[size_t(t.corner[k]) * 2 + 1]};
+        }
+        const glm::dvec3 across =
+            glm::cross(t.position[1] - t.position[0], t.position[2] - t.position[0]);
+        t.area = 0.5 * glm::length(across);
+        const bool flat = t.point[0] == t.point[1] || t.point[1] == t.point[2] ||
+                          t.point[2] == t.point[0] ||
+                          t.area < 1e-16 * surface.extent * surface.extent;
+        if (flat) {
+            ++surface.degenerate;
+            continue;
+        }
+        t.normal = across / (2 * t.area);
+        if (!input.triangleMaterials.empty()) t.material = input.triangleMaterials[i];
+        surface.area += t.area;
+        surface.triangles.push_back(t);
+    }
+    if (surface.triangles.empty())
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "The mesh's area is 0 m^2: all %zu triangles are degenerate; at least 1 must have "
+            "area.",
+            count);
+    return surface;
+}
+
+void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* memory) {
+    auto& triangles = surface.triangles;
+    surface.openEdges = surface.nonManifoldEdges = surface.seamEdges = surface.chartCount = 0;
+    std::pmr::vector<EdgeUse> uses(memory);
+    uses.reserve(triangles.size() * 3);
+    for (uint32_t i = 0; i < triangles.size(); ++i)
+        for (uint32_t e = 0; e < 3; ++e) {
+            triangles[i].neighbour[e] = kNone;
+            triangles[i].seam[e] = false;
+            const uint32_t a = triangles[i].point[e], b = triangles[i].point[(e + 1) % 3];
+            uses.push_back({std::min(a, b), std::max(a, b), i, e});
+        }
+    std::sort(uses.begin(), uses.end());
+
+    std::pmr::vector<uint32_t> parent(triangles.size(), memory);
+    std::iota(parent.begin(), parent.end(), 0u);
+    std::pmr::vector<uint8_t> used(uses.size(), 0, memory);
+    for (size_t start = 0, end = 0; start < uses.size(); start = end) {
+        while (end < uses.size() && uses[start].sameEdge(uses[end])) ++end;
+        surface.nonManifoldEdges += end - start > 2;
+        for (size_t i = start; i < end; ++i) {
+            if (used[i]) continue;
+            size_t best = end;
+            Fit bestFit{};
+            for (size_t j = i + 1; j < std::min(end, i + kPairSearch); ++j) {
+                if (used[j] || uses[j].triangle == uses[i].triangle) continue;
+                const Fit fit = fitOf(surface, uses[i], uses[j], uvMeaningful);
+                if (best != end && fit.score() <= bestFit.score()) continue;
+                best = j;
+                bestFit = fit;
+            }
+            if (best == end) {
+                ++surface.openEdges;
+                continue;
+            }
+            used[i] = used[best] = 1;
+            const EdgeUse &a = uses[i], &b = uses[best];
+            Triangle &ta = triangles[a.triangle], &tb = triangles[b.triangle];
+            ta.neighbour[a.edge] = b.triangle;
+            ta.neighbourEdge[a.edge] = uint8_t(b.edge);
+            tb.neighbour[b.edge] = a.triangle;
+            tb.neighbourEdge[b.edge] = uint8_t(a.edge);
+            ta.seam[a.edge] = tb.seam[b.edge] = !bestFit.continuous;
+            if (bestFit.continuous)
+                parent[rootOf(parent, a.triangle)] = rootOf(parent, b.triangle);
+            else
+                ++surface.seamEdges;
+        }
+    }
+    std::pmr::vector<uint32_t> number(triangles.size(), kNone, memory);
+    for (uint32_t i = 0; i < triangles.size(); ++i) {
+        uint32_t& n = number[rootOf(parent, i)];
+        if (n == kNone) n = surface.chartCount++;
+        triangles[i].chart = n;
+    }
+}
+
+}  // namespace fw::mesh

@@ -1,0 +1,84 @@
+// The bake's texel grid while it is being filled: who owns a texel, where it lies, whom it reads.
+// Internal to runtime/mesh.
+#pragma once
+#include "mesh/surface.h"
+
+namespace fw::mesh {
+
+struct TexelGrid {
+    explicit TexelGrid(std::pmr::memory_resource* memory)
+        : owner(memory),
+          chart(memory),
+          position(memory),
+          weights(memory),
+          area(memory),
+          flags(memory),
+          shapes(memory),
+          linkRecord(memory),
+          links(memory) {}
+
+    uint32_t width = 0, height = 0;
+    double side = 0;  // m, nominal texel
+
+    std::pmr::vector<uint32_t> owner;       // triangle, or kNone
+    std::pmr::vector<uint32_t> chart;       // or kNone
+    std::pmr::vector<glm::vec3> position;   // m, from Surface::low
+    std::pmr::vector<glm::vec2> weights;    // of the owner's corners 0 and 1
+    std::pmr::vector<double> area;          // m^2
+    std::pmr::vector<uint16_t> flags;       // TexelFlag; only texels with kTexelReal count
+    std::pmr::vector<TexelShape> shapes;    // per triangle
+    std::pmr::vector<uint32_t> linkRecord;  // per texel: record in links, or kNone
+    std::pmr::vector<uint32_t> links;       // 8 per record, raster order
+    double linkMax = 0;                     // m, longest link of all, set by linkTexels
+
+    [[nodiscard]] uint32_t count() const { return width * height; }
+    [[nodiscard]] bool inside(int x, int y) const {
+        return x >= 0 && y >= 0 && x < int(width) && y < int(height);
+    }
+    [[nodiscard]] uint32_t at(int x, int y) const { return uint32_t(y) * width + uint32_t(x); }
+    [[nodiscard]] bool real(uint32_t texel) const { return (flags[texel] & kTexelReal) != 0; }
+    [[nodiscard]] glm::dvec3 weightsOf(uint32_t texel) const {
+        const glm::dvec2 w(weights[texel]);
+        return {w.x, w.y, 1 - w.x - w.y};
+    }
+    [[nodiscard]] uint32_t ring(uint32_t texel, int k) const {
+        if (linkRecord[texel] != kNone) return links[size_t(linkRecord[texel]) * 8 + size_t(k)];
+        return uint32_t(int(texel) + kRingY[size_t(k)] * int(width) + kRingX[size_t(k)]);
+    }
+    [[nodiscard]] double distance(uint32_t a, uint32_t b) const {
+        return double(glm::length(position[a] - position[b]));
+    }
+};
+
+// Texels, their owners, places and areas. Every part of the surface's area lands on some texel.
+TexelGrid rasterise(const Surface& surface, uint32_t width, uint32_t height, double density,
+                    BakeReport& report, std::pmr::memory_resource* memory);
+// Who inherits area that has no texel of its own chart: a texel nearby on the surface of triangle
+// `from`, or (anywhere) else the one nearest to texel `hint` in the image. kNone if there is none.
+class AreaHeir {
+ public:
+    AreaHeir(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory);
+    uint32_t onSurface(uint32_t from);
+    uint32_t anywhere(uint32_t from, uint32_t hint);
+
+ private:
+    const Surface& surface_;
+    const TexelGrid& grid_;
+    std::pmr::vector<uint32_t> texelOf_, visited_, queue_;
+    uint32_t stamp_ = 0;
+};
+// Link records of all texels whose ring is not just the image around them.
+void linkTexels(const Surface& surface, TexelGrid& grid, BakeReport& report,
+                std::pmr::memory_resource* memory);
+void bakeThickness(const Surface& surface, const TexelGrid& grid,
+                   std::pmr::vector<uint16_t>& thickness, std::pmr::memory_resource* memory);
+void bakeSlowness(const BakeInput& input, const TexelGrid& grid, glm::dvec3 low, double extent,
+                  std::pmr::vector<uint16_t>& slowness);
+void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_resource* memory);
+void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& domain,
+                std::pmr::memory_resource* memory);
+// Bounds of every tile's real texels, for queries.
+void buildTileBounds(BurnDomain& domain);
+uint32_t packNormal(glm::dvec3 normal);  // signed 11:11:10: x << 4, y << 4, z << 5 are Q14
+
+}  // namespace fw::mesh

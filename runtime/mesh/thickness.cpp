@@ -1,0 +1,149 @@
+// How thick the solid is under a texel: the first surface met by a ray into it.
+#include "mesh/texels.h"
+
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+constexpr double kUnit = 1e-4;     // m per unit of thickness
+constexpr float kReach = 6.5534f;  // m, the largest that can be stored
+constexpr uint32_t kLeaf = 4;      // triangles
+
+struct Node {
+    glm::vec3 low, high;
+    uint32_t first = 0;  // leaf: into order_; inner: the second child (the first one follows)
+    uint32_t count = 0;  // leaf: triangles; inner: 0
+};
+
+// Median-split tree over the triangles; float bounds, positions relative to Surface::low.
+class RayTree {
+ public:
+    RayTree(const Surface& surface, std::pmr::memory_resource* memory)
+        : surface_(surface), nodes_(memory), order_(memory), centres_(memory) {
+        const uint32_t count = uint32_t(surface.triangles.size());
+        order_.resize(count);
+        centres_.resize(count);
+        for (uint32_t i = 0; i < count; ++i) {
+            order_[i] = i;
+            const Triangle& t = surface.triangles[i];
+            centres_[i] =
+                glm::vec3((t.position[0] + t.position[1] + t.position[2]) / 3.0 - surface.low);
+        }
+        nodes_.reserve(size_t(count) * 2 / kLeaf * 2 + 2);
+        build(0, count);
+    }
+
+    // Distance to the first triangle beyond `least`, other than `self`; kReach or more: none.
+    [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least,
+                             uint32_t self) const {
+        const glm::vec3 inverse(invert(direction.x), invert(direction.y), invert(direction.z));
+        float nearest = kReach;
+        uint32_t stack[64];
+        int depth = 0;
+        stack[depth++] = 0;
+        while (depth > 0) {
+            const uint32_t index = stack[--depth];
+            const Node& node = nodes_[index];
+            if (!hitBox(node, from, inverse, nearest)) continue;
+            if (node.count == 0) {
+                stack[depth++] = node.first;
+                stack[depth++] = index + 1;
+                continue;
+            }
+            for (uint32_t i = 0; i < node.count; ++i)
+                if (order_[node.first + i] != self)
+                    nearest =
+                        std::min(nearest, hit(order_[node.first + i], from, direction, least));
+        }
+        return nearest;
+    }
+
+ private:
+    static float invert(float v) { return std::abs(v) > 1e-20f ? 1 / v : (v < 0 ? -1e20f : 1e20f); }
+
+    void build(uint32_t begin, uint32_t end) {
+        const uint32_t index = uint32_t(nodes_.size());
+        Node node{glm::vec3(1e30f), glm::vec3(-1e30f)};
+        glm::vec3 low(1e30f), high(-1e30f);  // of the centres
+        for (uint32_t i = begin; i < end; ++i) {
+            for (const glm::dvec3& p : surface_.triangles[order_[i]].position) {
+                const glm::vec3 q(p - surface_.low);
+                node.low = glm::min(node.low, q);
+                node.high = glm::max(node.high, q);
+            }
+            low = glm::min(low, centres_[order_[i]]);
+            high = glm::max(high, centres_[order_[i]]);
+        }
+        if (end - begin <= kLeaf) {
+            node.first = begin;
+            node.count = end - begin;
+            nodes_.push_back(node);
+            return;
+        }
+        nodes_.push_back(node);
+        const glm::vec3 size = high - low;
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const uint32_t middle = begin + (end - begin) / 2;
+        std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                         [&](uint32_t a, uint32_t b) {
+                             const float ca = centres_[a][axis], cb = centres_[b][axis];
+                             return ca != cb ? ca < cb : a < b;
+                         });
+        build(begin, middle);
+        nodes_[index].first = uint32_t(nodes_.size());
+        build(middle, end);
+    }
+
+    static bool hitBox(const Node& node, glm::vec3 from, glm::vec3 inverse, float nearest) {
+        float enter = 0, leave = nearest;
+        for (int k = 0; k < 3; ++k) {
+            const float a = (node.low[k] - from[k]) * inverse[k];
+            const float b = (node.high[k] - from[k]) * inverse[k];
+            enter = std::max(enter, std::min(a, b));
+            leave = std::min(leave, std::max(a, b));
+        }
+        return enter <= leave * 1.00001f + 1e-6f;
+    }
+
+    [[nodiscard]] float hit(uint32_t triangle, glm::vec3 from, glm::vec3 direction,
+                            float least) const {
+        const Triangle& t = surface_.triangles[triangle];
+        const glm::vec3 a(t.position[0] - surface_.low);
+        const glm::vec3 e1(t.position[1] - t.position[0]), e2(t.position[2] - t.position[0]);
+        const glm::vec3 p = glm::cross(direction, e2);
+        const float determinant = glm::dot(e1, p);
+        if (std::abs(determinant) < 1e-30f) return kReach;
+        const glm::vec3 s = from - a;
+        const float u = glm::dot(s, p) / determinant;
+        const glm::vec3 q = glm::cross(s, e1);
+        const float v = glm::dot(direction, q) / determinant;
+        if (!(u >= -1e-5f) || !(v >= -1e-5f) || !(u + v <= 1.00001f)) return kReach;
+        const float distance = glm::dot(e2, q) / determinant;
+        return distance > least ? distance : kReach;
+    }
+
+    const Surface& surface_;
+    std::pmr::vector<Node> nodes_;
+    std::pmr::vector<uint32_t> order_;
+    std::pmr::vector<glm::vec3> centres_;
+};
+
+}  // namespace
+
+void bakeThickness(const Surface& surface, const TexelGrid& grid,
+                   std::pmr::vector<uint16_t>& thickness, std::pmr::memory_resource* memory) {
+    thickness.assign(grid.count(), 0xFFFF);
+    const RayTree tree(surface, memory);
+    // Not the surface we stand on, nor its neighbours where it bends.
+    const float least = float(std::max(0.01 * grid.side, 1e-5 * surface.extent));
+    for (uint32_t texel = 0; texel < grid.count(); ++texel) {
+        if (!grid.real(texel)) continue;
+        const glm::vec3 inward(-surface.triangles[grid.owner[texel]].normal);
+        const float distance = tree.cast(grid.position[texel], inward, least, grid.owner[texel]);
+        if (distance < kReach)
+            thickness[texel] = uint16_t(std::max(1.0, std::floor(double(distance) / kUnit + 0.5)));
+    }
+}
+
+}  // namespace fw::mesh
