@@ -47,7 +47,7 @@ struct TileBounds {            // of a tile's real texels, in position units; lo
 // A corner of the drawn mesh; 48 bytes. Vertices are split where the atlas is cut.
 struct RenderVertex {
     float position[3] = {};      // m, rest, object space
-    uint32_t normal = 0;         // signed 11:11:10 xyz (x in the low bits)
+    uint32_t normal = 0;         // signed 11:11:10 xyz, x in the low bits; 1023, 1023, 511 = 1
     float atlasUv[2] = {};       // burn atlas, in TEXELS (texel centre = i + 0.5)
     float textureUv[2] = {};     // the mesh's own UV 0 (0 if none)
     float detail[2] = {};        // m, y along the grain; see BurnDomain::hasDetail

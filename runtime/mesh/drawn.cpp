@@ -53,8 +53,8 @@ void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normal
 }  // namespace
 
 uint32_t packNormal(glm::dvec3 normal) {
-    const auto field = [](double v, int limit) {
-        return uint32_t(std::clamp(int(std::floor(v * (limit + 1) + 0.5)), -limit, limit));
+    const auto field = [](double v, int one) {
+        return uint32_t(std::clamp(int(std::floor(v * one + 0.5)), -one, one));
     };
     return (field(normal.x, 1023) & 0x7FFu) | (field(normal.y, 1023) & 0x7FFu) << 11 |
            (field(normal.z, 511) & 0x3FFu) << 22;

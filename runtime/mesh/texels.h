@@ -79,6 +79,6 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
                 std::pmr::memory_resource* memory);
 // Bounds of every tile's real texels, for queries.
 void buildTileBounds(BurnDomain& domain);
-uint32_t packNormal(glm::dvec3 normal);  // signed 11:11:10: x << 4, y << 4, z << 5 are Q14
+uint32_t packNormal(glm::dvec3 normal);  // signed 11:11:10; 1023, 1023, 511 are 1
 
 }  // namespace fw::mesh
