@@ -11,7 +11,7 @@ runtime/fire|fire/|core/|shared/|flamewright/flamewright.h
 runtime/mesh|mesh/|core/|shared/|flamewright/flamewright.h
 runtime/components|components/|core/|fire/|mesh/|shared/|flamewright/flamewright.h
 runtime/world|world/|components/|core/|fire/|mesh/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
-runtime/gpu|gpu/|core/|fire/|mesh/|shared/|flamewright/flamewright.h
+runtime/gpu|gpu/|core/|fire/|mesh/|shared/|flamewright/
 plugin/src|flamewright/|world/|core/
 plugin/include|flamewright/
 shaders/shared|shared/
