@@ -1,0 +1,36 @@
+// Bakes the village's procedural looks into pictures and its occlusion into vertices, at start-up
+// and on all cores. CPU only; the renderer uploads what comes out.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "village/layout.h"
+
+namespace tower {
+
+struct Painting {
+    uint32_t width = 0, height = 0;  // texels
+    std::vector<uint8_t> color;      // RGBA8, sRGB; alpha: see below
+    std::vector<uint8_t> relief;     // RGBA8: slope along u, slope along v, roughness, see below
+};
+
+struct PaintedModel {
+    // color.a: the coals' heat, (heat + 0.4) / 1.7; relief.a: metalness
+    Painting painting;
+    std::vector<float> openSky;  // one per vertex, [0.22, 1]
+};
+
+struct PaintedVillage {
+    std::vector<PaintedModel> models;  // as Scene::models
+    Painting ground, road;             // color.a: open sky; relief.a: 1 where the surface is
+    // uv to picture: (uv - low) / (high - low), because a lone chart need not fill its atlas
+    village::Vec2 groundLow, groundHigh, roadLow, roadHigh;
+};
+
+// relief's slopes are within +-kReliefRange, 0.5 is level.
+constexpr float kReliefRange = 1.5f;
+
+PaintedVillage paintVillage(const village::Scene& scene);
+
+}  // namespace tower

@@ -1,0 +1,575 @@
+// See renderer.h. One vertex and one index buffer for everything, one instance stream per frame
+// slot, one descriptor set per painted surface.
+#include "renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace tower {
+
+namespace {
+
+#include "jet.frag.h"
+#include "jet.vert.h"
+#include "shadow.vert.h"
+#include "village.frag.h"
+#include "village.vert.h"
+
+using sample::checkVulkan;
+using village::Vec3;
+
+constexpr uint32_t kMaxLights = 16;
+constexpr uint32_t kShadowSide = 2048;  // texels
+constexpr uint32_t kMaxParticles = 2048;
+constexpr VkFormat kShadowFormat = VK_FORMAT_D32_SFLOAT;
+
+struct FrameUniform {  // shaders/frame.glsl
+    glm::mat4 viewProjection, shadowMatrix;
+    glm::vec4 eye, toSun, sun, sky, ground, haze, cameraRight, cameraUp;
+    glm::vec4 lightPlaces[kMaxLights], lightColors[kMaxLights];
+};
+
+struct DrawnVertex {
+    float position[3], normal[3], uv[2], traits[3];
+};
+
+struct DrawnInstance {
+    glm::vec4 rows[3], tint;
+};
+
+DrawnVertex drawnVertex(const village::Vertex& v, float openSky) {
+    const bool soft = v.material == village::Material::kLeaf ||
+                      v.material == village::Material::kStraw ||
+                      v.material == village::Material::kCloth;
+    return {{v.position.x, v.position.y, v.position.z},
+            {v.normal.x, v.normal.y, v.normal.z},
+            {v.uv.x, v.uv.y},
+            {openSky, v.texture == village::Texture::kGlow ? v.glow : 0.0f, soft ? 1.0f : 0.0f}};
+}
+
+DrawnInstance drawnInstance(const village::Frame& f, Vec3 tint) {
+    return {{{f.x.x, f.y.x, f.z.x, f.origin.x},
+             {f.x.y, f.y.y, f.z.y, f.origin.y},
+             {f.x.z, f.y.z, f.z.z, f.origin.z}},
+            {tint.x, tint.y, tint.z, 1}};
+}
+
+const std::vector<VkVertexInputBindingDescription> kBindings = {
+    {0, sizeof(DrawnVertex), VK_VERTEX_INPUT_RATE_VERTEX},
+    {1, sizeof(DrawnInstance), VK_VERTEX_INPUT_RATE_INSTANCE}};
+const std::vector<VkVertexInputAttributeDescription> kAttributes = {
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(DrawnVertex, position)},
+    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(DrawnVertex, normal)},
+    {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(DrawnVertex, uv)},
+    {3, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(DrawnVertex, traits)},
+    {4, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 0},
+    {5, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16},
+    {6, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 32},
+    {7, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 48}};
+
+// The sun looks at the whole play area; the map follows no camera, so shadows never swim.
+glm::mat4 sunClip(glm::vec3 toSun, float* texel) {
+    const glm::vec3 centre(0.0f, 1.0f, -4.0f);
+    constexpr float kWide = 29.0f;
+    const glm::mat4 view = glm::lookAtRH(centre + toSun * 70.0f, centre, glm::vec3(0, 1, 0));
+    // The play area is wider than deep: fit each axis of the sun's picture on its own.
+    float reachX = 0, reachY = 0;
+    for (float x : {-kWide + 1.5f, kWide - 3.0f}) {
+        for (float z : {-25.0f, 17.5f}) {
+            for (float y : {0.0f, 6.0f}) {
+                const glm::vec4 p = view * glm::vec4(x, y, z, 1);
+                reachX = std::max(reachX, std::fabs(p.x));
+                reachY = std::max(reachY, std::fabs(p.y));
+            }
+        }
+    }
+    glm::mat4 projection(1.0f);
+    projection[0][0] = 1 / reachX;
+    projection[1][1] = 1 / reachY;
+    projection[2][2] = -1 / 140.0f;
+    *texel = 2 * std::max(reachX, reachY) / float(kShadowSide);
+    return projection * view;
+}
+
+glm::mat4 clipToPicture() {
+    glm::mat4 m(1.0f);
+    m[0][0] = m[1][1] = 0.5f;
+    m[3][0] = m[3][1] = 0.5f;
+    return m;
+}
+
+VkDescriptorSet allocateSet(VkDevice device, VkDescriptorPool pool, VkDescriptorSetLayout layout) {
+    VkDescriptorSetAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    info.descriptorPool = pool;
+    info.descriptorSetCount = 1;
+    info.pSetLayouts = &layout;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    checkVulkan(vkAllocateDescriptorSets(device, &info, &set), "vkAllocateDescriptorSets");
+    return set;
+}
+
+void writeImage(VkDevice device, VkDescriptorSet set, uint32_t binding, VkSampler sampler,
+                VkImageView view, VkImageLayout layout) {
+    const VkDescriptorImageInfo image{sampler, view, layout};
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set;
+    write.dstBinding = binding;
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    write.pImageInfo = &image;
+    vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
+}
+
+}  // namespace
+
+Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
+                   const village::Scene& scene, const PaintedVillage& painted)
+    : host_(host) {
+    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    // Nowhere near every device filters depth, so this one is nearest in every way.
+    VkSamplerCreateInfo nearest{};
+    nearest.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+    nearest.addressModeU = nearest.addressModeV = nearest.addressModeW =
+        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    checkVulkan(vkCreateSampler(host.device, &nearest, nullptr, &shadowSampler_),
+                "vkCreateSampler");
+    makeLayouts();
+    makeShadow();
+    makeGeometry(scene, painted);
+    makeSlots(stage.made.framesInFlight, scene.instances.size());
+    makePipelines(stage);
+}
+
+Renderer::~Renderer() {
+    vkDeviceWaitIdle(host_.device);
+    for (VkPipeline p :
+         {model_, groundPipeline_, roadPipeline_, waterPipeline_, shadowPipeline_, jetPipeline_})
+        vkDestroyPipeline(host_.device, p, nullptr);
+    for (Surface& s : surfaces_) {
+        host_.destroy(s.color);
+        host_.destroy(s.relief);
+    }
+    for (Slot& s : slots_) {
+        host_.destroy(s.uniform);
+        host_.destroy(s.instances);
+        host_.destroy(s.particles);
+    }
+    host_.destroy(vertices_);
+    host_.destroy(indices_);
+    host_.destroy(shadowMap_);
+    vkDestroyFramebuffer(host_.device, shadowFramebuffer_, nullptr);
+    vkDestroyRenderPass(host_.device, shadowPass_, nullptr);
+    vkDestroySampler(host_.device, sampler_, nullptr);
+    vkDestroySampler(host_.device, shadowSampler_, nullptr);
+    vkDestroyDescriptorPool(host_.device, pool_, nullptr);
+    vkDestroyPipelineLayout(host_.device, layout_, nullptr);
+    vkDestroyPipelineLayout(host_.device, shadowLayout_, nullptr);
+    vkDestroyDescriptorSetLayout(host_.device, frameLayout_, nullptr);
+    vkDestroyDescriptorSetLayout(host_.device, surfaceLayout_, nullptr);
+}
+
+void Renderer::makeLayouts() {
+    constexpr VkShaderStageFlags kBoth = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    const VkDescriptorSetLayoutBinding frameBindings[] = {
+        {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, kBoth, nullptr},
+        {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}};
+    const VkDescriptorSetLayoutBinding surfaceBindings[] = {
+        {0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr},
+        {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}};
+    VkDescriptorSetLayoutCreateInfo setInfo{};
+    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    setInfo.bindingCount = 2;
+    setInfo.pBindings = frameBindings;
+    checkVulkan(vkCreateDescriptorSetLayout(host_.device, &setInfo, nullptr, &frameLayout_),
+                "vkCreateDescriptorSetLayout");
+    setInfo.pBindings = surfaceBindings;
+    checkVulkan(vkCreateDescriptorSetLayout(host_.device, &setInfo, nullptr, &surfaceLayout_),
+                "vkCreateDescriptorSetLayout");
+
+    const VkDescriptorSetLayout layouts[] = {frameLayout_, surfaceLayout_};
+    VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)};
+    VkPipelineLayoutCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    info.setLayoutCount = 2;
+    info.pSetLayouts = layouts;
+    info.pushConstantRangeCount = 1;
+    info.pPushConstantRanges = &range;
+    checkVulkan(vkCreatePipelineLayout(host_.device, &info, nullptr, &layout_),
+                "vkCreatePipelineLayout");
+    range = {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(glm::mat4)};
+    info.setLayoutCount = 0;
+    checkVulkan(vkCreatePipelineLayout(host_.device, &info, nullptr, &shadowLayout_),
+                "vkCreatePipelineLayout");
+
+    constexpr uint32_t kSets = 64;
+    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4},
+                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * kSets}};
+    VkDescriptorPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    poolInfo.maxSets = kSets;
+    poolInfo.poolSizeCount = 2;
+    poolInfo.pPoolSizes = sizes;
+    checkVulkan(vkCreateDescriptorPool(host_.device, &poolInfo, nullptr, &pool_),
+                "vkCreateDescriptorPool");
+}
+
+void Renderer::makeShadow() {
+    sample::ImageRequest request;
+    request.width = request.height = kShadowSide;
+    request.format = kShadowFormat;
+    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    shadowMap_ = host_.createImage(request);
+
+    VkAttachmentDescription depth{};
+    depth.format = kShadowFormat;
+    depth.samples = VK_SAMPLE_COUNT_1_BIT;
+    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    depth.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    depth.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    depth.finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    subpass.pDepthStencilAttachment = &reference;
+    constexpr VkPipelineStageFlags kDepthStages =
+        VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+    std::array<VkSubpassDependency, 2> dependencies{};
+    dependencies[0] = {
+        VK_SUBPASS_EXTERNAL,
+        0,
+        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+        kDepthStages,
+        VK_ACCESS_SHADER_READ_BIT,
+        VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+        0};
+    dependencies[1] = {0,
+                       VK_SUBPASS_EXTERNAL,
+                       kDepthStages,
+                       VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                       VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                       VK_ACCESS_SHADER_READ_BIT,
+                       0};
+    VkRenderPassCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+    info.attachmentCount = 1;
+    info.pAttachments = &depth;
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
+    info.dependencyCount = 2;
+    info.pDependencies = dependencies.data();
+    checkVulkan(vkCreateRenderPass(host_.device, &info, nullptr, &shadowPass_),
+                "vkCreateRenderPass");
+    VkFramebufferCreateInfo target{};
+    target.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+    target.renderPass = shadowPass_;
+    target.attachmentCount = 1;
+    target.pAttachments = &shadowMap_.view;
+    target.width = target.height = kShadowSide;
+    target.layers = 1;
+    checkVulkan(vkCreateFramebuffer(host_.device, &target, nullptr, &shadowFramebuffer_),
+                "vkCreateFramebuffer");
+}
+
+void Renderer::makeSurface(const village::Model& model, const Painting& painting, village::Vec2 low,
+                           village::Vec2 high, glm::vec2 metres) {
+    Surface s;
+    s.indexCount = uint32_t(model.indices.size());
+    s.set = allocateSet(host_.device, pool_, surfaceLayout_);
+    s.color = host_.createTexture(painting.width, painting.height, painting.color.data(), true);
+    s.relief = host_.createTexture(painting.width, painting.height, painting.relief.data(), false);
+    writeImage(host_.device, s.set, 0, sampler_, s.color.view,
+               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    writeImage(host_.device, s.set, 1, sampler_, s.relief.view,
+               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    s.push = {{low.x, low.y, 1 / (high.x - low.x), 1 / (high.y - low.y)},
+              {metres.x, metres.y, 0, 0}};
+    surfaces_.push_back(s);
+}
+
+void Renderer::makeGeometry(const village::Scene& scene, const PaintedVillage& painted) {
+    std::vector<DrawnVertex> vertices;
+    std::vector<uint32_t> indices;
+    auto append = [&](const village::Model& model, const std::vector<float>& openSky) {
+        Surface& s = surfaces_.back();
+        s.firstIndex = uint32_t(indices.size());
+        s.firstVertex = int32_t(vertices.size());
+        for (size_t i = 0; i < model.vertices.size(); ++i)
+            vertices.push_back(drawnVertex(model.vertices[i], openSky.empty() ? 1.0f : openSky[i]));
+        indices.insert(indices.end(), model.indices.begin(), model.indices.end());
+    };
+    for (size_t i = 0; i < scene.models.size(); ++i) {
+        const village::Model& model = scene.models[i];
+        makeSurface(model, painted.models[i].painting, {0, 0}, {1, 1}, glm::vec2(model.atlasSide));
+        append(model, painted.models[i].openSky);
+    }
+    ground_ = surfaces_.size();
+    makeSurface(scene.terrain, painted.ground, painted.groundLow, painted.groundHigh,
+                glm::vec2(72));
+    append(scene.terrain, {});
+    road_ = surfaces_.size();
+    makeSurface(scene.road, painted.road, painted.roadLow, painted.roadHigh,
+                {village::kRoadWidth, village::roadLength()});
+    append(scene.road, {});
+    water_ = surfaces_.size();
+    const Painting blank{1, 1, {0, 0, 0, 255}, {128, 128, 20, 0}};
+    makeSurface(scene.water, blank, {0, 0}, {1, 1}, glm::vec2(1));
+    append(scene.water, {});
+    vertices_ = host_.createFilledBuffer(vertices.data(), vertices.size() * sizeof(DrawnVertex),
+                                         VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+    indices_ = host_.createFilledBuffer(indices.data(), indices.size() * sizeof(uint32_t),
+                                        VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+}
+
+void Renderer::makeSlots(uint32_t count, size_t instances) {
+    slots_.resize(count);
+    for (Slot& slot : slots_) {
+        slot.uniform =
+            host_.createBuffer(sizeof(FrameUniform), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, true);
+        // Every instance may be drawn and cast a shadow from a list of its own, and the land has
+        // one instance.
+        slot.instances = host_.createBuffer((instances * 2 + 1) * sizeof(DrawnInstance),
+                                            VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, true);
+        slot.particles = host_.createBuffer(kMaxParticles * sizeof(JetParticle),
+                                            VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, true);
+        slot.set = allocateSet(host_.device, pool_, frameLayout_);
+        const VkDescriptorBufferInfo buffer{slot.uniform.buffer, 0, sizeof(FrameUniform)};
+        VkWriteDescriptorSet write{};
+        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+        write.dstSet = slot.set;
+        write.descriptorCount = 1;
+        write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+        write.pBufferInfo = &buffer;
+        vkUpdateDescriptorSets(host_.device, 1, &write, 0, nullptr);
+        writeImage(host_.device, slot.set, 1, shadowSampler_, shadowMap_.view,
+                   VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+    }
+}
+
+// A pipeline without colour: the sample helpers' own always writes one.
+static VkPipeline makeShadowPipeline(const sample::VulkanHost& host, VkRenderPass pass,
+                                     VkPipelineLayout layout, VkShaderModule vertex) {
+    VkPipelineShaderStageCreateInfo stage{};
+    stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    stage.stage = VK_SHADER_STAGE_VERTEX_BIT;
+    stage.module = vertex;
+    stage.pName = "main";
+    const VkVertexInputAttributeDescription attributes[] = {kAttributes[0], kAttributes[4],
+                                                            kAttributes[5], kAttributes[6]};
+    VkPipelineVertexInputStateCreateInfo input{};
+    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    input.vertexBindingDescriptionCount = uint32_t(kBindings.size());
+    input.pVertexBindingDescriptions = kBindings.data();
+    input.vertexAttributeDescriptionCount = 4;
+    input.pVertexAttributeDescriptions = attributes;
+    VkPipelineInputAssemblyStateCreateInfo assembly{};
+    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    const float side = float(kShadowSide);
+    const VkViewport viewport{0, 0, side, side, 0, 1};
+    const VkRect2D scissor{{0, 0}, {kShadowSide, kShadowSide}};
+    VkPipelineViewportStateCreateInfo window{};
+    window.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+    window.viewportCount = window.scissorCount = 1;
+    window.pViewports = &viewport;
+    window.pScissors = &scissor;
+    VkPipelineRasterizationStateCreateInfo raster{};
+    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+    raster.polygonMode = VK_POLYGON_MODE_FILL;
+    raster.depthBiasEnable = VK_TRUE;
+    raster.depthBiasConstantFactor = 1.0f;
+    raster.depthBiasSlopeFactor = 1.5f;
+    raster.lineWidth = 1;
+    VkPipelineMultisampleStateCreateInfo samples{};
+    samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    VkPipelineDepthStencilStateCreateInfo depth{};
+    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+    depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
+    depth.depthCompareOp = VK_COMPARE_OP_LESS;
+    VkGraphicsPipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+    info.stageCount = 1;
+    info.pStages = &stage;
+    info.pVertexInputState = &input;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &window;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &samples;
+    info.pDepthStencilState = &depth;
+    info.layout = layout;
+    info.renderPass = pass;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    checkVulkan(
+        vkCreateGraphicsPipelines(host.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateGraphicsPipelines");
+    return pipeline;
+}
+
+void Renderer::makePipelines(const sample::Stage& stage) {
+    sample::PipelineRequest request;
+    request.pass = stage.scenePass;
+    request.layout = layout_;
+    request.samples = stage.made.samples;
+    request.bindings = kBindings;
+    request.attributes = kAttributes;
+    request.depthCompare = stage.depthCompare();
+    request.vertex = host_.createShader(kVillageVert, sizeof kVillageVert);
+    request.fragment = host_.createShader(kVillageFrag, sizeof kVillageFrag);
+    VkPipeline* const pipelines[] = {&model_, &groundPipeline_, &roadPipeline_, &waterPipeline_};
+    for (int32_t kind = 0; kind < 4; ++kind) {
+        const VkSpecializationMapEntry entry{0, 0, sizeof kind};
+        const VkSpecializationInfo special{1, &entry, sizeof kind, &kind};
+        request.specialization = &special;
+        *pipelines[kind] = sample::makePipeline(host_, request);
+    }
+    vkDestroyShaderModule(host_.device, request.vertex, nullptr);
+    vkDestroyShaderModule(host_.device, request.fragment, nullptr);
+
+    request.specialization = nullptr;
+    request.vertex = host_.createShader(kJetVert, sizeof kJetVert);
+    request.fragment = host_.createShader(kJetFrag, sizeof kJetFrag);
+    request.bindings = {{0, sizeof(JetParticle), VK_VERTEX_INPUT_RATE_INSTANCE}};
+    request.attributes = {{0, 0, VK_FORMAT_R32G32B32A32_SFLOAT, 0},
+                          {1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, 16},
+                          {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, 32}};
+    request.depthWrite = false;
+    request.blend = true;
+    jetPipeline_ = sample::makePipeline(host_, request);
+    vkDestroyShaderModule(host_.device, request.vertex, nullptr);
+    vkDestroyShaderModule(host_.device, request.fragment, nullptr);
+
+    VkShaderModule shadow = host_.createShader(kShadowVert, sizeof kShadowVert);
+    shadowPipeline_ = makeShadowPipeline(host_, shadowPass_, shadowLayout_, shadow);
+    vkDestroyShaderModule(host_.device, shadow, nullptr);
+}
+
+// Sorts the instances by model into runs, one list for the picture and one for the shadows.
+void Renderer::gather(Slot& slot, const SceneFrame& scene) {
+    auto* out = static_cast<DrawnInstance*>(slot.instances.mapped);
+    uint32_t used = 0;
+    out[used++] = drawnInstance(village::Frame{}, {1, 1, 1});  // the land's
+    solid_.clear();
+    shadow_.clear();
+    for (size_t model = 0; model < ground_; ++model) {
+        for (bool shadows : {false, true}) {
+            const uint32_t first = used;
+            for (const Placed& p : scene.placed)
+                if (size_t(p.model) == model && (shadows || p.drawn))
+                    out[used++] = drawnInstance(p.frame, p.tint);
+            if (used > first) (shadows ? shadow_ : solid_).push_back({model, first, used - first});
+        }
+    }
+}
+
+void Renderer::upload(Slot& slot, const sample::StageFrame& frame, const SceneFrame& scene) {
+    const float aspect = float(frame.extent.width) / float(frame.extent.height);
+    const glm::mat4 view = sample::viewMatrix(scene.camera);
+    FrameUniform u{};
+    float texel = 0;
+    shadowClip_ = sunClip(scene.daylight.toSun, &texel);
+    u.viewProjection = sample::projectionMatrix(scene.camera, aspect) * view;
+    u.shadowMatrix = clipToPicture() * shadowClip_;
+    u.eye = glm::vec4(scene.camera.eye, float(frame.time));
+    u.toSun = glm::vec4(scene.daylight.toSun, texel);
+    const size_t lights = std::min<size_t>(scene.lights.size(), kMaxLights);
+    u.sun = glm::vec4(scene.daylight.sun, float(lights));
+    u.sky = glm::vec4(scene.daylight.sky, scene.daylight.windows);
+    u.ground = glm::vec4(scene.daylight.ground, 0);
+    u.haze = glm::vec4(scene.daylight.haze, 0);
+    u.cameraRight = glm::vec4(view[0][0], view[1][0], view[2][0], scene.daylight.emission);
+    u.cameraUp = glm::vec4(view[0][1], view[1][1], view[2][1], 0);
+    for (size_t i = 0; i < lights; ++i) {
+        u.lightPlaces[i] = glm::vec4(scene.lights[i].place, scene.lights[i].reach);
+        u.lightColors[i] = glm::vec4(scene.lights[i].color, scene.lights[i].size);
+    }
+    std::memcpy(slot.uniform.mapped, &u, sizeof u);
+    particleCount_ = uint32_t(std::min<size_t>(scene.particles.size(), kMaxParticles));
+    if (particleCount_)
+        std::memcpy(slot.particles.mapped, scene.particles.data(),
+                    particleCount_ * sizeof(JetParticle));
+}
+
+void Renderer::bindGeometry(VkCommandBuffer commands, const Slot& slot) const {
+    const VkBuffer buffers[] = {vertices_.buffer, slot.instances.buffer};
+    const VkDeviceSize offsets[] = {0, 0};
+    vkCmdBindVertexBuffers(commands, 0, 2, buffers, offsets);
+    vkCmdBindIndexBuffer(commands, indices_.buffer, 0, VK_INDEX_TYPE_UINT32);
+}
+
+void Renderer::drawShadow(VkCommandBuffer commands, const Slot& slot) {
+    VkClearValue clear{};
+    clear.depthStencil = {1.0f, 0};
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = shadowPass_;
+    info.framebuffer = shadowFramebuffer_;
+    info.renderArea = {{0, 0}, {kShadowSide, kShadowSide}};
+    info.clearValueCount = 1;
+    info.pClearValues = &clear;
+    vkCmdBeginRenderPass(commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, shadowPipeline_);
+    vkCmdPushConstants(commands, shadowLayout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof shadowClip_,
+                       &shadowClip_);
+    bindGeometry(commands, slot);
+    for (const Run& run : shadow_) {
+        const Surface& s = surfaces_[run.surface];
+        vkCmdDrawIndexed(commands, s.indexCount, run.count, s.firstIndex, s.firstVertex, run.first);
+    }
+    vkCmdEndRenderPass(commands);
+}
+
+void Renderer::prepare(const sample::StageFrame& frame, const SceneFrame& scene) {
+    Slot& slot = slots_[frame.slot];
+    gather(slot, scene);
+    upload(slot, frame, scene);
+    drawShadow(frame.commands, slot);
+}
+
+void Renderer::drawSolid(const sample::StageFrame& frame) {
+    const Slot& slot = slots_[frame.slot];
+    VkCommandBuffer commands = frame.commands;
+    bindGeometry(commands, slot);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &slot.set, 0,
+                            nullptr);
+    auto draw = [&](const Run& run) {
+        const Surface& s = surfaces_[run.surface];
+        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1, &s.set, 0,
+                                nullptr);
+        vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof s.push,
+                           &s.push);
+        vkCmdDrawIndexed(commands, s.indexCount, run.count, s.firstIndex, s.firstVertex, run.first);
+    };
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, model_);
+    for (const Run& run : solid_) draw(run);
+    // The land comes last: most of what lies under the models is then never shaded.
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, roadPipeline_);
+    draw({road_, 0, 1});
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, waterPipeline_);
+    draw({water_, 0, 1});
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, groundPipeline_);
+    draw({ground_, 0, 1});
+}
+
+void Renderer::drawJet(const sample::StageFrame& frame) {
+    if (particleCount_ == 0) return;
+    const Slot& slot = slots_[frame.slot];
+    VkCommandBuffer commands = frame.commands;
+    const VkDeviceSize offset = 0;
+    const VkRect2D scissor{{0, 0}, frame.extent};
+    vkCmdSetViewport(commands, 0, 1, &frame.viewport);
+    vkCmdSetScissor(commands, 0, 1, &scissor);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, jetPipeline_);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &slot.set, 0,
+                            nullptr);
+    vkCmdBindVertexBuffers(commands, 0, 1, &slot.particles.buffer, &offset);
+    vkCmdDraw(commands, 6, particleCount_, 0, 0);
+}
+
+}  // namespace tower

@@ -1,0 +1,109 @@
+// The pretend engine's renderer of this sample: a small forward renderer with a sun shadow map.
+// Draws the land, the pond and every model that is not handed to the fire library; knows nothing
+// of fire but the lights it is given.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "common/camera.h"
+#include "common/stage.h"
+#include "jet.h"
+#include "light.h"
+#include "paint.h"
+
+namespace tower {
+
+struct PointLight {
+    glm::vec3 place;     // m
+    float reach = 8;     // m, dark beyond
+    glm::vec3 color;     // linear, per unit distance
+    float size = 0.75f;  // m, radius of the source
+};
+
+// One instance as it is this frame.
+struct Placed {
+    int model = 0;
+    village::Frame frame;
+    village::Vec3 tint{1, 1, 1};
+    bool drawn = true;  // false: another draws it; it still casts a shadow
+};
+
+struct SceneFrame {
+    sample::Camera camera;
+    Daylight daylight;
+    std::span<const Placed> placed;
+    std::span<const PointLight> lights;      // the strongest first; at most 16 are used
+    std::span<const JetParticle> particles;  // back to front
+};
+
+class Renderer {
+ public:
+    Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
+             const village::Scene& scene, const PaintedVillage& painted);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    // Outside any pass: uploads the frame and draws the shadow map.
+    void prepare(const sample::StageFrame& frame, const SceneFrame& scene);
+    // Inside the stage's scene pass: everything solid.
+    void drawSolid(const sample::StageFrame& frame);
+    // Inside the pass, last: the jet.
+    void drawJet(const sample::StageFrame& frame);
+
+ private:
+    struct Push {
+        float uvWindow[4], metres[4];
+    };
+    struct Surface {  // what a draw needs of one model
+        uint32_t firstIndex = 0, indexCount = 0;
+        int32_t firstVertex = 0;
+        VkDescriptorSet set = VK_NULL_HANDLE;
+        sample::Image color, relief;
+        Push push{};
+    };
+    struct Run {  // instances of one model, consecutive in the slot's buffer
+        size_t surface;
+        uint32_t first, count;
+    };
+    struct Slot {
+        sample::Buffer uniform, instances, particles;
+        VkDescriptorSet set = VK_NULL_HANDLE;
+    };
+
+    void makeLayouts();
+    void makeShadow();
+    void makeGeometry(const village::Scene& scene, const PaintedVillage& painted);
+    void makeSurface(const village::Model& model, const Painting& painting, village::Vec2 low,
+                     village::Vec2 high, glm::vec2 metres);
+    void makeSlots(uint32_t count, size_t instances);
+    void makePipelines(const sample::Stage& stage);
+    void gather(Slot& slot, const SceneFrame& scene);
+    void upload(Slot& slot, const sample::StageFrame& frame, const SceneFrame& scene);
+    void drawShadow(VkCommandBuffer commands, const Slot& slot);
+    void bindGeometry(VkCommandBuffer commands, const Slot& slot) const;
+
+    const sample::VulkanHost& host_;
+    std::vector<Surface> surfaces_;  // the scene's models, then ground, road, water
+    size_t ground_ = 0, road_ = 0, water_ = 0;
+    sample::Buffer vertices_, indices_;
+    std::vector<Slot> slots_;
+    std::vector<Run> solid_, shadow_;
+    uint32_t particleCount_ = 0;
+    glm::mat4 shadowClip_{1.0f};
+
+    sample::Image shadowMap_;
+    VkRenderPass shadowPass_ = VK_NULL_HANDLE;
+    VkFramebuffer shadowFramebuffer_ = VK_NULL_HANDLE;
+    VkSampler shadowSampler_ = VK_NULL_HANDLE, sampler_ = VK_NULL_HANDLE;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkDescriptorSetLayout frameLayout_ = VK_NULL_HANDLE, surfaceLayout_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE, shadowLayout_ = VK_NULL_HANDLE;
+    VkPipeline model_ = VK_NULL_HANDLE, groundPipeline_ = VK_NULL_HANDLE;
+    VkPipeline roadPipeline_ = VK_NULL_HANDLE, waterPipeline_ = VK_NULL_HANDLE;
+    VkPipeline shadowPipeline_ = VK_NULL_HANDLE, jetPipeline_ = VK_NULL_HANDLE;
+};
+
+}  // namespace tower
