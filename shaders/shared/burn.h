@@ -19,8 +19,8 @@
 #define FW_BIND_LIST_B 11     // uint[]: front list (pong)
 #define FW_BIND_RUN 12        // uint[]: due tiles of this iteration
 #define FW_BIND_SCRATCH 13    // uint[]: 64 words per due tile
-#define FW_BIND_MASKS 14      // uvec2[]: changed texels per due tile
-#define FW_BIND_COUNTERS 15   // IterationCounters[]
+#define FW_BIND_MASKS 14      // uvec4[]: texels changed (xy) and newly lit (zw) per due tile
+#define FW_BIND_COUNTERS 15   // IterationCounters[], see the kRow constants
 #define FW_BIND_EVENTS 16     // TexelEvent[]
 #define FW_BIND_WAKE_GROUPS 17  // uvec2[]: object slot, first tile of 64
 #define FW_BIND_OBJECT_COUNTERS 18  // ObjectCounters[]
@@ -33,7 +33,7 @@
 #define FW_BIND_PREDICT_LIST_B 25
 #define FW_BIND_PROBES 26     // uvec2[]: object slot, texel
 #define FW_BIND_ANSWERS 27    // uint[]: state of each probe
-#define FW_BIND_PUBLISHED 28  // float[]: S planes of objects in as-published mode
+#define FW_BIND_PUBLISHED 28  // float[]: 3 planes of an as-published object: S*D ping, pong, D
 #define FW_BIND_LIGHTS 29     // BurnLight[]
 #define FW_BIND_LIGHT_CELLS 30  // uint[]: hash grid of burning cells
 #define FW_BIND_FLAMES 31     // FlameQuad[]
@@ -73,7 +73,19 @@ FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinate
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
 FW_SHARED_CONST uint kTileTouched = 2u;      // an input changed: due now
 FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
-FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list
+FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
+
+// Rows of IterationCounters. The first are lists that live on: indirect groups of one tile each.
+FW_SHARED_CONST uint kRowBurn = 0u;          // + parity of the burn list; run*: its BurnTiles / 64
+FW_SHARED_CONST uint kRowPredict = 2u;       // + parity of the predict list
+FW_SHARED_CONST uint kRowIteration = 4u;     // + iteration of the frame
+
+// StepPush::switches, as FwDebugSwitch
+FW_SHARED_CONST uint kSwitchDense = 1u;
+FW_SHARED_CONST uint kSwitchShuffle = 2u;
+FW_SHARED_CONST uint kSwitchNoSeamWake = 4u;
+FW_SHARED_CONST uint kSwitchWrongReaders = 8u;
+FW_SHARED_CONST uint kSwitchNoWindWake = 16u;
 
 // TexelEvent::kind, as FwIgnitionKind
 FW_SHARED_CONST uint kEventIgnite = 0u;
@@ -103,8 +115,10 @@ struct BurnObject {   // everything a pass needs to find an object's planes
     vec4 worldRow1;
     vec4 worldRow2;
     vec4 tint;        // rgb; w: mean texel area, m^2, world scale
+    uint publishedBase;  // into published, as-published objects only
+    uint reserved0; uint reserved1; uint reserved2;
 };
-FW_SHARED_SIZE(BurnObject, 144)
+FW_SHARED_SIZE(BurnObject, 160)
 
 struct BurnMaterial { // integers of the spread law for one material on one object; see front.h
     uint sigma0;      // slowness at R0: Q22 ticks per 1/8 position unit
@@ -125,8 +139,11 @@ struct BurnMaterial { // integers of the spread law for one material on one obje
     float roughness;
     vec4 baseColor;   // linear albedo; w unused
     uvec4 upCeiling;  // xyz: up in object space as int Q10 bits; w: 0
+    uint flameTicks;  // as burnTicks, but thick fuel ends too: when it is consumed
+    uint windowMax;   // the largest correction window its object may ever have, ticks
+    uint reserved0; uint reserved1;
 };
-FW_SHARED_SIZE(BurnMaterial, 96)
+FW_SHARED_SIZE(BurnMaterial, 112)
 
 struct TileState {
     uint wake;        // earliest pending arrival, ticks; kNever: none
@@ -136,7 +153,7 @@ struct TileState {
 };
 FW_SHARED_SIZE(TileState, 16)
 
-struct IterationCounters {  // one per iteration of a frame, zeroed before it; [0].list is carried over
+struct IterationCounters {  // zeroed before a frame from kRowIteration on, but for the carried list
     uint runX; uint runY; uint runZ; uint runCount;     // indirect groups of arrival, commit
     uint listX; uint listY; uint listZ; uint listCount; // indirect groups of schedule, and its size
 };
@@ -155,7 +172,7 @@ struct ObjectCounters {
     uint burning;     // of the last reduce: texels that flame
     uint frontTiles;  // of the last reduce: tiles of the front list
     uint lateClamps;  // since ever
-    uint lastIgnition;  // latest ignition tick seen
+    uint lastIgnition;  // end tick of the last window in which a texel caught
     uint burningTiles;
     uint reserved0; uint reserved1;
 };
@@ -174,6 +191,25 @@ struct BurnLight {    // as FwLight
     float power; uint id; uint reserved0; uint reserved1;
 };
 FW_SHARED_SIZE(BurnLight, 48)
+
+struct StepPush {     // push constants of the simulation passes
+    uint now;         // tick at the step's start; reduce, predict: tick after the last step
+    uint stepShift;   // log2 of the step's iterations
+    uint iteration;   // of the step
+    uint row;         // counters row of the front list that is read (events, wake: appended to)
+    uint parity;      // of that list: 0 = A
+    uint burnParity;  // of the burn list that is read (others: appended to)
+    uint predictParity;
+    uint switches;    // FwDebugSwitch
+    uint count;       // events, wake groups, probes or object slots
+    uint object;      // reset, published: slot
+    uint publishedParity;  // plane that is read
+    uint reserved0;
+    float publishedRate;     // C_D * dt
+    float publishedGravity;  // C_G
+    uint reserved1; uint reserved2;
+};
+FW_SHARED_SIZE(StepPush, 64)
 
 FW_SHARED_FN bool isSource(uint t) { return t < kLiveEnd; }
 FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }

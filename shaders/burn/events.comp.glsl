@@ -1,0 +1,87 @@
+// Applies a step's texel events, 64 a group: each texel's run of events by the thread of its first,
+// in order. Not a solver: the front kernel answers in the same step.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_TILES readonly
+#define FW_USE_READERS readonly
+#define FW_USE_STATE FW_READ_WRITE
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_LISTS FW_READ_WRITE
+#define FW_USE_COUNTERS FW_READ_WRITE
+#define FW_USE_EVENTS readonly
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_BURN_LISTS FW_READ_WRITE
+#define FW_USE_PREDICT_LISTS FW_READ_WRITE
+#define FW_USE_PUBLISHED FW_READ_WRITE
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+#include "lib/lists.glsl"
+
+void applyRun(uint first) {
+    uint object = events[first].object;
+    uint texel = events[first].texel;
+    uint at = objects[object].stateBase + texel;
+    uint before = state[at];
+    uint now = before;
+    uint last = first;
+    do {
+        now = applyEvent(now, events[last].kind, events[last].tick, push.now);
+        ++last;
+    } while (last < push.count && events[last].object == object && events[last].texel == texel);
+    if (now == before) return;
+    state[at] = now;
+
+    uint width = objects[object].width;
+    uint x = texel % width;
+    uint y = texel / width;
+    uint local = (y >> 3u) * objects[object].tilesX + (x >> 3u);
+    uint lane = (y & 7u) * 8u + (x & 7u);
+    uint worldTile = objects[object].worldTileBase + local;
+
+    if (isSource(now) != isSource(before))
+        atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
+    if (isSource(now)) {
+        atomicMax(objectCounters[object].lastIgnition, push.now + kStepTicks);
+        if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u)
+            burnAppend(push.burnParity, worldTile);
+    }
+    predictTouch(push.predictParity, worldTile);
+    if ((objects[object].flags & kObjectPublished) != 0u) {
+        uint plane = objects[object].width * objects[object].height;
+        uint base = objects[object].publishedBase + texel;
+        float q = isSource(now) ? published[base + 2u * plane] : 0.0;
+        published[base] = q;
+        published[base + plane] = q;
+        return;
+    }
+
+    tileState[worldTile].lastChange = push.now;
+    touchTile(push.parity, push.row, worldTile, kTileTouched);
+    uvec2 mask = lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u));
+    uint beside = neighboursOf(mask.x, mask.y);
+    for (uint k = 0u; k < 8u; ++k) {
+        if ((beside & (1u << k)) == 0u) continue;
+        uint other = besideTile(object, local, k);
+        if (other != kNoneTexel)
+            touchTile(push.parity, push.row, objects[object].worldTileBase + other, kTileTouched);
+    }
+    uvec4 seam = tiles[(objects[object].tileBase + local) * 2u];
+    if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u ||
+        (push.switches & kSwitchNoSeamWake) != 0u)
+        return;
+    for (uint r = 0u; r < seam.w; ++r)
+        touchTile(push.parity, push.row,
+                  objects[object].worldTileBase + readerTile(object, seam.z, r), kTileTouched);
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.count) return;
+    uint object = events[i].object;
+    uint texel = events[i].texel;
+    if (i > 0u && events[i - 1u].object == object && events[i - 1u].texel == texel) return;
+    applyRun(i);
+}

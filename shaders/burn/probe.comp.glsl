@@ -1,0 +1,17 @@
+// Gathers the states of asked texels for the readback.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_STATE readonly
+#define FW_USE_PROBES readonly
+#define FW_USE_ANSWERS writeonly
+#include "lib/buffers.glsl"
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.count) return;
+    uvec2 probe = probes[i];
+    answers[i] = state[objects[probe.x].stateBase + probe.y];
+}

@@ -1,0 +1,56 @@
+// A new object's planes: what can burn and what cannot, tiles asleep. One group per tile.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_MATERIALS readonly
+#define FW_USE_TEXELS readonly
+#define FW_USE_NORMALS readonly
+#define FW_USE_SLOWNESS readonly
+#define FW_USE_STATE writeonly
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_PREDICT writeonly
+#define FW_USE_GRADIENT writeonly
+#define FW_USE_PUBLISHED writeonly
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+#include "shared/published.h"
+
+void resetTile(uint local, uint lane) {
+    uint object = push.object;
+    uint texel = texelOf(object, local, lane);
+    uvec2 packedTexel = texels[objects[object].texelBase + texel];
+    uint slow = slownessAt(objects[object].slowBase, texel);
+    uint material = object * kMaterialsPerObject + ((packedTexel.y >> 16u) & 7u);
+    bool burns = texelBurns(packedTexel.y >> 16u, slow, materials[material].flags);
+    uint at = objects[object].stateBase + texel;
+    state[at] = burns ? kNever : kInert;
+    predict[at] = burns ? kNever : kInert;
+    gradient[at] = 0u;
+    if (lane == 0u) {
+        uint worldTile = objects[object].worldTileBase + local;
+        tileState[worldTile].wake = kNever;
+        tileState[worldTile].flag = 0u;
+        tileState[worldTile].lastChange = kFarPast;
+        tileState[worldTile].object = object;
+    }
+    if ((objects[object].flags & kObjectPublished) == 0u) return;
+    uint plane = objects[object].width * objects[object].height;
+    uint base = objects[object].publishedBase + texel;
+    ivec3 n = decodeNormal(normals[objects[object].texelBase + texel]);
+    uvec4 up = materials[material].upCeiling;
+    int rise = dotInt(n, ivec3(int(up.x), int(up.y), int(up.z)));  // Q24
+    published[base] = 0.0;
+    published[base + plane] = 0.0;
+    published[base + 2u * plane] =
+        burns ? publishedSpread(push.publishedRate, push.publishedGravity, slow,
+                                -float(rise) / 16777216.0)
+              : 0.0;
+}
+
+void main() {
+    uint tiles = objects[push.object].tileCount;
+    for (uint local = gl_WorkGroupID.x; local < tiles; local += gl_NumWorkGroups.x)
+        resetTile(local, gl_LocalInvocationID.x);
+}

@@ -1,0 +1,69 @@
+// Sorts the front list into tiles that are due (run list) and tiles that wait (the other list); the
+// rest leaves. With the dense switch it runs every tile of the wake groups instead.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_LISTS FW_READ_WRITE
+#define FW_USE_COUNTERS FW_READ_WRITE
+#define FW_USE_RUN writeonly
+#define FW_USE_MASKS writeonly
+#define FW_USE_WAKE_GROUPS readonly
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+#include "lib/lists.glsl"
+
+void runTile(uint worldTile, uint flag) {
+    uint slot = atomicAdd(counters[push.row].runCount, 1u);
+    atomicMax(counters[push.row].runX, min(slot + 1u, kMaxGroups));
+    if (slot == 0u) {
+        counters[push.row].runY = 1u;
+        counters[push.row].runZ = 1u;
+    }
+    run[slot] = worldTile;
+    masks[slot] = uvec4(0u);
+    tileState[worldTile].wake = kNever;
+    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched);
+}
+
+void schedule(uint worldTile, bool dense) {
+    TileRef tile = tileRef(worldTile);
+    uint flag = tileState[worldTile].flag;
+    if (!tile.alive) {
+        tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched);
+        return;
+    }
+    if (dense && (objects[tile.object].flags & kObjectPublished) != 0u) return;
+    uint shift = objects[tile.object].substepShift;
+    bool wanted = takesPart(push.iteration, push.stepShift, shift);
+    if (!wanted) {
+        if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
+        return;
+    }
+    uint wake = tileState[worldTile].wake;
+    if (dense || (flag & kTileTouched) != 0u ||
+        wake <= iterationEnd(push.now, push.iteration, push.stepShift, shift)) {
+        runTile(worldTile, flag);
+    } else if (wake != kNever) {
+        frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
+    } else {
+        tileState[worldTile].flag = flag & ~kTileListed;
+    }
+}
+
+void main() {
+    if ((push.switches & kSwitchDense) != 0u) {
+        for (uint g = gl_WorkGroupID.x; g < push.count; g += gl_NumWorkGroups.x) {
+            uint object = wakeGroups[g].x;
+            uint local = wakeGroups[g].y + gl_LocalInvocationID.x;
+            if (local < objects[object].tileCount)
+                schedule(objects[object].worldTileBase + local, true);
+        }
+        return;
+    }
+    uint count = counters[push.row].listCount;
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u)
+        schedule(push.parity == 0u ? listA[i] : listB[i], false);
+}

@@ -1,0 +1,126 @@
+// Storage buffers of the simulation passes. A shader defines FW_USE_<NAME> as the access it needs
+// (readonly, writeonly, or FW_READ_WRITE) before it includes this; only those are declared.
+#ifndef FW_LIB_BUFFERS_GLSL
+#define FW_LIB_BUFFERS_GLSL
+#include "shared/burn.h"
+
+#define FW_READ_WRITE
+#define FW_BUFFER(number, access, block, type, name) \
+    layout(std430, set = 0, binding = number) access buffer block { type name[]; }
+
+#ifdef FW_USE_OBJECTS
+FW_BUFFER(FW_BIND_OBJECTS, FW_USE_OBJECTS, ObjectsBuffer, BurnObject, objects);
+#endif
+#ifdef FW_USE_MATERIALS
+FW_BUFFER(FW_BIND_MATERIALS, FW_USE_MATERIALS, MaterialsBuffer, BurnMaterial, materials);
+#endif
+#ifdef FW_USE_TEXELS
+FW_BUFFER(FW_BIND_TEXELS, FW_USE_TEXELS, TexelsBuffer, uvec2, texels);
+#endif
+#ifdef FW_USE_NORMALS
+FW_BUFFER(FW_BIND_NORMALS, FW_USE_NORMALS, NormalsBuffer, uint, normals);
+#endif
+#ifdef FW_USE_SLOWNESS
+FW_BUFFER(FW_BIND_SLOWNESS, FW_USE_SLOWNESS, SlownessBuffer, uint, slowness);
+uint slownessAt(uint base, uint texel) {
+    return (slowness[base + (texel >> 1u)] >> ((texel & 1u) * 16u)) & 0xFFFFu;
+}
+#endif
+#ifdef FW_USE_LINKS
+FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinksBuffer, uint, links);
+#endif
+#ifdef FW_USE_READERS
+FW_BUFFER(FW_BIND_READERS, FW_USE_READERS, ReadersBuffer, uint, readers);
+#endif
+#ifdef FW_USE_TILES
+// Two words of four per tile: seam mask, reader start and count; rim mask, rim base, unused.
+FW_BUFFER(FW_BIND_TILES, FW_USE_TILES, TilesBuffer, uvec4, tiles);
+#endif
+#ifdef FW_USE_STATE
+FW_BUFFER(FW_BIND_STATE, FW_USE_STATE, StateBuffer, uint, state);
+#endif
+#ifdef FW_USE_TILE_STATE
+FW_BUFFER(FW_BIND_TILE_STATE, FW_USE_TILE_STATE, TileStateBuffer, TileState, tileState);
+#endif
+#ifdef FW_USE_LISTS
+FW_BUFFER(FW_BIND_LIST_A, FW_USE_LISTS, ListABuffer, uint, listA);
+FW_BUFFER(FW_BIND_LIST_B, FW_USE_LISTS, ListBBuffer, uint, listB);
+#endif
+#ifdef FW_USE_RUN
+FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uint, run);
+#endif
+#ifdef FW_USE_SCRATCH
+FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH, ScratchBuffer, uint, scratch);
+#endif
+#ifdef FW_USE_MASKS
+FW_BUFFER(FW_BIND_MASKS, FW_USE_MASKS, MasksBuffer, uvec4, masks);
+#endif
+#ifdef FW_USE_COUNTERS
+FW_BUFFER(FW_BIND_COUNTERS, FW_USE_COUNTERS, CountersBuffer, IterationCounters, counters);
+#endif
+#ifdef FW_USE_EVENTS
+FW_BUFFER(FW_BIND_EVENTS, FW_USE_EVENTS, EventsBuffer, TexelEvent, events);
+#endif
+#ifdef FW_USE_WAKE_GROUPS
+FW_BUFFER(FW_BIND_WAKE_GROUPS, FW_USE_WAKE_GROUPS, WakeGroupsBuffer, uvec2, wakeGroups);
+#endif
+#ifdef FW_USE_OBJECT_COUNTERS
+FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters,
+          objectCounters);
+#endif
+#ifdef FW_USE_BURN_LISTS
+FW_BUFFER(FW_BIND_BURN_A, FW_USE_BURN_LISTS, BurnABuffer, uint, burnA);
+FW_BUFFER(FW_BIND_BURN_B, FW_USE_BURN_LISTS, BurnBBuffer, uint, burnB);
+#endif
+#ifdef FW_USE_BURN_TILES
+FW_BUFFER(FW_BIND_BURN_TILES, FW_USE_BURN_TILES, BurnTilesBuffer, BurnTile, burnTiles);
+#endif
+#ifdef FW_USE_PREDICT
+FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);
+#endif
+#ifdef FW_USE_GRADIENT
+FW_BUFFER(FW_BIND_GRADIENT, FW_USE_GRADIENT, GradientBuffer, uint, gradient);
+#endif
+#ifdef FW_USE_PREDICT_LISTS
+FW_BUFFER(FW_BIND_PREDICT_LIST_A, FW_USE_PREDICT_LISTS, PredictListABuffer, uint, predictA);
+FW_BUFFER(FW_BIND_PREDICT_LIST_B, FW_USE_PREDICT_LISTS, PredictListBBuffer, uint, predictB);
+#endif
+#ifdef FW_USE_PROBES
+FW_BUFFER(FW_BIND_PROBES, FW_USE_PROBES, ProbesBuffer, uvec2, probes);
+#endif
+#ifdef FW_USE_ANSWERS
+FW_BUFFER(FW_BIND_ANSWERS, FW_USE_ANSWERS, AnswersBuffer, uint, answers);
+#endif
+#ifdef FW_USE_PUBLISHED
+FW_BUFFER(FW_BIND_PUBLISHED, FW_USE_PUBLISHED, PublishedBuffer, float, published);
+#endif
+
+#ifdef FW_USE_PUSH
+layout(push_constant) uniform StepPushBlock { StepPush push; };
+#endif
+
+const uint kMaxGroups = 65535u;  // of an indirect dispatch; passes stride over the rest
+
+// A world tile as its object sees it. Entries of a destroyed object are met in lists until the next
+// pass drops them: `alive` is false for those.
+#if defined(FW_USE_OBJECTS) && defined(FW_USE_TILE_STATE)
+struct TileRef {
+    uint object, local;
+    bool alive;
+};
+TileRef tileRef(uint worldTile) {
+    TileRef r;
+    r.object = tileState[worldTile].object;
+    r.local = worldTile - objects[r.object].worldTileBase;
+    r.alive = (objects[r.object].flags & kObjectLive) != 0u &&
+              r.local < objects[r.object].tileCount;
+    return r;
+}
+// Texel of a lane of a tile, in the object's own map.
+uint texelOf(uint object, uint local, uint lane) {
+    uint tilesX = objects[object].tilesX;
+    return ((local / tilesX) * 8u + (lane >> 3u)) * objects[object].width +
+           (local % tilesX) * 8u + (lane & 7u);
+}
+#endif
+#endif

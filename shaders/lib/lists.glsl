@@ -1,0 +1,67 @@
+// Appending to the lists of tiles, and touching tiles. Membership is a flag bit of the tile, so a
+// tile is in a list at most once and the order never matters.
+#ifndef FW_LIB_LISTS_GLSL
+#define FW_LIB_LISTS_GLSL
+
+// Slot of a new entry in the list of `row`; `perGroup` entries make one indirect group.
+uint listSlot(uint row, uint perGroup) {
+    uint slot = atomicAdd(counters[row].listCount, 1u);
+    if (slot % perGroup == 0u) {
+        atomicMax(counters[row].listX, min(slot / perGroup + 1u, kMaxGroups));
+        if (slot == 0u) {
+            counters[row].listY = 1u;
+            counters[row].listZ = 1u;
+        }
+    }
+    return slot;
+}
+
+#ifdef FW_USE_LISTS
+void frontAppend(uint parity, uint row, uint worldTile) {
+    uint slot = listSlot(row, 64u);
+    if (parity == 0u) listA[slot] = worldTile;
+    else listB[slot] = worldTile;
+}
+// `bits` beside kTileListed.
+void touchTile(uint parity, uint row, uint worldTile, uint bits) {
+    uint old = atomicOr(tileState[worldTile].flag, kTileListed | bits);
+    if ((old & kTileListed) == 0u) frontAppend(parity, row, worldTile);
+}
+#endif
+
+#ifdef FW_USE_BURN_LISTS
+void burnAppend(uint parity, uint worldTile) {
+    uint slot = listSlot(kRowBurn + parity, 1u);
+    if (parity == 0u) burnA[slot] = worldTile;
+    else burnB[slot] = worldTile;
+}
+#endif
+
+#ifdef FW_USE_PREDICT_LISTS
+void predictAppend(uint parity, uint worldTile) {
+    uint slot = listSlot(kRowPredict + parity, 1u);
+    if (parity == 0u) predictA[slot] = worldTile;
+    else predictB[slot] = worldTile;
+}
+void predictTouch(uint parity, uint worldTile) {
+    uint bit = kTilePredict << parity;
+    if ((atomicOr(tileState[worldTile].flag, bit) & bit) == 0u) predictAppend(parity, worldTile);
+}
+#endif
+
+#ifdef FW_USE_READERS
+// Local tile `k` of the eight beside `local`, or kNoneTexel.
+uint besideTile(uint object, uint local, uint k) {
+    int x = int(local % objects[object].tilesX) + kFrontRingX[k];
+    int y = int(local / objects[object].tilesX) + kFrontRingY[k];
+    int tilesX = int(objects[object].tilesX);
+    int tilesY = int(objects[object].height / 8u);
+    return x < 0 || y < 0 || x >= tilesX || y >= tilesY ? kNoneTexel : uint(y * tilesX + x);
+}
+// Local tile `r` of those that read tile `local` over seams. The switches are the test suite's.
+uint readerTile(uint object, uint readerStart, uint r) {
+    uint reader = readers[objects[object].readerBase + readerStart + r];
+    return (push.switches & kSwitchWrongReaders) != 0u ? 0u : reader;
+}
+#endif
+#endif

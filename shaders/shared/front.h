@@ -1,0 +1,355 @@
+// The front kernel: when does a texel catch fire from the eight of its ring? Integers only, one
+// text for C++ and GLSL. It loads nothing: callers hand over ticks and links. Not the driver of
+// lists and tiles (shaders/burn, runtime/gpu/cpu).
+//
+// Slowness along a unit vector v is A * (1 - e.v): head and back of an ellipse, exactly. Times
+// inside the kernel are 1/16 tick after the earliest counting source of the ring.
+#ifndef FW_SHARED_FRONT_H
+#define FW_SHARED_FRONT_H
+#include "shared/burn.h"
+
+#ifdef __cplusplus
+#include <cmath>
+#define FW_IN(T) const T&
+#define FW_INOUT(T) T&
+#else
+#define FW_IN(T) T
+#define FW_INOUT(T) inout T
+#endif
+
+FW_SHARED_BEGIN
+
+// Ring order: counter-clockwise, odd = diagonal (as mesh::kRingX).
+#ifdef __cplusplus
+inline constexpr int kFrontRingX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
+inline constexpr int kFrontRingY[8] = {0, 1, 1, 1, 0, -1, -1, -1};
+#else
+const int kFrontRingX[8] = int[8](1, 1, 0, -1, -1, -1, 0, 1);
+const int kFrontRingY[8] = int[8](0, 1, 1, 1, 0, -1, -1, -1);
+#endif
+
+FW_SHARED_CONST int kFrontTimeMax = 0x1FFFFFFF;   // of one link, 1/16 ticks: 2.3 h
+FW_SHARED_CONST uint kFrontDelayMax = 0x1FFFFFFu; // between sources of a ring, ticks: 2.3 h
+FW_SHARED_CONST uint kFrontEpsMax = 16200u;       // Q14: head/back slowness ratio 178
+FW_SHARED_CONST uint kDriveLimit = 65000u;        // |drive|, Q10
+FW_SHARED_CONST uint kFarPast = 0x80000000u;      // TileState::lastChange of a tile never changed
+
+struct FrontPrep {  // slowness of one texel: A * (1 - e.v)
+    uint A;         // Q22 ticks per 1/8 position unit
+    ivec3 e;        // Q14
+};
+
+struct FrontRing {  // what a texel sees
+    uint tick[8];   // states of the eight
+    ivec3 link[8];  // own position less theirs, position units; of those that count
+    uint burn[8];   // ticks that they flame, kNoneTexel: without end; of those that count
+};
+
+// Does a texel with these material flags (texel word >> 16) take part at all?
+FW_SHARED_FN bool texelBurns(uint materialFlags, uint slowness, uint burnFlags) {
+    return (materialFlags & kTexelReal) != 0u && slowness != 0u && (burnFlags & 1u) != 0u;
+}
+
+// Does a texel of state t flame at tick `now`?
+FW_SHARED_FN bool flames(uint t, uint now, uint flameTicks) {
+    return isSource(t) && t <= now && (flameTicks == kNoneTexel || now - t < flameTicks);
+}
+
+FW_SHARED_FN uint hash32(uint x) {
+    x ^= x >> 16u;
+    x *= 0x7feb352du;
+    x ^= x >> 15u;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// Modulo 2^32: exact while the sum fits, and never undefined.
+FW_SHARED_FN uint squareSum(ivec3 a) {
+    return uint(a.x) * uint(a.x) + uint(a.y) * uint(a.y) + uint(a.z) * uint(a.z);
+}
+FW_SHARED_FN int dotInt(ivec3 a, ivec3 b) {
+    return int(uint(a.x) * uint(b.x) + uint(a.y) * uint(b.y) + uint(a.z) * uint(b.z));
+}
+
+// Nearest integer to the root of n, n < 2^32 - 2^17. The float seed may be off by one on any
+// device; the integers repair it.
+FW_SHARED_FN uint isqrtNear(uint n) {
+#ifdef __cplusplus
+    uint r = uint(int(std::sqrt(float(n))));
+#else
+    uint r = uint(sqrt(float(n)));
+#endif
+    if (r * r > n) r -= 1u;
+    if (n - r * r > 2u * r) r += 1u;
+    if (n - r * r > r) r += 1u;
+    return r;
+}
+
+// (a * b) >> s, 0 < s < 32; saturates.
+FW_SHARED_FN uint mulShift(uint a, uint b, uint s) {
+    uint high, low;
+    umulExtended(a, b, high, low);
+    return (high >> s) != 0u ? 0xFFFFFFFFu : ((high << (32u - s)) | (low >> s));
+}
+// (a * b) >> 32, to nearest.
+FW_SHARED_FN uint mulHighRound(uint a, uint b) {
+    uint high, low;
+    umulExtended(a, b, high, low);
+    return high + (low >> 31u);
+}
+
+// Signed 11:11:10 (1023, 1023, 511 = 1) to Q14.
+FW_SHARED_FN ivec3 decodeNormal(uint packedNormal) {
+    int x = int(packedNormal << 21u) >> 21;
+    int y = int(packedNormal << 10u) >> 21;
+    int z = int(packedNormal) >> 22;
+    return ivec3((x * 16400 + 512) >> 10, (y * 16400 + 512) >> 10, (z * 32832 + 512) >> 10);
+}
+
+FW_SHARED_FN ivec3 decodePosition(uvec2 texel) {
+    return ivec3(int(texel.x & 0xFFFFu), int(texel.x >> 16u), int(texel.y & 0xFFFFu));
+}
+
+// The spread law at one texel. normal: Q14; noise: Q7 slowness factor, not 0.
+FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m) {
+    FrontPrep p;
+    ivec3 drive = ivec3(m.driveX, m.driveY, m.driveZ);
+    ivec3 n12 = ivec3(normal.x >> 2, normal.y >> 2, normal.z >> 2);
+    uint s0 = mulShift(m.sigma0, noise, 7u);
+    if (m.ceiling != 0u) {
+        int down = -(dotInt(ivec3(int(m.upCeiling.x), int(m.upCeiling.y), int(m.upCeiling.z)),
+                            n12) >> 12);  // Q10
+        if (down > 0) {
+            uint faster = 1024u + ((m.ceiling * uint(down < 1024 ? down : 1024)) >> 8u);
+            s0 = mulShift(s0, (1u << 30u) / faster, 20u);
+        }
+    }
+    p.A = s0;
+    p.e = ivec3(0, 0, 0);
+    if ((m.driveX | m.driveY | m.driveZ) == 0) return p;
+    int along = dotInt(drive, n12) >> 12;
+    ivec3 u = ivec3(drive.x - ((along * normal.x + 8192) >> 14),
+                    drive.y - ((along * normal.y + 8192) >> 14),
+                    drive.z - ((along * normal.z + 8192) >> 14));
+    uint s = isqrtNear(squareSum(u));
+    uint capped = s < m.driveMax ? s : m.driveMax;
+    uint head = 1024u + ((m.headGain * capped) >> 8u);  // Q10
+    uint back = 1024u + ((m.backGain * s) >> 8u);
+    uint slowHead = mulShift(s0, (1u << 30u) / head, 20u);
+    uint slowBack = mulShift(s0, back, 10u);
+    uint slowest = mulShift(slowHead, m.breadthMax, 8u);
+    slowBack = slowBack < slowest ? slowBack : slowest;
+    p.A = (slowHead >> 1u) + (slowBack >> 1u) + (slowHead & slowBack & 1u);
+    if (s > 0u && slowBack > slowHead) {
+        uint d = slowBack - slowHead;
+        uint t = (slowBack >> 1u) + (slowHead >> 1u);
+        while (d >= (1u << 18u)) {
+            d >>= 1u;
+            t >>= 1u;
+        }
+        uint eps = (d << 13u) / (t > 0u ? t : 1u);  // Q14: d / (2t)
+        eps = eps < kFrontEpsMax ? eps : kFrontEpsMax;
+        p.e = ivec3(int(uint(u.x) * eps) / int(s), int(uint(u.y) * eps) / int(s),
+                    int(uint(u.z) * eps) / int(s));
+    }
+    return p;
+}
+
+// Travel time, 1/16 ticks. link8: own position less the source's, 1/8 units.
+FW_SHARED_FN int linkCost(ivec3 link8, FW_IN(FrontPrep) p) {
+    uint l = isqrtNear(squareSum(link8));
+    int y = int((l << 14u) - uint(dotInt(link8, p.e)));
+    uint t = mulHighRound(p.A, uint(y > 0 ? y : 0));
+    return int(t < uint(kFrontTimeMax) ? t : uint(kFrontTimeMax));
+}
+
+// Arrival from the point between two sources: a with weight w/64, b with the rest.
+FW_SHARED_FN int pairCost(int ra, int rb, ivec3 a, ivec3 b, int w, FW_IN(FrontPrep) p) {
+    ivec3 link8 = ivec3(b.x * 8 + ((w * (a.x - b.x) + 4) >> 3),
+                        b.y * 8 + ((w * (a.y - b.y) + 4) >> 3),
+                        b.z * 8 + ((w * (a.z - b.z) + 4) >> 3));
+    int dr = ra - rb;
+    return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6) + linkCost(link8, p);
+}
+
+// Best over the segment between two sources: three weights, one parabola step, one more. The ends
+// cost ga and gb.
+FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
+                            FW_IN(FrontPrep) p) {
+    int g1 = pairCost(ra, rb, a, b, 16, p);
+    int g2 = pairCost(ra, rb, a, b, 32, p);
+    int g3 = pairCost(ra, rb, a, b, 48, p);
+    int best = g1 < g2 ? g1 : g2;
+    best = g3 < best ? g3 : best;
+    int lo, mid, hi, w;
+    if (g2 <= g1 && g2 <= g3) {
+        lo = g1; mid = g2; hi = g3; w = 32;
+    } else if (g1 < g3) {
+        lo = gb; mid = g1; hi = g2; w = 16;
+    } else {
+        lo = g2; mid = g3; hi = ga; w = 48;
+    }
+    int den = (lo - mid) + (hi - mid);
+    int num = lo - hi;
+    if (den > 0 && num != 0) {
+        int size = num < 0 ? -num : num;
+        if (size >= (1 << 26)) {
+            size >>= 6;
+            den = (den >> 6) + 1;
+        }
+        int off = int((uint(size) * 8u) / uint(den));  // num/den * half a step of 16
+        off = off > 15 ? 15 : off;
+        off = num < 0 ? -off : off;
+        if (off != 0) {
+            int g = pairCost(ra, rb, a, b, w + off, p);
+            best = g < best ? g : best;
+        }
+    }
+    return best;
+}
+
+// Which of the ring count: sources that burn by the window's end, diagonals not cut off by two
+// barriers. Bit k of `present`: the ring has a k-th texel. `wake` falls to a source to come. (What
+// this function and the next say of `wake` concerns receptive texels only.)
+FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowEnd,
+                               FW_INOUT(uint) wake) {
+    uint counts = 0u, walls = 0u;
+    for (int k = 0; k < 8; ++k) {
+        uint t = ring.tick[k];
+        if (isSource(t)) {
+            if (t <= windowEnd) counts |= 1u << uint(k);
+            else wake = t < wake ? t : wake;
+        } else if (isBarrier(t)) {
+            walls |= 1u << uint(k);
+        }
+    }
+    walls &= present;  // a lost link must not cut a diagonal
+    uint cut = (walls << 1u) & (walls >> 1u) & 0x2Au;
+    if ((walls & 0x41u) == 0x41u) cut |= 0x80u;
+    return counts & ~cut;
+}
+
+// Arrival tick from the counting sources, kNever if none is left. A source burnt out before it
+// could light this texel is dropped; `wake` then falls to the tick after which it can no longer
+// count again under another wind: until then its reader must stay on the list.
+FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPrep) p,
+                               uint windowMax, uint windowEnd, uint floorTick, uint texel,
+                               FW_INOUT(uint) wake) {
+    int cost[8];
+    uint base = kNever;
+    for (int k = 0; k < 8; ++k) {
+        if ((counts & (1u << uint(k))) == 0u) continue;
+        uint t = ring.tick[k];
+        ivec3 l = ring.link[k];
+        cost[k] = linkCost(ivec3(l.x * 8, l.y * 8, l.z * 8), p);
+        if (ring.burn[k] != kNoneTexel) {
+            uint end = t + ring.burn[k];
+            uint reach = t + (uint(cost[k] + 8) >> 4u);
+            if (end < (reach > floorTick ? reach : floorTick)) {
+                counts &= ~(1u << uint(k));
+                uint hold = end + windowMax + 1u;
+                if (hold > windowEnd) wake = hold < wake ? hold : wake;
+                continue;
+            }
+        }
+        base = t < base ? t : base;
+    }
+    if (counts == 0u) return kNever;
+    int rel[8];
+    int best = 0x7FFFFFFF;
+    int bestK = 0;
+    for (int k = 0; k < 8; ++k) {
+        if ((counts & (1u << uint(k))) == 0u) continue;
+        uint delay = ring.tick[k] - base;
+        rel[k] = int(delay < kFrontDelayMax ? delay : kFrontDelayMax) * 16;
+        cost[k] += rel[k];
+        if (cost[k] < best) {
+            best = cost[k];
+            bestK = k;
+        }
+    }
+    int hop = best;
+    int c = (bestK + 1) & 7;
+    int a = (bestK + 7) & 7;
+    if ((counts & (1u << uint(c))) != 0u) {
+        int g = bestOfPair(rel[bestK], rel[c], hop, cost[c], ring.link[bestK], ring.link[c], p);
+        best = g < best ? g : best;
+    }
+    if ((counts & (1u << uint(a))) != 0u) {
+        int g = bestOfPair(rel[bestK], rel[a], hop, cost[a], ring.link[bestK], ring.link[a], p);
+        best = g < best ? g : best;
+    }
+    // Hashed rounding: whole ticks would slow fast fires down or hurry them.
+    return base + (uint(best + int(hash32(texel) & 15u)) >> 4u);
+}
+
+FW_SHARED_FN uint frontFloor(uint now, uint window) { return now > window ? now - window : 0u; }
+
+// May this texel still change? Receptive, or a source young enough for a correction.
+FW_SHARED_FN bool frontEligible(uint t, uint floorTick) {
+    return isReceptive(t) || (isSource(t) && (t > floorTick || floorTick == 0u));
+}
+
+// What becomes of state t with this candidate: the new tick, or t. `wake` falls to a pending
+// arrival; late: 1 if the candidate came too late and was moved to the floor.
+FW_SHARED_FN uint frontDecide(uint t, uint candidate, uint windowEnd, uint floorTick,
+                              FW_INOUT(uint) wake, FW_OUT(uint) late) {
+    late = 0u;
+    bool fresh = isReceptive(t);
+    if (candidate == kNever || (!fresh && candidate >= t)) return t;
+    if (candidate > windowEnd) {
+        if (fresh) wake = candidate < wake ? candidate : wake;
+        return t;
+    }
+    if (candidate < floorTick) {
+        if (!fresh && floorTick >= t) return t;
+        candidate = floorTick;
+        late = 1u;
+    }
+    return candidate;
+}
+
+// Iteration `k` of a step (2^stepShift iterations) for an object with `shift`: its window.
+// Objects with fewer substeps take part in every 2^(stepShift - shift)-th iteration.
+FW_SHARED_FN bool takesPart(uint k, uint stepShift, uint shift) {
+    uint skip = stepShift - (shift < stepShift ? shift : stepShift);
+    return (k & ((1u << skip) - 1u)) == 0u;
+}
+FW_SHARED_FN uint windowTicks(uint stepShift, uint shift) {
+    return kStepTicks >> (shift < stepShift ? shift : stepShift);
+}
+
+// End of the window that iteration `k` runs for such an object, ticks.
+FW_SHARED_FN uint iterationEnd(uint stepNow, uint k, uint stepShift, uint shift) {
+    uint own = shift < stepShift ? shift : stepShift;
+    return stepNow + ((k >> (stepShift - own)) + 1u) * (kStepTicks >> own);
+}
+
+// Must a latch of the drive at tick `now` touch this tile? What waits is on the list; a source that
+// may still be corrected is younger than the window, so its tile changed since. (Unsigned: a tile
+// never changed is far in the past.)
+FW_SHARED_FN bool latchTouches(bool listed, uint lastChange, uint now, uint window) {
+    return listed || now - lastChange <= window + kStepTicks;
+}
+
+// Which of the eight grid neighbours of a tile read a texel of this mask (lane = y * 8 + x).
+FW_SHARED_FN uint neighboursOf(uint maskLow, uint maskHigh) {
+    uint all = maskLow | maskHigh;
+    bool right = (all & 0x80808080u) != 0u;
+    bool left = (all & 0x01010101u) != 0u;
+    bool top = (maskHigh & 0xFF000000u) != 0u;   // row 7
+    bool bottom = (maskLow & 0x000000FFu) != 0u; // row 0
+    uint n = 0u;
+    if (right) n |= 1u;
+    if ((maskHigh & 0x80000000u) != 0u) n |= 2u;
+    if (top) n |= 4u;
+    if ((maskHigh & 0x01000000u) != 0u) n |= 8u;
+    if (left) n |= 16u;
+    if ((maskLow & 0x00000001u) != 0u) n |= 32u;
+    if (bottom) n |= 64u;
+    if ((maskLow & 0x00000080u) != 0u) n |= 128u;
+    return n;
+}
+
+FW_SHARED_END
+#endif
