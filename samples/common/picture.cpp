@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 
 #include "common/options.h"
 
@@ -34,49 +35,51 @@ void putChunk(std::vector<uint8_t>& out, const char* type, const std::vector<uin
                       crc32(0, out.data() + start, static_cast<uInt>(out.size() - start))));
 }
 
-// One PNG row under the filter that leaves the smallest sum of differences.
-void filterRow(const uint8_t* row, const uint8_t* above, size_t bytes, std::vector<uint8_t>& best,
-               std::vector<uint8_t>& trial) {
+// One row under one PNG filter; returns the sum of differences, small for what packs well.
+template <int kFilter>
+uint64_t applyFilter(const uint8_t* row, const uint8_t* above, size_t bytes, uint8_t* out) {
     constexpr size_t kPixel = 4;
-    uint64_t bestCost = ~0ull;
-    for (uint8_t filter = 0; filter <= 4; ++filter) {
-        trial[0] = filter;
-        uint64_t cost = 0;
-        for (size_t i = 0; i < bytes; ++i) {
-            const int left = i >= kPixel ? row[i - kPixel] : 0;
-            const int up = above ? above[i] : 0;
-            const int corner = above && i >= kPixel ? above[i - kPixel] : 0;
-            int predicted = 0;
-            if (filter == 1) predicted = left;
-            if (filter == 2) predicted = up;
-            if (filter == 3) predicted = (left + up) / 2;
-            if (filter == 4) {
-                const int p = left + up - corner;
-                const int dl = std::abs(p - left), du = std::abs(p - up), dc = std::abs(p - corner);
-                predicted = dl <= du && dl <= dc ? left : du <= dc ? up : corner;
-            }
-            const auto difference = static_cast<uint8_t>(row[i] - predicted);
-            trial[i + 1] = difference;
-            cost += difference < 128 ? difference : 256u - difference;
+    uint64_t cost = 0;
+    *out++ = kFilter;
+    for (size_t i = 0; i < bytes; ++i) {
+        const int left = i >= kPixel ? row[i - kPixel] : 0;
+        const int up = above[i];
+        int predicted = 0;
+        if constexpr (kFilter == 1) predicted = left;
+        if constexpr (kFilter == 2) predicted = up;
+        if constexpr (kFilter == 4) {
+            const int corner = i >= kPixel ? above[i - kPixel] : 0;
+            const int dl = std::abs(up - corner), du = std::abs(left - corner);
+            const int dc = std::abs(left + up - 2 * corner);
+            predicted = dl <= du && dl <= dc ? left : du <= dc ? up : corner;
         }
-        if (cost < bestCost) {
-            bestCost = cost;
-            best.swap(trial);
-        }
+        const auto difference = static_cast<uint8_t>(row[i] - predicted);
+        out[i] = difference;
+        cost += difference < 128 ? difference : 256u - difference;
     }
+    return cost;
 }
 
 std::vector<uint8_t> deflatePicture(const uint8_t* rgba, uint32_t width, uint32_t height) {
     const size_t bytes = size_t{width} * 4;
-    std::vector<uint8_t> filtered, best(bytes + 1), trial(bytes + 1);
-    filtered.reserve((bytes + 1) * height);
+    const std::vector<uint8_t> blank(bytes, 0);
+    std::vector<uint8_t> filtered((bytes + 1) * height), trial(bytes + 1);
     for (uint32_t y = 0; y < height; ++y) {
-        filterRow(rgba + y * bytes, y ? rgba + (y - 1) * bytes : nullptr, bytes, best, trial);
-        filtered.insert(filtered.end(), best.begin(), best.end());
+        const uint8_t* row = rgba + y * bytes;
+        const uint8_t* above = y ? row - bytes : blank.data();
+        uint8_t* out = &filtered[y * (bytes + 1)];
+        uint64_t best = applyFilter<0>(row, above, bytes, out);
+        for (auto* filter : {applyFilter<1>, applyFilter<2>, applyFilter<4>}) {
+            const uint64_t cost = filter(row, above, bytes, trial.data());
+            if (cost < best) {
+                best = cost;
+                std::copy(trial.begin(), trial.end(), out);
+            }
+        }
     }
     uLongf size = compressBound(static_cast<uLong>(filtered.size()));
     std::vector<uint8_t> packed(size);
-    compress2(packed.data(), &size, filtered.data(), static_cast<uLong>(filtered.size()), 7);
+    compress2(packed.data(), &size, filtered.data(), static_cast<uLong>(filtered.size()), 6);
     packed.resize(size);
     return packed;
 }
@@ -116,6 +119,7 @@ void writePng(const std::filesystem::path& path, const Picture& picture) {
     OIIO::ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height), 3,
                          OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("png:compressionLevel", 4);
     if (!file->open(path.string(), spec) ||
         !file->write_image(OIIO::TypeDesc::UINT8, picture.rgba.data(), 4) || !file->close()) {
         throw Failure(path.string() + " cannot be written: " + file->geterror());
@@ -221,10 +225,11 @@ void AnimationWriter::add(const Picture& picture) {
     }
     lastControl_ = chunks_.size();
     putChunk(chunks_, "fcTL", frameControl(sequence_++, left, top, width, height, delay, true));
-    std::vector<uint8_t> body;
-    putBig32(body, sequence_++);
     const std::vector<uint8_t> packed = deflatePicture(part.data(), width, height);
-    body.insert(body.end(), packed.begin(), packed.end());
+    std::vector<uint8_t> body;
+    body.reserve(4 + packed.size());
+    putBig32(body, sequence_++);
+    std::copy(packed.begin(), packed.end(), std::back_inserter(body));
     putChunk(chunks_, "fdAT", body);
     ++frameCount_;
 }

@@ -9,11 +9,12 @@
 namespace sample {
 namespace {
 
+#include "bloom.frag.h"
 #include "post.frag.h"
 #include "post.vert.h"
 
 struct PostPush {
-    float mode, exposure, bloom, vignette, mips, aspect;
+    float mode, exposure, bloom, vignette, aspect;
 };
 
 double clockSeconds() {
@@ -133,7 +134,8 @@ Stage::Stage(const VulkanHost& host, const Options& options, const StageRequest&
         checkVulkan(vkCreateSemaphore(host.device, &semaphoreInfo, nullptr, &slot.available),
                     "vkCreateSemaphore");
     }
-    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                  VK_SAMPLER_MIPMAP_MODE_NEAREST);
     makePasses();
     makePost();
     makeTargets();
@@ -149,11 +151,13 @@ Stage::~Stage() {
         vkDestroySemaphore(host_.device, slot.available, nullptr);
     }
     vkDestroyPipeline(host_.device, postPipeline_, nullptr);
+    vkDestroyPipeline(host_.device, bloomPipeline_, nullptr);
     vkDestroyPipelineLayout(host_.device, postLayout_, nullptr);
     vkDestroyDescriptorPool(host_.device, descriptorPool_, nullptr);
     vkDestroyDescriptorSetLayout(host_.device, postSetLayout_, nullptr);
     vkDestroySampler(host_.device, sampler_, nullptr);
     vkDestroyRenderPass(host_.device, postPass_, nullptr);
+    vkDestroyRenderPass(host_.device, bloomPass_, nullptr);
     vkDestroyRenderPass(host_.device, scenePass, nullptr);
 }
 
@@ -241,20 +245,32 @@ void Stage::makePasses() {
     info.attachmentCount = 1;
     info.pAttachments = &output;
     checkVulkan(vkCreateRenderPass(host_.device, &info, nullptr, &postPass_), "vkCreateRenderPass");
+
+    output.format = VK_FORMAT_R16G16B16A16_SFLOAT;
+    output.finalLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    dependencies[0].srcStageMask =
+        VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+    dependencies[1].dstStageMask = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+    dependencies[1].dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+    checkVulkan(vkCreateRenderPass(host_.device, &info, nullptr, &bloomPass_),
+                "vkCreateRenderPass");
 }
 
 void Stage::makePost() {
-    VkDescriptorSetLayoutBinding binding{};
-    binding.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    binding.descriptorCount = 1;
-    binding.stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
+    VkDescriptorSetLayoutBinding bindings[2]{};  // the scene and its bloom
+    for (uint32_t i = 0; i < 2; ++i) {
+        bindings[i].binding = i;
+        bindings[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        bindings[i].descriptorCount = 1;
+        bindings[i].stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
+    }
     VkDescriptorSetLayoutCreateInfo setInfo{};
     setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    setInfo.bindingCount = 1;
-    setInfo.pBindings = &binding;
+    setInfo.bindingCount = 2;
+    setInfo.pBindings = bindings;
     checkVulkan(vkCreateDescriptorSetLayout(host_.device, &setInfo, nullptr, &postSetLayout_),
                 "vkCreateDescriptorSetLayout");
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2};
     VkDescriptorPoolCreateInfo poolInfo{};
     poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
     poolInfo.maxSets = 1;
@@ -285,6 +301,10 @@ void Stage::makePost() {
     request.fragment = host_.createShader(kPostFrag, sizeof kPostFrag);
     request.depthTest = request.depthWrite = false;
     postPipeline_ = makePipeline(host_, request);
+    vkDestroyShaderModule(host_.device, request.fragment, nullptr);
+    request.pass = bloomPass_;
+    request.fragment = host_.createShader(kBloomFrag, sizeof kBloomFrag);
+    bloomPipeline_ = makePipeline(host_, request);
     vkDestroyShaderModule(host_.device, request.vertex, nullptr);
     vkDestroyShaderModule(host_.device, request.fragment, nullptr);
 }
@@ -331,6 +351,29 @@ void Stage::makeTargets() {
     checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &sceneFramebuffer_),
                 "vkCreateFramebuffer");
 
+    ImageRequest small;
+    small.width = std::max(1u, extent_.width / 4);
+    small.height = std::max(1u, extent_.height / 4);
+    small.format = VK_FORMAT_R16G16B16A16_SFLOAT;
+    small.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                  VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    bloom_ = host_.createImage(small);
+    info.renderPass = bloomPass_;
+    info.attachmentCount = 1;
+    info.pAttachments = &bloom_.view;
+    info.width = small.width;
+    info.height = small.height;
+    checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &bloomFramebuffer_),
+                "vkCreateFramebuffer");
+    // Bound even where it is not drawn to, so it gets its layout now.
+    host_.runNow([&](VkCommandBuffer commands) {
+        imageBarrier(commands, bloom_.image, VK_IMAGE_LAYOUT_UNDEFINED,
+                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0,
+                     VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
+    });
+    info.width = extent_.width;
+    info.height = extent_.height;
+
     std::vector<VkImageView> outputs;
     if (window_) {
         outputs = window_->views;
@@ -356,15 +399,19 @@ void Stage::makeTargets() {
                     "vkCreateFramebuffer");
         outputFramebuffers_.push_back(framebuffer);
     }
-    const VkDescriptorImageInfo image{sampler_, color_.view,
-                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = postSet_;
-    write.descriptorCount = 1;
-    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    write.pImageInfo = &image;
-    vkUpdateDescriptorSets(host_.device, 1, &write, 0, nullptr);
+    const VkDescriptorImageInfo images[] = {
+        {sampler_, color_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+        {sampler_, bloom_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
+    for (uint32_t i = 0; i < 2; ++i) {
+        VkWriteDescriptorSet write{};
+        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+        write.dstSet = postSet_;
+        write.dstBinding = i;
+        write.descriptorCount = 1;
+        write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        write.pImageInfo = &images[i];
+        vkUpdateDescriptorSets(host_.device, 1, &write, 0, nullptr);
+    }
 }
 
 void Stage::dropTargets() {
@@ -373,7 +420,10 @@ void Stage::dropTargets() {
     }
     outputFramebuffers_.clear();
     vkDestroyFramebuffer(host_.device, sceneFramebuffer_, nullptr);
-    for (Image* image : {&color_, &multisampled_, &depth_, &output_}) host_.destroy(*image);
+    vkDestroyFramebuffer(host_.device, bloomFramebuffer_, nullptr);
+    for (Image* image : {&color_, &multisampled_, &depth_, &bloom_, &output_}) {
+        host_.destroy(*image);
+    }
     for (Slot& slot : slots_) host_.destroy(slot.readback);
 }
 
@@ -497,6 +547,28 @@ void Stage::spreadLight(const StageFrame& frame) {
                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
                  VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                  VK_ACCESS_SHADER_READ_BIT);
+    if (made.bloom <= 0) return;
+    drawPost(frame, bloomPipeline_, bloomPass_, bloomFramebuffer_,
+             {bloom_.made.width, bloom_.made.height});
+}
+
+void Stage::drawPost(const StageFrame& frame, VkPipeline pipeline, VkRenderPass pass,
+                     VkFramebuffer framebuffer, VkExtent2D extent) {
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = pass;
+    info.framebuffer = framebuffer;
+    info.renderArea = {{0, 0}, extent};
+    vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+    const VkViewport viewport{
+        0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
+    vkCmdSetViewport(frame.commands, 0, 1, &viewport);
+    vkCmdSetScissor(frame.commands, 0, 1, &info.renderArea);
+    vkCmdBindPipeline(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, postLayout_, 0, 1,
+                            &postSet_, 0, nullptr);
+    vkCmdDraw(frame.commands, 3, 1, 0, 0);
+    vkCmdEndRenderPass(frame.commands);
 }
 
 void Stage::finish(const StageFrame& frame) {
@@ -504,31 +576,16 @@ void Stage::finish(const StageFrame& frame) {
     const bool scenic = made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT;
     const bool srgb =
         made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB || made.colorFormat == VK_FORMAT_B8G8R8A8_SRGB;
-    if (scenic) spreadLight(frame);
-    VkRenderPassBeginInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
-    info.renderPass = postPass_;
-    info.framebuffer = outputFramebuffers_[window_ ? imageIndex_ : 0];
-    info.renderArea = {{0, 0}, extent_};
-    vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
-    const VkRect2D scissor{{0, 0}, extent_};
-    vkCmdSetViewport(frame.commands, 0, 1, &frame.viewport);
-    vkCmdSetScissor(frame.commands, 0, 1, &scissor);
-    vkCmdBindPipeline(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, postPipeline_);
-    vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, postLayout_, 0, 1,
-                            &postSet_, 0, nullptr);
     const PostPush push{scenic ? 0.0f
                         : srgb ? 1.0f
                                : 2.0f,
-                        made.exposure,
-                        made.bloom,
-                        made.vignette,
-                        static_cast<float>(sceneMips_),
+                        made.exposure, made.bloom, made.vignette,
                         static_cast<float>(extent_.width) / static_cast<float>(extent_.height)};
     vkCmdPushConstants(frame.commands, postLayout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
                        &push);
-    vkCmdDraw(frame.commands, 3, 1, 0, 0);
-    vkCmdEndRenderPass(frame.commands);
+    if (scenic) spreadLight(frame);
+    drawPost(frame, postPipeline_, postPass_, outputFramebuffers_[window_ ? imageIndex_ : 0],
+             extent_);
     if (!window_) {
         VkBufferImageCopy region{};
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};

@@ -93,6 +93,8 @@ class Stage {
     void makePost();
     void collect(Slot& slot);
     void spreadLight(const StageFrame& frame);
+    void drawPost(const StageFrame& frame, VkPipeline pipeline, VkRenderPass pass,
+                  VkFramebuffer framebuffer, VkExtent2D extent);
 
     const VulkanHost& host_;
     double fps_;
@@ -105,16 +107,16 @@ class Stage {
     uint32_t number_ = 0;
     double time_ = 0, lastClock_ = 0;
 
-    Image color_, multisampled_, depth_, output_;
+    Image color_, multisampled_, depth_, bloom_, output_;
     VkFormat outputFormat_ = VK_FORMAT_R8G8B8A8_UNORM;
-    VkFramebuffer sceneFramebuffer_ = VK_NULL_HANDLE;
+    VkFramebuffer sceneFramebuffer_ = VK_NULL_HANDLE, bloomFramebuffer_ = VK_NULL_HANDLE;
     std::vector<VkFramebuffer> outputFramebuffers_;
-    VkRenderPass postPass_ = VK_NULL_HANDLE;
+    VkRenderPass postPass_ = VK_NULL_HANDLE, bloomPass_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout postSetLayout_ = VK_NULL_HANDLE;
     VkDescriptorPool descriptorPool_ = VK_NULL_HANDLE;
     VkDescriptorSet postSet_ = VK_NULL_HANDLE;
     VkPipelineLayout postLayout_ = VK_NULL_HANDLE;
-    VkPipeline postPipeline_ = VK_NULL_HANDLE;
+    VkPipeline postPipeline_ = VK_NULL_HANDLE, bloomPipeline_ = VK_NULL_HANDLE;
     VkSampler sampler_ = VK_NULL_HANDLE;
 };
 

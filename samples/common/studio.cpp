@@ -58,7 +58,7 @@ std::vector<uint8_t> plasterPixels(uint32_t side) {
             for (int octave = 0; octave < 5; ++octave) {
                 const auto seed = static_cast<uint32_t>(octave);
                 coarse += weight * valueNoise(u, v, 3 << octave, seed + 1);
-                fine += weight * valueNoise(u, v, 16 << std::min(octave, 3), seed + 31);
+                fine += weight * valueNoise(u, v, 48 << std::min(octave, 2), seed + 31);
                 weight *= 0.55f;
             }
             uint8_t* to = &pixels[(size_t{y} * side + x) * 4];
@@ -168,8 +168,10 @@ Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, flo
     plaster_ = host.createTexture(512, 512, plasterPixels(512).data(), false);
     const uint8_t none[4] = {0, 0, 0, 255};
     shadow_ = host.createTexture(1, 1, none, false);
-    repeat_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT);
-    clamp_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    repeat_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                                 VK_SAMPLER_MIPMAP_MODE_NEAREST);
+    clamp_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                VK_SAMPLER_MIPMAP_MODE_NEAREST);
 
     VkDescriptorSetLayoutBinding bindings[3]{};
     bindings[0].descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;

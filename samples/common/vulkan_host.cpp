@@ -435,12 +435,13 @@ void VulkanHost::destroy(Image& image) const {
     image = {};
 }
 
-VkSampler VulkanHost::createSampler(VkFilter filter, VkSamplerAddressMode address) const {
+VkSampler VulkanHost::createSampler(VkFilter filter, VkSamplerAddressMode address,
+                                    VkSamplerMipmapMode mips) const {
     VkSamplerCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
     info.magFilter = filter;
     info.minFilter = filter;
-    info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    info.mipmapMode = mips;
     info.addressModeU = info.addressModeV = info.addressModeW = address;
     info.maxLod = VK_LOD_CLAMP_NONE;
     VkSampler sampler = VK_NULL_HANDLE;

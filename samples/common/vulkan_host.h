@@ -85,7 +85,8 @@ class VulkanHost {
     Image createTexture(uint32_t width, uint32_t height, const uint8_t* rgba, bool srgb) const;
     void destroy(Image& image) const;
 
-    VkSampler createSampler(VkFilter filter, VkSamplerAddressMode address) const;
+    VkSampler createSampler(VkFilter filter, VkSamplerAddressMode address,
+                            VkSamplerMipmapMode mips = VK_SAMPLER_MIPMAP_MODE_LINEAR) const;
     VkShaderModule createShader(const uint32_t* words, size_t bytes) const;
 
     // Records, submits and waits: for set-up only.

@@ -1,14 +1,14 @@
-// From the scene to display values: bloom from the scene's own mips, a film curve, sRGB, dither.
+// From the scene to display values: bloom, a film curve, sRGB, dither.
 #version 450
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
 layout(binding = 0) uniform sampler2D scene;
+layout(binding = 1) uniform sampler2D spread;  // bloom.frag's
 layout(push_constant) uniform Push {
     float mode;      // 0 scene-referred floats, 1 an sRGB view, 2 display values already
     float exposure;
     float bloom;
     float vignette;
-    float mips;
     float aspect;
 } push;
 
@@ -28,23 +28,10 @@ vec3 encodeSrgb(vec3 c) {
                step(0.0031308, c));
 }
 
-// Four taps half a texel out: hides the squares of a coarse mip.
-vec3 softMip(float lod) {
-    vec2 texel = 0.5 / vec2(textureSize(scene, int(lod)));
-    return 0.25 * (textureLod(scene, uv + texel * vec2(1.0, 1.0), lod).rgb +
-                   textureLod(scene, uv + texel * vec2(-1.0, 1.0), lod).rgb +
-                   textureLod(scene, uv + texel * vec2(1.0, -1.0), lod).rgb +
-                   textureLod(scene, uv + texel * vec2(-1.0, -1.0), lod).rgb);
-}
-
 void main() {
     vec3 c = textureLod(scene, uv, 0.0).rgb;
     if (push.mode < 0.5) {
-        if (push.bloom > 0.0 && push.mips > 3.5) {
-            vec3 spread = 0.40 * softMip(2.0) + 0.35 * softMip(3.0) +
-                          0.25 * softMip(min(4.0, push.mips - 1.0));
-            c = mix(c, spread, push.bloom);
-        }
+        if (push.bloom > 0.0) c = mix(c, textureLod(spread, uv, 0.0).rgb, push.bloom);
         c *= push.exposure;
         vec2 away = (uv - 0.5) * vec2(1.0, 1.0 / push.aspect);
         c *= 1.0 - push.vignette * smoothstep(0.15, 0.75, length(away));

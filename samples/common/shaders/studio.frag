@@ -19,14 +19,12 @@ void main() {
     vec3 n = normalize(worldNormal);
     vec3 local = worldPosition - block.center.xyz;
     float scale = 1.0 / block.sunColor.w;
-    // Unrolled wall: the arc length along it and the height; the floor from above.
-    vec2 wall = vec2(atan(local.x, local.z) * block.center.w, local.y);
-    vec2 uv = mix(local.xz, wall, step(0.05 * block.center.w, local.y)) * scale;
-    float coarse = texture(plaster, uv * 0.37).r;
-    float fine = texture(plaster, uv * 2.1).g;
+    // The wall folded outwards into the floor's plane: no seam between them.
+    vec2 uv = local.xz * (1.0 + max(0.0, local.y) / block.center.w) * scale;
+    vec2 grain = texture(plaster, uv * 0.41).rg;
     vec3 albedo = mix(vec3(0.150, 0.145, 0.140), vec3(0.20, 0.215, 0.24),
                       smoothstep(0.0, 0.3, local.y * scale));
-    albedo *= 0.72 + 0.42 * coarse + 0.14 * fine;
+    albedo *= 0.70 + 0.42 * grain.r + 0.18 * grain.g;
     vec2 place = local.xz / (2.0 * block.ambientSky.w) + 0.5;
     vec2 shade = vec2(1.0);
     if (all(greaterThan(place, vec2(0.0))) && all(lessThan(place, vec2(1.0)))) {
