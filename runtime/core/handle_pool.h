@@ -30,7 +30,8 @@ class HandlePool {
             free_.pop_back();
         } else {
             index = uint32_t(slots_.size());
-            free_.reserve(slots_.size() + 1);  // so that destroy never allocates
+            if (free_.capacity() < slots_.size() + 1)  // so that destroy never allocates
+                free_.reserve(std::max(slots_.size() + 1, 2 * free_.capacity()));
             slots_.emplace_back();
             try {
                 slots_.back().value.emplace(std::forward<Arguments>(arguments)...);
@@ -77,6 +78,9 @@ class HandlePool {
     [[nodiscard]] uint32_t slotCount() const noexcept { return uint32_t(slots_.size()); }
     // Null for an empty slot. For loops in slot order.
     Value* at(uint32_t index) noexcept {
+        return slots_[index].value ? &*slots_[index].value : nullptr;
+    }
+    const Value* at(uint32_t index) const noexcept {
         return slots_[index].value ? &*slots_[index].value : nullptr;
     }
     Id idOf(uint32_t index) const noexcept { return Id{index + 1, slots_[index].generation}; }
