@@ -1,0 +1,68 @@
+// Sources: paper from mass rates per width of 3.5-5.6 mg/cm/s (Stott; Atallah, in Thomas & Law
+// 1965); cotton and polyester from vertical panels (Mathur, Vikas, Kale); grass from head fires at
+// 20 % of the wind (Cruz, Alexander, Kilinc 2022); softwood char 0.65 mm/min (EN 1995-1-2). The
+// rest are starting points. Rates are as measured, so moisture is 0 but for green leaves.
+#include "fire/presets.h"
+
+namespace fw::fire {
+namespace {
+
+struct Preset {
+    const char* name;
+    float spreadRate, windGain, upGain, headGain, backGain, driveMax, lengthToBreadth;
+    float burnTime, moisture, extinctionMoisture, thickness, heatOfCombustion, burningFlux;
+    float baseColor[3], baseRoughness;
+};
+
+// clang-format off
+constexpr Preset kPresets[FW_MATERIAL_PRESET_COUNT] = {
+    //  name            rate     wind   up    head  back  max   L/B   burn  M     Mx     thick    J/kg    flux    colour                   rough
+    {"noncombustible",  0.0f,    0.0f,  0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.3f,  0.05f,   0.0f,   0.0f,   {0.45f, 0.44f, 0.42f}, 0.8f},
+    {"pine",            0.0003f, 0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 0.0f, 0.0f, 0.4f,  0.02f,   15.0e6f, 0.0075f, {0.50f, 0.33f, 0.18f}, 0.7f},
+    {"painted wood",    0.0004f, 0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 0.0f, 0.0f, 0.4f,  0.02f,   16.0e6f, 0.0085f, {0.35f, 0.10f, 0.07f}, 0.5f},
+    {"newspaper",       0.009f,  0.35f, 1.0f, 7.0f, 3.0f, 4.0f, 2.0f, 4.0f, 0.0f, 0.3f, 0.00008f, 15.6e6f, 0.017f, {0.62f, 0.60f, 0.54f}, 0.9f},
+    {"paper",           0.0055f, 0.35f, 1.0f, 7.0f, 3.0f, 4.0f, 2.0f, 7.0f, 0.0f, 0.3f, 0.0001f, 15.6e6f, 0.017f, {0.80f, 0.79f, 0.75f}, 0.8f},
+    {"cotton",          0.011f,  0.35f, 1.0f, 7.2f, 4.5f, 4.0f, 3.5f, 9.0f, 0.0f, 0.3f, 0.0005f, 15.6e6f, 0.018f, {0.62f, 0.58f, 0.50f}, 0.9f},
+    {"polyester",       0.010f,  0.35f, 1.0f, 1.0f, 0.3f, 4.0f, 3.5f, 15.0f, 0.0f, 0.3f, 0.0005f, 20.0e6f, 0.015f, {0.15f, 0.22f, 0.42f}, 0.6f},
+    {"dry leaf",        0.012f,  0.5f,  1.0f, 6.0f, 2.5f, 4.0f, 2.0f, 3.0f, 0.0f, 0.35f, 0.0002f, 17.0e6f, 0.015f, {0.32f, 0.19f, 0.07f}, 0.7f},
+    {"green leaf",      0.012f,  0.5f,  1.0f, 6.0f, 2.5f, 4.0f, 2.0f, 5.0f, 0.7f, 1.2f,  0.0003f, 17.0e6f, 0.010f, {0.08f, 0.18f, 0.04f}, 0.5f},
+    {"thatch",          0.006f,  0.5f,  1.0f, 7.0f, 2.5f, 6.0f, 2.5f, 60.0f, 0.0f, 0.35f, 0.15f, 15.6e6f, 0.02f, {0.42f, 0.31f, 0.15f}, 0.95f},
+    {"dry grass",       0.020f,  1.0f,  0.6f, 10.0f, 1.0f, 63.0f, 3.5f, 10.0f, 0.0f, 0.25f, 0.001f, 15.6e6f, 0.03f, {0.45f, 0.36f, 0.15f}, 0.95f},
+    {"plywood",         0.001f,  0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 300.0f, 0.0f, 0.4f, 0.005f, 15.0e6f, 0.0085f, {0.55f, 0.40f, 0.24f}, 0.6f},
+    {"leather",         0.0015f, 0.35f, 1.0f, 4.0f, 2.0f, 4.0f, 2.0f, 60.0f, 0.0f, 0.4f, 0.003f, 18.0e6f, 0.012f, {0.20f, 0.09f, 0.04f}, 0.5f},
+    {"plastic",         0.002f,  0.35f, 1.0f, 5.0f, 1.5f, 4.0f, 2.0f, 120.0f, 0.0f, 0.3f, 0.003f, 30.0e6f, 0.015f, {0.30f, 0.32f, 0.34f}, 0.35f},
+};
+// clang-format on
+
+}  // namespace
+
+FwMaterialDef presetDef(uint32_t preset) noexcept {
+    const uint32_t row = preset < FW_MATERIAL_PRESET_COUNT ? preset : uint32_t(FW_MATERIAL_PINE);
+    const Preset& p = kPresets[row];
+    FwMaterialDef def{};
+    def.structSize = uint32_t(sizeof def);
+    def.look = row;
+    def.spreadRate = p.spreadRate;
+    def.windGain = p.windGain;
+    def.upGain = p.upGain;
+    def.headGain = p.headGain;
+    def.backGain = p.backGain;
+    def.driveMax = p.driveMax;
+    def.lengthToBreadth = p.lengthToBreadth;
+    def.ceilingGain = 0.3f;
+    def.burnTime = p.burnTime;
+    def.moisture = p.moisture;
+    def.extinctionMoisture = p.extinctionMoisture;
+    def.thickness = p.thickness;
+    def.heatOfCombustion = p.heatOfCombustion;
+    def.burningFlux = p.burningFlux;
+    for (int i = 0; i < 3; ++i) def.baseColor[i] = p.baseColor[i];
+    def.baseRoughness = p.baseRoughness;
+    return def;
+}
+
+const char* presetName(uint32_t preset) noexcept {
+    return preset < FW_MATERIAL_PRESET_COUNT ? kPresets[preset].name : "unknown";
+}
+
+}  // namespace fw::fire
