@@ -194,9 +194,11 @@ class Linker {
         if ((grid_.flags[i] | grid_.flags[j]) & kTexelForced) return false;
         if (borders_.near(i) && borders_.between(i, j)) return false;
         // Sheets of a folded chart lie side by side in the image and far apart in space.
+        const double length = grid_.distance(i, j);
+        if (length <= kFoldedSlack * grid_.side) return true;
         const double reach =
             std::max(glm::length(stepOf(i, k)), glm::length(stepOf(j, (k + 4) & 7)));
-        return grid_.distance(i, j) <= 2 * reach + kFoldedSlack * grid_.side;
+        return length <= 2 * reach + kFoldedSlack * grid_.side;
     }
 
     void linkOne(uint32_t texel) {

@@ -23,6 +23,34 @@ Box boxOf(const Triangle& t, const TexelGrid& grid) {
             std::min(int(grid.height) - 1, int(std::floor(high.y)))};
 }
 
+// Tells texels wholly in or out of a triangle from those that must be clipped.
+class TriangleSides {
+ public:
+    explicit TriangleSides(const Triangle& t) {
+        const double sign = uvArea(t) < 0 ? -1 : 1;
+        for (int e = 0; e < 3; ++e) {
+            const glm::dvec2 d = (t.uv[(e + 1) % 3] - t.uv[e]) * sign;
+            side_[e] = {-d.y, d.x, cross2(d, -t.uv[e])};
+            reach_[e] = 0.5 * (std::abs(d.x) + std::abs(d.y));
+        }
+    }
+    // -1: the texel at x, y is outside, 1: inside, 0: neither is certain.
+    [[nodiscard]] int classify(int x, int y) const {
+        bool inside = true;
+        for (int e = 0; e < 3; ++e) {
+            const double middle = side_[e].x * (x + 0.5) + side_[e].y * (y + 0.5) + side_[e].z;
+            if (middle < -reach_[e] - kSlack) return -1;
+            inside &= middle > reach_[e] + kSlack;
+        }
+        return inside ? 1 : 0;
+    }
+
+ private:
+    static constexpr double kSlack = 1e-9;  // texels^2, above the rounding
+    glm::dvec3 side_[3];
+    double reach_[3];
+};
+
 // Area in texels^2 of a triangle within the texel at x, y.
 double clippedArea(const Triangle& t, int x, int y) {
     glm::dvec2 from[12], to[12];
@@ -119,9 +147,12 @@ class Rasteriser {
                 parts_.push_back({grid_.at(x, y), i, t.area});
                 continue;
             }
+            const TriangleSides sides(t);
             for (int y = box.y0; y <= box.y1; ++y)
                 for (int x = box.x0; x <= box.x1; ++x) {
-                    const double area = clippedArea(t, x, y) * (t.area / flat);
+                    const int place = sides.classify(x, y);
+                    if (place < 0) continue;
+                    const double area = (place > 0 ? 1 : clippedArea(t, x, y)) * (t.area / flat);
                     if (!(area > 0)) continue;
                     const uint32_t texel = grid_.at(x, y);
                     if (grid_.chart[texel] == t.chart)
