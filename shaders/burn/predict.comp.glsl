@@ -27,13 +27,12 @@ shared uint sharedAgain;
 
 bool hasTime(uint p) { return p < kLiveEnd; }
 
-// P of one texel; `beyond`: it has an arrival, but past the horizon.
+// P of one texel: a tick, or its state's code; `beyond`: it has an arrival, but past the horizon.
 uint predicted(uint object, uint local, uint lane, uint texel, out bool beyond) {
     beyond = false;
     uint stateBase = objects[object].stateBase;
     uint t = state[stateBase + texel];
-    if (isSource(t) || t == kInert) return t;
-    if (!isReceptive(t)) return kNever;
+    if (t != kNever) return t;
     uint texelBase = objects[object].texelBase;
     uvec2 me = texels[texelBase + texel];
     uint width = objects[object].width;
@@ -54,9 +53,7 @@ uint predicted(uint object, uint local, uint lane, uint texel, out bool beyond) 
                          : texel + uint(kFrontRingX[k]) + uint(kFrontRingY[k]) * width;
         if (other == kNoneTexel) continue;
         uint q = predict[stateBase + other];
-        if (!hasTime(q) || !(isSource(state[stateBase + other]) ||
-                             isReceptive(state[stateBase + other])))
-            continue;
+        if (!hasTime(q)) continue;
         if (!ready) {
             p = frontPrep(decodeNormal(normals[texelBase + texel]),
                           slownessAt(objects[object].slowBase, texel),
@@ -127,6 +124,10 @@ void main() {
                 // Small changes stay here: rings would chase rounding for ever.
                 if (!hasTime(now) || !hasTime(before) || abs(int(now - before)) > 32)
                     atomicOr(sharedChanged[lane >> 5u], 1u << (lane & 31u));
+            }
+            if ((now == kOut || now == kOutWet) && hasTime(before)) {
+                // What was put out keeps the look of the age it had: its gradient is that age.
+                gradient[at] = before <= push.now ? push.now - before : 0u;
             }
             if (hasTime(now)) {
                 uint width = objects[object].width;

@@ -1,0 +1,559 @@
+// The passes of a simulation step in order, on vectors instead of buffers. Each function is the
+// shader of the same name in shaders/burn.
+#include "gpu/cpu/cpu_backend.h"
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "flamewright/flamewright_debug.h"
+#include "gpu/cpu/cpu_state.h"
+#include "shared/published.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstdio>
+#include <numeric>
+
+namespace fw::gpu::cpu {
+
+static_assert(kSwitchDense == FW_DEBUG_DENSE && kSwitchShuffle == FW_DEBUG_SHUFFLE &&
+              kSwitchNoSeamWake == FW_DEBUG_NO_SEAM_WAKE &&
+              kSwitchWrongReaders == FW_DEBUG_WRONG_READERS &&
+              kSwitchNoWindWake == FW_DEBUG_NO_WIND_WAKE);
+
+namespace {
+
+constexpr const char* kTimerNames[kTimerCount] = {"wake",   "events",    "schedule", "arrival",
+                                                  "commit", "published", "reduce"};
+
+class Stopwatch {
+   public:
+    Stopwatch(CpuBackend::State& state, Timer timer) noexcept
+        : state_(state), timer_(timer), start_(std::chrono::steady_clock::now()) {}
+    ~Stopwatch() {
+        const auto end = std::chrono::steady_clock::now();
+        state_.milliseconds[timer_] +=
+            std::chrono::duration<double, std::milli>(end - start_).count();
+        ++state_.timed[timer_];
+    }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+   private:
+    CpuBackend::State& state_;
+    Timer timer_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+uint64_t bitsOf(uint32_t low, uint32_t high) { return uint64_t(high) << 32 | low; }
+
+}  // namespace
+
+CpuBackend::State::State(std::pmr::memory_resource* memory_, uint32_t maxLights_)
+    : memory(memory_), maxLights(maxLights_), meshes(memory_), objects(memory_), tiles(memory_),
+      list(memory_), listOut(memory_), runList(memory_), burnList(memory_), results(memory_),
+      scratch(memory_), burnTiles(memory_), freeTiles(memory_), readbacks(memory_) {}
+
+FrontPlanes CpuBackend::State::planes(const CpuObject& object) const noexcept {
+    const mesh::BurnDomain& domain = *object.domain;
+    FrontPlanes planes;
+    planes.state = object.state.data();
+    planes.texels = domain.texels.data();
+    planes.normals = domain.normals.data();
+    planes.slowness =
+        object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
+    planes.links = domain.links.data();
+    planes.tiles = domain.tiles.data();
+    planes.materials = object.materials.data();
+    planes.width = domain.width;
+    planes.tilesX = domain.tilesX;
+    return planes;
+}
+
+void CpuBackend::State::touch(uint32_t worldTile, uint32_t bits) noexcept {
+    uint32_t& flag = tiles[worldTile].flag;
+    if ((flag & kTileListed) == 0) list.push_back(worldTile);
+    flag |= kTileListed | bits;
+}
+
+void CpuBackend::State::burning(uint32_t worldTile) noexcept {
+    uint32_t& flag = tiles[worldTile].flag;
+    if ((flag & kTileBurning) == 0) burnList.push_back(worldTile);
+    flag |= kTileBurning;
+}
+
+void CpuBackend::State::touchReaders(const CpuObject& object, uint32_t local,
+                                     uint64_t mask) noexcept {
+    const uint32_t base = object.record.worldTileBase;
+    const mesh::BurnDomain& domain = *object.domain;
+    touch(base + local, kTileTouched);
+    const uint32_t beside = neighboursOf(uint32_t(mask), uint32_t(mask >> 32));
+    if (beside != 0) {
+        const int x = int(local % domain.tilesX);
+        const int y = int(local / domain.tilesX);
+        for (uint32_t k = 0; k < 8; ++k) {
+            if ((beside >> k & 1) == 0) continue;
+            const int otherX = x + kFrontRingX[k];
+            const int otherY = y + kFrontRingY[k];
+            if (otherX < 0 || otherY < 0 || otherX >= int(domain.tilesX) ||
+                otherY >= int(domain.tilesY))
+                continue;
+            touch(base + uint32_t(otherY) * domain.tilesX + uint32_t(otherX), kTileTouched);
+        }
+    }
+    const mesh::TileStatic& statics = domain.tiles[local];
+    if ((bitsOf(statics.seamMaskLow, statics.seamMaskHigh) & mask) == 0 ||
+        (switches & kSwitchNoSeamWake) != 0)
+        return;
+    for (uint32_t r = 0; r < statics.readerCount; ++r) {
+        const uint32_t reader = domain.readers[statics.readerStart + r];
+        touch(base + ((switches & kSwitchWrongReaders) != 0 ? 0 : reader), kTileTouched);
+    }
+}
+
+void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
+    for (size_t i = 0; i < step.events.size();) {
+        const TexelEvent& first = step.events[i];
+        CpuObject& object = *objects[first.object];
+        uint32_t& texel = object.state[first.texel];
+        const uint32_t before = texel;
+        uint32_t now = before;
+        for (; i < step.events.size() && step.events[i].object == first.object &&
+               step.events[i].texel == first.texel;
+             ++i)
+            now = applyEvent(now, step.events[i].kind, step.events[i].tick, step.now);
+        if (now == before) continue;
+        texel = now;
+        const uint32_t x = first.texel % object.domain->width;
+        const uint32_t y = first.texel / object.domain->width;
+        const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
+        const uint32_t worldTile = object.record.worldTileBase + local;
+        if (isSource(now) != isSource(before)) object.counters.ignited += isSource(now) ? 1u : ~0u;
+        if (isSource(now)) {
+            object.counters.lastIgnition =
+                std::max(object.counters.lastIgnition, step.now + kStepTicks);
+            burning(worldTile);
+        }
+        if (!object.published.empty()) {
+            const size_t plane = object.state.size();
+            const float q = isSource(now) ? object.published[2 * plane + first.texel] : 0.0f;
+            object.published[first.texel] = q;
+            object.published[plane + first.texel] = q;
+            continue;
+        }
+        tiles[worldTile].lastChange = step.now;
+        touchReaders(object, local, 1ull << ((y & 7) * 8 + (x & 7)));
+    }
+}
+
+void CpuBackend::State::wake(const StepPlan& step) noexcept {
+    for (const MaterialUpdate& update : step.materials) {
+        CpuObject& object = *objects[update.object];
+        std::copy_n(update.materials, kMaterialsPerObject, object.materials.begin());
+        object.record.window = update.window;
+        object.record.substepShift = update.substepShift;
+        if ((switches & kSwitchNoWindWake) != 0 || !object.published.empty()) continue;
+        for (uint32_t local = 0; local < object.record.tileCount; ++local) {
+            const uint32_t worldTile = object.record.worldTileBase + local;
+            const bool listed = (tiles[worldTile].flag & kTileListed) != 0;
+            if (latchTouches(listed, tiles[worldTile].lastChange, step.now, update.window))
+                touch(worldTile, kTileTouched);
+        }
+    }
+}
+
+void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, uint32_t worldTile,
+                                     bool dense) noexcept {
+    TileState& tile = tiles[worldTile];
+    const BurnObject& record = objects[tile.object]->record;
+    if (!takesPart(iteration, step.substepShift, record.substepShift)) {
+        if ((tile.flag & kTileListed) != 0) listOut.push_back(worldTile);
+        return;
+    }
+    const uint32_t end = iterationEnd(step.now, iteration, step.substepShift, record.substepShift);
+    if (dense || (tile.flag & kTileTouched) != 0 || tile.wake <= end) {
+        runList.push_back(worldTile);
+        tile.wake = kNever;
+        tile.flag &= ~(kTileListed | kTileTouched);
+    } else if (tile.wake != kNever) {
+        listOut.push_back(worldTile);
+    } else {
+        tile.flag &= ~kTileListed;
+    }
+}
+
+void CpuBackend::State::schedule(const StepPlan& step, uint32_t iteration) noexcept {
+    runList.clear();
+    listOut.clear();
+    if ((switches & kSwitchDense) != 0) {
+        for (const core::Owned<CpuObject>& object : objects) {
+            if (!object || !object->live || !object->published.empty()) continue;
+            for (uint32_t local = 0; local < object->record.tileCount; ++local)
+                scheduleTile(step, iteration, object->record.worldTileBase + local, true);
+        }
+    } else {
+        for (uint32_t worldTile : list) scheduleTile(step, iteration, worldTile, false);
+    }
+    list.swap(listOut);  // from here on `list` is the one that commits append to
+    if ((switches & kSwitchShuffle) != 0) {
+        shuffle(list);
+        shuffle(runList);
+    }
+}
+
+void CpuBackend::State::shuffle(std::pmr::vector<uint32_t>& entries) noexcept {
+    for (size_t i = entries.size(); i > 1; --i)
+        std::swap(entries[i - 1], entries[core::hash32(random++) % i]);
+}
+
+void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexcept {
+    {
+        Stopwatch watch(*this, kTimerSchedule);
+        schedule(step, iteration);
+    }
+    if (runList.empty()) return;
+    runTiles += runList.size();
+    {
+        Stopwatch watch(*this, kTimerArrival);
+        uint32_t known = kNoneTexel;  // object whose planes are at hand
+        FrontPlanes at;
+        uint32_t end = 0, floorTick = 0, base = 0;
+        for (size_t i = 0; i < runList.size(); ++i) {
+            const uint32_t worldTile = runList[i];
+            if (tiles[worldTile].object != known) {
+                known = tiles[worldTile].object;
+                const CpuObject& object = *objects[known];
+                const uint32_t shift = object.record.substepShift;
+                at = planes(object);
+                end = iterationEnd(step.now, iteration, step.substepShift, shift);
+                floorTick = frontFloor(end - windowTicks(step.substepShift, shift),
+                                       object.record.window);
+                base = object.record.worldTileBase;
+            }
+            results[i] = runFrontTile(at, worldTile - base, end, floorTick, &scratch[i * 64]);
+        }
+    }
+    Stopwatch watch(*this, kTimerCommit);
+    for (size_t i = 0; i < runList.size(); ++i) {
+        const uint32_t worldTile = runList[i];
+        const FrontTile& result = results[i];
+        TileState& tile = tiles[worldTile];
+        tile.wake = result.wake;
+        if (result.changed == 0) {
+            if (result.wake != kNever) touch(worldTile, 0);
+            continue;
+        }
+        CpuObject& object = *objects[tile.object];
+        const uint32_t local = worldTile - object.record.worldTileBase;
+        const uint32_t corner = (local / object.domain->tilesX) * 8 * object.domain->width +
+                                (local % object.domain->tilesX) * 8;
+        for (uint64_t rest = result.changed; rest != 0; rest &= rest - 1) {
+            const uint32_t lane = uint32_t(std::countr_zero(rest));
+            object.state[corner + (lane >> 3) * object.domain->width + (lane & 7)] =
+                scratch[i * 64 + lane];
+        }
+        const uint32_t end = iterationEnd(step.now, iteration, step.substepShift,
+                                          object.record.substepShift);
+        tile.lastChange = end;
+        object.counters.lateClamps += result.late;
+        if (result.lit != 0) {
+            object.counters.ignited += uint32_t(std::popcount(result.lit));
+            object.counters.lastIgnition = std::max(object.counters.lastIgnition, end);
+            burning(worldTile);
+        }
+        touchReaders(object, local, result.changed);
+    }
+}
+
+void CpuBackend::State::publishedStep(uint32_t now) noexcept {
+    for (core::Owned<CpuObject>& owned : objects) {
+        if (!owned || !owned->live || owned->published.empty()) continue;
+        CpuObject& object = *owned;
+        const int width = int(object.domain->width);
+        const int height = int(object.domain->height);
+        const size_t plane = object.state.size();
+        const float* from = object.published.data() + object.publishedParity * plane;
+        float* to = object.published.data() + (object.publishedParity ^ 1u) * plane;
+        const float* spread = object.published.data() + 2 * plane;
+        object.publishedParity ^= 1u;
+        const auto tap = [&](int x, int y) {
+            return x < 0 || y < 0 || x >= width || y >= height
+                       ? 0.0f
+                       : from[size_t(y) * size_t(width) + size_t(x)];
+        };
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                const size_t texel = size_t(y) * size_t(width) + size_t(x);
+                const float q = from[texel];
+                const float d = spread[texel];
+                to[texel] = q;
+                if (!(q < d)) continue;
+                const float next = publishedNext(
+                    q, d,
+                    publishedSum(tap(x - 1, y) + tap(x + 1, y) + tap(x, y - 1) + tap(x, y + 1),
+                                 tap(x - 1, y - 1) + tap(x + 1, y - 1) + tap(x - 1, y + 1) +
+                                     tap(x + 1, y + 1),
+                                 tap(x - 2, y - 1) + tap(x - 2, y + 1) + tap(x + 2, y - 1) +
+                                     tap(x + 2, y + 1) + tap(x - 1, y - 2) + tap(x + 1, y - 2) +
+                                     tap(x - 1, y + 2) + tap(x + 1, y + 2)));
+                to[texel] = next;
+                if (2 * next < d || 2 * q >= d || !isReceptive(object.state[texel])) continue;
+                object.state[texel] = now + kStepTicks;
+                ++object.counters.ignited;
+                object.counters.lastIgnition =
+                    std::max(object.counters.lastIgnition, now + kStepTicks);
+                burning(object.record.worldTileBase +
+                        uint32_t(y >> 3) * object.domain->tilesX + uint32_t(x >> 3));
+            }
+    }
+}
+
+uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
+    for (Range& range : freeTiles) {
+        if (range.count < count) continue;
+        const uint32_t first = range.first;
+        range.first += count;
+        range.count -= count;
+        return first;
+    }
+    const size_t first = tiles.size();
+    const size_t total = first + count;
+    if (total > 0x7FFFFFFFu)
+        core::fail(FW_ERROR_OUT_OF_MEMORY, "The world has %zu tiles; the limit is %u.", total,
+                   0x7FFFFFFFu);
+    // All or nothing: room first, then the size that says so.
+    for (auto* entries : {&list, &listOut, &runList, &burnList}) entries->reserve(total);
+    burnTiles.reserve(total);
+    results.reserve(total);
+    scratch.reserve(total * 64);
+    tiles.reserve(total);
+    results.resize(total);
+    scratch.resize(total * 64);
+    tiles.resize(total);
+    return uint32_t(first);
+}
+
+void CpuBackend::State::releaseTiles(uint32_t first, uint32_t count) noexcept {
+    const auto at = std::lower_bound(freeTiles.begin(), freeTiles.end(), first,
+                               [](const Range& r, uint32_t f) { return r.first < f; });
+    freeTiles.insert(at, {first, count});  // room was reserved with the object
+    size_t kept = 0;
+    for (size_t i = 0; i < freeTiles.size(); ++i) {
+        if (freeTiles[i].count == 0) continue;
+        if (kept > 0 && freeTiles[kept - 1].first + freeTiles[kept - 1].count == freeTiles[i].first)
+            freeTiles[kept - 1].count += freeTiles[i].count;
+        else
+            freeTiles[kept++] = freeTiles[i];
+    }
+    freeTiles.resize(kept);
+}
+
+CpuBackend::CpuBackend(std::pmr::memory_resource* memory, uint32_t maxLights)
+    : state_(core::Owned<State>::make(memory, memory, maxLights)) {}
+
+CpuBackend::~CpuBackend() = default;
+
+void CpuBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
+    if (slot >= state_->meshes.size()) state_->meshes.resize(slot + 1, nullptr);
+    state_->meshes[slot] = &domain;
+}
+
+void CpuBackend::destroyMesh(uint32_t slot) noexcept {
+    if (slot < state_->meshes.size()) state_->meshes[slot] = nullptr;
+}
+
+void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
+    State& s = *state_;
+    auto object = core::Owned<CpuObject>::make(s.memory, s.memory);
+    const mesh::BurnDomain& domain = *s.meshes[init.mesh];
+    const uint32_t texels = domain.texelCount();
+    object->mesh = init.mesh;
+    object->domain = &domain;
+    object->record = init.record;
+    std::copy_n(init.materials.begin(), kMaterialsPerObject, object->materials.begin());
+    object->slowness.assign(init.slowness.begin(), init.slowness.end());
+    object->state.resize(texels);
+    const uint16_t* slow =
+        object->slowness.empty() ? domain.slowness.data() : object->slowness.data();
+    for (uint32_t i = 0; i < texels; ++i) {
+        const uint32_t flags = domain.texels[i].materialFlags;
+        const bool burns = texelBurns(flags, slow[i], object->materials[flags & 7].flags);
+        object->state[i] = burns ? kNever : kInert;
+    }
+    if ((init.record.flags & kObjectPublished) != 0) {
+        object->published.resize(size_t(texels) * 3);
+        for (uint32_t i = 0; i < texels; ++i) {
+            if (object->state[i] != kNever) continue;
+            const uvec4& up = object->materials[domain.texels[i].materialFlags & 7].upCeiling;
+            const int rise = dotInt(decodeNormal(domain.normals[i]),
+                                    ivec3(int(up.x), int(up.y), int(up.z)));
+            object->published[size_t(texels) * 2 + i] =
+                publishedSpread(kPublishedRate / 32.0f, kPublishedGravity, slow[i],
+                                -float(rise) / 16777216.0f);
+        }
+    }
+    if (slot >= s.objects.size()) s.objects.resize(slot + 1);
+    s.freeTiles.reserve(s.objects.size() + s.freeTiles.size() + 1);
+    const uint32_t first = s.allocateTiles(domain.tileCount());
+    object->record.worldTileBase = first;
+    object->record.width = domain.width;
+    object->record.height = domain.height;
+    object->record.tilesX = domain.tilesX;
+    object->record.tileCount = domain.tileCount();
+    object->record.flags |= kObjectLive;
+    object->live = true;
+    for (uint32_t local = 0; local < domain.tileCount(); ++local)
+        s.tiles[first + local] = {kNever, 0, kFarPast, slot};
+    if (!object->published.empty()) ++s.publishedObjects;
+    s.objects[slot] = std::move(object);
+}
+
+void CpuBackend::destroyObject(uint32_t slot) noexcept {
+    State& s = *state_;
+    if (slot >= s.objects.size() || !s.objects[slot]) return;
+    const uint32_t first = s.objects[slot]->record.worldTileBase;
+    const uint32_t count = s.objects[slot]->record.tileCount;
+    for (auto* entries : {&s.list, &s.burnList})
+        std::erase_if(*entries, [&](uint32_t tile) { return tile - first < count; });
+    std::erase_if(s.burnTiles, [&](const BurnTile& tile) { return tile.object == slot; });
+    if (!s.objects[slot]->published.empty()) --s.publishedObjects;
+    s.releaseTiles(first, count);
+    s.objects[slot] = core::Owned<CpuObject>();
+}
+
+void CpuBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
+                               uint32_t flags) {
+    BurnObject& record = state_->objects[slot]->record;
+    record.worldRow0 = rows[0];
+    record.worldRow1 = rows[1];
+    record.worldRow2 = rows[2];
+    record.tint = tint;
+    record.flags = flags | kObjectLive;
+}
+
+void CpuBackend::run(const FramePlan& plan) {
+    State& s = *state_;
+    // Everything that can fail comes first.
+    if (s.waiting == s.readbacks.size()) {
+        std::rotate(s.readbacks.begin(), s.readbacks.begin() + std::ptrdiff_t(s.head),
+                    s.readbacks.end());
+        s.head = 0;
+        s.readbacks.emplace_back(s.memory);
+    }
+    ReadbackStore& store = s.readbacks[(s.head + s.waiting) % s.readbacks.size()];
+    size_t words = 0;
+    for (uint32_t slot : plan.burnMaps)
+        if (slot < s.objects.size() && s.objects[slot]) words += s.objects[slot]->state.size();
+    store.objects.resize(s.objects.size());
+    store.answers.resize(plan.probes.size());
+    store.mapTicks.resize(words);
+    store.maps.clear();
+    store.maps.reserve(plan.burnMaps.size());
+    store.lights.clear();
+    store.lights.reserve(s.maxLights);
+
+    s.switches = plan.switches;
+    s.runTiles = 0;
+    s.milliseconds.fill(0);
+    s.timed.fill(0);
+    for (const StepPlan& step : plan.steps) {
+        if (!step.materials.empty()) {
+            Stopwatch watch(s, kTimerWake);
+            s.wake(step);
+        }
+        if (!step.events.empty()) {
+            Stopwatch watch(s, kTimerEvents);
+            s.applyEvents(step);
+        }
+        if (!s.list.empty() || (s.switches & kSwitchDense) != 0)
+            for (uint32_t k = 0; k < 1u << step.substepShift; ++k) s.iterate(step, k);
+        if (s.publishedObjects != 0) {
+            Stopwatch watch(s, kTimerPublished);
+            s.publishedStep(step.now);
+        }
+        if (step.reduce) {
+            Stopwatch watch(s, kTimerReduce);
+            s.reduce(step.now + kStepTicks);
+        }
+    }
+
+    for (size_t i = 0; i < s.objects.size(); ++i)
+        store.objects[i] = s.objects[i] ? s.objects[i]->counters : ObjectCounters{};
+    for (size_t i = 0; i < plan.probes.size(); ++i) {
+        const Probe& probe = plan.probes[i];
+        const bool known = probe.object < s.objects.size() && s.objects[probe.object] &&
+                           probe.texel < s.objects[probe.object]->state.size();
+        store.answers[i] = known ? s.objects[probe.object]->state[probe.texel] : kInert;
+    }
+    size_t at = 0;
+    for (uint32_t slot : plan.burnMaps) {
+        if (slot >= s.objects.size() || !s.objects[slot]) continue;
+        const std::pmr::vector<uint32_t>& ticks = s.objects[slot]->state;
+        std::copy(ticks.begin(), ticks.end(), store.mapTicks.begin() + std::ptrdiff_t(at));
+        store.maps.push_back({slot, {store.mapTicks.data() + at, ticks.size()}});
+        at += ticks.size();
+    }
+    s.findLights(store.lights);
+    store.readback = {};
+    store.readback.frameIndex = plan.frameIndex;
+    store.readback.endTick = plan.endTick;
+    store.readback.objects = store.objects;
+    store.readback.answers = store.answers;
+    store.readback.burnMaps = store.maps;
+    store.readback.lights = store.lights;
+    store.readback.frontTiles = uint32_t(s.list.size());
+    store.readback.runTiles = uint32_t(std::min<uint64_t>(s.runTiles, 0xFFFFFFFFu));
+    store.readback.burningTiles = uint32_t(s.burnTiles.size());
+    ++s.waiting;
+
+    s.timesCount = 0;
+    for (uint32_t t = 0; t < kTimerCount; ++t) {
+        if (s.timed[t] == 0) continue;
+        PassTime& time = s.times[s.timesCount++];
+        std::snprintf(time.name, sizeof time.name, "%s", kTimerNames[t]);
+        time.milliseconds = s.milliseconds[t];
+        time.frameIndex = plan.frameIndex;
+        time.count = s.timed[t];
+    }
+}
+
+const Readback* CpuBackend::nextReadback() {
+    State& s = *state_;
+    if (s.waiting == 0) return nullptr;
+    const Readback* readback = &s.readbacks[s.head].readback;
+    s.head = (s.head + 1) % s.readbacks.size();
+    --s.waiting;
+    return readback;
+}
+
+std::span<const PassTime> CpuBackend::passTimes() {
+    return {state_->times.data(), state_->timesCount};
+}
+
+void CpuBackend::memoryRows(std::pmr::vector<MemoryRow>& out) {
+    const State& s = *state_;
+    MemoryRow states{"cpu texel states", 0, 0};
+    for (const core::Owned<CpuObject>& object : s.objects) {
+        if (!object) continue;
+        states.bytes += object->state.size() * sizeof(uint32_t) +
+                        object->slowness.size() * sizeof(uint16_t) +
+                        object->published.size() * sizeof(float);
+        states.capacity += object->state.capacity() * sizeof(uint32_t) +
+                           object->slowness.capacity() * sizeof(uint16_t) +
+                           object->published.capacity() * sizeof(float);
+    }
+    out.push_back(states);
+    const size_t perTile = sizeof(TileState) + 4 * sizeof(uint32_t) + sizeof(FrontTile) +
+                           64 * sizeof(uint32_t) + sizeof(BurnTile);
+    out.push_back({"cpu tiles and lists", s.tiles.size() * perTile, s.tiles.capacity() * perTile});
+}
+
+std::span<const uint32_t> CpuBackend::state(uint32_t slot) const {
+    return state_->objects[slot]->state;
+}
+
+const ObjectCounters& CpuBackend::counters(uint32_t slot) const {
+    return state_->objects[slot]->counters;
+}
+
+}  // namespace fw::gpu::cpu

@@ -1,0 +1,40 @@
+// The burn simulation on the CPU: the same integers as on a device, at once, on one thread. It
+// draws nothing, so it predicts nothing; BurnTiles and lights are kept for queries.
+#pragma once
+#include "core/owned.h"
+#include "gpu/backend.h"
+
+namespace fw::gpu::cpu {
+
+class CpuBackend final : public Backend {
+   public:
+    CpuBackend(std::pmr::memory_resource* memory, uint32_t maxLights);
+    ~CpuBackend() override;
+    CpuBackend(const CpuBackend&) = delete;
+    CpuBackend& operator=(const CpuBackend&) = delete;
+
+    void createMesh(uint32_t slot, const mesh::BurnDomain& domain) override;
+    void destroyMesh(uint32_t slot) noexcept override;
+    void createObject(uint32_t slot, const ObjectInit& init) override;
+    void destroyObject(uint32_t slot) noexcept override;
+    void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
+                       uint32_t flags) override;
+    void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>) override {}
+    void destroyImage(uint32_t) noexcept override {}
+
+    void run(const FramePlan& plan) override;
+    const Readback* nextReadback() override;
+    std::span<const PassTime> passTimes() override;
+    void memoryRows(std::pmr::vector<MemoryRow>& out) override;
+
+    // For tests and benches: the whole state of an object, one word per texel.
+    [[nodiscard]] std::span<const uint32_t> state(uint32_t slot) const;
+    [[nodiscard]] const ObjectCounters& counters(uint32_t slot) const;
+
+    struct State;
+
+   private:
+    core::Owned<State> state_;
+};
+
+}  // namespace fw::gpu::cpu

@@ -1,0 +1,136 @@
+// What burns: counts per object, BurnTiles and the strongest lights. The counts are integers and
+// equal a device's; places and powers are cosmetic.
+#include "gpu/cpu/cpu_state.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace fw::gpu::cpu {
+namespace {
+
+constexpr float kLightCell = 1.0f;      // m: tiles of one object within a cell make one light
+constexpr uint32_t kLightSlots = 1024;  // open hash; what finds no slot joins the last one
+
+struct Cell {
+    uint64_t key = 0;
+    uint32_t id = 0;
+    float power = 0, area = 0;
+    float position[3] = {};  // weighted by power
+};
+
+uint64_t cellKey(const BurnTile& tile) {
+    uint64_t key = tile.object;
+    for (int i = 0; i < 3; ++i)
+        key = key * 0x9E3779B97F4A7C15ull +
+              uint64_t(int64_t(std::floor(tile.positionArea[i] / kLightCell)) + (1 << 20));
+    return key | 1;
+}
+
+}  // namespace
+
+void CpuBackend::State::reduce(uint32_t now) noexcept {
+    for (core::Owned<CpuObject>& object : objects) {
+        if (!object) continue;
+        object->counters.burning = object->counters.burningTiles = object->counters.frontTiles = 0;
+    }
+    for (uint32_t worldTile : list) ++objects[tiles[worldTile].object]->counters.frontTiles;
+
+    burnTiles.clear();
+    size_t kept = 0;
+    for (uint32_t worldTile : burnList) {
+        CpuObject& object = *objects[tiles[worldTile].object];
+        const mesh::BurnDomain& domain = *object.domain;
+        const uint32_t local = worldTile - object.record.worldTileBase;
+        const uint32_t corner =
+            (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+        uint32_t count = 0, age = 0, position[3] = {};
+        int normal[3] = {};
+        float power = 0;
+        for (uint32_t lane = 0; lane < 64; ++lane) {
+            const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+            const uint32_t t = object.state[texel];
+            if (!isSource(t)) continue;
+            const mesh::TexelPosition& at = domain.texels[texel];
+            const BurnMaterial& material = object.materials[at.materialFlags & 7];
+            if (!flames(t, now, material.flameTicks)) continue;
+            ++count;
+            age += std::min(now - t, 0xFFFFFFu) >> 2;
+            position[0] += at.x;
+            position[1] += at.y;
+            position[2] += at.z;
+            const ivec3 n = decodeNormal(domain.normals[texel]);
+            for (int i = 0; i < 3; ++i) normal[i] += n[i];
+            power += material.powerPerArea * object.record.tint.w;
+        }
+        if (count == 0) {
+            tiles[worldTile].flag &= ~kTileBurning;
+            continue;
+        }
+        burnList[kept++] = worldTile;
+        object.counters.burning += count;
+        ++object.counters.burningTiles;
+        const float inverse = 1.0f / float(count);
+        const BurnObject& record = object.record;
+        vec4 rest(0, 0, 0, 1);
+        for (int i = 0; i < 3; ++i)
+            rest[i] = record.originQuantum[i] +
+                      record.originQuantum.w * inverse * float(position[i]);
+        const vec4 direction = {float(normal[0]), float(normal[1]), float(normal[2]), 0.0f};
+        const vec3 world(glm::dot(record.worldRow0, direction),
+                         glm::dot(record.worldRow1, direction),
+                         glm::dot(record.worldRow2, direction));
+        const float size = glm::length(world);
+        BurnTile tile;
+        tile.positionArea = {glm::dot(record.worldRow0, rest), glm::dot(record.worldRow1, rest),
+                             glm::dot(record.worldRow2, rest), float(count) * record.tint.w};
+        tile.normalPower = vec4(size > 0 ? world / size : vec3(0), power);
+        tile.object = tiles[worldTile].object;
+        tile.tile = local;
+        tile.texels = count;
+        tile.age = (age / count) << 2;
+        burnTiles.push_back(tile);
+    }
+    burnList.resize(kept);
+}
+
+void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {
+    if (maxLights == 0 || burnTiles.empty()) return;
+    std::array<Cell, kLightSlots> cells{};
+    for (const BurnTile& tile : burnTiles) {
+        const uint64_t key = cellKey(tile);
+        uint32_t at = uint32_t(key >> 32) % kLightSlots;
+        for (uint32_t tries = 0; cells[at].key != 0 && cells[at].key != key && tries < 32; ++tries)
+            at = (at + 1) % kLightSlots;
+        Cell& cell = cells[at];
+        if (cell.key == 0) {
+            cell.key = key;
+            cell.id = uint32_t(key ^ key >> 32) | 1u;
+        }
+        const float power = std::max(tile.normalPower.w, 1e-6f);
+        cell.power += power;
+        cell.area += tile.positionArea.w;
+        for (int i = 0; i < 3; ++i) cell.position[i] += power * tile.positionArea[i];
+    }
+    const auto end = std::partition(cells.begin(), cells.end(),
+                                    [](const Cell& cell) { return cell.key != 0; });
+    const size_t count = std::min<size_t>(size_t(end - cells.begin()), maxLights);
+    std::partial_sort(cells.begin(), cells.begin() + std::ptrdiff_t(count), end,
+                      [](const Cell& a, const Cell& b) {
+                          return a.power != b.power ? a.power > b.power : a.key < b.key;
+                      });
+    for (size_t i = 0; i < count; ++i) {
+        const Cell& cell = cells[i];
+        BurnLight light{};
+        // A third of the power is radiated; colour of a sooty flame, luminance 1.
+        light.positionRadius = {cell.position[0] / cell.power, cell.position[1] / cell.power,
+                                cell.position[2] / cell.power,
+                                std::sqrt(cell.area / 3.14159265f)};
+        light.colorIntensity = {2.17f, 0.72f, 0.16f, cell.power * 0.3f / 12.5663706f * 0.02f};
+        light.power = cell.power;
+        light.id = cell.id;
+        out.push_back(light);
+    }
+}
+
+}  // namespace fw::gpu::cpu

@@ -1,0 +1,86 @@
+// What the cpu backend keeps, shared by its two sources. Not for anyone else.
+#pragma once
+#include "gpu/cpu/cpu_backend.h"
+#include "gpu/cpu/front_tile.h"
+
+#include <array>
+
+namespace fw::gpu::cpu {
+
+struct CpuObject {
+    explicit CpuObject(std::pmr::memory_resource* memory)
+        : state(memory), slowness(memory), published(memory) {}
+    bool live = false;
+    uint32_t mesh = 0;
+    BurnObject record{};
+    std::array<BurnMaterial, kMaterialsPerObject> materials{};
+    ObjectCounters counters{};
+    const mesh::BurnDomain* domain = nullptr;
+    std::pmr::vector<uint32_t> state;      // one per texel
+    std::pmr::vector<uint16_t> slowness;   // empty: the mesh's own
+    std::pmr::vector<float> published;     // 3 planes, as-published objects only
+    uint32_t publishedParity = 0;
+};
+
+struct ReadbackStore {
+    explicit ReadbackStore(std::pmr::memory_resource* memory)
+        : objects(memory), answers(memory), mapTicks(memory), maps(memory), lights(memory) {}
+    Readback readback;
+    std::pmr::vector<ObjectCounters> objects;
+    std::pmr::vector<uint32_t> answers, mapTicks;
+    std::pmr::vector<BurnMap> maps;
+    std::pmr::vector<BurnLight> lights;
+};
+
+enum Timer : uint32_t {
+    kTimerWake, kTimerEvents, kTimerSchedule, kTimerArrival, kTimerCommit, kTimerPublished,
+    kTimerReduce, kTimerCount
+};
+
+struct CpuBackend::State {
+    State(std::pmr::memory_resource* memory_, uint32_t maxLights_);
+
+    FrontPlanes planes(const CpuObject& object) const noexcept;
+    void touch(uint32_t worldTile, uint32_t bits) noexcept;
+    void touchReaders(const CpuObject& object, uint32_t local, uint64_t mask) noexcept;
+    void burning(uint32_t worldTile) noexcept;
+    void applyEvents(const StepPlan& step) noexcept;
+    void wake(const StepPlan& step) noexcept;
+    void iterate(const StepPlan& step, uint32_t iteration) noexcept;
+    void schedule(const StepPlan& step, uint32_t iteration) noexcept;
+    void scheduleTile(const StepPlan& step, uint32_t iteration, uint32_t worldTile,
+                      bool dense) noexcept;
+    void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
+    void publishedStep(uint32_t now) noexcept;
+    void reduce(uint32_t now) noexcept;                        // cpu_reduce.cpp
+    void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
+    uint32_t allocateTiles(uint32_t count);
+    void releaseTiles(uint32_t first, uint32_t count) noexcept;
+
+    std::pmr::memory_resource* memory;
+    uint32_t maxLights;
+    std::pmr::vector<const mesh::BurnDomain*> meshes;
+    std::pmr::vector<core::Owned<CpuObject>> objects;
+    // By world tile. A tile is in a list at most once, so all lists have room for all tiles.
+    std::pmr::vector<TileState> tiles;
+    std::pmr::vector<uint32_t> list, listOut, runList, burnList;
+    std::pmr::vector<FrontTile> results;   // per due tile
+    std::pmr::vector<uint32_t> scratch;    // 64 words per due tile
+    std::pmr::vector<BurnTile> burnTiles;
+    struct Range {
+        uint32_t first = 0, count = 0;
+    };
+    std::pmr::vector<Range> freeTiles;     // by first; room for objects + 1
+    std::pmr::vector<ReadbackStore> readbacks;  // ring: [head, head + waiting)
+    size_t head = 0, waiting = 0;
+    uint32_t switches = 0;
+    uint32_t random = 1;                   // of the shuffle switch
+    uint64_t runTiles = 0;
+    uint32_t publishedObjects = 0;
+    std::array<double, kTimerCount> milliseconds{};
+    std::array<uint32_t, kTimerCount> timed{};
+    std::array<PassTime, kTimerCount> times{};
+    uint32_t timesCount = 0;
+};
+
+}  // namespace fw::gpu::cpu
