@@ -1,5 +1,6 @@
 // The bake on meshes with known answers and on real ones: figures, areas, links, worst cases.
 #include <cstdio>
+#include <ctime>
 #include <queue>
 
 #include "unit/mesh_checks.h"
@@ -108,7 +109,9 @@ TEST(MeshBake, SpotIsStretchedSoItIsCutAnew) {
 void bakeLarge(const char* name) {
     Mesh mesh;
     FW_LOAD_OR_SKIP(mesh, name);
+    const std::clock_t start = std::clock();  // processor time: other processes do not count
     const BurnDomain d = bakeOf(mesh.input(4096, 1024));  // as dense as 1024^2 holds
+    const double milliseconds = 1000.0 * double(std::clock() - start) / CLOCKS_PER_SEC;
     expectSound(d);
     EXPECT_LE(d.width, 1024u);
     EXPECT_LE(d.height, 1024u);
@@ -116,10 +119,9 @@ void bakeLarge(const char* name) {
     EXPECT_LE(d.report.aspectP99, 2.0);
     EXPECT_EQ(0u, neverReached(d, firstReal(d)));
     std::printf("[   FIGURE ] %s: %u x %u, %u texels, %u charts, baked in %.0f ms (limit 5000)\n",
-                name, d.width, d.height, d.report.realTexels, d.report.charts,
-                d.report.milliseconds);
+                name, d.width, d.height, d.report.realTexels, d.report.charts, milliseconds);
 #if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    EXPECT_LE(d.report.milliseconds, 5000);
+    EXPECT_LE(milliseconds, 5000);
 #endif
 }
 TEST(MeshBake, Bunny31kWithItsOwnUvsAt1024) { bakeLarge("bunny_31k.glb"); }
@@ -205,7 +207,8 @@ TEST(MeshBake, TenRandomUnwrapsOfOneRealMesh) {
     for (uint32_t v = 0; v < mesh.vertexCount(); v += 97)
         points.push_back(
             {mesh.positions[v * 3], mesh.positions[v * 3 + 1], mesh.positions[v * 3 + 2]});
-    const std::vector<double> reference = distances(bakeOf(mesh.input()), points);
+    const BurnDomain original = bakeOf(mesh.input());
+    const std::vector<double> reference = distances(original, points);
     double worst = 0;
     for (uint32_t seed = 0; seed < 10; ++seed) {
         const Mesh other = randomUnwrap(mesh, seed, 20 + seed * 25);
@@ -213,7 +216,7 @@ TEST(MeshBake, TenRandomUnwrapsOfOneRealMesh) {
         SCOPED_TRACE(seed);
         expectSound(d);
         EXPECT_EQ(0u, neverReached(d, firstReal(d)));
-        EXPECT_NEAR(bakeOf(mesh.input()).report.meshArea, d.report.meshArea, 1e-6);
+        EXPECT_NEAR(original.report.meshArea, d.report.meshArea, 1e-6);
         EXPECT_LT(d.report.linkMax, 5);
         EXPECT_GT(d.report.charts, 60u);
         // Ways along 8 directions are up to 8 % longer than straight ones, by the turn of the UVs.
