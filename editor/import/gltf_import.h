@@ -1,0 +1,54 @@
+// glTF 2.0 (.gltf and .glb) into plain arrays in world space, ready to be baked.
+// Geometry and base colours only: no animation, skins, morph targets, cameras or lights.
+// Every range is checked before it is read; what cannot be used is refused by name. An optional
+// field of the wrong type counts as absent.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "import/image_decode.h"
+
+namespace fwimport {
+
+struct ImportedMaterial {
+    std::string name;
+    std::array<float, 4> baseColor{1, 1, 1, 1};  // linear factor
+    float roughness = 1.0f;                      // [0, 1]
+    int32_t image = -1;                          // into ImportedModel::images; -1: none
+    bool doubleSided = false;
+};
+
+struct ImportedModel {
+    std::vector<float> positions;             // 3 per vertex, m, node transforms applied
+    std::vector<float> normals;               // 3 per vertex, unit; 0,0,0 where the file has none
+    std::vector<float> uvs;                   // 2 per vertex, of the base colour's set
+    std::vector<uint32_t> colors;             // RGBA8 linear per vertex, white where none
+    std::vector<uint32_t> indices;            // 3 per triangle, counter-clockwise outside
+    std::vector<uint32_t> triangleMaterials;  // 1 per triangle, into `materials`
+    std::vector<ImportedMaterial> materials;  // those that are used; at least one
+    std::vector<DecodedImage> images;         // base colours, those that are used
+    bool hasNormals = false, hasUvs = false, hasColors = false;  // for every vertex
+    std::array<float, 3> low{}, high{};                          // m, bounds of the positions
+    std::vector<std::string> report;  // what was left out or mended, and why
+
+    size_t vertexCount() const { return positions.size() / 3; }
+    size_t triangleCount() const { return indices.size() / 3; }
+};
+
+constexpr uint64_t kMaxFileBytes = 1ull << 30;
+constexpr uint64_t kMaxVertices = 1ull << 24;
+constexpr uint64_t kMaxTriangles = 1ull << 24;
+
+// False: `error` names the file, the field, its value and what is allowed; `model` is untouched.
+bool importGltf(const std::filesystem::path& path, ImportedModel& model, std::string& error);
+
+// As above for a file in memory; `name` is for messages, `folder` is where its URIs begin.
+bool importGltfBytes(std::span<const uint8_t> bytes, const std::string& name,
+                     const std::filesystem::path& folder, ImportedModel& model, std::string& error);
+
+}  // namespace fwimport

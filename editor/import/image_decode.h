@@ -1,0 +1,22 @@
+// Decodes a compressed picture (PNG, JPEG and what else OpenImageIO knows by its first bytes).
+// Not a texture: eight bits per channel, RGBA, one level.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fwimport {
+
+struct DecodedImage {
+    uint32_t width = 0, height = 0;  // pixels, [1, 8192]
+    std::vector<uint8_t> rgba;       // as stored (sRGB for colour), rows top first
+};
+
+constexpr uint32_t kMaxImageSide = 8192;  // pixels
+
+// False: `error` says why and `image` is untouched.
+bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error);
+
+}  // namespace fwimport

@@ -1,0 +1,455 @@
+// The glTF importer: what must load, what must be refused and by what words, and bytes gone bad.
+// The files made here always run; those of assimp-testmodels run where that package is installed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "import/gltf_import.h"
+
+namespace {
+
+using fwimport::ImportedModel;
+using ::testing::HasSubstr;
+
+const std::filesystem::path kModels = "/usr/share/assimp/models/glTF2";
+
+// A GLB in the making: the JSON is written by the test, the binary chunk by the put functions.
+struct Glb {
+    std::vector<uint8_t> binary;
+
+    template <typename T>
+    size_t put(const std::vector<T>& values) {
+        while (binary.size() % 4) binary.push_back(0);
+        const size_t offset = binary.size();
+        const auto* from = reinterpret_cast<const uint8_t*>(values.data());
+        binary.insert(binary.end(), from, from + values.size() * sizeof(T));
+        return offset;
+    }
+
+    std::vector<uint8_t> pack(std::string json) const {
+        while (json.size() % 4) json += ' ';
+        std::vector<uint8_t> body = binary;
+        while (body.size() % 4) body.push_back(0);
+        std::vector<uint8_t> out;
+        auto word = [&](uint32_t value) {
+            for (int i = 0; i < 4; ++i) out.push_back(static_cast<uint8_t>(value >> (8 * i)));
+        };
+        word(0x46546c67u);
+        word(2);
+        word(static_cast<uint32_t>(28 + json.size() + body.size()));
+        word(static_cast<uint32_t>(json.size()));
+        word(0x4e4f534au);
+        out.insert(out.end(), json.begin(), json.end());
+        word(static_cast<uint32_t>(body.size()));
+        word(0x004e4942u);
+        out.insert(out.end(), body.begin(), body.end());
+        return out;
+    }
+};
+
+// One quad: four positions (48 bytes at 0), six 16-bit indices (12 bytes at 48), and room for more.
+struct Quad {
+    Glb glb;
+    std::string views, accessors, primitive = R"("attributes":{"POSITION":0},"indices":1)";
+    std::string node = R"({"mesh":0})", extra;
+    std::string positionAccessor =
+        R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]})";
+    std::string indexAccessor =
+        R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"})";
+    std::string positionView = R"({"buffer":0,"byteOffset":0,"byteLength":48})";
+    std::string indexView = R"({"buffer":0,"byteOffset":48,"byteLength":12})";
+
+    explicit Quad(std::vector<uint16_t> indices = {0, 1, 2, 0, 2, 3}) {
+        glb.put(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+        glb.put(indices);
+    }
+    std::vector<uint8_t> bytes() const {
+        return glb.pack(
+            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + node +
+            R"(],"meshes":[{"primitives":[{)" + primitive + R"(}]}],"accessors":[)" +
+            positionAccessor + "," + indexAccessor + accessors + R"(],"bufferViews":[)" +
+            positionView + "," + indexView + views + R"(],"buffers":[{"byteLength":)" +
+            std::to_string(glb.binary.size()) + "}]" + extra + "}");
+    }
+};
+
+::testing::AssertionResult loads(const std::vector<uint8_t>& bytes, ImportedModel& model) {
+    std::string error;
+    if (fwimport::importGltfBytes(bytes, "test.glb", "", model, error)) {
+        return ::testing::AssertionSuccess();
+    }
+    return ::testing::AssertionFailure() << error;
+}
+
+// The message of a refusal; a test fails on one that succeeds, and on a model that was touched.
+std::string refusal(const std::vector<uint8_t>& bytes) {
+    ImportedModel model;
+    model.indices = {7};
+    std::string error;
+    EXPECT_FALSE(fwimport::importGltfBytes(bytes, "test.glb", "", model, error));
+    EXPECT_EQ(1u, model.indices.size()) << "a refused file must leave the model alone";
+    EXPECT_THAT(error, HasSubstr("test.glb"));
+    return error;
+}
+
+TEST(Import, QuadLoadsWithItsTransform) {
+    Quad quad;
+    quad.node = R"({"mesh":0,"translation":[10,0,0],"scale":[2,2,2]})";
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_EQ(4u, model.vertexCount());
+    EXPECT_EQ((std::vector<uint32_t>{0, 1, 2, 0, 2, 3}), model.indices);
+    EXPECT_FLOAT_EQ(10.0f, model.low[0]);
+    EXPECT_FLOAT_EQ(12.0f, model.high[0]);
+    EXPECT_FLOAT_EQ(2.0f, model.high[1]);
+    EXPECT_FALSE(model.hasNormals);
+    EXPECT_FALSE(model.hasUvs);
+    ASSERT_EQ(1u, model.materials.size());
+    EXPECT_EQ(model.triangleCount(), model.triangleMaterials.size());
+}
+
+TEST(Import, MirroredNodeKeepsItsOutside) {
+    Quad quad;
+    quad.node = R"({"mesh":0,"scale":[-1,1,1]})";
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_EQ((std::vector<uint32_t>{0, 2, 1, 0, 3, 2}), model.indices);
+}
+
+TEST(Import, StripFanAndUnindexedBecomeTriangles) {
+    Quad strip({0, 1, 3, 2, 2, 2});
+    strip.primitive += R"(,"mode":5)";
+    ImportedModel model;
+    ASSERT_TRUE(loads(strip.bytes(), model));
+    EXPECT_EQ((std::vector<uint32_t>{0, 1, 3, 1, 2, 3}), model.indices);
+
+    Quad fan({0, 1, 2, 3, 3, 3});
+    fan.primitive += R"(,"mode":6)";
+    ASSERT_TRUE(loads(fan.bytes(), model));
+    EXPECT_EQ((std::vector<uint32_t>{0, 1, 2, 0, 2, 3}), model.indices);
+
+    Quad plain;
+    plain.primitive = R"("attributes":{"POSITION":0})";
+    ASSERT_TRUE(loads(plain.bytes(), model));
+    EXPECT_EQ((std::vector<uint32_t>{0, 1, 2}), model.indices);
+    EXPECT_THAT(model.report, ::testing::Contains(HasSubstr("4 indices")));
+}
+
+TEST(Import, IndicesOfEveryWidth) {
+    for (int type : {5121, 5123, 5125}) {
+        Quad quad;
+        size_t offset = 0;
+        if (type == 5121) offset = quad.glb.put(std::vector<uint8_t>{0, 1, 2, 0, 2, 3});
+        if (type == 5123) offset = quad.glb.put(std::vector<uint16_t>{0, 1, 2, 0, 2, 3});
+        if (type == 5125) offset = quad.glb.put(std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
+        const int size = type == 5121 ? 6 : type == 5123 ? 12 : 24;
+        quad.indexView = R"({"buffer":0,"byteOffset":)" + std::to_string(offset) +
+                         R"(,"byteLength":)" + std::to_string(size) + "}";
+        quad.indexAccessor = R"({"bufferView":1,"componentType":)" + std::to_string(type) +
+                             R"(,"count":6,"type":"SCALAR"})";
+        ImportedModel model;
+        ASSERT_TRUE(loads(quad.bytes(), model)) << type;
+        EXPECT_EQ((std::vector<uint32_t>{0, 1, 2, 0, 2, 3}), model.indices) << type;
+    }
+}
+
+TEST(Import, SparseValuesReplace) {
+    Quad quad;
+    const size_t places = quad.glb.put(std::vector<uint16_t>{2});
+    const size_t values = quad.glb.put(std::vector<float>{5, 6, 7});
+    quad.views = R"(,{"buffer":0,"byteOffset":)" + std::to_string(places) +
+                 R"(,"byteLength":2},{"buffer":0,"byteOffset":)" + std::to_string(values) +
+                 R"(,"byteLength":12})";
+    const std::string sparse =
+        R"("sparse":{"count":1,"indices":{"bufferView":2,"byteOffset":0,"componentType":5123},)"
+        R"("values":{"bufferView":3,"byteOffset":0}})";
+    quad.positionAccessor =
+        R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)" + sparse + "}";
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_FLOAT_EQ(5.0f, model.positions[6]);
+    EXPECT_FLOAT_EQ(7.0f, model.positions[8]);
+    EXPECT_FLOAT_EQ(1.0f, model.positions[3]);
+
+    const std::string outside =
+        R"("sparse":{"count":1,"indices":{"bufferView":0,"byteOffset":12,"componentType":5123},)"
+        R"("values":{"bufferView":3,"byteOffset":0}})";  // 0x0000 0x3f80: half of 1.0f
+    quad.positionAccessor =
+        R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)" + outside + "}";
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    const std::string beyond =
+        R"("sparse":{"count":1,"indices":{"bufferView":0,"byteOffset":14,"componentType":5123},)"
+        R"("values":{"bufferView":3,"byteOffset":0}})";
+    quad.positionAccessor =
+        R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)" + beyond + "}";
+    EXPECT_THAT(refusal(quad.bytes()), HasSubstr("sparse.indices[0] is 16256"));
+}
+
+TEST(Import, ColoursAndQuantizedUvs) {
+    Quad quad;
+    const size_t colors = quad.glb.put(
+        std::vector<uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 128, 128, 128, 255});
+    const size_t uvs = quad.glb.put(std::vector<uint16_t>{0, 0, 65535, 0, 65535, 65535, 0, 65535});
+    quad.views = R"(,{"buffer":0,"byteOffset":)" + std::to_string(colors) +
+                 R"(,"byteLength":16},{"buffer":0,"byteOffset":)" + std::to_string(uvs) +
+                 R"(,"byteLength":16})";
+    quad.accessors =
+        R"(,{"bufferView":2,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"})"
+        R"(,{"bufferView":3,"componentType":5123,"normalized":true,"count":4,"type":"VEC2"})";
+    quad.primitive = R"("attributes":{"POSITION":0,"COLOR_0":2,"TEXCOORD_0":3},"indices":1)";
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_TRUE(model.hasColors);
+    EXPECT_TRUE(model.hasUvs);
+    EXPECT_EQ(0xff0000ffu, model.colors[0]);
+    EXPECT_EQ(0xff808080u, model.colors[3]);
+    EXPECT_FLOAT_EQ(1.0f, model.uvs[2]);
+}
+
+TEST(Import, RefusalsNameTheThing) {
+    struct Case {
+        const char* expected;
+        std::function<void(Quad&)> spoil;
+    };
+    const std::vector<Case> cases = {
+        {"indices[0] is 255; there are 4 vertices", [](Quad& q) { q.glb.binary[48] = 255; }},
+        {"its buffer view has 12",
+         [](Quad& q) {
+             q.indexAccessor = R"({"bufferView":1,"componentType":5123,"count":7,"type":"SCALAR"})";
+         }},
+        {"bufferViews[1] is 1200 bytes",
+         [](Quad& q) { q.indexView = R"({"buffer":0,"byteOffset":48,"byteLength":1200})"; }},
+        {"bufferViews[1].buffer is 3",
+         [](Quad& q) { q.indexView = R"({"buffer":3,"byteOffset":48,"byteLength":12})"; }},
+        {"from 4000000000",
+         [](Quad& q) { q.indexView = R"({"buffer":0,"byteOffset":4000000000,"byteLength":12})"; }},
+        {".count is 4000000000; the limit is",
+         [](Quad& q) {
+             q.positionAccessor =
+                 R"({"bufferView":0,"componentType":5126,"count":4000000000,"type":"VEC3"})";
+         }},
+        {"count",
+         [](Quad& q) {
+             q.positionAccessor =
+                 R"({"bufferView":0,"componentType":5126,"count":-4,"type":"VEC3"})";
+         }},
+        {".count is 0",
+         [](Quad& q) {
+             q.positionAccessor =
+                 R"({"bufferView":0,"componentType":5126,"count":0,"type":"VEC3"})";
+         }},
+        {"has neither a bufferView nor sparse values",
+         [](Quad& q) { q.positionAccessor = R"({"componentType":5126,"count":4,"type":"VEC3"})"; }},
+        {"POSITION has 2 components",
+         [](Quad& q) {
+             q.positionAccessor =
+                 R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC2"})";
+         }},
+        {"indices are of type 5126",
+         [](Quad& q) {
+             q.indexAccessor = R"({"bufferView":1,"componentType":5126,"count":3,"type":"SCALAR"})";
+         }},
+        {"POSITION is accessor 9; there are 2",
+         [](Quad& q) { q.primitive = R"("attributes":{"POSITION":9})"; }},
+        {"nodes[0].mesh is 5; there are 1", [](Quad& q) { q.node = R"({"mesh":5})"; }},
+        {"has more than one parent", [](Quad& q) { q.node = R"({"mesh":0,"children":[0]})"; }},
+        {"child 7", [](Quad& q) { q.node = R"({"mesh":0,"children":[7]})"; }},
+        {".material is 3; there are 0", [](Quad& q) { q.primitive += R"(,"material":3)"; }},
+        {".mode is 9", [](Quad& q) { q.primitive += R"(,"mode":9)"; }},
+        {"points and lines", [](Quad& q) { q.primitive += R"(,"mode":1)"; }},
+        {"KHR_draco_mesh_compression",
+         [](Quad& q) { q.extra = R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"; }},
+        {"NORMAL has 3 elements; POSITION has 4",
+         [](Quad& q) {
+             q.accessors = R"(,{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"})";
+             q.primitive = R"("attributes":{"POSITION":0,"NORMAL":2},"indices":1)";
+         }},
+        {"POSITION[0] is inf",
+         [](Quad& q) {
+             const float bad = std::numeric_limits<float>::infinity();
+             std::memcpy(q.glb.binary.data(), &bad, 4);
+         }},
+        {"POSITION[1] is nan",
+         [](Quad& q) {
+             const float bad = std::numeric_limits<float>::quiet_NaN();
+             std::memcpy(q.glb.binary.data() + 12, &bad, 4);
+         }},
+        {"byteStride",
+         [](Quad& q) {
+             q.positionView = R"({"buffer":0,"byteOffset":0,"byteLength":48,"byteStride":4})";
+         }},
+    };
+    for (const Case& entry : cases) {
+        Quad quad;
+        entry.spoil(quad);
+        EXPECT_THAT(refusal(quad.bytes()), HasSubstr(entry.expected));
+    }
+}
+
+TEST(Import, ContainersGoneWrong) {
+    const std::vector<uint8_t> good = Quad().bytes();
+    EXPECT_THAT(refusal({}), HasSubstr("empty"));
+    EXPECT_THAT(refusal({'g', 'l', 'T', 'F'}), HasSubstr("need 20"));
+    EXPECT_THAT(refusal({'h', 'e', 'l', 'l', 'o'}), HasSubstr("test.glb"));
+    std::vector<uint8_t> bad = good;
+    bad[4] = 1;
+    EXPECT_THAT(refusal(bad), HasSubstr("version is 1"));
+    bad = good;
+    bad[15] = 0x7f;
+    EXPECT_THAT(refusal(bad), HasSubstr("JSON chunk"));
+    bad = good;
+    bad.resize(good.size() - 8);
+    EXPECT_THAT(refusal(bad), HasSubstr("the file has"));
+    const std::string deep = std::string(100000, '[');
+    EXPECT_THAT(refusal(std::vector<uint8_t>(deep.begin(), deep.end())), HasSubstr("nests deeper"));
+    ImportedModel model;
+    std::string error;
+    EXPECT_FALSE(fwimport::importGltf("/nowhere/at/all.glb", model, error));
+    EXPECT_THAT(error, HasSubstr("/nowhere/at/all.glb"));
+}
+
+TEST(Import, ImagesThatCannotBeDecodedAreReported) {
+    Quad quad;
+    const size_t offset =
+        quad.glb.put(std::vector<uint8_t>{'n', 'o', 't', ' ', 'a', ' ', 'p', 'n'});
+    quad.views = R"(,{"buffer":0,"byteOffset":)" + std::to_string(offset) + R"(,"byteLength":8})";
+    quad.primitive += R"(,"material":0)";
+    quad.extra = R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],)"
+                 R"("textures":[{"source":0}],"images":[{"bufferView":2,"mimeType":"image/png"}])";
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_TRUE(model.images.empty());
+    EXPECT_EQ(-1, model.materials[0].image);
+    EXPECT_THAT(model.report, ::testing::Contains(HasSubstr("neither PNG nor JPEG")));
+}
+
+// ---- the files of assimp-testmodels -----------------------------------------------------------
+
+#define REQUIRE_MODELS()                                                                   \
+    if (!std::filesystem::exists(kModels)) {                                               \
+        GTEST_SKIP() << "assimp-testmodels is not installed (" << kModels.string() << ")"; \
+    }
+
+TEST(Import, TestModelsThatMustLoad) {
+    REQUIRE_MODELS();
+    struct Row {
+        const char* path;
+        size_t vertices, triangles, images;
+    };
+    const Row rows[] = {
+        {"BoxTextured-glTF/BoxTextured.gltf", 24, 12, 1},
+        {"BoxTextured-glTF-Binary/BoxTextured.glb", 24, 12, 1},
+        {"BoxTextured-glTF-Embedded/BoxTextured.gltf", 24, 12, 1},
+        {"BoxTexcoords-glTF/boxTexcoords.gltf", 24, 12, 1},
+        {"BoxBadNormals-glTF-Binary/BoxBadNormals.glb", 24, 12, 0},
+        {"2CylinderEngine-glTF-Binary/2CylinderEngine.glb", 84657, 110342, 0},
+        {"ClearCoat-glTF/ClearCoatTest.gltf", 20106, 37116, 1},
+        {"textureTransform/TextureTransformTest.gltf", 48, 24, 5},
+        {"cameras/Cameras.gltf", 4, 2, 0},
+        {"simple_skin/simple_skin.gltf", 10, 8, 0},
+        {"IncorrectVertexArrays/Cube.gltf", 142, 46, 0},
+        {"glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf", 24, 12, 0},
+    };
+    for (const Row& row : rows) {
+        ImportedModel model;
+        std::string error;
+        ASSERT_TRUE(fwimport::importGltf(kModels / row.path, model, error)) << error;
+        EXPECT_EQ(row.vertices, model.vertexCount()) << row.path;
+        EXPECT_EQ(row.triangles, model.triangleCount()) << row.path;
+        EXPECT_EQ(row.images, model.images.size()) << row.path;
+        for (uint32_t index : model.indices) ASSERT_LT(index, model.vertexCount()) << row.path;
+    }
+}
+
+TEST(Import, TestModelsThatMustBeRefused) {
+    REQUIRE_MODELS();
+    const std::pair<const char*, const char*> rows[] = {
+        {"BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb", "POSITION[0] is -inf"},
+        {"IndexOutOfRange/IndexOutOfRange.gltf", "indices[0] is 255; there are 24 vertices"},
+        {"IndexOutOfRange/AllIndicesOutOfRange.gltf", "indices[0] is 65535"},
+        {"MissingBin/BoxTextured.gltf", "BoxTextured0.bin"},
+        {"RecursiveNodes/RecursiveNodes.gltf", "more than one parent"},
+        {"TestNoRootNode/NoScene.gltf", "no triangle"},
+        {"TestNoRootNode/SceneWithoutNodes.gltf", "no triangle"},
+        {"wrongTypes/badArray.gltf", "no triangle"},
+        {"BoxTextured-glTF-techniqueWebGL/BoxTextured.gltf", "KHR_technique_webgl"},
+        {"draco/2CylinderEngine.gltf", "KHR_draco_mesh_compression"},
+        {"../glTF/BoxTextured-glTF/BoxTextured.gltf", "2.x is read"},
+        {"../glTF/BoxTextured-glTF-Binary/BoxTextured.glb", "version is 1"},
+    };
+    for (const auto& [path, expected] : rows) {
+        ImportedModel model;
+        std::string error;
+        EXPECT_FALSE(fwimport::importGltf(kModels / path, model, error)) << path;
+        EXPECT_THAT(error, HasSubstr(expected));
+    }
+}
+
+TEST(Import, EveryPrimitiveMode) {
+    REQUIRE_MODELS();
+    for (int i = 0; i <= 15; ++i) {
+        char name[64];
+        std::snprintf(name, sizeof name, "Mesh_PrimitiveMode_%02d.gltf", i);
+        ImportedModel model;
+        std::string error;
+        const bool good = fwimport::importGltf(
+            kModels / "glTF-Asset-Generator/Mesh_PrimitiveMode" / name, model, error);
+        // 00..03 and 07..10 are points and lines, the rest triangles in every guise.
+        const bool triangles = (i >= 4 && i <= 6) || i >= 11;
+        EXPECT_EQ(triangles, good) << name << ": " << error;
+        if (triangles) {
+            EXPECT_EQ(2u, model.triangleCount()) << name;
+        }
+    }
+}
+
+// ---- bytes gone bad -----------------------------------------------------------------------------
+
+// Whatever comes, the answer is a model with sound indices or a message; never a crash.
+void mustSurvive(const std::vector<uint8_t>& bytes) {
+    ImportedModel model;
+    std::string error;
+    if (!fwimport::importGltfBytes(bytes, "fuzz.glb", "", model, error)) {
+        ASSERT_FALSE(error.empty());
+        return;
+    }
+    for (uint32_t index : model.indices) ASSERT_LT(index, model.vertexCount());
+    for (uint32_t index : model.triangleMaterials) ASSERT_LT(index, model.materials.size());
+    for (float value : model.positions) ASSERT_TRUE(std::isfinite(value));
+}
+
+void fuzz(const std::vector<uint8_t>& good, size_t step) {
+    for (size_t size = 0; size < good.size(); size += step) {
+        mustSurvive(std::vector<uint8_t>(good.begin(), good.begin() + static_cast<long>(size)));
+    }
+    for (size_t at = 0; at < good.size(); at += step) {
+        for (uint8_t flip : {0x01, 0x10, 0x80, 0xff}) {
+            std::vector<uint8_t> bad = good;
+            bad[at] = static_cast<uint8_t>(bad[at] ^ flip);
+            mustSurvive(bad);
+        }
+    }
+}
+
+TEST(ImportFuzz, EveryByteOfAQuad) { fuzz(Quad().bytes(), 1); }
+
+TEST(ImportFuzz, TruncatedAndFlippedTestModel) {
+    REQUIRE_MODELS();
+    for (const char* name : {"BoxTextured-glTF-Binary/BoxTextured.glb",
+                             "BoxBadNormals-glTF-Binary/BoxBadNormals.glb"}) {
+        std::FILE* file = std::fopen((kModels / name).string().c_str(), "rb");
+        ASSERT_NE(nullptr, file);
+        std::vector<uint8_t> bytes(1 << 16);
+        bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file));
+        std::fclose(file);
+        fuzz(bytes, 97);
+    }
+}
+
+}  // namespace
