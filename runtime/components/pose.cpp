@@ -20,8 +20,8 @@ void checkValues(const float* values, unsigned count, const char* field, float l
 }
 
 Pose makePose(const float transform[16], const char* field) {
-    constexpr float kFar = 1e6f;          // m
-    constexpr double kTolerance = 1e-3;   // of the scale
+    constexpr float kFar = 1e6f;         // m
+    constexpr double kTolerance = 1e-3;  // of the scale
     checkValues(transform, 16, field, -kFar, kFar);
     const float lastRow[4] = {transform[3], transform[7], transform[11], transform[15]};
     for (unsigned i = 0; i < 4; ++i)
@@ -44,9 +44,10 @@ Pose makePose(const float transform[16], const char* field) {
                    field, scale);
     for (int c = 0; c < 3; ++c)
         if (std::fabs(length[c] - scale) > kTolerance * scale)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s scales axis %d by %g and the mean is %g; scale is uniform within 0.1 %%.",
-                       field, c, length[c], scale);
+            core::fail(
+                FW_ERROR_INVALID_ARGUMENT,
+                "%s scales axis %d by %g and the mean is %g; scale is uniform within 0.1 %%.",
+                field, c, length[c], scale);
     for (int c = 0; c < 3; ++c) {
         const int d = (c + 1) % 3;
         double dot = 0;

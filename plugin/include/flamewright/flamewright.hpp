@@ -1,0 +1,216 @@
+// flamewright/flamewright.hpp: a thin C++20 wrapper, compiled by the host, so that nothing of C++
+// crosses the library's edge. Owners, spans and default defs; no exceptions, no state of its own.
+// All else is the C API, which these types convert to.
+#ifndef FLAMEWRIGHT_FLAMEWRIGHT_HPP
+#define FLAMEWRIGHT_FLAMEWRIGHT_HPP
+#include "flamewright/flamewright.h"
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace fw {
+
+struct Close {
+    void operator()(FwContext* context) const noexcept { fwDestroyContext(context); }
+    void operator()(FwWorld* world) const noexcept { fwDestroyWorld(world); }
+};
+// A world goes before its context: declare it after.
+using Context = std::unique_ptr<FwContext, Close>;
+using World = std::unique_ptr<FwWorld, Close>;
+
+// ---- defs: `auto def = fw::def<FwWorldDef>();`
+// ---------------------------------------------------
+
+template <class Def>
+[[nodiscard]] Def def() noexcept;
+template <>
+[[nodiscard]] inline FwContextDef def<FwContextDef>() noexcept {
+    return fwDefaultContextDef();
+}
+template <>
+[[nodiscard]] inline FwWorldDef def<FwWorldDef>() noexcept {
+    return fwDefaultWorldDef();
+}
+template <>
+[[nodiscard]] inline FwMaterialDef def<FwMaterialDef>() noexcept {
+    return fwDefaultMaterialDef();
+}
+template <>
+[[nodiscard]] inline FwImageDef def<FwImageDef>() noexcept {
+    return fwDefaultImageDef();
+}
+template <>
+[[nodiscard]] inline FwMeshDef def<FwMeshDef>() noexcept {
+    return fwDefaultMeshDef();
+}
+template <>
+[[nodiscard]] inline FwBurnableMeshDef def<FwBurnableMeshDef>() noexcept {
+    return fwDefaultBurnableMeshDef();
+}
+template <>
+[[nodiscard]] inline FwIgnitionDef def<FwIgnitionDef>() noexcept {
+    return fwDefaultIgnitionDef();
+}
+template <>
+[[nodiscard]] inline FwView def<FwView>() noexcept {
+    return fwDefaultView();
+}
+template <>
+[[nodiscard]] inline FwOffscreenDef def<FwOffscreenDef>() noexcept {
+    return fwDefaultOffscreenDef();
+}
+
+// A struct that the library fills, e.g. fw::info<FwMeshInfo>().
+template <class Info>
+[[nodiscard]] Info info() noexcept {
+    Info made{};
+    made.structSize = uint32_t(sizeof made);
+    return made;
+}
+
+[[nodiscard]] inline FwMaterialDef preset(FwMaterialPreset which) noexcept {
+    FwMaterialDef made = fwDefaultMaterialDef();
+    (void)fwInitMaterialPreset(&made, uint32_t(which));
+    return made;
+}
+
+// ---- creation
+// ------------------------------------------------------------------------------------
+
+// Null on failure; `error` (may be null) says why.
+[[nodiscard]] inline Context createContext(const FwContextDef& made,
+                                           FwErrorInfo* error = nullptr) noexcept {
+    FwContext* context = nullptr;
+    (void)fwCreateContext(&made, &context, error);
+    return Context(context);
+}
+// Null on failure; lastMessage(context) says why.
+[[nodiscard]] inline World createWorld(const Context& context,
+                                       const FwWorldDef& made = fwDefaultWorldDef()) noexcept {
+    FwWorld* world = nullptr;
+    (void)fwCreateWorld(context.get(), &made, &world);
+    return World(world);
+}
+
+[[nodiscard]] inline std::string lastMessage(const Context& context) {
+    std::string text(fwContext_GetLastMessage(context.get(), nullptr, 0), '\0');
+    (void)fwContext_GetLastMessage(context.get(), text.data(), text.size() + 1);
+    return text;
+}
+[[nodiscard]] inline std::string lastMessage(const World& world) {
+    std::string text(fwWorld_GetLastMessage(world.get(), nullptr, 0), '\0');
+    (void)fwWorld_GetLastMessage(world.get(), text.data(), text.size() + 1);
+    return text;
+}
+
+// ---- ids: null tests, comparison, and owners that destroy
+// ----------------------------------------
+
+template <class Id>
+concept GenerationalId = requires(Id id) {
+    { id.index1 } -> std::convertible_to<uint32_t>;
+    { id.generation } -> std::convertible_to<uint32_t>;
+};
+template <GenerationalId Id>
+[[nodiscard]] constexpr bool isNull(Id id) noexcept {
+    return id.index1 == 0;
+}
+template <GenerationalId Id>
+[[nodiscard]] constexpr bool same(Id a, Id b) noexcept {
+    return a.index1 == b.index1 && a.generation == b.generation;
+}
+
+// An id that destroys what it names. The world outlives it.
+template <GenerationalId Id, FwResult(FW_CALL* Destroy)(FwWorld*, Id)>
+class Owned {
+ public:
+    Owned() = default;
+    Owned(FwWorld* world, Id id) noexcept : world_(world), id_(id) {}
+    Owned(Owned&& other) noexcept : world_(other.world_), id_(other.release()) {}
+    Owned& operator=(Owned&& other) noexcept {
+        if (this != &other) {
+            reset();
+            world_ = other.world_;
+            id_ = other.release();
+        }
+        return *this;
+    }
+    Owned(const Owned&) = delete;
+    Owned& operator=(const Owned&) = delete;
+    ~Owned() { reset(); }
+
+    [[nodiscard]] Id get() const noexcept { return id_; }
+    explicit operator bool() const noexcept { return !isNull(id_); }
+    Id release() noexcept { return std::exchange(id_, Id{}); }
+    void reset() noexcept {
+        if (!isNull(id_)) (void)Destroy(world_, std::exchange(id_, Id{}));
+    }
+
+ private:
+    FwWorld* world_ = nullptr;
+    Id id_{};
+};
+using Material = Owned<FwMaterialId, fwWorld_DestroyMaterial>;
+using Image = Owned<FwImageId, fwWorld_DestroyImage>;
+using Mesh = Owned<FwMeshId, fwWorld_DestroyMesh>;
+using BurnableMesh = Owned<FwBurnableMeshId, fwWorld_DestroyBurnableMesh>;
+
+[[nodiscard]] inline Material createMaterial(const World& world, const FwMaterialDef& made) {
+    FwMaterialId id{};
+    (void)fwWorld_CreateMaterial(world.get(), &made, &id);
+    return {world.get(), id};
+}
+[[nodiscard]] inline Image createImage(const World& world, uint32_t width, uint32_t height,
+                                       std::span<const std::byte> rgba) {
+    FwImageId id{};
+    FwImageDef made = fwDefaultImageDef();
+    made.width = width;
+    made.height = height;
+    made.pixels = rgba.size() == size_t(width) * height * 4 ? rgba.data() : nullptr;
+    (void)fwWorld_CreateImage(world.get(), &made, &id);
+    return {world.get(), id};
+}
+[[nodiscard]] inline Mesh createMesh(const World& world, const FwMeshDef& made) {
+    FwMeshId id{};
+    (void)fwWorld_CreateMesh(world.get(), &made, &id);
+    return {world.get(), id};
+}
+[[nodiscard]] inline BurnableMesh createBurnableMesh(const World& world,
+                                                     const FwBurnableMeshDef& made) {
+    FwBurnableMeshId id{};
+    (void)fwWorld_CreateBurnableMesh(world.get(), &made, &id);
+    return {world.get(), id};
+}
+
+// A mesh def over the host's own arrays, which live until the def is used.
+[[nodiscard]] inline FwMeshDef meshDef(std::span<const float> positions,
+                                       std::span<const uint32_t> indices) noexcept {
+    FwMeshDef made = fwDefaultMeshDef();
+    made.positions = positions.data();
+    made.vertexCount = uint32_t(positions.size() / 3);
+    made.indices = indices.data();
+    made.indexCount = uint32_t(indices.size());
+    made.indexSize = 4;
+    return made;
+}
+
+// ---- what a game asks
+// ----------------------------------------------------------------------------
+
+// The part of `room` that was filled.
+[[nodiscard]] inline std::span<const FwEvent> pollEvents(const World& world,
+                                                         std::span<FwEvent> room) noexcept {
+    return room.first(fwWorld_PollEvents(world.get(), room.data(), uint32_t(room.size())));
+}
+[[nodiscard]] inline std::span<const FwLight> lights(const World& world,
+                                                     std::span<FwLight> room) noexcept {
+    return room.first(fwWorld_GetLights(world.get(), room.data(), uint32_t(room.size())));
+}
+
+}  // namespace fw
+#endif

@@ -1,0 +1,191 @@
+// fwCreateContext and everything that takes a context.
+#include "objects.h"
+#include "world/mesh_input.h"
+
+#include <algorithm>
+
+using namespace fw;
+using edge::checkPointer;
+using edge::onContext;
+
+namespace {
+
+void checkCallbacks(const FwCallbacks& callbacks) {
+    if ((callbacks.allocate == nullptr) != (callbacks.release == nullptr))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwCallbacks::%s is null and %s is not; give both or neither.",
+                   callbacks.allocate ? "release" : "allocate",
+                   callbacks.allocate ? "allocate" : "release");
+}
+
+FwContext* makeContext(const FwContextDef& def) {
+    core::Memory first(def.callbacks);  // the context's own block comes before its counters
+    FwContext* context =
+        std::pmr::polymorphic_allocator<>(&first).new_object<FwContext>(def.callbacks);
+    return context;
+}
+
+void freeContext(FwContext* context) noexcept {
+    const FwCallbacks callbacks = context->callbacks;
+    core::Memory last(callbacks);
+    std::pmr::polymorphic_allocator<>(&last).delete_object(context);
+}
+
+void destroyWorlds(FwContext* context) noexcept {
+    for (;;) {
+        FwWorld* world = nullptr;
+        {
+            const std::lock_guard lock(context->mutex);
+            if (context->worlds.empty()) return;
+            world = context->worlds.back();
+        }
+        fwDestroyWorld(world);
+    }
+}
+
+}  // namespace
+
+extern "C" {
+
+FwResult FW_CALL fwCreateContext(const FwContextDef* given, FwContext** out, FwErrorInfo* error) {
+    if (out) *out = nullptr;
+    FwCallbacks callbacks{};
+    const auto report = [&](FwResult result, const char* text) {
+        core::Log(callbacks).write(FW_LOG_ERROR, "%s", text);
+        if (!error) return;
+        error->result = result;
+        std::snprintf(error->message, sizeof error->message, "%s", text);
+    };
+    if (error) {
+        error->result = FW_OK;
+        error->message[0] = 0;
+    }
+    return edge::guard("fwCreateContext", report, [&] {
+        checkPointer(out, "context");
+        const FwContextDef def = edge::readDef(given, FW_DEF_CONTEXT, "FwContextDef");
+        if (def.abiVersion != FW_ABI_VERSION)
+            core::fail(FW_ERROR_VERSION,
+                       "FwContextDef::abiVersion is %u; this library serves version %u.",
+                       def.abiVersion, FW_ABI_VERSION);
+        checkCallbacks(def.callbacks);
+        callbacks = def.callbacks;
+        if (def.backend != FW_BACKEND_VULKAN && def.backend != FW_BACKEND_CPU)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwContextDef::backend is %u; it is FW_BACKEND_VULKAN (0) or "
+                       "FW_BACKEND_CPU (1).",
+                       def.backend);
+        if (def.flags != 0)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwContextDef::flags is 0x%x; it is zero.",
+                       def.flags);
+        if (def.backend == FW_BACKEND_CPU && def.vulkan)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwContextDef::vulkan is given and backend is FW_BACKEND_CPU; choose one.");
+        FwContext* context = makeContext(def);
+        try {
+            context->backend = def.backend;
+            context->device = def.backend == FW_BACKEND_CPU
+                                  ? edge::createCpuDevice(context->memory)
+                                  : edge::createVulkanDevice(def.vulkan, def.gpuMemoryBudget,
+                                                             context->memory, context->log);
+        } catch (...) {
+            freeContext(context);
+            throw;
+        }
+        *out = context;
+        return FW_OK;
+    });
+}
+
+void FW_CALL fwDestroyContext(FwContext* context) {
+    if (!context) return;
+    destroyWorlds(context);
+    context->device->destroy();
+    freeContext(context);
+}
+
+FwResult FW_CALL fwContext_GetInfo(FwContext* context, FwContextInfo* info) {
+    return onContext("fwContext_GetInfo", context, [&](FwContext& c) {
+        const uint32_t size = edge::checkInfo(info, "FwContextInfo");
+        FwContextInfo filled{};
+        c.device->fillInfo(filled);
+        filled.backend = c.backend;
+        filled.cpuMemoryUsed = c.memory.bytes();
+        edge::writeInfo(info, size, filled);
+        return FW_OK;
+    });
+}
+
+size_t FW_CALL fwContext_GetLastMessage(FwContext* context, char* text, size_t capacity) {
+    return context ? context->message.copy(text, capacity) : 0;
+}
+
+FwResult FW_CALL fwContext_Prepare(FwContext* context) {
+    return onContext("fwContext_Prepare", context, [&](FwContext& c) {
+        c.device->prepare();
+        return FW_OK;
+    });
+}
+
+uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows,
+                                           uint32_t capacity) {
+    uint32_t count = 0;
+    (void)onContext("fwContext_GetMemoryReport", context, [&](FwContext& c) {
+        // One row per component, summed over the worlds.
+        std::pmr::vector<FwMemoryRow> sums(&c.memory);
+        std::pmr::vector<gpu::MemoryRow> given(&c.memory);
+        const std::lock_guard lock(c.mutex);
+        for (FwWorld* world : c.worlds) {
+            given.clear();
+            world->backend->memoryRows(given);
+            for (const gpu::MemoryRow& row : given) {
+                auto sum = std::find_if(sums.begin(), sums.end(), [&](const FwMemoryRow& known) {
+                    return std::strncmp(known.name, row.name, sizeof known.name - 1) == 0;
+                });
+                if (sum == sums.end()) {
+                    sum = sums.insert(sums.end(), FwMemoryRow{});
+                    std::snprintf(sum->name, sizeof sum->name, "%s", row.name);
+                }
+                sum->bytes += row.bytes;
+                sum->capacity += row.capacity;
+            }
+        }
+        count = uint32_t(sums.size());
+        if (rows) std::copy_n(sums.begin(), std::min(count, capacity), rows);
+        return FW_OK;
+    });
+    return count;
+}
+
+FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* given, void* buffer,
+                            uint64_t* size) {
+    return onContext("fwCookMesh", context, [&](FwContext& c) {
+        const FwMeshDef def = edge::readDef(given, FW_DEF_MESH, "FwMeshDef");
+        checkPointer(size, "size");
+        if (def.cooked)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwMeshDef::cooked is given; only arrays can be cooked.");
+        const uint64_t key = world::cookKey(def, &c.memory);
+        std::pmr::vector<std::byte> bytes(&c.memory);
+        {
+            const std::lock_guard lock(c.mutex);
+            if (!c.cooked.empty() && c.cookedKey == key) bytes.swap(c.cooked);
+        }
+        if (bytes.empty()) bytes = world::cook(def, &c.memory);
+        const uint64_t needed = bytes.size();
+        const bool fits = buffer && *size >= needed;
+        if (fits) std::memcpy(buffer, bytes.data(), bytes.size());
+        if (!fits) {  // the caller comes back with room
+            const std::lock_guard lock(c.mutex);
+            c.cooked.swap(bytes);
+            c.cookedKey = key;
+        }
+        if (buffer && !fits)
+            core::fail(
+                FW_ERROR_INVALID_ARGUMENT, "*size is %llu and the cooked mesh has %llu bytes.",
+                static_cast<unsigned long long>(*size), static_cast<unsigned long long>(needed));
+        *size = needed;
+        return FW_OK;
+    });
+}
+
+}  // extern "C"

@@ -1,0 +1,36 @@
+// What a context computes on. Two of them: the cpu (cpu.cpp) and Vulkan (vulkan.cpp).
+#pragma once
+#include "core/log.h"
+#include "core/memory.h"
+#include "gpu/backend.h"
+#include "world/world.h"
+
+namespace fw::edge {
+
+class Device {
+ public:
+    virtual ~Device() = default;
+
+    virtual gpu::Backend* createBackend(const FwWorldDef& def) = 0;
+    virtual void destroyBackend(gpu::Backend* backend) noexcept = 0;
+    virtual void fillInfo(FwContextInfo& info) const noexcept = 0;
+    virtual void prepare() = 0;
+    // One frame of deltaTime s that is over when the call returns; throws
+    // FW_ERROR_WRONG_BACKEND where the host records.
+    virtual void step(gpu::Backend& backend, world::World& world, float deltaTime) = 0;
+    virtual void renderOffscreen(gpu::Backend& backend, const FwOffscreenDef& def) = 0;
+    // Answers come without a frame of the host's: a step of no time brings them.
+    [[nodiscard]] virtual bool answersAtOnce() const noexcept = 0;
+    virtual void destroy() noexcept = 0;  // frees itself
+
+    Device() = default;
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+};
+
+Device* createCpuDevice(core::Memory& memory);
+// `host` null: an own device.
+Device* createVulkanDevice(const FwVulkanHost* host, uint64_t gpuMemoryBudget, core::Memory& memory,
+                           const core::Log& log);
+
+}  // namespace fw::edge

@@ -1,0 +1,138 @@
+// The edge: nothing thrown leaves the library. Every entry point runs its body inside `guard`,
+// which turns a failure into a result and one text, the same for the log and for GetLastMessage.
+#pragma once
+#include "core/error.h"
+#include "core/log.h"
+#include "core/memory.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <mutex>
+#include <new>
+#include <stdexcept>
+
+namespace fw::edge {
+
+// Last failure of a context or a world. Any thread may read while another one fails.
+class LastMessage {
+ public:
+    void set(const char* text) noexcept {
+        const std::lock_guard lock(mutex_);
+        std::snprintf(text_, sizeof text_, "%s", text);
+    }
+    // Writes at most `capacity` bytes with the zero; returns the length needed without it.
+    size_t copy(char* out, size_t capacity) noexcept {
+        const std::lock_guard lock(mutex_);
+        const size_t length = std::strlen(text_);
+        if (out && capacity > 0) {
+            const size_t part = length < capacity ? length : capacity - 1;
+            std::memcpy(out, text_, part);
+            out[part] = 0;
+        }
+        return length;
+    }
+
+ private:
+    std::mutex mutex_;
+    char text_[sizeof FwErrorInfo::message] = {};
+};
+
+// "Message\n - While calling fwX." in `out`, cut so that the last line always fits.
+inline void composeMessage(char (&out)[sizeof FwErrorInfo::message], const char* message,
+                           const char* function) noexcept {
+    char tail[96];
+    const int tailLength = std::snprintf(tail, sizeof tail, "\n - While calling %s.", function);
+    const int room = int(sizeof out) - 1 - tailLength;
+    std::snprintf(out, sizeof out, "%.*s%s", room, message, tail);
+}
+
+inline constexpr char kNoMemoryText[] =
+    "Memory is exhausted: the allocator refused a request. Nothing was changed.";
+
+// Runs `body` (which may return FwResult) and hands any failure to report(result, text).
+template <class Body, class Report>
+FwResult guard(const char* function, const Report& report, Body&& body) noexcept {
+    FwResult result = FW_ERROR_INTERNAL;
+    char text[sizeof FwErrorInfo::message];
+    try {
+        return body();
+    } catch (const core::Error& error) {
+        result = error.result;
+        composeMessage(text, error.message, function);
+    } catch (const std::bad_alloc&) {
+        result = FW_ERROR_OUT_OF_MEMORY;
+        composeMessage(text, kNoMemoryText, function);
+    } catch (const std::length_error&) {
+        result = FW_ERROR_OUT_OF_MEMORY;
+        composeMessage(text, kNoMemoryText, function);
+    } catch (...) {
+        composeMessage(text, "The library fails for a reason it does not know.", function);
+    }
+    report(result, text);
+    return result;
+}
+
+inline constexpr uint32_t kLargestStruct = 64 * 1024;  // bytes: beyond it structSize is garbage
+
+// ---- defs: what an older or newer host gives ---------------------------------------------------
+
+// Implemented in init_def.cpp; false when the type is unknown. `def` is of the library's own size.
+bool writeDefaults(uint32_t type, void* def) noexcept;
+size_t defSize(uint32_t type) noexcept;  // 0: unknown
+
+// Copies a def whose first word is structSize; what the host does not know keeps its default.
+template <class Def>
+Def readDef(const Def* given, uint32_t type, const char* name) {
+    if (!given) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
+    uint32_t size = 0;
+    std::memcpy(&size, given, sizeof size);
+    if (size < 8 || size % 4 != 0 || size > kLargestStruct)
+        core::fail(
+            FW_ERROR_VERSION,
+            "%s::structSize is %u; it is a multiple of 4 in [8, %u] and %zu in this version. "
+            "Take the struct from its fwDefault function.",
+            name, size, kLargestStruct, sizeof(Def));
+    if (size > sizeof(Def)) {
+        const auto* bytes = reinterpret_cast<const unsigned char*>(given);
+        for (uint32_t at = sizeof(Def); at < size; ++at)
+            if (bytes[at] != 0)
+                core::fail(FW_ERROR_VERSION,
+                           "%s::structSize is %u and byte %u is %u; this library knows %zu bytes "
+                           "and the rest must be zero.",
+                           name, size, at, bytes[at], sizeof(Def));
+    }
+    Def def;
+    std::memset(&def, 0, sizeof def);
+    (void)writeDefaults(type, &def);
+    std::memcpy(&def, given, size < sizeof def ? size : sizeof def);
+    def.structSize = sizeof def;
+    return def;
+}
+
+// Checks a struct that the library fills; returns how many bytes the caller has.
+template <class Info>
+uint32_t checkInfo(const Info* info, const char* name) {
+    if (!info) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
+    uint32_t size = 0;
+    std::memcpy(&size, info, sizeof size);
+    if (size < 8 || size > kLargestStruct)
+        core::fail(FW_ERROR_VERSION,
+                   "%s::structSize is %u; set it to sizeof(%s), which is %zu in this version.",
+                   name, size, name, sizeof(Info));
+    return size;
+}
+
+// Writes the caller's first bytes and zero beyond what this library knows; keeps structSize.
+template <class Info>
+void writeInfo(Info* out, uint32_t size, Info filled) {
+    filled.structSize = size;
+    const size_t known = size < sizeof filled ? size : sizeof filled;
+    std::memcpy(out, &filled, known);
+    if (size > known) std::memset(reinterpret_cast<char*>(out) + known, 0, size - known);
+}
+
+// view.cpp. Throws unless every number of a camera can be used.
+void checkView(const FwView& view, const char* name);
+
+}  // namespace fw::edge

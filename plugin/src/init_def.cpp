@@ -1,0 +1,209 @@
+// Defaults of every def, and the two functions that need no context at all.
+#include "edge.h"
+#include "flamewright/flamewright.h"
+#include "vulkan_defs.h"
+#include "world/material.h"
+
+#include <algorithm>
+
+namespace fw::edge {
+namespace {
+
+void identity(float (&matrix)[16]) noexcept {
+    for (int i = 0; i < 16; ++i) matrix[i] = i % 5 == 0 ? 1.0f : 0.0f;
+}
+
+void set(float (&out)[3], float x, float y, float z) noexcept {
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+void defaults(FwContextDef& def) noexcept {
+    def.abiVersion = FW_ABI_VERSION;
+    def.backend = FW_BACKEND_VULKAN;
+}
+
+void defaults(FwWorldDef& def) noexcept {
+    set(def.up, 0, 1, 0);
+    def.paceFactor = 1;
+    def.seed = 1;
+    def.maxStepsPerFrame = 8;
+    def.maxLights = 16;
+    def.maxFlames = 4096;
+}
+
+void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }
+
+void defaults(FwImageDef&) noexcept {}
+
+void defaults(FwMeshDef& def) noexcept {
+    def.indexSize = 4;
+    def.mapSize = 512;
+    def.texelsPerMetre = 128;
+    def.noiseAmplitude = 0.15f;
+    def.noiseFeature = 0.012f;
+    def.noiseSeed = 1;
+}
+
+void defaults(FwBurnableMeshDef& def) noexcept {
+    identity(def.transform);
+    set(def.tint, 1, 1, 1);
+}
+
+void defaults(FwIgnitionDef& def) noexcept { def.kind = FW_IGNITE; }
+
+void defaults(FwView& def) noexcept {
+    def.structSize = sizeof def;
+    identity(def.view);
+    identity(def.projection);
+    set(def.sunDirection, 0.40824829f, 0.81649658f, 0.40824829f);
+    set(def.sunColor, 3.0f, 2.9f, 2.7f);
+    set(def.ambientSky, 0.35f, 0.42f, 0.55f);
+    set(def.ambientGround, 0.14f, 0.12f, 0.10f);
+    def.exposure = 1;
+    def.emissionScale = 1;
+}
+
+void defaults(FwOffscreenDef& def) noexcept {
+    def.width = 1280;
+    def.height = 720;
+    defaults(def.view);
+    def.background[3] = 1;
+}
+
+template <class Def>
+void write(void* out) noexcept {
+    Def def;
+    std::memset(&def, 0, sizeof def);
+    defaults(def);
+    def.structSize = sizeof def;
+    std::memcpy(out, &def, sizeof def);
+}
+
+}  // namespace
+
+size_t defSize(uint32_t type) noexcept {
+    switch (type) {
+        case FW_DEF_CONTEXT:
+            return sizeof(FwContextDef);
+        case FW_DEF_WORLD:
+            return sizeof(FwWorldDef);
+        case FW_DEF_MATERIAL:
+            return sizeof(FwMaterialDef);
+        case FW_DEF_IMAGE:
+            return sizeof(FwImageDef);
+        case FW_DEF_MESH:
+            return sizeof(FwMeshDef);
+        case FW_DEF_BURNABLE_MESH:
+            return sizeof(FwBurnableMeshDef);
+        case FW_DEF_IGNITION:
+            return sizeof(FwIgnitionDef);
+        case FW_DEF_VIEW:
+            return sizeof(FwView);
+        case FW_DEF_OFFSCREEN:
+            return sizeof(FwOffscreenDef);
+        default:
+            return vulkanDefSize(type);
+    }
+}
+
+bool writeDefaults(uint32_t type, void* def) noexcept {
+    switch (type) {
+        case FW_DEF_CONTEXT:
+            write<FwContextDef>(def);
+            return true;
+        case FW_DEF_WORLD:
+            write<FwWorldDef>(def);
+            return true;
+        case FW_DEF_MATERIAL:
+            write<FwMaterialDef>(def);
+            return true;
+        case FW_DEF_IMAGE:
+            write<FwImageDef>(def);
+            return true;
+        case FW_DEF_MESH:
+            write<FwMeshDef>(def);
+            return true;
+        case FW_DEF_BURNABLE_MESH:
+            write<FwBurnableMeshDef>(def);
+            return true;
+        case FW_DEF_IGNITION:
+            write<FwIgnitionDef>(def);
+            return true;
+        case FW_DEF_VIEW:
+            write<FwView>(def);
+            return true;
+        case FW_DEF_OFFSCREEN:
+            write<FwOffscreenDef>(def);
+            return true;
+        default:
+            return writeVulkanDefaults(type, def);
+    }
+}
+
+}  // namespace fw::edge
+
+using namespace fw;
+
+extern "C" {
+
+void FW_CALL fwInitDef(uint32_t defType, void* def, uint32_t structSize) {
+    if (!def || structSize == 0 || structSize > edge::kLargestStruct) return;
+    alignas(16) unsigned char known[sizeof(FwOffscreenDef) + sizeof(FwMaterialDef) + 256];
+    const size_t size = edge::defSize(defType);
+    std::memset(def, 0, structSize);
+    if (size > 0 && size <= sizeof known && edge::writeDefaults(defType, known))
+        std::memcpy(def, known, std::min<size_t>(size, structSize));
+    std::memcpy(def, &structSize, std::min<size_t>(sizeof structSize, structSize));
+}
+
+FwResult FW_CALL fwInitMaterialPreset(FwMaterialDef* def, uint32_t preset) {
+    // No context to report to: the result says it all.
+    const auto nobody = [](FwResult, const char*) {};
+    return edge::guard("fwInitMaterialPreset", nobody, [&] {
+        if (preset >= FW_MATERIAL_PRESET_COUNT)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "preset is %u; the limit is %u.", preset,
+                       uint32_t(FW_MATERIAL_PRESET_COUNT) - 1);
+        const uint32_t size = edge::checkInfo(def, "FwMaterialDef");
+        edge::writeInfo(def, size, world::presetDef(preset));
+        return FW_OK;
+    });
+}
+
+const char* FW_CALL fwMaterialPresetName(uint32_t preset) { return world::presetName(preset); }
+
+uint32_t FW_CALL fwGetVersion(void) {
+    return FW_VERSION_MAJOR << 22 | FW_VERSION_MINOR << 12 | FW_VERSION_PATCH;
+}
+
+const char* FW_CALL fwResultName(int32_t result) {
+    switch (result) {
+        case FW_NOT_READY:
+            return "FW_NOT_READY";
+        case FW_OK:
+            return "FW_OK";
+        case FW_ERROR_INVALID_ARGUMENT:
+            return "FW_ERROR_INVALID_ARGUMENT";
+        case FW_ERROR_STALE_ID:
+            return "FW_ERROR_STALE_ID";
+        case FW_ERROR_VERSION:
+            return "FW_ERROR_VERSION";
+        case FW_ERROR_OUT_OF_MEMORY:
+            return "FW_ERROR_OUT_OF_MEMORY";
+        case FW_ERROR_UNSUPPORTED_DEVICE:
+            return "FW_ERROR_UNSUPPORTED_DEVICE";
+        case FW_ERROR_DEVICE_LOST:
+            return "FW_ERROR_DEVICE_LOST";
+        case FW_ERROR_BAD_DATA:
+            return "FW_ERROR_BAD_DATA";
+        case FW_ERROR_WRONG_BACKEND:
+            return "FW_ERROR_WRONG_BACKEND";
+        case FW_ERROR_INTERNAL:
+            return "FW_ERROR_INTERNAL";
+        default:
+            return "an unknown FwResult";
+    }
+}
+
+}  // extern "C"

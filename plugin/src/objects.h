@@ -1,0 +1,68 @@
+// What the two opaque pointers point to.
+#pragma once
+#include "device.h"
+#include "edge.h"
+
+#include <mutex>
+#include <optional>
+
+struct FwContext {
+    explicit FwContext(const FwCallbacks& given)
+        : callbacks(given), memory(given), log(given), worlds(&memory), cooked(&memory) {}
+
+    FwCallbacks callbacks;
+    fw::core::Memory memory;
+    fw::core::Log log;
+    fw::edge::LastMessage message;
+    uint32_t backend = FW_BACKEND_CPU;
+    fw::edge::Device* device = nullptr;
+
+    std::mutex mutex;  // of what is below
+    std::pmr::vector<FwWorld*> worlds;
+    // The last cooked mesh, between the call that asks for its size and the one that takes it.
+    std::pmr::vector<std::byte> cooked;
+    uint64_t cookedKey = 0;
+};
+
+struct FwWorld {
+    explicit FwWorld(FwContext* owner) : context(owner) {}
+
+    FwContext* context;
+    fw::edge::LastMessage message;
+    fw::gpu::Backend* backend = nullptr;
+    std::optional<fw::world::World> world;
+};
+
+namespace fw::edge {
+
+// Runs `body(context)`; a null context has nowhere to write a message.
+template <class Body>
+FwResult onContext(const char* function, FwContext* context, Body&& body) noexcept {
+    if (!context) return FW_ERROR_INVALID_ARGUMENT;
+    return guard(
+        function,
+        [&](FwResult, const char* text) {
+            context->message.set(text);
+            context->log.write(FW_LOG_ERROR, "%s", text);
+        },
+        [&] { return body(*context); });
+}
+
+template <class Body>
+FwResult onWorld(const char* function, FwWorld* world, Body&& body) noexcept {
+    if (!world) return FW_ERROR_INVALID_ARGUMENT;
+    return guard(
+        function,
+        [&](FwResult, const char* text) {
+            world->message.set(text);
+            world->context->log.write(FW_LOG_ERROR, "%s", text);
+        },
+        [&] { return body(*world->world); });
+}
+
+template <class T>
+void checkPointer(T* pointer, const char* name) {
+    if (!pointer) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
+}
+
+}  // namespace fw::edge

@@ -1,0 +1,44 @@
+// Checks of FwView: what a picture with a NaN in it would hide.
+#include "edge.h"
+
+#include <cmath>
+
+namespace fw::edge {
+namespace {
+
+void checkRange(const float* values, unsigned count, const char* name, const char* field, float low,
+                float high) {
+    for (unsigned i = 0; i < count; ++i) {
+        if (values[i] >= low && values[i] <= high) continue;
+        if (count == 1)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.%s is %g; the limits are [%g, %g].", name,
+                       field, double(values[i]), double(low), double(high));
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.%s[%u] is %g; the limits are [%g, %g].", name,
+                   field, i, double(values[i]), double(low), double(high));
+    }
+}
+
+}  // namespace
+
+void checkView(const FwView& view, const char* name) {
+    if (view.flags != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.flags is 0x%x; it is zero.", name, view.flags);
+    checkRange(view.view, 16, name, "view", -1e9f, 1e9f);
+    checkRange(view.projection, 16, name, "projection", -1e9f, 1e9f);
+    checkRange(view.sunDirection, 3, name, "sunDirection", -1.001f, 1.001f);
+    const float* sun = view.sunDirection;
+    const float length = std::sqrt(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]);
+    if (std::fabs(length - 1.0f) > 1e-2f)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s.sunDirection has length %g; it is a unit vector within 0.01.", name,
+                   double(length));
+    checkRange(view.sunColor, 3, name, "sunColor", 0.0f, 1e6f);
+    checkRange(view.ambientSky, 3, name, "ambientSky", 0.0f, 1e6f);
+    checkRange(view.ambientGround, 3, name, "ambientGround", 0.0f, 1e6f);
+    checkRange(&view.exposure, 1, name, "exposure", 1e-6f, 1e6f);
+    checkRange(&view.emissionScale, 1, name, "emissionScale", 0.0f, 1e6f);
+    checkRange(&view.time, 1, name, "time", -1e9f, 1e9f);
+    checkRange(view.reserved, 3, name, "reserved", 0.0f, 0.0f);
+}
+
+}  // namespace fw::edge

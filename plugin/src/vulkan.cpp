@@ -1,0 +1,369 @@
+// flamewright_vulkan.h: from what a host lends to the vk backend. The only file here that names Vk.
+#include "flamewright/flamewright_vulkan.h"
+
+#include "gpu/vk/vk_backend.h"
+#include "objects.h"
+#include "vulkan_defs.h"
+
+#include <cmath>
+
+using namespace fw;
+using edge::checkPointer;
+using edge::onContext;
+using edge::onWorld;
+
+namespace fw::edge {
+namespace {
+
+void defaults(FwVulkanHost& def) noexcept { def.apiVersion = VK_API_VERSION_1_0; }
+void defaults(FwVulkanTargetDef& def) noexcept {
+    def.samples = 1;
+    def.colorAttachmentCount = 1;
+    def.depthMode = FW_DEPTH_TEST;
+    def.encoding = FW_OUTPUT_LINEAR;
+}
+void defaults(FwVulkanFrame&) noexcept {}
+void defaults(FwVulkanWishes& def) noexcept { def.minimumApiVersion = VK_API_VERSION_1_0; }
+void defaults(FwVulkanComposite&) noexcept {}
+
+template <class Def>
+bool write(void* out) noexcept {
+    Def def;
+    std::memset(&def, 0, sizeof def);
+    defaults(def);
+    def.structSize = sizeof def;
+    std::memcpy(out, &def, sizeof def);
+    return true;
+}
+
+class VulkanDevice final : public Device {
+ public:
+    VulkanDevice(const FwVulkanHost* host, uint64_t budget, core::Memory& memory,
+                 const core::Log& log)
+        : memory_(memory), log_(log), context_(host, budget, &memory, log) {}
+
+    gpu::Backend* createBackend(const FwWorldDef& def) override {
+        gpu::vk::WorldLimits limits;
+        limits.maxLights = def.maxLights;
+        limits.maxFlames = def.maxFlames;
+        limits.seed = def.seed;
+        return std::pmr::polymorphic_allocator<>(&memory_).new_object<gpu::vk::VkBackend>(
+            context_, limits, &memory_, log_);
+    }
+    void destroyBackend(gpu::Backend* backend) noexcept override {
+        std::pmr::polymorphic_allocator<>(&memory_).delete_object(
+            static_cast<gpu::vk::VkBackend*>(backend));
+    }
+    void fillInfo(FwContextInfo& info) const noexcept override { context_.fillInfo(info); }
+    void prepare() override { context_.prepare(); }
+    void step(gpu::Backend& given, world::World& world, float deltaTime) override {
+        requireOwn();
+        components::checkValue(deltaTime, "deltaTime", 0.0f, 10.0f);
+        auto& backend = static_cast<gpu::vk::VkBackend&>(given);
+        backend.beginOwn();
+        try {
+            world.advance(world.lastFrame() + 1, deltaTime);
+        } catch (...) {
+            backend.cancelOutside();
+            throw;
+        }
+        backend.endOwn();
+        world.collect();  // the submit is over: its readback is here
+    }
+    void renderOffscreen(gpu::Backend& backend, const FwOffscreenDef& def) override {
+        requireOwn();
+        static_cast<gpu::vk::VkBackend&>(backend).renderOffscreen(def);
+    }
+    [[nodiscard]] bool answersAtOnce() const noexcept override { return false; }
+    void destroy() noexcept override {
+        std::pmr::polymorphic_allocator<>(&memory_).delete_object(this);
+    }
+
+    gpu::vk::Context& context() noexcept { return context_; }
+
+ private:
+    void requireOwn() const {
+        if (!context_.ownDevice())
+            core::fail(
+                FW_ERROR_WRONG_BACKEND,
+                "The device is lent: the host records with fwWorld_RecordOutside and submits "
+                "by itself.");
+    }
+
+    core::Memory& memory_;
+    const core::Log& log_;
+    gpu::vk::Context context_;
+};
+
+VulkanDevice& vulkanOf(FwContext& context) {
+    if (context.backend != FW_BACKEND_VULKAN)
+        core::fail(FW_ERROR_WRONG_BACKEND,
+                   "The context is on the cpu backend; the call needs FW_BACKEND_VULKAN.");
+    return static_cast<VulkanDevice&>(*context.device);
+}
+
+// The backend of a world whose host records.
+gpu::vk::VkBackend& lentBackendOf(FwWorld& world) {
+    if (vulkanOf(*world.context).context().ownDevice())
+        core::fail(FW_ERROR_WRONG_BACKEND,
+                   "The context has its own device; use fwWorld_Step and "
+                   "fwWorld_RenderOffscreen, or lend a device in FwContextDef::vulkan.");
+    return static_cast<gpu::vk::VkBackend&>(*world.backend);
+}
+
+void checkHost(const FwVulkanHost& host) {
+    checkPointer(host.getInstanceProcAddr, "FwVulkanHost::getInstanceProcAddr");
+    checkPointer(host.instance, "FwVulkanHost::instance");
+    checkPointer(host.physicalDevice, "FwVulkanHost::physicalDevice");
+    checkPointer(host.device, "FwVulkanHost::device");
+    const auto names = [](uint32_t count, const char* const* list, const char* field) {
+        if (count == 0) return;
+        if (count > 4096)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "%sCount is %u; the limit is 4096.", field,
+                       count);
+        checkPointer(list, field);
+        for (uint32_t i = 0; i < count; ++i)
+            if (!list[i]) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s[%u] is null.", field, i);
+    };
+    names(host.enabledExtensionCount, host.enabledExtensions, "FwVulkanHost::enabledExtensions");
+    names(host.enabledInstanceExtensionCount, host.enabledInstanceExtensions,
+          "FwVulkanHost::enabledInstanceExtensions");
+}
+
+FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
+    const FwVulkanFrame frame = readDef(given, FW_DEF_VULKAN_FRAME, "FwVulkanFrame");
+    constexpr uint32_t kKnown = FW_FRAME_SECONDARY | FW_FRAME_SLOT_PACING;
+    if (frame.flags & ~kKnown)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanFrame::flags is 0x%x; the known flags are 0x%x.", frame.flags, kKnown);
+    checkPointer(frame.commandBuffer, "FwVulkanFrame::commandBuffer");
+    if (frame.frameIndex == 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::frameIndex is 0; it starts at 1.");
+    if (frame.flags & FW_FRAME_SLOT_PACING) {
+        if (frame.framesInFlight == 0 || frame.framesInFlight > 16)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanFrame::framesInFlight is %u; the limits are [1, 16].",
+                       frame.framesInFlight);
+        if (frame.frameSlot >= frame.framesInFlight)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanFrame::frameSlot is %u and framesInFlight is %u; the slot is "
+                       "smaller.",
+                       frame.frameSlot, frame.framesInFlight);
+    } else if (frame.completedFrameIndex >= frame.frameIndex) {
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanFrame::completedFrameIndex is %llu and frameIndex is %llu; a frame "
+                   "cannot be complete before it is recorded.",
+                   static_cast<unsigned long long>(frame.completedFrameIndex),
+                   static_cast<unsigned long long>(frame.frameIndex));
+    }
+    return frame;
+}
+
+FwView checkedView(const FwView* given) {
+    const FwView view = readDef(given, FW_DEF_VIEW, "FwView");
+    checkView(view, "FwView");
+    return view;
+}
+
+void checkTarget(const FwVulkanTargetDef& def) {
+    const auto limit = [](uint32_t value, const char* field, uint32_t low, uint32_t high) {
+        if (value < low || value > high)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanTargetDef::%s is %u; the limits are [%u, %u].", field, value, low,
+                       high);
+    };
+    if (def.flags & ~uint32_t(FW_TARGET_COMPOSITE))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x1.", def.flags);
+    const bool composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
+    if (!composite) checkPointer(def.renderPass, "FwVulkanTargetDef::renderPass");
+    limit(def.samples, "samples", 1, 16);
+    if (def.samples & (def.samples - 1))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::samples is %u; it is 1, 2, 4, 8 or 16.", def.samples);
+    limit(def.colorAttachmentCount, "colorAttachmentCount", 1, 8);
+    limit(def.viewMask, "viewMask", 0, 0);
+    limit(def.depthMode, "depthMode", 0, FW_DEPTH_SAMPLED);
+    limit(def.reversedDepth, "reversedDepth", 0, 1);
+    limit(def.encoding, "encoding", 0, FW_OUTPUT_DISPLAY_UNORM);
+    limit(def.reserved, "reserved", 0, 0);
+    if (def.colorFormat == VK_FORMAT_UNDEFINED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::colorFormat is VK_FORMAT_UNDEFINED.");
+    if (def.depthMode == FW_DEPTH_SAMPLED && !composite)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthMode is FW_DEPTH_SAMPLED; that needs "
+                   "FW_TARGET_COMPOSITE.");
+    const bool depth = def.depthMode != FW_DEPTH_NONE;
+    if (depth != (def.depthFormat != VK_FORMAT_UNDEFINED))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthMode is %u and depthFormat is %d; a format is given if "
+                   "and only if there is depth.",
+                   def.depthMode, int(def.depthFormat));
+}
+
+// False: there is nothing to draw on.
+bool checkViewport(const VkViewport* given) {
+    checkPointer(given, "viewport");
+    const float values[6] = {given->x,      given->y,        given->width,
+                             given->height, given->minDepth, given->maxDepth};
+    static constexpr const char* kNames[6] = {"x", "y", "width", "height", "minDepth", "maxDepth"};
+    static constexpr float kLow[6] = {-32768, -32768, 0, 0, 0, 0};
+    static constexpr float kHigh[6] = {32767, 32767, 32768, 32768, 1, 1};
+    for (int i = 0; i < 6; ++i)
+        if (!(values[i] >= kLow[i] && values[i] <= kHigh[i]))
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "viewport->%s is %g; the limits are [%g, %g].",
+                       kNames[i], double(values[i]), double(kLow[i]), double(kHigh[i]));
+    return given->width > 0 && given->height > 0;
+}
+
+}  // namespace
+
+size_t vulkanDefSize(uint32_t type) noexcept {
+    switch (type) {
+        case FW_DEF_VULKAN_HOST:
+            return sizeof(FwVulkanHost);
+        case FW_DEF_VULKAN_TARGET:
+            return sizeof(FwVulkanTargetDef);
+        case FW_DEF_VULKAN_FRAME:
+            return sizeof(FwVulkanFrame);
+        case FW_DEF_VULKAN_WISHES:
+            return sizeof(FwVulkanWishes);
+        case FW_DEF_VULKAN_COMPOSITE:
+            return sizeof(FwVulkanComposite);
+        default:
+            return 0;
+    }
+}
+
+bool writeVulkanDefaults(uint32_t type, void* def) noexcept {
+    switch (type) {
+        case FW_DEF_VULKAN_HOST:
+            return write<FwVulkanHost>(def);
+        case FW_DEF_VULKAN_TARGET:
+            return write<FwVulkanTargetDef>(def);
+        case FW_DEF_VULKAN_FRAME:
+            return write<FwVulkanFrame>(def);
+        case FW_DEF_VULKAN_WISHES:
+            return write<FwVulkanWishes>(def);
+        case FW_DEF_VULKAN_COMPOSITE:
+            return write<FwVulkanComposite>(def);
+        default:
+            return false;
+    }
+}
+
+Device* createVulkanDevice(const FwVulkanHost* given, uint64_t gpuMemoryBudget,
+                           core::Memory& memory, const core::Log& log) {
+    FwVulkanHost host;
+    if (given) {
+        host = readDef(given, FW_DEF_VULKAN_HOST, "FwVulkanHost");
+        checkHost(host);
+    }
+    return std::pmr::polymorphic_allocator<>(&memory).new_object<VulkanDevice>(
+        given ? &host : nullptr, gpuMemoryBudget, memory, log);
+}
+
+}  // namespace fw::edge
+
+extern "C" {
+
+FwResult FW_CALL fwQueryVulkanWishes(FwVulkanWishes* wishes) {
+    const auto nobody = [](FwResult, const char*) {};  // there is no context to tell
+    return edge::guard("fwQueryVulkanWishes", nobody, [&] {
+        const uint32_t size = edge::checkInfo(wishes, "FwVulkanWishes");
+        FwVulkanWishes filled;
+        (void)edge::writeVulkanDefaults(FW_DEF_VULKAN_WISHES, &filled);
+        gpu::vk::Context::wishes(filled);
+        edge::writeInfo(wishes, size, filled);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwContext_RegisterTarget(FwContext* context, const FwVulkanTargetDef* given,
+                                          FwTargetId* id) {
+    return onContext("fwContext_RegisterTarget", context, [&](FwContext& c) {
+        checkPointer(id, "id");
+        *id = {};
+        auto& device = edge::vulkanOf(c);
+        const FwVulkanTargetDef def =
+            edge::readDef(given, FW_DEF_VULKAN_TARGET, "FwVulkanTargetDef");
+        edge::checkTarget(def);
+        *id = device.context().registerTarget(def);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwContext_UnregisterTarget(FwContext* context, FwTargetId id) {
+    return onContext("fwContext_UnregisterTarget", context, [&](FwContext& c) {
+        edge::vulkanOf(c).context().unregisterTarget(id);
+        return FW_OK;
+    });
+}
+
+void FW_CALL fwContext_NotifyDeviceLost(FwContext* context) {
+    (void)onContext("fwContext_NotifyDeviceLost", context, [&](FwContext& c) {
+        if (c.backend == FW_BACKEND_VULKAN) edge::vulkanOf(c).context().notifyDeviceLost();
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* givenFrame,
+                                       const FwView* givenView) {
+    return onWorld("fwWorld_RecordOutside", world, [&](world::World& w) {
+        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
+        const FwView view = edge::checkedView(givenView);
+        w.checkFrame(frame.frameIndex, frame.deltaTime);
+        if (!backend.beginOutside(frame)) return FW_NOT_READY;
+        try {
+            w.advance(frame.frameIndex, frame.deltaTime);
+        } catch (...) {
+            backend.cancelOutside();
+            throw;
+        }
+        backend.endOutside(view);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* givenFrame,
+                                      FwTargetId target, const FwView* givenView,
+                                      const VkViewport* viewport) {
+    return onWorld("fwWorld_RecordInside", world, [&](world::World&) {
+        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
+        const FwView view = edge::checkedView(givenView);
+        if (!edge::checkViewport(viewport)) return FW_OK;
+        return backend.recordInside(frame, target, view, *viewport) ? FW_OK : FW_NOT_READY;
+    });
+}
+
+FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* givenFrame,
+                                         FwTargetId target, const FwView* givenView,
+                                         const FwVulkanComposite* givenImages) {
+    return onWorld("fwWorld_RecordComposite", world, [&](world::World&) {
+        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
+        const FwView view = edge::checkedView(givenView);
+        const FwVulkanComposite images =
+            edge::readDef(givenImages, FW_DEF_VULKAN_COMPOSITE, "FwVulkanComposite");
+        if (images.flags != 0)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanComposite::flags is 0x%x; it is zero.",
+                       images.flags);
+        if (frame.flags & FW_FRAME_SECONDARY)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanFrame::flags has FW_FRAME_SECONDARY; a composite begins a render "
+                       "pass, which needs a primary command buffer.");
+        if (images.width == 0 || images.height == 0) return FW_OK;
+        if (images.width > 32768 || images.height > 32768)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanComposite is %u x %u pixels; the limit is 32768.", images.width,
+                       images.height);
+        checkPointer(images.color.image, "FwVulkanComposite::color.image");
+        checkPointer(images.color.view, "FwVulkanComposite::color.view");
+        return backend.recordComposite(frame, target, view, images) ? FW_OK : FW_NOT_READY;
+    });
+}
+
+}  // extern "C"

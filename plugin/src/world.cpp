@@ -1,0 +1,286 @@
+// fwCreateWorld and everything that takes a world but no Vulkan.
+#include "objects.h"
+
+#include <algorithm>
+
+using namespace fw;
+using edge::checkPointer;
+using edge::onContext;
+using edge::onWorld;
+
+namespace {
+
+// Where answers need no frame of the host's, they are there when the call returns.
+void answerAtOnce(FwWorld* handle) {
+    edge::Device& device = *handle->context->device;
+    if (device.answersAtOnce()) device.step(*handle->backend, *handle->world, 0.0f);
+}
+
+void freeWorld(FwWorld* world) noexcept {
+    FwContext* context = world->context;
+    world->world.reset();
+    if (world->backend) context->device->destroyBackend(world->backend);
+    std::pmr::polymorphic_allocator<>(&context->memory).delete_object(world);
+}
+
+}  // namespace
+
+extern "C" {
+
+FwResult FW_CALL fwCreateWorld(FwContext* context, const FwWorldDef* given, FwWorld** out) {
+    if (out) *out = nullptr;
+    return onContext("fwCreateWorld", context, [&](FwContext& c) {
+        checkPointer(out, "world");
+        const FwWorldDef def = edge::readDef(given, FW_DEF_WORLD, "FwWorldDef");
+        world::checkWorldDef(def);
+        FwWorld* handle = std::pmr::polymorphic_allocator<>(&c.memory).new_object<FwWorld>(context);
+        try {
+            handle->backend = c.device->createBackend(def);
+            handle->world.emplace(def, *handle->backend, c.log, &c.memory);
+            const std::lock_guard lock(c.mutex);
+            c.worlds.push_back(handle);
+        } catch (...) {
+            freeWorld(handle);
+            throw;
+        }
+        *out = handle;
+        return FW_OK;
+    });
+}
+
+void FW_CALL fwDestroyWorld(FwWorld* world) {
+    if (!world) return;
+    FwContext* context = world->context;
+    {
+        const std::lock_guard lock(context->mutex);
+        std::erase(context->worlds, world);
+    }
+    freeWorld(world);
+}
+
+size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t capacity) {
+    return world ? world->message.copy(text, capacity) : 0;
+}
+
+FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]) {
+    return onWorld("fwWorld_SetWind", world, [&](world::World& w) {
+        checkPointer(wind, "wind");
+        w.setWind(wind);
+        return FW_OK;
+    });
+}
+
+// ---- materials, images, meshes
+// -------------------------------------------------------------------
+
+FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* given,
+                                        FwMaterialId* id) {
+    return onWorld("fwWorld_CreateMaterial", world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        *id = w.createMaterial(edge::readDef(given, FW_DEF_MATERIAL, "FwMaterialDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld* world, FwMaterialId id) {
+    return onWorld("fwWorld_DestroyMaterial", world, [&](world::World& w) {
+        w.destroyMaterial(id);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_CreateImage(FwWorld* world, const FwImageDef* given, FwImageId* id) {
+    return onWorld("fwWorld_CreateImage", world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        *id = w.createImage(edge::readDef(given, FW_DEF_IMAGE, "FwImageDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_DestroyImage(FwWorld* world, FwImageId id) {
+    return onWorld("fwWorld_DestroyImage", world, [&](world::World& w) {
+        w.destroyImage(id);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMeshId* id) {
+    return onWorld("fwWorld_CreateMesh", world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        *id = w.createMesh(edge::readDef(given, FW_DEF_MESH, "FwMeshDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_DestroyMesh(FwWorld* world, FwMeshId id) {
+    return onWorld("fwWorld_DestroyMesh", world, [&](world::World& w) {
+        w.destroyMesh(id);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld* world, FwMeshId id, FwMeshInfo* info) {
+    return onWorld("fwWorld_GetMeshInfo", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(info, "FwMeshInfo");
+        FwMeshInfo filled{};
+        w.meshInfo(id, filled);
+        edge::writeInfo(info, size, filled);
+        return FW_OK;
+    });
+}
+
+// ---- burnable meshes
+// -----------------------------------------------------------------------------
+
+FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld* world, const FwBurnableMeshDef* given,
+                                            FwBurnableMeshId* id) {
+    return onWorld("fwWorld_CreateBurnableMesh", world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        *id = w.createBurnableMesh(edge::readDef(given, FW_DEF_BURNABLE_MESH, "FwBurnableMeshDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld* world, FwBurnableMeshId id) {
+    return onWorld("fwWorld_DestroyBurnableMesh", world, [&](world::World& w) {
+        w.destroyBurnableMesh(id);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetTransform(FwWorld* world, FwBurnableMeshId id,
+                                      const float transform[16]) {
+    return onWorld("fwWorld_SetTransform", world, [&](world::World& w) {
+        checkPointer(transform, "transform");
+        w.setTransform(id, transform);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetHidden(FwWorld* world, FwBurnableMeshId id, uint32_t hidden) {
+    return onWorld("fwWorld_SetHidden", world, [&](world::World& w) {
+        w.setHidden(id, hidden != 0);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
+    return onWorld("fwWorld_Ignite", world, [&](world::World& w) {
+        const FwIgnitionDef def = edge::readDef(given, FW_DEF_IGNITION, "FwIgnitionDef");
+        const uint32_t count = w.ignite(def);
+        if (texels) *texels = count;
+        return FW_OK;
+    });
+}
+
+// ---- running
+// -------------------------------------------------------------------------------------
+
+FwResult FW_CALL fwWorld_Step(FwWorld* world, float deltaTime) {
+    return onWorld("fwWorld_Step", world, [&](world::World& w) {
+        world->context->device->step(*world->backend, w, deltaTime);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld* world, const FwOffscreenDef* given) {
+    return onWorld("fwWorld_RenderOffscreen", world, [&](world::World&) {
+        FwOffscreenDef def = edge::readDef(given, FW_DEF_OFFSCREEN, "FwOffscreenDef");
+        def.view = edge::readDef(&def.view, FW_DEF_VIEW, "FwOffscreenDef::view");
+        if (def.width < 1 || def.width > 8192 || def.height < 1 || def.height > 8192)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwOffscreenDef is %u x %u pixels; the limits are [1, 8192].", def.width,
+                       def.height);
+        checkPointer(def.pixels, "FwOffscreenDef::pixels");
+        components::checkValues(def.background, 4, "FwOffscreenDef::background", 0.0f, 1e6f);
+        edge::checkView(def.view, "FwOffscreenDef::view");
+        world->context->device->renderOffscreen(*world->backend, def);
+        return FW_OK;
+    });
+}
+
+// ---- what a game asks
+// ----------------------------------------------------------------------------
+
+uint32_t FW_CALL fwWorld_PollEvents(FwWorld* world, FwEvent* events, uint32_t capacity) {
+    uint32_t count = 0;
+    (void)onWorld("fwWorld_PollEvents", world, [&](world::World& w) {
+        if (capacity > 0) checkPointer(events, "events");
+        count = w.pollEvents({events, capacity});
+        return FW_OK;
+    });
+    return count;
+}
+
+FwResult FW_CALL fwWorld_TagPoint(FwWorld* world, FwBurnableMeshId id, const float position[3],
+                                  uint32_t tag) {
+    return onWorld("fwWorld_TagPoint", world, [&](world::World& w) {
+        checkPointer(position, "position");
+        w.tagPoint(id, position, tag);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetObjectState(FwWorld* world, FwBurnableMeshId id, FwObjectState* state) {
+    return onWorld("fwWorld_GetObjectState", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(state, "FwObjectState");
+        FwObjectState filled{};
+        w.objectState(id, filled);
+        edge::writeInfo(state, size, filled);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_RequestPoint(FwWorld* world, FwBurnableMeshId id, const float position[3],
+                                      FwQueryId* query) {
+    return onWorld("fwWorld_RequestPoint", world, [&](world::World& w) {
+        checkPointer(position, "position");
+        checkPointer(query, "query");
+        *query = {};
+        const FwQueryId made = w.requestPoint(id, position);
+        try {
+            answerAtOnce(world);
+        } catch (...) {
+            w.dropQuery(made);
+            throw;
+        }
+        *query = made;
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_FetchPoint(FwWorld* world, FwQueryId query, FwPointState* state) {
+    return onWorld("fwWorld_FetchPoint", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(state, "FwPointState");
+        FwPointState filled{};
+        if (!w.fetchPoint(query, filled)) return FW_NOT_READY;
+        edge::writeInfo(state, size, filled);
+        return FW_OK;
+    });
+}
+
+uint32_t FW_CALL fwWorld_GetLights(FwWorld* world, FwLight* lights, uint32_t capacity) {
+    uint32_t count = 0;
+    (void)onWorld("fwWorld_GetLights", world, [&](world::World& w) {
+        if (capacity > 0) checkPointer(lights, "lights");
+        count = w.lights({lights, capacity});
+        return FW_OK;
+    });
+    return count;
+}
+
+FwResult FW_CALL fwWorld_GetStats(FwWorld* world, FwWorldStats* stats) {
+    return onWorld("fwWorld_GetStats", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(stats, "FwWorldStats");
+        FwWorldStats filled{};
+        w.stats(filled);
+        edge::writeInfo(stats, size, filled);
+        return FW_OK;
+    });
+}
+
+}  // extern "C"

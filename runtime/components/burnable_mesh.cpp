@@ -1,0 +1,224 @@
+#include "components/burnable_mesh.h"
+
+#include "components/look_table.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::components {
+namespace {
+
+fire::SpreadFacts facts(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                        const DriveInput& drive, const Pose& pose) noexcept {
+    fire::SpreadFacts f;
+    f.quantum = domain.quantum;
+    f.texelSide = domain.texelSide;
+    f.linkShort = domain.linkShort;
+    f.scale = pose.scale;
+    std::memcpy(f.rotation, pose.rotation, sizeof f.rotation);
+    std::copy_n(drive.up, 3, f.up);
+    f.pace = drive.pace;
+    f.moisture = object.moisture;
+    return f;
+}
+
+bool sameTurn(const Pose& a, const Pose& b) noexcept {
+    return a.scale == b.scale && std::memcmp(a.rotation, b.rotation, sizeof a.rotation) == 0;
+}
+
+float meanTexelArea(const mesh::BurnDomain& domain) noexcept {
+    return domain.report.realTexels
+               ? float(domain.report.texelArea / double(domain.report.realTexels))
+               : domain.texelSide * domain.texelSide;
+}
+
+}  // namespace
+
+BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
+    constexpr uint32_t kKnown =
+        FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED | FW_BURNABLE_NO_HOLES;
+    if (def.flags & ~kKnown)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
+                   kKnown);
+    BurnableMesh object;
+    object.flags = def.flags;
+    object.pose = makePose(def.transform, "FwBurnableMeshDef::transform");
+    checkValue(def.moisture, "FwBurnableMeshDef::moisture", 0, 2);
+    object.moisture = def.moisture;
+    checkValues(def.tint, 3, "FwBurnableMeshDef::tint", 0, 100);
+    std::copy_n(def.tint, 3, object.tint);
+    object.userData = def.userData;
+    if (def.multiplier) {
+        const uint32_t sides[2] = {def.multiplierWidth, def.multiplierHeight};
+        static constexpr const char* kNames[2] = {"multiplierWidth", "multiplierHeight"};
+        for (int i = 0; i < 2; ++i)
+            if (sides[i] < 1 || sides[i] > 8192)
+                core::fail(FW_ERROR_INVALID_ARGUMENT,
+                           "FwBurnableMeshDef::%s is %u; the limits are [1, 8192].", kNames[i],
+                           sides[i]);
+    }
+    return object;
+}
+
+void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def) noexcept {
+    object.materials[index] = def;
+    object.materialMask |= 1u << index;
+}
+
+bool burns(const BurnableMesh& object, uint32_t material) noexcept {
+    if (material >= kMaterials || !(object.materialMask >> material & 1)) return false;
+    const FwMaterialDef& def = object.materials[material];
+    return def.spreadRate > 0 &&
+           fire::moistureFactor(def.moisture + object.moisture, def.extinctionMoisture) > 0;
+}
+
+std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
+                                        const mesh::BurnDomain& domain,
+                                        std::pmr::memory_resource* memory) {
+    std::pmr::vector<uint16_t> slowness(memory);
+    if (!def.multiplier) return slowness;
+    slowness.resize(domain.texelCount());
+    for (uint32_t y = 0; y < domain.height; ++y)
+        for (uint32_t x = 0; x < domain.width; ++x) {
+            const uint32_t texel = y * domain.width + x;
+            const uint64_t fromX = uint64_t(x) * def.multiplierWidth / domain.width;
+            const uint64_t fromY = uint64_t(y) * def.multiplierHeight / domain.height;
+            const uint32_t speed = def.multiplier[fromY * def.multiplierWidth + fromX];
+            const uint32_t noise = domain.slowness[texel];
+            if (speed == 0 || noise == 0) continue;
+            const uint32_t slow = (noise * 128 + speed / 2) / speed;
+            slowness[texel] = uint16_t(std::clamp<uint32_t>(slow, 1, 65535));
+        }
+    return slowness;
+}
+
+// ---- drive
+// ---------------------------------------------------------------------------------------
+
+void resetLatch(const BurnableMesh& object, const DriveInput& drive, Latch& latch) noexcept {
+    for (fire::WindFilter& filter : latch.filters) fire::resetWind(filter, drive.wind);
+    latch.pose = object.pose;
+}
+
+void filterLatch(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                 const DriveInput& drive, Latch& latch) noexcept {
+    const fire::SpreadFacts f = facts(object, domain, drive, latch.pose);
+    for (uint32_t i = 0; i < kMaterials; ++i)
+        if (object.materialMask >> i & 1)
+            fire::filterWind(latch.filters[i], drive.wind, fire::linkTicks(object.materials[i], f));
+}
+
+bool latchDrive(const BurnableMesh& object, Latch& latch) noexcept {
+    bool changed = false;
+    for (uint32_t i = 0; i < kMaterials; ++i)
+        if (object.materialMask >> i & 1) changed |= fire::latchWind(latch.filters[i]);
+    if (!sameTurn(latch.pose, object.pose)) {
+        latch.pose = object.pose;
+        changed = true;
+    }
+    return changed;
+}
+
+bool sameDrive(const BurnableMesh& object, const Latch& a, const Latch& b) noexcept {
+    for (uint32_t i = 0; i < kMaterials; ++i)
+        if ((object.materialMask >> i & 1) && a.filters[i].latched != b.filters[i].latched)
+            return false;
+    return sameTurn(a.pose, b.pose);
+}
+
+Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                    const DriveInput& drive, Latch& latch) noexcept {
+    const fire::SpreadFacts f = facts(object, domain, drive, latch.pose);
+    Records records;
+    std::array<const FwMaterialDef*, kMaterials> defs{};
+    std::array<fire::WindVector, kMaterials> winds{};
+    for (uint32_t i = 0; i < kMaterials; ++i) {
+        records.materials[i] = fire::inertMaterial();
+        if (!(object.materialMask >> i & 1)) continue;
+        const FwMaterialDef& def = object.materials[i];
+        defs[i] = &def;
+        winds[i] = latch.filters[i].latched;
+        gpu::BurnMaterial& record = records.materials[i];
+        record = fire::burnMaterial(def, f, winds[i]);
+        // A look was tuned at a rate of its own: one twice as fast ages twice as fast.
+        const float tuned = lookSpreadRate(def.look);
+        if (tuned > 0 && def.spreadRate > 0) record.timeScale = drive.pace * def.spreadRate / tuned;
+    }
+    records.timing = fire::frontTiming(defs, f, winds, records.materials);
+    for (uint32_t i = 0; i < kMaterials; ++i) latch.flameTicks[i] = records.materials[i].flameTicks;
+    latch.substepShift = records.timing.substepShift;
+    return records;
+}
+
+// ---- records
+// -------------------------------------------------------------------------------------
+
+gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                           const Records& records) noexcept {
+    gpu::BurnObject made{};
+    made.flags = objectFlags(object, domain);
+    made.width = domain.width;
+    made.height = domain.height;
+    made.tilesX = domain.tilesX;
+    made.tileCount = domain.tileCount();
+    made.window = records.timing.window;
+    made.substepShift = records.timing.substepShift;
+    // Looks want to know of a front that comes within a minute of their own time.
+    uint32_t horizon = 0;
+    for (uint32_t i = 0; i < kMaterials; ++i) {
+        const gpu::BurnMaterial& m = records.materials[i];
+        if (!(m.flags & 1) || !(m.timeScale > 0)) continue;
+        const float ticks = 60.0f * float(gpu::kTicksPerSecond) / m.timeScale;
+        horizon = std::max(horizon, uint32_t(std::clamp(ticks, 512.0f, 4.0e6f)));
+    }
+    made.horizon = horizon;
+    made.image = object.imagePlus1;
+    made.originQuantum =
+        gpu::vec4(domain.origin[0], domain.origin[1], domain.origin[2], domain.quantum);
+    gpu::vec4 rows[3];
+    poseRows(object.pose, rows);
+    made.worldRow0 = rows[0];
+    made.worldRow1 = rows[1];
+    made.worldRow2 = rows[2];
+    made.tint = objectTint(object, domain);
+    return made;
+}
+
+void poseRows(const Pose& pose, gpu::vec4 (&rows)[3]) noexcept {
+    for (int r = 0; r < 3; ++r)
+        rows[r] = gpu::vec4(pose.rotation[r][0] * pose.scale, pose.rotation[r][1] * pose.scale,
+                            pose.rotation[r][2] * pose.scale, pose.translation[r]);
+}
+
+gpu::vec4 objectTint(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept {
+    const float scale = object.pose.scale;
+    return gpu::vec4(object.tint[0], object.tint[1], object.tint[2],
+                     meanTexelArea(domain) * scale * scale);
+}
+
+uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept {
+    uint32_t flags = gpu::kObjectLive;
+    if (object.flags & FW_BURNABLE_PUBLISHED) flags |= gpu::kObjectPublished;
+    if (object.flags & FW_BURNABLE_TWO_SIDED) flags |= gpu::kObjectTwoSided;
+    if (object.flags & FW_BURNABLE_NO_HOLES) flags |= gpu::kObjectNoHoles;
+    if (object.flags & FW_BURNABLE_HIDDEN) flags |= gpu::kObjectHidden;
+    if (domain.hasDetail) flags |= gpu::kObjectDetail;
+    return flags;
+}
+
+float powerPerArea(const BurnableMesh& object,
+                   const std::array<uint32_t, kMaterials>& texelsOf) noexcept {
+    double sum = 0, texels = 0;
+    for (uint32_t i = 0; i < kMaterials; ++i) {
+        if (!burns(object, i)) continue;
+        const FwMaterialDef& def = object.materials[i];
+        sum += double(texelsOf[i]) * double(def.heatOfCombustion) * double(def.burningFlux);
+        texels += double(texelsOf[i]);
+    }
+    return texels > 0 ? float(sum / texels) : 0.0f;
+}
+
+}  // namespace fw::components

@@ -1,0 +1,82 @@
+// A burnable mesh as plain data: pose, materials, what the host asked for; and the functions that
+// make a backend's records of it. It owns no ids and knows no device.
+#pragma once
+#include "components/pose.h"
+#include "fire/spread_law.h"
+#include "fire/wind_filter.h"
+#include "flamewright/flamewright.h"
+#include "mesh/burn_domain.h"
+#include "shared/burn.h"
+
+#include <array>
+#include <span>
+
+namespace fw::components {
+
+constexpr uint32_t kMaterials = gpu::kMaterialsPerObject;
+
+struct BurnableMesh {
+    Pose pose;
+    std::array<FwMaterialDef, kMaterials> materials{};  // by triangle material
+    uint32_t materialMask = 0;  // bit i: materials[i] was given; the others cannot burn
+    uint32_t flags = 0;         // FwBurnableFlags
+    float moisture = 0;         // kg/kg, added to the materials' own, [0, 2]
+    float tint[3] = {1, 1, 1};
+    uint32_t meshSlot = 0;
+    uint32_t imagePlus1 = 0;  // base-colour image slot + 1, 0: none
+    uint64_t userData = 0;
+};
+
+struct DriveInput {           // of the world
+    fire::WindVector wind{};  // 1/128 m/s, world space
+    float up[3] = {0, 1, 0};
+    float pace = 1;
+};
+
+struct Latch {  // the drive that an object's front sees, and the filters before it
+    std::array<fire::WindFilter, kMaterials> filters{};
+    Pose pose;                                      // latched; translation is of no account
+    std::array<uint32_t, kMaterials> flameTicks{};  // of the latched records; kNoneTexel: no end
+    uint32_t substepShift = 0;                      // of the latched records
+    bool sent = true;                               // the backend has the records of this latch
+};
+
+struct Records {
+    std::array<gpu::BurnMaterial, kMaterials> materials{};
+    fire::FrontTiming timing;
+};
+
+// Throws core::Error naming the field. Ids are the caller's: mesh, materials and image stay unset.
+BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def);
+void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def) noexcept;
+[[nodiscard]] bool burns(const BurnableMesh& object, uint32_t material) noexcept;
+
+// Q7 slowness per texel with the host's speed multiplier in it; empty if there is none.
+std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
+                                        const mesh::BurnDomain& domain,
+                                        std::pmr::memory_resource* memory);
+
+// A latch as if wind and pose had always been these.
+void resetLatch(const BurnableMesh& object, const DriveInput& drive, Latch& latch) noexcept;
+// One step of the filters.
+void filterLatch(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                 const DriveInput& drive, Latch& latch) noexcept;
+// Takes over the filtered wind and the pose; false: they are what is latched already.
+bool latchDrive(const BurnableMesh& object, Latch& latch) noexcept;
+[[nodiscard]] bool sameDrive(const BurnableMesh& object, const Latch& a, const Latch& b) noexcept;
+// Records under the latched drive; notes their flameTicks and substepShift in the latch.
+Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                    const DriveInput& drive, Latch& latch) noexcept;
+
+// What the backend keeps of an object; bases are the backend's.
+gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                           const Records& records) noexcept;
+void poseRows(const Pose& pose, gpu::vec4 (&rows)[3]) noexcept;
+gpu::vec4 objectTint(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept;
+uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept;
+
+// W/m^2 of what flames, the mean over the materials' texels.
+float powerPerArea(const BurnableMesh& object,
+                   const std::array<uint32_t, kMaterials>& texelsOf) noexcept;
+
+}  // namespace fw::components

@@ -1,0 +1,49 @@
+// Host time to simulation steps without drift: a frame's time is summed as an integer of 2^-44 s.
+#pragma once
+#include "shared/burn.h"
+
+#include <cstdint>
+
+namespace fw::world {
+
+struct Clock {
+    static constexpr int kFractionBits = 44;
+    static constexpr uint64_t kStepUnits = uint64_t(1) << (kFractionBits - 5);  // 1/32 s
+    // Ticks stop well before the codes of a texel's state: after 12 days of fire.
+    static constexpr uint64_t kLastTick = 0xFFFF0000u;
+
+    uint64_t tick = 0;      // of the next step's start; a multiple of gpu::kStepTicks
+    uint64_t fraction = 0;  // host time past `tick`, 2^-44 s, below kStepUnits
+
+    // Tick that the host's present falls on.
+    [[nodiscard]] uint64_t hostTick() const noexcept {
+        return tick + (fraction >> (kFractionBits - 12));
+    }
+};
+
+struct ClockAdvance {
+    uint32_t steps = 0;    // to run
+    uint32_t dropped = 0;  // due, but beyond the limit
+    Clock after;
+};
+
+// deltaTime: s, [0, 10], checked by the caller.
+inline ClockAdvance advance(const Clock& clock, float deltaTime, uint32_t maxSteps) noexcept {
+    ClockAdvance result;
+    result.after = clock;
+    const double units = double(deltaTime) * double(uint64_t(1) << Clock::kFractionBits);
+    const uint64_t total = clock.fraction + uint64_t(units);
+    uint64_t due = total / Clock::kStepUnits;
+    result.after.fraction = total % Clock::kStepUnits;
+    if (due > maxSteps) {
+        result.dropped = uint32_t(due - maxSteps);
+        due = maxSteps;
+    }
+    const uint64_t left =
+        clock.tick >= Clock::kLastTick ? 0 : (Clock::kLastTick - clock.tick) / gpu::kStepTicks;
+    result.steps = uint32_t(due < left ? due : left);
+    result.after.tick = clock.tick + uint64_t(result.steps) * gpu::kStepTicks;
+    return result;
+}
+
+}  // namespace fw::world

@@ -1,0 +1,192 @@
+// From readbacks to what a game hears: counters become events, answers become states and tags,
+// burning clusters become lights with ids that stay. Allocates nothing; never fails.
+#include "world/world.h"
+
+#include "core/hash.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+namespace {
+
+// Counters of `reduce` are at most 4 steps old; a fire is judged only well after its last event.
+constexpr uint64_t kSettleTicks = 6 * gpu::kStepTicks;
+
+}  // namespace
+
+void World::raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
+                  const float position[3], float value) noexcept {
+    FwEvent event{};
+    event.type = type;
+    event.tag = tag;
+    event.frameIndex = frameIndex;
+    event.value = value;
+    if (object) {
+        event.userData = object->data.userData;
+        event.object = object->id;
+    } else {
+        event.userData = def_.userData;
+    }
+    std::copy_n(position, 3, event.position);
+    events_.push(event);
+}
+
+void World::collectReadbacks() noexcept {
+    while (const gpu::Readback* readback = backend_.nextReadback()) {
+        readbackFrame_ = readback->frameIndex;
+        readbackTick_ = readback->endTick;
+        frontTiles_ = readback->frontTiles;
+        runTiles_ = readback->runTiles;
+        burningTiles_ = readback->burningTiles;
+        flames_ = readback->flames;
+        takeCounters(*readback);
+        takeAnswers(*readback);
+        takeLights(*readback);
+        for (const gpu::BurnMap& map : readback->burnMaps) {
+            if (map.object >= objects_.slotCount()) continue;
+            auto* owned = objects_.at(map.object);
+            if (!owned || (*owned)->firstFrame > readback->frameIndex) continue;
+            BurnMapCopy& copy = (*owned)->map;
+            if (!copy.pending || copy.ticks.size() != map.ticks.size()) continue;
+            std::copy(map.ticks.begin(), map.ticks.end(), copy.ticks.begin());
+            copy.tick = readback->endTick;
+            copy.pending = false;
+            copy.ready = true;
+        }
+        if (frontTiles_ == 0 && burningTiles_ == 0 &&
+            readback->endTick >= lastStimulus_ + kSettleTicks)
+            idle_ = true;
+    }
+}
+
+void World::takeCounters(const gpu::Readback& readback) noexcept {
+    uint32_t clamps = 0;
+    const size_t count = std::min<size_t>(readback.objects.size(), objects_.slotCount());
+    for (uint32_t slot = 0; slot < count; ++slot) {
+        auto* owned = objects_.at(slot);
+        if (!owned) continue;
+        Object& object = **owned;
+        if (!object.touched || object.firstFrame > readback.frameIndex) continue;
+        const gpu::ObjectCounters& now = readback.objects[slot];
+        const gpu::ObjectCounters before = object.counters;
+        object.counters = now;
+        object.countersFrame = readback.frameIndex;
+        object.mostIgnited = std::max(object.mostIgnited, now.ignited);
+        clamps += now.lateClamps;
+        float place[3];
+        if (now.burning > 0) object.lastBurning = readback.endTick;
+
+        const bool freshFire = now.ignited > before.ignited || now.burning > 0;
+        if (!object.sawFire && now.ignited > 0 && freshFire) {
+            object.sawFire = true;
+            object.active = true;
+            const uint64_t tick = object.ignitionKnown ? object.firstIgnition : now.lastIgnition;
+            components::toWorld(object.data.pose, object.ignitionPoint, place);
+            raise(FW_EVENT_IGNITED, &object, 0, readback.frameIndex, place,
+                  float(double(tick) / gpu::kTicksPerSecond));
+        }
+        if (now.lateClamps > before.lateClamps) {
+            components::toWorld(object.data.pose, object.ignitionPoint, place);
+            raise(FW_EVENT_FRONT_LIMITED, &object, 0, readback.frameIndex, place,
+                  float(now.lateClamps - before.lateClamps));
+        }
+        const bool settled = now.burning == 0 && now.frontTiles == 0 &&
+                             readback.endTick >= object.lastStimulus + kSettleTicks &&
+                             readback.endTick >= uint64_t(now.lastIgnition) + kSettleTicks;
+        if (settled && object.active) {
+            object.active = false;
+            if (object.sawFire) {
+                const bool byDousing =
+                    object.doused && object.lastDouse + 2 * kSettleTicks >= object.lastBurning;
+                const float fraction =
+                    object.texels ? float(object.mostIgnited) / float(object.texels) : 0.0f;
+                components::toWorld(object.data.pose, object.ignitionPoint, place);
+                raise(byDousing ? FW_EVENT_EXTINGUISHED : FW_EVENT_BURNT_OUT, &object, 0,
+                      readback.frameIndex, place, fraction);
+            }
+            object.sawFire = false;
+            object.ignitionKnown = false;
+            object.doused = false;
+        }
+    }
+    lateClamps_ = clamps;
+}
+
+void World::takeAnswers(const gpu::Readback& readback) noexcept {
+    const auto known = std::find_if(
+        probeFrames_.begin(), probeFrames_.end(),
+        [&](const ProbeFrame& frame) { return frame.frameIndex == readback.frameIndex; });
+    if (known == probeFrames_.end()) return;
+    const size_t count = std::min(known->refs.size(), readback.answers.size());
+    for (size_t i = 0; i < count; ++i) {
+        const ProbeRef& ref = known->refs[i];
+        auto* owned = objects_.find(ref.object);
+        if (!owned) continue;
+        const Object& object = **owned;
+        const uint32_t code = readback.answers[i];
+        if (ref.isTag) {
+            if (!gpu::isSource(code) || code > readback.endTick) continue;
+            const auto tag = std::find_if(tags_.begin(), tags_.end(), [&](const Tag& t) {
+                return t.object.index1 == ref.object.index1 &&
+                       t.object.generation == ref.object.generation && t.texel == ref.texel &&
+                       t.tag == ref.tag;
+            });
+            if (tag == tags_.end()) continue;  // an older frame said so already
+            tags_.erase(tag);
+            float place[3];
+            texelPosition(object, ref.texel, place);
+            raise(FW_EVENT_TAG_REACHED, &object, ref.tag, readback.frameIndex, place,
+                  float(double(code) / gpu::kTicksPerSecond));
+        } else if (Query* query = queries_.find(ref.query)) {
+            const float distance = query->distance;
+            query->answer = pointState(object, ref.texel, code, readback);
+            query->answer.distance = distance;
+            query->ready = true;
+        }
+    }
+    known->frameIndex = 0;
+}
+
+void World::takeLights(const gpu::Readback& readback) noexcept {
+    lightsBefore_.swap(lights_);
+    lights_.clear();
+    uint64_t taken = 0;  // bits of lightsBefore_, at most 64
+    for (const gpu::BurnLight& given : readback.lights) {
+        if (lights_.size() == std::min<size_t>(def_.maxLights, lights_.capacity())) break;
+        FwLight light{};
+        for (int i = 0; i < 3; ++i) {
+            light.position[i] = given.positionRadius[i];
+            light.color[i] = given.colorIntensity[i];
+        }
+        light.radius = given.positionRadius.w;
+        light.intensity = given.colorIntensity.w;
+        light.power = given.power;
+        light.frameIndex = readback.frameIndex;
+        // The nearest old light within reach is the same fire.
+        size_t best = lightsBefore_.size();
+        float bestDistance = 4 * (light.radius + 0.25f) * (light.radius + 0.25f);
+        for (size_t i = 0; i < lightsBefore_.size(); ++i) {
+            if (taken >> i & 1) continue;
+            float distance = 0;
+            for (int k = 0; k < 3; ++k) {
+                const float d = lightsBefore_[i].position[k] - light.position[k];
+                distance += d * d;
+            }
+            if (distance < bestDistance) {
+                bestDistance = distance;
+                best = i;
+            }
+        }
+        if (best < lightsBefore_.size()) {
+            taken |= uint64_t(1) << best;
+            light.id = lightsBefore_[best].id;
+        } else {
+            light.id = nextLight_++;
+            if (nextLight_ == 0) nextLight_ = 1;
+        }
+        lights_.push_back(light);
+    }
+}
+
+}  // namespace fw::world

@@ -1,0 +1,59 @@
+// Wind and gravity on their way to a front: filtered every step, latched at most four times a
+// second, for objects that an event has touched. The others get fresh records at their first event.
+#include "world/world.h"
+
+#include <algorithm>
+
+namespace fw::world {
+
+components::DriveInput World::driveInput() const noexcept {
+    components::DriveInput drive;
+    drive.wind = fire::windUnits(wind_);
+    std::copy_n(def_.up, 3, drive.up);
+    drive.pace = def_.paceFactor;
+    return drive;
+}
+
+void World::planLatches(uint32_t now, size_t firstEvent) {
+    const components::DriveInput drive = driveInput();
+    const auto sendRecords = [&](Object& object, components::Latch& latch) {
+        const components::Records records =
+            components::makeRecords(object.data, domainOf(object), drive, latch);
+        gpu::MaterialUpdate update;
+        update.object = object.slot;
+        std::copy(records.materials.begin(), records.materials.end(), update.materials);
+        update.window = records.timing.window;
+        update.substepShift = records.timing.substepShift;
+        frame_.updates.push_back(update);
+        latch.sent = true;
+    };
+    // Objects whose first event is in this step, or whose latch was held back while they slept.
+    for (size_t i = firstEvent; i < frame_.events.size(); ++i) {
+        const uint32_t slot = frame_.events[i].object;
+        if (i > firstEvent && frame_.events[i - 1].object == slot) continue;
+        Object& object = **objects_.at(slot);
+        const auto known =
+            std::find_if(frame_.latches.begin(), frame_.latches.end(),
+                         [&](const Frame::LatchOf& entry) { return entry.object == &object; });
+        if (known != frame_.latches.end()) {
+            known->due = true;
+            if (!known->latch.sent) sendRecords(object, known->latch);
+            continue;
+        }
+        components::Latch latch = object.latch;
+        components::resetLatch(object.data, drive, latch);
+        latch.sent = components::sameDrive(object.data, latch, object.latch);
+        if (!latch.sent) sendRecords(object, latch);
+        frame_.latches.push_back({&object, latch, true});
+    }
+    const bool latchNow = now % fire::kWindLatchTicks == 0;
+    for (Frame::LatchOf& entry : frame_.latches) {
+        Object& object = *entry.object;
+        components::filterLatch(object.data, domainOf(object), drive, entry.latch);
+        if (!latchNow || !components::latchDrive(object.data, entry.latch)) continue;
+        entry.latch.sent = false;
+        if (object.active || entry.due) sendRecords(object, entry.latch);
+    }
+}
+
+}  // namespace fw::world

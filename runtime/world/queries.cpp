@@ -1,0 +1,195 @@
+// What a game asks: states, points, tags, lights, figures. Answers are of the last readback.
+#include "world/world.h"
+
+#include "mesh/bake.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+
+const mesh::BurnDomain& World::domainOf(const Object& object) const noexcept {
+    return *meshes_.at(object.data.meshSlot)->domain;
+}
+
+void World::texelPosition(const Object& object, uint32_t texel, float (&out)[3]) const noexcept {
+    const mesh::BurnDomain& domain = domainOf(object);
+    const mesh::TexelPosition& p = domain.texels[texel];
+    const float rest[3] = {domain.origin[0] + domain.quantum * float(p.x),
+                           domain.origin[1] + domain.quantum * float(p.y),
+                           domain.origin[2] + domain.quantum * float(p.z)};
+    components::toWorld(object.data.pose, rest, out);
+}
+
+uint32_t World::texelMaterial(const Object& object, uint32_t texel) const noexcept {
+    return domainOf(object).texels[texel].materialFlags & (gpu::kMaterialsPerObject - 1);
+}
+
+uint32_t World::pollEvents(std::span<FwEvent> out) {
+    if (const uint64_t dropped = events_.takeDropped())
+        log_.write(FW_LOG_WARNING, "%llu events were dropped; at most %u wait for a poll.",
+                   static_cast<unsigned long long>(dropped), EventQueue::kCapacity);
+    return events_.poll(out);
+}
+
+void World::tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag) {
+    components::checkValues(position, 3, "position", -1e6f, 1e6f);
+    const Object& object = *objects_.get(id);
+    if (tags_.size() >= kMaxTags)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu tagged points wait; the limit is %u.",
+                   tags_.size(), kMaxTags);
+    float point[3];
+    components::toObject(object.data.pose, position, point);
+    const uint32_t texel = mesh::nearestTexel(domainOf(object), point, 1e30f);
+    if (texel == mesh::kNone)
+        core::fail(FW_ERROR_BAD_DATA, "The mesh of burnable mesh %u has no texel.", id.index1);
+    tags_.push_back({id, texel, tag});
+}
+
+void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
+    const Object& object = *objects_.get(id);
+    state.frameIndex = object.countersFrame;
+    if (!object.touched) state.frameIndex = readbackFrame_;
+    state.texels = object.texels;
+    state.ignited = object.mostIgnited;
+    state.burning = object.counters.burning;
+    state.frontTiles = object.counters.frontTiles;
+    state.burntFraction =
+        object.texels ? std::min(1.0f, float(object.mostIgnited) / float(object.texels)) : 0.0f;
+    const MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
+    const float scale = object.data.pose.scale;
+    const float texelArea =
+        mesh.domain->report.realTexels
+            ? float(mesh.domain->report.texelArea) / float(mesh.domain->report.realTexels)
+            : 0.0f;
+    state.burningArea = float(object.counters.burning) * texelArea * scale * scale;
+    state.power = state.burningArea * components::powerPerArea(object.data, mesh.texelsOf);
+}
+
+FwQueryId World::requestPoint(FwBurnableMeshId id, const float position[3]) {
+    components::checkValues(position, 3, "position", -1e6f, 1e6f);
+    const Object& object = *objects_.get(id);
+    if (queries_.live() >= kMaxQueries)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u point queries are open; the limit is %u.",
+                   queries_.live(), kMaxQueries);
+    float point[3];
+    components::toObject(object.data.pose, position, point);
+    const mesh::BurnDomain& domain = domainOf(object);
+    Query query;
+    query.object = id;
+    query.texel = mesh::nearestTexel(domain, point, 1e30f);
+    if (query.texel == mesh::kNone)
+        core::fail(FW_ERROR_BAD_DATA, "The mesh of burnable mesh %u has no texel.", id.index1);
+    float place[3];
+    texelPosition(object, query.texel, place);
+    float sum = 0;
+    for (int i = 0; i < 3; ++i) sum += (place[i] - position[i]) * (place[i] - position[i]);
+    query.distance = std::sqrt(sum);
+    return queries_.create(query);
+}
+
+FwPointState World::pointState(const Object& object, uint32_t texel, uint32_t code,
+                               const gpu::Readback& readback) const noexcept {
+    FwPointState state{};
+    state.frameIndex = readback.frameIndex;
+    state.age = -1;
+    texelPosition(object, texel, state.position);
+    if (gpu::isSource(code)) {
+        if (code > readback.endTick) {
+            state.kind = FW_POINT_UNBURNT;  // caught, but its tick is still to come
+            return state;
+        }
+        const uint32_t age = readback.endTick - code;
+        state.age = float(double(age) / gpu::kTicksPerSecond);
+        const uint32_t burns = object.latch.flameTicks[texelMaterial(object, texel)];
+        state.kind = burns == gpu::kNoneTexel || age < burns ? FW_POINT_BURNING : FW_POINT_BURNT;
+        return state;
+    }
+    switch (code) {
+        case gpu::kNever:
+            state.kind = FW_POINT_UNBURNT;
+            break;
+        case gpu::kWet:
+            state.kind = FW_POINT_WET;
+            break;
+        case gpu::kInert:
+            state.kind = FW_POINT_INERT;
+            break;
+        default:
+            state.kind = FW_POINT_EXTINGUISHED;
+            break;  // kOut, kOutWet
+    }
+    return state;
+}
+
+bool World::fetchPoint(FwQueryId id, FwPointState& state) {
+    Query& query = queries_.get(id);
+    if (query.orphaned) {
+        queries_.destroy(id);
+        core::fail(FW_ERROR_STALE_ID,
+                   "Query %u asks about a burnable mesh that is already destroyed; it is closed.",
+                   id.index1);
+    }
+    if (!query.ready) return false;
+    state = query.answer;
+    queries_.destroy(id);
+    return true;
+}
+
+uint32_t World::lights(std::span<FwLight> out) const noexcept {
+    const size_t count = std::min(out.size(), lights_.size());
+    std::copy_n(lights_.begin(), count, out.begin());
+    return uint32_t(count);
+}
+
+void World::stats(FwWorldStats& stats) noexcept {
+    stats.steps = steps_;
+    stats.tick = clock_.tick;
+    stats.readbackFrame = readbackFrame_;
+    stats.objects = objects_.live();
+    stats.meshes = meshes_.live();
+    stats.materials = materials_.live();
+    stats.frontTiles = frontTiles_;
+    stats.runTiles = runTiles_;
+    stats.burningTiles = burningTiles_;
+    stats.flames = flames_;
+    stats.lateClamps = lateClamps_;
+    stats.droppedSteps = uint32_t(droppedSteps_);
+    for (uint32_t i = 0; i < objects_.slotCount(); ++i) {
+        auto* object = objects_.at(i);
+        if (!object) continue;
+        stats.burningObjects += (*object)->counters.burning > 0 ? 1u : 0u;
+        stats.texels += (*object)->texels;
+    }
+}
+
+// ---- flamewright_debug.h
+// -------------------------------------------------------------------------
+
+void World::requestBurnMap(FwBurnableMeshId id) {
+    Object& object = *objects_.get(id);
+    object.map.ticks.resize(domainOf(object).texelCount());  // so that a readback needs no memory
+    object.map.wished = true;
+    object.map.ready = false;
+}
+
+const BurnMapCopy* World::fetchBurnMap(FwBurnableMeshId id) {
+    const BurnMapCopy& map = (*objects_.get(id)).map;
+    if (!map.ready && !map.wished && !map.pending)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The burn map of burnable mesh %u was not asked for; request it first.",
+                   id.index1);
+    return map.ready ? &map : nullptr;
+}
+
+void World::setSwitches(uint32_t switches) {
+    constexpr uint32_t kKnown = FW_DEBUG_DENSE | FW_DEBUG_SHUFFLE | FW_DEBUG_NO_SEAM_WAKE |
+                                FW_DEBUG_WRONG_READERS | FW_DEBUG_NO_WIND_WAKE |
+                                FW_DEBUG_NEVER_IDLE;
+    if (switches & ~kKnown)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "switches is 0x%x; the known switches are 0x%x.",
+                   switches, kKnown);
+    switches_ = switches;
+}
+
+}  // namespace fw::world

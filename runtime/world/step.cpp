@@ -1,0 +1,177 @@
+// One frame: what is due becomes a plan, the backend runs it, then the world takes it over. Nothing
+// persistent changes before the backend is through, so a failure leaves the world as it was.
+#include "world/world.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace fw::world {
+namespace {
+
+constexpr uint32_t kReduceEvery = 4;  // steps
+
+}  // namespace
+
+void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
+    components::checkValue(deltaTime, "deltaTime", 0.0f, 10.0f);
+    if (frameIndex <= lastFrame_)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "frameIndex is %llu and the last frame was %llu; it grows.",
+                   static_cast<unsigned long long>(frameIndex),
+                   static_cast<unsigned long long>(lastFrame_));
+}
+
+void World::advance(uint64_t frameIndex, float deltaTime) {
+    checkFrame(frameIndex, deltaTime);
+    collectReadbacks();
+    const ClockAdvance time = fw::world::advance(clock_, deltaTime, def_.maxStepsPerFrame);
+    planSteps(time);
+    planProbes();
+
+    // Nothing listed, nothing new: time passes without the device.
+    const bool skip = idle_ && frame_.events.empty() && frame_.updates.empty() &&
+                      !(switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE));
+    gpu::FramePlan plan;
+    plan.frameIndex = frameIndex;
+    if (!skip) plan.steps = frame_.steps;
+    plan.probes = frame_.probes;
+    plan.burnMaps = frame_.burnMaps;
+    plan.switches = switches_;
+    plan.endTick = uint32_t(time.after.tick);
+    backend_.run(plan);
+
+    commitFrame(frameIndex, time, !skip);
+    collectReadbacks();
+}
+
+void World::planSteps(const ClockAdvance& time) {
+    frame_.steps.clear();
+    frame_.events.clear();
+    frame_.updates.clear();
+    frame_.latches.clear();
+    frame_.due.clear();
+    const uint64_t end = time.after.tick;
+    for (const PendingTexel& event : pending_) {
+        if (event.tick >= end) continue;
+        const uint64_t at = std::max<uint64_t>(event.tick, clock_.tick);
+        frame_.due.push_back({event, uint32_t((at - clock_.tick) / gpu::kStepTicks)});
+        frame_.due.back().event.tick = uint32_t(at);  // never before its step
+    }
+    std::sort(frame_.due.begin(), frame_.due.end(), [](const Frame::Due& a, const Frame::Due& b) {
+        return std::tie(a.step, a.event.object, a.event.texel, a.event.order) <
+               std::tie(b.step, b.event.object, b.event.texel, b.event.order);
+    });
+    frame_.events.reserve(frame_.due.size());  // spans into it must hold
+    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+        if (auto* object = objects_.at(i); object && (*object)->touched)
+            frame_.latches.push_back({object->get(), (*object)->latch, false});
+
+    // Updates of all steps share one vector; its room is known only when all are there.
+    size_t firstUpdate[kMaxSteps + 1] = {};
+    size_t nextDue = 0;
+    for (uint32_t step = 0; step < time.steps; ++step) {
+        const uint32_t now = uint32_t(clock_.tick) + step * gpu::kStepTicks;
+        gpu::StepPlan plan;
+        plan.now = now;
+        plan.reduce = (now / gpu::kStepTicks) % kReduceEvery == kReduceEvery - 1;
+        const size_t firstEvent = frame_.events.size();
+        for (; nextDue < frame_.due.size() && frame_.due[nextDue].step == step; ++nextDue) {
+            const PendingTexel& event = frame_.due[nextDue].event;
+            frame_.events.push_back({event.object, event.texel, event.kind, event.tick});
+        }
+        plan.events = std::span<const gpu::TexelEvent>(frame_.events).subspan(firstEvent);
+        firstUpdate[step] = frame_.updates.size();
+        planLatches(now, firstEvent);
+        frame_.steps.push_back(plan);
+    }
+    firstUpdate[time.steps] = frame_.updates.size();
+    // The largest shift that any object at work wants, before or after a latch, serves all steps
+    // of the frame: an object takes part in as many iterations as its own shift says.
+    uint32_t shift = 0;
+    for (const Frame::LatchOf& entry : frame_.latches)
+        if (entry.object->active || entry.due)
+            shift = std::max({shift, entry.latch.substepShift, entry.object->latch.substepShift});
+    for (uint32_t step = 0; step < time.steps; ++step) {
+        frame_.steps[step].substepShift = shift;
+        frame_.steps[step].materials =
+            std::span<const gpu::MaterialUpdate>(frame_.updates)
+                .subspan(firstUpdate[step], firstUpdate[step + 1] - firstUpdate[step]);
+    }
+}
+
+void World::planProbes() {
+    ProbeFrame& known = probeFrames_[frames_ % kFramesInFlight];
+    frame_.probes.clear();
+    known.frameIndex = 0;
+    known.refs.clear();
+    const size_t most = tags_.size() + queries_.live();
+    frame_.probes.reserve(most);
+    known.refs.reserve(most);
+    for (const Tag& tag : tags_) {
+        frame_.probes.push_back({tag.object.index1 - 1, tag.texel});
+        known.refs.push_back({true, tag.object, tag.texel, tag.tag, {}});
+    }
+    for (uint32_t i = 0; i < queries_.slotCount(); ++i) {
+        const Query* query = queries_.at(i);
+        if (!query || query->asked || query->orphaned) continue;
+        frame_.probes.push_back({query->object.index1 - 1, query->texel});
+        known.refs.push_back({false, query->object, query->texel, 0, queries_.idOf(i)});
+    }
+    frame_.burnMaps.clear();
+    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+        if (auto* object = objects_.at(i); object && (*object)->map.wished)
+            frame_.burnMaps.push_back(i);
+}
+
+void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept {
+    ProbeFrame& known = probeFrames_[frames_ % kFramesInFlight];
+    known.frameIndex = frameIndex;
+    for (const ProbeRef& ref : known.refs)
+        if (!ref.isTag)
+            if (Query* query = queries_.find(ref.query)) query->asked = true;
+    for (uint32_t slot : frame_.burnMaps) {
+        BurnMapCopy& map = (*objects_.at(slot))->map;
+        map.wished = false;
+        map.pending = true;
+    }
+    for (const Frame::LatchOf& entry : frame_.latches) entry.object->latch = entry.latch;
+    for (const Frame::Due& due : frame_.due) {
+        Object& object = **objects_.at(due.event.object);
+        object.touched = true;
+        object.active = true;
+        object.lastStimulus = std::max<uint64_t>(object.lastStimulus, due.event.tick);
+        if (due.event.kind == FW_IGNITE) {
+            if (!object.ignitionKnown && !object.sawFire) {
+                object.ignitionKnown = true;
+                object.firstIgnition = due.event.tick;
+                const mesh::BurnDomain& domain = domainOf(object);
+                const mesh::TexelPosition& p = domain.texels[due.event.texel];
+                const uint16_t xyz[3] = {p.x, p.y, p.z};
+                for (int i = 0; i < 3; ++i)
+                    object.ignitionPoint[i] = domain.origin[i] + domain.quantum * float(xyz[i]);
+            }
+        } else if (due.event.kind == FW_WET || due.event.kind == FW_EXTINGUISH) {
+            object.lastDouse = due.event.tick;
+            object.doused = true;
+        }
+    }
+    const uint64_t end = time.after.tick;
+    std::erase_if(pending_, [&](const PendingTexel& p) { return p.tick < end; });
+    if (!frame_.events.empty() || !frame_.updates.empty()) {
+        idle_ = false;
+        lastStimulus_ = end;
+    }
+    for (const gpu::MaterialUpdate& update : frame_.updates)
+        (*objects_.at(update.object))->lastStimulus = end;
+    clock_ = time.after;
+    if (ran) steps_ += time.steps;
+    lastFrame_ = frameIndex;
+    ++frames_;
+    if (time.dropped > 0) {
+        droppedSteps_ += time.dropped;
+        const float nowhere[3] = {};
+        raise(FW_EVENT_TIME_DROPPED, nullptr, 0, frameIndex, nowhere, float(time.dropped) / 32.0f);
+    }
+}
+
+}  // namespace fw::world

@@ -1,0 +1,365 @@
+// Ids and what stands behind them: materials, images, meshes, objects; ball events to texels.
+#include "world/world.h"
+
+#include "mesh/bake.h"
+#include "world/mesh_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::world {
+namespace {
+
+using components::checkValue;
+using components::checkValues;
+
+void checkFlags(uint32_t flags, uint32_t known, const char* field) {
+    if (flags & ~known)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is 0x%x; the known flags are 0x%x.", field, flags,
+                   known);
+}
+
+void checkLimit(uint32_t value, const char* field, uint32_t low, uint32_t high) {
+    if (value < low || value > high)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", field, value,
+                   low, high);
+}
+
+FwWorldDef checkedDef(const FwWorldDef& given) {
+    FwWorldDef def = given;
+    checkFlags(def.flags, 0, "FwWorldDef::flags");
+    checkValues(def.up, 3, "FwWorldDef::up", -1.001f, 1.001f);
+    const float length =
+        std::sqrt(def.up[0] * def.up[0] + def.up[1] * def.up[1] + def.up[2] * def.up[2]);
+    if (std::fabs(length - 1.0f) > 1e-3f)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwWorldDef::up has length %g; it is a unit vector within 0.001.",
+                   double(length));
+    for (float& value : def.up) value /= length;
+    checkValue(def.paceFactor, "FwWorldDef::paceFactor", 0.1f, 1000.0f);
+    checkValues(def.wind, 3, "FwWorldDef::wind", -120.0f, 120.0f);
+    checkValue(def.wetResistance, "FwWorldDef::wetResistance", 0.0f, 0.0f);
+    checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
+    checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, 64);
+    checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
+    return def;
+}
+
+bool nearBounds(const float point[3], const mesh::BurnDomain& domain, float reach) {
+    // Squared distance to the bounds, so that far objects cost nothing.
+    float sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        const float below = domain.boundsLow[i] - point[i];
+        const float above = point[i] - domain.boundsHigh[i];
+        const float outside = std::max(0.0f, std::max(below, above));
+        sum += outside * outside;
+    }
+    return sum <= reach * reach;
+}
+
+}  // namespace
+
+void checkWorldDef(const FwWorldDef& def) { (void)checkedDef(def); }
+
+World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
+             std::pmr::memory_resource* memory)
+    : memory_(memory),
+      backend_(backend),
+      log_(log),
+      def_(checkedDef(def)),
+      materials_("Material", memory),
+      images_("Image", memory),
+      meshes_("Mesh", memory),
+      objects_("Burnable mesh", memory),
+      queries_("Query", memory),
+      imageUsers_(memory),
+      tags_(memory),
+      pending_(memory),
+      found_(memory),
+      events_(memory),
+      probeFrames_(memory),
+      frame_(memory),
+      lights_(memory),
+      lightsBefore_(memory) {
+    std::copy_n(def_.wind, 3, wind_);
+    frame_.steps.reserve(kMaxSteps);
+    lights_.reserve(64);
+    lightsBefore_.reserve(64);
+    probeFrames_.reserve(kFramesInFlight);
+    for (uint32_t i = 0; i < kFramesInFlight; ++i) probeFrames_.emplace_back(memory);
+}
+
+World::~World() {
+    // The backend still holds what the ids stand for; it goes in the order objects, meshes, images.
+    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+        if (objects_.at(i)) backend_.destroyObject(i);
+    for (uint32_t i = 0; i < meshes_.slotCount(); ++i)
+        if (meshes_.at(i)) backend_.destroyMesh(i);
+    for (uint32_t i = 0; i < images_.slotCount(); ++i)
+        if (const ImageEntry* image = images_.at(i)) backend_.destroyImage(image->slot);
+}
+
+void World::setWind(const float wind[3]) {
+    checkValues(wind, 3, "wind", -120.0f, 120.0f);
+    std::copy_n(wind, 3, wind_);
+}
+
+// ---- materials and images
+// ------------------------------------------------------------------------
+
+FwMaterialId World::createMaterial(const FwMaterialDef& def) {
+    fire::checkMaterial(def);
+    return materials_.create(def);
+}
+
+FwImageId World::createImage(const FwImageDef& def) {
+    checkFlags(def.flags, 0, "FwImageDef::flags");
+    checkLimit(def.width, "FwImageDef::width", 1, 8192);
+    checkLimit(def.height, "FwImageDef::height", 1, 8192);
+    if (!def.pixels) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwImageDef::pixels is null.");
+    uint32_t slot = 0;
+    while (slot < imageUsers_.size() && imageUsers_[slot] != 0) ++slot;
+    if (slot == imageUsers_.size()) imageUsers_.push_back(0);
+    const size_t bytes = size_t(def.width) * def.height * 4;
+    backend_.createImage(slot, def.width, def.height,
+                         {static_cast<const std::byte*>(def.pixels), bytes});
+    try {
+        const FwImageId id = images_.create(ImageEntry{slot});
+        imageUsers_[slot] = 1;
+        return id;
+    } catch (...) {
+        backend_.destroyImage(slot);
+        throw;
+    }
+}
+
+void World::destroyImage(FwImageId id) {
+    const uint32_t slot = images_.get(id).slot;
+    images_.destroy(id);
+    backend_.destroyImage(slot);
+    --imageUsers_[slot];  // not given out again while an object still names it
+}
+
+void World::releaseImageSlot(uint32_t imagePlus1) noexcept {
+    if (imagePlus1 != 0) --imageUsers_[imagePlus1 - 1];
+}
+
+// ---- meshes
+// --------------------------------------------------------------------------------------
+
+FwMeshId World::createMesh(const FwMeshDef& def) {
+    MeshEntry entry;
+    entry.domain = makeDomain(def, memory_);
+    for (const mesh::TexelPosition& texel : entry.domain->texels)
+        if (texel.materialFlags & mesh::kTexelReal)
+            ++entry.texelsOf[texel.materialFlags & 0xFF & (gpu::kMaterialsPerObject - 1)];
+    const mesh::BurnDomain& domain = *entry.domain;
+    const FwMeshId id = meshes_.create(std::move(entry));
+    try {
+        backend_.createMesh(id.index1 - 1, domain);
+    } catch (...) {
+        meshes_.destroy(id);
+        throw;
+    }
+    return id;
+}
+
+void World::destroyMesh(FwMeshId id) {
+    MeshEntry& entry = meshes_.get(id);
+    if (entry.users > 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Mesh %u (generation %u) is used by %u burnable mesh(es); destroy them first.",
+                   id.index1, id.generation, entry.users);
+    backend_.destroyMesh(id.index1 - 1);
+    meshes_.destroy(id);
+}
+
+void World::meshInfo(FwMeshId id, FwMeshInfo& info) {
+    const mesh::BurnDomain& domain = *meshes_.get(id).domain;
+    const mesh::BakeReport& report = domain.report;
+    info.mapWidth = domain.width;
+    info.mapHeight = domain.height;
+    info.texels = report.realTexels;
+    info.charts = report.charts;
+    info.vertices = uint32_t(domain.vertices.size());
+    info.triangles = uint32_t(domain.indices.size() / 3);
+    info.degenerateTriangles = report.degenerate;
+    info.openEdges = report.openEdges;
+    info.nonManifoldEdges = report.nonManifoldEdges;
+    info.usedOwnUvs = report.usedOwnUv;
+    info.area = float(report.meshArea);
+    info.texelArea = float(report.texelArea);
+    std::copy_n(domain.boundsLow, 3, info.boundsLow);
+    std::copy_n(domain.boundsHigh, 3, info.boundsHigh);
+    info.texelsPerMetre = domain.texelSide > 0 ? 1.0f / domain.texelSide : 0.0f;
+    info.bakeMilliseconds = float(report.milliseconds);
+}
+
+// ---- burnable meshes
+// -----------------------------------------------------------------------------
+
+FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& def) {
+    MeshEntry& mesh = meshes_.get(def.mesh);
+    core::Owned<Object> owned = core::Owned<Object>::make(memory_, memory_);
+    Object& object = *owned;
+    object.data = components::makeBurnableMesh(def);
+    object.data.meshSlot = def.mesh.index1 - 1;
+    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
+        if (def.materials[i].index1 != 0)
+            components::setMaterial(object.data, i, materials_.get(def.materials[i]));
+    if (def.baseColor.index1 != 0) object.data.imagePlus1 = images_.get(def.baseColor).slot + 1;
+
+    const mesh::BurnDomain& domain = *mesh.domain;
+    const std::pmr::vector<uint16_t> slowness = components::makeSlowness(def, domain, memory_);
+    for (uint32_t i = 0; i < domain.texelCount(); ++i)
+        if (domain.real(i) && (slowness.empty() ? domain.slowness[i] : slowness[i]) != 0 &&
+            components::burns(object.data, domain.texels[i].materialFlags & 0xFF))
+            ++object.texels;
+
+    const components::DriveInput drive = driveInput();
+    components::resetLatch(object.data, drive, object.latch);
+    const components::Records records =
+        components::makeRecords(object.data, domain, drive, object.latch);
+    gpu::ObjectInit init;
+    init.mesh = object.data.meshSlot;
+    init.record = components::makeObject(object.data, domain, records);
+    init.materials = records.materials;
+    init.slowness = slowness;
+
+    object.firstFrame = lastFrame_ + 1;
+    const FwBurnableMeshId id = objects_.create(std::move(owned));
+    object.id = id;
+    object.slot = id.index1 - 1;
+    try {
+        // So that a warmed-up frame finds its room: one latch and update per object.
+        frame_.latches.reserve(objects_.slotCount());
+        frame_.updates.reserve(objects_.slotCount());
+        frame_.burnMaps.reserve(objects_.slotCount());
+        backend_.createObject(object.slot, init);
+    } catch (...) {
+        objects_.destroy(id);
+        throw;
+    }
+    ++mesh.users;
+    if (object.data.imagePlus1 != 0) ++imageUsers_[object.data.imagePlus1 - 1];
+    return id;
+}
+
+void World::destroyBurnableMesh(FwBurnableMeshId id) {
+    Object& object = *objects_.get(id);
+    const uint32_t slot = object.slot;
+    releaseImageSlot(object.data.imagePlus1);
+    --meshes_.at(object.data.meshSlot)->users;
+    std::erase_if(pending_, [&](const PendingTexel& p) { return p.object == slot; });
+    std::erase_if(tags_, [&](const Tag& tag) { return tag.object.index1 == id.index1; });
+    for (uint32_t i = 0; i < queries_.slotCount(); ++i)
+        if (Query* query = queries_.at(i); query && query->object.index1 == id.index1)
+            query->orphaned = true;
+    backend_.destroyObject(slot);
+    objects_.destroy(id);
+}
+
+void World::sendPose(const Object& object) noexcept {
+    gpu::vec4 rows[3];
+    components::poseRows(object.data.pose, rows);
+    backend_.setObjectPose(object.slot, rows, components::objectTint(object.data, domainOf(object)),
+                           components::objectFlags(object.data, domainOf(object)));
+}
+
+void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
+    Object& object = *objects_.get(id);
+    object.data.pose = components::makePose(transform, "transform");
+    sendPose(object);
+}
+
+void World::setHidden(FwBurnableMeshId id, bool hidden) {
+    Object& object = *objects_.get(id);
+    object.data.flags = (object.data.flags & ~uint32_t(FW_BURNABLE_HIDDEN)) |
+                        (hidden ? uint32_t(FW_BURNABLE_HIDDEN) : 0u);
+    sendPose(object);
+}
+
+// ---- ball events -> texels
+// -----------------------------------------------------------------------
+
+uint32_t World::eventTick(float delay) const {
+    const uint64_t tick =
+        clock_.hostTick() + uint64_t(std::lround(double(delay) * gpu::kTicksPerSecond));
+    return uint32_t(std::min<uint64_t>(tick, Clock::kLastTick));
+}
+
+void World::addPending(const Object& object, uint32_t kind, uint32_t tick,
+                       std::span<const uint32_t> texels) {
+    if (pending_.size() + texels.size() > kMaxPending)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%zu texel events wait and %zu more come; the limit is %zu.", pending_.size(),
+                   texels.size(), kMaxPending);
+    pending_.reserve(std::max(pending_.size() + texels.size(),
+                              std::min(pending_.capacity() * 2, size_t(65536))));
+    for (uint32_t texel : texels) pending_.push_back({object.slot, texel, kind, tick, order_++});
+}
+
+uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick, bool named) {
+    const mesh::BurnDomain& domain = domainOf(object);
+    float point[3];
+    components::toObject(object.data.pose, def.position, point);
+    float radius = def.radius / object.data.pose.scale;
+    // A doused band holds only when it is thicker than the longest link across it.
+    if (def.kind != FW_IGNITE && def.radius > 0)
+        radius = std::max({radius, 1.5f * domain.texelSide, domain.linkMax});
+    const float reach = std::max(radius, domain.texelSide);
+    if (!nearBounds(point, domain, reach)) return 0;
+    const uint32_t nearest = mesh::nearestTexel(domain, point, reach);
+    if (nearest == mesh::kNone) return 0;
+    (void)named;
+    found_.clear();
+    mesh::texelsNear(domain, point, radius, found_);
+    // The ball itself decides: a centre off the surface reaches a smaller disc.
+    std::erase_if(found_, [&](uint32_t texel) {
+        const mesh::TexelPosition& p = domain.texels[texel];
+        const float x = domain.origin[0] + domain.quantum * float(p.x) - point[0];
+        const float y = domain.origin[1] + domain.quantum * float(p.y) - point[1];
+        const float z = domain.origin[2] + domain.quantum * float(p.z) - point[2];
+        return x * x + y * y + z * z > radius * radius;
+    });
+    if (found_.empty()) found_.push_back(nearest);
+    addPending(object, def.kind, tick, found_);
+    return uint32_t(found_.size());
+}
+
+uint32_t World::ignite(const FwIgnitionDef& def) {
+    checkLimit(def.kind, "FwIgnitionDef::kind", 0, FW_EXTINGUISH);
+    checkValues(def.position, 3, "FwIgnitionDef::position", -1e6f, 1e6f);
+    checkValue(def.radius, "FwIgnitionDef::radius", 0.0f, 1e6f);
+    checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
+    for (uint32_t i = 0; i < 3; ++i)
+        if (def.reserved[i] != 0)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwIgnitionDef::reserved[%u] is %u; it is zero.",
+                       i, def.reserved[i]);
+    const uint32_t tick = eventTick(def.delay);
+    const size_t before = pending_.size();
+    try {
+        if (def.object.index1 != 0) return igniteObject(*objects_.get(def.object), def, tick, true);
+        uint32_t texels = 0;
+        for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+            if (auto* object = objects_.at(i)) texels += igniteObject(**object, def, tick, false);
+        return texels;
+    } catch (...) {
+        pending_.resize(before);
+        throw;
+    }
+}
+
+void World::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels) {
+    const Object& object = *objects_.get(id);
+    checkLimit(kind, "kind", 0, FW_EXTINGUISH);
+    const uint32_t count = domainOf(object).texelCount();
+    for (size_t i = 0; i < texels.size(); ++i)
+        if (texels[i] >= count)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "texels[%zu] is %u; the map has %u texels.", i,
+                       texels[i], count);
+    addPending(object, kind, uint32_t(clock_.tick), texels);
+}
+
+}  // namespace fw::world

@@ -1,0 +1,390 @@
+// Defs: defaults, older and newer hosts, numbers that cannot be used.
+#include "abi/abi_support.h"
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+
+extern "C" int fwTestCallEverything(int* calls);
+
+namespace {
+
+using abi::Host;
+using abi::lastMessage;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
+    int calls = 0;
+    EXPECT_EQ(0, fwTestCallEverything(&calls));
+    EXPECT_EQ(51, calls);  // as many as the export list has; see exports.sh
+}
+
+TEST(AbiC, VersionAndNames) {
+    EXPECT_EQ(FW_VERSION_MAJOR << 22 | FW_VERSION_MINOR << 12 | FW_VERSION_PATCH, fwGetVersion());
+    EXPECT_STREQ("FW_ERROR_STALE_ID", fwResultName(FW_ERROR_STALE_ID));
+    EXPECT_STREQ("an unknown FwResult", fwResultName(1234));
+    for (uint32_t i = 0; i < FW_MATERIAL_PRESET_COUNT; ++i) {
+        ASSERT_NE(nullptr, fwMaterialPresetName(i));
+        EXPECT_LT(0u, std::strlen(fwMaterialPresetName(i)));
+    }
+    EXPECT_NE(nullptr, fwMaterialPresetName(99));
+}
+
+struct DefCase {
+    const char* name;
+    uint32_t type, size;
+};
+const DefCase kDefs[] = {
+    {"context", FW_DEF_CONTEXT, sizeof(FwContextDef)},
+    {"world", FW_DEF_WORLD, sizeof(FwWorldDef)},
+    {"material", FW_DEF_MATERIAL, sizeof(FwMaterialDef)},
+    {"image", FW_DEF_IMAGE, sizeof(FwImageDef)},
+    {"mesh", FW_DEF_MESH, sizeof(FwMeshDef)},
+    {"burnable", FW_DEF_BURNABLE_MESH, sizeof(FwBurnableMeshDef)},
+    {"ignition", FW_DEF_IGNITION, sizeof(FwIgnitionDef)},
+    {"view", FW_DEF_VIEW, sizeof(FwView)},
+    {"offscreen", FW_DEF_OFFSCREEN, sizeof(FwOffscreenDef)},
+    {"host", FW_DEF_VULKAN_HOST, sizeof(FwVulkanHost)},
+    {"target", FW_DEF_VULKAN_TARGET, sizeof(FwVulkanTargetDef)},
+    {"frame", FW_DEF_VULKAN_FRAME, sizeof(FwVulkanFrame)},
+    {"wishes", FW_DEF_VULKAN_WISHES, sizeof(FwVulkanWishes)},
+    {"composite", FW_DEF_VULKAN_COMPOSITE, sizeof(FwVulkanComposite)},
+};
+
+TEST(AbiInitDef, NeverWritesPastStructSizeAndZeroesWhatItDoesNotKnow) {
+    for (const DefCase& def : kDefs) {
+        std::vector<unsigned char> whole(def.size);
+        fwInitDef(def.type, whole.data(), def.size);
+        uint32_t written = 0;
+        std::memcpy(&written, whole.data(), 4);
+        EXPECT_EQ(def.size, written) << def.name;
+        for (uint32_t size = 1; size <= def.size + 64; ++size) {
+            std::vector<unsigned char> bytes(size + 16, 0xCD);
+            fwInitDef(def.type, bytes.data(), size);
+            for (uint32_t i = size; i < size + 16; ++i)
+                ASSERT_EQ(0xCD, bytes[i]) << def.name << " of " << size << " at " << i;
+            for (uint32_t i = 4; i < size; ++i)
+                ASSERT_EQ(i < def.size ? whole[i] : 0, bytes[i])
+                    << def.name << " of " << size << " at " << i;
+        }
+    }
+    std::vector<unsigned char> unknown(64, 0xCD);
+    fwInitDef(4711, unknown.data(), 32);
+    for (uint32_t i = 4; i < 32; ++i) EXPECT_EQ(0, unknown[i]);
+    EXPECT_EQ(0xCD, unknown[32]);
+    fwInitDef(FW_DEF_WORLD, nullptr, 32);
+    fwInitDef(FW_DEF_WORLD, unknown.data(), 0);
+    EXPECT_EQ(0xCD, unknown[32]);
+}
+
+// Runs `create` with the def at every size an older host may have had, and with newer ones.
+template <class Def>
+void checkSizes(const char* name, Def whole,
+                const std::function<FwResult(const Def*)>& create,
+                const std::function<std::string()>& message) {
+    // Older: whatever is cut off takes its default, which always works in a world.
+    for (uint32_t size = 8; size < sizeof(Def); size += 4) {
+        std::vector<unsigned char> bytes(sizeof(Def) + 64, 0xCD);  // a page of someone else's
+        std::memcpy(bytes.data(), &whole, size);
+        std::memcpy(bytes.data(), &size, 4);
+        const FwResult result = create(reinterpret_cast<const Def*>(bytes.data()));
+        EXPECT_TRUE(result == FW_OK || result == FW_ERROR_INVALID_ARGUMENT ||
+                    result == FW_ERROR_STALE_ID)
+            << name << " of " << size << ": " << fwResultName(result) << " " << message();
+    }
+    for (const uint32_t extra : {4u, 32u, 256u}) {
+        std::vector<unsigned char> bytes(sizeof(Def) + 512, 0);
+        std::memcpy(bytes.data(), &whole, sizeof(Def));
+        const uint32_t size = uint32_t(sizeof(Def)) + extra;
+        std::memcpy(bytes.data(), &size, 4);
+        EXPECT_EQ(FW_OK, create(reinterpret_cast<const Def*>(bytes.data())))
+            << name << ": " << message();
+        bytes[size - 1] = 1;
+        EXPECT_EQ(FW_ERROR_VERSION, create(reinterpret_cast<const Def*>(bytes.data()))) << name;
+        EXPECT_NE(std::string::npos, message().find("structSize")) << message();
+    }
+    for (const uint32_t size : {0u, 4u, 7u, 13u, 70000u, 0xFFFFFFFFu}) {
+        std::vector<unsigned char> bytes(sizeof(Def), 0);
+        std::memcpy(bytes.data(), &whole, sizeof(Def));
+        std::memcpy(bytes.data(), &size, 4);
+        EXPECT_EQ(FW_ERROR_VERSION, create(reinterpret_cast<const Def*>(bytes.data())))
+            << name << " of " << size;
+    }
+}
+
+TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
+    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    const auto worldMessage = [&] { return lastMessage(w.world); };
+    const auto contextMessage = [&] { return lastMessage(w.context); };
+
+    checkSizes<FwContextDef>(
+        "FwContextDef",
+        [&] {
+            FwContextDef def = fwDefaultContextDef();
+            def.backend = FW_BACKEND_CPU;
+            def.callbacks = w.host.callbacks();
+            return def;
+        }(),
+        [&](const FwContextDef* def) {
+            uint32_t size = 0, backend = 0;
+            std::memcpy(&size, def, 4);
+            if (size > 8 && size <= offsetof(FwContextDef, backend)) return FW_OK;
+            if (size == 8) return FW_OK;  // that host could not choose the cpu backend
+            (void)backend;
+            FwContext* context = nullptr;
+            // A half-given set of callbacks is refused, as it is from a new host.
+            const FwResult result = fwCreateContext(def, &context, nullptr);
+            fwDestroyContext(context);
+            return result;
+        },
+        [] { return std::string("structSize"); });
+    checkSizes<FwWorldDef>(
+        "FwWorldDef", fwDefaultWorldDef(),
+        [&](const FwWorldDef* def) {
+            FwWorld* world = nullptr;
+            const FwResult result = fwCreateWorld(w.context, def, &world);
+            fwDestroyWorld(world);
+            return result;
+        },
+        contextMessage);
+    checkSizes<FwMaterialDef>(
+        "FwMaterialDef", fwDefaultMaterialDef(),
+        [&](const FwMaterialDef* def) {
+            FwMaterialId id{};
+            return fwWorld_CreateMaterial(w.world, def, &id);
+        },
+        worldMessage);
+    const uint32_t pixels[4] = {};
+    FwImageDef image = fwDefaultImageDef();
+    image.width = image.height = 2;
+    image.pixels = pixels;
+    checkSizes<FwImageDef>(
+        "FwImageDef", image,
+        [&](const FwImageDef* def) {
+            FwImageId id{};
+            return fwWorld_CreateImage(w.world, def, &id);
+        },
+        worldMessage);
+    const abi::Sheet small(0.2f, 0.2f);
+    checkSizes<FwMeshDef>(
+        "FwMeshDef", small.def(32),
+        [&](const FwMeshDef* def) {
+            FwMeshId id{};
+            return fwWorld_CreateMesh(w.world, def, &id);
+        },
+        worldMessage);
+    FwBurnableMeshDef burnable = fwDefaultBurnableMeshDef();
+    burnable.mesh = w.mesh;
+    burnable.materials[0] = w.materialId;
+    checkSizes<FwBurnableMeshDef>(
+        "FwBurnableMeshDef", burnable,
+        [&](const FwBurnableMeshDef* def) {
+            FwBurnableMeshId id{};
+            return fwWorld_CreateBurnableMesh(w.world, def, &id);
+        },
+        worldMessage);
+    FwIgnitionDef ignition = fwDefaultIgnitionDef();
+    ignition.radius = 0.05f;
+    checkSizes<FwIgnitionDef>(
+        "FwIgnitionDef", ignition,
+        [&](const FwIgnitionDef* def) { return fwWorld_Ignite(w.world, def, nullptr); },
+        worldMessage);
+}
+
+TEST(AbiSizes, AnOldHostGetsDefaultsForFieldsItDoesNotKnow) {
+    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    FwMaterialDef def;
+    std::memset(&def, 0xCD, sizeof def);
+    fwInitDef(FW_DEF_MATERIAL, &def, offsetof(FwMaterialDef, baseColor));  // last year's size
+    EXPECT_EQ(0xCD, reinterpret_cast<unsigned char*>(&def.baseColor)[0]);
+    FwMaterialId id{};
+    EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &def, &id)) << lastMessage(w.world);
+}
+
+TEST(AbiSizes, InfosFillAnySizeAndNeverMore) {
+    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    for (uint32_t size = 8; size <= sizeof(FwMeshInfo) + 32; size += 4) {
+        std::vector<unsigned char> bytes(size + 16, 0xCD);
+        std::memcpy(bytes.data(), &size, 4);
+        ASSERT_EQ(FW_OK, fwWorld_GetMeshInfo(w.world, w.mesh,
+                                             reinterpret_cast<FwMeshInfo*>(bytes.data())));
+        for (uint32_t i = size; i < size + 16; ++i) ASSERT_EQ(0xCD, bytes[i]);
+        for (uint32_t i = sizeof(FwMeshInfo); i < size; ++i) ASSERT_EQ(0, bytes[i]);
+        uint32_t kept = 0;
+        std::memcpy(&kept, bytes.data(), 4);
+        ASSERT_EQ(size, kept);
+    }
+    FwMeshInfo info{};
+    EXPECT_EQ(FW_ERROR_VERSION, fwWorld_GetMeshInfo(w.world, w.mesh, &info));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("FwMeshInfo::structSize is 0"));
+}
+
+// ---- numbers -------------------------------------------------------------------------------------
+
+// Sets one float of a good def to bad values; each must be refused, naming the field.
+template <class Def>
+void refuseFloat(const Def& good, float Def::*field, const char* name,
+                 const std::function<FwResult(const Def*)>& create,
+                 const std::function<std::string()>& message, std::vector<float> bad = {}) {
+    bad.insert(bad.end(), {kNan, kInfinity, -kInfinity});
+    for (const float value : bad) {
+        Def def = good;
+        def.*field = value;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, create(&def)) << name << " = " << value;
+        EXPECT_NE(std::string::npos, message().find(name)) << message();
+        EXPECT_NE(std::string::npos, message().find(" is ")) << message();
+    }
+    EXPECT_EQ(FW_OK, create(&good)) << message();
+}
+
+TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
+    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    const auto worldMessage = [&] { return lastMessage(w.world); };
+    const auto contextMessage = [&] { return lastMessage(w.context); };
+    const std::function<FwResult(const FwWorldDef*)> makeWorld = [&](const FwWorldDef* def) {
+        FwWorld* world = nullptr;
+        const FwResult result = fwCreateWorld(w.context, def, &world);
+        fwDestroyWorld(world);
+        return result;
+    };
+    refuseFloat<FwWorldDef>(fwDefaultWorldDef(), &FwWorldDef::paceFactor, "paceFactor", makeWorld,
+                            contextMessage, {0.0f, 0.05f, -1.0f, 1001.0f});
+    refuseFloat<FwWorldDef>(fwDefaultWorldDef(), &FwWorldDef::wetResistance, "wetResistance",
+                            makeWorld, contextMessage, {1.0f});
+
+    const std::function<FwResult(const FwMaterialDef*)> makeMaterial =
+        [&](const FwMaterialDef* def) {
+            FwMaterialId id{};
+            const FwResult result = fwWorld_CreateMaterial(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_DestroyMaterial(w.world, id);
+            return result;
+        };
+    const FwMaterialDef pine = fwDefaultMaterialDef();
+    struct Field {
+        float FwMaterialDef::*field;
+        const char* name;
+        std::vector<float> bad;
+    };
+    const Field fields[] = {
+        {&FwMaterialDef::spreadRate, "spreadRate", {-0.1f, 1.5f}},
+        {&FwMaterialDef::windGain, "windGain", {-1.0f, 17.0f}},
+        {&FwMaterialDef::upGain, "upGain", {-1.0f, 17.0f}},
+        {&FwMaterialDef::headGain, "headGain", {-1.0f, 256.0f}},
+        {&FwMaterialDef::backGain, "backGain", {-1.0f, 256.0f}},
+        {&FwMaterialDef::driveMax, "driveMax", {-1.0f, 64.0f}},
+        {&FwMaterialDef::lengthToBreadth, "lengthToBreadth", {0.0f, 0.5f, 5.0f}},
+        {&FwMaterialDef::ceilingGain, "ceilingGain", {-1.0f, 5.0f}},
+        {&FwMaterialDef::burnTime, "burnTime", {}},
+        {&FwMaterialDef::moisture, "moisture", {-0.1f, 2.5f}},
+        {&FwMaterialDef::extinctionMoisture, "extinctionMoisture", {0.0f, -1.0f, 3.0f}},
+        {&FwMaterialDef::thickness, "thickness", {-0.1f}},
+        {&FwMaterialDef::heatOfCombustion, "heatOfCombustion", {-1.0f}},
+        {&FwMaterialDef::burningFlux, "burningFlux", {-1.0f}},
+        {&FwMaterialDef::baseRoughness, "baseRoughness", {-0.1f, 1.1f}},
+    };
+    for (const Field& field : fields)
+        refuseFloat<FwMaterialDef>(pine, field.field, field.name, makeMaterial, worldMessage,
+                                   field.bad);
+
+    const abi::Sheet sheet(0.2f, 0.2f);
+    const std::function<FwResult(const FwMeshDef*)> makeMesh = [&](const FwMeshDef* def) {
+        FwMeshId id{};
+        const FwResult result = fwWorld_CreateMesh(w.world, def, &id);
+        if (result == FW_OK) (void)fwWorld_DestroyMesh(w.world, id);
+        return result;
+    };
+    refuseFloat<FwMeshDef>(sheet.def(32), &FwMeshDef::texelsPerMetre, "texelsPerMetre", makeMesh,
+                           worldMessage, {0.0f, -1.0f, 5000.0f});
+    refuseFloat<FwMeshDef>(sheet.def(32), &FwMeshDef::noiseAmplitude, "noiseAmplitude", makeMesh,
+                           worldMessage, {-0.1f, 0.6f});
+    refuseFloat<FwMeshDef>(sheet.def(32), &FwMeshDef::noiseFeature, "noiseFeature", makeMesh,
+                           worldMessage, {0.0f, -1.0f});
+
+    FwBurnableMeshDef burnable = fwDefaultBurnableMeshDef();
+    burnable.mesh = w.mesh;
+    burnable.materials[0] = w.materialId;
+    const std::function<FwResult(const FwBurnableMeshDef*)> makeBurnable =
+        [&](const FwBurnableMeshDef* def) {
+            FwBurnableMeshId id{};
+            const FwResult result = fwWorld_CreateBurnableMesh(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_DestroyBurnableMesh(w.world, id);
+            return result;
+        };
+    refuseFloat<FwBurnableMeshDef>(burnable, &FwBurnableMeshDef::moisture, "moisture",
+                                   makeBurnable, worldMessage, {-0.1f, 2.5f});
+    for (int i = 0; i < 16; ++i) {
+        FwBurnableMeshDef def = burnable;
+        def.transform[i] = kNan;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeBurnable(&def));
+        EXPECT_NE(std::string::npos,
+                  lastMessage(w.world).find("transform[" + std::to_string(i) + "] is "))
+            << lastMessage(w.world);
+    }
+    for (int i = 0; i < 3; ++i) {
+        FwBurnableMeshDef def = burnable;
+        def.tint[i] = kNan;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeBurnable(&def));
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find("tint")) << lastMessage(w.world);
+    }
+
+    FwIgnitionDef ignition = fwDefaultIgnitionDef();
+    ignition.radius = 0.05f;
+    const std::function<FwResult(const FwIgnitionDef*)> ignite = [&](const FwIgnitionDef* def) {
+        return fwWorld_Ignite(w.world, def, nullptr);
+    };
+    refuseFloat<FwIgnitionDef>(ignition, &FwIgnitionDef::radius, "radius", ignite, worldMessage,
+                               {-1.0f});
+    refuseFloat<FwIgnitionDef>(ignition, &FwIgnitionDef::delay, "delay", ignite, worldMessage,
+                               {-1.0f, 3601.0f});
+    for (const float bad : {kNan, kInfinity, -kInfinity, 1e30f}) {
+        FwIgnitionDef def = ignition;
+        def.position[1] = bad;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, ignite(&def));
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find("position[1]"));
+        const float wind[3] = {0, bad, 0};
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetWind(w.world, wind));
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find("wind[1]"));
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_TagPoint(w.world, w.object, wind, 1));
+        FwQueryId query{};
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
+                  fwWorld_RequestPoint(w.world, w.object, wind, &query));
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Step(w.world, bad));
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find("deltaTime is "));
+    }
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Step(w.world, -0.01f));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Step(w.world, 10.5f));
+}
+
+TEST(AbiValues, PosesThatAreNotRigidAreRefusedWithTheReason) {
+    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    struct Case {
+        float columns[9];
+        float w15;
+        const char* reason;
+    };
+    const Case cases[] = {
+        {{1, 0, 0, 0, 1, 0, 0, 0, 1.01f}, 1, "scale is uniform"},
+        {{1, 0, 0, 0.01f, 1, 0, 0, 0, 1}, 1, "sheared"},
+        {{-1, 0, 0, 0, 1, 0, 0, 0, 1}, 1, "mirrors"},
+        {{0, 0, 0, 0, 0, 0, 0, 0, 0}, 1, "scale 0"},
+        {{2000, 0, 0, 0, 2000, 0, 0, 0, 2000}, 1, "scale 2000"},
+        {{1, 0, 0, 0, 1, 0, 0, 0, 1}, 0.5f, "last row"},
+    };
+    for (const Case& bad : cases) {
+        float m[16] = {};
+        for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r) m[c * 4 + r] = bad.columns[c * 3 + r];
+        m[15] = bad.w15;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetTransform(w.world, w.object, m));
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find(bad.reason))
+            << lastMessage(w.world);
+    }
+    const float good[16] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1};
+    EXPECT_EQ(FW_OK, fwWorld_SetTransform(w.world, w.object, good)) << lastMessage(w.world);
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetTransform(w.world, w.object, nullptr));
+    EXPECT_EQ("transform is null.\n - While calling fwWorld_SetTransform.", lastMessage(w.world));
+}
+
+}  // namespace

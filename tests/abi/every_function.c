@@ -1,0 +1,91 @@
+/* The public headers in plain C, and every function of them called with nothing: none may crash,
+ * all that return a result must refuse. Returns how many functions refused wrongly; the number of
+ * calls made goes to *calls. */
+#include "flamewright/flamewright.h"
+#include "flamewright/flamewright_debug.h"
+#include "flamewright/flamewright_vulkan.h"
+
+int fwTestCallEverything(int* calls);
+
+int fwTestCallEverything(int* calls) {
+    int wrong = 0;
+    *calls = 0;
+#define REFUSES(call) (++*calls, wrong += (call) < 0 ? 0 : 1)
+#define IS_ZERO(call) (++*calls, wrong += (call) == 0 ? 0 : 1)
+#define RUNS(call) (++*calls, (void)(call))
+    const FwMaterialId material = {0, 0};
+    const FwImageId image = {0, 0};
+    const FwMeshId mesh = {0, 0};
+    const FwBurnableMeshId object = {0, 0};
+    const FwTargetId target = {0, 0};
+    const FwQueryId query = {0, 0};
+
+    RUNS(fwResultName(FW_OK));
+    RUNS(fwGetVersion());
+    RUNS(fwInitDef(FW_DEF_WORLD, NULL, 64));
+    REFUSES(fwCreateContext(NULL, NULL, NULL));
+    RUNS(fwDestroyContext(NULL));
+    REFUSES(fwContext_GetInfo(NULL, NULL));
+    IS_ZERO(fwContext_GetLastMessage(NULL, NULL, 0));
+    REFUSES(fwContext_Prepare(NULL));
+    IS_ZERO(fwContext_GetMemoryReport(NULL, NULL, 0));
+    REFUSES(fwCreateWorld(NULL, NULL, NULL));
+    RUNS(fwDestroyWorld(NULL));
+    IS_ZERO(fwWorld_GetLastMessage(NULL, NULL, 0));
+    REFUSES(fwWorld_SetWind(NULL, NULL));
+    REFUSES(fwInitMaterialPreset(NULL, 0));
+    RUNS(fwMaterialPresetName(0));
+    REFUSES(fwWorld_CreateMaterial(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyMaterial(NULL, material));
+    REFUSES(fwWorld_CreateImage(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyImage(NULL, image));
+    REFUSES(fwWorld_CreateMesh(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyMesh(NULL, mesh));
+    REFUSES(fwWorld_GetMeshInfo(NULL, mesh, NULL));
+    REFUSES(fwCookMesh(NULL, NULL, NULL, NULL));
+    REFUSES(fwWorld_CreateBurnableMesh(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyBurnableMesh(NULL, object));
+    REFUSES(fwWorld_SetTransform(NULL, object, NULL));
+    REFUSES(fwWorld_SetHidden(NULL, object, 1));
+    REFUSES(fwWorld_Ignite(NULL, NULL, NULL));
+    REFUSES(fwWorld_Step(NULL, 0.0f));
+    REFUSES(fwWorld_RenderOffscreen(NULL, NULL));
+    IS_ZERO(fwWorld_PollEvents(NULL, NULL, 0));
+    REFUSES(fwWorld_TagPoint(NULL, object, NULL, 0));
+    REFUSES(fwWorld_GetObjectState(NULL, object, NULL));
+    REFUSES(fwWorld_RequestPoint(NULL, object, NULL, NULL));
+    REFUSES(fwWorld_FetchPoint(NULL, query, NULL));
+    IS_ZERO(fwWorld_GetLights(NULL, NULL, 0));
+    REFUSES(fwWorld_GetStats(NULL, NULL));
+
+    REFUSES(fwQueryVulkanWishes(NULL));
+    REFUSES(fwContext_RegisterTarget(NULL, NULL, NULL));
+    REFUSES(fwContext_UnregisterTarget(NULL, target));
+    REFUSES(fwWorld_RecordOutside(NULL, NULL, NULL));
+    REFUSES(fwWorld_RecordInside(NULL, NULL, target, NULL, NULL));
+    REFUSES(fwWorld_RecordComposite(NULL, NULL, target, NULL, NULL));
+    RUNS((fwContext_NotifyDeviceLost(NULL), 0));
+
+    IS_ZERO(fwDebug_GetPassTimes(NULL, NULL, 0));
+    REFUSES(fwDebug_RequestBurnMap(NULL, object));
+    REFUSES(fwDebug_FetchBurnMap(NULL, object, NULL, 0, NULL, NULL, NULL));
+    REFUSES(fwDebug_SetSwitches(NULL, 0));
+    REFUSES(fwDebug_PushTexels(NULL, object, 0, NULL, 0));
+    REFUSES(fwDebug_GetTexelPositions(NULL, mesh, NULL, NULL, 0, NULL));
+
+    /* Every inline default, in C. */
+    wrong += fwDefaultContextDef().abiVersion == FW_ABI_VERSION ? 0 : 1;
+    wrong += fwDefaultWorldDef().structSize == sizeof(FwWorldDef) ? 0 : 1;
+    wrong += fwDefaultMaterialDef().structSize == sizeof(FwMaterialDef) ? 0 : 1;
+    wrong += fwDefaultImageDef().structSize == sizeof(FwImageDef) ? 0 : 1;
+    wrong += fwDefaultMeshDef().structSize == sizeof(FwMeshDef) ? 0 : 1;
+    wrong += fwDefaultBurnableMeshDef().structSize == sizeof(FwBurnableMeshDef) ? 0 : 1;
+    wrong += fwDefaultIgnitionDef().structSize == sizeof(FwIgnitionDef) ? 0 : 1;
+    wrong += fwDefaultView().structSize == sizeof(FwView) ? 0 : 1;
+    wrong += fwDefaultOffscreenDef().structSize == sizeof(FwOffscreenDef) ? 0 : 1;
+    wrong += fwDefaultVulkanHost().structSize == sizeof(FwVulkanHost) ? 0 : 1;
+    wrong += fwDefaultVulkanTargetDef().structSize == sizeof(FwVulkanTargetDef) ? 0 : 1;
+    wrong += fwDefaultVulkanFrame().structSize == sizeof(FwVulkanFrame) ? 0 : 1;
+    wrong += fwDefaultVulkanComposite().structSize == sizeof(FwVulkanComposite) ? 0 : 1;
+    return wrong;
+}
