@@ -9,40 +9,44 @@
 
 namespace fw::gpu {
 
-// Given by the looks: look_table.cpp, look_texture.cpp, view_params.cpp.
-std::span<const MaterialLook> materialLooks();  // by FwMaterialPreset
-constexpr uint32_t kLookTextureLayers = 3;
-// RGBA8 of one mip of one layer; side = 512 >> mip, pixels.size() = side * side * 4. Deterministic.
-void fillLookTexture(uint32_t layer, uint32_t mip, std::span<std::byte> pixels);
-
 struct ViewInput {
     const FwView* view = nullptr;
-    float viewport[4] = {};      // px: x, y, width, height
-    uint32_t now = 0;            // tick of the state that is shown
+    float viewport[4] = {};  // px: x, y, width, height
+    uint32_t now = 0;        // tick of the state that is shown
     float tickFraction = 0;
-    float wind[3] = {};          // m/s
+    float wind[3] = {};  // m/s
     float up[3] = {0, 1, 0};
     float paceFactor = 1;
     uint32_t lightCount = 0, flameCapacity = 0, seed = 0;
 };
-void fillViewParams(const ViewInput& input, ViewParams& out);
+
+// Given by the layer above, which knows how things look.
+constexpr uint32_t kLookTextureLayers = 3;
+struct LookSources {
+    std::span<const MaterialLook> table;  // by FwMaterialPreset
+    // RGBA8, 512^2, layer by layer, each with its 10 mips, largest first. Copied.
+    std::span<const std::byte> textures;
+    void (*viewParams)(const ViewInput& input, ViewParams& out) = nullptr;
+};
 
 // One object as `surface` draws it. Ranges are in the shared vertex and index planes.
 struct DrawItem {
     uint32_t object = 0;  // slot
     uint32_t firstIndex = 0, indexCount = 0;
     int32_t vertexOffset = 0;
-    uint32_t image = 0;   // as BurnObject::image
-    bool twoSided = false;
+    uint32_t image = 0;  // as BurnObject::image
 };
 
-// Records a draw pass: pipeline, sets and buffers are bound for it as its DrawPass says.
+// Records a draw pass: pipeline and sets 0 and 2 are bound for it as its DrawPass says.
 class DrawRecorder {
-   public:
-    virtual ~DrawRecorder() = default;
-    virtual void drawItem(const DrawItem& item, const void* push) = 0;  // DrawPass::pushBytes
-    // Non-indexed VkDrawIndirectCommand at `offset` bytes of the resource.
-    virtual void drawIndirect(uint32_t resource, uint64_t offset, const void* push) = 0;
+ public:
+    // One indexed draw with its set 1; `push` has DrawPass::pushBytes.
+    virtual void drawItem(const DrawItem& item, const void* push) = 0;
+    // A VkDrawIndirectCommand at `offset` bytes of the resource.
+    virtual void drawIndirect(uint32_t resource, uint64_t offset) = 0;
+
+ protected:
+    ~DrawRecorder() = default;
 };
 
 extern const DrawPass kSurfacePass;

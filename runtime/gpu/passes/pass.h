@@ -17,12 +17,12 @@ enum Resource : uint32_t {
 };
 
 enum class Access : uint8_t {
-    read,          // storage buffer, compute
-    write,         // storage buffer, compute; also read-modify-write and atomics
-    indirect,      // arguments of a dispatch or draw
-    drawRead,      // storage buffer, vertex and fragment shaders
-    vertexInput,   // vertex or index data
-    uniformView,   // the view's uniform block, dynamic offset: FW_BIND_VIEW only
+    read,         // storage buffer, compute
+    write,        // storage buffer, compute; also read-modify-write and atomics
+    indirect,     // arguments of a dispatch or draw
+    drawRead,     // storage buffer, vertex and fragment shaders
+    vertexInput,  // vertex or index data
+    uniformView,  // the view's uniform block, dynamic offset: FW_BIND_VIEW only
     copyRead,
     copyWrite,
 };
@@ -47,8 +47,8 @@ enum class VertexInput : uint8_t {
 enum class Blend : uint8_t { opaque, premultiplied, additive };
 
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1).
-// Set 1 of every draw pass: 0 the object's base colour (sampler2D, white if none), 1 the look
-// textures (sampler2DArray, repeating, with mips). ViewParams: set 0, FW_BIND_VIEW.
+// Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none); 2
+// binding 0 the look textures (sampler2DArray). Never culled: holes show the inside.
 struct DrawPass {
     const char* name;
     const char* vertexShader;
@@ -56,9 +56,8 @@ struct DrawPass {
     std::span<const Use> uses;  // drawRead, uniformView, indirect; set 0
     VertexInput vertexInput;
     Blend blend;
-    bool writeDepth;    // only where the target allows it
-    bool cull;          // back faces, but for two-sided objects
-    uint32_t pushBytes; // vertex and fragment, <= 128
+    bool writeDepth;     // only where the target allows it
+    uint32_t pushBytes;  // vertex and fragment, <= 128
 };
 
 }  // namespace fw::gpu

@@ -5,12 +5,13 @@
 #include "core/log.h"
 #include "flamewright/flamewright_vulkan.h"
 #include "gpu/backend.h"
+#include "gpu/passes/draw.h"
 
 namespace fw::gpu::vk {
 
 // One per FwContext. Errors are core::Error or std::bad_alloc, and leave things unchanged.
 class Context {
-   public:
+ public:
     // `host` null: own instance and device, through libvulkan.so.1. `host` is copied; its device,
     // pipeline cache and allocation callbacks must outlive the context. `log` and `memory`, too.
     // gpuMemoryBudget: bytes, 0: none.
@@ -20,8 +21,8 @@ class Context {
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
-    void prepare();                             // [any] builds the missing pipelines
-    [[nodiscard]] bool ready() const noexcept;  // [any]
+    void prepare();                                           // [any] builds the missing pipelines
+    [[nodiscard]] bool ready() const noexcept;                // [any]
     FwTargetId registerTarget(const FwVulkanTargetDef& def);  // [any]
     void unregisterTarget(FwTargetId id);                     // [any] the host has waited
     void notifyDeviceLost() noexcept;                         // [any]
@@ -36,17 +37,18 @@ class Context {
     struct State;
     [[nodiscard]] State& state() noexcept { return *state_; }
 
-   private:
+ private:
     State* state_ = nullptr;
     std::pmr::memory_resource* memory_ = nullptr;
 };
 
 struct WorldLimits {
-    uint32_t maxLights = 16;   // [0, 64]
-    uint32_t maxFlames = 4096; // [0, 65536]
-    uint32_t seed = 1;         // of everything cosmetic
-    float up[3] = {0, 1, 0};   // world up
-    float paceFactor = 1;      // as FwWorldDef
+    uint32_t maxLights = 16;    // [0, 64]
+    uint32_t maxFlames = 4096;  // [0, 65536]
+    uint32_t seed = 1;          // of everything cosmetic
+    float up[3] = {0, 1, 0};    // world up
+    float paceFactor = 1;       // as FwWorldDef
+    LookSources looks;          // empty: recordInside draws nothing
 };
 
 // One per FwWorld.
@@ -59,7 +61,7 @@ struct WorldLimits {
 //               renderOffscreen(def);                            what the world looks like now
 // cancelOutside() after a begin whose run threw; nothing was recorded then.
 class VkBackend final : public Backend {
-   public:
+ public:
     VkBackend(Context& context, const WorldLimits& limits, std::pmr::memory_resource* memory,
               const core::Log& log);
     ~VkBackend() override;  // the host has waited; never waits itself
@@ -98,7 +100,7 @@ class VkBackend final : public Backend {
 
     struct State;
 
-   private:
+ private:
     State* state_ = nullptr;
     std::pmr::memory_resource* memory_ = nullptr;
 };

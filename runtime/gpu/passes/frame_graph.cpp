@@ -1,0 +1,136 @@
+#include "gpu/passes/frame_graph.h"
+
+#include "gpu/vk/recorder.h"
+#include "shared/published.h"
+
+#include <algorithm>
+
+namespace fw::gpu {
+namespace {
+
+constexpr uint32_t kMaxGroups = 65535;  // of a dispatch at the floor; shaders stride over the rest
+constexpr uint64_t kRowBytes = sizeof(IterationCounters);
+constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
+
+constexpr const ComputePass* kComputePasses[] = {
+    &kResetPass,       &kEventsPass, &kWakePass,      &kSchedulePass,
+    &kArrivalPass,     &kCommitPass, &kPublishedPass, &kReduceClearPass,
+    &kReduceFrontPass, &kReducePass, &kPredictPass,   &kProbePass};
+
+uint32_t groupsOf(uint32_t items) { return std::min((items + 63) / 64, kMaxGroups); }
+
+void zeroRow(vk::FrameRecorder& recorder, uint32_t row) {
+    recorder.fillZero(FW_BIND_COUNTERS, row * kRowBytes, kRowBytes);
+}
+
+}  // namespace
+
+std::span<const ComputePass* const> computePasses() { return kComputePasses; }
+std::span<const DrawPass* const> drawPasses() { return {}; }
+
+size_t passNumber(const ComputePass& pass) {
+    return size_t(std::find(std::begin(kComputePasses), std::end(kComputePasses), &pass) -
+                  std::begin(kComputePasses));
+}
+
+void recordCounters(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t iterations) {
+    if (lists.row != kRowIteration)
+        recorder.copyWithin(FW_BIND_COUNTERS, lists.row * kRowBytes + kListPart,
+                            kRowIteration * kRowBytes + kListPart, kRowBytes - kListPart);
+    recorder.fillZero(FW_BIND_COUNTERS, kRowIteration * kRowBytes, kListPart);
+    if (iterations)
+        recorder.fillZero(FW_BIND_COUNTERS, (kRowIteration + 1) * kRowBytes,
+                          iterations * kRowBytes);
+    lists.row = kRowIteration;
+}
+
+void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles) {
+    StepPush push{};
+    push.object = object;
+    push.publishedRate = kPublishedRate / 32.0f;
+    push.publishedGravity = kPublishedGravity;
+    recorder.fillZero(FW_BIND_OBJECT_COUNTERS, object * sizeof(ObjectCounters),
+                      sizeof(ObjectCounters));
+    recorder.dispatch(kResetPass, &push, std::min(tiles, kMaxGroups));
+}
+
+void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord& step) {
+    const bool dense = (step.switches & kSwitchDense) != 0;
+    const auto pushNow = [&] {
+        StepPush push{};
+        push.now = step.now;
+        push.stepShift = step.stepShift;
+        push.row = lists.row;
+        push.parity = lists.parity;
+        push.burnParity = lists.burnParity;
+        push.predictParity = lists.predictParity;
+        push.switches = step.switches;
+        push.publishedRate = kPublishedRate / 32.0f;
+        push.publishedGravity = kPublishedGravity;
+        return push;
+    };
+    StepPush push = pushNow();
+    if (step.wakeGroups.count) {
+        recorder.copyIn(step.wakeGroups.at, FW_BIND_WAKE_GROUPS, 0,
+                        uint64_t(step.wakeGroups.count) * 8);
+        push.count = step.wakeGroups.count;
+        if (!dense) recorder.dispatch(kWakePass, &push, std::min(push.count, kMaxGroups));
+    }
+    if (step.events.count) {
+        recorder.copyIn(step.events.at, FW_BIND_EVENTS, 0,
+                        uint64_t(step.events.count) * sizeof(TexelEvent));
+        push.count = step.events.count;
+        recorder.dispatch(kEventsPass, &push, (push.count + 63) / 64);
+    }
+    for (uint32_t k = 0; step.iterate && k < 1u << step.stepShift; ++k) {
+        push = pushNow();
+        push.iteration = k;
+        push.count = step.wakeGroups.count;
+        if (dense)
+            recorder.dispatch(kSchedulePass, &push, std::min(std::max(push.count, 1u), kMaxGroups));
+        else
+            recorder.dispatchList(kSchedulePass, &push, lists.row);
+        recorder.dispatchRun(kArrivalPass, &push, lists.row);
+        recorder.dispatchRun(kCommitPass, &push, lists.row);
+        lists.row += 1;
+        lists.parity ^= 1;
+    }
+    for (const PublishedStep& object : step.published) {
+        push = pushNow();
+        push.object = object.object;
+        push.publishedParity = object.parity;
+        recorder.dispatch(kPublishedPass, &push, std::min(object.groups, kMaxGroups));
+    }
+    if (!step.reduce) return;
+    push = pushNow();
+    push.now = step.now + kStepTicks;
+    push.count = step.objectSlots;
+    zeroRow(recorder, kRowBurn + (lists.burnParity ^ 1));
+    recorder.dispatch(kReduceClearPass, &push, std::max(groupsOf(push.count), 1u));
+    recorder.dispatchList(kReduceFrontPass, &push, lists.row);
+    recorder.dispatchList(kReducePass, &push, kRowBurn + lists.burnParity);
+    lists.burnParity ^= 1;
+}
+
+void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick) {
+    StepPush push{};
+    push.now = endTick;
+    push.predictParity = lists.predictParity;
+    zeroRow(recorder, kRowPredict + (lists.predictParity ^ 1));
+    recorder.dispatchList(kPredictPass, &push, kRowPredict + lists.predictParity);
+    lists.predictParity ^= 1;
+}
+
+void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {
+    if (probes.count == 0) return;
+    StepPush push{};
+    push.count = probes.count;
+    recorder.copyIn(probes.at, FW_BIND_PROBES, 0, uint64_t(probes.count) * 8);
+    recorder.dispatch(kProbePass, &push, groupsOf(probes.count));
+}
+
+void recordDrawPass(size_t, DrawRecorder&, std::span<const DrawItem>) {}
+
+void recordLooks(vk::FrameRecorder&, const FrameLists&, uint32_t) {}
+
+}  // namespace fw::gpu

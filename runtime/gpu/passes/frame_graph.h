@@ -1,0 +1,61 @@
+// All passes, and the order in which a frame records them.
+#pragma once
+#include "gpu/passes/draw.h"
+#include "gpu/passes/pass.h"
+
+#include <cstddef>
+#include <span>
+
+namespace fw::gpu {
+
+namespace vk {
+class FrameRecorder;
+}
+
+extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kArrivalPass,
+    kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass, kReducePass, kPredictPass,
+    kProbePass;
+
+// Their place in these tables is their number for pipelines and descriptor sets.
+std::span<const ComputePass* const> computePasses();
+std::span<const DrawPass* const> drawPasses();
+size_t passNumber(const ComputePass& pass);
+
+// Where the lists are that live on between steps and frames.
+struct FrameLists {
+    uint32_t row = kRowIteration;  // counters row of the front list
+    uint32_t parity = 0;           // 0: it is list A
+    uint32_t burnParity = 0;
+    uint32_t predictParity = 0;
+};
+
+struct Staged {  // in the frame's upload buffer
+    uint64_t at = 0;
+    uint32_t count = 0;
+};
+
+struct PublishedStep {  // one object in as-published mode
+    uint32_t object = 0, groups = 0, parity = 0;
+};
+
+struct StepRecord {
+    uint32_t now = 0, stepShift = 0, switches = 0;
+    bool iterate = true;  // false: the front is known to be empty
+    bool reduce = false;
+    Staged events;
+    Staged wakeGroups;  // of latches; with the dense switch: of all objects
+    uint32_t objectSlots = 0;
+    std::span<const PublishedStep> published;
+};
+
+// Makes counters row kRowIteration the front list's and zeroes the `iterations` rows after it.
+void recordCounters(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t iterations);
+void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord& step);
+void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick);
+void recordProbes(vk::FrameRecorder& recorder, const Staged& probes);
+void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles);
+// For the frame's view: lights, flames and their order.
+void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawItem> items);
+void recordLooks(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
+
+}  // namespace fw::gpu

@@ -1,0 +1,18 @@
+// Gathers the texels that somebody asked for.
+#include "gpu/passes/frame_graph.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_OBJECTS, Access::read},
+    {FW_BIND_STATE, Access::read},
+    {FW_BIND_PROBES, Access::read},
+    {FW_BIND_ANSWERS, Access::write},
+};
+
+}  // namespace
+
+const ComputePass kProbePass{"probe", "probe.comp", kUses, sizeof(StepPush)};
+
+}  // namespace fw::gpu

@@ -1,0 +1,107 @@
+#include "gpu/vk/barriers.h"
+
+namespace fw::gpu::vk {
+namespace {
+
+struct Scope {
+    VkPipelineStageFlags stages;
+    VkAccessFlags access;
+    bool write;
+};
+
+Scope scopeOf(Access access) noexcept {
+    switch (access) {
+        case Access::read:
+            return {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT, false};
+        case Access::write:
+            return {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, true};
+        case Access::indirect:
+            return {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
+                    false};
+        case Access::drawRead:
+            return {VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                    VK_ACCESS_SHADER_READ_BIT, false};
+        case Access::vertexInput:
+            return {VK_PIPELINE_STAGE_VERTEX_INPUT_BIT,
+                    VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT, false};
+        case Access::uniformView:
+            return {0, 0, false};  // written by the CPU before the submit
+        case Access::copyRead:
+            return {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT, false};
+        case Access::copyWrite:
+            return {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, true};
+    }
+    return {0, 0, false};
+}
+
+constexpr VkPipelineStageFlags kDrawStages =
+    VK_PIPELINE_STAGE_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
+    VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
+constexpr VkPipelineStageFlags kOurStages =
+    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+constexpr VkAccessFlags kOurWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+
+void record(const Table& table, VkCommandBuffer commands, VkPipelineStageFlags srcStages,
+            VkAccessFlags srcAccess, VkPipelineStageFlags dstStages, VkAccessFlags dstAccess) {
+    auto barrier = typed<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
+    barrier.srcAccessMask = srcAccess;
+    barrier.dstAccessMask = dstAccess;
+    table.CmdPipelineBarrier(commands, srcStages, dstStages, 0, 1, &barrier, 0, nullptr, 0,
+                             nullptr);
+}
+
+}  // namespace
+
+void BarrierTracker::begin(const Table& table, VkCommandBuffer commands) {
+    states_ = {};
+    record(table, commands, kOurStages | kDrawStages, kOurWrites,
+           kOurStages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+           VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT |
+               VK_ACCESS_TRANSFER_READ_BIT | kOurWrites);
+}
+
+void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span<const Use> uses) {
+    VkPipelineStageFlags srcStages = 0, dstStages = 0;
+    VkAccessFlags srcAccess = 0, dstAccess = 0;
+    for (const Use& one : uses) {
+        const Scope scope = scopeOf(one.access);
+        const State& state = states_[one.resource];
+        const bool seen = (state.visibleStages & scope.stages) == scope.stages &&
+                          (state.visibleAccess & scope.access) == scope.access;
+        if (state.writeStages && (scope.write || !seen)) {
+            srcStages |= state.writeStages;
+            srcAccess |= state.writeAccess;
+        }
+        if (scope.write) srcStages |= state.readStages;
+        dstStages |= scope.stages;
+        dstAccess |= scope.access;
+    }
+    if (srcStages) record(table, commands, srcStages, srcAccess, dstStages, dstAccess);
+    for (const Use& one : uses) {
+        const Scope scope = scopeOf(one.access);
+        State& state = states_[one.resource];
+        if (scope.write) {
+            state = {scope.stages, scope.access & kOurWrites, 0, 0, 0};
+        } else {
+            state.readStages |= scope.stages;
+            // What was not visible had its write among this barrier's sources.
+            const bool seen = (state.visibleStages & scope.stages) == scope.stages &&
+                              (state.visibleAccess & scope.access) == scope.access;
+            if (state.writeStages && !seen) {
+                state.visibleStages |= dstStages;
+                state.visibleAccess |= dstAccess;
+            }
+        }
+    }
+}
+
+void BarrierTracker::end(const Table& table, VkCommandBuffer commands) {
+    record(table, commands, kOurStages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, kOurWrites,
+           kOurStages | kDrawStages | VK_PIPELINE_STAGE_HOST_BIT,
+           VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT |
+               VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT |
+               VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_HOST_READ_BIT | kOurWrites);
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,231 @@
+#include "gpu/vk/device.h"
+
+#include "core/error.h"
+
+#include <dlfcn.h>
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr uint32_t kMaxFamilies = 32;
+// The largest number of storage buffers that one of our passes binds.
+constexpr uint32_t kStorageBuffersNeeded = 20;
+
+bool declared(const char* const* names, uint32_t count, const char* wanted) noexcept {
+    for (uint32_t i = 0; i < count; ++i) {
+        if (names[i] && std::strcmp(names[i], wanted) == 0) return true;
+    }
+    return false;
+}
+
+// Larger is better; a software device last.
+int rank(VkPhysicalDeviceType type) noexcept {
+    switch (type) {
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            return 4;
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            return 3;
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            return 2;
+        default:
+            return 1;
+    }
+}
+
+constexpr VkQueueFlags kQueueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+
+}  // namespace
+
+Device::Device(const FwVulkanHost* host, const core::Log& log) : log_(log) {
+    try {
+        if (host)
+            lend(*host);
+        else
+            make();
+        checkDevice();
+    } catch (...) {
+        destroy();
+        throw;
+    }
+    log_.write(FW_LOG_INFO, "Vulkan device \"%s\", %s, Vulkan %u.%u declared, queue family %u.",
+               properties.deviceName, own ? "our own" : "lent", VK_API_VERSION_MAJOR(apiVersion),
+               VK_API_VERSION_MINOR(apiVersion), queueFamily);
+}
+
+Device::~Device() { destroy(); }
+
+void Device::lend(const FwVulkanHost& host) {
+    if (!host.getInstanceProcAddr)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::getInstanceProcAddr is null.");
+    if (!host.instance) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::instance is null.");
+    if (!host.physicalDevice)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::physicalDevice is null.");
+    if (!host.device) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::device is null.");
+    if (host.enabledExtensionCount && !host.enabledExtensions)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanHost::enabledExtensions is null but enabledExtensionCount is %u.",
+                   host.enabledExtensionCount);
+    if (host.enabledInstanceExtensionCount && !host.enabledInstanceExtensions)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanHost::enabledInstanceExtensions is null but "
+                   "enabledInstanceExtensionCount is %u.",
+                   host.enabledInstanceExtensionCount);
+    instance = host.instance;
+    physicalDevice = host.physicalDevice;
+    handle = host.device;
+    queueFamily = host.queueFamilyIndex;
+    apiVersion = host.apiVersion ? host.apiVersion : VK_API_VERSION_1_0;
+    pipelineCache = host.pipelineCache;
+    allocationCallbacks = host.allocationCallbacks;
+    debugUtils = declared(host.enabledInstanceExtensions, host.enabledInstanceExtensionCount,
+                          "VK_EXT_debug_utils");
+    const VkPhysicalDeviceFeatures* features = host.enabledFeatures;
+    for (auto* link = static_cast<const VkBaseInStructure*>(host.enabledFeatureChain);
+         link && !features; link = link->pNext) {
+        if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2)
+            features = &reinterpret_cast<const VkPhysicalDeviceFeatures2*>(link)->features;
+    }
+    independentBlend = features && features->independentBlend;
+    table.loadInstance(host.getInstanceProcAddr, instance);
+    table.loadDevice(instance, handle, debugUtils);
+}
+
+void Device::make() {
+    own = true;
+    library_ = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+    if (!library_)
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                   "No Vulkan loader: libvulkan.so.1 cannot be opened. Lend a device or use "
+                   "FW_BACKEND_CPU.");
+    const auto get =
+        reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library_, "vkGetInstanceProcAddr"));
+    const auto createInstance =
+        get ? reinterpret_cast<PFN_vkCreateInstance>(get(nullptr, "vkCreateInstance")) : nullptr;
+    if (!createInstance)
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE, "libvulkan.so.1 offers no vkCreateInstance.");
+
+    auto application = typed<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
+    application.pEngineName = "Flamewright";
+    application.apiVersion = VK_API_VERSION_1_0;
+    auto instanceInfo = typed<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+    instanceInfo.pApplicationInfo = &application;
+    vk::check(createInstance(&instanceInfo, nullptr, &instance), "vkCreateInstance");
+    table.loadInstance(get, instance);
+
+    std::array<VkPhysicalDevice, 16> devices{};
+    auto count = uint32_t(devices.size());
+    const VkResult listed = table.EnumeratePhysicalDevices(instance, &count, devices.data());
+    if (listed != VK_INCOMPLETE) vk::check(listed, "vkEnumeratePhysicalDevices");
+    int best = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        VkPhysicalDeviceProperties found{};
+        table.GetPhysicalDeviceProperties(devices[i], &found);
+        std::array<VkQueueFamilyProperties, kMaxFamilies> families{};
+        uint32_t familyCount = kMaxFamilies;
+        table.GetPhysicalDeviceQueueFamilyProperties(devices[i], &familyCount, families.data());
+        for (uint32_t family = 0; family < familyCount; ++family) {
+            if ((families[family].queueFlags & kQueueFlags) != kQueueFlags) continue;
+            if (rank(found.deviceType) > best) {
+                best = rank(found.deviceType);
+                physicalDevice = devices[i];
+                queueFamily = family;
+            }
+            break;
+        }
+    }
+    if (!physicalDevice)
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                   "None of the %u Vulkan devices has a queue family with graphics and compute.",
+                   count);
+
+    const float priority = 1.0f;
+    auto queueInfo = typed<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+    queueInfo.queueFamilyIndex = queueFamily;
+    queueInfo.queueCount = 1;
+    queueInfo.pQueuePriorities = &priority;
+    auto deviceInfo = typed<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
+    deviceInfo.queueCreateInfoCount = 1;
+    deviceInfo.pQueueCreateInfos = &queueInfo;
+    vk::check(table.CreateDevice(physicalDevice, &deviceInfo, nullptr, &handle), "vkCreateDevice");
+    table.loadDevice(instance, handle, false);
+    table.GetDeviceQueue(handle, queueFamily, 0, &queue);
+}
+
+void Device::checkDevice() {
+    table.GetPhysicalDeviceProperties(physicalDevice, &properties);
+    table.GetPhysicalDeviceMemoryProperties(physicalDevice, &memoryProperties);
+    std::array<VkQueueFamilyProperties, kMaxFamilies> families{};
+    uint32_t count = kMaxFamilies;
+    table.GetPhysicalDeviceQueueFamilyProperties(physicalDevice, &count, families.data());
+    if (queueFamily >= count)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanHost::queueFamilyIndex is %u; the device has %u queue families.",
+                   queueFamily, count);
+    const VkQueueFamilyProperties& family = families[queueFamily];
+    if ((family.queueFlags & kQueueFlags) != kQueueFlags)
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                   "Queue family %u has flags 0x%x; the recorded work needs graphics and compute "
+                   "(0x%x).",
+                   queueFamily, family.queueFlags, kQueueFlags);
+    timestamps = family.timestampValidBits != 0;
+
+    const VkPhysicalDeviceLimits& limits = properties.limits;
+    const struct {
+        const char* name;
+        uint64_t value, needed;
+    } needs[] = {
+        {"maxPerStageDescriptorStorageBuffers", limits.maxPerStageDescriptorStorageBuffers,
+         kStorageBuffersNeeded},
+        {"maxDescriptorSetStorageBuffers", limits.maxDescriptorSetStorageBuffers,
+         kStorageBuffersNeeded},
+        {"maxPushConstantsSize", limits.maxPushConstantsSize, 128},
+        {"maxBoundDescriptorSets", limits.maxBoundDescriptorSets, 2},
+        {"maxComputeWorkGroupInvocations", limits.maxComputeWorkGroupInvocations, 128},
+        {"maxComputeWorkGroupSize[0]", limits.maxComputeWorkGroupSize[0], 128},
+        {"maxComputeSharedMemorySize", limits.maxComputeSharedMemorySize, 16384},
+        {"maxStorageBufferRange", limits.maxStorageBufferRange, 1u << 27},
+    };
+    for (const auto& need : needs) {
+        if (need.value < need.needed)
+            core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                       "The device \"%s\" has %s %llu; at least %llu is needed.",
+                       properties.deviceName, need.name, (unsigned long long)need.value,
+                       (unsigned long long)need.needed);
+    }
+}
+
+void Device::destroy() noexcept {
+    if (own) {
+        if (handle) table.DestroyDevice(handle, nullptr);
+        if (instance && table.DestroyInstance) table.DestroyInstance(instance, nullptr);
+    }
+    handle = VK_NULL_HANDLE;
+    instance = VK_NULL_HANDLE;
+    // The loader stays open: layers keep destructors of their own for the process's end.
+    library_ = nullptr;
+}
+
+void Device::notifyLost() noexcept {
+    if (!lost_.exchange(true, std::memory_order_acq_rel))
+        log_.write(FW_LOG_ERROR, "The Vulkan device is lost: nothing more is recorded.");
+}
+
+void Device::check(VkResult result, const char* what) {
+    if (result == VK_ERROR_DEVICE_LOST) notifyLost();
+    vk::check(result, what);
+}
+
+void Device::name(VkObjectType type, uint64_t object, const char* text) const noexcept {
+    if (!debugUtils || !table.SetDebugUtilsObjectNameEXT) return;
+    auto info =
+        typed<VkDebugUtilsObjectNameInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
+    info.objectType = type;
+    info.objectHandle = object;
+    info.pObjectName = text;
+    table.SetDebugUtilsObjectNameEXT(handle, &info);
+}
+
+}  // namespace fw::gpu::vk

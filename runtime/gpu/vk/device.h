@@ -1,0 +1,54 @@
+// The device, lent or our own: its handles, limits and what was declared. Not its memory.
+#pragma once
+#include "core/log.h"
+#include "flamewright/flamewright_vulkan.h"
+#include "gpu/vk/table.h"
+
+#include <atomic>
+#include <memory_resource>
+#include <mutex>
+
+namespace fw::gpu::vk {
+
+class Device {
+ public:
+    // Checks a lent device, or makes one where `host` is null. Throws core::Error.
+    Device(const FwVulkanHost* host, const core::Log& log);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    Table table;
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+    VkDevice handle = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;  // own device only
+    uint32_t queueFamily = 0;
+    uint32_t apiVersion = VK_API_VERSION_1_0;
+    bool own = false;
+    bool debugUtils = false;  // labels and names
+    bool timestamps = false;
+    bool independentBlend = false;  // declared
+    VkPhysicalDeviceProperties properties{};
+    VkPhysicalDeviceMemoryProperties memoryProperties{};
+    VkPipelineCache pipelineCache = VK_NULL_HANDLE;              // the host's
+    const VkAllocationCallbacks* allocationCallbacks = nullptr;  // the host's
+
+    [[nodiscard]] bool lost() const noexcept { return lost_.load(std::memory_order_acquire); }
+    void notifyLost() noexcept;
+    // As vk::check, and latches a lost device.
+    void check(VkResult result, const char* what);
+    void name(VkObjectType type, uint64_t object, const char* text) const noexcept;
+
+ private:
+    void lend(const FwVulkanHost& host);
+    void make();
+    void checkDevice();
+    void destroy() noexcept;
+
+    const core::Log& log_;
+    void* library_ = nullptr;  // libvulkan.so.1, own device only
+    std::atomic<bool> lost_{false};
+};
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,73 @@
+// Frames in flight: pacing as the host tells it, and what each frame in flight owns (staging,
+// readback, queries). Decoupled from the host's slots. Never waits.
+#pragma once
+#include "flamewright/flamewright_vulkan.h"
+#include "gpu/vk/memory.h"
+#include "gpu/vk/timers.h"
+
+#include <array>
+
+namespace fw::gpu::vk {
+
+struct ReadbackLayout {  // where the pieces of a frame's readback lie, bytes
+    uint64_t frameIndex = 0;
+    uint32_t endTick = 0;
+    uint32_t objects = 0, answers = 0, lights = 0;  // counts
+    uint32_t firstRow = 0,
+             rows = 0;  // counters rows: the first iteration's, and the list's at the end
+    uint32_t burnParity = 0, predictParity = 0;  // as the frame leaves them
+    uint64_t objectsAt = 0, answersAt = 0, lightsAt = 0, flamesAt = 0, countersAt = 0;
+    struct MapAt {
+        uint32_t object = 0, texels = 0;
+        uint64_t at = 0;
+    };
+    static constexpr uint32_t kMaxMaps = 64;
+    std::array<MapAt, kMaxMaps> maps{};
+    uint32_t mapCount = 0;
+};
+
+struct FrameInFlight {
+    uint64_t frameIndex = 0;  // 0: never used
+    Buffer upload;            // linear, from 0 each frame
+    uint64_t uploadUsed = 0;
+    Buffer readback;
+    bool readbackPending = false;
+    ReadbackLayout layout;
+    uint32_t views = 0;  // used of its part of the view ring
+    FrameTimers timers;
+    std::array<VkFramebuffer, 8> framebuffers{};  // of its composites
+    uint32_t framebufferCount = 0;
+};
+
+class FrameRing {
+ public:
+    static constexpr uint32_t kMaxInFlight = 16;
+    static constexpr uint32_t kMaxViews = 16;  // per frame
+
+    explicit FrameRing(Device& device) : device_(device) {}
+
+    // Checks the host's pacing and learns from it what is complete. `outside`: RecordOutside, whose
+    // index must be new. Throws and then learnt nothing.
+    void pace(const FwVulkanFrame& frame, bool outside);
+    // The frame's slot: the one it has, or one that the GPU is done with. Throws when the host is
+    // more than kMaxInFlight frames ahead.
+    FrameInFlight& slotFor(uint64_t frameIndex);
+    [[nodiscard]] uint64_t completed() const noexcept { return completed_; }
+    [[nodiscard]] uint64_t newest() const noexcept { return newest_; }
+    // The outside part of the newest frame came to nothing: its index may come again.
+    void undoOutside() noexcept { newestOutside_ = previousOutside_; }
+    void completeAll() noexcept { completed_ = newest_; }  // own device, after its wait
+    [[nodiscard]] uint32_t indexOf(const FrameInFlight& slot) const noexcept {
+        return uint32_t(&slot - slots_.data());
+    }
+    void dropFramebuffers(FrameInFlight& slot) noexcept;
+    std::array<FrameInFlight, kMaxInFlight>& slots() noexcept { return slots_; }
+
+ private:
+    Device& device_;
+    std::array<FrameInFlight, kMaxInFlight> slots_{};
+    std::array<uint64_t, 64> hostSlots_{};  // slot pacing: newest frame of each host slot
+    uint64_t completed_ = 0, newest_ = 0, newestOutside_ = 0, previousOutside_ = 0;
+};
+
+}  // namespace fw::gpu::vk

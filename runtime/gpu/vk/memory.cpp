@@ -1,0 +1,267 @@
+#include "gpu/vk/memory.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr VkDeviceSize kBlockSize = VkDeviceSize(16) << 20;
+constexpr const char* kComponentNames[kComponentCount] = {
+    "meshes", "objects", "lists", "predict", "flames", "images", "staging", "readback", "targets"};
+
+VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) noexcept {
+    return (value + alignment - 1) / alignment * alignment;
+}
+
+}  // namespace
+
+DeviceMemory::~DeviceMemory() {
+    for (Block& block : blocks_) {
+        if (block.memory)
+            device_.table.FreeMemory(device_.handle, block.memory, device_.allocationCallbacks);
+    }
+}
+
+uint32_t DeviceMemory::typeFor(uint32_t allowed, MemoryKind kind, const char* name) const {
+    const VkMemoryPropertyFlags host =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    VkMemoryPropertyFlags needed = 0, wished = 0;
+    if (kind == MemoryKind::device) wished = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    if (kind == MemoryKind::upload) needed = host;
+    if (kind == MemoryKind::readback) {
+        needed = host;
+        wished = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    }
+    const VkPhysicalDeviceMemoryProperties& types = device_.memoryProperties;
+    for (const VkMemoryPropertyFlags flags : {needed | wished, needed}) {
+        for (uint32_t type = 0; type < types.memoryTypeCount; ++type) {
+            if ((allowed >> type & 1u) && (types.memoryTypes[type].propertyFlags & flags) == flags)
+                return type;
+        }
+    }
+    core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+               "The device has no memory type for %s: types 0x%x are allowed, none has flags 0x%x.",
+               name, allowed, needed);
+}
+
+bool DeviceMemory::cut(Block& block, const VkMemoryRequirements& needs, Piece& piece) {
+    for (size_t i = 0; i < block.free.size(); ++i) {
+        const Range range = block.free[i];
+        const VkDeviceSize start = alignUp(range.offset, needs.alignment);
+        const VkDeviceSize end = start + needs.size;
+        if (end > range.offset + range.size) continue;
+        block.free.reserve(block.pieces + 3);
+        const Range before{range.offset, start - range.offset};
+        const Range after{end, range.offset + range.size - end};
+        block.free.erase(block.free.begin() + std::ptrdiff_t(i));
+        auto at = block.free.begin() + std::ptrdiff_t(i);
+        if (after.size) at = block.free.insert(at, after);
+        if (before.size) block.free.insert(at, before);
+        piece.offset = start;
+        piece.size = needs.size;
+        ++block.pieces;
+        return true;
+    }
+    return false;
+}
+
+Piece DeviceMemory::allocate(const VkMemoryRequirements& needs, MemoryKind kind, bool image,
+                             const char* name) {
+    const uint32_t type = typeFor(needs.memoryTypeBits, kind, name);
+    Piece piece;
+    for (uint32_t i = 0; i < blocks_.size(); ++i) {
+        Block& block = blocks_[i];
+        if (!block.memory || block.type != type || block.image != image) continue;
+        if (cut(block, needs, piece)) {
+            piece.block = i;
+            return piece;
+        }
+    }
+    VkDeviceSize size = std::max(needs.size, kBlockSize);
+    if (budget_ && used_ + size > budget_) size = needs.size;
+    if (budget_ && used_ + size > budget_)
+        core::fail(FW_ERROR_OUT_OF_MEMORY,
+                   "%s needs %llu bytes of GPU memory; %llu of the budget of %llu are in use.",
+                   name, (unsigned long long)needs.size, (unsigned long long)used_,
+                   (unsigned long long)budget_);
+
+    uint32_t index = 0;
+    while (index < blocks_.size() && blocks_[index].memory) ++index;
+    if (index == blocks_.size()) blocks_.emplace_back(memory_);
+    Block block(memory_);
+    block.free.reserve(16);  // before the device's memory: what follows may not throw
+    auto info = typed<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    info.allocationSize = size;
+    info.memoryTypeIndex = type;
+    const Table& vk = device_.table;
+    VkResult result =
+        vk.AllocateMemory(device_.handle, &info, device_.allocationCallbacks, &block.memory);
+    if (result != VK_SUCCESS && size > needs.size) {
+        info.allocationSize = size = needs.size;
+        result =
+            vk.AllocateMemory(device_.handle, &info, device_.allocationCallbacks, &block.memory);
+    }
+    if (result != VK_SUCCESS) {
+        if (result == VK_ERROR_DEVICE_LOST) device_.check(result, "vkAllocateMemory");
+        core::fail(FW_ERROR_OUT_OF_MEMORY,
+                   "%s needs %llu bytes of GPU memory; the device refuses them (%s), with %llu "
+                   "in use.",
+                   name, (unsigned long long)size, resultName(result), (unsigned long long)used_);
+    }
+    if (kind != MemoryKind::device) {
+        void* mapped = nullptr;
+        result = vk.MapMemory(device_.handle, block.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
+        if (result != VK_SUCCESS) {
+            vk.FreeMemory(device_.handle, block.memory, device_.allocationCallbacks);
+            device_.check(result, "vkMapMemory");
+        }
+        block.mapped = static_cast<std::byte*>(mapped);
+    }
+    block.size = size;
+    block.type = type;
+    block.image = image;
+    block.free.push_back({0, size});
+    blocks_[index] = std::move(block);
+    used_ += size;
+    cut(blocks_[index], needs, piece);
+    piece.block = index;
+    return piece;
+}
+
+void DeviceMemory::release(Piece& piece) noexcept {
+    if (piece.block == 0xFFFFFFFFu) return;
+    Block& block = blocks_[piece.block];
+    auto& free = block.free;
+    auto at = std::lower_bound(
+        free.begin(), free.end(), piece.offset,
+        [](const Range& range, VkDeviceSize offset) { return range.offset < offset; });
+    at = free.insert(at, {piece.offset, piece.size});  // room was reserved by cut
+    if (at + 1 != free.end() && at->offset + at->size == (at + 1)->offset) {
+        at->size += (at + 1)->size;
+        free.erase(at + 1);
+    }
+    if (at != free.begin() && (at - 1)->offset + (at - 1)->size == at->offset) {
+        (at - 1)->size += at->size;
+        at = free.erase(at) - 1;
+    }
+    piece = {};
+    --block.pieces;
+    if (at->size != block.size) return;
+    // Empty. One spare block per kind stays, so that a host that makes and destroys does not churn.
+    for (const Block& other : blocks_) {
+        if (&other == &block || !other.memory || other.type != block.type ||
+            other.image != block.image || other.free.size() != 1 ||
+            other.free[0].size != other.size)
+            continue;
+        device_.table.FreeMemory(device_.handle, block.memory, device_.allocationCallbacks);
+        used_ -= block.size;
+        block.memory = VK_NULL_HANDLE;
+        block.mapped = nullptr;
+        block.size = 0;
+        block.free.clear();
+        return;
+    }
+}
+
+Buffer DeviceMemory::createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, MemoryKind kind,
+                                  Component component, const char* name) {
+    const std::lock_guard lock(mutex_);
+    const Table& vk = device_.table;
+    Buffer buffer;
+    buffer.size = size;
+    buffer.component = component;
+    auto info = typed<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+    info.size = size;
+    info.usage = usage;
+    device_.check(
+        vk.CreateBuffer(device_.handle, &info, device_.allocationCallbacks, &buffer.handle),
+        "vkCreateBuffer");
+    try {
+        VkMemoryRequirements needs{};
+        vk.GetBufferMemoryRequirements(device_.handle, buffer.handle, &needs);
+        buffer.memory = allocate(needs, kind, false, name);
+        const Block& block = blocks_[buffer.memory.block];
+        device_.check(
+            vk.BindBufferMemory(device_.handle, buffer.handle, block.memory, buffer.memory.offset),
+            "vkBindBufferMemory");
+        if (kind != MemoryKind::device) buffer.mapped = block.mapped + buffer.memory.offset;
+    } catch (...) {
+        vk.DestroyBuffer(device_.handle, buffer.handle, device_.allocationCallbacks);
+        release(buffer.memory);
+        throw;
+    }
+    device_.name(VK_OBJECT_TYPE_BUFFER, uint64_t(buffer.handle), name);
+    components_[component] += buffer.memory.size;
+    return buffer;
+}
+
+Image DeviceMemory::createImage(const VkImageCreateInfo& info, VkImageAspectFlags aspect,
+                                Component component, const char* name) {
+    const std::lock_guard lock(mutex_);
+    const Table& vk = device_.table;
+    Image image;
+    image.component = component;
+    device_.check(vk.CreateImage(device_.handle, &info, device_.allocationCallbacks, &image.handle),
+                  "vkCreateImage");
+    try {
+        VkMemoryRequirements needs{};
+        vk.GetImageMemoryRequirements(device_.handle, image.handle, &needs);
+        image.memory = allocate(needs, MemoryKind::device, true, name);
+        device_.check(vk.BindImageMemory(device_.handle, image.handle,
+                                         blocks_[image.memory.block].memory, image.memory.offset),
+                      "vkBindImageMemory");
+        auto view = typed<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
+        view.image = image.handle;
+        view.viewType = info.arrayLayers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+        view.format = info.format;
+        view.subresourceRange = {aspect, 0, info.mipLevels, 0, info.arrayLayers};
+        device_.check(
+            vk.CreateImageView(device_.handle, &view, device_.allocationCallbacks, &image.view),
+            "vkCreateImageView");
+    } catch (...) {
+        vk.DestroyImage(device_.handle, image.handle, device_.allocationCallbacks);
+        release(image.memory);
+        throw;
+    }
+    device_.name(VK_OBJECT_TYPE_IMAGE, uint64_t(image.handle), name);
+    components_[component] += image.memory.size;
+    return image;
+}
+
+void DeviceMemory::destroy(Buffer& buffer) noexcept {
+    if (!buffer.handle) return;
+    const std::lock_guard lock(mutex_);
+    components_[buffer.component] -= buffer.memory.size;
+    device_.table.DestroyBuffer(device_.handle, buffer.handle, device_.allocationCallbacks);
+    release(buffer.memory);
+    buffer = {};
+}
+
+void DeviceMemory::destroy(Image& image) noexcept {
+    if (!image.handle) return;
+    const std::lock_guard lock(mutex_);
+    components_[image.component] -= image.memory.size;
+    device_.table.DestroyImageView(device_.handle, image.view, device_.allocationCallbacks);
+    device_.table.DestroyImage(device_.handle, image.handle, device_.allocationCallbacks);
+    release(image.memory);
+    image = {};
+}
+
+uint64_t DeviceMemory::used() const noexcept {
+    const std::lock_guard lock(mutex_);
+    return used_;
+}
+
+void DeviceMemory::rows(std::pmr::vector<MemoryRow>& out) const {
+    const std::lock_guard lock(mutex_);
+    uint64_t pieces = 0;
+    for (uint32_t i = 0; i < kComponentCount; ++i) {
+        out.push_back({kComponentNames[i], components_[i], components_[i]});
+        pieces += components_[i];
+    }
+    out.push_back({"blocks", pieces, used_});
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,426 @@
+#include "gpu/vk/pipelines.h"
+
+#include "core/error.h"
+#include "gpu/passes/frame_graph.h"
+#include "mesh/burn_domain.h"
+#include "shaders_embedded.h"
+
+#include <array>
+#include <cstddef>
+
+namespace fw::gpu::vk {
+namespace {
+
+bool hasStencil(VkFormat format) noexcept {
+    return format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT ||
+           format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_S8_UINT;
+}
+
+TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
+    const auto bad = [](const char* name, unsigned value, const char* limit) {
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanTargetDef::%s is %u; %s.", name, value,
+                   limit);
+    };
+    TargetKey key;
+    key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
+    if (def.flags & ~uint32_t(FW_TARGET_COMPOSITE)) bad("flags", def.flags, "only bit 0 is known");
+    if (key.composite && def.renderPass)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::renderPass is given with FW_TARGET_COMPOSITE; that pass is "
+                   "ours, it is null there.");
+    if (!key.composite && !def.renderPass)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::renderPass is null without FW_TARGET_COMPOSITE.");
+    if (def.colorAttachmentCount < 1 || def.colorAttachmentCount > 8)
+        bad("colorAttachmentCount", def.colorAttachmentCount, "the range is [1, 8]");
+    if (def.colorAttachmentCount > 1 && !device.independentBlend)
+        bad("colorAttachmentCount", def.colorAttachmentCount,
+            "more than 1 needs the feature independentBlend, which was not declared");
+    if (key.composite && def.colorAttachmentCount != 1)
+        bad("colorAttachmentCount", def.colorAttachmentCount, "a composite target has one");
+    if (def.viewMask) bad("viewMask", def.viewMask, "multiview is not in this version: it is 0");
+    if (def.samples == 0 || def.samples > 16 || (def.samples & (def.samples - 1)))
+        bad("samples", def.samples, "1, 2, 4, 8 or 16 are possible");
+    if (def.encoding > FW_OUTPUT_DISPLAY_UNORM) bad("encoding", def.encoding, "the last one is 2");
+    if (def.depthMode > FW_DEPTH_SAMPLED) bad("depthMode", def.depthMode, "the last one is 3");
+    if (def.reversedDepth > 1) bad("reversedDepth", def.reversedDepth, "it is 0 or 1");
+    if (def.depthMode == FW_DEPTH_SAMPLED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthMode is FW_DEPTH_SAMPLED; this version draws against "
+                   "an attached depth (FW_DEPTH_TEST or FW_DEPTH_TEST_ONLY) or none.");
+    if (def.depthMode == FW_DEPTH_NONE && def.depthFormat != VK_FORMAT_UNDEFINED && key.composite)
+        bad("depthFormat", def.depthFormat, "it is VK_FORMAT_UNDEFINED with FW_DEPTH_NONE");
+    if (def.depthMode != FW_DEPTH_NONE && def.depthFormat == VK_FORMAT_UNDEFINED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthFormat is VK_FORMAT_UNDEFINED but depthMode is %u.",
+                   def.depthMode);
+    VkFormatProperties format{};
+    device.table.GetPhysicalDeviceFormatProperties(device.physicalDevice, def.colorFormat, &format);
+    if (!(format.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT))
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                   "FwVulkanTargetDef::colorFormat is %d; the device cannot blend into it.",
+                   int(def.colorFormat));
+    if (def.depthMode != FW_DEPTH_NONE) {
+        device.table.GetPhysicalDeviceFormatProperties(device.physicalDevice, def.depthFormat,
+                                                       &format);
+        if (!(format.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
+            core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                       "FwVulkanTargetDef::depthFormat is %d; the device has no such depth "
+                       "attachment.",
+                       int(def.depthFormat));
+    }
+    const VkPhysicalDeviceLimits& limits = device.properties.limits;
+    if (!(limits.framebufferColorSampleCounts & def.samples))
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                   "FwVulkanTargetDef::samples is %u; the device's colour sample counts are 0x%x.",
+                   def.samples, limits.framebufferColorSampleCounts);
+    key.color = def.colorFormat;
+    key.depth = def.depthMode == FW_DEPTH_NONE ? VK_FORMAT_UNDEFINED : def.depthFormat;
+    key.subpass = key.composite ? 0 : def.subpass;
+    key.samples = def.samples;
+    key.colorAttachments = def.colorAttachmentCount;
+    key.depthMode = FwDepthMode(def.depthMode);
+    key.reversedDepth = def.reversedDepth != 0;
+    key.encoding = FwOutputEncoding(def.encoding);
+    return key;
+}
+
+}  // namespace
+
+Pipelines::Pipelines(Device& device, std::pmr::memory_resource* memory)
+    : device_(device),
+      memory_(memory),
+      compute_(memory),
+      draw_(memory),
+      targets_("Target", memory) {
+    try {
+        makeLayouts();
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+Pipelines::~Pipelines() { destroy(); }
+
+void Pipelines::destroy() noexcept {
+    const Table& vk = device_.table;
+    for (uint32_t i = 0; i < targets_.slotCount(); ++i) {
+        if (auto* target = targets_.at(i)) destroyTarget(**target);
+    }
+    for (auto* passes : {&compute_, &draw_}) {
+        for (PassObjects& pass : *passes) {
+            vk.DestroyPipeline(device_.handle, pass.pipeline, device_.allocationCallbacks);
+            vk.DestroyPipelineLayout(device_.handle, pass.layout, device_.allocationCallbacks);
+            vk.DestroyDescriptorSetLayout(device_.handle, pass.setLayout,
+                                          device_.allocationCallbacks);
+        }
+        passes->clear();
+    }
+    vk.DestroyDescriptorSetLayout(device_.handle, imageLayout_, device_.allocationCallbacks);
+    vk.DestroySampler(device_.handle, imageSampler_, device_.allocationCallbacks);
+    imageLayout_ = VK_NULL_HANDLE;
+    imageSampler_ = VK_NULL_HANDLE;
+}
+
+void Pipelines::makeLayouts() {
+    const Table& vk = device_.table;
+    auto sampler = typed<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
+    sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
+    sampler.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    sampler.addressModeU = sampler.addressModeV = sampler.addressModeW =
+        VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    sampler.maxLod = VK_LOD_CLAMP_NONE;
+    device_.check(
+        vk.CreateSampler(device_.handle, &sampler, device_.allocationCallbacks, &imageSampler_),
+        "vkCreateSampler");
+
+    VkDescriptorSetLayoutBinding image{};
+    image.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    image.descriptorCount = 1;
+    image.stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_VERTEX_BIT;
+    auto info =
+        typed<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    info.bindingCount = 1;
+    info.pBindings = &image;
+    device_.check(vk.CreateDescriptorSetLayout(device_.handle, &info, device_.allocationCallbacks,
+                                               &imageLayout_),
+                  "vkCreateDescriptorSetLayout");
+
+    const auto make = [&](PassObjects& objects, std::span<const Use> uses, uint32_t pushBytes,
+                          bool draws) {
+        std::array<VkDescriptorSetLayoutBinding, FW_BIND_COUNT> bindings{};
+        uint32_t count = 0;
+        uint64_t seen = 0;
+        const VkShaderStageFlags stages =
+            draws ? VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT
+                  : VK_SHADER_STAGE_COMPUTE_BIT;
+        for (const Use& use : uses) {
+            const bool bound = use.access == Access::read || use.access == Access::write ||
+                               use.access == Access::drawRead || use.access == Access::uniformView;
+            if (!bound || (seen >> use.resource & 1u)) continue;
+            seen |= uint64_t(1) << use.resource;
+            VkDescriptorSetLayoutBinding& binding = bindings[count++];
+            binding.binding = use.resource;
+            binding.descriptorType = use.resource == FW_BIND_VIEW
+                                         ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
+                                         : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            binding.descriptorCount = 1;
+            binding.stageFlags = stages;
+        }
+        auto set = typed<VkDescriptorSetLayoutCreateInfo>(
+            VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+        set.bindingCount = count;
+        set.pBindings = bindings.data();
+        device_.check(vk.CreateDescriptorSetLayout(device_.handle, &set,
+                                                   device_.allocationCallbacks, &objects.setLayout),
+                      "vkCreateDescriptorSetLayout");
+        const VkPushConstantRange range{stages, 0, pushBytes};
+        const VkDescriptorSetLayout sets[3] = {objects.setLayout, imageLayout_, imageLayout_};
+        auto layout =
+            typed<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+        layout.setLayoutCount = draws ? 3 : 1;
+        layout.pSetLayouts = sets;
+        layout.pushConstantRangeCount = pushBytes ? 1 : 0;
+        layout.pPushConstantRanges = &range;
+        device_.check(vk.CreatePipelineLayout(device_.handle, &layout, device_.allocationCallbacks,
+                                              &objects.layout),
+                      "vkCreatePipelineLayout");
+    };
+    compute_.resize(computePasses().size());
+    for (size_t i = 0; i < compute_.size(); ++i)
+        make(compute_[i], computePasses()[i]->uses, computePasses()[i]->pushBytes, false);
+    draw_.resize(drawPasses().size());
+    for (size_t i = 0; i < draw_.size(); ++i)
+        make(draw_[i], drawPasses()[i]->uses, drawPasses()[i]->pushBytes, true);
+}
+
+VkShaderModule Pipelines::module(const char* shader) const {
+    const ShaderCode* code = findShader(shader);
+    if (!code) core::fail(FW_ERROR_INTERNAL, "Shader \"%s\" is not embedded.", shader);
+    auto info = typed<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+    info.codeSize = code->words.size_bytes();
+    info.pCode = code->words.data();
+    VkShaderModule module = VK_NULL_HANDLE;
+    device_.check(device_.table.CreateShaderModule(device_.handle, &info,
+                                                   device_.allocationCallbacks, &module),
+                  "vkCreateShaderModule");
+    return module;
+}
+
+void Pipelines::prepare() {
+    const std::lock_guard lock(mutex_);
+    if (ready()) return;
+    const Table& vk = device_.table;
+    for (size_t i = 0; i < compute_.size(); ++i) {
+        PassObjects& objects = compute_[i];
+        if (objects.pipeline) continue;
+        const ComputePass& pass = *computePasses()[i];
+        auto info =
+            typed<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+        info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+        info.stage.module = module(pass.shader);
+        info.stage.pName = "main";
+        info.layout = objects.layout;
+        const VkResult result =
+            vk.CreateComputePipelines(device_.handle, device_.pipelineCache, 1, &info,
+                                      device_.allocationCallbacks, &objects.pipeline);
+        vk.DestroyShaderModule(device_.handle, info.stage.module, device_.allocationCallbacks);
+        if (result != VK_SUCCESS) objects.pipeline = VK_NULL_HANDLE;
+        device_.check(result, "vkCreateComputePipelines");
+        device_.name(VK_OBJECT_TYPE_PIPELINE, uint64_t(objects.pipeline), pass.name);
+    }
+    ready_.store(true, std::memory_order_release);
+}
+
+VkRenderPass Pipelines::makePass(const TargetKey& key) const {
+    // Layouts of use: the composite's own barriers bring the images there and away.
+    std::array<VkAttachmentDescription, 2> attachments{};
+    attachments[0].format = key.color;
+    attachments[0].samples = VkSampleCountFlagBits(key.samples);
+    attachments[0].loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    attachments[0].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    attachments[0].stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    attachments[0].stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    attachments[0].initialLayout = attachments[0].finalLayout =
+        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    attachments[1] = attachments[0];
+    attachments[1].format = key.depth;
+    attachments[1].initialLayout = attachments[1].finalLayout =
+        VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    if (hasStencil(key.depth)) {
+        attachments[1].stencilLoadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+        attachments[1].stencilStoreOp = VK_ATTACHMENT_STORE_OP_STORE;
+    }
+    const VkAttachmentReference color{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    const VkAttachmentReference depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &color;
+    if (key.depth != VK_FORMAT_UNDEFINED) subpass.pDepthStencilAttachment = &depth;
+    auto info = typed<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
+    info.attachmentCount = key.depth != VK_FORMAT_UNDEFINED ? 2 : 1;
+    info.pAttachments = attachments.data();
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
+    VkRenderPass pass = VK_NULL_HANDLE;
+    device_.check(
+        device_.table.CreateRenderPass(device_.handle, &info, device_.allocationCallbacks, &pass),
+        "vkCreateRenderPass");
+    return pass;
+}
+
+VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass renderPass) const {
+    const DrawPass& pass = *drawPasses()[number];
+    const struct {
+        uint32_t encoding, reversed;
+    } constants{uint32_t(key.encoding), key.reversedDepth ? 1u : 0u};
+    const std::array<VkSpecializationMapEntry, 2> entries{{{0, 0, 4}, {1, 4, 4}}};
+    const VkSpecializationInfo special{2, entries.data(), sizeof constants, &constants};
+
+    std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
+    for (VkPipelineShaderStageCreateInfo& stage : stages) {
+        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        stage.pName = "main";
+        stage.pSpecializationInfo = &special;
+    }
+    stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
+
+    using mesh::RenderVertex;
+    const VkVertexInputBindingDescription binding{0, sizeof(RenderVertex),
+                                                  VK_VERTEX_INPUT_RATE_VERTEX};
+    const std::array<VkVertexInputAttributeDescription, 7> attributes{{
+        {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(RenderVertex, position)},
+        {1, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, normal)},
+        {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, atlasUv)},
+        {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, textureUv)},
+        {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, detail)},
+        {5, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(RenderVertex, tint)},
+        {6, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, material)},
+    }};
+    auto input = typed<VkPipelineVertexInputStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+    if (pass.vertexInput == VertexInput::mesh) {
+        input.vertexBindingDescriptionCount = 1;
+        input.pVertexBindingDescriptions = &binding;
+        input.vertexAttributeDescriptionCount = uint32_t(attributes.size());
+        input.pVertexAttributeDescriptions = attributes.data();
+    }
+    auto assembly = typed<VkPipelineInputAssemblyStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    auto viewport = typed<VkPipelineViewportStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+    viewport.viewportCount = viewport.scissorCount = 1;
+    auto raster = typed<VkPipelineRasterizationStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+    raster.polygonMode = VK_POLYGON_MODE_FILL;
+    raster.cullMode = VK_CULL_MODE_NONE;
+    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    raster.lineWidth = 1;
+    auto multisample = typed<VkPipelineMultisampleStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+    multisample.rasterizationSamples = VkSampleCountFlagBits(key.samples);
+    auto depth = typed<VkPipelineDepthStencilStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+    depth.depthTestEnable = key.depthMode != FW_DEPTH_NONE;
+    depth.depthWriteEnable = key.depthMode == FW_DEPTH_TEST && pass.writeDepth;
+    depth.depthCompareOp =
+        key.reversedDepth ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_LESS_OR_EQUAL;
+    std::array<VkPipelineColorBlendAttachmentState, 8> blends{};
+    blends[0].blendEnable = pass.blend != Blend::opaque;
+    blends[0].srcColorBlendFactor = VK_BLEND_FACTOR_ONE;
+    blends[0].dstColorBlendFactor = pass.blend == Blend::premultiplied
+                                        ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA
+                                        : VK_BLEND_FACTOR_ONE;
+    blends[0].srcAlphaBlendFactor =
+        pass.blend == Blend::additive ? VK_BLEND_FACTOR_ZERO : VK_BLEND_FACTOR_ONE;
+    blends[0].dstAlphaBlendFactor = blends[0].dstColorBlendFactor;
+    blends[0].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                               VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    auto blend = typed<VkPipelineColorBlendStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+    blend.attachmentCount = key.colorAttachments;
+    blend.pAttachments = blends.data();
+    const std::array<VkDynamicState, 2> dynamics{VK_DYNAMIC_STATE_VIEWPORT,
+                                                 VK_DYNAMIC_STATE_SCISSOR};
+    auto dynamic = typed<VkPipelineDynamicStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+    dynamic.dynamicStateCount = uint32_t(dynamics.size());
+    dynamic.pDynamicStates = dynamics.data();
+
+    auto info =
+        typed<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+    info.stageCount = uint32_t(stages.size());
+    info.pStages = stages.data();
+    info.pVertexInputState = &input;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &multisample;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &blend;
+    info.pDynamicState = &dynamic;
+    info.layout = draw_[number].layout;
+    info.renderPass = renderPass;
+    info.subpass = key.subpass;
+    const Table& vk = device_.table;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    stages[0].module = module(pass.vertexShader);
+    try {
+        stages[1].module = module(pass.fragmentShader);
+        result = vk.CreateGraphicsPipelines(device_.handle, device_.pipelineCache, 1, &info,
+                                            device_.allocationCallbacks, &pipeline);
+        vk.DestroyShaderModule(device_.handle, stages[1].module, device_.allocationCallbacks);
+    } catch (...) {
+        vk.DestroyShaderModule(device_.handle, stages[0].module, device_.allocationCallbacks);
+        throw;
+    }
+    vk.DestroyShaderModule(device_.handle, stages[0].module, device_.allocationCallbacks);
+    device_.check(result, "vkCreateGraphicsPipelines");
+    device_.name(VK_OBJECT_TYPE_PIPELINE, uint64_t(pipeline), pass.name);
+    return pipeline;
+}
+
+FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
+    const TargetKey key = checkedKey(device_, def);
+    auto target = core::Owned<Target>::make(memory_, memory_);
+    target->key = key;
+    try {
+        if (key.composite) target->ownPass = makePass(key);
+        const VkRenderPass renderPass = key.composite ? target->ownPass : def.renderPass;
+        target->pipelines.reserve(drawPasses().size());
+        for (size_t pass = 0; pass < drawPasses().size(); ++pass)
+            target->pipelines.push_back(makeDraw(pass, key, renderPass));
+        const std::lock_guard lock(mutex_);
+        return targets_.create(std::move(target));
+    } catch (...) {
+        if (target) destroyTarget(*target);
+        throw;
+    }
+}
+
+void Pipelines::destroyTarget(Target& target) noexcept {
+    for (VkPipeline pipeline : target.pipelines)
+        device_.table.DestroyPipeline(device_.handle, pipeline, device_.allocationCallbacks);
+    target.pipelines.clear();
+    device_.table.DestroyRenderPass(device_.handle, target.ownPass, device_.allocationCallbacks);
+    target.ownPass = VK_NULL_HANDLE;
+}
+
+void Pipelines::unregisterTarget(FwTargetId id) {
+    const std::lock_guard lock(mutex_);
+    destroyTarget(*targets_.get(id));
+    targets_.destroy(id);
+}
+
+const Target* Pipelines::findTarget(FwTargetId id) {
+    const std::lock_guard lock(mutex_);
+    return targets_.get(id).get();
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,76 @@
+// Set layouts, pipeline layouts and pipelines of all passes. Compute pipelines are built by
+// prepare, graphics pipelines per registered target; none while recording. Shared by the worlds of
+// a context.
+#pragma once
+#include "core/handle_pool.h"
+#include "core/owned.h"
+#include "gpu/passes/pass.h"
+#include "gpu/vk/device.h"
+
+#include <atomic>
+#include <span>
+#include <vector>
+
+namespace fw::gpu::vk {
+
+struct PassObjects {
+    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline pipeline = VK_NULL_HANDLE;  // compute
+};
+
+// What of a target decides its pipelines.
+struct TargetKey {
+    VkFormat color = VK_FORMAT_UNDEFINED, depth = VK_FORMAT_UNDEFINED;
+    uint32_t subpass = 0, samples = 1, colorAttachments = 1;
+    FwDepthMode depthMode = FW_DEPTH_NONE;
+    bool reversedDepth = false, composite = false;
+    FwOutputEncoding encoding = FW_OUTPUT_LINEAR;
+};
+
+struct Target {
+    TargetKey key;
+    VkRenderPass ownPass = VK_NULL_HANDLE;   // composite
+    std::pmr::vector<VkPipeline> pipelines;  // by draw pass
+    explicit Target(std::pmr::memory_resource* memory) : pipelines(memory) {}
+};
+
+class Pipelines {
+ public:
+    Pipelines(Device& device, std::pmr::memory_resource* memory);
+    ~Pipelines();
+    Pipelines(const Pipelines&) = delete;
+    Pipelines& operator=(const Pipelines&) = delete;
+
+    void prepare();  // [any]
+    [[nodiscard]] bool ready() const noexcept { return ready_.load(std::memory_order_acquire); }
+
+    FwTargetId registerTarget(const FwVulkanTargetDef& def);  // [any]
+    void unregisterTarget(FwTargetId id);                     // [any]
+    // Throws FW_ERROR_STALE_ID. The pointer is good until the target is unregistered.
+    const Target* findTarget(FwTargetId id);  // [any]
+
+    [[nodiscard]] const PassObjects& compute(size_t pass) const { return compute_[pass]; }
+    [[nodiscard]] const PassObjects& draw(size_t pass) const { return draw_[pass]; }
+    [[nodiscard]] VkDescriptorSetLayout imageSetLayout() const { return imageLayout_; }
+    [[nodiscard]] VkSampler imageSampler() const { return imageSampler_; }
+
+ private:
+    void makeLayouts();
+    VkShaderModule module(const char* shader) const;
+    VkRenderPass makePass(const TargetKey& key) const;
+    VkPipeline makeDraw(size_t pass, const TargetKey& key, VkRenderPass renderPass) const;
+    void destroyTarget(Target& target) noexcept;
+    void destroy() noexcept;
+
+    Device& device_;
+    std::pmr::memory_resource* memory_;
+    std::pmr::vector<PassObjects> compute_, draw_;
+    VkDescriptorSetLayout imageLayout_ = VK_NULL_HANDLE;
+    VkSampler imageSampler_ = VK_NULL_HANDLE;
+    std::mutex mutex_;  // of what follows
+    core::HandlePool<FwTargetId, core::Owned<Target>> targets_;
+    std::atomic<bool> ready_{false};
+};
+
+}  // namespace fw::gpu::vk

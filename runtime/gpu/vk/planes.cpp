@@ -1,0 +1,306 @@
+#include "gpu/vk/planes.h"
+
+#include "core/error.h"
+#include "shared/look.h"
+
+#include <algorithm>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr uint32_t kTileTexels = 64;
+constexpr uint32_t kCounterRows = kRowIteration + 64 * kMaxSubsteps + 1;  // one more to carry over
+constexpr uint32_t kLookRows = 16;
+
+constexpr Plane kPlanes[] = {
+    // resource, space, bytes of a unit, keep, component, name, usage
+    {FW_BIND_OBJECTS, kSpaceObjects, sizeof(BurnObject), true, kComponentObjects, "objects", 0},
+    {FW_BIND_MATERIALS, kSpaceObjects, sizeof(BurnMaterial) * kMaterialsPerObject, true,
+     kComponentObjects, "materials", 0},
+    {FW_BIND_OBJECT_COUNTERS, kSpaceObjects, sizeof(ObjectCounters), true, kComponentObjects,
+     "object counters", 0},
+    {FW_BIND_TEXELS, kSpaceMeshTiles, 8 * kTileTexels, true, kComponentMeshes, "texels", 0},
+    {FW_BIND_NORMALS, kSpaceMeshTiles, 4 * kTileTexels, true, kComponentMeshes, "normals", 0},
+    {FW_BIND_TILES, kSpaceMeshTiles, 32, true, kComponentMeshes, "tiles", 0},
+    {FW_BIND_SLOWNESS, kSpaceSlowness, 2 * kTileTexels, true, kComponentMeshes, "slowness", 0},
+    {FW_BIND_LINKS, kSpaceLinks, 32, true, kComponentMeshes, "links", 0},
+    {FW_BIND_READERS, kSpaceReaders, 4, true, kComponentMeshes, "readers", 0},
+    {kResourceVertices, kSpaceVertices, 48, true, kComponentMeshes, "vertices",
+     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
+    {kResourceIndices, kSpaceIndices, 4, true, kComponentMeshes, "indices",
+     VK_BUFFER_USAGE_INDEX_BUFFER_BIT},
+    {FW_BIND_STATE, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentObjects, "state", 0},
+    {FW_BIND_TILE_STATE, kSpaceObjectTiles, sizeof(TileState), true, kComponentObjects,
+     "tile state", 0},
+    {FW_BIND_LIST_A, kSpaceObjectTiles, 4, true, kComponentLists, "front list A", 0},
+    {FW_BIND_LIST_B, kSpaceObjectTiles, 4, true, kComponentLists, "front list B", 0},
+    {FW_BIND_RUN, kSpaceObjectTiles, 4, false, kComponentLists, "run list", 0},
+    {FW_BIND_SCRATCH, kSpaceObjectTiles, 4 * kTileTexels, false, kComponentLists, "scratch", 0},
+    {FW_BIND_MASKS, kSpaceObjectTiles, 16, false, kComponentLists, "masks", 0},
+    {FW_BIND_BURN_A, kSpaceObjectTiles, 4, true, kComponentLists, "burn list A", 0},
+    {FW_BIND_BURN_B, kSpaceObjectTiles, 4, true, kComponentLists, "burn list B", 0},
+    {FW_BIND_BURN_TILES, kSpaceObjectTiles, sizeof(BurnTile), true, kComponentLists, "burn tiles",
+     0},
+    {FW_BIND_PREDICT, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentPredict, "predict", 0},
+    {FW_BIND_GRADIENT, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentPredict, "gradient", 0},
+    {FW_BIND_PREDICT_LIST_A, kSpaceObjectTiles, 4, true, kComponentPredict, "predict list A", 0},
+    {FW_BIND_PREDICT_LIST_B, kSpaceObjectTiles, 4, true, kComponentPredict, "predict list B", 0},
+    {FW_BIND_COUNTERS, kSpaceIterations, sizeof(IterationCounters), true, kComponentLists,
+     "counters", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_EVENTS, kSpaceEvents, sizeof(TexelEvent), false, kComponentLists, "events", 0},
+    {FW_BIND_WAKE_GROUPS, kSpaceWakeGroups, 8, false, kComponentLists, "wake groups", 0},
+    {FW_BIND_PROBES, kSpaceProbes, 8, false, kComponentLists, "probes", 0},
+    {FW_BIND_ANSWERS, kSpaceProbes, 4, false, kComponentLists, "answers", 0},
+    {FW_BIND_PUBLISHED, kSpacePublished, 3 * 4 * kTileTexels, true, kComponentObjects, "published",
+     0},
+    {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights", 0},
+    {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},
+    {FW_BIND_FLAMES, kSpaceFixed, sizeof(FlameQuad), true, kComponentFlames, "flames", 0},
+    {FW_BIND_DRAW_ARGS, kSpaceFixed, 4, true, kComponentFlames, "draw arguments",
+     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks", 0},
+};
+
+constexpr uint32_t kInitialUnits[kSpaceCount] = {64,    1024,         512,  512,  1024, 1024, 4096,
+                                                 16384, kCounterRows, 4096, 1024, 1024, 1,    1};
+
+}  // namespace
+
+// --- RangeAllocator ---
+
+void RangeAllocator::addCapacity(uint32_t units) {
+    free_.reserve(pieces_ + 3);
+    if (!free_.empty() && free_.back().first + free_.back().units == capacity_)
+        free_.back().units += units;
+    else
+        free_.push_back({capacity_, units});
+    capacity_ += units;
+}
+
+uint32_t RangeAllocator::allocate(uint32_t units) {
+    for (size_t i = 0; i < free_.size(); ++i) {
+        if (free_[i].units < units) continue;
+        free_.reserve(pieces_ + 3);
+        const uint32_t first = free_[i].first;
+        free_[i].first += units;
+        free_[i].units -= units;
+        if (free_[i].units == 0) free_.erase(free_.begin() + std::ptrdiff_t(i));
+        used_ += units;
+        ++pieces_;
+        return first;
+    }
+    return kNoRange;
+}
+
+void RangeAllocator::release(uint32_t first, uint32_t units) noexcept {
+    auto at =
+        std::lower_bound(free_.begin(), free_.end(), first,
+                         [](const Range& range, uint32_t wanted) { return range.first < wanted; });
+    at = free_.insert(at, {first, units});
+    if (at + 1 != free_.end() && at->first + at->units == (at + 1)->first) {
+        at->units += (at + 1)->units;
+        free_.erase(at + 1);
+    }
+    if (at != free_.begin() && (at - 1)->first + (at - 1)->units == at->first) {
+        (at - 1)->units += at->units;
+        free_.erase(at);
+    }
+    used_ -= units;
+    --pieces_;
+}
+
+// --- RetireQueue ---
+
+void RetireQueue::add(const Retired& one) noexcept {
+    queue_.push_back(one);  // room was promised
+    if (promised_) --promised_;
+}
+
+void RetireQueue::push(uint64_t lastFrame, Buffer& buffer) noexcept {
+    if (!buffer.handle) return;
+    Retired one;
+    one.frameIndex = lastFrame;
+    one.buffer = buffer;
+    add(one);
+    buffer = {};
+}
+
+void RetireQueue::push(uint64_t lastFrame, Image& image) noexcept {
+    if (!image.handle) return;
+    Retired one;
+    one.frameIndex = lastFrame;
+    one.image = image;
+    add(one);
+    image = {};
+}
+
+void RetireQueue::push(uint64_t lastFrame, VkDescriptorPool pool) noexcept {
+    if (!pool) return;
+    Retired one;
+    one.frameIndex = lastFrame;
+    one.pool = pool;
+    add(one);
+}
+
+void RetireQueue::collect(uint64_t completedFrame) noexcept {
+    size_t kept = 0;
+    for (Retired& one : queue_) {
+        if (one.frameIndex > completedFrame) {
+            queue_[kept++] = one;
+            continue;
+        }
+        deviceMemory_.destroy(one.buffer);
+        deviceMemory_.destroy(one.image);
+        if (one.pool)
+            device_.table.DestroyDescriptorPool(device_.handle, one.pool,
+                                                device_.allocationCallbacks);
+    }
+    queue_.resize(kept);
+}
+
+// --- Planes ---
+
+Planes::Planes(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
+               const WorldSizes& sizes, std::pmr::memory_resource* memory)
+    : device_(device), deviceMemory_(deviceMemory), retired_(retired), spaces_(memory) {
+    for (uint32_t space = 0; space < kSpaceCount; ++space) spaces_.emplace_back(memory);
+    for (const Plane& plane : kPlanes) {
+        Slot& slot = slots_[plane.resource];
+        slot.plane = plane;
+        if (plane.resource == FW_BIND_LIGHTS) slot.plane.unitBytes *= std::max(1u, sizes.lights);
+        if (plane.resource == FW_BIND_LIGHT_CELLS)
+            slot.plane.unitBytes *= kLightCellHeader + kLightCells * kLightCellWords;
+        if (plane.resource == FW_BIND_FLAMES) slot.plane.unitBytes *= std::max(1u, sizes.flames);
+        if (plane.resource == FW_BIND_DRAW_ARGS)
+            slot.plane.unitBytes *= kFlameOrder + std::max(1u, sizes.flames);
+        if (plane.resource == FW_BIND_LOOKS) slot.plane.unitBytes *= kLookRows;
+    }
+    try {
+        for (uint32_t space = 0; space < kSpaceCount; ++space)
+            grow(Space(space), kInitialUnits[space], 0);
+    } catch (...) {
+        for (Slot& slot : slots_) deviceMemory_.destroy(slot.now);
+        throw;
+    }
+}
+
+Planes::~Planes() {
+    for (Slot& slot : slots_) {
+        deviceMemory_.destroy(slot.now);
+        deviceMemory_.destroy(slot.before);
+    }
+}
+
+uint32_t Planes::limit(Space space) const noexcept {
+    uint64_t units = 0xFFFFFFFEu;
+    for (const Slot& slot : slots_) {
+        if (slot.plane.unitBytes && slot.plane.space == space)
+            units = std::min(units, uint64_t(device_.properties.limits.maxStorageBufferRange) /
+                                        slot.plane.unitBytes);
+    }
+    return uint32_t(units);
+}
+
+void Planes::grow(Space space, uint32_t units, uint64_t lastFrame) {
+    std::array<Buffer, kResourceCount> fresh{};
+    size_t planes = 0;
+    try {
+        for (uint32_t i = 0; i < kResourceCount; ++i) {
+            const Plane& plane = slots_[i].plane;
+            if (!plane.unitBytes || plane.space != space) continue;
+            fresh[i] = deviceMemory_.createBuffer(
+                uint64_t(plane.unitBytes) * units,
+                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                    VK_BUFFER_USAGE_TRANSFER_DST_BIT | plane.usage,
+                MemoryKind::device, plane.component, plane.name);
+            ++planes;
+        }
+        retired_.promise(planes);
+        spaces_[space].addCapacity(units - spaces_[space].capacity());
+    } catch (...) {
+        for (Buffer& buffer : fresh) deviceMemory_.destroy(buffer);
+        throw;
+    }
+    for (uint32_t i = 0; i < kResourceCount; ++i) {
+        if (!fresh[i].handle) continue;
+        Slot& slot = slots_[i];
+        if (!slot.recorded)
+            deviceMemory_.destroy(slot.now);  // no frame ever saw it
+        else if (slot.plane.keep)
+            std::swap(slot.before, slot.now);
+        else
+            retired_.push(lastFrame, slot.now);
+        slot.now = fresh[i];
+        slot.recorded = false;
+        if (slot.before.handle) movesPending_ = true;
+    }
+    ++generation_;
+}
+
+uint32_t Planes::allocate(Space space, uint32_t units, uint64_t lastFrame) {
+    const uint32_t first = spaces_[space].allocate(units);
+    if (first != RangeAllocator::kNoRange) return first;
+    const uint32_t capacity = spaces_[space].capacity();
+    const uint32_t most = limit(space);
+    if (units > most || capacity > most - units)
+        core::fail(FW_ERROR_OUT_OF_MEMORY,
+                   "%u more units do not fit: %u are in use and the device's "
+                   "maxStorageBufferRange of %u bytes holds %u.",
+                   units, spaces_[space].used(), device_.properties.limits.maxStorageBufferRange,
+                   most);
+    const uint32_t least = capacity + units;
+    const auto doubled = uint32_t(std::min<uint64_t>(most, uint64_t(capacity) * 2));
+    if (doubled > least) {
+        try {
+            grow(space, doubled, lastFrame);
+            return spaces_[space].allocate(units);
+        } catch (const core::Error& error) {
+            if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
+        }
+    }
+    grow(space, least, lastFrame);
+    return spaces_[space].allocate(units);
+}
+
+void Planes::release(Space space, uint32_t first, uint32_t units) noexcept {
+    spaces_[space].release(first, units);
+}
+
+void Planes::atLeast(Space space, uint32_t units, uint64_t lastFrame) {
+    const uint32_t capacity = spaces_[space].capacity();
+    if (units <= capacity) return;
+    const uint32_t most = limit(space);
+    if (units > most)
+        core::fail(FW_ERROR_OUT_OF_MEMORY,
+                   "%u units in one frame do not fit: the device's maxStorageBufferRange of %u "
+                   "bytes holds %u.",
+                   units, device_.properties.limits.maxStorageBufferRange, most);
+    grow(space, uint32_t(std::min<uint64_t>(most, std::max<uint64_t>(units, capacity * 2ull))),
+         lastFrame);
+}
+
+bool Planes::recordMoves(const Table& table, VkCommandBuffer commands, uint64_t frameIndex) {
+    bool moved = false;
+    for (Slot& slot : slots_) {
+        slot.recorded = slot.now.handle != VK_NULL_HANDLE;
+        if (!slot.before.handle) continue;
+        const VkBufferCopy all{0, 0, slot.before.size};
+        table.CmdCopyBuffer(commands, slot.before.handle, slot.now.handle, 1, &all);
+        retired_.push(frameIndex, slot.before);  // room was reserved by grow
+        moved = true;
+    }
+    movesPending_ = false;
+    return moved;
+}
+
+void Planes::rows(std::pmr::vector<MemoryRow>& out) const {
+    for (const Slot& slot : slots_) {
+        if (!slot.plane.unitBytes) continue;
+        const RangeAllocator& space = spaces_[slot.plane.space];
+        const uint64_t used =
+            space.used() ? uint64_t(space.used()) * slot.plane.unitBytes : slot.now.size;
+        out.push_back({slot.plane.name, used, slot.now.size});
+    }
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,77 @@
+#include "gpu/vk/recorder.h"
+
+#include "gpu/passes/frame_graph.h"
+
+#include <cstddef>
+
+namespace fw::gpu::vk {
+
+void FrameRecorder::bind(const ComputePass& pass, const void* push) {
+    const Table& vk = t_.device->table;
+    const size_t number = passNumber(pass);
+    const PassObjects& objects = t_.pipelines->compute(number);
+    t_.barriers->use(vk, t_.commands, pass.uses);
+    t_.slot->timers.begin(*t_.device, t_.commands, pass.name);
+    bool view = false;
+    for (const Use& use : pass.uses) view |= use.access == Access::uniformView;
+    const VkDescriptorSet set = t_.sets->compute(number);
+    vk.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
+    vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,
+                             &set, view ? 1 : 0, &t_.viewOffset);
+    if (pass.pushBytes)
+        vk.CmdPushConstants(t_.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                            pass.pushBytes, push);
+}
+
+void FrameRecorder::dispatch(const ComputePass& pass, const void* push, uint32_t groups) {
+    bind(pass, push);
+    t_.device->table.CmdDispatch(t_.commands, groups, 1, 1);
+    t_.slot->timers.end(*t_.device, t_.commands);
+}
+
+void FrameRecorder::dispatchAt(const ComputePass& pass, const void* push, uint64_t at) {
+    bind(pass, push);
+    t_.device->table.CmdDispatchIndirect(t_.commands, t_.planes->buffer(FW_BIND_COUNTERS).handle,
+                                         at);
+    t_.slot->timers.end(*t_.device, t_.commands);
+}
+
+void FrameRecorder::dispatchRun(const ComputePass& pass, const void* push, uint32_t row) {
+    dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, runX));
+}
+
+void FrameRecorder::dispatchList(const ComputePass& pass, const void* push, uint32_t row) {
+    dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, listX));
+}
+
+void FrameRecorder::copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes) {
+    const Use uses[] = {{resource, Access::copyWrite}};
+    t_.barriers->use(t_.device->table, t_.commands, uses);
+    const VkBufferCopy region{uploadAt, at, bytes};
+    t_.device->table.CmdCopyBuffer(t_.commands, t_.slot->upload.handle,
+                                   t_.planes->buffer(resource).handle, 1, &region);
+}
+
+void FrameRecorder::copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes) {
+    const Use uses[] = {{resource, Access::copyRead}, {resource, Access::copyWrite}};
+    t_.barriers->use(t_.device->table, t_.commands, uses);
+    const VkBuffer buffer = t_.planes->buffer(resource).handle;
+    const VkBufferCopy region{from, at, bytes};
+    t_.device->table.CmdCopyBuffer(t_.commands, buffer, buffer, 1, &region);
+}
+
+void FrameRecorder::copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes) {
+    const Use uses[] = {{resource, Access::copyRead}};
+    t_.barriers->use(t_.device->table, t_.commands, uses);
+    const VkBufferCopy region{from, readbackAt, bytes};
+    t_.device->table.CmdCopyBuffer(t_.commands, t_.planes->buffer(resource).handle,
+                                   t_.slot->readback.handle, 1, &region);
+}
+
+void FrameRecorder::fillZero(uint32_t resource, uint64_t at, uint64_t bytes) {
+    const Use uses[] = {{resource, Access::copyWrite}};
+    t_.barriers->use(t_.device->table, t_.commands, uses);
+    t_.device->table.CmdFillBuffer(t_.commands, t_.planes->buffer(resource).handle, at, bytes, 0);
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,42 @@
+// One command buffer being recorded: dispatches, copies and draws by resource and pass, with their
+// barriers, timers and labels. Knows no order: that is the frame graph's.
+#pragma once
+#include "gpu/vk/barriers.h"
+#include "gpu/vk/descriptors.h"
+#include "gpu/vk/frame_ring.h"
+
+namespace fw::gpu::vk {
+
+struct RecordTarget {  // what a recorder works on; all of it outlives the recorder
+    const Device* device = nullptr;
+    const Pipelines* pipelines = nullptr;
+    const PassSets* sets = nullptr;
+    const Planes* planes = nullptr;
+    BarrierTracker* barriers = nullptr;
+    FrameInFlight* slot = nullptr;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    uint32_t viewOffset = 0;  // of the passes that use the view
+};
+
+class FrameRecorder {
+ public:
+    explicit FrameRecorder(const RecordTarget& target) : t_(target) {}
+
+    void dispatch(const ComputePass& pass, const void* push, uint32_t groups);
+    // Groups from a row of the counters: its run part or its list part.
+    void dispatchRun(const ComputePass& pass, const void* push, uint32_t row);
+    void dispatchList(const ComputePass& pass, const void* push, uint32_t row);
+
+    void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);
+    void copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes);
+    void copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes);
+    void fillZero(uint32_t resource, uint64_t at, uint64_t bytes);
+
+ private:
+    void bind(const ComputePass& pass, const void* push);
+    void dispatchAt(const ComputePass& pass, const void* push, uint64_t at);
+
+    RecordTarget t_;
+};
+
+}  // namespace fw::gpu::vk

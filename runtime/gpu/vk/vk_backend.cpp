@@ -1,0 +1,537 @@
+#include "gpu/vk/vk_backend.h"
+
+#include "core/error.h"
+#include "gpu/vk/world_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr uint32_t kTileTexels = 64;
+
+uint32_t mipsOf(uint32_t width, uint32_t height) noexcept {
+    uint32_t mips = 1;
+    while (std::max(width, height) >> mips) ++mips;
+    return mips;
+}
+
+// Box-filtered RGBA8 sRGB mips in linear light, appended one behind the other.
+struct SrgbTable {
+    float toLinear[256];
+    SrgbTable() {
+        for (int i = 0; i < 256; ++i) {
+            const float s = float(i) / 255.0f;
+            toLinear[i] = s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+        }
+    }
+    static std::byte fromLinear(float value) {
+        const float s =
+            value <= 0.0031308f ? value * 12.92f : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+        return std::byte(std::clamp(int(s * 255.0f + 0.5f), 0, 255));
+    }
+};
+
+void halveSrgb(const SrgbTable& table, const std::byte* from, uint32_t width, uint32_t height,
+               std::byte* to) {
+    const uint32_t w = std::max(width / 2, 1u), h = std::max(height / 2, 1u);
+    for (uint32_t y = 0; y < h; ++y) {
+        for (uint32_t x = 0; x < w; ++x) {
+            const uint32_t x0 = std::min(x * 2, width - 1), x1 = std::min(x * 2 + 1, width - 1);
+            const uint32_t y0 = std::min(y * 2, height - 1), y1 = std::min(y * 2 + 1, height - 1);
+            const std::byte* taps[4] = {
+                from + (size_t(y0) * width + x0) * 4, from + (size_t(y0) * width + x1) * 4,
+                from + (size_t(y1) * width + x0) * 4, from + (size_t(y1) * width + x1) * 4};
+            std::byte* out = to + (size_t(y) * w + x) * 4;
+            for (int c = 0; c < 3; ++c) {
+                float sum = 0;
+                for (const std::byte* tap : taps) sum += table.toLinear[uint8_t(tap[c])];
+                out[c] = SrgbTable::fromLinear(sum * 0.25f);
+            }
+            uint32_t alpha = 2;
+            for (const std::byte* tap : taps) alpha += uint8_t(tap[3]);
+            out[3] = std::byte(alpha / 4);
+        }
+    }
+}
+
+template <class T>
+T& slotOf(std::pmr::vector<T>& table, uint32_t slot) {
+    if (slot >= table.size()) table.resize(slot + 1);
+    return table[slot];
+}
+
+}  // namespace
+
+// --- Context ---
+
+Context::Context(const FwVulkanHost* host, uint64_t gpuMemoryBudget,
+                 std::pmr::memory_resource* memory, const core::Log& log)
+    : memory_(memory) {
+    state_ = std::pmr::polymorphic_allocator<>(memory).new_object<State>(host, gpuMemoryBudget,
+                                                                         memory, log);
+}
+
+Context::~Context() { std::pmr::polymorphic_allocator<>(memory_).delete_object(state_); }
+
+void Context::prepare() { state_->pipelines.prepare(); }
+bool Context::ready() const noexcept { return state_->pipelines.ready(); }
+FwTargetId Context::registerTarget(const FwVulkanTargetDef& def) {
+    return state_->pipelines.registerTarget(def);
+}
+void Context::unregisterTarget(FwTargetId id) { state_->pipelines.unregisterTarget(id); }
+void Context::notifyDeviceLost() noexcept { state_->device.notifyLost(); }
+bool Context::deviceLost() const noexcept { return state_->device.lost(); }
+bool Context::ownDevice() const noexcept { return state_->device.own; }
+
+void Context::fillInfo(FwContextInfo& info) const noexcept {
+    const Device& device = state_->device;
+    info.apiVersion = device.apiVersion;
+    info.ownDevice = device.own ? 1 : 0;
+    info.gpuTimers = device.timestamps ? 1 : 0;
+    info.debugLabels = device.debugUtils ? 1 : 0;
+    info.gpuMemoryUsed = state_->deviceMemory.used();
+    info.gpuMemoryBudget = state_->deviceMemory.budget();
+    std::strncpy(info.deviceName, device.properties.deviceName, sizeof info.deviceName - 1);
+    info.deviceName[sizeof info.deviceName - 1] = 0;
+}
+
+void Context::wishes(FwVulkanWishes& wishes) noexcept {
+    static constexpr const char* kInstanceExtensions[] = {"VK_EXT_debug_utils"};
+    wishes.minimumApiVersion = VK_API_VERSION_1_0;
+    wishes.extensionCount = 0;
+    wishes.extensions = nullptr;
+    wishes.instanceExtensionCount = 1;
+    wishes.instanceExtensions = kInstanceExtensions;
+    wishes.features = {};
+    wishes.features.independentBlend = VK_TRUE;
+    wishes.queueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+}
+
+// --- VkBackend::State ---
+
+VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLimits,
+                        std::pmr::memory_resource* pmr, const core::Log& logTo)
+    : context(contextState),
+      device(contextState.device),
+      deviceMemory(contextState.deviceMemory),
+      limits(worldLimits),
+      memory(pmr),
+      log(logTo),
+      retired(device, deviceMemory, pmr),
+      ring(device),
+      planes(device, deviceMemory, retired,
+             {std::max(worldLimits.maxLights, 1u),
+              std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity)},
+             pmr),
+      sets(device, contextState.pipelines, retired, pmr),
+      meshes(pmr),
+      objects(pmr),
+      images(pmr),
+      uploads(pmr),
+      quarantine(pmr),
+      steps(pmr),
+      published(pmr),
+      drawItems(pmr),
+      givenObjects(pmr),
+      givenAnswers(pmr),
+      givenTexels(pmr),
+      givenMaps(pmr),
+      givenLights(pmr),
+      times(pmr) {
+    const auto alignment = uint32_t(device.properties.limits.minUniformBufferOffsetAlignment);
+    viewStride = uint32_t((sizeof(ViewParams) + alignment - 1) / alignment * alignment);
+    views = deviceMemory.createBuffer(
+        uint64_t(viewStride) * FrameRing::kMaxInFlight * FrameRing::kMaxViews,
+        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::upload, kComponentStaging, "views");
+    try {
+        std::byte whitePixel[4];
+        std::fill(std::begin(whitePixel), std::end(whitePixel), std::byte(255));
+        addImage(white, 1, 1, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, whitePixel, "white");
+        if (!limits.looks.textures.empty())
+            addImage(lookTextures, 512, 512, kLookTextureLayers, 10, VK_FORMAT_R8G8B8A8_UNORM,
+                     limits.looks.textures, "look textures");
+        if (!limits.looks.table.empty()) {
+            PendingUpload& upload = stage(limits.looks.table.size_bytes(), "looks");
+            std::memcpy(upload.staging.mapped, limits.looks.table.data(),
+                        limits.looks.table.size_bytes());
+            upload.regions[upload.regionCount++] = {
+                FW_BIND_LOOKS, 0, 0,
+                std::min<uint64_t>(limits.looks.table.size_bytes(),
+                                   planes.buffer(FW_BIND_LOOKS).size)};
+        }
+    } catch (...) {
+        for (PendingUpload& upload : uploads) deviceMemory.destroy(upload.staging);
+        for (ImageEntry* entry : {&white, &lookTextures}) {
+            deviceMemory.destroy(entry->image);
+            device.table.DestroyDescriptorPool(device.handle, entry->set.pool,
+                                               device.allocationCallbacks);
+        }
+        deviceMemory.destroy(views);
+        throw;
+    }
+    limits.looks.table = {};
+    limits.looks.textures = {};
+}
+
+VkBackend::State::~State() {
+    const Table& vk = device.table;
+    const VkAllocationCallbacks* callbacks = device.allocationCallbacks;
+    for (PendingUpload& upload : uploads) deviceMemory.destroy(upload.staging);
+    const auto drop = [&](ImageEntry& entry) {
+        deviceMemory.destroy(entry.image);
+        vk.DestroyDescriptorPool(device.handle, entry.set.pool, callbacks);
+    };
+    for (ImageEntry& entry : images) drop(entry);
+    drop(white);
+    drop(lookTextures);
+    for (FrameInFlight& slot : ring.slots()) {
+        deviceMemory.destroy(slot.upload);
+        deviceMemory.destroy(slot.readback);
+        slot.timers.destroy(device);
+        ring.dropFramebuffers(slot);
+    }
+    deviceMemory.destroy(views);
+    dropOffscreen();
+    vk.DestroyRenderPass(device.handle, own.clearPass, callbacks);
+    vk.DestroyFence(device.handle, own.fence, callbacks);
+    vk.DestroyCommandPool(device.handle, own.pool, callbacks);
+}
+
+void VkBackend::State::failIfLost() const {
+    if (device.lost())
+        core::fail(FW_ERROR_DEVICE_LOST, "The Vulkan device is lost; nothing more is recorded.");
+}
+
+PendingUpload& VkBackend::State::stage(uint64_t bytes, const char* name) {
+    uploads.reserve(uploads.size() + 1);
+    retired.promise(1);
+    PendingUpload upload;
+    upload.staging = deviceMemory.createBuffer(bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                               MemoryKind::upload, kComponentStaging, name);
+    uploads.push_back(upload);
+    return uploads.back();
+}
+
+void VkBackend::State::addImage(ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
+                                uint32_t mips, VkFormat format, std::span<const std::byte> pixels,
+                                const char* name) {
+    retired.promise(2);
+    auto info = typed<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent = {width, height, 1};
+    info.mipLevels = mips;
+    info.arrayLayers = layers;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    ImageEntry fresh;
+    fresh.image = deviceMemory.createImage(info, VK_IMAGE_ASPECT_COLOR_BIT, kComponentImages, name);
+    try {
+        fresh.set = makeImageSet(device, context.pipelines, fresh.image.view);
+        PendingUpload& upload = stage(pixels.size(), name);
+        std::memcpy(upload.staging.mapped, pixels.data(), pixels.size());
+        upload.image = fresh.image.handle;
+        upload.width = width;
+        upload.height = height;
+        upload.mips = mips;
+        upload.layers = layers;
+    } catch (...) {
+        device.table.DestroyDescriptorPool(device.handle, fresh.set.pool,
+                                           device.allocationCallbacks);
+        deviceMemory.destroy(fresh.image);
+        throw;
+    }
+    fresh.live = true;
+    entry = fresh;
+}
+
+void VkBackend::State::freeQuarantine() noexcept {
+    size_t kept = 0;
+    for (const Quarantined& one : quarantine) {
+        const bool passed = (frontWalks > one.frontWalks || frontEmpty) &&
+                            (burnWalks > one.burnWalks || burnEmpty) &&
+                            (predictWalks > one.predictWalks || predictEmpty);
+        if (passed)
+            planes.release(kSpaceObjectTiles, one.tiles.first, one.tiles.units);
+        else
+            quarantine[kept++] = one;
+    }
+    quarantine.resize(kept);
+}
+
+// --- VkBackend ---
+
+VkBackend::VkBackend(Context& context, const WorldLimits& limits, std::pmr::memory_resource* memory,
+                     const core::Log& log)
+    : memory_(memory) {
+    state_ = std::pmr::polymorphic_allocator<>(memory).new_object<State>(context.state(), limits,
+                                                                         memory, log);
+}
+
+VkBackend::~VkBackend() { std::pmr::polymorphic_allocator<>(memory_).delete_object(state_); }
+
+void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
+    State& s = *state_;
+    const uint64_t last = s.ring.newest();
+    MeshEntry& entry = slotOf(s.meshes, slot);
+    MeshEntry fresh;
+    fresh.live = true;
+    fresh.width = domain.width;
+    fresh.height = domain.height;
+    fresh.tilesX = domain.tilesX;
+    fresh.tiles = domain.tileCount();
+    fresh.vertices = uint32_t(domain.vertices.size());
+    fresh.indices = uint32_t(domain.indices.size());
+    const size_t uploadsBefore = s.uploads.size();
+    const struct {
+        RangeOf* range;
+        Space space;
+        uint32_t units;
+    } wanted[] = {
+        {&fresh.meshTiles, kSpaceMeshTiles, fresh.tiles},
+        {&fresh.slowness, kSpaceSlowness, fresh.tiles},
+        {&fresh.links, kSpaceLinks, std::max(1u, uint32_t(domain.links.size() / 8))},
+        {&fresh.readers, kSpaceReaders, std::max(1u, uint32_t(domain.readers.size()))},
+        {&fresh.vertexRange, kSpaceVertices, std::max(1u, fresh.vertices)},
+        {&fresh.indexRange, kSpaceIndices, std::max(1u, fresh.indices)},
+    };
+    try {
+        for (const auto& one : wanted) {
+            one.range->first = s.planes.allocate(one.space, one.units, last);
+            one.range->units = one.units;
+        }
+        const struct {
+            uint32_t resource;
+            const void* data;
+            uint64_t bytes, at;
+        } parts[] = {
+            {FW_BIND_TEXELS, domain.texels.data(), domain.texels.size() * 8,
+             uint64_t(fresh.meshTiles.first) * kTileTexels * 8},
+            {FW_BIND_NORMALS, domain.normals.data(), domain.normals.size() * 4,
+             uint64_t(fresh.meshTiles.first) * kTileTexels * 4},
+            {FW_BIND_TILES, domain.tiles.data(), domain.tiles.size() * 32,
+             uint64_t(fresh.meshTiles.first) * 32},
+            {FW_BIND_SLOWNESS, domain.slowness.data(), domain.slowness.size() * 2,
+             uint64_t(fresh.slowness.first) * kTileTexels * 2},
+            {FW_BIND_LINKS, domain.links.data(), domain.links.size() * 4,
+             uint64_t(fresh.links.first) * 32},
+            {FW_BIND_READERS, domain.readers.data(), domain.readers.size() * 4,
+             uint64_t(fresh.readers.first) * 4},
+            {kResourceVertices, domain.vertices.data(), domain.vertices.size() * 48,
+             uint64_t(fresh.vertexRange.first) * 48},
+            {kResourceIndices, domain.indices.data(), domain.indices.size() * 4,
+             uint64_t(fresh.indexRange.first) * 4},
+        };
+        static_assert(std::size(parts) <= PendingUpload::kMaxRegions);
+        uint64_t bytes = 0;
+        for (const auto& part : parts) bytes += part.bytes;
+        PendingUpload& upload = s.stage(bytes, "mesh staging");
+        uint64_t from = 0;
+        for (const auto& part : parts) {
+            if (part.bytes == 0) continue;
+            std::memcpy(upload.staging.mapped + from, part.data, part.bytes);
+            upload.regions[upload.regionCount++] = {part.resource, from, part.at, part.bytes};
+            from += part.bytes;
+        }
+    } catch (...) {
+        for (const auto& one : wanted) {
+            if (one.range->units) s.planes.release(one.space, one.range->first, one.range->units);
+        }
+        while (s.uploads.size() > uploadsBefore) {
+            s.deviceMemory.destroy(s.uploads.back().staging);
+            s.uploads.pop_back();
+        }
+        throw;
+    }
+    entry = fresh;
+}
+
+void VkBackend::destroyMesh(uint32_t slot) noexcept {
+    State& s = *state_;
+    MeshEntry& entry = s.meshes[slot];
+    if (!entry.live) return;
+    // Ranges are reused at once: all our work is in one queue's order, behind barriers.
+    s.planes.release(kSpaceMeshTiles, entry.meshTiles.first, entry.meshTiles.units);
+    s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
+    s.planes.release(kSpaceLinks, entry.links.first, entry.links.units);
+    s.planes.release(kSpaceReaders, entry.readers.first, entry.readers.units);
+    s.planes.release(kSpaceVertices, entry.vertexRange.first, entry.vertexRange.units);
+    s.planes.release(kSpaceIndices, entry.indexRange.first, entry.indexRange.units);
+    entry = {};
+}
+
+void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
+    State& s = *state_;
+    const uint64_t last = s.ring.newest();
+    const MeshEntry& mesh = s.meshes[init.mesh];
+    const size_t uploadsBefore = s.uploads.size();
+    ObjectEntry fresh;
+    fresh.live = true;
+    fresh.mesh = init.mesh;
+    fresh.record = init.record;
+    try {
+        s.quarantine.reserve(s.quarantine.size() + s.liveObjects + 1);
+        s.drawItems.reserve(s.liveObjects + 1);
+        s.published.reserve(s.liveObjects + 1);
+        s.givenObjects.reserve(std::max<size_t>(slot + 1, s.objects.size()));
+        (void)slotOf(s.objects, slot);
+        s.planes.atLeast(kSpaceObjects, slot + 1, last);
+        s.freeQuarantine();
+        fresh.tiles = {s.planes.allocate(kSpaceObjectTiles, mesh.tiles, last), mesh.tiles};
+        if (!init.slowness.empty()) {
+            fresh.slowness = {s.planes.allocate(kSpaceSlowness, mesh.tiles, last), mesh.tiles};
+            PendingUpload& upload = s.stage(init.slowness.size_bytes(), "slowness staging");
+            std::memcpy(upload.staging.mapped, init.slowness.data(), init.slowness.size_bytes());
+            upload.regions[upload.regionCount++] = {
+                FW_BIND_SLOWNESS, 0, uint64_t(fresh.slowness.first) * kTileTexels * 2,
+                init.slowness.size_bytes()};
+        }
+        if (init.record.flags & kObjectPublished)
+            fresh.published = {s.planes.allocate(kSpacePublished, mesh.tiles, last), mesh.tiles};
+    } catch (...) {
+        if (fresh.tiles.units)
+            s.planes.release(kSpaceObjectTiles, fresh.tiles.first, fresh.tiles.units);
+        if (fresh.slowness.units)
+            s.planes.release(kSpaceSlowness, fresh.slowness.first, fresh.slowness.units);
+        while (s.uploads.size() > uploadsBefore) {
+            s.deviceMemory.destroy(s.uploads.back().staging);
+            s.uploads.pop_back();
+        }
+        throw;
+    }
+    BurnObject& r = fresh.record;
+    r.texelBase = mesh.meshTiles.first * kTileTexels;
+    r.stateBase = fresh.tiles.first * kTileTexels;
+    r.slowBase =
+        (fresh.slowness.units ? fresh.slowness.first : mesh.slowness.first) * (kTileTexels / 2);
+    r.tileBase = mesh.meshTiles.first;
+    r.worldTileBase = fresh.tiles.first;
+    r.linkBase = mesh.links.first;
+    r.readerBase = mesh.readers.first;
+    r.publishedBase = fresh.published.first * kTileTexels * 3;
+    r.width = mesh.width;
+    r.height = mesh.height;
+    r.tilesX = mesh.tilesX;
+    r.tileCount = mesh.tiles;
+    r.flags |= kObjectLive;
+    for (size_t i = 0; i < kMaterialsPerObject && i < init.materials.size(); ++i)
+        fresh.materials[i] = init.materials[i];
+    fresh.recordDirty = fresh.materialsDirty = fresh.resetDue = true;
+    s.objects[slot] = fresh;
+    s.recordsDirty = true;
+    ++s.liveObjects;
+}
+
+void VkBackend::destroyObject(uint32_t slot) noexcept {
+    State& s = *state_;
+    ObjectEntry& entry = s.objects[slot];
+    if (!entry.live) return;
+    const bool met = !entry.resetDue;  // by a recorded frame, so lists may name its tiles
+    if (met)
+        s.quarantine.push_back({entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks});
+    else
+        s.planes.release(kSpaceObjectTiles, entry.tiles.first, entry.tiles.units);
+    if (entry.slowness.units)
+        s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
+    if (entry.published.units)
+        s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
+    entry = {};
+    entry.recordDirty = true;  // a record without kObjectLive: list entries fall out
+    s.recordsDirty = true;
+    --s.liveObjects;
+    std::erase_if(s.drawItems, [slot](const DrawItem& item) { return item.object == slot; });
+}
+
+void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint, uint32_t flags) {
+    State& s = *state_;
+    ObjectEntry& entry = s.objects[slot];
+    entry.record.worldRow0 = rows[0];
+    entry.record.worldRow1 = rows[1];
+    entry.record.worldRow2 = rows[2];
+    entry.record.tint = tint;
+    entry.record.flags =
+        (flags & ~kObjectPublished) | (entry.record.flags & kObjectPublished) | kObjectLive;
+    entry.recordDirty = true;
+    s.recordsDirty = true;
+}
+
+void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
+                            std::span<const std::byte> pixels) {
+    State& s = *state_;
+    const uint32_t most = s.device.properties.limits.maxImageDimension2D;
+    if (width > most || height > most)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The image is %u x %u pixels; the device's maxImageDimension2D is %u.", width,
+                   height, most);
+    ImageEntry& entry = slotOf(s.images, slot);
+    const uint32_t mips = mipsOf(width, height);
+    size_t bytes = 0;
+    for (uint32_t mip = 0; mip < mips; ++mip)
+        bytes += size_t(std::max(width >> mip, 1u)) * std::max(height >> mip, 1u) * 4;
+    std::pmr::vector<std::byte> all(bytes, s.memory);
+    std::memcpy(all.data(), pixels.data(), size_t(width) * height * 4);
+    const SrgbTable table;
+    size_t at = 0;
+    for (uint32_t mip = 0; mip + 1 < mips; ++mip) {
+        const uint32_t w = std::max(width >> mip, 1u), h = std::max(height >> mip, 1u);
+        halveSrgb(table, all.data() + at, w, h, all.data() + at + size_t(w) * h * 4);
+        at += size_t(w) * h * 4;
+    }
+    s.addImage(entry, width, height, 1, mips, VK_FORMAT_R8G8B8A8_SRGB, all, "base colour");
+}
+
+void VkBackend::destroyImage(uint32_t slot) noexcept {
+    State& s = *state_;
+    ImageEntry& entry = s.images[slot];
+    if (!entry.live) return;
+    for (size_t i = 0; i < s.uploads.size(); ++i) {
+        if (s.uploads[i].image != entry.image.handle) continue;
+        s.deviceMemory.destroy(s.uploads[i].staging);
+        s.uploads.erase(s.uploads.begin() + std::ptrdiff_t(i));
+        break;
+    }
+    s.retired.push(s.ring.newest(), entry.image);
+    s.retired.push(s.ring.newest(), entry.set.pool);
+    entry = {};
+}
+
+bool VkBackend::beginOutside(const FwVulkanFrame& frame) {
+    State& s = *state_;
+    s.failIfLost();
+    if (!s.context.pipelines.ready()) return false;
+    s.ring.pace(frame, true);
+    s.retired.collect(s.ring.completed());
+    s.openFrame(frame.commandBuffer, frame.frameIndex);
+    return true;
+}
+
+void VkBackend::run(const FramePlan& plan) { state_->run(plan); }
+void VkBackend::endOutside(const FwView& view) { state_->closeFrame(&view); }
+void VkBackend::cancelOutside() noexcept {
+    if (!state_->open.open) return;
+    state_->open = {};
+    state_->ring.undoOutside();
+}
+
+void VkBackend::beginOwn() { state_->beginOwn(); }
+void VkBackend::endOwn() {
+    state_->closeFrame(nullptr);
+    state_->submitOwn();
+}
+
+void VkBackend::renderOffscreen(const FwOffscreenDef& def) { state_->renderOffscreen(def); }
+
+const Readback* VkBackend::nextReadback() { return state_->nextReadback(); }
+std::span<const PassTime> VkBackend::passTimes() { return state_->times; }
+
+void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) {
+    state_->deviceMemory.rows(out);
+    state_->planes.rows(out);
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,214 @@
+// Drawing: inside the host's pass, or as a composite over the host's images. Draws only; what they
+// read was made ready by the outside part.
+#include "core/error.h"
+#include "gpu/vk/world_state.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace fw::gpu::vk {
+namespace {
+
+// One pass bound, then its draws.
+class PassRecorder : public DrawRecorder {
+ public:
+    PassRecorder(VkBackend::State& state, VkCommandBuffer commands, size_t pass)
+        : s_(state),
+          commands_(commands),
+          pass_(*drawPasses()[pass]),
+          layout_(state.context.pipelines.draw(pass).layout) {}
+
+    void drawItem(const DrawItem& item, const void* push) override {
+        const Table& vk = s_.device.table;
+        VkDescriptorSet set = s_.white.set.set;
+        if (item.image && item.image - 1 < s_.images.size() && s_.images[item.image - 1].live)
+            set = s_.images[item.image - 1].set.set;
+        if (set != bound_) {
+            vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1,
+                                     &set, 0, nullptr);
+            bound_ = set;
+        }
+        if (pass_.pushBytes)
+            vk.CmdPushConstants(commands_, layout_,
+                                VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                                pass_.pushBytes, push);
+        vk.CmdDrawIndexed(commands_, item.indexCount, 1, item.firstIndex, item.vertexOffset, 0);
+    }
+    void drawIndirect(uint32_t resource, uint64_t offset) override {
+        s_.device.table.CmdDrawIndirect(commands_, s_.planes.buffer(resource).handle, offset, 1, 0);
+    }
+
+ private:
+    VkBackend::State& s_;
+    VkCommandBuffer commands_;
+    const DrawPass& pass_;
+    VkPipelineLayout layout_;
+    VkDescriptorSet bound_ = VK_NULL_HANDLE;
+};
+
+VkImageMemoryBarrier imageBarrier(const FwVulkanImage& image, bool depth, VkFormat format) {
+    auto barrier = typed<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image.image;
+    VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+    if (depth) {
+        aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+        if (format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT ||
+            format == VK_FORMAT_D32_SFLOAT_S8_UINT)
+            aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
+    }
+    barrier.subresourceRange = {aspect, 0, 1, 0, 1};
+    return barrier;
+}
+
+constexpr VkAccessFlags kColorAccess =
+    VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+constexpr VkAccessFlags kDepthAccess =
+    VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+constexpr VkPipelineStageFlags kDepthStages =
+    VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+
+}  // namespace
+
+void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
+                                   const Target& target, const FwView& view,
+                                   const VkViewport& viewport) {
+    if (!drawVertices || !lookTextures.live || !limits.looks.viewParams) return;
+    const Table& vk = device.table;
+    const uint32_t viewOffset = pushView(slot, view, viewport);
+    vk.CmdSetViewport(commands, 0, 1, &viewport);
+    VkRect2D scissor{};
+    const float left = std::max(viewport.x, 0.0f), top = std::max(viewport.y, 0.0f);
+    scissor.offset = {int32_t(left), int32_t(top)};
+    scissor.extent = {uint32_t(std::max(viewport.x + viewport.width - left, 0.0f)),
+                      uint32_t(std::max(viewport.y + viewport.height - top, 0.0f))};
+    vk.CmdSetScissor(commands, 0, 1, &scissor);
+    for (size_t i = 0; i < drawPasses().size(); ++i) {
+        const DrawPass& pass = *drawPasses()[i];
+        const bool surface = pass.vertexInput == VertexInput::mesh;
+        if (surface && drawItems.empty()) continue;
+        if (!surface && burnEmpty) continue;  // no flames anywhere
+        slot.timers.begin(device, commands, pass.name);
+        const VkPipelineLayout layout = context.pipelines.draw(i).layout;
+        vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[i]);
+        bool usesView = false;
+        for (const Use& use : pass.uses) usesView |= use.access == Access::uniformView;
+        const VkDescriptorSet set = sets.draw(i);
+        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
+                                 usesView ? 1 : 0, &viewOffset);
+        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
+                                 &lookTextures.set.set, 0, nullptr);
+        if (surface) {
+            const VkDeviceSize zero = 0;
+            vk.CmdBindVertexBuffers(commands, 0, 1, &drawVertices, &zero);
+            vk.CmdBindIndexBuffer(commands, drawIndices, 0, VK_INDEX_TYPE_UINT32);
+        }
+        PassRecorder recorder(*this, commands, i);
+        recordDrawPass(i, recorder, drawItems);
+        slot.timers.end(device, commands);
+    }
+}
+
+bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, const FwView& view,
+                             const VkViewport& viewport) {
+    State& s = *state_;
+    s.failIfLost();
+    if (!s.context.pipelines.ready()) return false;
+    const Target& target = *s.context.pipelines.findTarget(targetId);
+    if (target.key.composite)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The target was registered with FW_TARGET_COMPOSITE; it is for "
+                   "fwWorld_RecordComposite.");
+    s.ring.pace(frame, false);
+    s.recordDraws(s.ring.slotFor(frame.frameIndex), frame.commandBuffer, target, view, viewport);
+    return true;
+}
+
+bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId, const FwView& view,
+                                const FwVulkanComposite& images) {
+    State& s = *state_;
+    s.failIfLost();
+    if (!s.context.pipelines.ready()) return false;
+    const Target& target = *s.context.pipelines.findTarget(targetId);
+    if (!target.key.composite)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The target was registered without FW_TARGET_COMPOSITE; it is for "
+                   "fwWorld_RecordInside.");
+    const bool hasDepth = target.key.depthMode != FW_DEPTH_NONE;
+    if (images.color.layoutBefore == VK_IMAGE_LAYOUT_UNDEFINED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanComposite::color.layoutBefore is VK_IMAGE_LAYOUT_UNDEFINED; the "
+                   "image would lose what the host drew.");
+    if (hasDepth && (!images.depth.image || !images.depth.view))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanComposite::depth is null but the target has depth mode %u.",
+                   uint32_t(target.key.depthMode));
+    if (images.width == 0 || images.height == 0) return true;
+    s.ring.pace(frame, false);
+    FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
+    const VkFramebuffer framebuffer = s.framebufferFor(slot, target, images);
+
+    const Table& vk = s.device.table;
+    const VkCommandBuffer commands = frame.commandBuffer;
+    std::array<VkImageMemoryBarrier, 2> in{}, out{};
+    const uint32_t count = hasDepth ? 2 : 1;
+    VkPipelineStageFlags before = images.color.stageBefore, after = images.color.stageAfter;
+    VkPipelineStageFlags ours = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    for (uint32_t i = 0; i < count; ++i) {
+        const FwVulkanImage& image = i ? images.depth : images.color;
+        const VkAccessFlags access = i ? kDepthAccess : kColorAccess;
+        const VkImageLayout layout = i ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+                                       : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        in[i] = out[i] = imageBarrier(image, i == 1, target.key.depth);
+        in[i].srcAccessMask = image.accessBefore;
+        in[i].dstAccessMask = access;
+        in[i].oldLayout = image.layoutBefore;
+        in[i].newLayout = layout;
+        out[i].srcAccessMask = access;
+        out[i].dstAccessMask = image.accessAfter;
+        out[i].oldLayout = layout;
+        out[i].newLayout = image.layoutAfter;
+        if (i) {
+            before |= image.stageBefore;
+            after |= image.stageAfter;
+            ours |= kDepthStages;
+        }
+    }
+    if (!before) before = VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT;
+    if (!after) after = VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT;
+    vk.CmdPipelineBarrier(commands, before, ours, 0, 0, nullptr, 0, nullptr, count, in.data());
+    auto begin = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
+    begin.renderPass = target.ownPass;
+    begin.framebuffer = framebuffer;
+    begin.renderArea.extent = {images.width, images.height};
+    vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    const VkViewport viewport{0, 0, float(images.width), float(images.height), 0, 1};
+    s.recordDraws(slot, commands, target, view, viewport);
+    vk.CmdEndRenderPass(commands);
+    vk.CmdPipelineBarrier(commands, ours, after, 0, 0, nullptr, 0, nullptr, count, out.data());
+    return true;
+}
+
+VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target& target,
+                                               const FwVulkanComposite& composite) {
+    std::array<VkImageView, 2> attachments{composite.color.view, composite.depth.view};
+    auto info = typed<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
+    info.renderPass = target.ownPass;
+    info.attachmentCount = target.key.depthMode != FW_DEPTH_NONE ? 2 : 1;
+    info.pAttachments = attachments.data();
+    info.width = composite.width;
+    info.height = composite.height;
+    info.layers = 1;
+    if (slot.framebufferCount == slot.framebuffers.size())
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has more than %zu composites.",
+                   slot.framebuffers.size());
+    VkFramebuffer framebuffer = VK_NULL_HANDLE;
+    device.check(device.table.CreateFramebuffer(device.handle, &info, device.allocationCallbacks,
+                                                &framebuffer),
+                 "vkCreateFramebuffer");
+    slot.framebuffers[slot.framebufferCount++] = framebuffer;
+    return framebuffer;
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,97 @@
+// Readbacks, oldest first, once the host says that their frame is done. Never waits.
+#include "gpu/vk/world_state.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace fw::gpu::vk {
+
+void VkBackend::State::pushPending(const PendingReadback& one) noexcept {
+    const auto size = uint32_t(pending.size());
+    if (pendingCount == size) {  // nobody fetched them: the oldest goes
+        pendingFirst = (pendingFirst + 1) % size;
+        --pendingCount;
+    }
+    pending[(pendingFirst + pendingCount) % size] = one;
+    ++pendingCount;
+}
+
+const Readback* VkBackend::State::nextReadback() {
+    while (pendingCount) {
+        const PendingReadback one = pending[pendingFirst];
+        if (one.ringFrame > ring.completed()) return nullptr;
+        FrameInFlight* slot = one.slot >= 0 ? &ring.slots()[size_t(one.slot)] : nullptr;
+        const bool stolen = slot && (slot->frameIndex != one.ringFrame || !slot->readbackPending);
+        given.answers = {};
+        given.burnMaps = {};
+        if (slot && !stolen) {
+            // Room first: it may throw, and then the readback is still there.
+            const ReadbackLayout& layout = slot->layout;
+            uint64_t texels = 0;
+            for (uint32_t i = 0; i < layout.mapCount; ++i) texels += layout.maps[i].texels;
+            givenObjects.resize(layout.objects);
+            givenAnswers.resize(layout.answers);
+            givenTexels.resize(texels);
+            givenMaps.resize(layout.mapCount);
+            givenLights.reserve(layout.lights);
+            const std::byte* from = slot->readback.mapped;
+            std::memcpy(givenObjects.data(), from + layout.objectsAt,
+                        layout.objects * sizeof(ObjectCounters));
+            std::memcpy(givenAnswers.data(), from + layout.answersAt, uint64_t(layout.answers) * 4);
+            uint64_t at = 0;
+            for (uint32_t i = 0; i < layout.mapCount; ++i) {
+                const ReadbackLayout::MapAt& map = layout.maps[i];
+                std::memcpy(givenTexels.data() + at, from + map.at, uint64_t(map.texels) * 4);
+                givenMaps[i] = {map.object, {givenTexels.data() + at, map.texels}};
+                at += map.texels;
+            }
+            const auto row = [&](uint32_t number) {
+                IterationCounters counters;
+                std::memcpy(&counters,
+                            from + layout.countersAt + number * sizeof(IterationCounters),
+                            sizeof counters);
+                return counters;
+            };
+            given.runTiles = 0;
+            for (uint32_t i = layout.firstRow; i < layout.rows; ++i)
+                given.runTiles += row(i).runCount;
+            given.frontTiles = row(layout.rows).listCount;
+            given.burningTiles = row(kRowBurn + layout.burnParity).runCount;
+            givenLights.clear();
+            for (uint32_t i = 0; i < layout.lights; ++i) {
+                BurnLight light;
+                std::memcpy(&light, from + layout.lightsAt + i * sizeof light, sizeof light);
+                if (light.power > 0) givenLights.push_back(light);
+            }
+            uint32_t arguments[4];
+            std::memcpy(arguments, from + layout.flamesAt, sizeof arguments);
+            given.flames = arguments[1];  // instances of VkDrawIndirectCommand
+            const bool spreading =
+                std::any_of(objects.begin(), objects.end(),
+                            [](const ObjectEntry& object) { return object.publishedTouched; });
+            if (one.ringFrame >= lastStimulus && !spreading) {
+                frontEmpty = given.frontTiles == 0;
+                burnEmpty = frontEmpty && row(kRowBurn + layout.burnParity).listCount == 0;
+                predictEmpty = frontEmpty && row(kRowPredict + layout.predictParity).listCount == 0;
+            }
+            given.answers = givenAnswers;
+            given.burnMaps = givenMaps;
+            slot->timers.read(device, one.frameIndex, times);
+            slot->readbackPending = false;
+        } else {
+            given.runTiles = 0;
+        }
+        pendingFirst = (pendingFirst + 1) % uint32_t(pending.size());
+        --pendingCount;
+        if (stolen) continue;
+        given.frameIndex = one.frameIndex;
+        given.endTick = one.endTick;
+        given.objects = givenObjects;
+        given.lights = givenLights;
+        freeQuarantine();
+        return &given;
+    }
+    return nullptr;
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,185 @@
+// What a VkBackend holds: the parts, the tables of meshes, objects and images, and what waits to be
+// uploaded with the next frame. Internal to the backend's .cpp files.
+#pragma once
+#include "gpu/passes/draw.h"
+#include "gpu/passes/frame_graph.h"
+#include "gpu/vk/recorder.h"
+#include "gpu/vk/vk_backend.h"
+
+#include <optional>
+
+namespace fw::gpu::vk {
+
+struct Context::State {
+    State(const FwVulkanHost* host, uint64_t budget, std::pmr::memory_resource* memory,
+          const core::Log& logTo)
+        : device(host, logTo), deviceMemory(device, budget, memory), pipelines(device, memory) {}
+    Device device;
+    DeviceMemory deviceMemory;
+    Pipelines pipelines;
+};
+
+struct RangeOf {  // of a space
+    uint32_t first = 0, units = 0;
+};
+
+struct MeshEntry {
+    bool live = false;
+    uint32_t width = 0, height = 0, tilesX = 0, tiles = 0, vertices = 0, indices = 0;
+    RangeOf meshTiles, slowness, links, readers, vertexRange, indexRange;
+};
+
+struct ObjectEntry {
+    bool live = false;
+    bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
+    bool resetDue = false;
+    bool drawable = false;  // a recorded frame holds it
+    uint32_t mesh = 0;
+    BurnObject record{};
+    BurnMaterial materials[kMaterialsPerObject]{};
+    RangeOf tiles, slowness, published;
+    bool publishedTouched = false;  // as-published mode: some event reached it
+    uint32_t publishedParity = 0;
+};
+
+struct ImageEntry {
+    Image image;
+    ImageSet set;
+    bool live = false;
+};
+
+// Bytes for the planes or an image, in a staging buffer of their own until the next frame.
+struct PendingUpload {
+    Buffer staging;
+    struct Region {
+        uint32_t resource = 0;
+        uint64_t from = 0, at = 0, bytes = 0;
+    };
+    static constexpr uint32_t kMaxRegions = 8;
+    Region regions[kMaxRegions];
+    uint32_t regionCount = 0;
+    VkImage image = VK_NULL_HANDLE;  // instead of regions
+    uint32_t width = 0, height = 0, mips = 0, layers = 0;
+};
+
+// Tiles of a destroyed object: list entries may still name them. Free once every list was walked.
+struct Quarantined {
+    RangeOf tiles;
+    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0;  // counts that must be passed
+};
+
+struct PendingReadback {  // in the order of frames
+    uint64_t ringFrame = 0;
+    int32_t slot = -1;  // -1: nothing was recorded, the last figures hold
+    uint64_t frameIndex = 0;
+    uint32_t endTick = 0;
+};
+
+struct OwnDevice {  // command pool and offscreen images of the own-device mode
+    VkCommandPool pool = VK_NULL_HANDLE;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+    Image color, depth;
+    Buffer pixels;
+    VkRenderPass clearPass = VK_NULL_HANDLE;
+    VkFramebuffer framebuffer = VK_NULL_HANDLE;
+    FwTargetId target{};
+    VkFormat depthFormat = VK_FORMAT_UNDEFINED;
+    uint32_t width = 0, height = 0;
+};
+
+struct VkBackend::State {
+    State(Context::State& contextState, const WorldLimits& limits, std::pmr::memory_resource* pmr,
+          const core::Log& logTo);
+    ~State();
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    Context::State& context;
+    Device& device;
+    DeviceMemory& deviceMemory;
+    WorldLimits limits;
+    std::pmr::memory_resource* memory;
+    const core::Log& log;
+
+    RetireQueue retired;
+    FrameRing ring;
+    Planes planes;
+    PassSets sets;
+    BarrierTracker barriers;
+    Buffer views;             // view ring: frame in flight, then view
+    uint32_t viewStride = 0;  // bytes
+
+    std::pmr::vector<MeshEntry> meshes;
+    std::pmr::vector<ObjectEntry> objects;
+    std::pmr::vector<ImageEntry> images;
+    ImageEntry white, lookTextures;
+    std::pmr::vector<PendingUpload> uploads;
+    std::pmr::vector<Quarantined> quarantine;
+    uint32_t liveObjects = 0;
+    bool initialized = false;  // the planes that must start as zero do
+    VkBuffer drawVertices = VK_NULL_HANDLE, drawIndices = VK_NULL_HANDLE;  // as last recorded
+    bool recordsDirty = false;  // some object has dirty records or a reset due
+
+    // Lists on the device, as the frames recorded so far leave them.
+    FrameLists lists;
+    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0;
+    uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
+    bool frontEmpty = true, burnEmpty = true, predictEmpty = true;  // known from a readback
+    uint32_t shownTick = 0;  // tick of the state that draws show
+    float wind[3] = {};
+    float tickFraction = 0;
+
+    // The frame that is open.
+    struct Open {
+        bool open = false, ran = false, recording = false, readback = false;
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        uint64_t ringFrame = 0, planFrame = 0;
+        uint32_t endTick = 0;
+        FrameInFlight* slot = nullptr;
+    } open;
+    std::pmr::vector<StepRecord> steps;         // scratch of run
+    std::pmr::vector<PublishedStep> published;  // scratch of run
+    std::pmr::vector<DrawItem> drawItems;       // objects that draws show
+
+    // Readbacks, oldest first.
+    std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
+    uint32_t pendingFirst = 0, pendingCount = 0;
+    Readback given;
+    std::pmr::vector<ObjectCounters> givenObjects;
+    std::pmr::vector<uint32_t> givenAnswers, givenTexels;
+    std::pmr::vector<BurnMap> givenMaps;
+    std::pmr::vector<BurnLight> givenLights;
+    std::pmr::vector<PassTime> times;
+    OwnDevice own;
+
+    // vk_backend.cpp
+    void failIfLost() const;
+    PendingUpload& stage(uint64_t bytes, const char* name);
+    void addImage(ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
+                  uint32_t mips, VkFormat format, std::span<const std::byte> pixels,
+                  const char* name);
+    void freeQuarantine() noexcept;
+    // vk_record.cpp
+    void openFrame(VkCommandBuffer commands, uint64_t ringFrame);
+    void run(const FramePlan& plan);
+    void closeFrame(const FwView* view);
+    RecordTarget recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept;
+    uint32_t pushView(FrameInFlight& slot, const FwView& view, const VkViewport& viewport);
+    // vk_readback.cpp
+    void pushPending(const PendingReadback& one) noexcept;
+    const Readback* nextReadback();
+    // vk_draw.cpp
+    void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
+                     const FwView& view, const VkViewport& viewport);
+    VkFramebuffer framebufferFor(FrameInFlight& slot, const Target& target,
+                                 const FwVulkanComposite& images);
+    // vk_own.cpp
+    void beginOwn();
+    void submitOwn();
+    void renderOffscreen(const FwOffscreenDef& def);
+    void makeOffscreen(uint32_t width, uint32_t height);
+    void dropOffscreen() noexcept;
+};
+
+}  // namespace fw::gpu::vk
