@@ -16,8 +16,8 @@ int main(int argc, char** argv) {
         options.height = 720;
         if (!parser.parse(argc, argv, options)) return 0;
         const tower::Daylight light = lightName == "night"  ? tower::moonlight()
-                                   : lightName == "noon" ? tower::noon()
-                                                         : tower::goldenHour();
+                                      : lightName == "noon" ? tower::noon()
+                                                            : tower::goldenHour();
         const village::Scene scene = village::makeVillage(options.seed);
         const tower::PaintedVillage painted = tower::paintVillage(scene);
         sample::ValidationLog log;
@@ -27,13 +27,13 @@ int main(int argc, char** argv) {
             if (options.validate) request.validation = &log;
             sample::VulkanHost host(request);
             sample::StageRequest stageRequest;
-            stageRequest.exposure = light.exposure;
+            stageRequest.exposure = light.exposure * 1.62f;
             stageRequest.vignette = 0.3f;
             sample::Stage stage(host, options, stageRequest, options.frames ? options.frames : 3);
             tower::Renderer renderer(host, stage, scene, painted);
             std::vector<tower::Placed> placed;
             for (const village::Instance& i : scene.instances)
-                placed.push_back({i.model, i.frame, i.tint, true});
+                placed.push_back({i.model, i.frame, i.tint, true, i.roadMetres >= 0});
             sample::Camera camera;
             camera.eye = {-1.5f, 36.0f, 33.4f};
             camera.target = {-1.5f, 0.2f, -2.9f};

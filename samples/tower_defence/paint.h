@@ -11,7 +11,7 @@ namespace tower {
 
 struct Painting {
     uint32_t width = 0, height = 0;  // texels
-    std::vector<uint8_t> color;      // RGBA8, sRGB; alpha: see below
+    std::vector<uint8_t> color;      // RGBA8, square roots of linear colours; alpha: see below
     std::vector<uint8_t> relief;     // RGBA8: slope along u, slope along v, roughness, see below
 };
 

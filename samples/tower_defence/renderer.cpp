@@ -22,7 +22,7 @@ using sample::checkVulkan;
 using village::Vec3;
 
 constexpr uint32_t kMaxLights = 16;
-constexpr uint32_t kShadowSide = 2048;  // texels
+constexpr uint32_t kShadowSide = 1792;  // texels
 constexpr uint32_t kMaxParticles = 2048;
 constexpr VkFormat kShadowFormat = VK_FORMAT_D32_SFLOAT;
 
@@ -130,7 +130,14 @@ void writeImage(VkDevice device, VkDescriptorSet set, uint32_t binding, VkSample
 Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
                    const village::Scene& scene, const PaintedVillage& painted)
     : host_(host) {
-    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    // One mip at a time: a software device pays for every texel it reads.
+    VkSamplerCreateInfo bilinear{};
+    bilinear.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+    bilinear.magFilter = bilinear.minFilter = VK_FILTER_LINEAR;
+    bilinear.addressModeU = bilinear.addressModeV = bilinear.addressModeW =
+        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    bilinear.maxLod = VK_LOD_CLAMP_NONE;
+    checkVulkan(vkCreateSampler(host.device, &bilinear, nullptr, &sampler_), "vkCreateSampler");
     // Nowhere near every device filters depth, so this one is nearest in every way.
     VkSamplerCreateInfo nearest{};
     nearest.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
@@ -162,8 +169,11 @@ Renderer::~Renderer() {
     host_.destroy(vertices_);
     host_.destroy(indices_);
     host_.destroy(shadowMap_);
+    host_.destroy(stillShadow_);
     vkDestroyFramebuffer(host_.device, shadowFramebuffer_, nullptr);
+    vkDestroyFramebuffer(host_.device, stillFramebuffer_, nullptr);
     vkDestroyRenderPass(host_.device, shadowPass_, nullptr);
+    vkDestroyRenderPass(host_.device, stillPass_, nullptr);
     vkDestroySampler(host_.device, sampler_, nullptr);
     vkDestroySampler(host_.device, shadowSampler_, nullptr);
     vkDestroyDescriptorPool(host_.device, pool_, nullptr);
@@ -218,22 +228,19 @@ void Renderer::makeLayouts() {
                 "vkCreateDescriptorPool");
 }
 
-void Renderer::makeShadow() {
-    sample::ImageRequest request;
-    request.width = request.height = kShadowSide;
-    request.format = kShadowFormat;
-    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-    request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    shadowMap_ = host_.createImage(request);
-
+// A depth-only pass; `still`: clears, and ends as the source of the copy that the moving casters'
+// pass begins with.
+static VkRenderPass makeShadowPass(VkDevice device, bool still) {
     VkAttachmentDescription depth{};
     depth.format = kShadowFormat;
     depth.samples = VK_SAMPLE_COUNT_1_BIT;
-    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    depth.loadOp = still ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
     depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
     depth.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
     depth.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    depth.finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+    depth.initialLayout = still ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    depth.finalLayout = still ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+                              : VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
     const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
     VkSubpassDescription subpass{};
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
@@ -244,17 +251,17 @@ void Renderer::makeShadow() {
     dependencies[0] = {
         VK_SUBPASS_EXTERNAL,
         0,
-        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+        VK_PIPELINE_STAGE_TRANSFER_BIT,
         kDepthStages,
-        VK_ACCESS_SHADER_READ_BIT,
+        VK_ACCESS_TRANSFER_WRITE_BIT,
         VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
         0};
     dependencies[1] = {0,
                        VK_SUBPASS_EXTERNAL,
                        kDepthStages,
-                       VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                       VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
                        VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                       VK_ACCESS_SHADER_READ_BIT,
+                       VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT,
                        0};
     VkRenderPassCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
@@ -264,25 +271,48 @@ void Renderer::makeShadow() {
     info.pSubpasses = &subpass;
     info.dependencyCount = 2;
     info.pDependencies = dependencies.data();
-    checkVulkan(vkCreateRenderPass(host_.device, &info, nullptr, &shadowPass_),
-                "vkCreateRenderPass");
-    VkFramebufferCreateInfo target{};
-    target.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
-    target.renderPass = shadowPass_;
-    target.attachmentCount = 1;
-    target.pAttachments = &shadowMap_.view;
-    target.width = target.height = kShadowSide;
-    target.layers = 1;
-    checkVulkan(vkCreateFramebuffer(host_.device, &target, nullptr, &shadowFramebuffer_),
-                "vkCreateFramebuffer");
+    VkRenderPass pass = VK_NULL_HANDLE;
+    checkVulkan(vkCreateRenderPass(device, &info, nullptr, &pass), "vkCreateRenderPass");
+    return pass;
+}
+
+void Renderer::makeShadow() {
+    sample::ImageRequest request;
+    request.width = request.height = kShadowSide;
+    request.format = kShadowFormat;
+    request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    stillShadow_ = host_.createImage(request);
+    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                    VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    shadowMap_ = host_.createImage(request);
+    stillPass_ = makeShadowPass(host_.device, true);
+    shadowPass_ = makeShadowPass(host_.device, false);
+    auto target = [&](VkRenderPass pass, const sample::Image& image) {
+        VkFramebufferCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+        info.renderPass = pass;
+        info.attachmentCount = 1;
+        info.pAttachments = &image.view;
+        info.width = info.height = kShadowSide;
+        info.layers = 1;
+        VkFramebuffer framebuffer = VK_NULL_HANDLE;
+        checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &framebuffer),
+                    "vkCreateFramebuffer");
+        return framebuffer;
+    };
+    stillFramebuffer_ = target(stillPass_, stillShadow_);
+    shadowFramebuffer_ = target(shadowPass_, shadowMap_);
 }
 
 void Renderer::makeSurface(const village::Model& model, const Painting& painting, village::Vec2 low,
                            village::Vec2 high, glm::vec2 metres) {
     Surface s;
     s.indexCount = uint32_t(model.indices.size());
+    s.middle = (model.low + model.high) * 0.5f;
+    s.radius = 0.5f * village::length(model.high - model.low);
     s.set = allocateSet(host_.device, pool_, surfaceLayout_);
-    s.color = host_.createTexture(painting.width, painting.height, painting.color.data(), true);
+    s.color = host_.createTexture(painting.width, painting.height, painting.color.data(), false);
     s.relief = host_.createTexture(painting.width, painting.height, painting.relief.data(), false);
     writeImage(host_.device, s.set, 0, sampler_, s.color.view,
                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
@@ -446,26 +476,49 @@ void Renderer::makePipelines(const sample::Stage& stage) {
     vkDestroyShaderModule(host_.device, request.fragment, nullptr);
 
     VkShaderModule shadow = host_.createShader(kShadowVert, sizeof kShadowVert);
-    shadowPipeline_ = makeShadowPipeline(host_, shadowPass_, shadowLayout_, shadow);
+    shadowPipeline_ = makeShadowPipeline(host_, stillPass_, shadowLayout_, shadow);
     vkDestroyShaderModule(host_.device, shadow, nullptr);
 }
 
-// Sorts the instances by model into runs, one list for the picture and one for the shadows.
+// Whether a ball is seen at all.
+static bool inView(const glm::mat4& viewProjection, glm::vec3 place, float radius) {
+    const glm::mat4 rows = glm::transpose(viewProjection);
+    const glm::vec4 planes[] = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
+                                rows[3] - rows[1]};
+    for (const glm::vec4& plane : planes)
+        if (glm::dot(plane, glm::vec4(place, 1)) < -radius * glm::length(glm::vec3(plane)))
+            return false;
+    return true;
+}
+
+// Sorts the instances by model into runs: what is seen, what casts a still shadow, what casts a
+// moving one.
 void Renderer::gather(Slot& slot, const SceneFrame& scene) {
+    const float aspect = float(slot.extent.width) / float(slot.extent.height);
+    const glm::mat4 viewProjection =
+        sample::projectionMatrix(scene.camera, aspect) * sample::viewMatrix(scene.camera);
     auto* out = static_cast<DrawnInstance*>(slot.instances.mapped);
     uint32_t used = 0;
     out[used++] = drawnInstance(village::Frame{}, {1, 1, 1});  // the land's
-    solid_.clear();
-    shadow_.clear();
-    for (size_t model = 0; model < ground_; ++model) {
-        for (bool shadows : {false, true}) {
+    auto seen = [&](const Placed& p) {
+        const Surface& s = surfaces_[size_t(p.model)];
+        const Vec3 c = p.frame.point(s.middle);
+        return p.drawn &&
+               inView(viewProjection, {c.x, c.y, c.z}, s.radius * village::length(p.frame.x));
+    };
+    auto collect = [&](std::vector<Run>& runs, auto&& wanted) {
+        runs.clear();
+        for (size_t model = 0; model < ground_; ++model) {
             const uint32_t first = used;
             for (const Placed& p : scene.placed)
-                if (size_t(p.model) == model && (shadows || p.drawn))
+                if (size_t(p.model) == model && wanted(p))
                     out[used++] = drawnInstance(p.frame, p.tint);
-            if (used > first) (shadows ? shadow_ : solid_).push_back({model, first, used - first});
+            if (used > first) runs.push_back({model, first, used - first});
         }
-    }
+    };
+    collect(solid_, seen);
+    collect(stillRuns_, [](const Placed& p) { return !p.moves; });
+    collect(movingRuns_, [](const Placed& p) { return p.moves; });
 }
 
 void Renderer::upload(Slot& slot, const sample::StageFrame& frame, const SceneFrame& scene) {
@@ -476,7 +529,7 @@ void Renderer::upload(Slot& slot, const sample::StageFrame& frame, const SceneFr
     shadowClip_ = sunClip(scene.daylight.toSun, &texel);
     u.viewProjection = sample::projectionMatrix(scene.camera, aspect) * view;
     u.shadowMatrix = clipToPicture() * shadowClip_;
-    u.eye = glm::vec4(scene.camera.eye, float(frame.time));
+    u.eye = glm::vec4(scene.camera.eye, float(kShadowSide));
     u.toSun = glm::vec4(scene.daylight.toSun, texel);
     const size_t lights = std::min<size_t>(scene.lights.size(), kMaxLights);
     u.sun = glm::vec4(scene.daylight.sun, float(lights));
@@ -484,7 +537,7 @@ void Renderer::upload(Slot& slot, const sample::StageFrame& frame, const SceneFr
     u.ground = glm::vec4(scene.daylight.ground, 0);
     u.haze = glm::vec4(scene.daylight.haze, 0);
     u.cameraRight = glm::vec4(view[0][0], view[1][0], view[2][0], scene.daylight.emission);
-    u.cameraUp = glm::vec4(view[0][1], view[1][1], view[2][1], 0);
+    u.cameraUp = glm::vec4(view[0][1], view[1][1], view[2][1], float(frame.time));
     for (size_t i = 0; i < lights; ++i) {
         u.lightPlaces[i] = glm::vec4(scene.lights[i].place, scene.lights[i].reach);
         u.lightColors[i] = glm::vec4(scene.lights[i].color, scene.lights[i].size);
@@ -503,13 +556,28 @@ void Renderer::bindGeometry(VkCommandBuffer commands, const Slot& slot) const {
     vkCmdBindIndexBuffer(commands, indices_.buffer, 0, VK_INDEX_TYPE_UINT32);
 }
 
-void Renderer::drawShadow(VkCommandBuffer commands, const Slot& slot) {
+// A barrier over a whole depth image; the sample helpers' own are for colour.
+static void depthBarrier(VkCommandBuffer commands, VkImage image, VkPipelineStageFlags stageBefore,
+                         VkPipelineStageFlags stageAfter, VkAccessFlags accessAfter,
+                         VkImageLayout layoutAfter) {
+    VkImageMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+    barrier.dstAccessMask = accessAfter;
+    barrier.newLayout = layoutAfter;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+    vkCmdPipelineBarrier(commands, stageBefore, stageAfter, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+}
+
+void Renderer::drawShadows(VkCommandBuffer commands, const Slot& slot, VkRenderPass pass,
+                           VkFramebuffer target, const std::vector<Run>& runs) {
     VkClearValue clear{};
     clear.depthStencil = {1.0f, 0};
     VkRenderPassBeginInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
-    info.renderPass = shadowPass_;
-    info.framebuffer = shadowFramebuffer_;
+    info.renderPass = pass;
+    info.framebuffer = target;
     info.renderArea = {{0, 0}, {kShadowSide, kShadowSide}};
     info.clearValueCount = 1;
     info.pClearValues = &clear;
@@ -518,7 +586,7 @@ void Renderer::drawShadow(VkCommandBuffer commands, const Slot& slot) {
     vkCmdPushConstants(commands, shadowLayout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof shadowClip_,
                        &shadowClip_);
     bindGeometry(commands, slot);
-    for (const Run& run : shadow_) {
+    for (const Run& run : runs) {
         const Surface& s = surfaces_[run.surface];
         vkCmdDrawIndexed(commands, s.indexCount, run.count, s.firstIndex, s.firstVertex, run.first);
     }
@@ -527,9 +595,23 @@ void Renderer::drawShadow(VkCommandBuffer commands, const Slot& slot) {
 
 void Renderer::prepare(const sample::StageFrame& frame, const SceneFrame& scene) {
     Slot& slot = slots_[frame.slot];
+    slot.extent = frame.extent;
     gather(slot, scene);
     upload(slot, frame, scene);
-    drawShadow(frame.commands, slot);
+    // What stands still casts the same shadow in every frame: drawn once, copied ever after.
+    if (stillClip_ != shadowClip_) {
+        drawShadows(frame.commands, slot, stillPass_, stillFramebuffer_, stillRuns_);
+        stillClip_ = shadowClip_;
+    }
+    depthBarrier(frame.commands, shadowMap_.image, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                 VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    VkImageCopy copy{};
+    copy.srcSubresource = copy.dstSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1};
+    copy.extent = {kShadowSide, kShadowSide, 1};
+    vkCmdCopyImage(frame.commands, stillShadow_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   shadowMap_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    drawShadows(frame.commands, slot, shadowPass_, shadowFramebuffer_, movingRuns_);
 }
 
 void Renderer::drawSolid(const sample::StageFrame& frame) {

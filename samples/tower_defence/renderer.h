@@ -27,7 +27,8 @@ struct Placed {
     int model = 0;
     village::Frame frame;
     village::Vec3 tint{1, 1, 1};
-    bool drawn = true;  // false: another draws it; it still casts a shadow
+    bool drawn = true;   // false: another draws it; it still casts a shadow
+    bool moves = false;  // casts its shadow anew in every frame
 };
 
 struct SceneFrame {
@@ -63,6 +64,8 @@ class Renderer {
         VkDescriptorSet set = VK_NULL_HANDLE;
         sample::Image color, relief;
         Push push{};
+        village::Vec3 middle;  // m, model space
+        float radius = 0;      // m
     };
     struct Run {  // instances of one model, consecutive in the slot's buffer
         size_t surface;
@@ -71,6 +74,7 @@ class Renderer {
     struct Slot {
         sample::Buffer uniform, instances, particles;
         VkDescriptorSet set = VK_NULL_HANDLE;
+        VkExtent2D extent{};
     };
 
     void makeLayouts();
@@ -82,7 +86,8 @@ class Renderer {
     void makePipelines(const sample::Stage& stage);
     void gather(Slot& slot, const SceneFrame& scene);
     void upload(Slot& slot, const sample::StageFrame& frame, const SceneFrame& scene);
-    void drawShadow(VkCommandBuffer commands, const Slot& slot);
+    void drawShadows(VkCommandBuffer commands, const Slot& slot, VkRenderPass pass,
+                     VkFramebuffer target, const std::vector<Run>& runs);
     void bindGeometry(VkCommandBuffer commands, const Slot& slot) const;
 
     const sample::VulkanHost& host_;
@@ -90,13 +95,13 @@ class Renderer {
     size_t ground_ = 0, road_ = 0, water_ = 0;
     sample::Buffer vertices_, indices_;
     std::vector<Slot> slots_;
-    std::vector<Run> solid_, shadow_;
+    std::vector<Run> solid_, stillRuns_, movingRuns_;
     uint32_t particleCount_ = 0;
-    glm::mat4 shadowClip_{1.0f};
+    glm::mat4 shadowClip_{1.0f}, stillClip_{0.0f};
 
-    sample::Image shadowMap_;
-    VkRenderPass shadowPass_ = VK_NULL_HANDLE;
-    VkFramebuffer shadowFramebuffer_ = VK_NULL_HANDLE;
+    sample::Image shadowMap_, stillShadow_;
+    VkRenderPass shadowPass_ = VK_NULL_HANDLE, stillPass_ = VK_NULL_HANDLE;
+    VkFramebuffer shadowFramebuffer_ = VK_NULL_HANDLE, stillFramebuffer_ = VK_NULL_HANDLE;
     VkSampler shadowSampler_ = VK_NULL_HANDLE, sampler_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout frameLayout_ = VK_NULL_HANDLE, surfaceLayout_ = VK_NULL_HANDLE;

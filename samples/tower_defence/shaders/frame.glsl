@@ -5,14 +5,14 @@ const int kMaxLights = 16;
 layout(set = 0, binding = 0) uniform Frame {
     mat4 viewProjection;
     mat4 shadowMatrix;   // world to the shadow map: xy in [0, 1], z its depth
-    vec4 eye;            // w: time, s
+    vec4 eye;            // w: the shadow map's side, texels
     vec4 toSun;          // w: shadow texel, m
     vec4 sun;            // radiance x pi/2 into a Lambert/pi surface; w: lights in use
     vec4 sky;            // w: how brightly windows are lit
     vec4 ground;
     vec4 haze;
     vec4 cameraRight;    // of the billboards; w: emission of the jet against the scene's light
-    vec4 cameraUp;
+    vec4 cameraUp;       // w: time, s
     vec4 lightPlaces[kMaxLights];  // w: reach, m
     vec4 lightColors[kMaxLights];  // w: radius of the source, m
 } frame;

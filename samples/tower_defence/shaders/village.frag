@@ -28,22 +28,19 @@ struct Skin {
     float roughness, metalness, soft;
 };
 
-// The sun's share that reaches a place: four taps round a texel.
+// The sun's share that reaches a place: the four texels around it, weighted by nearness.
 float sunlight(vec3 place, vec3 normal) {
     vec3 from = place + normal * (1.6 * frame.toSun.w);
     vec4 s = frame.shadowMatrix * vec4(from, 1.0);
-    vec2 texel = 0.7 / vec2(textureSize(shadowMap, 0));
-    float depth = s.z - 0.0006;
-    float lit = step(depth, textureLod(shadowMap, s.xy + texel * vec2(-1.0, -0.4), 0.0).r);
-    lit += step(depth, textureLod(shadowMap, s.xy + texel * vec2(0.4, -1.0), 0.0).r);
-    lit += step(depth, textureLod(shadowMap, s.xy + texel * vec2(1.0, 0.4), 0.0).r);
-    lit += step(depth, textureLod(shadowMap, s.xy + texel * vec2(-0.4, 1.0), 0.0).r);
-    return 0.25 * lit;
+    vec4 lit = step(vec4(s.z - 0.0006), textureGather(shadowMap, s.xy, 0));
+    vec2 f = fract(s.xy * frame.eye.w - 0.5);
+    return mix(mix(lit.w, lit.z, f.x), mix(lit.x, lit.y, f.x), f.y);
 }
 
 vec3 shade(Skin skin, vec3 n, vec3 toEye, vec3 toLight, vec3 light, float wrap) {
     float facing = clamp((dot(n, toLight) + wrap) / (1.0 + wrap), 0.0, 1.0);
     vec3 result = skin.albedo * (1.0 - 0.85 * skin.metalness) * (facing / kPi);
+    if (kSurface == 1) return light * result;  // grass and dirt do not shine
     vec3 h = normalize(toLight + toEye);
     float a = skin.roughness * skin.roughness, a2 = a * a;
     float nh = clamp(dot(n, h), 0.0, 1.0), d = nh * nh * (a2 - 1.0) + 1.0;
@@ -72,6 +69,7 @@ void main() {
     vec3 n = normalize(gl_FrontFacing ? inNormal : -inNormal);
     vec2 uv = (inUv - push.uvWindow.xy) * push.uvWindow.zw;
     vec4 color = texture(colorMap, uv);
+    color.rgb *= color.rgb;
     vec4 relief = texture(reliefMap, uv);
     if (kSurface == 2 && relief.a < 0.5) discard;
 
@@ -82,7 +80,7 @@ void main() {
     skin.soft = inTraits.z;
     float open = kSurface == 0 ? inTraits.x : color.a;
     if (kSurface == 3) {
-        float t = frame.eye.w;
+        float t = frame.cameraUp.w;
         vec2 p = inPlace.xz;
         vec2 ripple = vec2(pondNoise(p * 1.3 + 0.3 * t), pondNoise(p.yx * 1.1 - 0.25 * t));
         n = normalize(vec3(0.05 * ripple.x, 1.0, 0.05 * ripple.y));

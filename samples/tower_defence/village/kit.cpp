@@ -64,6 +64,7 @@ std::vector<Model> makeKit() {
     kit.push_back(makeFarOak("far oak", palette::kLeafOak, 36));
     kit.push_back(makeFarPine(37));
     kit.push_back(makeFarOak("far autumn oak", palette::kLeafAutumn, 38));
+    kit.push_back(makeFlamePlinth(94));
     return kit;
 }
 

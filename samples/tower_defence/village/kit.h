@@ -51,6 +51,7 @@ enum class Kit : int {
     kFarOak,
     kFarPine,
     kFarAutumnOak,
+    kFlamePlinth,
     kCount,
 };
 

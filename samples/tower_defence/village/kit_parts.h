@@ -63,6 +63,7 @@ Model makeWickerGiant(uint32_t seed);
 
 // kit_towers.cpp
 Model makeFlamethrower(uint32_t seed);
+Model makeFlamePlinth(uint32_t seed);
 Model makeEmberMortar(uint32_t seed);
 Model makeWaterCannon(uint32_t seed);
 Model makeWindFan(uint32_t seed);

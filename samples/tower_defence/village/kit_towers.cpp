@@ -28,9 +28,15 @@ static void addPlinth(MeshBuilder& b, Vec3 accent) {
     b.frame = Frame{};
 }
 
+Model makeFlamePlinth(uint32_t seed) {
+    MeshBuilder b("flame plinth", seed, 512);
+    addPlinth(b, palette::kVermilion);
+    return b.finish();
+}
+
+// The turret alone: it turns on its plinth.
 Model makeFlamethrower(uint32_t seed) {
     MeshBuilder b("flamethrower", seed, 512);
-    addPlinth(b, palette::kVermilion);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
     b.lathe({{0.8f, 1.15f}, {0.7f, 1.4f}, {0.55f, 1.6f}}, 8);
     b.use(Texture::kMetal, Material::kMetal, palette::kCopper);

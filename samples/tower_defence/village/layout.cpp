@@ -59,6 +59,7 @@ void placeHouses(Placer& p) {
 }
 
 void placeTowers(Placer& p) {
+    p.put(Kit::kFlamePlinth, kFlamethrowerPlace, 0.9f);
     p.put(Kit::kFlamethrower, kFlamethrowerPlace, 0.9f);
     p.put(Kit::kEmberMortar, {-8.3f, -6.4f}, -0.5f);
     p.put(Kit::kWaterCannon, {8.8f, 4.6f}, -1.1f);
