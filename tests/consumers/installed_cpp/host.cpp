@@ -1,17 +1,21 @@
-// The smallest C++ host: makes and destroys a context without a device.
-#include <flamewright/flamewright.h>
+// The smallest C++ host: a context and a world without a device, through the wrapper header.
+#include <flamewright/flamewright.hpp>
 
 #include <iostream>
 
 int main() {
-    FwContextDef def = fwDefaultContextDef();
+    auto def = fw::def<FwContextDef>();
     def.backend = FW_BACKEND_CPU;
-    FwContext* context = nullptr;
     FwErrorInfo error{};
-    if (fwCreateContext(&def, &context, &error) != FW_OK) {
-        std::cout << "fwCreateContext: " << error.message << '\n';
+    const fw::Context context = fw::createContext(def, &error);
+    if (!context) {
+        std::cout << "createContext: " << error.message << '\n';
         return 1;
     }
-    fwDestroyContext(context);
+    const fw::World world = fw::createWorld(context);
+    if (!world) {
+        std::cout << "createWorld: " << fw::lastMessage(context) << '\n';
+        return 1;
+    }
     std::cout << "flamewright " << (fwGetVersion() >> 22) << '\n';
 }
