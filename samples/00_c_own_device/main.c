@@ -21,7 +21,7 @@ static void writeChunk(FILE* file, const char* type, unsigned char* body, uint32
     fwrite(body - 8, 1, (size_t)(put32(body + size, ~crc) - body) + 8, file);
 }
 static int writePng(const char* path, const unsigned char* rgba, uint32_t width, uint32_t height) {
-    const uint32_t row = width * 4 + 1; /* with its filter byte; one stored block holds it */
+    uint32_t a = 1, b = 0, row = width * 4 + 1; /* with its filter byte; one stored block holds it */
     unsigned char* memory = malloc((size_t)height * (row + 5) + 32);
     FILE* file = memory ? fopen(path, "wb") : NULL;
     if (!file) return free(memory), 0;
@@ -29,7 +29,6 @@ static int writePng(const char* path, const unsigned char* rgba, uint32_t width,
     memcpy(at, "\x08\x06\0\0\0", 5); /* 8 bits, RGBA */
     fwrite("\x89PNG\r\n\x1a\n", 1, 8, file);
     writeChunk(file, "IHDR", body, 13);
-    uint32_t a = 1, b = 0;
     at = body + 2, body[0] = 0x78, body[1] = 1;
     for (uint32_t y = 0; y < height; ++y, at += row + 5) {
         const uint32_t size = row | ~row << 16;

@@ -74,6 +74,12 @@ FwVulkanFrame FireHost::describe(const StageFrame& frame, VkCommandBuffer second
     described.commandBuffer = secondary ? secondary : frame.commands;
     described.frameIndex = frame.frameIndex;
     described.completedFrameIndex = frame.completedFrameIndex;
+    if (slotPacing) {
+        described.flags |= FW_FRAME_SLOT_PACING;
+        described.completedFrameIndex = 0;
+        described.frameSlot = frame.slot;
+        described.framesInFlight = frame.framesInFlight;
+    }
     described.deltaTime = frame.deltaTime;
     return described;
 }

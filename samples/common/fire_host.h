@@ -37,6 +37,7 @@ class FireHost {
     FwContext* context = nullptr;
     FwWorld* world = nullptr;
     FwTargetId target{};
+    bool slotPacing = false;  // give slot and ring size instead of the completed frame's number
 
  private:
     FwVulkanFrame describe(const StageFrame& frame, VkCommandBuffer secondary) const;

@@ -218,6 +218,9 @@ Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, flo
     layoutInfo.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
     layoutInfo.setLayoutCount = 1;
     layoutInfo.pSetLayouts = &setLayout_;
+    const VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(float)};
+    layoutInfo.pushConstantRangeCount = 1;
+    layoutInfo.pPushConstantRanges = &range;
     checkVulkan(vkCreatePipelineLayout(host.device, &layoutInfo, nullptr, &layout_),
                 "vkCreatePipelineLayout");
     const int32_t display = stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT ? 0
@@ -249,7 +252,7 @@ Studio::~Studio() {
     vkDestroyDescriptorSetLayout(host_.device, setLayout_, nullptr);
     vkDestroySampler(host_.device, repeat_, nullptr);
     vkDestroySampler(host_.device, clamp_, nullptr);
-    for (Buffer* buffer : {&vertices_, &indices_}) host_.destroy(*buffer);
+    for (Buffer* buffer : {&vertices_, &indices_, &blockVertices_}) host_.destroy(*buffer);
     for (Buffer& buffer : blocks_) host_.destroy(buffer);
     for (Image* image : {&plaster_, &shadow_}) host_.destroy(*image);
 }
@@ -332,13 +335,47 @@ void Studio::draw(const StageFrame& frame, VkCommandBuffer commands, const FwVie
             glm::vec4(glm::make_vec3(fire.color) * fire.intensity * fireGain, 0.0f);
     }
     std::memcpy(blocks_[frame.slot].mapped, &block, sizeof block);
+    bind(frame, commands, vertices_, 0.0f);
+    vkCmdBindIndexBuffer(commands, indices_.buffer, 0, VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(commands, indexCount_, 1, 0, 0, 0);
+}
+
+void Studio::bind(const StageFrame& frame, VkCommandBuffer commands, const Buffer& vertices,
+                  float solid) {
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1,
                             &sets_[frame.slot], 0, nullptr);
+    vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof solid, &solid);
     const VkDeviceSize zero = 0;
-    vkCmdBindVertexBuffers(commands, 0, 1, &vertices_.buffer, &zero);
-    vkCmdBindIndexBuffer(commands, indices_.buffer, 0, VK_INDEX_TYPE_UINT32);
-    vkCmdDrawIndexed(commands, indexCount_, 1, 0, 0, 0);
+    vkCmdBindVertexBuffers(commands, 0, 1, &vertices.buffer, &zero);
+}
+
+void Studio::addBlock(glm::vec3 center, glm::vec3 half) {
+    for (int face = 0; face < 6; ++face) {
+        const int x = face / 2, y = (x + 1) % 3, z = (x + 2) % 3;
+        glm::vec3 normal(0), corner[4];
+        normal[x] = face & 1 ? 1.0f : -1.0f;
+        for (int k = 0; k < 4; ++k) {
+            corner[k] = center;
+            corner[k][x] += normal[x] * half[x];
+            corner[k][y] += ((k ^ (k >> 1)) & 1 ? normal[x] : -normal[x]) * half[y];
+            corner[k][z] += (k & 2 ? 1.0f : -1.0f) * half[z];
+        }
+        for (int k : {0, 1, 2, 0, 2, 3}) {
+            blockCorners_.push_back(corner[k]);
+            blockCorners_.push_back(normal);
+        }
+    }
+    host_.destroy(blockVertices_);
+    blockVertices_ =
+        host_.createFilledBuffer(blockCorners_.data(), blockCorners_.size() * sizeof(glm::vec3),
+                                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+}
+
+void Studio::drawBlocks(const StageFrame& frame, VkCommandBuffer commands) {
+    if (blockCorners_.empty()) return;
+    bind(frame, commands, blockVertices_, 1.0f);
+    vkCmdDraw(commands, static_cast<uint32_t>(blockCorners_.size() / 2), 1, 0, 0);
 }
 
 }  // namespace sample

@@ -22,20 +22,27 @@ class Studio {
     // Casts the mesh's shadow onto the floor, softly, once.
     void castShadow(std::span<const float> positions, std::span<const uint32_t> indices,
                     const glm::mat4& transform, glm::vec3 sunDirection);
+    // A block of stone, axis-aligned, for drawBlocks. Before the first frame.
+    void addBlock(glm::vec3 center, glm::vec3 half);
     // `view` carries the camera and the light. `commands`: in the scene pass.
     void draw(const StageFrame& frame, VkCommandBuffer commands, const FwView& view,
               std::span<const FwLight> fires);
+    // The blocks, after draw() of the same frame; a host draws behind and in front of the fire.
+    void drawBlocks(const StageFrame& frame, VkCommandBuffer commands);
 
     float fireGain = 1.0f;  // irradiance at 1 m per unit of FwLight::intensity
 
  private:
     void writeSets();
+    void bind(const StageFrame& frame, VkCommandBuffer commands, const Buffer& vertices,
+              float solid);
     const VulkanHost& host_;
     glm::vec3 center_;
     float size_;
     uint32_t indexCount_ = 0;
-    Buffer vertices_, indices_;
-    std::vector<Buffer> blocks_;  // one for each frame in flight
+    Buffer vertices_, indices_, blockVertices_;
+    std::vector<glm::vec3> blockCorners_;  // position, normal, position, normal, ...
+    std::vector<Buffer> blocks_;           // one for each frame in flight
     Image plaster_, shadow_;
     VkSampler repeat_ = VK_NULL_HANDLE, clamp_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;

@@ -6,6 +6,7 @@ layout(constant_id = 0) const int displayValues = 0;  // 0 linear, 1 tone mapped
 layout(location = 0) in vec3 worldPosition;
 layout(location = 1) in vec3 worldNormal;
 layout(location = 0) out vec4 color;
+layout(push_constant) uniform Push { float solid; } push;  // 0 the room, 1 a block of stone
 layout(set = 0, binding = 1) uniform sampler2D plaster;
 layout(set = 0, binding = 2) uniform sampler2D shadow;
 
@@ -21,13 +22,17 @@ void main() {
     float scale = 1.0 / block.sunColor.w;
     // The wall folded outwards into the floor's plane: no seam between them.
     vec2 uv = local.xz * (1.0 + max(0.0, local.y) / block.center.w) * scale;
+    vec2 side = abs(n.x) > 0.5 ? local.zy : local.xy;
+    if (push.solid > 0.5) uv = 2.0 * (abs(n.y) > 0.5 ? local.xz : side) * scale;
     vec2 grain = texture(plaster, uv * 0.41).rg;
     vec3 albedo = mix(vec3(0.150, 0.145, 0.140), vec3(0.20, 0.215, 0.24),
                       smoothstep(0.0, 0.3, local.y * scale));
     albedo *= 0.70 + 0.42 * grain.r + 0.18 * grain.g;
+    if (push.solid > 0.5) albedo *= vec3(1.25, 1.2, 1.1);
     vec2 place = local.xz / (2.0 * block.ambientSky.w) + 0.5;
     vec2 shade = vec2(1.0);
-    if (all(greaterThan(place, vec2(0.0))) && all(lessThan(place, vec2(1.0)))) {
+    bool mapped = all(greaterThan(place, vec2(0.0))) && all(lessThan(place, vec2(1.0)));
+    if (mapped && push.solid < 0.5) {
         shade = 1.0 - texture(shadow, place).rg * smoothstep(0.5, 0.9, n.y);
     }
     // A room falls off into the dark away from the lamp; this is what keeps eyes on the object.

@@ -1,0 +1,191 @@
+// An engine with its own Vulkan device and its own render pass has a crate burn in it. It draws the
+// room before the plugin and blocks of stone after it, all in one pass. The switches show the ways
+// in which engines differ: secondary command buffers, MSAA, depth, encoding, pacing.
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "common/camera.h"
+#include "common/film.h"
+#include "common/fire_host.h"
+#include "common/studio.h"
+#include "crate.h"
+
+namespace {
+
+struct Switches {
+    bool secondary = false, msaa = false, reversed = false, slotPacing = false, blocks = true;
+    std::string target = "linear";
+    float wind[3] = {1.6f, 0.0f, 0.3f};  // m/s
+    float pace = 30.0f;
+};
+
+VkFormat formatOf(const std::string& target) {
+    if (target == "linear") return VK_FORMAT_R16G16B16A16_SFLOAT;
+    if (target == "srgb") return VK_FORMAT_R8G8B8A8_SRGB;
+    if (target == "unorm") return VK_FORMAT_R8G8B8A8_UNORM;
+    throw sample::Failure("--target is \"" + target + "\"; it takes linear, srgb or unorm");
+}
+
+void loadCrate(sample::FireHost& fire, const CrateMesh& crate) {
+    FwMeshDef meshDef = fwDefaultMeshDef();
+    meshDef.positions = crate.positions.data();
+    meshDef.normals = crate.normals.data();
+    meshDef.details = crate.details.data();
+    meshDef.colors = crate.colors.data();
+    meshDef.vertexCount = static_cast<uint32_t>(crate.positions.size() / 3);
+    meshDef.indices = crate.indices.data();
+    meshDef.indexCount = static_cast<uint32_t>(crate.indices.size());
+    meshDef.mapSize = 512;
+    meshDef.texelsPerMetre = 200.0f;
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    fire.check(fwWorld_CreateMesh(fire.world, &meshDef, &def.mesh), "fwWorld_CreateMesh");
+    FwMaterialDef pine = fwDefaultMaterialDef();
+    fire.check(fwInitMaterialPreset(&pine, FW_MATERIAL_PINE), "fwInitMaterialPreset");
+    fire.check(fwWorld_CreateMaterial(fire.world, &pine, &def.materials[0]),
+               "fwWorld_CreateMaterial");
+    FwBurnableMeshId id{};
+    fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &id), "fwWorld_CreateBurnableMesh");
+    FwIgnitionDef match = fwDefaultIgnitionDef();
+    match.object = id;
+    match.position[0] = -0.26f;
+    match.position[1] = 0.06f;
+    match.position[2] = 0.30f;
+    match.radius = 0.03f;
+    fire.check(fwWorld_Ignite(fire.world, &match, nullptr), "fwWorld_Ignite");
+}
+
+int run(const sample::Options& options, const Switches& switches) {
+    sample::ValidationLog validation;
+    {
+        // The engine's part: instance, device, window or pictures, render pass.
+        sample::HostRequest hostRequest;
+        hostRequest.windowed = !options.headless;
+        if (options.validate) hostRequest.validation = &validation;
+        const sample::VulkanHost host(hostRequest);
+        sample::StageRequest stageRequest;
+        stageRequest.title = "Flamewright: a lent device";
+        stageRequest.colorFormat = formatOf(switches.target);
+        stageRequest.samples = switches.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+        stageRequest.reversedDepth = switches.reversed;
+        const uint32_t frames = options.frames ? options.frames : (options.headless ? 96u : 0u);
+        sample::Stage stage(host, options, stageRequest, frames);
+        sample::Studio studio(host, stage, {0, 0, 0}, 0.7f);
+        studio.addBlock({-0.55f, 0.09f, 0.42f}, {0.14f, 0.09f, 0.11f});
+        studio.addBlock({-0.52f, 0.24f, 0.40f}, {0.08f, 0.06f, 0.08f});
+
+        // The plugin's part: lend the device, say what the pass looks like, fill the world.
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.paceFactor = switches.pace;
+        worldDef.seed = options.seed;
+        for (int i = 0; i < 3; ++i) worldDef.wind[i] = switches.wind[i];
+        sample::FireHost fire(host, worldDef);
+        fire.slotPacing = switches.slotPacing;
+        fire.registerTarget(stage);
+        const CrateMesh crate = makeCrate(0.6f);
+        loadCrate(fire, crate);
+
+        FwView view = fwDefaultView();
+        sample::duskLight(view);
+        studio.castShadow(crate.positions, crate.indices, glm::mat4(1.0f),
+                          {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
+
+        sample::FilmRequest filmRequest;
+        filmRequest.folder = options.out;
+        filmRequest.name = "lent_device";
+        filmRequest.framesPerSecond = options.fps;
+        filmRequest.frames = frames;
+        sample::Film film(filmRequest);
+        sample::Progress progress("lent_device", frames);
+        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
+            film.add(number, picture);
+            progress.update(number + 1);
+        };
+
+        sample::OrbitCamera orbit;
+        orbit.target = {0.0f, 0.27f, 0.0f};
+        orbit.distance = 2.4f;
+        orbit.yaw = -0.45f;
+        orbit.pitch = 0.28f;
+        orbit.fieldOfView = 0.5f;
+        sample::StageFrame frame;
+        while (stage.next(frame)) {
+            orbit.turn(frame.input.dragX, frame.input.dragY);
+            orbit.zoom(frame.input.wheel);
+            const float aspect =
+                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
+            const sample::Camera camera = orbit.camera();
+            sample::setCamera(view, sample::viewMatrix(camera),
+                              sample::projectionMatrix(camera, aspect, switches.reversed));
+            view.time = static_cast<float>(frame.time);
+            FwLight lights[8];
+            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
+
+            // Outside any pass: the plugin simulates. Inside: room, fire, stones.
+            if (switches.secondary) {
+                VkCommandBuffer outside = stage.beginSecondary(frame, false);
+                fire.recordOutside(frame, view, outside);
+                stage.executeSecondary(frame, outside);
+                stage.beginScene(frame, true);
+                VkCommandBuffer inside = stage.beginSecondary(frame, true);
+                studio.draw(frame, inside, view, {lights, lightCount});
+                fire.recordInside(frame, view, inside);
+                if (switches.blocks) studio.drawBlocks(frame, inside);
+                stage.executeSecondary(frame, inside);
+            } else {
+                fire.recordOutside(frame, view);
+                stage.beginScene(frame);
+                studio.draw(frame, frame.commands, view, {lights, lightCount});
+                fire.recordInside(frame, view);
+                if (switches.blocks) studio.drawBlocks(frame, frame.commands);
+            }
+            stage.endScene(frame);
+            stage.finish(frame);
+        }
+
+        if (options.headless) {
+            progress.finish();
+            sample::Summary summary;
+            summary.title = "A burning crate on a lent device";
+            summary.rows = {
+                {"device", host.properties.deviceName},
+                {"target", switches.target + (switches.msaa ? ", 4 samples" : "") +
+                               (switches.reversed ? ", reversed depth" : "")},
+                {"size", std::to_string(options.width) + " x " + std::to_string(options.height) +
+                             ", " + std::to_string(frames) + " frames"},
+                {"time", std::to_string(std::lround(progress.seconds())) + " s"}};
+            summary.passes = fire.passCosts();
+            summary.files = film.close();
+            sample::printSummary(summary);
+        }
+        // Nothing of the plugin may be in use on the GPU when its context goes.
+        vkDeviceWaitIdle(host.device);
+    }
+    return validation.exitCode();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return sample::guardedMain("01_lent_device", [&] {
+        sample::Options options;
+        options.fps = 12.0;
+        Switches switches;
+        sample::OptionParser parser("01_lent_device", "a crate burns in an engine's render pass");
+        parser.addFlag("--secondary", "record into secondary command buffers", switches.secondary);
+        parser.addFlag("--msaa", "four samples", switches.msaa);
+        parser.addFlag("--reversed", "reversed depth", switches.reversed);
+        parser.addFlag("--slot-pacing", "pace by slot, not by completed frame",
+                       switches.slotPacing);
+        parser.addText("--target", "NAME", "linear, srgb or unorm", switches.target);
+        parser.addVector("--wind", "m/s", switches.wind);
+        parser.addNumber("--pace", "how much faster than wood it burns", switches.pace, 0.1f,
+                         1000.0f);
+        if (!parser.parse(argc, argv, options)) return 0;
+        if (options.list) {
+            std::printf("one scene: a crate, wind from the left, stones before it\n");
+            return 0;
+        }
+        return run(options, switches);
+    });
+}
