@@ -87,12 +87,11 @@ Def readDef(const Def* given, uint32_t type, const char* name) {
     if (!given) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
     uint32_t size = 0;
     std::memcpy(&size, given, sizeof size);
-    if (size < 8 || size % 4 != 0 || size > kLargestStruct)
-        core::fail(
-            FW_ERROR_VERSION,
-            "%s::structSize is %u; it is a multiple of 4 in [8, %u] and %zu in this version. "
-            "Take the struct from its fwDefault function.",
-            name, size, kLargestStruct, sizeof(Def));
+    if (size < 8 || size % alignof(Def) != 0 || size > kLargestStruct)
+        core::fail(FW_ERROR_VERSION,
+                   "%s::structSize is %u; it is a multiple of %zu in [8, %u] and %zu in this "
+                   "version. Take the struct from its fwDefault function.",
+                   name, size, alignof(Def), kLargestStruct, sizeof(Def));
     if (size > sizeof(Def)) {
         const auto* bytes = reinterpret_cast<const unsigned char*>(given);
         for (uint32_t at = sizeof(Def); at < size; ++at)

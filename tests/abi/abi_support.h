@@ -10,13 +10,13 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <cstdlib>
+#include <cstring>
 #include <mutex>
 #include <string>
 #include <vector>
 
-namespace abi {
+namespace host {
 
 // Memory and log of a host. Fails the `failAt`-th allocation and, if `failAlways`, all after it.
 struct Host {
@@ -126,7 +126,7 @@ inline FwMaterialDef evenMaterial(float spreadRate, float burnTime) {
 
 // A cpu world with one sheet in it.
 class SheetWorld {
-   public:
+ public:
     explicit SheetWorld(const FwMaterialDef& material, float width = 1.0f, float depth = 0.25f,
                         float texelsPerMetre = 64, const FwWorldDef& def = fwDefaultWorldDef())
         : sheet(width, depth) {
@@ -210,4 +210,4 @@ class SheetWorld {
     FwBurnableMeshId object{};
 };
 
-}  // namespace abi
+}  // namespace host

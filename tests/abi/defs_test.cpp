@@ -9,8 +9,8 @@ extern "C" int fwTestCallEverything(int* calls);
 
 namespace {
 
-using abi::Host;
-using abi::lastMessage;
+using host::Host;
+using host::lastMessage;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(51, calls);  // as many as the export list has; see exports.sh
+    EXPECT_EQ(50, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -81,11 +81,10 @@ TEST(AbiInitDef, NeverWritesPastStructSizeAndZeroesWhatItDoesNotKnow) {
 
 // Runs `create` with the def at every size an older host may have had, and with newer ones.
 template <class Def>
-void checkSizes(const char* name, Def whole,
-                const std::function<FwResult(const Def*)>& create,
+void checkSizes(const char* name, Def whole, const std::function<FwResult(const Def*)>& create,
                 const std::function<std::string()>& message) {
     // Older: whatever is cut off takes its default, which always works in a world.
-    for (uint32_t size = 8; size < sizeof(Def); size += 4) {
+    for (uint32_t size = 8; size < sizeof(Def); size += uint32_t(alignof(Def))) {
         std::vector<unsigned char> bytes(sizeof(Def) + 64, 0xCD);  // a page of someone else's
         std::memcpy(bytes.data(), &whole, size);
         std::memcpy(bytes.data(), &size, 4);
@@ -94,7 +93,7 @@ void checkSizes(const char* name, Def whole,
                     result == FW_ERROR_STALE_ID)
             << name << " of " << size << ": " << fwResultName(result) << " " << message();
     }
-    for (const uint32_t extra : {4u, 32u, 256u}) {
+    for (const uint32_t extra : {8u, 32u, 256u}) {
         std::vector<unsigned char> bytes(sizeof(Def) + 512, 0);
         std::memcpy(bytes.data(), &whole, sizeof(Def));
         const uint32_t size = uint32_t(sizeof(Def)) + extra;
@@ -115,7 +114,7 @@ void checkSizes(const char* name, Def whole,
 }
 
 TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
-    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    host::SheetWorld w(host::evenMaterial(0.02f, 5));
     const auto worldMessage = [&] { return lastMessage(w.world); };
     const auto contextMessage = [&] { return lastMessage(w.context); };
 
@@ -167,7 +166,7 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
             return fwWorld_CreateImage(w.world, def, &id);
         },
         worldMessage);
-    const abi::Sheet small(0.2f, 0.2f);
+    const host::Sheet small(0.2f, 0.2f);
     checkSizes<FwMeshDef>(
         "FwMeshDef", small.def(32),
         [&](const FwMeshDef* def) {
@@ -194,7 +193,7 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
 }
 
 TEST(AbiSizes, AnOldHostGetsDefaultsForFieldsItDoesNotKnow) {
-    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    host::SheetWorld w(host::evenMaterial(0.02f, 5));
     FwMaterialDef def;
     std::memset(&def, 0xCD, sizeof def);
     fwInitDef(FW_DEF_MATERIAL, &def, offsetof(FwMaterialDef, baseColor));  // last year's size
@@ -204,7 +203,7 @@ TEST(AbiSizes, AnOldHostGetsDefaultsForFieldsItDoesNotKnow) {
 }
 
 TEST(AbiSizes, InfosFillAnySizeAndNeverMore) {
-    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    host::SheetWorld w(host::evenMaterial(0.02f, 5));
     for (uint32_t size = 8; size <= sizeof(FwMeshInfo) + 32; size += 4) {
         std::vector<unsigned char> bytes(size + 16, 0xCD);
         std::memcpy(bytes.data(), &size, 4);
@@ -221,7 +220,8 @@ TEST(AbiSizes, InfosFillAnySizeAndNeverMore) {
     EXPECT_NE(std::string::npos, lastMessage(w.world).find("FwMeshInfo::structSize is 0"));
 }
 
-// ---- numbers -------------------------------------------------------------------------------------
+// ---- numbers
+// -------------------------------------------------------------------------------------
 
 // Sets one float of a good def to bad values; each must be refused, naming the field.
 template <class Def>
@@ -240,7 +240,7 @@ void refuseFloat(const Def& good, float Def::*field, const char* name,
 }
 
 TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
-    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    host::SheetWorld w(host::evenMaterial(0.02f, 5));
     const auto worldMessage = [&] { return lastMessage(w.world); };
     const auto contextMessage = [&] { return lastMessage(w.context); };
     const std::function<FwResult(const FwWorldDef*)> makeWorld = [&](const FwWorldDef* def) {
@@ -288,7 +288,7 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
         refuseFloat<FwMaterialDef>(pine, field.field, field.name, makeMaterial, worldMessage,
                                    field.bad);
 
-    const abi::Sheet sheet(0.2f, 0.2f);
+    const host::Sheet sheet(0.2f, 0.2f);
     const std::function<FwResult(const FwMeshDef*)> makeMesh = [&](const FwMeshDef* def) {
         FwMeshId id{};
         const FwResult result = fwWorld_CreateMesh(w.world, def, &id);
@@ -312,8 +312,8 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
             if (result == FW_OK) (void)fwWorld_DestroyBurnableMesh(w.world, id);
             return result;
         };
-    refuseFloat<FwBurnableMeshDef>(burnable, &FwBurnableMeshDef::moisture, "moisture",
-                                   makeBurnable, worldMessage, {-0.1f, 2.5f});
+    refuseFloat<FwBurnableMeshDef>(burnable, &FwBurnableMeshDef::moisture, "moisture", makeBurnable,
+                                   worldMessage, {-0.1f, 2.5f});
     for (int i = 0; i < 16; ++i) {
         FwBurnableMeshDef def = burnable;
         def.transform[i] = kNan;
@@ -348,8 +348,7 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
         EXPECT_NE(std::string::npos, lastMessage(w.world).find("wind[1]"));
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_TagPoint(w.world, w.object, wind, 1));
         FwQueryId query{};
-        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
-                  fwWorld_RequestPoint(w.world, w.object, wind, &query));
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_RequestPoint(w.world, w.object, wind, &query));
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Step(w.world, bad));
         EXPECT_NE(std::string::npos, lastMessage(w.world).find("deltaTime is "));
     }
@@ -358,7 +357,7 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
 }
 
 TEST(AbiValues, PosesThatAreNotRigidAreRefusedWithTheReason) {
-    abi::SheetWorld w(abi::evenMaterial(0.02f, 5));
+    host::SheetWorld w(host::evenMaterial(0.02f, 5));
     struct Case {
         float columns[9];
         float w15;
@@ -378,8 +377,7 @@ TEST(AbiValues, PosesThatAreNotRigidAreRefusedWithTheReason) {
             for (int r = 0; r < 3; ++r) m[c * 4 + r] = bad.columns[c * 3 + r];
         m[15] = bad.w15;
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetTransform(w.world, w.object, m));
-        EXPECT_NE(std::string::npos, lastMessage(w.world).find(bad.reason))
-            << lastMessage(w.world);
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find(bad.reason)) << lastMessage(w.world);
     }
     const float good[16] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1};
     EXPECT_EQ(FW_OK, fwWorld_SetTransform(w.world, w.object, good)) << lastMessage(w.world);

@@ -5,28 +5,30 @@
 
 namespace {
 
-using abi::Host;
-using abi::lastMessage;
-using abi::SheetWorld;
+using host::Host;
+using host::lastMessage;
+using host::SheetWorld;
 
 TEST(AbiObjects, StaleIdsAreRefusedInPlainWords) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     FwMaterialId id{};
     const FwMaterialDef def = fwDefaultMaterialDef();
     ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &def, &id));
     ASSERT_EQ(FW_OK, fwWorld_DestroyMaterial(w.world, id));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, id));
-    EXPECT_EQ("Material 2 (generation 1) is already destroyed; the slot is at generation 2.\n"
-              " - While calling fwWorld_DestroyMaterial.",
-              lastMessage(w.world));
+    EXPECT_EQ(
+        "Material 2 (generation 1) is already destroyed; the slot is at generation 2.\n"
+        " - While calling fwWorld_DestroyMaterial.",
+        lastMessage(w.world));
     EXPECT_EQ(w.host.lastError, lastMessage(w.world));  // the log hears the same
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, FwMaterialId{}));
     EXPECT_EQ("Material id is null.\n - While calling fwWorld_DestroyMaterial.",
               lastMessage(w.world));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, FwMaterialId{77, 1}));
-    EXPECT_EQ("Material 77 does not exist; there are 2 slots.\n"
-              " - While calling fwWorld_DestroyMaterial.",
-              lastMessage(w.world));
+    EXPECT_EQ(
+        "Material 77 does not exist; there are 2 slots.\n"
+        " - While calling fwWorld_DestroyMaterial.",
+        lastMessage(w.world));
     // The slot is used again, and the old id still is not it.
     FwMaterialId again{};
     ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &def, &again));
@@ -36,7 +38,7 @@ TEST(AbiObjects, StaleIdsAreRefusedInPlainWords) {
 }
 
 TEST(AbiObjects, EveryFunctionRefusesAStaleObject) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwBurnableMeshId id = w.add(1);
     const float point[3] = {};
     float identity[16] = {};
@@ -81,17 +83,18 @@ TEST(AbiObjects, EveryFunctionRefusesAStaleObject) {
 }
 
 TEST(AbiObjects, AMeshInUseStays) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_DestroyMesh(w.world, w.mesh));
-    EXPECT_EQ("Mesh 1 (generation 1) is used by 1 burnable mesh(es); destroy them first.\n"
-              " - While calling fwWorld_DestroyMesh.",
-              lastMessage(w.world));
+    EXPECT_EQ(
+        "Mesh 1 (generation 1) is used by 1 burnable mesh(es); destroy them first.\n"
+        " - While calling fwWorld_DestroyMesh.",
+        lastMessage(w.world));
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, w.object));
     EXPECT_EQ(FW_OK, fwWorld_DestroyMesh(w.world, w.mesh)) << lastMessage(w.world);
 }
 
 TEST(AbiObjects, UsersKeepACopyOfADestroyedMaterial) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(FW_OK, fwWorld_DestroyMaterial(w.world, w.materialId));
     EXPECT_LT(0u, w.ball(FW_IGNITE, 0.1f, 0, 0.1f, 0.03f));
     w.run(1.0);
@@ -99,7 +102,7 @@ TEST(AbiObjects, UsersKeepACopyOfADestroyedMaterial) {
 }
 
 TEST(AbiObjects, ImagesAreCheckedAndMayGoBeforeTheirUsers) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     const std::vector<uint32_t> pixels(16, 0xFF808080u);
     FwImageDef def = fwDefaultImageDef();
     def.width = 4;
@@ -138,9 +141,10 @@ TEST(AbiObjects, CreationRefusesWhatItCannotServe) {
     EXPECT_EQ(FW_ERROR_VERSION, fwCreateContext(&def, &context, &error));
     EXPECT_EQ(nullptr, context);
     EXPECT_EQ(FW_ERROR_VERSION, error.result);
-    EXPECT_STREQ("FwContextDef::abiVersion is 2; this library serves version 1.\n"
-                 " - While calling fwCreateContext.",
-                 error.message);
+    EXPECT_STREQ(
+        "FwContextDef::abiVersion is 2; this library serves version 1.\n"
+        " - While calling fwCreateContext.",
+        error.message);
     def.abiVersion = FW_ABI_VERSION;
     def.backend = 9;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwCreateContext(&def, &context, &error));
@@ -166,7 +170,7 @@ TEST(AbiObjects, CreationRefusesWhatItCannotServe) {
 }
 
 TEST(AbiObjects, CallsOfAnotherBackendAreRefused) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwVulkanFrame frame = fwDefaultVulkanFrame();
     const FwView view = fwDefaultView();
     EXPECT_EQ(FW_ERROR_WRONG_BACKEND, fwWorld_RecordOutside(w.world, &frame, &view));
@@ -190,7 +194,7 @@ TEST(AbiObjects, CallsOfAnotherBackendAreRefused) {
 }
 
 TEST(AbiObjects, LastMessageTellsTheLengthItNeeds) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(0u, fwWorld_GetLastMessage(w.world, nullptr, 0));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetWind(w.world, nullptr));
     const std::string whole = "wind is null.\n - While calling fwWorld_SetWind.";
@@ -215,9 +219,9 @@ TEST(AbiObjects, LastMessageTellsTheLengthItNeeds) {
 }
 
 TEST(AbiObjects, TwoContextsShareNothing) {
-    SheetWorld a(abi::evenMaterial(0.02f, 5));
+    SheetWorld a(host::evenMaterial(0.02f, 5));
     {
-        SheetWorld b(abi::evenMaterial(0.02f, 5));
+        SheetWorld b(host::evenMaterial(0.02f, 5));
         EXPECT_LT(0u, b.ball(FW_IGNITE, 0.1f, 0, 0.1f, 0.03f));
         b.run(1);
         a.run(1);
@@ -231,15 +235,15 @@ TEST(AbiObjects, TwoContextsShareNothing) {
 }
 
 TEST(AbiObjects, DefsMayBeOverwrittenAfterTheCall) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5), 0.5f, 0.25f, 64);
+    SheetWorld w(host::evenMaterial(0.02f, 5), 0.5f, 0.25f, 64);
     uint64_t hashes[2] = {};
     for (int round = 0; round < 2; ++round) {
-        auto sheet = std::make_unique<abi::Sheet>(0.5f, 0.25f);
+        auto sheet = std::make_unique<host::Sheet>(0.5f, 0.25f);
         auto mesh = std::make_unique<FwMeshDef>(sheet->def(64));
         std::vector<uint8_t> multiplier(64, 128);
         FwMeshId meshId{};
         ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, mesh.get(), &meshId));
-        FwMaterialDef material = abi::evenMaterial(0.02f, 5);
+        FwMaterialDef material = host::evenMaterial(0.02f, 5);
         FwMaterialId materialId{};
         ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &material, &materialId));
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
@@ -287,7 +291,7 @@ TEST(AbiObjects, DefsMayBeOverwrittenAfterTheCall) {
 }
 
 TEST(AbiObjects, InfoAndReports) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     FwContextInfo info{};
     info.structSize = sizeof info;
     ASSERT_EQ(FW_OK, fwContext_GetInfo(w.context, &info));
@@ -316,7 +320,7 @@ TEST(AbiObjects, InfoAndReports) {
 }
 
 TEST(AbiObjects, CookedMeshesAreTheSameMesh) {
-    SheetWorld w(abi::evenMaterial(0.02f, 5));
+    SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwMeshDef def = w.sheet.def(64);
     uint64_t size = 0;
     ASSERT_EQ(FW_OK, fwCookMesh(w.context, &def, nullptr, &size)) << lastMessage(w.context);
@@ -346,9 +350,9 @@ TEST(AbiObjects, CookedMeshesAreTheSameMesh) {
 
 TEST(AbiThreads, ContextsAndWorldsAreMadeAnywhere) {
     Host host;
-    FwContext* context = abi::createCpuContext(host);
+    FwContext* context = host::createCpuContext(host);
     ASSERT_NE(nullptr, context);
-    const abi::Sheet sheet(0.3f, 0.2f);
+    const host::Sheet sheet(0.3f, 0.2f);
     const auto work = [&](int number) {
         FwContext* own = nullptr;
         Host ownHost;
@@ -363,7 +367,7 @@ TEST(AbiThreads, ContextsAndWorldsAreMadeAnywhere) {
             const FwMeshDef meshDef = sheet.def(48);
             FwMeshId mesh{};
             ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh));
-            FwMaterialDef materialDef = abi::evenMaterial(0.02f, 3);
+            FwMaterialDef materialDef = host::evenMaterial(0.02f, 3);
             FwMaterialId material{};
             ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(world, &materialDef, &material));
             FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
