@@ -65,4 +65,6 @@ const char* presetName(uint32_t preset) noexcept {
     return preset < FW_MATERIAL_PRESET_COUNT ? kPresets[preset].name : "unknown";
 }
 
+float paperSpreadRate(float gramsPerSquareMetre) noexcept { return 0.44f / gramsPerSquareMetre; }
+
 }  // namespace fw::fire
