@@ -1,72 +1,227 @@
 // The tower-defence slice: a village, a wave of straw men, one flamethrower tower, and the wind.
+// The main program only: options, the camera, and the order of a frame.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <memory>
+#include <string>
 
+#include "common/film.h"
+#include "common/fire_host.h"
 #include "common/progress.h"
 #include "common/stage.h"
-#include "renderer.h"
+#include "game.h"
+
+namespace {
+
+struct Choices {
+    std::string light = "golden";
+    float wind[3] = {-2.4f, 0.0f, -2.0f};  // m/s, from the sea behind the tower
+    float pace = 14.0f;                    // how much faster than real thatch the fire runs
+    bool antialias = false;
+};
+
+tower::Daylight daylightOf(const std::string& name) {
+    if (name == "golden") return tower::goldenHour();
+    if (name == "noon") return tower::noon();
+    if (name == "night") return tower::moonlight();
+    throw sample::Failure("--light is \"" + name + "\"; it takes golden, noon or night");
+}
+
+// The strategy camera: always the same way round, 45 degrees down; pans and zooms.
+struct Overview {
+    glm::vec2 pan{0, 0};  // m, x and z, within +-8
+    float zoom = 1;       // of the distance, [0.35, 1.3]
+
+    sample::Camera camera() const {
+        const glm::vec3 target(-1.5f + pan.x, 0.2f, -2.9f + pan.y);
+        sample::Camera camera;
+        camera.target = target;
+        camera.eye = target + zoom * glm::vec3(0.0f, 35.8f, 36.3f);
+        camera.fieldOfView = glm::radians(29.0f);
+        camera.nearPlane = 4.0f;
+        camera.farPlane = 150.0f;
+        return camera;
+    }
+    void steer(const sample::Input& input, float deltaTime, VkExtent2D size) {
+        const float metres = 47.0f * zoom / std::max(1.0f, float(size.width));  // per pixel
+        pan.x += -metres * (input.dragX + input.panX) + 14 * zoom * deltaTime * input.moveRight;
+        pan.y +=
+            -1.4f * metres * (input.dragY + input.panY) - 14 * zoom * deltaTime * input.moveForward;
+        pan = glm::clamp(pan, glm::vec2(-8), glm::vec2(8));
+        zoom = std::clamp(zoom * std::pow(0.92f, input.wheel), 0.35f, 1.3f);
+    }
+    // Without a hand at the mouse: from the whole village slowly down to the fire.
+    void follow(float share) {
+        const float t = share * share * (3 - 2 * share);
+        pan = glm::mix(glm::vec2(0.3f, 0.6f), glm::vec2(-1.7f, 8.6f), t);
+        zoom = std::exp(std::log(1.0f) * (1 - t) + std::log(0.46f) * t);
+    }
+};
+
+FwView fireView(const sample::Camera& camera, const tower::Daylight& light,
+                const sample::StageFrame& frame) {
+    FwView view = fwDefaultView();
+    const glm::mat4 look = sample::viewMatrix(camera);
+    const glm::mat4 projection =
+        sample::projectionMatrix(camera, float(frame.extent.width) / float(frame.extent.height));
+    std::copy_n(&look[0][0], 16, view.view);
+    std::copy_n(&projection[0][0], 16, view.projection);
+    std::copy_n(&light.toSun[0], 3, view.sunDirection);
+    std::copy_n(&light.sun[0], 3, view.sunColor);
+    std::copy_n(&light.sky[0], 3, view.ambientSky);
+    std::copy_n(&light.ground[0], 3, view.ambientGround);
+    view.emissionScale = light.emission;
+    view.time = float(frame.time);
+    return view;
+}
+
+// Lamps and braziers light their surroundings once it is dark.
+std::vector<tower::PointLight> lampLights(const village::Scene& scene) {
+    std::vector<tower::PointLight> lamps;
+    for (const village::Instance& instance : scene.instances) {
+        const bool lamp = village::Kit(instance.model) == village::Kit::kLampPost;
+        if (!lamp && village::Kit(instance.model) != village::Kit::kBrazier) continue;
+        const village::Vec3 p =
+            instance.frame.point(lamp ? village::Vec3{0.55f, 1.7f, 0} : village::Vec3{0, 1.6f, 0});
+        lamps.push_back({{p.x, p.y, p.z},
+                         6.0f,
+                         lamp ? glm::vec3(1.4f, 0.72f, 0.25f) : glm::vec3(1.8f, 0.60f, 0.13f),
+                         0.5f});
+    }
+    return lamps;
+}
+
+std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tower::Game& game,
+                                            const std::vector<tower::PointLight>& lamps,
+                                            const tower::Daylight& light) {
+    constexpr size_t kMost = 12;
+    std::vector<tower::PointLight> all = game.jetLights(16.0f * light.emission);
+    const auto burning = fires.lights(light.emission);
+    all.insert(all.end(), burning.begin(), burning.end());
+    if (light.windows > 1) all.insert(all.end(), lamps.begin(), lamps.end());
+    auto strength = [](const tower::PointLight& l) { return l.color.r + l.color.g + l.color.b; };
+    std::stable_sort(all.begin(), all.end(),
+                     [&](const auto& a, const auto& b) { return strength(a) > strength(b); });
+    if (all.size() > kMost) all.resize(kMost);
+    return all;
+}
+
+int run(const sample::Options& options, const Choices& choices) {
+    const tower::Daylight light = daylightOf(choices.light);
+    const uint32_t frames = options.frames ? options.frames : options.headless ? 300u : 0u;
+    sample::Progress startUp("painting the village", 2);
+    const village::Scene scene = village::makeVillage(options.seed);
+    const tower::PaintedVillage painted = tower::paintVillage(scene);
+    startUp.update(1);
+
+    sample::ValidationLog validation;
+    {
+        sample::HostRequest hostRequest;
+        hostRequest.windowed = !options.headless;
+        if (options.validate) hostRequest.validation = &validation;
+        sample::VulkanHost host(hostRequest);
+        sample::StageRequest stageRequest;
+        stageRequest.title = "Flamewright: tower defence";
+        stageRequest.exposure = light.exposure;
+        stageRequest.vignette = 0.3f;
+        stageRequest.bloom = 0.08f;
+        if (choices.antialias) stageRequest.samples = VK_SAMPLE_COUNT_4_BIT;
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.paceFactor = choices.pace;
+        worldDef.seed = options.seed;
+        std::copy_n(choices.wind, 3, worldDef.wind);
+        sample::FireHost fire(host, worldDef);
+        sample::Stage stage(host, options, stageRequest, frames);
+        fire.registerTarget(stage);
+        tower::Renderer renderer(host, stage, scene, painted);
+        tower::FireVillage fires(fire, scene, painted);
+        tower::Game game(scene, fires, options.seed,
+                         {choices.wind[0], choices.wind[1], choices.wind[2]});
+        const std::vector<tower::PointLight> lamps = lampLights(scene);
+        startUp.update(2);
+        startUp.finish();
+
+        sample::FilmRequest filmRequest;
+        filmRequest.folder = options.out;
+        filmRequest.name = "tower_defence";
+        filmRequest.framesPerSecond = options.fps;
+        filmRequest.frames = frames;
+        filmRequest.animationEvery = 3;
+        sample::Film film(filmRequest);
+        sample::Progress progress("tower_defence", std::max(1u, frames));
+        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
+            film.add(number, picture);
+            progress.update(number + 1);
+        };
+
+        Overview overview;
+        sample::StageFrame frame;
+        while (stage.next(frame)) {
+            if (options.headless)
+                overview.follow(frames > 1 ? float(frame.number) / float(frames - 1) : 0.0f);
+            else
+                overview.steer(frame.input, frame.deltaTime, frame.extent);
+            game.advance(frame.deltaTime);
+            const glm::vec3 wind = game.wind();
+            fire.check(fwWorld_SetWind(fire.world, &wind[0]), "fwWorld_SetWind");
+
+            const sample::Camera camera = overview.camera();
+            const FwView view = fireView(camera, light, frame);
+            const auto lights = gatherLights(fires, game, lamps, light);
+            const auto& jet = game.flames(glm::normalize(camera.target - camera.eye));
+            renderer.prepare(frame, {camera, light, game.placed(), lights, jet});
+            fire.recordOutside(frame, view);
+            stage.beginScene(frame);
+            renderer.drawSolid(frame);
+            fire.recordInside(frame, view);
+            renderer.drawJet(frame);
+            stage.endScene(frame);
+            stage.finish(frame);
+        }
+        vkDeviceWaitIdle(host.device);
+
+        if (options.headless) {
+            progress.finish();
+            sample::Summary summary;
+            summary.title = "The village under attack (" + choices.light + ")";
+            char perFrame[64];
+            std::snprintf(perFrame, sizeof perFrame, "%.0f ms a frame, pictures included",
+                          1000 * progress.seconds() / frames);
+            summary.rows = {
+                {"device", host.properties.deviceName},
+                {"size", std::to_string(options.width) + " x " + std::to_string(options.height) +
+                             ", " + std::to_string(frames) + " frames"},
+                {"fire", std::to_string(fires.caught()) + " things caught, " +
+                             std::to_string(fires.burning()) + " still burn, " +
+                             std::to_string(game.felled()) + " enemies down"},
+                {"time", perFrame}};
+            summary.passes = fire.passCosts();
+            summary.files = film.close();
+            sample::printSummary(summary);
+        }
+    }
+    return validation.exitCode();
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     return sample::guardedMain("tower_defence", [&] {
-        sample::OptionParser parser("tower_defence", "a village under attack, and on fire");
-        std::string lightName = "golden";
-        parser.addText("--light", "golden|noon|night", "time of day", lightName);
         sample::Options options;
         options.width = 1280;
         options.height = 720;
+        Choices choices;
+        sample::OptionParser parser("tower_defence", "a village under attack, and on fire");
+        parser.addText("--light", "NAME", "golden, noon or night", choices.light);
+        parser.addVector("--wind", "m/s, x east, z towards the camera", choices.wind);
+        parser.addNumber("--pace", "how much faster than real thatch it burns", choices.pace, 0.1f,
+                         1000.0f);
+        parser.addFlag("--msaa", "four samples a pixel", choices.antialias);
         if (!parser.parse(argc, argv, options)) return 0;
-        const tower::Daylight light = lightName == "night"  ? tower::moonlight()
-                                      : lightName == "noon" ? tower::noon()
-                                                            : tower::goldenHour();
-        const village::Scene scene = village::makeVillage(options.seed);
-        const tower::PaintedVillage painted = tower::paintVillage(scene);
-        sample::ValidationLog log;
-        {
-            sample::HostRequest request;
-            request.windowed = !options.headless;
-            if (options.validate) request.validation = &log;
-            sample::VulkanHost host(request);
-            sample::StageRequest stageRequest;
-            stageRequest.exposure = light.exposure * 1.62f;
-            stageRequest.vignette = 0.3f;
-            sample::Stage stage(host, options, stageRequest, options.frames ? options.frames : 3);
-            tower::Renderer renderer(host, stage, scene, painted);
-            std::vector<tower::Placed> placed;
-            for (const village::Instance& i : scene.instances)
-                placed.push_back({i.model, i.frame, i.tint, true, i.roadMetres >= 0});
-            sample::Camera camera;
-            camera.eye = {-1.5f, 36.0f, 33.4f};
-            camera.target = {-1.5f, 0.2f, -2.9f};
-            camera.fieldOfView = glm::radians(29.0f);
-            camera.nearPlane = 5;
-            camera.farPlane = 140;
-            stage.onPicture = [&](uint32_t n, sample::Picture&& picture) {
-                char name[32];
-                std::snprintf(name, sizeof name, "frame_%04u.png", n);
-                sample::writePng(options.out / name, picture);
-            };
-            tower::Jet jet(1);
-            sample::StageFrame frame;
-            while (stage.next(frame)) {
-                for (int i = 0; i < 30 && frame.number == 0; ++i)
-                    jet.advance(1 / 30.0f, {-.5f, 3, 6.5f},
-                                glm::normalize(glm::vec3(-.6f, -.15f, .5f)), {-3, 0, -1}, true);
-                jet.advance(frame.deltaTime, {-.5f, 3, 6.5f},
-                            glm::normalize(glm::vec3(-.6f, -.15f, .5f)), {-3, 0, -1}, true);
-                tower::SceneFrame sceneFrame{
-                    camera,
-                    light,
-                    placed,
-                    {},
-                    jet.billboards(glm::normalize(camera.target - camera.eye))};
-                renderer.prepare(frame, sceneFrame);
-                stage.beginScene(frame);
-                renderer.drawSolid(frame);
-                renderer.drawJet(frame);
-                stage.endScene(frame);
-                stage.finish(frame);
-            }
+        if (options.list) {
+            std::printf("one scene, in three lights: --light golden, noon or night\n");
+            return 0;
         }
-        return log.exitCode();
+        return run(options, choices);
     });
 }

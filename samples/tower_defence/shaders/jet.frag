@@ -26,7 +26,7 @@ float noise(vec2 p, uint s) {
 // Radiance of soot at a temperature: a black body's colour, and a brightness that falls fast.
 vec3 glow(float kelvin) {
     float x = clamp((kelvin - 1000.0) / 1000.0, -0.2, 1.2);
-    vec3 tint = vec3(1.0, 0.10 + 0.46 * max(x, 0.0), 0.22 * max(x, 0.0) * max(x, 0.0));
+    vec3 tint = vec3(1.0, 0.07 + 0.36 * max(x, 0.0), 0.10 * max(x, 0.0) * max(x, 0.0));
     return tint * exp(5.0 * (x - 0.42));
 }
 
