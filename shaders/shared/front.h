@@ -172,6 +172,20 @@ FW_SHARED_FN int pairCost(int ra, int rb, ivec3 a, ivec3 b, int w, FW_IN(FrontPr
     return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6) + linkCost(link8, p);
 }
 
+// Does arrival get earlier on the way from source a to source b? Arrival is convex along the
+// segment, so the slope at a's end tells: if not, a alone is the best of the two.
+FW_SHARED_FN bool pairFalls(int ra, int rb, ivec3 a, ivec3 b, FW_IN(FrontPrep) p) {
+    ivec3 side = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
+    uint l = isqrtNear(squareSum(ivec3(a.x * 8, a.y * 8, a.z * 8)));
+    if (l == 0u) return true;
+    // Change of distance over the whole segment at this rate: side . a / |a|, in whole units.
+    int stretch = int(uint(dotInt(side, a)) * 8u) / int(l);
+    int y = int((uint(stretch) << 16u) - (uint(dotInt(side, p.e)) << 2u));  // Q13 of 1/8 units
+    uint t = mulHighRound(p.A, uint(y < 0 ? -y : y));
+    int change = int(t < 0x0FFFFFFFu ? t : 0x0FFFFFFFu) * 2;
+    return (y < 0 ? -change : change) < ra - rb;
+}
+
 // Best over the segment between two sources: three weights, one parabola step, one more. The ends
 // cost ga and gb.
 FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
@@ -271,11 +285,13 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
     int hop = best;
     int c = (bestK + 1) & 7;
     int a = (bestK + 7) & 7;
-    if ((counts & (1u << uint(c))) != 0u) {
+    if ((counts & (1u << uint(c))) != 0u &&
+        pairFalls(rel[bestK], rel[c], ring.link[bestK], ring.link[c], p)) {
         int g = bestOfPair(rel[bestK], rel[c], hop, cost[c], ring.link[bestK], ring.link[c], p);
         best = g < best ? g : best;
     }
-    if ((counts & (1u << uint(a))) != 0u) {
+    if ((counts & (1u << uint(a))) != 0u &&
+        pairFalls(rel[bestK], rel[a], ring.link[bestK], ring.link[a], p)) {
         int g = bestOfPair(rel[bestK], rel[a], hop, cost[a], ring.link[bestK], ring.link[a], p);
         best = g < best ? g : best;
     }
