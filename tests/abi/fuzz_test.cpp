@@ -1,0 +1,401 @@
+// Random hosts: calls in any order with numbers, ids and bytes from anywhere, on the cpu backend.
+// Fixed seeds. The only things a random host keeps to are real pointers and honest array sizes.
+#include "abi/abi_support.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace {
+
+using host::Host;
+using host::lastMessage;
+
+struct Random {  // xorshift64*
+    uint64_t state;
+    explicit Random(uint64_t seed) : state(seed * 0x9E3779B97F4A7C15ull + 1) {}
+    uint32_t next() {
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        return uint32_t((state * 0x2545F4914F6CDD1Dull) >> 32);
+    }
+    uint32_t below(uint32_t n) { return next() % n; }
+    bool once(uint32_t in) { return below(in) == 0; }
+    float unit() { return float(next() >> 8) / 16777216.0f; }
+    float number() {  // mostly sane, sometimes anything at all
+        static constexpr float kOdd[] = {0.0f,
+                                         -0.0f,
+                                         1e-30f,
+                                         -1.0f,
+                                         1e9f,
+                                         -1e9f,
+                                         3.4e38f,
+                                         1e-45f,
+                                         std::numeric_limits<float>::infinity(),
+                                         -std::numeric_limits<float>::infinity(),
+                                         std::numeric_limits<float>::quiet_NaN()};
+        if (once(24)) return kOdd[below(11)];
+        return (unit() * 2 - 1) * (once(3) ? 10.0f : 1.0f);
+    }
+};
+
+template <class Id>
+struct Ids {
+    std::vector<Id> known;  // newest last; a few stay after they are gone
+    Id any(Random& random) const {
+        if (random.once(40)) return Id{random.next() % 8, random.next() % 4};
+        if (random.once(80)) return Id{random.next(), random.next()};
+        if (known.empty()) return Id{};
+        return known[known.size() - 1 - random.below(std::min(uint32_t(known.size()), 10u))];
+    }
+    void gone(Random& random, Id id) {
+        if (!random.once(5))
+            std::erase_if(known, [&](Id k) {
+                return k.index1 == id.index1 && k.generation == id.generation;
+            });
+    }
+};
+
+class Fuzz {
+ public:
+    explicit Fuzz(uint64_t seed) : random_(seed) {
+        context_ = host::createCpuContext(host_);
+        makeWorld();
+        const host::Sheet sheet(0.2f, 0.2f);
+        const FwMeshDef def = sheet.def(40);
+        uint64_t size = 0;
+        EXPECT_EQ(FW_OK, fwCookMesh(context_, &def, nullptr, &size));
+        cooked_.resize(size);
+        EXPECT_EQ(FW_OK, fwCookMesh(context_, &def, cooked_.data(), &size));
+    }
+    Fuzz(const Fuzz&) = delete;
+    Fuzz& operator=(const Fuzz&) = delete;
+    ~Fuzz() {
+        fwDestroyContext(context_);
+        EXPECT_EQ(0, host_.blocks);
+        EXPECT_EQ(0, host_.bytes);
+    }
+
+    void run(int calls) {
+        for (int i = 0; i < calls && !::testing::Test::HasFailure(); ++i) call();
+    }
+    uint64_t accepted = 0, refused = 0, meshes = 0, objects = 0, fires = 0;
+
+ private:
+    void makeWorld() {
+        FwWorldDef def = fwDefaultWorldDef();
+        def.paceFactor = 20;
+        def.maxStepsPerFrame = 4;
+        ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_));
+    }
+
+    void check(FwResult result) {
+        EXPECT_TRUE(result <= FW_NOT_READY && result >= FW_ERROR_WRONG_BACKEND)
+            << result << " " << lastMessage(world_);
+        if (result < 0) {
+            const std::string text = lastMessage(world_);
+            EXPECT_NE(std::string::npos, text.find("\n - While calling fw")) << text;
+        }
+        ++(result < 0 ? refused : accepted);
+    }
+
+    // Turns some words of a struct into something else; pointers are set after it.
+    template <class Def>
+    void garble(Def& def) {
+        if (!random_.once(4)) return;
+        auto* words = reinterpret_cast<unsigned char*>(&def);
+        const uint32_t count = uint32_t(sizeof def / 4);
+        for (uint32_t n = 1 + random_.below(3); n > 0; --n) {
+            const uint32_t at = 4 * (1 + random_.below(count - 1));
+            if (random_.once(2)) {
+                const float value = random_.number();
+                std::memcpy(words + at, &value, 4);
+            } else {
+                const uint32_t value = random_.once(2) ? random_.below(20) : random_.next();
+                std::memcpy(words + at, &value, 4);
+            }
+        }
+    }
+
+    void createMesh() {
+        FwMeshDef def = fwDefaultMeshDef();
+        def.texelsPerMetre = 5 + random_.unit() * 40;
+        def.mapSize = 8 + random_.below(120);
+        const uint32_t vertices = 3 + random_.below(24);
+        const uint32_t triangles = 1 + random_.below(24);
+        std::vector<float> positions, uvs, normals;
+        const bool wild = random_.once(3);
+        for (uint32_t i = 0; i < vertices * 3; ++i)
+            positions.push_back(wild ? random_.number() : random_.unit());
+        for (uint32_t i = 0; i < vertices * 2; ++i)
+            uvs.push_back(wild ? random_.number() : random_.unit());
+        for (uint32_t i = 0; i < vertices * 3; ++i) normals.push_back(random_.number());
+        std::vector<uint32_t> indices;
+        std::vector<uint16_t> narrow;
+        const uint32_t reach = random_.once(10) ? vertices + 2 : vertices;
+        for (uint32_t i = 0; i < triangles * 3; ++i) {
+            indices.push_back(random_.below(reach));
+            narrow.push_back(uint16_t(indices.back()));
+        }
+        std::vector<uint8_t> materials;
+        for (uint32_t i = 0; i < triangles; ++i)
+            materials.push_back(uint8_t(random_.below(random_.once(5) ? 256 : 8)));
+        garble(def);
+        def.vertexCount = vertices;
+        def.indexCount = triangles * 3 - (random_.once(30) ? 1 : 0);
+        def.mapSize = std::min(def.mapSize, 256u);  // so that a case stays small
+        def.indexSize = random_.once(30) ? 3 : (random_.once(2) ? 2 : 4);
+        def.indices = def.indexSize == 2 ? static_cast<const void*>(narrow.data())
+                                         : static_cast<const void*>(indices.data());
+        def.positions = random_.once(40) ? nullptr : positions.data();
+        def.uvs = random_.once(2) ? uvs.data() : nullptr;
+        def.normals = random_.once(2) ? normals.data() : nullptr;
+        def.details = nullptr;
+        def.colors = nullptr;
+        def.triangleMaterials = random_.once(2) ? materials.data() : nullptr;
+        def.cooked = nullptr;
+        def.cookedSize = 0;
+        def.structSize = sizeof def;
+        FwMeshId id{};
+        const FwResult result = fwWorld_CreateMesh(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) {
+            meshes_.known.push_back(id);
+            ++meshes;
+        }
+    }
+
+    void createCooked() {
+        std::vector<unsigned char> bytes = cooked_;
+        for (uint32_t n = random_.below(4); n > 0; --n)
+            bytes[random_.below(uint32_t(bytes.size()))] ^= uint8_t(1 + random_.below(255));
+        if (random_.once(3)) bytes.resize(random_.below(uint32_t(bytes.size())) + 1);
+        FwMeshDef def = fwDefaultMeshDef();
+        def.cooked = bytes.data();
+        def.cookedSize = bytes.size();
+        FwMeshId id{};
+        const FwResult result = fwWorld_CreateMesh(world_, &def, &id);
+        check(result);
+        if (bytes != cooked_) {
+            EXPECT_TRUE(result == FW_ERROR_BAD_DATA || result == FW_OK) << lastMessage(world_);
+        }
+        if (result == FW_OK) meshes_.known.push_back(id);
+    }
+
+    void createObject() {
+        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+        def.mesh = meshes_.any(random_);
+        for (int i = 0; i < 3; ++i) def.materials[i] = materials_.any(random_);
+        if (random_.once(5)) def.baseColor = images_.any(random_);
+        for (int i = 12; i < 15; ++i) def.transform[i] = random_.unit();
+        if (random_.once(6)) def.transform[random_.below(16)] = random_.number();
+        def.flags = random_.below(random_.once(9) ? 64 : 16);
+        std::vector<uint8_t> multiplier(64);
+        for (uint8_t& m : multiplier) m = uint8_t(random_.below(256));
+        garble(def);
+        def.multiplier = random_.once(3) ? multiplier.data() : nullptr;
+        def.multiplierWidth = random_.once(20) ? 0 : 8;
+        def.multiplierHeight = 8;
+        def.structSize = sizeof def;
+        FwBurnableMeshId id{};
+        const FwResult result = fwWorld_CreateBurnableMesh(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) {
+            objects_.known.push_back(id);
+            ++objects;
+        }
+    }
+
+    template <class Id>
+    void destroy(Ids<Id>& ids, FwResult(FW_CALL* function)(FwWorld*, Id)) {
+        const Id id = ids.any(random_);
+        const FwResult result = function(world_, id);
+        check(result);
+        if (result == FW_OK) ids.gone(random_, id);
+    }
+
+    void call() {
+        float values[16];
+        for (float& value : values) value = random_.number();
+        const FwBurnableMeshId object = objects_.any(random_);
+        switch (random_.below(26)) {
+            case 0: {
+                FwMaterialDef def = fwDefaultMaterialDef();
+                (void)fwInitMaterialPreset(&def, random_.below(16));
+                garble(def);
+                def.structSize = sizeof def;
+                FwMaterialId id{};
+                const FwResult result = fwWorld_CreateMaterial(world_, &def, &id);
+                check(result);
+                if (result == FW_OK) materials_.known.push_back(id);
+                break;
+            }
+            case 1:
+                if (random_.once(6)) destroy(materials_, fwWorld_DestroyMaterial);
+                break;
+            case 2: {
+                uint32_t pixels[64] = {};
+                FwImageDef def = fwDefaultImageDef();
+                def.width = random_.below(9);
+                def.height = random_.below(8);
+                def.pixels = random_.once(9) ? nullptr : pixels;
+                FwImageId id{};
+                const FwResult result = fwWorld_CreateImage(world_, &def, &id);
+                check(result);
+                if (result == FW_OK) images_.known.push_back(id);
+                break;
+            }
+            case 3:
+                if (random_.once(4)) destroy(images_, fwWorld_DestroyImage);
+                break;
+            case 4:
+                if (meshes_.known.size() < 12 || random_.once(8)) createMesh();
+                break;
+            case 5:
+                createCooked();
+                break;
+            case 6:
+                if (random_.once(3)) destroy(meshes_, fwWorld_DestroyMesh);
+                break;
+            case 7:
+            case 8:
+                if (objects_.known.size() < 24 || random_.once(8)) createObject();
+                break;
+            case 9:
+                if (random_.once(5)) destroy(objects_, fwWorld_DestroyBurnableMesh);
+                break;
+            case 10: {
+                float m[16] = {1, 0, 0, 0, 0,         1,         0,         0,
+                               0, 0, 1, 0, values[0], values[1], values[2], 1};
+                if (random_.once(4)) m[random_.below(16)] = values[3];
+                check(fwWorld_SetTransform(world_, object, m));
+                break;
+            }
+            case 11:
+                check(fwWorld_SetHidden(world_, object, random_.below(2)));
+                break;
+            case 12:
+            case 13:
+            case 14: {
+                FwIgnitionDef def = fwDefaultIgnitionDef();
+                def.kind = random_.below(random_.once(9) ? 9 : 4);
+                def.object = random_.once(4) ? FwBurnableMeshId{} : object;
+                std::memcpy(def.position, values, sizeof def.position);
+                def.radius = random_.unit() * 0.3f;
+                def.delay = random_.once(3) ? random_.unit() : 0;
+                garble(def);
+                def.structSize = sizeof def;
+                uint32_t texels = 0;
+                check(fwWorld_Ignite(world_, &def, &texels));
+                break;
+            }
+            case 15:
+                check(fwWorld_SetWind(world_, values));
+                break;
+            case 16:
+                check(fwWorld_TagPoint(world_, object, values, random_.next()));
+                break;
+            case 17: {
+                FwQueryId id{};
+                const FwResult result = fwWorld_RequestPoint(world_, object, values, &id);
+                check(result);
+                if (result == FW_OK) queries_.known.push_back(id);
+                break;
+            }
+            case 18: {
+                FwPointState state{};
+                state.structSize = random_.once(9) ? random_.below(100) : uint32_t(sizeof state);
+                if (state.structSize > sizeof state) state.structSize = sizeof state;
+                check(fwWorld_FetchPoint(world_, queries_.any(random_), &state));
+                break;
+            }
+            case 19: {
+                FwObjectState state{};
+                state.structSize = sizeof state;
+                const FwResult result = fwWorld_GetObjectState(world_, object, &state);
+                check(result);
+                if (result == FW_OK) {
+                    EXPECT_LE(state.ignited, state.texels);
+                    EXPECT_LE(state.burning, state.texels);
+                }
+                break;
+            }
+            case 20: {
+                FwEvent events[16];
+                for (const FwEvent& event : std::vector<FwEvent>(
+                         events, events + fwWorld_PollEvents(world_, events, random_.below(17)))) {
+                    EXPECT_LE(uint32_t(FW_EVENT_IGNITED), event.type);
+                    fires += event.type == FW_EVENT_IGNITED ? 1 : 0;
+                    EXPECT_GE(uint32_t(FW_EVENT_TIME_DROPPED), event.type);
+                }
+                break;
+            }
+            case 21: {
+                FwLight lights[8];
+                EXPECT_GE(8u, fwWorld_GetLights(world_, lights, random_.below(9)));
+                break;
+            }
+            case 22: {
+                check(fwDebug_SetSwitches(world_, random_.once(3) ? random_.below(128) : 0));
+                std::vector<uint32_t> ticks(random_.below(64));
+                if (random_.once(2)) check(fwDebug_RequestBurnMap(world_, object));
+                uint64_t count = 0, hash = 0, tick = 0;
+                check(fwDebug_FetchBurnMap(world_, object, ticks.data(), ticks.size(), &count,
+                                           &hash, &tick));
+                break;
+            }
+            case 23: {
+                uint32_t texels[4];
+                for (uint32_t& texel : texels)
+                    texel = random_.once(9) ? random_.next() : random_.below(64);
+                check(
+                    fwDebug_PushTexels(world_, object, random_.below(5), texels, random_.below(5)));
+                break;
+            }
+            default:
+                check(fwWorld_Step(world_, random_.once(30) ? values[0] : random_.unit() * 0.2f));
+                break;
+        }
+        if (random_.once(1500)) {
+            fwDestroyWorld(world_);
+            makeWorld();
+            materials_.known.clear();
+            images_.known.clear();
+            meshes_.known.clear();
+            objects_.known.clear();
+            queries_.known.clear();
+        }
+    }
+
+    Host host_;
+    Random random_;
+    FwContext* context_ = nullptr;
+    FwWorld* world_ = nullptr;
+    Ids<FwMaterialId> materials_;
+    Ids<FwImageId> images_;
+    Ids<FwMeshId> meshes_;
+    Ids<FwBurnableMeshId> objects_;
+    Ids<FwQueryId> queries_;
+    std::vector<unsigned char> cooked_;
+};
+
+class AbiFuzz : public ::testing::TestWithParam<int> {};
+
+TEST_P(AbiFuzz, RandomHosts) {
+    Fuzz fuzz{uint64_t(GetParam())};
+    fuzz.run(12000);
+    EXPECT_LT(400u, fuzz.accepted);
+    EXPECT_LT(400u, fuzz.refused);
+    // It must have got somewhere.
+    EXPECT_LT(10u, fuzz.meshes);
+    EXPECT_LT(20u, fuzz.objects);
+    EXPECT_LT(5u, fuzz.fires);
+    std::printf(
+        "           %llu accepted, %llu refused, %llu meshes, %llu objects, %llu fires\n",
+        static_cast<unsigned long long>(fuzz.accepted),
+        static_cast<unsigned long long>(fuzz.refused), static_cast<unsigned long long>(fuzz.meshes),
+        static_cast<unsigned long long>(fuzz.objects), static_cast<unsigned long long>(fuzz.fires));
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, AbiFuzz, ::testing::Range(1, 9));
+
+}  // namespace

@@ -1,0 +1,180 @@
+// Memory: the host's allocator says no, once at every place in turn and then for good. Nothing
+// crashes, nothing leaks, what failed changed nothing, and what was there still works.
+#include "abi/abi_support.h"
+
+namespace {
+
+using host::Host;
+
+// What a game does, on a world whose every call may fail. Returns the results in order.
+struct Session {
+    Host host;
+    FwContext* context = nullptr;
+    FwWorld* world = nullptr;
+    FwMaterialId material{};
+    FwMeshId mesh{};
+    FwImageId image{};
+    FwBurnableMeshId object{};
+    std::vector<FwResult> results;
+    ::host::Sheet sheet{0.3f, 0.2f};
+
+    FwResult note(FwResult result) {
+        results.push_back(result);
+        return result;
+    }
+
+    // Every step needs what came before; those that cannot run are left out.
+    void run() {
+        FwContextDef contextDef = fwDefaultContextDef();
+        contextDef.backend = FW_BACKEND_CPU;
+        contextDef.callbacks = host.callbacks();
+        FwErrorInfo error{};
+        if (note(fwCreateContext(&contextDef, &context, &error)) != FW_OK) {
+            EXPECT_EQ(nullptr, context);
+            EXPECT_EQ(results.back(), error.result);
+            if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        }
+        const FwWorldDef worldDef = fwDefaultWorldDef();
+        if (note(fwCreateWorld(context, &worldDef, &world)) != FW_OK) {
+            EXPECT_EQ(nullptr, world);
+            if (fwCreateWorld(context, &worldDef, &world) != FW_OK) return;
+        }
+        const FwMaterialDef materialDef = ::host::evenMaterial(0.05f, 0.4f);
+        retry([&] { return fwWorld_CreateMaterial(world, &materialDef, &material); });
+        const FwMeshDef meshDef = sheet.def(40);
+        retry([&] { return fwWorld_CreateMesh(world, &meshDef, &mesh); });
+        uint64_t cookedSize = 0;
+        retry([&] { return fwCookMesh(context, &meshDef, nullptr, &cookedSize); });
+        const uint32_t pixels[4] = {};
+        FwImageDef imageDef = fwDefaultImageDef();
+        imageDef.width = imageDef.height = 2;
+        imageDef.pixels = pixels;
+        retry([&] { return fwWorld_CreateImage(world, &imageDef, &image); });
+        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+        def.mesh = mesh;
+        def.materials[0] = material;
+        def.baseColor = image;
+        retry([&] { return fwWorld_CreateBurnableMesh(world, &def, &object); });
+        FwIgnitionDef ignition = fwDefaultIgnitionDef();
+        ignition.object = object;
+        ignition.position[0] = 0.1f;
+        ignition.position[2] = 0.1f;
+        ignition.radius = 0.03f;
+        retry([&] { return fwWorld_Ignite(world, &ignition, nullptr); });
+        const float point[3] = {0.1f, 0, 0.1f};
+        const float far[3] = {0.2f, 0, 0.1f};
+        retry([&] { return fwWorld_TagPoint(world, object, far, 1); });
+        for (int i = 0; i < 40; ++i) {
+            const float wind[3] = {0.1f * float(i), 0, 0};
+            retry([&] { return fwWorld_SetWind(world, wind); });
+            retry([&] { return fwWorld_Step(world, 1.0f / 32); });
+        }
+        FwQueryId query{};
+        retry([&] { return fwWorld_RequestPoint(world, object, point, &query); });
+        FwPointState state{};
+        state.structSize = sizeof state;
+        retry([&] { return fwWorld_FetchPoint(world, query, &state); });
+        retry([&] { return fwDebug_RequestBurnMap(world, object); });
+        (void)fwContext_GetMemoryReport(context, nullptr, 0);
+    }
+
+    // A call that memory failed once works the second time.
+    template <class Call>
+    void retry(const Call& call) {
+        if (note(call()) == FW_OK) return;
+        if (!host.failAlways) {
+            EXPECT_EQ(FW_OK, note(call()));
+        }
+    }
+
+    // The map's hash once all of `run` is through, or 0.
+    uint64_t finish() {
+        uint64_t hash = 0;
+        if (world && object.index1) {
+            if (fwDebug_RequestBurnMap(world, object) == FW_OK)
+                (void)fwDebug_FetchBurnMap(world, object, nullptr, 0, nullptr, &hash, nullptr);
+            EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(world, object));
+            EXPECT_EQ(FW_OK, fwWorld_DestroyMesh(world, mesh));
+        }
+        fwDestroyContext(context);
+        EXPECT_EQ(0, host.blocks);
+        EXPECT_EQ(0, host.bytes);
+        return hash;
+    }
+};
+
+TEST(AbiMemory, OneRefusalAtEveryAllocationInTurn) {
+    uint64_t golden = 0;
+    int64_t allocations = 0;
+    {
+        Session session;
+        session.run();
+        for (const FwResult result : session.results) EXPECT_EQ(FW_OK, result);
+        allocations = session.host.allocations;
+        golden = session.finish();
+        EXPECT_NE(0u, golden);
+    }
+    ASSERT_LT(100, allocations);
+    RecordProperty("allocations", std::to_string(allocations));
+    uint32_t refused = 0;
+    for (int64_t at = 0; at < allocations; ++at) {
+        SCOPED_TRACE("allocation " + std::to_string(at));
+        Session session;
+        session.host.failAt = at;
+        session.run();
+        uint32_t failures = 0;
+        for (const FwResult result : session.results) {
+            EXPECT_TRUE(result == FW_OK || result == FW_ERROR_OUT_OF_MEMORY)
+                << fwResultName(result) << ": " << session.host.lastError;
+            failures += result == FW_ERROR_OUT_OF_MEMORY ? 1 : 0;
+        }
+        EXPECT_GE(1u, failures);
+        refused += failures;
+        if (failures) {
+            EXPECT_NE(std::string::npos, session.host.lastError.find("Memory is exhausted"))
+                << session.host.lastError;
+        }
+        // As if it had not happened.
+        EXPECT_EQ(golden, session.finish());
+        if (HasFailure()) break;
+    }
+    EXPECT_LT(uint32_t(allocations) * 9 / 10, refused);
+}
+
+TEST(AbiMemory, NothingLeftFromAnAllocationOn) {
+    int64_t allocations = 0;
+    {
+        Session session;
+        session.run();
+        allocations = session.host.allocations;
+        (void)session.finish();
+    }
+    for (int64_t at = 0; at < allocations; at += 3) {
+        SCOPED_TRACE("allocation " + std::to_string(at));
+        Session session;
+        session.host.failAt = at;
+        session.host.failAlways = true;
+        session.run();
+        for (const FwResult result : session.results)
+            EXPECT_TRUE(result == FW_OK || result == FW_ERROR_OUT_OF_MEMORY ||
+                        result == FW_ERROR_STALE_ID || result == FW_ERROR_INVALID_ARGUMENT)
+                << fwResultName(result) << ": " << session.host.lastError;
+        (void)session.finish();
+        if (HasFailure()) break;
+    }
+}
+
+TEST(AbiMemory, AWarmedUpFrameAllocatesNothing) {
+    ::host::SheetWorld w(::host::evenMaterial(0.02f, 5));
+    w.ball(FW_IGNITE, 0.2f, 0, 0.1f, 0.03f);
+    w.run(2.0);
+    const int64_t before = w.host.allocations;
+    for (int i = 0; i < 300; ++i) {
+        const float wind[3] = {0.02f * float(i), 0, 0};
+        ASSERT_EQ(FW_OK, fwWorld_SetWind(w.world, wind));
+        ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1.0f / 60));
+    }
+    EXPECT_EQ(before, w.host.allocations);
+}
+
+}  // namespace
