@@ -158,8 +158,6 @@ int run(const sample::Options& options, const Switches& switches) {
             summary.files = film.close();
             sample::printSummary(summary);
         }
-        // Nothing of the plugin may be in use on the GPU when its context goes.
-        vkDeviceWaitIdle(host.device);
     }
     return validation.exitCode();
 }

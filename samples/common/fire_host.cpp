@@ -16,7 +16,7 @@ void FW_CALL printLog(void*, int32_t level, const char* message) {
 
 }  // namespace
 
-FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef) {
+FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef) : device_(host.device) {
     // The device goes over as it was made. What is not said here counts as not enabled.
     FwVulkanHost lent = fwDefaultVulkanHost();
     lent.apiVersion = host.made.apiVersion;
@@ -48,7 +48,10 @@ FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef) {
     }
 }
 
-FireHost::~FireHost() { fwDestroyContext(context); }
+FireHost::~FireHost() {
+    vkDeviceWaitIdle(device_);
+    fwDestroyContext(context);
+}
 
 void FireHost::registerTarget(const Stage& stage) {
     if (target.index1 != 0) check(fwContext_UnregisterTarget(context, target), "unregister");

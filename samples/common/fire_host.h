@@ -16,7 +16,7 @@ class FireHost {
  public:
     // Lends the device, builds the pipelines, makes the world. Throws Failure with the reason.
     FireHost(const VulkanHost& host, const FwWorldDef& worldDef);
-    ~FireHost();  // the device must be idle: destroy it after the stage, or wait first
+    ~FireHost();  // waits for the device first: nothing of ours may be in use when it goes
     FireHost(const FireHost&) = delete;
     FireHost& operator=(const FireHost&) = delete;
 
@@ -42,6 +42,7 @@ class FireHost {
  private:
     FwVulkanFrame describe(const StageFrame& frame, VkCommandBuffer secondary) const;
     void countPasses();
+    VkDevice device_ = VK_NULL_HANDLE;
     std::vector<PassCost> costs_;
     uint64_t lastTimed_ = 0;
 };

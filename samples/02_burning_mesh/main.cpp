@@ -1,0 +1,264 @@
+// Any glTF mesh burns in a studio: imported, given a burn map, set alight in front, filmed.
+// In a window: drag to turn, wheel to zoom, click to light; V makes the click pour water, F fire.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "common/camera.h"
+#include "common/film.h"
+#include "common/fire_host.h"
+#include "common/studio.h"
+#include "subject.h"
+
+namespace {
+
+struct Wishes {
+    std::string material = "pine";
+    float ignite[3] = {0, 0, 0};  // m, in the studio; used if `igniteGiven`
+    bool igniteGiven = false, noCache = false, reversed = false, msaa = false;
+    float pace = 0;      // 0: so that the run shows the whole burn
+    float seconds = 16;  // of a headless run
+    float turn = 0;      // degrees a second, turntable
+    float wind[3] = {0, 0, 0};
+    float size = 0;              // m; 0: the file's own
+    float mapSize = 1024;        // texels
+    float yaw = 30, pitch = 14;  // degrees
+};
+
+uint32_t presetNamed(const std::string& name) {
+    std::string known;
+    for (uint32_t i = 0; i < FW_MATERIAL_PRESET_COUNT; ++i) {
+        const std::string preset = fwMaterialPresetName(i);
+        if (preset == name) return i;
+        known += (i ? ", " : "") + preset;
+    }
+    throw sample::Failure("--material is \"" + name + "\"; there are " + known);
+}
+
+// The named file, else a bunny of the assets folder if there is one, else the toy.
+std::filesystem::path fileToBurn(const sample::Options& options) {
+    if (options.positional.size() > 1) {
+        throw sample::Failure("one file at a time; " + options.positional[1] + " is one too many");
+    }
+    if (!options.positional.empty()) return options.positional[0];
+    if (const char* assets = std::getenv("FLAMEWRIGHT_ASSETS")) {
+        const std::filesystem::path bunny = std::filesystem::path(assets) / "bunny_31k.glb";
+        if (std::filesystem::exists(bunny)) return bunny;
+    }
+    return {};
+}
+
+FwBurnableMeshId placeSubject(sample::FireHost& fire, const Subject& subject, FwMeshId mesh,
+                              uint32_t preset) {
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.mesh = mesh;
+    FwMaterialDef material = fwDefaultMaterialDef();
+    fire.check(fwInitMaterialPreset(&material, preset), "fwInitMaterialPreset");
+    if (subject.ownColors) {
+        for (float& channel : material.baseColor) channel = 1.0f;
+    }
+    FwMaterialId id{};
+    fire.check(fwWorld_CreateMaterial(fire.world, &material, &id), "fwWorld_CreateMaterial");
+    for (FwMaterialId& slot : def.materials) slot = id;
+    if (!subject.image.empty()) {
+        FwImageDef image = fwDefaultImageDef();
+        image.width = subject.imageWidth;
+        image.height = subject.imageHeight;
+        image.pixels = subject.image.data();
+        fire.check(fwWorld_CreateImage(fire.world, &image, &def.baseColor), "fwWorld_CreateImage");
+    }
+    FwBurnableMeshId object{};
+    fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object), "fwWorld_CreateBurnableMesh");
+    return object;
+}
+
+void touch(sample::FireHost& fire, glm::vec3 position, float radius, FwIgnitionKind kind) {
+    FwIgnitionDef def = fwDefaultIgnitionDef();
+    def.kind = kind;
+    for (int c = 0; c < 3; ++c) def.position[c] = position[c];
+    def.radius = radius;
+    fire.check(fwWorld_Ignite(fire.world, &def, nullptr), "fwWorld_Ignite");
+}
+
+int run(const sample::Options& options, const Wishes& wishes) {
+    const uint32_t preset = presetNamed(wishes.material);
+    Subject subject = loadSubject(fileToBurn(options), wishes.size);
+    for (const std::string& line : subject.model.report) {
+        std::printf("%s: %s\n", subject.name.c_str(), line.c_str());
+    }
+    sample::ValidationLog validation;
+    {
+        sample::HostRequest hostRequest;
+        hostRequest.windowed = !options.headless;
+        if (options.validate) hostRequest.validation = &validation;
+        const sample::VulkanHost host(hostRequest);
+        sample::StageRequest stageRequest;
+        stageRequest.title = "Flamewright: " + subject.name;
+        stageRequest.reversedDepth = wishes.reversed;
+        stageRequest.samples = wishes.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+        const auto wanted = static_cast<uint32_t>(std::lround(wishes.seconds * options.fps));
+        const uint32_t frames =
+            options.frames ? options.frames : (options.headless ? std::max(1u, wanted) : 0u);
+        sample::Stage stage(host, options, stageRequest, frames);
+        sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
+
+        sample::OrbitCamera orbit;
+        orbit.target = {0, 0.5f * subject.height(), 0};
+        orbit.yaw = glm::radians(wishes.yaw);
+        orbit.pitch = glm::radians(wishes.pitch);
+        orbit.fieldOfView = 0.5f;
+        orbit.distance = 1.08f * subject.radius() / std::sin(0.5f * orbit.fieldOfView);
+
+        // Faster than wood burns: so that the fire is through the subject before the run is over.
+        FwMaterialDef material = fwDefaultMaterialDef();
+        fwInitMaterialPreset(&material, preset);
+        float pace = wishes.pace;
+        if (!(pace > 0)) {
+            const float seconds =
+                options.headless ? static_cast<float>(frames / options.fps) : 25.0f;
+            const float mean = 2.2f * std::max(1e-5f, material.spreadRate);  // with its uphill runs
+            pace =
+                std::clamp(subject.size() / (mean * 0.55f * std::max(4.0f, seconds)), 1.0f, 400.0f);
+        }
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.paceFactor = pace;
+        worldDef.seed = options.seed;
+        worldDef.maxStepsPerFrame = 64;
+        for (int c = 0; c < 3; ++c) worldDef.wind[c] = wishes.wind[c];
+        sample::FireHost fire(host, worldDef);
+        fire.registerTarget(stage);
+        BurnMapRequest mapRequest;
+        mapRequest.mapSize = static_cast<uint32_t>(wishes.mapSize);
+        mapRequest.texelsPerMetre = std::clamp(
+            0.5f * static_cast<float>(mapRequest.mapSize) / subject.size(), 32.0f, 512.0f);
+        if (!wishes.noCache) mapRequest.cache = options.out.parent_path() / "cache";
+        std::string bakeNote;
+        const FwMeshId mesh = createMesh(fire, subject, mapRequest, bakeNote);
+        const FwBurnableMeshId object = placeSubject(fire, subject, mesh, preset);
+
+        FwView view = fwDefaultView();
+        sample::duskLight(view);
+        studio.castShadow(subject.model.positions, subject.model.indices, glm::mat4(1.0f),
+                          {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
+        const float matchRadius = 0.03f * subject.size();
+        glm::vec3 match(wishes.ignite[0], wishes.ignite[1], wishes.ignite[2]);
+        if (!wishes.igniteGiven) match = matchPlace(subject, orbit.camera().eye).position;
+
+        sample::FilmRequest filmRequest;
+        filmRequest.folder = options.out;
+        filmRequest.name = "burning_mesh";
+        filmRequest.framesPerSecond = options.fps;
+        filmRequest.frames = frames;
+        sample::Film film(filmRequest);
+        sample::Progress progress("burning_mesh", frames);
+        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
+            film.add(number, picture);
+            progress.update(number + 1);
+        };
+
+        FwIgnitionKind hand = FW_IGNITE;
+        sample::StageFrame frame;
+        while (stage.next(frame)) {
+            orbit.turn(frame.input.dragX, frame.input.dragY);
+            orbit.zoom(frame.input.wheel);
+            orbit.yaw += glm::radians(wishes.turn) * frame.deltaTime;
+            const float aspect =
+                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
+            const sample::Camera camera = orbit.camera();
+            const glm::mat4 viewMatrix = sample::viewMatrix(camera);
+            const glm::mat4 projection = sample::projectionMatrix(camera, aspect, wishes.reversed);
+            sample::setCamera(view, viewMatrix, projection);
+            view.time = static_cast<float>(frame.time);
+            // One frame of the untouched thing first.
+            if (frame.number == 1) touch(fire, match, matchRadius, FW_IGNITE);
+            for (int key : frame.input.keys) {
+                if (key == 'F') hand = FW_IGNITE;
+                if (key == 'V') hand = FW_WET;
+            }
+            if (frame.input.click) {
+                const glm::vec4 far =
+                    glm::inverse(projection * viewMatrix) *
+                    glm::vec4(2 * frame.input.clickX - 1, 2 * frame.input.clickY - 1, 0.5f, 1);
+                const glm::vec3 way = glm::normalize(glm::vec3(far) / far.w - camera.eye);
+                const SurfacePoint point = castRay(subject, camera.eye, way);
+                if (point.hit) touch(fire, point.position, matchRadius, hand);
+            }
+            FwLight lights[8];
+            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
+            fire.recordOutside(frame, view);
+            stage.beginScene(frame);
+            studio.draw(frame, frame.commands, view, {lights, lightCount});
+            fire.recordInside(frame, view);
+            stage.endScene(frame);
+            stage.finish(frame);
+        }
+
+        if (options.headless) {
+            progress.finish();
+            FwMeshInfo info{};
+            info.structSize = sizeof info;
+            fwWorld_GetMeshInfo(fire.world, mesh, &info);
+            FwObjectState state{};
+            state.structSize = sizeof state;
+            fwWorld_GetObjectState(fire.world, object, &state);
+            char line[160];
+            sample::Summary summary;
+            summary.title = "Burning " + subject.name;
+            summary.rows.emplace_back("device", host.properties.deviceName);
+            std::snprintf(line, sizeof line, "%u vertices, %u triangles, %.2f m, %.2f m^2",
+                          info.vertices, info.triangles, subject.size(), info.area);
+            summary.rows.emplace_back("mesh", line);
+            std::snprintf(line, sizeof line, "%u x %u, %u texels in %u charts, %.0f per metre",
+                          info.mapWidth, info.mapHeight, info.texels, info.charts,
+                          info.texelsPerMetre);
+            summary.rows.emplace_back("burn map", line);
+            summary.rows.emplace_back("", bakeNote);
+            std::snprintf(line, sizeof line, "%s, %.0f times as fast as real; %.0f %% caught fire",
+                          wishes.material.c_str(), pace, 100.0f * state.burntFraction);
+            summary.rows.emplace_back("fire", line);
+            std::snprintf(line, sizeof line, "%u x %u, %u frames in %.0f s", options.width,
+                          options.height, frames, progress.seconds());
+            summary.rows.emplace_back("pictures", line);
+            summary.passes = fire.passCosts();
+            summary.files = film.close();
+            sample::printSummary(summary);
+        }
+    }
+    return validation.exitCode();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return sample::guardedMain("02_burning_mesh", [&] {
+        sample::Options options;
+        options.fps = 8.0;
+        Wishes wishes;
+        sample::OptionParser parser("02_burning_mesh", "any glTF mesh burns", "[FILE.glb]");
+        parser.addText("--material", "NAME", "what it is made of; --list names them",
+                       wishes.material);
+        parser.addVector("--ignite", "where to light it, m, floor is 0", wishes.ignite,
+                         &wishes.igniteGiven);
+        parser.addNumber("--pace", "how much faster than real", wishes.pace, 0.1f, 1000.0f);
+        parser.addNumber("--seconds", "length of a headless run", wishes.seconds, 0.1f, 600.0f);
+        parser.addNumber("--turn", "turntable, degrees a second", wishes.turn, -360.0f, 360.0f);
+        parser.addNumber("--yaw", "camera around it, degrees", wishes.yaw, -360.0f, 360.0f);
+        parser.addNumber("--pitch", "camera above it, degrees", wishes.pitch, -5.0f, 85.0f);
+        parser.addVector("--wind", "m/s", wishes.wind);
+        parser.addNumber("--scale-to", "largest side, m", wishes.size, 0.05f, 20.0f);
+        parser.addNumber("--map", "side of the burn map, texels", wishes.mapSize, 8.0f, 4096.0f);
+        parser.addFlag("--no-cache", "bake anew", wishes.noCache);
+        parser.addFlag("--msaa", "four samples", wishes.msaa);
+        parser.addFlag("--reversed", "reversed depth", wishes.reversed);
+        if (!parser.parse(argc, argv, options)) return 0;
+        if (options.list) {
+            std::printf("materials:");
+            for (uint32_t i = 0; i < FW_MATERIAL_PRESET_COUNT; ++i) {
+                std::printf(" %s", fwMaterialPresetName(i));
+            }
+            std::printf("\n");
+            return 0;
+        }
+        return run(options, wishes);
+    });
+}

@@ -1,0 +1,44 @@
+// What is going to burn: a mesh of any size brought onto the studio's floor, with its colours,
+// the answers about its surface that the sample needs, and its burn map from the cache.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "common/fire_host.h"
+#include "import/gltf_import.h"
+
+struct Subject {
+    std::string name;
+    fwimport::ImportedModel model;  // m, standing on y = 0, centred on the vertical axis
+    bool ownColors = false;         // it brings colours; else the material's own are used
+    float scale = 1.0f;             // that was applied to the file's units
+    std::vector<uint8_t> image;     // RGBA8, empty: none
+    uint32_t imageWidth = 0, imageHeight = 0;
+    float size() const;    // m, largest side
+    float height() const;  // m
+    float radius() const;  // m, of the ball around its middle
+};
+
+// `file` empty: the wooden toy. Throws sample::Failure with the importer's message.
+Subject loadSubject(const std::filesystem::path& file, float wantedSize);
+
+struct SurfacePoint {
+    glm::vec3 position{0}, normal{0};
+    bool hit = false;
+};
+// Where a ray meets it first.
+SurfacePoint castRay(const Subject& subject, glm::vec3 origin, glm::vec3 direction);
+// A low place that faces the viewer: where one would hold the match.
+SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye);
+
+struct BurnMapRequest {
+    uint32_t mapSize = 1024;  // texels
+    float texelsPerMetre = 256.0f;
+    std::filesystem::path cache;  // folder; empty: do not keep
+};
+// Bakes, or reads what an earlier run baked for the same arrays. `note` says which.
+FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMapRequest& request,
+                    std::string& note);
