@@ -1,10 +1,14 @@
 // flamewright_vulkan.h: from what a host lends to the vk backend. The only file here that names Vk.
 #include "flamewright/flamewright_vulkan.h"
 
+#include "components/look_table.h"
+#include "components/look_textures.h"
+#include "components/view_params.h"
 #include "gpu/vk/vk_backend.h"
 #include "objects.h"
 #include "vulkan_defs.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace fw;
@@ -36,17 +40,44 @@ bool write(void* out) noexcept {
     return true;
 }
 
+// How things look, handed down to a backend that does not know the components.
+void fillViewParams(const gpu::ViewInput& input, gpu::ViewParams& out) {
+    components::ViewInputs inputs;
+    std::copy_n(input.viewport, 4, inputs.viewport);
+    inputs.now = input.now;
+    inputs.tickFraction = input.tickFraction;
+    inputs.lightCount = input.lightCount;
+    inputs.flameCapacity = input.flameCapacity;
+    inputs.seed = input.seed;
+    std::copy_n(input.up, 3, inputs.up);
+    std::copy_n(input.wind, 3, inputs.wind);
+    inputs.paceFactor = input.paceFactor;
+    out = components::makeViewParams(*input.view, inputs);
+}
+
 class VulkanDevice final : public Device {
  public:
     VulkanDevice(const FwVulkanHost* host, uint64_t budget, core::Memory& memory,
                  const core::Log& log)
-        : memory_(memory), log_(log), context_(host, budget, &memory, log) {}
+        : memory_(memory),
+          log_(log),
+          context_(host, budget, &memory, log),
+          lookTable_(&memory),
+          lookTextures_(components::bakeLookTextures(&memory)) {
+        for (uint32_t i = 0; i < components::kLookCount; ++i)
+            lookTable_.push_back(components::materialLook(i));
+    }
 
     gpu::Backend* createBackend(const FwWorldDef& def) override {
         gpu::vk::WorldLimits limits;
         limits.maxLights = def.maxLights;
         limits.maxFlames = def.maxFlames;
         limits.seed = def.seed;
+        std::copy_n(def.up, 3, limits.up);
+        limits.paceFactor = def.paceFactor;
+        limits.looks.table = lookTable_;
+        limits.looks.textures = lookTextures_;
+        limits.looks.viewParams = &fillViewParams;
         return std::pmr::polymorphic_allocator<>(&memory_).new_object<gpu::vk::VkBackend>(
             context_, limits, &memory_, log_);
     }
@@ -93,6 +124,9 @@ class VulkanDevice final : public Device {
     core::Memory& memory_;
     const core::Log& log_;
     gpu::vk::Context context_;
+    // Kept for the worlds to come: a backend copies them when it is made.
+    std::pmr::vector<gpu::MaterialLook> lookTable_;
+    std::pmr::vector<std::byte> lookTextures_;
 };
 
 VulkanDevice& vulkanOf(FwContext& context) {

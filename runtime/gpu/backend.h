@@ -47,7 +47,7 @@ struct FramePlan {
     uint32_t switches = 0;                // FwDebugSwitch
     uint32_t endTick = 0;                 // tick after the last step
     float wind[3] = {};                   // m/s, world; for looks only
-    float tickFraction = 0;               // into the running tick, [0, 1); for looks only
+    float tickFraction = 0;               // into the running step, [0, 1); for looks only
 };
 
 struct BurnMap {

@@ -38,6 +38,8 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     plan.burnMaps = frame_.burnMaps;
     plan.switches = switches_;
     plan.endTick = uint32_t(time.after.tick);
+    std::copy_n(wind_, 3, plan.wind);
+    plan.tickFraction = float(double(time.after.fraction) / double(Clock::kStepUnits));
     backend_.run(plan);
 
     commitFrame(frameIndex, time, !skip);

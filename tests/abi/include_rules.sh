@@ -12,7 +12,7 @@ runtime/mesh|mesh/|core/|shared/|flamewright/flamewright.h
 runtime/components|components/|core/|fire/|mesh/|shared/|flamewright/flamewright.h
 runtime/world|world/|components/|core/|fire/|mesh/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
 runtime/gpu|gpu/|core/|fire/|mesh/|shared/|flamewright/
-plugin/src|flamewright/|world/|core/|gpu/backend.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
+plugin/src|flamewright/|world/|components/|core/|gpu/backend.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
 plugin/include|flamewright/
 shaders/shared|shared/
 samples|flamewright/|common/|import/
