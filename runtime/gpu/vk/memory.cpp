@@ -73,7 +73,10 @@ Piece DeviceMemory::allocate(const VkMemoryRequirements& needs, MemoryKind kind,
     Piece piece;
     for (uint32_t i = 0; i < blocks_.size(); ++i) {
         Block& block = blocks_[i];
-        if (!block.memory || block.type != type || block.image != image) continue;
+        const bool mapped = kind != MemoryKind::device;
+        if (!block.memory || block.type != type || block.image != image ||
+            (block.mapped != nullptr) != mapped)
+            continue;
         if (cut(block, needs, piece)) {
             piece.block = i;
             return piece;
@@ -152,8 +155,8 @@ void DeviceMemory::release(Piece& piece) noexcept {
     // Empty. One spare block per kind stays, so that a host that makes and destroys does not churn.
     for (const Block& other : blocks_) {
         if (&other == &block || !other.memory || other.type != block.type ||
-            other.image != block.image || other.free.size() != 1 ||
-            other.free[0].size != other.size)
+            other.image != block.image || (other.mapped != nullptr) != (block.mapped != nullptr) ||
+            other.free.size() != 1 || other.free[0].size != other.size)
             continue;
         device_.table.FreeMemory(device_.handle, block.memory, device_.allocationCallbacks);
         used_ -= block.size;

@@ -1,0 +1,126 @@
+// The device against the cpu backend, bit for bit: random fires, douses, dryings and wind on many
+// meshes at once. Validation and synchronization validation listen all the while.
+#include "gpu/cpu/cpu_backend.h"
+#include "support/burn_scene.h"
+
+#include "flamewright/flamewright_debug.h"
+
+namespace fw::test {
+namespace {
+
+class FrontEquality : public GpuTest {
+ protected:
+    struct Outcome {
+        bool equal = true;
+        uint32_t step = 0, object = 0, texel = 0;
+        uint64_t ignitions = 0;
+        uint32_t compared = 0, runTiles = 0;
+    };
+
+    // Runs the same plans on both; vk may get switches of its own.
+    Outcome compare(const BurnScene& scene, uint32_t steps, uint32_t stepsPerFrame,
+                    uint32_t mapEvery, uint32_t seed, uint32_t vkSwitches = 0) {
+        Outcome outcome;
+        VkRig rig(*device_);
+        gpu::cpu::CpuBackend cpu(std::pmr::get_default_resource(), 16);
+        scene.create(rig.backend);
+        scene.create(cpu);
+        PlanMaker maker(scene, seed);
+        std::vector<FrameAnswer> expected;
+        size_t at = 0;
+        const auto check = [&](const std::vector<FrameAnswer>& got) {
+            for (const FrameAnswer& answer : got) {
+                if (answer.frameIndex == 0) continue;
+                while (at < expected.size() && expected[at].frameIndex < answer.frameIndex) ++at;
+                if (at == expected.size()) {
+                    ADD_FAILURE() << "an answer of frame " << answer.frameIndex;
+                    return;
+                }
+                const FrameAnswer& want = expected[at];
+                ASSERT_EQ(want.frameIndex, answer.frameIndex);
+                compareAnswer(want, answer, outcome);
+                outcome.runTiles += answer.runTiles;
+            }
+        };
+        const uint32_t frames = steps / stepsPerFrame;
+        for (uint32_t f = 0; f < frames && outcome.equal; ++f) {
+            OwnedPlan plan = maker.next(stepsPerFrame, f % mapEvery == mapEvery - 1);
+            cpu.run(plan.plan);
+            while (const gpu::Readback* readback = cpu.nextReadback())
+                expected.push_back(copyAnswer(*readback));
+            plan.plan.switches |= vkSwitches;
+            rig.run(plan.plan);
+            check(rig.takeAnswers());
+        }
+        check(rig.finish());
+        for (uint32_t o = 0; o < scene.objects.size(); ++o)
+            outcome.ignitions += cpu.counters(o).ignited;
+        return outcome;
+    }
+
+    static void compareAnswer(const FrameAnswer& want, const FrameAnswer& got, Outcome& outcome) {
+        if (!outcome.equal) return;
+        const auto differ = [&](uint32_t object, uint32_t texel) {
+            outcome.equal = false;
+            outcome.step = uint32_t(want.frameIndex);
+            outcome.object = object;
+            outcome.texel = texel;
+        };
+        for (size_t o = 0; o < want.maps.size(); ++o) {
+            for (size_t i = 0; i < want.maps[o].size(); ++i) {
+                if (want.maps[o][i] != got.maps[o][i]) return differ(uint32_t(o), uint32_t(i));
+            }
+            ++outcome.compared;
+        }
+        if (want.answers != got.answers) return differ(0xFFFFFFFFu, 0);
+        for (size_t o = 0; o < want.counters.size(); ++o) {
+            if (want.counters[o].ignited != got.counters[o].ignited)
+                return differ(uint32_t(o), 0xFFFFFFFEu);
+        }
+    }
+};
+
+std::string text(uint32_t frame, uint32_t object, uint32_t texel) {
+    return "frame " + std::to_string(frame) + ", object " + std::to_string(object) + ", texel " +
+           std::to_string(texel);
+}
+
+TEST_F(FrontEquality, P7_TenThousandStepsAreEqual) {
+    if (!device_) return;
+    const BurnScene scene = BurnScene::make(11);
+    ASSERT_GE(scene.domains.size(), 5u);
+    const Outcome outcome = compare(scene, 10000, 8, 10, 1);
+    EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
+    EXPECT_GT(outcome.compared, 500u);
+    EXPECT_GT(outcome.ignitions, 1000u);
+    std::printf("P7: %zu objects, 10000 steps, %u maps compared, %u tiles run\n",
+                scene.objects.size(), outcome.compared, outcome.runTiles);
+}
+
+TEST_F(FrontEquality, P7_OneStepPerFrame) {
+    if (!device_) return;
+    const BurnScene scene = BurnScene::make(12);
+    const Outcome outcome = compare(scene, 300, 1, 3, 2);
+    EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
+}
+
+TEST_F(FrontEquality, P7_DenseEqualsSparse) {
+    if (!device_) return;
+    const BurnScene scene = BurnScene::make(13);
+    const Outcome outcome = compare(scene, 600, 4, 10, 3, FW_DEBUG_DENSE);
+    EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
+}
+
+TEST_F(FrontEquality, P18_MutantsAreCaught) {
+    if (!device_) return;
+    const BurnScene scene = BurnScene::make(14);
+    for (const uint32_t mutant :
+         {FW_DEBUG_NO_SEAM_WAKE, FW_DEBUG_WRONG_READERS, FW_DEBUG_NO_WIND_WAKE}) {
+        const Outcome outcome = compare(scene, 1600, 4, 4, 4, uint32_t(mutant));
+        EXPECT_FALSE(outcome.equal) << "switch " << mutant << " goes unnoticed";
+        std::printf("mutant %u: noticed in frame %u\n", uint32_t(mutant), outcome.step);
+    }
+}
+
+}  // namespace
+}  // namespace fw::test

@@ -1,0 +1,104 @@
+// Several objects on several meshes, random plans for them, and a backend on a test device that
+// runs those plans: what the equality tests of the backends need.
+#pragma once
+#include "core/memory.h"
+#include "gpu/vk/vk_backend.h"
+#include "support/meshes.h"
+#include "support/vulkan_device.h"
+
+#include <functional>
+#include <random>
+
+namespace fw::test {
+
+struct SceneObject {
+    uint32_t mesh = 0;
+    std::array<gpu::BurnMaterial, gpu::kMaterialsPerObject> materials{};
+    std::vector<uint16_t> slowness;  // empty: the mesh's
+    uint32_t window = 512, substepShift = 0;
+    uint32_t flags = 0;  // kObject..., beyond live
+};
+
+struct BurnScene {
+    std::vector<mesh::BurnDomain> domains;
+    std::vector<SceneObject> objects;
+
+    // `densityScale` 1: some 2000 texels a mesh. With $FLAMEWRIGHT_ASSETS also two read ones.
+    static BurnScene make(uint32_t seed, double densityScale = 1);
+    void create(gpu::Backend& backend) const;
+    [[nodiscard]] gpu::ObjectInit init(uint32_t object) const;
+};
+
+// A material without preset: speeds in m/s, times in s, drive in its own unit.
+gpu::BurnMaterial plainMaterial(const mesh::BurnDomain& domain, double rate, double gain = 0,
+                                double burnTime = -1);
+
+// Owns what a FramePlan points to.
+struct OwnedPlan {
+    gpu::FramePlan plan;
+    std::vector<gpu::StepPlan> steps;
+    std::vector<std::vector<gpu::TexelEvent>> events;
+    std::vector<std::vector<gpu::MaterialUpdate>> updates;
+    std::vector<gpu::Probe> probes;
+    std::vector<uint32_t> maps;
+    void point();  // spans at the vectors, after they are filled
+};
+
+// Random ignitions, douses, dryings and wind latches; the fire is kept alive for ever.
+class PlanMaker {
+ public:
+    PlanMaker(const BurnScene& scene, uint32_t seed) : scene_(scene), random_(seed) {}
+    // `maps`: also read back every object's whole state.
+    OwnedPlan next(uint32_t steps, bool maps, uint32_t switches = 0);
+    [[nodiscard]] uint32_t now() const { return now_; }
+    double latches = 0.1, events = 0.25;  // chances per step
+
+ private:
+    uint32_t pick(uint32_t count) { return uint32_t(random_() % count); }
+    bool chance(double p) { return double(random_() % 100000) < p * 100000; }
+    void ball(std::vector<gpu::TexelEvent>& out, uint32_t object, uint32_t kind, float radius);
+
+    const BurnScene& scene_;
+    std::mt19937 random_;
+    uint32_t now_ = 4096, step_ = 0;
+    uint64_t frame_ = 0;
+};
+
+// What a backend answered of one frame, copied.
+struct FrameAnswer {
+    uint64_t frameIndex = 0;
+    std::vector<std::vector<uint32_t>> maps;  // by object
+    std::vector<gpu::ObjectCounters> counters;
+    std::vector<uint32_t> answers;
+    uint32_t frontTiles = 0, runTiles = 0, burningTiles = 0;
+};
+FrameAnswer copyAnswer(const gpu::Readback& readback);
+
+// A context and a backend on a test device, driven as a host drives them.
+class VkRig {
+ public:
+    explicit VkRig(TestDevice& device, uint32_t inFlight = 2, uint64_t budget = 0,
+                   const gpu::vk::WorldLimits& limits = {},
+                   PFN_vkGetInstanceProcAddr entry = nullptr);
+    // Records and submits one frame; its answers come some frames later.
+    void run(const gpu::FramePlan& plan);
+    // Recorded inside the same command buffer, after the outside part.
+    std::function<void(const FwVulkanFrame&)> alsoRecord;
+    std::vector<FrameAnswer> takeAnswers() { return std::exchange(answers_, {}); }
+    // Waits and fetches what is still out.
+    std::vector<FrameAnswer> finish();
+
+    FwVulkanHost host;
+    core::Memory memory;
+    core::Log log;
+    gpu::vk::Context context;
+    gpu::vk::VkBackend backend;
+    HostFrames frames;
+    FwView view{};
+
+ private:
+    void collect();
+    std::vector<FrameAnswer> answers_;
+};
+
+}  // namespace fw::test

@@ -1,0 +1,112 @@
+// A Vulkan device for tests, the way a host would make it: by default API 1.0 with no feature and
+// no extension. Validation and synchronization validation listen; any message fails the test.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <vulkan/vulkan.h>
+
+#include "flamewright/flamewright_vulkan.h"
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace fw::test {
+
+struct DeviceOptions {
+    uint32_t apiVersion = VK_API_VERSION_1_0;
+    bool declareDebugUtils = true;  // tell the library about VK_EXT_debug_utils
+    bool independentBlend = false;
+};
+
+class TestDevice {
+ public:
+    // Null, with the reason, where there is no device or no validation layer.
+    static std::unique_ptr<TestDevice> make(const DeviceOptions& options, std::string& reason);
+    ~TestDevice();
+    TestDevice(const TestDevice&) = delete;
+    TestDevice& operator=(const TestDevice&) = delete;
+
+    [[nodiscard]] FwVulkanHost host() const;
+    // Records with `record`, submits and waits.
+    void run(const std::function<void(VkCommandBuffer)>& record);
+    [[nodiscard]] uint32_t memoryType(uint32_t allowed, VkMemoryPropertyFlags flags) const;
+    std::vector<std::string> takeMessages();
+
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+    uint32_t queueFamily = 0;
+    VkCommandPool pool = VK_NULL_HANDLE;
+    VkPhysicalDeviceProperties properties{};
+    DeviceOptions options;
+
+ private:
+    TestDevice() = default;
+    static VKAPI_ATTR VkBool32 VKAPI_CALL listen(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                 VkDebugUtilsMessageTypeFlagsEXT type,
+                                                 const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                 void* user);
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    VkPhysicalDeviceFeatures features_{};
+    std::mutex mutex_;
+    std::vector<std::string> messages_;
+};
+
+// A host's frames: some in flight, each with a command buffer and a fence.
+class HostFrames {
+ public:
+    HostFrames(TestDevice& device, uint32_t inFlight);
+    ~HostFrames();
+    HostFrames(const HostFrames&) = delete;
+    HostFrames& operator=(const HostFrames&) = delete;
+
+    // Waits for the slot and begins its command buffer.
+    FwVulkanFrame begin(float deltaTime = 0);
+    void submit();  // of the frame begun last
+    void waitAll();
+    // A frame struct that says everything is complete, for use after waitAll.
+    [[nodiscard]] uint64_t submitted() const { return index_; }
+
+ private:
+    struct Slot {
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        VkFence fence = VK_NULL_HANDLE;
+        uint64_t index = 0;
+    };
+    TestDevice& device_;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    std::vector<Slot> slots_;
+    uint64_t index_ = 0, completed_ = 0;
+};
+
+// Makes a device, skips (or fails, with FLAMEWRIGHT_REQUIRE_GPU) without one, and fails on
+// messages.
+class GpuTest : public ::testing::Test {
+ protected:
+    void SetUp() override { makeDevice({}); }
+    void TearDown() override;
+    void makeDevice(const DeviceOptions& options);
+
+    std::unique_ptr<TestDevice> device_;
+};
+
+bool gpuRequired();
+
+// Counts what a library must not do in a steady frame. One at a time.
+struct VulkanCounts {
+    uint64_t submits = 0, waits = 0, memory = 0, maps = 0, pipelines = 0, descriptorPools = 0,
+             objects =
+                 0;  // objects: buffers, images, views, layouts, modules, passes, framebuffers
+    [[nodiscard]] uint64_t total() const {
+        return submits + waits + memory + maps + pipelines + descriptorPools + objects;
+    }
+};
+// Puts itself between the library and the loader: use its entry as FwVulkanHost's.
+PFN_vkGetInstanceProcAddr countingEntry();
+VulkanCounts takeCounts();  // since the last take
+
+}  // namespace fw::test
