@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <memory>
 
 #include "toy.h"
 
@@ -263,18 +262,17 @@ FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMa
         }
         // A cache that cannot be read is made again.
     }
-    // The first try has room for any map of this size, so that one bake is enough.
-    uint64_t size = (64ull << 20) + 64ull * def.mapSize * def.mapSize + 64ull * def.indexCount;
-    std::unique_ptr<char[]> bytes(new char[size]);
-    FwResult result = fwCookMesh(fire.context, &def, bytes.get(), &size);
-    fire.check(result, "fwCookMesh");
-    cooked.cooked = bytes.get();
+    uint64_t size = 0;
+    fire.check(fwCookMesh(fire.context, &def, nullptr, &size), "fwCookMesh");
+    std::vector<char> bytes(size);
+    fire.check(fwCookMesh(fire.context, &def, bytes.data(), &size), "fwCookMesh");
+    cooked.cooked = bytes.data();
     cooked.cookedSize = size;
     fire.check(fwWorld_CreateMesh(fire.world, &cooked, &id), "fwWorld_CreateMesh");
     std::error_code ignored;
     std::filesystem::create_directories(request.cache, ignored);
     std::ofstream file(path, std::ios::binary);
-    file.write(bytes.get(), static_cast<std::streamsize>(size));
+    file.write(bytes.data(), static_cast<std::streamsize>(size));
     note = file ? "baked, kept in " + path.string() : "baked (the cache cannot be written)";
     return id;
 }
