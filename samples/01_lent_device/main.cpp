@@ -71,8 +71,8 @@ int run(const sample::Options& options, const Switches& switches) {
         const uint32_t frames = options.frames ? options.frames : (options.headless ? 96u : 0u);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 0.7f);
-        studio.addBlock({-0.55f, 0.09f, 0.42f}, {0.14f, 0.09f, 0.11f});
-        studio.addBlock({-0.52f, 0.24f, 0.40f}, {0.08f, 0.06f, 0.08f});
+        studio.addBlock({0.40f, 0.055f, 0.48f}, {0.13f, 0.055f, 0.08f});
+        studio.addBlock({0.44f, 0.145f, 0.47f}, {0.07f, 0.035f, 0.06f});
 
         // The plugin's part: lend the device, say what the pass looks like, fill the world.
         FwWorldDef worldDef = fwDefaultWorldDef();

@@ -218,7 +218,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
             summary.rows.emplace_back("fire", line);
             std::snprintf(line, sizeof line, "%u x %u, %u frames in %.0f s", options.width,
                           options.height, frames, progress.seconds());
-            summary.rows.emplace_back("pictures", line);
+            summary.rows.emplace_back("run", line);
             summary.passes = fire.passCosts();
             summary.files = film.close();
             sample::printSummary(summary);

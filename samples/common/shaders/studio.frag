@@ -28,7 +28,7 @@ void main() {
     vec3 albedo = mix(vec3(0.150, 0.145, 0.140), vec3(0.20, 0.215, 0.24),
                       smoothstep(0.0, 0.3, local.y * scale));
     albedo *= 0.70 + 0.42 * grain.r + 0.18 * grain.g;
-    if (push.solid > 0.5) albedo *= vec3(1.25, 1.2, 1.1);
+    if (push.solid > 0.5) albedo *= vec3(0.62, 0.60, 0.57);
     vec2 place = local.xz / (2.0 * block.ambientSky.w) + 0.5;
     vec2 shade = vec2(1.0);
     bool mapped = all(greaterThan(place, vec2(0.0))) && all(lessThan(place, vec2(1.0)));
