@@ -214,7 +214,7 @@ void bakeRelief(const Plane& noise, const Plane& charred, Plane& plane) {
     const auto crackDepth = [&](int x, int y) {
         const Texel& t = at(charred, x, y);
         const float wide = 1.0f - smooth(0.25f * kWidth, 1.3f * kWidth, t.c[0]);
-        const float fine = 0.4f * (1.0f - smooth(0.05f, 0.25f, t.c[1]));
+        const float fine = 0.25f * (1.0f - smooth(0.05f, 0.25f, t.c[1]));
         return 0.75f * std::max(wide, fine) + 0.42f * (1.0f - t.c[3]);
     };
     const auto wrinkle = [&](int x, int y) {

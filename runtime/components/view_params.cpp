@@ -31,7 +31,9 @@ gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noe
     const float height = std::max(inputs.viewport[3], 1.0f);
     const float zoom = std::max(std::fabs(projection[1][1]), 1e-6f);
     p.eye = vec4(eye, 2.0f / (zoom * height));
-    const vec3 forward(-rotation[0][2], -rotation[1][2], -rotation[2][2]);
+    // Clip w grows along it, whichever way the host's view space looks.
+    const float side = projection[2][3] > 0.0f ? 1.0f : -1.0f;
+    const vec3 forward = side * vec3(rotation[0][2], rotation[1][2], rotation[2][2]);
     p.forward = vec4(forward, projection[2][3] != 0.0f ? 1.0f : 0.0f);
     const auto rgb = [](const float v[3], float w) { return vec4(v[0], v[1], v[2], w); };
     p.sunDirection = rgb(view.sunDirection, view.exposure);

@@ -15,7 +15,10 @@ constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 constexpr const ComputePass* kComputePasses[] = {
     &kResetPass,       &kEventsPass, &kWakePass,      &kSchedulePass,
     &kArrivalPass,     &kCommitPass, &kPublishedPass, &kReduceClearPass,
-    &kReduceFrontPass, &kReducePass, &kPredictPass,   &kProbePass};
+    &kReduceFrontPass, &kReducePass, &kPredictPass,   &kProbePass,
+    &kLightsPass,      &kFlameQuadsPass, &kFlameSortPass};
+
+constexpr const DrawPass* kDrawPasses[] = {&kSurfacePass, &kFlamesPass};
 
 uint32_t groupsOf(uint32_t items) { return std::min((items + 63) / 64, kMaxGroups); }
 
@@ -26,7 +29,7 @@ void zeroRow(vk::FrameRecorder& recorder, uint32_t row) {
 }  // namespace
 
 std::span<const ComputePass* const> computePasses() { return kComputePasses; }
-std::span<const DrawPass* const> drawPasses() { return {}; }
+std::span<const DrawPass* const> drawPasses() { return kDrawPasses; }
 
 size_t passNumber(const ComputePass& pass) {
     return size_t(std::find(std::begin(kComputePasses), std::end(kComputePasses), &pass) -
@@ -129,8 +132,18 @@ void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {
     recorder.dispatch(kProbePass, &push, groupsOf(probes.count));
 }
 
-void recordDrawPass(size_t, DrawRecorder&, std::span<const DrawItem>) {}
+void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawItem> items) {
+    if (kDrawPasses[pass] == &kSurfacePass) recordSurface(recorder, items);
+    else recordFlames(recorder);
+}
 
-void recordLooks(vk::FrameRecorder&, const FrameLists&, uint32_t) {}
+void recordLooks(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {
+    StepPush push{};
+    push.now = endTick;
+    push.burnParity = lists.burnParity;
+    recorder.dispatch(kLightsPass, &push, 1);
+    recorder.dispatch(kFlameQuadsPass, &push, 16);
+    recorder.dispatch(kFlameSortPass, nullptr, 1);
+}
 
 }  // namespace fw::gpu

@@ -14,7 +14,7 @@ class FrameRecorder;
 
 extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kArrivalPass,
     kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass, kReducePass, kPredictPass,
-    kProbePass;
+    kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();

@@ -1,0 +1,36 @@
+// Flame and smoke quads of one view: made from burning tiles, ordered, drawn.
+#include "gpu/passes/frame_graph.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kMakeUses[] = {
+    {FW_BIND_OBJECTS, Access::read},     {FW_BIND_MATERIALS, Access::read},
+    {FW_BIND_COUNTERS, Access::read},    {FW_BIND_BURN_TILES, Access::read},
+    {FW_BIND_LIGHT_CELLS, Access::read}, {FW_BIND_LOOKS, Access::read},
+    {FW_BIND_FLAMES, Access::write},     {FW_BIND_DRAW_ARGS, Access::write},
+    {FW_BIND_VIEW, Access::uniformView},
+};
+constexpr Use kSortUses[] = {
+    {FW_BIND_FLAMES, Access::read},
+    {FW_BIND_DRAW_ARGS, Access::write},
+    {FW_BIND_VIEW, Access::uniformView},
+};
+constexpr Use kDrawUses[] = {
+    {FW_BIND_FLAMES, Access::drawRead},
+    {FW_BIND_DRAW_ARGS, Access::drawRead},
+    {FW_BIND_DRAW_ARGS, Access::indirect},
+    {FW_BIND_VIEW, Access::uniformView},
+};
+
+}  // namespace
+
+const ComputePass kFlameQuadsPass{"flame quads", "flames.comp", kMakeUses, sizeof(StepPush)};
+const ComputePass kFlameSortPass{"flame sort", "flame_sort.comp", kSortUses, 0};
+const DrawPass kFlamesPass{
+    "flames", "flames.vert", "flames.frag", kDrawUses, VertexInput::none, Blend::premultiplied,
+    false,    0};
+
+void recordFlames(DrawRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); }
+
+}  // namespace fw::gpu

@@ -1,0 +1,51 @@
+// The hash grid of burning cells: two sizes of cell per object, keyed by place. Slots depend on who
+// came first, contents do not.
+layout(std430, set = 0, binding = FW_BIND_LIGHT_CELLS) buffer CellsBuffer { uint cells[]; };
+
+float tileSide(uint object) { return 8.0 * sqrt(max(objects[object].tint.w, 1e-8)); }
+// Side of the cells that lights are made of, m: fixed per object, so that nothing pops.
+float lightCellSide(uint object) {
+    return clamp(exp2(floor(log2(2.5 * tileSide(object)) + 0.5)), 0.125, 2.0);
+}
+// Side of the cells whose power says how tall flames are.
+float flameCellSide(uint object) { return clamp(4.0 * lightCellSide(object), 0.5, 4.0); }
+
+uint mixBits(uint x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+float unit(uint x) { return float(mixBits(x) >> 8) * (1.0 / 16777216.0); }
+
+uint cellKey(ivec3 cell, float side) {
+    uint h = mixBits(uint(cell.x) * 73856093u ^ floatBitsToUint(side));
+    h = mixBits(h ^ uint(cell.y) * 19349663u);
+    return max(mixBits(h ^ uint(cell.z) * 83492791u), 1u);
+}
+uint cellWord(uint slot, uint word) { return kLightCellHeader + slot * kLightCellWords + word; }
+
+const uint kCellProbes = 24u;
+const uint kNoCell = 0xFFFFFFFFu;
+uint findCell(uint key) {
+    for (uint i = 0u; i < kCellProbes; ++i) {
+        uint slot = (key + i) % kLightCells;
+        uint there = cells[cellWord(slot, 0u)];
+        if (there == key) return slot;
+        if (there == 0u) return kNoCell;
+    }
+    return kNoCell;
+}
+
+// m: Heskestad's height for what burns in a cell, kept sane for thin and for wide fires.
+float flameLength(float watts, float area, float tile) {
+    float diameter = sqrt(area * 1.273);
+    return max(0.235 * pow(max(watts, 1.0) * 1e-3, 0.4) - 0.6 * diameter,
+               max(0.35 * diameter, 1.4 * tile));
+}
+// Quads that a tile of this burning area is worth.
+float flameQuads(float area, float len) {
+    float halfWidth = 0.27 * len;
+    return 5.0 * area / (4.0 * halfWidth * halfWidth);
+}

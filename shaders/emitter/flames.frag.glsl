@@ -1,0 +1,85 @@
+#version 450
+// One tongue of flame, or one puff of smoke. The tongue is a profile looked up at a displaced
+// height: zero-mean noise that scrolls upwards, squeezed towards the axis as it rises; soot glows in
+// thin sheets where the noise is zero. Premultiplied: colour, and what it hides.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/look.h"
+
+layout(constant_id = 0) const uint kEncoding = 0u;
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
+
+layout(location = 0) in vec2 inPlace;
+layout(location = 1) flat in vec4 inState;
+layout(location = 2) flat in uint inKind;
+layout(location = 3) in float inHeight;
+
+layout(location = 0) out vec4 outColor;
+
+#include "lib/colour.glsl"
+#include "lib/look_noise.glsl"
+
+const float kFlameWhite = 2.4;  // of thin soot at 1600 K, in the host's units
+
+void main() {
+    float opacity = inState.x, phase = inState.y, aspect = inState.w;
+    float x = inPlace.x, y = inPlace.y;
+    vec2 seed = vec2(hash(uvec3(inKind, 1u, 5u)), hash(uvec3(inKind, 2u, 5u)));
+    vec3 color;
+    float alpha;
+    if ((inKind & 1u) == 0u) {
+        // Two octaves; the finer one is faster, so that shapes change and do not just travel.
+        float squeeze = 1.0 - 0.5 * y;
+        vec2 p = vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45) + seed;
+        vec4 n1 = textureLod(lookTextures, vec3(p - vec2(0.0, 0.16 * phase), kLayerNoise), 1.0);
+        vec2 curl = (n1.rb - 0.5) * 0.06 * y;
+        vec4 n2 = textureLod(lookTextures,
+                             vec3(p * vec2(1.7, 1.5) + curl - vec2(0.0, 0.30 * phase), kLayerNoise),
+                             1.0);
+        float turbulence = (n1.r - 0.5) * 1.9 + (n2.r - 0.5) * 1.0 + (n2.g - 0.45) * 0.55;
+        float yy = max(y - 0.62 * sqrt(y) * turbulence, 0.45 * y);
+        float xx = abs(x + 0.5 * y * (n1.b - 0.5)) * (1.0 + 0.15 * turbulence * y);
+        float halfWidth = 0.78 * pow(max(1.0 - yy, 0.0), 0.75) * (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
+        float inside = halfWidth - xx;
+        float soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
+        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) * (1.0 - smoothstep(0.90, 1.0, y)) *
+                (1.0 - smoothstep(0.88, 1.0, abs(x)));
+        float sheet = (n2.r - 0.5) + 0.6 * (n2.b - 0.5);
+        float fold = exp(-sheet * sheet / 0.012);
+        soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));
+        float core = saturate(inside / 0.6);
+        float kelvin = inState.z - 330.0 * smoothstep(0.05, 1.0, yy) + 90.0 * (core - 0.4) -
+                       110.0 * (n2.g - 0.45) - 60.0 * (1.0 - smoothstep(0.0, 0.2, y));
+        color = sootRadiance(kelvin) * (kFlameWhite * view.sunColor.w);
+        alpha = saturate(soot * 0.75) * opacity;
+        color *= soot * opacity;
+    } else {
+        vec2 p = inPlace * vec2(0.11, 0.22) + seed;
+        vec4 n1 = textureLod(lookTextures, vec3(p + vec2(0.0, -0.2 * phase), kLayerNoise), 1.5);
+        vec4 n2 = textureLod(lookTextures,
+                             vec3(p * 2.1 + (n1.rb - 0.5) * 0.15 - vec2(0.0, 0.3 * phase),
+                                  kLayerNoise), 1.5);
+        vec2 c = vec2(x, 2.0 * y - 1.0);
+        float r = length(c);
+        float billow = (n1.r - 0.5) * 1.3 + (n2.g - 0.45) * 0.7;
+        float body = smoothstep(0.0, 0.75, 1.0 - r + 0.7 * billow) * (1.0 - smoothstep(0.7, 1.0, r));
+        alpha = saturate(body * opacity);
+        // Crests catch the sun and the sky, hollows the fire below.
+        float crest = saturate(0.5 + 0.9 * billow + 0.25 * c.y);
+        vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.35 + 0.5 * crest) * 0.9 +
+                   view.sunColor.rgb * (0.30 * crest);
+        vec3 fire = vec3(1.0, 0.38, 0.10) *
+                    (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
+        color = (lit * 0.17 + fire) * alpha;
+    }
+    if (alpha < 0.002) discard;
+    color *= view.sunDirection.w;
+    if (kEncoding != 0u) {
+        // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and a
+        // thin one must turn red, not grey.
+        color = (inKind & 1u) == 0u ? encodeOutput(color, kEncoding)
+                                    : encodeOutput(color / alpha, kEncoding) * alpha;
+    }
+    outColor = vec4(min(color, vec3(60000.0)), alpha);
+}

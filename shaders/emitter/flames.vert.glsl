@@ -1,0 +1,50 @@
+#version 450
+// A flame or smoke quad: stands along its axis and turns about it towards the eye. Seen along its
+// axis it leans on the screen instead, or it would vanish from above.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/look.h"
+
+layout(std430, set = 0, binding = FW_BIND_FLAMES) readonly buffer FlamesBuffer {
+    FlameQuad flameQuad[];
+};
+layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) readonly buffer ArgsBuffer {
+    uint drawArgs[];
+};
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+
+layout(location = 0) out vec2 outPlace;        // x: -1..1, y: 0 foot .. 1 tip
+layout(location = 1) flat out vec4 outState;   // opacity, phase, kelvin, length over half width
+layout(location = 2) flat out uint outKind;
+layout(location = 3) out float outHeight;      // m above the foot, along world up
+
+void main() {
+    FlameQuad quad = flameQuad[drawArgs[kFlameOrder + gl_InstanceIndex]];
+    uint corner = gl_VertexIndex < 3 ? gl_VertexIndex : gl_VertexIndex - 2;
+    vec2 place = vec2((corner & 1u) == 0u ? -1.0 : 1.0, (corner & 2u) == 0u ? 0.0 : 1.0);
+    if (gl_VertexIndex == 3) place = vec2(-1.0, 1.0);
+    if (gl_VertexIndex == 4) place = vec2(1.0, 0.0);
+    if (gl_VertexIndex == 5) place = vec2(1.0, 1.0);
+    vec3 foot = quad.baseHeight.xyz - view.eye.xyz;
+    vec3 middle = foot + quad.axisWidth.xyz * (0.5 * quad.baseHeight.w);
+    vec3 toEye = view.forward.w > 0.5 ? -normalize(middle) : -view.forward.xyz;
+    vec3 axis = quad.axisWidth.xyz;
+    float along = abs(dot(axis, toEye));
+    vec3 screenUp = view.up.xyz - toEye * dot(view.up.xyz, toEye);
+    screenUp = dot(screenUp, screenUp) > 1e-4 ? normalize(screenUp) : vec3(0.0, 0.0, 1.0);
+    bool smoke = (quad.kind & 1u) != 0u;
+    vec3 flat_ = axis - toEye * dot(axis, toEye);
+    // At least half of its length stays visible.
+    axis = smoke ? screenUp
+                 : mix(axis, normalize(flat_ + screenUp * 1e-3), smoothstep(0.6, 0.95, along));
+    vec3 side = normalize(cross(axis, toEye) + vec3(1e-6, 0.0, 0.0));
+    vec3 start = smoke ? middle - axis * (0.5 * quad.baseHeight.w) : foot;
+    vec3 at = start + side * (place.x * quad.axisWidth.w) + axis * (place.y * quad.baseHeight.w);
+    // Towards the eye, so that a wall behind does not cut the tongue's side.
+    at += toEye * (smoke ? 0.0 : 0.35 * quad.axisWidth.w);
+    outPlace = place;
+    outState = vec4(quad.opacity, quad.phase, quad.kelvin, quad.baseHeight.w / quad.axisWidth.w);
+    outKind = quad.kind;
+    outHeight = dot(at - foot, view.up.xyz);
+    gl_Position = view.clip0 * at.x + view.clip1 * at.y + view.clip2 * at.z + view.clip3;
+}

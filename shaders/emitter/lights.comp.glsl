@@ -1,0 +1,206 @@
+// Clusters burning tiles into cells and the cells into the strongest lights. One group; sums are
+// integers, so the result does not depend on the order of the list.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 128) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_COUNTERS readonly
+#define FW_USE_BURN_TILES readonly
+#include "lib/buffers.glsl"
+#include "shared/look.h"
+layout(std430, set = 0, binding = FW_BIND_LIGHTS) writeonly buffer LightsBuffer {
+    BurnLight lights[];
+};
+layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) writeonly buffer ArgsBuffer {
+    uint drawArgs[];
+};
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+#include "emitter/cells.glsl"
+
+const uint kMost = 1024u;      // cells that compete
+const uint kMostLights = 64u;
+shared uint candidate[kMost];  // slots of cells
+shared float score[kMost];
+shared uint candidates, bestScore, bestKey, bestAt;
+shared uint lightPower[kMostLights];
+shared int lightOffset[kMostLights * 3u];
+shared uint lightArea[kMostLights];
+shared uint lightSlot[kMostLights];
+shared float lightPlace[kMostLights * 4u];
+
+void addTo(BurnTile tile, float side, uint level) {
+    vec3 lift = tile.normalPower.xyz * (0.3 * tileSide(tile.object)) + view.up.xyz * (0.1 * side);
+    vec3 at = (tile.positionArea.xyz + lift) / side;
+    ivec3 cell = ivec3(floor(at));
+    uint key = cellKey(cell, side);
+    for (uint i = 0u; i < kCellProbes; ++i) {
+        uint slot = (key + i) % kLightCells;
+        uint there = atomicCompSwap(cells[cellWord(slot, 0u)], 0u, key);
+        if (there != 0u && there != key) continue;
+        uint weight = max(uint(tile.normalPower.w * 0.0625), 1u);  // 16 W
+        uvec3 offset = uvec3((at - vec3(cell)) * 256.0) * weight;
+        atomicAdd(cells[cellWord(slot, 1u)], weight);
+        for (uint k = 0u; k < 3u; ++k) atomicAdd(cells[cellWord(slot, 2u + k)], offset[k]);
+        atomicAdd(cells[cellWord(slot, 5u)], uint(tile.positionArea.w * 1e5) + 1u);
+        atomicMax(cells[cellWord(slot, 6u)], floatBitsToUint(side));
+        // Every tile of a cell writes the same.
+        for (uint k = 0u; k < 3u; ++k) cells[cellWord(slot, 7u + k)] = uint(cell[k]);
+        cells[cellWord(slot, 10u)] = level;
+        return;
+    }
+}
+
+// m, world: weighted mean of the cell.
+vec3 cellPlace(uint slot) {
+    float side = uintBitsToFloat(cells[cellWord(slot, 6u)]);
+    vec3 within = vec3(cells[cellWord(slot, 2u)], cells[cellWord(slot, 3u)],
+                       cells[cellWord(slot, 4u)]) / (256.0 * float(cells[cellWord(slot, 1u)]));
+    ivec3 cell = ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)],
+                       cells[cellWord(slot, 9u)]);
+    return (vec3(cell) + within) * side;
+}
+
+void main() {
+    uint me = gl_LocalInvocationID.x;
+    uint count = counters[kRowBurn + push.burnParity].runCount;
+    for (uint i = me; i < kLightCellHeader + kLightCells * kLightCellWords; i += 128u) cells[i] = 0u;
+    if (me == 0u) {
+        candidates = 0u;
+        drawArgs[0] = 6u;
+        for (uint i = 1u; i < kFlameOrder; ++i) drawArgs[i] = 0u;
+    }
+    memoryBarrierBuffer();
+    barrier();
+    for (uint i = me; i < count; i += 128u) {
+        BurnTile tile = burnTiles[i];
+        addTo(tile, lightCellSide(tile.object), 0u);
+        addTo(tile, flameCellSide(tile.object), 1u);
+    }
+    memoryBarrierBuffer();
+    barrier();
+    for (uint slot = me; slot < kLightCells; slot += 128u) {
+        if (cells[cellWord(slot, 0u)] == 0u || cells[cellWord(slot, 10u)] != 0u) continue;
+        uint at = atomicAdd(candidates, 1u);
+        if (at >= kMost) continue;
+        candidate[at] = slot;
+        score[at] = float(cells[cellWord(slot, 1u)]);
+    }
+    barrier();
+    uint competing = min(candidates, kMost);
+    uint wanted = min(view.lightCount, kMostLights);
+    uint found = min(wanted, competing);
+
+    for (uint light = 0u; light < found; ++light) {
+        if (me == 0u) {
+            bestScore = 0u;
+            bestKey = 0u;
+        }
+        barrier();
+        for (uint i = me; i < competing; i += 128u)
+            atomicMax(bestScore, floatBitsToUint(score[i]));
+        barrier();
+        for (uint i = me; i < competing; i += 128u) {
+            if (floatBitsToUint(score[i]) == bestScore)
+                atomicMax(bestKey, cells[cellWord(candidate[i], 0u)]);
+        }
+        barrier();
+        for (uint i = me; i < competing; i += 128u) {
+            if (floatBitsToUint(score[i]) == bestScore &&
+                cells[cellWord(candidate[i], 0u)] == bestKey)
+                bestAt = i;
+        }
+        barrier();
+        vec3 here = cellPlace(candidate[bestAt]);
+        float side = uintBitsToFloat(cells[cellWord(candidate[bestAt], 6u)]);
+        for (uint i = me; i < competing; i += 128u) {
+            if (i == bestAt) continue;
+            // Neighbours of a chosen one wait, or one corner takes all lights.
+            float d = length(cellPlace(candidate[i]) - here) / (1.5 * side);
+            score[i] *= clamp(d, 0.05, 1.0);
+        }
+        if (me == 0u) {
+            lightSlot[light] = candidate[bestAt];
+            lightPlace[light * 4u] = here.x;
+            lightPlace[light * 4u + 1u] = here.y;
+            lightPlace[light * 4u + 2u] = here.z;
+            lightPlace[light * 4u + 3u] = side;
+            lightPower[light] = 0u;
+            lightArea[light] = 0u;
+            for (uint k = 0u; k < 3u; ++k) lightOffset[light * 3u + k] = 0;
+            score[bestAt] = 0.0;
+        }
+        barrier();
+    }
+
+    // Every cell gives its power to the nearest light.
+    for (uint i = me; i < competing; i += 128u) {
+        vec3 here = cellPlace(candidate[i]);
+        uint nearest = 0u;
+        float least = 1e30;
+        for (uint light = 0u; light < found; ++light) {
+            vec3 d = here - vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u],
+                                 lightPlace[light * 4u + 2u]);
+            float d2 = dot(d, d);
+            if (d2 < least) {
+                least = d2;
+                nearest = light;
+            }
+        }
+        float side = lightPlace[nearest * 4u + 3u];
+        if (least > 36.0 * side * side) continue;  // too far to speak for
+        uint weight = cells[cellWord(candidate[i], 1u)];
+        vec3 d = here - vec3(lightPlace[nearest * 4u], lightPlace[nearest * 4u + 1u],
+                             lightPlace[nearest * 4u + 2u]);
+        ivec3 offset = ivec3(d / side * 64.0) * int(min(weight, 100000u));
+        atomicAdd(lightPower[nearest], weight);
+        atomicAdd(lightArea[nearest], cells[cellWord(candidate[i], 5u)]);
+        for (uint k = 0u; k < 3u; ++k) atomicAdd(lightOffset[nearest * 3u + k], offset[k]);
+    }
+    barrier();
+    for (uint light = me; light < view.lightCount; light += 128u) {
+        BurnLight l;
+        l.positionRadius = vec4(0.0);
+        l.colorIntensity = vec4(0.0);
+        l.power = 0.0;
+        l.id = 0u;
+        l.reserved0 = 0u;
+        l.reserved1 = 0u;
+        if (light < found) {
+            float weight = float(lightPower[light]);
+            float side = lightPlace[light * 4u + 3u];
+            vec3 mean = vec3(float(lightOffset[light * 3u]), float(lightOffset[light * 3u + 1u]),
+                             float(lightOffset[light * 3u + 2u])) *
+                        (side / (64.0 * max(weight, 1.0)));
+            uint key = cells[cellWord(lightSlot[light], 0u)];
+            float area = float(lightArea[light]) * 1e-5;
+            float power = weight * 16.0;
+            float len = flameLength(power, area, 0.0);
+            vec3 at = vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u],
+                           lightPlace[light * 4u + 2u]) + mean + view.up.xyz * (0.25 * len);
+            // Two sines that never meet again: no lookup, no pop.
+            float t = view.ambientSky.w, p = 6.2832 * unit(key);
+            float flicker = 1.0 + 0.10 * sin(11.3 * t + p) + 0.07 * sin(17.9 * t + 2.3 * p) +
+                            0.05 * sin(29.1 * t + 4.1 * p);
+            l.positionRadius = vec4(at, clamp(0.4 * sqrt(area), 0.04, 0.5 * len + 0.04));
+            // 30 % leaves as light and heat; luminance of the colour is 1.
+            l.colorIntensity = vec4(vec3(1.717, 0.858, 0.292), power * (0.3 / 12.566) * flicker);
+            l.power = power;
+            l.id = key;
+        }
+        lights[light] = l;
+    }
+    // How many quads are wished for: flames share what there is.
+    for (uint i = me; i < count; i += 128u) {
+        BurnTile tile = burnTiles[i];
+        float side = flameCellSide(tile.object);
+        uint slot = findCell(cellKey(ivec3(floor((tile.positionArea.xyz +
+                                                  tile.normalPower.xyz *
+                                                      (0.3 * tileSide(tile.object)) +
+                                                  view.up.xyz * (0.1 * side)) / side)), side));
+        if (slot == kNoCell) continue;
+        float len = flameLength(float(cells[cellWord(slot, 1u)]) * 16.0,
+                                float(cells[cellWord(slot, 5u)]) * 1e-5, tileSide(tile.object));
+        atomicAdd(cells[0], uint(min(flameQuads(tile.positionArea.w, len), 3.0) * 16.0));
+    }
+}

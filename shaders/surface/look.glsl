@@ -1,0 +1,270 @@
+// A burning surface as a pure function of time since ignition, the material's look and tiling
+// noise. Lengths m, times look seconds, temperatures K, emission cd/m^2. Needs lib/look_noise.glsl
+// and lib/colour.glsl. Order matters to the eye: heat, char, film, ash, glow, rim, soot, water.
+
+struct Site {        // what is known of one point of the surface
+    vec2 d;          // m, detail coordinates, y along the grain
+    float pixel;     // m per pixel
+    float age;       // since ignition; negative: predicted
+    float slow;      // s/m, slope of the ignition time
+    vec2 ahead;      // unit, towards fresh material, in detail space
+    float out_;      // [0, 1] extinguished
+    float water;     // [0, 1] soaked
+    float soot;      // [0, 1]
+    vec3 base;       // fresh albedo
+    float baseRough;
+    float delay;     // [-1, 1] of a strand, vein or thread
+    float cavity;    // 1 exposed .. 0 hidden, of the fresh detail: survives charring
+    float time;      // s, for breathing only
+    vec4 coarse;     // noise at 4 tiles per metre
+    vec4 fine;       // at 21
+    vec2 bubbleSlope;  // per m, of bubbleShape
+};
+
+struct Skin {        // what is shaded
+    vec3 albedo;
+    float rough;
+    float f0;
+    vec3 emission;   // cd/m^2
+    float occlusion;
+    float edge;      // m to the rim of a hole
+    float sheen;
+    vec2 slope;      // d depth / d detail coordinate
+};
+
+// Displaces the place where the ignition time is looked up: raggedness must not depend on speed.
+// Gives its two noise samples back, the fresh detail uses them too.
+vec2 frontWarp(vec2 d, float pixel, MaterialLook m, out vec4 coarse, out vec4 fine) {
+    pixel = max(pixel, m.blur);
+    coarse = noiseAt(d, 4.0, pixel);
+    fine = noiseAt(d, 21.0, pixel);
+    return 2.0 * m.warpLarge * (vec2(coarse.r, coarse.g * 0.5 + 0.25) - 0.5) +
+           2.0 * m.warpSmall * (vec2(fine.b, fine.r) - 0.5);
+}
+
+float limitGlow(float kelvin, Site s) { return mix(kelvin, 300.0 + 0.45 * (kelvin - 300.0), s.out_); }
+
+// m from here to the rim of the hole; negative: gone.
+float holeEdge(float a, Site s, vec2 crumbs, MaterialLook m) {
+    if (m.holeTime <= 0.0) return 1.0;
+    vec4 n1 = noiseAt(vec2(s.d.x, s.d.y / m.drip), m.holeTiles, max(s.pixel, m.blur));
+    float n = (n1.r - 0.5) * 1.8 + m.holeFine * ((n1.a - 0.5) * 0.8 + (crumbs.x - 0.5) * 0.8);
+    n = n < 0.0 ? n : 0.45 * n;  // short upper tail: fewer islands left hanging
+    return (m.holeTime + m.holeVariation * n + 1.5 * m.jitter * s.delay - a) / s.slow;
+}
+
+// x: 0 block .. 1 crack; y: m to the crack; z: random per block; w: pillow
+vec4 charCracks(float a, Site s, MaterialLook m, vec2 uv, float lod) {
+    vec4 c = lookLayer(uv, kLayerChar, lod);
+    float open1 = smoothstep(m.charTime * 0.6, m.crackTime, a - m.crackTime * 0.15 * c.b);
+    float open2 = smoothstep(m.crackTime * 0.6, m.crackTime * 2.2, a);
+    float w1 = m.crackWidth * open1, w2 = m.crackWidth * 0.45 * open2;
+    float d1 = mix(c.r, c.g, m.isotropic) * m.cellX;
+    float d2 = mix(c.g, c.r, m.isotropic) * m.cellX * 0.4;
+    // Widened to the pixel with the area kept, or wood reads as lava from two metres.
+    float k1 = open1 * (1.0 - smoothstep(0.25 * w1, w1 + s.pixel, d1)) * (w1 + 1e-5) /
+               (w1 + 0.6 * s.pixel + 1e-5);
+    float k2 = 0.7 * open2 * (1.0 - smoothstep(0.2 * w2, w2 + s.pixel, d2)) * (w2 + 1e-5) /
+               (w2 + 0.6 * s.pixel + 1e-5);
+    return vec4(max(k1, k2), min(d1, d2 + 0.3 * m.cellX), c.b, c.a);
+}
+
+// Paint left on the wood: 1 whole .. 0 peeled off in flakes.
+float paintFilm(float a, vec4 flakes, MaterialLook m) {
+    float left = 1.0 - 1.15 * smoothstep(-0.25 * m.charTime, 1.6 * m.charTime, a);
+    return smoothstep(-0.03, 0.03, left - (0.55 * flakes.r + 0.45 * flakes.a));
+}
+
+// Blisters of paint and bubbles of plastic, [0, 1].
+float bubbleShape(vec2 d, float pixel, vec4 coarse, bool molten) {
+#if FW_BUBBLES
+    vec4 cells = lookLayer(d * 2.8, kLayerChar, noiseLod(pixel, 2.8));
+    float u = molten ? smoothstep(0.47, 0.68, coarse.r)
+                     : saturate(cells.g * 2.2) *
+                           smoothstep(0.38, 0.60, coarse.r + 0.25 * (coarse.a - 0.5));
+    return u * (2.0 - u);
+#else
+    return 0.0;
+#endif
+}
+
+Skin burningSkin(Site s, MaterialLook m) {
+    Skin o;
+    float a = s.age - m.jitter * s.delay;
+    float x = a / s.slow;
+    vec4 nA = noiseAt(s.d, 13.0, s.pixel);
+    vec4 nB = s.coarse, nC = s.fine;
+    float edge = holeEdge(a, s, nC.rb, m);
+    float c = smoothstep(0.0, m.charTime, a + m.charTime * 0.5 * (nA.r - 0.5));
+    float far = 1.0 / (1.0 + s.pixel * s.pixel / (0.0022 * 0.0022));  // relief fades into occlusion
+    vec4 k = vec4(0.0, 1.0, 0.5, 0.5);
+    o.slope = vec2(0.0);
+#if FW_CRACKS
+    if (m.crackDepth > 0.0 && c > 0.0) {
+        vec2 uv = s.d / vec2(m.cellX, m.cellY) / 8.0 + (vec2(nA.r, nA.b) - 0.5) * 0.04;
+        float lod = noiseLod(s.pixel, 1.0 / (8.0 * m.cellX));
+        k = charCracks(a, s, m, uv, lod);
+        float open = smoothstep(m.charTime * 0.6, m.crackTime, a);
+        vec2 slope = lookLayer(uv, kLayerRelief, lod).rg * 2.0 - 1.0;
+        o.slope += slope * (kCrackSlopeRange * m.crackDepth * far * open) / vec2(m.cellX, m.cellY);
+        k.z = mix(k.z, nA.a, m.isotropic);
+    }
+#endif
+#if FW_CRUMPLE
+    if (m.crumple > 0.0 && c > 0.0) {
+        vec2 slope = lookLayer(s.d * 13.0, kLayerRelief, noiseLod(s.pixel, 13.0)).ba * 2.0 - 1.0;
+        o.slope += slope * (kCrumpleSlopeRange * 13.0 * 0.5 * m.crumple * c);
+    }
+#endif
+
+    // Heating: through brown first, then absorption; plain absorption turns blue paint green.
+    float pre = smoothstep(-m.scorchWidth, 0.0, x + m.scorchWidth * 0.35 * (nB.r - 0.5));
+    float q = m.scorchGain * (pre * pre * 0.75 + 1.1 * smoothstep(0.0, 0.5 * m.charTime, a));
+    vec3 heated = s.base;
+    float wilt = m.wiltColor.w;
+    if (wilt > 0.0) {
+        heated = mix(heated, m.wiltColor.rgb * (0.4 + 0.8 * s.cavity),
+                     0.85 * smoothstep(-wilt, -0.3 * wilt, x + wilt * 0.5 * (nB.r - 0.5)));
+    }
+    heated = mix(heated, vec3(1.3, 0.92, 0.55) * dot(heated, vec3(0.35, 0.5, 0.15)), 0.75 * pre);
+    vec3 albedo = heated * exp(-q * vec3(0.85, 1.4, 2.0));
+    float rough = mix(s.baseRough, 0.8, pre * (1.0 - m.melt));
+
+    // Char keeps the relief of what it was.
+    vec3 charred = m.charColor.rgb * ((0.65 + 0.7 * nA.b) * (0.85 + 0.3 * k.z) *
+                                      (0.35 + 0.85 * s.cavity) * (0.75 + 0.6 * (nB.r - 0.3)));
+    albedo = mix(albedo, charred, c);
+    rough = mix(rough, m.charColor.w + 0.25 * (nA.g - 0.5) + 0.2 * (k.z - 0.5), c);
+    float f0 = mix(0.04, 0.05, c);
+
+#if FW_WOOD
+    float film = m.ashColor.w;
+    if (film > 0.0) {
+        float left = paintFilm(a, nA, m) * smoothstep(-0.6 * m.scorchWidth, 0.0, x);
+        albedo = mix(albedo, vec3(0.022, 0.02, 0.02) + 0.10 * s.base * (1.0 - c), left);
+        rough = mix(rough, 0.35, left);
+        k = mix(k, vec4(0.0, 1.0, k.z, 0.8), left);
+        o.slope *= 1.0 - left;
+        c *= 1.0 - left;
+    }
+#endif
+#if FW_BUBBLES
+    if (m.blister > 0.0) {
+        float swell = smoothstep(-m.scorchWidth * 0.9, -m.scorchWidth * 0.1, x);
+        float burst = 1.0 - smoothstep(m.charTime * 0.3, m.charTime * 1.2, a);
+        o.slope -= s.bubbleSlope * (m.blister * swell * mix(burst, 1.0, m.melt));
+    }
+#endif
+
+    // Ash after the glow, on exposed tops, never in cracks.
+    float nearCrack = m.crackDepth > 0.0 ? 0.55 * exp(-k.y / (2.2 * m.crackWidth)) - 0.1 : 0.0;
+    float spread = 1.1 * (nB.g - 0.45) - 1.2 * (nB.r - 0.5) + 0.5 * (nA.r - 0.5) +
+                   0.2 * (k.z - 0.5) + nearCrack;
+    float ash = m.ashMax * smoothstep(m.ashStart, m.ashEnd, a + (m.ashEnd - m.ashStart) * spread);
+    ash *= smoothstep(0.5 * m.ashStart, 1.3 * m.ashStart, a);
+    ash *= (1.0 - k.x) * (0.3 + 0.7 * smoothstep(0.2, 0.7, s.cavity)) *
+           smoothstep(0.15, 0.6, 0.35 * k.w + 0.65 * nA.b + 0.4 * (nA.g - 0.4));
+    albedo = mix(albedo, m.ashColor.rgb * ((0.75 + 0.5 * nA.b) * (0.2 + 0.9 * s.cavity)), ash);
+    rough = mix(rough, 0.97, ash);
+
+    // Glow: noise on the temperature, not on the brightness; long-lived in cracks only.
+    float breath = 45.0 * sin(s.time * 2.1 + 40.0 * nB.b + 6.28 * k.z) * nA.r;
+    float dT = m.glowVariation * ((nB.b - 0.5) * 1.6 + (nA.b - 0.5) * 1.2 + (nC.r - 0.5) * 1.5 +
+                                  0.4 * (k.z - 0.5)) + breath;
+    float face = 300.0 + (m.faceKelvin - 300.0) * smoothstep(0.0, m.facePeak, a) *
+                             exp(-max(0.0, a - m.facePeak) / m.faceDecay);
+    vec3 emission = emberRadiance(limitGlow(face + dT, s)) *
+                    (0.9 * (1.0 - 0.9 * ash) * smoothstep(0.0, 0.4, c));
+#if FW_CRACKS
+    if (m.crackDepth > 0.0 && c > 0.0) {
+        float life = m.crackLife * (0.55 + 2.2 * nB.r * nB.r + 0.4 * k.z);
+        float crack = 300.0 + (m.crackKelvin - 300.0) *
+                                  smoothstep(0.3 * m.facePeak, 2.0 * m.facePeak, a) *
+                                  exp(-a * a / (life * life));
+        crack += dT - 0.8 * m.glowVariation * (nC.r - 0.5);
+        float wall = exp(-k.y / (1.6 * m.crackWidth + 1e-5)) * c;
+        emission += emberRadiance(limitGlow(crack, s)) * (k.x * 0.95 + 0.10 * wall * (1.0 - ash));
+    }
+#endif
+#if FW_SHEET | FW_PLANT
+    if (m.wormKelvin > 0.0) {
+        float level = fract(s.age * 0.13);
+        float off = (nA.r - 0.32 - 0.36 * level) / 0.008;
+        float worm = exp(-off * off) * smoothstep(0.5, 0.62, nB.r) *
+                     smoothstep(m.charTime, m.charTime * 1.5, a) * 4.0 * level * (1.0 - level);
+        emission += emberRadiance(limitGlow(m.wormKelvin + 0.5 * dT, s)) * worm;
+    }
+#endif
+    if (m.holeTime > 0.0) {
+        float e = max(edge, 0.0);
+        if (m.rimKelvin > 0.0) {
+            // A line thinner than a pixel keeps its energy.
+            float wide = 0.35 * m.rimWidth / (0.35 * m.rimWidth + 0.5 * s.pixel);
+            float rim = 300.0 + (m.rimKelvin - 300.0) * exp(-e * wide / m.rimWidth) + 0.9 * dT;
+            emission += emberRadiance(limitGlow(rim, s)) * (0.9 * (1.0 - 0.6 * ash) * wide);
+            albedo = mix(albedo, m.charColor.rgb * 0.7, 0.9 * exp(-e / (2.5 * m.rimWidth)));
+        }
+        float t = saturate(1.0 - e / (0.9 * m.thickness));
+        // Rounded towards the rim, or a bead of what melted; thin things curl.
+        float bead = m.lip * 2.0 * e / (2.5e-3 * 2.5e-3) * exp(-e * e / (2.5e-3 * 2.5e-3));
+        o.slope += s.ahead * (bead - 1.1 * t * (1.0 - m.melt) -
+                              m.curl * exp(-e / (6.0 * m.rimWidth + 1e-4)) * c);
+    }
+    rough = mix(rough, 0.16 + 0.3 * c, m.melt * smoothstep(-0.7 * m.scorchWidth, 0.0, x));
+
+    // Soot: a matt veil that hides colour but not relief.
+    float soot = saturate(s.soot * (0.7 + 0.6 * nB.r)) * (1.0 - ash);
+    albedo *= mix(vec3(1.0), vec3(0.07, 0.065, 0.06), soot);
+    rough = mix(rough, 0.9, soot);
+
+    // Water darkens what is porous; char only gets gloss.
+    float power = 1.0 + m.wetDark * s.water * (1.0 - 0.85 * c);
+    albedo = pow(max(albedo, vec3(1e-5)), vec3(power)) *
+             (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water * (1.0 - c));
+    rough = mix(rough, 0.18, s.water * mix(m.wetGloss, 0.8, c));
+
+    o.albedo = albedo;
+    o.rough = clamp(rough, 0.08, 1.0);
+    o.f0 = mix(f0, 0.03, s.water);
+    o.emission = emission;
+    o.occlusion = (1.0 - 0.75 * k.x) * (1.0 - 0.25 * c * (1.0 - k.w));
+    o.edge = edge;
+    o.sheen = m.sheen * c * (1.0 - ash);
+    return o;
+}
+
+// Surface that no fire comes near: what burningSkin says of it, for little.
+Skin freshSkin(Site s, MaterialLook m) {
+    Skin o;
+    float power = 1.0 + m.wetDark * s.water;
+    o.albedo = s.water > 0.0 ? pow(max(s.base, vec3(1e-5)), vec3(power)) *
+                                   (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water)
+                             : s.base;
+    o.rough = clamp(mix(s.baseRough, 0.18, s.water * m.wetGloss), 0.08, 1.0);
+    o.f0 = mix(0.04, 0.03, s.water);
+    o.emission = vec3(0.0);
+    o.occlusion = 1.0;
+    o.edge = 1.0;
+    o.sheen = 0.0;
+    o.slope = vec2(0.0);
+    return o;
+}
+
+// Wall of a hole on a thin shell: marches the view ray through the thickness. `ray` in the tangent
+// frame, z < 0 inwards. The ignition time is continued along its slope: no further look-ups.
+// m along the ray, negative when it passes through; `hit` is the site there.
+float rimMarch(Site s, MaterialLook m, vec3 ray, float jitter, out Site hit) {
+    const int kSteps = 4;
+    float length_ = m.thickness / max(-ray.z, 0.12);
+    hit = s;
+    for (int i = 0; i < kSteps; ++i) {
+        float t = length_ * (float(i) + jitter) / float(kSteps);
+        vec2 move = ray.xy * t;
+        hit.d = s.d + move;
+        hit.age = s.age - s.slow * dot(s.ahead, move);
+        float z = 2.0 * t / length_ - 1.0;
+        float a = hit.age - m.jitter * hit.delay;
+        if (holeEdge(a, hit, s.fine.rb, m) > 0.35 * m.thickness * z * z) return t;
+    }
+    return -1.0;
+}
