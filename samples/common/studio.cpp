@@ -124,6 +124,7 @@ void duskLight(FwView& view) {
     std::memcpy(view.ambientSky, sky, sizeof sky);
     std::memcpy(view.ambientGround, ground, sizeof ground);
     view.exposure = 1.0f / 40.0f;
+    view.emissionScale = 40.0f;  // the light above is in cd/m^2
 }
 
 void setCamera(FwView& view, const glm::mat4& viewMatrix, const glm::mat4& projection) {

@@ -30,7 +30,7 @@ class Studio {
     // The blocks, after draw() of the same frame; a host draws behind and in front of the fire.
     void drawBlocks(const StageFrame& frame, VkCommandBuffer commands);
 
-    float fireGain = 1.0f;  // irradiance at 1 m per unit of FwLight::intensity
+    float fireGain = 0.02f;  // irradiance at 1 m per unit of FwLight::intensity, cd per W/sr
 
  private:
     void writeSets();
