@@ -52,7 +52,7 @@ float turnTowards(float from, float to, float most) {
 }  // namespace
 
 Game::Game(const village::Scene& scene, FireVillage& fires, uint32_t seed, glm::vec3 wind)
-    : scene_(scene), fires_(fires), jet_(seed * 977 + 5), steadyWind_(wind), wind_(wind) {
+    : fires_(fires), jet_(seed * 977 + 5), steadyWind_(wind), wind_(wind) {
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const village::Instance& instance = scene.instances[i];
         Placed placed;

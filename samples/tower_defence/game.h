@@ -42,7 +42,6 @@ class Game {
     const Marcher* target() const;
     void catchFire(Marcher& m, glm::vec3 place);
 
-    const village::Scene& scene_;
     FireVillage& fires_;
     std::vector<Placed> placed_;
     std::vector<Marcher> marchers_;

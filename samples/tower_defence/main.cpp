@@ -95,8 +95,9 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
                                             const std::vector<tower::PointLight>& lamps,
                                             const tower::Daylight& light) {
     constexpr size_t kMost = 12;
-    std::vector<tower::PointLight> all = game.jetLights(16.0f * light.emission);
-    const auto burning = fires.lights(light.emission);
+    constexpr float kJetIntensity = 7.0f, kFireScale = 0.045f;  // by eye
+    std::vector<tower::PointLight> all = game.jetLights(kJetIntensity);
+    const auto burning = fires.lights(kFireScale);
     all.insert(all.end(), burning.begin(), burning.end());
     if (light.windows > 1) all.insert(all.end(), lamps.begin(), lamps.end());
     auto strength = [](const tower::PointLight& l) { return l.color.r + l.color.g + l.color.b; };

@@ -111,6 +111,24 @@ void setTexel(Painting& p, size_t texel, const Surface& s, float colorAlpha, flo
     relief[3] = toByte(reliefAlpha);
 }
 
+// Gives the space between charts the picture's mean colour, for the smaller mips reach into it.
+void fillGaps(Painting& p, const Owners& owners) {
+    uint64_t sum[3] = {0, 0, 0}, count = 0;
+    auto each = [&](bool owned, auto&& body) {
+        for (uint32_t y = 0; y < p.height; ++y)
+            for (uint32_t x = 0; x < p.width; ++x)
+                if ((owners.at(int(x), int(y)) >= 0) == owned)
+                    body(&p.color[(size_t(y) * p.width + x) * 4]);
+    };
+    each(true, [&](const uint8_t* texel) {
+        for (int k = 0; k < 3; ++k) sum[k] += texel[k];
+        ++count;
+    });
+    each(false, [&](uint8_t* texel) {
+        for (int k = 0; k < 3; ++k) texel[k] = uint8_t(sum[k] / std::max<uint64_t>(count, 1));
+    });
+}
+
 uint32_t paintingSide(const Model& model) {
     constexpr float kTexelsPerMetre = 34;  // a little above a pixel at the game's distance
     const float side = model.atlasSide * kTexelsPerMetre;
@@ -122,6 +140,19 @@ float crownShade(const village::Vertex& v) {
     return v.material == Material::kLeaf && v.texture == Texture::kLeaf
                ? 0.80f + 0.35f * village::clamp01(v.normal.y + 0.2f)
                : 1.0f;
+}
+
+// A piece of ground that is a model of its own: painted by its place in the world.
+Surface bankSurface(const Model& model, int triangle, Vec2 uv) {
+    const uint32_t* i = &model.indices[size_t(triangle) * 3];
+    const Vec2 a = model.vertices[i[0]].uv;
+    const Vec2 ab = model.vertices[i[1]].uv - a, ac = model.vertices[i[2]].uv - a;
+    const float area = cross(ab, ac), u = cross(uv - a, ac) / area, v = cross(ab, uv - a) / area;
+    const Vec3 p = model.vertices[i[0]].position * (1 - u - v) + model.vertices[i[1]].position * u +
+                   model.vertices[i[2]].position * v;
+    const Vec2 place{p.x, p.z};
+    return village::paintGround(place, 0.05f,
+                                village::groundSplat(place, village::nearestRoad(place)));
 }
 
 Painting paintModel(const Model& model) {
@@ -146,13 +177,16 @@ Painting paintModel(const Model& model) {
             const village::Vertex& v = model.vertices[model.indices[size_t(t) * 3]];
             const Vec2 metres{(float(x) + 0.5f) * texel, (float(y) + 0.5f) * texel};
             const Vec3 tint = v.tint * crownShade(v);
-            const Surface s = village::paintSurface(v.texture, metres, texel, tint, 0);
+            const Surface s = v.texture == Texture::kGrass
+                                  ? bankSurface(model, t, metres * (1 / model.atlasSide))
+                                  : village::paintSurface(v.texture, metres, texel, tint, 0);
             const size_t i = size_t(y) * side + x;
             heights[i] = s.height;
             setTexel(p, i, s, (s.heat + 0.4f) / 1.7f, s.metalness);
         }
     }
     addRelief(p, heights, owners, {texel, texel});
+    fillGaps(p, owners);
     return p;
 }
 
