@@ -11,6 +11,7 @@ constexpr double kDensityLimit = 4;      // texel area against the mean: within 
 constexpr double kBadAreaLimit = 0.01;   // own UVs stand if less of the surface is worse than that
 constexpr double kOverlapLimit = 0.001;  // and fewer texels than this lie twice
 constexpr double kIslandBadLimit = 0.1;  // an island with more bad area is cut anew as a whole
+constexpr double kSparseLimit = 64;      // an island's box over its area; sparser: cut anew
 constexpr double kIslandTexels = 16;     // a smaller island is joined to our charts
 
 struct Extent2 {
@@ -92,7 +93,8 @@ uint32_t keepIslands(Surface& surface, double density, double longest,
         }
         const glm::dvec2 size = extent.size();
         const bool usable = scale > 0 && area * density * density >= kIslandTexels &&
-                            std::max(size.x, size.y) <= longest;
+                            std::max(size.x, size.y) <= longest &&
+                            size.x * size.y <= kSparseLimit * area;
         if (usable) coverage.clear(uint32_t(size.x * density) + 2, uint32_t(size.y * density) + 2);
         for (uint32_t i : members) {
             Triangle& t = surface.triangles[i];
@@ -118,19 +120,13 @@ uint32_t keepIslands(Surface& surface, double density, double longest,
 
 uint32_t Coverage::add(const Triangle& t, glm::dvec2 offset, double scale) {
     Triangle moved;
-    glm::dvec2 low(1e300), high(-1e300);
-    for (int k = 0; k < 3; ++k) {
-        moved.uv[k] = (t.uv[k] + offset) * scale;
-        low = glm::min(low, moved.uv[k]);
-        high = glm::max(high, moved.uv[k]);
-    }
-    const int x0 = std::max(0, int(std::floor(low.x))), y0 = std::max(0, int(std::floor(low.y)));
-    const int x1 = std::min(int(width_) - 1, int(std::floor(high.x)));
-    const int y1 = std::min(int(height_) - 1, int(std::floor(high.y)));
+    for (int k = 0; k < 3; ++k) moved.uv[k] = (t.uv[k] + offset) * scale;
+    const RowSpan rows = rowsOf(moved, int(height_));
     uint32_t conflicts = 0;
     for (int pass = 0; pass < 2 && conflicts == 0; ++pass)  // look first, then mark
-        for (int y = y0; y <= y1; ++y)
-            for (int x = x0; x <= x1; ++x) {
+        for (int y = rows.first; y <= rows.last; ++y) {
+            const RowSpan span = rowSpan(moved, y, int(width_));
+            for (int x = span.first; x <= span.last; ++x) {
                 glm::dvec3 w;
                 if (!weightsAt(moved, {x + 0.5, y + 0.5}, w)) return 0;
                 if (std::min({w.x, w.y, w.z}) < 1e-6) continue;
@@ -140,6 +136,7 @@ uint32_t Coverage::add(const Triangle& t, glm::dvec2 offset, double scale) {
                 else
                     owner = 1;
             }
+        }
     return conflicts;
 }
 

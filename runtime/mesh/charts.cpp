@@ -14,7 +14,8 @@ constexpr double kProjectCosine = 0.5;  // aspect 2
 constexpr double kAbsorbCosine = 0.6;
 constexpr double kSmallTexels = 32;  // charts below this are given to their neighbours
 constexpr double kTestSide = 4096;   // texels, largest image of the overlap test
-constexpr int kRounds = 6;           // then every triangle left becomes a chart of its own
+constexpr double kTestCells = 4096;
+constexpr int kRounds = 6;  // then every triangle left becomes a chart of its own
 
 struct Chart {
     glm::dvec3 axis{0, 0, 1};
@@ -229,7 +230,13 @@ uint32_t growCharts(Surface& surface, std::pmr::vector<uint32_t>& pool, uint32_t
                 }
             if (members.size() > 1 && low.x <= high.x) {
                 const glm::dvec2 size = high - low;
-                const double scale = std::min(density, kTestSide / std::max(size.x, size.y));
+                double area = 0;
+                for (uint32_t i : members) area += surface.triangles[i].area;
+                // Huge or sparse charts are tested more coarsely.
+                const double cells = kTestCells + 64 * area * density * density;
+                const double scale =
+                    std::min({density, kTestSide / std::max(size.x, size.y),
+                              std::sqrt(cells / std::max(size.x * size.y, 1e-300))});
                 coverage.clear(uint32_t(size.x * scale) + 2, uint32_t(size.y * scale) + 2);
                 for (uint32_t i : members) {
                     Triangle& t = surface.triangles[i];

@@ -9,6 +9,7 @@ namespace fw::mesh {
 namespace {
 
 constexpr double kCreaseCosine = 0.5;  // 60 degrees
+constexpr int kChainLimit = 256;
 
 uint32_t rootOf(std::pmr::vector<uint32_t>& parent, uint32_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -91,8 +92,9 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
             if (!input.tints.empty()) v.tint = input.tints[source];
             v.material = t.material;
             uint32_t same = first[source];
+            int tries = 0;  // corners that share one vertex and agree in nothing cost a vertex each
             while (same != kNone && std::memcmp(&domain.vertices[same], &v, sizeof v) != 0)
-                same = next[same];
+                same = ++tries < kChainLimit ? next[same] : kNone;
             if (same == kNone) {
                 same = uint32_t(domain.vertices.size());
                 domain.vertices.push_back(v);

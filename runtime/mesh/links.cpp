@@ -269,12 +269,14 @@ class Linker {
     // One that is alone on its piece of the surface (a leaf) stays: other objects may light it.
     void dropDeaf() {
         AreaHeir heir(surface_, grid_, memory_);
-        std::pmr::vector<uint32_t> dropped(memory_);
+        std::pmr::vector<uint32_t> forced(memory_);
+        for (uint32_t i = 0; i < grid_.count(); ++i)
+            if (grid_.real(i) && (grid_.flags[i] & kTexelForced)) forced.push_back(i);
         bool again = true;
         while (again) {
             again = false;
-            for (uint32_t i = 0; i < grid_.count(); ++i) {
-                if (!grid_.real(i) || !(grid_.flags[i] & kTexelForced)) continue;
+            for (uint32_t i : forced) {
+                if (!grid_.real(i)) continue;
                 bool hears = false;
                 for (int k = 0; k < 8; ++k) {
                     const uint32_t j = grid_.ring(i, k);

@@ -115,8 +115,8 @@ class Packer {
     [[nodiscard]] uint32_t widest() const { return widest_ + 2; }
     [[nodiscard]] uint32_t tallest() const { return tallest_ + 2; }
 
-    // Drops all pieces into a strip of this width. Returns its height, or 0 beyond `limit`.
-    uint32_t drop(uint32_t width, uint32_t limit) {
+    // Drops all pieces into a strip of this width. Returns the height they take.
+    uint32_t drop(uint32_t width) {
         skyline_.assign(width, 1);
         int used = 0;
         for (Piece& piece : pieces_) {
@@ -125,7 +125,7 @@ class Packer {
             const int columns = int(piece.columns);
             int bestY = kEmpty, bestX = -1;
             int64_t bestWaste = 0;
-            for (int x = 1; x + columns < int(width); ++x) {
+            for (int x = 1; x + columns < int(width); ++x) {  // widest() leaves room for one
                 int y = 1;
                 for (int c = 0; c < columns && y <= bestY; ++c)
                     y = std::max(y, skyline_[size_t(x + c)] - bottoms[c]);
@@ -138,7 +138,6 @@ class Packer {
                 bestX = x;
                 bestWaste = waste;
             }
-            if (bestX < 0 || uint32_t(bestY + piece.height) + 1 > limit) return 0;
             piece.x = uint32_t(bestX);
             piece.y = uint32_t(bestY);
             for (int c = 0; c < columns; ++c)
@@ -194,30 +193,28 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
     // An upper bound first, so that absurd sizes cost no memory.
     density = std::min({density, double(side) / std::sqrt(surface.area),
                         (double(side) - 4) / std::max(packer.longest(), 1e-9)});
-    for (int attempt = 0; attempt < 400 && least <= room; ++attempt) {
+    for (int attempt = 0; attempt < 100 && least <= room; ++attempt) {
         const double cells = packer.outline(density);
-        if (packer.widest() <= side && packer.tallest() <= side && cells <= room) {
-            const double square = std::sqrt(cells * 1.12) + 4;
-            const uint32_t width = std::min(
-                side, std::max({roundUp8(packer.widest()), roundUp8(uint32_t(square)), 8u}));
-            for (uint32_t w : {width, side}) {
-                const uint32_t height = packer.drop(w, side);
-                if (height == 0) continue;
+        double over = std::max(
+            {cells / room, double(packer.widest()) / side, double(packer.tallest()) / side});
+        if (over <= 1) {
+            const uint32_t square = uint32_t(std::sqrt(cells * 1.12)) + 4;
+            const uint32_t narrow =
+                std::min(side, std::max(roundUp8(packer.widest()), roundUp8(square)));
+            for (uint32_t width : {narrow, side}) {
+                const uint32_t height = roundUp8(packer.drop(width));
+                over = double(height) / side;
+                if (over > 1) continue;
                 packer.commit(density);
                 AtlasPlan plan;
-                plan.width = w;
-                plan.height = roundUp8(height);
+                plan.width = width;
+                plan.height = height;
                 plan.density = density;
                 return plan;
             }
         }
-        const double over = std::max(
-            {cells / room, double(packer.widest()) / side, double(packer.tallest()) / side});
-        if (over > 1.05)
-            density /= std::sqrt(over);
-        else
-            density *= attempt < 40 ? 0.975 : 0.85;
-        if (cells < least * 1.05 && attempt > 60) break;
+        // Height shrinks with the square of the density, until borders are all that is left.
+        density /= std::clamp(std::sqrt(over), 1.015, 2.0);
     }
     core::fail(FW_ERROR_INVALID_ARGUMENT,
                "The mesh falls into %zu charts; an atlas of %u x %u texels has no room for them.",

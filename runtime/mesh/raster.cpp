@@ -12,17 +12,6 @@ struct Part {  // a piece of a triangle in a texel that its chart does not own
     double area;  // m^2
 };
 
-struct Box {
-    int x0, y0, x1, y1;
-};
-Box boxOf(const Triangle& t, const TexelGrid& grid) {
-    const glm::dvec2 low = glm::min(t.uv[0], glm::min(t.uv[1], t.uv[2]));
-    const glm::dvec2 high = glm::max(t.uv[0], glm::max(t.uv[1], t.uv[2]));
-    return {std::max(0, int(std::floor(low.x))), std::max(0, int(std::floor(low.y))),
-            std::min(int(grid.width) - 1, int(std::floor(high.x))),
-            std::min(int(grid.height) - 1, int(std::floor(high.y)))};
-}
-
 // Tells texels wholly in or out of a triangle from those that must be clipped.
 class TriangleSides {
  public:
@@ -113,9 +102,10 @@ class Rasteriser {
     void ownTexels() {
         for (uint32_t i = 0; i < surface_.triangles.size(); ++i) {
             const Triangle& t = surface_.triangles[i];
-            const Box box = boxOf(t, grid_);
-            for (int y = box.y0; y <= box.y1; ++y)
-                for (int x = box.x0; x <= box.x1; ++x) {
+            const RowSpan rows = rowsOf(t, int(grid_.height));
+            for (int y = rows.first; y <= rows.last; ++y) {
+                const RowSpan span = rowSpan(t, y, int(grid_.width));
+                for (int x = span.first; x <= span.last; ++x) {
                     glm::dvec3 w;
                     if (!weightsAt(t, {x + 0.5, y + 0.5}, w)) continue;
                     if (std::min({w.x, w.y, w.z}) < -1e-9) continue;
@@ -125,6 +115,7 @@ class Rasteriser {
                     else if (std::min({w.x, w.y, w.z}) > 1e-6)
                         ++report_.overlaps;
                 }
+            }
         }
     }
 
@@ -139,7 +130,7 @@ class Rasteriser {
         for (uint32_t i = 0; i < surface_.triangles.size(); ++i) {
             const Triangle& t = surface_.triangles[i];
             const double flat = std::abs(uvArea(t));
-            const Box box = boxOf(t, grid_);
+            const RowSpan rows = rowsOf(t, int(grid_.height));
             if (flat < 1e-9) {  // no area in the atlas: its whole area is a part somewhere near
                 const glm::dvec2 at = t.uv[0];
                 const int x = std::clamp(int(at.x), 0, int(grid_.width) - 1);
@@ -148,8 +139,9 @@ class Rasteriser {
                 continue;
             }
             const TriangleSides sides(t);
-            for (int y = box.y0; y <= box.y1; ++y)
-                for (int x = box.x0; x <= box.x1; ++x) {
+            for (int y = rows.first; y <= rows.last; ++y) {
+                const RowSpan span = rowSpan(t, y, int(grid_.width));
+                for (int x = span.first; x <= span.last; ++x) {
                     const int place = sides.classify(x, y);
                     if (place < 0) continue;
                     const double area = (place > 0 ? 1 : clippedArea(t, x, y)) * (t.area / flat);
@@ -160,6 +152,7 @@ class Rasteriser {
                     else
                         parts_.push_back({texel, i, area});
                 }
+            }
         }
         std::sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) {
             if (a.texel != b.texel) return a.texel < b.texel;

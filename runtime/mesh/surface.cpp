@@ -95,6 +95,30 @@ uint32_t rootOf(std::pmr::vector<uint32_t>& parent, uint32_t i) {
 
 }  // namespace
 
+RowSpan rowsOf(const Triangle& t, int height) {
+    const double low = std::min({t.uv[0].y, t.uv[1].y, t.uv[2].y});
+    const double high = std::max({t.uv[0].y, t.uv[1].y, t.uv[2].y});
+    return {std::max(0, int(std::floor(low))), std::min(height - 1, int(std::floor(high)))};
+}
+
+RowSpan rowSpan(const Triangle& t, int y, int width) {
+    double low = 1e300, high = -1e300;
+    for (int e = 0; e < 3; ++e) {
+        glm::dvec2 a = t.uv[e], b = t.uv[(e + 1) % 3];
+        if (a.y > b.y) std::swap(a, b);
+        if (b.y < y || a.y > y + 1) continue;
+        const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
+        const double enter = a.y >= y ? a.x : a.x + (y - a.y) * slope;
+        const double leave = b.y <= y + 1 ? b.x : a.x + (y + 1 - a.y) * slope;
+        low = std::min({low, enter, leave});
+        high = std::max({high, enter, leave});
+    }
+    if (low > high) return {};
+    constexpr double kSlack = 1e-6;  // texels, above the rounding
+    return {std::max(0, int(std::floor(low - kSlack))),
+            std::min(width - 1, int(std::floor(high + kSlack)))};
+}
+
 bool weightsAt(const Triangle& t, glm::dvec2 uv, glm::dvec3& weights) {
     const double area = cross2(t.uv[1] - t.uv[0], t.uv[2] - t.uv[0]);
     if (std::abs(area) < 1e-12) return false;

@@ -54,6 +54,13 @@ inline glm::dvec3 positionAt(const Triangle& t, glm::dvec3 weights) {
 inline glm::dvec2 uvAt(const Triangle& t, glm::dvec3 weights) {
     return t.uv[0] * weights.x + t.uv[1] * weights.y + t.uv[2] * weights.z;
 }
+// Columns that a triangle of the atlas touches in texel row y; first > last: none.
+struct RowSpan {
+    int first = 0, last = -1;
+};
+RowSpan rowSpan(const Triangle& t, int y, int width);
+// Rows likewise.
+RowSpan rowsOf(const Triangle& t, int height);
 // Weights of a point of the atlas; false if the triangle has no area there.
 bool weightsAt(const Triangle& t, glm::dvec2 uv, glm::dvec3& weights);
 TexelShape texelShape(const Triangle& t);

@@ -351,6 +351,79 @@ TEST(MeshBake, DegenerateAndNonManifoldTrianglesAreBorne) {
     EXPECT_EQ(1u, d.report.nonManifoldEdges);
 }
 
+// Small real files of Debian's assimp-testmodels, as their local positions stand.
+TEST(MeshBake, ModelsOfTheMachine) {
+    const std::string folder = "/usr/share/assimp/models/glTF2/";
+    uint32_t baked = 0;
+    for (const char* name :
+         {"BoxTextured-glTF-Binary/BoxTextured.glb", "BoxBadNormals-glTF-Binary/BoxBadNormals.glb",
+          "2CylinderEngine-glTF-Binary/2CylinderEngine.glb",
+          "BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb"}) {
+        Mesh mesh;
+        std::string error;
+        if (!loadGlb(folder + name, mesh, error)) {
+            std::printf("[   FIGURE ] not here: %s (%s)\n", name, error.c_str());
+            continue;
+        }
+        SCOPED_TRACE(name);
+        try {
+            const BurnDomain d = mesh::bake(mesh.input(64, 512), std::pmr::new_delete_resource());
+            expectSound(d);
+            std::printf("[   FIGURE ] %s: %u triangles, %u charts, %u texels of %.2g m\n", name,
+                        d.report.triangles, d.report.charts, d.report.realTexels,
+                        double(d.texelSide));
+            ++baked;
+        } catch (const core::Error& refused) {
+            std::printf("[   FIGURE ] %s is refused: %s\n", name, refused.message);
+            EXPECT_TRUE(std::string(refused.message).find("finite") != std::string::npos);
+        }
+    }
+    if (baked == 0) GTEST_SKIP() << "no models in " << folder;
+}
+
+// Shapes that make careless loops slow: none may take longer than a plain large mesh.
+TEST(MeshBake, AwkwardShapesStayFast) {
+    std::vector<std::pair<const char*, Mesh>> meshes;
+    Mesh needles;  // long, diagonal, thinner than a texel
+    for (int i = 0; i < 2000; ++i) {
+        const uint32_t base = needles.vertexCount();
+        needles.addVertex(0, i * 1e-3, 0, 0, i * 1e-3);
+        needles.addVertex(2, 2 + i * 1e-3, 0, 2, 2 + i * 1e-3);
+        needles.addVertex(2, 2 + i * 1e-3 + 5e-4, 0, 2, 2 + i * 1e-3 + 5e-4);
+        needles.addTriangle(base, base + 1, base + 2);
+    }
+    meshes.push_back({"needles", needles});
+    needles.uvs.clear();
+    meshes.push_back({"needles without UVs", needles});
+    Mesh book;  // 1000 pages on one spine
+    book.addVertex(0, 0, 0);
+    book.addVertex(0, 0, 1);
+    for (int i = 0; i < 1000; ++i) {
+        const double a = i * 6.28 / 1000;
+        book.addTriangle(0, 1, book.addVertex(std::cos(a), std::sin(a), 0.5));
+    }
+    meshes.push_back({"book", book});
+    book.uvs.clear();
+    meshes.push_back({"book without UVs", book});
+    Mesh leaves = makeConfetti(1, 80, 0.01);  // 12,800 separate pieces at different heights
+    for (size_t v = 0; v < leaves.vertexCount(); ++v)
+        leaves.positions[v * 3 + 2] = float(v / 3) * 1e-3f;
+    leaves.uvs.clear();
+    meshes.push_back({"leaves", leaves});
+    for (const auto& [name, mesh] : meshes) {
+        SCOPED_TRACE(name);
+        const std::clock_t start = std::clock();
+        const BurnDomain d = bakeOf(mesh.input(128, 1024));
+        const double milliseconds = 1000.0 * double(std::clock() - start) / CLOCKS_PER_SEC;
+        expectSound(d);
+        std::printf("[   FIGURE ] %s: %u triangles, %u charts, %u x %u, %.0f ms\n", name,
+                    d.report.triangles, d.report.charts, d.width, d.height, milliseconds);
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+        EXPECT_LE(milliseconds, 5000);
+#endif
+    }
+}
+
 TEST(MeshBake, DensityIsLoweredToFit) {
     Mesh plane = makePlane(10, 10);
     const BurnDomain own = bakeOf(plane.input(128, 256));
