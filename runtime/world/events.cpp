@@ -12,6 +12,7 @@ namespace {
 
 // Counters of `reduce` are at most 4 steps old; a fire is judged only well after its last event.
 constexpr uint64_t kSettleTicks = 6 * gpu::kStepTicks;
+constexpr uint32_t kClampsToTell = 32;
 
 }  // namespace
 
@@ -86,10 +87,13 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
             raise(FW_EVENT_IGNITED, &object, 0, readback.frameIndex, place,
                   float(double(tick) / gpu::kTicksPerSecond));
         }
-        if (now.lateClamps > before.lateClamps) {
+        // A few late arrivals come with any turn of the wind; only many of them are a limit.
+        const uint32_t limit = std::max(kClampsToTell, now.ignited / 50);
+        if (now.lateClamps >= object.clampsTold + limit) {
             components::toWorld(object.data.pose, object.ignitionPoint, place);
             raise(FW_EVENT_FRONT_LIMITED, &object, 0, readback.frameIndex, place,
-                  float(now.lateClamps - before.lateClamps));
+                  float(now.lateClamps - object.clampsTold));
+            object.clampsTold = now.lateClamps;
         }
         const bool settled = now.burning == 0 && now.frontTiles == 0 &&
                              readback.endTick >= object.lastStimulus + kSettleTicks &&

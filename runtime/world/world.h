@@ -55,6 +55,7 @@ struct Object {
     // As of the last readback.
     gpu::ObjectCounters counters{};
     uint32_t mostIgnited = 0;
+    uint32_t clampsTold = 0;  // late clamps that an event has told
     uint64_t countersFrame = 0;
     BurnMapCopy map;
 };

@@ -367,7 +367,8 @@ typedef enum FwEventType {
     FW_EVENT_BURNT_OUT = 2,     /* nothing of it burns or waits to burn; value: burnt fraction */
     FW_EVENT_EXTINGUISHED = 3,  /* as above, but by dousing */
     FW_EVENT_TAG_REACHED = 4,   /* the front reached a tagged point; value: s since world start */
-    FW_EVENT_FRONT_LIMITED = 5, /* the front is faster than the substeps can follow; value: count */
+    FW_EVENT_FRONT_LIMITED = 5, /* many arrivals come late: the front is faster than 8 substeps
+                                   can follow; value: how many since the last such event */
     FW_EVENT_TIME_DROPPED = 6,  /* more steps were due than maxStepsPerFrame; value: s dropped */
     FW_EVENT_TYPE_FORCE32 = 0x7fffffff
 } FwEventType;
