@@ -9,6 +9,7 @@ namespace fw::world {
 namespace {
 
 constexpr uint32_t kReduceEvery = 4;  // steps
+constexpr size_t kMaxBurnMapsPerFrame = 64;
 
 }  // namespace
 
@@ -121,8 +122,9 @@ void World::planProbes() {
     }
     frame_.burnMaps.clear();
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (auto* object = objects_.at(i); object && (*object)->map.wished)
-            frame_.burnMaps.push_back(i);
+        if (auto* object = objects_.at(i);
+            object && (*object)->map.wished && frame_.burnMaps.size() < kMaxBurnMapsPerFrame)
+            frame_.burnMaps.push_back(i);  // the others wait for the next frame
 }
 
 void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept {
