@@ -31,7 +31,7 @@ void touchTile(uint parity, uint row, uint worldTile, uint bits) {
 
 #ifdef FW_USE_BURN_LISTS
 void burnAppend(uint parity, uint worldTile) {
-    uint slot = listSlot(kRowBurn + parity, 1u);
+    uint slot = listSlot(kRowBurn + parity, 64u);
     if (parity == 0u) burnA[slot] = worldTile;
     else burnB[slot] = worldTile;
 }
