@@ -1,3 +1,4 @@
+// Judges the mesh's own layout; what of it is unique and even stays, the rest is cut and packed.
 #include "mesh/atlas.h"
 
 #include <cmath>

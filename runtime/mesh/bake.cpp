@@ -1,3 +1,4 @@
+// The bake as a list of steps, and the last of them: from working doubles to integer texels.
 #include "mesh/bake.h"
 
 #include "mesh/atlas.h"
@@ -14,8 +15,9 @@ constexpr double kUnitsPerTexel = 1024;  // finer positions would only make link
 
 // Positions, normals, flags: what the simulation reads of each texel.
 void quantise(const Surface& surface, const TexelGrid& grid, BurnDomain& domain) {
-    const double quantum =
-        std::max({surface.extent / 65535, grid.side / kUnitsPerTexel, grid.linkMax / kLongestLink});
+    // A mesh smaller than a texel still gets a thousand units.
+    const double coarse = std::min(grid.side, surface.extent) / kUnitsPerTexel;
+    const double quantum = std::max({surface.extent / 65535, coarse, grid.linkMax / kLongestLink});
     domain.quantum = float(quantum);
     if (double(domain.quantum) < quantum) domain.quantum = std::nextafter(domain.quantum, 1e30f);
     const auto units = [&](float metres) {

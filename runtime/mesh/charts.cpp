@@ -14,8 +14,9 @@ constexpr double kProjectCosine = 0.5;  // aspect 2
 constexpr double kAbsorbCosine = 0.6;
 constexpr double kSmallTexels = 32;  // charts below this are given to their neighbours
 constexpr double kTestSide = 4096;   // texels, largest image of the overlap test
-constexpr double kTestCells = 4096;
-constexpr int kRounds = 6;  // then every triangle left becomes a chart of its own
+constexpr double kTestCells = 4096;  // cells any chart may have in it, and
+constexpr double kTestSparse = 64;   // cells per texel of its area
+constexpr int kRounds = 6;           // then every triangle left becomes a chart of its own
 
 struct Chart {
     glm::dvec3 axis{0, 0, 1};
@@ -200,6 +201,44 @@ uint32_t splitLong(Surface& surface, std::span<const uint32_t> members, uint32_t
     return nextChart + pieces - 1;
 }
 
+// A triangle that lies over another of its chart loses its chart.
+void dropOverlaps(Surface& surface, std::span<const uint32_t> members, double density,
+                  Coverage& coverage) {
+    glm::dvec2 low(1e300), high(-1e300);
+    double area = 0;
+    for (uint32_t i : members) {
+        const Triangle& t = surface.triangles[i];
+        if (t.chart == kNone) continue;
+        area += t.area;
+        for (const glm::dvec2& u : t.uv) {
+            low = glm::min(low, u);
+            high = glm::max(high, u);
+        }
+    }
+    if (members.size() < 2 || !(area > 0)) return;
+    // Huge or sparse charts are tested more coarsely.
+    const glm::dvec2 size = high - low;
+    const double cells = kTestCells + kTestSparse * area * density * density;
+    const double scale = std::min({density, kTestSide / std::max(size.x, size.y),
+                                   std::sqrt(cells / std::max(size.x * size.y, 1e-300))});
+    coverage.clear(uint32_t(size.x * scale) + 2, uint32_t(size.y * scale) + 2);
+    for (uint32_t i : members) {
+        Triangle& t = surface.triangles[i];
+        if (t.chart != kNone && coverage.add(t, -low, scale) > 0) t.chart = kNone;
+    }
+}
+
+// Lists the pool by chart; afterwards chart first + c ends before order[ends[c]].
+void listByChart(const Surface& surface, std::span<const uint32_t> pool, uint32_t first,
+                 uint32_t charts, std::pmr::vector<uint32_t>& order,
+                 std::pmr::vector<uint32_t>& ends) {
+    ends.assign(size_t(charts) + 1, 0);
+    for (uint32_t i : pool) ++ends[surface.triangles[i].chart - first + 1];
+    for (size_t c = 1; c < ends.size(); ++c) ends[c] += ends[c - 1];
+    order.resize(pool.size());
+    for (uint32_t i : pool) order[ends[surface.triangles[i].chart - first]++] = i;
+}
+
 }  // namespace
 
 uint32_t growCharts(Surface& surface, std::pmr::vector<uint32_t>& pool, uint32_t firstChart,
@@ -207,42 +246,17 @@ uint32_t growCharts(Surface& surface, std::pmr::vector<uint32_t>& pool, uint32_t
     if (pool.empty()) return firstChart;
     Grower grower(surface, memory);
     Coverage coverage(memory);
-    std::pmr::vector<uint32_t> order(memory), starts(memory);
+    std::pmr::vector<uint32_t> order(memory), ends(memory);
+    // What a round throws out (too steep, overlapping) is grown among itself in the next.
     for (int round = 0; round < kRounds && !pool.empty(); ++round) {
         uint32_t next = grower.grow(pool, firstChart, kSmallTexels / (density * density));
-        // Members by chart, in the pool's order.
         const uint32_t grown = next - firstChart;
-        starts.assign(size_t(grown) + 1, 0);
-        for (uint32_t i : pool) ++starts[surface.triangles[i].chart - firstChart + 1];
-        for (size_t c = 1; c < starts.size(); ++c) starts[c] += starts[c - 1];
-        order.resize(pool.size());
-        for (uint32_t i : pool) order[starts[surface.triangles[i].chart - firstChart]++] = i;
-        for (uint32_t c = 0, begin = 0; c < grown; begin = starts[c++]) {
-            const std::span<const uint32_t> members(order.data() + begin, starts[c] - begin);
+        listByChart(surface, pool, firstChart, grown, order, ends);
+        for (uint32_t c = 0, begin = 0; c < grown; begin = ends[c++]) {
+            const std::span<const uint32_t> members(order.data() + begin, ends[c] - begin);
             if (members.empty()) continue;
             flatten(surface, members);
-            glm::dvec2 low(1e300), high(-1e300);
-            for (uint32_t i : members)
-                for (const glm::dvec2& u : surface.triangles[i].uv) {
-                    if (surface.triangles[i].chart == kNone) break;
-                    low = glm::min(low, u);
-                    high = glm::max(high, u);
-                }
-            if (members.size() > 1 && low.x <= high.x) {
-                const glm::dvec2 size = high - low;
-                double area = 0;
-                for (uint32_t i : members) area += surface.triangles[i].area;
-                // Huge or sparse charts are tested more coarsely.
-                const double cells = kTestCells + 64 * area * density * density;
-                const double scale =
-                    std::min({density, kTestSide / std::max(size.x, size.y),
-                              std::sqrt(cells / std::max(size.x * size.y, 1e-300))});
-                coverage.clear(uint32_t(size.x * scale) + 2, uint32_t(size.y * scale) + 2);
-                for (uint32_t i : members) {
-                    Triangle& t = surface.triangles[i];
-                    if (t.chart != kNone && coverage.add(t, -low, scale) > 0) t.chart = kNone;
-                }
-            }
+            dropOverlaps(surface, members, density, coverage);
             next = splitLong(surface, members, next, longest);
         }
         pool.clear();

@@ -165,8 +165,10 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
                    kExtentLow, kExtentHigh);
 
     std::pmr::vector<uint32_t> pointOf(memory);
-    surface.pointCount =
-        weld(input, std::max(weldDistance, surface.extent / 131070), pointOf, memory);
+    // Never finer than positions can tell apart, never so coarse that the shape goes.
+    const double distance =
+        std::clamp(weldDistance, surface.extent / 131070, surface.extent / 8192);
+    surface.pointCount = weld(input, distance, pointOf, memory);
     surface.triangles.reserve(count);
     for (size_t i = 0; i < count; ++i) {
         Triangle t;

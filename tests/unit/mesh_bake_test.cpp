@@ -442,6 +442,20 @@ TEST(MeshBake, DensityIsLoweredToFit) {
     }
 }
 
+TEST(MeshBake, AMeshSmallerThanATexelKeepsItsShape) {
+    for (double density : {1.0, 1e-3, 1e-6}) {
+        const Mesh mesh = makeCube(0.2, 2);
+        const BurnDomain d = bakeOf(mesh.input(density));
+        SCOPED_TRACE(density);
+        expectSound(d);
+        EXPECT_EQ(48u, d.report.triangles);
+        EXPECT_GT(d.report.realTexels, 0u);
+        EXPECT_LT(d.quantum, 0.001f);
+        const auto bytes = mesh::writeCooked(d, 0, std::pmr::new_delete_resource());
+        expectSound(mesh::readCooked(bytes, std::pmr::new_delete_resource()));
+    }
+}
+
 TEST(MeshBake, TwoBakesAreTheSameBytes) {
     std::vector<Mesh> meshes{makeCube(1, 8), makeSoup(3), makeConfetti(0.3, 10, 0.02)};
     meshes.push_back(makeCube(1, 16, true));
