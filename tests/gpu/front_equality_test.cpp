@@ -87,7 +87,7 @@ std::string text(uint32_t frame, uint32_t object, uint32_t texel) {
 
 TEST_F(FrontEquality, P7_TenThousandStepsAreEqual) {
     if (!device_) return;
-    const BurnScene scene = BurnScene::make(11);
+    const BurnScene scene = BurnScene::make(11, 0.6);
     ASSERT_GE(scene.domains.size(), 5u);
     const Outcome outcome = compare(scene, 10000, 8, 10, 1);
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
@@ -106,8 +106,8 @@ TEST_F(FrontEquality, P7_OneStepPerFrame) {
 
 TEST_F(FrontEquality, P7_DenseEqualsSparse) {
     if (!device_) return;
-    const BurnScene scene = BurnScene::make(13);
-    const Outcome outcome = compare(scene, 600, 4, 10, 3, FW_DEBUG_DENSE);
+    const BurnScene scene = BurnScene::make(13, 0.6);
+    const Outcome outcome = compare(scene, 320, 4, 10, 3, FW_DEBUG_DENSE);
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
 }
 
