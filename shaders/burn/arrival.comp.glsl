@@ -1,5 +1,5 @@
-// The front kernel over the due tiles, one group each: new ticks to scratch, changed texels to
-// masks, the earliest pending arrival to the tile. Reads states, writes none: updates are Jacobi.
+// The front kernel over the gathered texels, one thread each: new ticks to scratch, changed texels
+// to masks, the earliest pending arrival to the tile. Reads states, writes none: updates are Jacobi.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -14,27 +14,32 @@ layout(local_size_x = 64) in;
 #define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_RUN readonly
-#define FW_USE_SCRATCH writeonly
+#define FW_USE_SCRATCH FW_READ_WRITE
 #define FW_USE_MASKS FW_READ_WRITE
 #define FW_USE_COUNTERS readonly
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 
-void arrive(uint slot, uint lane) {
+void arrive(uint work) {
+    uint packedTexel = scratch[work * 2u];
+    uint slot = packedTexel >> 6u;
+    uint lane = packedTexel & 63u;
     uint worldTile = run[slot];
     uint object = tileState[worldTile].object;
     uint local = worldTile - objects[object].worldTileBase;
     uint shift = objects[object].substepShift;
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);
     uint floorTick = frontFloor(end - windowTicks(push.stepShift, shift), objects[object].window);
-    uint texel = texelOf(object, local, lane);
+    uint width = objects[object].width;
+    uint tilesX = objects[object].tilesX;
+    uint texel = ((local / tilesX) * 8u + (lane >> 3u)) * width + (local % tilesX) * 8u +
+                 (lane & 7u);
     uint stateBase = objects[object].stateBase;
-    uint t = state[stateBase + texel];
-    if (!frontEligible(t, floorTick)) return;
-
     uint texelBase = objects[object].texelBase;
+    uint t = state[stateBase + texel];
     uvec2 me = texels[texelBase + texel];
+
     FrontRing ring;
     uint other[8];
     uint present = 0xFFu;
@@ -47,19 +52,15 @@ void arrive(uint slot, uint lane) {
         present = 0u;
         for (uint k = 0u; k < 8u; ++k) {
             other[k] = links[record + k];
-            ring.tick[k] = kInert;
-            if (other[k] != kNoneTexel) {
-                present |= 1u << k;
-                ring.tick[k] = state[stateBase + other[k]];
-            }
+            if (other[k] != kNoneTexel) present |= 1u << k;
         }
     } else {
-        uint width = objects[object].width;
-        for (uint k = 0u; k < 8u; ++k) {
+        for (uint k = 0u; k < 8u; ++k)
             other[k] = texel + uint(kFrontRingX[k]) + uint(kFrontRingY[k]) * width;
-            ring.tick[k] = state[stateBase + other[k]];
-        }
     }
+    for (uint k = 0u; k < 8u; ++k)
+        ring.tick[k] = (present & (1u << k)) != 0u ? state[stateBase + other[k]] : kInert;
+
     uint pending = kNever;
     uint late = 0u;
     uint decided = t;
@@ -67,12 +68,15 @@ void arrive(uint slot, uint lane) {
     if (counts != 0u) {
         uint material = (me.y >> 16u) & 7u;
         uint materialBase = object * kMaterialsPerObject;
+        uint ownBurn = materials[materialBase + material].burnTicks;
         ivec3 mine = decodePosition(me);
         for (uint k = 0u; k < 8u; ++k) {
             if ((counts & (1u << k)) == 0u) continue;
             uvec2 they = texels[texelBase + other[k]];
+            uint theirs = (they.y >> 16u) & 7u;
             ring.link[k] = mine - decodePosition(they);
-            ring.burn[k] = materials[materialBase + ((they.y >> 16u) & 7u)].burnTicks;
+            ring.burn[k] = ownBurn;
+            if (theirs != material) ring.burn[k] = materials[materialBase + theirs].burnTicks;
         }
         FrontPrep p = frontPrep(decodeNormal(normals[texelBase + texel]),
                                 slownessAt(objects[object].slowBase, texel),
@@ -82,8 +86,9 @@ void arrive(uint slot, uint lane) {
                          floorTick, texel, pending);
         decided = frontDecide(t, candidate, end, floorTick, pending, late);
     }
+    scratch[work * 2u] = stateBase + texel;
+    scratch[work * 2u + 1u] = decided == t ? kNever : decided;
     if (decided != t) {
-        scratch[slot * 64u + lane] = decided;
         uint bit = 1u << (lane & 31u);
         if (lane < 32u) {
             atomicOr(masks[slot].x, bit);
@@ -99,7 +104,6 @@ void arrive(uint slot, uint lane) {
 }
 
 void main() {
-    uint count = counters[push.row].runCount;
-    for (uint slot = gl_WorkGroupID.x; slot < count; slot += gl_NumWorkGroups.x)
-        arrive(slot, gl_LocalInvocationID.x);
+    uint count = counters[push.row].workCount;
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) arrive(i);
 }

@@ -17,10 +17,13 @@ layout(local_size_x = 64) in;
 
 void runTile(uint worldTile, uint flag) {
     uint slot = atomicAdd(counters[push.row].runCount, 1u);
-    atomicMax(counters[push.row].runX, min(slot + 1u, kMaxGroups));
+    if ((slot & 7u) == 0u) atomicMax(counters[push.row].runX, min(slot / 8u + 1u, kMaxGroups));
+    if ((slot & 63u) == 0u) atomicMax(counters[push.row].workX, min(slot / 64u + 1u, kMaxGroups));
     if (slot == 0u) {
         counters[push.row].runY = 1u;
         counters[push.row].runZ = 1u;
+        counters[push.row].workY = 1u;
+        counters[push.row].workZ = 1u;
     }
     run[slot] = worldTile;
     masks[slot] = uvec4(0u);

@@ -18,7 +18,7 @@
 #define FW_BIND_LIST_A 10     // uint[]: front list, world tile ids (ping)
 #define FW_BIND_LIST_B 11     // uint[]: front list (pong)
 #define FW_BIND_RUN 12        // uint[]: due tiles of this iteration
-#define FW_BIND_SCRATCH 13    // uint[]: 64 words per due tile
+#define FW_BIND_SCRATCH 13    // uvec2-wise uint[]: gathered texels, room for 64 per due tile
 #define FW_BIND_MASKS 14      // uvec4[]: texels changed (xy) and newly lit (zw) per due tile
 #define FW_BIND_COUNTERS 15   // IterationCounters[], see the kRow constants
 #define FW_BIND_EVENTS 16     // TexelEvent[]
@@ -156,10 +156,11 @@ struct TileState {
 FW_SHARED_SIZE(TileState, 16)
 
 struct IterationCounters {  // zeroed before a frame from kRowIteration on, but for the carried list
-    uint runX; uint runY; uint runZ; uint runCount;     // indirect groups of arrival, commit
+    uint workX; uint workY; uint workZ; uint workCount; // arrival, commit: X covers runCount too
+    uint runX; uint runY; uint runZ; uint runCount;     // indirect groups of gather, due tiles
     uint listX; uint listY; uint listZ; uint listCount; // indirect groups of schedule, and its size
 };
-FW_SHARED_SIZE(IterationCounters, 32)
+FW_SHARED_SIZE(IterationCounters, 48)
 
 struct TexelEvent {   // sorted by (object, texel, order); one batch per step
     uint object;      // slot

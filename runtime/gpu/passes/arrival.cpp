@@ -1,4 +1,4 @@
-// The front kernel over the due tiles.
+// The front kernel over the gathered texels.
 #include "gpu/passes/frame_graph.h"
 
 namespace fw::gpu {

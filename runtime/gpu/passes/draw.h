@@ -35,6 +35,7 @@ struct DrawItem {
     uint32_t firstIndex = 0, indexCount = 0;
     int32_t vertexOffset = 0;
     uint32_t image = 0;  // as BurnObject::image
+    uint32_t variant = 0;  // of the surface pass, from surfaceVariant
 };
 
 // Records a draw pass: pipeline and sets 0 and 2 are bound for it as its DrawPass says.
@@ -49,8 +50,12 @@ class DrawRecorder {
     ~DrawRecorder() = default;
 };
 
-extern const DrawPass kSurfacePass;
-void recordSurface(DrawRecorder& recorder, std::span<const DrawItem> items);
+constexpr uint32_t kSurfaceVariants = 9;
+extern const DrawPass kSurfacePasses[kSurfaceVariants];
+// The variant for these materials; `touched`: some event reached the object.
+uint32_t surfaceVariant(std::span<const BurnMaterial> materials, bool touched);
+bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items);
+void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items);
 extern const DrawPass kFlamesPass;
 void recordFlames(DrawRecorder& recorder);
 

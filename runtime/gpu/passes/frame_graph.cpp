@@ -13,12 +13,15 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,       &kEventsPass, &kWakePass,      &kSchedulePass,
-    &kArrivalPass,     &kCommitPass, &kPublishedPass, &kReduceClearPass,
-    &kReduceFrontPass, &kReducePass, &kPredictPass,   &kProbePass,
-    &kLightsPass,      &kFlameQuadsPass, &kFlameSortPass};
+    &kResetPass,  &kEventsPass,     &kWakePass,      &kSchedulePass,    &kGatherPass,
+    &kArrivalPass, &kCommitPass,    &kPublishedPass, &kReduceClearPass, &kReduceFrontPass,
+    &kReducePass, &kPredictPass,    &kProbePass,     &kLightsPass,      &kFlameQuadsPass,
+    &kFlameSortPass};
 
-constexpr const DrawPass* kDrawPasses[] = {&kSurfacePass, &kFlamesPass};
+constexpr const DrawPass* kDrawPasses[] = {
+    &kSurfacePasses[0], &kSurfacePasses[1], &kSurfacePasses[2], &kSurfacePasses[3],
+    &kSurfacePasses[4], &kSurfacePasses[5], &kSurfacePasses[6], &kSurfacePasses[7],
+    &kSurfacePasses[8], &kFlamesPass};
 
 uint32_t groupsOf(uint32_t items) { return std::min((items + 63) / 64, kMaxGroups); }
 
@@ -93,8 +96,9 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
             recorder.dispatch(kSchedulePass, &push, std::min(std::max(push.count, 1u), kMaxGroups));
         else
             recorder.dispatchList(kSchedulePass, &push, lists.row);
-        recorder.dispatchRun(kArrivalPass, &push, lists.row);
-        recorder.dispatchRun(kCommitPass, &push, lists.row);
+        recorder.dispatchRun(kGatherPass, &push, lists.row);
+        recorder.dispatchWork(kArrivalPass, &push, lists.row);
+        recorder.dispatchWork(kCommitPass, &push, lists.row);
         lists.row += 1;
         lists.parity ^= 1;
     }
@@ -133,8 +137,12 @@ void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {
 }
 
 void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawItem> items) {
-    if (kDrawPasses[pass] == &kSurfacePass) recordSurface(recorder, items);
+    if (pass < kSurfaceVariants) recordSurface(recorder, uint32_t(pass), items);
     else recordFlames(recorder);
+}
+
+bool drawPassDraws(size_t pass, std::span<const DrawItem> items) {
+    return pass >= kSurfaceVariants || surfaceDraws(uint32_t(pass), items);
 }
 
 void recordLooks(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {

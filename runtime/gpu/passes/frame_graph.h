@@ -12,9 +12,9 @@ namespace vk {
 class FrameRecorder;
 }
 
-extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kArrivalPass,
-    kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass, kReducePass, kPredictPass,
-    kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass;
+extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kGatherPass,
+    kArrivalPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass, kReducePass,
+    kPredictPass, kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -54,8 +54,10 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
 void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick);
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes);
 void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles);
-// For the frame's view: lights, flames and their order.
+// False: it would draw nothing, do not bind it.
+bool drawPassDraws(size_t pass, std::span<const DrawItem> items);
 void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawItem> items);
+// For the frame's view: lights, flames and their order.
 void recordLooks(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 
 }  // namespace fw::gpu

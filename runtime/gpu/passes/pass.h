@@ -46,7 +46,8 @@ enum class VertexInput : uint8_t {
 };
 enum class Blend : uint8_t { opaque, premultiplied, additive };
 
-// Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1).
+// Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
+// 2 DrawPass::variant.
 // Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none); 2
 // binding 0 the look textures (sampler2DArray). Never culled: holes show the inside.
 struct DrawPass {
@@ -58,6 +59,7 @@ struct DrawPass {
     Blend blend;
     bool writeDepth;     // only where the target allows it
     uint32_t pushBytes;  // vertex and fragment, <= 128
+    uint32_t variant = 0;
 };
 
 }  // namespace fw::gpu

@@ -1,4 +1,5 @@
-// Burnable meshes as they look now, one draw per object.
+// Burnable meshes as they look now, one draw per object. Variants differ in what they can draw, not
+// in how it looks: see kSurface... in shared/look.h.
 #include "gpu/passes/frame_graph.h"
 
 namespace fw::gpu {
@@ -15,14 +16,66 @@ struct SurfacePush {
     uint32_t object;
 };
 
+constexpr DrawPass variant(uint32_t features) {
+    return {"surface",        "surface.vert", "surface.frag",      kUses,
+            VertexInput::mesh, Blend::opaque,  true, sizeof(SurfacePush), features};
+}
+
+constexpr uint32_t kAll = kSurfaceWood | kSurfaceSheet | kSurfacePlant | kSurfaceHide;
+
+// What a preset's look needs of a variant; stone needs nothing.
+uint32_t familyOf(uint32_t look) {
+    switch (look) {
+        case FW_MATERIAL_PINE:
+        case FW_MATERIAL_PAINTED_WOOD:
+        case FW_MATERIAL_PLYWOOD: return kSurfaceWood;
+        case FW_MATERIAL_NEWSPAPER:
+        case FW_MATERIAL_PAPER:
+        case FW_MATERIAL_COTTON: return kSurfaceSheet;
+        case FW_MATERIAL_POLYESTER: return kSurfaceSheet | kSurfaceHide;
+        case FW_MATERIAL_DRY_LEAF:
+        case FW_MATERIAL_GREEN_LEAF:
+        case FW_MATERIAL_THATCH:
+        case FW_MATERIAL_DRY_GRASS: return kSurfacePlant;
+        case FW_MATERIAL_LEATHER:
+        case FW_MATERIAL_PLASTIC: return kSurfaceHide;
+        default: return 0;
+    }
+}
+
 }  // namespace
 
-const DrawPass kSurfacePass{
-    "surface", "surface.vert", "surface.frag", kUses, VertexInput::mesh, Blend::opaque,
-    true,      sizeof(SurfacePush)};
+// Cheapest first: an object is drawn by the first that has all it needs.
+const DrawPass kSurfacePasses[kSurfaceVariants] = {
+    variant(kSurfaceWood),
+    variant(kSurfacePlant),
+    variant(kSurfaceWood | kSurfacePlant),
+    variant(kAll),
+    variant(kSurfaceWood | kSurfaceBurns),
+    variant(kSurfaceSheet | kSurfaceBurns),
+    variant(kSurfacePlant | kSurfaceBurns),
+    variant(kSurfaceWood | kSurfacePlant | kSurfaceBurns),
+    variant(kAll | kSurfaceBurns),
+};
 
-void recordSurface(DrawRecorder& recorder, std::span<const DrawItem> items) {
+uint32_t surfaceVariant(std::span<const BurnMaterial> materials, bool touched) {
+    uint32_t needs = touched ? kSurfaceBurns : 0;
+    for (const BurnMaterial& material : materials) needs |= familyOf(material.look);
+    uint32_t i = 0;
+    while ((needs & ~kSurfacePasses[i].variant) != 0) ++i;
+    return i;
+}
+
+bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
+        if (item.variant == variant) return true;
+    }
+    return false;
+}
+
+void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items) {
+    for (const DrawItem& item : items) {
+        if (item.variant != variant) continue;
         const SurfacePush push{item.object};
         recorder.drawItem(item, &push);
     }

@@ -35,7 +35,7 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_LIST_A, kSpaceObjectTiles, 4, true, kComponentLists, "front list A", 0},
     {FW_BIND_LIST_B, kSpaceObjectTiles, 4, true, kComponentLists, "front list B", 0},
     {FW_BIND_RUN, kSpaceObjectTiles, 4, false, kComponentLists, "run list", 0},
-    {FW_BIND_SCRATCH, kSpaceObjectTiles, 4 * kTileTexels, false, kComponentLists, "scratch", 0},
+    {FW_BIND_SCRATCH, kSpaceObjectTiles, 8 * kTileTexels, false, kComponentLists, "scratch", 0},
     {FW_BIND_MASKS, kSpaceObjectTiles, 16, false, kComponentLists, "masks", 0},
     {FW_BIND_BURN_A, kSpaceObjectTiles, 4, true, kComponentLists, "burn list A", 0},
     {FW_BIND_BURN_B, kSpaceObjectTiles, 4, true, kComponentLists, "burn list B", 0},

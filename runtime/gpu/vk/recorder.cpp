@@ -36,6 +36,10 @@ void FrameRecorder::dispatchAt(const ComputePass& pass, const void* push, uint64
     t_.slot->timers.end(*t_.device, t_.commands);
 }
 
+void FrameRecorder::dispatchWork(const ComputePass& pass, const void* push, uint32_t row) {
+    dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, workX));
+}
+
 void FrameRecorder::dispatchRun(const ComputePass& pass, const void* push, uint32_t row) {
     dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, runX));
 }
