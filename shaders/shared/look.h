@@ -19,6 +19,13 @@ FW_SHARED_CONST uint kBaseLeather = 8u;
 FW_SHARED_CONST uint kBasePlastic = 9u;
 FW_SHARED_CONST uint kBaseStone = 10u;
 
+// Variants of the surface pass: which materials it can draw, and whether they burn.
+FW_SHARED_CONST uint kSurfaceWood = 1u;   // wood, paint: char blocks, film, blisters
+FW_SHARED_CONST uint kSurfaceSheet = 2u;  // paper, cloth: sparks, wrinkles
+FW_SHARED_CONST uint kSurfacePlant = 4u;  // leaf, straw
+FW_SHARED_CONST uint kSurfaceHide = 8u;   // leather, plastic
+FW_SHARED_CONST uint kSurfaceBurns = 16u; // some event reached the object
+
 // Layers of the look texture array: 512^2 RGBA8, tiling, with mips.
 FW_SHARED_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
 FW_SHARED_CONST float kLayerChar = 1.0f;    // R primary crack distance, G secondary, B id, A pillow

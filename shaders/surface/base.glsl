@@ -9,7 +9,6 @@ struct Base {
     float height;  // m, up
 };
 
-#if FW_WOOD
 void woodBase(vec2 d, float pixel, bool planks, out Base b) {
     float plank = planks ? floor(d.x / 0.15 + 64.0) : 3.0;
     float across = fract(d.x / 0.15 + 64.0);
@@ -36,9 +35,7 @@ void woodBase(vec2 d, float pixel, bool planks, out Base b) {
         b.cavity *= 1.0 - 0.8 * dark;
     }
 }
-#endif
 
-#if FW_WOOD
 void paintBase(vec3 color, vec4 coarse, inout Base b) {  // over woodBase
     float fibre = (b.cavity - 0.6) * 2.5;
     float worn = smoothstep(0.66, 0.70, coarse.r * 0.75 + fibre * 0.2);
@@ -49,9 +46,7 @@ void paintBase(vec3 color, vec4 coarse, inout Base b) {  // over woodBase
     b.height = -0.0003 * worn + min(b.height + 0.0006, 0.0);
     b.delay *= 0.5;
 }
-#endif
 
-#if FW_SHEET
 void paperBase(vec2 d, float pixel, bool print, vec4 coarse, vec4 fine, out Base b) {
     b.factor = vec3((0.96 + 0.08 * fine.b) * (0.97 + 0.06 * coarse.r));
     b.rough = 0.85;
@@ -74,9 +69,7 @@ void paperBase(vec2 d, float pixel, bool print, vec4 coarse, vec4 fine, out Base
         b.factor *= 1.0 - 0.72 * mix(ink, 0.30, blurred);
     }
 }
-#endif
 
-#if FW_SHEET
 void weaveBase(vec2 d, float pixel, vec4 coarse, out Base b) {
     const float kThread = 0.0022;
     float u = d.x / kThread, v = d.y / kThread;
@@ -90,9 +83,7 @@ void weaveBase(vec2 d, float pixel, vec4 coarse, out Base b) {
     b.cavity = 0.25 + 0.75 * over;
     b.delay = ((hash(warp, 0, 11) - 0.5) + (hash(0, weft, 12) - 0.5)) * 1.2 * sharp;
 }
-#endif
 
-#if FW_PLANT
 void leafBase(vec2 d, float pixel, vec4 coarse, out Base b) {
     // Blades of about 9 by 16 cm, staggered, each with a midrib and a herringbone of veins.
     vec2 cell = d / vec2(0.09, 0.16) + 64.0;
@@ -113,9 +104,7 @@ void leafBase(vec2 d, float pixel, vec4 coarse, out Base b) {
     b.cavity = 0.55 + 0.45 * vein;
     b.height = 0.0005 * vein;
 }
-#endif
 
-#if FW_PLANT
 void strawBase(vec2 d, float pixel, out Base b) {
     float best = -1.0;
     b.factor = vec3(0.10, 0.095, 0.09);
@@ -144,7 +133,6 @@ void strawBase(vec2 d, float pixel, out Base b) {
     b.height = best * 0.7 * sharp;
     b.rough = 0.65;
 }
-#endif
 
 Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coarse, vec4 fine) {
     Base b;
@@ -153,28 +141,21 @@ Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coa
     b.delay = 0.0;
     b.cavity = 1.0;
     b.height = 0.0;
-#if FW_WOOD
-    if (kind == kBaseWood || kind == kBasePaint) woodBase(d, pixel, planks, b);
-    if (kind == kBasePaint) paintBase(color, coarse, b);
-#endif
-#if FW_SHEET
-    if (kind == kBasePaper || kind == kBasePrint)
+    if (kHasWood && (kind == kBaseWood || kind == kBasePaint)) woodBase(d, pixel, planks, b);
+    if (kHasWood && kind == kBasePaint) paintBase(color, coarse, b);
+    if (kHasSheet && (kind == kBasePaper || kind == kBasePrint))
         paperBase(d, pixel, kind == kBasePrint, coarse, fine, b);
-    if (kind == kBaseWeave) weaveBase(d, pixel, coarse, b);
-#endif
-#if FW_PLANT
-    if (kind == kBaseLeaf) leafBase(d, pixel, coarse, b);
-    if (kind == kBaseStraw) strawBase(d, pixel, b);
-#endif
-#if FW_OTHER
-    if (kind == kBaseLeather) {
+    if (kHasSheet && kind == kBaseWeave) weaveBase(d, pixel, coarse, b);
+    if (kHasPlant && kind == kBaseLeaf) leafBase(d, pixel, coarse, b);
+    if (kHasPlant && kind == kBaseStraw) strawBase(d, pixel, b);
+    if (kHasHide && kind == kBaseLeather) {
         float pore = smoothstep(0.02, 0.12,
                                 lookLayer(d / 0.022, kLayerChar, noiseLod(pixel, 45.0)).g);
         b.factor = vec3((0.75 + 0.5 * coarse.r) * (0.7 + 0.3 * pore));
         b.rough = 0.60 - 0.15 * pore;
         b.height = -0.0003 * (1.0 - pore);
     }
-    if (kind == kBasePlastic) {
+    if (kHasHide && kind == kBasePlastic) {
         b.factor = vec3(0.97 + 0.06 * coarse.r);
         b.rough = 0.28;
     }
@@ -183,6 +164,5 @@ Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coa
         b.cavity = 0.5 + 0.5 * fine.g;
         b.rough = 0.9;
     }
-#endif
     return b;
 }

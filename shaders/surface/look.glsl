@@ -1,6 +1,6 @@
 // A burning surface as a pure function of time since ignition, the material's look and tiling
-// noise. Lengths m, times look seconds, temperatures K, emission cd/m^2. Needs lib/look_noise.glsl
-// and lib/colour.glsl. Order matters to the eye: heat, char, film, ash, glow, rim, soot, water.
+// noise. Lengths m, times look seconds, temperatures K, emission cd/m^2. Needs lib/look_noise.glsl,
+// lib/colour.glsl and the families of surface.frag. Order matters to the eye: heat, char, film, ash, glow, rim, soot, water.
 
 struct Site {        // what is known of one point of the surface
     vec2 d;          // m, detail coordinates, y along the grain
@@ -77,15 +77,12 @@ float paintFilm(float a, vec4 flakes, MaterialLook m) {
 
 // Blisters of paint and bubbles of plastic, [0, 1].
 float bubbleShape(vec2 d, float pixel, vec4 coarse, bool molten) {
-#if FW_BUBBLES
+    if (!kBurns || !(kHasWood || kHasSheet || kHasHide)) return 0.0;
     vec4 cells = lookLayer(d * 2.8, kLayerChar, noiseLod(pixel, 2.8));
     float u = molten ? smoothstep(0.47, 0.68, coarse.r)
                      : saturate(cells.g * 2.2) *
                            smoothstep(0.38, 0.60, coarse.r + 0.25 * (coarse.a - 0.5));
     return u * (2.0 - u);
-#else
-    return 0.0;
-#endif
 }
 
 Skin burningSkin(Site s, MaterialLook m) {
@@ -99,8 +96,7 @@ Skin burningSkin(Site s, MaterialLook m) {
     float far = 1.0 / (1.0 + s.pixel * s.pixel / (0.0022 * 0.0022));  // relief fades into occlusion
     vec4 k = vec4(0.0, 1.0, 0.5, 0.5);
     o.slope = vec2(0.0);
-#if FW_CRACKS
-    if (m.crackDepth > 0.0 && c > 0.0) {
+    if ((kHasWood || kHasHide) && m.crackDepth > 0.0 && c > 0.0) {
         vec2 uv = s.d / vec2(m.cellX, m.cellY) / 8.0 + (vec2(nA.r, nA.b) - 0.5) * 0.04;
         float lod = noiseLod(s.pixel, 1.0 / (8.0 * m.cellX));
         k = charCracks(a, s, m, uv, lod);
@@ -109,13 +105,10 @@ Skin burningSkin(Site s, MaterialLook m) {
         o.slope += slope * (kCrackSlopeRange * m.crackDepth * far * open) / vec2(m.cellX, m.cellY);
         k.z = mix(k.z, nA.a, m.isotropic);
     }
-#endif
-#if FW_CRUMPLE
-    if (m.crumple > 0.0 && c > 0.0) {
+    if ((kHasSheet || kHasPlant || kHasHide) && m.crumple > 0.0 && c > 0.0) {
         vec2 slope = lookLayer(s.d * 13.0, kLayerRelief, noiseLod(s.pixel, 13.0)).ba * 2.0 - 1.0;
         o.slope += slope * (kCrumpleSlopeRange * 13.0 * 0.5 * m.crumple * c);
     }
-#endif
 
     // Heating: through brown first, then absorption; plain absorption turns blue paint green.
     float pre = smoothstep(-m.scorchWidth, 0.0, x + m.scorchWidth * 0.35 * (nB.r - 0.5));
@@ -137,9 +130,8 @@ Skin burningSkin(Site s, MaterialLook m) {
     rough = mix(rough, m.charColor.w + 0.25 * (nA.g - 0.5) + 0.2 * (k.z - 0.5), c);
     float f0 = mix(0.04, 0.05, c);
 
-#if FW_WOOD
     float film = m.ashColor.w;
-    if (film > 0.0) {
+    if (kHasWood && film > 0.0) {
         float left = paintFilm(a, nA, m) * smoothstep(-0.6 * m.scorchWidth, 0.0, x);
         albedo = mix(albedo, vec3(0.022, 0.02, 0.02) + 0.10 * s.base * (1.0 - c), left);
         rough = mix(rough, 0.35, left);
@@ -147,14 +139,11 @@ Skin burningSkin(Site s, MaterialLook m) {
         o.slope *= 1.0 - left;
         c *= 1.0 - left;
     }
-#endif
-#if FW_BUBBLES
-    if (m.blister > 0.0) {
+    if ((kHasWood || kHasSheet || kHasHide) && m.blister > 0.0) {
         float swell = smoothstep(-m.scorchWidth * 0.9, -m.scorchWidth * 0.1, x);
         float burst = 1.0 - smoothstep(m.charTime * 0.3, m.charTime * 1.2, a);
         o.slope -= s.bubbleSlope * (m.blister * swell * mix(burst, 1.0, m.melt));
     }
-#endif
 
     // Ash after the glow, on exposed tops, never in cracks.
     float nearCrack = m.crackDepth > 0.0 ? 0.55 * exp(-k.y / (2.2 * m.crackWidth)) - 0.1 : 0.0;
@@ -175,8 +164,7 @@ Skin burningSkin(Site s, MaterialLook m) {
                              exp(-max(0.0, a - m.facePeak) / m.faceDecay);
     vec3 emission = emberRadiance(limitGlow(face + dT, s)) *
                     (0.9 * (1.0 - 0.9 * ash) * smoothstep(0.0, 0.4, c));
-#if FW_CRACKS
-    if (m.crackDepth > 0.0 && c > 0.0) {
+    if ((kHasWood || kHasHide) && m.crackDepth > 0.0 && c > 0.0) {
         float life = m.crackLife * (0.55 + 2.2 * nB.r * nB.r + 0.4 * k.z);
         float crack = 300.0 + (m.crackKelvin - 300.0) *
                                   smoothstep(0.3 * m.facePeak, 2.0 * m.facePeak, a) *
@@ -185,16 +173,13 @@ Skin burningSkin(Site s, MaterialLook m) {
         float wall = exp(-k.y / (1.6 * m.crackWidth + 1e-5)) * c;
         emission += emberRadiance(limitGlow(crack, s)) * (k.x * 0.95 + 0.10 * wall * (1.0 - ash));
     }
-#endif
-#if FW_SHEET | FW_PLANT
-    if (m.wormKelvin > 0.0) {
+    if ((kHasSheet || kHasPlant) && m.wormKelvin > 0.0) {
         float level = fract(s.age * 0.13);
         float off = (nA.r - 0.32 - 0.36 * level) / 0.008;
         float worm = exp(-off * off) * smoothstep(0.5, 0.62, nB.r) *
                      smoothstep(m.charTime, m.charTime * 1.5, a) * 4.0 * level * (1.0 - level);
         emission += emberRadiance(limitGlow(m.wormKelvin + 0.5 * dT, s)) * worm;
     }
-#endif
     if (m.holeTime > 0.0) {
         float e = max(edge, 0.0);
         if (m.rimKelvin > 0.0) {

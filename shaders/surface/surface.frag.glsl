@@ -5,22 +5,15 @@
 #include "shared/burn.h"
 #include "shared/look.h"
 
-// Which families of materials the variant can draw, and whether they can burn; see surface.cpp.
-#ifndef FW_WOOD
-#define FW_WOOD 1
-#define FW_SHEET 1
-#define FW_PLANT 1
-#define FW_OTHER 1
-#endif
-#ifndef FW_BURN
-#define FW_BURN 1
-#endif
-// The software device runs both sides of every branch: what a family has no use for is left out.
-#define FW_CRACKS (FW_WOOD | FW_OTHER)
-#define FW_CRUMPLE (FW_SHEET | FW_PLANT | FW_OTHER)
-#define FW_BUBBLES (FW_WOOD | FW_SHEET | FW_OTHER)
-
 layout(constant_id = 0) const uint kEncoding = 0u;
+// Families of materials that a variant can draw, and whether they can burn (kSurface...). The
+// software device runs both sides of every branch, so what is of no use is left out.
+layout(constant_id = 2) const uint kVariant = 31u;
+const bool kHasWood = (kVariant & kSurfaceWood) != 0u;
+const bool kHasSheet = (kVariant & kSurfaceSheet) != 0u;
+const bool kHasPlant = (kVariant & kSurfacePlant) != 0u;
+const bool kHasHide = (kVariant & kSurfaceHide) != 0u;
+const bool kBurns = (kVariant & kSurfaceBurns) != 0u;
 
 layout(set = 0, binding = FW_BIND_OBJECTS, std430) readonly buffer Objects { BurnObject objects[]; };
 layout(set = 0, binding = FW_BIND_MATERIALS, std430) readonly buffer Materials {
@@ -223,8 +216,11 @@ void main() {
     vec2 shift = vec2(dot(gradU, along), dot(gradV, along));  // texels
     // A long shift could leave the chart: what is beyond 1.5 texels goes the linear way.
     vec2 near = shift * min(1.0, 1.5 * inversesqrt(max(dot(shift, shift), 1e-12)));
-    Arrival arrival = arrivalAt(object, inAtlas + near);
-    arrival.age -= dot(arrival.gradient, shift - near);
+    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0);
+    if (kBurns) {
+        arrival = arrivalAt(object, inAtlas + near);
+        arrival.age -= dot(arrival.gradient, shift - near);
+    }
 
     vec3 color = materials[row].baseColor.rgb;
     Base fresh;
@@ -272,15 +268,14 @@ void main() {
     site.bubbleSlope = vec2(dot(swell, axisX), dot(swell, axisY));
 
     float ahead = 1.3 * max(look.scorchWidth, look.wiltColor.w) * site.slow + 1.5 * look.jitter;
-    bool cold = FW_BURN == 0 || look.spreadRate <= 0.0 || site.age < -ahead;
+    bool cold = !kBurns || look.spreadRate <= 0.0 || site.age < -ahead;
     Skin skin;
     vec3 position = inPosition;
     vec3 facingNormal = back ? -normal : normal;
     float deep = -1.0;
     skin = freshSkin(site, look);
     if (inside) skin.occlusion = 0.4;
-#if FW_BURN
-    if (!cold) {
+    if (kBurns && !cold) {
         float a = site.age - look.jitter * site.delay;
         if (holeEdge(a, site, site.fine.rb, look) < 0.0) {
             vec3 ray = vec3(dot(-toEye, axisX), dot(-toEye, axisY), -abs(dot(toEye, normal)));
@@ -305,7 +300,6 @@ void main() {
             skin.occlusion *= 0.5;
         }
     }
-#endif
 
     float charred = smoothstep(0.0, max(look.charTime, 1e-3), site.age);
     relief *= deep >= 0.0 ? 0.0 : 1.0 - 0.6 * charred;

@@ -275,10 +275,10 @@ VkRenderPass Pipelines::makePass(const TargetKey& key) const {
 VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass renderPass) const {
     const DrawPass& pass = *drawPasses()[number];
     const struct {
-        uint32_t encoding, reversed;
-    } constants{uint32_t(key.encoding), key.reversedDepth ? 1u : 0u};
-    const std::array<VkSpecializationMapEntry, 2> entries{{{0, 0, 4}, {1, 4, 4}}};
-    const VkSpecializationInfo special{2, entries.data(), sizeof constants, &constants};
+        uint32_t encoding, reversed, variant;
+    } constants{uint32_t(key.encoding), key.reversedDepth ? 1u : 0u, pass.variant};
+    const std::array<VkSpecializationMapEntry, 3> entries{{{0, 0, 4}, {1, 4, 4}, {2, 8, 4}}};
+    const VkSpecializationInfo special{3, entries.data(), sizeof constants, &constants};
 
     std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
     for (VkPipelineShaderStageCreateInfo& stage : stages) {

@@ -87,7 +87,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     for (size_t i = 0; i < drawPasses().size(); ++i) {
         const DrawPass& pass = *drawPasses()[i];
         const bool surface = pass.vertexInput == VertexInput::mesh;
-        if (surface && drawItems.empty()) continue;
+        if (surface && !drawPassDraws(i, drawItems)) continue;
         if (!surface && burnEmpty) continue;  // no flames anywhere
         slot.timers.begin(device, commands, pass.name);
         const VkPipelineLayout layout = context.pipelines.draw(i).layout;

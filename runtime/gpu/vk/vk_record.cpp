@@ -345,7 +345,8 @@ void VkBackend::State::run(const FramePlan& plan) {
             if (!object.live || (object.record.flags & kObjectHidden)) continue;
             const MeshEntry& mesh = meshes[object.mesh];
             drawItems.push_back({i, mesh.indexRange.first, mesh.indices,
-                                 int32_t(mesh.vertexRange.first), object.record.image});
+                                 int32_t(mesh.vertexRange.first), object.record.image,
+                                 surfaceVariant(object.materials, object.touched)});
         }
     }
     drawVertices = planes.buffer(kResourceVertices).handle;
@@ -407,6 +408,12 @@ void VkBackend::State::run(const FramePlan& plan) {
         for (const TexelEvent& event : plannedStep.events) {
             ObjectEntry& object = objects[event.object];
             object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
+            if (object.touched) continue;
+            object.touched = true;
+            for (DrawItem& item : drawItems) {
+                if (item.object == event.object)
+                    item.variant = surfaceVariant(object.materials, true);
+            }
         }
         if (publishedRuns) {
             for (PublishedStep& one : published) {

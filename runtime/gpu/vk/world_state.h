@@ -34,6 +34,7 @@ struct ObjectEntry {
     bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
     bool resetDue = false;
     bool drawable = false;  // a recorded frame holds it
+    bool touched = false;   // some event reached it: it may burn, or be wet
     uint32_t mesh = 0;
     BurnObject record{};
     BurnMaterial materials[kMaterialsPerObject]{};
