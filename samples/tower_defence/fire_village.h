@@ -43,7 +43,7 @@ class FireVillage {
     // Reads events and states, then lets burning things heat their neighbours. After Step or
     // RecordOutside of the frame before.
     void advance(float deltaTime, glm::vec3 wind);
-    // The fires as the library reports them, strongest first.
+    // The fires as the library reports them, strongest first. scale: intensity per watt.
     std::span<const PointLight> lights(float scale);
 
     uint32_t burning() const { return burning_; }

@@ -95,9 +95,9 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
                                             const std::vector<tower::PointLight>& lamps,
                                             const tower::Daylight& light) {
     constexpr size_t kMost = 12;
-    constexpr float kJetIntensity = 7.0f, kFireScale = 0.045f;  // by eye
+    constexpr float kJetIntensity = 7.0f, kFirePerWatt = 2e-5f;  // by eye
     std::vector<tower::PointLight> all = game.jetLights(kJetIntensity);
-    const auto burning = fires.lights(kFireScale);
+    const auto burning = fires.lights(kFirePerWatt);
     all.insert(all.end(), burning.begin(), burning.end());
     if (light.windows > 1) all.insert(all.end(), lamps.begin(), lamps.end());
     auto strength = [](const tower::PointLight& l) { return l.color.r + l.color.g + l.color.b; };
