@@ -21,7 +21,8 @@ static void writeChunk(FILE* file, const char* type, unsigned char* body, uint32
     fwrite(body - 8, 1, (size_t)(put32(body + size, ~crc) - body) + 8, file);
 }
 static int writePng(const char* path, const unsigned char* rgba, uint32_t width, uint32_t height) {
-    uint32_t a = 1, b = 0, row = width * 4 + 1; /* with its filter byte; one stored block holds it */
+    uint32_t a = 1, b = 0,
+             row = width * 4 + 1; /* with its filter byte; one stored block holds it */
     unsigned char* memory = malloc((size_t)height * (row + 5) + 32);
     FILE* file = memory ? fopen(path, "wb") : NULL;
     if (!file) return free(memory), 0;
@@ -53,7 +54,7 @@ static void require(FwResult result, FwWorld* world) {
 
 int main(int argc, char** argv) {
     const char* out = "out";
-    unsigned frames = 4, width = 640, height = 360; /* other options are no matter here */
+    unsigned frames = 4, width = 640, height = 360;
     for (int i = 1; i + 1 < argc; ++i) {
         if (!strcmp(argv[i], "--out")) out = argv[i + 1];
         if (!strcmp(argv[i], "--frames")) frames = (unsigned)strtoul(argv[i + 1], NULL, 10);
@@ -65,7 +66,7 @@ int main(int argc, char** argv) {
     const FwContextDef contextDef = fwDefaultContextDef();
     if (fwCreateContext(&contextDef, &context, &error)) return puts(error.message), 1;
     FwWorldDef worldDef = fwDefaultWorldDef();
-    worldDef.paceFactor = 20.0f, worldDef.wind[0] = 1.5f;
+    worldDef.paceFactor = 30.0f, worldDef.wind[0] = 1.5f;
     if (fwCreateWorld(context, &worldDef, &world)) return fwDestroyContext(context), 1;
 
     /* A plank: six faces of four corners, 1.2 x 0.3 x 0.05 m, standing on edge. */
@@ -94,10 +95,10 @@ int main(int argc, char** argv) {
     require(fwWorld_Ignite(world, &match, NULL), world);
 
     FwOffscreenDef shot = fwDefaultOffscreenDef(); /* a camera 1.6 m off, looking along -z */
-    const float zoom = 2.2f, near = 0.1f, far = 20.0f;
+    const float zoom = 3.4f, near = 0.1f, far = 20.0f;
     shot.width = width, shot.height = height, shot.pixels = malloc((size_t)width * height * 4);
     for (int i = 0; i < 4; ++i) shot.view.view[i * 5] = 1.0f;
-    shot.view.view[14] = -1.6f;
+    shot.view.view[14] = -1.6f, shot.background[2] = 0.03f;
     shot.view.projection[0] = zoom * (float)height / (float)width, shot.view.projection[5] = -zoom;
     shot.view.projection[10] = far / (near - far), shot.view.projection[11] = -1.0f;
     shot.view.projection[14] = near * far / (near - far);

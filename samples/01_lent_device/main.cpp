@@ -17,7 +17,7 @@ struct Switches {
     bool secondary = false, msaa = false, reversed = false, slotPacing = false, blocks = true;
     std::string target = "linear";
     float wind[3] = {1.6f, 0.0f, 0.3f};  // m/s
-    float pace = 30.0f;
+    float pace = 60.0f;
 };
 
 VkFormat formatOf(const std::string& target) {

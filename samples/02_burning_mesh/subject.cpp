@@ -95,15 +95,6 @@ float Subject::size() const {
 
 float Subject::height() const { return model.high[1] - model.low[1]; }
 
-float Subject::radius() const {
-    glm::vec3 half(0);
-    for (int c = 0; c < 3; ++c) {
-        const auto k = static_cast<size_t>(c);
-        half[c] = 0.5f * (model.high[k] - model.low[k]);
-    }
-    return glm::length(half);
-}
-
 Subject loadSubject(const std::filesystem::path& file, float wantedSize) {
     Subject subject;
     if (file.empty()) {
@@ -209,6 +200,22 @@ SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye) {
         if (!lowest.hit || p.y < lowest.position.y) lowest = {p, {0, -1, 0}, true};
     }
     return lowest;
+}
+
+float fittingDistance(const Subject& subject, glm::vec3 target, glm::vec3 back, float fieldOfView,
+                      float aspect) {
+    constexpr float kFilled = 0.80f;  // of the picture's height, or of its width
+    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back));
+    const glm::vec3 up = glm::cross(back, right);
+    const float tall = kFilled * std::tan(0.5f * fieldOfView), wide = tall * aspect;
+    float distance = 0.1f * subject.size();
+    for (uint32_t i = 0; i < subject.model.vertexCount(); ++i) {
+        const glm::vec3 p = vertexOf(subject.model, i) - target;
+        const float away =
+            std::max(std::abs(glm::dot(p, right)) / wide, std::abs(glm::dot(p, up)) / tall);
+        distance = std::max(distance, away + glm::dot(p, back));
+    }
+    return distance;
 }
 
 FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMapRequest& request,

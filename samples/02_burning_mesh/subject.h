@@ -34,6 +34,10 @@ SurfacePoint castRay(const Subject& subject, glm::vec3 origin, glm::vec3 directi
 // A low place that faces the viewer: where one would hold the match.
 SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye);
 
+// How far from `target`, m, an eye in the direction `back` sees all of it with a margin.
+float fittingDistance(const Subject& subject, glm::vec3 target, glm::vec3 back, float fieldOfView,
+                      float aspect);
+
 struct BurnMapRequest {
     uint32_t mapSize = 1024;  // texels
     float texelsPerMetre = 256.0f;

@@ -8,8 +8,8 @@
 
 namespace {
 
-constexpr float kScale = 1.6f;    // from the sketch below to metres
-constexpr float kCell = 0.0105f;  // of the sketch
+constexpr float kScale = 1.4f;    // from the sketch below to metres
+constexpr float kCell = 0.0088f;  // of the sketch
 
 float ball(glm::vec3 p, glm::vec3 center, glm::vec3 radii) {
     const glm::vec3 q = (p - center) / radii;
@@ -42,7 +42,7 @@ float elephant(glm::vec3 p) {
     // Ears: thin, leaning back and out.
     glm::vec3 q = m - glm::vec3(0.135f, 0.315f, 0.098f);
     q = glm::vec3(0.88f * q.x + 0.47f * q.z, q.y, -0.47f * q.x + 0.88f * q.z);
-    d = blend(d, ball(q, glm::vec3(0), {0.082f, 0.098f, 0.013f}), 0.02f);
+    d = blend(d, ball(q, glm::vec3(0), {0.082f, 0.098f, 0.021f}), 0.02f);
     d = blend(d, rod(m, {0.105f, 0.17f, 0.062f}, {0.11f, 0.0f, 0.064f}, 0.047f, 0.043f), 0.03f);
     d = blend(d, rod(m, {-0.105f, 0.17f, 0.062f}, {-0.11f, 0.0f, 0.064f}, 0.05f, 0.044f), 0.03f);
     d = blend(d, rod(p, {-0.17f, 0.275f, 0.0f}, {-0.225f, 0.16f, 0.0f}, 0.016f, 0.010f), 0.02f);
