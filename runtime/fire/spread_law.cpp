@@ -10,8 +10,8 @@ namespace fw::fire {
 namespace {
 
 constexpr double kTicks = double(gpu::kTicksPerSecond);
-constexpr double kFuelDensity = 450;     // kg/m^3: how fast thick fuel is consumed
-constexpr double kNoiseFastest = 1.18;   // speed where slowness noise is least
+constexpr double kFuelDensity = 450;    // kg/m^3: how fast thick fuel is consumed
+constexpr double kNoiseFastest = 1.18;  // speed where slowness noise is least
 constexpr uint32_t kMaxBurnTicks = 1u << 28;
 
 struct Limit {
@@ -63,8 +63,7 @@ Drive driveOf(const FwMaterialDef& def, const SpreadFacts& facts, const WindVect
                    double(def.upGain) * double(facts.up[i]);
     Drive drive{};
     for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 3; ++j)
-            drive.vector[i] += double(facts.rotation[j][i]) * world[j];
+        for (size_t j = 0; j < 3; ++j) drive.vector[i] += double(facts.rotation[j][i]) * world[j];
         drive.size += drive.vector[i] * drive.vector[i];
     }
     drive.size = std::sqrt(drive.size);
@@ -142,8 +141,8 @@ gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& fact
 
     m.flags = 1;
     const double unit = double(facts.quantum) * double(facts.scale) / 8;  // m per 1/8 unit
-    m.sigma0 = uint32_t(std::clamp(std::round(kTicks / rate * unit * 4194304.0), 16.0,
-                                   4294967295.0));
+    m.sigma0 =
+        uint32_t(std::clamp(std::round(kTicks / rate * unit * 4194304.0), 16.0, 4294967295.0));
     m.headGain = fixed(double(def.headGain), 256, 65280);
     m.backGain = fixed(double(def.backGain), 256, 65280);
     m.driveMax = fixed(double(def.driveMax), 1024, 64512);
@@ -166,8 +165,8 @@ gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& fact
         const double consumed = double(def.burningFlux) > 0
                                     ? double(def.thickness) * kFuelDensity / double(def.burningFlux)
                                     : 0;
-        m.flameTicks = consumed > 0 ? durationTicks(consumed / double(facts.pace))
-                                    : gpu::kNoneTexel;
+        m.flameTicks =
+            consumed > 0 ? durationTicks(consumed / double(facts.pace)) : gpu::kNoneTexel;
     }
     m.powerPerArea = def.heatOfCombustion * def.burningFlux;
     return m;
@@ -184,8 +183,7 @@ FrontTiming frontTiming(std::span<const FwMaterialDef* const> defs, const Spread
         const double rate = double(baseRate(def, facts));
         if (!(rate > 0)) continue;
         const Drive drive = driveOf(def, facts, winds[i]);
-        const double head =
-            1 + double(def.headGain) * std::min(drive.size, double(def.driveMax));
+        const double head = 1 + double(def.headGain) * std::min(drive.size, double(def.driveMax));
         const double back = 1 + double(def.backGain) * drive.size;
         const double most = std::clamp(double(def.lengthToBreadth), 1.0, 4.0);
         const double ratio = std::min(head * back, headToBack(most));

@@ -10,15 +10,15 @@
 
 namespace fw::fire {
 
-struct SpreadFacts {           // of an object, its mesh and its world
-    float quantum = 0;         // m per position unit, object space (BurnDomain::quantum)
-    float texelSide = 0;       // m, object space
-    float linkShort = 0;       // m, object space
-    float scale = 1;           // world m per object m
+struct SpreadFacts {      // of an object, its mesh and its world
+    float quantum = 0;    // m per position unit, object space (BurnDomain::quantum)
+    float texelSide = 0;  // m, object space
+    float linkShort = 0;  // m, object space
+    float scale = 1;      // world m per object m
     float rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // rows: object to world, unit
-    float up[3] = {0, 1, 0};   // world, unit
-    float pace = 1;            // fires spread and burn out this much faster, [0.1, 1000]
-    float moisture = 0;        // kg/kg, added to the material's own
+    float up[3] = {0, 1, 0};                                   // world, unit
+    float pace = 1;      // fires spread and burn out this much faster, [0.1, 1000]
+    float moisture = 0;  // kg/kg, added to the material's own
 };
 
 struct FrontTiming {

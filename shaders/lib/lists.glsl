@@ -39,7 +39,7 @@ void burnAppend(uint parity, uint worldTile) {
 
 #ifdef FW_USE_PREDICT_LISTS
 void predictAppend(uint parity, uint worldTile) {
-    uint slot = listSlot(kRowPredict + parity, 1u);
+    uint slot = listSlot(kRowPredict + parity, 8u);
     if (parity == 0u) predictA[slot] = worldTile;
     else predictB[slot] = worldTile;
 }

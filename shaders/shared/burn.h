@@ -77,7 +77,7 @@ FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
 FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
 
 // Rows of IterationCounters. The first are lists that live on; list*: indirect groups of 64 tiles
-// (burn) or of one (predict).
+// (burn) or of 8 (predict).
 FW_SHARED_CONST uint kRowBurn = 0u;          // + parity of the burn list; run*: its BurnTiles / 64
 FW_SHARED_CONST uint kRowPredict = 2u;       // + parity of the predict list
 FW_SHARED_CONST uint kRowIteration = 4u;     // + iteration of the frame

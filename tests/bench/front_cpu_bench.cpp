@@ -50,15 +50,16 @@ void wide(benchmark::State& state, double gain) {
     const mesh::BurnDomain& d = planeDomain(8 - 0.04, 2);
     const double rate = 0.1 / (1 + gain), h = double(d.texelSide);
     const uint32_t window = gain > 0 ? uint32_t(h / rate * 4096) : 512;
-    steps(state, d, {.rate = rate, .headGain = gain, .backGain = gain},
-          gain > 0 ? Vec3{0, 0.9, 0.1} : Vec3{}, window, [](Vec3 p) { return p.y < 0.02; }, 60,
-          500);
+    steps(
+        state, d, {.rate = rate, .headGain = gain, .backGain = gain},
+        gain > 0 ? Vec3{0, 0.9, 0.1} : Vec3{}, window, [](Vec3 p) { return p.y < 0.02; }, 60, 500);
 }
 
 void smallFire(benchmark::State& state, double side) {
     const mesh::BurnDomain& d = planeDomain(side / 128 - 0.06, side / 128 - 0.06);
-    steps(state, d, {.rate = 0.02}, {}, 512,
-          [](Vec3 p) { return std::hypot(p.x - 0.45, p.y - 0.45) < 0.025; }, 320, 640);
+    steps(
+        state, d, {.rate = 0.02}, {}, 512,
+        [](Vec3 p) { return std::hypot(p.x - 0.45, p.y - 0.45) < 0.025; }, 320, 640);
 }
 
 BENCHMARK_CAPTURE(wide, still, 0.0)->Name("front/wide_cpu/1024")->Unit(benchmark::kMillisecond);

@@ -51,12 +51,12 @@ constexpr uint32_t kStartTick = 4096;
 
 // One object on a backend of its own. The material is plain numbers, not a preset.
 class FrontRig {
-   public:
+ public:
     struct Material {
-        double rate = 0.02;        // m/s
+        double rate = 0.02;  // m/s
         double headGain = 0, backGain = 0;
         double lengthToBreadth = 0;  // 0: no cap
-        double burnTime = -1;      // s; < 0: without end
+        double burnTime = -1;        // s; < 0: without end
         double driveMax = 60;
     };
 
@@ -92,19 +92,17 @@ class FrontRig {
                 later_.push_back(
                     {0, i, gpu::kEventIgnite, kStartTick + uint32_t(std::lround(t * 4096))});
         }
-        std::stable_sort(later_.begin(), later_.end(),
-                         [](const gpu::TexelEvent& a, const gpu::TexelEvent& b) {
-                             return a.tick < b.tick;
-                         });
+        std::stable_sort(
+            later_.begin(), later_.end(),
+            [](const gpu::TexelEvent& a, const gpu::TexelEvent& b) { return a.tick < b.tick; });
     }
 
     void step() {
         while (nextLater_ < later_.size() && later_[nextLater_].tick <= now + gpu::kStepTicks)
             events_.push_back(later_[nextLater_++]);
-        std::stable_sort(events_.begin(), events_.end(),
-                         [](const gpu::TexelEvent& a, const gpu::TexelEvent& b) {
-                             return a.texel < b.texel;
-                         });
+        std::stable_sort(
+            events_.begin(), events_.end(),
+            [](const gpu::TexelEvent& a, const gpu::TexelEvent& b) { return a.texel < b.texel; });
         gpu::MaterialUpdate update{};
         gpu::StepPlan plan;
         plan.now = now;
@@ -154,13 +152,14 @@ class FrontRig {
     uint32_t now = kStartTick, steps = 0, frontTiles = 0, runTiles = 0, reduceEvery = 0;
     uint64_t totalRunTiles = 0;
 
-   private:
+ private:
     FrontRig(const mesh::BurnDomain& domain, const Material& material,
              const gpu::BurnMaterial* record, Vec3 drive, std::span<const uint16_t> slowness,
              uint32_t flags)
-        : domain_(domain), backend_(std::make_unique<gpu::cpu::CpuBackend>(
-                               std::pmr::get_default_resource(), 16u)),
-          material_(material), drive_(drive) {
+        : domain_(domain),
+          backend_(std::make_unique<gpu::cpu::CpuBackend>(std::pmr::get_default_resource(), 16u)),
+          material_(material),
+          drive_(drive) {
         if (record) given_ = *record;
         isGiven_ = record != nullptr;
         backend_->createMesh(0, domain);
@@ -186,14 +185,14 @@ class FrontRig {
     }
 
     void fillRecord(Vec3 drive, gpu::BurnMaterial& m) const {
-        m.sigma0 = uint32_t(std::lround(4096 / material_.rate * double(domain_.quantum) / 8 *
-                                        4194304));
+        m.sigma0 =
+            uint32_t(std::lround(4096 / material_.rate * double(domain_.quantum) / 8 * 4194304));
         m.headGain = uint32_t(std::lround(material_.headGain * 256));
         m.backGain = uint32_t(std::lround(material_.backGain * 256));
         m.driveMax = uint32_t(std::lround(material_.driveMax * 1024));
         const double lb = material_.lengthToBreadth;
-        m.breadthMax = lb > 0 ? uint32_t(std::lround(std::pow(lb + std::sqrt(lb * lb - 1), 2) * 256))
-                              : 65280u;
+        m.breadthMax =
+            lb > 0 ? uint32_t(std::lround(std::pow(lb + std::sqrt(lb * lb - 1), 2) * 256)) : 65280u;
         m.burnTicks = material_.burnTime < 0 ? gpu::kNoneTexel
                                              : uint32_t(std::lround(material_.burnTime * 4096));
         m.flameTicks = m.burnTicks;

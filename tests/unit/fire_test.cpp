@@ -40,9 +40,8 @@ double measuredSpeed(const mesh::BurnDomain& d, const FwMaterialDef& def, const 
     FrontRig rig(d, record);
     rig.setTiming(timing.window, timing.substepShift);
     const double width = double(d.boundsHigh[0]), middle = double(d.boundsHigh[1]) / 2;
-    rig.ignite([&](uint32_t i) {
-        return texelPosition(d, i).x < 4 * double(d.texelSide) ? 0.0 : -1.0;
-    });
+    rig.ignite(
+        [&](uint32_t i) { return texelPosition(d, i).x < 4 * double(d.texelSide) ? 0.0 : -1.0; });
     rig.runAll();
     const uint32_t a = texelNear(d, {0.5 * width, middle, 0});
     const uint32_t b = texelNear(d, {0.9 * width, middle, 0});
@@ -58,8 +57,8 @@ TEST(Fire, P9_PaperRates) {
         float mass;
         double low, high;  // mm/s
     };
-    for (const Case& c : {Case{45, 7.8, 12.4}, Case{80, 4.4, 7.0}, Case{160, 2.2, 3.5},
-                          Case{300, 1.2, 1.9}}) {
+    for (const Case& c :
+         {Case{45, 7.8, 12.4}, Case{80, 4.4, 7.0}, Case{160, 2.2, 3.5}, Case{300, 1.2, 1.9}}) {
         FwMaterialDef def = fire::presetDef(FW_MATERIAL_PAPER);
         def.spreadRate = fire::paperSpreadRate(c.mass);
         def.burnTime = 0;
@@ -152,8 +151,7 @@ TEST(Fire, BadMaterialsAreNamed) {
               std::string::npos);
     EXPECT_NE(message([](FwMaterialDef& d) { d.baseColor[2] = INFINITY; }).find("baseColor[2]"),
               std::string::npos);
-    EXPECT_NE(message([](FwMaterialDef& d) { d.look = 14; }).find("look is 14"),
-              std::string::npos);
+    EXPECT_NE(message([](FwMaterialDef& d) { d.look = 14; }).find("look is 14"), std::string::npos);
 }
 
 // Whatever a host may ask for stays within what the kernel can take.
@@ -217,18 +215,17 @@ TEST(Fire, WindFilterSettles) {
 double theorySpeed(double k) {
     double best = 1e9;
     for (double q = 0.01; q < 4; q += 0.001) {
-        const double m =
-            double(gpu::kPublishedNear) * (2 + 2 * std::cosh(q)) +
-            double(gpu::kPublishedDiagonal) * 4 * std::cosh(q) +
-            double(gpu::kPublishedKnight) * (4 * std::cosh(q) + 4 * std::cosh(2 * q));
+        const double m = double(gpu::kPublishedNear) * (2 + 2 * std::cosh(q)) +
+                         double(gpu::kPublishedDiagonal) * 4 * std::cosh(q) +
+                         double(gpu::kPublishedKnight) * (4 * std::cosh(q) + 4 * std::cosh(2 * q));
         best = std::min(best, std::log(1 + k * m) / q);
     }
     return best;
 }
 
 TEST(Fire, P16_PublishedKernelSpeeds) {
-    const double table[][2] = {{0.01, 0.0180}, {0.05, 0.0870}, {0.1, 0.167}, {0.3, 0.434},
-                               {1.0, 0.986}};
+    const double table[][2] = {
+        {0.01, 0.0180}, {0.05, 0.0870}, {0.1, 0.167}, {0.3, 0.434}, {1.0, 0.986}};
     for (const auto& row : table) EXPECT_NEAR(theorySpeed(row[0]) / row[1], 1, 0.02) << row[0];
     const double density = 128;
     const mesh::BurnDomain d = bakePlane(330 / density, 80 / density, density);

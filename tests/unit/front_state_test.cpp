@@ -38,8 +38,8 @@ std::vector<uint16_t> roughSlowness(const mesh::BurnDomain& d, uint32_t seed) {
     for (uint32_t i = 0; i < d.texelCount(); ++i) {
         const uint32_t h = core::hash32(i + seed * 7919);
         slow[i] = uint16_t(98 + h % 61);
-        if (h % 997 == 0) slow[i] = 0;         // cannot burn
-        if (h % 991 == 0) slow[i] = 60000;     // almost cannot
+        if (h % 997 == 0) slow[i] = 0;      // cannot burn
+        if (h % 991 == 0) slow[i] = 60000;  // almost cannot
     }
     return slow;
 }
@@ -52,17 +52,16 @@ struct Chaos {
 };
 
 // The same story for every rig, one step at a time. False at the first difference from rigs[0].
-bool sameStory(const mesh::BurnDomain& d, const Chaos& chaos,
-               std::span<const uint32_t> switchesOf, uint32_t& failedAt) {
-    const double g = chaos.lengthToBreadth +
-                     std::sqrt(chaos.lengthToBreadth * chaos.lengthToBreadth - 1) - 1;
+bool sameStory(const mesh::BurnDomain& d, const Chaos& chaos, std::span<const uint32_t> switchesOf,
+               uint32_t& failedAt) {
+    const double g =
+        chaos.lengthToBreadth + std::sqrt(chaos.lengthToBreadth * chaos.lengthToBreadth - 1) - 1;
     const std::vector<uint16_t> slow = roughSlowness(d, chaos.seed);
     std::vector<std::unique_ptr<FrontRig>> rigs;
     for (uint32_t switches : switchesOf) {
         FrontRig::Material material{.rate = 0.03, .headGain = g, .backGain = g};
         material.burnTime = chaos.burnTime;
-        rigs.push_back(
-            std::make_unique<FrontRig>(d, material, Vec3{0.6, 0.5, 0.3}, slow));
+        rigs.push_back(std::make_unique<FrontRig>(d, material, Vec3{0.6, 0.5, 0.3}, slow));
         rigs.back()->setSwitches(switches);
         rigs.back()->setTiming(1500, 0, 6000);
         rigs.back()->reduceEvery = 4;
@@ -95,9 +94,7 @@ bool sameStory(const mesh::BurnDomain& d, const Chaos& chaos,
             });
         }
         if (chaos.douses && step % 23 == 11)
-            ball(9, [&](uint32_t i) {
-                all([&](FrontRig& rig) { rig.push(i, gpu::kEventWet); });
-            });
+            ball(9, [&](uint32_t i) { all([&](FrontRig& rig) { rig.push(i, gpu::kEventWet); }); });
         if (chaos.douses && step % 23 == 2) {
             const uint32_t third = random() % 3;
             for (uint32_t i : reals)
@@ -117,8 +114,8 @@ bool sameStory(const mesh::BurnDomain& d, const Chaos& chaos,
             const gpu::ObjectCounters& b = rigs[r]->counters();
             if (!std::equal(rigs[0]->ticks().begin(), rigs[0]->ticks().end(),
                             rigs[r]->ticks().begin()) ||
-                a.ignited != b.ignited || a.burning != b.burning ||
-                a.lateClamps != b.lateClamps || a.burningTiles != b.burningTiles) {
+                a.ignited != b.ignited || a.burning != b.burning || a.lateClamps != b.lateClamps ||
+                a.burningTiles != b.burningTiles) {
                 failedAt = step;
                 return false;
             }
@@ -281,12 +278,14 @@ TEST(Front, P19_Gusts) {
         while (rig.now < kStartTick + 4096u * 500 && rig.arrival(probe) < 0) {
             const double phase = std::fmod(double(rig.now) / 4096, period);
             const fire::WindVector wind{phase < duty * period ? 128 : 0, 0, 0};
-            if (filtered) fire::filterWind(filter, wind, tau);
-            else fire::resetWind(filter, wind);
+            if (filtered)
+                fire::filterWind(filter, wind, tau);
+            else
+                fire::resetWind(filter, wind);
             const fire::WindVector before = filter.latched;
-            const bool latched = filtered ? rig.now % fire::kWindLatchTicks == 0 &&
-                                                fire::latchWind(filter)
-                                          : before != wind || rig.steps % 32 == 0;
+            const bool latched =
+                filtered ? rig.now % fire::kWindLatchTicks == 0 && fire::latchWind(filter)
+                         : before != wind || rig.steps % 32 == 0;
             if (latched || !filtered) rig.setDrive({double(filter.latched[0]) / 128, 0, 0});
             rig.step();
         }
@@ -344,7 +343,8 @@ TEST(Front, P20_WetBandsAreWatertight) {
         return int(i % d.width - low) - int(i / d.width - lowRow);
     };
     for (uint32_t i : realTexels(d)) {
-        if (side(i) == 0) rig.push(i, gpu::kEventWet);
+        if (side(i) == 0)
+            rig.push(i, gpu::kEventWet);
         else if (side(i) < -2 && i % d.width - low < 6)
             rig.push(i, gpu::kEventIgnite, kStartTick);
     }
@@ -385,7 +385,8 @@ TEST(Front, P20_DryingBands) {
             ++lit;
             first = std::min(first, rig.arrival(i));
         }
-        std::printf("P20 burn time %.0f s: %d of %d beyond the band burnt\n", burnTime, lit, beyond);
+        std::printf("P20 burn time %.0f s: %d of %d beyond the band burnt\n", burnTime, lit,
+                    beyond);
         if (burnTime > 0) {
             EXPECT_EQ(lit, 0);  // cold
         } else {

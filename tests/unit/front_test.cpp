@@ -105,8 +105,8 @@ TEST(Front, KernelSurvivesExtremes) {
         }
         uint32_t wake = gpu::kNever;
         const uint32_t counts = random() & 0xFF;
-        const uint32_t t = gpu::frontArrival(ring, counts, p, 1 << 20, 0x7FFFFFFF, 1000,
-                                             random(), wake);
+        const uint32_t t =
+            gpu::frontArrival(ring, counts, p, 1 << 20, 0x7FFFFFFF, 1000, random(), wake);
         if (t == gpu::kNever) continue;
         uint32_t least = gpu::kNever;
         for (int k = 0; k < 8; ++k)
@@ -120,14 +120,15 @@ TEST(Front, P1_PlanarFrontSpeed) {
     struct Case {
         double density, degrees, stretch, speedLimit, arrivalLimit;
     };
-    const Case cases[] = {{64, 15, 1, 0.012, 0.02},  {128, 0, 1, 0.012, 0.005},
-                          {128, 30, 1, 0.012, 0.02}, {256, 45, 1, 0.012, 0.02},
+    const Case cases[] = {{64, 15, 1, 0.012, 0.02},   {128, 0, 1, 0.012, 0.005},
+                          {128, 30, 1, 0.012, 0.02},  {256, 45, 1, 0.012, 0.02},
                           {1024, 15, 1, 0.012, 0.02}, {128, 15, 2, 0.045, 0.045},
                           {256, 45, 2, 0.045, 0.045}};
     double slowest = 1e9, fastest = 0;
     for (const Case& c : cases) {
         const double side = 120 / c.density;
-        const mesh::BurnDomain d = bakeOf(makePlane(side, side / 2, c.degrees, c.stretch), c.density);
+        const mesh::BurnDomain d =
+            bakeOf(makePlane(side, side / 2, c.degrees, c.stretch), c.density);
         const double h = 1 / c.density, rate = 0.011;
         FrontRig rig(d, {.rate = rate});
         rig.ignite([&](uint32_t i) {
@@ -225,8 +226,9 @@ TEST(Front, P5_Ellipses) {
     for (const Case& c : {Case{1.5, 20, 0.038, 0.009, 0.038}, Case{2, 20, 0.052, 0.012, 0.046},
                           Case{2, 0, 0.055, 0.012, 0.046}, Case{3.43, 20, 0.155, 0.026, 0.075}}) {
         const PointStart r = pointStart(d, c.lb, c.degrees, 0.02);
-        std::printf("P5 LB %.2f %2.0f deg: max %.1f %%, mean %.2f %%, head %.1f %%, late %u\n", c.lb,
-                    c.degrees, r.all.most * 100, r.all.mean() * 100, r.head.most * 100, r.late);
+        std::printf("P5 LB %.2f %2.0f deg: max %.1f %%, mean %.2f %%, head %.1f %%, late %u\n",
+                    c.lb, c.degrees, r.all.most * 100, r.all.mean() * 100, r.head.most * 100,
+                    r.late);
         EXPECT_LT(r.all.most, c.most) << c.lb;
         EXPECT_LT(r.all.mean(), c.mean) << c.lb;
         EXPECT_LT(r.head.most, c.head) << c.lb;
@@ -302,22 +304,23 @@ TEST(Front, P3_Sphere) {
                 for (uint32_t lane = 0; lane < 64; ++lane) {
                     const uint32_t half = lane < 32 ? statics.rimMaskLow : statics.rimMaskHigh;
                     if ((half >> (lane & 31) & 1) == 0) continue;
-                    const uint32_t i = (tile / d.tilesX * 8 + lane / 8) * d.width +
-                                       tile % d.tilesX * 8 + lane % 8;
+                    const uint32_t i =
+                        (tile / d.tilesX * 8 + lane / 8) * d.width + tile % d.tilesX * 8 + lane % 8;
                     for (uint32_t k = 0; k < 8; ++k) {
                         const uint32_t j = d.links[size_t(record) * 8 + k];
                         if (j == mesh::kNone || rig.arrival(i) < 0 || rig.arrival(j) < 0) continue;
                         const double link = length(texelPosition(d, i) - texelPosition(d, j));
-                        worstJump = std::max(worstJump,
-                                             (std::abs(rig.arrival(i) - rig.arrival(j)) * rate -
-                                              link) / h);
+                        worstJump =
+                            std::max(worstJump,
+                                     (std::abs(rig.arrival(i) - rig.arrival(j)) * rate - link) / h);
                     }
                     ++record;
                 }
             }
-            std::printf("P3 sphere %3.0f/m: antipode %+.2f %%, mean %.2f %%, worst %.2f %%, "
-                        "seam jump %.2f links\n",
-                        density, antipode * 100, e.mean() * 100, e.most * 100, worstJump);
+            std::printf(
+                "P3 sphere %3.0f/m: antipode %+.2f %%, mean %.2f %%, worst %.2f %%, "
+                "seam jump %.2f links\n",
+                density, antipode * 100, e.mean() * 100, e.most * 100, worstJump);
             EXPECT_EQ(unburnt, 0u);
             EXPECT_NEAR(antipode, 0, 0.02);
             EXPECT_LT(e.mean(), 0.006);
@@ -332,8 +335,8 @@ TEST(Front, P4_CylinderCuts) {
     for (int cuts : {1, 2, 4}) {
         const mesh::BurnDomain d = bakeOf(makeCylinder(radius, 0.8, 192, 8, cuts, cuts > 1), 128);
         const double h = double(d.texelSide);
-        const Vec3 start = texelPosition(
-            d, texelNear(d, {radius * std::cos(0.7), 0.4, radius * std::sin(0.7)}));
+        const Vec3 start =
+            texelPosition(d, texelNear(d, {radius * std::cos(0.7), 0.4, radius * std::sin(0.7)}));
         const auto exact = [&](uint32_t i) {
             const Vec3 p = texelPosition(d, i);
             double turn = std::atan2(p.z, p.x) - std::atan2(start.z, start.x);
@@ -370,8 +373,8 @@ TEST(Front, P6_TimeStep) {
     struct Case {
         double head, gain, limit;
     };
-    for (const Case& c : {Case{0.1, 0, 0}, Case{0.2, 0, 0}, Case{0.1, 2.732, 0.0005},
-                          Case{0.1, 5.711, 0.006}}) {
+    for (const Case& c :
+         {Case{0.1, 0, 0}, Case{0.2, 0, 0}, Case{0.1, 2.732, 0.0005}, Case{0.1, 5.711, 0.006}}) {
         const double rate = c.head / (1 + c.gain);
         const Vec3 along{std::cos(0.35), std::sin(0.35), 0};
         std::vector<uint32_t> reference;
@@ -411,9 +414,8 @@ TEST(Front, P8_CottonPanel) {
                  {0, 0, 1});
     rig.setTiming(windowOf(2, h, rate), 1);
     const Vec3 centre = texelPosition(d, texelNear(d, {0.45, 0, 0.2}));
-    rig.ignite([&](uint32_t i) {
-        return length(texelPosition(d, i) - centre) < 3.1 * h ? 0.0 : -1.0;
-    });
+    rig.ignite(
+        [&](uint32_t i) { return length(texelPosition(d, i) - centre) < 3.1 * h ? 0.0 : -1.0; });
     rig.runAll();
     const auto speed = [&](Vec3 direction, double from) {
         const uint32_t a = texelNear(d, centre + direction * from);

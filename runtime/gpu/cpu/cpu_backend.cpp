@@ -27,7 +27,7 @@ constexpr const char* kTimerNames[kTimerCount] = {"wake",   "events",    "schedu
                                                   "commit", "published", "reduce"};
 
 class Stopwatch {
-   public:
+ public:
     Stopwatch(CpuBackend::State& state, Timer timer) noexcept
         : state_(state), timer_(timer), start_(std::chrono::steady_clock::now()) {}
     ~Stopwatch() {
@@ -39,7 +39,7 @@ class Stopwatch {
     Stopwatch(const Stopwatch&) = delete;
     Stopwatch& operator=(const Stopwatch&) = delete;
 
-   private:
+ private:
     CpuBackend::State& state_;
     Timer timer_;
     std::chrono::steady_clock::time_point start_;
@@ -50,9 +50,20 @@ uint64_t bitsOf(uint32_t low, uint32_t high) { return uint64_t(high) << 32 | low
 }  // namespace
 
 CpuBackend::State::State(std::pmr::memory_resource* memory_, uint32_t maxLights_)
-    : memory(memory_), maxLights(maxLights_), meshes(memory_), objects(memory_), tiles(memory_),
-      list(memory_), listOut(memory_), runList(memory_), burnList(memory_), results(memory_),
-      scratch(memory_), burnTiles(memory_), freeTiles(memory_), readbacks(memory_) {}
+    : memory(memory_),
+      maxLights(maxLights_),
+      meshes(memory_),
+      objects(memory_),
+      tiles(memory_),
+      list(memory_),
+      listOut(memory_),
+      runList(memory_),
+      burnList(memory_),
+      results(memory_),
+      scratch(memory_),
+      burnTiles(memory_),
+      freeTiles(memory_),
+      readbacks(memory_) {}
 
 FrontPlanes CpuBackend::State::planes(const CpuObject& object) const noexcept {
     const mesh::BurnDomain& domain = *object.domain;
@@ -60,8 +71,7 @@ FrontPlanes CpuBackend::State::planes(const CpuObject& object) const noexcept {
     planes.state = object.state.data();
     planes.texels = domain.texels.data();
     planes.normals = domain.normals.data();
-    planes.slowness =
-        object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
+    planes.slowness = object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
     planes.links = domain.links.data();
     planes.tiles = domain.tiles.data();
     planes.materials = object.materials.data();
@@ -226,8 +236,8 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
                 const uint32_t shift = object.record.substepShift;
                 at = planes(object);
                 end = iterationEnd(step.now, iteration, step.substepShift, shift);
-                floorTick = frontFloor(end - windowTicks(step.substepShift, shift),
-                                       object.record.window);
+                floorTick =
+                    frontFloor(end - windowTicks(step.substepShift, shift), object.record.window);
                 base = object.record.worldTileBase;
             }
             results[i] = runFrontTile(at, worldTile - base, end, floorTick, &scratch[i * 64]);
@@ -252,8 +262,8 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
             object.state[corner + (lane >> 3) * object.domain->width + (lane & 7)] =
                 scratch[i * 64 + lane];
         }
-        const uint32_t end = iterationEnd(step.now, iteration, step.substepShift,
-                                          object.record.substepShift);
+        const uint32_t end =
+            iterationEnd(step.now, iteration, step.substepShift, object.record.substepShift);
         tile.lastChange = end;
         object.counters.lateClamps += result.late;
         if (result.lit != 0) {
@@ -302,8 +312,8 @@ void CpuBackend::State::publishedStep(uint32_t now) noexcept {
                 ++object.counters.ignited;
                 object.counters.lastIgnition =
                     std::max(object.counters.lastIgnition, now + kStepTicks);
-                burning(object.record.worldTileBase +
-                        uint32_t(y >> 3) * object.domain->tilesX + uint32_t(x >> 3));
+                burning(object.record.worldTileBase + uint32_t(y >> 3) * object.domain->tilesX +
+                        uint32_t(x >> 3));
             }
     }
 }
@@ -335,7 +345,7 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
 
 void CpuBackend::State::releaseTiles(uint32_t first, uint32_t count) noexcept {
     const auto at = std::lower_bound(freeTiles.begin(), freeTiles.end(), first,
-                               [](const Range& r, uint32_t f) { return r.first < f; });
+                                     [](const Range& r, uint32_t f) { return r.first < f; });
     freeTiles.insert(at, {first, count});  // room was reserved with the object
     size_t kept = 0;
     for (size_t i = 0; i < freeTiles.size(); ++i) {
@@ -385,11 +395,10 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
         for (uint32_t i = 0; i < texels; ++i) {
             if (object->state[i] != kNever) continue;
             const uvec4& up = object->materials[domain.texels[i].materialFlags & 7].upCeiling;
-            const int rise = dotInt(decodeNormal(domain.normals[i]),
-                                    ivec3(int(up.x), int(up.y), int(up.z)));
-            object->published[size_t(texels) * 2 + i] =
-                publishedSpread(kPublishedRate / 32.0f, kPublishedGravity, slow[i],
-                                -float(rise) / 16777216.0f);
+            const int rise =
+                dotInt(decodeNormal(domain.normals[i]), ivec3(int(up.x), int(up.y), int(up.z)));
+            object->published[size_t(texels) * 2 + i] = publishedSpread(
+                kPublishedRate / 32.0f, kPublishedGravity, slow[i], -float(rise) / 16777216.0f);
         }
     }
     if (slot >= s.objects.size()) s.objects.resize(slot + 1);

@@ -7,7 +7,7 @@
 namespace fw::gpu::cpu {
 
 class CpuBackend final : public Backend {
-   public:
+ public:
     CpuBackend(std::pmr::memory_resource* memory, uint32_t maxLights);
     ~CpuBackend() override;
     CpuBackend(const CpuBackend&) = delete;
@@ -33,7 +33,7 @@ class CpuBackend final : public Backend {
 
     struct State;
 
-   private:
+ private:
     core::Owned<State> state_;
 };
 

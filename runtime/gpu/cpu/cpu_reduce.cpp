@@ -74,8 +74,8 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
         const BurnObject& record = object.record;
         vec4 rest(0, 0, 0, 1);
         for (int i = 0; i < 3; ++i)
-            rest[i] = record.originQuantum[i] +
-                      record.originQuantum.w * inverse * float(position[i]);
+            rest[i] =
+                record.originQuantum[i] + record.originQuantum.w * inverse * float(position[i]);
         const vec4 direction = {float(normal[0]), float(normal[1]), float(normal[2]), 0.0f};
         const vec3 world(glm::dot(record.worldRow0, direction),
                          glm::dot(record.worldRow1, direction),
@@ -112,8 +112,8 @@ void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {
         cell.area += tile.positionArea.w;
         for (int i = 0; i < 3; ++i) cell.position[i] += power * tile.positionArea[i];
     }
-    const auto end = std::partition(cells.begin(), cells.end(),
-                                    [](const Cell& cell) { return cell.key != 0; });
+    const auto end =
+        std::partition(cells.begin(), cells.end(), [](const Cell& cell) { return cell.key != 0; });
     const size_t count = std::min<size_t>(size_t(end - cells.begin()), maxLights);
     std::partial_sort(cells.begin(), cells.begin() + std::ptrdiff_t(count), end,
                       [](const Cell& a, const Cell& b) {
@@ -124,8 +124,7 @@ void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {
         BurnLight light{};
         // A third of the power is radiated; colour of a sooty flame, luminance 1.
         light.positionRadius = {cell.position[0] / cell.power, cell.position[1] / cell.power,
-                                cell.position[2] / cell.power,
-                                std::sqrt(cell.area / 3.14159265f)};
+                                cell.position[2] / cell.power, std::sqrt(cell.area / 3.14159265f)};
         light.colorIntensity = {2.17f, 0.72f, 0.16f, cell.power * 0.3f / 12.5663706f * 0.02f};
         light.power = cell.power;
         light.id = cell.id;

@@ -16,9 +16,9 @@ struct CpuObject {
     std::array<BurnMaterial, kMaterialsPerObject> materials{};
     ObjectCounters counters{};
     const mesh::BurnDomain* domain = nullptr;
-    std::pmr::vector<uint32_t> state;      // one per texel
-    std::pmr::vector<uint16_t> slowness;   // empty: the mesh's own
-    std::pmr::vector<float> published;     // 3 planes, as-published objects only
+    std::pmr::vector<uint32_t> state;     // one per texel
+    std::pmr::vector<uint16_t> slowness;  // empty: the mesh's own
+    std::pmr::vector<float> published;    // 3 planes, as-published objects only
     uint32_t publishedParity = 0;
 };
 
@@ -33,8 +33,14 @@ struct ReadbackStore {
 };
 
 enum Timer : uint32_t {
-    kTimerWake, kTimerEvents, kTimerSchedule, kTimerArrival, kTimerCommit, kTimerPublished,
-    kTimerReduce, kTimerCount
+    kTimerWake,
+    kTimerEvents,
+    kTimerSchedule,
+    kTimerArrival,
+    kTimerCommit,
+    kTimerPublished,
+    kTimerReduce,
+    kTimerCount
 };
 
 struct CpuBackend::State {
@@ -52,7 +58,7 @@ struct CpuBackend::State {
                       bool dense) noexcept;
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
     void publishedStep(uint32_t now) noexcept;
-    void reduce(uint32_t now) noexcept;                        // cpu_reduce.cpp
+    void reduce(uint32_t now) noexcept;                          // cpu_reduce.cpp
     void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
     uint32_t allocateTiles(uint32_t count);
     void releaseTiles(uint32_t first, uint32_t count) noexcept;
@@ -64,17 +70,17 @@ struct CpuBackend::State {
     // By world tile. A tile is in a list at most once, so all lists have room for all tiles.
     std::pmr::vector<TileState> tiles;
     std::pmr::vector<uint32_t> list, listOut, runList, burnList;
-    std::pmr::vector<FrontTile> results;   // per due tile
-    std::pmr::vector<uint32_t> scratch;    // 64 words per due tile
+    std::pmr::vector<FrontTile> results;  // per due tile
+    std::pmr::vector<uint32_t> scratch;   // 64 words per due tile
     std::pmr::vector<BurnTile> burnTiles;
     struct Range {
         uint32_t first = 0, count = 0;
     };
-    std::pmr::vector<Range> freeTiles;     // by first; room for objects + 1
+    std::pmr::vector<Range> freeTiles;          // by first; room for objects + 1
     std::pmr::vector<ReadbackStore> readbacks;  // ring: [head, head + waiting)
     size_t head = 0, waiting = 0;
     uint32_t switches = 0;
-    uint32_t random = 1;                   // of the shuffle switch
+    uint32_t random = 1;  // of the shuffle switch
     uint64_t runTiles = 0;
     uint32_t publishedObjects = 0;
     std::array<double, kTimerCount> milliseconds{};

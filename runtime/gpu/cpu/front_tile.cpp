@@ -15,7 +15,8 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
     for (int k = 0; k < 8; ++k) offsets[k] = kFrontRingX[k] + kFrontRingY[k] * width;
     const mesh::TileStatic& statics = planes.tiles[tile];
     const uint64_t rimMask = uint64_t(statics.rimMaskHigh) << 32 | statics.rimMaskLow;
-    const uint32_t corner = (tile / planes.tilesX) * 8u * planes.width + (tile % planes.tilesX) * 8u;
+    const uint32_t corner =
+        (tile / planes.tilesX) * 8u * planes.width + (tile % planes.tilesX) * 8u;
 
     FrontPrep prep{};  // kept while normal, slowness and material stay
     uint64_t prepKey = ~0ull;

@@ -21,7 +21,7 @@ struct FrontTile {         // what a tile's run says
     uint64_t changed = 0;  // lanes with a new tick in the scratch words
     uint64_t lit = 0;      // of these, lanes that were receptive
     uint32_t wake = kNever;
-    uint32_t late = 0;     // candidates that came below the floor
+    uint32_t late = 0;  // candidates that came below the floor
 };
 
 // `scratch`: 64 words, written where `changed` says.

@@ -13,10 +13,10 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,  &kEventsPass,     &kWakePass,      &kSchedulePass,    &kGatherPass,
-    &kArrivalPass, &kCommitPass,    &kPublishedPass, &kReduceClearPass, &kReduceFrontPass,
-    &kReducePass, &kPredictPass,    &kProbePass,     &kLightsPass,      &kFlameQuadsPass,
-    &kFlameSortPass};
+    &kResetPass,      &kEventsPass,        &kWakePass,      &kSchedulePass,    &kGatherPass,
+    &kArrivalPass,    &kCommitPass,        &kPublishedPass, &kReduceClearPass, &kReduceFrontPass,
+    &kReducePass,     &kPredictGatherPass, &kPredictPass,   &kProbePass,       &kLightsPass,
+    &kFlameQuadsPass, &kFlameSortPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0], &kSurfacePasses[1], &kSurfacePasses[2], &kSurfacePasses[3],
@@ -124,7 +124,8 @@ void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endT
     push.now = endTick;
     push.predictParity = lists.predictParity;
     zeroRow(recorder, kRowPredict + (lists.predictParity ^ 1));
-    recorder.dispatchList(kPredictPass, &push, kRowPredict + lists.predictParity);
+    recorder.dispatchList(kPredictGatherPass, &push, kRowPredict + lists.predictParity);
+    recorder.dispatchWork(kPredictPass, &push, kRowPredict + lists.predictParity);
     lists.predictParity ^= 1;
 }
 
@@ -137,8 +138,10 @@ void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {
 }
 
 void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawItem> items) {
-    if (pass < kSurfaceVariants) recordSurface(recorder, uint32_t(pass), items);
-    else recordFlames(recorder);
+    if (pass < kSurfaceVariants)
+        recordSurface(recorder, uint32_t(pass), items);
+    else
+        recordFlames(recorder);
 }
 
 bool drawPassDraws(size_t pass, std::span<const DrawItem> items) {

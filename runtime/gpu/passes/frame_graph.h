@@ -14,7 +14,7 @@ class FrameRecorder;
 
 extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kGatherPass,
     kArrivalPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass, kReducePass,
-    kPredictPass, kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass;
+    kPredictGatherPass, kPredictPass, kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
