@@ -93,7 +93,6 @@ int main(int argc, char** argv) {
     FwIgnitionDef match = fwDefaultIgnitionDef();
     match.position[0] = -0.5f, match.position[1] = -0.12f, match.radius = 0.05f;
     require(fwWorld_Ignite(world, &match, NULL), world);
-
     FwOffscreenDef shot = fwDefaultOffscreenDef(); /* a camera 1.6 m off, looking along -z */
     const float zoom = 3.4f, near = 0.1f, far = 20.0f;
     shot.width = width, shot.height = height, shot.pixels = malloc((size_t)width * height * 4);

@@ -59,8 +59,8 @@ struct Builder {
     void side(float half) {
         const float inner = 0.78f * half, width = 0.24f * half;  // frame, half the batten
         const float split = inner - width;                       // where the batten ends
-        const float deep = -0.065f * half,
-                    lean = -0.012f * half;  // boards, batten: below the frame
+        const float deep = -0.085f * half,
+                    lean = -0.030f * half;  // boards, batten: below the frame
         const float joints[3] = {-0.5f * inner, 0.0f, 0.5f * inner};  // between the boards
         const glm::vec3 quarter[4] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
         for (int k = 0; k < 4; ++k) {

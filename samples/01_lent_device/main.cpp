@@ -36,8 +36,8 @@ void loadCrate(sample::FireHost& fire, const CrateMesh& crate) {
     meshDef.vertexCount = static_cast<uint32_t>(crate.positions.size() / 3);
     meshDef.indices = crate.indices.data();
     meshDef.indexCount = static_cast<uint32_t>(crate.indices.size());
-    meshDef.mapSize = 512;
-    meshDef.texelsPerMetre = 200.0f;
+    meshDef.mapSize = 1024;
+    meshDef.texelsPerMetre = 256.0f;
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     fire.check(fwWorld_CreateMesh(fire.world, &meshDef, &def.mesh), "fwWorld_CreateMesh");
     FwMaterialDef pine = fwDefaultMaterialDef();

@@ -289,12 +289,7 @@ void Studio::castShadow(std::span<const float> positions, std::span<const uint32
         return glm::vec2((p.x / half) * 0.5f + 0.5f, (p.z / half) * 0.5f + 0.5f) *
                static_cast<float>(kShadowSide);
     };
-    for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-        glm::vec3 p[3];
-        for (size_t k = 0; k < 3; ++k) {
-            const float* from = &positions[size_t{indices[i + k]} * 3];
-            p[k] = glm::vec3(transform * glm::vec4(from[0], from[1], from[2], 1.0f)) - center_;
-        }
+    auto cover = [&](const glm::vec3(&p)[3]) {
         glm::vec2 cast[3], below[3];
         for (int k = 0; k < 3; ++k) {
             cast[k] = toMap(p[k] - toSun * p[k].y);
@@ -304,6 +299,18 @@ void Studio::castShadow(std::span<const float> positions, std::span<const uint32
         if (std::min({p[0].y, p[1].y, p[2].y}) < 0.3f * size_) {
             fillTriangle(contact, kShadowSide, below[0], below[1], below[2]);
         }
+    };
+    for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+        glm::vec3 p[3];
+        for (size_t k = 0; k < 3; ++k) {
+            const float* from = &positions[size_t{indices[i + k]} * 3];
+            p[k] = glm::vec3(transform * glm::vec4(from[0], from[1], from[2], 1.0f)) - center_;
+        }
+        cover(p);
+    }
+    for (size_t i = 0; i + 5 < blockCorners_.size(); i += 6) {
+        cover({blockCorners_[i] - center_, blockCorners_[i + 2] - center_,
+               blockCorners_[i + 4] - center_});
     }
     blur(sun, kShadowSide, 3);
     blur(contact, kShadowSide, 6);

@@ -19,7 +19,7 @@ class Studio {
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
-    // Casts the mesh's shadow onto the floor, softly, once.
+    // Casts the shadows of the mesh and of the blocks onto the floor, softly, once.
     void castShadow(std::span<const float> positions, std::span<const uint32_t> indices,
                     const glm::mat4& transform, glm::vec3 sunDirection);
     // A block of stone, axis-aligned, for drawBlocks. Before the first frame.
