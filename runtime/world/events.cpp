@@ -1,5 +1,5 @@
 // From readbacks to what a game hears: counters become events, answers become states and tags,
-// burning clusters become lights with ids that stay. Allocates nothing; never fails.
+// burning clusters become lights with ids that stay. Allocates nothing itself.
 #include "world/world.h"
 
 #include "core/hash.h"
@@ -33,7 +33,14 @@ void World::raise(uint32_t type, const Object* object, uint32_t tag, uint64_t fr
     events_.push(event);
 }
 
-void World::collectReadbacks() noexcept {
+void World::collect() noexcept {
+    try {
+        collectReadbacks();
+    } catch (...) {  // the next frame asks again, and may say so
+    }
+}
+
+void World::collectReadbacks() {
     while (const gpu::Readback* readback = backend_.nextReadback()) {
         readbackFrame_ = readback->frameIndex;
         readbackTick_ = readback->endTick;

@@ -44,7 +44,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     backend_.run(plan);
 
     commitFrame(frameIndex, time, !skip);
-    collectReadbacks();
+    collect();
 }
 
 void World::planSteps(const ClockAdvance& time) {

@@ -109,7 +109,8 @@ class World {
     void checkFrame(uint64_t frameIndex, float deltaTime) const;
     // One frame: collects readbacks, plans, runs the backend, collects again.
     void advance(uint64_t frameIndex, float deltaTime);
-    void collect() noexcept { collectReadbacks(); }
+    // Takes readbacks that have come since; what memory refuses comes with the next frame.
+    void collect() noexcept;
     [[nodiscard]] uint64_t lastFrame() const noexcept { return lastFrame_; }
 
     uint32_t pollEvents(std::span<FwEvent> out);
@@ -182,7 +183,7 @@ class World {
     void planLatches(uint32_t now, size_t firstEvent);
     [[nodiscard]] components::DriveInput driveInput() const noexcept;
     // events.cpp
-    void collectReadbacks() noexcept;
+    void collectReadbacks();  // throws std::bad_alloc; the readback then stays with the backend
     void takeCounters(const gpu::Readback& readback) noexcept;
     void takeAnswers(const gpu::Readback& readback) noexcept;
     void takeLights(const gpu::Readback& readback) noexcept;
