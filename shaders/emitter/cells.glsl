@@ -10,6 +10,22 @@ float lightCellSide(uint object) {
 // Side of the cells whose power says how tall flames are.
 float flameCellSide(uint object) { return clamp(4.0 * lightCellSide(object), 0.5, 4.0); }
 
+// Where a tile counts: above the surface, as flames are. The small cells make lights, which stand
+// further off.
+vec3 lightPlaceOf(BurnTile tile, float side) {
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) + view.up.xyz * (0.15 * side);
+}
+vec3 flamePlaceOf(BurnTile tile, float side) {
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) +
+           view.up.xyz * (0.1 * side);
+}
+// Wood flames for as long as it lasts, but most of it comes off near the front.
+float flameFade(BurnTile tile) {
+    BurnMaterial material = materials[tile.object * kMaterialsPerObject];
+    float lasting = max(6.0 * looks[material.look].charTime, 8.0);
+    return 0.12 + 0.88 * exp(-float(tile.age) * (1.0 / 4096.0) * material.timeScale / lasting);
+}
+
 uint mixBits(uint x) {
     x ^= x >> 16;
     x *= 0x7feb352du;

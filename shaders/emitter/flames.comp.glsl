@@ -40,7 +40,8 @@ void main() {
         uint seed = mixBits(tile.object * 7919u + tile.tile * 31u + view.seed);
         vec3 normal = tile.normalPower.xyz, up = view.up.xyz;
         vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
-        vec3 lift = normal * (0.3 * small) + up * (0.1 * side);
+        vec3 above = flamePlaceOf(tile, side);
+        float fade = flameFade(tile);
 
         for (uint k = 0u; k < 4u; ++k) {
             bool smoke = k == 3u;
@@ -48,17 +49,15 @@ void main() {
             // Cells are met at random distances, or their borders would show in the heights.
             vec3 jitter = vec3(unit(s), unit(s + 1u), unit(s + 2u)) - 0.5;
             uint slot = findCell(cellKey(
-                ivec3(floor((tile.positionArea.xyz + lift + jitter * side) / side)), side));
-            if (slot == kNoCell)
-                slot = findCell(cellKey(
-                    ivec3(floor((tile.positionArea.xyz + lift) / side)), side));
-            float power = tile.normalPower.w, area = tile.positionArea.w;
+                ivec3(floor((above + jitter * side) / side)), side));
+            if (slot == kNoCell) slot = findCell(cellKey(ivec3(floor(above / side)), side));
+            float power = tile.normalPower.w * fade, area = tile.positionArea.w * fade;
             if (slot != kNoCell) {
                 power = max(power, float(cells[cellWord(slot, 1u)]) * 16.0);
                 area = max(area, float(cells[cellWord(slot, 5u)]) * 1e-5);
             }
             float len = flameLength(power, area, small) * (look.flame > 0.0 ? look.flame : 1.0);
-            float wish = flameQuads(tile.positionArea.w, len) * share;
+            float wish = flameQuads(tile.positionArea.w * fade, len) * share;
             if (smoke) wish = min(0.12 * wish * look.smoke, 0.5);
             float spare = wish - (smoke ? 0.0 : float(k)) - unit(s + 3u);
             if (spare <= 0.0) continue;
@@ -76,7 +75,7 @@ void main() {
             vec3 drift = view.wind.xyz - up * dot(view.wind.xyz, up);
             if (!smoke) {
                 float tall = len * (0.55 + 0.75 * r3 * r3) * (0.55 + 0.45 * smoothstep(0.0, 0.4, a));
-                vec3 axis = normalize(up * rise + drift + normal * (0.30 * rise) +
+                vec3 axis = normalize(up * rise + drift + normal * (0.16 * rise) +
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
                 float halfWidth = (0.15 + 0.10 * r2) * len + 0.25 * small;
                 float loose = smoothstep(0.55, 1.0, a);

@@ -5,10 +5,14 @@
 layout(local_size_x = 128) in;
 #define FW_USE_PUSH
 #define FW_USE_OBJECTS readonly
+#define FW_USE_MATERIALS readonly
 #define FW_USE_COUNTERS readonly
 #define FW_USE_BURN_TILES readonly
 #include "lib/buffers.glsl"
 #include "shared/look.h"
+layout(std430, set = 0, binding = FW_BIND_LOOKS) readonly buffer LooksBuffer {
+    MaterialLook looks[];
+};
 layout(std430, set = 0, binding = FW_BIND_LIGHTS) writeonly buffer LightsBuffer {
     BurnLight lights[];
 };
@@ -29,9 +33,8 @@ shared uint lightArea[kMostLights];
 shared uint lightSlot[kMostLights];
 shared float lightPlace[kMostLights * 4u];
 
-void addTo(BurnTile tile, float side, uint level) {
-    vec3 lift = tile.normalPower.xyz * (0.3 * tileSide(tile.object)) + view.up.xyz * (0.1 * side);
-    vec3 at = (tile.positionArea.xyz + lift) / side;
+void addTo(BurnTile tile, vec3 place, float side, uint level) {
+    vec3 at = place / side;
     ivec3 cell = ivec3(floor(at));
     uint key = cellKey(cell, side);
     for (uint i = 0u; i < kCellProbes; ++i) {
@@ -74,8 +77,12 @@ void main() {
     barrier();
     for (uint i = me; i < count; i += 128u) {
         BurnTile tile = burnTiles[i];
-        addTo(tile, lightCellSide(tile.object), 0u);
-        addTo(tile, flameCellSide(tile.object), 1u);
+        float fade = flameFade(tile);
+        tile.normalPower.w *= fade;
+        tile.positionArea.w *= fade;
+        float small = lightCellSide(tile.object), large = flameCellSide(tile.object);
+        addTo(tile, lightPlaceOf(tile, small), small, 0u);
+        addTo(tile, flamePlaceOf(tile, large), large, 1u);
     }
     memoryBarrierBuffer();
     barrier();
@@ -194,13 +201,10 @@ void main() {
     for (uint i = me; i < count; i += 128u) {
         BurnTile tile = burnTiles[i];
         float side = flameCellSide(tile.object);
-        uint slot = findCell(cellKey(ivec3(floor((tile.positionArea.xyz +
-                                                  tile.normalPower.xyz *
-                                                      (0.3 * tileSide(tile.object)) +
-                                                  view.up.xyz * (0.1 * side)) / side)), side));
+        uint slot = findCell(cellKey(ivec3(floor(flamePlaceOf(tile, side) / side)), side));
         if (slot == kNoCell) continue;
         float len = flameLength(float(cells[cellWord(slot, 1u)]) * 16.0,
                                 float(cells[cellWord(slot, 5u)]) * 1e-5, tileSide(tile.object));
-        atomicAdd(cells[0], uint(min(flameQuads(tile.positionArea.w, len), 3.0) * 16.0));
+        atomicAdd(cells[0], uint(min(flameQuads(tile.positionArea.w * flameFade(tile), len), 3.0) * 16.0));
     }
 }

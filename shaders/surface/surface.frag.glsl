@@ -44,7 +44,7 @@ layout(location = 0) out vec4 outColor;
 #include "surface/base.glsl"
 
 // W/sr of the visible part of a flame to candela: soot glows a little for much heat.
-const float kCandelaPerWatt = 0.02;
+const float kCandelaPerWatt = 0.013;
 
 struct Arrival {
     float age;      // s since ignition, look time not applied; very negative: not in sight
@@ -121,19 +121,20 @@ vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
     return e * (s.albedo * (0.31831 * nl) + vec3((d * g * fresnel + gleam) * nl));
 }
 
-vec3 shade(Skin s, vec3 position, vec3 n, vec3 v) {
+// `open`: share of the light from outside that gets here; no shadows are traced.
+vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open) {
     if (dot(n, v) < 0.02) n = normalize(n + v * (0.04 - dot(n, v)));
     vec3 c = s.emission * (view.sunColor.w / kWhiteLuminance);
-    c += lit(s, n, v, view.sunDirection.xyz, view.sunColor.rgb * (0.35 + 0.65 * s.occlusion));
+    c += lit(s, n, v, view.sunDirection.xyz, view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
     float height = dot(n, view.up.xyz);
     c += mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.5 + 0.5 * height) * s.albedo *
-         s.occlusion;
+         (open * s.occlusion);
     vec3 mirror = reflect(-v, n);
     vec3 env = mix(view.ambientGround.rgb * 0.8, view.ambientSky.rgb * 1.6,
                    smoothstep(-0.3, 0.6, dot(mirror, view.up.xyz)));
     float m = 1.0 - max(0.0, dot(n, v)), m2 = m * m;
     float fresnel = s.f0 + (max(1.0 - s.rough, s.f0) - s.f0) * m2 * m2 * m;
-    c += env * (fresnel * s.occlusion * (1.0 - 0.5 * s.rough));
+    c += env * (open * fresnel * s.occlusion * (1.0 - 0.5 * s.rough));
 
     vec3 fire = vec3(0.0);
     for (uint i = 0u; i < view.lightCount; ++i) {
@@ -143,10 +144,10 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v) {
         vec3 d = at.xyz - view.eye.xyz - position;
         float r2 = dot(d, d);
         float wrapped = max(0.0, dot(n, d) * inversesqrt(max(r2, 1e-8)) + 0.25) * 0.64;
-        fire += color.rgb * (color.w * wrapped / (r2 + max(at.w * at.w * 0.25, 0.0016)));
+        fire += color.rgb * (color.w * wrapped / (r2 + max(at.w * at.w * 0.25, 0.004)));
     }
     c += fire * s.albedo *
-         (s.occlusion * 0.31831 * kCandelaPerWatt * view.sunColor.w / kWhiteLuminance);
+         (open * s.occlusion * 0.31831 * kCandelaPerWatt * view.sunColor.w / kWhiteLuminance);
     return c;
 }
 
@@ -214,8 +215,8 @@ void main() {
     vec2 warp = frontWarp(d, pixel, look, coarse, fine);
     vec3 along = axisX * warp.x + axisY * warp.y;
     vec2 shift = vec2(dot(gradU, along), dot(gradV, along));  // texels
-    // A long shift could leave the chart: what is beyond 1.5 texels goes the linear way.
-    vec2 near = shift * min(1.0, 1.5 * inversesqrt(max(dot(shift, shift), 1e-12)));
+    // A long shift could leave the chart: what is beyond half a texel goes the linear way.
+    vec2 near = clamp(shift, -0.5, 0.5);
     Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0);
     if (kBurns) {
         arrival = arrivalAt(object, inAtlas + near);
@@ -309,6 +310,6 @@ void main() {
     tilt *= min(1.0, 1.6 * inversesqrt(max(dot(tilt, tilt), 1e-8)));
     vec3 n = normalize(facingNormal + (deep >= 0.0 ? vec3(0.0) : (back ? -tilt : tilt)));
 
-    vec3 linear = shade(skin, position, n, toEye);
+    vec3 linear = shade(skin, position, n, toEye, inside ? 0.3 : 1.0);
     outColor = vec4(encodeOutput(min(linear, vec3(60000.0)) * view.sunDirection.w, kEncoding), 1.0);
 }

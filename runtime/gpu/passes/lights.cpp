@@ -5,7 +5,8 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {
-    {FW_BIND_OBJECTS, Access::read},      {FW_BIND_COUNTERS, Access::read},
+    {FW_BIND_OBJECTS, Access::read},      {FW_BIND_MATERIALS, Access::read},
+    {FW_BIND_LOOKS, Access::read},        {FW_BIND_COUNTERS, Access::read},
     {FW_BIND_BURN_TILES, Access::read},   {FW_BIND_LIGHTS, Access::write},
     {FW_BIND_LIGHT_CELLS, Access::write}, {FW_BIND_DRAW_ARGS, Access::write},
     {FW_BIND_VIEW, Access::uniformView},

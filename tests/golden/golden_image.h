@@ -1,0 +1,32 @@
+// Pictures that tests compare with: RGB8 PNG files beside the tests. A difference beyond the written
+// tolerance leaves actual, expected and difference in the build folder; FLAMEWRIGHT_BLESS=1 writes
+// the expected ones anew.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fw::test {
+
+struct Picture {
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> rgb;
+};
+
+struct PictureTolerance {
+    double mean = 1.0;       // of absolute differences, in 1/255
+    double outliers = 0.01;  // share of pixels with a channel further off than `outlier`
+    int outlier = 32;
+};
+
+bool readPng(const std::string& path, Picture& picture);  // only what writePng writes
+bool writePng(const std::string& path, const Picture& picture);
+testing::AssertionResult picturesMatch(const Picture& actual, const Picture& expected,
+                                       const PictureTolerance& tolerance);
+// Compares with tests/golden/<name>.png, or writes it.
+testing::AssertionResult matchesGolden(const std::string& name, const Picture& actual,
+                                       const PictureTolerance& tolerance);
+
+}  // namespace fw::test
