@@ -498,6 +498,12 @@ void VkBackend::destroyImage(uint32_t slot) noexcept {
     s.retired.push(s.ring.newest(), entry.image);
     s.retired.push(s.ring.newest(), entry.set.pool);
     entry = {};
+    for (ObjectEntry& object : s.objects) {  // back to their own base colour
+        if (object.record.image != slot + 1) continue;
+        object.record.image = 0;
+        object.recordDirty = true;
+        s.recordsDirty = true;
+    }
 }
 
 bool VkBackend::beginOutside(const FwVulkanFrame& frame) {
