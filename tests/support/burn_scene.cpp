@@ -1,5 +1,11 @@
 #include "support/burn_scene.h"
 
+#include "components/look_table.h"
+#include "components/look_textures.h"
+#include "components/view_params.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -202,6 +208,49 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
         for (uint32_t o = 0; o < objects; ++o) out.maps.push_back(o);
     }
     out.point();
+    return out;
+}
+
+gpu::LookSources testLooks() {
+    static const std::vector<gpu::MaterialLook> table = [] {
+        std::vector<gpu::MaterialLook> rows;
+        for (uint32_t i = 0; i < components::kLookCount; ++i)
+            rows.push_back(components::materialLook(i));
+        return rows;
+    }();
+    static const std::pmr::vector<std::byte> textures =
+        components::bakeLookTextures(std::pmr::get_default_resource());
+    gpu::LookSources looks;
+    looks.table = table;
+    looks.textures = textures;
+    looks.viewParams = [](const gpu::ViewInput& input, gpu::ViewParams& out) {
+        components::ViewInputs inputs;
+        std::copy_n(input.viewport, 4, inputs.viewport);
+        inputs.now = input.now;
+        inputs.lightCount = input.lightCount;
+        inputs.flameCapacity = input.flameCapacity;
+        inputs.seed = input.seed;
+        inputs.paceFactor = input.paceFactor;
+        out = components::makeViewParams(*input.view, inputs);
+    };
+    return looks;
+}
+
+FwView testView(const float eye[3], const float target[3], float degrees, float aspect,
+                bool reversedDepth) {
+    const glm::mat4 view =
+        glm::lookAt(glm::vec3(eye[0], eye[1], eye[2]), glm::vec3(target[0], target[1], target[2]),
+                    glm::vec3(0, 1, 0));
+    const float near = 0.05f, far = 50.0f, focal = 1 / std::tan(glm::radians(degrees) / 2);
+    glm::mat4 projection(0.0f);
+    projection[0][0] = focal / aspect;
+    projection[1][1] = -focal;  // y down
+    projection[2][3] = -1;
+    projection[2][2] = reversedDepth ? near / (far - near) : far / (near - far);
+    projection[3][2] = reversedDepth ? near * far / (far - near) : near * far / (near - far);
+    FwView out = fwDefaultView();
+    std::copy_n(&view[0][0], 16, out.view);
+    std::copy_n(&projection[0][0], 16, out.projection);
     return out;
 }
 

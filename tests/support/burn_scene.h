@@ -64,6 +64,12 @@ class PlanMaker {
     uint64_t frame_ = 0;
 };
 
+// Tables, textures and view block of the components, as the C edge hands them to a backend.
+gpu::LookSources testLooks();
+// Looking from `eye` at `target`, vertical field of view in degrees; Vulkan clip space.
+FwView testView(const float eye[3], const float target[3], float degrees, float aspect,
+                bool reversedDepth);
+
 // What a backend answered of one frame, copied.
 struct FrameAnswer {
     uint64_t frameIndex = 0;

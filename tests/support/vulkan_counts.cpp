@@ -7,7 +7,8 @@
 namespace fw::test {
 namespace {
 
-std::atomic<uint64_t> submits, waits, memory, maps, pipelines, descriptorPools, objects;
+std::atomic<uint64_t> submits, waits, memory, maps, pipelines, descriptorPools, objects, work,
+    barriers, draws, passes;
 
 // Each wrapper counts and calls the loader's own function of that name.
 #define FW_COUNTED(entry, counter)                                  \
@@ -20,18 +21,22 @@ std::atomic<uint64_t> submits, waits, memory, maps, pipelines, descriptorPools, 
             };                                                      \
         }                                                           \
     };
-#define FW_ALL_COUNTED(X)                                                                      \
-    X(QueueSubmit, submits)                                                                    \
-    X(QueueWaitIdle, waits) X(DeviceWaitIdle, waits) X(WaitForFences, waits)                   \
-        X(AllocateMemory, memory) X(MapMemory, maps) X(CreateComputePipelines, pipelines)      \
-            X(CreateGraphicsPipelines, pipelines) X(CreateDescriptorPool, descriptorPools)     \
-                X(AllocateDescriptorSets, descriptorPools) X(CreateBuffer, objects)            \
-                    X(CreateImage, objects) X(CreateImageView, objects)                        \
-                        X(CreatePipelineLayout, objects) X(CreateDescriptorSetLayout, objects) \
-                            X(CreateShaderModule, objects) X(CreateRenderPass, objects)        \
-                                X(CreateFramebuffer, objects) X(CreateQueryPool, objects)      \
-                                    X(CreateSampler, objects) X(CreateFence, objects)          \
-                                        X(CreateCommandPool, objects)
+// clang-format off
+#define FW_ALL_COUNTED(X)                                                             \
+    X(QueueSubmit, submits) X(QueueWaitIdle, waits) X(DeviceWaitIdle, waits)          \
+    X(WaitForFences, waits) X(AllocateMemory, memory) X(MapMemory, maps)              \
+    X(CreateComputePipelines, pipelines) X(CreateGraphicsPipelines, pipelines)        \
+    X(CreateDescriptorPool, descriptorPools) X(AllocateDescriptorSets, descriptorPools) \
+    X(CreateBuffer, objects) X(CreateImage, objects) X(CreateImageView, objects)      \
+    X(CreatePipelineLayout, objects) X(CreateDescriptorSetLayout, objects)            \
+    X(CreateShaderModule, objects) X(CreateRenderPass, objects)                       \
+    X(CreateFramebuffer, objects) X(CreateQueryPool, objects)                         \
+    X(CreateSampler, objects) X(CreateFence, objects) X(CreateCommandPool, objects)   \
+    X(CmdDispatch, work) X(CmdDispatchIndirect, work) X(CmdCopyBuffer, work)          \
+    X(CmdFillBuffer, work) X(CmdCopyBufferToImage, work) X(CmdResetQueryPool, work)   \
+    X(CmdPipelineBarrier, barriers) X(CmdDraw, draws) X(CmdDrawIndexed, draws)        \
+    X(CmdDrawIndirect, draws) X(CmdBeginRenderPass, passes)
+// clang-format on
 FW_ALL_COUNTED(FW_COUNTED)
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL deviceEntry(VkDevice device, const char* name) {
@@ -61,6 +66,10 @@ VulkanCounts takeCounts() {
     counts.pipelines = pipelines.exchange(0);
     counts.descriptorPools = descriptorPools.exchange(0);
     counts.objects = objects.exchange(0);
+    counts.work = work.exchange(0);
+    counts.barriers = barriers.exchange(0);
+    counts.draws = draws.exchange(0);
+    counts.passes = passes.exchange(0);
     return counts;
 }
 

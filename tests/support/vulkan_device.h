@@ -101,6 +101,9 @@ struct VulkanCounts {
     uint64_t submits = 0, waits = 0, memory = 0, maps = 0, pipelines = 0, descriptorPools = 0,
              objects =
                  0;  // objects: buffers, images, views, layouts, modules, passes, framebuffers
+    // Commands, by what they may be used for; not part of total.
+    uint64_t work = 0;  // dispatches, copies, fills
+    uint64_t barriers = 0, draws = 0, passes = 0;
     [[nodiscard]] uint64_t total() const {
         return submits + waits + memory + maps + pipelines + descriptorPools + objects;
     }

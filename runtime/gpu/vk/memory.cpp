@@ -83,8 +83,10 @@ Piece DeviceMemory::allocate(const VkMemoryRequirements& needs, MemoryKind kind,
         }
     }
     VkDeviceSize size = std::max(needs.size, kBlockSize);
-    if (budget_ && used_ + size > budget_) size = needs.size;
-    if (budget_ && used_ + size > budget_)
+    // A sixteenth is the frames' own staging and readback: a world that is full still runs.
+    const uint64_t budget = kind == MemoryKind::device ? budget_ - budget_ / 16 : budget_;
+    if (budget_ && used_ + size > budget) size = needs.size;
+    if (budget_ && used_ + size > budget)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "%s needs %llu bytes of GPU memory; %llu of the budget of %llu are in use.",
                    name, (unsigned long long)needs.size, (unsigned long long)used_,

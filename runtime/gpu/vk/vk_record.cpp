@@ -232,7 +232,6 @@ void VkBackend::State::run(const FramePlan& plan) {
     planes.atLeast(kSpaceProbes, uint32_t(plan.probes.size()), last);
     steps.clear();
     steps.reserve(plan.steps.size());
-    retired.promise(kResourceCount);
     open.ran = true;
     if (!work) {
         shownTick = plan.endTick;
