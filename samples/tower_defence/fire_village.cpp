@@ -85,6 +85,30 @@ void fillMesh(MeshArrays& arrays, const village::Model& model, const PaintedMode
 
 }  // namespace
 
+// Blades, cloth and roofs that burn through show their backs; closed lumps never do.
+static bool hasOpenSheets(int model) {
+    switch (Kit(model)) {
+        case Kit::kRailFence:
+        case Kit::kBrokenRail:
+        case Kit::kOak:
+        case Kit::kPoplar:
+        case Kit::kPine:
+        case Kit::kDeadTree:
+        case Kit::kAutumnOak:
+        case Kit::kBush:
+        case Kit::kRoundBale:
+        case Kit::kHayrick:
+        case Kit::kBales:
+        case Kit::kBarrel:
+        case Kit::kCrate:
+        case Kit::kWoodpile:
+        case Kit::kLogKnight:
+            return false;
+        default:
+            return true;
+    }
+}
+
 bool canBurn(int model) {
     switch (Kit(model)) {
         case Kit::kFlowers:
@@ -143,7 +167,7 @@ void FireVillage::makeMaterials() {
     make(Material::kWood, FW_MATERIAL_PINE, 1.0f, 0);
     make(Material::kPaint, FW_MATERIAL_PAINTED_WOOD, 1.0f, 0);
     make(Material::kThatch, FW_MATERIAL_THATCH, 1.0f, 0);
-    make(Material::kStraw, FW_MATERIAL_THATCH, 1.5f, 0);
+    make(Material::kStraw, FW_MATERIAL_THATCH, 4.0f, 0);  // loose, where thatch is bound
     make(Material::kLeaf, FW_MATERIAL_DRY_LEAF, 0.6f, 0);
     make(Material::kCloth, FW_MATERIAL_COTTON, 1.0f, 0);
     // Stone and metal keep the null material, which cannot burn.
@@ -186,7 +210,8 @@ void FireVillage::makeThings(const village::Scene& scene) {
         thing.moves = instance.roadMetres >= 0;
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
         // Until it catches, the host draws it: with its shadows, and for less.
-        def.flags = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED;
+        def.flags = FW_BURNABLE_HIDDEN;
+        if (hasOpenSheets(instance.model)) def.flags |= FW_BURNABLE_TWO_SIDED;
         def.mesh = meshes_[size_t(instance.model)];
         std::memcpy(def.materials, materials_, sizeof def.materials);
         def.baseColor = images_[size_t(instance.model)];

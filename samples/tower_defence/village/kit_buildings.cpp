@@ -167,7 +167,7 @@ static void addHutDoor(MeshBuilder& b, const HutStyle& s, float x, float z) {
 }
 
 Model makeHut(const char* name, const HutStyle& s, uint32_t seed) {
-    MeshBuilder b(name, seed, 512);
+    MeshBuilder b(name, seed, 448);
     const float eave = kSill + s.wallHeight;
     b.use(Texture::kStone, Material::kStone, palette::kStone);
     b.box({0, -0.4f, 0}, {s.length + 0.22f, 0.75f, s.width + 0.22f}, 0.985f, {1, 0, 0});
@@ -191,7 +191,7 @@ Model makeHut(const char* name, const HutStyle& s, uint32_t seed) {
 }
 
 Model makeRoundHut(uint32_t seed) {
-    MeshBuilder b("round hut", seed, 512);
+    MeshBuilder b("round hut", seed, 384);
     b.use(Texture::kStone, Material::kStone, palette::kStone);
     b.lathe({{1.85f, -0.4f}, {1.8f, 0.55f}, {1.6f, 0.6f}}, 12);
     b.use(Texture::kPlank, Material::kPaint, palette::kLime * 0.92f);
@@ -215,7 +215,7 @@ Model makeRoundHut(uint32_t seed) {
 }
 
 Model makeBarn(uint32_t seed) {
-    MeshBuilder b("barn", seed, 512);
+    MeshBuilder b("barn", seed, 448);
     float L = 6.2f, W = 4.2f, H = 2.5f, R = 2.1f, a = L / 2, w = W / 2;
     b.use(Texture::kStone, Material::kStone, palette::kStone);
     b.box({0, -0.4f, 0}, {L + 0.2f, 0.7f, W + 0.2f}, 0.99f, {1, 0, 0});
@@ -272,7 +272,7 @@ Model makeBarn(uint32_t seed) {
 }
 
 Model makeWindmill(uint32_t seed) {
-    MeshBuilder b("windmill", seed, 1024);
+    MeshBuilder b("windmill", seed, 512);
     b.use(Texture::kStone, Material::kStone, palette::kStone * 1.05f);
     b.lathe({{2.5f, -0.6f}, {2.35f, 2.0f}, {2.5f, 2.05f}, {2.5f, 2.3f}, {1.9f, 2.3f}}, 8, 0, 0.5f);
     b.use(Texture::kPlank, Material::kPaint, palette::kWhite * 0.92f);

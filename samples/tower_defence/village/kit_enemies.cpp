@@ -12,7 +12,7 @@ static void addEyes(MeshBuilder& b, Vec3 c, float dx, float s) {
 }
 
 Model makeStrawMan(uint32_t seed) {
-    MeshBuilder b("straw man", seed, 256);
+    MeshBuilder b("straw man", seed, 160);
     b.use(Texture::kStraw, Material::kStraw, palette::kStraw);
     for (int k : {-1, 1}) {
         float f = k > 0 ? 0.28f : -0.22f;
@@ -53,7 +53,7 @@ Model makeStrawMan(uint32_t seed) {
 }
 
 Model makeYuleGoat(uint32_t seed) {
-    MeshBuilder b("yule goat", seed, 256);
+    MeshBuilder b("yule goat", seed, 128);
     b.use(Texture::kStraw, Material::kStraw, palette::kStraw * 1.05f);
     b.tube(
         {{0, 1.0f, -0.85f}, {0, 1.02f, -0.7f}, {0, 0.98f, 0}, {0, 1.05f, 0.5f}, {0, 1.1f, 0.68f}},
@@ -90,7 +90,7 @@ Model makeYuleGoat(uint32_t seed) {
 }
 
 Model makeLogKnight(uint32_t seed) {
-    MeshBuilder b("log knight", seed, 256);
+    MeshBuilder b("log knight", seed, 160);
     auto log = [&](Vec3 a, Vec3 c, float r0, float r1, int n) {
         b.use(Texture::kBark, Material::kWood, palette::kPeeledLog);
         b.tube({a, c}, {r0, r1}, n, false);
@@ -137,7 +137,7 @@ Model makeLogKnight(uint32_t seed) {
 
 // The boss.
 Model makeWickerGiant(uint32_t seed) {
-    MeshBuilder b("wicker giant", seed, 512);
+    MeshBuilder b("wicker giant", seed, 256);
     const Vec3 w = palette::kWicker;
     b.use(Texture::kStraw, Material::kWood, w);
     for (int k : {-1, 1}) {

@@ -5,7 +5,7 @@ namespace village {
 
 // Two metres along x.
 Model makeRailFence(uint32_t seed, bool broken) {
-    MeshBuilder b(broken ? "broken rail" : "rail fence", seed, 128);
+    MeshBuilder b(broken ? "broken rail" : "rail fence", seed, 96);
     useTimber(b, palette::kOldWood);
     for (int i = 0; i < 2; ++i)
         b.box({-1.0f + float(i), -0.3f, 0}, {0.14f, 1.4f, 0.14f}, 0.8f, {0, 1, 0}, kOpenBelow,
@@ -22,7 +22,7 @@ Model makeRailFence(uint32_t seed, bool broken) {
 
 // Two metres along x, woven round three posts.
 Model makeWattle(uint32_t seed) {
-    MeshBuilder b("wattle", seed, 128);
+    MeshBuilder b("wattle", seed, 96);
     useTimber(b, palette::kOldWood);
     for (int i = 0; i < 3; ++i)
         b.box({-1.0f + 0.66f * float(i), -0.3f, 0}, {0.14f, 1.15f, 0.14f}, 0.8f, {0, 1, 0},
@@ -103,13 +103,13 @@ Model makePine(uint32_t seed) {
 }
 
 Model makeDeadTree(uint32_t seed) {
-    MeshBuilder b("dead tree", seed, 256);
+    MeshBuilder b("dead tree", seed, 128);
     addTrunk(b, 4.6f, 0.62f, 5, 1.3f);
     return b.finish();
 }
 
 Model makeBush(uint32_t seed) {
-    MeshBuilder b("bush", seed, 256);
+    MeshBuilder b("bush", seed, 128);
     useLeaf(b, palette::kLeafOak);
     b.blob({0, 0.4f, 0}, {0.75f, 0.6f, 0.65f}, 7, 4, 0.18f);
     b.tint = palette::kLeafOak * 1.3f;

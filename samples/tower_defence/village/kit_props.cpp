@@ -24,7 +24,7 @@ static void addWheel(MeshBuilder& b, Vec3 c, float radius) {
 }
 
 Model makeBarrel(uint32_t seed) {
-    MeshBuilder b("barrel", seed, 128);
+    MeshBuilder b("barrel", seed, 96);
     b.use(Texture::kPlank, Material::kWood, palette::kWood);
     b.lathe({{0.3f, 0}, {0.38f, 0.3f}, {0.38f, 0.6f}, {0.3f, 0.9f}, {0.26f, 0.88f}, {0, 0.86f}}, 9);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
@@ -33,7 +33,7 @@ Model makeBarrel(uint32_t seed) {
 }
 
 Model makeCrate(uint32_t seed) {
-    MeshBuilder b("crate", seed, 128);
+    MeshBuilder b("crate", seed, 96);
     b.use(Texture::kPlank, Material::kWood, palette::kWood * 1.1f);
     b.box({0, 0, 0}, {0.8f, 0.8f, 0.8f});
     useTimber(b, palette::kOldWood);
@@ -43,7 +43,7 @@ Model makeCrate(uint32_t seed) {
 }
 
 Model makeHayCart(uint32_t seed) {
-    MeshBuilder b("hay cart", seed, 128);
+    MeshBuilder b("hay cart", seed, 192);
     b.use(Texture::kPlank, Material::kWood, palette::kWood);
     b.box({0, 0.7f, 0}, {1.4f, 0.1f, 2.4f}, 1, {0, 0, 1}, kAllFaces);
     for (int k : {-1, 1}) {
@@ -57,7 +57,7 @@ Model makeHayCart(uint32_t seed) {
 }
 
 Model makeWell(uint32_t seed) {
-    MeshBuilder b("well", seed, 128);
+    MeshBuilder b("well", seed, 192);
     b.use(Texture::kStone, Material::kStone, palette::kStone * 1.1f);
     b.lathe({{1.0f, -0.3f}, {0.95f, 0.8f}, {0.65f, 0.82f}, {0.65f, 0.3f}}, 10);
     b.use(Texture::kWater, Material::kWater, {0.02f, 0.05f, 0.06f});
@@ -78,7 +78,7 @@ Model makeWell(uint32_t seed) {
 }
 
 Model makeMarketStall(uint32_t seed) {
-    MeshBuilder b("market stall", seed, 128);
+    MeshBuilder b("market stall", seed, 160);
     useTimber(b, palette::kWood);
     for (int x : {-1, 1})
         for (int z : {-1, 1})
@@ -151,7 +151,7 @@ Model makeWoodpile(uint32_t seed) {
 }
 
 Model makeGateArch(uint32_t seed) {
-    MeshBuilder b("gate arch", seed, 128);
+    MeshBuilder b("gate arch", seed, 224);
     useTimber(b, palette::kOldWood * 0.8f);
     for (int k : {-1, 1}) {
         b.beam({2.1f * k, -0.3f, 0}, {1.95f * k, 4.2f, 0}, 0.42f, 0.42f, 0.8f);
