@@ -54,7 +54,7 @@ MaterialLook pine() {
     m.ashMax = 0.85f;
     m.ashStart = 130.0f;
     m.ashEnd = 520.0f;
-    m.ashColor = vec4(0.37f, 0.36f, 0.35f, 0.0f);
+    m.ashColor = vec4(0.28f, 0.275f, 0.27f, 0.0f);
     m.holeTime = 620.0f;
     m.holeVariation = 260.0f;
     m.rimKelvin = 1190.0f;
@@ -287,7 +287,7 @@ MaterialLook thatch() {
     m.ashMax = 0.6f;
     m.ashStart = 3.5f;
     m.ashEnd = 14.0f;
-    m.ashColor = vec4(0.36f, 0.345f, 0.32f, 0.0f);
+    m.ashColor = vec4(0.27f, 0.26f, 0.245f, 0.0f);
     m.holeTime = 14.0f;
     m.holeVariation = 12.0f;
     m.rimKelvin = 1130.0f;

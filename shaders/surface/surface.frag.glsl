@@ -91,6 +91,35 @@ Arrival arrivalAt(BurnObject object, vec2 uv) {
             o.wet += t == kWet ? w : 0.0;
         }
     }
+    // At a chart's border all four taps can miss: then the nearest texel that exists stands in.
+    if (total == 0.0) {
+        float best = 1e9;
+        for (int i = 0; i < 25; ++i) {
+            ivec2 o2 = ivec2(i % 5 - 2, i / 5 - 2);
+            ivec2 texel = clamp(ivec2(floor(uv)) + o2, ivec2(0), limit);
+            uint index = object.stateBase + uint(texel.y) * object.width + uint(texel.x);
+            uint t = predict[index];
+            vec2 off = uv - 0.5 - vec2(texel);
+            float away = dot(off, off);
+            if (t == kInert || away >= best) continue;
+            best = away;
+            total = 1.0;
+            o.gradient = vec2(0.0);
+            o.age = o.known = o.out_ = never = 0.0;
+            o.wet = t == kOutWet || t == kWet ? 1.0 : 0.0;
+            if (t < kLiveEnd) {
+                o.gradient = unpackHalf2x16(gradient[index]);
+                o.age = float(int(view.now - t)) * (1.0 / 4096.0);
+                o.known = 1.0;
+            } else if (t == kOut || t == kOutWet) {
+                uint burnt = gradient[index];
+                o.age = burnt == 0u ? 60.0 : float(burnt) * (1.0 / 4096.0);
+                o.out_ = 1.0;
+            } else {
+                never = 1.0;
+            }
+        }
+    }
     float inverse = 1.0 / max(total, 1e-4);
     if (total == 0.0 || (o.known == 0.0 && o.out_ == 0.0)) {
         o.age = -1e6;
@@ -146,8 +175,10 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open) {
         float wrapped = max(0.0, dot(n, d) * inversesqrt(max(r2, 1e-8)) + 0.25) * 0.64;
         fire += color.rgb * (color.w * wrapped / (r2 + max(at.w * at.w * 0.25, 0.004)));
     }
-    c += fire * s.albedo *
-         (open * s.occlusion * 0.31831 * kCandelaPerWatt * view.sunColor.w / kWhiteLuminance);
+    fire *= kCandelaPerWatt * view.sunColor.w / kWhiteLuminance;
+    // Softly limited: a flame that touches the surface must not bleach it.
+    fire /= 1.0 + 0.4 * view.sunDirection.w * (fire.r + fire.g);
+    c += fire * s.albedo * (open * s.occlusion * 0.31831);
     return c;
 }
 
