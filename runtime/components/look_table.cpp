@@ -65,7 +65,7 @@ MaterialLook pine() {
     m.holeTiles = 2.6f;
     m.holeFine = 0.08f;
     m.base = gpu::kBaseWood;
-    m.flame = 1.0f;
+    m.flame = 1.35f;
     m.smoke = 1.0f;
     return m;
 }
@@ -182,8 +182,8 @@ MaterialLook plastic() {
     m.facePeak = 2.0f;
     m.faceDecay = 5.0f;
     m.glowVariation = 60.0f;
-    m.holeTime = 14.0f;
-    m.holeVariation = 8.0f;
+    m.holeTime = 34.0f;
+    m.holeVariation = 18.0f;
     m.rimWidth = 0.004f;
     m.thickness = 0.004f;
     m.lip = 0.003f;
@@ -271,25 +271,25 @@ MaterialLook greenLeaf() {
 
 MaterialLook thatch() {
     MaterialLook m = stone();
-    m.spreadRate = 0.012f;
+    m.spreadRate = 0.006f;
     m.warpLarge = 0.030f;
     m.warpSmall = 0.010f;
-    m.jitter = 2.2f;
+    m.jitter = 4.4f;
     m.scorchWidth = 0.022f;
     m.scorchGain = 1.4f;
-    m.charTime = 1.3f;
+    m.charTime = 2.6f;
     m.charColor = vec4(0.028f, 0.026f, 0.024f, 0.7f);
     m.sheen = 0.3f;
     m.faceKelvin = 1120.0f;
-    m.facePeak = 0.7f;
-    m.faceDecay = 2.2f;
+    m.facePeak = 1.4f;
+    m.faceDecay = 4.4f;
     m.glowVariation = 210.0f;
     m.ashMax = 0.6f;
-    m.ashStart = 3.5f;
-    m.ashEnd = 14.0f;
+    m.ashStart = 9.0f;
+    m.ashEnd = 34.0f;
     m.ashColor = vec4(0.27f, 0.26f, 0.245f, 0.0f);
-    m.holeTime = 14.0f;
-    m.holeVariation = 12.0f;
+    m.holeTime = 46.0f;
+    m.holeVariation = 30.0f;
     m.rimKelvin = 1130.0f;
     m.rimWidth = 0.006f;
     m.thickness = 0.02f;
@@ -306,7 +306,14 @@ MaterialLook thatch() {
 
 MaterialLook dryGrass() {
     MaterialLook m = thatch();
-    m.holeTime = 7.0f;
+    m.spreadRate = 0.012f;
+    m.jitter = 2.2f;
+    m.charTime = 1.3f;
+    m.facePeak = 0.7f;
+    m.faceDecay = 2.2f;
+    m.ashStart = 3.0f;
+    m.ashEnd = 9.0f;
+    m.holeTime = 8.0f;
     m.holeVariation = 6.0f;
     m.thickness = 0.004f;
     m.ashMax = 0.5f;

@@ -188,7 +188,9 @@ void main() {
     MaterialLook look = looks[materials[row].look];
     float timeScale = materials[row].timeScale;
     if ((object.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
-    if (materials[row].thickness > 0.0) look.thickness = materials[row].thickness;
+    // The rim shows the host's thickness within what the look was made for.
+    if (materials[row].thickness > 0.0)
+        look.thickness = clamp(materials[row].thickness, 0.4 * look.thickness, 2.0 * look.thickness);
 
     // The tangent plane: how atlas and detail coordinates move along the surface.
     vec3 normal = normalize(inNormal);

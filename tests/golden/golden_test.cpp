@@ -340,7 +340,7 @@ TEST_F(Golden, PaperBurnsThrough) {
     FwWorld* world = makeWorld(1);
     addThing(world, FW_MATERIAL_NEWSPAPER, 0.3f, 512, false);
     const FwView view = makeView({0.1f, 0.05f, 0.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("paper_hole", burnAndDraw(world, 20, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("paper_hole", burnAndDraw(world, 11, view, false), kTolerance));
 }
 
 TEST_F(Golden, ThatchByNight) {

@@ -1,0 +1,130 @@
+// What the surface pass costs: the bunny, half burnt, on some 30 % of a 1280 x 720 picture. Times
+// are the pass's own, by timestamps. Rows need FLAMEWRIGHT_ASSETS.
+#include <benchmark/benchmark.h>
+
+#include "flamewright/flamewright.h"
+#include "flamewright/flamewright_debug.h"
+#include "support/meshes.h"
+
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <cstring>
+#include <vector>
+
+namespace {
+
+constexpr uint32_t kWidth = 1280, kHeight = 720;
+
+struct Scene {
+    FwContext* context = nullptr;
+    FwWorld* world = nullptr;
+    FwBurnableMeshId object{};
+    ~Scene() {
+        fwDestroyWorld(world);
+        fwDestroyContext(context);
+    }
+};
+
+// Null text: fine.
+const char* build(Scene& scene, float burntFraction, std::string& error) {
+    fw::test::Mesh mesh;
+    if (!fw::test::loadGlb("bunny_31k.glb", mesh, error)) return error.c_str();
+    const FwContextDef contextDef = fwDefaultContextDef();
+    FwErrorInfo info{};
+    if (fwCreateContext(&contextDef, &scene.context, &info) != FW_OK) {
+        error = info.message;
+        return error.c_str();
+    }
+    FwWorldDef worldDef = fwDefaultWorldDef();
+    worldDef.paceFactor = 200;
+    worldDef.maxStepsPerFrame = 32;
+    FwMeshDef meshDef = fwDefaultMeshDef();
+    meshDef.positions = mesh.positions.data();
+    meshDef.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
+    meshDef.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
+    meshDef.indices = mesh.indices.data();
+    meshDef.vertexCount = mesh.vertexCount();
+    meshDef.indexCount = uint32_t(mesh.indices.size());
+    FwBurnableMeshDef objectDef = fwDefaultBurnableMeshDef();
+    const FwMaterialDef pine = fwDefaultMaterialDef();
+    FwIgnitionDef match = fwDefaultIgnitionDef();
+    match.position[0] = -0.3f;
+    match.position[1] = 0.3f;
+    match.position[2] = 0.3f;
+    match.radius = 0.2f;
+    if (fwCreateWorld(scene.context, &worldDef, &scene.world) != FW_OK ||
+        fwWorld_CreateMesh(scene.world, &meshDef, &objectDef.mesh) != FW_OK ||
+        fwWorld_CreateMaterial(scene.world, &pine, &objectDef.materials[0]) != FW_OK ||
+        fwWorld_CreateBurnableMesh(scene.world, &objectDef, &scene.object) != FW_OK)
+        return "the scene cannot be made";
+    if (burntFraction <= 0) return nullptr;
+    fwWorld_Ignite(scene.world, &match, nullptr);
+    for (int i = 0; i < 200; ++i) {
+        fwWorld_Step(scene.world, 0.5f);
+        FwObjectState state{};
+        state.structSize = sizeof state;
+        fwWorld_GetObjectState(scene.world, scene.object, &state);
+        if (state.burntFraction >= burntFraction) return nullptr;
+    }
+    return "the bunny does not burn";
+}
+
+void drawSurface(benchmark::State& state, float burntFraction) {
+    Scene scene;
+    std::string error;
+    if (const char* why = build(scene, burntFraction, error)) {
+        state.SkipWithError(why);
+        return;
+    }
+    std::vector<uint8_t> pixels(size_t{kWidth} * kHeight * 4);
+    FwOffscreenDef shot = fwDefaultOffscreenDef();
+    shot.width = kWidth;
+    shot.height = kHeight;
+    shot.pixels = pixels.data();
+    shot.view = fwDefaultView();
+    const glm::mat4 look =
+        glm::lookAt(glm::vec3(-0.5f, 0.7f, 1.85f), glm::vec3(0, 0.5f, 0), glm::vec3(0, 1, 0));
+    glm::mat4 projection(0.0f);
+    projection[0][0] = 2.0f * kHeight / kWidth;
+    projection[1][1] = -2.0f;
+    projection[2][2] = projection[2][3] = -1.0f;
+    projection[3][2] = -0.05f;
+    std::memcpy(shot.view.view, glm::value_ptr(look), sizeof shot.view.view);
+    std::memcpy(shot.view.projection, glm::value_ptr(projection), sizeof shot.view.projection);
+    FwPassTime times[64];
+    const auto surface = [&] {
+        fwWorld_RenderOffscreen(scene.world, &shot);
+        const uint32_t count = fwDebug_GetPassTimes(scene.world, times, 64);
+        for (uint32_t i = 0; i < count && i < 64; ++i) {
+            if (std::strcmp(times[i].name, "surface") == 0) return times[i].milliseconds * 1e-3;
+        }
+        return 0.0;
+    };
+    for (int i = 0; i < 3; ++i) surface();  // pipelines are compiled at first use
+    for (auto _ : state) {
+        const double seconds = surface();
+        if (seconds <= 0) {
+            state.SkipWithError("the device has no timestamps");
+            return;
+        }
+        state.SetIterationTime(seconds);
+    }
+    size_t covered = 0;
+    for (size_t i = 3; i < pixels.size(); i += 4) covered += pixels[i] != 0;
+    state.counters["covered"] = double(covered) / (kWidth * kHeight);
+}
+
+BENCHMARK_CAPTURE(drawSurface, half, 0.5f)
+    ->Name("surface/bunny31k/720p")
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(15);
+BENCHMARK_CAPTURE(drawSurface, fresh, 0.0f)
+    ->Name("surface/bunny31k_fresh/720p")
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(15);
+
+}  // namespace

@@ -1,0 +1,156 @@
+// The looks' data: presets, textures, the view's uniform block. How they look is in tests/golden.
+#include "components/look_table.h"
+#include "components/look_textures.h"
+#include "components/view_params.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <cmath>
+#include <cstring>
+
+namespace fw::components {
+namespace {
+
+using gpu::MaterialLook;
+
+TEST(LookTable, EveryPresetIsWhole) {
+    for (uint32_t preset = 0; preset < kLookCount; ++preset) {
+        const MaterialLook m = materialLook(preset);
+        SCOPED_TRACE(preset);
+        EXPECT_EQ(m.spreadRate > 0, preset != FW_MATERIAL_NONCOMBUSTIBLE);
+        // What shaders divide by.
+        for (const float divisor : {m.charTime, m.facePeak, m.faceDecay, m.crackLife, m.cellX,
+                                    m.cellY, m.rimWidth, m.thickness, m.drip, m.ashEnd - m.ashStart})
+            EXPECT_GT(divisor, 0.0f);
+        EXPECT_LE(m.holeVariation, m.holeTime);
+        if (m.crackDepth > 0) {
+            EXPECT_GT(m.crackWidth, 0.0f);
+        }
+        // Char is never blacker than soot and never brighter than slate.
+        EXPECT_GT(m.charColor.x, 0.01f);
+        EXPECT_LT(m.charColor.x, 0.05f);
+        EXPECT_LE(m.ashMax, 1.0f);
+    }
+}
+
+TEST(LookTable, BeyondTheTableNothingBurns) {
+    EXPECT_EQ(lookSpreadRate(kLookCount), 0.0f);
+    EXPECT_EQ(lookSpreadRate(0xFFFFFFFFu), 0.0f);
+    EXPECT_EQ(materialLook(kLookCount).base, gpu::kBaseStone);
+}
+
+TEST(LookTable, CracksOpenWhileTheyGlow) {
+    for (uint32_t preset = 0; preset < kLookCount; ++preset) {
+        const MaterialLook m = materialLook(preset);
+        if (m.crackDepth > 0) {
+            EXPECT_LT(m.crackTime, 0.6f * m.crackLife) << preset;
+        }
+    }
+}
+
+class LookTextures : public testing::Test {
+ protected:
+    static void SetUpTestSuite() {
+        bytes_ = new std::pmr::vector<std::byte>(
+            bakeLookTextures(std::pmr::new_delete_resource()));
+    }
+    static void TearDownTestSuite() { delete bytes_; }
+    static int at(uint32_t layer, uint32_t mip, uint32_t x, uint32_t y, uint32_t channel) {
+        const uint32_t side = kLookTextureSide >> mip;
+        return int((*bytes_)[lookTextureOffset(layer, mip) +
+                             size_t{(y % side) * side + x % side} * 4 + channel]);
+    }
+    static std::pmr::vector<std::byte>* bytes_;
+};
+std::pmr::vector<std::byte>* LookTextures::bytes_ = nullptr;
+
+TEST_F(LookTextures, SizesAndOffsets) {
+    EXPECT_EQ(bytes_->size(), lookTextureOffset(kLookTextureLayers, 0));
+    EXPECT_EQ(lookTextureOffset(0, 1), size_t{512 * 512 * 4});
+    EXPECT_EQ(lookTextureOffset(1, 0), size_t{349525 * 4});
+}
+
+TEST_F(LookTextures, SameBytesEveryTime) {
+    const auto again = bakeLookTextures(std::pmr::new_delete_resource());
+    EXPECT_EQ(again, *bytes_);
+}
+
+TEST_F(LookTextures, TileWithoutASeam) {
+    // Across the edge the smooth channels change no more than elsewhere.
+    for (const auto& [layer, channel] : {std::pair{0u, 0u}, {0u, 2u}, {1u, 3u}}) {
+        double inside = 0, edge = 0;
+        for (uint32_t i = 0; i < kLookTextureSide; ++i) {
+            inside += std::abs(at(layer, 0, 256, i, channel) - at(layer, 0, 257, i, channel)) +
+                      std::abs(at(layer, 0, i, 100, channel) - at(layer, 0, i, 101, channel));
+            edge += std::abs(at(layer, 0, 511, i, channel) - at(layer, 0, 0, i, channel)) +
+                    std::abs(at(layer, 0, i, 511, channel) - at(layer, 0, i, 0, channel));
+        }
+        EXPECT_LT(edge, 4 * inside + 512) << layer << " " << channel;
+    }
+}
+
+TEST_F(LookTextures, MipsKeepTheMean) {
+    for (uint32_t layer = 0; layer < kLookTextureLayers; ++layer) {
+        for (uint32_t c = 0; c < 4; ++c) {
+            double mean = 0;
+            for (uint32_t y = 0; y < 512; ++y)
+                for (uint32_t x = 0; x < 512; ++x) mean += at(layer, 0, x, y, c);
+            EXPECT_NEAR(mean / (512 * 512), at(layer, 9, 0, 0, c), 2) << layer << " " << c;
+        }
+    }
+}
+
+TEST_F(LookTextures, NoiseIsCentred) {
+    // fBm about 0.5: the shaders subtract it.
+    EXPECT_NEAR(at(0, 9, 0, 0, 0), 128, 14);
+    EXPECT_NEAR(at(0, 9, 0, 0, 2), 128, 14);
+    // Slopes of tiling reliefs sum to nothing.
+    for (uint32_t c = 0; c < 4; ++c) EXPECT_NEAR(at(2, 9, 0, 0, c), 128, 3);
+}
+
+TEST(ViewParamsTest, PlacesAPointAsTheHostDoes) {
+    FwView view{};
+    const glm::vec3 eye(1000.0f, 3.0f, -2000.0f), target(1001.0f, 2.0f, -2004.0f);
+    const glm::mat4 look = glm::lookAt(eye, target, glm::vec3(0, 1, 0));
+    glm::mat4 projection(0.0f);
+    projection[0][0] = 1.2f;
+    projection[1][1] = -2.0f;
+    projection[2][3] = -1.0f;
+    projection[3][2] = 0.1f;  // infinite, reversed
+    std::memcpy(view.view, glm::value_ptr(look), sizeof view.view);
+    std::memcpy(view.projection, glm::value_ptr(projection), sizeof view.projection);
+    ViewInputs inputs;
+    inputs.viewport[2] = 1280;
+    inputs.viewport[3] = 720;
+    inputs.flameCapacity = 1u << 30;
+    const gpu::ViewParams p = makeViewParams(view, inputs);
+    EXPECT_NEAR(p.eye.x, eye.x, 1e-3);
+    EXPECT_NEAR(p.eye.z, eye.z, 1e-3);
+    EXPECT_NEAR(p.eye.w, 2.0 / (2.0 * 720), 1e-7);
+    EXPECT_EQ(p.forward.w, 1.0f);
+    const glm::vec3 forward = glm::normalize(target - eye);
+    EXPECT_NEAR(glm::dot(forward, glm::vec3(p.forward)), 1.0f, 1e-5);
+    const glm::vec4 there =
+        p.clip0 * (target.x - p.eye.x) + p.clip1 * (target.y - p.eye.y) +
+        p.clip2 * (target.z - p.eye.z) + p.clip3;
+    EXPECT_NEAR(there.x / there.w, 0.0f, 1e-3);
+    EXPECT_NEAR(there.y / there.w, 0.0f, 1e-3);
+    EXPECT_NEAR(there.w, glm::length(target - eye), 1e-3);
+    EXPECT_EQ(p.flameCapacity, gpu::kFlameCapacity);
+}
+
+TEST(ViewParamsTest, AViewThatLooksAlongPlusZ) {
+    FwView view{};
+    glm::mat4 look(1.0f), projection(0.0f);
+    projection[0][0] = projection[1][1] = projection[2][2] = projection[2][3] = 1.0f;
+    std::memcpy(view.view, glm::value_ptr(look), sizeof view.view);
+    std::memcpy(view.projection, glm::value_ptr(projection), sizeof view.projection);
+    const gpu::ViewParams p = makeViewParams(view, {});
+    EXPECT_NEAR(p.forward.z, 1.0f, 1e-6);
+}
+
+}  // namespace
+}  // namespace fw::components
