@@ -156,20 +156,21 @@ FireVillage::FireVillage(sample::FireHost& fire, const village::Scene& scene,
 }
 
 void FireVillage::makeMaterials() {
-    auto make = [&](Material slot, uint32_t preset, float spread, float moisture) {
+    auto make = [&](Material slot, uint32_t preset, float spread, float burning, float moisture) {
         FwMaterialDef def = fwDefaultMaterialDef();
         fire_.check(fwInitMaterialPreset(&def, preset), "fwInitMaterialPreset");
         def.spreadRate *= spread;
         def.moisture += moisture;
+        def.burnTime *= burning;
         fire_.check(fwWorld_CreateMaterial(fire_.world, &def, &materials_[size_t(slot)]),
                     "fwWorld_CreateMaterial");
     };
-    make(Material::kWood, FW_MATERIAL_PINE, 1.0f, 0);
-    make(Material::kPaint, FW_MATERIAL_PAINTED_WOOD, 1.0f, 0);
-    make(Material::kThatch, FW_MATERIAL_THATCH, 1.0f, 0);
-    make(Material::kStraw, FW_MATERIAL_THATCH, 4.0f, 0);  // loose, where thatch is bound
-    make(Material::kLeaf, FW_MATERIAL_DRY_LEAF, 0.6f, 0);
-    make(Material::kCloth, FW_MATERIAL_COTTON, 1.0f, 0);
+    make(Material::kWood, FW_MATERIAL_PINE, 1.0f, 1.0f, 0);
+    make(Material::kPaint, FW_MATERIAL_PAINTED_WOOD, 1.0f, 1.0f, 0);
+    make(Material::kThatch, FW_MATERIAL_THATCH, 1.0f, 1.7f, 0);
+    make(Material::kStraw, FW_MATERIAL_THATCH, 4.0f, 0.8f, 0);  // loose, where thatch is bound
+    make(Material::kLeaf, FW_MATERIAL_DRY_LEAF, 0.6f, 2.0f, 0.02f);
+    make(Material::kCloth, FW_MATERIAL_COTTON, 1.0f, 1.0f, 0);
     // Stone and metal keep the null material, which cannot burn.
 }
 
@@ -212,6 +213,8 @@ void FireVillage::makeThings(const village::Scene& scene) {
         // Until it catches, the host draws it: with its shadows, and for less.
         def.flags = FW_BURNABLE_HIDDEN;
         if (hasOpenSheets(instance.model)) def.flags |= FW_BURNABLE_TWO_SIDED;
+        // Enemies end as black figures, not as nothing: the player must see what was felled.
+        if (instance.roadMetres >= 0) def.flags |= FW_BURNABLE_NO_HOLES;
         def.mesh = meshes_[size_t(instance.model)];
         std::memcpy(def.materials, materials_, sizeof def.materials);
         def.baseColor = images_[size_t(instance.model)];
