@@ -103,8 +103,10 @@ void predictTexel(uint work) {
         float dy = slope(int(at), int(y), int(objects[object].height), int(width), now);
         gradient[at] = packHalf2x16(vec2(dx, dy));
     }
-    // Small changes stay here: rings would chase rounding for ever.
-    if (hasTime(now) && hasTime(before) && abs(int(now - before)) <= 32) return;
+    // Small changes stay here: rings would chase rounding for ever. The farther ahead, the less
+    // they matter.
+    int ahead = max(int(now - push.now), 0);
+    if (hasTime(now) && hasTime(before) && abs(int(now - before)) <= 64 + ahead / 8) return;
     predictTouch(parity ^ 1u, worldTile);
     uint base = objects[object].worldTileBase;
     uvec2 mask = lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u));

@@ -1,5 +1,6 @@
 // Finds the texels of the predict list's tiles whose shown arrival may change, and packs them for
-// `predict`. States that are no arrival (wet, put out, ...) are passed on here. One thread per row.
+// `predict`. States that are no arrival (wet, put out, ...) are passed on here. What has an arrival
+// already is gone over in about every eighth frame only. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -12,9 +13,10 @@ layout(local_size_x = 64) in;
 #define FW_USE_SCRATCH writeonly
 #define FW_USE_PREDICT FW_READ_WRITE
 #define FW_USE_GRADIENT writeonly
-#define FW_USE_PREDICT_LISTS readonly
+#define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
+#include "lib/lists.glsl"
 
 bool hasTime(uint p) { return p < kLiveEnd; }
 
@@ -33,7 +35,9 @@ void gatherRow(uint slot, uint row) {
     int y = (int(tile.local) / tilesX) * 8 + int(row);
     int at = base + y * width + x0;
 
+    bool again = (hash32((push.now >> 7u) + worldTile) & 7u) == 0u;
     uint chosen = 0u;
+    uint known = 0u; // unburnt, with a time
     uint open = 0u;  // unburnt: an arrival may be predicted
     uint own[10];
     for (int i = 0; i < 8; ++i) {
@@ -44,14 +48,16 @@ void gatherRow(uint slot, uint row) {
             if (p != t) chosen |= 1u << uint(i);
         } else if (t == kNever) {
             open |= 1u << uint(i);
-            if (hasTime(p)) chosen |= 1u << uint(i);
+            if (hasTime(p)) known |= 1u << uint(i);
         } else if (p != t) {
             // What was put out keeps the look of the age it had: its gradient is that age.
             if (hasTime(p) && t != kWet) gradient[at + i] = p <= push.now ? push.now - p : 0u;
             predict[at + i] = t;
         }
     }
-    uint fresh = open & ~chosen;
+    if (again) chosen |= known;
+    else if (known != 0u) predictTouch(push.predictParity ^ 1u, worldTile);
+    uint fresh = open & ~known;
     if (fresh != 0u) {
         uvec4 statics = tiles[(objects[tile.object].tileBase + tile.local) * 2u + 1u];
         uint rim = ((row < 4u ? statics.x : statics.y) >> ((row & 3u) * 8u)) & 0xFFu;
