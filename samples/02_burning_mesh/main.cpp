@@ -17,7 +17,7 @@ struct Wishes {
     float ignite[3] = {0, 0, 0};  // m, in the studio; used if `igniteGiven`
     bool igniteGiven = false, noCache = false, reversed = false, msaa = false;
     float pace = 0;      // 0: so that the run shows the whole burn
-    float seconds = 16;  // of a headless run
+    float seconds = 10;  // of a headless run
     float turn = 0;      // degrees a second, turntable
     float wind[3] = {0, 0, 0};
     float size = 0;              // m; 0: the file's own
@@ -249,6 +249,8 @@ int main(int argc, char** argv) {
     return sample::guardedMain("02_burning_mesh", [&] {
         sample::Options options;
         options.fps = 8.0;
+        options.width = 768;
+        options.height = 432;
         Wishes wishes;
         sample::OptionParser parser("02_burning_mesh", "any glTF mesh burns", "[FILE.glb]");
         parser.addText("--material", "NAME", "what it is made of; --list names them",

@@ -11,7 +11,7 @@ namespace fw::gpu::vk {
 // Queries of one frame in flight.
 class FrameTimers {
  public:
-    static constexpr uint32_t kMaxSpans = 128;  // of a frame; further ones go untimed
+    static constexpr uint32_t kMaxSpans = 512;  // of a frame; further ones go untimed
 
     void create(Device& device);
     void destroy(Device& device) noexcept;
