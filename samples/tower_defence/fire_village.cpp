@@ -129,8 +129,8 @@ bool canBurn(int model) {
 }
 
 FireVillage::FireVillage(sample::FireHost& fire, const village::Scene& scene,
-                         const PaintedVillage& painted)
-    : fire_(fire), meshes_(scene.models.size()), images_(scene.models.size()) {
+                         const PaintedVillage& painted, uint32_t seed)
+    : fire_(fire), meshes_(scene.models.size()), images_(scene.models.size()), seed_(seed) {
     // The bake is the slow part and may run on any thread: cook first, create from the cooked.
     std::vector<std::vector<uint8_t>> cooked(scene.models.size());
     std::vector<std::string> troubles(scene.models.size());
@@ -306,7 +306,44 @@ void FireVillage::heatNeighbours(float deltaTime, glm::vec3 wind) {
     }
 }
 
+// Burning straw flies: a quarter of a second apart, each strong fire may throw a brand downwind.
+// How far and whether is a hash of thing and moment, so that a seed tells one story.
+void FireVillage::throwBrands(uint32_t slot, glm::vec3 wind) {
+    constexpr float kPerMegawatt = 0.30f;  // brands in a quarter of a second
+    const float speed = std::sqrt(wind.x * wind.x + wind.z * wind.z);
+    if (speed < 0.5f) return;
+    const glm::vec3 downwind(wind.x / speed, 0, wind.z / speed);
+    const glm::vec3 across(-downwind.z, 0, downwind.x);
+    for (size_t i = 0; i < things.size(); ++i) {
+        if (!things[i].lit || things[i].over) continue;
+        auto random = [&](uint32_t what) {
+            return village::random01(int(i * 8 + what), int(slot), seed_ + 33);
+        };
+        const float megawatts = std::min(1.5f, 1e-6f * things[i].state.power);
+        if (random(0) > kPerMegawatt * megawatts) continue;
+        const float far = (0.4f + 0.9f * random(1)) * (1.0f + speed);
+        landBrand(fireCentre(things[i]) + downwind * far + across * (1.6f * random(2) - 0.8f));
+    }
+}
+
+// Comes down on whatever stands at the place and is not alight yet.
+void FireVillage::landBrand(glm::vec3 place) {
+    constexpr float kStep = 0.4f, kBall = 0.35f;  // m
+    for (size_t i = 0; i < things.size(); ++i) {
+        const Thing& thing = things[i];
+        const Vec3 local = toModel(thing.frame, fromGlm(place));
+        if (thing.lit || local.x < thing.low.x || local.x > thing.high.x || local.z < thing.low.z ||
+            local.z > thing.high.z)
+            continue;
+        for (float y = thing.high.y; y > 0; y -= kStep)
+            if (ignite(i, toGlm(thing.frame.point({local.x, y, local.z})), kBall)) return;
+    }
+}
+
 void FireVillage::advance(float deltaTime, glm::vec3 wind) {
+    constexpr float kSlot = 0.25f;  // s
+    const uint32_t slot = uint32_t(time_ / kSlot);
+    time_ += deltaTime;
     pollEvents();
     burning_ = 0;
     for (Thing& thing : things) {
@@ -318,6 +355,7 @@ void FireVillage::advance(float deltaTime, glm::vec3 wind) {
         burning_ += thing.state.burning > 0;
     }
     heatNeighbours(deltaTime, wind);
+    if (uint32_t(time_ / kSlot) != slot) throwBrands(slot, wind);
 }
 
 std::span<const PointLight> FireVillage::lights(float scale) {

@@ -30,7 +30,8 @@ class FireVillage {
  public:
     // Cooks the meshes on all cores, then makes materials, pictures and objects. Throws
     // sample::Failure.
-    FireVillage(sample::FireHost& fire, const village::Scene& scene, const PaintedVillage& painted);
+    FireVillage(sample::FireHost& fire, const village::Scene& scene, const PaintedVillage& painted,
+                uint32_t seed);
 
     std::vector<Thing> things;
     // The thing of an instance, or npos if that cannot burn.
@@ -58,6 +59,8 @@ class FireVillage {
     void makeThings(const village::Scene& scene);
     void pollEvents();
     void heatNeighbours(float deltaTime, glm::vec3 wind);
+    void throwBrands(uint32_t slot, glm::vec3 wind);
+    void landBrand(glm::vec3 place);
 
     sample::FireHost& fire_;
     FwMaterialId materials_[8]{};
@@ -65,6 +68,8 @@ class FireVillage {
     std::vector<FwImageId> images_;
     std::vector<size_t> thingOf_;  // by instance
     std::vector<PointLight> lights_;
+    uint32_t seed_;
+    float time_ = 0;  // s
     uint32_t burning_ = 0, caught_ = 0, burntOut_ = 0;
 };
 

@@ -135,7 +135,7 @@ int run(const sample::Options& options, const Choices& choices) {
         sample::Stage stage(host, options, stageRequest, frames);
         fire.registerTarget(stage);
         tower::Renderer renderer(host, stage, scene, painted);
-        tower::FireVillage fires(fire, scene, painted);
+        tower::FireVillage fires(fire, scene, painted, options.seed);
         tower::Game game(scene, fires, options.seed,
                          {choices.wind[0], choices.wind[1], choices.wind[2]});
         const std::vector<tower::PointLight> lamps = lampLights(scene);
