@@ -1,5 +1,6 @@
 // Any glTF mesh burns in a studio: imported, given a burn map, set alight in front, filmed.
 // In a window: drag to turn, wheel to zoom, click to light; V makes the click pour water, F fire.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -28,7 +29,8 @@ struct Wishes {
 uint32_t presetNamed(const std::string& name) {
     std::string known;
     for (uint32_t i = 0; i < FW_MATERIAL_PRESET_COUNT; ++i) {
-        const std::string preset = fwMaterialPresetName(i);
+        std::string preset = fwMaterialPresetName(i);
+        std::replace(preset.begin(), preset.end(), ' ', '_');
         if (preset == name) return i;
         known += (i ? ", " : "") + preset;
     }
@@ -272,7 +274,9 @@ int main(int argc, char** argv) {
         if (options.list) {
             std::printf("materials:");
             for (uint32_t i = 0; i < FW_MATERIAL_PRESET_COUNT; ++i) {
-                std::printf(" %s", fwMaterialPresetName(i));
+                std::string preset = fwMaterialPresetName(i);
+                std::replace(preset.begin(), preset.end(), ' ', '_');
+                std::printf(" %s", preset.c_str());
             }
             std::printf("\n");
             return 0;
