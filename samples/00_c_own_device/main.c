@@ -94,10 +94,10 @@ int main(int argc, char** argv) {
     match.position[0] = -0.5f, match.position[1] = -0.12f, match.radius = 0.05f;
     require(fwWorld_Ignite(world, &match, NULL), world);
     FwOffscreenDef shot = fwDefaultOffscreenDef(); /* a camera 1.6 m off, looking along -z */
-    const float zoom = 3.4f, near = 0.1f, far = 20.0f;
+    const float zoom = 4.6f, near = 0.1f, far = 20.0f;
     shot.width = width, shot.height = height, shot.pixels = malloc((size_t)width * height * 4);
     for (int i = 0; i < 4; ++i) shot.view.view[i * 5] = 1.0f;
-    shot.view.view[14] = -1.6f, shot.background[2] = 0.03f;
+    shot.view.view[14] = -1.6f, shot.background[2] = 0.004f;
     shot.view.projection[0] = zoom * (float)height / (float)width, shot.view.projection[5] = -zoom;
     shot.view.projection[10] = far / (near - far), shot.view.projection[11] = -1.0f;
     shot.view.projection[14] = near * far / (near - far);

@@ -88,7 +88,7 @@ void VkBackend::State::makeOffscreen(uint32_t width, uint32_t height) {
         def.encoding = FW_OUTPUT_SRGB_VIEW;
         own.target = context.pipelines.registerTarget(def);
     }
-    if (!own.clearPass) {  // compatible with the target's own pass, but it clears
+    if (!own.clearPass) {  // compatible with the target's own pass (no dependencies), but it clears
         std::array<VkAttachmentDescription, 2> attachments{};
         for (size_t i = 0; i < attachments.size(); ++i) {
             attachments[i].format = i ? own.depthFormat : kColor;
@@ -100,7 +100,7 @@ void VkBackend::State::makeOffscreen(uint32_t width, uint32_t height) {
             attachments[i].stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
             attachments[i].initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
             attachments[i].finalLayout = i ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
-                                           : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+                                           : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
         }
         const VkAttachmentReference color{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
         const VkAttachmentReference depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
@@ -109,26 +109,11 @@ void VkBackend::State::makeOffscreen(uint32_t width, uint32_t height) {
         subpass.colorAttachmentCount = 1;
         subpass.pColorAttachments = &color;
         subpass.pDepthStencilAttachment = &depth;
-        std::array<VkSubpassDependency, 2> dependencies{};
-        dependencies[0].srcSubpass = VK_SUBPASS_EXTERNAL;
-        dependencies[0].srcStageMask =
-            VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
-        dependencies[0].dstStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
-                                       VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT;
-        dependencies[0].dstAccessMask =
-            VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
-        dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
-        dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-        dependencies[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-        dependencies[1].dstStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT;
-        dependencies[1].dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
         auto info = typed<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
         info.attachmentCount = uint32_t(attachments.size());
         info.pAttachments = attachments.data();
         info.subpassCount = 1;
         info.pSubpasses = &subpass;
-        info.dependencyCount = uint32_t(dependencies.size());
-        info.pDependencies = dependencies.data();
         device.check(
             vk.CreateRenderPass(device.handle, &info, device.allocationCallbacks, &own.clearPass),
             "vkCreateRenderPass");
@@ -203,6 +188,17 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         const VkViewport viewport{0, 0, float(def.width), float(def.height), 0, 1};
         recordDraws(slot, own.commands, target, def.view, viewport);
         vk.CmdEndRenderPass(own.commands);
+        auto toCopy = typed<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+        toCopy.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+        toCopy.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+        toCopy.oldLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        toCopy.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+        toCopy.srcQueueFamilyIndex = toCopy.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        toCopy.image = own.color.handle;
+        toCopy.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        vk.CmdPipelineBarrier(own.commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                              VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                              &toCopy);
         VkBufferImageCopy region{};
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         region.imageExtent = {def.width, def.height, 1};
