@@ -35,9 +35,13 @@ const Readback* VkBackend::State::nextReadback() {
             givenMaps.resize(layout.mapCount);
             givenLights.reserve(layout.lights);
             const std::byte* from = slot->readback.mapped;
-            std::memcpy(givenObjects.data(), from + layout.objectsAt,
-                        layout.objects * sizeof(ObjectCounters));
-            std::memcpy(givenAnswers.data(), from + layout.answersAt, uint64_t(layout.answers) * 4);
+            // Empty vectors have no address, which memcpy must not be given.
+            if (layout.objects > 0)
+                std::memcpy(givenObjects.data(), from + layout.objectsAt,
+                            layout.objects * sizeof(ObjectCounters));
+            if (layout.answers > 0)
+                std::memcpy(givenAnswers.data(), from + layout.answersAt,
+                            uint64_t(layout.answers) * 4);
             uint64_t at = 0;
             for (uint32_t i = 0; i < layout.mapCount; ++i) {
                 const ReadbackLayout::MapAt& map = layout.maps[i];
