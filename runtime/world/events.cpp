@@ -70,12 +70,10 @@ void World::collectReadbacks() {
 
 void World::takeCounters(const gpu::Readback& readback) noexcept {
     uint32_t clamps = 0;
-    const size_t count = std::min<size_t>(readback.objects.size(), objects_.slotCount());
-    for (uint32_t slot = 0; slot < count; ++slot) {
-        auto* owned = objects_.at(slot);
-        if (!owned) continue;
-        Object& object = **owned;
-        if (!object.touched || object.firstFrame > readback.frameIndex) continue;
+    for (Object* touched : touched_) {
+        Object& object = *touched;
+        const uint32_t slot = object.slot;
+        if (slot >= readback.objects.size() || object.firstFrame > readback.frameIndex) continue;
         const gpu::ObjectCounters& now = readback.objects[slot];
         const gpu::ObjectCounters before = object.counters;
         object.counters = now;

@@ -155,12 +155,9 @@ void World::stats(FwWorldStats& stats) noexcept {
     stats.flames = flames_;
     stats.lateClamps = lateClamps_;
     stats.droppedSteps = uint32_t(droppedSteps_);
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i) {
-        auto* object = objects_.at(i);
-        if (!object) continue;
-        stats.burningObjects += (*object)->counters.burning > 0 ? 1u : 0u;
-        stats.texels += (*object)->texels;
-    }
+    for (const Object* object : touched_)
+        stats.burningObjects += object->counters.burning > 0 ? 1u : 0u;
+    stats.texels = texels_;
 }
 
 // ---- flamewright_debug.h
@@ -169,6 +166,7 @@ void World::stats(FwWorldStats& stats) noexcept {
 void World::requestBurnMap(FwBurnableMeshId id) {
     Object& object = *objects_.get(id);
     object.map.ticks.resize(domainOf(object).texelCount());  // so that a readback needs no memory
+    if (!object.map.wished) ++mapsWished_;
     object.map.wished = true;
     object.map.ready = false;
 }

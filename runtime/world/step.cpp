@@ -65,9 +65,7 @@ void World::planSteps(const ClockAdvance& time) {
                std::tie(b.step, b.event.object, b.event.texel, b.event.order);
     });
     frame_.events.reserve(frame_.due.size());  // spans into it must hold
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (auto* object = objects_.at(i); object && (*object)->touched)
-            frame_.latches.push_back({object->get(), (*object)->latch, false});
+    for (Object* object : touched_) frame_.latches.push_back({object, object->latch, false});
 
     // Updates of all steps share one vector; its room is known only when all are there.
     size_t firstUpdate[kMaxSteps + 1] = {};
@@ -121,7 +119,7 @@ void World::planProbes() {
         known.refs.push_back({false, query->object, query->texel, 0, queries_.idOf(i)});
     }
     frame_.burnMaps.clear();
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+    for (uint32_t i = 0; mapsWished_ > 0 && i < objects_.slotCount(); ++i)
         if (auto* object = objects_.at(i);
             object && (*object)->map.wished && frame_.burnMaps.size() < kMaxBurnMapsPerFrame)
             frame_.burnMaps.push_back(i);  // the others wait for the next frame
@@ -137,11 +135,18 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
         BurnMapCopy& map = (*objects_.at(slot))->map;
         map.wished = false;
         map.pending = true;
+        --mapsWished_;
     }
     for (const Frame::LatchOf& entry : frame_.latches) entry.object->latch = entry.latch;
     for (const Frame::Due& due : frame_.due) {
         Object& object = **objects_.at(due.event.object);
-        object.touched = true;
+        if (!object.touched) {  // room for every object was found at its creation
+            object.touched = true;
+            touched_.insert(std::lower_bound(
+                                touched_.begin(), touched_.end(), &object,
+                                [](const Object* a, const Object* b) { return a->slot < b->slot; }),
+                            &object);
+        }
         object.active = true;
         object.lastStimulus = std::max<uint64_t>(object.lastStimulus, due.event.tick);
         if (due.event.kind == FW_IGNITE) {

@@ -46,6 +46,11 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     return def;
 }
 
+template <class Vector>
+void findRoom(Vector& vector, size_t count) {
+    if (vector.capacity() < count) vector.reserve(std::max(count, vector.capacity() * 2));
+}
+
 bool nearBounds(const float point[3], const mesh::BurnDomain& domain, float reach) {
     // Squared distance to the bounds, so that far objects cost nothing.
     float sum = 0;
@@ -74,6 +79,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       objects_("Burnable mesh", memory),
       queries_("Query", memory),
       imageUsers_(memory),
+      touched_(memory),
       tags_(memory),
       pending_(memory),
       found_(memory),
@@ -228,20 +234,23 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& def) {
     init.slowness = slowness;
 
     object.firstFrame = lastFrame_ + 1;
+    const uint32_t burnable = object.texels;
     const FwBurnableMeshId id = objects_.create(std::move(owned));
     object.id = id;
     object.slot = id.index1 - 1;
     try {
         // So that a warmed-up frame finds its room: one latch and update per object.
-        frame_.latches.reserve(objects_.slotCount());
-        frame_.updates.reserve(objects_.slotCount());
-        frame_.burnMaps.reserve(objects_.slotCount());
+        findRoom(frame_.latches, objects_.slotCount());
+        findRoom(frame_.updates, objects_.slotCount());
+        findRoom(frame_.burnMaps, objects_.slotCount());
+        findRoom(touched_, objects_.slotCount());
         backend_.createObject(object.slot, init);
     } catch (...) {
         objects_.destroy(id);
         throw;
     }
     ++mesh.users;
+    texels_ += burnable;
     if (object.data.imagePlus1 != 0) ++imageUsers_[object.data.imagePlus1 - 1];
     return id;
 }
@@ -256,6 +265,9 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)
         if (Query* query = queries_.at(i); query && query->object.index1 == id.index1)
             query->orphaned = true;
+    std::erase(touched_, &object);
+    texels_ -= object.texels;
+    if (object.map.wished) --mapsWished_;
     backend_.destroyObject(slot);
     objects_.destroy(id);
 }

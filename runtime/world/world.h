@@ -215,6 +215,9 @@ class World {
     core::HandlePool<FwBurnableMeshId, core::Owned<Object>> objects_;
     core::HandlePool<FwQueryId, Query> queries_;
     std::pmr::vector<uint32_t> imageUsers_;  // by backend slot: objects + 1 for a live id; 0: free
+    std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing
+    uint64_t texels_ = 0;                    // of all objects, that can burn
+    uint32_t mapsWished_ = 0;                // objects whose burn map is still to be asked for
     std::pmr::vector<Tag> tags_;
     std::pmr::vector<PendingTexel> pending_;
     std::pmr::vector<uint32_t> found_;  // scratch of ball queries
