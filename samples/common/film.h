@@ -14,7 +14,7 @@ struct FilmRequest {
     std::string name;  // of the sample: begins the names of the joined pictures
     double framesPerSecond = 30.0;
     uint32_t frames = 1;            // how many will come
-    uint32_t animationWidth = 640;  // pixels; the frames are scaled down to it
+    uint32_t animationWidth = 480;  // pixels; the frames are scaled down to it
     uint32_t animationEvery = 1;    // takes each such frame into the animation
     uint32_t moments = 6;           // pictures in the strip
     uint32_t columns = 3;           // of the strip
