@@ -156,21 +156,24 @@ FireVillage::FireVillage(sample::FireHost& fire, const village::Scene& scene,
 }
 
 void FireVillage::makeMaterials() {
-    auto make = [&](Material slot, uint32_t preset, float spread, float burning, float moisture) {
+    auto make = [&](Material slot, uint32_t preset, float spread, float burning, float moisture,
+                    uint32_t look) {
         FwMaterialDef def = fwDefaultMaterialDef();
         fire_.check(fwInitMaterialPreset(&def, preset), "fwInitMaterialPreset");
         def.spreadRate *= spread;
         def.moisture += moisture;
         def.burnTime *= burning;
+        def.look = look;
         fire_.check(fwWorld_CreateMaterial(fire_.world, &def, &materials_[size_t(slot)]),
                     "fwWorld_CreateMaterial");
     };
-    make(Material::kWood, FW_MATERIAL_PINE, 1.0f, 1.0f, 0);
-    make(Material::kPaint, FW_MATERIAL_PAINTED_WOOD, 1.0f, 1.0f, 0);
-    make(Material::kThatch, FW_MATERIAL_THATCH, 1.0f, 1.7f, 0);
-    make(Material::kStraw, FW_MATERIAL_THATCH, 4.0f, 0.8f, 0);  // loose, where thatch is bound
-    make(Material::kLeaf, FW_MATERIAL_DRY_LEAF, 0.6f, 2.0f, 0.02f);
-    make(Material::kCloth, FW_MATERIAL_COTTON, 1.0f, 1.0f, 0);
+    make(Material::kWood, FW_MATERIAL_PINE, 1.0f, 1.0f, 0, FW_MATERIAL_PINE);
+    make(Material::kPaint, FW_MATERIAL_PAINTED_WOOD, 1.0f, 1.0f, 0, FW_MATERIAL_PAINTED_WOOD);
+    make(Material::kThatch, FW_MATERIAL_THATCH, 1.0f, 1.7f, 0, FW_MATERIAL_THATCH);
+    // Loose where thatch is bound; it chars black, so that a burnt enemy reads as one.
+    make(Material::kStraw, FW_MATERIAL_THATCH, 4.0f, 0.8f, 0, FW_MATERIAL_PINE);
+    make(Material::kLeaf, FW_MATERIAL_DRY_LEAF, 0.6f, 2.0f, 0.02f, FW_MATERIAL_DRY_LEAF);
+    make(Material::kCloth, FW_MATERIAL_COTTON, 1.0f, 1.0f, 0, FW_MATERIAL_COTTON);
     // Stone and metal keep the null material, which cannot burn.
 }
 
@@ -326,6 +329,31 @@ void FireVillage::throwBrands(uint32_t slot, glm::vec3 wind) {
     }
 }
 
+// The front follows one surface; an arm, a hat or a rail is another. Flames lick from part to part:
+// a few small touches within a reach that grows from where the thing first caught, upwards mostly.
+void FireVillage::lickOtherParts(uint32_t slot) {
+    constexpr float kGrowth = 0.16f;  // m in a quarter of a second
+    constexpr uint32_t kTouches = 3;
+    for (size_t i = 0; i < things.size(); ++i) {
+        Thing& thing = things[i];
+        if (!thing.lit || thing.over) continue;
+        thing.reach += kGrowth;
+        const Vec3 size = thing.high - thing.low;
+        if (thing.reach > village::length(size)) continue;
+        for (uint32_t k = 0; k < kTouches; ++k) {
+            auto random = [&](uint32_t what) {
+                return village::random01(int(i * 16 + k * 4 + what), int(slot), seed_ + 71);
+            };
+            const float high = random(0) * 1.5f - 0.5f, turn = 6.2832f * random(1);
+            const float flat = thing.reach * (0.4f + 0.6f * random(2));
+            Vec3 p = fromGlm(thing.origin) +
+                     Vec3{flat * std::cos(turn), thing.reach * high, flat * std::sin(turn)};
+            p = village::minimum(village::maximum(p, thing.low), thing.high);
+            ignite(i, toGlm(thing.frame.point(p)), 0.22f);
+        }
+    }
+}
+
 // Comes down on whatever stands at the place and is not alight yet.
 void FireVillage::landBrand(glm::vec3 place) {
     constexpr float kStep = 0.4f, kBall = 0.35f;  // m
@@ -355,7 +383,9 @@ void FireVillage::advance(float deltaTime, glm::vec3 wind) {
         burning_ += thing.state.burning > 0;
     }
     heatNeighbours(deltaTime, wind);
-    if (uint32_t(time_ / kSlot) != slot) throwBrands(slot, wind);
+    if (uint32_t(time_ / kSlot) == slot) return;
+    lickOtherParts(slot);
+    throwBrands(slot, wind);
 }
 
 std::span<const PointLight> FireVillage::lights(float scale) {
@@ -372,7 +402,7 @@ std::span<const PointLight> FireVillage::lights(float scale) {
             glm::vec3(from.color[0], from.color[1], from.color[2]) * (from.intensity * scale);
         light.size = std::max(0.5f, from.radius);
         const float strength = light.color.r + light.color.g + light.color.b;
-        light.reach = std::clamp(5.0f * std::sqrt(strength), 3.0f, 20.0f);
+        light.reach = std::clamp(2.6f * std::sqrt(strength), 2.5f, 14.0f);
         if (strength > 1e-3f) lights_.push_back(light);
     }
     return lights_;

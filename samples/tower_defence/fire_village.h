@@ -23,6 +23,7 @@ struct Thing {            // one instance that can burn
     float rest = 0;       // s until a flame is worth testing against it again
     float dose = 0;       // kJ/m^2 taken up from neighbours
     glm::vec3 origin{0};  // m, model space: where it first caught
+    float reach = 0.3f;   // m, how far flames lick from there to other parts
     FwObjectState state{};
 };
 
@@ -61,6 +62,7 @@ class FireVillage {
     void heatNeighbours(float deltaTime, glm::vec3 wind);
     void throwBrands(uint32_t slot, glm::vec3 wind);
     void landBrand(glm::vec3 place);
+    void lickOtherParts(uint32_t slot);
 
     sample::FireHost& fire_;
     FwMaterialId materials_[8]{};

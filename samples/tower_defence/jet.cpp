@@ -101,7 +101,7 @@ const std::vector<JetParticle>& Jet::billboards(glm::vec3 forward) {
         JetParticle p;
         p.place = b.place;
         p.size = (0.14f + 0.165f * b.path + 0.30f * b.age) * (0.8f + 0.45f * random(b.id, 9));
-        p.size = std::min(p.size, 1.9f) * (a > 1 ? 1 + 0.35f * (a - 1) : 1.0f);
+        p.size = std::min(p.size, 1.6f) * (a > 1 ? 1 + 0.35f * (a - 1) : 1.0f);
         const float speed = glm::length(b.velocity);
         p.axis = speed > 0.01f ? b.velocity / speed : glm::vec3(0, 1, 0);
         p.stretch = b.touched ? 1.0f : 1 + 4 * std::exp(-5.5f * a);

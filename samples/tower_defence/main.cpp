@@ -94,7 +94,7 @@ std::vector<tower::PointLight> lampLights(const village::Scene& scene) {
 std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tower::Game& game,
                                             const std::vector<tower::PointLight>& lamps,
                                             const tower::Daylight& light) {
-    constexpr size_t kMost = 12;
+    constexpr size_t kMost = 10;
     constexpr float kJetIntensity = 7.0f, kFirePerWatt = 2e-5f;  // by eye
     std::vector<tower::PointLight> all = game.jetLights(kJetIntensity);
     const auto burning = fires.lights(kFirePerWatt);

@@ -113,16 +113,19 @@ void main() {
         vec3 mirrored = mix(frame.haze.rgb, frame.sky.rgb * 1.1, smoothstep(-0.1, 0.7, r.y));
         result += mirrored * (kSurface == 3 ? vec3(1.6 * fresnel) : 0.35 * skin.albedo * open);
     }
+    // Fires are large and near: their light is soft, and its gloss would not be seen.
     int lights = int(frame.sun.w);
+    vec3 fire = vec3(0.0);
     for (int i = 0; i < lights; ++i) {
         vec3 to = frame.lightPlaces[i].xyz - inPlace;
-        float far2 = dot(to, to), reach = frame.lightPlaces[i].w;
-        if (far2 > reach * reach) continue;
-        float window = 1.0 - far2 * far2 / (reach * reach * reach * reach);
+        float far2 = dot(to, to), reach2 = frame.lightPlaces[i].w * frame.lightPlaces[i].w;
+        if (far2 > reach2) continue;
         float size = frame.lightColors[i].w;
-        vec3 light = frame.lightColors[i].rgb * (window * window / (far2 + size * size));
-        result += shade(skin, n, toEye, to * inversesqrt(far2), light, 0.35) * (0.7 * open + 0.3);
+        float window = 1.0 - far2 * far2 / (reach2 * reach2);
+        float facing = max(dot(n, to) * inversesqrt(far2) + 0.35, 0.0) / 1.35;
+        fire += frame.lightColors[i].rgb * (facing * window * window / (far2 + size * size));
     }
+    result += fire * skin.albedo * ((0.7 * open + 0.3) / kPi);
     if (inTraits.y > 0.0) {  // coals and windows
         float heat = color.a * 1.7 - 0.4;
         bool hot = inTraits.y > 1.5;
