@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <string>
 
 namespace fw::test {
 namespace {
@@ -178,6 +179,9 @@ class Bench {
         while (const gpu::Readback* readback = backend_.nextReadback()) {
             runTiles = readback->runTiles;
             frontTiles = readback->frontTiles;
+            ++timedSteps;
+            for (const gpu::PassTime& time : backend_.passTimes())
+                passes[time.name] += time.milliseconds;
         }
         backend_.run(plan);
         backend_.endOutside(view_);
@@ -195,12 +199,18 @@ class Bench {
         events_.clear();
         return seconds;
     }
-    [[nodiscard]] double passMilliseconds(std::string_view name) {
-        for (const gpu::PassTime& time : backend_.passTimes())
-            if (name == time.name) return time.milliseconds;
-        return 0;
+    void forgetTimes() {
+        passes.clear();
+        timedSteps = 0;
+    }
+    // Mean milliseconds of each pass of a step, as counters.
+    void report(benchmark::State& state, const std::string& prefix = "") const {
+        for (const auto& [name, milliseconds] : passes)
+            state.counters[prefix + name] = milliseconds / std::max(timedSteps, 1u);
     }
 
+    std::map<std::string, double> passes;  // ms since forgetTimes
+    uint32_t timedSteps = 0;
     uint32_t runTiles = 0, frontTiles = 0;
     double recordSeconds = 0;
 
@@ -239,6 +249,7 @@ void frontRows(benchmark::State& state) {
     igniteLines(bench, object, side, 0.03);
     const uint32_t switches = which == 0 ? uint32_t(FW_DEBUG_DENSE) : 0;
     for (int i = 0; i < 6; ++i) bench.step(switches);
+    bench.forgetTimes();
     double tiles = 0;
     uint64_t steps = 0;
     for (auto _ : state) {
@@ -247,6 +258,7 @@ void frontRows(benchmark::State& state) {
         ++steps;
     }
     state.counters["tiles"] = steps ? tiles / double(steps) : 0;
+    bench.report(state);
 }
 
 // One row that holds the ratio: dense over sparse on the same map, in turns.
@@ -300,6 +312,7 @@ void objectsBurning(benchmark::State& state) {
         for (int i = 0; bench == &many && i < 1000; ++i) bench->addObject(1, 12);
         for (int i = 0; i < 20; ++i) bench->step(0, i % 4 == 0);
     }
+    few.forgetTimes();
     std::vector<double> a, b, recordA, recordB;
     int i = 0;
     for (auto _ : state) {
@@ -312,6 +325,7 @@ void objectsBurning(benchmark::State& state) {
     }
     state.counters["burning10_ms"] = median(a) * 1e3;
     state.counters["burning10_idle1000_ms"] = median(b) * 1e3;
+    few.report(state);
     state.counters["record10_ms"] = median(recordA) * 1e3;
     state.counters["record10_idle1000_ms"] = median(recordB) * 1e3;
 }
