@@ -1,5 +1,5 @@
 // The cooked form of a burn domain: bytes in a fixed order, little-endian, checksummed.
-//   header: u32 magic 'FWBD', u32 version, u64 key, u64 payload bytes, u64 FNV-1a of the payload
+//   header: u32 magic 'FWBD', u32 version, u64 key, u64 payload bytes, u64 FNV-1a of all the rest
 //   payload: the scalars, the counts, then every array, in the order of `transfer` below
 // The reader trusts nothing: a file with a right checksum but absurd indices is refused too.
 #include "core/error.h"
@@ -230,6 +230,11 @@ void checkScalars(const BurnDomain& d) {
                 "Bounds", uint64_t(k));
 }
 
+// FNV-1a over the header before the checksum, and the payload after it.
+uint64_t checksumOf(std::span<const std::byte> head, std::span<const std::byte> payload) {
+    return hashBytes(payload, hashBytes(head));
+}
+
 uint64_t hashMore(uint64_t hash, const void* data, size_t bytes) {
     const uint64_t size = bytes;
     hash = hashBytes(std::as_bytes(std::span(&size, 1)), hash);
@@ -273,7 +278,7 @@ std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
     headerWriter.number(kVersion);
     headerWriter.number(key);
     headerWriter.number(uint64_t(out.size() - kHeaderBytes));
-    headerWriter.number(hashBytes(std::span(out).subspan(kHeaderBytes)));
+    headerWriter.number(checksumOf(header, std::span(out).subspan(kHeaderBytes)));
     std::copy(header.begin(), header.end(), out.begin());
     return out;
 }
@@ -311,7 +316,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
                    "The cooked mesh has %zu bytes of payload; its header says "
                    "%llu.",
                    payload.size(), static_cast<unsigned long long>(size));
-    const uint64_t found = hashBytes(payload);
+    const uint64_t found = checksumOf(bytes.first(kHeaderBytes - sizeof checksum), payload);
     if (found != checksum)
         core::fail(FW_ERROR_BAD_DATA,
                    "The cooked mesh's checksum is 0x%016llX; its header says 0x%016llX.",

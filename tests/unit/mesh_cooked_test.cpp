@@ -29,7 +29,8 @@ std::string refusalOf(std::span<const std::byte> bytes) {
 }
 void fixChecksum(Bytes& bytes) {
     uint64_t hash = 1469598103934665603ull;
-    for (size_t i = kHeader; i < bytes.size(); ++i) {
+    for (size_t i = 0; i < bytes.size(); ++i) {
+        if (i == 24) i = kHeader;  // all but the checksum itself
         hash ^= uint64_t(bytes[i]);
         hash *= 1099511628211ull;
     }
@@ -131,6 +132,9 @@ TEST(MeshCooked, SaysWhatIsWrong) {
     EXPECT_NE(std::string::npos, refusalOf(bytes).find("bytes of payload; its header says"));
     bytes = good;
     bytes.back() ^= std::byte(1);
+    EXPECT_NE(std::string::npos, refusalOf(bytes).find("checksum"));
+    bytes = good;
+    bytes[9] ^= std::byte(1);  // the key
     EXPECT_NE(std::string::npos, refusalOf(bytes).find("checksum"));
     for (size_t size = 0; size < good.size(); size += 1 + size / 40)
         EXPECT_NE("", refusalOf(std::span(good).first(size))) << size;
