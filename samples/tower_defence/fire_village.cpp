@@ -170,8 +170,8 @@ void FireVillage::makeMaterials() {
     make(Material::kWood, FW_MATERIAL_PINE, 1.0f, 1.0f, 0, FW_MATERIAL_PINE);
     make(Material::kPaint, FW_MATERIAL_PAINTED_WOOD, 1.0f, 1.0f, 0, FW_MATERIAL_PAINTED_WOOD);
     make(Material::kThatch, FW_MATERIAL_THATCH, 1.0f, 1.7f, 0, FW_MATERIAL_THATCH);
-    // Loose where thatch is bound; it chars black, so that a burnt enemy reads as one.
-    make(Material::kStraw, FW_MATERIAL_THATCH, 4.0f, 0.8f, 0, FW_MATERIAL_PINE);
+    // Loose where thatch is bound. Leather's look has next to no ash: a burnt enemy must be black.
+    make(Material::kStraw, FW_MATERIAL_THATCH, 3.0f, 1.0f, 0, FW_MATERIAL_LEATHER);
     make(Material::kLeaf, FW_MATERIAL_DRY_LEAF, 0.6f, 2.0f, 0.02f, FW_MATERIAL_DRY_LEAF);
     make(Material::kCloth, FW_MATERIAL_COTTON, 1.0f, 1.0f, 0, FW_MATERIAL_COTTON);
     // Stone and metal keep the null material, which cannot burn.
