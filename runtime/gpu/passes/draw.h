@@ -50,7 +50,7 @@ class DrawRecorder {
     ~DrawRecorder() = default;
 };
 
-constexpr uint32_t kSurfaceVariants = 9;
+constexpr uint32_t kSurfaceVariants = 14;
 extern const DrawPass kSurfacePasses[kSurfaceVariants];
 // The variant for these materials; `touched`: some event reached the object.
 uint32_t surfaceVariant(std::span<const BurnMaterial> materials, bool touched);

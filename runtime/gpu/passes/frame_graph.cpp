@@ -19,9 +19,10 @@ constexpr const ComputePass* kComputePasses[] = {
     &kFlameQuadsPass, &kFlameSortPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0], &kSurfacePasses[1], &kSurfacePasses[2], &kSurfacePasses[3],
-    &kSurfacePasses[4], &kSurfacePasses[5], &kSurfacePasses[6], &kSurfacePasses[7],
-    &kSurfacePasses[8], &kFlamesPass};
+    &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
+    &kSurfacePasses[4],  &kSurfacePasses[5],  &kSurfacePasses[6],  &kSurfacePasses[7],
+    &kSurfacePasses[8],  &kSurfacePasses[9],  &kSurfacePasses[10], &kSurfacePasses[11],
+    &kSurfacePasses[12], &kSurfacePasses[13], &kFlamesPass};
 
 uint32_t groupsOf(uint32_t items) { return std::min((items + 63) / 64, kMaxGroups); }
 

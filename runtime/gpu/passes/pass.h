@@ -44,12 +44,13 @@ enum class VertexInput : uint8_t {
     mesh,  // mesh::RenderVertex: 0 position vec3, 1 normal uint, 2 atlas vec2, 3 texture uv vec2,
            // 4 detail vec2, 5 tint RGBA8 as vec4, 6 material uint
 };
+enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
 enum class Blend : uint8_t { opaque, premultiplied, additive };
 
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
 // 2 DrawPass::variant.
 // Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none); 2
-// binding 0 the look textures (sampler2DArray). Never culled: holes show the inside.
+// binding 0 the look textures (sampler2DArray).
 struct DrawPass {
     const char* name;
     const char* vertexShader;
@@ -60,6 +61,7 @@ struct DrawPass {
     bool writeDepth;     // only where the target allows it
     uint32_t pushBytes;  // vertex and fragment, <= 128
     uint32_t variant = 0;
+    Cull cull = Cull::none;
 };
 
 }  // namespace fw::gpu

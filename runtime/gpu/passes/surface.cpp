@@ -16,10 +16,22 @@ struct SurfacePush {
     uint32_t object;
 };
 
-constexpr DrawPass variant(uint32_t features) {
-    return {"surface",        "surface.vert", "surface.frag",      kUses,
-            VertexInput::mesh, Blend::opaque,  true, sizeof(SurfacePush), features};
+constexpr DrawPass variant(uint32_t features, Cull cull = Cull::none) {
+    return {"surface",
+            "surface.vert",
+            "surface.frag",
+            kUses,
+            VertexInput::mesh,
+            Blend::opaque,
+            true,
+            sizeof(SurfacePush),
+            features,
+            cull};
 }
+// Objects that burn are drawn in two goes, so that the depth test drops the inside, which only
+// holes show. Where the host's faces turn the other way the goes swap, and the picture is the same.
+constexpr uint32_t kFresh = 4, kBurning = 5;
+static_assert(kFresh + 2 * kBurning == kSurfaceVariants);
 
 constexpr uint32_t kAll = kSurfaceWood | kSurfaceSheet | kSurfacePlant | kSurfaceHide;
 
@@ -51,11 +63,16 @@ const DrawPass kSurfacePasses[kSurfaceVariants] = {
     variant(kSurfacePlant),
     variant(kSurfaceWood | kSurfacePlant),
     variant(kAll),
-    variant(kSurfaceWood | kSurfaceBurns),
-    variant(kSurfaceSheet | kSurfaceBurns),
-    variant(kSurfacePlant | kSurfaceBurns),
-    variant(kSurfaceWood | kSurfacePlant | kSurfaceBurns),
-    variant(kAll | kSurfaceBurns),
+    variant(kSurfaceWood | kSurfaceBurns, Cull::back),
+    variant(kSurfaceSheet | kSurfaceBurns, Cull::back),
+    variant(kSurfacePlant | kSurfaceBurns, Cull::back),
+    variant(kSurfaceWood | kSurfacePlant | kSurfaceBurns, Cull::back),
+    variant(kAll | kSurfaceBurns, Cull::back),
+    variant(kSurfaceWood | kSurfaceBurns, Cull::front),
+    variant(kSurfaceSheet | kSurfaceBurns, Cull::front),
+    variant(kSurfacePlant | kSurfaceBurns, Cull::front),
+    variant(kSurfaceWood | kSurfacePlant | kSurfaceBurns, Cull::front),
+    variant(kAll | kSurfaceBurns, Cull::front),
 };
 
 uint32_t surfaceVariant(std::span<const BurnMaterial> materials, bool touched) {
@@ -66,16 +83,21 @@ uint32_t surfaceVariant(std::span<const BurnMaterial> materials, bool touched) {
     return i;
 }
 
+// Whether an item whose variant is `given` is drawn by pass `variant`.
+static bool drawnBy(uint32_t variant, uint32_t given) {
+    return given == variant || (given >= kFresh && given + kBurning == variant);
+}
+
 bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
-        if (item.variant == variant) return true;
+        if (drawnBy(variant, item.variant)) return true;
     }
     return false;
 }
 
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
-        if (item.variant != variant) continue;
+        if (!drawnBy(variant, item.variant)) continue;
         const SurfacePush push{item.object};
         recorder.drawItem(item, &push);
     }

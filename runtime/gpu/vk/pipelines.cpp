@@ -318,7 +318,9 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     auto raster = typed<VkPipelineRasterizationStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
     raster.polygonMode = VK_POLYGON_MODE_FILL;
-    raster.cullMode = VK_CULL_MODE_NONE;
+    raster.cullMode = pass.cull == Cull::none   ? VkCullModeFlags(VK_CULL_MODE_NONE)
+                      : pass.cull == Cull::back ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT)
+                                                : VkCullModeFlags(VK_CULL_MODE_FRONT_BIT);
     raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     raster.lineWidth = 1;
     auto multisample = typed<VkPipelineMultisampleStateCreateInfo>(
