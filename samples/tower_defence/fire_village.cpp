@@ -402,7 +402,7 @@ std::span<const PointLight> FireVillage::lights(float scale) {
             glm::vec3(from.color[0], from.color[1], from.color[2]) * (from.intensity * scale);
         light.size = std::max(0.5f, from.radius);
         const float strength = light.color.r + light.color.g + light.color.b;
-        light.reach = std::clamp(2.6f * std::sqrt(strength), 2.5f, 14.0f);
+        light.reach = std::clamp(2.8f * std::sqrt(strength), 2.5f, 15.0f);
         if (strength > 1e-3f) lights_.push_back(light);
     }
     return lights_;

@@ -95,11 +95,14 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
                                             const std::vector<tower::PointLight>& lamps,
                                             const tower::Daylight& light) {
     constexpr size_t kMost = 10;
-    constexpr float kJetIntensity = 7.0f, kFirePerWatt = 2e-5f;  // by eye
+    // By eye, as a photographer would: at night the eye has opened.
+    const bool dark = light.windows > 1;
+    constexpr float kJetIntensity = 7.0f;
+    const float firePerWatt = dark ? 4.5e-5f : 2e-5f;
     std::vector<tower::PointLight> all = game.jetLights(kJetIntensity);
-    const auto burning = fires.lights(kFirePerWatt);
+    const auto burning = fires.lights(firePerWatt);
     all.insert(all.end(), burning.begin(), burning.end());
-    if (light.windows > 1) all.insert(all.end(), lamps.begin(), lamps.end());
+    if (dark) all.insert(all.end(), lamps.begin(), lamps.end());
     auto strength = [](const tower::PointLight& l) { return l.color.r + l.color.g + l.color.b; };
     std::stable_sort(all.begin(), all.end(),
                      [&](const auto& a, const auto& b) { return strength(a) > strength(b); });
