@@ -33,8 +33,8 @@ void arrive(uint work) {
     uint floorTick = frontFloor(end - windowTicks(push.stepShift, shift), objects[object].window);
     uint width = objects[object].width;
     uint tilesX = objects[object].tilesX;
-    uint texel = ((local / tilesX) * 8u + (lane >> 3u)) * width + (local % tilesX) * 8u +
-                 (lane & 7u);
+    uint tileY = divide(local, tilesX);
+    uint texel = (tileY * 8u + (lane >> 3u)) * width + (local - tileY * tilesX) * 8u + (lane & 7u);
     uint stateBase = objects[object].stateBase;
     uint texelBase = objects[object].texelBase;
     uint t = state[stateBase + texel];

@@ -51,9 +51,13 @@ void commitTile(uint slot) {
         predictAppend(push.predictParity, worldTile);
 
     uint beside = neighboursOf(mask.x, mask.y);
+    uint tilesX = objects[object].tilesX;
+    uint tileY = divide(local, tilesX);
+    uint tileX = local - tileY * tilesX;
+    int tilesY = int(objects[object].height >> 3u);
     for (uint k = 0u; k < 8u; ++k) {
         if ((beside & (1u << k)) == 0u) continue;
-        uint other = besideTile(object, local, k);
+        uint other = besideTile(int(tilesX), tilesY, int(tileX), int(tileY), k);
         if (other != kNoneTexel) touchTile(parity, row, worldTileBase + other, kTileTouched);
     }
     if ((push.switches & kSwitchNoSeamWake) != 0u) return;

@@ -64,7 +64,8 @@ void applyRun(uint first) {
     uint beside = neighboursOf(mask.x, mask.y);
     for (uint k = 0u; k < 8u; ++k) {
         if ((beside & (1u << k)) == 0u) continue;
-        uint other = besideTile(object, local, k);
+        uint other = besideTile(int(objects[object].tilesX), int(objects[object].height >> 3u),
+                                int(x >> 3u), int(y >> 3u), k);
         if (other != kNoneTexel)
             touchTile(push.parity, push.row, objects[object].worldTileBase + other, kTileTouched);
     }

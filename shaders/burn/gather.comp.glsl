@@ -24,10 +24,11 @@ void gatherRow(uint slot, uint row) {
     uint floorTick = frontFloor(end - windowTicks(push.stepShift, shift), objects[object].window);
     int width = int(objects[object].width);
     int height = int(objects[object].height);
-    int tilesX = int(objects[object].tilesX);
+    uint tilesX = objects[object].tilesX;
+    uint tileY = divide(local, tilesX);
     int base = int(objects[object].stateBase);
-    int x0 = (int(local) % tilesX) * 8;
-    int y = (int(local) / tilesX) * 8 + int(row);
+    int x0 = int(local - tileY * tilesX) * 8;
+    int y = int(tileY * 8u + row);
     int at = base + y * width + x0;
 
     uint eligible = 0u;

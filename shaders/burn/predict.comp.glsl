@@ -57,8 +57,10 @@ void predictTexel(uint work) {
     uint local = worldTile - objects[object].worldTileBase;
     uint width = objects[object].width;
     uint tilesX = objects[object].tilesX;
-    uint x = (local % tilesX) * 8u + (lane & 7u);
-    uint y = (local / tilesX) * 8u + (lane >> 3u);
+    uint tileY = divide(local, tilesX);
+    uint tileX = local - tileY * tilesX;
+    uint x = tileX * 8u + (lane & 7u);
+    uint y = tileY * 8u + (lane >> 3u);
     uint texel = y * width + x;
     uint stateBase = objects[object].stateBase;
     uint texelBase = objects[object].texelBase;
@@ -113,7 +115,8 @@ void predictTexel(uint work) {
     uint beside = neighboursOf(mask.x, mask.y);
     for (uint k = 0u; k < 8u; ++k) {
         if ((beside & (1u << k)) == 0u) continue;
-        uint other = besideTile(object, local, k);
+        uint other = besideTile(int(tilesX), int(objects[object].height >> 3u), int(tileX),
+                                int(tileY), k);
         if (other != kNoneTexel) predictTouch(parity ^ 1u, base + other);
     }
     uvec4 seam = tiles[(objects[object].tileBase + local) * 2u];

@@ -29,10 +29,11 @@ void gatherRow(uint slot, uint row) {
     if (!tile.alive) return;
     int width = int(objects[tile.object].width);
     int height = int(objects[tile.object].height);
-    int tilesX = int(objects[tile.object].tilesX);
+    uint tilesX = objects[tile.object].tilesX;
+    uint tileY = divide(tile.local, tilesX);
     int base = int(objects[tile.object].stateBase);
-    int x0 = (int(tile.local) % tilesX) * 8;
-    int y = (int(tile.local) / tilesX) * 8 + int(row);
+    int x0 = int(tile.local - tileY * tilesX) * 8;
+    int y = int(tileY * 8u + row);
     int at = base + y * width + x0;
 
     bool again = (hash32((push.now >> 7u) + worldTile) & 7u) == 0u;

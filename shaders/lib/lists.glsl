@@ -50,12 +50,10 @@ void predictTouch(uint parity, uint worldTile) {
 #endif
 
 #ifdef FW_USE_READERS
-// Local tile `k` of the eight beside `local`, or kNoneTexel.
-uint besideTile(uint object, uint local, uint k) {
-    int x = int(local % objects[object].tilesX) + kFrontRingX[k];
-    int y = int(local / objects[object].tilesX) + kFrontRingY[k];
-    int tilesX = int(objects[object].tilesX);
-    int tilesY = int(objects[object].height / 8u);
+// Local tile `k` of the eight beside tile (tileX, tileY), or kNoneTexel.
+uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {
+    int x = tileX + kFrontRingX[k];
+    int y = tileY + kFrontRingY[k];
     return x < 0 || y < 0 || x >= tilesX || y >= tilesY ? kNoneTexel : uint(y * tilesX + x);
 }
 // Local tile `r` of those that read tile `local` over seams. The switches are the test suite's.

@@ -85,6 +85,26 @@ FW_SHARED_FN uint isqrtNear(uint n) {
     return r;
 }
 
+// n / d, exactly, d > 0. Devices without integer division (all software ones) are slow at it, so
+// floats guess from below and integers mend: a guess is short by 2 millionths of it and one, at most.
+FW_SHARED_FN uint divide(uint n, uint d) {
+#ifdef __cplusplus
+    return n / d;
+#else
+    float inverse = 0.999999 / float(d);
+    uint q = uint(float(n) * inverse);
+    uint r = n - q * d;
+    uint more = uint(float(r) * inverse);
+    q += more;
+    r -= more * d;
+    if (r >= d) {
+        q += 1u;
+        r -= d;
+    }
+    return r >= d ? q + 1u : q;
+#endif
+}
+
 // (a * b) >> s, 0 < s < 32; saturates.
 FW_SHARED_FN uint mulShift(uint a, uint b, uint s) {
     uint high, low;
@@ -121,7 +141,7 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
                             n12) >> 12);  // Q10
         if (down > 0) {
             uint faster = 1024u + ((m.ceiling * uint(down < 1024 ? down : 1024)) >> 8u);
-            s0 = mulShift(s0, (1u << 30u) / faster, 20u);
+            s0 = mulShift(s0, divide(1u << 30u, faster), 20u);
         }
     }
     p.A = s0;
@@ -135,7 +155,7 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
     uint capped = s < m.driveMax ? s : m.driveMax;
     uint head = 1024u + ((m.headGain * capped) >> 8u);  // Q10
     uint back = 1024u + ((m.backGain * s) >> 8u);
-    uint slowHead = mulShift(s0, (1u << 30u) / head, 20u);
+    uint slowHead = mulShift(s0, divide(1u << 30u, head), 20u);
     uint slowBack = mulShift(s0, back, 10u);
     uint slowest = mulShift(slowHead, m.breadthMax, 8u);
     slowBack = slowBack < slowest ? slowBack : slowest;
@@ -147,10 +167,11 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
             d >>= 1u;
             t >>= 1u;
         }
-        uint eps = (d << 13u) / (t > 0u ? t : 1u);  // Q14: d / (2t)
+        uint eps = divide(d << 13u, t > 0u ? t : 1u);  // Q14: d / (2t)
         eps = eps < kFrontEpsMax ? eps : kFrontEpsMax;
-        p.e = ivec3(int(uint(u.x) * eps) / int(s), int(uint(u.y) * eps) / int(s),
-                    int(uint(u.z) * eps) / int(s));
+        uint perUnit = divide(eps << 14u, s);  // Q14, |u| <= s
+        p.e = ivec3(int(uint(u.x) * perUnit + 8192u) >> 14, int(uint(u.y) * perUnit + 8192u) >> 14,
+                    int(uint(u.z) * perUnit + 8192u) >> 14);
     }
     return p;
 }
@@ -179,7 +200,9 @@ FW_SHARED_FN bool pairFalls(int ra, int rb, ivec3 a, ivec3 b, FW_IN(FrontPrep) p
     uint l = isqrtNear(squareSum(ivec3(a.x * 8, a.y * 8, a.z * 8)));
     if (l == 0u) return true;
     // Change of distance over the whole segment at this rate: side . a / |a|, in whole units.
-    int stretch = int(uint(dotInt(side, a)) * 8u) / int(l);
+    int along = int(uint(dotInt(side, a)) * 8u);
+    int stretch = int(divide(uint(along < 0 ? -along : along), l));
+    stretch = along < 0 ? -stretch : stretch;
     int y = int((uint(stretch) << 16u) - (uint(dotInt(side, p.e)) << 2u));  // Q13 of 1/8 units
     uint t = mulHighRound(p.A, uint(y < 0 ? -y : y));
     int change = int(t < 0x0FFFFFFFu ? t : 0x0FFFFFFFu) * 2;
@@ -211,7 +234,7 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
             size >>= 6;
             den = (den >> 6) + 1;
         }
-        int off = int((uint(size) * 8u) / uint(den));  // num/den * half a step of 16
+        int off = int(divide(uint(size) * 8u, uint(den)));  // num/den * half a step of 16
         off = off > 15 ? 15 : off;
         off = num < 0 ? -off : off;
         if (off != 0) {
