@@ -366,20 +366,34 @@ MaterialLook leather() {
 
 MaterialLook materialLook(uint32_t preset) noexcept {
     switch (preset) {
-        case FW_MATERIAL_PINE: return pine();
-        case FW_MATERIAL_PAINTED_WOOD: return paintedWood();
-        case FW_MATERIAL_NEWSPAPER: return newspaper();
-        case FW_MATERIAL_PAPER: return paper();
-        case FW_MATERIAL_COTTON: return cotton();
-        case FW_MATERIAL_POLYESTER: return polyester();
-        case FW_MATERIAL_DRY_LEAF: return dryLeaf();
-        case FW_MATERIAL_GREEN_LEAF: return greenLeaf();
-        case FW_MATERIAL_THATCH: return thatch();
-        case FW_MATERIAL_DRY_GRASS: return dryGrass();
-        case FW_MATERIAL_PLYWOOD: return plywood();
-        case FW_MATERIAL_LEATHER: return leather();
-        case FW_MATERIAL_PLASTIC: return plastic();
-        default: return stone();
+        case FW_MATERIAL_PINE:
+            return pine();
+        case FW_MATERIAL_PAINTED_WOOD:
+            return paintedWood();
+        case FW_MATERIAL_NEWSPAPER:
+            return newspaper();
+        case FW_MATERIAL_PAPER:
+            return paper();
+        case FW_MATERIAL_COTTON:
+            return cotton();
+        case FW_MATERIAL_POLYESTER:
+            return polyester();
+        case FW_MATERIAL_DRY_LEAF:
+            return dryLeaf();
+        case FW_MATERIAL_GREEN_LEAF:
+            return greenLeaf();
+        case FW_MATERIAL_THATCH:
+            return thatch();
+        case FW_MATERIAL_DRY_GRASS:
+            return dryGrass();
+        case FW_MATERIAL_PLYWOOD:
+            return plywood();
+        case FW_MATERIAL_LEATHER:
+            return leather();
+        case FW_MATERIAL_PLASTIC:
+            return plastic();
+        default:
+            return stone();
     }
 }
 

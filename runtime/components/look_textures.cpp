@@ -29,8 +29,7 @@ uint32_t mixBits(uint32_t x) {
 
 // Random number in [0, 1) of a lattice point.
 float random(int x, int y, int seed) {
-    const uint32_t h = static_cast<uint32_t>(x) * 73856093u ^
-                       static_cast<uint32_t>(y) * 19349663u ^
+    const uint32_t h = static_cast<uint32_t>(x) * 73856093u ^ static_cast<uint32_t>(y) * 19349663u ^
                        static_cast<uint32_t>(seed) * 83492791u;
     return static_cast<float>(mixBits(h) >> 8) * (1.0f / 16777216.0f);
 }
@@ -45,10 +44,9 @@ float smooth(float low, float high, float x) {
 
 float cornerGradient(int x, int y, int period, int seed, float dx, float dy) {
     // Sixteen directions: as good as any angle here and free of sines.
-    static constexpr std::array<float, 16> kCos{1.0f,  0.9239f,  0.7071f,  0.3827f,
-                                                0.0f,  -0.3827f, -0.7071f, -0.9239f,
-                                                -1.0f, -0.9239f, -0.7071f, -0.3827f,
-                                                0.0f,  0.3827f,  0.7071f,  0.9239f};
+    static constexpr std::array<float, 16> kCos{
+        1.0f,  0.9239f,  0.7071f,  0.3827f,  0.0f, -0.3827f, -0.7071f, -0.9239f,
+        -1.0f, -0.9239f, -0.7071f, -0.3827f, 0.0f, 0.3827f,  0.7071f,  0.9239f};
     const auto a = static_cast<size_t>(random(wrap(x, period), wrap(y, period), seed) * 16.0f);
     return kCos[a] * dx + kCos[(a + 12) & 15] * dy;
 }
@@ -69,8 +67,8 @@ float gradientNoise(float x, float y, int period, int seed) {
 float fractalNoise(float u, float v, int period, int octaves, int seed, bool ridged) {
     float amplitude = 1.0f, sum = 0.0f, weight = 0.0f;
     for (int i = 0; i < octaves; ++i) {
-        const float p = gradientNoise(u * static_cast<float>(period), v * static_cast<float>(period),
-                                      period, seed + i);
+        const float p = gradientNoise(u * static_cast<float>(period),
+                                      v * static_cast<float>(period), period, seed + i);
         sum += amplitude * (ridged ? 1.0f - 2.2f * std::fabs(p) : p * 1.4f);
         weight += amplitude;
         amplitude *= 0.55f;
@@ -146,8 +144,7 @@ Block charBlock(float u, float v) {
     }
     const int column = wrap(i, kColumns);
     const auto sideStrength = [&](int q) {
-        const int part =
-            (static_cast<int>(std::floor(v * 9.0f + 3.0f * random(q, 8, 2))) + 9) % 9;
+        const int part = (static_cast<int>(std::floor(v * 9.0f + 3.0f * random(q, 8, 2))) + 9) % 9;
         return (0.15f + random(q, part, 202)) * (0.5f + 0.5f * random(q, 2, 209));
     };
     const float l = x - left, r = right - x, across = l / (l + r);
@@ -220,9 +217,7 @@ void bakeRelief(const Plane& noise, const Plane& charred, Plane& plane) {
     const auto wrinkle = [&](int x, int y) {
         return 1.4f * at(noise, x, y).c[0] + 0.8f * at(noise, x, y).c[1];
     };
-    const auto pack = [](float slope, float range) {
-        return clamp01(0.5f + 0.5f * slope / range);
-    };
+    const auto pack = [](float slope, float range) { return clamp01(0.5f + 0.5f * slope / range); };
     constexpr float kPerCell = 0.5f * kSide / kColumns, kPerTile = 0.5f * kSide;
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
@@ -231,8 +226,7 @@ void bakeRelief(const Plane& noise, const Plane& charred, Plane& plane) {
                       gpu::kCrackSlopeRange),
                  pack((crackDepth(x, y + 1) - crackDepth(x, y - 1)) * kPerCell,
                       gpu::kCrackSlopeRange),
-                 pack((wrinkle(x + 1, y) - wrinkle(x - 1, y)) * kPerTile,
-                      gpu::kCrumpleSlopeRange),
+                 pack((wrinkle(x + 1, y) - wrinkle(x - 1, y)) * kPerTile, gpu::kCrumpleSlopeRange),
                  pack((wrinkle(x, y + 1) - wrinkle(x, y - 1)) * kPerTile,
                       gpu::kCrumpleSlopeRange)}};
         }

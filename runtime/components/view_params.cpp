@@ -7,8 +7,8 @@
 
 namespace fw::components {
 
-using gpu::vec4;
 using glm::vec3;
+using gpu::vec4;
 
 gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noexcept {
     const auto load = [](const float m[16]) {
@@ -46,8 +46,8 @@ gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noe
     p.lightCount = inputs.lightCount;
     p.flameCapacity = std::min(inputs.flameCapacity, gpu::kFlameCapacity);
     p.seed = inputs.seed;
-    p.viewport = vec4(inputs.viewport[0], inputs.viewport[1], inputs.viewport[2],
-                      inputs.viewport[3]);
+    p.viewport =
+        vec4(inputs.viewport[0], inputs.viewport[1], inputs.viewport[2], inputs.viewport[3]);
     return p;
 }
 

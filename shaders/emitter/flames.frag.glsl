@@ -44,7 +44,7 @@ void main() {
         float inside = halfWidth - xx;
         float soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
         soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) * (1.0 - smoothstep(0.90, 1.0, y)) *
-                (1.0 - smoothstep(0.88, 1.0, abs(x)));
+                (1.0 - smoothstep(0.60, 0.98, abs(x)));
         float sheet = (n2.r - 0.5) + 0.6 * (n2.b - 0.5);
         float fold = exp(-sheet * sheet / 0.012);
         soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));

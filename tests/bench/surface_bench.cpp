@@ -1,6 +1,6 @@
-// What the surface pass costs: the bunny, half burnt, on some 30 % of a 1280 x 720 picture. The time
-// is that of an offscreen picture with it less that of one where it is hidden, taken in turns; no
-// flames. Rows need FLAMEWRIGHT_ASSETS.
+// What the surface pass costs: the bunny, half burnt, on some 30 % of a 1280 x 720 picture. The
+// time is that of an offscreen picture with it less that of one where it is hidden, taken in turns;
+// no flames. Rows need FLAMEWRIGHT_ASSETS.
 #include <benchmark/benchmark.h>
 
 #include "flamewright/flamewright.h"

@@ -1,6 +1,6 @@
-// Pictures that tests compare with: RGB8 PNG files beside the tests. A difference beyond the written
-// tolerance leaves actual, expected and difference in the build folder; FLAMEWRIGHT_BLESS=1 writes
-// the expected ones anew.
+// Pictures that tests compare with: RGB8 PNG files beside the tests. A difference beyond the
+// written tolerance leaves actual, expected and difference in the build folder; FLAMEWRIGHT_BLESS=1
+// writes the expected ones anew.
 #pragma once
 #include <gtest/gtest.h>
 

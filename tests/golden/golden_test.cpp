@@ -42,8 +42,8 @@ class Golden : public GpuTest {
         must(vkCreateBuffer(device_->device, &info, nullptr, &pixels_));
         VkMemoryRequirements needs{};
         vkGetBufferMemoryRequirements(device_->device, pixels_, &needs);
-        pixelMemory_ = allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                           VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+        pixelMemory_ = allocate(
+            needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
         must(vkBindBufferMemory(device_->device, pixels_, pixelMemory_, 0));
 
         const FwVulkanHost host = device_->host();
@@ -129,7 +129,8 @@ class Golden : public GpuTest {
         subpass.pColorAttachments = &color;
         subpass.pDepthStencilAttachment = &depth;
         std::array<VkSubpassDependency, 2> edges{};
-        edges[0] = {VK_SUBPASS_EXTERNAL, 0,
+        edges[0] = {VK_SUBPASS_EXTERNAL,
+                    0,
                     VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                     VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT,
                     VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
@@ -137,9 +138,13 @@ class Golden : public GpuTest {
                         VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
                         VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                     0};
-        edges[1] = {0, VK_SUBPASS_EXTERNAL, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                    VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
-                    VK_ACCESS_TRANSFER_READ_BIT, 0};
+        edges[1] = {0,
+                    VK_SUBPASS_EXTERNAL,
+                    VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                    VK_PIPELINE_STAGE_TRANSFER_BIT,
+                    VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                    VK_ACCESS_TRANSFER_READ_BIT,
+                    0};
         VkRenderPassCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
         info.attachmentCount = 2;
@@ -282,14 +287,13 @@ class Golden : public GpuTest {
         void* mapped = nullptr;
         must(vkMapMemory(device_->device, pixelMemory_, 0, VK_WHOLE_SIZE, 0, &mapped));
         const auto* rgba = static_cast<const uint8_t*>(mapped);
-        for (size_t i = 0; i < picture.rgb.size(); ++i)
-            picture.rgb[i] = rgba[i / 3 * 4 + i % 3];
+        for (size_t i = 0; i < picture.rgb.size(); ++i) picture.rgb[i] = rgba[i / 3 * 4 + i % 3];
         vkUnmapMemory(device_->device, pixelMemory_);
         return picture;
     }
 
-    void drawInto(const FwVulkanFrame& frame, FwWorld* world, FwTargetId target,
-                  const FwView& view, bool reversed) {
+    void drawInto(const FwVulkanFrame& frame, FwWorld* world, FwTargetId target, const FwView& view,
+                  bool reversed) {
         std::array<VkClearValue, 2> clears{};
         clears[0].color = {{0.10f, 0.11f, 0.13f, 1.0f}};
         clears[1].depthStencil.depth = reversed ? 0.0f : 1.0f;

@@ -22,8 +22,9 @@ TEST(LookTable, EveryPresetIsWhole) {
         SCOPED_TRACE(preset);
         EXPECT_EQ(m.spreadRate > 0, preset != FW_MATERIAL_NONCOMBUSTIBLE);
         // What shaders divide by.
-        for (const float divisor : {m.charTime, m.facePeak, m.faceDecay, m.crackLife, m.cellX,
-                                    m.cellY, m.rimWidth, m.thickness, m.drip, m.ashEnd - m.ashStart})
+        for (const float divisor :
+             {m.charTime, m.facePeak, m.faceDecay, m.crackLife, m.cellX, m.cellY, m.rimWidth,
+              m.thickness, m.drip, m.ashEnd - m.ashStart})
             EXPECT_GT(divisor, 0.0f);
         EXPECT_LE(m.holeVariation, m.holeTime);
         if (m.crackDepth > 0) {
@@ -54,8 +55,7 @@ TEST(LookTable, CracksOpenWhileTheyGlow) {
 class LookTextures : public testing::Test {
  protected:
     static void SetUpTestSuite() {
-        bytes_ = new std::pmr::vector<std::byte>(
-            bakeLookTextures(std::pmr::new_delete_resource()));
+        bytes_ = new std::pmr::vector<std::byte>(bakeLookTextures(std::pmr::new_delete_resource()));
     }
     static void TearDownTestSuite() { delete bytes_; }
     static int at(uint32_t layer, uint32_t mip, uint32_t x, uint32_t y, uint32_t channel) {
@@ -133,9 +133,8 @@ TEST(ViewParamsTest, PlacesAPointAsTheHostDoes) {
     EXPECT_EQ(p.forward.w, 1.0f);
     const glm::vec3 forward = glm::normalize(target - eye);
     EXPECT_NEAR(glm::dot(forward, glm::vec3(p.forward)), 1.0f, 1e-5);
-    const glm::vec4 there =
-        p.clip0 * (target.x - p.eye.x) + p.clip1 * (target.y - p.eye.y) +
-        p.clip2 * (target.z - p.eye.z) + p.clip3;
+    const glm::vec4 there = p.clip0 * (target.x - p.eye.x) + p.clip1 * (target.y - p.eye.y) +
+                            p.clip2 * (target.z - p.eye.z) + p.clip3;
     EXPECT_NEAR(there.x / there.w, 0.0f, 1e-3);
     EXPECT_NEAR(there.y / there.w, 0.0f, 1e-3);
     EXPECT_NEAR(there.w, glm::length(target - eye), 1e-3);

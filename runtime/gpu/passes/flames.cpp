@@ -27,9 +27,8 @@ constexpr Use kDrawUses[] = {
 
 const ComputePass kFlameQuadsPass{"flame quads", "flames.comp", kMakeUses, sizeof(StepPush)};
 const ComputePass kFlameSortPass{"flame sort", "flame_sort.comp", kSortUses, 0};
-const DrawPass kFlamesPass{
-    "flames", "flames.vert", "flames.frag", kDrawUses, VertexInput::none, Blend::premultiplied,
-    false,    0};
+const DrawPass kFlamesPass{"flames",          "flames.vert",        "flames.frag", kDrawUses,
+                           VertexInput::none, Blend::premultiplied, false,         0};
 
 void recordFlames(DrawRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); }
 

@@ -6,9 +6,9 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {
-    {FW_BIND_OBJECTS, Access::drawRead},  {FW_BIND_MATERIALS, Access::drawRead},
-    {FW_BIND_PREDICT, Access::drawRead},  {FW_BIND_GRADIENT, Access::drawRead},
-    {FW_BIND_LIGHTS, Access::drawRead},   {FW_BIND_LOOKS, Access::drawRead},
+    {FW_BIND_OBJECTS, Access::drawRead}, {FW_BIND_MATERIALS, Access::drawRead},
+    {FW_BIND_PREDICT, Access::drawRead}, {FW_BIND_GRADIENT, Access::drawRead},
+    {FW_BIND_LIGHTS, Access::drawRead},  {FW_BIND_LOOKS, Access::drawRead},
     {FW_BIND_VIEW, Access::uniformView},
 };
 
@@ -17,16 +17,8 @@ struct SurfacePush {
 };
 
 constexpr DrawPass variant(uint32_t features, Cull cull = Cull::none) {
-    return {"surface",
-            "surface.vert",
-            "surface.frag",
-            kUses,
-            VertexInput::mesh,
-            Blend::opaque,
-            true,
-            sizeof(SurfacePush),
-            features,
-            cull};
+    return {"surface",     "surface.vert", "surface.frag",      kUses,    VertexInput::mesh,
+            Blend::opaque, true,           sizeof(SurfacePush), features, cull};
 }
 // Objects that burn are drawn in two goes, so that the depth test drops the inside, which only
 // holes show. Where the host's faces turn the other way the goes swap, and the picture is the same.
@@ -40,18 +32,24 @@ uint32_t familyOf(uint32_t look) {
     switch (look) {
         case FW_MATERIAL_PINE:
         case FW_MATERIAL_PAINTED_WOOD:
-        case FW_MATERIAL_PLYWOOD: return kSurfaceWood;
+        case FW_MATERIAL_PLYWOOD:
+            return kSurfaceWood;
         case FW_MATERIAL_NEWSPAPER:
         case FW_MATERIAL_PAPER:
-        case FW_MATERIAL_COTTON: return kSurfaceSheet;
-        case FW_MATERIAL_POLYESTER: return kSurfaceSheet | kSurfaceHide;
+        case FW_MATERIAL_COTTON:
+            return kSurfaceSheet;
+        case FW_MATERIAL_POLYESTER:
+            return kSurfaceSheet | kSurfaceHide;
         case FW_MATERIAL_DRY_LEAF:
         case FW_MATERIAL_GREEN_LEAF:
         case FW_MATERIAL_THATCH:
-        case FW_MATERIAL_DRY_GRASS: return kSurfacePlant;
+        case FW_MATERIAL_DRY_GRASS:
+            return kSurfacePlant;
         case FW_MATERIAL_LEATHER:
-        case FW_MATERIAL_PLASTIC: return kSurfaceHide;
-        default: return 0;
+        case FW_MATERIAL_PLASTIC:
+            return kSurfaceHide;
+        default:
+            return 0;
     }
 }
 
