@@ -64,6 +64,14 @@ void FrameRecorder::copyWithin(uint32_t resource, uint64_t from, uint64_t at, ui
     t_.device->table.CmdCopyBuffer(t_.commands, buffer, buffer, 1, &region);
 }
 
+void FrameRecorder::copyBetween(uint32_t from, uint32_t to, uint64_t at, uint64_t bytes) {
+    const Use uses[] = {{from, Access::copyRead}, {to, Access::copyWrite}};
+    t_.barriers->use(t_.device->table, t_.commands, uses);
+    const VkBufferCopy region{at, at, bytes};
+    t_.device->table.CmdCopyBuffer(t_.commands, t_.planes->buffer(from).handle,
+                                   t_.planes->buffer(to).handle, 1, &region);
+}
+
 void FrameRecorder::copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes) {
     const Use uses[] = {{resource, Access::copyRead}};
     t_.barriers->use(t_.device->table, t_.commands, uses);

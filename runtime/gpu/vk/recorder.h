@@ -30,6 +30,8 @@ class FrameRecorder {
 
     void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);
     void copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes);
+    // The same range of another resource.
+    void copyBetween(uint32_t from, uint32_t to, uint64_t at, uint64_t bytes);
     void copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes);
     void fillZero(uint32_t resource, uint64_t at, uint64_t bytes);
 

@@ -195,11 +195,31 @@ void VkBackend::State::run(const FramePlan& plan) {
         if (dense) wake = denseGroups;
         mostWake = std::max(mostWake, uint32_t(wake));
         uploadBytes += alignUp(wake * sizeof(WakeGroup), 16);
+        for (const TexelEvent& event : step.events) {
+            if (event.kind == kEventWet || event.kind == kEventExtinguish)
+                objects[event.object].lastDouse = open.ringFrame;
+        }
         const bool fresh = !step.events.empty() || !step.materials.empty();
         stimulus |= fresh;
         emptySoFar &= !fresh;
         if (!emptySoFar || dense || never) iterations += uint64_t(1) << step.substepShift;
         anyStep = true;
+    }
+    // Once a dousing is over, what its object sees coming is forgotten and found anew: predictions
+    // that lost their fire would keep each other alive.
+    bool forgets = false;
+    uint64_t forgetGroups = 0;
+    for (ObjectEntry& object : objects) {
+        object.forget = object.live && object.lastDouse != 0 && object.lastDouse < open.ringFrame &&
+                        (anyStep || frontEmpty);
+        if (!object.forget) continue;
+        forgets = true;
+        forgetGroups += wakeGroupsOf(object);
+    }
+    const bool findsAnew = forgets && anyStep && !frontEmpty && !dense;
+    if (findsAnew) {
+        mostWake += uint32_t(forgetGroups);
+        uploadBytes += alignUp(forgetGroups * sizeof(WakeGroup), 16);
     }
     uploadBytes += alignUp(plan.probes.size_bytes(), 16);
     if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
@@ -219,7 +239,8 @@ void VkBackend::State::run(const FramePlan& plan) {
     const bool stepping = anyStep && (iterations > 0 || burning || publishedRuns);
     const bool asked = !plan.probes.empty() || !plan.burnMaps.empty();
     open.readback = stepping || predicting || asked || burning;
-    const bool work = open.readback || recordsDirty || !uploads.empty() || planes.movesPending();
+    const bool work =
+        open.readback || forgets || recordsDirty || !uploads.empty() || planes.movesPending();
     wind[0] = plan.wind[0];
     wind[1] = plan.wind[1];
     wind[2] = plan.wind[2];
@@ -348,6 +369,12 @@ void VkBackend::State::run(const FramePlan& plan) {
                                  surfaceVariant(object.materials, object.touched)});
         }
     }
+    for (ObjectEntry& object : objects) {
+        if (!object.forget) continue;
+        recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
+                             uint64_t(object.record.width) * object.record.height * 4);
+        object.lastDouse = 0;
+    }
     drawVertices = planes.buffer(kResourceVertices).handle;
     drawIndices = planes.buffer(kResourceIndices).handle;
 
@@ -400,6 +427,14 @@ void VkBackend::State::run(const FramePlan& plan) {
                 step.wakeGroups.count += writeWakeGroups(slot, objects, one).count;
                 slot.uploadUsed =
                     at + uint64_t(wakeGroupsOf(objects[update.object])) * sizeof(WakeGroup);
+            }
+            for (uint32_t i = 0; findsAnew && &plannedStep == &plan.steps[0] && i < objects.size();
+                 ++i) {
+                if (!objects[i].forget) continue;
+                const uint32_t one[] = {i};
+                const uint64_t at = slot.uploadUsed;
+                step.wakeGroups.count += writeWakeGroups(slot, objects, one).count;
+                slot.uploadUsed = at + uint64_t(wakeGroupsOf(objects[i])) * sizeof(WakeGroup);
             }
             slot.uploadUsed = alignUp(slot.uploadUsed, 16);
         }

@@ -33,8 +33,10 @@ struct ObjectEntry {
     bool live = false;
     bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
     bool resetDue = false;
-    bool drawable = false;  // a recorded frame holds it
-    bool touched = false;   // some event reached it: it may burn, or be wet
+    bool drawable = false;   // a recorded frame holds it
+    bool touched = false;    // some event reached it: it may burn, or be wet
+    uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
+    bool forget = false;     // scratch of run
     uint32_t mesh = 0;
     BurnObject record{};
     BurnMaterial materials[kMaterialsPerObject]{};
