@@ -13,7 +13,8 @@ float flameCellSide(uint object) { return clamp(4.0 * lightCellSide(object), 0.5
 // Where a tile counts: above the surface, as flames are. The small cells make lights, which stand
 // further off.
 vec3 lightPlaceOf(BurnTile tile, float side) {
-    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) + view.up.xyz * (0.15 * side);
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) +
+           view.up.xyz * (0.15 * side);
 }
 vec3 flamePlaceOf(BurnTile tile, float side) {
     return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) +

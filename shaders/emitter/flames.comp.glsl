@@ -74,7 +74,8 @@ void main() {
             float rise = 1.0 + 2.5 * sqrt(len);  // m/s
             vec3 drift = view.wind.xyz - up * dot(view.wind.xyz, up);
             if (!smoke) {
-                float tall = len * (0.55 + 0.75 * r3 * r3) * (0.55 + 0.45 * smoothstep(0.0, 0.4, a));
+                float grown = 0.55 + 0.45 * smoothstep(0.0, 0.4, a);
+                float tall = len * (0.55 + 0.75 * r3 * r3) * grown;
                 vec3 axis = normalize(up * rise + drift + normal * (0.16 * rise) +
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
                 float halfWidth = (0.15 + 0.10 * r2) * len + 0.25 * small;

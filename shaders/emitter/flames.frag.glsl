@@ -1,7 +1,7 @@
 #version 450
 // One tongue of flame, or one puff of smoke. The tongue is a profile looked up at a displaced
-// height: zero-mean noise that scrolls upwards, squeezed towards the axis as it rises; soot glows in
-// thin sheets where the noise is zero. Premultiplied: colour, and what it hides.
+// height: zero-mean noise that scrolls upwards, squeezed towards the axis as it rises; soot glows
+// in thin sheets where the noise is zero. Premultiplied: colour, and what it hides.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -40,10 +40,12 @@ void main() {
         float turbulence = (n1.r - 0.5) * 1.9 + (n2.r - 0.5) * 1.0 + (n2.g - 0.45) * 0.55;
         float yy = max(y - 0.62 * sqrt(y) * turbulence, 0.45 * y);
         float xx = abs(x + 0.5 * y * (n1.b - 0.5)) * (1.0 + 0.15 * turbulence * y);
-        float halfWidth = 0.78 * pow(max(1.0 - yy, 0.0), 0.75) * (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
+        float halfWidth = 0.78 * pow(max(1.0 - yy, 0.0), 0.75) *
+                          (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
         float inside = halfWidth - xx;
         float soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
-        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) * (1.0 - smoothstep(0.90, 1.0, y)) *
+        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) *
+                (1.0 - smoothstep(0.90, 1.0, y)) *
                 (1.0 - smoothstep(0.60, 0.98, abs(x)));
         float sheet = (n2.r - 0.5) + 0.6 * (n2.b - 0.5);
         float fold = exp(-sheet * sheet / 0.012);
@@ -63,7 +65,8 @@ void main() {
         vec2 c = vec2(x, 2.0 * y - 1.0);
         float r = length(c);
         float billow = (n1.r - 0.5) * 1.3 + (n2.g - 0.45) * 0.7;
-        float body = smoothstep(0.0, 0.75, 1.0 - r + 0.7 * billow) * (1.0 - smoothstep(0.7, 1.0, r));
+        float body = smoothstep(0.0, 0.75, 1.0 - r + 0.7 * billow) *
+                     (1.0 - smoothstep(0.7, 1.0, r));
         alpha = saturate(body * opacity);
         // Crests catch the sun and the sky, hollows the fire below.
         float crest = saturate(0.5 + 0.9 * billow + 0.25 * c.y);
@@ -76,8 +79,8 @@ void main() {
     if (alpha < 0.002) discard;
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {
-        // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and a
-        // thin one must turn red, not grey.
+        // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
+        // a thin one must turn red, not grey.
         color = (inKind & 1u) == 0u ? encodeOutput(color, kEncoding)
                                     : encodeOutput(color / alpha, kEncoding) * alpha;
     }

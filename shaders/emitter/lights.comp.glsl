@@ -67,7 +67,8 @@ vec3 cellPlace(uint slot) {
 void main() {
     uint me = gl_LocalInvocationID.x;
     uint count = counters[kRowBurn + push.burnParity].runCount;
-    for (uint i = me; i < kLightCellHeader + kLightCells * kLightCellWords; i += 128u) cells[i] = 0u;
+    for (uint i = me; i < kLightCellHeader + kLightCells * kLightCellWords; i += 128u)
+        cells[i] = 0u;
     if (me == 0u) {
         candidates = 0u;
         drawArgs[0] = 6u;
@@ -205,6 +206,7 @@ void main() {
         if (slot == kNoCell) continue;
         float len = flameLength(float(cells[cellWord(slot, 1u)]) * 16.0,
                                 float(cells[cellWord(slot, 5u)]) * 1e-5, tileSide(tile.object));
-        atomicAdd(cells[0], uint(min(flameQuads(tile.positionArea.w * flameFade(tile), len), 3.0) * 16.0));
+        float wish = flameQuads(tile.positionArea.w * flameFade(tile), len);
+        atomicAdd(cells[0], uint(min(wish, 3.0) * 16.0));
     }
 }

@@ -138,7 +138,8 @@ FW_SHARED_CONST uint kFlameCapacity = 4096u; // hard limit of quads drawn
 
 // Hash grid of burning cells: kLightCellHeader words, then cells of kLightCellWords.
 FW_SHARED_CONST uint kLightCells = 4096u;
-FW_SHARED_CONST uint kLightCellWords = 12u;  // key, 16 W, 3 weighted offsets, area, side, cell, size
+// Key, power / 16 W, 3 weighted offsets, area / 0.1 cm^2, side, 3 cell coordinates, level, unused.
+FW_SHARED_CONST uint kLightCellWords = 12u;
 FW_SHARED_CONST uint kLightCellHeader = 16u; // [0] quads wished for, in 1/16
 
 FW_SHARED_END

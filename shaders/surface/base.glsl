@@ -74,7 +74,7 @@ void weaveBase(vec2 d, float pixel, vec4 coarse, out Base b) {
     const float kThread = 0.0022;
     float u = d.x / kThread, v = d.y / kThread;
     int warp = int(floor(u + 0.5)), weft = int(floor(v + 0.5));
-    float over = ((warp + weft) & 1) != 0 ? 0.5 + 0.5 * cos(u * 6.2832) : 0.5 + 0.5 * cos(v * 6.2832);
+    float over = 0.5 + 0.5 * cos((((warp + weft) & 1) != 0 ? u : v) * 6.2832);
     float sharp = saturate(1.3 - pixel / (0.6 * kThread));
     over = mix(0.6, over, sharp);
     b.factor = vec3((0.68 + 0.54 * over) * (0.9 + 0.2 * coarse.r));
@@ -123,7 +123,8 @@ void strawBase(vec2 d, float pixel, out Base b) {
         if (random < 0.2 || round_ <= 0.0 || z <= best) continue;
         best = z;
         b.delay = (hash(id, int(row), 30 + layer) - 0.5) * 2.0;
-        b.factor = mix(vec3(1.33, 1.37, 1.30), vec3(0.83, 0.78, 0.76), hash(id, int(row), 40 + layer)) *
+        float dark = hash(id, int(row), 40 + layer);
+        b.factor = mix(vec3(1.33, 1.37, 1.30), vec3(0.83, 0.78, 0.76), dark) *
                    ((0.45 + 0.6 * round_) * (0.55 + 0.5 * z / 0.008));
     }
     float sharp = saturate(1.5 - pixel / 0.004);

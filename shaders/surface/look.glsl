@@ -1,6 +1,7 @@
 // A burning surface as a pure function of time since ignition, the material's look and tiling
 // noise. Lengths m, times look seconds, temperatures K, emission cd/m^2. Needs lib/look_noise.glsl,
-// lib/colour.glsl and the families of surface.frag. Order matters to the eye: heat, char, film, ash, glow, rim, soot, water.
+// lib/colour.glsl and the families of surface.frag. Order matters to the eye: heat, char, film,
+// ash, glow, rim, soot, water.
 
 struct Site {        // what is known of one point of the surface
     vec2 d;          // m, detail coordinates, y along the grain
@@ -42,7 +43,9 @@ vec2 frontWarp(vec2 d, float pixel, MaterialLook m, out vec4 coarse, out vec4 fi
            2.0 * m.warpSmall * (vec2(fine.b, fine.r) - 0.5);
 }
 
-float limitGlow(float kelvin, Site s) { return mix(kelvin, 300.0 + 0.45 * (kelvin - 300.0), s.out_); }
+float limitGlow(float kelvin, Site s) {
+    return mix(kelvin, 300.0 + 0.45 * (kelvin - 300.0), s.out_);
+}
 
 // m from here to the rim of the hole; negative: gone.
 float holeEdge(float a, Site s, vec2 crumbs, MaterialLook m) {

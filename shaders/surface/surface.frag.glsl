@@ -15,7 +15,9 @@ const bool kHasPlant = (kVariant & kSurfacePlant) != 0u;
 const bool kHasHide = (kVariant & kSurfaceHide) != 0u;
 const bool kBurns = (kVariant & kSurfaceBurns) != 0u;
 
-layout(set = 0, binding = FW_BIND_OBJECTS, std430) readonly buffer Objects { BurnObject objects[]; };
+layout(set = 0, binding = FW_BIND_OBJECTS, std430) readonly buffer Objects {
+    BurnObject objects[];
+};
 layout(set = 0, binding = FW_BIND_MATERIALS, std430) readonly buffer Materials {
     BurnMaterial materials[];
 };
@@ -154,7 +156,8 @@ vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
 vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open) {
     if (dot(n, v) < 0.02) n = normalize(n + v * (0.04 - dot(n, v)));
     vec3 c = s.emission * (view.sunColor.w / kWhiteLuminance);
-    c += lit(s, n, v, view.sunDirection.xyz, view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
+    c += lit(s, n, v, view.sunDirection.xyz,
+             view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
     float height = dot(n, view.up.xyz);
     c += mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.5 + 0.5 * height) * s.albedo *
          (open * s.occlusion);
@@ -190,7 +193,8 @@ void main() {
     if ((object.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
     // The rim shows the host's thickness within what the look was made for.
     if (materials[row].thickness > 0.0)
-        look.thickness = clamp(materials[row].thickness, 0.4 * look.thickness, 2.0 * look.thickness);
+        look.thickness =
+            clamp(materials[row].thickness, 0.4 * look.thickness, 2.0 * look.thickness);
 
     // The tangent plane: how atlas and detail coordinates move along the surface.
     vec3 normal = normalize(inNormal);

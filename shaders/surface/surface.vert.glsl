@@ -5,7 +5,9 @@
 #include "shared/burn.h"
 #include "shared/look.h"
 
-layout(set = 0, binding = FW_BIND_OBJECTS, std430) readonly buffer Objects { BurnObject objects[]; };
+layout(set = 0, binding = FW_BIND_OBJECTS, std430) readonly buffer Objects {
+    BurnObject objects[];
+};
 layout(set = 0, binding = FW_BIND_MATERIALS, std430) readonly buffer Materials {
     BurnMaterial materials[];
 };
