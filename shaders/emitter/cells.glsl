@@ -59,10 +59,10 @@ uint findCell(uint key) {
 float flameLength(float watts, float area, float tile) {
     float diameter = sqrt(area * 1.273);
     return max(0.235 * pow(max(watts, 1.0) * 1e-3, 0.4) - 0.6 * diameter,
-               max(0.35 * diameter, 1.4 * tile));
+               max(0.35 * diameter, max(1.6 * tile, 0.05)));
 }
-// Quads that a tile of this burning area is worth.
-float flameQuads(float area, float len) {
+// Quads that a tile of this burning area is worth; old embers have none, or they show as dots.
+float flameQuads(float area, float len, float fade) {
     float halfWidth = 0.27 * len;
-    return 5.0 * area / (4.0 * halfWidth * halfWidth);
+    return 5.0 * smoothstep(0.15, 0.45, fade) * area * fade / (4.0 * halfWidth * halfWidth);
 }

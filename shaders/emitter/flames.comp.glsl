@@ -57,7 +57,7 @@ void main() {
                 area = max(area, float(cells[cellWord(slot, 5u)]) * 1e-5);
             }
             float len = flameLength(power, area, small) * (look.flame > 0.0 ? look.flame : 1.0);
-            float wish = flameQuads(tile.positionArea.w * fade, len) * share;
+            float wish = flameQuads(tile.positionArea.w, len, fade) * share;
             if (smoke) wish = min(0.12 * wish * look.smoke, 0.5);
             float spare = wish - (smoke ? 0.0 : float(k)) - unit(s + 3u);
             if (spare <= 0.0) continue;

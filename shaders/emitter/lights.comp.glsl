@@ -206,7 +206,7 @@ void main() {
         if (slot == kNoCell) continue;
         float len = flameLength(float(cells[cellWord(slot, 1u)]) * 16.0,
                                 float(cells[cellWord(slot, 5u)]) * 1e-5, tileSide(tile.object));
-        float wish = flameQuads(tile.positionArea.w * flameFade(tile), len);
+        float wish = flameQuads(tile.positionArea.w, len, flameFade(tile));
         atomicAdd(cells[0], uint(min(wish, 3.0) * 16.0));
     }
 }
