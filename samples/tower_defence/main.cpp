@@ -112,7 +112,9 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
 
 int run(const sample::Options& options, const Choices& choices) {
     const tower::Daylight light = daylightOf(choices.light);
-    const uint32_t frames = options.frames ? options.frames : options.headless ? 300u : 0u;
+    // Headless: ten seconds of story.
+    const uint32_t whole = static_cast<uint32_t>(std::lround(10.0 * options.fps));
+    const uint32_t frames = options.frames ? options.frames : options.headless ? whole : 0u;
     sample::Progress startUp("painting the village", 2);
     const village::Scene scene = village::makeVillage(options.seed);
     const tower::PaintedVillage painted = tower::paintVillage(scene);
@@ -214,6 +216,7 @@ int main(int argc, char** argv) {
         sample::Options options;
         options.width = 1280;
         options.height = 720;
+        options.fps = 0;  // not said
         Choices choices;
         sample::OptionParser parser("tower_defence", "a village under attack, and on fire");
         parser.addText("--light", "NAME", "golden, noon or night", choices.light);
@@ -222,6 +225,7 @@ int main(int argc, char** argv) {
                          1000.0f);
         parser.addFlag("--msaa", "four samples a pixel", choices.antialias);
         if (!parser.parse(argc, argv, options)) return 0;
+        if (options.fps == 0) options.fps = options.headless ? 10.0 : 30.0;
         if (options.list) {
             std::printf("one scene, in three lights: --light golden, noon or night\n");
             return 0;
