@@ -162,7 +162,7 @@ typedef struct FwWorldDef {
     uint32_t seed;              /* of everything cosmetic and of noise */
     uint32_t maxStepsPerFrame;  /* [1, 64], default 8: time beyond it is dropped and counted */
     uint32_t maxLights;         /* [0, 64], default 16 */
-    uint32_t maxFlames;         /* [0, 65536], default 4096 flame quads alive */
+    uint32_t maxFlames;         /* [0, 65536], default 4096 flame quads alive; drawn: at most 4096 */
     uint64_t userData;
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
@@ -197,7 +197,8 @@ typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md */
     float driveMax;       /* [0, 63] */
     float lengthToBreadth;/* largest length/breadth of the burnt ellipse, [1, 4]; default 2 */
     float ceilingGain;    /* speed-up below a ceiling, [0, 4]; default 0.3 */
-    float burnTime;       /* s a texel flames; <= 0: thick fuel, flames without end */
+    float burnTime;       /* s a texel flames, at pace 1; <= 0: thick fuel, which flames while
+                             thickness * 450 kg/m^3 lasts at burningFlux */
     float moisture;       /* kg water per kg dry fuel, [0, 2] */
     float extinctionMoisture; /* moisture at which it no longer spreads, (0, 2] */
     float thickness;      /* m, of the visible rim and of the consumption, >= 0 */

@@ -57,7 +57,7 @@ typedef enum FwDepthMode {
     FW_DEPTH_NONE = 0,      /* the target has no depth */
     FW_DEPTH_TEST = 1,      /* tested and written in the host's pass */
     FW_DEPTH_TEST_ONLY = 2, /* tested, never written by us */
-    FW_DEPTH_SAMPLED = 3,   /* composite only: sampled, not attached */
+    FW_DEPTH_SAMPLED = 3,   /* composite only: sampled, not attached; refused in this version */
     FW_DEPTH_MODE_FORCE32 = 0x7fffffff
 } FwDepthMode;
 typedef enum FwOutputEncoding {
