@@ -16,7 +16,7 @@ namespace fw::core {
 // Id is a public struct {uint32_t index1, generation}; zero is null.
 template <class Id, class Value>
 class HandlePool {
-   public:
+ public:
     HandlePool(const char* noun, std::pmr::memory_resource* memory)
         : noun_(noun), slots_(memory), free_(memory) {}
 
@@ -85,7 +85,7 @@ class HandlePool {
     }
     Id idOf(uint32_t index) const noexcept { return Id{index + 1, slots_[index].generation}; }
 
-   private:
+ private:
     struct Slot {
         uint32_t generation = 1;
         std::optional<Value> value;

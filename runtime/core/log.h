@@ -5,7 +5,7 @@
 namespace fw::core {
 
 class Log {
-   public:
+ public:
     explicit Log(const FwCallbacks& callbacks) noexcept : callbacks_(callbacks) {}
     void write(FwLogLevel level, const char* format, ...) const noexcept
 #if defined(__GNUC__)
@@ -13,7 +13,7 @@ class Log {
 #endif
         ;
 
-   private:
+ private:
     FwCallbacks callbacks_;
 };
 

@@ -10,7 +10,7 @@
 namespace fw::core {
 
 class Memory final : public std::pmr::memory_resource {
-   public:
+ public:
     explicit Memory(const FwCallbacks& callbacks) noexcept : callbacks_(callbacks) {}
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
@@ -21,7 +21,7 @@ class Memory final : public std::pmr::memory_resource {
         return allocations_.load(std::memory_order_relaxed);
     }
 
-   private:
+ private:
     void* do_allocate(size_t size, size_t alignment) override;  // throws std::bad_alloc
     void do_deallocate(void* memory, size_t size, size_t alignment) override;
     bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override {

@@ -13,8 +13,8 @@
 namespace fw::gpu {
 
 struct ObjectInit {
-    uint32_t mesh = 0;   // slot
-    BurnObject record;   // bases are the backend's to fill
+    uint32_t mesh = 0;                        // slot
+    BurnObject record;                        // bases are the backend's to fill
     std::span<const BurnMaterial> materials;  // kMaterialsPerObject
     // Per texel Q7, 0 = cannot burn; empty: the mesh's own with nothing painted. Width of the map.
     std::span<const uint16_t> slowness;
@@ -27,12 +27,12 @@ struct MaterialUpdate {  // new records of one object at a step's start (a wind 
     uint32_t substepShift = 0;
 };
 
-struct StepPlan {          // one fixed step of 1/32 s
-    uint32_t now = 0;      // tick at its start
+struct StepPlan {               // one fixed step of 1/32 s
+    uint32_t now = 0;           // tick at its start
     uint32_t substepShift = 0;  // log2 of its iterations: the largest of the objects that burn
-    bool reduce = false;   // also count burning texels and rebuild BurnTiles
-    std::span<const TexelEvent> events;           // sorted by (object, texel, order)
-    std::span<const MaterialUpdate> materials;    // applied first; each object's tiles wake
+    bool reduce = false;        // also count burning texels and rebuild BurnTiles
+    std::span<const TexelEvent> events;         // sorted by (object, texel, order)
+    std::span<const MaterialUpdate> materials;  // applied first; each object's tiles wake
 };
 
 struct Probe {
@@ -42,12 +42,12 @@ struct Probe {
 struct FramePlan {
     uint64_t frameIndex = 0;
     std::span<const StepPlan> steps;
-    std::span<const Probe> probes;        // answered in this frame's readback, in order
-    std::span<const uint32_t> burnMaps;   // object slots whose whole state is read back
-    uint32_t switches = 0;                // FwDebugSwitch
-    uint32_t endTick = 0;                 // tick after the last step
-    float wind[3] = {};                   // m/s, world; for looks only
-    float tickFraction = 0;               // into the running step, [0, 1); for looks only
+    std::span<const Probe> probes;       // answered in this frame's readback, in order
+    std::span<const uint32_t> burnMaps;  // object slots whose whole state is read back
+    uint32_t switches = 0;               // FwDebugSwitch
+    uint32_t endTick = 0;                // tick after the last step
+    float wind[3] = {};                  // m/s, world; for looks only
+    float tickFraction = 0;              // into the running step, [0, 1); for looks only
 };
 
 struct BurnMap {
@@ -62,8 +62,8 @@ struct Readback {  // valid until the next call of nextReadback
     std::span<const uint32_t> answers;        // of the probes of that frame
     std::span<const BurnMap> burnMaps;
     std::span<const BurnLight> lights;
-    uint32_t frontTiles = 0;    // length of the front list: 0 and no events = idle
-    uint32_t runTiles = 0;      // tiles run in the frame
+    uint32_t frontTiles = 0;  // length of the front list: 0 and no events = idle
+    uint32_t runTiles = 0;    // tiles run in the frame
     uint32_t burningTiles = 0;
     uint32_t flames = 0;
 };
@@ -81,7 +81,7 @@ struct MemoryRow {
 };
 
 class Backend {
-   public:
+ public:
     virtual ~Backend() = default;
 
     // Creation: unchanged when they throw (core::Error, std::bad_alloc). Slots are the caller's

@@ -16,12 +16,12 @@ struct BakeInput {                      // all spans may be freed after the call
     std::span<const uint32_t> tints;    // 1 per vertex, RGBA8 linear, or empty: white
     std::span<const uint32_t> indices;  // 3 per triangle (16-bit input is widened by the caller)
     std::span<const uint8_t> triangleMaterials;  // 1 per triangle, < 8, or empty: 0
-    double texelsPerMetre = 128;        // (0, 4096]; lowered so that the atlas fits maxSide
-    uint32_t maxSide = 1024;            // texels, [8, 4096]
-    float noiseAmplitude = 0.15f;       // [0, 0.5] raggedness of slowness
-    float noiseFeature = 0.012f;        // m
+    double texelsPerMetre = 128;   // (0, 4096]; lowered so that the atlas fits maxSide
+    uint32_t maxSide = 1024;       // texels, [8, 4096]
+    float noiseAmplitude = 0.15f;  // [0, 0.5] raggedness of slowness
+    float noiseFeature = 0.012f;   // m
     uint32_t noiseSeed = 1;
-    bool trustUvs = false;              // use the mesh's UVs even where they overlap or stretch
+    bool trustUvs = false;  // use the mesh's UVs even where they overlap or stretch
 };
 
 // Throws core::Error naming the array, the element, the value and the limit; std::bad_alloc.

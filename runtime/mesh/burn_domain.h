@@ -33,58 +33,67 @@ struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/sha
     uint32_t seamMaskHigh = 0;
     uint32_t readerStart = 0;  // into readers
     uint32_t readerCount = 0;
-    uint32_t rimMaskLow = 0;   // texels of this tile with a link record
+    uint32_t rimMaskLow = 0;  // texels of this tile with a link record
     uint32_t rimMaskHigh = 0;
-    uint32_t rimBase = 0;      // record of a rim texel = rimBase + popcount(rimMask below its lane)
+    uint32_t rimBase = 0;  // record of a rim texel = rimBase + popcount(rimMask below its lane)
     uint32_t reserved = 0;
 };
 
-struct TileBounds {            // of a tile's real texels, in position units; low > high: none
+struct TileBounds {  // of a tile's real texels, in position units; low > high: none
     uint16_t low[3] = {0xFFFF, 0xFFFF, 0xFFFF};
     uint16_t high[3] = {0, 0, 0};
 };
 
 // A corner of the drawn mesh; 48 bytes. Vertices are split where the atlas is cut.
 struct RenderVertex {
-    float position[3] = {};      // m, rest, object space
-    uint32_t normal = 0;         // signed 11:11:10 xyz, x in the low bits; 1023, 1023, 511 = 1
-    float atlasUv[2] = {};       // burn atlas, in TEXELS (texel centre = i + 0.5)
-    float textureUv[2] = {};     // the mesh's own UV 0 (0 if none)
-    float detail[2] = {};        // m, y along the grain; see BurnDomain::hasDetail
-    uint32_t tint = 0xFFFFFFFFu; // RGBA8 linear, multiplies the base colour
-    uint32_t material = 0;       // material index of the triangle
+    float position[3] = {};       // m, rest, object space
+    uint32_t normal = 0;          // signed 11:11:10 xyz, x in the low bits; 1023, 1023, 511 = 1
+    float atlasUv[2] = {};        // burn atlas, in TEXELS (texel centre = i + 0.5)
+    float textureUv[2] = {};      // the mesh's own UV 0 (0 if none)
+    float detail[2] = {};         // m, y along the grain; see BurnDomain::hasDetail
+    uint32_t tint = 0xFFFFFFFFu;  // RGBA8 linear, multiplies the base colour
+    uint32_t material = 0;        // material index of the triangle
 };
 
-struct BakeReport {            // for people and tests; never read by the simulation
-    double meshArea = 0;       // m^2, non-degenerate triangles
-    double texelArea = 0;      // m^2, sum over texels
-    double milliseconds = 0;   // of the whole bake
+struct BakeReport {                       // for people and tests; never read by the simulation
+    double meshArea = 0;                  // m^2, non-degenerate triangles
+    double texelArea = 0;                 // m^2, sum over texels
+    double milliseconds = 0;              // of the whole bake
     double linkMin = 0, linkMax = 0;      // in texel sides
     double aspectP99 = 0, aspectMax = 0;  // texel stretch
     uint32_t vertices = 0, triangles = 0, charts = 0;
     uint32_t degenerate = 0, openEdges = 0, nonManifoldEdges = 0, seamEdges = 0;
     uint32_t realTexels = 0, forcedTexels = 0, rimTexels = 0, overlaps = 0;
     uint32_t linksOpen = 0, linksLost = 0, readerless = 0;
-    uint32_t usedOwnUv = 0;    // 1: the mesh's UVs; 0: our packing
+    uint32_t usedOwnUv = 0;  // 1: the mesh's UVs; 0: our packing
     uint32_t rechartedTriangles = 0;
 };
 
 struct BurnDomain {
     explicit BurnDomain(std::pmr::memory_resource* memory)
-        : texels(memory), normals(memory), areas(memory), thickness(memory), slowness(memory),
-          triangleOf(memory), links(memory), readers(memory), tiles(memory),
-          tileBounds(memory), vertices(memory), indices(memory) {}
+        : texels(memory),
+          normals(memory),
+          areas(memory),
+          thickness(memory),
+          slowness(memory),
+          triangleOf(memory),
+          links(memory),
+          readers(memory),
+          tiles(memory),
+          tileBounds(memory),
+          vertices(memory),
+          indices(memory) {}
 
     uint32_t width = 0, height = 0;  // texels, multiples of 8
     uint32_t tilesX = 0, tilesY = 0;
-    float quantum = 0;               // m per position unit; every link is shorter than 8191 units
-    float origin[3] = {};            // m, object space, of position 0,0,0
-    float texelSide = 0;             // m, nominal h = 1 / density
-    float linkShort = 0;             // m, 5th percentile of the texel's shorter side (for substeps)
-    float linkMax = 0;               // m, longest link (a doused band must be wider)
+    float quantum = 0;     // m per position unit; every link is shorter than 8191 units
+    float origin[3] = {};  // m, object space, of position 0,0,0
+    float texelSide = 0;   // m, nominal h = 1 / density
+    float linkShort = 0;   // m, 5th percentile of the texel's shorter side (for substeps)
+    float linkMax = 0;     // m, longest link (a doused band must be wider)
     float boundsLow[3] = {}, boundsHigh[3] = {};  // m, object space
-    uint32_t materialCount = 0;      // 1 + highest material index
-    uint32_t hasDetail = 0;          // 1: RenderVertex::detail is given; 0: shade triplanar
+    uint32_t materialCount = 0;                   // 1 + highest material index
+    uint32_t hasDetail = 0;  // 1: RenderVertex::detail is given; 0: shade triplanar
 
     std::pmr::vector<TexelPosition> texels;   // width * height, row-major
     std::pmr::vector<uint32_t> normals;       // signed 11:11:10 xyz, per texel

@@ -1,5 +1,7 @@
 // The burn simulation's data as every backend and shader sees it: texel codes, records, lists,
 // bindings. Times are ticks of 2^-12 s. Pure maths is in front.h.
+// GLSL too, and laid out by hand.
+// clang-format off
 #ifndef FW_SHARED_BURN_H
 #define FW_SHARED_BURN_H
 #include "shared/types.h"

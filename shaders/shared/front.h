@@ -4,6 +4,8 @@
 //
 // Slowness along a unit vector v is A * (1 - e.v): head and back of an ellipse, exactly. Times
 // inside the kernel are 1/16 tick after the earliest counting source of the ring.
+// GLSL too, and laid out by hand.
+// clang-format off
 #ifndef FW_SHARED_FRONT_H
 #define FW_SHARED_FRONT_H
 #include "shared/burn.h"

@@ -1,5 +1,7 @@
 // What the passes that draw share: the record of a burning material's look, the view, one flame
 // quad. Lengths in m, times in look seconds (see BurnMaterial::timeScale), temperatures in K.
+// GLSL too, and laid out by hand.
+// clang-format off
 #ifndef FW_SHARED_LOOK_H
 #define FW_SHARED_LOOK_H
 #include "shared/types.h"

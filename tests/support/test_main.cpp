@@ -11,7 +11,7 @@ namespace {
 
 // "begin NAME", then "passed NAME", "failed NAME" or "skipped NAME: reason".
 class ResultFile : public ::testing::EmptyTestEventListener {
-public:
+ public:
     explicit ResultFile(std::FILE* file) : file_(file) {}
     ~ResultFile() override { std::fclose(file_); }
     ResultFile(const ResultFile&) = delete;
@@ -40,7 +40,7 @@ public:
         }
     }
 
-private:
+ private:
     void write(const char* verdict, const ::testing::TestInfo& info, const std::string& rest) {
         std::fprintf(file_, "%s %s.%s%s\n", verdict, info.test_suite_name(), info.name(),
                      rest.c_str());

@@ -57,7 +57,8 @@ TEST(EmbeddedShaders, NeedNoDeviceFeature) {
 
 TEST(EmbeddedShaders, PassTheValidator) {
     if (embeddedShaders().empty()) GTEST_SKIP() << "no shader is embedded";
-    if (std::system("command -v spirv-val >/dev/null") != 0) GTEST_SKIP() << "spirv-val is not here";
+    if (std::system("command -v spirv-val >/dev/null") != 0)
+        GTEST_SKIP() << "spirv-val is not here";
     const std::filesystem::path file =
         std::filesystem::path(::testing::TempDir()) / "flamewright_shader.spv";
     for (const ShaderCode& shader : embeddedShaders()) {

@@ -7,6 +7,8 @@
  * Everything behind a pointer is copied before a call returns. Output goes to the caller's memory.
  * A negative result failed and changed nothing; fw*_GetLastMessage and the log say why.
  * Reserved fields are zero. Ids are null when zero. See plugin/docs for the host's checklist. */
+/* Laid out by hand, to be read. */
+/* clang-format off */
 #ifndef FLAMEWRIGHT_FLAMEWRIGHT_H
 #define FLAMEWRIGHT_FLAMEWRIGHT_H
 #include <stddef.h>

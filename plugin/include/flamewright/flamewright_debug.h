@@ -1,5 +1,7 @@
 /* flamewright/flamewright_debug.h: UNSTABLE. Timers, maps, counters and switches for editors, tests
  * and benches. May change with any version; never needed by a game. */
+/* Laid out by hand, to be read. */
+/* clang-format off */
 #ifndef FLAMEWRIGHT_FLAMEWRIGHT_DEBUG_H
 #define FLAMEWRIGHT_FLAMEWRIGHT_DEBUG_H
 #include "flamewright/flamewright.h"

@@ -6,6 +6,8 @@
  * host images. After each of them treat as undefined, in that command buffer: bound graphics and
  * compute pipelines, descriptor sets 0..2, push constants, vertex and index buffers (bindings 0..1),
  * viewport, scissor. All else (render pass, queries, labels, other dynamic state) is as you left it. */
+/* Laid out by hand, to be read. */
+/* clang-format off */
 #ifndef FLAMEWRIGHT_FLAMEWRIGHT_VULKAN_H
 #define FLAMEWRIGHT_FLAMEWRIGHT_VULKAN_H
 #include "flamewright/flamewright.h"

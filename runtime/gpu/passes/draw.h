@@ -34,7 +34,7 @@ struct DrawItem {
     uint32_t object = 0;  // slot
     uint32_t firstIndex = 0, indexCount = 0;
     int32_t vertexOffset = 0;
-    uint32_t image = 0;  // as BurnObject::image
+    uint32_t image = 0;    // as BurnObject::image
     uint32_t variant = 0;  // of the surface pass, from surfaceVariant
 };
 

@@ -25,10 +25,12 @@ void Table::loadDevice(VkInstance instance, VkDevice device, bool debugUtils) {
 #undef FW_VK_LOAD
     if (!debugUtils) return;
         // An instance extension: some layers answer for it at instance level only.
-#define FW_VK_LOAD(entry)                                                                 \
-    entry = reinterpret_cast<PFN_vk##entry>(GetDeviceProcAddr(device, "vk" #entry));      \
-    if (!entry) entry = reinterpret_cast<PFN_vk##entry>(GetInstanceProcAddr(instance, "v" \
-                                                                                      "k" #entry));
+#define FW_VK_LOAD(entry)                                                            \
+    entry = reinterpret_cast<PFN_vk##entry>(GetDeviceProcAddr(device, "vk" #entry)); \
+    if (!entry)                                                                      \
+        entry = reinterpret_cast<PFN_vk##entry>(GetInstanceProcAddr(instance,        \
+                                                                    "v"              \
+                                                                    "k" #entry));
     FW_VK_DEBUG_ENTRIES(FW_VK_LOAD)
 #undef FW_VK_LOAD
 }
