@@ -4,8 +4,9 @@
  * A frame: fwWorld_RecordOutside (compute, copies, barriers; outside any pass), then, in the host's
  * own render pass, fwWorld_RecordInside (draws only). Or fwWorld_RecordComposite: our own pass over
  * host images. After each of them treat as undefined, in that command buffer: bound graphics and
- * compute pipelines, descriptor sets 0..2, push constants, vertex and index buffers (bindings 0..1),
- * viewport, scissor. All else (render pass, queries, labels, other dynamic state) is as you left it. */
+ * compute pipelines, descriptor sets 0..2, push constants, vertex and index buffers (bindings
+ * 0..1), viewport, scissor. All else (render pass, queries, labels, other dynamic state) is as you
+ * left it. */
 /* Laid out by hand, to be read. */
 /* clang-format off */
 #ifndef FLAMEWRIGHT_FLAMEWRIGHT_VULKAN_H
