@@ -538,6 +538,76 @@ TEST_F(HostDraw, Composite) {
     EXPECT_GT(shoot(shot).unlike(0, kWidth, 0, 0, 1), 600u);
 }
 
+// A window that is resized every frame, down to one pixel, over a fire that goes on: a warmed-up
+// library asks nothing of the device and nothing of the heap.
+TEST_F(HostDraw, EveryFrameAnotherSizeAsksForNothing) {
+    if (!device_) return;
+    const Shot shot;
+    const VkRenderPass pass = makePass(shot);
+    const FwTargetId target = registerTarget(shot, pass);
+    const HostImage color = makeImage(
+        shot.color, 1, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+        VK_IMAGE_ASPECT_COLOR_BIT);
+    const HostImage depth =
+        makeImage(VK_FORMAT_D32_SFLOAT, 1, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                  VK_IMAGE_ASPECT_DEPTH_BIT);
+    const VkDevice device = device_->device;
+    constexpr uint32_t kWarmUp = 30, kFrames = 300;
+    uint64_t allocations = 0;
+    for (uint32_t f = 0; f < kWarmUp + kFrames; ++f) {
+        const uint32_t width = 1 + f * 37 % kWidth, height = 1 + f * 23 % kHeight;
+        const VkImageView views[2] = {color.view, depth.view};
+        VkFramebufferCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+        info.renderPass = pass;
+        info.attachmentCount = 2;
+        info.pAttachments = views;
+        info.width = width;
+        info.height = height;
+        info.layers = 1;
+        VkFramebuffer framebuffer = VK_NULL_HANDLE;
+        ASSERT_EQ(vkCreateFramebuffer(device, &info, nullptr, &framebuffer), VK_SUCCESS);
+        rig_->alsoRecord = [&](const FwVulkanFrame& frame) {
+            VkClearValue clears[2]{};
+            clears[1].depthStencil.depth = 1;
+            VkRenderPassBeginInfo begin{};
+            begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+            begin.renderPass = pass;
+            begin.framebuffer = framebuffer;
+            begin.renderArea.extent = {width, height};
+            begin.clearValueCount = 2;
+            begin.pClearValues = clears;
+            vkCmdBeginRenderPass(frame.commandBuffer, &begin, VK_SUBPASS_CONTENTS_INLINE);
+            const VkViewport viewport{0, 0, float(width), float(height), 0, 1};
+            EXPECT_TRUE(rig_->backend.recordInside(frame, target, normal_, viewport));
+            vkCmdEndRenderPass(frame.commandBuffer);
+        };
+        if (f == kWarmUp) {
+            (void)takeCounts();
+            allocations = rig_->memory.allocations();
+        }
+        gpu::StepPlan step;
+        step.now = endTick_;
+        step.reduce = f % 4 == 3;
+        gpu::FramePlan plan;
+        plan.frameIndex = 17 + f;
+        plan.steps = {&step, 1};
+        plan.endTick = endTick_ += gpu::kStepTicks;
+        rig_->run(plan);
+        rig_->frames.waitAll();  // one picture for all frames
+        vkDestroyFramebuffer(device, framebuffer, nullptr);
+    }
+    rig_->alsoRecord = nullptr;
+    const VulkanCounts asked = takeCounts();
+    EXPECT_EQ(asked.total(), 0u) << asked.submits << " submits, " << asked.waits << " waits, "
+                                 << asked.memory << " allocations, " << asked.pipelines
+                                 << " pipelines, " << asked.objects << " objects";
+    EXPECT_EQ(asked.passes, 0u);
+    EXPECT_EQ(rig_->memory.allocations(), allocations);
+    EXPECT_GE(asked.draws, uint64_t(kFrames));
+    rig_->context.unregisterTarget(target);
+}
+
 TEST_F(HostDraw, TargetsAreChecked) {
     if (!device_) return;
     const VkRenderPass pass = makePass({});
