@@ -1,4 +1,101 @@
-// Entry point of the bench.
+// Entry point of flamewright_bench: Google Benchmark's own flags, plus --table (Markdown instead of
+// the console's lines) and --json FILE. Repetitions of different rows are interleaved, so that A
+// and B of a comparison see the same machine.
 #include <benchmark/benchmark.h>
 
-BENCHMARK_MAIN();
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Runs = std::vector<benchmark::BenchmarkReporter::Run>;
+
+// A row's name is a contract, "group/case/size": without the settings that Google Benchmark adds,
+// and of a row's arguments only the first, which is its size.
+Runs plainNames(Runs runs) {
+    for (auto& run : runs) {
+        benchmark::BenchmarkName& name = run.run_name;
+        name = {
+            name.function_name, name.args.substr(0, name.args.find('/')), "", "", "", "", "", ""};
+    }
+    return runs;
+}
+
+class PlainConsole : public benchmark::ConsoleReporter {
+ public:
+    void ReportRuns(const Runs& runs) override { ConsoleReporter::ReportRuns(plainNames(runs)); }
+};
+
+class PlainJson : public benchmark::JSONReporter {
+ public:
+    void ReportRuns(const Runs& runs) override { JSONReporter::ReportRuns(plainNames(runs)); }
+};
+
+class TableReporter : public benchmark::BenchmarkReporter {
+ public:
+    bool ReportContext(const Context&) override {
+        std::printf("| row | time | cpu | iterations | counters |\n|---|---:|---:|---:|---|\n");
+        return true;
+    }
+
+    void ReportRuns(const Runs& runs) override {
+        for (const Run& run : plainNames(runs)) {
+            if (run.error_occurred) {
+                std::printf("| %s | failed: %s | | | |\n", run.benchmark_name().c_str(),
+                            run.error_message.c_str());
+                continue;
+            }
+            const char* unit = benchmark::GetTimeUnitString(run.time_unit);
+            std::printf("| %s | %.3f %s | %.3f %s | %lld |", run.benchmark_name().c_str(),
+                        run.GetAdjustedRealTime(), unit, run.GetAdjustedCPUTime(), unit,
+                        static_cast<long long>(run.iterations));
+            for (const auto& [name, counter] : run.counters) {
+                std::printf(" %s %.4g", name.c_str(), counter.value);
+            }
+            std::printf(" |\n");
+        }
+        std::fflush(stdout);
+    }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::vector<std::string> words{argv[0], "--benchmark_enable_random_interleaving=true"};
+    bool table = false;
+    bool json = false;
+    for (int i = 1; i < argc; ++i) {
+        if (std::strcmp(argv[i], "--table") == 0) {
+            table = true;
+        } else if (std::strcmp(argv[i], "--json") == 0) {
+            if (++i == argc) {
+                std::fprintf(stderr, "flamewright_bench: --json needs a file name\n");
+                return 2;
+            }
+            words.push_back(std::string("--benchmark_out=") + argv[i]);
+            json = true;
+        } else {
+            words.push_back(argv[i]);
+        }
+    }
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    int count = static_cast<int>(arguments.size());
+    benchmark::Initialize(&count, arguments.data());
+    if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+
+    TableReporter markdown;
+    PlainConsole console;
+    PlainJson file;
+    benchmark::BenchmarkReporter* display = &console;
+    if (table) display = &markdown;
+    const std::size_t rows = benchmark::RunSpecifiedBenchmarks(display, json ? &file : nullptr);
+    benchmark::Shutdown();
+    if (rows == 0) {
+        std::fprintf(stderr, "flamewright_bench: no row matches\n");
+        return 1;
+    }
+    return 0;
+}
