@@ -37,6 +37,7 @@ struct Staged {  // in the frame's upload buffer
 struct PublishedStep {  // one object in as-published mode
     uint32_t object = 0, groups = 0, parity = 0;
 };
+uint32_t publishedGroups(const BurnObject& object);
 
 struct StepRecord {
     uint32_t now = 0, stepShift = 0, switches = 0;

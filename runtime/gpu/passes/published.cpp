@@ -16,4 +16,9 @@ constexpr Use kUses[] = {
 
 const ComputePass kPublishedPass{"published", "published.comp", kUses, sizeof(StepPush)};
 
+uint32_t publishedGroups(const BurnObject& object) {
+    constexpr uint32_t kSide = 64;  // texels of a group, as in the shader
+    return ((object.width + kSide - 1) / kSide) * ((object.height + kSide - 1) / kSide);
+}
+
 }  // namespace fw::gpu

@@ -132,7 +132,6 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       images(pmr),
       uploads(pmr),
       quarantine(pmr),
-      steps(pmr),
       published(pmr),
       drawItems(pmr),
       givenObjects(pmr),

@@ -1,6 +1,7 @@
 // The outside part of a frame: what waits is uploaded, the plan's steps are recorded, and the
 // readback is copied. Everything that can fail comes before the first command.
 #include "core/error.h"
+#include "flamewright/flamewright_debug.h"
 #include "gpu/vk/world_state.h"
 
 #include <algorithm>
@@ -9,11 +10,14 @@
 namespace fw::gpu::vk {
 namespace {
 
-constexpr uint32_t kMaxGroups = 65535;
+constexpr uint32_t kMaxGroups = 65535;     // of a dispatch at the floor
+constexpr uint64_t kUploadAlignment = 16;  // bytes
 
 uint64_t alignUp(uint64_t value, uint64_t alignment) noexcept {
     return (value + alignment - 1) / alignment * alignment;
 }
+
+uint64_t uploaded(uint64_t bytes) noexcept { return alignUp(bytes, kUploadAlignment); }
 
 // A host-visible buffer of at least `bytes`; never shrinks. Throws and then left the old one.
 void ensure(VkBackend::State& s, Buffer& buffer, uint64_t bytes, VkBufferUsageFlags usage,
@@ -31,12 +35,21 @@ class UploadWriter {
     explicit UploadWriter(FrameInFlight& slot) : slot_(slot) {}
     template <class T>
     Staged write(std::span<const T> data) {
-        const Staged staged{slot_.uploadUsed, uint32_t(data.size())};
-        if (!data.empty())
-            std::memcpy(slot_.upload.mapped + slot_.uploadUsed, data.data(), data.size_bytes());
-        slot_.uploadUsed = alignUp(slot_.uploadUsed + data.size_bytes(), 16);
+        Staged staged = begin();
+        append(staged, data);
+        end();
         return staged;
     }
+    // Piece by piece: begin, append any number of times, end.
+    [[nodiscard]] Staged begin() const { return {slot_.uploadUsed, 0}; }
+    template <class T>
+    void append(Staged& staged, std::span<const T> data) {
+        if (!data.empty())
+            std::memcpy(slot_.upload.mapped + slot_.uploadUsed, data.data(), data.size_bytes());
+        slot_.uploadUsed += data.size_bytes();
+        staged.count += uint32_t(data.size());
+    }
+    void end() { slot_.uploadUsed = uploaded(slot_.uploadUsed); }
 
  private:
     FrameInFlight& slot_;
@@ -50,21 +63,154 @@ uint32_t wakeGroupsOf(const ObjectEntry& object) noexcept {
     return (object.record.tileCount + 63) / 64;
 }
 
-Staged writeWakeGroups(FrameInFlight& slot, std::span<const ObjectEntry> objects,
-                       std::span<const uint32_t> slots) {
-    Staged staged{slot.uploadUsed, 0};
-    for (const uint32_t object : slots) {
-        const uint32_t groups = wakeGroupsOf(objects[object]);
-        for (uint32_t g = 0; g < groups; ++g) {
-            const WakeGroup group{object, g * 64};
-            std::memcpy(slot.upload.mapped + slot.uploadUsed, &group, sizeof group);
-            slot.uploadUsed += sizeof group;
-            ++staged.count;
-        }
-    }
-    slot.uploadUsed = alignUp(slot.uploadUsed, 16);
-    return staged;
+bool bringsNews(const StepPlan& step) noexcept {
+    return !step.events.empty() || !step.materials.empty();
 }
+
+// --- Before the first command ---
+
+// What a plan asks of its frame: how much room, and which passes have anything to do.
+struct FrameNeeds {
+    bool dense = false, never = false;    // debug switches: every tile; never idle
+    uint64_t uploadBytes = 0;             // at most
+    uint64_t iterations = 0;              // of all steps
+    uint32_t events = 0, wakeGroups = 0;  // of the largest step
+    bool stimulus = false;                // an event or a latch
+    bool findsAnew = false;               // the first step wakes what forgets
+    bool burning = false, predicting = false, publishedRuns = false;
+    bool readback = false, work = false;  // no work: nothing is recorded
+};
+
+// Also marks what objects `forget`, and fills `published`; throws where a limit is exceeded.
+FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
+    FrameNeeds needs;
+    needs.dense = (plan.switches & kSwitchDense) != 0;
+    needs.never = (plan.switches & FW_DEBUG_NEVER_IDLE) != 0;
+    uint64_t denseGroups = 0;
+    s.published.clear();
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+        const ObjectEntry& object = s.objects[i];
+        if (object.recordDirty) needs.uploadBytes += uploaded(sizeof(BurnObject));
+        if (object.materialsDirty) needs.uploadBytes += uploaded(sizeof object.materials);
+        if (!object.live) continue;
+        if (needs.dense) denseGroups += wakeGroupsOf(object);
+        if (object.record.flags & kObjectPublished)
+            s.published.push_back({i, publishedGroups(object.record), 0});
+    }
+    const bool anyStep = !plan.steps.empty();
+    bool iterates = !s.frontEmpty || needs.dense || needs.never;
+    for (const StepPlan& step : plan.steps) {
+        if (step.events.size() > size_t(kMaxGroups) * 64)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "One step has %zu texel events; the limit is %u.",
+                       step.events.size(), kMaxGroups * 64);
+        uint64_t wake = needs.dense ? denseGroups : 0;
+        for (const MaterialUpdate& update : step.materials) {
+            needs.uploadBytes += uploaded(sizeof update.materials) + kUploadAlignment;
+            if (!needs.dense) wake += wakeGroupsOf(s.objects[update.object]);
+        }
+        needs.events = std::max(needs.events, uint32_t(step.events.size()));
+        needs.wakeGroups = std::max(needs.wakeGroups, uint32_t(wake));
+        needs.uploadBytes +=
+            uploaded(step.events.size_bytes()) + uploaded(wake * sizeof(WakeGroup));
+        for (const TexelEvent& event : step.events) {
+            if (event.kind == kEventWet || event.kind == kEventExtinguish)
+                s.objects[event.object].lastDouse = s.open.ringFrame;
+        }
+        needs.stimulus |= bringsNews(step);
+        iterates |= bringsNews(step);
+        if (iterates) needs.iterations += uint64_t(1) << step.substepShift;
+    }
+    // Once a dousing is over, what its object sees coming is forgotten and found anew: predictions
+    // that lost their fire would keep each other alive.
+    bool forgets = false;
+    uint64_t forgetGroups = 0;
+    for (ObjectEntry& object : s.objects) {
+        object.forget = object.live && object.lastDouse != 0 &&
+                        object.lastDouse < s.open.ringFrame && (anyStep || s.frontEmpty);
+        if (!object.forget) continue;
+        forgets = true;
+        forgetGroups += wakeGroupsOf(object);
+    }
+    needs.findsAnew = forgets && anyStep && !s.frontEmpty && !needs.dense;
+    if (needs.findsAnew) {
+        needs.wakeGroups += uint32_t(forgetGroups);
+        needs.uploadBytes += uploaded(forgetGroups * sizeof(WakeGroup));
+    }
+    needs.uploadBytes += uploaded(plan.probes.size_bytes());
+    if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are asked for; the limit is %u.",
+                   plan.burnMaps.size(), ReadbackLayout::kMaxMaps);
+    const auto mostIterations = uint64_t(s.planes.capacity(kSpaceIterations)) - kRowIteration - 1;
+    if (needs.iterations > mostIterations)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has %llu iterations; the limit is %llu.",
+                   (unsigned long long)needs.iterations, (unsigned long long)mostIterations);
+    needs.publishedRuns =
+        anyStep &&
+        std::any_of(s.published.begin(), s.published.end(), [&](const PublishedStep& one) {
+            return needs.stimulus || s.objects[one.object].publishedTouched;
+        });
+    needs.burning = !s.burnEmpty || needs.stimulus || needs.never;
+    needs.predicting = !s.predictEmpty || needs.stimulus || needs.never;
+    needs.readback = needs.burning || needs.predicting || needs.iterations > 0 ||
+                     needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
+    needs.work = needs.readback || forgets || s.recordsDirty || !s.uploads.empty() ||
+                 s.planes.movesPending();
+    return needs;
+}
+
+// Where the pieces of the frame's readback will lie; `bytes`: all of it.
+ReadbackLayout layoutOf(const VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
+                        uint64_t& bytes) {
+    ReadbackLayout layout;
+    layout.frameIndex = plan.frameIndex;
+    layout.endTick = plan.endTick;
+    layout.objects = uint32_t(s.objects.size());
+    layout.answers = uint32_t(plan.probes.size());
+    layout.lights = s.limits.maxLights;
+    bytes = 0;
+    const auto place = [&](uint64_t size) {
+        const uint64_t at = bytes;
+        bytes = alignUp(bytes + size, 16);
+        return at;
+    };
+    const uint64_t lastRow = needs.iterations ? kRowIteration + needs.iterations : s.lists.row;
+    layout.countersAt = place((lastRow + 1) * sizeof(IterationCounters));
+    layout.objectsAt = place(layout.objects * sizeof(ObjectCounters));
+    layout.answersAt = place(uint64_t(layout.answers) * 4);
+    layout.lightsAt = place(uint64_t(layout.lights) * sizeof(BurnLight));
+    layout.flamesAt = place(16);
+    for (const uint32_t object : plan.burnMaps) {
+        ReadbackLayout::MapAt& map = layout.maps[layout.mapCount++];
+        map.object = object;
+        map.texels = s.objects[object].record.width * s.objects[object].record.height;
+        map.at = place(uint64_t(map.texels) * 4);
+    }
+    return layout;
+}
+
+// All that may fail: buffers of the size that the frame needs, and sets that name them.
+FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs) {
+    const uint64_t last = s.ring.newest();
+    s.planes.atLeast(kSpaceEvents, needs.events, last);
+    s.planes.atLeast(kSpaceWakeGroups, needs.wakeGroups, last);
+    s.planes.atLeast(kSpaceProbes, uint32_t(plan.probes.size()), last);
+    FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
+    uint64_t readbackBytes = 0;
+    const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);
+    if (slot.upload.size < needs.uploadBytes ||
+        (needs.readback && slot.readback.size < readbackBytes))
+        slot.readbackPending = false;
+    ensure(s, slot.upload, needs.uploadBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryKind::upload,
+           kComponentStaging, "frame upload");
+    if (needs.readback)
+        ensure(s, slot.readback, readbackBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+               MemoryKind::readback, kComponentReadback, "frame readback");
+    s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last);
+    slot.layout = layout;
+    return slot;
+}
+
+// --- Commands ---
 
 void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingUpload& upload) {
     auto barrier = typed<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
@@ -97,6 +243,119 @@ void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingU
         commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
         VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr,
         0, nullptr, 1, &barrier);
+}
+
+// Meshes, images, painted maps: what was created since the last frame.
+void recordUploads(VkBackend::State& s) {
+    const Table& vk = s.device.table;
+    for (PendingUpload& upload : s.uploads) {
+        if (upload.image) recordImageUpload(vk, s.open.commands, upload);
+        for (uint32_t i = 0; i < upload.regionCount; ++i) {
+            const PendingUpload::Region& region = upload.regions[i];
+            const Use uses[] = {{region.resource, Access::copyWrite}};
+            s.barriers.use(vk, s.open.commands, uses);
+            const VkBufferCopy copy{region.from, region.at, region.bytes};
+            vk.CmdCopyBuffer(s.open.commands, upload.staging.handle,
+                             s.planes.buffer(region.resource).handle, 1, &copy);
+        }
+        s.retired.push(s.open.ringFrame, upload.staging);
+    }
+    s.uploads.clear();
+}
+
+// Records of objects that are new, moved or gone, and the list of what draws show.
+void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+        ObjectEntry& object = s.objects[i];
+        if (object.recordDirty) {
+            const Staged staged = writer.write(std::span<const BurnObject>(&object.record, 1));
+            recorder.copyIn(staged.at, FW_BIND_OBJECTS, uint64_t(i) * sizeof(BurnObject),
+                            sizeof(BurnObject));
+        }
+        if (object.materialsDirty) {
+            const Staged staged = writer.write(std::span<const BurnMaterial>(object.materials));
+            recorder.copyIn(staged.at, FW_BIND_MATERIALS, i * sizeof object.materials,
+                            sizeof object.materials);
+        }
+        object.recordDirty = object.materialsDirty = false;
+    }
+    s.drawItems.clear();
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+        ObjectEntry& object = s.objects[i];
+        if (object.resetDue) recordReset(recorder, i, object.record.tileCount);
+        object.resetDue = false;
+        if (!object.live || (object.record.flags & kObjectHidden)) continue;
+        const MeshEntry& mesh = s.meshes[object.mesh];
+        s.drawItems.push_back({i, mesh.indexRange.first, mesh.indices,
+                               int32_t(mesh.vertexRange.first), object.record.image,
+                               surfaceVariant(object.materials, object.touched)});
+    }
+    s.recordsDirty = false;
+}
+
+void recordForgetting(VkBackend::State& s, FrameRecorder& recorder) {
+    for (ObjectEntry& object : s.objects) {
+        if (!object.forget) continue;
+        recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
+                             uint64_t(object.record.width) * object.record.height * 4);
+        object.lastDouse = 0;
+    }
+}
+
+// New records of a step's latches.
+void recordMaterials(VkBackend::State& s, std::span<const MaterialUpdate> updates,
+                     FrameRecorder& recorder, UploadWriter& writer) {
+    for (const MaterialUpdate& update : updates) {
+        ObjectEntry& object = s.objects[update.object];
+        std::copy(std::begin(update.materials), std::end(update.materials),
+                  std::begin(object.materials));
+        object.record.window = update.window;
+        object.record.substepShift = update.substepShift;
+        const Staged materials = writer.write(std::span<const BurnMaterial>(object.materials));
+        recorder.copyIn(materials.at, FW_BIND_MATERIALS,
+                        uint64_t(update.object) * sizeof object.materials, sizeof object.materials);
+        const uint32_t timing[2] = {update.window, update.substepShift};
+        static_assert(offsetof(BurnObject, substepShift) == offsetof(BurnObject, window) + 4);
+        const Staged staged = writer.write(std::span<const uint32_t>(timing));
+        recorder.copyIn(staged.at, FW_BIND_OBJECTS,
+                        uint64_t(update.object) * sizeof(BurnObject) + offsetof(BurnObject, window),
+                        sizeof timing);
+    }
+}
+
+// The tiles that a step looks at anew: those of latched objects and of forgetful ones, or all.
+Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate> updates,
+                       bool dense, bool findsAnew, UploadWriter& writer) {
+    Staged staged = writer.begin();
+    const auto append = [&](uint32_t object) {
+        const uint32_t groups = wakeGroupsOf(s.objects[object]);
+        for (uint32_t g = 0; g < groups; ++g) {
+            const WakeGroup group{object, g * 64};
+            writer.append(staged, std::span<const WakeGroup>(&group, 1));
+        }
+    };
+    for (uint32_t i = 0; dense && i < s.objects.size(); ++i) {
+        if (s.objects[i].live) append(i);
+    }
+    if (!dense) {
+        for (const MaterialUpdate& update : updates) append(update.object);
+    }
+    for (uint32_t i = 0; findsAnew && i < s.objects.size(); ++i) {
+        if (s.objects[i].forget) append(i);
+    }
+    writer.end();
+    return staged;
+}
+
+// An object that an event reaches is drawn as one that may burn from now on.
+void noteEvent(VkBackend::State& s, const TexelEvent& event) {
+    ObjectEntry& object = s.objects[event.object];
+    object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
+    if (object.touched) return;
+    object.touched = true;
+    for (DrawItem& item : s.drawItems) {
+        if (item.object == event.object) item.variant = surfaceVariant(object.materials, true);
+    }
 }
 
 }  // namespace
@@ -154,107 +413,14 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
 void VkBackend::State::run(const FramePlan& plan) {
     if (!open.open || open.ran)
         core::fail(FW_ERROR_INTERNAL, "A frame's plan is run once, after the frame is begun.");
+    const FrameNeeds needs = needsOf(*this, plan);
     open.planFrame = plan.frameIndex;
     open.endTick = plan.endTick;
-    const bool dense = (plan.switches & kSwitchDense) != 0;
-    const bool never = (plan.switches & 32u) != 0;  // FW_DEBUG_NEVER_IDLE
-
-    // What the frame is made of.
-    uint64_t uploadBytes = 0, denseGroups = 0, iterations = 0;
-    uint32_t mostEvents = 0, mostWake = 0;
-    bool stimulus = false, anyStep = false;
-    if (recordsDirty) {
-        for (const ObjectEntry& object : objects) {
-            if (object.recordDirty) uploadBytes += alignUp(sizeof(BurnObject), 16);
-            if (object.materialsDirty) uploadBytes += alignUp(sizeof object.materials, 16);
-        }
-    }
-    if (dense) {
-        for (const ObjectEntry& object : objects)
-            denseGroups += object.live ? wakeGroupsOf(object) : 0;
-    }
-    published.clear();
-    for (uint32_t i = 0; i < objects.size(); ++i) {
-        const ObjectEntry& object = objects[i];
-        if (!object.live || !(object.record.flags & kObjectPublished)) continue;
-        published.push_back(
-            {i, ((object.record.width + 15) / 16) * ((object.record.height + 15) / 16), 0});
-    }
-    bool emptySoFar = frontEmpty;
-    for (const StepPlan& step : plan.steps) {
-        if (step.events.size() > size_t(kMaxGroups) * 64)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "One step has %zu texel events; the limit is %u.",
-                       step.events.size(), kMaxGroups * 64);
-        mostEvents = std::max(mostEvents, uint32_t(step.events.size()));
-        uploadBytes += alignUp(step.events.size_bytes(), 16);
-        uint64_t wake = 0;
-        for (const MaterialUpdate& update : step.materials) {
-            uploadBytes += alignUp(sizeof update.materials, 16) + 16;
-            wake += wakeGroupsOf(objects[update.object]);
-        }
-        if (dense) wake = denseGroups;
-        mostWake = std::max(mostWake, uint32_t(wake));
-        uploadBytes += alignUp(wake * sizeof(WakeGroup), 16);
-        for (const TexelEvent& event : step.events) {
-            if (event.kind == kEventWet || event.kind == kEventExtinguish)
-                objects[event.object].lastDouse = open.ringFrame;
-        }
-        const bool fresh = !step.events.empty() || !step.materials.empty();
-        stimulus |= fresh;
-        emptySoFar &= !fresh;
-        if (!emptySoFar || dense || never) iterations += uint64_t(1) << step.substepShift;
-        anyStep = true;
-    }
-    // Once a dousing is over, what its object sees coming is forgotten and found anew: predictions
-    // that lost their fire would keep each other alive.
-    bool forgets = false;
-    uint64_t forgetGroups = 0;
-    for (ObjectEntry& object : objects) {
-        object.forget = object.live && object.lastDouse != 0 && object.lastDouse < open.ringFrame &&
-                        (anyStep || frontEmpty);
-        if (!object.forget) continue;
-        forgets = true;
-        forgetGroups += wakeGroupsOf(object);
-    }
-    const bool findsAnew = forgets && anyStep && !frontEmpty && !dense;
-    if (findsAnew) {
-        mostWake += uint32_t(forgetGroups);
-        uploadBytes += alignUp(forgetGroups * sizeof(WakeGroup), 16);
-    }
-    uploadBytes += alignUp(plan.probes.size_bytes(), 16);
-    if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are asked for; the limit is %u.",
-                   plan.burnMaps.size(), ReadbackLayout::kMaxMaps);
-    const auto mostIterations = uint64_t(planes.capacity(kSpaceIterations)) - kRowIteration - 1;
-    if (iterations > mostIterations)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has %llu iterations; the limit is %llu.",
-                   (unsigned long long)iterations, (unsigned long long)mostIterations);
-    const bool publishedRuns =
-        anyStep &&
-        (stimulus || std::any_of(published.begin(), published.end(), [&](const PublishedStep& one) {
-             return objects[one.object].publishedTouched;
-         }));
-    const bool burning = !burnEmpty || stimulus || never;
-    const bool predicting = !predictEmpty || stimulus || never;
-    const bool stepping = anyStep && (iterations > 0 || burning || publishedRuns);
-    const bool asked = !plan.probes.empty() || !plan.burnMaps.empty();
-    open.readback = stepping || predicting || asked || burning;
-    const bool work =
-        open.readback || forgets || recordsDirty || !uploads.empty() || planes.movesPending();
-    wind[0] = plan.wind[0];
-    wind[1] = plan.wind[1];
-    wind[2] = plan.wind[2];
+    open.readback = needs.readback;
+    std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(wind));
     tickFraction = plan.tickFraction;
-
-    // All that may fail.
-    const uint64_t last = ring.newest();
-    planes.atLeast(kSpaceEvents, mostEvents, last);
-    planes.atLeast(kSpaceWakeGroups, mostWake, last);
-    planes.atLeast(kSpaceProbes, uint32_t(plan.probes.size()), last);
-    steps.clear();
-    steps.reserve(plan.steps.size());
-    open.ran = true;
-    if (!work) {
+    if (!needs.work) {
+        open.ran = true;
         shownTick = plan.endTick;
         if (plan.frameIndex == 0) return;
         PendingReadback same;
@@ -264,192 +430,49 @@ void VkBackend::State::run(const FramePlan& plan) {
         pushPending(same);
         return;
     }
-    FrameInFlight& slot = ring.slotFor(open.ringFrame);
-    ReadbackLayout layout;
-    layout.frameIndex = plan.frameIndex;
-    layout.endTick = plan.endTick;
-    layout.objects = uint32_t(objects.size());
-    layout.answers = uint32_t(plan.probes.size());
-    layout.lights = limits.maxLights;
-    uint64_t readbackBytes = 0;
-    const auto place = [&](uint64_t bytes) {
-        const uint64_t at = readbackBytes;
-        readbackBytes = alignUp(readbackBytes + bytes, 16);
-        return at;
-    };
-    const uint64_t lastRow = iterations ? kRowIteration + iterations : lists.row;
-    layout.countersAt = place((lastRow + 1) * sizeof(IterationCounters));
-    layout.objectsAt = place(layout.objects * sizeof(ObjectCounters));
-    layout.answersAt = place(uint64_t(layout.answers) * 4);
-    layout.lightsAt = place(uint64_t(layout.lights) * sizeof(BurnLight));
-    layout.flamesAt = place(16);
-    for (const uint32_t object : plan.burnMaps) {
-        ReadbackLayout::MapAt& map = layout.maps[layout.mapCount++];
-        map.object = object;
-        map.texels = objects[object].record.width * objects[object].record.height;
-        map.at = place(uint64_t(map.texels) * 4);
-    }
-    try {
-        if (slot.upload.size < uploadBytes || (open.readback && slot.readback.size < readbackBytes))
-            slot.readbackPending = false;
-        ensure(*this, slot.upload, uploadBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-               MemoryKind::upload, kComponentStaging, "frame upload");
-        if (open.readback)
-            ensure(*this, slot.readback, readbackBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                   MemoryKind::readback, kComponentReadback, "frame readback");
-        sets.update(planes, views.handle, sizeof(ViewParams), last);
-    } catch (...) {
-        open.ran = false;
-        throw;
-    }
+    FrameInFlight& slot = makeRoom(*this, plan, needs);
 
     // From here on nothing fails.
     const Table& vk = device.table;
+    open.ran = true;
     open.slot = &slot;
     open.recording = true;
-    slot.layout = layout;
     barriers.begin(vk, open.commands);
     slot.timers.reset(device, open.commands);
-    RecordTarget target = recordTarget(slot, open.commands);
-    FrameRecorder recorder(target);
-    if (planes.recordMoves(vk, open.commands, open.ringFrame)) {
+    FrameRecorder recorder(recordTarget(slot, open.commands));
+    UploadWriter writer(slot);
+    if (planes.recordMoves(vk, open.commands, open.ringFrame))
         barriers.begin(vk, open.commands);  // rare: waits for all of the moves
-    }
     if (!initialized) {
         for (const uint32_t resource : {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS,
                                         FW_BIND_LIGHT_CELLS, FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS})
             recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
         initialized = true;
     }
-    bool reset = false;
-    for (PendingUpload& upload : uploads) {
-        if (upload.image) recordImageUpload(vk, open.commands, upload);
-        for (uint32_t i = 0; i < upload.regionCount; ++i) {
-            const PendingUpload::Region& region = upload.regions[i];
-            const Use uses[] = {{region.resource, Access::copyWrite}};
-            barriers.use(vk, open.commands, uses);
-            const VkBufferCopy copy{region.from, region.at, region.bytes};
-            vk.CmdCopyBuffer(open.commands, upload.staging.handle,
-                             planes.buffer(region.resource).handle, 1, &copy);
-        }
-        retired.push(open.ringFrame, upload.staging);
-    }
-    uploads.clear();
-    UploadWriter writer(slot);
-    if (recordsDirty) {
-        for (uint32_t i = 0; i < objects.size(); ++i) {
-            ObjectEntry& object = objects[i];
-            if (object.recordDirty) {
-                const Staged staged = writer.write(std::span<const BurnObject>(&object.record, 1));
-                recorder.copyIn(staged.at, FW_BIND_OBJECTS, uint64_t(i) * sizeof(BurnObject),
-                                sizeof(BurnObject));
-            }
-            if (object.materialsDirty) {
-                const Staged staged = writer.write(std::span<const BurnMaterial>(object.materials));
-                recorder.copyIn(staged.at, FW_BIND_MATERIALS, i * sizeof object.materials,
-                                sizeof object.materials);
-            }
-            object.recordDirty = object.materialsDirty = false;
-            reset |= object.resetDue;
-        }
-        for (uint32_t i = 0; reset && i < objects.size(); ++i) {
-            ObjectEntry& object = objects[i];
-            if (!object.resetDue) continue;
-            recordReset(recorder, i, object.record.tileCount);
-            object.resetDue = false;
-        }
-        recordsDirty = false;
-        drawItems.clear();
-        for (uint32_t i = 0; i < objects.size(); ++i) {
-            const ObjectEntry& object = objects[i];
-            if (!object.live || (object.record.flags & kObjectHidden)) continue;
-            const MeshEntry& mesh = meshes[object.mesh];
-            drawItems.push_back({i, mesh.indexRange.first, mesh.indices,
-                                 int32_t(mesh.vertexRange.first), object.record.image,
-                                 surfaceVariant(object.materials, object.touched)});
-        }
-    }
-    for (ObjectEntry& object : objects) {
-        if (!object.forget) continue;
-        recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
-                             uint64_t(object.record.width) * object.record.height * 4);
-        object.lastDouse = 0;
-    }
+    recordUploads(*this);
+    if (recordsDirty) recordObjects(*this, recorder, writer);
+    recordForgetting(*this, recorder);
     drawVertices = planes.buffer(kResourceVertices).handle;
     drawIndices = planes.buffer(kResourceIndices).handle;
 
-    if (iterations) recordCounters(recorder, lists, uint32_t(iterations));
+    if (needs.iterations) recordCounters(recorder, lists, uint32_t(needs.iterations));
     slot.layout.firstRow = lists.row;
-    emptySoFar = frontEmpty;
-    for (const StepPlan& plannedStep : plan.steps) {
+    bool iterates = !frontEmpty || needs.dense || needs.never;
+    for (const StepPlan& planned : plan.steps) {
+        iterates |= bringsNews(planned);
         StepRecord step;
-        step.now = plannedStep.now;
-        step.stepShift = plannedStep.substepShift;
+        step.now = planned.now;
+        step.stepShift = planned.substepShift;
         step.switches = plan.switches;
         step.objectSlots = uint32_t(objects.size());
-        const bool fresh = !plannedStep.events.empty() || !plannedStep.materials.empty();
-        emptySoFar &= !fresh;
-        step.iterate = !emptySoFar || dense || never;
-        step.reduce = plannedStep.reduce && burning;
-        for (const MaterialUpdate& update : plannedStep.materials) {
-            ObjectEntry& object = objects[update.object];
-            std::copy(std::begin(update.materials), std::end(update.materials),
-                      std::begin(object.materials));
-            object.record.window = update.window;
-            object.record.substepShift = update.substepShift;
-            const Staged staged = writer.write(std::span<const BurnMaterial>(object.materials));
-            recorder.copyIn(staged.at, FW_BIND_MATERIALS,
-                            uint64_t(update.object) * sizeof object.materials,
-                            sizeof object.materials);
-            const uint32_t words[2] = {update.window, update.substepShift};
-            static_assert(offsetof(BurnObject, substepShift) == offsetof(BurnObject, window) + 4);
-            const Staged words2 = writer.write(std::span<const uint32_t>(words));
-            recorder.copyIn(
-                words2.at, FW_BIND_OBJECTS,
-                uint64_t(update.object) * sizeof(BurnObject) + offsetof(BurnObject, window),
-                sizeof words);
-        }
-        if (dense) {
-            step.wakeGroups = {slot.uploadUsed, 0};
-            for (uint32_t i = 0; i < objects.size(); ++i) {
-                if (!objects[i].live) continue;
-                const uint32_t one[] = {i};
-                const uint64_t at = slot.uploadUsed;
-                step.wakeGroups.count += writeWakeGroups(slot, objects, one).count;
-                slot.uploadUsed = at + uint64_t(wakeGroupsOf(objects[i])) * sizeof(WakeGroup);
-            }
-            slot.uploadUsed = alignUp(slot.uploadUsed, 16);
-        } else {
-            step.wakeGroups = {slot.uploadUsed, 0};
-            for (const MaterialUpdate& update : plannedStep.materials) {
-                const uint32_t one[] = {update.object};
-                const uint64_t at = slot.uploadUsed;
-                step.wakeGroups.count += writeWakeGroups(slot, objects, one).count;
-                slot.uploadUsed =
-                    at + uint64_t(wakeGroupsOf(objects[update.object])) * sizeof(WakeGroup);
-            }
-            for (uint32_t i = 0; findsAnew && &plannedStep == &plan.steps[0] && i < objects.size();
-                 ++i) {
-                if (!objects[i].forget) continue;
-                const uint32_t one[] = {i};
-                const uint64_t at = slot.uploadUsed;
-                step.wakeGroups.count += writeWakeGroups(slot, objects, one).count;
-                slot.uploadUsed = at + uint64_t(wakeGroupsOf(objects[i])) * sizeof(WakeGroup);
-            }
-            slot.uploadUsed = alignUp(slot.uploadUsed, 16);
-        }
-        step.events = writer.write(plannedStep.events);
-        for (const TexelEvent& event : plannedStep.events) {
-            ObjectEntry& object = objects[event.object];
-            object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
-            if (object.touched) continue;
-            object.touched = true;
-            for (DrawItem& item : drawItems) {
-                if (item.object == event.object)
-                    item.variant = surfaceVariant(object.materials, true);
-            }
-        }
-        if (publishedRuns) {
+        step.iterate = iterates;
+        step.reduce = planned.reduce && needs.burning;
+        recordMaterials(*this, planned.materials, recorder, writer);
+        const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
+        step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);
+        step.events = writer.write(planned.events);
+        for (const TexelEvent& event : planned.events) noteEvent(*this, event);
+        if (needs.publishedRuns) {
             for (PublishedStep& one : published) {
                 one.parity = objects[one.object].publishedParity;
                 objects[one.object].publishedParity ^= 1;
@@ -462,12 +485,12 @@ void VkBackend::State::run(const FramePlan& plan) {
     }
     slot.layout.rows = lists.row;
     slot.layout.burnParity = lists.burnParity;
-    if (stimulus) {
+    if (needs.stimulus) {
         lastStimulus = open.ringFrame;
         frontEmpty = burnEmpty = predictEmpty = false;
     }
     shownTick = plan.endTick;
-    if (predicting) {
+    if (needs.predicting) {
         recordPredict(recorder, lists, plan.endTick);
         ++predictWalks;
     }

@@ -141,7 +141,6 @@ struct VkBackend::State {
         uint32_t endTick = 0;
         FrameInFlight* slot = nullptr;
     } open;
-    std::pmr::vector<StepRecord> steps;         // scratch of run
     std::pmr::vector<PublishedStep> published;  // scratch of run
     std::pmr::vector<DrawItem> drawItems;       // objects that draws show
 
