@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <thread>
 
@@ -371,7 +372,10 @@ TEST_F(VkContract, BadHostsAreRefused) {
     EXPECT_EQ(memory.bytes(), 0u);
 }
 
-TEST_F(VkContract, NotReadyBeforePrepare) {
+// Also run under the thread sanitizer: tests/run --tsan.
+using VkThreads = VkContract;
+
+TEST_F(VkThreads, NotReadyBeforePrepare) {
     if (!device_) return;
     core::Memory memory{FwCallbacks{}};
     core::Log log{FwCallbacks{}};
@@ -389,7 +393,37 @@ TEST_F(VkContract, NotReadyBeforePrepare) {
     EXPECT_EQ(memory.bytes(), 0u) << "something was not given back";
 }
 
-TEST_F(VkContract, TwoContextsOnTwoDevices) {
+TEST_F(VkThreads, TargetsAreRegisteredWhileFramesAreRecorded) {
+    if (!device_) return;
+    const BurnScene scene = BurnScene::make(28, 0.4);
+    gpu::vk::WorldLimits limits;
+    limits.looks = testLooks();
+    VkRig rig(*device_, 2, 0, limits);
+    scene.create(rig.backend);
+    std::atomic<bool> stop = false;
+    uint32_t registered = 0;
+    std::thread worker([&] {
+        FwVulkanTargetDef def{};
+        def.flags = FW_TARGET_COMPOSITE;
+        def.colorFormat = VK_FORMAT_R8G8B8A8_UNORM;
+        def.samples = def.colorAttachmentCount = 1;
+        do {
+            const FwTargetId id = rig.context.registerTarget(def);
+            FwContextInfo info{};
+            rig.context.fillInfo(info);
+            rig.context.unregisterTarget(id);
+            ++registered;
+        } while (!stop);
+    });
+    PlanMaker maker(scene, 13);
+    for (int f = 0; f < 30; ++f) rig.run(maker.next(1, false).plan);
+    stop = true;
+    worker.join();
+    EXPECT_LT(0u, registered);
+    EXPECT_FALSE(rig.finish().empty());
+}
+
+TEST_F(VkThreads, TwoContextsOnTwoDevices) {
     if (!device_) return;
     std::string reason;
     const std::unique_ptr<TestDevice> other = TestDevice::make({}, reason);
