@@ -2,6 +2,8 @@
 // offset, count or index of it is used here before it has been compared with what there is.
 #include "import/gltf_import.h"
 
+#include "import/gltf_types.h"
+
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -730,6 +732,7 @@ bool importGltfBytes(std::span<const uint8_t> bytes, const std::string& name,
         const bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
         const std::span<const uint8_t> json = binary ? checkGlb(bytes) : bytes;
         checkNesting(json);
+        const std::string wrongType = findWrongType(json);
 
         tinygltf::TinyGLTF loader;
         loader.SetImageLoader(keepImage, nullptr);
@@ -746,12 +749,14 @@ bool importGltfBytes(std::span<const uint8_t> bytes, const std::string& name,
             while (!problem.empty() && problem.back() == '\n') problem.pop_back();
             // A required extension is the likelier cause of whatever looked odd to the parser.
             checkExtensions(source);
+            if (!wrongType.empty()) refuse(wrongType);
             refuse(problem.empty() ? "it is not glTF" : problem);
         }
         if (source.asset.version.rfind("2.", 0) != 0) {
             refuse("asset.version is \"", source.asset.version, "\"; 2.x is read");
         }
         checkExtensions(source);
+        if (!wrongType.empty()) refuse(wrongType);
         ImportedModel result;
         Importer(source, result).run();
         model = std::move(result);

@@ -114,6 +114,61 @@ TEST(Import, QuadLoadsWithItsTransform) {
     EXPECT_EQ(model.triangleCount(), model.triangleMaterials.size());
 }
 
+TEST(Import, WronglyTypedFieldsAreNamed) {
+    const auto node = [](const char* text) {
+        Quad quad;
+        quad.node = text;
+        return quad;
+    };
+    const auto material = [](const std::string& text) {
+        Quad quad;
+        quad.primitive += R"(,"material":0)";
+        quad.extra = R"(,"materials":[)" + text + "]";
+        return quad;
+    };
+    const auto primitive = [](const char* text) {
+        Quad quad;
+        quad.primitive += text;
+        return quad;
+    };
+    const struct {
+        Quad quad;
+        const char* says;
+    } cases[] = {
+        {node(R"({"mesh":0,"translation":"far"})"),
+         "nodes[0].translation is a string; it takes 3 numbers"},
+        {node(R"({"mesh":0,"translation":[1,2]})"),
+         "nodes[0].translation is an array of 2; it takes 3 numbers"},
+        {node(R"({"mesh":0,"scale":[1,"2",3]})"),
+         "nodes[0].scale[1] is a string; it takes a number"},
+        {node(R"({"mesh":"0"})"), "nodes[0].mesh is a string; it takes an integer"},
+        {node(R"({"mesh":0.5})"), "nodes[0].mesh is 0.5; it takes an integer"},
+        {node(R"({"mesh":0,"children":3})"), "nodes[0].children is a number; it takes an array"},
+        {node("[]"), "nodes[0] is an array; it takes an object"},
+        {primitive(R"(,"mode":true)"),
+         "meshes[0].primitives[0].mode is true or false; it takes an integer"},
+        {primitive(R"(,"material":{})"),
+         "meshes[0].primitives[0].material is an object; it takes an integer"},
+        {material(R"({"doubleSided":1})"),
+         "materials[0].doubleSided is a number; it takes true or false"},
+        {material(R"({"name":null})"), "materials[0].name is null; it takes a string"},
+        {material(R"({"pbrMetallicRoughness":{"baseColorFactor":[1,1,1]}})"),
+         "materials[0].pbrMetallicRoughness.baseColorFactor is an array of 3; it takes 4 numbers"},
+        {material(R"({"pbrMetallicRoughness":{"roughnessFactor":"shiny"}})"),
+         "roughnessFactor is a string; it takes a number"},
+        {material(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":)"
+                  R"({"KHR_texture_transform":{"offset":[0]}}}}})"),
+         "KHR_texture_transform.offset is an array of 1; it takes 2 numbers"},
+    };
+    for (const auto& one : cases) EXPECT_THAT(refusal(one.quad.bytes()), HasSubstr(one.says));
+    // What is not read may be anything, and so may the host's own.
+    Quad odd;
+    odd.node = R"({"mesh":0,"weights":"w","extras":{"nodes":[{"mesh":"a \"[{ quoted\""}]}})";
+    odd.extra = R"(,"extras":[1,"mesh",{"mesh":true}],"cameras":7)";
+    ImportedModel model;
+    EXPECT_TRUE(loads(odd.bytes(), model));
+}
+
 TEST(Import, MirroredNodeKeepsItsOutside) {
     Quad quad;
     quad.node = R"({"mesh":0,"scale":[-1,1,1]})";
@@ -377,7 +432,7 @@ TEST(Import, TestModelsThatMustBeRefused) {
         {"RecursiveNodes/RecursiveNodes.gltf", "more than one parent"},
         {"TestNoRootNode/NoScene.gltf", "no triangle"},
         {"TestNoRootNode/SceneWithoutNodes.gltf", "no triangle"},
-        {"wrongTypes/badArray.gltf", "no triangle"},
+        {"wrongTypes/badArray.gltf", "meshes[0].primitives is an object; it takes an array"},
         {"BoxTextured-glTF-techniqueWebGL/BoxTextured.gltf", "KHR_technique_webgl"},
         {"draco/2CylinderEngine.gltf", "KHR_draco_mesh_compression"},
         {"../glTF/BoxTextured-glTF/BoxTextured.gltf", "2.x is read"},
