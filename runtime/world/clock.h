@@ -9,8 +9,9 @@ namespace fw::world {
 struct Clock {
     static constexpr int kFractionBits = 44;
     static constexpr uint64_t kStepUnits = uint64_t(1) << (kFractionBits - 5);  // 1/32 s
-    // Ticks stop well before the codes of a texel's state: after 12 days of fire.
+    // Ticks end well before the codes of a texel's state: 1048560 s, twelve days of fire.
     static constexpr uint64_t kLastTick = 0xFFFF0000u;
+    static constexpr uint64_t kWarnTick = kLastTick - uint64_t(86400) * 4096;  // a day before
 
     uint64_t tick = 0;      // of the next step's start; a multiple of gpu::kStepTicks
     uint64_t fraction = 0;  // host time past `tick`, 2^-44 s, below kStepUnits

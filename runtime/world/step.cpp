@@ -20,6 +20,11 @@ void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
                    "frameIndex is %llu and the last frame was %llu; it grows.",
                    static_cast<unsigned long long>(frameIndex),
                    static_cast<unsigned long long>(lastFrame_));
+    if (deltaTime > 0 && clock_.tick >= Clock::kLastTick)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The world has simulated %llu s, which is the limit; create a new one. With "
+                   "deltaTime 0 it can still be drawn and asked.",
+                   static_cast<unsigned long long>(Clock::kLastTick / 4096));
 }
 
 void World::advance(uint64_t frameIndex, float deltaTime) {
@@ -172,6 +177,9 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     }
     for (const gpu::MaterialUpdate& update : frame_.updates)
         (*objects_.at(update.object))->lastStimulus = end;
+    if (clock_.tick < Clock::kWarnTick && time.after.tick >= Clock::kWarnTick)
+        log_.write(FW_LOG_WARNING, "A world has a day left: it simulates at most %llu s.",
+                   static_cast<unsigned long long>(Clock::kLastTick / 4096));
     clock_ = time.after;
     if (ran) steps_ += time.steps;
     lastFrame_ = frameIndex;

@@ -39,7 +39,7 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     for (float& value : def.up) value /= length;
     checkValue(def.paceFactor, "FwWorldDef::paceFactor", 0.1f, 1000.0f);
     checkValues(def.wind, 3, "FwWorldDef::wind", -120.0f, 120.0f);
-    checkValue(def.wetResistance, "FwWorldDef::wetResistance", 0.0f, 0.0f);
+    checkLimit(def.reserved, "FwWorldDef::reserved", 0, 0);
     checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
     checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, 64);
     checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);

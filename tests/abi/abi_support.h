@@ -24,7 +24,7 @@ struct Host {
     int64_t failAt = -1;
     bool failAlways = false;
     std::mutex mutex;
-    std::vector<std::string> errors;
+    std::vector<std::string> errors, warnings;
     std::string lastError;
 
     static void* FW_CALL allocate(void* userData, size_t size, size_t alignment) {
@@ -50,6 +50,7 @@ struct Host {
     static void FW_CALL log(void* userData, int32_t level, const char* message) {
         auto* host = static_cast<Host*>(userData);
         const std::lock_guard lock(host->mutex);
+        if (level == FW_LOG_WARNING) host->warnings.emplace_back(message);
         if (level >= FW_LOG_ERROR) {
             host->errors.emplace_back(message);
             host->lastError = message;

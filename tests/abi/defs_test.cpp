@@ -251,8 +251,10 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     };
     refuseFloat<FwWorldDef>(fwDefaultWorldDef(), &FwWorldDef::paceFactor, "paceFactor", makeWorld,
                             contextMessage, {0.0f, 0.05f, -1.0f, 1001.0f});
-    refuseFloat<FwWorldDef>(fwDefaultWorldDef(), &FwWorldDef::wetResistance, "wetResistance",
-                            makeWorld, contextMessage, {1.0f});
+    FwWorldDef later = fwDefaultWorldDef();
+    later.reserved = 1;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeWorld(&later));
+    EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::reserved is 1"));
 
     const std::function<FwResult(const FwMaterialDef*)> makeMaterial =
         [&](const FwMaterialDef* def) {

@@ -323,6 +323,33 @@ TEST(AbiTime, TooMuchTimeIsDroppedAndTold) {
     EXPECT_EQ(4u * 128, stats.tick);
 }
 
+TEST(AbiTime, TwelveDaysAreTheLimitAndItSaysSo) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "thirty million idle steps take too long under a sanitizer";
+#endif
+    FwWorldDef def = fwDefaultWorldDef();
+    def.maxStepsPerFrame = 64;
+    SheetWorld w(host::evenMaterial(kRate, 4), 0.25f, 0.25f, 32, def);
+    constexpr int kSeconds = 1048560;
+    for (int s = 0; s < kSeconds - 2; s += 2) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 2));
+    // A fire that reaches the end stays what it is.
+    w.ball(FW_IGNITE, 0.1f, 0, 0.1f, 0.05f);
+    ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1));
+    ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1.5f));  // there is room for one second of it
+    FwWorldStats stats{};
+    stats.structSize = sizeof stats;
+    ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
+    EXPECT_EQ(uint64_t(kSeconds) * 4096, stats.tick);
+    EXPECT_EQ(uint32_t(FW_POINT_BURNING), w.point(0.1f, 0, 0.1f).kind);
+    EXPECT_EQ(1u, w.host.warnings.size());
+    const uint64_t burnt = w.hash();
+    w.ball(FW_IGNITE, 0.2f, 0, 0.2f, 0.02f);  // for a time that does not come
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Step(w.world, 1));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("1048560 s")) << lastMessage(w.world);
+    EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0));
+    EXPECT_EQ(burnt, w.hash());
+}
+
 TEST(AbiTime, DelayedEventsWaitForTheirTime) {
     SheetWorld w(host::evenMaterial(kRate, 100));
     w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.03f, 1.5f);

@@ -160,7 +160,7 @@ typedef struct FwWorldDef {
     float paceFactor;           /* [0.1, 1000], default 1: how much faster than wood fire spreads
                                    and burns out. Games use 5 to 30. */
     float wind[3];              /* m/s, default 0 */
-    float wetResistance;        /* reserved, 0 */
+    uint32_t reserved;          /* 0 */
     uint32_t seed;              /* of everything cosmetic and of noise */
     uint32_t maxStepsPerFrame;  /* [1, 64], default 8: time beyond it is dropped and counted */
     uint32_t maxLights;         /* [0, 64], default 16 */
@@ -333,7 +333,8 @@ FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint3
 /* ---- running ---------------------------------------------------------------------------------------------- */
 
 /* Advances the simulation by deltaTime s, [0, 10]. cpu backend: at once. Own device: submits and
- * waits. Lent device: use fwWorld_RecordOutside instead (FW_ERROR_WRONG_BACKEND). [world] */
+ * waits. Lent device: use fwWorld_RecordOutside instead (FW_ERROR_WRONG_BACKEND). A world simulates
+ * at most 1048560 s (12 days, a warning comes a day before); then it refuses more time. [world] */
 FW_API FwResult FW_CALL fwWorld_Step(FwWorld*, float deltaTime);
 
 typedef struct FwView { /* what a camera and its light are; all lengths m */
