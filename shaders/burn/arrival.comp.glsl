@@ -1,109 +1,121 @@
-// The front kernel over the gathered texels, one thread each: new ticks to scratch, changed texels
-// to masks, the earliest pending arrival to the tile. Reads states, writes none: updates are Jacobi.
+// The front kernel over the gathered rows, one thread each: a ring moves along the row, so that a
+// texel loads one column of it. New ticks to scratch, changed texels to masks, the earliest pending
+// arrival to the tile. Reads states, writes none: updates are Jacobi.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_MATERIALS readonly
+#define FW_USE_OBJECT_QUADS
+#define FW_USE_MATERIAL_QUADS
 #define FW_USE_TEXELS readonly
 #define FW_USE_NORMALS readonly
 #define FW_USE_SLOWNESS readonly
-#define FW_USE_LINKS readonly
-#define FW_USE_TILES readonly
 #define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_RUN readonly
 #define FW_USE_SCRATCH FW_READ_WRITE
-#define FW_USE_MASKS FW_READ_WRITE
+#define FW_USE_SCRATCH_QUADS readonly
+#define FW_USE_MASK_WORDS
 #define FW_USE_COUNTERS readonly
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 
-void arrive(uint work) {
-    uint packedTexel = scratch[work * 2u];
-    uint slot = packedTexel >> 6u;
-    uint lane = packedTexel & 63u;
-    uint worldTile = run[slot];
-    uint object = tileState[worldTile].object;
-    uint local = worldTile - objects[object].worldTileBase;
-    uint shift = objects[object].substepShift;
-    uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);
-    uint floorTick = frontFloor(end - windowTicks(push.stepShift, shift), objects[object].window);
-    uint width = objects[object].width;
-    uint tilesX = objects[object].tilesX;
-    uint tileY = divide(local, tilesX);
-    uint texel = (tileY * 8u + (lane >> 3u)) * width + (local - tileY * tilesX) * 8u + (lane & 7u);
-    uint stateBase = objects[object].stateBase;
-    uint texelBase = objects[object].texelBase;
-    uint t = state[stateBase + texel];
-    uvec2 me = texels[texelBase + texel];
+struct Column {  // three texels, from below the row to above it
+    uint tick[3];
+    uvec2 place[3];
+    uint burn[3];
+};
 
-    FrontRing ring;
-    uint other[8];
-    uint present = 0xFFu;
-    if (((me.y >> 16u) & kTexelRim) != 0u) {
-        uvec4 rim = tiles[(objects[object].tileBase + local) * 2u + 1u];
-        uint below = lane < 32u
-                         ? uint(bitCount(rim.x & ((1u << lane) - 1u)))
-                         : uint(bitCount(rim.x) + bitCount(rim.y & ((1u << (lane - 32u)) - 1u)));
-        uint record = (objects[object].linkBase + rim.z + below) * 8u;
-        present = 0u;
-        for (uint k = 0u; k < 8u; ++k) {
-            other[k] = links[record + k];
-            if (other[k] != kNoneTexel) present |= 1u << k;
-        }
-    } else {
-        for (uint k = 0u; k < 8u; ++k)
-            other[k] = texel + uint(kFrontRingX[k]) + uint(kFrontRingY[k]) * width;
+// `material`: the one that is at hand, and how long it burns.
+Column columnAt(uint texel, uvec4 bases, uint materialBase, uint material, uint burnTicks) {
+    Column c;
+    FW_UNROLL for (int i = 0; i < 3; ++i) {
+        uint at = texel + uint(i - 1) * bases.w;
+        c.tick[i] = state[bases.y + at];
+        c.place[i] = uvec2(0u);
+        c.burn[i] = burnTicks;
+        // Of others than the row's own, only sources are looked at.
+        if (i == 1 || isSource(c.tick[i])) c.place[i] = texels[bases.x + at];
+        uint theirs = (c.place[i].y >> 16u) & 7u;
+        if (isSource(c.tick[i]) && theirs != material)
+            c.burn[i] = burnTicksOf(materialBase + theirs);
     }
-    for (uint k = 0u; k < 8u; ++k)
-        ring.tick[k] = (present & (1u << k)) != 0u ? state[stateBase + other[k]] : kInert;
+    return c;
+}
 
-    uint pending = kNever;
-    uint late = 0u;
-    uint decided = t;
-    uint counts = frontSources(ring, present, end, pending);
-    if (counts != 0u) {
-        uint material = (me.y >> 16u) & 7u;
-        uint materialBase = object * kMaterialsPerObject;
-        uint ownBurn = materials[materialBase + material].burnTicks;
-        ivec3 mine = decodePosition(me);
-        for (uint k = 0u; k < 8u; ++k) {
-            if ((counts & (1u << k)) == 0u) continue;
-            uvec2 they = texels[texelBase + other[k]];
-            uint theirs = (they.y >> 16u) & 7u;
-            ring.link[k] = mine - decodePosition(they);
-            ring.burn[k] = ownBurn;
-            if (theirs != material) ring.burn[k] = materials[materialBase + theirs].burnTicks;
+void arriveRow(uint work) {
+    uvec4 item = scratchQuads[work * 3u];
+    uint chosen = item.y;
+    if (chosen == 0u) return;
+    uvec4 bases = objectBases(item.w);
+    uvec4 times = objectTimes(item.w);
+    uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
+    uint floorTick = frontFloor(end - windowTicks(push.stepShift, times.y), times.x);
+    uint materialBase = item.w * kMaterialsPerObject;
+    uint x = uint(findLSB(chosen));
+    uint last = uint(findMSB(chosen));
+    uint held = (texels[bases.x + item.z + x].y >> 16u) & 7u;
+    BurnMaterial m = burnMaterial(materialBase + held);
+    Column left = columnAt(item.z + x - 1u, bases, materialBase, held, m.burnTicks);
+    Column middle = columnAt(item.z + x, bases, materialBase, held, m.burnTicks);
+    uint changed = 0u;
+    uint lit = 0u;
+    uint lateCount = 0u;
+    uint wake = kNever;
+    for (; x <= last; ++x) {
+        uint texel = item.z + x;
+        Column right = columnAt(texel + 1u, bases, materialBase, held, m.burnTicks);
+        if ((chosen & (1u << x)) != 0u) {
+            uint t = middle.tick[1];
+            uvec2 me = middle.place[1];
+            uint material = (me.y >> 16u) & 7u;
+            if (material != held) {
+                held = material;
+                m = burnMaterial(materialBase + held);
+            }
+            ivec3 mine = decodePosition(me);
+            FrontRing ring;
+            ring.tick = uint[8](right.tick[1], right.tick[2], middle.tick[2], left.tick[2],
+                                left.tick[1], left.tick[0], middle.tick[0], right.tick[0]);
+            ring.burn = uint[8](right.burn[1], right.burn[2], middle.burn[2], left.burn[2],
+                                left.burn[1], left.burn[0], middle.burn[0], right.burn[0]);
+            ring.link = ivec3[8](
+                mine - decodePosition(right.place[1]), mine - decodePosition(right.place[2]),
+                mine - decodePosition(middle.place[2]), mine - decodePosition(left.place[2]),
+                mine - decodePosition(left.place[1]), mine - decodePosition(left.place[0]),
+                mine - decodePosition(middle.place[0]), mine - decodePosition(right.place[0]));
+            uint pending = kNever;
+            uint late = 0u;
+            uint counts = frontSources(ring, 0xFFu, end, pending);
+            FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]),
+                                    slownessAt(bases.z, texel), m);
+            uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel,
+                                          pending);
+            uint decided = frontDecide(t, candidate, end, floorTick, pending, late);
+            if (decided != t) {
+                scratch[work * 12u + 4u + x] = decided;
+                changed |= 1u << x;
+                if (isReceptive(t)) lit |= 1u << x;
+                lateCount += late;
+            } else if (isReceptive(t)) {
+                wake = min(wake, pending);
+            }
         }
-        FrontPrep p = frontPrep(decodeNormal(normals[texelBase + texel]),
-                                slownessAt(objects[object].slowBase, texel),
-                                materials[materialBase + material]);
-        uint candidate =
-            frontArrival(ring, counts, p, materials[materialBase + material].windowMax, end,
-                         floorTick, texel, pending);
-        decided = frontDecide(t, candidate, end, floorTick, pending, late);
+        left = middle;
+        middle = right;
     }
-    scratch[work * 2u] = stateBase + texel;
-    scratch[work * 2u + 1u] = decided == t ? kNever : decided;
-    if (decided != t) {
-        uint bit = 1u << (lane & 31u);
-        if (lane < 32u) {
-            atomicOr(masks[slot].x, bit);
-            if (isReceptive(t)) atomicOr(masks[slot].z, bit);
-        } else {
-            atomicOr(masks[slot].y, bit);
-            if (isReceptive(t)) atomicOr(masks[slot].w, bit);
-        }
-        if (late != 0u) atomicAdd(objectCounters[object].lateClamps, 1u);
-    } else if (pending != kNever && isReceptive(t)) {
-        atomicMin(tileState[worldTile].wake, pending);
-    }
+    if (wake != kNever) atomicMin(tileState[run[item.x >> 3u].x].wake, wake);
+    if (changed == 0u) return;
+    scratch[work * 12u + 1u] = chosen | (changed << 8u);
+    uint row = item.x & 7u;
+    uint word = (item.x >> 3u) * 4u + (row >> 2u);
+    atomicOr(maskWords[word], changed << ((row & 3u) * 8u));
+    if (lit != 0u) atomicOr(maskWords[word + 2u], lit << ((row & 3u) * 8u));
+    if (lateCount != 0u) atomicAdd(objectCounters[item.w].lateClamps, lateCount);
 }
 
 void main() {
     uint count = counters[push.row].workCount;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) arrive(i);
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) arriveRow(i);
 }

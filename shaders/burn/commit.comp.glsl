@@ -1,6 +1,6 @@
-// Writes the new ticks (one thread per gathered texel), keeps tiles with pending arrivals on the
-// list and touches whoever reads a changed texel: the tile, its grid neighbours, its readers over
-// seams (one thread per due tile). The two halves do not meet: tiles are read, texels written.
+// Writes the new ticks (one thread per gathered row), keeps tiles with pending arrivals on the list
+// and touches whoever reads a changed texel: the tile, its grid neighbours, its readers over seams
+// (one thread per due tile). The two halves do not meet: tiles are read, texels written.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -12,7 +12,9 @@ layout(local_size_x = 64) in;
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_LISTS FW_READ_WRITE
 #define FW_USE_RUN readonly
+#define FW_USE_OBJECT_QUADS
 #define FW_USE_SCRATCH readonly
+#define FW_USE_SCRATCH_QUADS readonly
 #define FW_USE_MASKS readonly
 #define FW_USE_COUNTERS FW_READ_WRITE
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
@@ -23,7 +25,8 @@ layout(local_size_x = 64) in;
 #include "lib/lists.glsl"
 
 void commitTile(uint slot) {
-    uint worldTile = run[slot];
+    uvec4 tile = run[slot];
+    uint worldTile = tile.x;
     uvec4 mask = masks[slot];
     uint parity = push.parity ^ 1u;
     uint row = push.row + 1u;
@@ -31,7 +34,7 @@ void commitTile(uint slot) {
         if (tileState[worldTile].wake != kNever) touchTile(parity, row, worldTile, 0u);
         return;
     }
-    uint object = tileState[worldTile].object;
+    uint object = tile.y;
     uint worldTileBase = objects[object].worldTileBase;
     uint local = worldTile - worldTileBase;
     uint end = iterationEnd(push.now, push.iteration, push.stepShift,
@@ -55,27 +58,33 @@ void commitTile(uint slot) {
     uint tileY = divide(local, tilesX);
     uint tileX = local - tileY * tilesX;
     int tilesY = int(objects[object].height >> 3u);
-    for (uint k = 0u; k < 8u; ++k) {
-        if ((beside & (1u << k)) == 0u) continue;
+    for (; beside != 0u; beside &= beside - 1u) {
+        uint k = uint(findLSB(beside));
         uint other = besideTile(int(tilesX), tilesY, int(tileX), int(tileY), k);
         if (other != kNoneTexel) touchTile(parity, row, worldTileBase + other, kTileTouched);
     }
     if ((push.switches & kSwitchNoSeamWake) != 0u) return;
-    uvec4 seam = tiles[(objects[object].tileBase + local) * 2u];
+    uvec4 seam = tiles[tile.w * 2u];
     if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
     for (uint r = 0u; r < seam.w; ++r)
         touchTile(parity, row, worldTileBase + readerTile(object, seam.z, r), kTileTouched);
 }
 
+void commitRow(uint work) {
+    uvec4 item = scratchQuads[work * 3u];
+    uint at = objectBases(item.w).y + item.z;
+    for (uint changed = item.y >> 8u; changed != 0u; changed &= changed - 1u) {
+        uint x = uint(findLSB(changed));
+        state[at + x] = scratch[work * 12u + 4u + x];
+    }
+}
+
 void main() {
-    uint texelCount = counters[push.row].workCount;
+    uint rowCount = counters[push.row].workCount;
     uint tileCount = counters[push.row].runCount;
-    for (uint i = gl_GlobalInvocationID.x; i < texelCount || i < tileCount;
+    for (uint i = gl_GlobalInvocationID.x; i < rowCount || i < tileCount;
          i += gl_NumWorkGroups.x * 64u) {
-        if (i < texelCount) {
-            uint tick = scratch[i * 2u + 1u];
-            if (tick != kNever) state[scratch[i * 2u]] = tick;
-        }
+        if (i < rowCount) commitRow(i);
         if (i < tileCount) commitTile(i);
     }
 }

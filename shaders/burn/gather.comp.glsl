@@ -1,87 +1,107 @@
-// Finds the texels of the due tiles that have something to answer to, and packs them densely for
-// `arrival`: few texels of a tile do, and a software device pays for idle lanes. One thread per row
-// of a tile, eight tiles a group.
+// Finds the texels of the due tiles that have something to answer to, and lists their rows densely
+// for `arrival`: few rows of a tile have any, and a software device pays for idle lanes. Rim texels,
+// whose ring is elsewhere, go to `arrival_rim` unseen. One thread per row of a tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILES readonly
+#define FW_USE_OBJECT_QUADS
+#define FW_USE_TILE_WORDS
+#define FW_USE_STATE_QUADS
 #define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_RUN readonly
 #define FW_USE_SCRATCH writeonly
+#define FW_USE_SCRATCH_QUADS writeonly
 #define FW_USE_COUNTERS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 
-void gatherRow(uint slot, uint row) {
-    uint worldTile = run[slot];
-    uint object = tileState[worldTile].object;
-    uint local = worldTile - objects[object].worldTileBase;
-    uint shift = objects[object].substepShift;
-    uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);
-    uint floorTick = frontFloor(end - windowTicks(push.stepShift, shift), objects[object].window);
-    int width = int(objects[object].width);
-    int height = int(objects[object].height);
-    uint tilesX = objects[object].tilesX;
-    uint tileY = divide(local, tilesX);
-    int base = int(objects[object].stateBase);
-    int x0 = int(local - tileY * tilesX) * 8;
-    int y = int(tileY * 8u + row);
-    int at = base + y * width + x0;
+// Ten texels of a row, from the one left of a tile to the one right of it.
+struct Row {
+    uint sources;     // bits: burn by the window's end
+    uint walls;       // bits: barriers
+    uint future[10];  // ticks of those that will burn later, kNever: no such
+};
 
+Row rowOf(uint left, uvec4 a, uvec4 b, uint right, uint end) {
+    uint t[10] = uint[10](left, a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, right);
+    Row r;
+    r.sources = 0u;
+    r.walls = 0u;
+    FW_UNROLL for (int i = 0; i < 10; ++i) {
+        r.sources |= t[i] <= end ? 1u << uint(i) : 0u;
+        r.walls |= isBarrier(t[i]) ? 1u << uint(i) : 0u;
+        r.future[i] = isSource(t[i]) && t[i] > end ? t[i] : kNever;
+    }
+    return r;
+}
+
+void gatherRow(uint slot, uint row) {
+    uvec4 tile = run[slot];
+    uvec4 bases = objectBases(tile.y);
+    uvec4 times = objectTimes(tile.y);
+    uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
+    uint floorTick = frontFloor(end - windowTicks(push.stepShift, times.y), times.x);
+    uint texel = tile.z + row * bases.w;
+    uint at = bases.y + texel;
+    uvec4 a = stateQuads[at >> 2u];
+    uvec4 b = stateQuads[(at >> 2u) + 1u];
+    uint own[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
     uint eligible = 0u;
-    uint own[10];  // the row with one texel more on either side
-    for (int i = 0; i < 8; ++i) {
-        own[i + 1] = state[at + i];
-        if (frontEligible(own[i + 1], floorTick)) eligible |= 1u << uint(i);
+    uint receptive = 0u;
+    FW_UNROLL for (int i = 0; i < 8; ++i) {
+        eligible |= frontEligible(own[i], floorTick) ? 1u << uint(i) : 0u;
+        receptive |= isReceptive(own[i]) ? 1u << uint(i) : 0u;
     }
     if (eligible == 0u) return;
-    uvec4 statics = tiles[(objects[object].tileBase + local) * 2u + 1u];
-    uint rim = ((row < 4u ? statics.x : statics.y) >> ((row & 3u) * 8u)) & 0xFFu;
-    // Of rim texels the neighbours are elsewhere: `arrival` looks.
-    uint chosen = eligible & rim;
+    uint rim = rimOfRow(tile.w, row);
     uint inner = eligible & ~rim;
+    rim &= eligible;
+    uint chosen = 0u;
     uint pending = kNever;
     if (inner != 0u) {
-        bool left = x0 > 0;
-        bool right = x0 + 8 < width;
-        own[0] = left ? state[at - 1] : kInert;
-        own[9] = right ? state[at + 8] : kInert;
-        uint below[10];
-        uint above[10];
-        for (int i = 0; i < 10; ++i) {
-            bool inside = (i > 0 || left) && (i < 9 || right);
-            below[i] = inside && y > 0 ? state[at - width + i - 1] : kInert;
-            above[i] = inside && y + 1 < height ? state[at + width + i - 1] : kInert;
-        }
-        for (int i = 0; i < 8; ++i) {
-            if ((inner & (1u << uint(i))) == 0u) continue;
-            FrontRing ring;
-            ring.tick[0] = own[i + 2];
-            ring.tick[1] = above[i + 2];
-            ring.tick[2] = above[i + 1];
-            ring.tick[3] = above[i];
-            ring.tick[4] = own[i];
-            ring.tick[5] = below[i];
-            ring.tick[6] = below[i + 1];
-            ring.tick[7] = below[i + 2];
-            uint later = kNever;
-            if (frontSources(ring, 0xFFu, end, later) != 0u) chosen |= 1u << uint(i);
-            else if (isReceptive(own[i + 1])) pending = min(pending, later);
-        }
+        // An inner texel has its ring around it in the map.
+        bool left = (inner & 1u) != 0u;
+        bool right = (inner & 0x80u) != 0u;
+        uint down = at - bases.w;
+        uint up = at + bases.w;
+        Row m = rowOf(left ? state[at - 1u] : kInert, a, b, right ? state[at + 8u] : kInert, end);
+        Row d = rowOf(left ? state[down - 1u] : kInert, stateQuads[down >> 2u],
+                      stateQuads[(down >> 2u) + 1u], right ? state[down + 8u] : kInert, end);
+        Row u = rowOf(left ? state[up - 1u] : kInert, stateQuads[up >> 2u],
+                      stateQuads[(up >> 2u) + 1u], right ? state[up + 8u] : kInert, end);
+        // frontSources of eight texels at once: bit i is the texel in column i + 1.
+        uint straight = m.sources | (m.sources >> 2u) | (u.sources >> 1u) | (d.sources >> 1u);
+        uint openUp = ~(u.walls >> 1u);
+        uint openDown = ~(d.walls >> 1u);
+        uint openLeft = ~m.walls;
+        uint openRight = ~(m.walls >> 2u);
+        uint diagonal = (u.sources & (openUp | openLeft)) |
+                        ((u.sources >> 2u) & (openUp | openRight)) |
+                        (d.sources & (openDown | openLeft)) |
+                        ((d.sources >> 2u) & (openDown | openRight));
+        chosen = inner & (straight | diagonal);
+        uint quiet = inner & receptive & ~chosen;
+        uint column[10];
+        FW_UNROLL for (int i = 0; i < 10; ++i)
+            column[i] = min(m.future[i], min(d.future[i], u.future[i]));
+        FW_UNROLL for (int i = 0; i < 8; ++i)
+            if ((quiet & (1u << uint(i))) != 0u)
+                pending = min(pending, min(column[i], min(column[i + 1], column[i + 2])));
     }
-    if (pending != kNever) atomicMin(tileState[worldTile].wake, pending);
-    uint count = uint(bitCount(chosen));
-    if (count == 0u) return;
-    uint first = atomicAdd(counters[push.row].workCount, count);
-    // Groups of 64: those that begin in [first, first + count).
-    atomicMax(counters[push.row].workX, min((first + count - 1u) / 64u + 1u, kMaxGroups));
-    uint lane = row * 8u;
-    for (int i = 0; i < 8; ++i) {
-        if ((chosen & (1u << uint(i))) == 0u) continue;
-        scratch[first * 2u] = slot * 64u + lane + uint(i);
+    if (pending != kNever) atomicMin(tileState[tile.x].wake, pending);
+    if ((chosen | rim) == 0u) return;
+    uint item = atomicAdd(counters[push.row].workCount, 1u);
+    if ((item & 63u) == 0u)
+        atomicMax(counters[push.row].workX, min(item / 64u + 1u, kMaxGroups));
+    scratchQuads[item * 3u] = uvec4(slot * 8u + row, chosen, texel, tile.y);
+    if (rim == 0u) return;
+    uint count = uint(bitCount(rim));
+    uint first = atomicAdd(counters[push.row].rimCount, count);
+    atomicMax(counters[push.row].rimX, min((first + count - 1u) / 64u + 1u, kMaxGroups));
+    for (; rim != 0u; rim &= rim - 1u) {
+        scratch[rimItem(first)] = item * 8u + uint(findLSB(rim));
         ++first;
     }
 }

@@ -15,7 +15,7 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "lib/lists.glsl"
 
-void runTile(uint worldTile, uint flag) {
+void runTile(uint worldTile, TileRef tile, uint flag) {
     uint slot = atomicAdd(counters[push.row].runCount, 1u);
     if ((slot & 7u) == 0u) atomicMax(counters[push.row].runX, min(slot / 8u + 1u, kMaxGroups));
     if ((slot & 63u) == 0u) atomicMax(counters[push.row].workX, min(slot / 64u + 1u, kMaxGroups));
@@ -24,8 +24,14 @@ void runTile(uint worldTile, uint flag) {
         counters[push.row].runZ = 1u;
         counters[push.row].workY = 1u;
         counters[push.row].workZ = 1u;
+        counters[push.row].rimY = 1u;
+        counters[push.row].rimZ = 1u;
     }
-    run[slot] = worldTile;
+    uint tilesX = objects[tile.object].tilesX;
+    uint tileY = divide(tile.local, tilesX);
+    run[slot] = uvec4(worldTile, tile.object,
+                      (tileY * objects[tile.object].width + tile.local - tileY * tilesX) * 8u,
+                      objects[tile.object].tileBase + tile.local);
     masks[slot] = uvec4(0u);
     tileState[worldTile].wake = kNever;
     tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched);
@@ -48,7 +54,7 @@ void schedule(uint worldTile, bool dense) {
     uint wake = tileState[worldTile].wake;
     if (dense || (flag & kTileTouched) != 0u ||
         wake <= iterationEnd(push.now, push.iteration, push.stepShift, shift)) {
-        runTile(worldTile, flag);
+        runTile(worldTile, tile, flag);
     } else if (wake != kNever) {
         frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
     } else {

@@ -4,12 +4,42 @@
 #define FW_LIB_BUFFERS_GLSL
 #include "shared/burn.h"
 
+// *_WORDS and *_QUADS are the same buffers by words or by four: a software device loads four words
+// at once for little more than one, and pays for every load, taken or not.
 #define FW_READ_WRITE
 #define FW_BUFFER(number, access, block, type, name) \
     layout(std430, set = 0, binding = number) access buffer block { type name[]; }
 
 #ifdef FW_USE_OBJECTS
 FW_BUFFER(FW_BIND_OBJECTS, FW_USE_OBJECTS, ObjectsBuffer, BurnObject, objects);
+#endif
+#ifdef FW_USE_OBJECT_QUADS
+FW_BUFFER(FW_BIND_OBJECTS, readonly, ObjectQuadsBuffer, uvec4, objectQuads);
+uvec4 objectBases(uint object) { return objectQuads[object * 10u]; }  // texelBase .. width
+uvec4 objectTimes(uint object) { return objectQuads[object * 10u + 3u]; }  // window .. image
+#endif
+#ifdef FW_USE_MATERIAL_QUADS
+FW_BUFFER(FW_BIND_MATERIALS, readonly, MaterialQuadsBuffer, uvec4, materialQuads);
+BurnMaterial burnMaterial(uint material) {  // what the spread law needs of it
+    uvec4 a = materialQuads[material * 7u];
+    uvec4 b = materialQuads[material * 7u + 1u];
+    uvec4 c = materialQuads[material * 7u + 2u];
+    BurnMaterial m;
+    m.sigma0 = a.x;
+    m.headGain = a.y;
+    m.backGain = a.z;
+    m.driveMax = a.w;
+    m.breadthMax = b.x;
+    m.burnTicks = b.y;
+    m.ceiling = b.z;
+    m.driveX = int(c.x);
+    m.driveY = int(c.y);
+    m.driveZ = int(c.z);
+    m.upCeiling = materialQuads[material * 7u + 5u];
+    m.windowMax = materialQuads[material * 7u + 6u].y;
+    return m;
+}
+uint burnTicksOf(uint material) { return materialQuads[material * 7u + 1u].y; }
 #endif
 #ifdef FW_USE_MATERIALS
 FW_BUFFER(FW_BIND_MATERIALS, FW_USE_MATERIALS, MaterialsBuffer, BurnMaterial, materials);
@@ -28,6 +58,7 @@ uint slownessAt(uint base, uint texel) {
 #endif
 #ifdef FW_USE_LINKS
 FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinksBuffer, uint, links);
+FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinkQuadsBuffer, uvec4, linkQuads);
 #endif
 #ifdef FW_USE_READERS
 FW_BUFFER(FW_BIND_READERS, FW_USE_READERS, ReadersBuffer, uint, readers);
@@ -36,8 +67,18 @@ FW_BUFFER(FW_BIND_READERS, FW_USE_READERS, ReadersBuffer, uint, readers);
 // Two words of four per tile: seam mask, reader start and count; rim mask, rim base, unused.
 FW_BUFFER(FW_BIND_TILES, FW_USE_TILES, TilesBuffer, uvec4, tiles);
 #endif
+#ifdef FW_USE_TILE_WORDS
+FW_BUFFER(FW_BIND_TILES, readonly, TileWordsBuffer, uint, tileWords);
+// Of a row of eight texels: those with a ring record.
+uint rimOfRow(uint tile, uint row) {
+    return (tileWords[tile * 8u + 4u + (row >> 2u)] >> ((row & 3u) * 8u)) & 0xFFu;
+}
+#endif
 #ifdef FW_USE_STATE
 FW_BUFFER(FW_BIND_STATE, FW_USE_STATE, StateBuffer, uint, state);
+#endif
+#ifdef FW_USE_STATE_QUADS
+FW_BUFFER(FW_BIND_STATE, readonly, StateQuadsBuffer, uvec4, stateQuads);
 #endif
 #ifdef FW_USE_TILE_STATE
 FW_BUFFER(FW_BIND_TILE_STATE, FW_USE_TILE_STATE, TileStateBuffer, TileState, tileState);
@@ -47,13 +88,24 @@ FW_BUFFER(FW_BIND_LIST_A, FW_USE_LISTS, ListABuffer, uint, listA);
 FW_BUFFER(FW_BIND_LIST_B, FW_USE_LISTS, ListBBuffer, uint, listB);
 #endif
 #ifdef FW_USE_RUN
-FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uint, run);
+// World tile; object; its first texel in the object's map; its row of `tiles`.
+FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uvec4, run);
 #endif
 #ifdef FW_USE_SCRATCH
 FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH, ScratchBuffer, uint, scratch);
+// Word of rim texel `i` of an iteration: its gathered row * 8 + its column.
+uint rimItem(uint i) { return uint(scratch.length()) - 1u - i; }
+#endif
+#ifdef FW_USE_SCRATCH_QUADS
+// Three quads per gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel,
+// object), then its eight new ticks. The scratch's end lists rim texels, see rimItem.
+FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH_QUADS, ScratchQuadsBuffer, uvec4, scratchQuads);
 #endif
 #ifdef FW_USE_MASKS
 FW_BUFFER(FW_BIND_MASKS, FW_USE_MASKS, MasksBuffer, uvec4, masks);
+#endif
+#ifdef FW_USE_MASK_WORDS
+FW_BUFFER(FW_BIND_MASKS, FW_READ_WRITE, MaskWordsBuffer, uint, maskWords);
 #endif
 #ifdef FW_USE_COUNTERS
 FW_BUFFER(FW_BIND_COUNTERS, FW_USE_COUNTERS, CountersBuffer, IterationCounters, counters);

@@ -52,8 +52,9 @@ void predictTouch(uint parity, uint worldTile) {
 #ifdef FW_USE_READERS
 // Local tile `k` of the eight beside tile (tileX, tileY), or kNoneTexel.
 uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {
-    int x = tileX + kFrontRingX[k];
-    int y = tileY + kFrontRingY[k];
+    // kFrontRingX and Y in words of eight: `k` is no constant here, and devices are slow at that.
+    int x = tileX + int((0x901Au >> (2u * k)) & 3u) - 1;
+    int y = tileY + int((0x01A9u >> (2u * k)) & 3u) - 1;
     return x < 0 || y < 0 || x >= tilesX || y >= tilesY ? kNoneTexel : uint(y * tilesX + x);
 }
 // Local tile `r` of those that read tile `local` over seams. The switches are the test suite's.

@@ -19,8 +19,9 @@
 #define FW_BIND_TILE_STATE 9  // TileState[] (per object)
 #define FW_BIND_LIST_A 10     // uint[]: front list, world tile ids (ping)
 #define FW_BIND_LIST_B 11     // uint[]: front list (pong)
-#define FW_BIND_RUN 12        // uint[]: due tiles of this iteration
-#define FW_BIND_SCRATCH 13    // uvec2-wise uint[]: gathered texels, room for 64 per due tile
+#define FW_BIND_RUN 12        // uvec4[]: due tiles of this iteration, see kRun below
+#define FW_BIND_SCRATCH 13    // uint[]: gathered rows of texels from its start, see kScratch below;
+                              // rim texels from its end (row * 8 + column); 160 words per due tile
 #define FW_BIND_MASKS 14      // uvec4[]: texels changed (xy) and newly lit (zw) per due tile
 #define FW_BIND_COUNTERS 15   // IterationCounters[], see the kRow constants
 #define FW_BIND_EVENTS 16     // TexelEvent[]
@@ -99,15 +100,15 @@ FW_SHARED_CONST uint kEventExtinguish = 3u;
 
 struct BurnObject {   // everything a pass needs to find an object's planes
     uint texelBase;   // into texels, normals (per mesh)
-    uint stateBase;   // into state, predict, gradient
+    uint stateBase;   // into state, predict, gradient; a multiple of 64
     uint slowBase;    // into slowness, in WORDS
-    uint tileBase;    // into tiles (per mesh)
+    uint width;       // texels, a multiple of 8
     uint worldTileBase;  // into tileState; a world tile id = worldTileBase + local tile
     uint linkBase;    // into links, in records
     uint readerBase;  // into readers
     uint flags;
-    uint width;       // texels
-    uint height;
+    uint tileBase;    // into tiles (per mesh)
+    uint height;      // texels
     uint tilesX;
     uint tileCount;
     uint window;      // correction window, ticks
@@ -158,11 +159,13 @@ struct TileState {
 FW_SHARED_SIZE(TileState, 16)
 
 struct IterationCounters {  // zeroed before a frame from kRowIteration on, but for the carried list
-    uint workX; uint workY; uint workZ; uint workCount; // arrival, commit: X covers runCount too
+    uint workX; uint workY; uint workZ; uint workCount; // gathered rows: arrival, commit: X covers
+                                                        // runCount too
+    uint rimX; uint rimY; uint rimZ; uint rimCount;     // gathered rim texels: arrival_rim
     uint runX; uint runY; uint runZ; uint runCount;     // indirect groups of gather, due tiles
     uint listX; uint listY; uint listZ; uint listCount; // indirect groups of schedule, and its size
 };
-FW_SHARED_SIZE(IterationCounters, 48)
+FW_SHARED_SIZE(IterationCounters, 64)
 
 struct TexelEvent {   // sorted by (object, texel, order); one batch per step
     uint object;      // slot

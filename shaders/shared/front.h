@@ -253,7 +253,7 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
 FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowEnd,
                                FW_INOUT(uint) wake) {
     uint counts = 0u, walls = 0u;
-    for (int k = 0; k < 8; ++k) {
+    FW_UNROLL for (int k = 0; k < 8; ++k) {
         uint t = ring.tick[k];
         if (isSource(t)) {
             if (t <= windowEnd) counts |= 1u << uint(k);
@@ -268,6 +268,26 @@ FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowE
     return counts & ~cut;
 }
 
+// One of eight: devices keep arrays that are indexed in memory, and seven selects are cheaper.
+#ifdef __cplusplus
+inline int pick(const int (&of)[8], int k) { return of[k]; }
+inline ivec3 pickLink(const FrontRing& ring, int k) { return ring.link[k]; }
+#else
+#define FW_PICK(of, k)                                                                            \
+    ((k & 4) == 0 ? ((k & 2) == 0 ? ((k & 1) == 0 ? of(0) : of(1)) : ((k & 1) == 0 ? of(2) : of(3))) \
+                  : ((k & 2) == 0 ? ((k & 1) == 0 ? of(4) : of(5)) : ((k & 1) == 0 ? of(6) : of(7))))
+int pick(int of[8], int k) {
+#define FW_ONE(i) of[i]
+    return FW_PICK(FW_ONE, k);
+#undef FW_ONE
+}
+ivec3 pickLink(FrontRing ring, int k) {
+#define FW_ONE(i) ring.link[i]
+    return FW_PICK(FW_ONE, k);
+#undef FW_ONE
+}
+#endif
+
 // Arrival tick from the counting sources, kNever if none is left. A source burnt out before it
 // could light this texel is dropped; `wake` then falls to the tick after which it can no longer
 // count again under another wind: until then its reader must stay on the list.
@@ -276,48 +296,52 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
                                FW_INOUT(uint) wake) {
     int cost[8];
     uint base = kNever;
-    for (int k = 0; k < 8; ++k) {
-        if ((counts & (1u << uint(k))) == 0u) continue;
-        uint t = ring.tick[k];
-        ivec3 l = ring.link[k];
-        cost[k] = linkCost(ivec3(l.x * 8, l.y * 8, l.z * 8), p);
-        if (ring.burn[k] != kNoneTexel) {
-            uint end = t + ring.burn[k];
+    FW_UNROLL for (int k = 0; k < 8; ++k) {
+        if ((counts & (1u << uint(k))) != 0u) {
+            uint t = ring.tick[k];
+            ivec3 l = ring.link[k];
+            cost[k] = linkCost(ivec3(l.x * 8, l.y * 8, l.z * 8), p);
+            uint end = ring.burn[k] != kNoneTexel ? t + ring.burn[k] : kNever;
             uint reach = t + (uint(cost[k] + 8) >> 4u);
             if (end < (reach > floorTick ? reach : floorTick)) {
                 counts &= ~(1u << uint(k));
                 uint hold = end + windowMax + 1u;
                 if (hold > windowEnd) wake = hold < wake ? hold : wake;
-                continue;
+            } else {
+                base = t < base ? t : base;
             }
         }
-        base = t < base ? t : base;
     }
     if (counts == 0u) return kNever;
     int rel[8];
     int best = 0x7FFFFFFF;
     int bestK = 0;
-    for (int k = 0; k < 8; ++k) {
-        if ((counts & (1u << uint(k))) == 0u) continue;
-        uint delay = ring.tick[k] - base;
-        rel[k] = int(delay < kFrontDelayMax ? delay : kFrontDelayMax) * 16;
-        cost[k] += rel[k];
-        if (cost[k] < best) {
-            best = cost[k];
-            bestK = k;
+    FW_UNROLL for (int k = 0; k < 8; ++k) {
+        if ((counts & (1u << uint(k))) != 0u) {
+            uint delay = ring.tick[k] - base;
+            rel[k] = int(delay < kFrontDelayMax ? delay : kFrontDelayMax) * 16;
+            cost[k] += rel[k];
+            if (cost[k] < best) {
+                best = cost[k];
+                bestK = k;
+            }
         }
     }
     int hop = best;
-    int c = (bestK + 1) & 7;
-    int a = (bestK + 7) & 7;
-    if ((counts & (1u << uint(c))) != 0u &&
-        pairFalls(rel[bestK], rel[c], ring.link[bestK], ring.link[c], p)) {
-        int g = bestOfPair(rel[bestK], rel[c], hop, cost[c], ring.link[bestK], ring.link[c], p);
-        best = g < best ? g : best;
-    }
-    if ((counts & (1u << uint(a))) != 0u &&
-        pairFalls(rel[bestK], rel[a], ring.link[bestK], ring.link[a], p)) {
-        int g = bestOfPair(rel[bestK], rel[a], hop, cost[a], ring.link[bestK], ring.link[a], p);
+    bool hasC = (counts & (1u << uint((bestK + 1) & 7))) != 0u;
+    bool hasA = (counts & (1u << uint((bestK + 7) & 7))) != 0u;
+    int c = hasC ? (bestK + 1) & 7 : bestK;
+    int a = hasA ? (bestK + 7) & 7 : bestK;
+    int relB = pick(rel, bestK), relC = pick(rel, c), relA = pick(rel, a);
+    ivec3 linkB = pickLink(ring, bestK), linkC = pickLink(ring, c), linkA = pickLink(ring, a);
+    bool byC = hasC && pairFalls(relB, relC, linkB, linkC, p);
+    bool byA = hasA && pairFalls(relB, relA, linkB, linkA, p);
+    // A loop, for few texels have both: a device that cannot jump goes through it once or twice.
+    for (int pairs = (byC ? 1 : 0) + (byA ? 1 : 0); pairs > 0; --pairs) {
+        bool toA = pairs == 2 || !byC;
+        ivec3 linkTo = ivec3(toA ? linkA.x : linkC.x, toA ? linkA.y : linkC.y,
+                             toA ? linkA.z : linkC.z);
+        int g = bestOfPair(relB, toA ? relA : relC, hop, pick(cost, toA ? a : c), linkB, linkTo, p);
         best = g < best ? g : best;
     }
     // Hashed rounding: whole ticks would slow fast fires down or hurry them.

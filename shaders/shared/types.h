@@ -26,6 +26,7 @@ inline void umulExtended(uint a, uint b, uint& high, uint& low) {
 #define FW_SHARED_FN inline
 #define FW_SHARED_CONST constexpr
 #define FW_OUT(T) T&
+#define FW_UNROLL
 #define FW_SHARED_SIZE(T, bytes) static_assert(sizeof(T) == (bytes));
 #else
 #define FW_SHARED_BEGIN
@@ -33,6 +34,9 @@ inline void umulExtended(uint a, uint b, uint& high, uint& low) {
 #define FW_SHARED_FN
 #define FW_SHARED_CONST const
 #define FW_OUT(T) out T
+// Of loops over small arrays: these become registers only if every index is a constant.
+#extension GL_EXT_control_flow_attributes : require
+#define FW_UNROLL [[unroll]]
 #define FW_SHARED_SIZE(T, bytes)
 #endif
 #endif

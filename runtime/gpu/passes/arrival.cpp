@@ -1,4 +1,4 @@
-// The front kernel over the gathered texels.
+// The front kernel over the gathered rows of texels.
 #include "gpu/passes/frame_graph.h"
 
 namespace fw::gpu {
@@ -11,8 +11,6 @@ constexpr Use kUses[] = {
     {FW_BIND_TEXELS, Access::read},
     {FW_BIND_NORMALS, Access::read},
     {FW_BIND_SLOWNESS, Access::read},
-    {FW_BIND_LINKS, Access::read},
-    {FW_BIND_TILES, Access::read},
     {FW_BIND_STATE, Access::read},
     {FW_BIND_TILE_STATE, Access::write},
     {FW_BIND_RUN, Access::read},

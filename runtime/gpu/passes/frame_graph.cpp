@@ -13,10 +13,10 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,      &kEventsPass,        &kWakePass,      &kSchedulePass,    &kGatherPass,
-    &kArrivalPass,    &kCommitPass,        &kPublishedPass, &kReduceClearPass, &kReduceFrontPass,
-    &kReducePass,     &kPredictGatherPass, &kPredictPass,   &kProbePass,       &kLightsPass,
-    &kFlameQuadsPass, &kFlameSortPass};
+    &kResetPass,       &kEventsPass,     &kWakePass,          &kSchedulePass,  &kGatherPass,
+    &kArrivalPass,     &kArrivalRimPass, &kCommitPass,        &kPublishedPass, &kReduceClearPass,
+    &kReduceFrontPass, &kReducePass,     &kPredictGatherPass, &kPredictPass,   &kProbePass,
+    &kLightsPass,      &kFlameQuadsPass, &kFlameSortPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -99,6 +99,7 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
             recorder.dispatchList(kSchedulePass, &push, lists.row);
         recorder.dispatchRun(kGatherPass, &push, lists.row);
         recorder.dispatchWork(kArrivalPass, &push, lists.row);
+        recorder.dispatchRim(kArrivalRimPass, &push, lists.row);
         recorder.dispatchWork(kCommitPass, &push, lists.row);
         lists.row += 1;
         lists.parity ^= 1;

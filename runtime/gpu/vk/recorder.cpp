@@ -40,6 +40,10 @@ void FrameRecorder::dispatchWork(const ComputePass& pass, const void* push, uint
     dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, workX));
 }
 
+void FrameRecorder::dispatchRim(const ComputePass& pass, const void* push, uint32_t row) {
+    dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, rimX));
+}
+
 void FrameRecorder::dispatchRun(const ComputePass& pass, const void* push, uint32_t row) {
     dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, runX));
 }

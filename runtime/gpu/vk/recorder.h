@@ -23,8 +23,9 @@ class FrameRecorder {
     explicit FrameRecorder(const RecordTarget& target) : t_(target) {}
 
     void dispatch(const ComputePass& pass, const void* push, uint32_t groups);
-    // Groups from a row of the counters: its work, run or list part.
+    // Groups from a row of the counters: its work, rim, run or list part.
     void dispatchWork(const ComputePass& pass, const void* push, uint32_t row);
+    void dispatchRim(const ComputePass& pass, const void* push, uint32_t row);
     void dispatchRun(const ComputePass& pass, const void* push, uint32_t row);
     void dispatchList(const ComputePass& pass, const void* push, uint32_t row);
 

@@ -1,0 +1,98 @@
+// As `arrival`, for rim texels: their ring is anywhere in the map, so each is looked up by its links.
+// One thread per gathered texel; runs after `arrival`, whose rows' words it adds to.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_OBJECT_QUADS
+#define FW_USE_MATERIAL_QUADS
+#define FW_USE_TEXELS readonly
+#define FW_USE_NORMALS readonly
+#define FW_USE_SLOWNESS readonly
+#define FW_USE_LINKS readonly
+#define FW_USE_TILES readonly
+#define FW_USE_STATE readonly
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_RUN readonly
+#define FW_USE_SCRATCH FW_READ_WRITE
+#define FW_USE_SCRATCH_QUADS readonly
+#define FW_USE_MASK_WORDS
+#define FW_USE_COUNTERS readonly
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+
+void arrive(uint rimWork) {
+    uint packedTexel = scratch[rimItem(rimWork)];
+    uint work = packedTexel >> 3u;
+    uint x = packedTexel & 7u;
+    uvec4 item = scratchQuads[work * 3u];
+    uint slot = item.x >> 3u;
+    uint object = item.w;
+    uint texel = item.z + x;
+    uint lane = (item.x & 7u) * 8u + x;
+    uvec4 tile = run[slot];
+    uvec4 bases = objectBases(object);
+    uvec4 times = objectTimes(object);
+    uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
+    uint floorTick = frontFloor(end - windowTicks(push.stepShift, times.y), times.x);
+    uint t = state[bases.y + texel];
+    uvec4 rim = tiles[tile.w * 2u + 1u];
+    uint below = lane < 32u ? uint(bitCount(rim.x & ((1u << lane) - 1u)))
+                            : uint(bitCount(rim.x) +
+                                   bitCount(rim.y & ((1u << (lane - 32u)) - 1u)));
+    uint record = (objects[object].linkBase + rim.z + below) * 2u;
+    uvec4 a = linkQuads[record];
+    uvec4 b = linkQuads[record + 1u];
+    uint other[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
+    FrontRing ring;
+    uint present = 0u;
+    FW_UNROLL for (int k = 0; k < 8; ++k) {
+        ring.tick[k] = kInert;
+        if (other[k] != kNoneTexel) {
+            present |= 1u << uint(k);
+            ring.tick[k] = state[bases.y + other[k]];
+        }
+    }
+    uint pending = kNever;
+    uint late = 0u;
+    uint counts = frontSources(ring, present, end, pending);
+    uvec2 me = texels[bases.x + texel];
+    uint material = (me.y >> 16u) & 7u;
+    uint materialBase = object * kMaterialsPerObject;
+    BurnMaterial m = burnMaterial(materialBase + material);
+    ivec3 mine = decodePosition(me);
+    FW_UNROLL for (int k = 0; k < 8; ++k) {
+        uvec2 they = uvec2(0u);
+        ring.burn[k] = m.burnTicks;
+        if ((counts & (1u << uint(k))) != 0u) {
+            they = texels[bases.x + other[k]];
+            uint theirs = (they.y >> 16u) & 7u;
+            if (theirs != material) ring.burn[k] = burnTicksOf(materialBase + theirs);
+        }
+        ring.link[k] = mine - decodePosition(they);
+    }
+    uint decided = t;
+    if (counts != 0u) {
+        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
+                                m);
+        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, pending);
+        decided = frontDecide(t, candidate, end, floorTick, pending, late);
+    }
+    if (decided != t) {
+        scratch[work * 12u + 4u + x] = decided;
+        atomicOr(scratch[work * 12u + 1u], 0x100u << x);
+        uint word = slot * 4u + (lane >> 5u);
+        atomicOr(maskWords[word], 1u << (lane & 31u));
+        if (isReceptive(t)) atomicOr(maskWords[word + 2u], 1u << (lane & 31u));
+        if (late != 0u) atomicAdd(objectCounters[object].lateClamps, 1u);
+    } else if (pending != kNever && isReceptive(t)) {
+        atomicMin(tileState[tile.x].wake, pending);
+    }
+}
+
+void main() {
+    uint count = counters[push.row].rimCount;
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) arrive(i);
+}
