@@ -134,6 +134,62 @@ TEST(AbiOwnDevice, BurnsAsTheCpuDoes) {
     EXPECT_EQ(0, gpu.bytes);
 }
 
+// The lights of a young fire after eight steps, none of them with a picture.
+std::vector<FwLight> lightsOf(FwContext* context) {
+    FwWorld* world = nullptr;
+    const FwWorldDef worldDef = fwDefaultWorldDef();
+    EXPECT_EQ(FW_OK, fwCreateWorld(context, &worldDef, &world)) << lastMessage(context);
+    const host::Sheet sheet(0.8f, 0.4f, 3);
+    const FwMeshDef meshDef = sheet.def(64);
+    FwMeshId mesh{};
+    EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh)) << lastMessage(world);
+    FwMaterialDef pine = fwDefaultMaterialDef();
+    FwMaterialId material{};
+    EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &pine, &material));
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.mesh = mesh;
+    def.materials[0] = material;
+    FwBurnableMeshId object{};
+    EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &def, &object)) << lastMessage(world);
+    FwIgnitionDef ignition = fwDefaultIgnitionDef();
+    ignition.position[0] = 0.4f;
+    ignition.position[2] = 0.2f;
+    ignition.radius = 0.15f;
+    EXPECT_EQ(FW_OK, fwWorld_Ignite(world, &ignition, nullptr));
+    for (int i = 0; i < 8; ++i) EXPECT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32));
+    std::vector<FwLight> lights(64);
+    lights.resize(fwWorld_GetLights(world, lights.data(), 64));
+    fwDestroyWorld(world);
+    return lights;
+}
+
+TEST(AbiOwnDevice, LightsComeWithoutAPictureAndAreTheCpus) {
+    Host gpu, cpu;
+    OWN_DEVICE_OR_SKIP(context, gpu);
+    FwContext* reference = host::createCpuContext(cpu);
+    const std::vector<FwLight> a = lightsOf(context), b = lightsOf(reference);
+    ASSERT_FALSE(a.empty());
+    ASSERT_FALSE(b.empty());
+    // Both make lights of their own cells; the whole is the same but for flicker, at most 22 %.
+    double power[2] = {}, intensity[2] = {};
+    for (int side = 0; side < 2; ++side)
+        for (const FwLight& light : side == 0 ? a : b) {
+            power[side] += double(light.power);
+            intensity[side] += double(light.intensity);
+            EXPECT_NEAR(1.0, double(light.intensity / light.power) / (0.3 / 12.566), 0.23);
+            for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(b[0].color[i], light.color[i]);
+            EXPECT_NEAR(0.4f, light.position[0], 0.3f);
+            EXPECT_NE(0u, light.id);
+        }
+    EXPECT_NEAR(power[1], power[0], 0.1 * power[1]);
+    EXPECT_NEAR(intensity[1], intensity[0], 0.3 * intensity[1]);
+    std::printf("           %.0f W and %.0f W/sr, cpu %.0f W and %.0f W/sr\n", power[0],
+                intensity[0], power[1], intensity[1]);
+    fwDestroyContext(reference);
+    fwDestroyContext(context);
+    EXPECT_EQ(0, gpu.blocks);
+}
+
 TEST(AbiOwnDevice, RefusesWhatBelongsToALentOneAndBadPictures) {
     Host host;
     OWN_DEVICE_OR_SKIP(context, host);

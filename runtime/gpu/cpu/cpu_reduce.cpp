@@ -122,10 +122,11 @@ void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {
     for (size_t i = 0; i < count; ++i) {
         const Cell& cell = cells[i];
         BurnLight light{};
-        // A third of the power is radiated; colour of a sooty flame, luminance 1.
+        // As lights.comp, but that one flickers and knows old embers: 30 % of the power leaves as
+        // light and heat; colour of a sooty flame, luminance 1.
         light.positionRadius = {cell.position[0] / cell.power, cell.position[1] / cell.power,
                                 cell.position[2] / cell.power, std::sqrt(cell.area / 3.14159265f)};
-        light.colorIntensity = {2.17f, 0.72f, 0.16f, cell.power * 0.3f / 12.5663706f * 0.02f};
+        light.colorIntensity = {1.717f, 0.858f, 0.292f, cell.power * 0.3f / 12.566f};
         light.power = cell.power;
         light.id = cell.id;
         out.push_back(light);

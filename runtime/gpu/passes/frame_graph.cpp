@@ -150,11 +150,17 @@ bool drawPassDraws(size_t pass, std::span<const DrawItem> items) {
     return pass >= kSurfaceVariants || surfaceDraws(uint32_t(pass), items);
 }
 
-void recordLooks(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {
+void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {
     StepPush push{};
     push.now = endTick;
     push.burnParity = lists.burnParity;
     recorder.dispatch(kLightsPass, &push, 1);
+}
+
+void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {
+    StepPush push{};
+    push.now = endTick;
+    push.burnParity = lists.burnParity;
     recorder.dispatch(kFlameQuadsPass, &push, 16);
     recorder.dispatch(kFlameSortPass, nullptr, 1);
 }

@@ -59,7 +59,8 @@ void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles);
 // False: it would draw nothing, do not bind it.
 bool drawPassDraws(size_t pass, std::span<const DrawItem> items);
 void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawItem> items);
-// For the frame's view: lights, flames and their order.
-void recordLooks(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
+void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
+// For the frame's view, after the lights: flames and their order.
+void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 
 }  // namespace fw::gpu

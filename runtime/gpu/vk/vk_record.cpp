@@ -506,11 +506,15 @@ void VkBackend::State::closeFrame(const FwView* view) {
     const Table& vk = device.table;
     FrameInFlight& slot = *open.slot;
     RecordTarget target = recordTarget(slot, open.commands);
-    if (view && !burnEmpty && limits.looks.viewParams) {
+    if (!burnEmpty && limits.looks.viewParams) {
+        // A step of an own device has no view: lights alone, which flicker with simulated time.
+        FwView none{};
+        none.time = float(double(open.endTick) / kTicksPerSecond);
         const VkViewport whole{0, 0, 1, 1, 0, 1};
-        target.viewOffset = pushView(slot, *view, whole);
+        target.viewOffset = pushView(slot, view ? *view : none, whole);
         FrameRecorder looks(target);
-        recordLooks(looks, lists, open.endTick);
+        recordLights(looks, lists, open.endTick);
+        if (view) recordFlameQuads(looks, lists, open.endTick);
     }
     FrameRecorder recorder(target);
     if (open.readback && open.planFrame) {
