@@ -1,17 +1,21 @@
-// Finds the texels of the predict list's tiles whose shown arrival may change, and packs them for
-// `predict`. States that are no arrival (wet, put out, ...) are passed on here. What has an arrival
-// already is gone over in about every eighth frame only. One thread per row.
+// Finds the texels of the predict list's tiles whose shown arrival may change, and lists their rows
+// for `predict`, rim texels for `predict_rim`. States that are no arrival (wet, put out, ...) are
+// passed on here. What has an arrival already is gone over in about every eighth frame only. One
+// thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILES readonly
+#define FW_USE_OBJECT_QUADS
+#define FW_USE_TILE_WORDS
 #define FW_USE_STATE readonly
+#define FW_USE_STATE_QUADS
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS FW_READ_WRITE
 #define FW_USE_SCRATCH writeonly
+#define FW_USE_SCRATCH_QUADS writeonly
 #define FW_USE_PREDICT FW_READ_WRITE
+#define FW_USE_PREDICT_QUADS
 #define FW_USE_GRADIENT writeonly
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
@@ -20,73 +24,96 @@ layout(local_size_x = 64) in;
 
 bool hasTime(uint p) { return p < kLiveEnd; }
 
+// Bit i: column i - 1 of the row has a time.
+uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {
+    uint p[10] = uint[10](left, a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, right);
+    uint times = 0u;
+    FW_UNROLL for (int i = 0; i < 10; ++i) times |= hasTime(p[i]) ? 1u << uint(i) : 0u;
+    return times;
+}
+
 void gatherRow(uint slot, uint row) {
     uint counterRow = kRowPredict + push.predictParity;
     uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
     if (row == 0u)
         atomicAnd(tileState[worldTile].flag, ~(kTilePredict << push.predictParity));
-    TileRef tile = tileRef(worldTile);
-    if (!tile.alive) return;
-    int width = int(objects[tile.object].width);
-    int height = int(objects[tile.object].height);
-    uint tilesX = objects[tile.object].tilesX;
-    uint tileY = divide(tile.local, tilesX);
-    int base = int(objects[tile.object].stateBase);
-    int x0 = int(tile.local - tileY * tilesX) * 8;
-    int y = int(tileY * 8u + row);
-    int at = base + y * width + x0;
-
-    bool again = (hash32((push.now >> 7u) + worldTile) & 7u) == 0u;
-    uint chosen = 0u;
-    uint known = 0u; // unburnt, with a time
+    uint object = tileState[worldTile].object;
+    uvec4 bases = objectBases(object);
+    uvec4 places = objectPlaces(object);
+    uvec4 sizes = objectSizes(object);
+    uint local = worldTile - places.x;
+    if ((places.w & kObjectLive) == 0u || local >= sizes.w) return;
+    uint tileY = divide(local, sizes.z);
+    uint tileX = local - tileY * sizes.z;
+    uint texel = (tileY * bases.w + tileX) * 8u + row * bases.w;
+    uint at = bases.y + texel;
+    uvec4 ta = stateQuads[at >> 2u];
+    uvec4 tb = stateQuads[(at >> 2u) + 1u];
+    uvec4 pa = predictQuads[at >> 2u];
+    uvec4 pb = predictQuads[(at >> 2u) + 1u];
+    uint t[8] = uint[8](ta.x, ta.y, ta.z, ta.w, tb.x, tb.y, tb.z, tb.w);
+    uint p[8] = uint[8](pa.x, pa.y, pa.z, pa.w, pb.x, pb.y, pb.z, pb.w);
+    uint lit = 0u;   // burns, and is not shown so
     uint open = 0u;  // unburnt: an arrival may be predicted
-    uint own[10];
-    for (int i = 0; i < 8; ++i) {
-        uint t = state[at + i];
-        uint p = predict[at + i];
-        own[i + 1] = p;
-        if (isSource(t)) {
-            if (p != t) chosen |= 1u << uint(i);
-        } else if (t == kNever) {
-            open |= 1u << uint(i);
-            if (hasTime(p)) known |= 1u << uint(i);
-        } else if (p != t) {
-            // What was put out keeps the look of the age it had: its gradient is that age.
-            if (hasTime(p) && t != kWet) gradient[at + i] = p <= push.now ? push.now - p : 0u;
-            predict[at + i] = t;
-        }
+    uint known = 0u; // of these: with a time
+    uint passed = 0u;
+    FW_UNROLL for (int i = 0; i < 8; ++i) {
+        uint bit = 1u << uint(i);
+        bool differs = p[i] != t[i];
+        lit |= isSource(t[i]) && differs ? bit : 0u;
+        open |= t[i] == kNever ? bit : 0u;
+        known |= t[i] == kNever && hasTime(p[i]) ? bit : 0u;
+        passed |= !isSource(t[i]) && t[i] != kNever && differs ? bit : 0u;
     }
+    for (; passed != 0u; passed &= passed - 1u) {
+        uint i = at + uint(findLSB(passed));
+        uint code = state[i];
+        uint time = predict[i];
+        // What was put out keeps the look of the age it had: its gradient is that age.
+        if (hasTime(time) && code != kWet) gradient[i] = time <= push.now ? push.now - time : 0u;
+        predict[i] = code;
+    }
+    uint chosen = lit;
+    bool again = (hash32((push.now >> 7u) + worldTile) & 7u) == 0u;
     if (again) chosen |= known;
     else if (known != 0u) predictTouch(push.predictParity ^ 1u, worldTile);
+    uint rim = 0u;
     uint fresh = open & ~known;
+    if ((fresh | chosen) != 0u) rim = rimOfRow(sizes.x + local, row);
     if (fresh != 0u) {
-        uvec4 statics = tiles[(objects[tile.object].tileBase + tile.local) * 2u + 1u];
-        uint rim = ((row < 4u ? statics.x : statics.y) >> ((row & 3u) * 8u)) & 0xFFu;
-        chosen |= fresh & rim;
-        bool left = x0 > 0;
-        bool right = x0 + 8 < width;
-        // Bit i + 1: the row, or one beside it, has a time in column i.
-        uint times = 0u;
-        for (int i = 0; i < 10; ++i) {
-            bool inside = (i > 0 || left) && (i < 9 || right);
-            if (!inside) continue;
-            uint p = i > 0 && i < 9 ? own[i] : predict[at + i - 1];
-            bool any = hasTime(p);
-            if (y > 0) any = hasTime(predict[at - width + i - 1]) || any;
-            if (y + 1 < height) any = hasTime(predict[at + width + i - 1]) || any;
-            if (any) times |= 1u << uint(i);
+        bool left = tileX > 0u;
+        bool right = tileX + 1u < sizes.z;
+        uint times = timesOf(left ? predict[at - 1u] : kNever, pa, pb,
+                             right ? predict[at + 8u] : kNever);
+        if (tileY > 0u || row > 0u) {
+            uint down = at - bases.w;
+            times |= timesOf(left ? predict[down - 1u] : kNever, predictQuads[down >> 2u],
+                             predictQuads[(down >> 2u) + 1u], right ? predict[down + 8u] : kNever);
         }
-        chosen |= fresh & (times | (times >> 1u) | (times >> 2u)) & 0xFFu;
+        if (tileY * 8u + row + 1u < sizes.y) {
+            uint up = at + bases.w;
+            times |= timesOf(left ? predict[up - 1u] : kNever, predictQuads[up >> 2u],
+                             predictQuads[(up >> 2u) + 1u], right ? predict[up + 8u] : kNever);
+        }
+        chosen |= fresh & (rim | times | (times >> 1u) | (times >> 2u)) & 0xFFu;
     }
-    uint count = uint(bitCount(chosen));
-    if (count == 0u) return;
-    uint first = atomicAdd(counters[counterRow].workCount, count);
-    atomicMax(counters[counterRow].workX, min((first + count - 1u) / 64u + 1u, kMaxGroups));
-    counters[counterRow].workY = 1u;
-    counters[counterRow].workZ = 1u;
-    for (int i = 0; i < 8; ++i) {
-        if ((chosen & (1u << uint(i))) == 0u) continue;
-        scratch[first * 2u] = slot * 64u + row * 8u + uint(i);
+    if (chosen == 0u) return;
+    uint item = atomicAdd(counters[counterRow].workCount, 1u);
+    if ((item & 63u) == 0u) {
+        atomicMax(counters[counterRow].workX, min(item / 64u + 1u, kMaxGroups));
+        counters[counterRow].workY = 1u;
+        counters[counterRow].workZ = 1u;
+    }
+    scratchQuads[item] = uvec4(worldTile * 8u + row, chosen & ~rim, texel, object);
+    rim &= chosen;
+    if (rim == 0u) return;
+    uint count = uint(bitCount(rim));
+    uint first = atomicAdd(counters[counterRow].rimCount, count);
+    atomicMax(counters[counterRow].rimX, min((first + count - 1u) / 64u + 1u, kMaxGroups));
+    counters[counterRow].rimY = 1u;
+    counters[counterRow].rimZ = 1u;
+    for (; rim != 0u; rim &= rim - 1u) {
+        scratch[rimItem(first)] = item * 8u + uint(findLSB(rim));
         ++first;
     }
 }

@@ -16,6 +16,8 @@ FW_BUFFER(FW_BIND_OBJECTS, FW_USE_OBJECTS, ObjectsBuffer, BurnObject, objects);
 #ifdef FW_USE_OBJECT_QUADS
 FW_BUFFER(FW_BIND_OBJECTS, readonly, ObjectQuadsBuffer, uvec4, objectQuads);
 uvec4 objectBases(uint object) { return objectQuads[object * 10u]; }  // texelBase .. width
+uvec4 objectPlaces(uint object) { return objectQuads[object * 10u + 1u]; }  // .. flags
+uvec4 objectSizes(uint object) { return objectQuads[object * 10u + 2u]; }  // tileBase .. tileCount
 uvec4 objectTimes(uint object) { return objectQuads[object * 10u + 3u]; }  // window .. image
 #endif
 #ifdef FW_USE_MATERIAL_QUADS
@@ -98,7 +100,8 @@ uint rimItem(uint i) { return uint(scratch.length()) - 1u - i; }
 #endif
 #ifdef FW_USE_SCRATCH_QUADS
 // Three quads per gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel,
-// object), then its eight new ticks. The scratch's end lists rim texels, see rimItem.
+// object), then its eight new ticks. Of the prediction one: (world tile * 8 + row, chosen texels,
+// first texel, object). The scratch's end lists rim texels, see rimItem.
 FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH_QUADS, ScratchQuadsBuffer, uvec4, scratchQuads);
 #endif
 #ifdef FW_USE_MASKS
@@ -129,6 +132,9 @@ FW_BUFFER(FW_BIND_BURN_TILES, FW_USE_BURN_TILES, BurnTilesBuffer, BurnTile, burn
 #endif
 #ifdef FW_USE_PREDICT
 FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);
+#endif
+#ifdef FW_USE_PREDICT_QUADS
+FW_BUFFER(FW_BIND_PREDICT, readonly, PredictQuadsBuffer, uvec4, predictQuads);
 #endif
 #ifdef FW_USE_GRADIENT
 FW_BUFFER(FW_BIND_GRADIENT, FW_USE_GRADIENT, GradientBuffer, uint, gradient);

@@ -15,8 +15,8 @@ constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 constexpr const ComputePass* kComputePasses[] = {
     &kResetPass,       &kEventsPass,     &kWakePass,          &kSchedulePass,  &kGatherPass,
     &kArrivalPass,     &kArrivalRimPass, &kCommitPass,        &kPublishedPass, &kReduceClearPass,
-    &kReduceFrontPass, &kReducePass,     &kPredictGatherPass, &kPredictPass,   &kProbePass,
-    &kLightsPass,      &kFlameQuadsPass, &kFlameSortPass};
+    &kReduceFrontPass, &kReducePass,     &kPredictGatherPass, &kPredictPass,   &kPredictRimPass,
+    &kProbePass,       &kLightsPass,     &kFlameQuadsPass,    &kFlameSortPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -128,6 +128,7 @@ void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endT
     zeroRow(recorder, kRowPredict + (lists.predictParity ^ 1));
     recorder.dispatchList(kPredictGatherPass, &push, kRowPredict + lists.predictParity);
     recorder.dispatchWork(kPredictPass, &push, kRowPredict + lists.predictParity);
+    recorder.dispatchRim(kPredictRimPass, &push, kRowPredict + lists.predictParity);
     lists.predictParity ^= 1;
 }
 

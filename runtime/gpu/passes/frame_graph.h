@@ -14,8 +14,8 @@ class FrameRecorder;
 
 extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kGatherPass,
     kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
-    kReducePass, kPredictGatherPass, kPredictPass, kProbePass, kLightsPass, kFlameQuadsPass,
-    kFlameSortPass;
+    kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kProbePass, kLightsPass,
+    kFlameQuadsPass, kFlameSortPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();

@@ -140,6 +140,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       givenMaps(pmr),
       givenLights(pmr),
       times(pmr) {
+    times.reserve(computePasses().size() + drawPasses().size());
     const auto alignment = uint32_t(device.properties.limits.minUniformBufferOffsetAlignment);
     viewStride = uint32_t((sizeof(ViewParams) + alignment - 1) / alignment * alignment);
     views = deviceMemory.createBuffer(

@@ -1,0 +1,88 @@
+// As `predict`, for rim texels: their ring is anywhere in the map. One thread per gathered texel.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_OBJECT_QUADS
+#define FW_USE_MATERIAL_QUADS
+#define FW_USE_TEXELS readonly
+#define FW_USE_NORMALS readonly
+#define FW_USE_SLOWNESS readonly
+#define FW_USE_LINKS readonly
+#define FW_USE_READERS readonly
+#define FW_USE_TILES readonly
+#define FW_USE_STATE readonly
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_COUNTERS FW_READ_WRITE
+#define FW_USE_SCRATCH readonly
+#define FW_USE_SCRATCH_QUADS readonly
+#define FW_USE_PREDICT FW_READ_WRITE
+#define FW_USE_GRADIENT writeonly
+#define FW_USE_PREDICT_LISTS FW_READ_WRITE
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+#include "lib/lists.glsl"
+#include "lib/predict.glsl"
+
+void predictTexel(uint rimWork) {
+    uint packedTexel = scratch[rimItem(rimWork)];
+    uvec4 item = scratchQuads[packedTexel >> 3u];
+    uint object = item.w;
+    uint texel = item.z + (packedTexel & 7u);
+    uint lane = (item.x & 7u) * 8u + (packedTexel & 7u);
+    uint worldTile = item.x >> 3u;
+    uvec4 bases = objectBases(object);
+    uvec4 sizes = objectSizes(object);
+    uint at = bases.y + texel;
+    uint before = predict[at];
+    uint now = state[at];
+    bool beyond = false;
+    if (now == kNever) {
+        uvec2 me = texels[bases.x + texel];
+        uvec4 rim = tiles[(sizes.x + worldTile - objects[object].worldTileBase) * 2u + 1u];
+        uint below = lane < 32u
+                         ? uint(bitCount(rim.x & ((1u << lane) - 1u)))
+                         : uint(bitCount(rim.x) + bitCount(rim.y & ((1u << (lane - 32u)) - 1u)));
+        uint record = (objects[object].linkBase + rim.z + below) * 2u;
+        uvec4 a = linkQuads[record];
+        uvec4 b = linkQuads[record + 1u];
+        uint other[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
+        FrontPrep p = frontPrep(
+            decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
+            burnMaterial(object * kMaterialsPerObject + ((me.y >> 16u) & 7u)));
+        FW_UNROLL for (int k = 0; k < 8; ++k) {
+            if (other[k] != kNoneTexel) {
+                uint q = predict[bases.y + other[k]];
+                if (hasTime(q)) {
+                    ivec3 l = decodePosition(me) - decodePosition(texels[bases.x + other[k]]);
+                    now = min(now, q + (uint(linkCost(l * 8, p)) >> 4u));
+                }
+            }
+        }
+        if (now != kNever && now > push.now + objects[object].horizon) {
+            beyond = true;
+            now = kNever;
+        }
+    }
+    bool spread = false;
+    uint y = divide(texel, bases.w);
+    uint x = texel - y * bases.w;
+    if (now != before) {
+        predict[at] = now;
+        if (hasTime(now)) gradient[at] = gradientOf(at, x, y, bases.w, sizes.y, now);
+        spread = concernsOthers(before, now);
+    }
+    if (spread) {
+        uvec2 mask = lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u));
+        touchAround(worldTile, mask, object, x >> 3u, y >> 3u);
+    } else if (beyond) {
+        predictTouch(push.predictParity ^ 1u, worldTile);
+    }
+}
+
+void main() {
+    uint count = counters[kRowPredict + push.predictParity].rimCount;
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u)
+        predictTexel(i);
+}

@@ -1,0 +1,58 @@
+// What the passes of the shown arrival share: gradients, and whom a change concerns. Include after
+// lists.glsl.
+#ifndef FW_LIB_PREDICT_GLSL
+#define FW_LIB_PREDICT_GLSL
+
+bool hasTime(uint p) { return p < kLiveEnd; }
+
+// Difference quotient over +-2 texels along one axis, s per texel; 0 where neither side is known.
+float slope(uint centreAt, uint at, uint size, uint stride, uint centre) {
+    uint low = centre;
+    uint high = centre;
+    int before = 0;
+    int after = 0;
+    FW_UNROLL for (uint d = 1u; d <= 2u; ++d) {
+        uint q = at >= d ? predict[centreAt - d * stride] : kNever;
+        uint r = at + d < size ? predict[centreAt + d * stride] : kNever;
+        if (hasTime(q)) {
+            low = q;
+            before = int(d);
+        }
+        if (hasTime(r)) {
+            high = r;
+            after = int(d);
+        }
+    }
+    int span = before + after;
+    return span == 0 ? 0.0 : float(int(high - low)) / (float(span) * float(kTicksPerSecond));
+}
+
+uint gradientOf(uint at, uint x, uint y, uint width, uint height, uint now) {
+    return packHalf2x16(
+        vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now)));
+}
+
+// Is this change worth a neighbour's while? Rings would chase rounding for ever; and the farther
+// ahead, the less small changes matter.
+bool concernsOthers(uint before, uint now) {
+    int ahead = max(int(now - push.now), 0);
+    return !(hasTime(now) && hasTime(before) && abs(int(now - before)) <= 64 + ahead / 8);
+}
+
+// Lists the tile, and who reads its texels of `mask` (lane = y * 8 + x), for the next frame.
+void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY) {
+    uint parity = push.predictParity ^ 1u;
+    predictTouch(parity, worldTile);
+    uvec4 places = objectPlaces(object);
+    uvec4 sizes = objectSizes(object);
+    for (uint beside = neighboursOf(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
+        uint other = besideTile(int(sizes.z), int(sizes.y >> 3u), int(tileX), int(tileY),
+                                uint(findLSB(beside)));
+        if (other != kNoneTexel) predictTouch(parity, places.x + other);
+    }
+    uvec4 seam = tiles[(sizes.x + worldTile - places.x) * 2u];
+    if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
+    for (uint r = 0u; r < seam.w; ++r)
+        predictTouch(parity, places.x + readers[places.z + seam.z + r]);
+}
+#endif
