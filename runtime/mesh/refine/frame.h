@@ -1,0 +1,74 @@
+// Refinement of one object, frame by frame: levels from heat and views, counts, triangles, places.
+// The reference for the compute passes of the same names: every loop body is one lane of
+// shaders/shared/refine.h. Floats, cosmetic; equal input gives equal output on one machine.
+#pragma once
+#include "mesh/refine/model.h"
+
+namespace fw::mesh {
+
+struct RefineView {
+    float eye[3] = {};   // m, object space
+    float focal = 1000;  // pixels that 1 m covers at 1 m
+};
+
+struct RefineSettings {
+    float pixelsPerEdge = 8;     // > 0, screen length of the finest segments
+    float rate = 4;              // levels per s once a surface has moved
+    float cool = 1;              // s that a level outlives its heat
+    float grace = 0.25f;         // s of burning during which a surface counts as flat
+    float recede = 0.9f;         // (0, 1), share of a slot's reach
+    uint32_t budget = 400000;    // triangles aimed at; never less than one per coarse triangle
+    uint32_t capacity = 600000;  // triangles there is room for, >= budget and coarse triangles
+    bool morph = true;           // false: levels are whole, changes are sudden
+    bool skipStill = true;       // false: every vertex in use is placed anew each frame
+};
+
+struct RefineFrame {
+    float now = 0, dt = 0;                // s since the object's epoch; since the last frame
+    uint32_t nowTick = 0, epochTick = 0;  // the same in ticks
+    std::span<const uint8_t> tiles;       // per tile: kRefineHot | kRefineBurning
+    std::span<const RefineView> views;    // every view and shadow view; none: no limit by size
+    std::span<const uint32_t> ticks;      // state of the object's texels
+    std::span<const float> burnSeconds;   // per material: wall burnt through; < 0: never opens
+};
+
+struct RefineState {
+    RefineState(const RefineModel& model, std::pmr::memory_resource* memory);
+
+    std::pmr::vector<gpu::RefineLevel> edges, interiors;
+    std::pmr::vector<uint32_t> levels;             // per triangle, packed
+    std::pmr::vector<uint32_t> starts;             // triangles + 1, first output triangle
+    std::pmr::vector<uint32_t> indices;            // draw vertices, 3 per output triangle
+    std::pmr::vector<gpu::RefineVertex> vertices;  // per slot
+    float bias = 0;                                // levels taken off by the budget
+    bool unmorphed = false;  // the last frame had no room for levels on their way down
+    uint32_t emissions = 0;  // frames in which `indices` changed
+    uint32_t placed = 0;     // vertices placed in the last frame
+
+    // What the passes remember.
+    std::pmr::vector<uint8_t> tiles, edgeHeat, interiorHeat;
+    std::pmr::vector<uint8_t> edgeTops;                         // integer levels, of the last count
+    std::pmr::vector<uint32_t> emitted, emittedStarts, before;  // of the last emission
+    std::pmr::vector<float> edgeShown, interiorShown;  // levels when last placed; < 0: never
+    std::pmr::vector<uint8_t> edgeMoved;               // placed in this frame
+};
+
+// Heat of every tile from its TileState::flag: what is on the front list is hot, what is on the
+// burn list burns. The front list knows of fire one ring of texels before it comes, and what was
+// lit a moment ago has not moved: that is warning enough. ahead: grid neighbours and seam readers
+// are hot too, at a third to a half more triangles.
+void refineHeat(const BurnDomain& domain, std::span<const uint32_t> tileFlags, bool ahead,
+                std::span<uint8_t> tiles);
+
+// The passes, in order.
+void refineLevels(const RefineModel& model, const RefineSettings& settings,
+                  const RefineFrame& frame, RefineState& state);
+uint32_t refineScan(const RefineModel& model, RefineState& state);  // output triangles
+void refineEmit(const RefineModel& model, RefineState& state);
+void refinePlace(const RefineModel& model, const RefineSettings& settings, const RefineFrame& frame,
+                 RefineState& state);
+// All of them; triangles are emitted only when an integer level changed.
+void refineFrame(const RefineModel& model, const RefineSettings& settings, const RefineFrame& frame,
+                 RefineState& state);
+
+}  // namespace fw::mesh

@@ -1,0 +1,251 @@
+// Heat to levels, levels to triangles.
+#include "mesh/refine/frame.h"
+#include "mesh/refine/table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+constexpr uint8_t kAllHeat = gpu::kRefineHot | gpu::kRefineBurning;
+
+void gather(std::span<const uint8_t> tiles, const std::pmr::vector<uint32_t>& start,
+            const std::pmr::vector<uint32_t>& list, std::pmr::vector<uint8_t>& heats) {
+    for (size_t item = 0; item < heats.size(); ++item) {
+        uint8_t heat = 0;
+        for (uint32_t i = start[item]; i < start[item + 1] && heat != kAllHeat; ++i)
+            heat |= tiles[list[i]];
+        heats[item] = heat;
+    }
+}
+
+// Heat of edges and interiors from that of the tiles; most frames change none.
+void warm(const RefineModel& model, const RefineFrame& frame, RefineState& state) {
+    if (std::equal(frame.tiles.begin(), frame.tiles.end(), state.tiles.begin(), state.tiles.end()))
+        return;
+    state.tiles.assign(frame.tiles.begin(), frame.tiles.end());
+    gather(frame.tiles, model.edgeTileStart, model.edgeTiles, state.edgeHeat);
+    gather(frame.tiles, model.triangleTileStart, model.triangleTiles, state.interiorHeat);
+}
+
+glm::vec3 cornerPlace(const RefineModel& model, uint32_t slot) {
+    const gpu::RefineSlot& s = model.slots[slot];
+    return {s.x, s.y, s.z};
+}
+
+float lodOf(const RefineModel& model, const RefineSettings& settings, const RefineFrame& frame,
+            const gpu::RefineEdge& edge) {
+    if (frame.views.empty()) return float(gpu::kRefineDepth + 1);
+    const glm::vec3 a = cornerPlace(model, edge.low), b = cornerPlace(model, edge.high);
+    float most = 0;
+    for (const RefineView& v : frame.views)
+        most = std::max(most, gpu::refineLod(a, b, {v.eye[0], v.eye[1], v.eye[2]}, v.focal,
+                                             settings.pixelsPerEdge));
+    return most;
+}
+
+// Has it neither heat nor anything left of it?
+bool asleep(const gpu::RefineLevel& s, uint8_t heat) {
+    return heat == 0 && s.level == 0 && s.target == 0;
+}
+
+void aim(const RefineModel& model, const RefineSettings& settings, const RefineFrame& frame,
+         RefineState& state) {
+    for (size_t e = 0; e < model.edges.size(); ++e) {
+        if (asleep(state.edges[e], state.edgeHeat[e])) continue;
+        gpu::refineAim(state.edges[e], state.edgeHeat[e],
+                       lodOf(model, settings, frame, model.edges[e]),
+                       float(model.edges[e].flags & 15), frame.now, settings.cool);
+    }
+    for (size_t i = 0; i < model.triangles.size(); ++i) {
+        if (asleep(state.interiors[i], state.interiorHeat[i])) continue;
+        const gpu::RefineTriangle& t = model.triangles[i];
+        float lod = 0;
+        for (const uint32_t e : t.edge)
+            lod = std::max(lod, lodOf(model, settings, frame, model.edges[e]));
+        gpu::refineAim(state.interiors[i], state.interiorHeat[i], lod,
+                       float(gpu::refineInteriorDepth(t.flags)), frame.now, settings.cool);
+    }
+}
+
+// Numbers of edges and interiors differ, so that both lose levels in one mixed order.
+float edgeSpread(const RefineState& state, uint32_t e) {
+    return gpu::refineSpread(e * 2, state.edgeHeat[e]);
+}
+float interiorSpread(const RefineState& state, uint32_t i) {
+    return gpu::refineSpread(i * 2 + 1, state.interiorHeat[i]);
+}
+
+uint32_t packed(const RefineState& state, const gpu::RefineTriangle& t, uint32_t interior) {
+    const uint32_t a = state.edgeTops[t.edge[0]], b = state.edgeTops[t.edge[1]],
+                   c = state.edgeTops[t.edge[2]];
+    return gpu::refinePack(a, b, c, gpu::refineFit(a, b, c, interior));
+}
+
+// Triangles that the targets come to with this bias; stops counting above `most`.
+uint64_t aimedCount(const RefineModel& model, RefineState& state, float bias, uint64_t most) {
+    for (uint32_t e = 0; e < model.edges.size(); ++e) {
+        const float target = state.edges[e].target;
+        state.edgeTops[e] = uint8_t(
+            target > 0 ? gpu::refineTop(gpu::refineBiased(target, bias, edgeSpread(state, e))) : 0);
+    }
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < model.triangles.size() && sum <= most; ++i) {
+        const float target = state.interiors[i].target;
+        const uint32_t top =
+            target > 0 ? gpu::refineTop(gpu::refineBiased(target, bias, interiorSpread(state, i)))
+                       : 0;
+        sum += gpu::refineCount(packed(state, model.triangles[i], top));
+    }
+    return sum;
+}
+
+// The least of sixteen biases that fits the budget.
+float leastBias(const RefineModel& model, RefineState& state, uint32_t budget) {
+    for (uint32_t k = 0; k + 1 < gpu::kRefineBiases; ++k) {
+        const float bias = float(k) * gpu::kRefineBiasStep;
+        if (aimedCount(model, state, bias, budget) <= budget) return bias;
+    }
+    return float(gpu::kRefineBiases - 1) * gpu::kRefineBiasStep;
+}
+
+void move(const RefineSettings& settings, const RefineFrame& frame, float want,
+          gpu::RefineLevel& level) {
+    gpu::refineMove(level, want, frame.now, frame.dt, settings.morph ? settings.rate : 1e9f,
+                    settings.grace);
+    if (!settings.morph) level.level = float(gpu::refineTop(level.level));
+}
+
+// Levels of all triangles from those of edges and interiors; the triangles they make.
+uint64_t packAll(const RefineModel& model, RefineState& state) {
+    for (uint32_t e = 0; e < model.edges.size(); ++e)
+        state.edgeTops[e] = uint8_t(gpu::refineTop(state.edges[e].level));
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < model.triangles.size(); ++i) {
+        state.levels[i] =
+            packed(state, model.triangles[i], gpu::refineTop(state.interiors[i].level));
+        sum += gpu::refineCount(state.levels[i]);
+    }
+    return sum;
+}
+
+}  // namespace
+
+RefineState::RefineState(const RefineModel& model, std::pmr::memory_resource* memory)
+    : edges(model.edges.size(), {0, 0, -gpu::kRefineNever, gpu::kRefineNever}, memory),
+      interiors(model.triangles.size(), {0, 0, -gpu::kRefineNever, gpu::kRefineNever}, memory),
+      levels(model.triangles.size(), 0, memory),
+      starts(model.triangles.size() + 1, 0, memory),
+      indices(memory),
+      vertices(model.slots.size(), memory),
+      tiles(memory),
+      edgeHeat(model.edges.size(), 0, memory),
+      interiorHeat(model.triangles.size(), 0, memory),
+      edgeTops(model.edges.size(), 0, memory),
+      emitted(memory),
+      emittedStarts(memory),
+      before(memory),
+      edgeShown(model.edges.size(), -1.0f, memory),
+      interiorShown(model.triangles.size(), -1.0f, memory),
+      edgeMoved(model.edges.size(), 0, memory) {
+    for (size_t s = 0; s < vertices.size(); ++s)
+        vertices[s] = {model.slots[s].x, model.slots[s].y, model.slots[s].z, gpu::kRefineNever};
+}
+
+void refineHeat(const BurnDomain& domain, std::span<const uint32_t> tileFlags, bool ahead,
+                std::span<uint8_t> tiles) {
+    std::fill(tiles.begin(), tiles.end(), uint8_t(0));
+    const int width = int(domain.tilesX), height = int(domain.tilesY);
+    for (uint32_t t = 0; t < domain.tileCount(); ++t) {
+        if ((tileFlags[t] & (gpu::kTileListed | gpu::kTileBurning)) == 0) continue;
+        tiles[t] |= gpu::kRefineHot;
+        if ((tileFlags[t] & gpu::kTileBurning) != 0) tiles[t] |= gpu::kRefineBurning;
+        if (!ahead) continue;
+        const int x = int(t) % width, y = int(t) / width;
+        for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+            for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
+                tiles[size_t(v * width + u)] |= gpu::kRefineHot;
+        const TileStatic& tile = domain.tiles[t];
+        for (uint32_t r = 0; r < tile.readerCount; ++r)
+            tiles[domain.readers[tile.readerStart + r]] |= gpu::kRefineHot;
+    }
+}
+
+void refineLevels(const RefineModel& model, const RefineSettings& settings,
+                  const RefineFrame& frame, RefineState& state) {
+    warm(model, frame, state);
+    aim(model, settings, frame, state);
+    state.bias = leastBias(model, state, settings.budget);
+    for (uint32_t e = 0; e < state.edges.size(); ++e)
+        if (!asleep(state.edges[e], state.edgeHeat[e]))
+            move(settings, frame,
+                 gpu::refineBiased(state.edges[e].target, state.bias, edgeSpread(state, e)),
+                 state.edges[e]);
+    for (uint32_t i = 0; i < state.interiors.size(); ++i)
+        if (!asleep(state.interiors[i], state.interiorHeat[i]))
+            move(settings, frame,
+                 gpu::refineBiased(state.interiors[i].target, state.bias, interiorSpread(state, i)),
+                 state.interiors[i]);
+    state.unmorphed = packAll(model, state) > settings.capacity;
+    if (!state.unmorphed) return;
+    for (uint32_t e = 0; e < state.edges.size(); ++e)
+        state.edges[e].level =
+            gpu::refineBiased(state.edges[e].target, state.bias, edgeSpread(state, e));
+    for (uint32_t i = 0; i < state.interiors.size(); ++i)
+        state.interiors[i].level =
+            gpu::refineBiased(state.interiors[i].target, state.bias, interiorSpread(state, i));
+    packAll(model, state);
+}
+
+uint32_t refineScan(const RefineModel& model, RefineState& state) {
+    uint32_t sum = 0;
+    for (size_t i = 0; i < model.triangles.size(); ++i) {
+        state.starts[i] = sum;
+        sum += gpu::refineCount(state.levels[i]);
+    }
+    state.starts[model.triangles.size()] = sum;
+    return sum;
+}
+
+void refineEmit(const RefineModel& model, RefineState& state) {
+    // Triangles whose levels stayed are moved, not made again.
+    std::swap(state.indices, state.before);
+    state.indices.resize(size_t(state.starts.back()) * 3);
+    const bool known = state.emitted.size() == state.levels.size();
+    const size_t count = model.triangles.size();
+    for (size_t i = 0; i < count;) {
+        size_t end = i;
+        while (known && end < count && state.emitted[end] == state.levels[end]) ++end;
+        if (end > i) {
+            const uint32_t* from = &state.before[size_t(state.emittedStarts[i]) * 3];
+            const size_t length = size_t(state.starts[end] - state.starts[i]) * 3;
+            std::copy(from, from + length, &state.indices[size_t(state.starts[i]) * 3]);
+            i = end;
+            continue;
+        }
+        const gpu::RefineTriangle& t = model.triangles[i];
+        const uint32_t levels = state.levels[i];
+        uint32_t* out = &state.indices[size_t(state.starts[i]) * 3];
+        for (uint32_t k = 0; k < state.starts[i + 1] - state.starts[i]; ++k) {
+            const glm::uvec3 codes = refineTriangle(levels, k);
+            for (int v = 0; v < 3; ++v) *out++ = gpu::refineDrawVertex(t, levels, codes[v]);
+        }
+        ++i;
+    }
+    state.emitted = state.levels;
+    state.emittedStarts = state.starts;
+    ++state.emissions;
+}
+
+void refineFrame(const RefineModel& model, const RefineSettings& settings, const RefineFrame& frame,
+                 RefineState& state) {
+    refineLevels(model, settings, frame, state);
+    if (state.emitted != state.levels) {
+        refineScan(model, state);
+        refineEmit(model, state);
+    }
+    refinePlace(model, settings, frame, state);
+}
+
+}  // namespace fw::mesh

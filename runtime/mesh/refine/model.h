@@ -1,0 +1,62 @@
+// What the bake adds for refinement: the mesh's coarse triangles and unique edges with room for
+// every vertex that any level can bring. A vertex has one slot for good, one rest place and one
+// texel that speaks for it, whoever asks; so no level set can open a crack. Immutable once baked.
+#pragma once
+#include "mesh/burn_domain.h"
+#include "shared/refine.h"
+
+namespace fw::mesh {
+
+struct RefineOptions {
+    float wall = 0.02f;      // m, > 0, thickness of the shell where nothing closer stops it
+    float cellTexels = 2;    // no edge segment is shorter than this; 0: down to `depth` everywhere
+    uint32_t depth = 5;      // 0..5, deepest level
+    float splitTexels = 48;  // longer edges are halved at the bake, up to five times; 0: none
+    uint32_t maxTriangles = 1u << 16;  // after that splitting; splitTexels is doubled to keep it
+    bool twoWalls = true;  // walls nearer than 2 * wall burn through together; false: each alone
+};
+
+struct RefineModel {
+    explicit RefineModel(std::pmr::memory_resource* memory)
+        : triangles(memory),
+          edges(memory),
+          ownerStart(memory),
+          owners(memory),
+          slots(memory),
+          draws(memory),
+          triangleTileStart(memory),
+          triangleTiles(memory),
+          edgeTileStart(memory),
+          edgeTiles(memory) {}
+
+    uint32_t cornerCount = 0;  // the first slots, in order of the welded points
+    uint32_t openEdges = 0, nonManifoldEdges = 0;
+    uint32_t farSlots = 0;      // whose chart has no texel near: they borrow the nearest in space
+    uint32_t textureWidth = 0;  // texels of the burn domain per row
+    uint32_t tileCount = 0;
+
+    std::pmr::vector<gpu::RefineTriangle> triangles;
+    std::pmr::vector<gpu::RefineEdge> edges;
+    std::pmr::vector<uint32_t> ownerStart;  // edges + 1
+    std::pmr::vector<uint32_t> owners;      // triangle << 2 | side
+    std::pmr::vector<gpu::RefineSlot> slots;
+    // The first slots.size() are the slots as their canonical owner sees them, in order; then one
+    // per further chart (or set of attributes) that meets there.
+    std::pmr::vector<gpu::RefineDraw> draws;
+    // Tiles whose heat concerns a triangle's interior; an edge, within 1.5 cells on every owner.
+    std::pmr::vector<uint32_t> triangleTileStart, triangleTiles;  // triangles + 1
+    std::pmr::vector<uint32_t> edgeTileStart, edgeTiles;          // edges + 1
+
+    // Triangles with every edge and interior at its deepest.
+    [[nodiscard]] uint64_t fullCount() const noexcept;
+};
+
+// Works on cooked domains too. Deterministic. Throws core::Error (an option out of range, too many
+// slots) and std::bad_alloc.
+RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
+                       std::pmr::memory_resource* memory);
+
+// A draw vertex in full: the corners' attributes mixed, the place at rest.
+RenderVertex refineRenderVertex(const BurnDomain& domain, const RefineModel& model, uint32_t draw);
+
+}  // namespace fw::mesh

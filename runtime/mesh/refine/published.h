@@ -1,0 +1,64 @@
+// The published refinement scheme, for comparison: one template of four-way splits (id, SetLevel,
+// Siblings, Parent, Status) laid over every eligible coarse triangle, driven by a growing heat
+// boundary. Its rules as printed do not come to rest; the repaired ones do. It cracks between
+// coarse triangles and inside a template where levels meet: the product scheme is frame.h.
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace fw::mesh {
+
+constexpr uint32_t kArpLattice = 64;  // corner coordinates of the template are in 1/64
+constexpr uint32_t kArpLevels = 5;    // SetLevel 1..5
+constexpr uint32_t kArpNone = 0xFFFFFFFFu;
+
+// Status values. Drawn: active and processed, and the root while it is initial.
+constexpr int8_t kArpInactive = -1, kArpInitial = 0, kArpActive = 1, kArpProcessed = 2;
+
+struct ArpTriangle {       // its number is the id; parents come before children
+    uint8_t corner[3][2];  // barycentrics 1 and 2
+    uint8_t setLevel;      // 1: the coarse triangle
+    uint32_t parent;       // or kArpNone
+    uint32_t firstChild;   // of four, who are each other's siblings; or kArpNone
+};
+
+// The template with SetLevel 1..levels, levels in 1..kArpLevels.
+std::pmr::vector<ArpTriangle> makeArpTemplate(uint32_t levels, std::pmr::memory_resource* memory);
+
+enum class ArpRules {
+    printed,   // comes to no rest, and draws most of the area twice
+    repaired,  // siblings change only from initial, parents only from initial or active; a parent
+};             // goes inactive when no child is initial
+
+// The finest triangles with a corner nearer than `radius` (in 1/64) to (x, y) are eligible.
+void arpMarkCircle(std::span<const ArpTriangle> arp, float x, float y, float radius,
+                   std::span<uint8_t> eligible);
+// One sweep of all three rules. serial: later triangles see what earlier ones did, from the leaves
+// up; else all read the state before. Returns how many statuses changed.
+uint32_t arpSweep(std::span<const ArpTriangle> arp, ArpRules rules,
+                  std::span<const uint8_t> eligible, bool serial, std::span<int8_t> status,
+                  std::pmr::memory_resource* memory);
+bool arpDrawn(std::span<const int8_t> status, uint32_t triangle) noexcept;
+
+// R^2 = | sin(pi Theta / dr) + sin(pi Theta) + psi |x - x0|^2 |: the boundary's own distance of a
+// point. The fire has reached it once the radius, which grows by dr per step, exceeds R.
+struct ArpHeat {
+    glm::vec3 origin{0};  // m
+    float radius = 0;     // grows by `step`
+    float step = 0.1f;    // dr, > 0
+    float psi = 1;        // 1/m^2, by the size of the triangles
+};
+float arpHeatDistance(const ArpHeat& heat, glm::vec3 point, float theta);
+// Is any point of the triangle's barycentric lattice of 2^depth steps inside? Theta of each point,
+// in [0, 2), is drawn from `seed`.
+bool arpEligible(const ArpHeat& heat, const glm::vec3 corner[3], uint32_t depth, uint32_t seed);
+
+// The rule for what lies behind the fire: hide a triangle when two or more of its children, being
+// of SetLevel 5 or finer, have a higher burn level (consumed triangles) than itself.
+bool arpHidden(std::span<const ArpTriangle> arp, std::span<const uint32_t> burnLevel,
+               uint32_t triangle) noexcept;
+
+}  // namespace fw::mesh

@@ -1,0 +1,550 @@
+// Adaptive refinement per lane, one text for C++ and GLSL: which triangle is the k-th of a pattern,
+// which vertex stands where, how levels move, where a vertex lies, where a hole cuts. It loads
+// nothing: callers hand over table words, ticks and positions. Cosmetic: floats, never simulated.
+//
+// A coarse triangle has a level per edge (0..5: 2^l segments) and one of its interior (m). Edge
+// levels are shared by all owners, so no crack can open; the interior is a lattice of 2^m steps,
+// and a strip joins each edge to it. m < 2: no lattice, a small table.
+// GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_REFINE_H
+#define FW_SHARED_REFINE_H
+#include "shared/front.h"
+
+#ifdef __cplusplus
+#define FW_PRECISE
+#define FW_CONSTANT_FN constexpr
+#else
+#define FW_PRECISE precise
+#define FW_CONSTANT_FN
+#endif
+
+FW_SHARED_BEGIN
+
+#ifdef __cplusplus
+using std::ceil;
+using std::log2;
+#endif
+
+FW_SHARED_CONST uint kRefineDepth = 5u;
+// The table of u16 tokens: strips by (m, edge level), lattices by m, then eight rows of four for m < 2.
+FW_SHARED_CONST uint kRefineInner = 540u;
+FW_SHARED_CONST uint kRefineHand = 1576u;
+FW_SHARED_CONST uint kRefineTableSize = 1608u;
+FW_SHARED_CONST float kRefineNever = 1e30f;   // s: not lit, or no hole to come
+FW_SHARED_CONST float kRefineUnlit = 1000.0f; // s to the hole of a vertex that has none
+FW_SHARED_CONST uint kRefineInside = 0x80000000u;  // in RefineCorner::high: of the inner skin
+FW_SHARED_CONST uint kRefineOpposed = 0xFFFFFFFFu; // RefineSlot::opposite: none
+// Heat of a tile, an edge or an interior.
+FW_SHARED_CONST uint kRefineHot = 1u;      // the front is near, or it burns
+FW_SHARED_CONST uint kRefineBurning = 2u;  // something of it burns
+
+struct RefineTriangle {  // a coarse triangle; corners and sides counter-clockwise, side e = e, e + 1
+    uint edge[3];
+    uint flags;          // bit e: side e runs from the edge's high end; 4 bits each from 4, 8, 12:
+                         // deepest level of the sides; from 16: of the interior
+    uint corner[3];      // draw vertices
+    uint slot;           // first of the interior; its draw vertices have the same numbers
+    uint side[3];        // draw vertex of the first point of each side's edge, low end first
+    uint source;         // triangle of the burn domain
+};
+FW_SHARED_SIZE(RefineTriangle, 48)
+
+struct RefineEdge {
+    uint low;            // slots of the ends, low < high
+    uint high;
+    uint slot;           // first of its 2^depth - 1 inner points, from the low end
+    uint flags;          // deepest level; 16: open (one owner)
+};
+FW_SHARED_SIZE(RefineEdge, 16)
+
+struct RefineSlot {      // a vertex at rest
+    float x, y, z;       // m, object space
+    uint offset;         // signed 11:11:10 of [-2, 2]: moving by d * offset moves every face by d
+    uint reach;          // low: farthest recession, 10 um; high: burn-through time, 1/4096 of a wall's
+    uint texel;          // 24 bits: lower left of four; 8 bits: material
+    uint weights;        // 4 x 8 bits: of texel, + 1, + width, + width + 1
+    uint opposite;       // 24 bits: lower left texel of the wall behind; 4 + 4 bits: place between
+};                       // texels, 1/16; or kRefineOpposed
+FW_SHARED_SIZE(RefineSlot, 32)
+
+struct RefineVertex {    // a vertex now
+    float x, y, z;       // m, object space
+    float hole;          // s since the object's epoch: burnt through; kRefineNever: not known
+};
+FW_SHARED_SIZE(RefineVertex, 16)
+
+struct RefineDraw {      // what an index names: a slot seen from one chart
+    uint slot;
+    uint triangle;       // of the burn domain; all attributes are mixed from its corners
+    float weight1;       // of corner 1; corner 0 has the rest
+    float weight2;
+};
+FW_SHARED_SIZE(RefineDraw, 16)
+
+struct RefineLevel {     // of an edge or an interior; s since the object's epoch
+    float level;         // 2^ceil segments; the fraction is how far the newest points have come
+    float target;        // before the budget
+    float lastHot;
+    float burningSince;
+};
+FW_SHARED_SIZE(RefineLevel, 16)
+
+struct RefineCorner {    // of a triangle of the cut shell
+    uint low;            // slot
+    uint high;           // the same, or a cut point of the small edge low < high; kRefineInside
+};
+
+// ---- levels of a triangle in one word: sides at bits 0, 4, 8, interior at 12
+
+FW_SHARED_FN uint refinePack(uint l0, uint l1, uint l2, uint m) {
+    return l0 | (l1 << 4u) | (l2 << 8u) | (m << 12u);
+}
+FW_SHARED_FN uint refineSide(uint levels, uint e) { return (levels >> (4u * e)) & 15u; }
+FW_SHARED_FN uint refineInterior(uint levels) { return (levels >> 12u) & 15u; }
+FW_SHARED_FN uint refineSideDepth(uint flags, uint e) { return (flags >> (4u + 4u * e)) & 15u; }
+FW_SHARED_FN uint refineInteriorDepth(uint flags) { return (flags >> 16u) & 15u; }
+FW_SHARED_FN bool refineFlipped(uint flags, uint e) { return ((flags >> e) & 1u) != 0u; }
+FW_SHARED_FN uint refineNext(uint e) { return e == 2u ? 0u : e + 1u; }
+FW_SHARED_FN uint refineBefore(uint e) { return e == 0u ? 2u : e - 1u; }
+
+// The interior level nearest to m from above that these sides can be joined to.
+FW_SHARED_FN uint refineFit(uint l0, uint l1, uint l2, uint m) {
+    uint most = l0 > l1 ? l0 : l1;
+    most = most > l2 ? most : l2;
+    if (most >= 2u) return m > 2u ? m : 2u;
+    return m >= 2u ? m : most;
+}
+
+FW_SHARED_FN uint refineCount(uint levels) {
+    uint m = refineInterior(levels);
+    uint l0 = refineSide(levels, 0u), l1 = refineSide(levels, 1u), l2 = refineSide(levels, 2u);
+    if (m < 2u) return 1u + l0 + l1 + l2;
+    uint s = (1u << m) - 3u;
+    return s * s + 3u * s + (1u << l0) + (1u << l1) + (1u << l2);
+}
+
+// ---- patterns. A code is a pattern's vertex: 0x8000 | side << 8 | i, i in 0..2^l from the side's
+// first corner; or c1 << 6 | c2 of the lattice, both >= 1, c1 + c2 < 2^m.
+
+FW_SHARED_CONST uint kRefineOnSide = 0x8000u;
+FW_SHARED_FN uint refineOnSide(uint e, uint i) { return kRefineOnSide | (e << 8u) | i; }
+FW_SHARED_FN uint refineInside(uint c1, uint c2) { return (c1 << 6u) | c2; }
+FW_SHARED_FN uint refineCodeSide(uint code) { return (code >> 8u) & 3u; }
+FW_SHARED_FN uint refineCodeStep(uint code) { return code & 255u; }
+
+FW_SHARED_FN uint refineStripStart(uint l, uint m) {
+    uint n = 1u << m;
+    return 63u * (m - 2u) + 6u * (n - 4u - 3u * (m - 2u)) + (1u << l) - 1u + l * (n - 3u);
+}
+FW_SHARED_FN uint refineInnerStart(uint m) {
+    return kRefineInner + (m < 4u ? m - 2u : m == 4u ? 26u : 195u);
+}
+
+// Token j of a strip: bit 0 set: (edge i, row j + 1, row j), else (edge i, edge i + 1, row j).
+FW_CONSTANT_FN uint refineStripToken(uint row, uint i, uint j) { return row | (i << 1u) | (j << 7u); }
+// Token of the lattice: bit 10: the triangle that points down.
+FW_CONSTANT_FN uint refineInnerToken(uint down, uint a, uint b) { return a | (b << 5u) | (down << 10u); }
+// Token for m < 2: three vertices of three bits, 0..2 corners, 3..5 middles of the sides.
+FW_SHARED_FN uint refineHandCode(uint v) {
+    return v < 3u ? refineOnSide(v, 0u) : refineOnSide(v - 3u, 1u);
+}
+
+// j-th point of the lattice's row beside side e, in the direction of the side.
+FW_SHARED_FN uint refineRowPoint(uint e, uint j, uint n) {
+    uint near = n - 1u - j;  // c[e]; c[e + 1] = j, c[e + 2] = 1
+    return e == 0u ? refineInside(j, 1u) : e == 1u ? refineInside(near, j) : refineInside(1u, near);
+}
+
+struct RefinePlace {  // where to look the k-th triangle up
+    uint entry;       // of the table
+    uint part;        // 0..2: strip of that side; 3: lattice; 4: m < 2
+    uint k;           // number in that part
+};
+
+FW_SHARED_FN RefinePlace refineLocate(uint levels, uint k) {
+    RefinePlace place;
+    uint m = refineInterior(levels);
+    if (m < 2u) {
+        uint mask = refineSide(levels, 0u) | (refineSide(levels, 1u) << 1u) |
+                    (refineSide(levels, 2u) << 2u);
+        place.entry = kRefineHand + mask * 4u + k;
+        place.part = 4u;
+        place.k = k;
+        return place;
+    }
+    uint s = (1u << m) - 3u;
+    if (k < s * s) {
+        place.entry = refineInnerStart(m) + k;
+        place.part = 3u;
+        place.k = k;
+        return place;
+    }
+    k -= s * s;
+    uint e = 0u;
+    uint length = (1u << refineSide(levels, 0u)) + s;
+    if (k >= length) {
+        k -= length;
+        e = 1u;
+        length = (1u << refineSide(levels, 1u)) + s;
+        if (k >= length) {
+            k -= length;
+            e = 2u;
+        }
+    }
+    place.entry = refineStripStart(refineSide(levels, e), m) + k;
+    place.part = e;
+    place.k = k;
+    return place;
+}
+
+// The triangle's codes, counter-clockwise. token: table[place.entry].
+FW_SHARED_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token) {
+    if (place.part == 4u)
+        return uvec3(refineHandCode(token & 7u), refineHandCode((token >> 3u) & 7u),
+                     refineHandCode((token >> 6u) & 7u));
+    if (place.part == 3u) {
+        uint a = token & 31u;
+        uint b = (token >> 5u) & 31u;
+        if ((token & 1024u) != 0u)
+            return uvec3(refineInside(a + 2u, b + 1u), refineInside(a + 2u, b + 2u),
+                         refineInside(a + 1u, b + 2u));
+        return uvec3(refineInside(a + 1u, b + 1u), refineInside(a + 2u, b + 1u),
+                     refineInside(a + 1u, b + 2u));
+    }
+    uint e = place.part, f = refineNext(e), p = refineBefore(e);
+    uint m = refineInterior(levels), n = 1u << m;
+    uint l = refineSide(levels, e), steps = 1u << l;
+    uint i = (token >> 1u) & 63u, j = token >> 7u;
+    uint row = refineRowPoint(e, j, n);
+    // Corners take the other diagonal where both sides have the lattice's level: with l = m all
+    // around the result is the regular lattice, and levels nest.
+    if (place.k == 0u && l == m && refineSide(levels, p) == m)
+        return uvec3(refineOnSide(e, 1u), row, refineOnSide(p, (1u << refineSide(levels, p)) - 1u));
+    if (place.k == steps + n - 4u && l == m && refineSide(levels, f) == m)
+        return uvec3(refineOnSide(e, steps - 1u), refineOnSide(f, 0u), refineOnSide(f, 1u));
+    if ((token & 1u) != 0u) return uvec3(refineOnSide(e, i), refineRowPoint(e, j + 1u, n), row);
+    return uvec3(refineOnSide(e, i), refineOnSide(e, i + 1u), row);
+}
+
+// Weights of the three corners in 1/32.
+FW_SHARED_FN uvec3 refineWeights(uint levels, uint code) {
+    if ((code & kRefineOnSide) != 0u) {
+        uint e = refineCodeSide(code);
+        uint i = refineCodeStep(code) << (kRefineDepth - refineSide(levels, e));
+        uint k = 32u - i;
+        return e == 0u ? uvec3(k, i, 0u) : e == 1u ? uvec3(0u, k, i) : uvec3(i, 0u, k);
+    }
+    uint shift = kRefineDepth - refineInterior(levels);
+    uint c1 = (code >> 6u) << shift, c2 = (code & 63u) << shift;
+    return uvec3(32u - c1 - c2, c1, c2);
+}
+
+// Sides of the coarse triangle that a code lies on, one bit each.
+FW_SHARED_FN uint refineSidesOf(uint levels, uint code) {
+    if ((code & kRefineOnSide) == 0u) return 0u;
+    uint e = refineCodeSide(code), i = refineCodeStep(code);
+    uint bits = 1u << e;
+    if (i == 0u) bits |= 1u << refineBefore(e);
+    if (i == (1u << refineSide(levels, e))) bits |= 1u << refineNext(e);
+    return bits;
+}
+
+// ---- identity: a vertex keeps its number through all levels
+
+// Inner point i (1 .. 2^l - 1, from the low end) of an edge, counted from the edge's first.
+FW_SHARED_FN uint refineEdgePoint(uint i, uint l, uint depth) { return (i << (depth - l)) - 1u; }
+// Lattice point of n = 2^depth steps, counted from the interior's first.
+FW_SHARED_FN uint refineInnerPoint(uint c1, uint c2, uint n) {
+    uint r = c2 - 1u;
+    return r * (n - 2u) - ((r * (r - 1u)) >> 1u) + c1 - 1u;
+}
+FW_SHARED_FN uint refineInnerCount(uint m) {
+    uint n = 1u << m;
+    return m < 2u ? 0u : ((n - 1u) * (n - 2u)) >> 1u;
+}
+// i in 0..2^l from the low end.
+FW_SHARED_FN uint refineEdgeSlot(FW_IN(RefineEdge) edge, uint i, uint l) {
+    if (i == 0u) return edge.low;
+    if (i == (1u << l)) return edge.high;
+    return edge.slot + refineEdgePoint(i, l, edge.flags & 15u);
+}
+// m: the interior's level.
+FW_SHARED_FN uint refineInnerSlot(FW_IN(RefineTriangle) t, uint c1, uint c2, uint m) {
+    uint depth = refineInteriorDepth(t.flags);
+    uint shift = depth - m;
+    return t.slot + refineInnerPoint(c1 << shift, c2 << shift, 1u << depth);
+}
+FW_SHARED_FN uint refineDrawVertex(FW_IN(RefineTriangle) t, uint levels, uint code) {
+    if ((code & kRefineOnSide) == 0u)
+        return refineInnerSlot(t, code >> 6u, code & 63u, refineInterior(levels));
+    uint e = refineCodeSide(code), i = refineCodeStep(code);
+    uint l = refineSide(levels, e), steps = 1u << l;
+    if (i == 0u) return t.corner[e];
+    if (i == steps) return t.corner[refineNext(e)];
+    i = refineFlipped(t.flags, e) ? steps - i : i;
+    return t.side[e] + refineEdgePoint(i, l, refineSideDepth(t.flags, e));
+}
+
+// ---- levels
+
+// Level at which a segment covers `pixels` on the screen. focal: pixels of 1 m at 1 m.
+FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels) {
+    vec3 middle = (a + b) * 0.5f;
+    float d = distance(middle, eye);
+    float da = distance(a, eye);
+    float db = distance(b, eye);
+    d = da < d ? da : d;
+    d = db < d ? db : d;
+    d = d > 0.05f ? d : 0.05f;
+    float segments = distance(a, b) * focal / (d * pixels);
+    return log2(segments > 1.0f ? segments : 1.0f);
+}
+
+// Notes the heat; sets the target. cool: s that a level outlives its heat.
+FW_SHARED_FN void refineAim(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now,
+                            float cool) {
+    if ((heat & kRefineHot) != 0u) s.lastHot = now;
+    if ((heat & kRefineBurning) != 0u && s.burningSince > now) s.burningSince = now;
+    bool kept = (heat & kRefineHot) != 0u || now - s.lastHot < cool;
+    s.target = kept ? (lod < depth ? lod : depth) : 0.0f;
+}
+
+// Who gives up a level last: what burns, then by number.
+FW_SHARED_FN float refineSpread(uint id, uint heat) {
+    return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) +
+           0.45f * float(hash32(id) >> 8u) / 16777216.0f;
+}
+FW_SHARED_FN float refineBiased(float target, float bias, float spread) {
+    float less = bias - spread;
+    float level = target - (less > 0.0f ? less : 0.0f);
+    return level > 0.0f ? level : 0.0f;
+}
+FW_SHARED_CONST uint kRefineBiases = 16u;
+FW_SHARED_CONST float kRefineBiasStep = 0.4f;
+
+FW_SHARED_FN uint refineTop(float level) { return uint(ceil(level - 1e-4f > 0.0f ? level - 1e-4f : 0.0f)); }
+// How far the points of the top level have come from between their parents.
+FW_SHARED_FN float refineAge(float level, uint top) {
+    float f = level - float(top) + 1.0f;
+    return f < 1.0f ? f : 1.0f;
+}
+
+// Towards `want`: upwards at once while all is flat, else by `rate` levels per s. grace: s of
+// burning after which a surface is no longer flat.
+FW_SHARED_FN void refineMove(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate,
+                             float grace) {
+    float step = rate * dt;
+    bool flatStill = now - s.burningSince < grace;
+    if (want > s.level) s.level = flatStill || s.level + step > want ? want : s.level + step;
+    else s.level = s.level - step < want ? want : s.level - step;
+}
+
+// ---- places
+
+FW_SHARED_FN vec3 refineOffset(uint offset) {
+    int x = int(offset << 21u) >> 21;
+    int y = int(offset << 10u) >> 21;
+    int z = int(offset) >> 22;
+    return vec3(float(x) * (2.0f / 1023.0f), float(y) * (2.0f / 1023.0f),
+                float(z) * (2.0f / 511.0f));
+}
+
+// Arrival at a slot, s since `epoch`, from its four texels: over those lit by `now` (ticks) only.
+FW_SHARED_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uint epoch) {
+    float sum = 0.0f, weight = 0.0f;
+    for (int k = 0; k < 4; ++k) {
+        uint w = ticks[k] <= now ? (weights >> (8u * uint(k))) & 255u : 0u;
+        sum += float(int(w)) * float(int(ticks[k] - epoch));
+        weight += float(int(w));
+    }
+    return weight > 0.0f ? sum / weight * (1.0f / 4096.0f) : kRefineNever;
+}
+// Weights of the texels around a place between them.
+FW_SHARED_FN uint refineOppositeWeights(uint opposite) {
+    uint fx = (opposite >> 24u) & 15u, fy = opposite >> 28u;
+    uint a = (16u - fx) * (16u - fy), b = fx * (16u - fy), c = (16u - fx) * fy, d = fx * fy;
+    a = a > 255u ? 255u : a;
+    return a | (b << 8u) | (c << 16u) | (d << 24u);
+}
+
+// When a wall is burnt through: `through` s after it is lit from one side; from both, when the two
+// fronts meet.
+FW_SHARED_FN float refineHole(float a, float b, float through) {
+    float one = a < b ? a : b;
+    if (one >= kRefineNever) return kRefineNever;
+    float alone = one + through;
+    float other = a < b ? b : a;
+    if (other >= kRefineNever) return alone;
+    float both = (through + a + b) * 0.5f;
+    both = both > other ? both : other;
+    return alone < both ? alone : both;
+}
+
+// burnSeconds: of a wall of full thickness; negative: its char stays, it never opens. recede: share
+// of the slot's reach, below 1.
+FW_SHARED_FN vec4 refineEvaluate(FW_IN(RefineSlot) s, float arrival, float opposite, float now,
+                                 float burnSeconds, float recede) {
+    vec3 rest = vec3(s.x, s.y, s.z);
+    float seconds = burnSeconds < 0.0f ? -burnSeconds : burnSeconds;
+    float through = seconds * float(s.reach >> 16u) * (1.0f / 4096.0f);
+    float hole = burnSeconds < 0.0f ? kRefineNever : refineHole(arrival, opposite, through);
+    float burnt = 0.0f;
+    if (arrival < now) burnt = through > 0.0f ? (now - arrival) / through : 1.0f;
+    burnt = burnt < recede ? burnt : recede;
+    float depth = float(s.reach & 0xFFFFu) * 1e-5f * burnt;
+    vec3 p = rest + refineOffset(s.offset) * depth;
+    return vec4(p.x, p.y, p.z, hole);
+}
+// The inner skin: the slot at its full reach.
+FW_SHARED_FN vec3 refineInnerSkin(FW_IN(RefineSlot) s) {
+    float depth = float(s.reach & 0xFFFFu) * 1e-5f;
+    return vec3(s.x, s.y, s.z) + refineOffset(s.offset) * depth;
+}
+
+// ---- morph: a point of the top level starts between its parents
+
+FW_SHARED_FN vec3 refineMorph(vec3 own, vec3 a, vec3 b, float age) {
+    float k = age * age * (3.0f - 2.0f * age);
+    vec3 middle = (a + b) * 0.5f;
+    return middle + (own - middle) * k;
+}
+
+struct RefineParents {
+    uint a1, a2, b1, b2;  // c1, c2 of both
+};
+// Is a lattice point of the top level only?
+FW_SHARED_FN bool refineIsNew(uint c1, uint c2) { return ((c1 | c2) & 1u) != 0u; }
+// They lie along the direction of its two odd coordinates.
+FW_SHARED_FN RefineParents refineParents(uint c1, uint c2) {
+    RefineParents p;
+    uint d1 = c1 & 1u, d2 = c2 & 1u;
+    p.a1 = c1 - d1;
+    p.b1 = c1 + d1;
+    if (d1 == 1u && d2 == 1u) {
+        p.a2 = c2 + 1u;
+        p.b2 = c2 - 1u;
+    } else {
+        p.a2 = c2 - d2;
+        p.b2 = c2 + d2;
+    }
+    return p;
+}
+
+struct RefineSpot {  // a place on a side of a triangle's lattice
+    uint side;       // 3: inside
+    uint i;          // segment of the edge, from the low end
+    float f;         // place in it
+};
+// Where lattice point (c1, c2) of 2^m steps lies on the polyline of the edges.
+FW_SHARED_FN RefineSpot refineSpot(FW_IN(RefineTriangle) t, uint levels, uint c1, uint c2) {
+    RefineSpot spot;
+    uint n = 1u << refineInterior(levels);
+    uint c0 = n - c1 - c2;
+    spot.side = c2 == 0u ? 0u : c1 == 0u ? 2u : c0 == 0u ? 1u : 3u;
+    spot.i = 0u;
+    spot.f = 0.0f;
+    if (spot.side == 3u) return spot;
+    uint along = spot.side == 0u ? c1 : spot.side == 1u ? c2 : c0;
+    along = refineFlipped(t.flags, spot.side) ? n - along : along;
+    uint steps = 1u << refineSide(levels, spot.side);
+    float x = float(along) * float(steps) / float(n);
+    spot.i = uint(x) < steps - 1u ? uint(x) : steps - 1u;
+    spot.f = x - float(spot.i);
+    return spot;
+}
+
+// ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon in front of
+// the line between.
+
+// s to the hole.
+FW_SHARED_FN float refineField(float hole, float now) {
+    float f = hole - now;
+    return f < kRefineUnlit ? f : kRefineUnlit;
+}
+// Share of the way from the low slot (fa) to the high one (fb), one of them gone: a function of the
+// small edge, the same for all who cut it, and never on a vertex.
+FW_SHARED_FN float refineCutAt(float fa, float fb) {
+    float t = fa / (fa - fb);
+    t = t > 1.0f / 64.0f ? t : 1.0f / 64.0f;
+    return t < 63.0f / 64.0f ? t : 63.0f / 64.0f;
+}
+FW_SHARED_FN vec3 refineCutPoint(vec3 low, vec3 high, float fa, float fb) {
+    FW_PRECISE vec3 p = low + (high - low) * refineCutAt(fa, fb);
+    return p;
+}
+
+struct RefineCut {   // a small triangle's kept polygon
+    uint points;     // 0, 3 or 4
+    uint corner[4];  // k: corner k; 4 + k: cut of the side from k
+    uint rim;        // polygon side that runs along the hole; 4: none
+    uint open;       // bit per polygon side: on an open edge of the mesh
+};
+// solid, open: bit per corner, bit per side.
+FW_SHARED_FN RefineCut refineCut(uint solid, uint open) {
+    RefineCut cut;
+    cut.points = 0u;
+    cut.rim = 4u;
+    cut.open = 0u;
+    for (uint k = 0u; k < 3u; ++k) {
+        bool here = ((solid >> k) & 1u) != 0u;
+        bool there = ((solid >> refineNext(k)) & 1u) != 0u;
+        uint side = (open >> k) & 1u;
+        if (here) {
+            cut.open |= side << cut.points;
+            cut.corner[cut.points] = k;
+            cut.points += 1u;
+        }
+        if (here != there) {
+            if (here) cut.rim = cut.points;
+            else cut.open |= side << cut.points;
+            cut.corner[cut.points] = 4u + k;
+            cut.points += 1u;
+        }
+    }
+    return cut;
+}
+FW_SHARED_FN uint refineCutWalls(FW_IN(RefineCut) cut) {
+    uint o = cut.open;
+    return (cut.rim < 4u ? 1u : 0u) + (o & 1u) + ((o >> 1u) & 1u) + ((o >> 2u) & 1u) + (o >> 3u);
+}
+// Triangles: outer skin, inner skin, two for every wall.
+FW_SHARED_FN uint refineCutCount(FW_IN(RefineCut) cut, bool inner) {
+    if (cut.points == 0u) return 0u;
+    uint fan = cut.points - 2u;
+    return inner ? 2u * fan + 2u * refineCutWalls(cut) : fan;
+}
+// Polygon points of its k-th triangle; + 4: on the inner skin.
+FW_SHARED_FN uvec3 refineCutTriangle(FW_IN(RefineCut) cut, uint k) {
+    uint fan = cut.points - 2u;
+    if (k < fan) return uvec3(0u, k + 1u, k + 2u);
+    k -= fan;
+    if (k < fan) return uvec3(4u, k + 6u, k + 5u);
+    k -= fan;
+    uint wanted = k >> 1u;
+    uint x = 0u;
+    for (uint i = 0u; i < cut.points; ++i) {
+        bool wall = i == cut.rim || ((cut.open >> i) & 1u) != 0u;
+        if (!wall) continue;
+        if (wanted == 0u) {
+            x = i;
+            break;
+        }
+        wanted -= 1u;
+    }
+    uint y = x + 1u < cut.points ? x + 1u : 0u;
+    return (k & 1u) == 0u ? uvec3(y, x, x + 4u) : uvec3(y, x + 4u, y + 4u);
+}
+// A polygon point of a small triangle with these slots.
+FW_SHARED_FN RefineCorner refineCutCorner(FW_IN(RefineCut) cut, uint point, uvec3 slots) {
+    RefineCorner c;
+    uint at = cut.corner[point & 3u];
+    uint a = slots[at & 3u];
+    uint b = at < 4u ? a : slots[refineNext(at & 3u)];
+    c.low = a < b ? a : b;
+    c.high = (a < b ? b : a) | (point >= 4u ? kRefineInside : 0u);
+    return c;
+}
+
+FW_SHARED_END
+#endif

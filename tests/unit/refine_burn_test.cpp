@@ -1,0 +1,262 @@
+// Objects that burn to nothing: the shell is closed at every step, its volume only falls, holes are
+// where the texels say, both walls of a slab open together.
+#include "mesh/refine/table.h"
+#include "support/refine_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace fw::test {
+namespace {
+
+using mesh::RefineOptions;
+
+RefineOptions unsplit(uint32_t depth, float cellTexels = 0) {
+    RefineOptions o;
+    o.depth = depth;
+    o.cellTexels = cellTexels;
+    o.splitTexels = 0;
+    return o;
+}
+
+struct Burn {
+    uint32_t openSteps = 0, shared = 0, degenerate = 0, slivers = 0, grew = 0, flips = 0;
+    size_t triangles = 0, outer = 0;
+    uint32_t mostRim = 0, mostAll = 0;
+    double firstVolume = 0, lastVolume = 0;
+};
+
+uint32_t flipsOf(const RefineScene& scene, const mesh::RefineState& state) {
+    uint32_t flips = 0;
+    for (size_t i = 0; i < scene.model.triangles.size(); ++i)
+        for (uint32_t k = state.starts[i]; k < state.starts[i + 1]; ++k) {
+            glm::vec3 now[3], rest[3];
+            for (int v = 0; v < 3; ++v) {
+                const uint32_t s = scene.model.draws[state.indices[k * 3 + uint32_t(v)]].slot;
+                const gpu::RefineVertex& x = state.vertices[s];
+                const gpu::RefineSlot& r = scene.model.slots[s];
+                now[v] = {x.x, x.y, x.z};
+                rest[v] = {r.x, r.y, r.z};
+            }
+            flips += glm::dot(glm::cross(now[1] - now[0], now[2] - now[0]),
+                              glm::cross(rest[1] - rest[0], rest[2] - rest[0])) < 0;
+        }
+    return flips;
+}
+
+Burn burnDown(const RefineScene& scene, int steps, bool byDistance) {
+    RefinePlayer player(scene);
+    if (byDistance) player.views = {{{-1.5f, 0.7f, 0.4f}, 1000}};
+    mesh::RefineShell shell(std::pmr::new_delete_resource());
+    Burn b;
+    const float dt = (scene.end + kBurnSeconds + 2) / float(steps);
+    double last = 1e30;
+    for (int k = 0; k <= steps; ++k) {
+        const float now = float(k) * dt;
+        player.frame(now, dt);
+        b.flips += flipsOf(scene, player.state);
+        b.outer += player.triangles();
+        mesh::refineShell(scene.model, player.state, now, true, shell);
+        EXPECT_EQ(shell.corners.size(),
+                  3 * size_t(shell.outer + shell.inner + shell.rim + shell.wall));
+        const Closedness c = closedness(shellIds(shell));
+        b.openSteps += c.open > 0;
+        b.shared += c.shared;
+        b.degenerate += c.degenerate;
+        b.triangles += shell.corners.size() / 3;
+        b.mostRim = std::max(b.mostRim, shell.rim);
+        b.mostAll = std::max(b.mostAll, uint32_t(shell.corners.size() / 3));
+        double volume = 0;
+        for (size_t i = 0; i < shell.corners.size(); i += 3) {
+            glm::vec3 p[3];
+            for (size_t v = 0; v < 3; ++v)
+                p[v] = refineCornerPlace(scene.model, player.state, now, shell.corners[i + v]);
+            const glm::vec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+            volume += double(glm::dot(p[0], glm::cross(p[1], p[2]))) / 6;
+            b.slivers += glm::length(across) / 2 < 1e-10f;
+        }
+        if (k == 0) b.firstVolume = volume;
+        b.grew += volume > last + 1e-6;
+        last = volume;
+    }
+    b.lastVolume = last;
+    return b;
+}
+
+Burn expectConsumed(const char* name, const RefineScene& scene, int steps, bool byDistance) {
+    const Burn b = burnDown(scene, steps, byDistance);
+    EXPECT_EQ(0u, b.openSteps) << name << ": steps with an open edge";
+    EXPECT_EQ(0u, b.shared) << name;
+    EXPECT_EQ(0u, b.degenerate) << name;
+    EXPECT_EQ(0u, b.grew) << name << ": steps in which the volume grew";
+    EXPECT_GT(b.firstVolume, 0) << name;
+    EXPECT_NEAR(0, b.lastVolume, 1e-9) << name;
+    EXPECT_GT(b.mostRim, 20u) << name;
+    std::printf(
+        "%s: %zu shell triangles in %d steps, %u of no area, %.4f %% of the outer ones "
+        "turned over; at most %u rim and %u in all; volume %.5f m3 to %.1e\n",
+        name, b.triangles, steps, b.slivers, 100.0 * b.flips / double(b.outer), b.mostRim,
+        b.mostAll, b.firstVolume, b.lastVolume);
+    return b;
+}
+
+TEST(RefineBurn, ABoxBurnsToNothingClosed) {
+    RefineScene box(gridBox(1, 1, 1, 1, 1, 1), unsplit(5), 64);
+    box.light({0.02, 0.45, 0.37}, 0.02);
+    const Burn b = expectConsumed("box", box, 50, false);
+    // Six walls of 20 mm, mitred: 1 - 0.96^3.
+    EXPECT_NEAR(1 - 0.96 * 0.96 * 0.96, b.firstVolume, 0.0005);
+    EXPECT_EQ(0u, b.flips);
+    RefineScene split(gridBox(1, 1, 1, 1, 1, 1, 11), RefineOptions{}, 128);
+    split.light({0.02, 0.45, 0.37}, 0.02, 0.25);
+    const Burn s = expectConsumed("split box, noise, distance", split, 25, true);
+    EXPECT_EQ(0u, s.flips);
+}
+
+TEST(RefineBurn, AHouseToo) {
+    RefineScene scene(house(1, 0.8, 1.5, 0.4, 1, 3), unsplit(4), 64);
+    scene.light({0.02, 0.45, 0.37}, 0.03, 0.15);
+    EXPECT_EQ(0u, expectConsumed("house", scene, 40, false).flips);
+}
+
+TEST(RefineBurn, AnOpenSheetGetsWalls) {
+    RefineScene scene(makePlane(0.6, 0.4), unsplit(4), 64);
+    scene.light({0.2, 0.2, 0}, 0.03, 0.1);
+    const Burn b = expectConsumed("sheet", scene, 40, false);
+    EXPECT_NEAR(0.6 * 0.4 * 0.02, b.firstVolume, 1e-4);
+}
+
+TEST(RefineBurn, TheBunnyToo) {
+    Mesh mesh;
+    std::string reason;
+    if (!loadGlb("bunny_4k.glb", mesh, reason)) GTEST_SKIP() << reason;
+    RefineOptions o = unsplit(1);
+    o.wall = 0.012f;
+    RefineScene scene(mesh, o, 64);
+    const Vec3 foot = texelPosition(scene.domain, 0);
+    scene.light({foot.x, foot.y, foot.z}, 0.02, 0.15);
+    const Burn b = burnDown(scene, 16, false);
+    EXPECT_EQ(0u, b.openSteps);
+    EXPECT_EQ(0u, b.degenerate);
+    EXPECT_LT(double(b.flips), 0.0005 * double(b.outer));
+    std::printf("bunny: %zu shell triangles, %.4f %% of the outer ones turned over, most %u\n",
+                b.triangles, 100.0 * b.flips / double(b.outer), b.mostAll);
+}
+
+// The closedness test must notice missing rims and lost edge directions.
+TEST(RefineBurn, MutantsAreOpen) {
+    RefineScene scene(gridBox(1, 1, 1, 1, 1, 1, 11), unsplit(5), 64);
+    scene.light({0.02, 0.45, 0.37}, 0.02, 0.15);
+    RefinePlayer player(scene);
+    const float now = scene.timeAt(0.4) + kBurnSeconds;
+    player.runTo(now - 3, now, 0.25f);
+    mesh::RefineShell shell(std::pmr::new_delete_resource());
+    mesh::refineShell(scene.model, player.state, now, true, shell);
+    EXPECT_EQ(0u, closedness(shellIds(shell)).open);
+    std::vector<uint64_t> ids = shellIds(shell), rimless;
+    for (size_t i = 0; i < ids.size(); i += 3) {
+        bool inner[3];
+        for (size_t k = 0; k < 3; ++k) inner[k] = (ids[i + k] >> 63) != 0;
+        if (inner[0] == inner[1] && inner[1] == inner[2])
+            rimless.insert(rimless.end(), ids.begin() + long(i), ids.begin() + long(i) + 3);
+    }
+    EXPECT_GT(closedness(rimless).open, 100u) << "no rims";
+    for (gpu::RefineTriangle& t : scene.model.triangles) t.flags &= ~7u;
+    mesh::refineShell(scene.model, player.state, now, true, shell);
+    EXPECT_GT(closedness(shellIds(shell)).open, 100u) << "flip bits ignored";
+}
+
+// Triangles without a hole need no cut, and those with one are known.
+TEST(RefineBurn, OnlyHoledTrianglesAreCut) {
+    RefineScene scene(gridBox(1, 1, 1, 2, 2, 2), unsplit(4), 64);
+    scene.light({0.02, 0.45, 0.37}, 0.02);
+    RefinePlayer player(scene);
+    const float now = scene.timeAt(0.3) + kBurnSeconds;
+    player.runTo(now - 3, now, 0.25f);
+    mesh::RefineShell shell(std::pmr::new_delete_resource());
+    mesh::refineShell(scene.model, player.state, now, false, shell);
+    EXPECT_EQ(0u, shell.inner + shell.rim + shell.wall);
+    EXPECT_GT(shell.gone, 0u);
+    uint32_t holed = 0;
+    for (uint32_t i = 0; i < scene.model.triangles.size(); ++i)
+        holed += mesh::refineHoled(scene.model, player.state, now, i);
+    EXPECT_GT(holed, 5u);
+    EXPECT_LT(holed, scene.model.triangles.size());
+    uint32_t marked = 0;  // cut corners lie in holed triangles only
+    for (const gpu::RefineVertex& v : player.state.vertices) marked += v.hole <= now;
+    EXPECT_GT(marked, 0u);
+}
+
+TEST(RefineBurn, CharThatStaysNeverOpens) {
+    RefineScene scene(gridBox(1, 1, 1, 1, 1, 1), unsplit(3), 32);
+    scene.light({0.02, 0.45, 0.37}, 0.05);
+    std::fill(scene.burn.begin(), scene.burn.end(), -kBurnSeconds);
+    RefinePlayer player(scene);
+    const float now = scene.end;
+    player.runTo(now - 3, now, 0.25f);
+    mesh::RefineShell shell(std::pmr::new_delete_resource());
+    mesh::refineShell(scene.model, player.state, now + 100, true, shell);
+    EXPECT_EQ(0u, shell.gone + shell.rim);
+}
+
+TEST(RefineBurn, HoleTimes) {
+    const float never = gpu::kRefineNever;
+    EXPECT_EQ(never, gpu::refineHole(never, never, 4));
+    EXPECT_EQ(7, gpu::refineHole(3, never, 4));
+    EXPECT_EQ(7, gpu::refineHole(never, 3, 4));
+    EXPECT_EQ(5, gpu::refineHole(3, 3, 4)) << "from both sides at once: half the time";
+    EXPECT_EQ(6, gpu::refineHole(3, 5, 4));
+    EXPECT_EQ(7, gpu::refineHole(3, 9, 4)) << "burnt through before the other side is lit";
+    EXPECT_EQ(gpu::refineHole(2, 5.5f, 4), gpu::refineHole(5.5f, 2, 4));
+}
+
+// Both walls of a slab cut the same hole, though their charts are turned against each other.
+TEST(RefineBurn, BothWallsOfASlabOpenTogether) {
+    const double thick = 0.02;
+    RefineScene scene(gridBox(1, 1, thick, 4, 4, 1, 13), unsplit(4), 128);
+    scene.light({0.02, 0.5, thick}, 0.02, 0.15);
+    RefinePlayer player(scene);
+    player.settings.skipStill = false;
+    const float now = scene.timeAt(0.4) + kBurnSeconds;
+    player.runTo(now - 3, now, 0.25f);
+    std::map<std::pair<long, long>, uint32_t> below;
+    const auto key = [](const gpu::RefineSlot& s) {
+        return std::make_pair(std::lround(double(s.x) * 8192), std::lround(double(s.y) * 8192));
+    };
+    uint32_t opposed = 0, walls = 0, far = 0, crossing = 0;
+    double worst = 0, sum = 0;
+    for (const gpu::RefineSlot& s : scene.model.slots)
+        if (s.z == 0) below[key(s)] = uint32_t(&s - scene.model.slots.data());
+    uint32_t pairs = 0;
+    for (uint32_t i = 0; i < scene.model.slots.size(); ++i) {
+        const gpu::RefineSlot& s = scene.model.slots[i];
+        const bool rim = s.x < 0.03f || s.y < 0.03f || s.x > 0.97f || s.y > 0.97f;
+        if (std::abs(double(s.z) - thick) > 1e-6 || rim) continue;
+        ++walls;
+        opposed += s.opposite != gpu::kRefineOpposed;
+        crossing += double(s.reach & 0xFFFF) * 1e-5 > 0.45 * thick + 1.1e-5;
+        const auto other = below.find(key(s));
+        if (other == below.end()) continue;
+        const float a = player.state.vertices[i].hole,
+                    b = player.state.vertices[other->second].hole;
+        if (a >= gpu::kRefineNever || b >= gpu::kRefineNever) {
+            far += (a < now) != (b < now);
+            continue;
+        }
+        ++pairs;
+        const double apart = std::abs(double(a - b)) * 0.02;  // m of front travel
+        sum += apart;
+        worst = std::max(worst, apart);
+    }
+    EXPECT_EQ(walls, opposed);
+    EXPECT_EQ(0u, far);
+    EXPECT_EQ(0u, crossing) << "vertices that may recede beyond the middle";
+    ASSERT_GT(pairs, 300u);
+    std::printf(
+        "slab: %u pairs of opposite vertices, holes %.2f mm apart on average, %.2f at most\n",
+        pairs, 1000 * sum / pairs, 1000 * worst);
+    EXPECT_LT(1000 * sum / pairs, 0.3);
+    EXPECT_LT(1000 * worst, 3);
+}
+
+}  // namespace
+}  // namespace fw::test
