@@ -21,6 +21,9 @@ Window::Window(const VulkanHost& host, const std::string& title, uint32_t width,
         glfwDestroyWindow(window_);
         throw Failure("the window has no Vulkan surface; use --headless");
     }
+    // A press counts even when it is over before a slow frame asks.
+    glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
+    glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
     glfwSetWindowUserPointer(window_, this);
     glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double y) {
         static_cast<Window*>(glfwGetWindowUserPointer(window))->wheel_ += static_cast<float>(y);

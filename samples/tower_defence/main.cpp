@@ -27,6 +27,8 @@ tower::Daylight daylightOf(const std::string& name) {
     throw sample::Failure("--light is \"" + name + "\"; it takes golden, noon or night");
 }
 
+constexpr const char* kLights[] = {"golden", "noon", "night"};  // keys 1 to 3
+
 // The strategy camera: always the same way round, 45 degrees down; pans and zooms.
 struct Overview {
     glm::vec2 pan{0, 0};  // m, x and z, within +-8
@@ -111,7 +113,7 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
 }
 
 int run(const sample::Options& options, const Choices& choices) {
-    const tower::Daylight light = daylightOf(choices.light);
+    tower::Daylight light = daylightOf(choices.light);
     // Headless: ten seconds of story.
     const uint32_t whole = static_cast<uint32_t>(std::lround(10.0 * options.fps));
     const uint32_t frames = options.frames ? options.frames : options.headless ? whole : 0u;
@@ -146,6 +148,9 @@ int run(const sample::Options& options, const Choices& choices) {
         const std::vector<tower::PointLight> lamps = lampLights(scene);
         startUp.update(2);
         startUp.finish();
+        if (!options.headless)
+            std::printf(
+                "drag or arrow keys: pan; wheel: zoom; 1 2 3: golden hour, noon, night; Escape\n");
 
         sample::FilmRequest filmRequest;
         filmRequest.folder = options.out;
@@ -167,6 +172,11 @@ int run(const sample::Options& options, const Choices& choices) {
                 overview.follow(frames > 1 ? float(frame.number) / float(frames - 1) : 0.0f);
             else
                 overview.steer(frame.input, frame.deltaTime, frame.extent);
+            for (const int key : frame.input.keys) {
+                if (key < '1' || key > '3') continue;
+                light = daylightOf(kLights[key - '1']);
+                stage.made.exposure = light.exposure;
+            }
             game.advance(frame.deltaTime);
             const glm::vec3 wind = game.wind();
             fire.check(fwWorld_SetWind(fire.world, &wind[0]), "fwWorld_SetWind");
