@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kMagic = 0x44425746;  // "FWBD"
 constexpr uint32_t kVersion = 1;         // of the format
-constexpr uint32_t kBakeVersion = 1;     // of the algorithm: part of the key
+constexpr uint32_t kBakeVersion = 2;     // of the algorithm: part of the key
 constexpr size_t kHeaderBytes = 32;
 constexpr uint64_t kFnvPrime = 1099511628211ull;
 

@@ -1,5 +1,6 @@
 // Ring links: whom a texel reads where the atlas is cut. Found by walking over the surface from the
-// texel by one texel step; never by trusting what happens to lie beside it in the image.
+// texel by one texel step; never by trusting what happens to lie beside it in the image. A walk
+// that ends where no texel is gets the texel nearest to its end of those within two links.
 #include "mesh/texels.h"
 
 #include <cmath>
@@ -12,6 +13,8 @@ constexpr int kReaches = 3;           // a chart too small to own a texel is ste
 constexpr int kSearch = 3;            // texels around a landing place that owns none
 constexpr double kStepLimit = 3;      // texel sides: a longer Jacobian step is cut
 constexpr double kFoldedSlack = 1.5;  // texel sides: a link longer than 2 steps + this is refused
+constexpr double kAimLow = 1, kAimHigh = 1.5;  // texel sides: how far from a texel its aims lie
+constexpr double kMissLimit = 1.5;             // texel sides: a link may miss its aim by less
 
 struct Walk {
     uint32_t triangle;
@@ -155,6 +158,8 @@ class Linker {
           grid_(grid),
           report_(report),
           borders_(surface, grid, memory),
+          loose_(memory),
+          heard_(memory),
           memory_(memory) {}
 
     void run() {
@@ -162,27 +167,33 @@ class Linker {
             if (grid_.real(texel)) linkOne(texel);
         dropDeaf();
         for (uint32_t texel = 0; texel < grid_.count(); ++texel)
-            if (grid_.real(texel) && grid_.linkRecord[texel] != kNone) answerReaders(texel);
+            if (isRim(texel)) tighten(texel);
+        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
+            if (isRim(texel)) answerReaders(texel);
+        countReaders();
+        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
+            if (grid_.real(texel) && heard_[texel] == 0) findReader(texel);
         measure();
     }
 
  private:
-    // One texel step in ring direction k, in metres on the texel's own triangle.
+    [[nodiscard]] bool isRim(uint32_t texel) const {
+        return grid_.real(texel) && grid_.linkRecord[texel] != kNone;
+    }
+    [[nodiscard]] uint32_t* ringOf(uint32_t rimTexel) const {
+        return &grid_.links[size_t(grid_.linkRecord[rimTexel]) * 8];
+    }
+
+    // One texel step in ring direction k, in metres on the texel's own triangle. From the texel's
+    // point: that of a forced one is off its centre, and the centres around it would not lie on
+    // all sides.
     [[nodiscard]] glm::dvec3 stepOf(uint32_t texel, size_t k) const {
-        const Triangle& t = surface_.triangles[grid_.owner[texel]];
+        const double x = kRingX[k], y = kRingY[k];
         const TexelShape& shape = grid_.shapes[grid_.owner[texel]];
-        glm::dvec3 step;
-        if (!shape.usable) {  // no Jacobian: an even step
-            const glm::dvec3 u = unitOr0(t.position[1] - t.position[0]);
-            step =
-                (u * double(kRingX[k]) + glm::cross(t.normal, u) * double(kRingY[k])) * grid_.side;
-        } else {  // to the neighbour's centre, also from a forced texel's point off its own
-            const glm::dvec2 target(int(texel % grid_.width) + kRingX[k] + 0.5,
-                                    int(texel / grid_.width) + kRingY[k] + 0.5);
-            const glm::dvec2 offset = target - uvAt(t, grid_.weightsOf(texel));
-            step = shape.alongU * offset.x + shape.alongV * offset.y;
-        }
-        return step;
+        if (shape.usable) return shape.alongU * x + shape.alongV * y;
+        const Triangle& t = surface_.triangles[grid_.owner[texel]];  // no Jacobian: an even step
+        const glm::dvec3 u = unitOr0(t.position[1] - t.position[0]);
+        return (u * x + glm::cross(t.normal, u) * y) * grid_.side;
     }
     [[nodiscard]] glm::dvec3 cut(glm::dvec3 step) const {
         const double length = glm::length(step), limit = kStepLimit * grid_.side;
@@ -204,22 +215,26 @@ class Linker {
     void linkOne(uint32_t texel) {
         const int x = int(texel % grid_.width), y = int(texel / grid_.width);
         uint32_t ring[8];
+        uint8_t loose = 0;
         bool rim = false;
         for (size_t k = 0; k < 8; ++k) {
             const int nx = x + kRingX[k], ny = y + kRingY[k];
             ring[k] = grid_.inside(nx, ny) ? grid_.at(nx, ny) : kNone;
             if (plain(texel, ring[k], k)) continue;
             rim = true;
-            ring[k] = across(texel, k);
+            bool exact = false;
+            ring[k] = across(texel, k, exact);
+            if (!exact) loose = uint8_t(loose | 1u << k);
         }
         if (!rim) return;
+        loose_.push_back(loose);
         grid_.linkRecord[texel] = uint32_t(grid_.links.size() / 8);
         grid_.flags[texel] |= kTexelRim;
         grid_.links.insert(grid_.links.end(), ring, ring + 8);
     }
 
-    // The texel one step away over the surface, or kNone.
-    uint32_t across(uint32_t texel, size_t k) {
+    // The texel one step away over the surface, or kNone. `exact`: the step ends in that texel.
+    uint32_t across(uint32_t texel, size_t k, bool& exact) {
         const glm::dvec3 step = cut(stepOf(texel, k));
         bool open = false;
         for (int reach = 1; reach <= kReaches; ++reach) {
@@ -227,7 +242,8 @@ class Linker {
                                           step * double(reach));
             open |= walk.open;
             if (!walk.landed) break;
-            const uint32_t found = landing(walk, texel);
+            const uint32_t found = landing(walk, texel, exact);
+            exact &= reach == 1;
             if (found == texel) break;
             if (found == kNone) continue;
             const double limit = 2 * reach * glm::length(step) + kFoldedSlack * grid_.side;
@@ -239,14 +255,13 @@ class Linker {
     }
 
     // The real texel of the landing chart at, or nearest in space to, the landing point.
-    [[nodiscard]] uint32_t landing(const Walk& walk, uint32_t self) const {
+    [[nodiscard]] uint32_t landing(const Walk& walk, uint32_t self, bool& exact) const {
         const Triangle& t = surface_.triangles[walk.triangle];
         const glm::dvec2 uv = uvAt(t, walk.weights);
         const int x = int(std::floor(uv.x)), y = int(std::floor(uv.y));
-        if (grid_.inside(x, y)) {
-            const uint32_t texel = grid_.at(x, y);
-            if (grid_.real(texel) && grid_.chart[texel] == t.chart) return texel;
-        }
+        exact = grid_.inside(x, y) && grid_.real(grid_.at(x, y)) &&
+                grid_.chart[grid_.at(x, y)] == t.chart;
+        if (exact) return grid_.at(x, y);
         const glm::dvec3 point = positionAt(t, walk.weights) - surface_.low;
         uint32_t best = kNone;
         double nearest = 36 * grid_.side * grid_.side;
@@ -300,13 +315,60 @@ class Linker {
             if (link != kNone && !grid_.real(link)) link = kNone;
     }
 
+    // Where a slot of a texel's ring should lead: a walk's end, of about one texel side whatever
+    // the texel's shape, so that the ring lies evenly around.
+    struct Aim {
+        glm::dvec3 point{0};  // m, from Surface::low
+        double reach = 0;     // m, a longer link is refused
+        bool landed = false;
+    };
+    [[nodiscard]] Aim aimOf(uint32_t texel, size_t k) const {
+        glm::dvec3 step = stepOf(texel, k);
+        const double length = glm::length(step);
+        if (!(length > 0)) return {};
+        step *= std::clamp(length, kAimLow * grid_.side, kAimHigh * grid_.side) / length;
+        const Walk walk = walkSurface(surface_, grid_.owner[texel], grid_.weightsOf(texel), step);
+        if (!walk.landed) return {};
+        return {positionAt(surface_.triangles[walk.triangle], walk.weights) - surface_.low,
+                2 * glm::length(step) + kFoldedSlack * grid_.side, true};
+    }
+    [[nodiscard]] double missOf(const Aim& aim, uint32_t texel) const {
+        return glm::length(glm::dvec3(grid_.position[texel]) - aim.point);
+    }
+
+    // Slots whose step ends in no texel, or in one that another slot has too, take the free texel
+    // nearest to their aim: a ring that misses a direction hears fronts from there late.
+    void tighten(uint32_t i) {
+        uint32_t* ring = ringOf(i);
+        for (size_t k = 0; k < 8; ++k) {
+            const bool shared = ring[k] != kNone && std::count(ring, ring + 8, ring[k]) > 1;
+            if (!shared && (loose_[grid_.linkRecord[i]] >> k & 1) == 0) continue;
+            const Aim aim = aimOf(i, k);
+            if (!aim.landed) continue;
+            double least = kMissLimit * grid_.side;
+            if (ring[k] != kNone && !shared) least = std::min(least, missOf(aim, ring[k]));
+            uint32_t best = kNone;
+            for (int a = 0; a < 8; ++a)
+                for (int b = 0; ring[a] != kNone && b < 8; ++b) {
+                    const uint32_t texel = grid_.ring(ring[a], b);
+                    if (texel == kNone || texel == i || missOf(aim, texel) >= least ||
+                        std::find(ring, ring + 8, texel) != ring + 8 ||
+                        grid_.distance(i, texel) > aim.reach)
+                        continue;
+                    least = missOf(aim, texel);
+                    best = texel;
+                }
+            if (best != kNone) ring[k] = best;
+        }
+    }
+
     // i reads j and j, a rim texel, does not read i: use a spare slot of j, beside the ring
     // neighbour that lies nearest to i.
     void answerReaders(uint32_t i) {
         for (int k = 0; k < 8; ++k) {
             const uint32_t j = grid_.ring(i, k);
-            if (j == kNone || grid_.linkRecord[j] == kNone) continue;
-            uint32_t* ring = &grid_.links[size_t(grid_.linkRecord[j]) * 8];
+            if (j == kNone || !isRim(j)) continue;
+            uint32_t* ring = ringOf(j);
             if (std::find(ring, ring + 8, i) != ring + 8) continue;
             int slot = -1;
             double nearest = 2 * grid_.side;
@@ -325,8 +387,40 @@ class Linker {
         }
     }
 
+    void countReaders() {
+        heard_.assign(grid_.count(), 0);
+        for (uint32_t i = 0; i < grid_.count(); ++i)
+            for (int k = 0; grid_.real(i) && k < 8; ++k)
+                if (const uint32_t j = grid_.ring(i, k); j != kNone)
+                    heard_[j] = uint8_t(std::min(heard_[j] + 1, 255));
+    }
+
+    // Nobody reads i, so a fire lit there would stay there: of those that i reads, the one whose
+    // aim is nearest takes it, in the place of a texel that others read too.
+    void findReader(uint32_t i) {
+        double least = kMissLimit * grid_.side;
+        uint32_t* slot = nullptr;
+        for (int k = 0; k < 8; ++k) {
+            const uint32_t j = grid_.ring(i, k);
+            if (j == kNone || !isRim(j)) continue;
+            uint32_t* ring = ringOf(j);
+            for (size_t q = 0; q < 8; ++q) {
+                if (ring[q] != kNone && heard_[ring[q]] < 2) continue;
+                const Aim aim = aimOf(j, q);
+                if (!aim.landed || grid_.distance(i, j) > aim.reach) continue;
+                const double loss = missOf(aim, i) - (ring[q] == kNone ? 0 : missOf(aim, ring[q]));
+                if (loss >= least) continue;
+                least = loss;
+                slot = &ring[q];
+            }
+        }
+        if (slot == nullptr) return;
+        if (*slot != kNone) --heard_[*slot];
+        *slot = i;
+        ++heard_[i];
+    }
+
     void measure() {
-        std::pmr::vector<uint8_t> heard(grid_.count(), 0, memory_);
         double shortest = 1e300, longest = 0;
         for (uint32_t i = 0; i < grid_.count(); ++i) {
             if (!grid_.real(i)) continue;
@@ -336,13 +430,12 @@ class Linker {
             for (int k = 0; k < 8; ++k) {
                 const uint32_t j = grid_.ring(i, k);
                 if (j == kNone) continue;
-                heard[j] = 1;
                 shortest = std::min(shortest, grid_.distance(i, j));
                 longest = std::max(longest, grid_.distance(i, j));
             }
         }
         for (uint32_t i = 0; i < grid_.count(); ++i)
-            report_.readerless += grid_.real(i) && !heard[i];
+            report_.readerless += grid_.real(i) && heard_[i] == 0;
         grid_.linkMax = longest;
         report_.linkMin = longest > 0 ? shortest / grid_.side : 0;
         report_.linkMax = longest / grid_.side;
@@ -352,6 +445,8 @@ class Linker {
     TexelGrid& grid_;
     BakeReport& report_;
     Borders borders_;
+    std::pmr::vector<uint8_t> loose_;  // per record: slots whose step ends in no texel
+    std::pmr::vector<uint8_t> heard_;  // per texel: slots that name it, 255: that many or more
     std::pmr::memory_resource* memory_;
 };
 
