@@ -88,6 +88,7 @@ void arriveRow(uint work) {
             uint pending = kNever;
             uint late = 0u;
             uint counts = frontSources(ring, 0xFFu, end, pending);
+            uint future = pending;  // a source of the ring begins then: may correct us too
             FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]),
                                     slownessAt(bases.z, texel), m);
             uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel,
@@ -98,8 +99,8 @@ void arriveRow(uint work) {
                 changed |= 1u << x;
                 if (isReceptive(t)) lit |= 1u << x;
                 lateCount += late;
-            } else if (isReceptive(t)) {
-                wake = min(wake, pending);
+            } else {
+                wake = min(wake, isReceptive(t) ? pending : future);
             }
         }
         left = middle;

@@ -58,6 +58,7 @@ void arrive(uint rimWork) {
     uint pending = kNever;
     uint late = 0u;
     uint counts = frontSources(ring, present, end, pending);
+    uint future = pending;  // a source of the ring begins then: may correct us too
     uvec2 me = texels[bases.x + texel];
     uint material = (me.y >> 16u) & 7u;
     uint materialBase = object * kMaterialsPerObject;
@@ -87,8 +88,9 @@ void arrive(uint rimWork) {
         atomicOr(maskWords[word], 1u << (lane & 31u));
         if (isReceptive(t)) atomicOr(maskWords[word + 2u], 1u << (lane & 31u));
         if (late != 0u) atomicAdd(objectCounters[object].lateClamps, 1u);
-    } else if (pending != kNever && isReceptive(t)) {
-        atomicMin(tileState[tile.x].wake, pending);
+    } else {
+        uint next = isReceptive(t) ? pending : future;
+        if (next != kNever) atomicMin(tileState[tile.x].wake, next);
     }
 }
 

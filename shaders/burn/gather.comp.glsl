@@ -49,11 +49,8 @@ void gatherRow(uint slot, uint row) {
     uvec4 b = stateQuads[(at >> 2u) + 1u];
     uint own[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
     uint eligible = 0u;
-    uint receptive = 0u;
-    FW_UNROLL for (int i = 0; i < 8; ++i) {
+    FW_UNROLL for (int i = 0; i < 8; ++i)
         eligible |= frontEligible(own[i], floorTick) ? 1u << uint(i) : 0u;
-        receptive |= isReceptive(own[i]) ? 1u << uint(i) : 0u;
-    }
     if (eligible == 0u) return;
     uint rim = rimOfRow(tile.w, row);
     uint inner = eligible & ~rim;
@@ -82,13 +79,14 @@ void gatherRow(uint slot, uint row) {
                         (d.sources & (openDown | openLeft)) |
                         ((d.sources >> 2u) & (openDown | openRight));
         chosen = inner & (straight | diagonal);
-        uint quiet = inner & receptive & ~chosen;
+        uint quiet = inner & ~chosen;
         uint column[10];
         FW_UNROLL for (int i = 0; i < 10; ++i)
             column[i] = min(m.future[i], min(d.future[i], u.future[i]));
         FW_UNROLL for (int i = 0; i < 8; ++i)
             if ((quiet & (1u << uint(i))) != 0u)
-                pending = min(pending, min(column[i], min(column[i + 1], column[i + 2])));
+                pending = min(pending, min(min(column[i], column[i + 2]),
+                                           min(d.future[i + 1], u.future[i + 1])));
     }
     if (pending != kNever) atomicMin(tileState[tile.x].wake, pending);
     if ((chosen | rim) == 0u) return;

@@ -1,6 +1,7 @@
 // See front_tile.h. The maths is shared/front.h; here are only the loads, in the shader's order.
 #include "gpu/cpu/front_tile.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace fw::gpu::cpu {
@@ -48,6 +49,7 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
         }
         uint32_t pending = kNever;
         const uint32_t counts = frontSources(ring, present, windowEnd, pending);
+        const uint32_t future = pending;  // a source of the ring begins then: may correct us too
         uint32_t decided = t;
         uint32_t late = 0;
         if (counts != 0) {
@@ -77,8 +79,8 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
             out.changed |= 1ull << lane;
             if (isReceptive(t)) out.lit |= 1ull << lane;
             out.late += late;
-        } else if (pending < out.wake && isReceptive(t)) {
-            out.wake = pending;
+        } else {
+            out.wake = std::min(out.wake, isReceptive(t) ? pending : future);
         }
     }
     return out;
