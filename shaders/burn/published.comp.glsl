@@ -1,6 +1,6 @@
-// One step of the published sixteen-tap kernel over a whole object, for comparison. A lane takes
-// 8 x 8 texels, row by row with the five rows about it at hand: their taps overlap, and loads are
-// what a software device pays for. A group takes 64 x 64.
+// One step of the published sixteen-tap kernel over a whole object, for comparison. A lane takes a
+// column of eights, row by row with the five rows about it at hand: taps overlap, and loads are
+// what a software device pays for. Neighbouring lanes take neighbouring columns.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -32,116 +32,106 @@ void light(uint object, int x, int y, uint at) {
     predictTouch(push.predictParity, worldTile);
 }
 
-// One row of taps: eight texels and two more on either side.
-struct Taps {
-    vec2 low;
-    vec4 left, right;
-    vec2 high;
+// Eight texels of a row as the taps of their neighbours: left and right four.
+struct Row {
+    vec4 left, right;                // themselves
+    vec4 oneLeft, oneRight;          // the two beside each
+    vec4 twoLeft, twoRight;          // the two next but one
 };
-Taps loadRow(int plane, int width, int height, int x, int y) {
-    Taps t;
-    t.low = vec2(0.0);
-    t.left = vec4(0.0);
-    t.right = vec4(0.0);
-    t.high = vec2(0.0);
+Row loadRow(int plane, int width, int height, int x, int y) {
+    Row row;
+    row.left = row.right = vec4(0.0);
+    vec2 low = vec2(0.0);
+    vec2 high = vec2(0.0);
     if (y >= 0 && y < height) {
         int at = (plane + y * width + x) / 4;
-        t.left = quads[at];
-        t.right = quads[at + 1];
-        if (x > 0) t.low = quads[at - 1].zw;
-        if (x + 8 < width) t.high = quads[at + 2].xy;
+        row.left = quads[at];
+        row.right = quads[at + 1];
+        if (x > 0) low = quads[at - 1].zw;
+        if (x + 8 < width) high = quads[at + 2].xy;
     }
-    return t;
-}
-// Weighted sums over a row of taps, for the left and the right four.
-struct Sums {
-    vec4 left, right;
-};
-Sums same(Taps t) {
-    Sums s;
-    s.left = kPublishedNear * (vec4(t.low.y, t.left.xyz) + vec4(t.left.yzw, t.right.x));
-    s.right = kPublishedNear * (vec4(t.left.w, t.right.xyz) + vec4(t.right.yzw, t.high.x));
-    return s;
-}
-Sums besideOne(Taps t) {
-    Sums s;
-    s.left = kPublishedNear * t.left +
-             kPublishedDiagonal * (vec4(t.low.y, t.left.xyz) + vec4(t.left.yzw, t.right.x)) +
-             kPublishedKnight * (vec4(t.low, t.left.xy) + vec4(t.left.zw, t.right.xy));
-    s.right = kPublishedNear * t.right +
-              kPublishedDiagonal * (vec4(t.left.w, t.right.xyz) + vec4(t.right.yzw, t.high.x)) +
-              kPublishedKnight * (vec4(t.left.zw, t.right.xy) + vec4(t.right.zw, t.high));
-    return s;
-}
-Sums besideTwo(Taps t) {
-    Sums s;
-    s.left = kPublishedKnight * (vec4(t.low.y, t.left.xyz) + vec4(t.left.yzw, t.right.x));
-    s.right = kPublishedKnight * (vec4(t.left.w, t.right.xyz) + vec4(t.right.yzw, t.high.x));
-    return s;
+    row.oneLeft = vec4(low.y, row.left.xyz) + vec4(row.left.yzw, row.right.x);
+    row.oneRight = vec4(row.left.w, row.right.xyz) + vec4(row.right.yzw, high.x);
+    row.twoLeft = vec4(low, row.left.xy) + vec4(row.left.zw, row.right.xy);
+    row.twoRight = vec4(row.left.zw, row.right.xy) + vec4(row.right.zw, high);
+    return row;
 }
 
-// Bit i: S of texel i passes one half.
-uint crossings(vec4 q, vec4 next, vec4 d) {
-    bvec4 over = greaterThanEqual(2.0 * next, d);
-    bvec4 under = lessThan(2.0 * q, d);
-    uvec4 bits = uvec4(over) * uvec4(under) * uvec4(1u, 2u, 4u, 8u);
-    return bits.x | bits.y | bits.z | bits.w;
+// Sign bits: S of a texel passes one half.
+uvec4 crossings(vec4 q, vec4 next, vec4 d) {
+    precise vec4 before = q + q - d;
+    precise vec4 after = next + next - d;
+    return floatBitsToUint(before) & ~floatBitsToUint(after);
+}
+
+// Lights what passed in these eight. From the planes again: it is rare, and a row that has it at
+// hand costs all others.
+void lightRow(uint object, int x, int y, int from, int to, int spread) {
+    uvec4 left = crossings(quads[from], quads[to], quads[spread]) >> 31u;
+    uvec4 right = crossings(quads[from + 1], quads[to + 1], quads[spread + 1]) >> 31u;
+    uint bits = left.x | left.y << 1u | left.z << 2u | left.w << 3u | right.x << 4u |
+                right.y << 5u | right.z << 6u | right.w << 7u;
+    for (; bits != 0u; bits &= bits - 1u) {
+        int atX = x + findLSB(bits);
+        uint stateAt = objects[object].stateBase + uint(y) * objects[object].width + uint(atX);
+        if (isReceptive(state[stateAt])) light(object, atX, y, stateAt);
+    }
+}
+
+void runBlock(uint object, int x, int y) {
+    int width = int(objects[object].width);
+    int height = int(objects[object].height);
+    int plane = width * height;
+    int base = int(objects[object].publishedBase);
+    int from = base + int(push.publishedParity) * plane;
+    int to = (base + int(push.publishedParity ^ 1u) * plane) / 4;
+    int spread = (base + 2 * plane) / 4;
+    Row below2 = loadRow(from, width, height, x, y - 2);
+    Row below1 = loadRow(from, width, height, x, y - 1);
+    Row centre = loadRow(from, width, height, x, y);
+    Row above1 = loadRow(from, width, height, x, y + 1);
+    int end = min(y + int(kPublishedBlockY), height);
+    uint rows = 0u;  // with a texel that passes; bit 31 is the last
+    for (; y < end; ++y) {
+        Row above2 = loadRow(from, width, height, x, y + 2);
+        int at = (y * width + x) / 4;
+        vec4 dLeft = quads[spread + at];
+        vec4 dRight = quads[spread + at + 1];
+        vec4 left = publishedNext(centre.left, dLeft, (below1.left + above1.left) + centre.oneLeft,
+                                  below1.oneLeft + above1.oneLeft,
+                                  (below1.twoLeft + above1.twoLeft) +
+                                      (below2.oneLeft + above2.oneLeft));
+        vec4 right = publishedNext(centre.right, dRight,
+                                   (below1.right + above1.right) + centre.oneRight,
+                                   below1.oneRight + above1.oneRight,
+                                   (below1.twoRight + above1.twoRight) +
+                                       (below2.oneRight + above2.oneRight));
+        quads[to + at] = left;
+        quads[to + at + 1] = right;
+        uvec4 pass = crossings(centre.left, left, dLeft) | crossings(centre.right, right, dRight);
+        rows = rows >> 1u | ((pass.x | pass.y | pass.z | pass.w) & 0x80000000u);
+        below2 = below1;
+        below1 = centre;
+        centre = above1;
+        above1 = above2;
+    }
+    while (rows != 0u) {
+        int bit = findMSB(rows);
+        rows ^= 1u << uint(bit);
+        int passY = end - 32 + bit;
+        int at = (passY * width + x) / 4;
+        lightRow(object, x, passY, from / 4 + at, to + at, spread + at);
+    }
 }
 
 void main() {
     uint object = push.object;
-    int width = int(objects[object].width);
-    int height = int(objects[object].height);
-    int groupsX = (width + 63) / 64;
-    int groups = groupsX * ((height + 63) / 64);
-    int plane = width * height;
-    int base = int(objects[object].publishedBase);
-    int from = base + int(push.publishedParity) * plane;
-    int to = base + int(push.publishedParity ^ 1u) * plane;
-    int spread = base + 2 * plane;
-    for (int g = int(gl_WorkGroupID.x); g < groups; g += int(gl_NumWorkGroups.x)) {
-        int x = (g % groupsX) * 64 + int(gl_LocalInvocationID.x & 7u) * 8;
-        int y = (g / groupsX) * 64 + int(gl_LocalInvocationID.x >> 3u) * 8;
-        if (x >= width || y >= height) continue;
-        Taps below2 = loadRow(from, width, height, x, y - 2);
-        Taps below1 = loadRow(from, width, height, x, y - 1);
-        Taps centre = loadRow(from, width, height, x, y);
-        Taps above1 = loadRow(from, width, height, x, y + 1);
-        uvec2 lit = uvec2(0u);  // 64 texels
-        for (int r = 0; r < 8; ++r) {
-            Taps above2 = loadRow(from, width, height, x, y + r + 2);
-            Sums a = besideTwo(below2);
-            Sums b = besideOne(below1);
-            Sums c = same(centre);
-            Sums d = besideOne(above1);
-            Sums e = besideTwo(above2);
-            int row = ((y + r) * width + x) / 4;
-            vec4 dLeft = quads[spread / 4 + row];
-            vec4 dRight = quads[spread / 4 + row + 1];
-            vec4 left = min(
-                centre.left + dLeft * (a.left + b.left + c.left + d.left + e.left), dLeft);
-            vec4 right = min(
-                centre.right + dRight * (a.right + b.right + c.right + d.right + e.right), dRight);
-            quads[to / 4 + row] = left;
-            quads[to / 4 + row + 1] = right;
-            uint bits = (crossings(centre.left, left, dLeft) |
-                         (crossings(centre.right, right, dRight) << 4u))
-                        << (uint(r & 3) * 8u);
-            if (r < 4) lit.x |= bits;
-            else lit.y |= bits;
-            below2 = below1;
-            below1 = centre;
-            centre = above1;
-            above1 = above2;
-        }
-        while ((lit.x | lit.y) != 0u) {
-            int bit = lit.x != 0u ? findLSB(lit.x) : 32 + findLSB(lit.y);
-            if (bit < 32) lit.x &= lit.x - 1u;
-            else lit.y &= lit.y - 1u;
-            int atX = x + (bit & 7);
-            int atY = y + (bit >> 3);
-            uint stateAt = objects[object].stateBase + uint(atY * width + atX);
-            if (isReceptive(state[stateAt])) light(object, atX, atY, stateAt);
-        }
+    uint columns = objects[object].width / kPublishedBlockX;
+    uint blocks =
+        columns * ((objects[object].height + kPublishedBlockY - 1u) / kPublishedBlockY);
+    for (uint i = gl_GlobalInvocationID.x; i < blocks; i += gl_NumWorkGroups.x * 64u) {
+        uint blockY = divide(i, columns);
+        runBlock(object, int((i - blockY * columns) * kPublishedBlockX),
+                 int(blockY * kPublishedBlockY));
     }
 }

@@ -44,9 +44,7 @@ void resetTile(uint local, uint lane) {
     published[base] = 0.0;
     published[base + plane] = 0.0;
     published[base + 2u * plane] =
-        burns ? publishedSpread(push.publishedRate, push.publishedGravity, slow,
-                                -float(rise) / 16777216.0)
-              : 0.0;
+        burns ? publishedSpread(slow, -rise >> 12) : 0.0;
 }
 
 void main() {

@@ -213,11 +213,8 @@ struct StepPush {     // push constants of the simulation passes
     uint object;      // reset, published: slot
     uint publishedParity;  // plane that is read
     uint reserved0;
-    float publishedRate;     // C_D * dt
-    float publishedGravity;  // C_G
-    uint reserved1; uint reserved2;
 };
-FW_SHARED_SIZE(StepPush, 64)
+FW_SHARED_SIZE(StepPush, 48)
 
 FW_SHARED_FN bool isSource(uint t) { return t < kLiveEnd; }
 FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }

@@ -111,6 +111,25 @@ TEST_F(FrontEquality, P7_DenseEqualsSparse) {
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
 }
 
+// The as-published mode is for comparison, and floats; equal all the same.
+TEST_F(FrontEquality, P16_PublishedIsEqual) {
+    if (!device_) return;
+    BurnScene scene = BurnScene::make(15, 0.6);
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+        SceneObject& object = scene.objects[i];
+        if (i % 4 == 3) continue;  // one of the product front among them
+        object.flags |= gpu::kObjectPublished;
+        const auto& slowness = scene.domains[object.mesh].slowness;
+        object.slowness.assign(slowness.begin(), slowness.end());
+        for (uint16_t& value : object.slowness) value = uint16_t((value + 15) / (i % 2 ? 16 : 64));
+    }
+    const Outcome outcome = compare(scene, 1600, 4, 4, 5);
+    EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
+    EXPECT_GT(outcome.ignitions, 5000u);
+    std::printf("P16: %zu objects, 1600 steps, %u maps compared, %llu ignitions\n",
+                scene.objects.size(), outcome.compared, (unsigned long long)outcome.ignitions);
+}
+
 TEST_F(FrontEquality, P18_MutantsAreCaught) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(14);

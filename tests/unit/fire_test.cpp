@@ -252,5 +252,73 @@ TEST(Fire, P16_PublishedKernelSpeeds) {
     }
 }
 
+// The kernel as one would write it down, in doubles, on a map whose slowness varies twofold.
+TEST(Fire, P16_PublishedKernelKeepsItsPrecision) {
+    const double density = 128;
+    const mesh::BurnDomain d = bakePlane(110 / density, 60 / density, density);
+    std::vector<uint16_t> slowness(d.texelCount());
+    for (uint32_t i = 0; i < d.texelCount(); ++i) slowness[i] = uint16_t(16 + gpu::hash32(i) % 17);
+    gpu::BurnMaterial record{};
+    record.flags = 1;
+    record.sigma0 = 1 << 20;
+    record.burnTicks = record.flameTicks = gpu::kNoneTexel;
+    FrontRig rig(d, record, slowness, gpu::kObjectPublished);
+    std::vector<double> now(d.texelCount()), next(d.texelCount()), at(d.texelCount(), -1);
+    const auto spread = [&](int x, int y) {
+        const uint32_t i = uint32_t(y) * d.width + uint32_t(x);
+        return d.real(i) ? double(gpu::kPublishedRate) / 32 * 128 / slowness[i] : 0.0;
+    };
+    const auto tap = [&](int x, int y) {
+        return x < 0 || y < 0 || x >= int(d.width) || y >= int(d.height)
+                   ? 0.0
+                   : now[size_t(y) * d.width + size_t(x)] * spread(x, y);
+    };
+    const uint32_t first = texelNear(d, {20 / density, 30 / density, 0});
+    rig.push(first, gpu::kEventIgnite, kStartTick);
+    now[first] = 1;
+    const uint32_t last = texelNear(d, {90 / density, 30 / density, 0});
+    for (int step = 1; at[last] < 0 && step < 4000; ++step) {
+        rig.step();
+        for (int y = 0; y < int(d.height); ++y)
+            for (int x = 0; x < int(d.width); ++x) {
+                double sum = 0;
+                for (int dy = -2; dy <= 2; ++dy)
+                    for (int dx = -2; dx <= 2; ++dx) {
+                        const int r = dx * dx + dy * dy;
+                        if (r == 0 || r == 4 || r == 8) continue;
+                        sum += tap(x + dx, y + dy) * double(r == 1   ? gpu::kPublishedNear
+                                                            : r == 2 ? gpu::kPublishedDiagonal
+                                                                     : gpu::kPublishedKnight);
+                    }
+                const size_t i = size_t(y) * d.width + size_t(x);
+                next[i] = spread(x, y) > 0 ? std::min(1.0, now[i] + sum) : 0.0;
+                if (now[i] < 0.5 && next[i] >= 0.5) at[i] = step / 32.0;
+            }
+        now.swap(next);
+    }
+    ASSERT_GT(at[last], 0);
+    double worst = 0;  // s
+    uint32_t lit = 0;
+    for (uint32_t i = 0; i < d.texelCount(); ++i) {
+        if (at[i] < 0) continue;
+        ASSERT_GE(rig.arrival(i), 0) << i;
+        worst = std::max(worst, std::abs(rig.arrival(i) - at[i]));
+        ++lit;
+    }
+    std::printf("P16 published against doubles: %u arrivals within %.4f s, the last at %.2f s\n",
+                lit, worst, at[last]);
+    EXPECT_GT(lit, 3000u);
+    EXPECT_LE(worst, 1.0 / 32 + 1e-9);  // one step
+}
+
+TEST(Fire, P16_PublishedSpread) {
+    for (uint32_t slow : {1u, 3u, 24u, 128u, 255u, 256u, 257u, 1000u, 65535u})
+        for (int fall : {-4096, -1000, 0, 777, 4096}) {
+            const double wanted = double(gpu::kPublishedRate) / 32 * 128 / slow *
+                                  (1 + double(gpu::kPublishedGravity) * fall / 4096);
+            EXPECT_NEAR(gpu::publishedSpread(slow, fall) / wanted, 1, 5e-5) << slow << " " << fall;
+        }
+}
+
 }  // namespace
 }  // namespace fw::test

@@ -6,7 +6,6 @@
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_state.h"
-#include "shared/published.h"
 
 #include <algorithm>
 #include <bit>
@@ -145,10 +144,7 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             burning(worldTile);
         }
         if (!object.published.empty()) {
-            const size_t plane = object.state.size();
-            const float q = isSource(now) ? object.published[2 * plane + first.texel] : 0.0f;
-            object.published[first.texel] = q;
-            object.published[plane + first.texel] = q;
+            publishedEvent(object, first.texel, isSource(now));
             continue;
         }
         tiles[worldTile].lastChange = step.now;
@@ -275,49 +271,6 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
     }
 }
 
-void CpuBackend::State::publishedStep(uint32_t now) noexcept {
-    for (core::Owned<CpuObject>& owned : objects) {
-        if (!owned || !owned->live || owned->published.empty()) continue;
-        CpuObject& object = *owned;
-        const int width = int(object.domain->width);
-        const int height = int(object.domain->height);
-        const size_t plane = object.state.size();
-        const float* from = object.published.data() + object.publishedParity * plane;
-        float* to = object.published.data() + (object.publishedParity ^ 1u) * plane;
-        const float* spread = object.published.data() + 2 * plane;
-        object.publishedParity ^= 1u;
-        const auto tap = [&](int x, int y) {
-            return x < 0 || y < 0 || x >= width || y >= height
-                       ? 0.0f
-                       : from[size_t(y) * size_t(width) + size_t(x)];
-        };
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) {
-                const size_t texel = size_t(y) * size_t(width) + size_t(x);
-                const float q = from[texel];
-                const float d = spread[texel];
-                to[texel] = q;
-                if (!(q < d)) continue;
-                const float next = publishedNext(
-                    q, d,
-                    publishedSum(tap(x - 1, y) + tap(x + 1, y) + tap(x, y - 1) + tap(x, y + 1),
-                                 tap(x - 1, y - 1) + tap(x + 1, y - 1) + tap(x - 1, y + 1) +
-                                     tap(x + 1, y + 1),
-                                 tap(x - 2, y - 1) + tap(x - 2, y + 1) + tap(x + 2, y - 1) +
-                                     tap(x + 2, y + 1) + tap(x - 1, y - 2) + tap(x + 1, y - 2) +
-                                     tap(x - 1, y + 2) + tap(x + 1, y + 2)));
-                to[texel] = next;
-                if (2 * next < d || 2 * q >= d || !isReceptive(object.state[texel])) continue;
-                object.state[texel] = now + kStepTicks;
-                ++object.counters.ignited;
-                object.counters.lastIgnition =
-                    std::max(object.counters.lastIgnition, now + kStepTicks);
-                burning(object.record.worldTileBase + uint32_t(y >> 3) * object.domain->tilesX +
-                        uint32_t(x >> 3));
-            }
-    }
-}
-
 uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
     for (Range& range : freeTiles) {
         if (range.count < count) continue;
@@ -390,17 +343,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
         const bool burns = texelBurns(flags, slow[i], object->materials[flags & 7].flags);
         object->state[i] = burns ? kNever : kInert;
     }
-    if ((init.record.flags & kObjectPublished) != 0) {
-        object->published.resize(size_t(texels) * 3);
-        for (uint32_t i = 0; i < texels; ++i) {
-            if (object->state[i] != kNever) continue;
-            const uvec4& up = object->materials[domain.texels[i].materialFlags & 7].upCeiling;
-            const int rise =
-                dotInt(decodeNormal(domain.normals[i]), ivec3(int(up.x), int(up.y), int(up.z)));
-            object->published[size_t(texels) * 2 + i] = publishedSpread(
-                kPublishedRate / 32.0f, kPublishedGravity, slow[i], -float(rise) / 16777216.0f);
-        }
-    }
+    if ((init.record.flags & kObjectPublished) != 0) createPublished(*object);
     if (slot >= s.objects.size()) s.objects.resize(slot + 1);
     s.freeTiles.reserve(s.objects.size() + s.freeTiles.size() + 1);
     const uint32_t first = s.allocateTiles(domain.tileCount());

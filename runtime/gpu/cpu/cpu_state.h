@@ -18,9 +18,13 @@ struct CpuObject {
     const mesh::BurnDomain* domain = nullptr;
     std::pmr::vector<uint32_t> state;     // one per texel
     std::pmr::vector<uint16_t> slowness;  // empty: the mesh's own
-    std::pmr::vector<float> published;    // 3 planes, as-published objects only
+    std::pmr::vector<float> published;    // as-published objects only: see cpu_published.cpp
     uint32_t publishedParity = 0;
 };
+
+// cpu_published.cpp; after the states are there.
+void createPublished(CpuObject& object);
+void publishedEvent(CpuObject& object, uint32_t texel, bool burns) noexcept;
 
 struct ReadbackStore {
     explicit ReadbackStore(std::pmr::memory_resource* memory)
@@ -57,7 +61,7 @@ struct CpuBackend::State {
     void scheduleTile(const StepPlan& step, uint32_t iteration, uint32_t worldTile,
                       bool dense) noexcept;
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
-    void publishedStep(uint32_t now) noexcept;
+    void publishedStep(uint32_t now) noexcept;                   // cpu_published.cpp
     void reduce(uint32_t now) noexcept;                          // cpu_reduce.cpp
     void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
     uint32_t allocateTiles(uint32_t count);

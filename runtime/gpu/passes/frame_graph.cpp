@@ -1,7 +1,6 @@
 #include "gpu/passes/frame_graph.h"
 
 #include "gpu/vk/recorder.h"
-#include "shared/published.h"
 
 #include <algorithm>
 
@@ -54,8 +53,6 @@ void recordCounters(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t ite
 void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles) {
     StepPush push{};
     push.object = object;
-    push.publishedRate = kPublishedRate / 32.0f;
-    push.publishedGravity = kPublishedGravity;
     recorder.fillZero(FW_BIND_OBJECT_COUNTERS, object * sizeof(ObjectCounters),
                       sizeof(ObjectCounters));
     recorder.dispatch(kResetPass, &push, std::min(tiles, kMaxGroups));
@@ -72,8 +69,6 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         push.burnParity = lists.burnParity;
         push.predictParity = lists.predictParity;
         push.switches = step.switches;
-        push.publishedRate = kPublishedRate / 32.0f;
-        push.publishedGravity = kPublishedGravity;
         return push;
     };
     StepPush push = pushNow();

@@ -1,6 +1,8 @@
 // The published sixteen-tap kernel, for comparison.
 #include "gpu/passes/frame_graph.h"
 
+#include "shared/published.h"
+
 namespace fw::gpu {
 namespace {
 
@@ -17,8 +19,9 @@ constexpr Use kUses[] = {
 const ComputePass kPublishedPass{"published", "published.comp", kUses, sizeof(StepPush)};
 
 uint32_t publishedGroups(const BurnObject& object) {
-    constexpr uint32_t kSide = 64;  // texels of a group, as in the shader
-    return ((object.width + kSide - 1) / kSide) * ((object.height + kSide - 1) / kSide);
+    const uint32_t blocks = object.width / kPublishedBlockX *
+                            ((object.height + kPublishedBlockY - 1) / kPublishedBlockY);
+    return (blocks + 63) / 64;
 }
 
 }  // namespace fw::gpu

@@ -1,0 +1,101 @@
+// The published sixteen-tap kernel on the CPU: the floats of shaders/burn/published.comp, in its
+// order. Three planes, S * D twice and D, with two texels of nothing around the map.
+#include "gpu/cpu/cpu_state.h"
+#include "shared/published.h"
+
+#include <bit>
+
+namespace fw::gpu::cpu {
+namespace {
+
+constexpr size_t kPad = 2;  // texels on each side: as far as taps reach
+
+size_t strideOf(const CpuObject& object) noexcept { return object.domain->width + 2 * kPad; }
+size_t planeOf(const CpuObject& object) noexcept {
+    return strideOf(object) * (object.domain->height + 2 * kPad);
+}
+size_t place(const CpuObject& object, uint32_t x, uint32_t y) noexcept {
+    return (y + kPad) * strideOf(object) + x + kPad;
+}
+
+// Sign bit: S passes one half.
+uint32_t crossing(float q, float next, float d) noexcept {
+    return std::bit_cast<uint32_t>(q + q - d) & ~std::bit_cast<uint32_t>(next + next - d);
+}
+
+// `from`, `spread` and `to` at the row's first texel. True: some texel passes one half.
+bool publishedRow(const float* from, const float* spread, float* to, size_t stride,
+                  uint32_t width) noexcept {
+    const float* below2 = from - 2 * stride;
+    const float* below1 = from - stride;
+    const float* above1 = from + stride;
+    const float* above2 = from + 2 * stride;
+    uint32_t pass = 0;
+    for (std::ptrdiff_t x = 0; x < std::ptrdiff_t(width); ++x) {
+        const auto one = [x](const float* row) { return row[x - 1] + row[x + 1]; };
+        const auto two = [x](const float* row) { return row[x - 2] + row[x + 2]; };
+        const float next = publishedNext(from[x], spread[x], (below1[x] + above1[x]) + one(from),
+                                         one(below1) + one(above1),
+                                         (two(below1) + two(above1)) + (one(below2) + one(above2)));
+        to[x] = next;
+        pass |= crossing(from[x], next, spread[x]);
+    }
+    return (pass & 0x80000000u) != 0;
+}
+
+}  // namespace
+
+void createPublished(CpuObject& object) {
+    const mesh::BurnDomain& domain = *object.domain;
+    const size_t plane = planeOf(object);
+    object.published.resize(3 * plane);
+    const uint16_t* slow =
+        object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
+    for (uint32_t y = 0; y < domain.height; ++y)
+        for (uint32_t x = 0; x < domain.width; ++x) {
+            const uint32_t texel = y * domain.width + x;
+            if (object.state[texel] != kNever) continue;
+            const uvec4& up = object.materials[domain.texels[texel].materialFlags & 7].upCeiling;
+            const int rise = dotInt(decodeNormal(domain.normals[texel]),
+                                    ivec3(int(up.x), int(up.y), int(up.z)));  // Q24
+            object.published[2 * plane + place(object, x, y)] =
+                publishedSpread(slow[texel], -rise >> 12);
+        }
+}
+
+void publishedEvent(CpuObject& object, uint32_t texel, bool burns) noexcept {
+    const size_t plane = planeOf(object);
+    const size_t at = place(object, texel % object.domain->width, texel / object.domain->width);
+    const float q = burns ? object.published[2 * plane + at] : 0.0f;
+    object.published[at] = q;
+    object.published[plane + at] = q;
+}
+
+void CpuBackend::State::publishedStep(uint32_t now) noexcept {
+    const uint32_t end = now + kStepTicks;
+    for (core::Owned<CpuObject>& owned : objects) {
+        if (!owned || !owned->live || owned->published.empty()) continue;
+        CpuObject& object = *owned;
+        const uint32_t width = object.domain->width;
+        const size_t plane = planeOf(object);
+        float* planes = object.published.data();
+        for (uint32_t y = 0; y < object.domain->height; ++y) {
+            const size_t row = place(object, 0, y);
+            const float* from = planes + object.publishedParity * plane + row;
+            const float* spread = planes + 2 * plane + row;
+            float* to = planes + (object.publishedParity ^ 1u) * plane + row;
+            if (!publishedRow(from, spread, to, strideOf(object), width)) continue;
+            for (uint32_t x = 0; x < width; ++x) {
+                uint32_t& state = object.state[y * width + x];
+                if (crossing(from[x], to[x], spread[x]) >> 31 == 0 || !isReceptive(state)) continue;
+                state = end;
+                ++object.counters.ignited;
+                object.counters.lastIgnition = std::max(object.counters.lastIgnition, end);
+                burning(object.record.worldTileBase + (y >> 3) * object.domain->tilesX + (x >> 3));
+            }
+        }
+        object.publishedParity ^= 1u;
+    }
+}
+
+}  // namespace fw::gpu::cpu
