@@ -121,7 +121,7 @@ static void addWindow(MeshBuilder& b, Vec3 c, Vec3 shutter, bool flowers) {
         b.use(Texture::kPlank, Material::kWood, palette::kWood);
         b.box(c + Vec3{0, -0.52f, 0.12f}, {0.72f, 0.16f, 0.2f}, 1.1f, {1, 0, 0});
         b.use(Texture::kLeaf, Material::kLeaf, {0.42f, 0.06f, 0.05f});
-        b.blob(c + Vec3{0, -0.33f, 0.14f}, {0.36f, 0.11f, 0.12f}, 6, 3, 0.2f);
+        b.blob(c + Vec3{0, -0.33f, 0.14f}, {0.36f, 0.11f, 0.12f}, 5, 3, 0.2f);
     } else {
         useTimber(b);
         b.box(c + Vec3{0, -0.42f, 0.03f}, {0.8f, 0.09f, 0.14f}, 1, {1, 0, 0});

@@ -21,8 +21,7 @@ Model makeStrawMan(uint32_t seed) {
     }
     b.lathe({{0.52f, 0.55f},
              {0.36f, 0.82f},
-             {0.20f, 1.0f},
-             {0.24f, 1.06f},
+             {0.22f, 1.03f},
              {0.40f, 1.38f},
              {0.36f, 1.58f},
              {0.12f, 1.7f}},
@@ -57,7 +56,7 @@ Model makeYuleGoat(uint32_t seed) {
     b.use(Texture::kStraw, Material::kStraw, palette::kStraw * 1.05f);
     b.tube(
         {{0, 1.0f, -0.85f}, {0, 1.02f, -0.7f}, {0, 0.98f, 0}, {0, 1.05f, 0.5f}, {0, 1.1f, 0.68f}},
-        {0.2f, 0.34f, 0.30f, 0.36f, 0.2f}, 7, true, 0.08f);
+        {0.2f, 0.34f, 0.30f, 0.36f, 0.2f}, 6, true, 0.08f);
     for (int x : {-1, 1})
         for (int z : {-1, 1})
             b.tube({{0.24f * x, 0, 0.52f * z + 0.12f * x * z},
@@ -91,16 +90,17 @@ Model makeYuleGoat(uint32_t seed) {
 
 Model makeLogKnight(uint32_t seed) {
     MeshBuilder b("log knight", seed, 160);
-    auto log = [&](Vec3 a, Vec3 c, float r0, float r1, int n) {
+    auto log = [&](Vec3 a, Vec3 c, float r0, float r1, int n, bool endsShow = true) {
         b.use(Texture::kBark, Material::kWood, palette::kPeeledLog);
         b.tube({a, c}, {r0, r1}, n, false);
+        if (!endsShow) return;
         b.use(Texture::kTimber, Material::kWood, palette::kWood * 2.2f);
         Frame f = along(a, c);
         b.disc(c, f.z, f.x, r1, n);
         b.disc(a, f.x, f.z, r0, n);
     };
     for (int k : {-1, 1}) {
-        log({0.26f * k, 0, 0.1f * k}, {0.24f * k, 0.85f, 0}, 0.2f, 0.18f, 7);
+        log({0.26f * k, 0, 0.1f * k}, {0.24f * k, 0.85f, 0}, 0.2f, 0.18f, 7, false);
         log({0.55f * k, 1.7f, 0}, {0.72f * k, 1.05f, 0.3f}, 0.17f, 0.15f, 7);
     }
     log({0, 0.8f, 0}, {0, 1.75f, 0}, 0.42f, 0.5f, 9);

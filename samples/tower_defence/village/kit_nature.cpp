@@ -45,7 +45,7 @@ static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float r
             {0.04f, 0.35f, 0},
             {lean * 0.5f, height * 0.35f, 0.1f},
             {lean, height * top, 0}},
-           {0.42f, 0.26f, 0.2f, 0.1f}, 6, false);
+           {0.42f, 0.26f, 0.2f, 0.1f}, 5, false);
     for (int i = 0; i < limbs; ++i) {
         const float t = float(i) * 2.4f + b.random(), y = height * (0.3f + 0.07f * float(i));
         const Vec3 root{lean * 0.6f, y, 0};
@@ -53,7 +53,7 @@ static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float r
             root + Vec3{reach * 0.55f * std::cos(t), reach * 0.5f, reach * 0.55f * std::sin(t)};
         const Vec3 tip = knee + Vec3{reach * 0.35f * std::cos(t + 0.5f), reach * 0.75f,
                                      reach * 0.35f * std::sin(t + 0.5f)};
-        b.tube({root, knee, tip}, {0.12f, 0.075f, 0.015f}, 4, false);
+        b.tube({root, knee, tip}, {0.12f, 0.075f, 0.015f}, 3, false);
     }
 }
 
@@ -73,16 +73,16 @@ Model makeOak(const char* name, Vec3 leaf, uint32_t seed) {
         const float t = 2.1f * float(i) + b.random();
         b.tint = leaf * b.random(0.85f, 1.2f);
         const float y = kHeight * b.random(0.52f, 0.64f);
-        b.blob({std::cos(t), y, std::sin(t)}, {1.0f, 0.8f, 0.95f}, 7, 4, 0.15f);
+        b.blob({std::cos(t), y, std::sin(t)}, {1.0f, 0.8f, 0.95f}, 6, 4, 0.15f);
     }
     b.tint = leaf * 1.2f;
-    b.blob({0.2f, kHeight * 0.9f, 0.1f}, {0.85f, 0.65f, 0.8f}, 7, 4, 0.15f);
+    b.blob({0.2f, kHeight * 0.9f, 0.1f}, {0.85f, 0.65f, 0.8f}, 6, 3, 0.15f);
     return b.finish();
 }
 
 Model makePoplar(uint32_t seed) {
     MeshBuilder b("poplar", seed, 256);
-    addTrunk(b, 6.5f, 0.6f, 2, 0.9f);
+    addTrunk(b, 6.5f, 0.6f, 0, 0);
     useLeaf(b, palette::kLeafPoplar);
     b.lathe({{0.2f, 0.9f}, {0.75f, 1.5f}, {1.0f, 2.6f}, {0.85f, 4.2f}, {0.5f, 5.6f}, {0, 6.9f}}, 7,
             0.3f);
@@ -111,9 +111,9 @@ Model makeDeadTree(uint32_t seed) {
 Model makeBush(uint32_t seed) {
     MeshBuilder b("bush", seed, 128);
     useLeaf(b, palette::kLeafOak);
-    b.blob({0, 0.4f, 0}, {0.75f, 0.6f, 0.65f}, 7, 4, 0.18f);
+    b.blob({0, 0.4f, 0}, {0.75f, 0.6f, 0.65f}, 6, 4, 0.18f);
     b.tint = palette::kLeafOak * 1.3f;
-    b.blob({0.5f, 0.3f, 0.2f}, {0.45f, 0.4f, 0.45f}, 6, 3, 0.2f);
+    b.blob({0.5f, 0.3f, 0.2f}, {0.45f, 0.4f, 0.45f}, 5, 3, 0.2f);
     return b.finish();
 }
 
@@ -127,9 +127,9 @@ Model makeFarOak(const char* name, Vec3 leaf, uint32_t seed) {
     MeshBuilder b(name, seed, 128);
     addFarTrunk(b);
     useLeaf(b, leaf);
-    b.blob({0.35f, 3.5f, 0}, {1.4f, 1.2f, 1.35f}, 6, 4, 0.14f);
+    b.blob({0.35f, 3.5f, 0}, {1.4f, 1.2f, 1.35f}, 6, 3, 0.14f);
     b.tint = leaf * 1.12f;
-    b.blob({-0.75f, 2.7f, 0.3f}, {1.1f, 0.85f, 1.0f}, 6, 3, 0.15f);
+    b.blob({-0.75f, 2.7f, 0.3f}, {1.1f, 0.85f, 1.0f}, 5, 3, 0.15f);
     return b.finish();
 }
 
@@ -140,7 +140,9 @@ Model makeFarPine(uint32_t seed) {
     for (int i = 0; i < 3; ++i) {
         const float y = 1.1f + 1.6f * float(i), r = 1.75f - 0.48f * float(i);
         b.tint = palette::kLeafPine * (0.9f + 0.15f * float(i));
-        b.lathe({{r, y - 0.12f}, {r * 0.5f, y + 0.85f}, {0, y + 2.0f}}, 5, 0.22f, 0.5f * float(i));
+        std::vector<Vec2> tier{{r, y - 0.12f}, {r * 0.5f, y + 0.85f}, {0, y + 2.0f}};
+        if (i > 0) tier.erase(tier.begin() + 1);  // only the lowest shows its waist
+        b.lathe(tier, 5, 0.22f, 0.5f * float(i));
     }
     return b.finish();
 }
@@ -227,7 +229,7 @@ Model makeFlowers(uint32_t seed) {
         const Vec3 petal = i & 1 ? Vec3{0.7f, 0.66f, 0.55f} : Vec3{0.62f, 0.40f, 0.03f};
         b.use(Texture::kCloth, Material::kLeaf, petal);
         b.blob({0.28f * std::cos(t), 0.3f + 0.04f * float(i), 0.28f * std::sin(t)},
-               {0.06f, 0.04f, 0.06f}, 4, 2, 0);
+               {0.06f, 0.04f, 0.06f}, 3, 2, 0);
     }
     return b.finish();
 }

@@ -13,7 +13,7 @@ static void addWheel(MeshBuilder& b, Vec3 c, float radius) {
              {radius, 0.1f},
              {radius * 0.8f, 0.1f},
              {radius * 0.8f, 0}},
-            10);
+            8);
     for (int i = 0; i < 3; ++i) {
         float t = kPi * i / 3;
         b.beam({radius * 0.85f * std::cos(t), 0.05f, radius * 0.85f * std::sin(t)},

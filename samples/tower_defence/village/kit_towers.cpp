@@ -40,7 +40,7 @@ Model makeFlamethrower(uint32_t seed) {
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
     b.lathe({{0.8f, 1.15f}, {0.7f, 1.4f}, {0.55f, 1.6f}}, 8);
     b.use(Texture::kMetal, Material::kMetal, palette::kCopper);
-    b.blob({0, 2.2f, -0.1f}, {0.82f, 0.8f, 0.82f}, 10, 7, 0);
+    b.blob({0, 2.2f, -0.1f}, {0.82f, 0.8f, 0.82f}, 10, 6, 0);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
     b.lathe({{0.86f, 2.12f}, {0.86f, 2.3f}}, 10);
     b.use(Texture::kGlow, Material::kMetal, {0.3f, 0.05f, 0.01f}, 5);
@@ -79,7 +79,7 @@ Model makeEmberMortar(uint32_t seed) {
         if (std::fabs(std::sin(t) - 1) < 0.15f) continue;
         Vec3 p{1.22f * std::cos(t), 1.1f, 1.22f * std::sin(t)};
         float h = b.random(0.7f, 0.9f);
-        b.tube({p, p + Vec3{0, h, 0}, p + Vec3{0, h + 0.28f, 0}}, {0.2f, 0.19f, 0.02f}, 6, false);
+        b.tube({p, p + Vec3{0, h, 0}, p + Vec3{0, h + 0.28f, 0}}, {0.2f, 0.19f, 0.02f}, 5, false);
     }
     b.frame = translate(0, 1.35f, -0.1f) * rotateX(0.55f);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron * 1.3f);

@@ -180,10 +180,12 @@ void MeshBuilder::lathe(const std::vector<Vec2>& profile, int sides, float ragge
         const int i = int(std::lround(v * float(last)));
         const int k = int(std::lround(u * float(sides))) % sides;
         const float t = -2 * kPi * (float(k) + phase) / float(sides);
-        const float lift = ragged * (random01(k, i, jitter) - 0.5f);
-        float r = profile[size_t(i)].x;
-        if (r > 0.01f) r += 0.5f * ragged * (random01(k, i, jitter + 99) - 0.5f);
-        return Vec3{r * std::cos(t), profile[size_t(i)].y + lift, r * std::sin(t)};
+        float r = profile[size_t(i)].x, y = profile[size_t(i)].y;
+        if (r > 0.01f) {  // a tip stays one point
+            r += 0.5f * ragged * (random01(k, i, jitter + 99) - 0.5f);
+            y += ragged * (random01(k, i, jitter) - 0.5f);
+        }
+        return Vec3{r * std::cos(t), y, r * std::sin(t)};
     });
     sideways_ = false;
 }

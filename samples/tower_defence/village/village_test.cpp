@@ -136,7 +136,7 @@ TEST(Village, DrawnTrianglesStayNearTheGuide) {
     for (const village::Instance& instance : scene.instances)
         triangles += scene.models[size_t(instance.model)].triangleCount();
     std::printf("village: %zu instances, %d triangles\n", scene.instances.size(), triangles);
-    EXPECT_LT(triangles, 28500);
+    EXPECT_LT(triangles, 26000);
 }
 
 }  // namespace
