@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -12,13 +13,22 @@ namespace {
 
 using Runs = std::vector<benchmark::BenchmarkReporter::Run>;
 
-// A row's name is a contract, "group/case/size": without the settings that Google Benchmark adds,
-// and of a row's arguments only the first, which is its size.
+// A row's name is a contract, "group/case/size": without the settings that Google Benchmark adds.
+// A row's one argument, if any, is its size.
+// The same for a listed name: "group/case/size/iterations:12/manual_time".
+std::string plainName(std::string name) {
+    for (const char* setting : {"/iterations:", "/repeats:", "/min_time:", "/min_warmup_time:",
+                                "/manual_time", "/real_time", "/process_time", "/threads:"}) {
+        const size_t at = name.find(setting);
+        if (at != std::string::npos) name.resize(at);
+    }
+    return name;
+}
+
 Runs plainNames(Runs runs) {
     for (auto& run : runs) {
         benchmark::BenchmarkName& name = run.run_name;
-        name = {
-            name.function_name, name.args.substr(0, name.args.find('/')), "", "", "", "", "", ""};
+        name = {name.function_name, name.args, "", "", "", "", "", ""};
     }
     return runs;
 }
@@ -64,6 +74,7 @@ class TableReporter : public benchmark::BenchmarkReporter {
 
 int main(int argc, char** argv) {
     std::vector<std::string> words{argv[0], "--benchmark_enable_random_interleaving=true"};
+    bool list = false;
     bool table = false;
     bool json = false;
     for (int i = 1; i < argc; ++i) {
@@ -77,6 +88,8 @@ int main(int argc, char** argv) {
             words.push_back(std::string("--benchmark_out=") + argv[i]);
             json = true;
         } else {
+            list |= std::strncmp(argv[i], "--benchmark_list_tests", 22) == 0 &&
+                    std::strcmp(argv[i], "--benchmark_list_tests=false") != 0;
             words.push_back(argv[i]);
         }
     }
@@ -91,8 +104,14 @@ int main(int argc, char** argv) {
     PlainJson file;
     benchmark::BenchmarkReporter* display = &console;
     if (table) display = &markdown;
+    std::ostringstream listed;
+    if (list) display->SetOutputStream(&listed);
     const std::size_t rows = benchmark::RunSpecifiedBenchmarks(display, json ? &file : nullptr);
     benchmark::Shutdown();
+    if (list) {
+        std::istringstream lines(listed.str());
+        for (std::string line; std::getline(lines, line);) std::puts(plainName(line).c_str());
+    }
     if (rows == 0) {
         std::fprintf(stderr, "flamewright_bench: no row matches\n");
         return 1;

@@ -250,16 +250,14 @@ void igniteLines(Bench& bench, uint32_t object, uint32_t side, double share) {
     }
 }
 
-// Dense, sparse at three per cent, and published on one map size, step for step in turns.
-void frontRows(benchmark::State& state) {
-    const auto side = uint32_t(state.range(0));
-    const auto which = uint32_t(state.range(1));  // 0 dense, 1 sparse3, 2 published
-    Bench bench;
-    bench.addMesh(0, flatMap(side));
-    const uint32_t object =
-        bench.addObject(0, 12, which == 2 ? uint32_t(gpu::kObjectPublished) : 0);
-    igniteLines(bench, object, side, 0.03);
-    const uint32_t switches = which == 0 ? uint32_t(FW_DEBUG_DENSE) : 0;
+enum Kernel { kDense, kSparse, kPublished };
+
+uint32_t flagsOf(Kernel kernel) {
+    return kernel == kPublished ? uint32_t(gpu::kObjectPublished) : 0;
+}
+
+void runSteps(benchmark::State& state, Bench& bench, Kernel kernel) {
+    const uint32_t switches = kernel == kDense ? uint32_t(FW_DEBUG_DENSE) : 0;
     for (int i = 0; i < 6; ++i) bench.step(switches);
     bench.forgetTimes();
     double tiles = 0;
@@ -272,6 +270,16 @@ void frontRows(benchmark::State& state) {
     state.counters["cpu_ms"] = median(cpu) * 1e3;
     state.counters["tiles"] = tiles / double(std::max<size_t>(cpu.size(), 1));
     bench.report(state);
+}
+
+// One kernel on one map size; three tiles in a hundred burn. The published one has no lists: it
+// costs the same however much burns.
+void frontRows(benchmark::State& state, Kernel kernel) {
+    const auto side = uint32_t(state.range(0));
+    Bench bench;
+    bench.addMesh(0, flatMap(side));
+    igniteLines(bench, bench.addObject(0, 12, flagsOf(kernel)), side, 0.03);
+    runSteps(state, bench, kernel);
 }
 
 // One row that holds the ratio: dense over sparse on the same map, in turns.
@@ -312,56 +320,133 @@ void frontWide(benchmark::State& state) {
     state.counters["tiles"] = bench.runTiles;
 }
 
-// Ten burning objects, without and with a thousand idle ones beside them, in turns.
-void objectsBurning(benchmark::State& state) {
-    Bench few, many;
-    for (Bench* bench : {&few, &many}) {
-        bench->addMesh(0, flatMap(128));
-        bench->addMesh(1, flatMap(64));
-        for (int i = 0; i < 10; ++i) {
-            const uint32_t object = bench->addObject(0, 12);
-            bench->ignite(object, 64 * 128 + 64);
+// What a step of some case took, step by step, and how long each pass.
+struct Samples {
+    std::vector<double> seconds, cpu, record;
+    std::map<std::string, double> passes;  // ms a step
+    void add(Bench& bench, bool reduce) {
+        seconds.push_back(bench.step(0, reduce));
+        cpu.push_back(bench.stepCpuSeconds);
+        record.push_back(bench.recordSeconds);
+    }
+    void finish(const Bench& bench) {
+        for (const auto& [name, milliseconds] : bench.passes)
+            passes[name] = milliseconds / std::max(bench.timedSteps, 1u);
+    }
+};
+
+// Two cases, run in turns within one process so that their ratio is sound. Each has a row of its
+// own: the first row that runs measures both, the other shows its half.
+struct InTurns {
+    static constexpr int kSteps = 60;
+    Samples samples[2];
+    bool shown[2] = {true, true};
+    void measure(Bench& a, Bench& b) {
+        *this = {};
+        a.forgetTimes();
+        b.forgetTimes();
+        for (int i = 0; i < kSteps; ++i) {
+            samples[0].add(a, i % 4 == 0);
+            samples[1].add(b, i % 4 == 0);
         }
-        for (int i = 0; bench == &many && i < 1000; ++i) bench->addObject(1, 12);
-        for (int i = 0; i < 20; ++i) bench->step(0, i % 4 == 0);
+        samples[0].finish(a);
+        samples[1].finish(b);
+        shown[0] = shown[1] = false;
     }
-    few.forgetTimes();
-    std::vector<double> a, b, recordA, recordB;
-    int i = 0;
-    for (auto _ : state) {
-        const bool reduce = i++ % 4 == 0;
-        a.push_back(few.step(0, reduce));
-        recordA.push_back(few.recordSeconds);
-        b.push_back(many.step(0, reduce));
-        recordB.push_back(many.recordSeconds);
-        state.SetIterationTime(a.back() + b.back());
+    // `ratio` says what the second costs over the first.
+    void show(benchmark::State& state, int which) {
+        const Samples& own = samples[which];
+        size_t i = 0;
+        for (auto _ : state) state.SetIterationTime(own.seconds[i++ % own.seconds.size()]);
+        state.counters["median_ms"] = median(own.seconds) * 1e3;
+        state.counters["cpu_ms"] = median(own.cpu) * 1e3;
+        state.counters["record_ms"] = median(own.record) * 1e3;
+        state.counters["ratio"] = median(samples[1].seconds) / median(samples[0].seconds);
+        state.counters["cpu_ratio"] = median(samples[1].cpu) / median(samples[0].cpu);
+        for (const auto& [name, milliseconds] : own.passes) state.counters[name] = milliseconds;
+        shown[which] = true;
     }
-    state.counters["burning10_ms"] = median(a) * 1e3;
-    state.counters["burning10_idle1000_ms"] = median(b) * 1e3;
-    few.report(state);
-    state.counters["record10_ms"] = median(recordA) * 1e3;
-    state.counters["record10_idle1000_ms"] = median(recordB) * 1e3;
+};
+
+void burningAndIdle(Bench& bench, uint32_t burning, uint32_t idle) {
+    bench.addMesh(0, flatMap(128));
+    bench.addMesh(1, flatMap(64));
+    for (uint32_t i = 0; i < burning; ++i) bench.ignite(bench.addObject(0, 12), 64 * 128 + 64);
+    for (uint32_t i = 0; i < idle; ++i) bench.addObject(1, 12);
+    for (int i = 0; i < 20; ++i) bench.step(0, i % 4 == 0);
 }
 
-// The same small fire on a small and on a large map, in turns.
-void mapSize(benchmark::State& state) {
-    Bench small, large;
-    const auto setUp = [](Bench& bench, uint32_t side) {
-        bench.addMesh(0, flatMap(side));
-        bench.ignite(bench.addObject(0, 12), side / 2 * side + side / 2);
-        for (int i = 0; i < 30; ++i) bench.step();
-    };
-    setUp(small, 256);
-    setUp(large, 1024);
-    std::vector<double> a, b;
-    for (auto _ : state) {
-        a.push_back(small.step());
-        b.push_back(large.step());
-        state.SetIterationTime(a.back() + b.back());
+// Ten burning objects, without and with a thousand idle ones beside them.
+void objectsBurning(benchmark::State& state, int which) {
+    static InTurns turns;
+    if (turns.shown[which]) {
+        Bench few, many;
+        burningAndIdle(few, 10, 0);
+        burningAndIdle(many, 10, 1000);
+        turns.measure(few, many);
     }
-    state.counters["256_ms"] = median(a) * 1e3;
-    state.counters["1024_ms"] = median(b) * 1e3;
-    state.counters["ratio"] = median(b) / median(a);
+    turns.show(state, which);
+}
+
+// One burning object beside so many idle ones; so many burning ones.
+void objectCount(benchmark::State& state, bool burn) {
+    const auto count = uint32_t(state.range(0));
+    Bench bench;
+    burningAndIdle(bench, burn ? count : 1, burn ? 0 : count);
+    bench.forgetTimes();
+    Samples samples;
+    for (auto _ : state) {
+        samples.add(bench, samples.seconds.size() % 4 == 0);
+        state.SetIterationTime(samples.seconds.back());
+    }
+    state.counters["cpu_ms"] = median(samples.cpu) * 1e3;
+    state.counters["record_ms"] = median(samples.record) * 1e3;
+    bench.report(state);
+}
+
+// The same small fire on a small and on a large map.
+void mapSize(benchmark::State& state, int which) {
+    static InTurns turns;
+    if (turns.shown[which]) {
+        const auto setUp = [](Bench& bench, uint32_t side) {
+            bench.addMesh(0, flatMap(side));
+            bench.ignite(bench.addObject(0, 12), side / 2 * side + side / 2);
+            for (int i = 0; i < 30; ++i) bench.step();
+        };
+        Bench small, large;
+        setUp(small, 256);
+        setUp(large, 1024);
+        turns.measure(small, large);
+    }
+    turns.show(state, which);
+}
+
+// A real mesh in 512^2 texels; a fire in every 64th of its tiles.
+void frontMesh(benchmark::State& state, const char* name, Kernel kernel) {
+    static std::map<std::string, mesh::BurnDomain> domains;
+    auto found = domains.find(name);
+    if (found == domains.end()) {
+        Mesh mesh;
+        std::string error;
+        if (!loadGlb(name, mesh, error)) return state.SkipWithError(error.c_str());
+        const mesh::BakeInput input = mesh.input(4096, 512);
+        found = domains.emplace(name, mesh::bake(input, std::pmr::get_default_resource())).first;
+    }
+    const mesh::BurnDomain& domain = found->second;
+    Bench bench;
+    bench.addMesh(0, domain);
+    const uint32_t object = bench.addObject(0, 12, flagsOf(kernel));
+    for (uint32_t tile = 0; tile < domain.tileCount(); tile += 64) {
+        const uint32_t corner = tile / domain.tilesX * 8 * domain.width + tile % domain.tilesX * 8;
+        for (uint32_t lane = 0; lane < 64; ++lane) {
+            const uint32_t texel = corner + lane / 8 * domain.width + lane % 8;
+            if (!domain.real(texel)) continue;
+            bench.ignite(object, texel);
+            break;
+        }
+    }
+    runSteps(state, bench, kernel);
+    state.counters["map_tiles"] = domain.tileCount();
 }
 
 // CPU time of recording a frame of a world that does not burn.
@@ -376,33 +461,39 @@ void recordIdle(benchmark::State& state) {
     }
 }
 
-BENCHMARK(frontRows)
+BENCHMARK_CAPTURE(frontRows, dense, kDense)
     ->Name("front/dense")
-    ->Args({128, 0})
-    ->Args({256, 0})
-    ->Args({512, 0})
-    ->Args({1024, 0})
+    ->RangeMultiplier(2)
+    ->Range(128, 1024)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(12);
-BENCHMARK(frontRows)
+BENCHMARK_CAPTURE(frontRows, sparse, kSparse)
     ->Name("front/sparse3")
-    ->Args({128, 1})
-    ->Args({256, 1})
-    ->Args({512, 1})
-    ->Args({1024, 1})
+    ->RangeMultiplier(2)
+    ->Range(128, 1024)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(12);
-BENCHMARK(frontRows)
+BENCHMARK_CAPTURE(frontRows, published, kPublished)
     ->Name("front/published")
-    ->Args({128, 2})
-    ->Args({256, 2})
-    ->Args({512, 2})
-    ->Args({1024, 2})
+    ->RangeMultiplier(2)
+    ->Range(128, 1024)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(12);
+#define FW_MESH_ROW(kernel, value, mesh, file)                 \
+    BENCHMARK_CAPTURE(frontMesh, kernel##_##mesh, file, value) \
+        ->Name("front/" #kernel "_" #mesh "/512")              \
+        ->UseManualTime()                                      \
+        ->Unit(benchmark::kMillisecond)                        \
+        ->Iterations(12)
+FW_MESH_ROW(dense, kDense, bunny4k, "bunny_4k.glb");
+FW_MESH_ROW(sparse, kSparse, bunny4k, "bunny_4k.glb");
+FW_MESH_ROW(published, kPublished, bunny4k, "bunny_4k.glb");
+FW_MESH_ROW(dense, kDense, bunny31k, "bunny_31k.glb");
+FW_MESH_ROW(sparse, kSparse, bunny31k, "bunny_31k.glb");
+FW_MESH_ROW(published, kPublished, bunny31k, "bunny_31k.glb");
 BENCHMARK(frontRatio)
     ->Name("front/dense_over_sparse3")
     ->Arg(512)
@@ -415,16 +506,40 @@ BENCHMARK(frontWide)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(20);
-BENCHMARK(objectsBurning)
+BENCHMARK_CAPTURE(objectsBurning, alone, 0)
+    ->Name("objects/burning10")
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(InTurns::kSteps);
+BENCHMARK_CAPTURE(objectsBurning, beside_idle, 1)
     ->Name("objects/burning10_idle1000")
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(40);
-BENCHMARK(mapSize)
-    ->Name("front/mapsize_smallfire")
+    ->Iterations(InTurns::kSteps);
+BENCHMARK_CAPTURE(mapSize, small, 0)
+    ->Name("front/mapsize_smallfire/256")
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(60);
+    ->Iterations(InTurns::kSteps);
+BENCHMARK_CAPTURE(mapSize, large, 1)
+    ->Name("front/mapsize_smallfire/1024")
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(InTurns::kSteps);
+BENCHMARK_CAPTURE(objectCount, idle, false)
+    ->Name("objects/idle")
+    ->RangeMultiplier(10)
+    ->Range(1, 1000)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(12);
+BENCHMARK_CAPTURE(objectCount, burning, true)
+    ->Name("objects/burning")
+    ->RangeMultiplier(10)
+    ->Range(1, 100)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(12);
 BENCHMARK(recordIdle)
     ->Name("record/idle")
     ->UseManualTime()

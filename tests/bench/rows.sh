@@ -1,0 +1,20 @@
+#!/bin/bash
+# Checks that the bench still has the rows whose names others rely on.
+set -euo pipefail
+bench="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/tests/flamewright_bench"
+if [[ ! -x $bench ]]; then
+    echo "skipped: this build has no bench"
+    exit 77
+fi
+listed=$("$bench" --benchmark_list_tests)
+status=0
+while read -r row; do
+    grep -q -F -x -- "$row" <<<"$listed" || { echo "the bench has no row $row" && status=1; }
+done < <(printf '%s\n' front/{dense,sparse3,published}/{128,256,512,1024} \
+    front/wide/1024 front/wide_cpu/1024 front/mapsize_smallfire/{256,1024} \
+    objects/burning10 objects/burning10_idle1000 objects/{idle/1000,burning/100} \
+    front/{dense,sparse,published}_bunny{4k,31k}/512 \
+    bake/bunny31k/1024 surface/bunny31k/720p record/idle)
+twice=$(sort <<<"$listed" | uniq -d)
+[[ -z $twice ]] || { echo "rows of one name: $twice" && status=1; }
+exit $status
