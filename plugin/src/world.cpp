@@ -23,6 +23,14 @@ void freeWorld(FwWorld* world) noexcept {
     std::pmr::polymorphic_allocator<>(&context->memory).delete_object(world);
 }
 
+template <class Id>
+FwResult destroyOf(const char* function, FwWorld* world, void (world::World::*destroy)(Id), Id id) {
+    return onWorld(function, world, [&](world::World& w) {
+        (w.*destroy)(id);
+        return FW_OK;
+    });
+}
+
 }  // namespace
 
 extern "C" {
@@ -84,10 +92,7 @@ FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* giv
 }
 
 FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld* world, FwMaterialId id) {
-    return onWorld("fwWorld_DestroyMaterial", world, [&](world::World& w) {
-        w.destroyMaterial(id);
-        return FW_OK;
-    });
+    return destroyOf("fwWorld_DestroyMaterial", world, &world::World::destroyMaterial, id);
 }
 
 FwResult FW_CALL fwWorld_CreateImage(FwWorld* world, const FwImageDef* given, FwImageId* id) {
@@ -100,10 +105,7 @@ FwResult FW_CALL fwWorld_CreateImage(FwWorld* world, const FwImageDef* given, Fw
 }
 
 FwResult FW_CALL fwWorld_DestroyImage(FwWorld* world, FwImageId id) {
-    return onWorld("fwWorld_DestroyImage", world, [&](world::World& w) {
-        w.destroyImage(id);
-        return FW_OK;
-    });
+    return destroyOf("fwWorld_DestroyImage", world, &world::World::destroyImage, id);
 }
 
 FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMeshId* id) {
@@ -116,10 +118,7 @@ FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMe
 }
 
 FwResult FW_CALL fwWorld_DestroyMesh(FwWorld* world, FwMeshId id) {
-    return onWorld("fwWorld_DestroyMesh", world, [&](world::World& w) {
-        w.destroyMesh(id);
-        return FW_OK;
-    });
+    return destroyOf("fwWorld_DestroyMesh", world, &world::World::destroyMesh, id);
 }
 
 FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld* world, FwMeshId id, FwMeshInfo* info) {
@@ -146,10 +145,7 @@ FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld* world, const FwBurnableMesh
 }
 
 FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld* world, FwBurnableMeshId id) {
-    return onWorld("fwWorld_DestroyBurnableMesh", world, [&](world::World& w) {
-        w.destroyBurnableMesh(id);
-        return FW_OK;
-    });
+    return destroyOf("fwWorld_DestroyBurnableMesh", world, &world::World::destroyBurnableMesh, id);
 }
 
 FwResult FW_CALL fwWorld_SetTransform(FwWorld* world, FwBurnableMeshId id,
