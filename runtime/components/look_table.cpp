@@ -51,10 +51,10 @@ MaterialLook pine() {
     m.crackKelvin = 1125.0f;
     m.crackLife = 125.0f;
     m.glowVariation = 170.0f;
-    m.ashMax = 0.85f;
-    m.ashStart = 130.0f;
-    m.ashEnd = 520.0f;
-    m.ashColor = vec4(0.28f, 0.275f, 0.27f, 0.0f);
+    m.ashMax = 0.6f;
+    m.ashStart = 260.0f;
+    m.ashEnd = 1100.0f;
+    m.ashColor = vec4(0.25f, 0.245f, 0.24f, 0.0f);
     m.holeTime = 620.0f;
     m.holeVariation = 260.0f;
     m.rimKelvin = 1190.0f;
@@ -115,7 +115,7 @@ MaterialLook paper() {
     m.ashColor = vec4(0.36f, 0.36f, 0.37f, 0.0f);
     m.holeTime = 3.0f;
     m.holeVariation = 2.2f;
-    m.holeFine = 0.7f;
+    m.holeFine = 0.3f;
     m.rimKelvin = 1280.0f;
     m.rimWidth = 0.0024f;
     m.thickness = 0.0008f;
@@ -155,7 +155,7 @@ MaterialLook cotton() {
     m.ashColor = vec4(0.40f, 0.39f, 0.38f, 0.0f);
     m.holeTime = 5.0f;
     m.holeVariation = 3.4f;
-    m.holeFine = 1.0f;
+    m.holeFine = 0.4f;
     m.rimKelvin = 1230.0f;
     m.rimWidth = 0.0036f;
     m.thickness = 0.0014f;
@@ -242,7 +242,7 @@ MaterialLook dryLeaf() {
     m.ashColor = vec4(0.42f, 0.42f, 0.40f, 0.0f);
     m.holeTime = 4.2f;
     m.holeVariation = 2.6f;
-    m.holeFine = 1.0f;
+    m.holeFine = 0.5f;
     m.rimKelvin = 1180.0f;
     m.rimWidth = 0.0026f;
     m.thickness = 0.0009f;

@@ -202,8 +202,9 @@ void bakeChar(Plane& plane) {
     }
 }
 
-// Slopes of what is carved into char, so that a normal costs one sample instead of three heights.
-void bakeRelief(const Plane& noise, const Plane& charred, Plane& plane) {
+// Slopes of what is carved into char, so that a normal costs no sample of its own: those of cracks
+// take the place of the blocks' numbers and heights in `charred`.
+void bakeRelief(const Plane& noise, Plane& charred, Plane& plane) {
     const auto at = [](const Plane& p, int x, int y) -> const Texel& {
         return p[static_cast<size_t>((y & (kSide - 1)) * kSide + (x & (kSide - 1)))];
     };
@@ -222,14 +223,17 @@ void bakeRelief(const Plane& noise, const Plane& charred, Plane& plane) {
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
             plane[static_cast<size_t>(y * kSide + x)] = {
-                {pack((crackDepth(x + 1, y) - crackDepth(x - 1, y)) * kPerCell,
+                {pack((wrinkle(x + 1, y) - wrinkle(x - 1, y)) * kPerTile, gpu::kCrumpleSlopeRange),
+                 pack((wrinkle(x, y + 1) - wrinkle(x, y - 1)) * kPerTile, gpu::kCrumpleSlopeRange),
+                 pack((crackDepth(x + 1, y) - crackDepth(x - 1, y)) * kPerCell,
                       gpu::kCrackSlopeRange),
                  pack((crackDepth(x, y + 1) - crackDepth(x, y - 1)) * kPerCell,
-                      gpu::kCrackSlopeRange),
-                 pack((wrinkle(x + 1, y) - wrinkle(x - 1, y)) * kPerTile, gpu::kCrumpleSlopeRange),
-                 pack((wrinkle(x, y + 1) - wrinkle(x, y - 1)) * kPerTile,
-                      gpu::kCrumpleSlopeRange)}};
+                      gpu::kCrackSlopeRange)}};
         }
+    }
+    for (size_t i = 0; i < plane.size(); ++i) {
+        charred[i].c[2] = plane[i].c[2];
+        charred[i].c[3] = plane[i].c[3];
     }
 }
 

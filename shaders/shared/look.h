@@ -22,16 +22,18 @@ FW_SHARED_CONST uint kBasePlastic = 9u;
 FW_SHARED_CONST uint kBaseStone = 10u;
 
 // Variants of the surface pass: which materials it can draw, and whether they burn.
-FW_SHARED_CONST uint kSurfaceWood = 1u;   // wood, paint: char blocks, film, blisters
+FW_SHARED_CONST uint kSurfaceWood = 1u;   // char blocks, grain
 FW_SHARED_CONST uint kSurfaceSheet = 2u;  // paper, cloth: sparks, wrinkles
 FW_SHARED_CONST uint kSurfacePlant = 4u;  // leaf, straw
 FW_SHARED_CONST uint kSurfaceHide = 8u;   // leather, plastic
 FW_SHARED_CONST uint kSurfaceBurns = 16u; // some event reached the object
+FW_SHARED_CONST uint kSurfacePaint = 32u; // on wood: film, blisters
+FW_SHARED_CONST uint kSurfaceImage = 64u; // the object's image instead of a pattern
 
 // Layers of the look texture array: 512^2 RGBA8, tiling, with mips.
 FW_SHARED_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
-FW_SHARED_CONST float kLayerChar = 1.0f;    // R primary crack distance, G secondary, B id, A pillow
-FW_SHARED_CONST float kLayerRelief = 2.0f;  // slopes: RG of the cracks, BA of crumpling
+FW_SHARED_CONST float kLayerChar = 1.0f;    // R primary crack distance, G secondary, BA slopes of cracks
+FW_SHARED_CONST float kLayerRelief = 2.0f;  // RG slopes of crumpling
 FW_SHARED_CONST float kLookTextureSide = 512.0f;
 FW_SHARED_CONST float kCrackSlopeRange = 12.0f;   // per cell, at texel value 1
 FW_SHARED_CONST float kCrumpleSlopeRange = 48.0f; // per tile, at texel value 1
@@ -123,6 +125,36 @@ FW_SHARED_SIZE(ViewParams, 224)
 
 // Emission of 40 cd/m^2 shows as 1 in the host's linear units, at emission scale 1.
 FW_SHARED_CONST float kWhiteLuminance = 40.0f;
+
+FW_SHARED_CONST uint kLookRows = 16u; // of the looks table
+
+// The strongest lights are the ones that light surfaces.
+FW_SHARED_CONST uint kSurfaceLights = 16u;
+
+// Push constants of the surface pass: one object, one of its materials. Everything that is the same
+// for a whole draw comes this way or in uniform blocks, never through a storage buffer: software
+// devices gather those word by word and lane by lane.
+struct SurfaceDraw {
+    vec4 row0;               // object to world
+    vec4 row1;
+    vec4 row2;
+    vec4 colorRough;         // linear albedo, roughness
+    float tintR;
+    float tintG;
+    float tintB;
+    float timeScale;         // as BurnMaterial
+    float thickness;         // m
+    float horizon;           // s that the prediction looks ahead
+    uint look;               // row of the looks table
+    uint stateBase;          // as BurnObject
+    uint width;              // texels
+    uint height;
+    uint flags;              // kObject..., kDrawVertexLight
+    uint reserved0;
+};
+FW_SHARED_SIZE(SurfaceDraw, 112)
+// SurfaceDraw::flags, beyond kObject...: triangles are small, flames light their corners.
+FW_SHARED_CONST uint kDrawVertexLight = 0x10000u;
 
 struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m

@@ -3,34 +3,35 @@
 // lib/colour.glsl and the families of surface.frag. Order matters to the eye: heat, char, film,
 // ash, glow, rim, soot, water.
 
-struct Site {        // what is known of one point of the surface
-    vec2 d;          // m, detail coordinates, y along the grain
-    float pixel;     // m per pixel
-    float age;       // since ignition; negative: predicted
-    float slow;      // s/m, slope of the ignition time
-    vec2 ahead;      // unit, towards fresh material, in detail space
-    float out_;      // [0, 1] extinguished
-    float water;     // [0, 1] soaked
-    float soot;      // [0, 1]
-    vec3 base;       // fresh albedo
+struct Site {     // what is known of one point of the surface
+    vec2 d;       // m, detail coordinates, y along the grain
+    float pixel;  // m per pixel
+    float age;    // since ignition; negative: predicted
+    float slow;   // s/m, slope of the ignition time
+    vec2 ahead;   // unit, towards fresh material, in detail space
+    float out_;   // [0, 1] extinguished
+    float water;  // [0, 1] soaked
+    float soot;   // [0, 1]
+    vec3 base;    // fresh albedo
     float baseRough;
-    float delay;     // [-1, 1] of a strand, vein or thread
-    float cavity;    // 1 exposed .. 0 hidden, of the fresh detail: survives charring
-    float time;      // s, for breathing only
-    vec4 coarse;     // noise at 4 tiles per metre
-    vec4 fine;       // at 21
+    float delay;       // [-1, 1] of a strand, vein or thread
+    float cavity;      // 1 exposed .. 0 hidden, of the fresh detail: survives charring
+    float time;        // s, for breathing only
+    vec4 coarse;       // noise at 4 tiles per metre
+    vec4 fine;         // at 17
+    vec4 grown;        // noise of the holes
     vec2 bubbleSlope;  // per m, of bubbleShape
 };
 
-struct Skin {        // what is shaded
+struct Skin {  // what is shaded
     vec3 albedo;
     float rough;
     float f0;
-    vec3 emission;   // cd/m^2
+    vec3 emission;  // cd/m^2
     float occlusion;
-    float edge;      // m to the rim of a hole
+    float edge;  // m to the rim of a hole
     float sheen;
-    vec2 slope;      // d depth / d detail coordinate
+    vec2 slope;  // d depth / d detail coordinate
 };
 
 // Displaces the place where the ignition time is looked up: raggedness must not depend on speed.
@@ -38,7 +39,7 @@ struct Skin {        // what is shaded
 vec2 frontWarp(vec2 d, float pixel, MaterialLook m, out vec4 coarse, out vec4 fine) {
     pixel = max(pixel, m.blur);
     coarse = noiseAt(d, 4.0, pixel);
-    fine = noiseAt(d, 21.0, pixel);
+    fine = noiseAt(d, 17.0, pixel);
     return 2.0 * m.warpLarge * (vec2(coarse.r, coarse.g * 0.5 + 0.25) - 0.5) +
            2.0 * m.warpSmall * (vec2(fine.b, fine.r) - 0.5);
 }
@@ -47,19 +48,23 @@ float limitGlow(float kelvin, Site s) {
     return mix(kelvin, 300.0 + 0.45 * (kelvin - 300.0), s.out_);
 }
 
-// m from here to the rim of the hole; negative: gone.
-float holeEdge(float a, Site s, vec2 crumbs, MaterialLook m) {
-    if (m.holeTime <= 0.0) return 1.0;
-    vec4 n1 = noiseAt(vec2(s.d.x, s.d.y / m.drip), m.holeTiles, max(s.pixel, m.blur));
-    float n = (n1.r - 0.5) * 1.8 + m.holeFine * ((n1.a - 0.5) * 0.8 + (crumbs.x - 0.5) * 0.8);
+// s that a hole comes later here than where its noise and the fresh detail say nothing.
+float holeDelay(vec4 grown, vec4 fine, float delay, MaterialLook m) {
+    float n = (grown.r - 0.5) * 1.8 + m.holeFine * ((grown.a - 0.5) * 0.8 + (fine.r - 0.5) * 0.8);
     n = n < 0.0 ? n : 0.45 * n;  // short upper tail: fewer islands left hanging
-    return (m.holeTime + m.holeVariation * n + 1.5 * m.jitter * s.delay - a) / s.slow;
+    return m.holeVariation * n + 1.5 * m.jitter * delay;
 }
 
-// x: 0 block .. 1 crack; y: m to the crack; z: random per block; w: pillow
-vec4 charCracks(float a, Site s, MaterialLook m, vec2 uv, float lod) {
-    vec4 c = lookLayer(uv, kLayerChar, lod);
-    float open1 = smoothstep(m.charTime * 0.6, m.crackTime, a - m.crackTime * 0.15 * c.b);
+// m from here to the rim of the hole; negative: gone.
+float holeEdge(float a, Site s, MaterialLook m) {
+    if (m.holeTime <= 0.0) return 1.0;
+    return (m.holeTime + holeDelay(s.grown, s.fine, s.delay, m) - a) / s.slow;
+}
+
+// x: 0 block .. 1 crack; y: m to the crack; z: random per block; w: pillow. `c`: texel of the char.
+vec4 charCracks(float a, Site s, MaterialLook m, vec4 c) {
+    float random = s.coarse.a;
+    float open1 = smoothstep(m.charTime * 0.6, m.crackTime, a - m.crackTime * 0.15 * random);
     float open2 = smoothstep(m.crackTime * 0.6, m.crackTime * 2.2, a);
     float w1 = m.crackWidth * open1, w2 = m.crackWidth * 0.45 * open2;
     float d1 = mix(c.r, c.g, m.isotropic) * m.cellX;
@@ -69,7 +74,8 @@ vec4 charCracks(float a, Site s, MaterialLook m, vec2 uv, float lod) {
                (w1 + 0.6 * s.pixel + 1e-5);
     float k2 = 0.7 * open2 * (1.0 - smoothstep(0.2 * w2, w2 + s.pixel, d2)) * (w2 + 1e-5) /
                (w2 + 0.6 * s.pixel + 1e-5);
-    return vec4(max(k1, k2), min(d1, d2 + 0.3 * m.cellX), c.b, c.a);
+    float pillow = saturate(1.8 * c.r);
+    return vec4(max(k1, k2), min(d1, d2 + 0.3 * m.cellX), random, pillow * (2.0 - pillow));
 }
 
 // Paint left on the wood: 1 whole .. 0 peeled off in flakes.
@@ -80,7 +86,7 @@ float paintFilm(float a, vec4 flakes, MaterialLook m) {
 
 // Blisters of paint and bubbles of plastic, [0, 1].
 float bubbleShape(vec2 d, float pixel, vec4 coarse, bool molten) {
-    if (!kBurns || !(kHasWood || kHasSheet || kHasHide)) return 0.0;
+    if (!kBurns || !(kHasPaint || kHasHide)) return 0.0;
     vec4 cells = lookLayer(d * 2.8, kLayerChar, noiseLod(pixel, 2.8));
     float u = molten ? smoothstep(0.47, 0.68, coarse.r)
                      : saturate(cells.g * 2.2) *
@@ -88,13 +94,18 @@ float bubbleShape(vec2 d, float pixel, vec4 coarse, bool molten) {
     return u * (2.0 - u);
 }
 
+// About albedo to the power 1 + k, k in [0, 1]: exact at both ends.
+vec3 soaked(vec3 albedo, float k) {
+    vec3 root = sqrt(albedo);  // the power 1/2 lies between the chords
+    return albedo * (k < 0.5 ? mix(vec3(1.0), root, 2.0 * k) : mix(root, albedo, 2.0 * k - 1.0));
+}
+
 Skin burningSkin(Site s, MaterialLook m) {
     Skin o;
     float a = s.age - m.jitter * s.delay;
     float x = a / s.slow;
-    vec4 nA = noiseAt(s.d, 13.0, s.pixel);
-    vec4 nB = s.coarse, nC = s.fine;
-    float edge = holeEdge(a, s, nC.rb, m);
+    vec4 nA = s.fine, nB = s.coarse;
+    float edge = holeEdge(a, s, m);
     float c = smoothstep(0.0, m.charTime, a + m.charTime * 0.5 * (nA.r - 0.5));
     float far = 1.0 / (1.0 + s.pixel * s.pixel / (0.0022 * 0.0022));  // relief fades into occlusion
     vec4 k = vec4(0.0, 1.0, 0.5, 0.5);
@@ -102,14 +113,14 @@ Skin burningSkin(Site s, MaterialLook m) {
     if ((kHasWood || kHasHide) && m.crackDepth > 0.0 && c > 0.0) {
         vec2 uv = s.d / vec2(m.cellX, m.cellY) / 8.0 + (vec2(nA.r, nA.b) - 0.5) * 0.04;
         float lod = noiseLod(s.pixel, 1.0 / (8.0 * m.cellX));
-        k = charCracks(a, s, m, uv, lod);
+        vec4 texel = lookLayer(uv, kLayerChar, lod);
+        k = charCracks(a, s, m, texel);
         float open = smoothstep(m.charTime * 0.6, m.crackTime, a);
-        vec2 slope = lookLayer(uv, kLayerRelief, lod).rg * 2.0 - 1.0;
+        vec2 slope = texel.ba * 2.0 - 1.0;
         o.slope += slope * (kCrackSlopeRange * m.crackDepth * far * open) / vec2(m.cellX, m.cellY);
-        k.z = mix(k.z, nA.a, m.isotropic);
     }
     if ((kHasSheet || kHasPlant || kHasHide) && m.crumple > 0.0 && c > 0.0) {
-        vec2 slope = lookLayer(s.d * 13.0, kLayerRelief, noiseLod(s.pixel, 13.0)).ba * 2.0 - 1.0;
+        vec2 slope = lookLayer(s.d * 13.0, kLayerRelief, noiseLod(s.pixel, 13.0)).rg * 2.0 - 1.0;
         o.slope += slope * (kCrumpleSlopeRange * 13.0 * 0.5 * m.crumple * c);
     }
 
@@ -134,7 +145,7 @@ Skin burningSkin(Site s, MaterialLook m) {
     float f0 = mix(0.04, 0.05, c);
 
     float film = m.ashColor.w;
-    if (kHasWood && film > 0.0) {
+    if (kHasPaint && film > 0.0) {
         float left = paintFilm(a, nA, m) * smoothstep(-0.6 * m.scorchWidth, 0.0, x);
         albedo = mix(albedo, vec3(0.022, 0.02, 0.02) + 0.10 * s.base * (1.0 - c), left);
         rough = mix(rough, 0.35, left);
@@ -142,7 +153,7 @@ Skin burningSkin(Site s, MaterialLook m) {
         o.slope *= 1.0 - left;
         c *= 1.0 - left;
     }
-    if ((kHasWood || kHasSheet || kHasHide) && m.blister > 0.0) {
+    if ((kHasPaint || kHasHide) && m.blister > 0.0) {
         float swell = smoothstep(-m.scorchWidth * 0.9, -m.scorchWidth * 0.1, x);
         float burst = 1.0 - smoothstep(m.charTime * 0.3, m.charTime * 1.2, a);
         o.slope -= s.bubbleSlope * (m.blister * swell * mix(burst, 1.0, m.melt));
@@ -161,8 +172,9 @@ Skin burningSkin(Site s, MaterialLook m) {
 
     // Glow: noise on the temperature, not on the brightness; long-lived in cracks only.
     float breath = 45.0 * sin(s.time * 2.1 + 40.0 * nB.b + 6.28 * k.z) * nA.r;
-    float dT = m.glowVariation * ((nB.b - 0.5) * 1.6 + (nA.b - 0.5) * 1.2 + (nC.r - 0.5) * 1.5 +
-                                  0.4 * (k.z - 0.5)) + breath;
+    float dT = m.glowVariation * ((nB.b - 0.5) * 1.6 + (nA.b - 0.5) * 1.2 + (nA.r - 0.5) * 1.5 +
+                                  0.4 * (k.z - 0.5)) +
+               breath;
     float face = 300.0 + (m.faceKelvin - 300.0) * smoothstep(0.0, m.facePeak, a) *
                              exp(-max(0.0, a - m.facePeak) / m.faceDecay);
     vec3 emission = emberRadiance(limitGlow(face + dT, s)) *
@@ -172,7 +184,7 @@ Skin burningSkin(Site s, MaterialLook m) {
         float crack = 300.0 + (m.crackKelvin - 300.0) *
                                   smoothstep(0.3 * m.facePeak, 2.0 * m.facePeak, a) *
                                   exp(-a * a / (life * life));
-        crack += dT - 0.8 * m.glowVariation * (nC.r - 0.5);
+        crack += dT - 0.8 * m.glowVariation * (nA.r - 0.5);
         float wall = exp(-k.y / (1.6 * m.crackWidth + 1e-5)) * c;
         emission += emberRadiance(limitGlow(crack, s)) * (k.x * 0.95 + 0.10 * wall * (1.0 - ash));
     }
@@ -188,7 +200,8 @@ Skin burningSkin(Site s, MaterialLook m) {
         if (m.rimKelvin > 0.0) {
             // A line thinner than a pixel keeps its energy.
             float wide = 0.35 * m.rimWidth / (0.35 * m.rimWidth + 0.5 * s.pixel);
-            float rim = 300.0 + (m.rimKelvin - 300.0) * exp(-e * wide / m.rimWidth) + 0.9 * dT;
+            float rim = 300.0 + (m.rimKelvin - 300.0) * exp(-e * wide / m.rimWidth) +
+                        (kHasSheet ? 0.4 : 0.8) * dT;
             emission += emberRadiance(limitGlow(rim, s)) * (0.9 * (1.0 - 0.6 * ash) * wide);
             albedo = mix(albedo, m.charColor.rgb * 0.7, 0.9 * exp(-e / (2.5 * m.rimWidth)));
         }
@@ -206,9 +219,8 @@ Skin burningSkin(Site s, MaterialLook m) {
     rough = mix(rough, 0.9, soot);
 
     // Water darkens what is porous; char only gets gloss.
-    float power = 1.0 + m.wetDark * s.water * (1.0 - 0.85 * c);
-    albedo = pow(max(albedo, vec3(1e-5)), vec3(power)) *
-             (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water * (1.0 - c));
+    albedo = soaked(albedo, m.wetDark * s.water * (1.0 - 0.85 * c));
+    albedo *= 1.0 - 0.25 * min(m.wetDark, 1.0) * s.water * (1.0 - c);
     rough = mix(rough, 0.18, s.water * mix(m.wetGloss, 0.8, c));
 
     o.albedo = albedo;
@@ -224,10 +236,7 @@ Skin burningSkin(Site s, MaterialLook m) {
 // Surface that no fire comes near: what burningSkin says of it, for little.
 Skin freshSkin(Site s, MaterialLook m) {
     Skin o;
-    float power = 1.0 + m.wetDark * s.water;
-    o.albedo = s.water > 0.0 ? pow(max(s.base, vec3(1e-5)), vec3(power)) *
-                                   (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water)
-                             : s.base;
+    o.albedo = soaked(s.base, m.wetDark * s.water) * (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water);
     o.rough = clamp(mix(s.baseRough, 0.18, s.water * m.wetGloss), 0.08, 1.0);
     o.f0 = mix(0.04, 0.03, s.water);
     o.emission = vec3(0.0);
@@ -238,21 +247,15 @@ Skin freshSkin(Site s, MaterialLook m) {
     return o;
 }
 
-// Wall of a hole on a thin shell: marches the view ray through the thickness. `ray` in the tangent
-// frame, z < 0 inwards. The ignition time is continued along its slope: no further look-ups.
-// m along the ray, negative when it passes through; `hit` is the site there.
-float rimMarch(Site s, MaterialLook m, vec3 ray, float jitter, out Site hit) {
-    const int kSteps = 4;
-    float length_ = m.thickness / max(-ray.z, 0.12);
-    hit = s;
-    for (int i = 0; i < kSteps; ++i) {
-        float t = length_ * (float(i) + jitter) / float(kSteps);
-        vec2 move = ray.xy * t;
-        hit.d = s.d + move;
-        hit.age = s.age - s.slow * dot(s.ahead, move);
-        float z = 2.0 * t / length_ - 1.0;
-        float a = hit.age - m.jitter * hit.delay;
-        if (holeEdge(a, hit, s.fine.rb, m) > 0.35 * m.thickness * z * z) return t;
-    }
-    return -1.0;
+// Wall of a hole on a thin shell: where the view ray meets it, in m along the ray; negative: it
+// passes through. `ray` in the tangent frame, z < 0 inwards; `rise`: per m, of the edge along the
+// surface. Nothing is looked up on the way: the edge is continued along its slope, and a rounded
+// wall makes that a quadratic.
+float rimHit(float edge, vec2 rise, float thickness, vec3 ray) {
+    float length_ = thickness / max(-ray.z, 0.12), bulge = 0.35 * thickness;
+    float a = 4.0 * bulge / (length_ * length_), b = dot(rise, ray.xy) + a * length_;
+    float c = edge - bulge, square = b * b + 4.0 * a * c;
+    if (square <= 0.0 || b <= 0.0) return -1.0;
+    float t = -2.0 * c / (b + sqrt(square));
+    return t < length_ ? t : -1.0;
 }

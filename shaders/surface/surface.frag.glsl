@@ -8,42 +8,40 @@
 layout(constant_id = 0) const uint kEncoding = 0u;
 // Families of materials that a variant can draw, and whether they can burn (kSurface...). The
 // software device runs both sides of every branch, so what is of no use is left out.
-layout(constant_id = 2) const uint kVariant = 31u;
+layout(constant_id = 2) const uint kVariant = 127u;
+const bool kHasPaint = (kVariant & kSurfacePaint) != 0u;
 const bool kHasWood = (kVariant & kSurfaceWood) != 0u;
 const bool kHasSheet = (kVariant & kSurfaceSheet) != 0u;
 const bool kHasPlant = (kVariant & kSurfacePlant) != 0u;
 const bool kHasHide = (kVariant & kSurfaceHide) != 0u;
+const bool kImage = (kVariant & kSurfaceImage) != 0u;
 const bool kBurns = (kVariant & kSurfaceBurns) != 0u;
 
-layout(set = 0, binding = FW_BIND_OBJECTS, std430) readonly buffer Objects {
-    BurnObject objects[];
-};
-layout(set = 0, binding = FW_BIND_MATERIALS, std430) readonly buffer Materials {
-    BurnMaterial materials[];
-};
 layout(set = 0, binding = FW_BIND_PREDICT, std430) readonly buffer Predict { uint predict[]; };
 layout(set = 0, binding = FW_BIND_GRADIENT, std430) readonly buffer Gradient { uint gradient[]; };
-layout(set = 0, binding = FW_BIND_LIGHTS, std430) readonly buffer Lights { BurnLight lights[]; };
-layout(set = 0, binding = FW_BIND_LOOKS, std430) readonly buffer Looks { MaterialLook looks[]; };
+layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
+    BurnLight lights[kSurfaceLights];
+};
+layout(set = 0, binding = FW_BIND_LOOKS, std140) uniform Looks { MaterialLook looks[kLookRows]; };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 1, binding = 0) uniform sampler2D baseImage;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
-layout(push_constant) uniform Push { uint objectSlot; };
+layout(push_constant) uniform Push { SurfaceDraw draw; };
 
-layout(location = 0) in vec3 inPosition;
-layout(location = 1) in vec3 inRest;
-layout(location = 2) in vec3 inNormal;
-layout(location = 3) in vec2 inAtlas;
-layout(location = 4) in vec4 inTexture;
-layout(location = 5) in vec3 inTint;
-layout(location = 6) flat in uvec2 inMaterial;
+// See surface.vert.
+layout(location = 0) in vec4 inPositionFire;
+layout(location = 1) in vec4 inRestFire;
+layout(location = 2) in vec4 inNormalFire;
+layout(location = 3) in vec4 inTexture;
+layout(location = 4) in vec4 inDetail;
+layout(location = 5) in vec4 inTint;
 
 layout(location = 0) out vec4 outColor;
 
 #include "lib/colour.glsl"
 #include "lib/look_noise.glsl"
-#include "surface/look.glsl"
 #include "surface/base.glsl"
+#include "surface/look.glsl"
 
 // W/sr of the visible part of a flame to candela: soot glows a little for much heat.
 const float kCandelaPerWatt = 0.013;
@@ -54,86 +52,69 @@ struct Arrival {
     float known;    // [0, 1] weight of texels with a tick
     float wet;      // [0, 1]
     float out_;     // [0, 1]
+    float damp;     // [0, 1] unburnt and wet
 };
 
 // Bilinear over the taps that exist; towards chart borders each tap is continued along its own
-// gradient, so that both sides of a seam agree.
-Arrival arrivalAt(BurnObject object, vec2 uv) {
+// gradient, so that both sides of a seam agree. Where all four miss, at a chart's border, the
+// nearest of the 25 around stand in.
+Arrival arrivalAt(vec2 uv) {
     vec2 st = uv - 0.5;
-    vec2 corner = floor(st), f = st - corner;
-    ivec2 limit = ivec2(int(object.width) - 1, int(object.height) - 1);
+    vec2 corner = floor(st);
+    ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
     Arrival o;
     o.age = 0.0;
     o.gradient = vec2(0.0);
-    o.known = o.wet = o.out_ = 0.0;
+    o.known = o.wet = o.out_ = o.damp = 0.0;
     float total = 0.0, never = 0.0;
-    float horizon = float(object.horizon) * (1.0 / 4096.0);
-    for (int i = 0; i < 4; ++i) {
-        ivec2 o2 = ivec2(i & 1, i >> 1);
+    int taps = 4;
+    for (int i = 0; i < taps; ++i) {
+        ivec2 o2 = i < 4 ? ivec2(i & 1, i >> 1) : ivec2((i - 4) % 5 - 2, (i - 4) / 5 - 2);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
-        uint index = object.stateBase + uint(texel.y) * object.width + uint(texel.x);
-        uint t = predict[index];
-        if (t == kInert) continue;
-        float w = (o2.x == 1 ? f.x : 1.0 - f.x) * (o2.y == 1 ? f.y : 1.0 - f.y) + 1e-4;
+        uint index = draw.stateBase + uint(texel.y) * draw.width + uint(texel.x);
+        uint t = predict[index], packed = gradient[index];
+        vec2 off = st - corner - vec2(o2);
+        float away = dot(off, off);
+        vec2 share = 1.0 - abs(off);
+        float w = i < 4 ? share.x * share.y + 1e-4 : 1e-3 / (away * away * away + 1e-3);
+        if (t == kInert) w = 0.0;
         total += w;
-        if (t < kLiveEnd) {
-            vec2 g = unpackHalf2x16(gradient[index]);
-            float age = float(int(view.now - t)) * (1.0 / 4096.0);
-            vec2 off = st - corner - vec2(o2);
-            o.age += w * (age - 0.5 * dot(g, off));
-            o.gradient += w * g;
-            o.known += w;
-        } else if (t == kOut || t == kOutWet) {
-            uint burnt = gradient[index];  // how long it had burnt
-            o.age += w * (burnt == 0u ? 60.0 : float(burnt) * (1.0 / 4096.0));
-            o.out_ += w;
-            o.wet += t == kOutWet ? w : 0.0;
-        } else {
-            never += w;
-            o.wet += t == kWet ? w : 0.0;
-        }
+        bool live = t < kLiveEnd, doused = t == kOut || t == kOutWet;
+        vec2 g = live ? unpackHalf2x16(packed) : vec2(0.0);
+        float age = float(int(view.now - t)) * (1.0 / 4096.0) - 0.5 * dot(g, off);
+        // How long it had burnt.
+        if (doused) age = packed == 0u ? 60.0 : float(packed) * (1.0 / 4096.0);
+        o.age += live || doused ? w * age : 0.0;
+        o.gradient += w * g;
+        o.known += live ? w : 0.0;
+        o.out_ += doused ? w : 0.0;
+        o.wet += t == kWet || t == kOutWet ? w : 0.0;
+        o.damp += t == kWet ? w : 0.0;
+        never += t == kNever ? w : 0.0;
+        if (i == 3 && total == 0.0) taps = 29;
     }
-    // At a chart's border all four taps can miss: then the nearest texel that exists stands in.
-    if (total == 0.0) {
-        float best = 1e9;
-        for (int i = 0; i < 25; ++i) {
-            ivec2 o2 = ivec2(i % 5 - 2, i / 5 - 2);
-            ivec2 texel = clamp(ivec2(floor(uv)) + o2, ivec2(0), limit);
-            uint index = object.stateBase + uint(texel.y) * object.width + uint(texel.x);
-            uint t = predict[index];
-            vec2 off = uv - 0.5 - vec2(texel);
-            float away = dot(off, off);
-            if (t == kInert || away >= best) continue;
-            best = away;
-            total = 1.0;
-            o.gradient = vec2(0.0);
-            o.age = o.known = o.out_ = never = 0.0;
-            o.wet = t == kOutWet || t == kWet ? 1.0 : 0.0;
-            if (t < kLiveEnd) {
-                o.gradient = unpackHalf2x16(gradient[index]);
-                o.age = float(int(view.now - t)) * (1.0 / 4096.0);
-                o.known = 1.0;
-            } else if (t == kOut || t == kOutWet) {
-                uint burnt = gradient[index];
-                o.age = burnt == 0u ? 60.0 : float(burnt) * (1.0 / 4096.0);
-                o.out_ = 1.0;
-            } else {
-                never = 1.0;
-            }
-        }
-    }
-    float inverse = 1.0 / max(total, 1e-4);
-    if (total == 0.0 || (o.known == 0.0 && o.out_ == 0.0)) {
+    float inverse = 1.0 / max(total, 1e-6), burnt = o.known + o.out_;
+    if (burnt <= 0.0) {
         o.age = -1e6;
     } else {
-        o.age = (o.age - never * horizon) * inverse;
+        // Wet texels say nothing of the time: see dampen().
+        o.age = (o.age - never * draw.horizon) / (burnt + never);
     }
     o.age += view.ambientGround.w * (1.0 / 4096.0);
     if (o.known > 0.0) o.gradient /= o.known;
     o.known *= inverse;
     o.wet *= inverse;
     o.out_ *= inverse;
+    o.damp *= inverse;
     return o;
+}
+
+// At a wet border the age falls to where scorching starts: first fast to that of young char, so
+// that most of the texel between is brown, then evenly.
+float dampen(float age, float damp, float young, float cold) {
+    if (damp <= 0.0 || age <= cold) return age;
+    float top = min(age, young);
+    return damp < 0.25 ? mix(age, top, damp * 4.0) : mix(top, cold, (damp - 0.25) / 0.75);
 }
 
 vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
@@ -148,7 +129,7 @@ vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
     float g = 0.25 / ((nv * (1.0 - k) + k) * (nl * (1.0 - k) + k));
     float m = 1.0 - vh;
     float fresnel = s.f0 + (1.0 - s.f0) * m * m * m * m * m;
-    float gleam = 0.03 * s.sheen * (1.0 - nh * nh) * (1.0 - nh * nh);  // graphite veil
+    float gleam = 0.012 * s.sheen * (1.0 - nh * nh) * (1.0 - nh * nh);  // graphite veil
     return e * (s.albedo * (0.31831 * nl) + vec3((d * g * fresnel + gleam) * nl));
 }
 
@@ -168,8 +149,12 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open) {
     float fresnel = s.f0 + (max(1.0 - s.rough, s.f0) - s.f0) * m2 * m2 * m;
     c += env * (open * fresnel * s.occlusion * (1.0 - 0.5 * s.rough));
 
-    vec3 fire = vec3(0.0);
-    for (uint i = 0u; i < view.lightCount; ++i) {
+    // Of small triangles at their corners already, with the mean direction of what comes.
+    vec3 fire = vec3(inPositionFire.w, inRestFire.w, inNormalFire.w);
+    fire *= max(0.0, dot(n, vec3(inDetail.zw, inTint.w)) + 0.25) * 0.64;
+    bool small = (draw.flags & kDrawVertexLight) != 0u;
+    uint count = small ? 0u : min(view.lightCount, kSurfaceLights);
+    for (uint i = 0u; i < count; ++i) {
         vec4 at = lights[i].positionRadius;
         vec4 color = lights[i].colorIntensity;
         if (color.w <= 0.0) break;  // strongest first
@@ -185,19 +170,19 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open) {
     return c;
 }
 
+float zigzag(float x) { return abs(fract(x) - 0.5) * 4.0 - 1.0; }
+
 void main() {
-    BurnObject object = objects[objectSlot];
-    uint row = objectSlot * kMaterialsPerObject + inMaterial.x;
-    MaterialLook look = looks[materials[row].look];
-    float timeScale = materials[row].timeScale;
-    if ((object.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
+    MaterialLook look = looks[min(draw.look, kLookRows - 1u)];
+    if ((draw.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
     // The rim shows the host's thickness within what the look was made for.
-    if (materials[row].thickness > 0.0)
-        look.thickness =
-            clamp(materials[row].thickness, 0.4 * look.thickness, 2.0 * look.thickness);
+    if (draw.thickness > 0.0)
+        look.thickness = clamp(draw.thickness, 0.4 * look.thickness, 2.0 * look.thickness);
+    vec3 inPosition = inPositionFire.xyz, inRest = inRestFire.xyz, inTintColor = inTint.rgb;
+    vec2 inAtlas = inTexture.xy;
 
     // The tangent plane: how atlas and detail coordinates move along the surface.
-    vec3 normal = normalize(inNormal);
+    vec3 normal = normalize(inNormalFire.xyz);
     vec3 px = dFdx(inPosition), py = dFdy(inPosition);
     vec3 toEye = view.forward.w > 0.5 ? normalize(-inPosition) : -view.forward.xyz;
     vec3 face = cross(px, py);
@@ -214,25 +199,26 @@ void main() {
     float facing = max(abs(dot(normal, toEye)), 0.2);
     float pixel = view.eye.w * depth * inversesqrt(facing);
 
-    bool detailed = (object.flags & kObjectDetail) != 0u;
+    bool detailed = (draw.flags & kObjectDetail) != 0u;
     vec2 d;
     vec3 axisX, axisY;
     if (detailed) {
-        d = inTexture.zw;
+        d = inDetail.xy;
         vec2 dx = dFdx(d), dy = dFdy(d);
         axisX = r1 * dx.x + r2 * dy.x;
         axisY = r1 * dx.y + r2 * dy.y;
         axisX /= max(length(axisX), 1e-4);
         axisY /= max(length(axisY), 1e-4);
     } else {
-        // Dominant axis of the normal, dithered by noise: ragged joins do not show in wood.
-        float scale = length(object.worldRow0.xyz);
-        vec3 ex = vec3(object.worldRow0.x, object.worldRow1.x, object.worldRow2.x) / scale;
-        vec3 ey = vec3(object.worldRow0.y, object.worldRow1.y, object.worldRow2.y) / scale;
-        vec3 ez = vec3(object.worldRow0.z, object.worldRow1.z, object.worldRow2.z) / scale;
-        vec4 dither = noiseAt(vec2(inRest.x + inRest.z, inRest.y), 6.0, pixel);
+        // Dominant axis of the normal, dithered by zigzags: ragged joins do not show in wood.
+        float inverseScale = inversesqrt(dot(draw.row0.xyz, draw.row0.xyz));
+        vec3 ex = vec3(draw.row0.x, draw.row1.x, draw.row2.x) * inverseScale;
+        vec3 ey = vec3(draw.row0.y, draw.row1.y, draw.row2.y) * inverseScale;
+        vec3 ez = vec3(draw.row0.z, draw.row1.z, draw.row2.z) * inverseScale;
+        float da = zigzag(5.0 * (inRest.x + inRest.z) + 0.8 * zigzag(7.3 * inRest.y + 0.2));
+        float db = zigzag(4.3 * (inRest.y + 0.7 * inRest.z) + 0.8 * zigzag(9.2 * inRest.x));
         vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) +
-                 (vec3(dither.r, dither.g + 0.1, dither.b) - 0.5) * 0.35;
+                 0.1 * vec3(da, db, -0.5 * (da + db));
         if (w.x > w.y && w.x > w.z) {
             d = inRest.zy;
             axisX = ez;
@@ -254,24 +240,28 @@ void main() {
     vec2 shift = vec2(dot(gradU, along), dot(gradV, along));  // texels
     // A long shift could leave the chart: what is beyond half a texel goes the linear way.
     vec2 near = clamp(shift, -0.5, 0.5);
-    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0);
+    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 0.0);
     if (kBurns) {
-        arrival = arrivalAt(object, inAtlas + near);
+        arrival = arrivalAt(inAtlas + near);
         arrival.age -= dot(arrival.gradient, shift - near);
     }
 
-    vec3 color = materials[row].baseColor.rgb;
+    // Where holes come first; in wood also where its rings wander.
+    vec2 grownAt =
+        kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3) : vec2(d.x, d.y / look.drip);
+    vec4 grown = noiseAt(grownAt, kHasWood ? 2.6 : look.holeTiles, max(pixel, look.blur));
+    vec3 color = draw.colorRough.rgb;
     Base fresh;
-    if (object.image != 0u) {
-        fresh = freshBase(kBasePlain, d, pixel, detailed, color, coarse, fine);
-        color = texture(baseImage, inTexture.xy).rgb;
+    if (kImage) {
+        color = texture(baseImage, inTexture.zw).rgb;
         fresh.factor = vec3(1.0);
-        fresh.rough = materials[row].roughness;
+        fresh.rough = draw.colorRough.w;
         fresh.delay = (fine.b - 0.5) * 1.2;
         fresh.cavity = 0.45 + 0.55 * saturate(dot(color, vec3(0.9)) + 0.3);
+        fresh.height = 0.0;
     } else {
-        fresh = freshBase(inMaterial.y, d, pixel, detailed, color, coarse, fine);
-        fresh.rough = clamp(fresh.rough + materials[row].roughness - 0.7, 0.1, 1.0);
+        fresh = freshBase(look.base, d, pixel, detailed, color, coarse, fine, grown);
+        fresh.rough = clamp(fresh.rough + draw.colorRough.w - 0.7, 0.1, 1.0);
     }
 
     // Differences between pixels before any branch, and only of what no buffer is read for: lanes
@@ -279,33 +269,37 @@ void main() {
     float height = -fresh.height;
     vec2 relief = vec2(dFdx(height), dFdy(height));
     relief = clamp(relief, -pixel, pixel);
-    float bubble = bubbleShape(d, pixel, coarse, inMaterial.y != kBasePaint);
+    float bubble = bubbleShape(d, pixel, coarse, look.base != kBasePaint);
     vec3 swell = r1 * dFdx(bubble) + r2 * dFdy(bubble);
+    float delay = clamp(fresh.delay, -1.5, 1.5);
+    float later = holeDelay(grown, fine, delay, look) + look.jitter * delay;
+    vec3 laterSlope = r1 * dFdx(later) + r2 * dFdy(later);
 
     Site site;
     site.d = d;
     site.pixel = pixel;
-    site.age = arrival.age * timeScale;
-    vec3 slope = (gradU * arrival.gradient.x + gradV * arrival.gradient.y) * timeScale;  // s/m
+    vec3 slope = (gradU * arrival.gradient.x + gradV * arrival.gradient.y) * draw.timeScale;
     vec2 flat_ = vec2(dot(slope, axisX), dot(slope, axisY));
     float steep = length(flat_);
     float rate = max(look.spreadRate, 1e-5);
-    site.slow = clamp(length(slope), 0.25 / rate, 1.6 / rate);
+    site.slow = clamp(length(slope), 0.25 / rate, 1.6 / rate);  // s/m
+    float ahead = 1.3 * max(look.scorchWidth, look.wiltColor.w) * site.slow + 1.5 * look.jitter;
+    site.age = dampen(arrival.age * draw.timeScale, arrival.damp, 1.5 * look.charTime, -ahead);
     site.ahead = steep > 1e-6 ? flat_ / steep : vec2(0.0, 1.0);
-    site.out_ = saturate(arrival.out_ * 1.5);
+    site.out_ = saturate(arrival.out_ * 1.5 + arrival.damp * 6.0);
     site.water = smoothstep(0.25, 0.75, arrival.wet);
-    bool inside = back && (object.flags & kObjectTwoSided) == 0u;
+    bool inside = back && (draw.flags & kObjectTwoSided) == 0u;
     site.soot = inside ? 0.92 * smoothstep(-10.0, -0.3, site.age / max(look.charTime, 1e-3)) : 0.0;
-    site.base = color * fresh.factor * inTint;
+    site.base = color * fresh.factor * inTintColor;
     site.baseRough = fresh.rough;
-    site.delay = clamp(fresh.delay, -1.5, 1.5);
+    site.delay = delay;
     site.cavity = fresh.cavity;
     site.time = view.ambientSky.w;
     site.coarse = coarse;
     site.fine = fine;
+    site.grown = grown;
     site.bubbleSlope = vec2(dot(swell, axisX), dot(swell, axisY));
 
-    float ahead = 1.3 * max(look.scorchWidth, look.wiltColor.w) * site.slow + 1.5 * look.jitter;
     bool cold = !kBurns || look.spreadRate <= 0.0 || site.age < -ahead;
     Skin skin;
     vec3 position = inPosition;
@@ -314,16 +308,18 @@ void main() {
     skin = freshSkin(site, look);
     if (inside) skin.occlusion = 0.4;
     if (kBurns && !cold) {
-        float a = site.age - look.jitter * site.delay;
-        if (holeEdge(a, site, site.fine.rb, look) < 0.0) {
+        float edge = holeEdge(site.age - look.jitter * delay, site, look);
+        if (edge < 0.0) {
             vec3 ray = vec3(dot(-toEye, axisX), dot(-toEye, axisY), -abs(dot(toEye, normal)));
-            Site hit;
-            float jitter = hash(uvec3(gl_FragCoord.xy, 3u));
-            deep = rimMarch(site, look, ray, jitter, hit);
+            vec2 rise = vec2(dot(laterSlope, axisX), dot(laterSlope, axisY)) / site.slow;
+            rise = site.ahead + rise * min(1.0, 1.2 * inversesqrt(max(dot(rise, rise), 1e-8)));
+            deep = rimHit(edge, rise, look.thickness, ray);
             if (deep < 0.0) discard;
-            hit.soot = 0.0;
-            site = hit;
-            vec2 bump = noiseAt(hit.d + vec2(0.8 * deep), 20.0, pixel).rb - 0.5;
+            vec2 move = ray.xy * deep;
+            site.d += move;
+            site.age -= site.slow * dot(rise, move);
+            site.soot = 0.0;
+            vec2 bump = fine.rb - 0.5;
             // The wall faces the hole: away from fresh material.
             vec3 wall = -(axisX * site.ahead.x + axisY * site.ahead.y);
             facingNormal = normalize(wall + facingNormal * (0.4 - 1.2 * deep / look.thickness) +

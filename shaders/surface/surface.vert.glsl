@@ -1,19 +1,15 @@
 #version 450
 // Places one object's drawn mesh. Positions leave it relative to the eye, so that derivatives of
-// them stay precise far from the world's origin.
+// them stay precise far from the world's origin. Small triangles are lit by flames here.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
 
-layout(set = 0, binding = FW_BIND_OBJECTS, std430) readonly buffer Objects {
-    BurnObject objects[];
+layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
+    BurnLight lights[kSurfaceLights];
 };
-layout(set = 0, binding = FW_BIND_MATERIALS, std430) readonly buffer Materials {
-    BurnMaterial materials[];
-};
-layout(set = 0, binding = FW_BIND_LOOKS, std430) readonly buffer Looks { MaterialLook looks[]; };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-layout(push_constant) uniform Push { uint objectSlot; };
+layout(push_constant) uniform Push { SurfaceDraw draw; };
 
 layout(location = 0) in vec3 inPosition;
 layout(location = 1) in uint inNormal;  // signed 11:11:10
@@ -21,34 +17,68 @@ layout(location = 2) in vec2 inAtlas;
 layout(location = 3) in vec2 inTexture;
 layout(location = 4) in vec2 inDetail;
 layout(location = 5) in vec4 inTint;
-layout(location = 6) in uint inMaterial;
 
-layout(location = 0) out vec3 outPosition;  // m, world, from the eye
-layout(location = 1) out vec3 outRest;      // m, object axes, world scale
-layout(location = 2) out vec3 outNormal;
-layout(location = 3) out vec2 outAtlas;     // texels
-layout(location = 4) out vec4 outTexture;   // xy: UV; zw: m, detail
-layout(location = 5) out vec3 outTint;
-layout(location = 6) flat out uvec2 outMaterial;  // index; kBase...
+layout(location = 0) out vec4 outPosition;  // m, world, from the eye; w: flames' light, red
+layout(location = 1) out vec4 outRest;      // m, object axes, world scale; w: green
+layout(location = 2) out vec4 outNormal;    // w: blue
+layout(location = 3) out vec4 outTexture;   // xy: texels of the atlas; zw: UV
+layout(location = 4) out vec4 outDetail;    // xy: m; zw and ...
+layout(location = 5) out vec4 outTint;      // w: ... mean direction to the flames
+
+// One flame's share of the light here, and of its mean direction.
+void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, inout vec4 towards) {
+    vec3 d = light.positionRadius.xyz - view.eye.xyz - position;
+    float r2 = dot(d, d);
+    float radius = light.positionRadius.w;
+    vec3 to = d * inversesqrt(max(r2, 1e-8));
+    float facing = dot(normal, to);
+    if ((draw.flags & kObjectTwoSided) != 0u) facing = abs(facing);  // thin: both sides glow
+    float e = light.colorIntensity.w / (r2 + max(radius * radius * 0.25, 0.004));
+    e *= clamp(4.0 * facing + 1.0, 0.0, 1.0);  // none from behind
+    color += light.colorIntensity.rgb * e;
+    towards += vec4(to, 1.0) * e;
+}
 
 void main() {
-    vec4 row0 = objects[objectSlot].worldRow0;
-    vec4 row1 = objects[objectSlot].worldRow1;
-    vec4 row2 = objects[objectSlot].worldRow2;
-    float scale = length(row0.xyz);
+    float scale = length(draw.row0.xyz);
     int n = int(inNormal);
     vec3 normal = vec3(float((n << 21) >> 21), float((n << 10) >> 21), float(n >> 22) * 2.0);
 
-    vec3 offset = vec3(row0.w, row1.w, row2.w) - view.eye.xyz;
-    outPosition = vec3(dot(row0.xyz, inPosition), dot(row1.xyz, inPosition),
-                       dot(row2.xyz, inPosition)) + offset;
-    outRest = inPosition * scale;
-    outNormal = vec3(dot(row0.xyz, normal), dot(row1.xyz, normal), dot(row2.xyz, normal));
-    outAtlas = inAtlas;
-    outTexture = vec4(inTexture, inDetail * scale);
-    outTint = inTint.rgb * objects[objectSlot].tint.rgb;
-    outMaterial = uvec2(inMaterial,
-                        looks[materials[objectSlot * kMaterialsPerObject + inMaterial].look].base);
-    gl_Position = view.clip0 * outPosition.x + view.clip1 * outPosition.y +
-                  view.clip2 * outPosition.z + view.clip3;
+    vec3 offset = vec3(draw.row0.w, draw.row1.w, draw.row2.w) - view.eye.xyz;
+    vec3 position = vec3(dot(draw.row0.xyz, inPosition), dot(draw.row1.xyz, inPosition),
+                         dot(draw.row2.xyz, inPosition)) +
+                    offset;
+    normal = normalize(
+        vec3(dot(draw.row0.xyz, normal), dot(draw.row1.xyz, normal), dot(draw.row2.xyz, normal)));
+    vec3 color = vec3(0.0);
+    vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
+    if ((draw.flags & kDrawVertexLight) != 0u) {
+        // Constant indices: software devices read the block once for all vertices then.
+        if (view.lightCount > 0u) addFlame(lights[0], position, normal, color, towards);
+        if (view.lightCount > 1u) addFlame(lights[1], position, normal, color, towards);
+        if (view.lightCount > 2u) addFlame(lights[2], position, normal, color, towards);
+        if (view.lightCount > 3u) addFlame(lights[3], position, normal, color, towards);
+        if (view.lightCount > 4u) addFlame(lights[4], position, normal, color, towards);
+        if (view.lightCount > 5u) addFlame(lights[5], position, normal, color, towards);
+        if (view.lightCount > 6u) addFlame(lights[6], position, normal, color, towards);
+        if (view.lightCount > 7u) addFlame(lights[7], position, normal, color, towards);
+        if (view.lightCount > 8u) addFlame(lights[8], position, normal, color, towards);
+        if (view.lightCount > 9u) addFlame(lights[9], position, normal, color, towards);
+        if (view.lightCount > 10u) addFlame(lights[10], position, normal, color, towards);
+        if (view.lightCount > 11u) addFlame(lights[11], position, normal, color, towards);
+        if (view.lightCount > 12u) addFlame(lights[12], position, normal, color, towards);
+        if (view.lightCount > 13u) addFlame(lights[13], position, normal, color, towards);
+        if (view.lightCount > 14u) addFlame(lights[14], position, normal, color, towards);
+        if (view.lightCount > 15u) addFlame(lights[15], position, normal, color, towards);
+    }
+    towards.xyz /= towards.w;
+
+    outPosition = vec4(position, color.r);
+    outRest = vec4(inPosition * scale, color.g);
+    outNormal = vec4(normal, color.b);
+    outTexture = vec4(inAtlas, inTexture);
+    outDetail = vec4(inDetail * scale, towards.xy);
+    outTint = vec4(inTint.rgb * vec3(draw.tintR, draw.tintG, draw.tintB), towards.z);
+    gl_Position =
+        view.clip0 * position.x + view.clip1 * position.y + view.clip2 * position.z + view.clip3;
 }

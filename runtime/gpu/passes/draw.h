@@ -29,13 +29,16 @@ struct LookSources {
     void (*viewParams)(const ViewInput& input, ViewParams& out) = nullptr;
 };
 
-// One object as `surface` draws it. Ranges are in the shared vertex and index planes.
+// One material of one object as `surface` draws it. Ranges are in the shared vertex and index
+// planes.
 struct DrawItem {
     uint32_t object = 0;  // slot
+    uint32_t material = 0;
     uint32_t firstIndex = 0, indexCount = 0;
     int32_t vertexOffset = 0;
     uint32_t image = 0;    // as BurnObject::image
     uint32_t variant = 0;  // of the surface pass, from surfaceVariant
+    SurfaceDraw draw{};
 };
 
 // Records a draw pass: pipeline and sets 0 and 2 are bound for it as its DrawPass says.
@@ -50,10 +53,12 @@ class DrawRecorder {
     ~DrawRecorder() = default;
 };
 
-constexpr uint32_t kSurfaceVariants = 14;
+constexpr uint32_t kSurfaceVariants = 25;
 extern const DrawPass kSurfacePasses[kSurfaceVariants];
-// The variant for these materials; `touched`: some event reached the object.
-uint32_t surfaceVariant(std::span<const BurnMaterial> materials, bool touched);
+// The variant for a material of an object; `touched`: some event reached it.
+uint32_t surfaceVariant(const BurnObject& object, const BurnMaterial& material, bool touched);
+// `edge`: m, mean edge of the object's triangles.
+SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge);
 bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items);
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items);
 extern const DrawPass kFlamesPass;

@@ -21,7 +21,10 @@ constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
     &kSurfacePasses[4],  &kSurfacePasses[5],  &kSurfacePasses[6],  &kSurfacePasses[7],
     &kSurfacePasses[8],  &kSurfacePasses[9],  &kSurfacePasses[10], &kSurfacePasses[11],
-    &kSurfacePasses[12], &kSurfacePasses[13], &kFlamesPass};
+    &kSurfacePasses[12], &kSurfacePasses[13], &kSurfacePasses[14], &kSurfacePasses[15],
+    &kSurfacePasses[16], &kSurfacePasses[17], &kSurfacePasses[18], &kSurfacePasses[19],
+    &kSurfacePasses[20], &kSurfacePasses[21], &kSurfacePasses[22], &kSurfacePasses[23],
+    &kSurfacePasses[24], &kFlamesPass};
 
 uint32_t groupsOf(uint32_t items) { return std::min((items + 63) / 64, kMaxGroups); }
 

@@ -21,6 +21,7 @@ enum class Access : uint8_t {
     write,        // storage buffer, compute; also read-modify-write and atomics
     indirect,     // arguments of a dispatch or draw
     drawRead,     // storage buffer, vertex and fragment shaders
+    drawUniform,  // uniform buffer, vertex and fragment shaders; at most 16 KiB
     vertexInput,  // vertex or index data
     uniformView,  // the view's uniform block, dynamic offset: FW_BIND_VIEW only
     copyRead,
@@ -42,7 +43,7 @@ struct ComputePass {
 enum class VertexInput : uint8_t {
     none,  // the vertex shader makes its own from gl_VertexIndex and storage buffers
     mesh,  // mesh::RenderVertex: 0 position vec3, 1 normal uint, 2 atlas vec2, 3 texture uv vec2,
-           // 4 detail vec2, 5 tint RGBA8 as vec4, 6 material uint
+           // 4 detail vec2, 5 tint RGBA8 as vec4
 };
 enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
 enum class Blend : uint8_t { opaque, premultiplied, additive };

@@ -1,39 +1,39 @@
-// Burnable meshes as they look now, one draw per object. Variants differ in what they can draw, not
-// in how it looks: see kSurface... in shared/look.h.
+// Burnable meshes as they look now, one draw per object and material. Variants differ in what they
+// can draw, not in how it looks: see kSurface... in shared/look.h.
 #include "gpu/passes/frame_graph.h"
 
 namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {
-    {FW_BIND_OBJECTS, Access::drawRead}, {FW_BIND_MATERIALS, Access::drawRead},
-    {FW_BIND_PREDICT, Access::drawRead}, {FW_BIND_GRADIENT, Access::drawRead},
-    {FW_BIND_LIGHTS, Access::drawRead},  {FW_BIND_LOOKS, Access::drawRead},
+    {FW_BIND_PREDICT, Access::drawRead},   {FW_BIND_GRADIENT, Access::drawRead},
+    {FW_BIND_LIGHTS, Access::drawUniform}, {FW_BIND_LOOKS, Access::drawUniform},
     {FW_BIND_VIEW, Access::uniformView},
-};
-
-struct SurfacePush {
-    uint32_t object;
 };
 
 constexpr DrawPass variant(uint32_t features, Cull cull = Cull::none) {
     return {"surface",     "surface.vert", "surface.frag",      kUses,    VertexInput::mesh,
-            Blend::opaque, true,           sizeof(SurfacePush), features, cull};
+            Blend::opaque, true,           sizeof(SurfaceDraw), features, cull};
 }
 // Objects that burn are drawn in two goes, so that the depth test drops the inside, which only
 // holes show. Where the host's faces turn the other way the goes swap, and the picture is the same.
-constexpr uint32_t kFresh = 4, kBurning = 5;
+constexpr uint32_t kFresh = 5, kBurning = 10;
 static_assert(kFresh + 2 * kBurning == kSurfaceVariants);
 
-constexpr uint32_t kAll = kSurfaceWood | kSurfaceSheet | kSurfacePlant | kSurfaceHide;
+constexpr uint32_t kPaint = kSurfaceWood | kSurfacePaint;
+constexpr uint32_t kHide = kSurfaceSheet | kSurfaceHide;
+
+// m. Triangles with shorter edges are lit by flames at their corners.
+constexpr float kSmallEdge = 0.03f;
 
 // What a preset's look needs of a variant; stone needs nothing.
 uint32_t familyOf(uint32_t look) {
     switch (look) {
         case FW_MATERIAL_PINE:
-        case FW_MATERIAL_PAINTED_WOOD:
         case FW_MATERIAL_PLYWOOD:
             return kSurfaceWood;
+        case FW_MATERIAL_PAINTED_WOOD:
+            return kPaint;
         case FW_MATERIAL_NEWSPAPER:
         case FW_MATERIAL_PAPER:
         case FW_MATERIAL_COTTON:
@@ -59,26 +59,60 @@ uint32_t familyOf(uint32_t look) {
 const DrawPass kSurfacePasses[kSurfaceVariants] = {
     variant(kSurfaceWood),
     variant(kSurfacePlant),
-    variant(kSurfaceWood | kSurfacePlant),
-    variant(kAll),
+    variant(kPaint),
+    variant(kHide),
+    variant(kSurfaceImage),
     variant(kSurfaceWood | kSurfaceBurns, Cull::back),
+    variant(kPaint | kSurfaceBurns, Cull::back),
     variant(kSurfaceSheet | kSurfaceBurns, Cull::back),
     variant(kSurfacePlant | kSurfaceBurns, Cull::back),
-    variant(kSurfaceWood | kSurfacePlant | kSurfaceBurns, Cull::back),
-    variant(kAll | kSurfaceBurns, Cull::back),
+    variant(kHide | kSurfaceBurns, Cull::back),
+    variant(kSurfaceWood | kSurfaceImage | kSurfaceBurns, Cull::back),
+    variant(kPaint | kSurfaceImage | kSurfaceBurns, Cull::back),
+    variant(kSurfaceSheet | kSurfaceImage | kSurfaceBurns, Cull::back),
+    variant(kSurfacePlant | kSurfaceImage | kSurfaceBurns, Cull::back),
+    variant(kHide | kSurfaceImage | kSurfaceBurns, Cull::back),
     variant(kSurfaceWood | kSurfaceBurns, Cull::front),
+    variant(kPaint | kSurfaceBurns, Cull::front),
     variant(kSurfaceSheet | kSurfaceBurns, Cull::front),
     variant(kSurfacePlant | kSurfaceBurns, Cull::front),
-    variant(kSurfaceWood | kSurfacePlant | kSurfaceBurns, Cull::front),
-    variant(kAll | kSurfaceBurns, Cull::front),
+    variant(kHide | kSurfaceBurns, Cull::front),
+    variant(kSurfaceWood | kSurfaceImage | kSurfaceBurns, Cull::front),
+    variant(kPaint | kSurfaceImage | kSurfaceBurns, Cull::front),
+    variant(kSurfaceSheet | kSurfaceImage | kSurfaceBurns, Cull::front),
+    variant(kSurfacePlant | kSurfaceImage | kSurfaceBurns, Cull::front),
+    variant(kHide | kSurfaceImage | kSurfaceBurns, Cull::front),
 };
 
-uint32_t surfaceVariant(std::span<const BurnMaterial> materials, bool touched) {
+uint32_t surfaceVariant(const BurnObject& object, const BurnMaterial& material, bool touched) {
+    // Without fire an image is all that a material shows.
     uint32_t needs = touched ? kSurfaceBurns : 0;
-    for (const BurnMaterial& material : materials) needs |= familyOf(material.look);
+    if (touched || !object.image) needs |= familyOf(material.look);
+    if (object.image) needs |= kSurfaceImage;
     uint32_t i = 0;
     while ((needs & ~kSurfacePasses[i].variant) != 0) ++i;
     return i;
+}
+
+SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge) {
+    SurfaceDraw draw{};
+    draw.row0 = object.worldRow0;
+    draw.row1 = object.worldRow1;
+    draw.row2 = object.worldRow2;
+    draw.colorRough = material.baseColor;
+    draw.colorRough.w = material.roughness;
+    draw.tintR = object.tint.x;
+    draw.tintG = object.tint.y;
+    draw.tintB = object.tint.z;
+    draw.timeScale = material.timeScale;
+    draw.thickness = material.thickness;
+    draw.horizon = float(object.horizon) / float(kTicksPerSecond);
+    draw.look = material.look;
+    draw.stateBase = object.stateBase;
+    draw.width = object.width;
+    draw.height = object.height;
+    draw.flags = object.flags | (edge < kSmallEdge ? kDrawVertexLight : 0);
+    return draw;
 }
 
 // Whether an item whose variant is `given` is drawn by pass `variant`.
@@ -96,8 +130,7 @@ bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items) {
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
         if (!drawnBy(variant, item.variant)) continue;
-        const SurfacePush push{item.object};
-        recorder.drawItem(item, &push);
+        recorder.drawItem(item, &item.draw);
     }
 }
 

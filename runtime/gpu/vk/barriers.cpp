@@ -22,6 +22,9 @@ Scope scopeOf(Access access) noexcept {
         case Access::drawRead:
             return {VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                     VK_ACCESS_SHADER_READ_BIT, false};
+        case Access::drawUniform:
+            return {VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                    VK_ACCESS_UNIFORM_READ_BIT, false};
         case Access::vertexInput:
             return {VK_PIPELINE_STAGE_VERTEX_INPUT_BIT,
                     VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT, false};
@@ -99,9 +102,10 @@ void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span
 void BarrierTracker::end(const Table& table, VkCommandBuffer commands) {
     record(table, commands, kOurStages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, kOurWrites,
            kOurStages | kDrawStages | VK_PIPELINE_STAGE_HOST_BIT,
-           VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT |
-               VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT |
-               VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_HOST_READ_BIT | kOurWrites);
+           VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_UNIFORM_READ_BIT |
+               VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT |
+               VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_HOST_READ_BIT |
+               kOurWrites);
 }
 
 }  // namespace fw::gpu::vk

@@ -31,8 +31,10 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
         one.dstSet = set;
         one.dstBinding = use.resource;
         one.descriptorCount = 1;
-        one.descriptorType =
-            view ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        one.descriptorType = view ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
+                             : use.access == Access::drawUniform
+                                 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                 : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         one.pBufferInfo = &infos[count];
         ++count;
     }
@@ -46,16 +48,20 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     compute_.resize(computeCount);
     draw_.resize(drawCount);
     retired_.promise(1);
-    uint32_t storage = 0, uniform = 0;
+    uint32_t storage = 0, uniform = 0, view = 0;
     const auto add = [&](std::span<const Use> uses) {
-        for (const Use& use : uses) ++(use.resource == FW_BIND_VIEW ? uniform : storage);
+        for (const Use& use : uses)
+            ++(use.resource == FW_BIND_VIEW        ? view
+               : use.access == Access::drawUniform ? uniform
+                                                   : storage);
     };
     for (const ComputePass* pass : computePasses()) add(pass->uses);
     for (const DrawPass* pass : drawPasses()) add(pass->uses);
     const auto sets = uint32_t(computeCount + drawCount);
-    const std::array<VkDescriptorPoolSize, 2> sizes{
+    const std::array<VkDescriptorPoolSize, 3> sizes{
         {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, storage + 1},
-         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, uniform + 1}}};
+         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniform + 1},
+         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, view + 1}}};
     auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
     info.maxSets = sets;
     info.poolSizeCount = uint32_t(sizes.size());

@@ -157,14 +157,17 @@ void Pipelines::makeLayouts() {
                   : VK_SHADER_STAGE_COMPUTE_BIT;
         for (const Use& use : uses) {
             const bool bound = use.access == Access::read || use.access == Access::write ||
-                               use.access == Access::drawRead || use.access == Access::uniformView;
+                               use.access == Access::drawRead ||
+                               use.access == Access::drawUniform ||
+                               use.access == Access::uniformView;
             if (!bound || (seen >> use.resource & 1u)) continue;
             seen |= uint64_t(1) << use.resource;
             VkDescriptorSetLayoutBinding& binding = bindings[count++];
             binding.binding = use.resource;
-            binding.descriptorType = use.resource == FW_BIND_VIEW
-                                         ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
-                                         : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            binding.descriptorType =
+                use.access == Access::uniformView   ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
+                : use.access == Access::drawUniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                                    : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
             binding.descriptorCount = 1;
             binding.stageFlags = stages;
         }
@@ -292,14 +295,13 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     using mesh::RenderVertex;
     const VkVertexInputBindingDescription binding{0, sizeof(RenderVertex),
                                                   VK_VERTEX_INPUT_RATE_VERTEX};
-    const std::array<VkVertexInputAttributeDescription, 7> attributes{{
+    const std::array<VkVertexInputAttributeDescription, 6> attributes{{
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(RenderVertex, position)},
         {1, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, normal)},
         {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, atlasUv)},
         {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, textureUv)},
         {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, detail)},
         {5, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(RenderVertex, tint)},
-        {6, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, material)},
     }};
     auto input = typed<VkPipelineVertexInputStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);

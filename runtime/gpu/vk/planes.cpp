@@ -10,7 +10,6 @@ namespace {
 
 constexpr uint32_t kTileTexels = 64;
 constexpr uint32_t kCounterRows = kRowIteration + 64 * kMaxSubsteps + 1;  // one more to carry over
-constexpr uint32_t kLookRows = 16;
 
 constexpr Plane kPlanes[] = {
     // resource, space, bytes of a unit, keep, component, name, usage
@@ -53,12 +52,14 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_ANSWERS, kSpaceProbes, 4, false, kComponentLists, "answers", 0},
     {FW_BIND_PUBLISHED, kSpacePublished, 3 * 4 * kTileTexels, true, kComponentObjects, "published",
      0},
-    {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights", 0},
+    {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights",
+     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},
     {FW_BIND_FLAMES, kSpaceFixed, sizeof(FlameQuad), true, kComponentFlames, "flames", 0},
     {FW_BIND_DRAW_ARGS, kSpaceFixed, 4, true, kComponentFlames, "draw arguments",
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
-    {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks", 0},
+    {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks",
+     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
 };
 
 constexpr uint32_t kInitialUnits[kSpaceCount] = {64,    1024,         512,  512,  1024, 1024, 4096,

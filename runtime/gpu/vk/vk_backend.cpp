@@ -3,9 +3,12 @@
 #include "core/error.h"
 #include "gpu/vk/world_state.h"
 
+#include <glm/glm.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 namespace fw::gpu::vk {
 namespace {
@@ -123,7 +126,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       retired(device, deviceMemory, pmr),
       ring(device),
       planes(device, deviceMemory, retired,
-             {std::max(worldLimits.maxLights, 1u),
+             {std::max(worldLimits.maxLights, kSurfaceLights),
               std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity)},
              pmr),
       sets(device, contextState.pipelines, retired, pmr),
@@ -275,6 +278,95 @@ VkBackend::VkBackend(Context& context, const WorldLimits& limits, std::pmr::memo
 
 VkBackend::~VkBackend() { std::pmr::polymorphic_allocator<>(memory_).delete_object(state_); }
 
+namespace {
+
+uint32_t materialOf(const mesh::BurnDomain& domain, size_t corner) {
+    return std::min(domain.vertices[domain.indices[corner]].material, kMaterialsPerObject - 1);
+}
+
+// Where the runs of each material end, and how large triangles are.
+void measureDrawn(const mesh::BurnDomain& domain, MeshEntry& entry) {
+    double area = 0;
+    for (size_t i = 0; i + 2 < domain.indices.size(); i += 3) {
+        glm::dvec3 p[3];
+        for (size_t k = 0; k < 3; ++k) {
+            const auto& at = domain.vertices[domain.indices[i + k]].position;
+            p[k] = {at[0], at[1], at[2]};
+        }
+        area += glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));  // of two
+        entry.materialEnd[materialOf(domain, i)] += 3;
+    }
+    for (uint32_t m = 1; m < kMaterialsPerObject; ++m)
+        entry.materialEnd[m] += entry.materialEnd[m - 1];
+    if (entry.indices >= 3) entry.edge = float(std::sqrt(area / double(entry.indices / 3)));
+}
+
+// The bits of `v` at even places.
+uint32_t spread(uint32_t v) {
+    v = (v | v << 8) & 0x00FF00FFu;
+    v = (v | v << 4) & 0x0F0F0F0Fu;
+    v = (v | v << 2) & 0x33333333u;
+    return (v | v << 1) & 0x55555555u;
+}
+
+// Triangles by material, then along a space-filling curve over the atlas; vertices as they come.
+// Neighbours share vertices, so devices shade each vertex about once, whatever order hosts give.
+struct DrawnOrder {
+    std::pmr::vector<uint32_t> triangles;  // first corner of each
+    std::pmr::vector<uint32_t> vertices;   // old number by new
+    std::pmr::vector<uint32_t> numbers;    // new by old
+
+    DrawnOrder(const mesh::BurnDomain& domain, std::pmr::memory_resource* memory)
+        : triangles(memory), vertices(memory), numbers(domain.vertices.size(), ~0u, memory) {
+        struct Key {
+            uint32_t material, curve, corner;
+        };
+        std::pmr::vector<Key> keys(memory);
+        keys.reserve(domain.indices.size() / 3);
+        for (uint32_t i = 0; i + 2 < domain.indices.size(); i += 3) {
+            float at[2] = {};
+            for (uint32_t k = 0; k < 3; ++k) {
+                const mesh::RenderVertex& v = domain.vertices[domain.indices[i + k]];
+                for (uint32_t c = 0; c < 2; ++c) at[c] += v.atlasUv[c] * 2.0f;
+            }
+            const auto cell = [](float x) { return uint32_t(std::clamp(x, 0.0f, 65535.0f)); };
+            keys.push_back(
+                {materialOf(domain, i), spread(cell(at[0])) | spread(cell(at[1])) << 1, i});
+        }
+        std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+            return std::tie(a.material, a.curve, a.corner) <
+                   std::tie(b.material, b.curve, b.corner);
+        });
+        triangles.reserve(keys.size());
+        vertices.reserve(domain.vertices.size());
+        const auto number = [&](uint32_t vertex) {
+            if (numbers[vertex] != ~0u) return;
+            numbers[vertex] = uint32_t(vertices.size());
+            vertices.push_back(vertex);
+        };
+        for (const Key& key : keys) {
+            triangles.push_back(key.corner);
+            for (uint32_t k = 0; k < 3; ++k) number(domain.indices[key.corner + k]);
+        }
+        for (uint32_t i = 0; i < domain.vertices.size(); ++i) number(i);
+    }
+
+    void copyIndices(const mesh::BurnDomain& domain, std::byte* out) const {
+        for (const uint32_t corner : triangles) {
+            for (uint32_t k = 0; k < 3; ++k, out += 4)
+                std::memcpy(out, &numbers[domain.indices[corner + k]], 4);
+        }
+    }
+    void copyVertices(const mesh::BurnDomain& domain, std::byte* out) const {
+        for (const uint32_t old : vertices) {
+            std::memcpy(out, &domain.vertices[old], sizeof(mesh::RenderVertex));
+            out += sizeof(mesh::RenderVertex);
+        }
+    }
+};
+
+}  // namespace
+
 void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
@@ -287,6 +379,8 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     fresh.tiles = domain.tileCount();
     fresh.vertices = uint32_t(domain.vertices.size());
     fresh.indices = uint32_t(domain.indices.size());
+    measureDrawn(domain, fresh);
+    const DrawnOrder order(domain, s.memory);
     const size_t uploadsBefore = s.uploads.size();
     const struct {
         RangeOf* range;
@@ -334,7 +428,12 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
         uint64_t from = 0;
         for (const auto& part : parts) {
             if (part.bytes == 0) continue;
-            std::memcpy(upload.staging.mapped + from, part.data, part.bytes);
+            if (part.resource == kResourceIndices)
+                order.copyIndices(domain, upload.staging.mapped + from);
+            else if (part.resource == kResourceVertices)
+                order.copyVertices(domain, upload.staging.mapped + from);
+            else
+                std::memcpy(upload.staging.mapped + from, part.data, part.bytes);
             upload.regions[upload.regionCount++] = {part.resource, from, part.at, part.bytes};
             from += part.bytes;
         }
@@ -376,7 +475,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     fresh.record = init.record;
     try {
         s.quarantine.reserve(s.quarantine.size() + s.liveObjects + 1);
-        s.drawItems.reserve(s.liveObjects + 1);
+        s.drawItems.reserve((s.liveObjects + 1) * kMaterialsPerObject);
         s.published.reserve(s.liveObjects + 1);
         s.givenObjects.reserve(std::max<size_t>(slot + 1, s.objects.size()));
         (void)slotOf(s.objects, slot);

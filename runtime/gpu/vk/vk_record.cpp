@@ -5,6 +5,7 @@
 #include "gpu/vk/world_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace fw::gpu::vk {
@@ -263,6 +264,13 @@ void recordUploads(VkBackend::State& s) {
     s.uploads.clear();
 }
 
+SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
+    const vec4 row = object.record.worldRow0;
+    const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
+    return surfaceDraw(object.record, object.materials[material],
+                       s.meshes[object.mesh].edge * scale);
+}
+
 // Records of objects that are new, moved or gone, and the list of what draws show.
 void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
@@ -286,9 +294,17 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
         object.resetDue = false;
         if (!object.live || (object.record.flags & kObjectHidden)) continue;
         const MeshEntry& mesh = s.meshes[object.mesh];
-        s.drawItems.push_back({i, mesh.indexRange.first, mesh.indices,
-                               int32_t(mesh.vertexRange.first), object.record.image,
-                               surfaceVariant(object.materials, object.touched)});
+        uint32_t first = 0;
+        for (uint32_t m = 0; m < kMaterialsPerObject; ++m) {
+            const uint32_t end = mesh.materialEnd[m];
+            if (end != first)
+                s.drawItems.push_back(
+                    {i, m, mesh.indexRange.first + first, end - first,
+                     int32_t(mesh.vertexRange.first), object.record.image,
+                     surfaceVariant(object.record, object.materials[m], object.touched),
+                     drawOf(s, object, m)});
+            first = end;
+        }
     }
     s.recordsDirty = false;
 }
@@ -311,6 +327,9 @@ void recordMaterials(VkBackend::State& s, std::span<const MaterialUpdate> update
                   std::begin(object.materials));
         object.record.window = update.window;
         object.record.substepShift = update.substepShift;
+        for (DrawItem& item : s.drawItems) {
+            if (item.object == update.object) item.draw = drawOf(s, object, item.material);
+        }
         const Staged materials = writer.write(std::span<const BurnMaterial>(object.materials));
         recorder.copyIn(materials.at, FW_BIND_MATERIALS,
                         uint64_t(update.object) * sizeof object.materials, sizeof object.materials);
@@ -354,7 +373,8 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event) {
     if (object.touched) return;
     object.touched = true;
     for (DrawItem& item : s.drawItems) {
-        if (item.object == event.object) item.variant = surfaceVariant(object.materials, true);
+        if (item.object == event.object)
+            item.variant = surfaceVariant(object.record, object.materials[item.material], true);
     }
 }
 

@@ -27,6 +27,8 @@ struct MeshEntry {
     bool live = false;
     uint32_t width = 0, height = 0, tilesX = 0, tiles = 0, vertices = 0, indices = 0;
     RangeOf meshTiles, slowness, links, readers, vertexRange, indexRange;
+    uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
+    float edge = 0;  // m at scale 1: side of a square as large as two mean triangles
 };
 
 struct ObjectEntry {
