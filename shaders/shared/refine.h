@@ -22,7 +22,6 @@
 FW_SHARED_BEGIN
 
 #ifdef __cplusplus
-using std::ceil;
 using std::log2;
 #endif
 
@@ -323,7 +322,11 @@ FW_SHARED_FN float refineBiased(float target, float bias, float spread) {
 FW_SHARED_CONST uint kRefineBiases = 16u;
 FW_SHARED_CONST float kRefineBiasStep = 0.4f;
 
-FW_SHARED_FN uint refineTop(float level) { return uint(ceil(level - 1e-4f > 0.0f ? level - 1e-4f : 0.0f)); }
+FW_SHARED_FN uint refineTop(float level) {
+    float l = level > 1e-4f ? level - 1e-4f : 0.0f;
+    int whole = int(l);
+    return uint(float(whole) < l ? whole + 1 : whole);
+}
 // How far the points of the top level have come from between their parents.
 FW_SHARED_FN float refineAge(float level, uint top) {
     float f = level - float(top) + 1.0f;

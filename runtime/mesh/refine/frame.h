@@ -1,5 +1,5 @@
 // Refinement of one object, frame by frame: levels from heat and views, counts, triangles, places.
-// The reference for the compute passes of the same names: every loop body is one lane of
+// The reference for compute passes to come: every loop body is one lane of
 // shaders/shared/refine.h. Floats, cosmetic; equal input gives equal output on one machine.
 #pragma once
 #include "mesh/refine/model.h"
@@ -46,7 +46,8 @@ struct RefineState {
     uint32_t placed = 0;     // vertices placed in the last frame
 
     // What the passes remember.
-    std::pmr::vector<uint8_t> tiles, edgeHeat, interiorHeat;
+    float placedAt = -gpu::kRefineNever;  // s, the last frame
+    std::pmr::vector<uint8_t> edgeHeat, interiorHeat;
     std::pmr::vector<uint8_t> edgeTops;                         // integer levels, of the last count
     std::pmr::vector<uint32_t> emitted, emittedStarts, before;  // of the last emission
     std::pmr::vector<float> edgeShown, interiorShown;  // levels when last placed; < 0: never

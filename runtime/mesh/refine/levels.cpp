@@ -8,25 +8,19 @@
 namespace fw::mesh {
 namespace {
 
-constexpr uint8_t kAllHeat = gpu::kRefineHot | gpu::kRefineBurning;
-
-void gather(std::span<const uint8_t> tiles, const std::pmr::vector<uint32_t>& start,
-            const std::pmr::vector<uint32_t>& list, std::pmr::vector<uint8_t>& heats) {
-    for (size_t item = 0; item < heats.size(); ++item) {
-        uint8_t heat = 0;
-        for (uint32_t i = start[item]; i < start[item + 1] && heat != kAllHeat; ++i)
-            heat |= tiles[list[i]];
-        heats[item] = heat;
-    }
-}
-
-// Heat of edges and interiors from that of the tiles; most frames change none.
+// Heat of edges and interiors from that of the tiles. Its cost follows the fire.
 void warm(const RefineModel& model, const RefineFrame& frame, RefineState& state) {
-    if (std::equal(frame.tiles.begin(), frame.tiles.end(), state.tiles.begin(), state.tiles.end()))
-        return;
-    state.tiles.assign(frame.tiles.begin(), frame.tiles.end());
-    gather(frame.tiles, model.edgeTileStart, model.edgeTiles, state.edgeHeat);
-    gather(frame.tiles, model.triangleTileStart, model.triangleTiles, state.interiorHeat);
+    std::fill(state.edgeHeat.begin(), state.edgeHeat.end(), uint8_t(0));
+    std::fill(state.interiorHeat.begin(), state.interiorHeat.end(), uint8_t(0));
+    const uint32_t edges = uint32_t(model.edges.size());
+    for (uint32_t t = 0; t < model.tileCount; ++t) {
+        const uint8_t heat = frame.tiles[t];
+        if (heat == 0) continue;
+        for (uint32_t i = model.tileStart[t]; i < model.tileStart[t + 1]; ++i) {
+            const uint32_t item = model.tileItems[i];
+            (item < edges ? state.edgeHeat[item] : state.interiorHeat[item - edges]) |= heat;
+        }
+    }
 }
 
 glm::vec3 cornerPlace(const RefineModel& model, uint32_t slot) {
@@ -69,12 +63,17 @@ void aim(const RefineModel& model, const RefineSettings& settings, const RefineF
     }
 }
 
-// Numbers of edges and interiors differ, so that both lose levels in one mixed order.
-float edgeSpread(const RefineState& state, uint32_t e) {
-    return gpu::refineSpread(e * 2, state.edgeHeat[e]);
+// Levels to aim at. Numbers of edges and interiors differ, so that both lose levels in one mixed
+// order.
+float edgeWant(const RefineState& state, uint32_t e, float bias) {
+    const float target = state.edges[e].target;
+    if (target == 0 || bias == 0) return target;
+    return gpu::refineBiased(target, bias, gpu::refineSpread(e * 2, state.edgeHeat[e]));
 }
-float interiorSpread(const RefineState& state, uint32_t i) {
-    return gpu::refineSpread(i * 2 + 1, state.interiorHeat[i]);
+float interiorWant(const RefineState& state, uint32_t i, float bias) {
+    const float target = state.interiors[i].target;
+    if (target == 0 || bias == 0) return target;
+    return gpu::refineBiased(target, bias, gpu::refineSpread(i * 2 + 1, state.interiorHeat[i]));
 }
 
 uint32_t packed(const RefineState& state, const gpu::RefineTriangle& t, uint32_t interior) {
@@ -85,19 +84,12 @@ uint32_t packed(const RefineState& state, const gpu::RefineTriangle& t, uint32_t
 
 // Triangles that the targets come to with this bias; stops counting above `most`.
 uint64_t aimedCount(const RefineModel& model, RefineState& state, float bias, uint64_t most) {
-    for (uint32_t e = 0; e < model.edges.size(); ++e) {
-        const float target = state.edges[e].target;
-        state.edgeTops[e] = uint8_t(
-            target > 0 ? gpu::refineTop(gpu::refineBiased(target, bias, edgeSpread(state, e))) : 0);
-    }
+    for (uint32_t e = 0; e < model.edges.size(); ++e)
+        state.edgeTops[e] = uint8_t(gpu::refineTop(edgeWant(state, e, bias)));
     uint64_t sum = 0;
-    for (uint32_t i = 0; i < model.triangles.size() && sum <= most; ++i) {
-        const float target = state.interiors[i].target;
-        const uint32_t top =
-            target > 0 ? gpu::refineTop(gpu::refineBiased(target, bias, interiorSpread(state, i)))
-                       : 0;
-        sum += gpu::refineCount(packed(state, model.triangles[i], top));
-    }
+    for (uint32_t i = 0; i < model.triangles.size() && sum <= most; ++i)
+        sum += gpu::refineCount(
+            packed(state, model.triangles[i], gpu::refineTop(interiorWant(state, i, bias))));
     return sum;
 }
 
@@ -139,7 +131,6 @@ RefineState::RefineState(const RefineModel& model, std::pmr::memory_resource* me
       starts(model.triangles.size() + 1, 0, memory),
       indices(memory),
       vertices(model.slots.size(), memory),
-      tiles(memory),
       edgeHeat(model.edges.size(), 0, memory),
       interiorHeat(model.triangles.size(), 0, memory),
       edgeTops(model.edges.size(), 0, memory),
@@ -179,22 +170,16 @@ void refineLevels(const RefineModel& model, const RefineSettings& settings,
     state.bias = leastBias(model, state, settings.budget);
     for (uint32_t e = 0; e < state.edges.size(); ++e)
         if (!asleep(state.edges[e], state.edgeHeat[e]))
-            move(settings, frame,
-                 gpu::refineBiased(state.edges[e].target, state.bias, edgeSpread(state, e)),
-                 state.edges[e]);
+            move(settings, frame, edgeWant(state, e, state.bias), state.edges[e]);
     for (uint32_t i = 0; i < state.interiors.size(); ++i)
         if (!asleep(state.interiors[i], state.interiorHeat[i]))
-            move(settings, frame,
-                 gpu::refineBiased(state.interiors[i].target, state.bias, interiorSpread(state, i)),
-                 state.interiors[i]);
+            move(settings, frame, interiorWant(state, i, state.bias), state.interiors[i]);
     state.unmorphed = packAll(model, state) > settings.capacity;
     if (!state.unmorphed) return;
     for (uint32_t e = 0; e < state.edges.size(); ++e)
-        state.edges[e].level =
-            gpu::refineBiased(state.edges[e].target, state.bias, edgeSpread(state, e));
+        state.edges[e].level = edgeWant(state, e, state.bias);
     for (uint32_t i = 0; i < state.interiors.size(); ++i)
-        state.interiors[i].level =
-            gpu::refineBiased(state.interiors[i].target, state.bias, interiorSpread(state, i));
+        state.interiors[i].level = interiorWant(state, i, state.bias);
     packAll(model, state);
 }
 

@@ -24,10 +24,8 @@ struct RefineModel {
           owners(memory),
           slots(memory),
           draws(memory),
-          triangleTileStart(memory),
-          triangleTiles(memory),
-          edgeTileStart(memory),
-          edgeTiles(memory) {}
+          tileStart(memory),
+          tileItems(memory) {}
 
     uint32_t cornerCount = 0;  // the first slots, in order of the welded points
     uint32_t openEdges = 0, nonManifoldEdges = 0;
@@ -43,9 +41,9 @@ struct RefineModel {
     // The first slots.size() are the slots as their canonical owner sees them, in order; then one
     // per further chart (or set of attributes) that meets there.
     std::pmr::vector<gpu::RefineDraw> draws;
-    // Tiles whose heat concerns a triangle's interior; an edge, within 1.5 cells on every owner.
-    std::pmr::vector<uint32_t> triangleTileStart, triangleTiles;  // triangles + 1
-    std::pmr::vector<uint32_t> edgeTileStart, edgeTiles;          // edges + 1
+    // What a tile's heat concerns: edges (their numbers) that it holds or that lie within 1.5 cells
+    // of its texels, and interiors (edges.size() + triangle) that it touches.
+    std::pmr::vector<uint32_t> tileStart, tileItems;  // tiles + 1
 
     // Triangles with every edge and interior at its deepest.
     [[nodiscard]] uint64_t fullCount() const noexcept;

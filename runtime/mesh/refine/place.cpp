@@ -18,6 +18,7 @@ class Placer {
         for (uint32_t s = 0; s < model_.cornerCount; ++s) evaluate(s);
         for (uint32_t e = 0; e < model_.edges.size(); ++e) edge(e);
         for (uint32_t i = 0; i < model_.triangles.size(); ++i) interior(i);
+        state_.placedAt = frame_.now;
     }
 
  private:
@@ -42,6 +43,11 @@ class Placer {
         ++state_.placed;
     }
 
+    // At an unchanged level: what had burnt through when it was last placed has come to rest.
+    void evaluateMoving(uint32_t s) {
+        if (state_.vertices[s].hole > state_.placedAt) evaluate(s);
+    }
+
     [[nodiscard]] glm::vec3 at(uint32_t s) const {
         const gpu::RefineVertex& v = state_.vertices[s];
         return {v.x, v.y, v.z};
@@ -59,12 +65,16 @@ class Placer {
         const float level = state_.edges[e].level;
         const bool still = (state_.edgeHeat[e] & gpu::kRefineBurning) == 0 &&
                            state_.edgeShown[e] == level && settings_.skipStill;
+        const uint32_t l = gpu::refineTop(level), steps = 1u << l;
+        const float age = gpu::refineAge(level, l);
+        const bool same = settings_.skipStill && state_.edgeShown[e] == level && age >= 1;
         state_.edgeMoved[e] = still ? 0 : 1;
         state_.edgeShown[e] = level;
         if (still) return;
-        const uint32_t l = gpu::refineTop(level), steps = 1u << l;
-        for (uint32_t i = 1; i < steps; ++i) evaluate(gpu::refineEdgeSlot(edge, i, l));
-        const float age = gpu::refineAge(level, l);
+        for (uint32_t i = 1; i < steps; ++i) {
+            const uint32_t s = gpu::refineEdgeSlot(edge, i, l);
+            same ? evaluateMoving(s) : evaluate(s);
+        }
         if (l == 0 || age >= 1) return;
         for (uint32_t i = 1; i < steps; i += 2)
             morph(gpu::refineEdgeSlot(edge, i, l), at(gpu::refineEdgeSlot(edge, i - 1, l)),
@@ -98,11 +108,15 @@ class Placer {
                      state_.interiorShown[i] == shown && settings_.skipStill;
         if (age < 1)
             for (const uint32_t e : t.edge) still = still && state_.edgeMoved[e] == 0;
+        const bool same = settings_.skipStill && state_.interiorShown[i] == shown && age >= 1;
         state_.interiorShown[i] = shown;
         if (still) return;
         const uint32_t n = 1u << m;
         for (uint32_t c2 = 1; c2 + 1 < n; ++c2)
-            for (uint32_t c1 = 1; c1 + c2 < n; ++c1) evaluate(gpu::refineInnerSlot(t, c1, c2, m));
+            for (uint32_t c1 = 1; c1 + c2 < n; ++c1) {
+                const uint32_t s = gpu::refineInnerSlot(t, c1, c2, m);
+                same ? evaluateMoving(s) : evaluate(s);
+            }
         if (age >= 1) return;
         for (uint32_t c2 = 1; c2 + 1 < n; ++c2)
             for (uint32_t c1 = 1; c1 + c2 < n; ++c1) {

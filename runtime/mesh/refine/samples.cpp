@@ -95,12 +95,11 @@ void sample(const BurnDomain& domain, const Charts& charts, uint32_t slotIndex,
     slot.texel = (texel & 0xFFFFFFu) | material << 24;
 }
 
-// Collects tiles of one item after another into a list with starts.
+// Collects the tiles of one item after another, then turns the lists around.
 class TileLists {
  public:
-    TileLists(const BurnDomain& domain, std::pmr::vector<uint32_t>& start,
-              std::pmr::vector<uint32_t>& tiles)
-        : domain_(domain), start_(start), tiles_(tiles) {
+    TileLists(const BurnDomain& domain, std::pmr::memory_resource* memory)
+        : domain_(domain), start_(memory), tiles_(memory) {
         start_.push_back(0);
     }
     void add(int tileX, int tileY) {
@@ -110,15 +109,22 @@ class TileLists {
         if (std::find(tiles_.begin() + start_.back(), tiles_.end(), tile) == tiles_.end())
             tiles_.push_back(tile);
     }
-    void close() {
-        std::sort(tiles_.begin() + start_.back(), tiles_.end());
-        start_.push_back(uint32_t(tiles_.size()));
+    void close() { start_.push_back(uint32_t(tiles_.size())); }
+    void turn(RefineModel& model) const {
+        model.tileStart.assign(domain_.tileCount() + 1, 0);
+        for (const uint32_t t : tiles_) ++model.tileStart[t + 1];
+        for (uint32_t t = 0; t < domain_.tileCount(); ++t)
+            model.tileStart[t + 1] += model.tileStart[t];
+        model.tileItems.resize(tiles_.size());
+        std::pmr::vector<uint32_t> next(model.tileStart, tiles_.get_allocator());
+        for (uint32_t item = 0; item + 1 < start_.size(); ++item)
+            for (uint32_t i = start_[item]; i < start_[item + 1]; ++i)
+                model.tileItems[next[tiles_[i]]++] = item;
     }
 
  private:
     const BurnDomain& domain_;
-    std::pmr::vector<uint32_t>& start_;
-    std::pmr::vector<uint32_t>& tiles_;
+    std::pmr::vector<uint32_t> start_, tiles_;
 };
 
 int tileOf(double texels) { return int(std::floor(texels / kTileSide)); }
@@ -175,21 +181,21 @@ void bakeSamples(const Surface& surface, const CoarseMesh& coarse, const BurnDom
         const CoarseTriangle& t = coarse.triangles[triangle];
         return uvAt(surface.triangles[t.source], t.weight[k]);
     };
-    TileLists inner(domain, model.triangleTileStart, model.triangleTiles);
-    for (uint32_t i = 0; i < model.triangles.size(); ++i) {
-        const glm::dvec2 uv[3] = {cornerUv(i, 0), cornerUv(i, 1), cornerUv(i, 2)};
-        trianglesTiles(uv, inner);
-    }
-    TileLists along(domain, model.edgeTileStart, model.edgeTiles);
+    TileLists lists(domain, memory);
     for (uint32_t e = 0; e < model.edges.size(); ++e) {
         for (uint32_t o = model.ownerStart[e]; o < model.ownerStart[e + 1]; ++o) {
             const uint32_t triangle = model.owners[o] >> 2, side = model.owners[o] & 3;
             sideTiles(cornerUv(triangle, side), cornerUv(triangle, (side + 1) % 3),
                       double(1u << (model.edges[e].flags & 15)),
-                      charts.of(model.triangles[triangle].source), charts, along);
+                      charts.of(model.triangles[triangle].source), charts, lists);
         }
-        along.close();
+        lists.close();
     }
+    for (uint32_t i = 0; i < model.triangles.size(); ++i) {
+        const glm::dvec2 uv[3] = {cornerUv(i, 0), cornerUv(i, 1), cornerUv(i, 2)};
+        trianglesTiles(uv, lists);
+    }
+    lists.turn(model);
 }
 
 }  // namespace fw::mesh
