@@ -382,9 +382,9 @@ FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* gi
         const FwView view = edge::checkedView(givenView);
         const FwVulkanComposite images =
             edge::readDef(givenImages, FW_DEF_VULKAN_COMPOSITE, "FwVulkanComposite");
-        if (images.flags != 0)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanComposite::flags is 0x%x; it is zero.",
-                       images.flags);
+        if (images.flags & ~uint32_t(FW_COMPOSITE_KEEP))
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanComposite::flags is 0x%x; only bit 0 is known.", images.flags);
         if (frame.flags & FW_FRAME_SECONDARY)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwVulkanFrame::flags has FW_FRAME_SECONDARY; a composite begins a render "

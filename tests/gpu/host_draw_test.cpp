@@ -398,7 +398,7 @@ class HostDraw : public GpuTest {
 
     void recordComposite(const Shot& shot, const FwVulkanFrame& frame, FwTargetId target,
                          const FwView& view, const HostImage& color, const HostImage& depth,
-                         float nearest, float farthest) {
+                         float nearest, float farthest, uint32_t flags = 0) {
         const VkCommandBuffer commands = frame.commandBuffer;
         std::vector<VkImageMemoryBarrier> barriers(shot.depth ? 2 : 1);
         for (size_t i = 0; i < barriers.size(); ++i) {
@@ -425,6 +425,7 @@ class HostDraw : public GpuTest {
                                         &value, 1, &barriers[1].subresourceRange);
         }
         FwVulkanComposite images = fwDefaultVulkanComposite();
+        images.flags = flags;
         images.width = kWidth;
         images.height = kHeight;
         images.color = {color.image,
@@ -608,6 +609,55 @@ TEST_F(HostDraw, EveryFrameAnotherSizeAsksForNothing) {
     rig_->context.unregisterTarget(target);
 }
 
+// Composites over two images in turn: a framebuffer each while warming up, then none, until the
+// host takes its images back. Without the flag each call makes one. Validation sees what is left
+// over.
+TEST_F(HostDraw, KeptCompositesMakeNothing) {
+    if (!device_) return;
+    Shot shot;
+    shot.composite = true;
+    const FwTargetId target = registerTarget(shot, VK_NULL_HANDLE);
+    FwTargetId second = registerTarget(shot, VK_NULL_HANDLE);
+    HostImage colors[2], depths[2];
+    for (int i = 0; i < 2; ++i) {
+        colors[i] = makeImage(shot.color, 1,
+                              VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                  VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                              VK_IMAGE_ASPECT_COLOR_BIT);
+        depths[i] =
+            makeImage(VK_FORMAT_D32_SFLOAT, 1,
+                      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                      VK_IMAGE_ASPECT_DEPTH_BIT);
+    }
+    uint64_t index = 16;
+    const auto made = [&](FwTargetId into, uint32_t frames, uint32_t flags) {
+        (void)takeCounts();
+        for (uint32_t f = 0; f < frames; ++f) {
+            rig_->alsoRecord = [&](const FwVulkanFrame& frame) {
+                (void)recordComposite(shot, frame, into, normal_, colors[f % 2], depths[f % 2], 0,
+                                      1, flags);
+            };
+            gpu::FramePlan plan;
+            plan.frameIndex = ++index;
+            plan.endTick = endTick_;
+            rig_->run(plan);
+        }
+        rig_->alsoRecord = nullptr;
+        rig_->frames.waitAll();
+        return takeCounts().total();
+    };
+    EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 2u) << "warming up";
+    EXPECT_EQ(made(target, 60, FW_COMPOSITE_KEEP), 0u);
+    EXPECT_EQ(made(target, 4, 0), 4u) << "what was kept is let go";
+    EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 2u);
+    EXPECT_EQ(made(second, 6, FW_COMPOSITE_KEEP), 2u) << "another target has its own";
+    EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 0u);
+    rig_->context.unregisterTarget(second);
+    second = registerTarget(shot, VK_NULL_HANDLE);  // the same slot, another generation
+    EXPECT_EQ(made(second, 6, FW_COMPOSITE_KEEP), 2u);
+    EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 0u);
+}
+
 TEST_F(HostDraw, TargetsAreChecked) {
     if (!device_) return;
     const VkRenderPass pass = makePass({});
@@ -632,7 +682,9 @@ TEST_F(HostDraw, TargetsAreChecked) {
     refused([](auto& d) { d.depthMode = 17; }, "depthMode");
     refused([](auto& d) { d.depthFormat = VK_FORMAT_UNDEFINED; }, "depthFormat");
     refused([](auto& d) { d.colorFormat = VK_FORMAT_R32G32B32A32_UINT; }, "colorFormat");
-    refused([](auto& d) { d.colorAttachmentCount = 2; }, "independentBlend");
+    refused([](auto& d) { d.colorAttachmentCount = 2; },
+            "FwVulkanTargetDef::colorAttachmentCount is 2; more than 1 needs the feature "
+            "independentBlend, which was not declared");
     FwTargetId stale{1, 77};
     EXPECT_THROW(rig_->context.unregisterTarget(stale), core::Error);
 }

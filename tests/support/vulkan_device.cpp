@@ -13,12 +13,12 @@ void must(VkResult result, const char* what) {
     }
 }
 
+}  // namespace
+
 bool gpuAssisted() {
     const char* value = std::getenv("FLAMEWRIGHT_GPU_ASSISTED");
     return value && std::strcmp(value, "1") == 0;
 }
-
-}  // namespace
 
 bool gpuRequired() {
     const char* value = std::getenv("FLAMEWRIGHT_REQUIRE_GPU");
@@ -156,6 +156,11 @@ std::unique_ptr<TestDevice> TestDevice::make(const DeviceOptions& wanted, std::s
 
 TestDevice::~TestDevice() {
     if (device) {
+        for (const TestImage& one : images_) {
+            vkDestroyImageView(device, one.view, nullptr);
+            vkDestroyImage(device, one.image, nullptr);
+            vkFreeMemory(device, one.memory, nullptr);
+        }
         vkDestroyCommandPool(device, pool, nullptr);
         vkDestroyDevice(device, nullptr);
     }
@@ -214,6 +219,39 @@ uint32_t TestDevice::memoryType(uint32_t allowed, VkMemoryPropertyFlags flags) c
     }
     ADD_FAILURE() << "no memory type " << flags;
     return 0;
+}
+
+TestImage TestDevice::makeImage(VkFormat format, VkExtent2D extent, uint32_t samples,
+                                VkImageUsageFlags usage) {
+    TestImage out;
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent = {extent.width, extent.height, 1};
+    info.mipLevels = info.arrayLayers = 1;
+    info.samples = VkSampleCountFlagBits(samples);
+    info.usage = usage;
+    must(vkCreateImage(device, &info, nullptr, &out.image), "vkCreateImage");
+    VkMemoryRequirements needs{};
+    vkGetImageMemoryRequirements(device, out.image, &needs);
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.allocationSize = needs.size;
+    allocate.memoryTypeIndex = memoryType(needs.memoryTypeBits, 0);
+    must(vkAllocateMemory(device, &allocate, nullptr, &out.memory), "vkAllocateMemory");
+    must(vkBindImageMemory(device, out.image, out.memory, 0), "vkBindImageMemory");
+    VkImageViewCreateInfo view{};
+    view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+    view.image = out.image;
+    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    view.format = format;
+    const bool depth = (usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
+    const VkImageAspectFlags aspect = depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+    view.subresourceRange = {aspect, 0, 1, 0, 1};
+    must(vkCreateImageView(device, &view, nullptr, &out.view), "vkCreateImageView");
+    images_.push_back(out);
+    return out;
 }
 
 std::vector<std::string> TestDevice::takeMessages() {

@@ -21,6 +21,12 @@ struct DeviceOptions {
     bool independentBlend = false;
 };
 
+struct TestImage {
+    VkImage image = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;
+};
+
 class TestDevice {
  public:
     // Null, with the reason, where there is no device or no validation layer.
@@ -34,6 +40,9 @@ class TestDevice {
     void run(const std::function<void(VkCommandBuffer)>& record);
     [[nodiscard]] uint32_t memoryType(uint32_t allowed, VkMemoryPropertyFlags flags) const;
     std::vector<std::string> takeMessages();
+    // A 2D image with one mip and layer; lives as long as the device.
+    TestImage makeImage(VkFormat format, VkExtent2D extent, uint32_t samples,
+                        VkImageUsageFlags usage);
 
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
@@ -52,6 +61,7 @@ class TestDevice {
                                                  void* user);
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkPhysicalDeviceFeatures features_{};
+    std::vector<TestImage> images_;
     std::mutex mutex_;
     std::vector<std::string> messages_;
 };
@@ -95,6 +105,7 @@ class GpuTest : public ::testing::Test {
 };
 
 bool gpuRequired();
+bool gpuAssisted();  // GPU-assisted validation listens, too
 
 // Counts what a library must not do in a steady frame. One at a time.
 struct VulkanCounts {
@@ -111,5 +122,9 @@ struct VulkanCounts {
 // Puts itself between the library and the loader: use its entry as FwVulkanHost's.
 PFN_vkGetInstanceProcAddr countingEntry();
 VulkanCounts takeCounts();  // since the last take
+
+// Another entry to put between: storage buffers at this binding end one word early. One at a time.
+constexpr uint32_t kNoBinding = 0xFFFFFFFFu;
+PFN_vkGetInstanceProcAddr shorteningEntry(uint32_t binding);
 
 }  // namespace fw::test

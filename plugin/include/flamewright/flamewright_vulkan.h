@@ -1,10 +1,11 @@
 /* flamewright/flamewright_vulkan.h: what a Vulkan host lends. Nothing here becomes ours; no handle
- * is remembered past the call it came with, but for the device and registered render passes.
+ * is remembered past the call it came with, but for the device, registered render passes and views
+ * that you ask to keep (FW_COMPOSITE_KEEP).
  *
  * A frame: fwWorld_RecordOutside (compute, copies, barriers; outside any pass), then, in the host's
  * own render pass, fwWorld_RecordInside (draws only). Or fwWorld_RecordComposite: our own pass over
  * host images. After each of them treat as undefined, in that command buffer: bound graphics and
- * compute pipelines, descriptor sets 0..2, push constants, vertex and index buffers (bindings
+ * compute pipelines, all descriptor sets, push constants, vertex and index buffers (bindings
  * 0..1), viewport, scissor. All else (render pass, queries, labels, other dynamic state) is as you
  * left it. */
 /* Laid out by hand, to be read. */
@@ -76,7 +77,7 @@ typedef struct FwVulkanTargetDef {
     VkRenderPass renderPass;       /* the host's; null only with FW_TARGET_COMPOSITE */
     VkFormat colorFormat, depthFormat; /* depthFormat UNDEFINED if none */
     uint32_t samples;              /* 1, 2, 4, 8, 16 */
-    uint32_t colorAttachmentCount; /* of the subpass, [1, 8]; we write the first, mask the others off */
+    uint32_t colorAttachmentCount; /* of the subpass, [1, 8]; we write the first and mask the others off: above 1 needs independentBlend declared */
     uint32_t viewMask;             /* 0; anything else is refused in this version */
     uint32_t depthMode;            /* FwDepthMode */
     uint32_t reversedDepth;        /* 1: near is 1 */
@@ -131,8 +132,12 @@ typedef struct FwVulkanImage { /* frozen */
     VkPipelineStageFlags stageBefore, stageAfter;
     VkAccessFlags accessBefore, accessAfter;
 } FwVulkanImage;
+typedef enum FwCompositeFlags {
+    FW_COMPOSITE_KEEP = 1, /* our framebuffer over these views is kept for the next call with them */
+    FW_COMPOSITE_FLAGS_FORCE32 = 0x7fffffff
+} FwCompositeFlags;
 typedef struct FwVulkanComposite {
-    uint32_t structSize, flags;       /* 0 */
+    uint32_t structSize, flags;       /* FwCompositeFlags */
     uint32_t width, height;           /* pixels, >= 1; of both images */
     FwVulkanImage color;              /* usage COLOR_ATTACHMENT */
     FwVulkanImage depth;              /* usage DEPTH_STENCIL_ATTACHMENT, or SAMPLED in that mode */
@@ -141,7 +146,10 @@ static inline FwVulkanComposite fwDefaultVulkanComposite(void) {
     FwVulkanComposite d; fwInitDef(FW_DEF_VULKAN_COMPOSITE, &d, (uint32_t)sizeof d); return d;
 }
 /* Our own pass over host images (primary buffer, outside any pass): we do the barriers from `before`
- * to our use and to `after`. Zero extents record nothing. [record] */
+ * to our use and to `after`. Zero extents record nothing. Without FW_COMPOSITE_KEEP each call makes
+ * a framebuffer and frees it when its frame is done. With it nothing is made after warm-up (16 are
+ * kept); the views are remembered then, until the target is unregistered or a call on it comes
+ * without the flag: do one of them when you destroy views, as on a resize. [record] */
 FW_API FwResult FW_CALL fwWorld_RecordComposite(FwWorld*, const FwVulkanFrame* frame, FwTargetId target,
                                                const FwView* view, const FwVulkanComposite* images);
 /* Tell us the device is lost: nothing more is recorded, destroy still frees. [any] */

@@ -48,7 +48,11 @@ class Pipelines {
     FwTargetId registerTarget(const FwVulkanTargetDef& def);  // [any]
     void unregisterTarget(FwTargetId id);                     // [any]
     // Throws FW_ERROR_STALE_ID. The pointer is good until the target is unregistered.
-    const Target* findTarget(FwTargetId id);  // [any]
+    const Target* findTarget(FwTargetId id);               // [any]
+    [[nodiscard]] bool isTarget(FwTargetId id) noexcept {  // [any]
+        const std::lock_guard lock(mutex_);
+        return targets_.find(id) != nullptr;
+    }
 
     [[nodiscard]] const PassObjects& compute(size_t pass) const { return compute_[pass]; }
     [[nodiscard]] const PassObjects& draw(size_t pass) const { return draw_[pass]; }

@@ -163,7 +163,11 @@ void RetireQueue::collect(uint64_t completedFrame) noexcept {
 
 Planes::Planes(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
                const WorldSizes& sizes, std::pmr::memory_resource* memory)
-    : device_(device), deviceMemory_(deviceMemory), retired_(retired), spaces_(memory) {
+    : device_(device),
+      deviceMemory_(deviceMemory),
+      retired_(retired),
+      spaces_(memory),
+      exact_(sizes.exact) {
     for (uint32_t space = 0; space < kSpaceCount; ++space) spaces_.emplace_back(memory);
     for (const Plane& plane : kPlanes) {
         Slot& slot = slots_[plane.resource];
@@ -178,7 +182,7 @@ Planes::Planes(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
     }
     try {
         for (uint32_t space = 0; space < kSpaceCount; ++space)
-            grow(Space(space), kInitialUnits[space], 0);
+            grow(Space(space), exact_ && space != kSpaceIterations ? 1 : kInitialUnits[space], 0);
     } catch (...) {
         for (Slot& slot : slots_) deviceMemory_.destroy(slot.now);
         throw;
@@ -249,9 +253,9 @@ uint32_t Planes::allocate(Space space, uint32_t units, uint64_t lastFrame) {
                    "maxStorageBufferRange of %u bytes holds %u.",
                    units, spaces_[space].used(), device_.properties.limits.maxStorageBufferRange,
                    most);
-    const uint32_t least = capacity + units;
+    const uint32_t least = capacity + units - (exact_ ? spaces_[space].freeAtEnd() : 0);
     const auto doubled = uint32_t(std::min<uint64_t>(most, uint64_t(capacity) * 2));
-    if (doubled > least) {
+    if (doubled > least && !exact_) {
         try {
             grow(space, doubled, lastFrame);
             return spaces_[space].allocate(units);
@@ -276,8 +280,8 @@ void Planes::atLeast(Space space, uint32_t units, uint64_t lastFrame) {
                    "%u units in one frame do not fit: the device's maxStorageBufferRange of %u "
                    "bytes holds %u.",
                    units, device_.properties.limits.maxStorageBufferRange, most);
-    grow(space, uint32_t(std::min<uint64_t>(most, std::max<uint64_t>(units, capacity * 2ull))),
-         lastFrame);
+    const uint64_t doubled = exact_ ? units : std::max<uint64_t>(units, capacity * 2ull);
+    grow(space, uint32_t(std::min<uint64_t>(most, doubled)), lastFrame);
 }
 
 bool Planes::recordMoves(const Table& table, VkCommandBuffer commands, uint64_t frameIndex) {

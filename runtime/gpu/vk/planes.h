@@ -38,6 +38,10 @@ class RangeAllocator {
     void release(uint32_t first, uint32_t units) noexcept;
     [[nodiscard]] uint32_t capacity() const noexcept { return capacity_; }
     [[nodiscard]] uint32_t used() const noexcept { return used_; }
+    [[nodiscard]] uint32_t freeAtEnd() const noexcept {
+        const bool any = !free_.empty() && free_.back().first + free_.back().units == capacity_;
+        return any ? free_.back().units : 0;
+    }
 
  private:
     struct Range {
@@ -60,6 +64,7 @@ struct Plane {
 struct WorldSizes {       // of the fixed planes
     uint32_t lights = 1;  // records
     uint32_t flames = 1;
+    bool exact = false;  // planes have no room to spare: see WorldLimits::exactBuffers
 };
 
 // What is freed once the GPU is done with a frame.
@@ -135,6 +140,7 @@ class Planes {
     std::array<Slot, kResourceCount> slots_{};
     std::pmr::vector<RangeAllocator> spaces_;
     uint64_t generation_ = 1;
+    bool exact_ = false;
     bool movesPending_ = false;
 };
 

@@ -127,7 +127,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       ring(device),
       planes(device, deviceMemory, retired,
              {std::max(worldLimits.maxLights, kSurfaceLights),
-              std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity)},
+              std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity), worldLimits.exactBuffers},
              pmr),
       sets(device, contextState.pipelines, retired, pmr),
       meshes(pmr),
@@ -196,6 +196,7 @@ VkBackend::State::~State() {
         slot.timers.destroy(device);
         ring.dropFramebuffers(slot);
     }
+    destroyFramebuffers();
     deviceMemory.destroy(views);
     dropOffscreen();
     vk.DestroyRenderPass(device.handle, own.clearPass, callbacks);

@@ -49,6 +49,9 @@ struct WorldLimits {
     float up[3] = {0, 1, 0};    // world up
     float paceFactor = 1;       // as FwWorldDef
     LookSources looks;          // empty: recordInside draws nothing
+    // Buffers end where the last thing in them does, so that a validation layer sees an access past
+    // it. For tests: every new object grows them.
+    bool exactBuffers = false;
 };
 
 // One per FwWorld.

@@ -147,7 +147,7 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     if (images.width == 0 || images.height == 0) return true;
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
-    const VkFramebuffer framebuffer = s.framebufferFor(slot, target, images);
+    const VkFramebuffer framebuffer = s.framebufferFor(slot, target, targetId, images);
 
     const Table& vk = s.device.table;
     const VkCommandBuffer commands = frame.commandBuffer;
@@ -191,24 +191,67 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
 }
 
 VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target& target,
+                                               FwTargetId targetId,
                                                const FwVulkanComposite& composite) {
-    std::array<VkImageView, 2> attachments{composite.color.view, composite.depth.view};
+    const bool hasDepth = target.key.depthMode != FW_DEPTH_NONE;
+    const std::array<VkImageView, 2> attachments{composite.color.view,
+                                                 hasDepth ? composite.depth.view : VK_NULL_HANDLE};
+    const bool keep = (composite.flags & FW_COMPOSITE_KEEP) != 0;
+    KeptFramebuffer* room = nullptr;
+    if (!keep) dropFramebuffers(targetId);
+    for (KeptFramebuffer& one : framebuffers) {
+        if (!keep || one.dropped || one.target.index1 != targetId.index1 ||
+            one.target.generation != targetId.generation || one.color != attachments[0] ||
+            one.depth != attachments[1] || one.width != composite.width ||
+            one.height != composite.height)
+            continue;
+        one.lastFrame = slot.frameIndex;
+        return one.handle;
+    }
+    if (keep) {
+        dropFramebuffers({});
+        for (KeptFramebuffer& one : framebuffers)
+            if (!room && !one.handle) room = &one;
+    }
+    // More than are kept come and go with their frame.
+    if (!room && slot.framebufferCount == slot.framebuffers.size())
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has more than %zu composites.",
+                   slot.framebuffers.size());
     auto info = typed<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
     info.renderPass = target.ownPass;
-    info.attachmentCount = target.key.depthMode != FW_DEPTH_NONE ? 2 : 1;
+    info.attachmentCount = hasDepth ? 2 : 1;
     info.pAttachments = attachments.data();
     info.width = composite.width;
     info.height = composite.height;
     info.layers = 1;
-    if (slot.framebufferCount == slot.framebuffers.size())
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has more than %zu composites.",
-                   slot.framebuffers.size());
     VkFramebuffer framebuffer = VK_NULL_HANDLE;
     device.check(device.table.CreateFramebuffer(device.handle, &info, device.allocationCallbacks,
                                                 &framebuffer),
                  "vkCreateFramebuffer");
-    slot.framebuffers[slot.framebufferCount++] = framebuffer;
+    if (room)
+        *room = {framebuffer,     targetId,         attachments[0],  attachments[1],
+                 composite.width, composite.height, slot.frameIndex, false};
+    else
+        slot.framebuffers[slot.framebufferCount++] = framebuffer;
     return framebuffer;
+}
+
+void VkBackend::State::dropFramebuffers(FwTargetId forget) noexcept {
+    for (KeptFramebuffer& one : framebuffers) {
+        if (!one.handle) continue;
+        const bool forgotten =
+            one.target.index1 == forget.index1 && one.target.generation == forget.generation;
+        one.dropped |= forgotten || !context.pipelines.isTarget(one.target);
+        if (!one.dropped || one.lastFrame > ring.completed()) continue;
+        device.table.DestroyFramebuffer(device.handle, one.handle, device.allocationCallbacks);
+        one = {};
+    }
+}
+
+void VkBackend::State::destroyFramebuffers() noexcept {
+    for (KeptFramebuffer& one : framebuffers)
+        device.table.DestroyFramebuffer(device.handle, one.handle, device.allocationCallbacks);
+    framebuffers = {};
 }
 
 }  // namespace fw::gpu::vk

@@ -80,6 +80,16 @@ struct PendingReadback {  // in the order of frames
     uint32_t endTick = 0;
 };
 
+// A composite's framebuffer over images that the host keeps (FW_COMPOSITE_KEEP).
+struct KeptFramebuffer {
+    VkFramebuffer handle = VK_NULL_HANDLE;
+    FwTargetId target{};
+    VkImageView color = VK_NULL_HANDLE, depth = VK_NULL_HANDLE;
+    uint32_t width = 0, height = 0;
+    uint64_t lastFrame = 0;  // that may use it
+    bool dropped = false;    // destroyed once that frame is done
+};
+
 struct OwnDevice {  // command pool and offscreen images of the own-device mode
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -155,6 +165,7 @@ struct VkBackend::State {
     std::pmr::vector<BurnMap> givenMaps;
     std::pmr::vector<BurnLight> givenLights;
     std::pmr::vector<PassTime> times;
+    std::array<KeptFramebuffer, 16> framebuffers{};
     OwnDevice own;
 
     // vk_backend.cpp
@@ -176,8 +187,11 @@ struct VkBackend::State {
     // vk_draw.cpp
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
                      const FwView& view, const VkViewport& viewport);
-    VkFramebuffer framebufferFor(FrameInFlight& slot, const Target& target,
+    VkFramebuffer framebufferFor(FrameInFlight& slot, const Target& target, FwTargetId targetId,
                                  const FwVulkanComposite& images);
+    // Of targets that are gone, and of `forget`; what the device may still use goes later.
+    void dropFramebuffers(FwTargetId forget) noexcept;
+    void destroyFramebuffers() noexcept;
     // vk_own.cpp
     void beginOwn();
     void submitOwn();

@@ -1,0 +1,248 @@
+// Every pass and shader once, on buffers that end where the last thing in them does. Under
+// GPU-assisted validation (tests/run --gpu-assisted) each access past an end is reported, and the
+// second test proves that; without it the software device would never notice.
+#include "gpu/passes/frame_graph.h"
+#include "support/burn_scene.h"
+
+#include <algorithm>
+#include <set>
+
+namespace fw::test {
+namespace {
+
+constexpr uint32_t kSide = 48;  // px
+
+class EveryPass : public GpuTest {
+ protected:
+    // A small box whose faces are charts, each of them with seams: one object of the model, or one
+    // in as-published mode.
+    static const BurnScene& scene(bool published) {
+        static const BurnScene scenes[2] = {makeScene(false), makeScene(true)};
+        return scenes[published ? 1 : 0];
+    }
+    static BurnScene makeScene(bool published) {
+        BurnScene scene;
+        const Mesh box = makeCube(0.5, 2, false, true);
+        mesh::BakeInput input = box.input(24, 256);
+        input.trustUvs = true;
+        scene.domains.push_back(mesh::bake(input, std::pmr::get_default_resource()));
+        SceneObject object;
+        object.substepShift = 1;
+        if (published) object.flags = gpu::kObjectPublished;
+        const mesh::BurnDomain& domain = scene.domains[0];
+        for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
+            object.materials[m] = plainMaterial(domain, 0.3, 1.0, 1.0);
+            object.materials[m].look = FW_MATERIAL_POLYESTER;  // with the plants: all families
+            object.materials[m].baseColor = {0.8f, 0.4f, 0.2f, 0};
+        }
+        object.materials[1].look = FW_MATERIAL_THATCH;
+        object.materials[2].look = FW_MATERIAL_PINE;
+        object.slowness.assign(domain.slowness.begin(), domain.slowness.end());
+        scene.objects.push_back(object);
+        return scene;
+    }
+
+    void makeRig(uint32_t shortBinding, bool published) {
+        gpu::vk::WorldLimits limits;
+        limits.looks = testLooks();
+        limits.exactBuffers = true;
+        limits.maxFlames = 64;  // fewer than the scene wishes for
+        limits.maxLights = 4;
+        rig_ = std::make_unique<VkRig>(
+            *device_, 2, 0, limits,
+            shortBinding == kNoBinding ? nullptr : shorteningEntry(shortBinding));
+        scene_ = &scene(published);
+        scene_->create(rig_->backend);
+        FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
+        def.flags = FW_TARGET_COMPOSITE;
+        def.colorFormat = VK_FORMAT_R8G8B8A8_UNORM;
+        def.depthFormat = VK_FORMAT_D32_SFLOAT;
+        def.encoding = FW_OUTPUT_DISPLAY_UNORM;
+        target_ = rig_->context.registerTarget(def);
+        color_ = device_->makeImage(
+            def.colorFormat, {kSide, kSide}, 1,
+            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        depth_ = device_->makeImage(
+            def.depthFormat, {kSide, kSide}, 1,
+            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        const float eye[3] = {0.9f, 0.7f, 1.1f}, at[3] = {0, 0, 0};
+        rig_->view = testView(eye, at, 40, 1, false);
+        now_ = 4096;
+        index_ = 0;
+        passes_.clear();
+    }
+
+    void texels(std::vector<gpu::TexelEvent>& out, uint32_t kind, uint32_t every) {
+        const mesh::BurnDomain& domain = scene_->domains[0];
+        for (uint32_t i = 0; i < domain.texelCount(); i += every)
+            if (domain.real(i) || every == 1) out.push_back({0, i, kind, now_ + 1 + i % 100});
+    }
+
+    struct Frame {
+        uint32_t kind = 0, every = 0;  // events: of each `every`-th texel, 0: none
+        uint32_t steps = 2, switches = 0;
+        bool latch = false, probes = false, draw = true;
+    };
+    void frame(const Frame& what) {
+        std::vector<gpu::StepPlan> steps(what.steps);
+        std::vector<gpu::TexelEvent> events;
+        if (what.every) texels(events, what.kind, what.every);
+        gpu::MaterialUpdate update{};
+        update.window = scene_->objects[0].window;
+        update.substepShift = scene_->objects[0].substepShift;
+        std::copy(scene_->objects[0].materials.begin(), scene_->objects[0].materials.end(),
+                  std::begin(update.materials));
+        for (gpu::BurnMaterial& material : update.materials) material.driveX = 400;
+        for (gpu::StepPlan& step : steps) {
+            step.now = now_;
+            step.substepShift = scene_->objects[0].substepShift;
+            step.reduce = true;
+            if (&step == steps.data()) {
+                step.events = events;
+                if (what.latch) step.materials = {&update, 1};
+            }
+            now_ += gpu::kStepTicks;
+        }
+        std::vector<gpu::Probe> probes;
+        if (what.probes)
+            for (uint32_t i = 0; i < scene_->domains[0].texelCount(); ++i) probes.push_back({0, i});
+        const uint32_t map = 0;
+        gpu::FramePlan plan;
+        plan.frameIndex = ++index_;
+        plan.steps = steps;
+        plan.probes = probes;
+        if (what.probes) plan.burnMaps = {&map, 1};
+        plan.switches = what.switches;
+        plan.endTick = now_;
+        rig_->alsoRecord = [&](const FwVulkanFrame& host) {
+            if (what.draw) draw(host);
+        };
+        rig_->run(plan);
+        for (const gpu::PassTime& time : rig_->backend.passTimes())
+            if (time.count) passes_.insert(time.name);
+    }
+
+    void draw(const FwVulkanFrame& frame) {
+        const VkCommandBuffer commands = frame.commandBuffer;
+        VkImageMemoryBarrier barriers[2]{};
+        for (uint32_t i = 0; i < 2; ++i) {
+            barriers[i].sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+            barriers[i].dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+            barriers[i].newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+            barriers[i].srcQueueFamilyIndex = barriers[i].dstQueueFamilyIndex =
+                VK_QUEUE_FAMILY_IGNORED;
+            barriers[i].image = i ? depth_.image : color_.image;
+            barriers[i].subresourceRange = {
+                VkImageAspectFlags(i ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1,
+                0, 1};
+        }
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 2,
+                             barriers);
+        const VkClearColorValue black{};
+        const VkClearDepthStencilValue far{1, 0};
+        vkCmdClearColorImage(commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &black,
+                             1, &barriers[0].subresourceRange);
+        vkCmdClearDepthStencilImage(commands, depth_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                    &far, 1, &barriers[1].subresourceRange);
+        FwVulkanComposite images = fwDefaultVulkanComposite();
+        images.width = images.height = kSide;
+        for (FwVulkanImage* image : {&images.color, &images.depth}) {
+            image->layoutBefore = image->layoutAfter = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+            image->stageBefore = image->stageAfter = VK_PIPELINE_STAGE_TRANSFER_BIT;
+            image->accessBefore = image->accessAfter = VK_ACCESS_TRANSFER_WRITE_BIT;
+        }
+        images.color.image = color_.image;
+        images.color.view = color_.view;
+        images.depth.image = depth_.image;
+        images.depth.view = depth_.view;
+        EXPECT_TRUE(rig_->backend.recordComposite(frame, target_, rig_->view, images));
+    }
+
+    // Unburnt, lit, blown at, soaked, dried, put out, lit all over, looked at tile by tile, and
+    // again in a slot that was given back.
+    void burn() {
+        frame({});
+        frame({gpu::kEventIgnite, 40});
+        frame({.latch = true});
+        frame({gpu::kEventWet, 3});
+        frame({gpu::kEventDry, 2, 2, 0, true});
+        frame({gpu::kEventExtinguish, 5});
+        frame({gpu::kEventDry, 1, 2, 0, false, true});
+        frame({gpu::kEventIgnite, 1, 3, 0, true, true});
+        frame({.steps = 2, .switches = gpu::kSwitchDense, .probes = true});
+        for (int i = 0; i < 3; ++i) frame({.steps = 4});
+        rig_->backend.destroyObject(0);
+        rig_->backend.createObject(0, scene_->init(0));
+        frame({gpu::kEventIgnite, 1, 2, 0, true, true});
+        for (int i = 0; i < 2; ++i) frame({.steps = 4});
+        rig_->alsoRecord = nullptr;
+        (void)rig_->finish();
+        for (const gpu::PassTime& time : rig_->backend.passTimes())
+            if (time.count) passes_.insert(time.name);
+    }
+
+    void TearDown() override {
+        rig_.reset();
+        GpuTest::TearDown();
+    }
+
+    std::unique_ptr<VkRig> rig_;
+    const BurnScene* scene_ = nullptr;
+    FwTargetId target_{};
+    TestImage color_, depth_;
+    std::set<std::string> passes_;  // that took time
+    uint32_t now_ = 0;
+    uint64_t index_ = 0;
+};
+
+TEST_F(EveryPass, StaysInsideItsBuffers) {
+    if (!device_) return;
+    std::set<std::string> seen;
+    for (const bool published : {false, true}) {
+        if (published) {
+            rig_.reset();
+            for (const std::string& message : device_->takeMessages()) ADD_FAILURE() << message;
+            device_.reset();
+            makeDevice({});  // on which shaders get the same numbers, and so the same code
+        }
+        makeRig(kNoBinding, published);
+        burn();
+        if (HasFatalFailure()) return;
+        seen.insert(passes_.begin(), passes_.end());
+    }
+    FwContextInfo info{};
+    rig_->context.fillInfo(info);
+    if (!info.gpuTimers) return;  // what ran cannot be known
+    for (const gpu::ComputePass* pass : gpu::computePasses())
+        EXPECT_TRUE(seen.contains(pass->name)) << pass->name << " is not in this test's scenes";
+    for (const gpu::DrawPass* pass : gpu::drawPasses())
+        EXPECT_TRUE(seen.contains(pass->name)) << pass->name << " is not in this test's scenes";
+}
+
+// One pass is enough to prove that the layer looks, and that our buffers end where they should: an
+// object's reset writes to the last texel of its state and to its last tile.
+TEST_F(EveryPass, AnAccessPastAnEndIsReported) {
+    if (!device_) return;
+    if (!gpuAssisted()) GTEST_SKIP() << "only GPU-assisted validation sees it (--gpu-assisted)";
+    for (const uint32_t binding : {kNoBinding, uint32_t(FW_BIND_STATE), uint32_t(FW_BIND_PREDICT),
+                                   uint32_t(FW_BIND_TILE_STATE)}) {
+        rig_.reset();
+        device_.reset();
+        makeDevice({});
+        makeRig(binding, false);
+        frame({.steps = 0, .draw = false});
+        rig_->frames.waitAll();
+        rig_.reset();
+        const std::vector<std::string> told = device_->takeMessages();
+        const bool seen = std::any_of(told.begin(), told.end(), [](const std::string& message) {
+            return message.find("access out of bounds") != std::string::npos;
+        });
+        EXPECT_EQ(seen, binding != kNoBinding) << "binding " << binding;
+        for (const std::string& message : told)
+            if (!seen) ADD_FAILURE() << message;
+    }
+}
+
+}  // namespace
+}  // namespace fw::test
