@@ -11,6 +11,8 @@ constexpr double kAspectLimit = 2.02;    // 2 : 1 with room for rounding
 constexpr double kDensityLimit = 4;      // texel area against the mean: within 1/4 .. 4
 constexpr double kBadAreaLimit = 0.01;   // own UVs stand if less of the surface is worse than that
 constexpr double kOverlapLimit = 0.001;  // and fewer texels than this lie twice
+constexpr double kTrustedCover = 16;     // trusted UVs may cover the largest atlas so many times
+constexpr double kTrustedEdges = 8;      // texels of triangle edges per texel of it, likewise
 constexpr double kIslandBadLimit = 0.1;  // an island with more bad area is cut anew as a whole
 constexpr double kSparseLimit = 64;      // an island's box over its area; sparser: cut anew
 constexpr double kIslandTexels = 16;     // a smaller island is joined to our charts
@@ -46,6 +48,13 @@ AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
     AtlasPlan plan;
     plan.ownUv = true;
     plan.density = std::min(input.texelsPerMetre, side / std::max(size.x, size.y));
+    if (input.trustUvs) {  // a thousand sheets on each other would be drawn a thousand times
+        double edges = 0;  // m
+        for (const Triangle& t : surface.triangles)
+            for (int e = 0; e < 3; ++e) edges += glm::length(t.uv[(e + 1) % 3] - t.uv[e]) * perUnit;
+        plan.density = std::min({plan.density, side * std::sqrt(kTrustedCover / surface.area),
+                                 kTrustedEdges * side * side / edges});
+    }
     plan.width = roundUp8(size.x * plan.density + 2 * kMargin);
     plan.height = roundUp8(size.y * plan.density + 2 * kMargin);
     const double scale = perUnit * plan.density;
@@ -56,20 +65,27 @@ AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
 
 bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& plan,
                std::pmr::memory_resource* memory) {
-    double badArea = 0, texels = 0;
-    uint64_t conflicts = 0;
-    Coverage coverage(memory);
-    coverage.clear(plan.width, plan.height);
     const double meanArea = 1 / (plan.density * plan.density);
+    double badArea = 0, texels = 0;
+    Extent2 extent;
     for (const Triangle& t : surface.triangles) {
+        extent.add(t);
         if (badTexels(t, meanArea)) badArea += t.area;
-        conflicts += coverage.add(t, {0, 0}, 1);
         texels += std::abs(uvArea(t));
     }
     const double fill = texels / (double(plan.width) * plan.height);
     const bool wasteful = plan.density < 0.5 * input.texelsPerMetre && fill < 0.25;
-    return badArea <= kBadAreaLimit * surface.area && double(conflicts) <= kOverlapLimit * texels &&
-           !wasteful;
+    // More than its box holds lies on itself: a tiled terrain would take minutes to test.
+    const bool stacked = texels > (1 + kOverlapLimit) * extent.size().x * extent.size().y;
+    if (badArea > kBadAreaLimit * surface.area || wasteful || stacked) return false;
+    Coverage coverage(memory);
+    coverage.clear(plan.width, plan.height);
+    double conflicts = 0;
+    for (const Triangle& t : surface.triangles) {
+        conflicts += coverage.add(t, {0, 0}, 1);
+        if (conflicts > kOverlapLimit * texels) return false;
+    }
+    return true;
 }
 
 // Brings every island to the surface's own scale (uv in metres), marks the triangles that cannot

@@ -12,6 +12,9 @@ namespace fw::mesh {
 class RayTree {
  public:
     static constexpr float kReach = 6.5534f;  // m, farther is not looked for
+    // Triangles one ray may be tested against; only where thousands lie on each other are there
+    // more, and a bake must not take minutes for them.
+    static constexpr uint32_t kMostTests = 1024;
 
     RayTree(const Surface& surface, std::pmr::memory_resource* memory)
         : surface_(surface),
@@ -40,22 +43,25 @@ class RayTree {
         }
     }
 
-    // Distance to the first triangle beyond `least`, other than `self`; kReach or more: none.
+    // Distance to the first triangle beyond `least`, other than `self`, of those tested; kReach or
+    // more: none.
     [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least,
                              uint32_t self) const {
         const glm::vec3 inverse(invert(direction.x), invert(direction.y), invert(direction.z));
         float nearest = kReach;
+        uint32_t tests = 0;
         struct Visit {
             uint32_t node;
             float enter;
         } stack[64];
         int depth = 0;
         stack[depth++] = {0, enter(nodes_[0], from, inverse, nearest)};
-        while (depth > 0) {
+        while (depth > 0 && tests < kMostTests) {
             const Visit visit = stack[--depth];
             if (!(visit.enter <= nearest)) continue;
             const Node& node = nodes_[visit.node];
             if (node.count > 0) {
+                tests += node.count;
                 for (uint32_t i = node.first; i < node.first + node.count; ++i)
                     if (shapes_[i].triangle != self)
                         nearest = std::min(nearest, hit(shapes_[i], from, direction, least));

@@ -289,6 +289,23 @@ TEST(MeshBake, OverlappingUvsArePackedAnew) {
     EXPECT_EQ(0u, neverReached(w, firstReal(w)));
 }
 
+// Every triangle over the whole unit square, each smaller than a texel: no centre tells that they
+// lie on each other, but they are more than the atlas holds.
+TEST(MeshBake, StackedUvsBelowATexelArePackedAnew) {
+    Mesh mesh;
+    for (int i = 0; i < 2000; ++i) {
+        const double x = i % 50 * 0.01, y = i / 50 * 0.01;
+        const uint32_t base = mesh.addVertex(x, y, 0, 0, 0);
+        mesh.addVertex(x + 1e-3, y, 0, 1, 0);
+        mesh.addVertex(x, y + 1e-3, 0, 0, 1);
+        mesh.addTriangle(base, base + 1, base + 2);
+    }
+    const BurnDomain d = bakeOf(mesh.input());
+    expectSound(d);
+    EXPECT_EQ(0u, d.report.usedOwnUv);
+    EXPECT_EQ(2000u, d.report.realTexels);
+}
+
 TEST(MeshBake, ChartsOfOursKeepTwoTexelsApart) {
     Mesh mesh = makeCube(0.5, 4);
     mesh.uvs.clear();
