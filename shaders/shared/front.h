@@ -81,10 +81,17 @@ FW_SHARED_FN uint isqrtNear(uint n) {
 #else
     uint r = uint(sqrt(float(n)));
 #endif
-    if (r * r > n) r -= 1u;
-    if (n - r * r > 2u * r) r += 1u;
-    if (n - r * r > r) r += 1u;
-    return r;
+    uint square = r * r;
+    uint rest = n - square;
+    if (square > n) {
+        r -= 1u;
+        rest += 2u * r + 1u;
+    }
+    if (rest > 2u * r) {
+        rest -= 2u * r + 1u;
+        r += 1u;
+    }
+    return rest > r ? r + 1u : r;
 }
 
 // n / d, exactly, d > 0. Devices without integer division (all software ones) are slow at it, so
@@ -178,28 +185,28 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
     return p;
 }
 
-// Travel time, 1/16 ticks. link8: own position less the source's, 1/8 units.
-FW_SHARED_FN int linkCost(ivec3 link8, FW_IN(FrontPrep) p) {
-    uint l = isqrtNear(squareSum(link8));
-    int y = int((l << 14u) - uint(dotInt(link8, p.e)));
+// Travel time, 1/16 ticks, over a link in 1/8 units: its square, and its product with p.e.
+FW_SHARED_FN int travelTime(uint square, uint along, FW_IN(FrontPrep) p) {
+    int y = int((isqrtNear(square) << 14u) - along);
     uint t = mulHighRound(p.A, uint(y > 0 ? y : 0));
     return int(t < uint(kFrontTimeMax) ? t : uint(kFrontTimeMax));
 }
+// link8: own position less the source's, 1/8 units.
+FW_SHARED_FN int linkCost(ivec3 link8, FW_IN(FrontPrep) p) {
+    return travelTime(squareSum(link8), uint(dotInt(link8, p.e)), p);
+}
 
-// Arrival from the point between two sources: a with weight w/64, b with the rest.
-FW_SHARED_FN int pairCost(int ra, int rb, ivec3 a, ivec3 b, int w, FW_IN(FrontPrep) p) {
-    ivec3 link8 = ivec3(b.x * 8 + ((w * (a.x - b.x) + 4) >> 3),
-                        b.y * 8 + ((w * (a.y - b.y) + 4) >> 3),
-                        b.z * 8 + ((w * (a.z - b.z) + 4) >> 3));
+// When fire leaves the point between two sources: a with weight w/64, b with the rest.
+FW_SHARED_FN int pairStart(int ra, int rb, int w) {
     int dr = ra - rb;
-    return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6) + linkCost(link8, p);
+    return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6);
 }
 
 // Does arrival get earlier on the way from source a to source b? Arrival is convex along the
 // segment, so the slope at a's end tells: if not, a alone is the best of the two.
-FW_SHARED_FN bool pairFalls(int ra, int rb, ivec3 a, ivec3 b, FW_IN(FrontPrep) p) {
+// l: length of a, 1/8 units.
+FW_SHARED_FN bool pairFalls(int ra, int rb, ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
     ivec3 side = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
-    uint l = isqrtNear(squareSum(ivec3(a.x * 8, a.y * 8, a.z * 8)));
     if (l == 0u) return true;
     // Change of distance over the whole segment at this rate: side . a / |a|, in whole units.
     int along = int(uint(dotInt(side, a)) * 8u);
@@ -215,9 +222,13 @@ FW_SHARED_FN bool pairFalls(int ra, int rb, ivec3 a, ivec3 b, FW_IN(FrontPrep) p
 // cost ga and gb.
 FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
                             FW_IN(FrontPrep) p) {
-    int g1 = pairCost(ra, rb, a, b, 16, p);
-    int g2 = pairCost(ra, rb, a, b, 32, p);
-    int g3 = pairCost(ra, rb, a, b, 48, p);
+    // The link from weight w is b + (a - b) w/64: squares and products follow from three each.
+    ivec3 d = ivec3(a.x - b.x, a.y - b.y, a.z - b.z);
+    uint bb = squareSum(b) * 64u, bd = uint(dotInt(b, d)) * 32u, dd = squareSum(d) * 4u;
+    uint be = uint(dotInt(b, p.e)) * 8u, de = uint(dotInt(d, p.e)) * 2u;
+    int g1 = pairStart(ra, rb, 16) + travelTime(bb + bd + dd, be + de, p);
+    int g2 = pairStart(ra, rb, 32) + travelTime(bb + bd * 2u + dd * 4u, be + de * 2u, p);
+    int g3 = pairStart(ra, rb, 48) + travelTime(bb + bd * 3u + dd * 9u, be + de * 3u, p);
     int best = g1 < g2 ? g1 : g2;
     best = g3 < best ? g3 : best;
     int lo, mid, hi, w;
@@ -240,7 +251,11 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
         off = off > 15 ? 15 : off;
         off = num < 0 ? -off : off;
         if (off != 0) {
-            int g = pairCost(ra, rb, a, b, w + off, p);
+            int weight = w + off;
+            ivec3 link8 = ivec3(b.x * 8 + ((weight * d.x + 4) >> 3),
+                                b.y * 8 + ((weight * d.y + 4) >> 3),
+                                b.z * 8 + ((weight * d.z + 4) >> 3));
+            int g = pairStart(ra, rb, weight) + linkCost(link8, p);
             best = g < best ? g : best;
         }
     }
@@ -334,14 +349,15 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
     int a = hasA ? (bestK + 7) & 7 : bestK;
     int relB = pick(rel, bestK), relC = pick(rel, c), relA = pick(rel, a);
     ivec3 linkB = pickLink(ring, bestK), linkC = pickLink(ring, c), linkA = pickLink(ring, a);
-    bool byC = hasC && pairFalls(relB, relC, linkB, linkC, p);
-    bool byA = hasA && pairFalls(relB, relA, linkB, linkA, p);
-    // A loop, for few texels have both: a device that cannot jump goes through it once or twice.
-    for (int pairs = (byC ? 1 : 0) + (byA ? 1 : 0); pairs > 0; --pairs) {
-        bool toA = pairs == 2 || !byC;
-        ivec3 linkTo = ivec3(toA ? linkA.x : linkC.x, toA ? linkA.y : linkC.y,
-                             toA ? linkA.z : linkC.z);
-        int g = bestOfPair(relB, toA ? relA : relC, hop, pick(cost, toA ? a : c), linkB, linkTo, p);
+    uint l = isqrtNear(squareSum(linkB) * 64u);
+    bool byC = hasC && pairFalls(relB, relC, linkB, linkC, l, p);
+    bool byA = hasA && pairFalls(relB, relA, linkB, linkA, l, p);
+    if (byC) {
+        int g = bestOfPair(relB, relC, hop, pick(cost, c), linkB, linkC, p);
+        best = g < best ? g : best;
+    }
+    if (byA) {
+        int g = bestOfPair(relB, relA, hop, pick(cost, a), linkB, linkA, p);
         best = g < best ? g : best;
     }
     // Hashed rounding: whole ticks would slow fast fires down or hurry them.
