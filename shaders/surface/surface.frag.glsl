@@ -58,7 +58,8 @@ struct Arrival {
 // Bilinear over the taps that exist; towards chart borders each tap is continued along its own
 // gradient, so that both sides of a seam agree. Where all four miss, at a chart's border, the
 // nearest of the 25 around stand in.
-Arrival arrivalAt(vec2 uv) {
+// `steepest`: s/texel; beyond it, where fronts meet, slopes say nothing.
+Arrival arrivalAt(vec2 uv, float steepest) {
     vec2 st = uv - 0.5;
     vec2 corner = floor(st);
     ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
@@ -81,6 +82,7 @@ Arrival arrivalAt(vec2 uv) {
         total += w;
         bool live = t < kLiveEnd, doused = t == kOut || t == kOutWet;
         vec2 g = live ? unpackHalf2x16(packed) : vec2(0.0);
+        g *= min(1.0, steepest * inversesqrt(max(dot(g, g), 1e-12)));
         float age = float(int(view.now - t)) * (1.0 / 4096.0) - 0.5 * dot(g, off);
         // How long it had burnt.
         if (doused) age = packed == 0u ? 60.0 : float(packed) * (1.0 / 4096.0);
@@ -238,11 +240,13 @@ void main() {
     vec2 warp = frontWarp(d, pixel, look, coarse, fine);
     vec3 along = axisX * warp.x + axisY * warp.y;
     vec2 shift = vec2(dot(gradU, along), dot(gradV, along));  // texels
+    float rate = max(look.spreadRate, 1e-5);
     // A long shift could leave the chart: what is beyond half a texel goes the linear way.
     vec2 near = clamp(shift, -0.5, 0.5);
     Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 0.0);
     if (kBurns) {
-        arrival = arrivalAt(inAtlas + near);
+        arrival =
+            arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * max(length(gradU), 1.0)));
         arrival.age -= dot(arrival.gradient, shift - near);
     }
 
@@ -281,7 +285,6 @@ void main() {
     vec3 slope = (gradU * arrival.gradient.x + gradV * arrival.gradient.y) * draw.timeScale;
     vec2 flat_ = vec2(dot(slope, axisX), dot(slope, axisY));
     float steep = length(flat_);
-    float rate = max(look.spreadRate, 1e-5);
     site.slow = clamp(length(slope), 0.25 / rate, 1.6 / rate);  // s/m
     float ahead = 1.3 * max(look.scorchWidth, look.wiltColor.w) * site.slow + 1.5 * look.jitter;
     site.age = dampen(arrival.age * draw.timeScale, arrival.damp, 1.5 * look.charTime, -ahead);
