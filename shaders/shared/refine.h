@@ -19,6 +19,22 @@
 #define FW_CONSTANT_FN
 #endif
 
+// Bindings of set 0 of the refinement passes.
+#define FW_REFINE_BIND_TABLE 0      // uint[]: two tokens per word
+#define FW_REFINE_BIND_TRIANGLES 1  // RefineTriangle[]
+#define FW_REFINE_BIND_EDGES 2      // RefineEdge[]
+#define FW_REFINE_BIND_SLOTS 3      // RefineSlot[]
+#define FW_REFINE_BIND_HEAT 4       // uint[], per item: edges, then interiors
+#define FW_REFINE_BIND_ITEMS 5      // RefineLevel[], per item
+#define FW_REFINE_BIND_LEVELS 6     // uint[], per triangle
+#define FW_REFINE_BIND_SUMS 7       // uint[17]: triangles with each bias; with the levels as they are
+#define FW_REFINE_BIND_STARTS 8     // uint[], per triangle and one: first output triangle
+#define FW_REFINE_BIND_INDICES 9    // uint[]: draw vertices
+#define FW_REFINE_BIND_VERTICES 10  // RefineVertex[], per slot
+#define FW_REFINE_BIND_TICKS 11     // uint[]: state of the texels
+#define FW_REFINE_BIND_FRAME 12     // RefineFrameParams
+#define FW_REFINE_BIND_COUNT 13
+
 FW_SHARED_BEGIN
 
 #ifdef __cplusplus
@@ -93,6 +109,28 @@ struct RefineCorner {    // of a triangle of the cut shell
     uint low;            // slot
     uint high;           // the same, or a cut point of the small edge low < high; kRefineInside
 };
+
+struct RefineFrameParams {  // of an object and a frame; see mesh/refine/frame.h
+    uint edgeCount;
+    uint triangleCount;
+    uint cornerCount;
+    uint textureWidth;   // texels
+    uint nowTick;
+    uint epochTick;
+    uint budget;         // triangles
+    uint capacity;
+    float now;           // s since the epoch
+    float dt;
+    float pixelsPerEdge;
+    float rate;          // levels per s
+    float cool;          // s
+    float grace;         // s
+    float recede;
+    uint viewCount;      // of `eye`
+    vec4 eye[4];         // m, object space; w: focal
+    float burnSeconds[8]; // per material
+};
+FW_SHARED_SIZE(RefineFrameParams, 160)
 
 // ---- levels of a triangle in one word: sides at bits 0, 4, 8, interior at 12
 

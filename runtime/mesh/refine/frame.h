@@ -1,6 +1,6 @@
 // Refinement of one object, frame by frame: levels from heat and views, counts, triangles, places.
-// The reference for compute passes to come: every loop body is one lane of
-// shaders/shared/refine.h. Floats, cosmetic; equal input gives equal output on one machine.
+// The reference for the passes in shaders/refine: both do lane by lane what shaders/shared/refine.h
+// says. Floats, cosmetic; equal input gives equal output on one machine.
 #pragma once
 #include "mesh/refine/model.h"
 

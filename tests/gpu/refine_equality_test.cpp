@@ -1,0 +1,341 @@
+// The refinement passes on a device against the library: integers equal, floats near. A rig of its
+// own: one object, buffers the host can see, a barrier after every phase.
+#include "mesh/refine/table.h"
+#include "support/refine_scene.h"
+#include "support/vulkan_device.h"
+
+#include "shaders_embedded.h"
+
+#include <cstring>
+
+namespace fw::test {
+namespace {
+
+class RefineRig {
+ public:
+    RefineRig(TestDevice& device, const RefineScene& scene, uint32_t capacity) : device_(device) {
+        const mesh::RefineModel& m = scene.model;
+        const size_t items = m.edges.size() + m.triangles.size();
+        makeLayouts();
+        make(FW_REFINE_BIND_TABLE, sizeof mesh::kRefineTable, mesh::kRefineTable.data());
+        make(FW_REFINE_BIND_TRIANGLES, m.triangles.size() * sizeof m.triangles[0],
+             m.triangles.data());
+        make(FW_REFINE_BIND_EDGES, m.edges.size() * sizeof m.edges[0], m.edges.data());
+        make(FW_REFINE_BIND_SLOTS, m.slots.size() * sizeof m.slots[0], m.slots.data());
+        make(FW_REFINE_BIND_HEAT, items * 4);
+        const std::vector<gpu::RefineLevel> start(items,
+                                                  {0, 0, -gpu::kRefineNever, gpu::kRefineNever});
+        make(FW_REFINE_BIND_ITEMS, items * sizeof(gpu::RefineLevel), start.data());
+        make(FW_REFINE_BIND_LEVELS, m.triangles.size() * 4);
+        make(FW_REFINE_BIND_SUMS, 17 * 4);
+        make(FW_REFINE_BIND_STARTS, (m.triangles.size() + 1) * 4);
+        make(FW_REFINE_BIND_INDICES, size_t(capacity) * 12);
+        make(FW_REFINE_BIND_VERTICES, m.slots.size() * sizeof(gpu::RefineVertex));
+        make(FW_REFINE_BIND_TICKS, scene.ticks.size() * 4, scene.ticks.data());
+        make(FW_REFINE_BIND_FRAME, sizeof(gpu::RefineFrameParams));
+        const char* names[4] = {"refine_levels.comp", "refine_scan.comp", "refine_emit.comp",
+                                "refine_place.comp"};
+        for (int k = 0; k < 4; ++k) pipelines_[k] = makePipeline(names[k]);
+    }
+    ~RefineRig() {
+        for (VkPipeline p : pipelines_) vkDestroyPipeline(device_.device, p, nullptr);
+        for (int k = 0; k < FW_REFINE_BIND_COUNT; ++k) {
+            vkDestroyBuffer(device_.device, buffers_[k], nullptr);
+            vkFreeMemory(device_.device, memory_[k], nullptr);
+        }
+        vkDestroyDescriptorPool(device_.device, pool_, nullptr);
+        vkDestroyPipelineLayout(device_.device, layout_, nullptr);
+        vkDestroyDescriptorSetLayout(device_.device, setLayout_, nullptr);
+    }
+    RefineRig(const RefineRig&) = delete;
+    RefineRig& operator=(const RefineRig&) = delete;
+
+    template <typename T>
+    [[nodiscard]] std::span<T> of(int binding) const {
+        return {static_cast<T*>(data_[binding]), size_t(sizes_[binding]) / sizeof(T)};
+    }
+
+    void frame(const gpu::RefineFrameParams& params) {
+        of<gpu::RefineFrameParams>(FW_REFINE_BIND_FRAME)[0] = params;
+        for (uint32_t& sum : of<uint32_t>(FW_REFINE_BIND_SUMS)) sum = 0;
+        const uint32_t triangles = params.triangleCount, items = params.edgeCount + triangles;
+        device_.run([&](VkCommandBuffer commands) {
+            vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &set_,
+                                    0, nullptr);
+            for (uint32_t phase = 0; phase < 6; ++phase)
+                dispatch(commands, 0, phase, ((phase & 1) == 0 ? items : triangles) / 64 + 1);
+            dispatch(commands, 1, 0, 1);
+            dispatch(commands, 2, 0, 32);
+            dispatch(commands, 3, 0, params.cornerCount / 64 + 1);
+            dispatch(commands, 3, 1, params.edgeCount / 64 + 1);
+            dispatch(commands, 3, 2, triangles);
+            dispatch(commands, 3, 3, triangles);
+        });
+    }
+
+ private:
+    void must(VkResult result) { ASSERT_EQ(VK_SUCCESS, result); }
+
+    void makeLayouts() {
+        VkDescriptorSetLayoutBinding bindings[FW_REFINE_BIND_COUNT]{};
+        for (uint32_t k = 0; k < FW_REFINE_BIND_COUNT; ++k)
+            bindings[k] = {k, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT,
+                           nullptr};
+        VkDescriptorSetLayoutCreateInfo set{};
+        set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+        set.bindingCount = FW_REFINE_BIND_COUNT;
+        set.pBindings = bindings;
+        must(vkCreateDescriptorSetLayout(device_.device, &set, nullptr, &setLayout_));
+        const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, 4};
+        VkPipelineLayoutCreateInfo layout{};
+        layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+        layout.setLayoutCount = 1;
+        layout.pSetLayouts = &setLayout_;
+        layout.pushConstantRangeCount = 1;
+        layout.pPushConstantRanges = &push;
+        must(vkCreatePipelineLayout(device_.device, &layout, nullptr, &layout_));
+        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, FW_REFINE_BIND_COUNT};
+        VkDescriptorPoolCreateInfo pool{};
+        pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+        pool.maxSets = 1;
+        pool.poolSizeCount = 1;
+        pool.pPoolSizes = &size;
+        must(vkCreateDescriptorPool(device_.device, &pool, nullptr, &pool_));
+        VkDescriptorSetAllocateInfo allocate{};
+        allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+        allocate.descriptorPool = pool_;
+        allocate.descriptorSetCount = 1;
+        allocate.pSetLayouts = &setLayout_;
+        must(vkAllocateDescriptorSets(device_.device, &allocate, &set_));
+    }
+
+    void make(uint32_t binding, size_t bytes, const void* content = nullptr) {
+        VkBufferCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+        info.size = bytes;
+        info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+        must(vkCreateBuffer(device_.device, &info, nullptr, &buffers_[binding]));
+        VkMemoryRequirements needs{};
+        vkGetBufferMemoryRequirements(device_.device, buffers_[binding], &needs);
+        VkMemoryAllocateInfo allocate{};
+        allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+        allocate.allocationSize = needs.size;
+        allocate.memoryTypeIndex =
+            device_.memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                                         VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+        must(vkAllocateMemory(device_.device, &allocate, nullptr, &memory_[binding]));
+        must(vkBindBufferMemory(device_.device, buffers_[binding], memory_[binding], 0));
+        must(vkMapMemory(device_.device, memory_[binding], 0, VK_WHOLE_SIZE, 0, &data_[binding]));
+        sizes_[binding] = bytes;
+        std::memset(data_[binding], 0, bytes);
+        if (content != nullptr) std::memcpy(data_[binding], content, bytes);
+        const VkDescriptorBufferInfo buffer{buffers_[binding], 0, VK_WHOLE_SIZE};
+        VkWriteDescriptorSet write{};
+        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+        write.dstSet = set_;
+        write.dstBinding = binding;
+        write.descriptorCount = 1;
+        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        write.pBufferInfo = &buffer;
+        vkUpdateDescriptorSets(device_.device, 1, &write, 0, nullptr);
+    }
+
+    VkPipeline makePipeline(const char* name) {
+        const gpu::ShaderCode* code = gpu::findShader(name);
+        if (code == nullptr) {
+            ADD_FAILURE() << name << " is not embedded";
+            return VK_NULL_HANDLE;
+        }
+        VkShaderModuleCreateInfo module{};
+        module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+        module.codeSize = code->words.size_bytes();
+        module.pCode = code->words.data();
+        VkComputePipelineCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+        info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+        info.stage.pName = "main";
+        info.layout = layout_;
+        must(vkCreateShaderModule(device_.device, &module, nullptr, &info.stage.module));
+        VkPipeline pipeline = VK_NULL_HANDLE;
+        must(
+            vkCreateComputePipelines(device_.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+        vkDestroyShaderModule(device_.device, info.stage.module, nullptr);
+        return pipeline;
+    }
+
+    void dispatch(VkCommandBuffer commands, int pipeline, uint32_t phase, uint32_t groups) {
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelines_[pipeline]);
+        vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, 4, &phase);
+        vkCmdDispatch(commands, groups, 1, 1);
+        VkMemoryBarrier barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+        barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
+        barrier.dstAccessMask =
+            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_HOST_READ_BIT;
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                             VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0,
+                             1, &barrier, 0, nullptr, 0, nullptr);
+    }
+
+    TestDevice& device_;
+    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
+    VkPipeline pipelines_[4] = {};
+    VkBuffer buffers_[FW_REFINE_BIND_COUNT] = {};
+    VkDeviceMemory memory_[FW_REFINE_BIND_COUNT] = {};
+    void* data_[FW_REFINE_BIND_COUNT] = {};
+    size_t sizes_[FW_REFINE_BIND_COUNT] = {};
+};
+
+class RefineEquality : public GpuTest {
+ protected:
+    static gpu::RefineFrameParams paramsOf(const RefinePlayer& player, float now, float dt) {
+        const mesh::RefineFrame frame = player.frameAt(now, dt);
+        const mesh::RefineModel& m = player.scene.model;
+        const mesh::RefineSettings& s = player.settings;
+        gpu::RefineFrameParams p{};
+        p.edgeCount = uint32_t(m.edges.size());
+        p.triangleCount = uint32_t(m.triangles.size());
+        p.cornerCount = m.cornerCount;
+        p.textureWidth = m.textureWidth;
+        p.nowTick = frame.nowTick;
+        p.epochTick = frame.epochTick;
+        p.budget = s.budget;
+        p.capacity = s.capacity;
+        p.now = now;
+        p.dt = dt;
+        p.pixelsPerEdge = s.pixelsPerEdge;
+        p.rate = s.rate;
+        p.cool = s.cool;
+        p.grace = s.grace;
+        p.recede = s.recede;
+        p.viewCount = uint32_t(frame.views.size());
+        for (size_t v = 0; v < frame.views.size(); ++v)
+            p.eye[v] = {frame.views[v].eye[0], frame.views[v].eye[1], frame.views[v].eye[2],
+                        frame.views[v].focal};
+        std::copy(frame.burnSeconds.begin(), frame.burnSeconds.end(), p.burnSeconds);
+        return p;
+    }
+
+    struct Difference {
+        uint32_t levels = 0, starts = 0, indices = 0, holes = 0;
+        double level = 0, place = 0;
+    };
+    // One frame on both. A level that lies on a whole number to the last bit may be told apart by
+    // the device's log2, so the library takes the device's levels for what follows from them.
+    static Difference frame(RefinePlayer& player, RefineRig& rig, float now, float dt) {
+        Difference d;
+        const RefineScene& scene = player.scene;
+        mesh::RefineState& s = player.state;
+        const mesh::RefineFrame at = player.frameAt(now, dt);
+        mesh::refineLevels(scene.model, player.settings, at, s);
+        const auto heat = rig.of<uint32_t>(FW_REFINE_BIND_HEAT);
+        std::copy(s.edgeHeat.begin(), s.edgeHeat.end(), heat.begin());
+        std::copy(s.interiorHeat.begin(), s.interiorHeat.end(),
+                  heat.begin() + long(s.edgeHeat.size()));
+        rig.frame(paramsOf(player, now, dt));
+        const auto items = rig.of<gpu::RefineLevel>(FW_REFINE_BIND_ITEMS);
+        for (size_t i = 0; i < items.size(); ++i) {
+            gpu::RefineLevel& own =
+                i < s.edges.size() ? s.edges[i] : s.interiors[i - s.edges.size()];
+            d.level = std::max(d.level, double(std::abs(own.level - items[i].level)));
+            own.level = items[i].level;
+        }
+        for (size_t i = 0; i < s.levels.size(); ++i) {
+            const gpu::RefineTriangle& t = scene.model.triangles[i];
+            uint32_t top[3];
+            for (int k = 0; k < 3; ++k) top[k] = gpu::refineTop(s.edges[t.edge[k]].level);
+            s.levels[i] = gpu::refinePack(
+                top[0], top[1], top[2],
+                gpu::refineFit(top[0], top[1], top[2], gpu::refineTop(s.interiors[i].level)));
+        }
+        mesh::refineScan(scene.model, s);
+        mesh::refineEmit(scene.model, s);
+        mesh::refinePlace(scene.model, player.settings, at, s);
+
+        const auto differ = [](std::span<const uint32_t> a, std::span<const uint32_t> b) {
+            uint32_t count = 0;
+            for (size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
+            return count;
+        };
+        d.levels = differ(s.levels, rig.of<uint32_t>(FW_REFINE_BIND_LEVELS));
+        d.starts = differ(s.starts, rig.of<uint32_t>(FW_REFINE_BIND_STARTS));
+        d.indices = differ(s.indices, rig.of<uint32_t>(FW_REFINE_BIND_INDICES));
+        const auto vertices = rig.of<gpu::RefineVertex>(FW_REFINE_BIND_VERTICES);
+        for (const uint32_t draw : s.indices) {  // those in use
+            const uint32_t slot = scene.model.draws[draw].slot;
+            const gpu::RefineVertex &a = s.vertices[slot], &b = vertices[slot];
+            const float apart =
+                std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+            d.place = std::max(d.place, double(apart));
+            d.holes += std::abs(a.hole - b.hole) > 1e-3f;
+        }
+        return d;
+    }
+};
+
+TEST_F(RefineEquality, LevelsTrianglesAndPlacesAreTheLibrarys) {
+    if (!device_) return;
+    mesh::RefineOptions options;
+    options.depth = 4;
+    RefineScene scene(gridBox(0.8, 0.6, 0.02, 2, 2, 1, 11), options, 96);
+    scene.light({0.2, 0.2, 0.02}, 0.05, 0.15);
+    RefinePlayer player(scene);
+    player.settings.skipStill = false;
+    player.settings.capacity = 60000;
+    RefineRig rig(*device_, scene, player.settings.capacity);
+    uint32_t most = 0, frames = 0, unmorphed = 0, biased = 0;
+    double place = 0;
+    for (float now = 0; now < scene.end + 8; now += 0.21f, ++frames) {
+        // Far and near, plenty and little.
+        player.views = {{{0.4f, 0.3f, 1 + float(frames % 9)}, 900}, {{-4, 0.3f, 1}, 500}};
+        player.settings.budget = frames % 7 < 4 ? 50000 : 3000;
+        player.settings.capacity = player.settings.budget == 3000 ? 5000 : 60000;
+        scene.heat(now, player.tiles);
+        const Difference d = frame(player, rig, now, 0.21f);
+        ASSERT_LT(d.level, 1e-4) << "frame " << frames;
+        ASSERT_EQ(0u, d.levels + d.starts + d.indices) << "frame " << frames;
+        ASSERT_LT(d.place, 1e-5) << "m, frame " << frames;
+        ASSERT_EQ(0u, d.holes) << "frame " << frames;
+        most = std::max(most, player.triangles());
+        unmorphed += player.state.unmorphed;
+        biased += player.state.bias > 0;
+        place = std::max(place, d.place);
+    }
+    EXPECT_GT(most, 4000u);
+    EXPECT_GT(unmorphed, 0u);
+    EXPECT_GT(biased, 0u);
+    std::printf(
+        "refinement: %u frames equal, at most %u triangles, places within %.1e m, %u frames "
+        "with fewer levels for the budget, %u unmorphed\n",
+        frames, most, place, biased, unmorphed);
+}
+
+// The comparison must notice a wrong table and a wrong flip bit.
+TEST_F(RefineEquality, MutantsAreCaught) {
+    if (!device_) return;
+    mesh::RefineOptions options;
+    options.depth = 3;
+    RefineScene scene(gridBox(0.4, 0.3, 0.2, 1, 1, 1), options, 64);
+    scene.light({0.1, 0.1, 0.2}, 0.05);
+    RefinePlayer player(scene);
+    player.settings.skipStill = false;
+    player.settings.capacity = 60000;
+    scene.heat(1, player.tiles);
+    for (const int mutant : {0, 1, 2}) {
+        RefineRig rig(*device_, scene, player.settings.capacity);
+        if (mutant == 1)
+            for (uint32_t& word : rig.of<uint32_t>(FW_REFINE_BIND_TABLE)) word ^= 0x00020002u;
+        if (mutant == 2)
+            for (auto& t : rig.of<gpu::RefineTriangle>(FW_REFINE_BIND_TRIANGLES)) t.flags ^= 7u;
+        const Difference d = frame(player, rig, 1, 0.1f);
+        EXPECT_EQ(0u, d.levels) << "mutant " << mutant;
+        EXPECT_EQ(mutant != 0, d.indices != 0) << "mutant " << mutant;
+    }
+}
+
+}  // namespace
+}  // namespace fw::test
