@@ -289,7 +289,10 @@ TEST_F(RefineEquality, LevelsTrianglesAndPlacesAreTheLibrarys) {
     RefineRig rig(*device_, scene, player.settings.capacity);
     uint32_t most = 0, frames = 0, unmorphed = 0, biased = 0;
     double place = 0;
-    for (float now = 0; now < scene.end + 8; now += 0.21f, ++frames) {
+    // Instrumented, a frame takes a hundred times as long.
+    const float first = gpuAssisted() ? scene.end - 1 : 0,
+                last = scene.end + (gpuAssisted() ? 1 : 8);
+    for (float now = first; now < last; now += 0.21f, ++frames) {
         // Far and near, plenty and little.
         player.views = {{{0.4f, 0.3f, 1 + float(frames % 9)}, 900}, {{-4, 0.3f, 1}, 500}};
         player.settings.budget = frames % 7 < 4 ? 50000 : 3000;
@@ -305,9 +308,11 @@ TEST_F(RefineEquality, LevelsTrianglesAndPlacesAreTheLibrarys) {
         biased += player.state.bias > 0;
         place = std::max(place, d.place);
     }
-    EXPECT_GT(most, 4000u);
-    EXPECT_GT(unmorphed, 0u);
-    EXPECT_GT(biased, 0u);
+    if (!gpuAssisted()) {
+        EXPECT_GT(most, 4000u);
+        EXPECT_GT(unmorphed, 0u);
+        EXPECT_GT(biased, 0u);
+    }
     std::printf(
         "refinement: %u frames equal, at most %u triangles, places within %.1e m, %u frames "
         "with fewer levels for the budget, %u unmorphed\n",
