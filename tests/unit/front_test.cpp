@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ctime>
 #include <numbers>
 
 namespace fw::test {
@@ -447,7 +448,7 @@ TEST(Front, P14_SmallFireOnLargeMap) {
     const double sides[2] = {248 / 128.0, 1016 / 128.0};
     const mesh::BurnDomain domains[2] = {bakeOf(makePlane(sides[0], sides[0]), 128),
                                          bakeOf(makePlane(sides[1], sides[1]), 128)};
-    // Taken in turns, the least of each: a shared machine's pauses hit both alike.
+    // Processor time, taken in turns, the least of each: a shared machine's pauses hit both alike.
     for (int repeat = 0; repeat < 6; ++repeat)
         for (int m = 0; m < 2; ++m) {
             const mesh::BurnDomain& d = domains[m];
@@ -457,12 +458,9 @@ TEST(Front, P14_SmallFireOnLargeMap) {
                 return length(texelPosition(d, i) - centre) < 0.025 ? 0.0 : -1.0;
             });
             rig.step();
-            double total = 0;
-            while (rig.now < kStartTick + 4096 * 15) {
-                rig.step();
-                for (const gpu::PassTime& time : rig.backend().passTimes())
-                    total += time.milliseconds;
-            }
+            const std::clock_t start = std::clock();
+            while (rig.now < kStartTick + 4096 * 15) rig.step();
+            const double total = 1000.0 * double(std::clock() - start) / CLOCKS_PER_SEC;
             tiles[m] = rig.totalRunTiles;
             milliseconds[m] = std::min(milliseconds[m], total);
         }
@@ -470,7 +468,9 @@ TEST(Front, P14_SmallFireOnLargeMap) {
                 (unsigned long long)tiles[1], milliseconds[0], milliseconds[1]);
     // The same fire may lie a little otherwise on the two maps' tiles.
     EXPECT_NEAR(double(tiles[0]), double(tiles[1]), 0.02 * double(tiles[0]));
-    EXPECT_LT(milliseconds[1], 1.3 * milliseconds[0]);  // wall clock of a shared machine
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    EXPECT_LT(milliseconds[1], 1.3 * milliseconds[0]);
+#endif
 }
 
 }  // namespace
