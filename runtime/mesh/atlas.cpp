@@ -11,8 +11,10 @@ constexpr double kAspectLimit = 2.02;    // 2 : 1 with room for rounding
 constexpr double kDensityLimit = 4;      // texel area against the mean: within 1/4 .. 4
 constexpr double kBadAreaLimit = 0.01;   // own UVs stand if less of the surface is worse than that
 constexpr double kOverlapLimit = 0.001;  // and fewer texels than this lie twice
-constexpr double kTrustedCover = 16;     // trusted UVs may cover the largest atlas so many times
-constexpr double kTrustedEdges = 8;      // texels of triangle edges per texel of it, likewise
+constexpr double kTrustedCover = 4;      // trusted UVs may cover the largest atlas so many times
+// Texels that the edges of all triangles may pass: per texel of the largest atlas, and at least.
+// A disc of needles would cost minutes for a spot at its middle.
+constexpr double kEdgesPerTexel = 8, kEdgesAtLeast = 1 << 23;
 constexpr double kIslandBadLimit = 0.1;  // an island with more bad area is cut anew as a whole
 constexpr double kSparseLimit = 64;      // an island's box over its area; sparser: cut anew
 constexpr double kIslandTexels = 16;     // a smaller island is joined to our charts
@@ -38,6 +40,18 @@ bool badTexels(const Triangle& t, double meanArea) {
     return ratio > kDensityLimit || ratio < 1 / kDensityLimit;
 }
 
+// The highest density at which edges of `metres` in all pass no more texels than they may.
+double edgeDensity(double metres, uint32_t maxSide) {
+    return std::max(kEdgesPerTexel * maxSide * maxSide, kEdgesAtLeast) / metres;
+}
+
+double uvEdges(const Surface& surface) {
+    double sum = 0;
+    for (const Triangle& t : surface.triangles)
+        for (int e = 0; e < 3; ++e) sum += glm::length(t.uv[(e + 1) % 3] - t.uv[e]);
+    return sum;
+}
+
 // The mesh's own layout at the asked density, or lower if it must be. uv becomes texels.
 AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
     Extent2 extent;
@@ -48,13 +62,10 @@ AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
     AtlasPlan plan;
     plan.ownUv = true;
     plan.density = std::min(input.texelsPerMetre, side / std::max(size.x, size.y));
-    if (input.trustUvs) {  // a thousand sheets on each other would be drawn a thousand times
-        double edges = 0;  // m
-        for (const Triangle& t : surface.triangles)
-            for (int e = 0; e < 3; ++e) edges += glm::length(t.uv[(e + 1) % 3] - t.uv[e]) * perUnit;
+    // A thousand sheets on each other would be drawn a thousand times.
+    if (input.trustUvs)
         plan.density = std::min({plan.density, side * std::sqrt(kTrustedCover / surface.area),
-                                 kTrustedEdges * side * side / edges});
-    }
+                                 edgeDensity(uvEdges(surface) * perUnit, input.maxSide)});
     plan.width = roundUp8(size.x * plan.density + 2 * kMargin);
     plan.height = roundUp8(size.y * plan.density + 2 * kMargin);
     const double scale = perUnit * plan.density;
@@ -77,7 +88,8 @@ bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& 
     const bool wasteful = plan.density < 0.5 * input.texelsPerMetre && fill < 0.25;
     // More than its box holds lies on itself: a tiled terrain would take minutes to test.
     const bool stacked = texels > (1 + kOverlapLimit) * extent.size().x * extent.size().y;
-    if (badArea > kBadAreaLimit * surface.area || wasteful || stacked) return false;
+    const bool crowded = edgeDensity(uvEdges(surface), input.maxSide) < 1;
+    if (badArea > kBadAreaLimit * surface.area || wasteful || stacked || crowded) return false;
     Coverage coverage(memory);
     coverage.clear(plan.width, plan.height);
     double conflicts = 0;
@@ -179,7 +191,11 @@ AtlasPlan layAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_re
     }
     // Tests are made at a density the atlas can hold.
     const double side = double(input.maxSide & ~7u);
-    const double density = std::min(input.texelsPerMetre, side / std::sqrt(surface.area));
+    double edges = 0;  // m
+    for (const Triangle& t : surface.triangles)
+        for (int e = 0; e < 3; ++e) edges += glm::length(t.position[(e + 1) % 3] - t.position[e]);
+    const double asked = std::min(input.texelsPerMetre, edgeDensity(edges, input.maxSide));
+    const double density = std::min(asked, side / std::sqrt(surface.area));
     const double texels = surface.area * density * density;
     const double longest = std::clamp(1.5 * std::sqrt(texels), 32.0, side) / density * 0.95;
 
@@ -190,7 +206,7 @@ AtlasPlan layAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_re
         if (!hasUv || surface.triangles[i].chart == kNone) pool.push_back(i);
     const uint32_t recharted = uint32_t(pool.size());
     const uint32_t charts = growCharts(surface, pool, kept, density, longest, memory);
-    AtlasPlan plan = packCharts(surface, charts, input.texelsPerMetre, input.maxSide, memory);
+    AtlasPlan plan = packCharts(surface, charts, asked, input.maxSide, memory);
     plan.recharted = recharted;
     return plan;
 }

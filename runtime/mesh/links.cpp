@@ -8,7 +8,12 @@
 namespace fw::mesh {
 namespace {
 
-constexpr int kWalkSteps = 200;       // triangles crossed by one walk, at most
+constexpr int kWalkSteps = 200;  // triangles crossed by one walk, at most
+constexpr int kWeakSteps = 4;    // likewise, once the crossings below are used up
+// Crossings of all walks, and more per texel of the atlas: far above what any mesh needs whose
+// triangles are not hundreds of times smaller than a texel.
+constexpr int64_t kWalkBudget = 1 << 25, kWalkPerTexel = 8;
+constexpr int kDeafRounds = 64;       // of looking for texels that read nobody
 constexpr int kReaches = 3;           // a chart too small to own a texel is stepped over
 constexpr int kSearch = 3;            // texels around a landing place that owns none
 constexpr double kStepLimit = 3;      // texel sides: a longer Jacobian step is cut
@@ -20,6 +25,7 @@ struct Walk {
     uint32_t triangle;
     glm::dvec3 weights;
     bool landed = false, open = false;
+    int crossed = 0;  // triangles
 };
 
 glm::dvec3 unitOr0(glm::dvec3 v) {
@@ -29,11 +35,12 @@ glm::dvec3 unitOr0(glm::dvec3 v) {
 
 // From a point of a triangle along a step in its plane (m), unfolding at every edge by in-plane
 // direction: winding does not matter.
-Walk walkSurface(const Surface& surface, uint32_t triangle, glm::dvec3 weights, glm::dvec3 step) {
+Walk walkSurface(const Surface& surface, uint32_t triangle, glm::dvec3 weights, glm::dvec3 step,
+                 int limit) {
     Walk walk{triangle, weights};
     glm::dvec3& w = walk.weights;
     int entry = -1;
-    for (int crossing = 0; crossing < kWalkSteps; ++crossing) {
+    for (; walk.crossed < limit; ++walk.crossed) {
         const Triangle& t = surface.triangles[walk.triangle];
         const glm::dvec3 normal =
             glm::cross(t.position[1] - t.position[0], t.position[2] - t.position[0]);
@@ -86,12 +93,13 @@ Walk walkSurface(const Surface& surface, uint32_t triangle, glm::dvec3 weights, 
 class Borders {
  public:
     Borders(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory)
-        : grid_(grid), pieces_(memory), near_(grid.count(), 0, memory) {
-        for (const Triangle& t : surface.triangles)
-            for (int e = 0; e < 3; ++e)
-                if (t.neighbour[e] == kNone || t.seam[e]) add(t.uv[e], t.uv[(e + 1) % 3]);
+        : surface_(surface), grid_(grid), pieces_(memory), near_(grid.count(), 0, memory) {
+        for (uint32_t i = 0; i < surface.triangles.size(); ++i)
+            for (uint32_t e = 0; e < 3; ++e)
+                if (const Triangle& t = surface.triangles[i]; t.neighbour[e] == kNone || t.seam[e])
+                    add(t.uv[e], t.uv[(e + 1) % 3], i * 3 + e);
         std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
-            return a.texel != b.texel ? a.texel < b.texel : a.order < b.order;
+            return a.texel != b.texel ? a.texel < b.texel : a.edge < b.edge;
         });
         for (const Piece& piece : pieces_) {
             const int x = int(piece.texel % grid.width), y = int(piece.texel / grid.width);
@@ -117,18 +125,17 @@ class Borders {
 
  private:
     struct Piece {
-        uint32_t texel, order;
-        glm::dvec2 a, b;
+        uint32_t texel, edge;  // triangle * 3 + its edge; millions of these: no copies
     };
 
-    void add(glm::dvec2 a, glm::dvec2 b) {
+    void add(glm::dvec2 a, glm::dvec2 b, uint32_t edge) {
         const int samples = 2 + int(4 * glm::length(b - a));
         uint32_t last = kNone;
         for (int k = 0; k <= samples; ++k) {
             const glm::dvec2 p = a + (b - a) * (double(k) / samples);
             if (!grid_.inside(int(std::floor(p.x)), int(std::floor(p.y)))) continue;
             const uint32_t texel = grid_.at(int(p.x), int(p.y));
-            if (texel != last) pieces_.push_back({texel, uint32_t(pieces_.size()), a, b});
+            if (texel != last) pieces_.push_back({texel, edge});
             last = texel;
         }
     }
@@ -137,14 +144,17 @@ class Borders {
         auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), texel,
                                       [](const Piece& a, uint32_t b) { return a.texel < b; });
         for (; piece != pieces_.end() && piece->texel == texel; ++piece) {
-            const double a = cross2(q - p, piece->a - p), b = cross2(q - p, piece->b - p);
-            const glm::dvec2 d = piece->b - piece->a;
-            const double c = cross2(d, p - piece->a), e = cross2(d, q - piece->a);
+            const Triangle& t = surface_.triangles[piece->edge / 3];
+            const glm::dvec2 from = t.uv[piece->edge % 3], to = t.uv[(piece->edge + 1) % 3];
+            const double a = cross2(q - p, from - p), b = cross2(q - p, to - p);
+            const glm::dvec2 d = to - from;
+            const double c = cross2(d, p - from), e = cross2(d, q - from);
             if (((a > 0) != (b > 0)) && ((c > 0) != (e > 0))) return true;
         }
         return false;
     }
 
+    const Surface& surface_;
     const TexelGrid& grid_;
     std::pmr::vector<Piece> pieces_;
     std::pmr::vector<uint8_t> near_;
@@ -160,6 +170,7 @@ class Linker {
           borders_(surface, grid, memory),
           loose_(memory),
           heard_(memory),
+          crossingsLeft_(kWalkBudget + kWalkPerTexel * int64_t(grid.count())),
           memory_(memory) {}
 
     void run() {
@@ -233,13 +244,19 @@ class Linker {
         grid_.links.insert(grid_.links.end(), ring, ring + 8);
     }
 
+    Walk walkFrom(uint32_t texel, glm::dvec3 step) {
+        const Walk walk = walkSurface(surface_, grid_.owner[texel], grid_.weightsOf(texel), step,
+                                      crossingsLeft_ > 0 ? kWalkSteps : kWeakSteps);
+        crossingsLeft_ -= walk.crossed + 1;
+        return walk;
+    }
+
     // The texel one step away over the surface, or kNone. `exact`: the step ends in that texel.
     uint32_t across(uint32_t texel, size_t k, bool& exact) {
         const glm::dvec3 step = cut(stepOf(texel, k));
         bool open = false;
         for (int reach = 1; reach <= kReaches; ++reach) {
-            const Walk walk = walkSurface(surface_, grid_.owner[texel], grid_.weightsOf(texel),
-                                          step * double(reach));
+            const Walk walk = walkFrom(texel, step * double(reach));
             open |= walk.open;
             if (!walk.landed) break;
             const uint32_t found = landing(walk, texel, exact);
@@ -287,8 +304,8 @@ class Linker {
         std::pmr::vector<uint32_t> forced(memory_);
         for (uint32_t i = 0; i < grid_.count(); ++i)
             if (grid_.real(i) && (grid_.flags[i] & kTexelForced)) forced.push_back(i);
-        bool again = true;
-        while (again) {
+        bool again = true;  // who read only those that leave is deaf in turn
+        for (int round = 0; again && round < kDeafRounds; ++round) {
             again = false;
             for (uint32_t i : forced) {
                 if (!grid_.real(i)) continue;
@@ -322,12 +339,12 @@ class Linker {
         double reach = 0;     // m, a longer link is refused
         bool landed = false;
     };
-    [[nodiscard]] Aim aimOf(uint32_t texel, size_t k) const {
+    [[nodiscard]] Aim aimOf(uint32_t texel, size_t k) {
         glm::dvec3 step = stepOf(texel, k);
         const double length = glm::length(step);
         if (!(length > 0)) return {};
         step *= std::clamp(length, kAimLow * grid_.side, kAimHigh * grid_.side) / length;
-        const Walk walk = walkSurface(surface_, grid_.owner[texel], grid_.weightsOf(texel), step);
+        const Walk walk = walkFrom(texel, step);
         if (!walk.landed) return {};
         return {positionAt(surface_.triangles[walk.triangle], walk.weights) - surface_.low,
                 2 * glm::length(step) + kFoldedSlack * grid_.side, true};
@@ -447,6 +464,7 @@ class Linker {
     Borders borders_;
     std::pmr::vector<uint8_t> loose_;  // per record: slots whose step ends in no texel
     std::pmr::vector<uint8_t> heard_;  // per texel: slots that name it, 255: that many or more
+    int64_t crossingsLeft_;
     std::pmr::memory_resource* memory_;
 };
 

@@ -9,6 +9,9 @@ namespace {
 
 constexpr int kEmpty = 0x3FFFFFFF;
 constexpr int kTurns = 16;  // orientations tried per chart, over a quarter turn
+// How finely the density is searched that fits, and how once so many places were looked at.
+constexpr double kStep = 1.015, kWideStep = 1.2;
+constexpr double kPlaces = 3e8;
 
 struct Piece {
     glm::dvec2 size{0};  // m
@@ -193,6 +196,7 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
     // An upper bound first, so that absurd sizes cost no memory.
     density = std::min({density, double(side) / std::sqrt(surface.area),
                         (double(side) - 4) / std::max(packer.longest(), 1e-9)});
+    double places = 0;
     for (int attempt = 0; attempt < 100 && least <= room; ++attempt) {
         const double cells = packer.outline(density);
         double over = std::max(
@@ -203,8 +207,10 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
                 std::min(side, std::max(roundUp8(packer.widest()), roundUp8(square)));
             for (uint32_t width : {narrow, side}) {
                 const uint32_t height = roundUp8(packer.drop(width));
+                places += double(packer.pieces()) * width;
                 over = double(height) / side;
-                if (over > 1) continue;
+                if (over > 1 && width < side) continue;
+                if (over > 1) break;  // both widths may be the same
                 packer.commit(density);
                 AtlasPlan plan;
                 plan.width = width;
@@ -214,7 +220,7 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
             }
         }
         // Height shrinks with the square of the density, until borders are all that is left.
-        density /= std::clamp(std::sqrt(over), 1.015, 2.0);
+        density /= std::clamp(std::sqrt(over), places < kPlaces ? kStep : kWideStep, 2.0);
     }
     core::fail(FW_ERROR_INVALID_ARGUMENT,
                "The mesh falls into %zu charts; an atlas of %u x %u texels has no room for them.",

@@ -239,7 +239,7 @@ uint32_t AreaHeir::onSurface(uint32_t from) {
     ++stamp_;
     queue_.assign(1, from);
     visited_[from] = stamp_;
-    for (size_t head = 0; head < queue_.size(); ++head) {
+    for (size_t head = 0; head < queue_.size() && visitsLeft_ > 0; ++head, --visitsLeft_) {
         const uint32_t texel = texelOf_[queue_[head]];
         if (texel != kNone && grid_.real(texel)) return texel;
         for (uint32_t n : surface_.triangles[queue_[head]].neighbour)

@@ -12,9 +12,11 @@ namespace fw::mesh {
 class RayTree {
  public:
     static constexpr float kReach = 6.5534f;  // m, farther is not looked for
-    // Triangles one ray may be tested against; only where thousands lie on each other are there
-    // more, and a bake must not take minutes for them.
-    static constexpr uint32_t kMostTests = 1024;
+    // Boxes and triangles one ray may be tested against; only where thousands lie across each
+    // other are there more, and a bake must not take minutes for them. With the steps of all rays
+    // used up, a ray has only the few of kWeakSteps.
+    static constexpr uint32_t kMostSteps = 4096, kWeakSteps = 48;
+    static constexpr int64_t kStepBudget = 1 << 26, kStepsPerTexel = 192;
 
     RayTree(const Surface& surface, std::pmr::memory_resource* memory)
         : surface_(surface),
@@ -44,24 +46,26 @@ class RayTree {
     }
 
     // Distance to the first triangle beyond `least`, other than `self`, of those tested; kReach or
-    // more: none.
-    [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least,
-                             uint32_t self) const {
+    // more: none. What it cost is taken from `stepsLeft`.
+    [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least, uint32_t self,
+                             int64_t& stepsLeft) const {
         const glm::vec3 inverse(invert(direction.x), invert(direction.y), invert(direction.z));
         float nearest = kReach;
-        uint32_t tests = 0;
+        const uint32_t most = stepsLeft > 0 ? kMostSteps : kWeakSteps;
+        uint32_t steps = 0;
         struct Visit {
             uint32_t node;
             float enter;
         } stack[64];
         int depth = 0;
         stack[depth++] = {0, enter(nodes_[0], from, inverse, nearest)};
-        while (depth > 0 && tests < kMostTests) {
+        while (depth > 0 && steps < most) {
             const Visit visit = stack[--depth];
+            ++steps;
             if (!(visit.enter <= nearest)) continue;
             const Node& node = nodes_[visit.node];
             if (node.count > 0) {
-                tests += node.count;
+                steps += node.count;
                 for (uint32_t i = node.first; i < node.first + node.count; ++i)
                     if (shapes_[i].triangle != self)
                         nearest = std::min(nearest, hit(shapes_[i], from, direction, least));
@@ -73,7 +77,14 @@ class RayTree {
             stack[depth++] = aFirst ? b : a;
             stack[depth++] = aFirst ? a : b;
         }
+        stepsLeft -= steps;
         return nearest;
+    }
+    // Likewise, for the few rays that no budget watches over.
+    [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least,
+                             uint32_t self) const {
+        int64_t steps = kMostSteps;
+        return cast(from, direction, least, self, steps);
     }
 
  private:

@@ -66,6 +66,9 @@ class AreaHeir {
     const TexelGrid& grid_;
     std::pmr::vector<uint32_t> texelOf_, visited_, queue_;
     uint32_t stamp_ = 0;
+    // Triangles looked at in all. Where the atlas has texels for few of a surface's triangles,
+    // every search would cross all of it; with none left, onSurface finds nothing.
+    uint32_t visitsLeft_ = 1u << 22;
 };
 // Link records of all texels whose ring is not just the image around them.
 void linkTexels(const Surface& surface, TexelGrid& grid, BakeReport& report,

@@ -15,10 +15,12 @@ void bakeThickness(const Surface& surface, const TexelGrid& grid,
     const RayTree tree(surface, memory);
     // Not the surface we stand on, nor its neighbours where it bends.
     const float least = float(std::max(0.01 * grid.side, 1e-5 * surface.extent));
+    int64_t stepsLeft = RayTree::kStepBudget + RayTree::kStepsPerTexel * int64_t(grid.count());
     for (uint32_t texel = 0; texel < grid.count(); ++texel) {
         if (!grid.real(texel)) continue;
         const glm::vec3 inward(-surface.triangles[grid.owner[texel]].normal);
-        const float distance = tree.cast(grid.position[texel], inward, least, grid.owner[texel]);
+        const float distance =
+            tree.cast(grid.position[texel], inward, least, grid.owner[texel], stepsLeft);
         if (distance < RayTree::kReach)
             thickness[texel] = uint16_t(std::max(1.0, std::floor(double(distance) / kUnit + 0.5)));
     }
