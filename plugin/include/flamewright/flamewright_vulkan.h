@@ -6,8 +6,9 @@
  * own render pass, fwWorld_RecordInside (draws only). Or fwWorld_RecordComposite: our own pass over
  * host images. After each of them treat as undefined, in that command buffer: bound graphics and
  * compute pipelines, all descriptor sets, push constants, vertex and index buffers (bindings
- * 0..1), viewport, scissor. All else (render pass, queries, labels, other dynamic state) is as you
- * left it. */
+ * 0..1), and all dynamic state: viewport, scissor, and what our pipelines hold fixed (blend
+ * constants, stencil masks and references, depth bias and bounds, line width). All else (render
+ * pass, queries, labels, further vertex bindings) is as you left it. */
 /* Laid out by hand, to be read. */
 /* clang-format off */
 #ifndef FLAMEWRIGHT_FLAMEWRIGHT_VULKAN_H
