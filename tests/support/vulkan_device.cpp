@@ -1,5 +1,6 @@
 #include "support/vulkan_device.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -18,6 +19,19 @@ void must(VkResult result, const char* what) {
 bool gpuAssisted() {
     const char* value = std::getenv("FLAMEWRIGHT_GPU_ASSISTED");
     return value && std::strcmp(value, "1") == 0;
+}
+
+uint32_t testApiVersion() {
+    uint32_t version = VK_API_VERSION_1_0;
+    if (const char* value = std::getenv("FLAMEWRIGHT_API"); value && *value) {
+        if (value[0] != '1' || value[1] != '.' || value[2] < '0' || value[2] > '3' || value[3]) {
+            ADD_FAILURE() << "FLAMEWRIGHT_API \"" << value << "\" is none of 1.0, 1.1, 1.2, 1.3";
+            return version;
+        }
+        version = VK_MAKE_API_VERSION(0, 1, uint32_t(value[2] - '0'), 0);
+    }
+    // 1.1 is what the layer itself needs.
+    return gpuAssisted() ? std::max(version, VK_API_VERSION_1_1) : version;
 }
 
 bool gpuRequired() {
@@ -58,8 +72,7 @@ std::unique_ptr<TestDevice> TestDevice::make(const DeviceOptions& wanted, std::s
     std::unique_ptr<TestDevice> out(new TestDevice);
     out->options = wanted;
     const bool assisted = gpuAssisted();
-    if (assisted && out->options.apiVersion < VK_API_VERSION_1_1)
-        out->options.apiVersion = VK_API_VERSION_1_1;  // what the layer itself needs
+    out->options.apiVersion = std::max(wanted.apiVersion, testApiVersion());
 
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
@@ -133,8 +146,13 @@ std::unique_ptr<TestDevice> TestDevice::make(const DeviceOptions& wanted, std::s
     queueInfo.queueFamilyIndex = out->queueFamily;
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
-    out->features_.independentBlend = out->options.independentBlend;
-    VkPhysicalDeviceFeatures enabled = out->features_;
+    if (out->options.apiVersion >= VK_API_VERSION_1_3) {  // all that the library wishes for
+        VkPhysicalDeviceFeatures supported{};
+        vkGetPhysicalDeviceFeatures(out->physicalDevice, &supported);
+        out->options.independentBlend |= supported.independentBlend == VK_TRUE;
+    }
+    out->features_.features.independentBlend = out->options.independentBlend;
+    VkPhysicalDeviceFeatures enabled = out->features_.features;
     if (assisted) {  // for the layer's own writes; the library is not told
         enabled.vertexPipelineStoresAndAtomics = VK_TRUE;
         enabled.fragmentStoresAndAtomics = VK_TRUE;
@@ -186,7 +204,10 @@ FwVulkanHost TestDevice::host() const {
         host.enabledInstanceExtensionCount = 1;
         host.enabledInstanceExtensions = kDebugUtils;
     }
-    if (options.independentBlend) host.enabledFeatures = &features_;
+    if (options.apiVersion >= VK_API_VERSION_1_1)
+        host.enabledFeatureChain = &features_;
+    else if (options.independentBlend)
+        host.enabledFeatures = &features_.features;
     return host;
 }
 
