@@ -7,7 +7,7 @@ float tileSide(uint object) { return 8.0 * sqrt(max(objects[object].tint.w, 1e-8
 float lightCellSide(uint object) {
     return clamp(exp2(floor(log2(2.5 * tileSide(object)) + 0.5)), 0.125, 2.0);
 }
-// Side of the cells whose power says how tall flames are.
+// Side of the cells within which flames lean on each other.
 float flameCellSide(uint object) { return clamp(4.0 * lightCellSide(object), 0.5, 4.0); }
 
 // Where a tile counts: above the surface, as flames are. The small cells make lights, which stand
@@ -21,10 +21,13 @@ vec3 flamePlaceOf(BurnTile tile, float side) {
            view.up.xyz * (0.1 * side);
 }
 // Wood flames for as long as it lasts, but most of it comes off near the front.
+// `age`: ticks since ignition; `share`: of the time that this takes.
+float flameFade(BurnMaterial material, float age, float share) {
+    float lasting = share * max(6.0 * looks[material.look].charTime, 8.0);
+    return 0.04 + 0.96 * exp(-age * (1.0 / 4096.0) * material.timeScale / lasting);
+}
 float flameFade(BurnTile tile) {
-    BurnMaterial material = materials[tile.object * kMaterialsPerObject];
-    float lasting = max(6.0 * looks[material.look].charTime, 8.0);
-    return 0.12 + 0.88 * exp(-float(tile.age) * (1.0 / 4096.0) * material.timeScale / lasting);
+    return flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 1.0);
 }
 
 uint mixBits(uint x) {
@@ -44,6 +47,7 @@ uint cellKey(ivec3 cell, float side) {
 uint cellWord(uint slot, uint word) { return kLightCellHeader + slot * kLightCellWords + word; }
 
 const uint kCellProbes = 24u;
+const float kFlameCover = 2.6;  // quads one over the other, over what burns
 const uint kNoCell = 0xFFFFFFFFu;
 uint findCell(uint key) {
     for (uint i = 0u; i < kCellProbes; ++i) {
@@ -55,14 +59,24 @@ uint findCell(uint key) {
     return kNoCell;
 }
 
-// m: Heskestad's height for what burns in a cell, kept sane for thin and for wide fires.
-float flameLength(float watts, float area, float tile) {
-    float diameter = sqrt(area * 1.273);
-    return max(0.235 * pow(max(watts, 1.0) * 1e-3, 0.4) - 0.6 * diameter,
-               max(0.35 * diameter, max(1.6 * tile, 0.05)));
+// m: Heskestad's height for what burns in a cell; wide weak fires are many small ones.
+float flameLength(float watts, float area) {
+    float tall = 0.235 * pow(max(watts, 1.0) * 1e-3, 0.4), diameter = sqrt(area * 1.273);
+    return max(tall - 0.6 * diameter, 0.45 * tall);
 }
-// Quads that a tile of this burning area is worth; old embers have none, or they show as dots.
-float flameQuads(float area, float len, float fade) {
-    float halfWidth = 0.27 * len;
-    return 5.0 * smoothstep(0.15, 0.45, fade) * area * fade / (4.0 * halfWidth * halfWidth);
+// W and m^2 that flame in the cell of this key.
+vec2 cellFire(uint key) {
+    uint slot = findCell(key);
+    return slot == kNoCell ? vec2(0.0) : vec2(float(cells[cellWord(slot, 1u)]),
+                                              float(cells[cellWord(slot, 5u)]) * 1e-5);
+}
+// Height where this burns nearby and that further around: neighbours draw each other up.
+float flameLength(vec2 near, vec2 around) {
+    float own = flameLength(near.x, near.y);
+    return clamp(flameLength(around.x, around.y), own, 1.5 * own);
+}
+float flameHalfWidth(float len, float area) { return max(0.13 * len, 0.12 * sqrt(area)); }
+// Tongues that an area is worth.
+float flameQuads(float area, float halfWidth) {
+    return kFlameCover * area / (4.0 * halfWidth * halfWidth);
 }

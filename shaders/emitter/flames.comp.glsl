@@ -1,14 +1,19 @@
-// Burning tiles to flame and smoke quads. All that changes a quad is a function of its tile and of
-// time: nothing is kept, and nothing pops.
+// Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of the
+// ticks at which texels caught: nothing is kept, and nothing pops. Each of a tile's slots tells one
+// short life after another; what a life looks like is settled by the state at its birth.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_PUSH
 #define FW_USE_OBJECTS readonly
 #define FW_USE_MATERIALS readonly
+#define FW_USE_TEXELS readonly
+#define FW_USE_NORMALS readonly
+#define FW_USE_STATE readonly
 #define FW_USE_COUNTERS readonly
 #define FW_USE_BURN_TILES readonly
 #include "lib/buffers.glsl"
+#include "shared/front.h"
 #include "shared/look.h"
 layout(std430, set = 0, binding = FW_BIND_LOOKS) readonly buffer LooksBuffer {
     MaterialLook looks[];
@@ -20,6 +25,8 @@ layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint dr
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 #include "emitter/cells.glsl"
 
+float saturate(float x) { return clamp(x, 0.0, 1.0); }
+
 vec3 perpendicular(vec3 n) {
     return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
 }
@@ -29,63 +36,127 @@ void emit(FlameQuad quad) {
     if (slot < min(view.flameCapacity, kFlameCapacity)) flameQuad[slot] = quad;
 }
 
+struct Foot {
+    uint texel, material;
+    float age;   // ticks at birth
+    float left;  // ticks of flame it has left now
+    bool found;
+};
+
+// A texel of the tile that flamed at a birth `ago` ticks back: of the first few met the youngest,
+// so that fire stands along the front. Later ignitions do not change the choice.
+Foot footOf(BurnTile tile, uint seed, float ago) {
+    BurnObject object = objects[tile.object];
+    uint corner = (tile.tile / object.tilesX) * 8u * object.width + (tile.tile % object.tilesX) * 8u;
+    Foot foot;
+    foot.found = false;
+    foot.age = 1e30;
+    uint met = 0u, start = seed & 63u, stride = (seed >> 6u & 63u) | 1u;
+    for (uint i = 0u; i < 64u && met < 4u; ++i) {
+        uint lane = start + i * stride & 63u;
+        uint texel = corner + (lane >> 3u) * object.width + (lane & 7u);
+        uint t = state[object.stateBase + texel];
+        if (!isSource(t) || t > view.now) continue;
+        float age = float(view.now - t) + view.ambientGround.w;
+        if (age < ago) continue;  // it caught later
+        uint material = tile.object * kMaterialsPerObject +
+                        (texels[object.texelBase + texel].y >> 16u & 7u);
+        MaterialLook look = looks[materials[material].look];
+        float lasts = materials[material].flameTicks == kNoneTexel
+                          ? 1e9 : float(materials[material].flameTicks);
+        // Thin things go on burning at their edges while a hole opens where they burnt.
+        if (look.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
+            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 /
+                                   materials[material].timeScale);
+        if (age >= lasts || age - ago >= 0.8 * lasts) continue;
+        ++met;
+        if (age - ago < foot.age) {
+            foot.found = true;
+            foot.age = age - ago;
+            foot.left = (lasts - age) / min(0.3 * lasts, 1400.0);
+            foot.texel = texel;
+            foot.material = material;
+        }
+    }
+    return foot;
+}
+
 void main() {
     uint count = counters[kRowBurn + push.burnParity].runCount;
     float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u)));
     float time = view.ambientSky.w;
+    vec3 up = view.up.xyz;
+    vec3 drift = view.wind.xyz - up * dot(view.wind.xyz, up);
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
         BurnTile tile = burnTiles[i];
-        float side = flameCellSide(tile.object), small = tileSide(tile.object);
-        MaterialLook look = looks[materials[tile.object * kMaterialsPerObject].look];
-        uint seed = mixBits(tile.object * 7919u + tile.tile * 31u + view.seed);
-        vec3 normal = tile.normalPower.xyz, up = view.up.xyz;
-        vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
-        vec3 above = flamePlaceOf(tile, side);
+        uint seed = mixBits(mixBits(tile.object * 7919u + view.seed) ^ tile.tile);
+        // Cells are met at random distances, or their borders would show in the heights.
+        vec3 jitter = vec3(unit(seed), unit(seed + 1u), unit(seed + 2u)) - 0.5;
+        float side = lightCellSide(tile.object), large = flameCellSide(tile.object);
+        vec3 beside = lightPlaceOf(tile, side) + 0.8 * jitter * side;
+        vec3 above = flamePlaceOf(tile, large) + 0.8 * jitter * large;
         float fade = flameFade(tile);
+        vec2 own = vec2(tile.normalPower.w, tile.positionArea.w) * fade;
+        vec2 near = max(cellFire(cellKey(ivec3(floor(beside / side)), side)), own);
+        vec2 around = max(cellFire(cellKey(ivec3(floor(above / large)), large)), near);
+        float likely = flameLength(near, around);
+        float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
+        float wish = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
+        // A front thinner than its flames are deep still has a row of them.
+        wish *= clamp(0.5 * likely * side / near.y, 1.0, 3.0);
+        // Lives must not depend on what burns, or a change would shake all of them.
+        float scale = sqrt(clamp(6.0 * tileSide(tile.object), 0.05, 3.0));
 
         for (uint k = 0u; k < 4u; ++k) {
             bool smoke = k == 3u;
-            uint s = mixBits(seed + k * 977u);
-            // Cells are met at random distances, or their borders would show in the heights.
-            vec3 jitter = vec3(unit(s), unit(s + 1u), unit(s + 2u)) - 0.5;
-            uint slot = findCell(cellKey(
-                ivec3(floor((above + jitter * side) / side)), side));
-            if (slot == kNoCell) slot = findCell(cellKey(ivec3(floor(above / side)), side));
-            float power = tile.normalPower.w * fade, area = tile.positionArea.w * fade;
-            if (slot != kNoCell) {
-                power = max(power, float(cells[cellWord(slot, 1u)]) * 16.0);
-                area = max(area, float(cells[cellWord(slot, 5u)]) * 1e-5);
-            }
-            float len = flameLength(power, area, small) * (look.flame > 0.0 ? look.flame : 1.0);
-            float wish = flameQuads(tile.positionArea.w, len, fade) * share;
-            if (smoke) wish = min(0.12 * wish * look.smoke, 0.5);
-            float spare = wish - (smoke ? 0.0 : float(k)) - unit(s + 3u);
-            if (spare <= 0.0) continue;
-            float opacity = smoothstep(0.0, 0.25, spare);
-
-            float period = (smoke ? 1.6 : 0.55) * sqrt(len + 0.05) + (smoke ? 0.6 : 0.18);
-            float life = time / period + unit(s + 4u) * 16.0;
+            MaterialLook mainLook = looks[materials[tile.object * kMaterialsPerObject].look];
+            float odds = smoke ? min(0.10 * wish * mainLook.smoke, 0.5) : min(wish / 3.0, 1.0);
+            uint s = mixBits(seed + (k + 1u) * 0x9e3779b9u);
+            float period = (smoke ? 0.7 + 1.4 * scale : 0.32 + 0.5 * scale) * (0.8 + 0.4 * unit(s));
+            float life = time / period + unit(s + 1u) * 16.0;
             float generation = floor(life), a = life - generation;
             uint g = mixBits(s + uint(generation) * 2654435761u);
+            float chance = odds - unit(g + 4u);
+            if (chance <= 0.0) continue;
+            Foot foot = footOf(tile, mixBits(g + 5u), a * period * 4096.0);
+            if (!foot.found) continue;
+            float vigour = flameFade(materials[foot.material], foot.age, 0.2);
+            // The young ones first: a line of fire, and embers behind it.
+            float strength = smoothstep(0.0, 0.4 * odds, chance) * saturate(1.8 * (vigour - 0.07)) *
+                             smoothstep(0.0, 1.0, foot.left);
+            if (strength < 0.02) continue;
+            BurnObject object = objects[tile.object];
+            MaterialLook look = looks[materials[foot.material].look];
+            uvec2 packedTexel = texels[object.texelBase + foot.texel];
+            vec4 rest = vec4(object.originQuantum.xyz +
+                                 object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
+                                                               packedTexel.x >> 16u,
+                                                               packedTexel.y & 0xFFFFu), 1.0);
+            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest),
+                              dot(object.worldRow2, rest));
+            vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
+            vec3 normal = normalize(vec3(dot(object.worldRow0.xyz, n),
+                                         dot(object.worldRow1.xyz, n),
+                                         dot(object.worldRow2.xyz, n)) + up * 1e-4);
+            vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
             float r1 = unit(g), r2 = unit(g + 1u), r3 = unit(g + 2u), r4 = unit(g + 3u);
-            vec3 place = tile.positionArea.xyz +
-                         (right * (r1 - 0.5) + ahead * (r2 - 0.5)) * max(small, 0.12 * len);
+            float len = 0.85 * likely * (look.flame > 0.0 ? look.flame : 1.0);
             FlameQuad quad;
             float rise = 1.0 + 2.5 * sqrt(len);  // m/s
-            vec3 drift = view.wind.xyz - up * dot(view.wind.xyz, up);
             if (!smoke) {
-                float grown = 0.55 + 0.45 * smoothstep(0.0, 0.4, a);
-                float tall = len * (0.55 + 0.75 * r3 * r3) * grown;
+                float grown = 0.4 + 0.6 * smoothstep(0.0, 0.45, a);
+                float tall = len * (0.55 + 0.75 * r3 * r3) * grown * (0.35 + 0.65 * strength);
                 vec3 axis = normalize(up * rise + drift + normal * (0.16 * rise) +
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
-                float halfWidth = (0.15 + 0.10 * r2) * len + 0.25 * small;
+                float halfWidth = flameHalfWidth(len, own.y) * (0.8 + 0.5 * r2) *
+                                  (0.5 + 0.5 * strength);
                 float loose = smoothstep(0.55, 1.0, a);
                 quad.baseHeight = vec4(place + normal * (0.15 * halfWidth) - axis * (0.06 * tall) +
-                                           axis * (0.45 * tall * loose * loose), tall);
+                                           axis * (0.10 * tall * loose * loose), tall);
                 quad.axisWidth = vec4(axis, halfWidth * (1.0 - 0.35 * loose));
-                quad.opacity = opacity * smoothstep(0.0, 0.22, a) *
+                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) *
                                (1.0 - smoothstep(0.62, 1.0, a));
-                quad.phase = time * rise * 0.5 / max(len, 0.05) + 7.0 * r4;
+                quad.phase = a * period * rise * 0.5 / max(len, 0.05) + 7.0 * r4;
                 quad.kelvin = 1570.0 + 90.0 * r3;
             } else {
                 float age = a * period;
@@ -94,7 +165,7 @@ void main() {
                           drift * (0.75 * age) + right * ((r2 - 0.5) * 0.5 * len * a);
                 quad.baseHeight = vec4(at - up * size, 2.0 * size);
                 quad.axisWidth = vec4(up, size);
-                quad.opacity = opacity * 0.42 * min(look.smoke, 1.6) * smoothstep(0.0, 0.30, a) *
+                quad.opacity = strength * 0.42 * min(look.smoke, 1.6) * smoothstep(0.0, 0.30, a) *
                                (1.0 - smoothstep(0.35, 1.0, a));
                 quad.phase = 0.10 * age + 5.0 * r4;
                 // The fire below lights it from its first moments.

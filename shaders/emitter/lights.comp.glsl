@@ -41,10 +41,12 @@ void addTo(BurnTile tile, vec3 place, float side, uint level) {
         uint slot = (key + i) % kLightCells;
         uint there = atomicCompSwap(cells[cellWord(slot, 0u)], 0u, key);
         if (there != 0u && there != key) continue;
-        uint weight = max(uint(tile.normalPower.w * 0.0625), 1u);  // 16 W
-        uvec3 offset = uvec3((at - vec3(cell)) * 256.0) * weight;
+        uint weight = max(uint(tile.normalPower.w + 0.5), 1u);  // W
         atomicAdd(cells[cellWord(slot, 1u)], weight);
-        for (uint k = 0u; k < 3u; ++k) atomicAdd(cells[cellWord(slot, 2u + k)], offset[k]);
+        if (level == 0u) {
+            uvec3 offset = uvec3((at - vec3(cell)) * 64.0) * weight;
+            for (uint k = 0u; k < 3u; ++k) atomicAdd(cells[cellWord(slot, 2u + k)], offset[k]);
+        }
         atomicAdd(cells[cellWord(slot, 5u)], uint(tile.positionArea.w * 1e5) + 1u);
         atomicMax(cells[cellWord(slot, 6u)], floatBitsToUint(side));
         // Every tile of a cell writes the same.
@@ -58,7 +60,7 @@ void addTo(BurnTile tile, vec3 place, float side, uint level) {
 vec3 cellPlace(uint slot) {
     float side = uintBitsToFloat(cells[cellWord(slot, 6u)]);
     vec3 within = vec3(cells[cellWord(slot, 2u)], cells[cellWord(slot, 3u)],
-                       cells[cellWord(slot, 4u)]) / (256.0 * float(cells[cellWord(slot, 1u)]));
+                       cells[cellWord(slot, 4u)]) / (64.0 * float(cells[cellWord(slot, 1u)]));
     ivec3 cell = ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)],
                        cells[cellWord(slot, 9u)]);
     return (vec3(cell) + within) * side;
@@ -157,7 +159,7 @@ void main() {
         }
         float side = lightPlace[nearest * 4u + 3u];
         if (least > 36.0 * side * side) continue;  // too far to speak for
-        uint weight = cells[cellWord(candidate[i], 1u)];
+        uint weight = max(cells[cellWord(candidate[i], 1u)] >> 4u, 1u);
         vec3 d = here - vec3(lightPlace[nearest * 4u], lightPlace[nearest * 4u + 1u],
                              lightPlace[nearest * 4u + 2u]);
         ivec3 offset = ivec3(d / side * 64.0) * int(min(weight, 100000u));
@@ -183,7 +185,7 @@ void main() {
             uint key = cells[cellWord(lightSlot[light], 0u)];
             float area = float(lightArea[light]) * 1e-5;
             float power = weight * 16.0;
-            float len = flameLength(power, area, 0.0);
+            float len = flameLength(power, area);
             vec3 at = vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u],
                            lightPlace[light * 4u + 2u]) + mean + view.up.xyz * (0.25 * len);
             // Two sines that never meet again: no lookup, no pop.
@@ -199,14 +201,13 @@ void main() {
         lights[light] = l;
     }
     // How many quads are wished for: flames share what there is.
-    for (uint i = me; i < count; i += 128u) {
-        BurnTile tile = burnTiles[i];
-        float side = flameCellSide(tile.object);
-        uint slot = findCell(cellKey(ivec3(floor(flamePlaceOf(tile, side) / side)), side));
-        if (slot == kNoCell) continue;
-        float len = flameLength(float(cells[cellWord(slot, 1u)]) * 16.0,
-                                float(cells[cellWord(slot, 5u)]) * 1e-5, tileSide(tile.object));
-        float wish = flameQuads(tile.positionArea.w, len, flameFade(tile));
-        atomicAdd(cells[0], uint(min(wish, 3.0) * 16.0));
+    for (uint i = me; i < competing; i += 128u) {
+        uint slot = candidate[i];
+        vec2 near = vec2(float(cells[cellWord(slot, 1u)]),
+                         float(cells[cellWord(slot, 5u)]) * 1e-5);
+        float large = clamp(4.0 * uintBitsToFloat(cells[cellWord(slot, 6u)]), 0.5, 4.0);
+        vec2 around = cellFire(cellKey(ivec3(floor(cellPlace(slot) / large)), large));
+        float wish = flameQuads(near.y, flameHalfWidth(flameLength(near, around), 0.0));
+        atomicAdd(cells[0], uint(min(wish, 4096.0) * 16.0));
     }
 }
