@@ -206,9 +206,15 @@ void checkTarget(const FwVulkanTargetDef& def) {
                        "FwVulkanTargetDef::%s is %u; the limits are [%u, %u].", field, value, low,
                        high);
     };
-    if (def.flags & ~uint32_t(FW_TARGET_COMPOSITE))
+    constexpr uint32_t kNothing = FW_TARGET_NO_FLAMES | FW_TARGET_NO_SURFACES;
+    if (def.flags & ~(uint32_t(FW_TARGET_COMPOSITE) | kNothing))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x1.", def.flags);
+                   "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x7.", def.flags);
+    if ((def.flags & kNothing) == kNothing)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::flags is 0x%x; FW_TARGET_NO_FLAMES and "
+                   "FW_TARGET_NO_SURFACES together leave nothing to draw.",
+                   def.flags);
     const bool composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
     if (!composite) checkPointer(def.renderPass, "FwVulkanTargetDef::renderPass");
     limit(def.samples, "samples", 1, 16);
@@ -220,14 +226,23 @@ void checkTarget(const FwVulkanTargetDef& def) {
     limit(def.depthMode, "depthMode", 0, FW_DEPTH_SAMPLED);
     limit(def.reversedDepth, "reversedDepth", 0, 1);
     limit(def.encoding, "encoding", 0, FW_OUTPUT_DISPLAY_UNORM);
-    limit(def.reserved, "reserved", 0, 0);
+    if (def.depthMode == FW_DEPTH_SAMPLED && (def.flags & FW_TARGET_NO_FLAMES))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::flags has FW_TARGET_NO_FLAMES and depthMode is "
+                   "FW_DEPTH_SAMPLED, which draws flames alone.");
+    limit(def.depthSamples, "depthSamples", 0, 16);
+    if (def.depthSamples & (def.depthSamples - 1))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthSamples is %u; it is 0, 1, 2, 4, 8 or 16.",
+                   def.depthSamples);
+    if (def.depthSamples && def.depthMode != FW_DEPTH_SAMPLED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthSamples is %u and depthMode is %u; it is for "
+                   "FW_DEPTH_SAMPLED alone.",
+                   def.depthSamples, def.depthMode);
     if (def.colorFormat == VK_FORMAT_UNDEFINED)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::colorFormat is VK_FORMAT_UNDEFINED.");
-    if (def.depthMode == FW_DEPTH_SAMPLED && !composite)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthMode is FW_DEPTH_SAMPLED; that needs "
-                   "FW_TARGET_COMPOSITE.");
     const bool depth = def.depthMode != FW_DEPTH_NONE;
     if (depth != (def.depthFormat != VK_FORMAT_UNDEFINED))
         core::fail(FW_ERROR_INVALID_ARGUMENT,

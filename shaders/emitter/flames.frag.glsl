@@ -13,14 +13,41 @@ layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 layout(location = 0) in vec2 inPlace;
 layout(location = 1) flat in vec4 inState;
 layout(location = 2) flat in uint inKind;
-layout(location = 3) in float inHeight;
+layout(location = 3) flat in float inWidth;
 
 layout(location = 0) out vec4 outColor;
+
+#ifdef FW_SOFT
+// The host's depth at this pixel; of several samples the first, for a choice of one needs a feature.
+#if FW_SOFT == 2
+layout(set = 3, binding = 0) uniform sampler2DMS sceneDepth;
+#else
+layout(set = 3, binding = 0) uniform sampler2D sceneDepth;
+#endif
+#endif
 
 #include "lib/colour.glsl"
 #include "lib/look_noise.glsl"
 
 const float kFlameWhite = 2.4;  // of thin soot at 1600 K, in the host's units
+
+#ifdef FW_SOFT
+// m along the view from here to what the host drew; below 0: we are behind it. Works for any
+// projection matrix, reversed or infinite: depth is A + B / w with A and B from its rows.
+float gapToScene() {
+    float depth = texelFetch(sceneDepth, ivec2(gl_FragCoord.xy), 0).r;
+    vec3 alongZ = vec3(view.clip0.z, view.clip1.z, view.clip2.z);
+    vec3 alongW = vec3(view.clip0.w, view.clip1.w, view.clip2.w);
+    if (view.forward.w < 0.5) {  // orthographic
+        float perMetre = dot(alongZ, view.forward.xyz);
+        return (depth - gl_FragCoord.z) / (abs(perMetre) > 1e-12 ? perMetre : 1e-12);
+    }
+    float a = dot(alongZ, alongW) / dot(alongW, alongW), b = view.clip3.z - a * view.clip3.w;
+    float d = (depth - a) / b;  // 1 / w
+    float here = (gl_FragCoord.z - a) / b;
+    return 1.0 / max(d, 1e-6) - 1.0 / max(here, 1e-6);
+}
+#endif
 
 void main() {
     float opacity = inState.x, phase = inState.y, aspect = inState.w;
@@ -76,6 +103,14 @@ void main() {
                     (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
         color = (lit * 0.17 + fire) * alpha;
     }
+#ifdef FW_SOFT
+    // A tongue is as deep as it is wide, a puff twice so.
+    float gap = gapToScene();
+    float depthOf = (inKind & 1u) == 0u ? 0.35 * inWidth : 0.9 * inWidth;
+    float soft = smoothstep(0.0, 1.0, gap / depthOf);
+    color *= soft;
+    alpha *= soft;
+#endif
     if (alpha < 0.002) discard;
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {

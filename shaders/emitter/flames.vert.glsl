@@ -16,7 +16,7 @@ layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; 
 layout(location = 0) out vec2 outPlace;        // x: -1..1, y: 0 foot .. 1 tip
 layout(location = 1) flat out vec4 outState;   // opacity, phase, kelvin, length over half width
 layout(location = 2) flat out uint outKind;
-layout(location = 3) out float outHeight;      // m above the foot, along world up
+layout(location = 3) flat out float outWidth;  // m, half of it
 
 void main() {
     FlameQuad quad = flameQuad[drawArgs[kFlameOrder + gl_InstanceIndex]];
@@ -45,6 +45,6 @@ void main() {
     outPlace = place;
     outState = vec4(quad.opacity, quad.phase, quad.kelvin, quad.baseHeight.w / quad.axisWidth.w);
     outKind = quad.kind;
-    outHeight = dot(at - foot, view.up.xyz);
+    outWidth = quad.axisWidth.w;
     gl_Position = view.clip0 * at.x + view.clip1 * at.y + view.clip2 * at.z + view.clip3;
 }

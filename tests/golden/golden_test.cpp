@@ -32,7 +32,8 @@ class Golden : public GpuTest {
         GpuTest::SetUp();
         if (!device_) return;
         color_ = makeImage(kColor, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
-        depth_ = makeImage(kDepth, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+        depth_ = makeImage(kDepth,
+                           VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                            VK_IMAGE_ASPECT_DEPTH_BIT);
         makePass();
         VkBufferCreateInfo info{};
@@ -166,14 +167,16 @@ class Golden : public GpuTest {
         must(vkCreateFramebuffer(device_->device, &frame, nullptr, &framebuffer_));
     }
 
-    FwTargetId makeTarget(bool reversed) {
+    FwTargetId makeTarget(bool reversed, uint32_t flags = 0) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-        def.renderPass = pass_;
+        const bool composite = (flags & FW_TARGET_COMPOSITE) != 0;
+        def.flags = flags;
+        def.renderPass = composite ? VK_NULL_HANDLE : pass_;
         def.colorFormat = kColor;
         def.depthFormat = kDepth;
         def.samples = 1;
         def.colorAttachmentCount = 1;
-        def.depthMode = FW_DEPTH_TEST;
+        def.depthMode = composite ? FW_DEPTH_SAMPLED : FW_DEPTH_TEST;
         def.reversedDepth = reversed;
         def.encoding = FW_OUTPUT_DISPLAY_UNORM;
         FwTargetId id{};
@@ -266,9 +269,12 @@ class Golden : public GpuTest {
         return view;
     }
 
-    // Lets the world burn for `seconds`, then draws it.
-    Picture burnAndDraw(FwWorld* world, float seconds, FwView view, bool reversed) {
-        const FwTargetId target = makeTarget(reversed);
+    // Lets the world burn for `seconds`, then draws it. `soft`: surfaces in the host's pass, then
+    // flames over its images.
+    Picture burnAndDraw(FwWorld* world, float seconds, FwView view, bool reversed,
+                        bool soft = false) {
+        const FwTargetId target = makeTarget(reversed, soft ? FW_TARGET_NO_FLAMES : 0);
+        const FwTargetId over = soft ? makeTarget(reversed, FW_TARGET_COMPOSITE) : FwTargetId{};
         int left = int(seconds + 0.5f);
         view.time = 3.0f;
         for (; left > 0; --left) {
@@ -279,7 +285,7 @@ class Golden : public GpuTest {
         for (int i = 0; i < 12; ++i) {  // what is predicted grows by a ring a frame
             const FwVulkanFrame frame = frames_->begin(0);
             EXPECT_EQ(fwWorld_RecordOutside(world, &frame, &view), FW_OK);
-            if (i == 11) drawInto(frame, world, target, view, reversed);
+            if (i == 11) drawInto(frame, world, target, over, view, reversed);
             frames_->submit();
         }
         frames_->waitAll();
@@ -292,8 +298,8 @@ class Golden : public GpuTest {
         return picture;
     }
 
-    void drawInto(const FwVulkanFrame& frame, FwWorld* world, FwTargetId target, const FwView& view,
-                  bool reversed) {
+    void drawInto(const FwVulkanFrame& frame, FwWorld* world, FwTargetId target, FwTargetId over,
+                  const FwView& view, bool reversed) {
         std::array<VkClearValue, 2> clears{};
         clears[0].color = {{0.10f, 0.11f, 0.13f, 1.0f}};
         clears[1].depthStencil.depth = reversed ? 0.0f : 1.0f;
@@ -308,6 +314,29 @@ class Golden : public GpuTest {
         const VkViewport viewport{0, 0, float(kWidth), float(kHeight), 0, 1};
         EXPECT_EQ(fwWorld_RecordInside(world, &frame, target, &view, &viewport), FW_OK);
         vkCmdEndRenderPass(frame.commandBuffer);
+        if (over.index1) {
+            FwVulkanComposite images = fwDefaultVulkanComposite();
+            images.width = kWidth;
+            images.height = kHeight;
+            images.color = {
+                color_.image,
+                color_.view,
+                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+                VK_PIPELINE_STAGE_TRANSFER_BIT,
+                VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                VK_ACCESS_TRANSFER_READ_BIT};
+            images.depth = {depth_.image,
+                            depth_.view,
+                            VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                            VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                            VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+                            VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT,
+                            VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                            VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
+            EXPECT_EQ(fwWorld_RecordComposite(world, &frame, over, &view, &images), FW_OK);
+        }
         VkBufferImageCopy region{};
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         region.imageExtent = {kWidth, kHeight, 1};
@@ -359,6 +388,14 @@ TEST_F(Golden, BurntOpenBox) {
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true);
     const FwView view = makeView({-0.8f, 0.55f, 1.5f}, false, false);
     EXPECT_TRUE(matchesGolden("open_box", burnAndDraw(world, 16, view, false), kTolerance));
+}
+
+// Flames against the sampled depth of the surfaces that they stand on.
+TEST_F(Golden, SoftFlames) {
+    FwWorld* world = makeWorld(60);
+    addThing(world, FW_MATERIAL_PINE, 0.5f, 128, true);
+    const FwView view = makeView({-0.8f, 0.55f, 1.5f}, true, true);
+    EXPECT_TRUE(matchesGolden("soft_flames", burnAndDraw(world, 6, view, true, true), kTolerance));
 }
 
 TEST_F(Golden, ReversedDepthIsTheSamePicture) {

@@ -19,6 +19,11 @@ struct Shot {  // how the host draws
     uint32_t samples = 1;
     bool secondary = false, reversedDepth = false, composite = false, depth = true;
     FwDepthMode depthMode = FW_DEPTH_TEST;
+    uint32_t flags = 0;         // FwTargetFlags beyond FW_TARGET_COMPOSITE
+    uint32_t depthSamples = 0;  // of a sampled depth, 0: as samples
+    float depthValue = -1;  // everywhere in a composite's or a sampled depth; -1: as the mode says
+    [[nodiscard]] bool attachesDepth() const { return depth && depthMode != FW_DEPTH_SAMPLED; }
+    [[nodiscard]] bool samplesDepth() const { return depth && depthMode == FW_DEPTH_SAMPLED; }
 };
 
 struct Picture {
@@ -171,7 +176,7 @@ class HostDraw : public GpuTest {
         add(shot.color, shot.samples, VK_ATTACHMENT_LOAD_OP_CLEAR,
             resolves ? VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL
                      : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-        if (shot.depth)
+        if (shot.attachesDepth())
             add(VK_FORMAT_D32_SFLOAT, shot.samples, VK_ATTACHMENT_LOAD_OP_CLEAR,
                 VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
         if (resolves)
@@ -184,7 +189,7 @@ class HostDraw : public GpuTest {
         VkSubpassDescription subpass{};
         subpass.colorAttachmentCount = 1;
         subpass.pColorAttachments = &color;
-        if (shot.depth) subpass.pDepthStencilAttachment = &depth;
+        if (shot.attachesDepth()) subpass.pDepthStencilAttachment = &depth;
         if (resolves) subpass.pResolveAttachments = &resolve;
         VkSubpassDependency out{};
         out.dstSubpass = VK_SUBPASS_EXTERNAL;
@@ -210,7 +215,8 @@ class HostDraw : public GpuTest {
     FwTargetId registerTarget(const Shot& shot, VkRenderPass pass) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         def.renderPass = pass;
-        def.flags = shot.composite ? FW_TARGET_COMPOSITE : 0;
+        def.flags = shot.flags | (shot.composite ? FW_TARGET_COMPOSITE : 0);
+        def.depthSamples = shot.depthSamples;
         def.colorFormat = shot.color;
         def.depthFormat = shot.depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED;
         def.samples = shot.samples;
@@ -241,10 +247,11 @@ class HostDraw : public GpuTest {
             VK_IMAGE_ASPECT_COLOR_BIT);
         HostImage depth, resolved = color;
         if (shot.depth)
-            depth = makeImage(
-                VK_FORMAT_D32_SFLOAT, shot.samples,
-                VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                VK_IMAGE_ASPECT_DEPTH_BIT);
+            depth = makeImage(VK_FORMAT_D32_SFLOAT,
+                              shot.depthSamples ? shot.depthSamples : shot.samples,
+                              VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                  VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                              VK_IMAGE_ASPECT_DEPTH_BIT);
         if (shot.samples > 1)
             resolved = makeImage(shot.color, 1, colorUsage, VK_IMAGE_ASPECT_COLOR_BIT);
         const uint32_t pixelBytes = shot.color == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
@@ -272,7 +279,7 @@ class HostDraw : public GpuTest {
         VkFramebuffer framebuffer = VK_NULL_HANDLE;
         if (pass) {
             std::vector<VkImageView> views{color.view};
-            if (shot.depth) views.push_back(depth.view);
+            if (shot.attachesDepth()) views.push_back(depth.view);
             if (shot.samples > 1) views.push_back(resolved.view);
             VkFramebufferCreateInfo info{};
             info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
@@ -316,12 +323,17 @@ class HostDraw : public GpuTest {
                 begin.renderPass = pass;
                 begin.framebuffer = framebuffer;
                 begin.renderArea.extent = {kWidth, kHeight};
-                begin.clearValueCount = shot.depth ? 2 : 1;
+                begin.clearValueCount = shot.attachesDepth() ? 2 : 1;
                 begin.pClearValues = clears;
+                if (shot.samplesDepth()) lendDepth(commands, depth, shot.depthValue);
                 vkCmdBeginRenderPass(commands, &begin,
                                      second ? VK_SUBPASS_CONTENTS_SECONDARY_COMMAND_BUFFERS
                                             : VK_SUBPASS_CONTENTS_INLINE);
                 FwVulkanFrame ours = frame;
+                if (shot.samplesDepth()) {
+                    ours.sampledDepth = depth.view;
+                    ours.sampledDepthLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+                }
                 if (second) {
                     VkCommandBufferInheritanceInfo inherit{};
                     inherit.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO;
@@ -336,7 +348,7 @@ class HostDraw : public GpuTest {
                     ours.flags = FW_FRAME_SECONDARY;
                 }
                 clearRect(ours.commandBuffer, {{1, 0, 0, 1}}, 0, 8);
-                if (shot.depth) occlude(ours.commandBuffer, nearest);
+                if (shot.attachesDepth()) occlude(ours.commandBuffer, nearest);
                 (void)takeCounts();
                 EXPECT_TRUE(rig_->backend.recordInside(ours, target, view, viewport));
                 inside = takeCounts();
@@ -347,7 +359,10 @@ class HostDraw : public GpuTest {
                 }
                 vkCmdEndRenderPass(commands);
                 EXPECT_GT(inside.draws, 0u);
-                EXPECT_EQ(inside.work + inside.barriers + inside.passes + inside.total(), 0u);
+                EXPECT_EQ(inside.work + inside.barriers + inside.passes, 0u);
+                if (!shot.samplesDepth()) {
+                    EXPECT_EQ(inside.total(), 0u);
+                }
             }
             VkBufferImageCopy region{};
             region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
@@ -387,6 +402,30 @@ class HostDraw : public GpuTest {
         return picture;
     }
 
+    // A depth that the host drew: `value` everywhere, then ready for our fragment shaders.
+    static void lendDepth(VkCommandBuffer commands, const HostImage& depth, float value) {
+        VkImageMemoryBarrier barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+        barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.image = depth.image;
+        barrier.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                             &barrier);
+        const VkClearDepthStencilValue clear{value, 0};
+        vkCmdClearDepthStencilImage(commands, depth.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                    &clear, 1, &barrier.subresourceRange);
+        barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        barrier.newLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                             &barrier);
+    }
+
     // Nearest depth over the left half, by a clear in the pass.
     static void occlude(VkCommandBuffer commands, float nearest) {
         VkClearAttachment clear{};
@@ -419,8 +458,10 @@ class HostDraw : public GpuTest {
         vkCmdClearColorImage(commands, color.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &blue, 1,
                              &barriers[0].subresourceRange);
         if (shot.depth) {
-            const VkClearDepthStencilValue value{
-                shot.depthMode == FW_DEPTH_TEST_ONLY ? nearest : farthest, 0};
+            const VkClearDepthStencilValue value{shot.depthValue >= 0 ? shot.depthValue
+                                                 : shot.depthMode == FW_DEPTH_TEST_ONLY ? nearest
+                                                                                        : farthest,
+                                                 0};
             vkCmdClearDepthStencilImage(commands, depth.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                         &value, 1, &barriers[1].subresourceRange);
         }
@@ -537,6 +578,73 @@ TEST_F(HostDraw, Composite) {
     shot.composite = true;
     shot.depth = false;
     EXPECT_GT(shoot(shot).unlike(0, kWidth, 0, 0, 1), 600u);
+}
+
+// Depth of a plane that faces the eye, at `distance` m from it.
+float depthOf(const FwView& view, float distance) {
+    const float z = -distance;
+    return (view.projection[10] * z + view.projection[14]) / (view.projection[11] * z);
+}
+
+double lightOf(const Picture& picture) {  // all but the host's blue and its strips
+    double sum = 0;
+    for (uint32_t y = 0; y < kHeight; ++y)
+        for (uint32_t x = 8; x < kWidth - 8; ++x)
+            sum += double(picture.at(x, y)[0]) + double(picture.at(x, y)[1]);
+    return sum;
+}
+
+// Flames against a depth that is sampled: hidden behind it, whole before it, and in between they
+// fade where a depth test cuts them off. However the host lends it, the picture is the same.
+TEST_F(HostDraw, SampledDepthIsSoft) {
+    if (!device_) return;
+    const float planes[4] = {2.0f, 2.44f, 2.5f, 4.0f};  // m from the eye; the fire is at 2.5
+    std::vector<float> reference;
+    for (const bool reversed : {false, true}) {
+        for (const uint32_t samples : {1u, 4u}) {
+            for (const bool composite : {true, false}) {
+                SCOPED_TRACE(std::to_string(samples) + (reversed ? " reversed" : "") +
+                             (composite ? " composite" : " inside"));
+                Shot soft;
+                soft.composite = composite;
+                soft.reversedDepth = reversed;
+                soft.depthMode = FW_DEPTH_SAMPLED;
+                soft.depthSamples = samples;
+                Shot hard;
+                hard.composite = true;
+                hard.reversedDepth = reversed;
+                hard.depthMode = FW_DEPTH_TEST_ONLY;
+                hard.flags = FW_TARGET_NO_SURFACES;
+                double softLight[4], hardLight[4];
+                std::vector<float> all;
+                for (int i = 0; i < 4; ++i) {
+                    soft.depthValue = hard.depthValue =
+                        depthOf(reversed ? reversed_ : normal_, planes[i]);
+                    Picture picture = shoot(soft);
+                    if (!composite) {  // the host's strips are not of ours
+                        EXPECT_EQ(picture.unlike(0, 8, 1, 0, 0), 0u);
+                        EXPECT_EQ(picture.unlike(kWidth - 8, kWidth, 0, 1, 0), 0u);
+                    }
+                    softLight[i] = lightOf(picture);
+                    hardLight[i] = lightOf(shoot(hard));
+                    for (uint32_t y = 0; y < kHeight; ++y)
+                        all.insert(all.end(), picture.at(8, y), picture.at(kWidth - 8, y));
+                }
+                EXPECT_EQ(softLight[0], 0) << "behind a wall";
+                EXPECT_EQ(hardLight[0], 0);
+                EXPECT_GT(hardLight[3], 100);
+                EXPECT_NEAR(softLight[3], hardLight[3], 1e-3 * hardLight[3]) << "nothing near";
+                EXPECT_LT(softLight[2], 0.9 * hardLight[2]) << "a wall among the flames";
+                EXPECT_GT(softLight[2], 0.1 * hardLight[2]);
+                EXPECT_LT(softLight[1], softLight[2]);
+                if (reference.empty()) reference = all;
+                float most = 0;
+                for (size_t i = 0; i < all.size(); ++i)
+                    most = std::max(most, std::abs(all[i] - reference[i]));
+                EXPECT_LE(most, 3.5f / 255) << "the picture";
+            }
+        }
+    }
 }
 
 // A window that is resized every frame, down to one pixel, over a fire that goes on: a warmed-up
@@ -682,6 +790,12 @@ TEST_F(HostDraw, TargetsAreChecked) {
     refused([](auto& d) { d.depthMode = 17; }, "depthMode");
     refused([](auto& d) { d.depthFormat = VK_FORMAT_UNDEFINED; }, "depthFormat");
     refused([](auto& d) { d.colorFormat = VK_FORMAT_R32G32B32A32_UINT; }, "colorFormat");
+    refused(
+        [](auto& d) {
+            d.depthMode = FW_DEPTH_SAMPLED;
+            d.depthSamples = 16;
+        },
+        "depthSamples is 16");
     if (!device_->options.independentBlend)
         refused([](auto& d) { d.colorAttachmentCount = 2; },
                 "FwVulkanTargetDef::colorAttachmentCount is 2; more than 1 needs the feature "

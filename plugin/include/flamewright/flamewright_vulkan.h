@@ -62,7 +62,9 @@ typedef enum FwDepthMode {
     FW_DEPTH_NONE = 0,      /* the target has no depth */
     FW_DEPTH_TEST = 1,      /* tested and written in the host's pass */
     FW_DEPTH_TEST_ONLY = 2, /* tested, never written by us */
-    FW_DEPTH_SAMPLED = 3,   /* composite only: sampled, not attached; refused in this version */
+    FW_DEPTH_SAMPLED = 3,   /* sampled, not attached: flames and smoke, which fade softly where they
+                               meet what the image holds. Surfaces need an attached depth: draw them
+                               first, by a target of another mode with FW_TARGET_NO_FLAMES. */
     FW_DEPTH_MODE_FORCE32 = 0x7fffffff
 } FwDepthMode;
 typedef enum FwOutputEncoding {
@@ -76,7 +78,7 @@ typedef struct FwVulkanTargetDef {
     uint32_t structSize;
     uint32_t subpass;
     VkRenderPass renderPass;       /* the host's; null only with FW_TARGET_COMPOSITE */
-    VkFormat colorFormat, depthFormat; /* depthFormat UNDEFINED if none */
+    VkFormat colorFormat, depthFormat; /* depthFormat UNDEFINED if none; that of the sampled image */
     uint32_t samples;              /* 1, 2, 4, 8, 16 */
     uint32_t colorAttachmentCount; /* of the subpass, [1, 8]; we write the first and mask the others off: above 1 needs independentBlend declared */
     uint32_t viewMask;             /* 0; anything else is refused in this version */
@@ -84,10 +86,13 @@ typedef struct FwVulkanTargetDef {
     uint32_t reversedDepth;        /* 1: near is 1 */
     uint32_t encoding;             /* FwOutputEncoding */
     uint32_t flags;                /* FwTargetFlags */
-    uint32_t reserved;
+    uint32_t depthSamples;         /* of an image for FW_DEPTH_SAMPLED: 0 (default): as samples, or 1..16
+                                      (of several its first sample counts) */
 } FwVulkanTargetDef;
 typedef enum FwTargetFlags {
     FW_TARGET_COMPOSITE = 1, /* for fwWorld_RecordComposite: we make the pass */
+    FW_TARGET_NO_FLAMES = 2, /* surfaces alone */
+    FW_TARGET_NO_SURFACES = 4, /* flames and smoke alone */
     FW_TARGET_FLAGS_FORCE32 = 0x7fffffff
 } FwTargetFlags;
 static inline FwVulkanTargetDef fwDefaultVulkanTargetDef(void) {
@@ -110,7 +115,9 @@ typedef struct FwVulkanFrame {
     uint64_t completedFrameIndex;    /* the GPU is done with this one and all before: we may reuse */
     uint32_t frameSlot, framesInFlight; /* slot pacing: the slot's last use is done; 0 in flight is refused */
     float deltaTime;                 /* s, [0, 10]; RecordOutside only */
-    uint32_t reserved;
+    VkImageLayout sampledDepthLayout; /* of the next while we draw: GENERAL or one of the READ_ONLY ones */
+    VkImageView sampledDepth;        /* RecordInside on a target with FW_DEPTH_SAMPLED, where it is needed:
+                                        its depth aspect alone, ready for our fragment shaders */
 } FwVulkanFrame;
 static inline FwVulkanFrame fwDefaultVulkanFrame(void) {
     FwVulkanFrame d; fwInitDef(FW_DEF_VULKAN_FRAME, &d, (uint32_t)sizeof d); return d;
@@ -141,7 +148,8 @@ typedef struct FwVulkanComposite {
     uint32_t structSize, flags;       /* FwCompositeFlags */
     uint32_t width, height;           /* pixels, >= 1; of both images */
     FwVulkanImage color;              /* usage COLOR_ATTACHMENT */
-    FwVulkanImage depth;              /* usage DEPTH_STENCIL_ATTACHMENT, or SAMPLED in that mode */
+    FwVulkanImage depth;              /* usage DEPTH_STENCIL_ATTACHMENT, or SAMPLED in that mode: then
+                                         the view has the depth aspect alone */
 } FwVulkanComposite;
 static inline FwVulkanComposite fwDefaultVulkanComposite(void) {
     FwVulkanComposite d; fwInitDef(FW_DEF_VULKAN_COMPOSITE, &d, (uint32_t)sizeof d); return d;

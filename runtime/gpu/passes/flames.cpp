@@ -28,8 +28,16 @@ constexpr Use kDrawUses[] = {
 
 const ComputePass kFlameQuadsPass{"flame quads", "flames.comp", kMakeUses, sizeof(StepPush)};
 const ComputePass kFlameSortPass{"flame sort", "flame_sort.comp", kSortUses, 0};
-const DrawPass kFlamesPass{"flames",          "flames.vert",        "flames.frag", kDrawUses,
-                           VertexInput::none, Blend::premultiplied, false,         0};
+const DrawPass kFlamesPass{.name = "flames",
+                           .vertexShader = "flames.vert",
+                           .fragmentShader = "flames.frag",
+                           .uses = kDrawUses,
+                           .vertexInput = VertexInput::none,
+                           .blend = Blend::premultiplied,
+                           .writeDepth = false,
+                           .pushBytes = 0,
+                           .softShader = "flames_soft.frag",
+                           .softShaderMultisampled = "flames_soft_ms.frag"};
 
 void recordFlames(DrawRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); }
 

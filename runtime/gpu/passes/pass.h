@@ -51,7 +51,8 @@ enum class Blend : uint8_t { opaque, premultiplied, additive };
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
 // 2 DrawPass::variant.
 // Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none); 2
-// binding 0 the look textures (sampler2DArray).
+// binding 0 the look textures (sampler2DArray); 3, with softShader alone, binding 0 the depth that
+// the host lends (sampler2D or sampler2DMS).
 struct DrawPass {
     const char* name;
     const char* vertexShader;
@@ -63,6 +64,9 @@ struct DrawPass {
     uint32_t pushBytes;  // vertex and fragment, <= 128
     uint32_t variant = 0;
     Cull cull = Cull::none;
+    // Instead of fragmentShader where the target samples depth; null: not drawn there.
+    const char* softShader = nullptr;
+    const char* softShaderMultisampled = nullptr;
 };
 
 }  // namespace fw::gpu

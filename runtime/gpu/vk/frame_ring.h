@@ -37,6 +37,12 @@ struct FrameInFlight {
     FrameTimers timers;
     std::array<VkFramebuffer, 8> framebuffers{};  // of its composites
     uint32_t framebufferCount = 0;
+    // Sets for the depth that hosts lend: made together when the first is needed, rewritten for
+    // each use in a frame.
+    static constexpr uint32_t kDepthSets = 8;
+    VkDescriptorPool depthPool = VK_NULL_HANDLE;
+    std::array<VkDescriptorSet, kDepthSets> depthSets{};
+    uint32_t depthSetCount = 0;  // used
 };
 
 class FrameRing {

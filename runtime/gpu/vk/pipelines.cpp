@@ -23,7 +23,9 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     };
     TargetKey key;
     key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
-    if (def.flags & ~uint32_t(FW_TARGET_COMPOSITE)) bad("flags", def.flags, "only bit 0 is known");
+    if (def.flags & ~7u) bad("flags", def.flags, "bits 0 to 2 are known");
+    key.surfaces = !(def.flags & FW_TARGET_NO_SURFACES) && def.depthMode != FW_DEPTH_SAMPLED;
+    key.flames = !(def.flags & FW_TARGET_NO_FLAMES);
     if (key.composite && def.renderPass)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::renderPass is given with FW_TARGET_COMPOSITE; that pass is "
@@ -44,10 +46,6 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     if (def.encoding > FW_OUTPUT_DISPLAY_UNORM) bad("encoding", def.encoding, "the last one is 2");
     if (def.depthMode > FW_DEPTH_SAMPLED) bad("depthMode", def.depthMode, "the last one is 3");
     if (def.reversedDepth > 1) bad("reversedDepth", def.reversedDepth, "it is 0 or 1");
-    if (def.depthMode == FW_DEPTH_SAMPLED)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthMode is FW_DEPTH_SAMPLED; this version draws against "
-                   "an attached depth (FW_DEPTH_TEST or FW_DEPTH_TEST_ONLY) or none.");
     if (def.depthMode == FW_DEPTH_NONE && def.depthFormat != VK_FORMAT_UNDEFINED && key.composite)
         bad("depthFormat", def.depthFormat, "it is VK_FORMAT_UNDEFINED with FW_DEPTH_NONE");
     if (def.depthMode != FW_DEPTH_NONE && def.depthFormat == VK_FORMAT_UNDEFINED)
@@ -63,17 +61,27 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     if (def.depthMode != FW_DEPTH_NONE) {
         device.table.GetPhysicalDeviceFormatProperties(device.physicalDevice, def.depthFormat,
                                                        &format);
-        if (!(format.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
+        const bool samples = def.depthMode == FW_DEPTH_SAMPLED;
+        const VkFormatFeatureFlags needs = samples ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT
+                                                   : VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
+        if (!(format.optimalTilingFeatures & needs))
             core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
-                       "FwVulkanTargetDef::depthFormat is %d; the device has no such depth "
-                       "attachment.",
-                       int(def.depthFormat));
+                       "FwVulkanTargetDef::depthFormat is %d; the device %s.", int(def.depthFormat),
+                       samples ? "cannot sample it" : "has no such depth attachment");
     }
     const VkPhysicalDeviceLimits& limits = device.properties.limits;
     if (!(limits.framebufferColorSampleCounts & def.samples))
         core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
                    "FwVulkanTargetDef::samples is %u; the device's colour sample counts are 0x%x.",
                    def.samples, limits.framebufferColorSampleCounts);
+    if (def.depthMode == FW_DEPTH_SAMPLED) {
+        key.depthSamples = def.depthSamples ? def.depthSamples : def.samples;
+        if (!(limits.sampledImageDepthSampleCounts & key.depthSamples))
+            core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                       "FwVulkanTargetDef::depthSamples is %u; the device samples depth of the "
+                       "sample counts 0x%x.",
+                       key.depthSamples, limits.sampledImageDepthSampleCounts);
+    }
     key.color = def.colorFormat;
     key.depth = def.depthMode == FW_DEPTH_NONE ? VK_FORMAT_UNDEFINED : def.depthFormat;
     key.subpass = key.composite ? 0 : def.subpass;
@@ -119,8 +127,9 @@ void Pipelines::destroy() noexcept {
     }
     vk.DestroyDescriptorSetLayout(device_.handle, imageLayout_, device_.allocationCallbacks);
     vk.DestroySampler(device_.handle, imageSampler_, device_.allocationCallbacks);
+    vk.DestroySampler(device_.handle, depthSampler_, device_.allocationCallbacks);
     imageLayout_ = VK_NULL_HANDLE;
-    imageSampler_ = VK_NULL_HANDLE;
+    imageSampler_ = depthSampler_ = VK_NULL_HANDLE;
 }
 
 void Pipelines::makeLayouts() {
@@ -133,6 +142,13 @@ void Pipelines::makeLayouts() {
     sampler.maxLod = VK_LOD_CLAMP_NONE;
     device_.check(
         vk.CreateSampler(device_.handle, &sampler, device_.allocationCallbacks, &imageSampler_),
+        "vkCreateSampler");
+    sampler.magFilter = sampler.minFilter = VK_FILTER_NEAREST;  // depth need not be filterable
+    sampler.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+    sampler.addressModeU = sampler.addressModeV = sampler.addressModeW =
+        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    device_.check(
+        vk.CreateSampler(device_.handle, &sampler, device_.allocationCallbacks, &depthSampler_),
         "vkCreateSampler");
 
     VkDescriptorSetLayoutBinding image{};
@@ -148,7 +164,7 @@ void Pipelines::makeLayouts() {
                   "vkCreateDescriptorSetLayout");
 
     const auto make = [&](PassObjects& objects, std::span<const Use> uses, uint32_t pushBytes,
-                          bool draws) {
+                          bool draws, bool soft) {
         std::array<VkDescriptorSetLayoutBinding, FW_BIND_COUNT> bindings{};
         uint32_t count = 0;
         uint64_t seen = 0;
@@ -179,10 +195,11 @@ void Pipelines::makeLayouts() {
                                                    device_.allocationCallbacks, &objects.setLayout),
                       "vkCreateDescriptorSetLayout");
         const VkPushConstantRange range{stages, 0, pushBytes};
-        const VkDescriptorSetLayout sets[3] = {objects.setLayout, imageLayout_, imageLayout_};
+        const VkDescriptorSetLayout sets[4] = {objects.setLayout, imageLayout_, imageLayout_,
+                                               imageLayout_};
         auto layout =
             typed<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-        layout.setLayoutCount = draws ? 3 : 1;
+        layout.setLayoutCount = soft ? 4 : draws ? 3 : 1;
         layout.pSetLayouts = sets;
         layout.pushConstantRangeCount = pushBytes ? 1 : 0;
         layout.pPushConstantRanges = &range;
@@ -192,10 +209,11 @@ void Pipelines::makeLayouts() {
     };
     compute_.resize(computePasses().size());
     for (size_t i = 0; i < compute_.size(); ++i)
-        make(compute_[i], computePasses()[i]->uses, computePasses()[i]->pushBytes, false);
+        make(compute_[i], computePasses()[i]->uses, computePasses()[i]->pushBytes, false, false);
     draw_.resize(drawPasses().size());
     for (size_t i = 0; i < draw_.size(); ++i)
-        make(draw_[i], drawPasses()[i]->uses, drawPasses()[i]->pushBytes, true);
+        make(draw_[i], drawPasses()[i]->uses, drawPasses()[i]->pushBytes, true,
+             drawPasses()[i]->softShader != nullptr);
 }
 
 VkShaderModule Pipelines::module(const char* shader) const {
@@ -262,9 +280,9 @@ VkRenderPass Pipelines::makePass(const TargetKey& key) const {
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
     subpass.colorAttachmentCount = 1;
     subpass.pColorAttachments = &color;
-    if (key.depth != VK_FORMAT_UNDEFINED) subpass.pDepthStencilAttachment = &depth;
+    if (key.attachesDepth()) subpass.pDepthStencilAttachment = &depth;
     auto info = typed<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
-    info.attachmentCount = key.depth != VK_FORMAT_UNDEFINED ? 2 : 1;
+    info.attachmentCount = key.attachesDepth() ? 2 : 1;
     info.pAttachments = attachments.data();
     info.subpassCount = 1;
     info.pSubpasses = &subpass;
@@ -330,7 +348,7 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     multisample.rasterizationSamples = VkSampleCountFlagBits(key.samples);
     auto depth = typed<VkPipelineDepthStencilStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
-    depth.depthTestEnable = key.depthMode != FW_DEPTH_NONE;
+    depth.depthTestEnable = key.attachesDepth();
     depth.depthWriteEnable = key.depthMode == FW_DEPTH_TEST && pass.writeDepth;
     depth.depthCompareOp =
         key.reversedDepth ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_LESS_OR_EQUAL;
@@ -376,7 +394,9 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     VkResult result = VK_SUCCESS;
     stages[0].module = module(pass.vertexShader);
     try {
-        stages[1].module = module(pass.fragmentShader);
+        stages[1].module = module(!key.samplesDepth()    ? pass.fragmentShader
+                                  : key.depthSamples > 1 ? pass.softShaderMultisampled
+                                                         : pass.softShader);
         result = vk.CreateGraphicsPipelines(device_.handle, device_.pipelineCache, 1, &info,
                                             device_.allocationCallbacks, &pipeline);
         vk.DestroyShaderModule(device_.handle, stages[1].module, device_.allocationCallbacks);
@@ -398,8 +418,11 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
         if (key.composite) target->ownPass = makePass(key);
         const VkRenderPass renderPass = key.composite ? target->ownPass : def.renderPass;
         target->pipelines.reserve(drawPasses().size());
-        for (size_t pass = 0; pass < drawPasses().size(); ++pass)
-            target->pipelines.push_back(makeDraw(pass, key, renderPass));
+        for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
+            const bool surface = drawPasses()[pass]->vertexInput == VertexInput::mesh;
+            const bool drawn = surface ? key.surfaces : key.flames;
+            target->pipelines.push_back(drawn ? makeDraw(pass, key, renderPass) : VK_NULL_HANDLE);
+        }
         const std::lock_guard lock(mutex_);
         return targets_.create(std::move(target));
     } catch (...) {

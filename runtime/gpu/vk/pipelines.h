@@ -23,15 +23,21 @@ struct PassObjects {
 struct TargetKey {
     VkFormat color = VK_FORMAT_UNDEFINED, depth = VK_FORMAT_UNDEFINED;
     uint32_t subpass = 0, samples = 1, colorAttachments = 1;
+    uint32_t depthSamples = 1;  // of a sampled depth
     FwDepthMode depthMode = FW_DEPTH_NONE;
+    bool surfaces = true, flames = true;
     bool reversedDepth = false, composite = false;
     FwOutputEncoding encoding = FW_OUTPUT_LINEAR;
+    [[nodiscard]] bool samplesDepth() const noexcept { return depthMode == FW_DEPTH_SAMPLED; }
+    [[nodiscard]] bool attachesDepth() const noexcept {
+        return depthMode != FW_DEPTH_NONE && !samplesDepth();
+    }
 };
 
 struct Target {
     TargetKey key;
     VkRenderPass ownPass = VK_NULL_HANDLE;   // composite
-    std::pmr::vector<VkPipeline> pipelines;  // by draw pass
+    std::pmr::vector<VkPipeline> pipelines;  // by draw pass; null: not drawn here
     explicit Target(std::pmr::memory_resource* memory) : pipelines(memory) {}
 };
 
@@ -58,6 +64,7 @@ class Pipelines {
     [[nodiscard]] const PassObjects& draw(size_t pass) const { return draw_[pass]; }
     [[nodiscard]] VkDescriptorSetLayout imageSetLayout() const { return imageLayout_; }
     [[nodiscard]] VkSampler imageSampler() const { return imageSampler_; }
+    [[nodiscard]] VkSampler depthSampler() const { return depthSampler_; }
 
  private:
     void makeLayouts();
@@ -71,7 +78,7 @@ class Pipelines {
     std::pmr::memory_resource* memory_;
     std::pmr::vector<PassObjects> compute_, draw_;
     VkDescriptorSetLayout imageLayout_ = VK_NULL_HANDLE;
-    VkSampler imageSampler_ = VK_NULL_HANDLE;
+    VkSampler imageSampler_ = VK_NULL_HANDLE, depthSampler_ = VK_NULL_HANDLE;
     std::mutex mutex_;  // of what follows
     core::HandlePool<FwTargetId, core::Owned<Target>> targets_;
     std::atomic<bool> ready_{false};

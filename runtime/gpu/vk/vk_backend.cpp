@@ -195,6 +195,7 @@ VkBackend::State::~State() {
         deviceMemory.destroy(slot.readback);
         slot.timers.destroy(device);
         ring.dropFramebuffers(slot);
+        vk.DestroyDescriptorPool(device.handle, slot.depthPool, callbacks);
     }
     destroyFramebuffers();
     deviceMemory.destroy(views);

@@ -73,7 +73,7 @@ constexpr VkPipelineStageFlags kDepthStages =
 
 void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
                                    const Target& target, const FwView& view,
-                                   const VkViewport& viewport) {
+                                   const VkViewport& viewport, VkDescriptorSet depth) {
     if (!drawVertices || !lookTextures.live || !limits.looks.viewParams) return;
     const Table& vk = device.table;
     const uint32_t viewOffset = pushView(slot, view, viewport);
@@ -89,6 +89,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         const bool surface = pass.vertexInput == VertexInput::mesh;
         if (surface && !drawPassDraws(i, drawItems)) continue;
         if (!surface && burnEmpty) continue;  // no flames anywhere
+        if (!target.pipelines[i]) continue;
         slot.timers.begin(device, commands, pass.name);
         const VkPipelineLayout layout = context.pipelines.draw(i).layout;
         vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[i]);
@@ -99,6 +100,9 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                                  usesView ? 1 : 0, &viewOffset);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
                                  &lookTextures.set.set, 0, nullptr);
+        if (depth)
+            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
+                                     &depth, 0, nullptr);
         if (surface) {
             const VkDeviceSize zero = 0;
             vk.CmdBindVertexBuffers(commands, 0, 1, &drawVertices, &zero);
@@ -108,6 +112,53 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         recordDrawPass(i, recorder, drawItems);
         slot.timers.end(device, commands);
     }
+}
+
+// Hosts' views come and go: a set is written for each use, never kept with a view.
+VkDescriptorSet VkBackend::State::depthSetFor(FrameInFlight& slot, VkImageView view,
+                                              VkImageLayout layout) {
+    const Table& vk = device.table;
+    constexpr uint32_t kSets = FrameInFlight::kDepthSets;
+    if (!slot.depthPool) {
+        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kSets};
+        auto info =
+            typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+        info.maxSets = kSets;
+        info.poolSizeCount = 1;
+        info.pPoolSizes = &size;
+        VkDescriptorPool pool = VK_NULL_HANDLE;
+        device.check(
+            vk.CreateDescriptorPool(device.handle, &info, device.allocationCallbacks, &pool),
+            "vkCreateDescriptorPool");
+        std::array<VkDescriptorSetLayout, kSets> layouts{};
+        layouts.fill(context.pipelines.imageSetLayout());
+        auto allocate =
+            typed<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+        allocate.descriptorPool = pool;
+        allocate.descriptorSetCount = kSets;
+        allocate.pSetLayouts = layouts.data();
+        const VkResult result =
+            vk.AllocateDescriptorSets(device.handle, &allocate, slot.depthSets.data());
+        if (result != VK_SUCCESS) {
+            vk.DestroyDescriptorPool(device.handle, pool, device.allocationCallbacks);
+            device.check(result, "vkAllocateDescriptorSets");
+        }
+        slot.depthPool = pool;
+    }
+    if (slot.depthSetCount == kSets)
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "A frame is drawn more than %u times against a sampled depth; that is the limit.",
+            kSets);
+    const VkDescriptorSet set = slot.depthSets[slot.depthSetCount++];
+    const VkDescriptorImageInfo image{context.pipelines.depthSampler(), view, layout};
+    auto write = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+    write.dstSet = set;
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    write.pImageInfo = &image;
+    vk.UpdateDescriptorSets(device.handle, 1, &write, 0, nullptr);
+    return set;
 }
 
 bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, const FwView& view,
@@ -120,8 +171,30 @@ bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, co
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The target was registered with FW_TARGET_COMPOSITE; it is for "
                    "fwWorld_RecordComposite.");
+    if (target.key.samplesDepth()) {
+        if (!frame.sampledDepth)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanFrame::sampledDepth is null but the target has FW_DEPTH_SAMPLED.");
+        if (frame.sampledDepthLayout != VK_IMAGE_LAYOUT_GENERAL &&
+            frame.sampledDepthLayout != VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL &&
+            frame.sampledDepthLayout != VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanFrame::sampledDepthLayout is %d; our shaders read images that are "
+                       "in GENERAL (1), DEPTH_STENCIL_READ_ONLY_OPTIMAL (4) or "
+                       "SHADER_READ_ONLY_OPTIMAL (5).",
+                       int(frame.sampledDepthLayout));
+        if (viewport.minDepth != 0.0f || viewport.maxDepth != 1.0f)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "viewport->minDepth is %g and maxDepth is %g; FW_DEPTH_SAMPLED needs 0 "
+                       "and 1.",
+                       double(viewport.minDepth), double(viewport.maxDepth));
+    }
     s.ring.pace(frame, false);
-    s.recordDraws(s.ring.slotFor(frame.frameIndex), frame.commandBuffer, target, view, viewport);
+    FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
+    VkDescriptorSet depth = VK_NULL_HANDLE;
+    if (target.key.samplesDepth())
+        depth = s.depthSetFor(slot, frame.sampledDepth, frame.sampledDepthLayout);
+    s.recordDraws(slot, frame.commandBuffer, target, view, viewport, depth);
     return true;
 }
 
@@ -144,9 +217,18 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanComposite::depth is null but the target has depth mode %u.",
                    uint32_t(target.key.depthMode));
+    if (hasDepth && target.key.samplesDepth() &&
+        images.depth.layoutBefore == VK_IMAGE_LAYOUT_UNDEFINED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanComposite::depth.layoutBefore is VK_IMAGE_LAYOUT_UNDEFINED; the image "
+                   "would lose the depth that is to be sampled.");
     if (images.width == 0 || images.height == 0) return true;
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
+    VkDescriptorSet depth = VK_NULL_HANDLE;
+    if (target.key.samplesDepth())
+        depth =
+            s.depthSetFor(slot, images.depth.view, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
     const VkFramebuffer framebuffer = s.framebufferFor(slot, target, targetId, images);
 
     const Table& vk = s.device.table;
@@ -157,9 +239,13 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     VkPipelineStageFlags ours = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
     for (uint32_t i = 0; i < count; ++i) {
         const FwVulkanImage& image = i ? images.depth : images.color;
-        const VkAccessFlags access = i ? kDepthAccess : kColorAccess;
-        const VkImageLayout layout = i ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
-                                       : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        const bool sampled = i && target.key.samplesDepth();
+        const VkAccessFlags access = sampled ? VkAccessFlags(VK_ACCESS_SHADER_READ_BIT)
+                                     : i     ? kDepthAccess
+                                             : kColorAccess;
+        const VkImageLayout layout = sampled ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
+                                     : i     ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+                                             : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
         in[i] = out[i] = imageBarrier(image, i == 1, target.key.depth);
         in[i].srcAccessMask = image.accessBefore;
         in[i].dstAccessMask = access;
@@ -172,7 +258,8 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
         if (i) {
             before |= image.stageBefore;
             after |= image.stageAfter;
-            ours |= kDepthStages;
+            ours |= sampled ? VkPipelineStageFlags(VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT)
+                            : kDepthStages;
         }
     }
     if (!before) before = VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT;
@@ -184,7 +271,7 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     begin.renderArea.extent = {images.width, images.height};
     vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
     const VkViewport viewport{0, 0, float(images.width), float(images.height), 0, 1};
-    s.recordDraws(slot, commands, target, view, viewport);
+    s.recordDraws(slot, commands, target, view, viewport, depth);
     vk.CmdEndRenderPass(commands);
     vk.CmdPipelineBarrier(commands, ours, after, 0, 0, nullptr, 0, nullptr, count, out.data());
     return true;
@@ -193,7 +280,7 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
 VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target& target,
                                                FwTargetId targetId,
                                                const FwVulkanComposite& composite) {
-    const bool hasDepth = target.key.depthMode != FW_DEPTH_NONE;
+    const bool hasDepth = target.key.attachesDepth();
     const std::array<VkImageView, 2> attachments{composite.color.view,
                                                  hasDepth ? composite.depth.view : VK_NULL_HANDLE};
     const bool keep = (composite.flags & FW_COMPOSITE_KEEP) != 0;

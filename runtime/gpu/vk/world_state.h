@@ -185,8 +185,11 @@ struct VkBackend::State {
     void pushPending(const PendingReadback& one) noexcept;
     const Readback* nextReadback();
     // vk_draw.cpp
+    // `depth`: a set with the depth that the target samples, or null.
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                     const FwView& view, const VkViewport& viewport);
+                     const FwView& view, const VkViewport& viewport,
+                     VkDescriptorSet depth = VK_NULL_HANDLE);
+    VkDescriptorSet depthSetFor(FrameInFlight& slot, VkImageView view, VkImageLayout layout);
     VkFramebuffer framebufferFor(FrameInFlight& slot, const Target& target, FwTargetId targetId,
                                  const FwVulkanComposite& images);
     // Of targets that are gone, and of `forget`; what the device may still use goes later.
