@@ -9,7 +9,7 @@
 #include "common/film.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
-#include "subject.h"
+#include "common/subject.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // See toy.h.
-#include "toy.h"
+#include "common/toy.h"
 
 #include <algorithm>
 #include <cmath>

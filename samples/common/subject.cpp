@@ -1,5 +1,5 @@
 // See subject.h.
-#include "subject.h"
+#include "common/subject.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "toy.h"
+#include "common/toy.h"
 
 namespace {
 

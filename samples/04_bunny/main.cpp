@@ -1,0 +1,165 @@
+// The figure that papers on burning meshes show: a bunny of wood burns, from the chest, through
+// holes, to what is left standing. Without the assets folder it is a toy that burns.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "common/camera.h"
+#include "common/film.h"
+#include "common/fire_host.h"
+#include "common/studio.h"
+#include "common/subject.h"
+
+namespace {
+
+constexpr float kFillingSeconds = 12;  // the run that the pace below is made for
+
+std::filesystem::path bunnyFile() {
+    if (const char* assets = std::getenv("FLAMEWRIGHT_ASSETS")) {
+        const std::filesystem::path bunny = std::filesystem::path(assets) / "bunny_31k.glb";
+        if (std::filesystem::exists(bunny)) return bunny;
+    }
+    return {};
+}
+
+int run(const sample::Options& options, float seconds, float turn) {
+    Subject subject = loadSubject(bunnyFile(), 0.62f);
+    sample::ValidationLog validation;
+    {
+        sample::HostRequest hostRequest;
+        hostRequest.windowed = !options.headless;
+        if (options.validate) hostRequest.validation = &validation;
+        const sample::VulkanHost host(hostRequest);
+        sample::StageRequest stageRequest;
+        stageRequest.title = "Flamewright: " + subject.name;
+        const auto wanted = static_cast<uint32_t>(std::lround(seconds * options.fps));
+        const uint32_t frames =
+            options.frames ? options.frames : (options.headless ? std::max(1u, wanted) : 0u);
+        sample::Stage stage(host, options, stageRequest, frames);
+        sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
+
+        sample::OrbitCamera orbit;
+        orbit.target = {0, 0.5f * subject.height(), 0};
+        orbit.yaw = glm::radians(-24.0f);
+        orbit.pitch = glm::radians(9.0f);
+        orbit.fieldOfView = 0.5f;
+        const float shape =
+            static_cast<float>(stage.extent().width) / static_cast<float>(stage.extent().height);
+        orbit.distance = 1.0f;
+        const glm::vec3 back = orbit.camera().eye - orbit.target;
+        orbit.distance = fittingDistance(subject, orbit.target, back, orbit.fieldOfView, shape);
+
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.paceFactor = 150.0f * kFillingSeconds / std::max(1.0f, seconds);
+        worldDef.seed = options.seed;
+        worldDef.maxStepsPerFrame = 64;
+        sample::FireHost fire(host, worldDef);
+        fire.registerTarget(stage);
+        BurnMapRequest mapRequest;
+        mapRequest.mapSize = 1024;
+        mapRequest.texelsPerMetre = 400;
+        mapRequest.cache = options.out.parent_path() / "cache";
+        std::string bakeNote;
+        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+        def.mesh = createMesh(fire, subject, mapRequest, bakeNote);
+        FwMaterialDef material = fwDefaultMaterialDef();
+        fire.check(fwInitMaterialPreset(&material, FW_MATERIAL_PINE), "fwInitMaterialPreset");
+        material.thickness = 0.03f;
+        FwMaterialId pine{};
+        fire.check(fwWorld_CreateMaterial(fire.world, &material, &pine), "fwWorld_CreateMaterial");
+        for (FwMaterialId& slot : def.materials) slot = pine;
+        FwBurnableMeshId object{};
+        fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object),
+                   "fwWorld_CreateBurnableMesh");
+
+        FwView view = fwDefaultView();
+        sample::duskLight(view);
+        studio.castShadow(subject.model.positions, subject.model.indices, glm::mat4(1.0f),
+                          {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
+        const SurfacePoint match = matchPlace(subject, orbit.camera().eye);
+
+        sample::FilmRequest filmRequest;
+        filmRequest.folder = options.out;
+        filmRequest.name = "bunny";
+        filmRequest.framesPerSecond = options.fps;
+        filmRequest.frames = frames;
+        sample::Film film(filmRequest);
+        sample::Progress progress("bunny", frames);
+        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
+            film.add(number, picture);
+            progress.update(number + 1);
+        };
+
+        sample::StageFrame frame;
+        while (stage.next(frame)) {
+            orbit.turn(frame.input.dragX, frame.input.dragY);
+            orbit.zoom(frame.input.wheel);
+            orbit.yaw += glm::radians(turn) * frame.deltaTime;
+            const float aspect =
+                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
+            const sample::Camera camera = orbit.camera();
+            sample::setCamera(view, sample::viewMatrix(camera),
+                              sample::projectionMatrix(camera, aspect));
+            view.time = static_cast<float>(frame.time);
+            if (frame.number == 1) {
+                FwIgnitionDef ignition = fwDefaultIgnitionDef();
+                for (int c = 0; c < 3; ++c) ignition.position[c] = match.position[c];
+                ignition.radius = 0.02f * subject.size();
+                fire.check(fwWorld_Ignite(fire.world, &ignition, nullptr), "fwWorld_Ignite");
+            }
+            FwLight lights[8];
+            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
+            fire.recordOutside(frame, view);
+            stage.beginScene(frame);
+            studio.draw(frame, frame.commands, view, {lights, lightCount});
+            fire.recordInside(frame, view);
+            stage.endScene(frame);
+            stage.finish(frame);
+        }
+
+        if (options.headless) {
+            progress.finish();
+            FwObjectState state{};
+            state.structSize = sizeof state;
+            fwWorld_GetObjectState(fire.world, object, &state);
+            char line[160];
+            sample::Summary summary;
+            summary.title = "Burning " + subject.name;
+            summary.rows.emplace_back("device", host.properties.deviceName);
+            std::snprintf(line, sizeof line,
+                          "pine, %.0f times as fast as real; %.0f %% caught fire",
+                          static_cast<double>(worldDef.paceFactor),
+                          static_cast<double>(100.0f * state.burntFraction));
+            summary.rows.emplace_back("fire", line);
+            summary.rows.emplace_back("burn map", bakeNote);
+            summary.passes = fire.passCosts();
+            summary.files = film.close();
+            sample::printSummary(summary);
+        }
+    }
+    return validation.exitCode();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return sample::guardedMain("04_bunny", [&] {
+        sample::Options options;
+        options.fps = 8.0;
+        options.width = 768;
+        options.height = 432;
+        float seconds = kFillingSeconds, turn = 0;
+        sample::OptionParser parser("04_bunny", "a wooden bunny burns");
+        parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
+        parser.addNumber("--turn", "turntable, degrees a second", turn, -360.0f, 360.0f);
+        if (!parser.parse(argc, argv, options)) return 0;
+        if (options.list) {
+            std::printf(
+                "04_bunny shows one thing; FLAMEWRIGHT_ASSETS names the folder of "
+                "bunny_31k.glb\n");
+            return 0;
+        }
+        return run(options, seconds, turn);
+    });
+}

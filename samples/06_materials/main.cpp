@@ -1,0 +1,221 @@
+// Eight materials burn side by side, each at a haste that lets all end together, each with a wet
+// patch that stays. In a window: drag to turn, wheel to zoom.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "common/camera.h"
+#include "common/film.h"
+#include "common/fire_host.h"
+#include "common/studio.h"
+#include "panel.h"
+
+namespace {
+
+struct Exhibit {
+    uint32_t preset;
+    float thickness, bend;  // m, see makePanel
+    float haste;            // how much faster than real, in a run of ten seconds
+    float density;          // texels per metre
+};
+
+// From the left, the back row on its shelf first.
+constexpr Exhibit kExhibits[] = {
+    {FW_MATERIAL_PINE, 0.030f, 0, 135, 192},      {FW_MATERIAL_PAINTED_WOOD, 0.024f, 0, 115, 192},
+    {FW_MATERIAL_PAPER, 0, 0.020f, 4.0f, 384},    {FW_MATERIAL_COTTON, 0, 0.016f, 4.2f, 320},
+    {FW_MATERIAL_LEATHER, 0, 0.010f, 30, 256},    {FW_MATERIAL_THATCH, 0.060f, 0, 8, 192},
+    {FW_MATERIAL_DRY_LEAF, 0, 0.014f, 2.6f, 320}, {FW_MATERIAL_PLASTIC, 0.012f, 0, 16, 192},
+};
+constexpr uint32_t kExhibitCount = sizeof kExhibits / sizeof kExhibits[0];
+constexpr float kSide = 0.50f, kPitch = 0.60f, kShelf = 0.66f;  // m
+
+glm::vec3 placeOf(uint32_t exhibit) {
+    const float x = (static_cast<float>(exhibit % 4) - 1.5f) * kPitch;
+    return exhibit < 4 ? glm::vec3(x, kShelf, -0.24f) : glm::vec3(x, 0, 0.24f);
+}
+
+FwBurnableMeshId placeExhibit(sample::FireHost& fire, uint32_t number, float seconds) {
+    const Exhibit& exhibit = kExhibits[number];
+    const Panel panel = makePanel(kSide, kSide, exhibit.thickness, exhibit.bend);
+    FwMeshDef mesh = fwDefaultMeshDef();
+    mesh.positions = panel.positions.data();
+    mesh.normals = panel.normals.data();
+    mesh.details = panel.details.data();
+    mesh.indices = panel.indices.data();
+    mesh.vertexCount = static_cast<uint32_t>(panel.positions.size() / 3);
+    mesh.indexCount = static_cast<uint32_t>(panel.indices.size());
+    mesh.mapSize = 1024;
+    mesh.texelsPerMetre = exhibit.density;
+    mesh.noiseSeed = number;
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.flags = exhibit.thickness > 0 ? 0u : uint32_t{FW_BURNABLE_TWO_SIDED};
+    fire.check(fwWorld_CreateMesh(fire.world, &mesh, &def.mesh), "fwWorld_CreateMesh");
+    FwMaterialDef material = fwDefaultMaterialDef();
+    fire.check(fwInitMaterialPreset(&material, exhibit.preset), "fwInitMaterialPreset");
+    const float haste = exhibit.haste * 10.0f / seconds;
+    material.spreadRate *= haste;
+    if (material.burnTime > 0) material.burnTime /= haste;
+    // Thick fuel flames while it lasts.
+    if (!(material.burnTime > 0)) material.burnTime = 0.25f * seconds;
+    fire.check(fwWorld_CreateMaterial(fire.world, &material, &def.materials[0]),
+               "fwWorld_CreateMaterial");
+    const glm::mat4 transform = glm::translate(glm::mat4(1.0f), placeOf(number));
+    std::copy_n(glm::value_ptr(transform), 16, def.transform);
+    FwBurnableMeshId object{};
+    fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object), "fwWorld_CreateBurnableMesh");
+    return object;
+}
+
+void touch(sample::FireHost& fire, FwBurnableMeshId object, glm::vec3 position, float radius,
+           FwIgnitionKind kind) {
+    FwIgnitionDef def = fwDefaultIgnitionDef();
+    def.kind = kind;
+    def.object = object;
+    for (int c = 0; c < 3; ++c) def.position[c] = position[c];
+    def.radius = radius;
+    fire.check(fwWorld_Ignite(fire.world, &def, nullptr), "fwWorld_Ignite");
+}
+
+int run(const sample::Options& options, float seconds, int only) {
+    sample::ValidationLog validation;
+    {
+        sample::HostRequest hostRequest;
+        hostRequest.windowed = !options.headless;
+        if (options.validate) hostRequest.validation = &validation;
+        const sample::VulkanHost host(hostRequest);
+        sample::StageRequest stageRequest;
+        stageRequest.title = "Flamewright: eight materials";
+        const auto wanted = static_cast<uint32_t>(std::lround(seconds * options.fps));
+        const uint32_t frames =
+            options.frames ? options.frames : (options.headless ? std::max(1u, wanted) : 0u);
+        sample::Stage stage(host, options, stageRequest, frames);
+        sample::Studio studio(host, stage, {0, 0, 0}, 2.4f);
+        studio.addBlock({0, 0.5f * kShelf, -0.24f}, {2.1f * kPitch, 0.5f * kShelf, 0.10f});
+
+        sample::FireHost fire(host, fwDefaultWorldDef());
+        fire.registerTarget(stage);
+        FwBurnableMeshId objects[kExhibitCount]{};
+        for (uint32_t i = 0; i < kExhibitCount; ++i) {
+            if (only < 0 || only == static_cast<int>(i))
+                objects[i] = placeExhibit(fire, i, seconds);
+        }
+
+        FwView view = fwDefaultView();
+        sample::duskLight(view);
+        const Panel panel = makePanel(kSide, kSide, 0.03f, 0);
+        std::vector<float> shadows;
+        std::vector<uint32_t> shadowIndices;
+        for (uint32_t i = 4; i < kExhibitCount; ++i) {
+            const auto first = static_cast<uint32_t>(shadows.size() / 3);
+            const glm::vec3 place = placeOf(i);
+            for (size_t k = 0; k < panel.positions.size(); ++k)
+                shadows.push_back(panel.positions[k] + place[static_cast<int>(k % 3)]);
+            for (const uint32_t index : panel.indices) shadowIndices.push_back(first + index);
+        }
+        studio.castShadow(shadows, shadowIndices, glm::mat4(1.0f),
+                          {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
+
+        sample::OrbitCamera orbit;
+        orbit.target = {0, 0.66f, 0};
+        orbit.distance = 4.05f;
+        if (only >= 0) {
+            orbit.target = placeOf(static_cast<uint32_t>(only)) + glm::vec3(0, 0.27f, 0);
+            orbit.distance = 1.35f;
+        }
+        orbit.yaw = glm::radians(12.0f);
+        orbit.pitch = glm::radians(7.0f);
+        orbit.fieldOfView = 0.42f;
+
+        sample::FilmRequest filmRequest;
+        filmRequest.folder = options.out;
+        filmRequest.name = "materials";
+        filmRequest.framesPerSecond = options.fps;
+        filmRequest.frames = frames;
+        filmRequest.columns = 2;
+        filmRequest.animationWidth = 640;
+        sample::Film film(filmRequest);
+        sample::Progress progress("materials", frames);
+        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
+            film.add(number, picture);
+            progress.update(number + 1);
+        };
+
+        sample::StageFrame frame;
+        while (stage.next(frame)) {
+            orbit.turn(frame.input.dragX, frame.input.dragY);
+            orbit.zoom(frame.input.wheel);
+            const float aspect =
+                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
+            const sample::Camera camera = orbit.camera();
+            sample::setCamera(view, sample::viewMatrix(camera),
+                              sample::projectionMatrix(camera, aspect));
+            view.time = static_cast<float>(frame.time);
+            for (uint32_t i = 0; frame.number <= 1 && i < kExhibitCount; ++i) {
+                if (objects[i].index1 == 0) continue;
+                const glm::vec3 face = placeOf(i) + glm::vec3(0, 0, 0.5f * kExhibits[i].thickness);
+                if (frame.number == 0)
+                    touch(fire, objects[i], face + glm::vec3(0.12f, 0.36f, 0), 0.07f, FW_WET);
+                else
+                    touch(fire, objects[i], face + glm::vec3(-0.14f, 0.10f, 0), 0.02f, FW_IGNITE);
+            }
+            FwLight lights[8];
+            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
+            fire.recordOutside(frame, view);
+            stage.beginScene(frame);
+            studio.draw(frame, frame.commands, view, {lights, lightCount});
+            studio.drawBlocks(frame, frame.commands);
+            fire.recordInside(frame, view);
+            stage.endScene(frame);
+            stage.finish(frame);
+        }
+
+        if (options.headless) {
+            progress.finish();
+            sample::Summary summary;
+            summary.title = "Eight materials";
+            summary.rows.emplace_back("device", host.properties.deviceName);
+            for (uint32_t i = 0; i < kExhibitCount; ++i) {
+                if (objects[i].index1 == 0) continue;
+                FwObjectState state{};
+                state.structSize = sizeof state;
+                fwWorld_GetObjectState(fire.world, objects[i], &state);
+                char line[160];
+                std::snprintf(line, sizeof line, "%s; %.0f %% caught fire",
+                              fwMaterialPresetName(kExhibits[i].preset),
+                              static_cast<double>(100.0f * state.burntFraction));
+                static const char* const kPlaces[] = {
+                    "back, 1st from left", "back, 2nd",  "back, 3rd",  "back, 4th",
+                    "front, 1st",          "front, 2nd", "front, 3rd", "front, 4th"};
+                summary.rows.emplace_back(kPlaces[i], line);
+            }
+            summary.passes = fire.passCosts();
+            summary.files = film.close();
+            sample::printSummary(summary);
+        }
+    }
+    return validation.exitCode();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return sample::guardedMain("06_materials", [&] {
+        sample::Options options;
+        options.fps = 8.0;
+        options.width = 960;
+        options.height = 540;
+        float seconds = 12, only = 0;
+        sample::OptionParser parser("06_materials", "eight materials side by side");
+        parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
+        parser.addNumber("--only", "1 to 8: that one alone, from near", only, 0.0f, 8.0f);
+        if (!parser.parse(argc, argv, options)) return 0;
+        if (options.list) {
+            for (const Exhibit& exhibit : kExhibits)
+                std::printf("%s\n", fwMaterialPresetName(exhibit.preset));
+            return 0;
+        }
+        return run(options, seconds, static_cast<int>(std::lround(only)) - 1);
+    });
+}
