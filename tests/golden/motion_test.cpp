@@ -1,0 +1,277 @@
+// What burns must not shimmer: true consecutive frames, 1/30 s apart, against the same moments
+// drawn with sixteen samples per pixel. What a frame is off by may not change from frame to frame.
+// FLAMEWRIGHT_MOTION=<folder> keeps the frames. Not about flames, and not about speed.
+#include "flamewright/flamewright.h"
+#include "golden/golden_image.h"
+#include "support/meshes.h"
+
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+
+namespace fw::test {
+namespace {
+
+constexpr uint32_t kWidth = 256, kHeight = 144, kSamples = 4;  // kSamples^2 per pixel
+constexpr uint32_t kFrames = 4;
+constexpr float kFrameTime = 1.0f / 30.0f;
+
+// Of 1/255: where the thing covers its pixels whole, and where a rim or its outline crosses them.
+struct Shimmer {
+    double inside = 0, rim = 0;                  // mean change of the error
+    double insideOutliers = 0, rimOutliers = 0;  // share of pixels where it changes by more than 48
+    double flicker = 0;                          // share that jumps by 32 there and back
+    uint64_t insideCount = 0, rimCount = 0;
+};
+
+struct Frame {
+    Picture shown, reference;
+    std::vector<uint8_t> covered;  // of a pixel's samples, [0, kSamples^2]
+};
+
+Shimmer shimmerOf(const char* name, const std::vector<Frame>& frames) {
+    Shimmer s;
+    const auto error = [](const Frame& f, size_t i) {
+        return int(f.shown.rgb[i]) - int(f.reference.rgb[i]);
+    };
+    Picture map = frames[0].shown;
+    std::fill(map.rgb.begin(), map.rgb.end(), uint8_t(0));
+    for (size_t f = 1; f < frames.size(); ++f) {
+        const Frame &a = frames[f - 1], &b = frames[f];
+        for (uint32_t y = 1; y + 1 < kHeight; ++y) {
+            for (uint32_t x = 1; x + 1 < kWidth; ++x) {
+                const size_t at = size_t{y} * kWidth + x;
+                uint32_t low = kSamples * kSamples, high = 0;
+                for (int k = 0; k < 9; ++k) {
+                    const size_t n = at + size_t(k / 3) * kWidth + size_t(k % 3) - kWidth - 1;
+                    for (const Frame* frame : {&a, &b}) {
+                        low = std::min<uint32_t>(low, frame->covered[n]);
+                        high = std::max<uint32_t>(high, frame->covered[n]);
+                    }
+                }
+                if (high == 0) continue;
+                int change = 0, jump = 0;
+                for (size_t c = 0; c < 3; ++c) {
+                    const size_t i = at * 3 + c;
+                    change = std::max(change, std::abs(error(b, i) - error(a, i)));
+                    if (f + 1 == frames.size()) continue;
+                    const int in = int(b.shown.rgb[i]) - int(a.shown.rgb[i]);
+                    const int out = int(b.shown.rgb[i]) - int(frames[f + 1].shown.rgb[i]);
+                    if (in * out > 0) jump = std::max(jump, std::min(std::abs(in), std::abs(out)));
+                }
+                const bool inside = low == kSamples * kSamples;
+                (inside ? s.inside : s.rim) += change;
+                (inside ? s.insideOutliers : s.rimOutliers) += change > 48;
+                (inside ? s.insideCount : s.rimCount) += 1;
+                s.flicker += jump > 32;
+                map.rgb[at * 3 + (inside ? 0 : 1)] = uint8_t(
+                    std::min(255, std::max<int>(map.rgb[at * 3 + (inside ? 0 : 1)], 2 * change)));
+            }
+        }
+    }
+    const double inside = std::max<double>(1, double(s.insideCount));
+    const double rim = std::max<double>(1, double(s.rimCount));
+    s.inside /= inside;
+    s.insideOutliers /= inside;
+    s.rim /= rim;
+    s.rimOutliers /= rim;
+    s.flicker /= inside + rim;
+    if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION"))
+        writePng(std::string(folder) + "/" + name + "_change.png", map);
+    std::printf("%-18s inside %.2f (%.2f %% beyond 48), rim %.2f (%.1f %%), flicker %.2f %%\n",
+                name, s.inside, 100 * s.insideOutliers, s.rim, 100 * s.rimOutliers,
+                100 * s.flicker);
+    return s;
+}
+
+class Motion : public testing::Test {
+ protected:
+    void SetUp() override {
+        const FwContextDef def = fwDefaultContextDef();
+        FwErrorInfo info{};
+        if (fwCreateContext(&def, &context_, &info) != FW_OK) GTEST_SKIP() << info.message;
+    }
+    void TearDown() override { fwDestroyContext(context_); }
+
+    void makeWorld(float pace) {
+        FwWorldDef def = fwDefaultWorldDef();
+        def.paceFactor = pace;
+        def.maxStepsPerFrame = 32;
+        def.maxFlames = 0;
+        ASSERT_EQ(fwCreateWorld(context_, &def, &world_), FW_OK);
+    }
+
+    void burn(const Mesh& mesh, const std::vector<float>& details, uint32_t preset, float density,
+              bool twoSided, glm::vec3 at, float radius, float seconds) {
+        FwMeshDef def = fwDefaultMeshDef();
+        def.positions = mesh.positions.data();
+        def.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
+        def.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
+        def.details = details.empty() ? nullptr : details.data();
+        def.indices = mesh.indices.data();
+        def.vertexCount = mesh.vertexCount();
+        def.indexCount = uint32_t(mesh.indices.size());
+        def.mapSize = 1024;
+        def.texelsPerMetre = density;
+        FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
+        object.flags = twoSided ? uint32_t{FW_BURNABLE_TWO_SIDED} : 0u;
+        ASSERT_EQ(fwWorld_CreateMesh(world_, &def, &object.mesh), FW_OK);
+        FwMaterialDef material = fwDefaultMaterialDef();
+        ASSERT_EQ(fwInitMaterialPreset(&material, preset), FW_OK);
+        ASSERT_EQ(fwWorld_CreateMaterial(world_, &material, &object.materials[0]), FW_OK);
+        FwBurnableMeshId id{};
+        ASSERT_EQ(fwWorld_CreateBurnableMesh(world_, &object, &id), FW_OK);
+        FwIgnitionDef match = fwDefaultIgnitionDef();
+        std::copy_n(glm::value_ptr(at), 3, match.position);
+        match.radius = radius;
+        uint32_t texels = 0;
+        ASSERT_EQ(fwWorld_Ignite(world_, &match, &texels), FW_OK);
+        ASSERT_GT(texels, 0u);
+        for (float t = 0; t < seconds; t += 0.25f) fwWorld_Step(world_, 0.25f);
+        for (int i = 0; i < 24; ++i) fwWorld_Step(world_, 0);  // a ring of prediction a frame
+    }
+
+    Picture draw(glm::vec3 eye, glm::vec3 target, uint32_t scale, float time,
+                 std::vector<uint8_t>* hit) {
+        const uint32_t width = kWidth * scale, height = kHeight * scale;
+        std::vector<uint8_t> pixels(size_t{width} * height * 4);
+        FwOffscreenDef shot = fwDefaultOffscreenDef();
+        shot.width = width;
+        shot.height = height;
+        shot.pixels = pixels.data();
+        shot.view = fwDefaultView();
+        shot.view.time = time;
+        // No surface has this colour.
+        const float background[4] = {0.10f, 0.0f, 0.30f, 1};
+        std::copy_n(background, 4, shot.background);
+        const glm::mat4 look = glm::lookAt(eye, target, glm::vec3(0, 1, 0));
+        glm::mat4 projection(0.0f);
+        projection[0][0] = 3.4f * float(kHeight) / float(kWidth);
+        projection[1][1] = -3.4f;
+        projection[2][2] = projection[2][3] = -1.0f;
+        projection[3][2] = -0.05f;
+        std::memcpy(shot.view.view, glm::value_ptr(look), sizeof shot.view.view);
+        std::memcpy(shot.view.projection, glm::value_ptr(projection), sizeof shot.view.projection);
+        EXPECT_EQ(fwWorld_RenderOffscreen(world_, &shot), FW_OK);
+        Picture picture{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 3)};
+        if (hit) hit->assign(size_t{kWidth} * kHeight, 0);
+        const uint8_t* corner = pixels.data();
+        for (uint32_t y = 0; y < kHeight; ++y) {
+            for (uint32_t x = 0; x < kWidth; ++x) {
+                uint32_t sum[3] = {}, hits = 0;
+                for (uint32_t k = 0; k < scale * scale; ++k) {
+                    const size_t i = size_t{y * scale + k / scale} * width + x * scale + k % scale;
+                    const uint8_t* p = &pixels[i * 4];
+                    for (int c = 0; c < 3; ++c) sum[c] += p[c];
+                    hits += std::memcmp(p, corner, 3) != 0;
+                }
+                const size_t at = size_t{y} * kWidth + x;
+                for (size_t c = 0; c < 3; ++c)
+                    picture.rgb[at * 3 + c] =
+                        uint8_t((sum[c] + scale * scale / 2) / (scale * scale));
+                if (hit) (*hit)[at] = uint8_t(hits);
+            }
+        }
+        return picture;
+    }
+
+    Shimmer measure(const char* name, glm::vec3 eye, glm::vec3 target, glm::vec3 drift,
+                    bool burning) {
+        std::vector<Frame> frames(kFrames);
+        for (uint32_t f = 0; f < kFrames; ++f) {
+            if (burning) fwWorld_Step(world_, kFrameTime);
+            const float time = 3.0f + (burning ? float(f) * kFrameTime : 0.0f);
+            const glm::vec3 shift = drift * float(f);
+            frames[f].shown = draw(eye + shift, target + 0.7f * shift, 1, time, nullptr);
+            frames[f].reference =
+                draw(eye + shift, target + 0.7f * shift, kSamples, time, &frames[f].covered);
+            if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION")) {
+                const std::string path = std::string(folder) + "/" + name + std::to_string(f);
+                writePng(path + ".png", frames[f].shown);
+                writePng(path + "_reference.png", frames[f].reference);
+            }
+        }
+        return shimmerOf(name, frames);
+    }
+
+    FwContext* context_ = nullptr;
+    FwWorld* world_ = nullptr;
+};
+
+// No shimmer: in the mean less than a shade or two, and next to no pixel jumps.
+void calm(const Shimmer& s, double inside) {
+    EXPECT_GT(s.insideCount, 3000u);
+    EXPECT_LT(s.inside, inside);
+    EXPECT_LT(s.insideOutliers, 0.015);
+    EXPECT_LT(s.rim, 15);
+    EXPECT_LT(s.rimOutliers, 0.08);
+    EXPECT_LT(s.flicker, 0.005);
+}
+
+// The measure itself must be able to fail.
+TEST(MotionMeasure, SeesShimmer) {
+    std::vector<Frame> frames(3);
+    for (size_t f = 0; f < 3; ++f) {
+        frames[f].reference = {kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight * 3, 90)};
+        frames[f].shown = frames[f].reference;
+        frames[f].covered.assign(kWidth * kHeight, kSamples * kSamples);
+    }
+    const Shimmer still = shimmerOf("still", frames);
+    EXPECT_EQ(still.inside, 0);
+    EXPECT_EQ(still.flicker, 0);
+    for (size_t i = 0; i < kWidth * kHeight; i += 10) frames[1].shown.rgb[i * 3] = 255;
+    const Shimmer sparks = shimmerOf("sparks", frames);
+    EXPECT_GT(sparks.inside, 10);
+    EXPECT_GT(sparks.insideOutliers, 0.05);
+    EXPECT_GT(sparks.flicker, 0.02);
+}
+
+// A sheet in z = 0 from the origin, with detail coordinates.
+Mesh sheet(float side, std::vector<float>& details) {
+    Mesh mesh = makePlane(side, side, 0, 1, 0, 8);
+    details.clear();
+    for (uint32_t i = 0; i < mesh.vertexCount(); ++i)
+        details.insert(details.end(), {mesh.positions[i * 3], mesh.positions[i * 3 + 1]});
+    return mesh;
+}
+
+TEST_F(Motion, PaperSheet) {
+    std::vector<float> details;
+    const Mesh mesh = sheet(0.3f, details);
+    makeWorld(1);
+    burn(mesh, details, FW_MATERIAL_PAPER, 512, true, {0.05f, 0.05f, 0}, 0.02f, 5);
+    const glm::vec3 eye(0.24f, 0.19f, 0.55f), target(0.15f, 0.15f, 0);
+    calm(measure("paper_moving", eye, target, {0.00043f, 0.00017f, 0.0005f}, false), 2);
+    calm(measure("paper_burning", eye, target, {}, true), 2);
+}
+
+TEST_F(Motion, PineSheet) {
+    std::vector<float> details;
+    const Mesh mesh = sheet(0.6f, details);
+    makeWorld(40);
+    burn(mesh, details, FW_MATERIAL_PINE, 192, true, {0.1f, 0.1f, 0}, 0.03f, 9);
+    const glm::vec3 eye(0.5f, 0.35f, 1.25f), target(0.3f, 0.3f, 0);
+    calm(measure("pine_moving", eye, target, {0.0009f, 0.0004f, 0.001f}, false), 5);
+    calm(measure("pine_burning", eye, target, {}, true), 1.5);
+    const glm::vec3 far(1.2f, 0.6f, 4.0f);
+    calm(measure("pine_far_moving", far, target, {0.0028f, 0.0011f, 0.003f}, false), 5);
+}
+
+TEST_F(Motion, Bunny) {
+    Mesh mesh;
+    std::string error;
+    if (!loadGlb("bunny_31k.glb", mesh, error)) GTEST_SKIP() << error;
+    makeWorld(150);
+    burn(mesh, {}, FW_MATERIAL_PINE, 300, false, {-0.3f, 0.3f, 0.3f}, 0.2f, 7);
+    const glm::vec3 eye(-0.5f, 0.7f, 1.85f), target(0, 0.5f, 0);
+    calm(measure("bunny_moving", eye, target, {0.0013f, 0.0005f, 0.001f}, false), 6);
+    calm(measure("bunny_burning", eye, target, {}, true), 4);
+}
+
+}  // namespace
+}  // namespace fw::test
