@@ -2,6 +2,7 @@
 
 #include "components/look_table.h"
 #include "core/error.h"
+#include "fire/presets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ fire::SpreadFacts facts(const BurnableMesh& object, const mesh::BurnDomain& doma
     std::copy_n(drive.up, 3, f.up);
     f.pace = drive.pace;
     f.moisture = object.moisture;
+    f.dries = hasHeat(object);
     return f;
 }
 
@@ -37,8 +39,8 @@ float meanTexelArea(const mesh::BurnDomain& domain) noexcept {
 }  // namespace
 
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
-    constexpr uint32_t kKnown =
-        FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED | FW_BURNABLE_NO_HOLES;
+    constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED |
+                                FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
@@ -72,7 +74,13 @@ bool burns(const BurnableMesh& object, uint32_t material) noexcept {
     if (material >= kMaterials || !(object.materialMask >> material & 1)) return false;
     const FwMaterialDef& def = object.materials[material];
     return def.spreadRate > 0 &&
-           fire::moistureFactor(def.moisture + object.moisture, def.extinctionMoisture) > 0;
+           (hasHeat(object) ||
+            fire::moistureFactor(def.moisture + object.moisture, def.extinctionMoisture) > 0);
+}
+
+bool hasHeat(const BurnableMesh& object) noexcept {
+    constexpr bool kFrameRunsHeat = false;
+    return kFrameRunsHeat && (object.flags & (FW_BURNABLE_LITE | FW_BURNABLE_PUBLISHED)) == 0;
 }
 
 std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
@@ -156,6 +164,21 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
 // ---- records
 // -------------------------------------------------------------------------------------
 
+std::array<gpu::HeatMaterial, kMaterials> makeHeatMaterials(const BurnableMesh& object,
+                                                            const mesh::BurnDomain& domain,
+                                                            float pace) noexcept {
+    const FwMaterialDef stone = fire::presetDef(FW_MATERIAL_NONCOMBUSTIBLE);
+    fire::HeatPlace place;
+    place.texelArea = meanTexelArea(domain) * object.pose.scale * object.pose.scale;
+    place.pace = pace;
+    place.moisture = object.moisture;
+    std::array<gpu::HeatMaterial, kMaterials> made;
+    for (uint32_t i = 0; i < kMaterials; ++i)
+        made[i] =
+            fire::heatMaterial(object.materialMask >> i & 1 ? object.materials[i] : stone, place);
+    return made;
+}
+
 gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& domain,
                            const Records& records) noexcept {
     gpu::BurnObject made{};
@@ -206,6 +229,7 @@ uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain)
     if (object.flags & FW_BURNABLE_NO_HOLES) flags |= gpu::kObjectNoHoles;
     if (object.flags & FW_BURNABLE_HIDDEN) flags |= gpu::kObjectHidden;
     if (domain.hasDetail) flags |= gpu::kObjectDetail;
+    if (hasHeat(object)) flags |= gpu::kObjectHeat;
     return flags;
 }
 

@@ -2,6 +2,7 @@
 // make a backend's records of it. It owns no ids and knows no device.
 #pragma once
 #include "components/pose.h"
+#include "fire/heat.h"
 #include "fire/spread_law.h"
 #include "fire/wind_filter.h"
 #include "flamewright/flamewright.h"
@@ -49,7 +50,10 @@ struct Records {
 // Throws core::Error naming the field. Ids are the caller's: mesh, materials and image stay unset.
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def);
 void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def) noexcept;
+// Can it burn, be it after drying?
 [[nodiscard]] bool burns(const BurnableMesh& object, uint32_t material) noexcept;
+// Has it temperature, fuel and water per texel?
+[[nodiscard]] bool hasHeat(const BurnableMesh& object) noexcept;
 
 // Q7 slowness per texel with the host's speed multiplier in it; empty if there is none.
 std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
@@ -67,6 +71,11 @@ bool latchDrive(const BurnableMesh& object, Latch& latch) noexcept;
 // Records under the latched drive; notes their flameTicks and substepShift in the latch.
 Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
                     const DriveInput& drive, Latch& latch) noexcept;
+
+// Of an object that has heat; where no material was given it is stone.
+std::array<gpu::HeatMaterial, kMaterials> makeHeatMaterials(const BurnableMesh& object,
+                                                            const mesh::BurnDomain& domain,
+                                                            float pace) noexcept;
 
 // What the backend keeps of an object; bases are the backend's.
 gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& domain,

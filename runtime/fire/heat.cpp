@@ -9,6 +9,7 @@ namespace fw::fire {
 namespace {
 
 constexpr double kLeastSkin = 0.0002;  // m
+constexpr float kSheet = 0.002f;       // m: a sheet of at most this is as warm inside as outside
 constexpr double kKelvin = 16;         // units per K
 
 uint32_t fixed(double value, double unit, double most = 4294967295.0) {
@@ -26,19 +27,21 @@ gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float amb
     m.convects = fixed(double(facts.convection), 256, 1 << 15);
     m.ownFlux = fixed(double(facts.ownFlux), 1, 200000);
     m.ambient = fixed(double(ambient), kKelvin, 16000);
-    if (facts.thick) {
+    const bool deep = facts.thick || facts.deep;
+    m.capacityMost = fixed(volumetric * depth / seconds, 256, 1 << 30);
+    m.capacityLeast = m.capacityMost;
+    if (deep) {
         m.inertia = std::max(
             fixed(std::numbers::pi / 2 * double(facts.conductivity) * volumetric / seconds, 1), 1u);
         m.capacityLeast = fixed(volumetric * std::min(kLeastSkin, depth) / seconds, 256, 1 << 30);
-        m.capacityMost = fixed(volumetric * depth / seconds, 256, 1 << 30);
+    }
+    if (facts.thick) {
         const double fuel = double(facts.density) * depth;  // kg/m^2
         m.burnRate = fixed(double(facts.pyrolysis) * seconds / fuel * 65536, 65536, 1u << 31);
         m.charSpan = fixed(
             double(facts.charResistance) * double(facts.charShare) * depth * std::numbers::log2e,
             65536);
         m.charFloor = fixed(double(facts.charFloor), 65536, 65536);
-    } else {
-        m.capacityLeast = m.capacityMost = fixed(volumetric * depth / seconds, 256, 1 << 30);
     }
     m.ignitesAt = fixed(double(facts.ignition), kKelvin, 65535);
     m.ignitesAlone = fixed(double(facts.autoIgnition), kKelvin, 65535);
@@ -46,7 +49,7 @@ gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float amb
     m.filmMost = fixed(double(facts.filmMost), 1, gpu::kFilmMost);
     const double perGram = double(kLatentHeat) / 1000 / seconds;  // W/m^2
     m.filmFlux = std::max(fixed(perGram, 1, 1 << 22), 1u);
-    const double wet = facts.thick ? std::min(double(facts.moistDepth), depth) : depth;  // m
+    const double wet = deep ? std::min(double(facts.moistDepth), depth) : depth;  // m
     m.moistFlux =
         std::max(fixed(double(facts.density) * wet * 1000 / 128 * perGram, 1, 1 << 26), 1u);
     m.moistDies = fixed(double(facts.extinctionMoisture), 128, gpu::kMoistMost + 1);
@@ -61,6 +64,50 @@ gpu::HeatTexel heatAtRest(float ambient, float moisture) noexcept {
     x.heat = fixed(double(ambient), kKelvin, 16000);
     x.moist = fixed(double(moisture), 128, gpu::kMoistMost);
     return x;
+}
+
+HeatFacts heatFacts(const FwMaterialDef& def) noexcept {
+    HeatFacts facts;
+    facts.burns = def.spreadRate > 0;
+    facts.thick = def.burnTime <= 0;
+    facts.thickness = std::max(def.thickness, 1e-5f);
+    facts.deep = facts.thickness > kSheet;
+    facts.density = def.density;
+    facts.conductivity = def.conductivity;
+    facts.specificHeat = def.specificHeat;
+    facts.ownFlux = def.flameFeedback;
+    facts.charFloor = def.charFloor;
+    facts.ignition = def.ignitionTemperature;
+    facts.autoIgnition = std::max(def.autoIgnitionTemperature, def.ignitionTemperature);
+    facts.extinction = def.ignitionTemperature - 50;
+    facts.filmMost = def.waterHeld;
+    facts.extinctionMoisture = def.extinctionMoisture;
+    // The mean of 1 / share over its depth: how much longer char makes it last.
+    const double span =
+        double(facts.charResistance) * double(facts.charShare) * double(facts.thickness);
+    const double floor = double(facts.charFloor);
+    const double longer =
+        (span + std::log(floor + (1 - floor) * std::exp(-span))) / std::max(floor * span, 1e-9);
+    facts.pyrolysis = float(double(def.burningFlux) * longer);
+    return facts;
+}
+
+float arealFuel(const FwMaterialDef& def) noexcept {
+    return def.burnTime > 0 ? def.burningFlux * def.burnTime : def.density * def.thickness;
+}
+
+gpu::HeatMaterial heatMaterial(const FwMaterialDef& def, const HeatPlace& place) noexcept {
+    const double step = double(gpu::kHeatSteps * gpu::kStepTicks) / gpu::kTicksPerSecond;
+    const double seconds = step * double(place.pace);
+    gpu::HeatMaterial m = heatMaterial(heatFacts(def), seconds, kAmbient);
+    m.moistAtRest = fixed(double(def.moisture) + double(place.moisture), 128, gpu::kMoistMost);
+    m.burnTicks = fixed(std::max(double(def.burnTime), 0.0) / double(place.pace),
+                        gpu::kTicksPerSecond, 1u << 28);
+    const double joules = double(def.heatOfCombustion) * double(arealFuel(def)) *
+                          double(place.texelArea) / gpu::kFuelFull;  // of a unit
+    m.energy = fixed(joules, 1048576);
+    m.watts = float(joules / seconds);
+    return m;
 }
 
 uint32_t airGain(float wind) noexcept {

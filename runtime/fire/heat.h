@@ -1,14 +1,16 @@
 // Heat in W, K and kg becomes the integers that shared/heat.h runs on. Not the spread law: when the
 // front crosses a surface is spread_law's.
 #pragma once
+#include "flamewright/flamewright.h"
 #include "shared/heat.h"
 
 namespace fw::fire {
 
 struct HeatFacts {  // of a material; defaults: softwood
     bool burns = true;
-    bool thick = true;           // chars through from the surface; false: a sheet, burns evenly
-    float thickness = 0.05f;     // m, (0, 1]
+    bool thick = true;           // chars through from the surface; false: burns evenly
+    bool deep = false;           // what is not thick: heats from its surface, as thick fuel does
+    float thickness = 0.05f;     // m, > 0
     float density = 450;         // kg/m^3
     float conductivity = 0.12f;  // W/m/K
     float specificHeat = 2500;   // J/kg/K
@@ -37,6 +39,22 @@ constexpr float kLatentHeat = 2.26e6f;  // J/kg, of water
 
 // `seconds`: of a heat step, physical (pace times the step). `ambient`: K.
 gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float ambient) noexcept;
+
+constexpr float kAmbient = 293;  // K
+
+struct HeatPlace {        // what else decides of a material on one object
+    float texelArea = 0;  // m^2, world
+    float pace = 1;       // as SpreadFacts
+    float moisture = 0;   // kg/kg, added to the material's own
+};
+
+// A material's facts. Thick fuel's rate is such that all of it, hot and in still air, lasts as long
+// as it does at burningFlux.
+HeatFacts heatFacts(const FwMaterialDef& def) noexcept;
+// kg/m^2 that burn in all.
+float arealFuel(const FwMaterialDef& def) noexcept;
+// The record of a material on an object, for heat steps of kHeatSteps steps.
+gpu::HeatMaterial heatMaterial(const FwMaterialDef& def, const HeatPlace& place) noexcept;
 // A texel at rest. `moisture`: kg/kg.
 gpu::HeatTexel heatAtRest(float ambient, float moisture) noexcept;
 // Wind along the surface, m/s, to the gain of thick fuel's burning rate, Q8: 1 to 2 at 15 m/s.

@@ -13,6 +13,9 @@ struct Preset {
     float burnTime, moisture, extinctionMoisture, thickness, heatOfCombustion, burningFlux;
     float baseColor[3], baseRoughness;
 };
+struct HeatPreset {
+    float density, specificHeat, conductivity, ignition, autoIgnition, water, radiant, soot;
+};
 
 // clang-format off
 constexpr Preset kPresets[FW_MATERIAL_PRESET_COUNT] = {
@@ -31,6 +34,26 @@ constexpr Preset kPresets[FW_MATERIAL_PRESET_COUNT] = {
     {"plywood",         0.001f,  0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 300.0f, 0.0f, 0.4f, 0.005f, 15.0e6f, 0.0085f, {0.55f, 0.40f, 0.24f}, 0.6f},
     {"leather",         0.0015f, 0.35f, 1.0f, 4.0f, 2.0f, 4.0f, 2.0f, 60.0f, 0.0f, 0.4f, 0.003f, 18.0e6f, 0.012f, {0.20f, 0.09f, 0.04f}, 0.5f},
     {"plastic",         0.002f,  0.35f, 1.0f, 5.0f, 1.5f, 4.0f, 2.0f, 120.0f, 0.0f, 0.3f, 0.003f, 30.0e6f, 0.015f, {0.30f, 0.32f, 0.34f}, 0.35f},
+};
+
+// Wood: EN 1995-1-2 and Babrauskas (2001), piloted at 300 to 365 C. Paper's auto-ignition is of a
+// sheet in the open, not the 233 C of an oven.
+constexpr HeatPreset kHeat[FW_MATERIAL_PRESET_COUNT] = {
+    //                  kg/m^3  J/kgK    W/mK   Tig     Tauto   g/m^2   rad    soot
+    /* noncombustible*/ {2300.0f, 880.0f, 1.0f, 2000.0f, 3000.0f, 150.0f, 0.0f, 0.0f},
+    /* pine          */ {450.0f, 2500.0f, 0.12f, 623.0f, 873.0f, 200.0f, 0.30f, 0.015f},
+    /* painted wood  */ {450.0f, 2500.0f, 0.12f, 633.0f, 873.0f, 120.0f, 0.32f, 0.03f},
+    /* newspaper     */ {600.0f, 1400.0f, 0.06f, 540.0f, 690.0f, 80.0f, 0.25f, 0.01f},
+    /* paper         */ {800.0f, 1400.0f, 0.08f, 540.0f, 700.0f, 100.0f, 0.25f, 0.01f},
+    /* cotton        */ {300.0f, 1300.0f, 0.06f, 560.0f, 690.0f, 400.0f, 0.25f, 0.01f},
+    /* polyester     */ {400.0f, 1200.0f, 0.10f, 650.0f, 760.0f, 100.0f, 0.35f, 0.06f},
+    /* dry leaf      */ {500.0f, 1800.0f, 0.10f, 550.0f, 700.0f, 100.0f, 0.28f, 0.01f},
+    /* green leaf    */ {700.0f, 2500.0f, 0.20f, 570.0f, 720.0f, 100.0f, 0.28f, 0.02f},
+    /* thatch        */ {100.0f, 1600.0f, 0.06f, 560.0f, 720.0f, 500.0f, 0.30f, 0.015f},
+    /* dry grass     */ {100.0f, 1600.0f, 0.06f, 560.0f, 720.0f, 200.0f, 0.30f, 0.01f},
+    /* plywood       */ {550.0f, 2300.0f, 0.12f, 623.0f, 873.0f, 150.0f, 0.30f, 0.02f},
+    /* leather       */ {900.0f, 1500.0f, 0.16f, 650.0f, 800.0f, 200.0f, 0.28f, 0.03f},
+    /* plastic       */ {1050.0f, 1700.0f, 0.20f, 640.0f, 760.0f, 40.0f, 0.38f, 0.10f},
 };
 // clang-format on
 
@@ -58,6 +81,17 @@ FwMaterialDef presetDef(uint32_t preset) noexcept {
     def.burningFlux = p.burningFlux;
     for (int i = 0; i < 3; ++i) def.baseColor[i] = p.baseColor[i];
     def.baseRoughness = p.baseRoughness;
+    const HeatPreset& heat = kHeat[row];
+    def.density = heat.density;
+    def.specificHeat = heat.specificHeat;
+    def.conductivity = heat.conductivity;
+    def.ignitionTemperature = heat.ignition;
+    def.autoIgnitionTemperature = heat.autoIgnition;
+    def.flameFeedback = 25000;
+    def.charFloor = 0.38f;
+    def.waterHeld = heat.water;
+    def.radiantFraction = heat.radiant;
+    def.sootYield = heat.soot;
     return def;
 }
 

@@ -1,6 +1,7 @@
 #include "fire/spread_law.h"
 
 #include "core/error.h"
+#include "fire/heat.h"
 #include "shared/front.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@ namespace fw::fire {
 namespace {
 
 constexpr double kTicks = double(gpu::kTicksPerSecond);
-constexpr double kFuelDensity = 450;    // kg/m^3: how fast thick fuel is consumed
 constexpr double kNoiseFastest = 1.18;  // speed where slowness noise is least
 constexpr uint32_t kMaxBurnTicks = 1u << 28;
 
@@ -35,6 +35,16 @@ constexpr Limit kLimits[] = {
     {"heatOfCombustion", &FwMaterialDef::heatOfCombustion, 0, 2e8f},
     {"burningFlux", &FwMaterialDef::burningFlux, 0, 10},
     {"baseRoughness", &FwMaterialDef::baseRoughness, 0, 1},
+    {"density", &FwMaterialDef::density, 1, 20000},
+    {"specificHeat", &FwMaterialDef::specificHeat, 100, 10000},
+    {"conductivity", &FwMaterialDef::conductivity, 1e-3f, 500},
+    {"ignitionTemperature", &FwMaterialDef::ignitionTemperature, 300, 2000},
+    {"autoIgnitionTemperature", &FwMaterialDef::autoIgnitionTemperature, 300, 3000},
+    {"flameFeedback", &FwMaterialDef::flameFeedback, 0, 200000},
+    {"charFloor", &FwMaterialDef::charFloor, 0.01f, 1},
+    {"waterHeld", &FwMaterialDef::waterHeld, 0, 1023},
+    {"radiantFraction", &FwMaterialDef::radiantFraction, 0, 1},
+    {"sootYield", &FwMaterialDef::sootYield, 0, 1},
 };
 
 uint32_t fixed(double value, double unit, double high) {
@@ -96,6 +106,11 @@ void checkMaterial(const FwMaterialDef& def) {
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwMaterialDef::baseColor[%d] is %g; it must be within [0, 1].", i,
                        double(def.baseColor[i]));
+    if (def.autoIgnitionTemperature < def.ignitionTemperature)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwMaterialDef::autoIgnitionTemperature is %g; it is at least "
+                   "ignitionTemperature, which is %g.",
+                   double(def.autoIgnitionTemperature), double(def.ignitionTemperature));
     if (def.look >= FW_MATERIAL_PRESET_COUNT)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwMaterialDef::look is %u; it must be a FwMaterialPreset, below %d.", def.look,
@@ -108,7 +123,8 @@ float moistureFactor(float moisture, float extinctionMoisture) noexcept {
 }
 
 float baseRate(const FwMaterialDef& def, const SpreadFacts& facts) noexcept {
-    const float factor = moistureFactor(def.moisture + facts.moisture, def.extinctionMoisture);
+    float factor = moistureFactor(def.moisture + facts.moisture, def.extinctionMoisture);
+    if (factor <= 0 && facts.dries) factor = 1;  // its texels wait until heat has dried them
     return def.spreadRate * factor * facts.pace;
 }
 
@@ -124,6 +140,7 @@ gpu::BurnMaterial inertMaterial() noexcept {
     m.breadthMax = 256;
     m.burnTicks = gpu::kNoneTexel;
     m.flameTicks = 0;
+    m.air = 256;
     m.timeScale = 1;
     return m;
 }
@@ -162,13 +179,15 @@ gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& fact
         m.burnTicks = durationTicks(double(def.burnTime) / double(facts.pace));
         m.flameTicks = m.burnTicks;
     } else {  // thick: a source without end, flames until it is consumed
-        const double consumed = double(def.burningFlux) > 0
-                                    ? double(def.thickness) * kFuelDensity / double(def.burningFlux)
-                                    : 0;
+        const double consumed =
+            double(def.burningFlux) > 0 ? double(arealFuel(def)) / double(def.burningFlux) : 0;
         m.flameTicks =
             consumed > 0 ? durationTicks(consumed / double(facts.pace)) : gpu::kNoneTexel;
     }
     m.powerPerArea = def.heatOfCombustion * def.burningFlux;
+    const double speed = std::sqrt(double(wind[0]) * wind[0] + double(wind[1]) * wind[1] +
+                                   double(wind[2]) * wind[2]);
+    m.air = airGain(float(speed * double(kWindUnit)));
     return m;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 #include "mesh/burn_domain.h"
 #include "shared/burn.h"
+#include "shared/heat.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -18,6 +19,7 @@ struct ObjectInit {
     std::span<const BurnMaterial> materials;  // kMaterialsPerObject
     // Per texel Q7, 0 = cannot burn; empty: the mesh's own with nothing painted. Width of the map.
     std::span<const uint16_t> slowness;
+    std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat plane
 };
 
 struct MaterialUpdate {  // new records of one object at a step's start (a wind or pose latch)
@@ -31,6 +33,7 @@ struct StepPlan {               // one fixed step of 1/32 s
     uint32_t now = 0;           // tick at its start
     uint32_t substepShift = 0;  // log2 of its iterations: the largest of the objects that burn
     bool reduce = false;        // also count burning texels and rebuild BurnTiles
+    bool heat = false;          // also a heat step: kHeatSteps steps at once, at its start
     std::span<const TexelEvent> events;         // sorted by (object, texel, order)
     std::span<const MaterialUpdate> materials;  // applied first; each object's tiles wake
 };

@@ -44,7 +44,12 @@
 #define FW_BIND_DRAW_ARGS 32  // indirect draw of the flames
 #define FW_BIND_VIEW 33       // uniform ViewParams
 #define FW_BIND_LOOKS 34      // MaterialLook[]
-#define FW_BIND_COUNT 35
+#define FW_BIND_HEAT 35       // uvec2[]: packed HeatTexel, of objects with kObjectHeat
+#define FW_BIND_TILE_HEAT 36  // TileHeat[] (per object): what comes to a tile from elsewhere
+#define FW_BIND_HEAT_MATERIALS 37  // HeatMaterial[], 8 per object slot
+#define FW_BIND_HOT_LISTS 38  // uvec2[]: tiles whose heat changes, list A in x and B in y
+#define FW_BIND_TILE_FIRE 39  // float[] (per object): W that a tile gave off in the last heat step
+#define FW_BIND_COUNT 70
 
 FW_SHARED_BEGIN
 
@@ -59,6 +64,7 @@ FW_SHARED_CONST uint kLiveEnd = 0xFFFFFFF0u;
 
 FW_SHARED_CONST uint kTicksPerSecond = 4096u;
 FW_SHARED_CONST uint kStepTicks = 128u;      // 1/32 s
+FW_SHARED_CONST uint kHeatSteps = 4u;        // steps from one heat step to the next
 FW_SHARED_CONST uint kMaxSubsteps = 8u;
 FW_SHARED_CONST uint kMaterialsPerObject = 8u;
 
@@ -72,18 +78,22 @@ FW_SHARED_CONST uint kObjectTwoSided = 4u;
 FW_SHARED_CONST uint kObjectNoHoles = 8u;
 FW_SHARED_CONST uint kObjectHidden = 16u;
 FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinates
+FW_SHARED_CONST uint kObjectHeat = 64u;      // has a heat plane
 
 // TileState::flag
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
 FW_SHARED_CONST uint kTileTouched = 2u;      // an input changed: due now
 FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
 FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
+FW_SHARED_CONST uint kTileHot = 32u;         // in the hot list
+FW_SHARED_CONST uint kTileWarm = 64u;        // and not for cold water alone
 
 // Rows of IterationCounters. The first are lists that live on; list*: indirect groups of 64 tiles
-// (burn) or of 8 (predict).
+// (burn) or of 8 (predict, hot).
 FW_SHARED_CONST uint kRowBurn = 0u;          // + parity of the burn list; run*: its BurnTiles / 64
 FW_SHARED_CONST uint kRowPredict = 2u;       // + parity of the predict list
-FW_SHARED_CONST uint kRowIteration = 4u;     // + iteration of the frame
+FW_SHARED_CONST uint kRowHot = 4u;           // + parity of the hot list
+FW_SHARED_CONST uint kRowIteration = 6u;     // + iteration of the frame
 
 // StepPush::switches, as FwDebugSwitch
 FW_SHARED_CONST uint kSwitchDense = 1u;
@@ -121,7 +131,8 @@ struct BurnObject {   // everything a pass needs to find an object's planes
     vec4 worldRow2;
     vec4 tint;        // rgb; w: mean texel area, m^2, world scale
     uint publishedBase;  // into published, as-published objects only
-    uint reserved0; uint reserved1; uint reserved2;
+    uint heatBase;    // into heat; with kObjectHeat
+    uint reserved1; uint reserved2;
 };
 FW_SHARED_SIZE(BurnObject, 160)
 
@@ -146,7 +157,8 @@ struct BurnMaterial { // integers of the spread law for one material on one obje
     uvec4 upCeiling;  // xyz: up in object space as int Q10 bits; w: 0
     uint flameTicks;  // as burnTicks, but thick fuel ends too: when it is consumed
     uint windowMax;   // the largest correction window its object may ever have, ticks
-    uint reserved0; uint reserved1;
+    uint air;         // Q8: what the wind makes of thick fuel's burning rate, 256 = still air
+    uint reserved1;
 };
 FW_SHARED_SIZE(BurnMaterial, 112)
 
@@ -171,7 +183,7 @@ struct TexelEvent {   // sorted by (object, texel, order); one batch per step
     uint object;      // slot
     uint texel;       // index in the object's map
     uint kind;
-    uint tick;        // of an ignition
+    uint tick;        // of an ignition; of a wetting: g/m^2 of water
 };
 FW_SHARED_SIZE(TexelEvent, 16)
 
@@ -182,9 +194,16 @@ struct ObjectCounters {
     uint lateClamps;  // since ever
     uint lastIgnition;  // end tick of the last window in which a texel caught
     uint burningTiles;
-    uint reserved0; uint reserved1;
+    uint energyLow;   // heat released since ever, 2^-20 J: exactly what its texels' fuel lost
+    uint energyHigh;  // 2^12 J
 };
 FW_SHARED_SIZE(ObjectCounters, 32)
+
+struct TileHeat {     // of one tile, W/m^2 and flags; whoever writes one also puts its tile on the
+    uint flux;        // hot list. From elsewhere, before what the surface absorbs of it.
+    uint pilot;       // 1: a flame is near
+};
+FW_SHARED_SIZE(TileHeat, 8)
 
 struct BurnTile {     // one burning 8x8 tile, for flames and lights (cosmetic)
     vec4 positionArea;  // world m; flaming area m^2
@@ -212,7 +231,7 @@ struct StepPush {     // push constants of the simulation passes
     uint count;       // events, wake groups, probes or object slots
     uint object;      // reset, published: slot
     uint publishedParity;  // plane that is read
-    uint reserved0;
+    uint hotParity;   // of the hot list that is read (others: appended to)
 };
 FW_SHARED_SIZE(StepPush, 48)
 

@@ -70,8 +70,12 @@ struct HeatMaterial {     // one material, one step length and one pace: fire/he
     uint moistDies;       // moisture of extinction, 1/128
     uint flags;
     uint airDries;        // g/m^2 of film that go a step in cold air, Q16
+    uint moistAtRest;     // 1/128
+    uint burnTicks;       // thin: ticks that a whole texel flames
+    uint energy;          // of a fuel unit of one texel, 2^-20 J
+    float watts;          // of a fuel unit a step (looks)
 };
-FW_SHARED_SIZE(HeatMaterial, 80)
+FW_SHARED_SIZE(HeatMaterial, 96)
 
 FW_SHARED_FN uvec2 packHeat(FW_IN(HeatTexel) x) {
     return uvec2(x.fuel | (x.heat << 16u),

@@ -200,7 +200,7 @@ typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md */
     float lengthToBreadth;/* largest length/breadth of the burnt ellipse, [1, 4]; default 2 */
     float ceilingGain;    /* speed-up below a ceiling, [0, 4]; default 0.3 */
     float burnTime;       /* s a texel flames, at pace 1; <= 0: thick fuel, which flames while
-                             thickness * 450 kg/m^3 lasts at burningFlux */
+                             thickness * density lasts at burningFlux, and while it is hot enough */
     float moisture;       /* kg water per kg dry fuel, [0, 2] */
     float extinctionMoisture; /* moisture at which it no longer spreads, (0, 2] */
     float thickness;      /* m, of the visible rim and of the consumption, >= 0 */
@@ -208,6 +208,18 @@ typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md */
     float burningFlux;    /* kg/m^2/s while it flames */
     float baseColor[3];   /* linear albedo of the fresh material, where no image is given */
     float baseRoughness;  /* [0, 1] */
+    /* Heat and water: of objects without FW_BURNABLE_LITE. */
+    float density;                 /* kg/m^3, [1, 20000] */
+    float specificHeat;            /* J/kg/K, [100, 10000] */
+    float conductivity;            /* W/m/K, [0.001, 500] */
+    float ignitionTemperature;     /* K of its surface, with a flame near, [300, 2000] */
+    float autoIgnitionTemperature; /* K without one, [ignitionTemperature, 3000] */
+    float flameFeedback;           /* W/m^2 that its own flame gives back to it, [0, 200000]; default
+                                      25000. Below some 12000 a lone flame goes out, as real planks do */
+    float charFloor;               /* thick fuel: share of its burning rate that no char stops, (0, 1] */
+    float waterHeld;               /* g/m^2 of water that stay on it, [0, 1023]; more runs off */
+    float radiantFraction;         /* of its heat that leaves as radiation, [0, 1] */
+    float sootYield;               /* kg of soot per kg burnt, [0, 1] */
 } FwMaterialDef;
 static inline FwMaterialDef fwDefaultMaterialDef(void) { /* pine */
     FwMaterialDef d; fwInitDef(FW_DEF_MATERIAL, &d, (uint32_t)sizeof d); return d;
@@ -283,6 +295,9 @@ typedef enum FwBurnableFlags {
     FW_BURNABLE_TWO_SIDED = 2,  /* draw back faces too */
     FW_BURNABLE_PUBLISHED = 4,  /* spread by the published 16-tap kernel, for comparison */
     FW_BURNABLE_NO_HOLES = 8,   /* never consumed */
+    FW_BURNABLE_LITE = 16,      /* no temperature, fuel and water per texel: 8 bytes a texel less, and
+                                   nothing to do for what burns behind the front. It burns by
+                                   burnTime alone, and water stays until it is dried */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
 

@@ -15,13 +15,13 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
     std::array<VkDescriptorBufferInfo, FW_BIND_COUNT> infos{};
     std::array<VkWriteDescriptorSet, FW_BIND_COUNT> writes{};
     uint32_t count = 0;
-    uint64_t seen = 0;
+    std::array<bool, FW_BIND_COUNT> seen{};
     for (const Use& use : uses) {
-        if (use.resource >= FW_BIND_COUNT || (seen >> use.resource & 1u)) continue;
+        if (use.resource >= FW_BIND_COUNT || seen[use.resource]) continue;
         if (use.access == Access::indirect || use.access == Access::copyRead ||
             use.access == Access::copyWrite || use.access == Access::vertexInput)
             continue;
-        seen |= uint64_t(1) << use.resource;
+        seen[use.resource] = true;
         const bool view = use.resource == FW_BIND_VIEW;
         infos[count] =
             view ? VkDescriptorBufferInfo{views, 0, viewBytes}
@@ -70,8 +70,8 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     device_.check(device_.table.CreateDescriptorPool(device_.handle, &info,
                                                      device_.allocationCallbacks, &pool),
                   "vkCreateDescriptorPool");
-    std::array<VkDescriptorSetLayout, 64> layouts{};
-    std::array<VkDescriptorSet, 64> made{};
+    std::array<VkDescriptorSetLayout, 128> layouts{};
+    std::array<VkDescriptorSet, 128> made{};
     for (size_t i = 0; i < computeCount; ++i) layouts[i] = pipelines_.compute(i).setLayout;
     for (size_t i = 0; i < drawCount; ++i) layouts[computeCount + i] = pipelines_.draw(i).setLayout;
     auto allocate =

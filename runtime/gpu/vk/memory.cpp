@@ -9,7 +9,8 @@ namespace {
 
 constexpr VkDeviceSize kBlockSize = VkDeviceSize(16) << 20;
 constexpr const char* kComponentNames[kComponentCount] = {
-    "meshes", "objects", "lists", "predict", "flames", "images", "staging", "readback", "targets"};
+    "meshes", "objects", "lists",   "predict",  "heat",
+    "flames", "images",  "staging", "readback", "targets"};
 
 VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) noexcept {
     return (value + alignment - 1) / alignment * alignment;

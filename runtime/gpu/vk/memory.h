@@ -40,6 +40,7 @@ enum Component : uint32_t {
     kComponentObjects,
     kComponentLists,
     kComponentPredict,
+    kComponentHeat,
     kComponentFlames,
     kComponentImages,
     kComponentStaging,

@@ -167,7 +167,7 @@ void Pipelines::makeLayouts() {
                           bool draws, bool soft) {
         std::array<VkDescriptorSetLayoutBinding, FW_BIND_COUNT> bindings{};
         uint32_t count = 0;
-        uint64_t seen = 0;
+        std::array<bool, FW_BIND_COUNT> seen{};
         const VkShaderStageFlags stages =
             draws ? VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT
                   : VK_SHADER_STAGE_COMPUTE_BIT;
@@ -176,8 +176,8 @@ void Pipelines::makeLayouts() {
                                use.access == Access::drawRead ||
                                use.access == Access::drawUniform ||
                                use.access == Access::uniformView;
-            if (!bound || (seen >> use.resource & 1u)) continue;
-            seen |= uint64_t(1) << use.resource;
+            if (!bound || seen[use.resource]) continue;
+            seen[use.resource] = true;
             VkDescriptorSetLayoutBinding& binding = bindings[count++];
             binding.binding = use.resource;
             binding.descriptorType =

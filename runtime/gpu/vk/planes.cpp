@@ -1,6 +1,7 @@
 #include "gpu/vk/planes.h"
 
 #include "core/error.h"
+#include "shared/heat.h"
 #include "shared/look.h"
 
 #include <algorithm>
@@ -52,6 +53,12 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_ANSWERS, kSpaceProbes, 4, false, kComponentLists, "answers", 0},
     {FW_BIND_PUBLISHED, kSpacePublished, 3 * 4 * kTileTexels, true, kComponentObjects, "published",
      0},
+    {FW_BIND_HEAT, kSpaceHeat, 8 * kTileTexels, true, kComponentHeat, "heat", 0},
+    {FW_BIND_TILE_HEAT, kSpaceObjectTiles, sizeof(TileHeat), true, kComponentHeat, "tile heat", 0},
+    {FW_BIND_HEAT_MATERIALS, kSpaceObjects, sizeof(HeatMaterial) * kMaterialsPerObject, true,
+     kComponentHeat, "heat materials", 0},
+    {FW_BIND_HOT_LISTS, kSpaceObjectTiles, 8, true, kComponentHeat, "hot lists", 0},
+    {FW_BIND_TILE_FIRE, kSpaceObjectTiles, 4, true, kComponentHeat, "tile fire", 0},
     {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},
@@ -62,8 +69,8 @@ constexpr Plane kPlanes[] = {
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
 };
 
-constexpr uint32_t kInitialUnits[kSpaceCount] = {64,    1024,         512,  512,  1024, 1024, 4096,
-                                                 16384, kCounterRows, 4096, 1024, 1024, 1,    1};
+constexpr uint32_t kInitialUnits[kSpaceCount] = {
+    64, 1024, 512, 512, 1024, 1024, 4096, 16384, kCounterRows, 4096, 1024, 1024, 1, 1, 1};
 
 }  // namespace
 

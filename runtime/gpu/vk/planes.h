@@ -24,6 +24,7 @@ enum Space : uint32_t {
     kSpaceWakeGroups,  // per frame
     kSpaceProbes,      // per frame
     kSpacePublished,   // 8x8 tiles of objects in as-published mode
+    kSpaceHeat,        // 8x8 tiles of objects with heat
     kSpaceFixed,       // one unit
     kSpaceCount,
 };

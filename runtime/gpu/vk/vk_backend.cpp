@@ -494,7 +494,11 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         }
         if (init.record.flags & kObjectPublished)
             fresh.published = {s.planes.allocate(kSpacePublished, mesh.tiles, last), mesh.tiles};
+        if (!init.heat.empty())
+            fresh.heatTiles = {s.planes.allocate(kSpaceHeat, mesh.tiles, last), mesh.tiles};
     } catch (...) {
+        if (fresh.published.units)
+            s.planes.release(kSpacePublished, fresh.published.first, fresh.published.units);
         if (fresh.tiles.units)
             s.planes.release(kSpaceObjectTiles, fresh.tiles.first, fresh.tiles.units);
         if (fresh.slowness.units)
@@ -515,11 +519,14 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     r.linkBase = mesh.links.first;
     r.readerBase = mesh.readers.first;
     r.publishedBase = fresh.published.first * kTileTexels * 3;
+    r.heatBase = fresh.heatTiles.first * kTileTexels;
     r.width = mesh.width;
     r.height = mesh.height;
     r.tilesX = mesh.tilesX;
     r.tileCount = mesh.tiles;
-    r.flags |= kObjectLive;
+    r.flags = (r.flags & ~kObjectHeat) | kObjectLive | (init.heat.empty() ? 0 : kObjectHeat);
+    for (size_t i = 0; i < kMaterialsPerObject && i < init.heat.size(); ++i)
+        fresh.heat[i] = init.heat[i];
     for (size_t i = 0; i < kMaterialsPerObject && i < init.materials.size(); ++i)
         fresh.materials[i] = init.materials[i];
     fresh.recordDirty = fresh.materialsDirty = fresh.resetDue = true;
@@ -541,6 +548,8 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
         s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
     if (entry.published.units)
         s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
+    if (entry.heatTiles.units)
+        s.planes.release(kSpaceHeat, entry.heatTiles.first, entry.heatTiles.units);
     entry = {};
     entry.recordDirty = true;  // a record without kObjectLive: list entries fall out
     s.recordsDirty = true;
@@ -555,8 +564,8 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
     entry.record.worldRow1 = rows[1];
     entry.record.worldRow2 = rows[2];
     entry.record.tint = tint;
-    entry.record.flags =
-        (flags & ~kObjectPublished) | (entry.record.flags & kObjectPublished) | kObjectLive;
+    constexpr uint32_t kFixed = kObjectPublished | kObjectHeat;
+    entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
     entry.recordDirty = true;
     s.recordsDirty = true;
 }

@@ -92,7 +92,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
         const ObjectEntry& object = s.objects[i];
         if (object.recordDirty) needs.uploadBytes += uploaded(sizeof(BurnObject));
-        if (object.materialsDirty) needs.uploadBytes += uploaded(sizeof object.materials);
+        if (object.materialsDirty)
+            needs.uploadBytes += uploaded(sizeof object.materials) + uploaded(sizeof object.heat);
         if (!object.live) continue;
         if (needs.dense) denseGroups += wakeGroupsOf(object);
         if (object.record.flags & kObjectPublished)
@@ -284,6 +285,11 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
             const Staged staged = writer.write(std::span<const BurnMaterial>(object.materials));
             recorder.copyIn(staged.at, FW_BIND_MATERIALS, i * sizeof object.materials,
                             sizeof object.materials);
+            if (object.record.flags & kObjectHeat) {
+                const Staged heat = writer.write(std::span<const HeatMaterial>(object.heat));
+                recorder.copyIn(heat.at, FW_BIND_HEAT_MATERIALS, i * sizeof object.heat,
+                                sizeof object.heat);
+            }
         }
         object.recordDirty = object.materialsDirty = false;
     }

@@ -42,7 +42,8 @@ struct ObjectEntry {
     uint32_t mesh = 0;
     BurnObject record{};
     BurnMaterial materials[kMaterialsPerObject]{};
-    RangeOf tiles, slowness, published;
+    HeatMaterial heat[kMaterialsPerObject]{};  // with kObjectHeat
+    RangeOf tiles, slowness, published, heatTiles;
     bool publishedTouched = false;  // as-published mode: some event reached it
     uint32_t publishedParity = 0;
 };
