@@ -284,10 +284,10 @@ MaterialLook thatch() {
     m.facePeak = 1.4f;
     m.faceDecay = 4.4f;
     m.glowVariation = 210.0f;
-    m.ashMax = 0.6f;
-    m.ashStart = 9.0f;
-    m.ashEnd = 34.0f;
-    m.ashColor = vec4(0.27f, 0.26f, 0.245f, 0.0f);
+    m.ashMax = 0.45f;
+    m.ashStart = 16.0f;
+    m.ashEnd = 46.0f;
+    m.ashColor = vec4(0.20f, 0.19f, 0.178f, 0.0f);
     m.holeTime = 46.0f;
     m.holeVariation = 30.0f;
     m.rimKelvin = 1130.0f;

@@ -47,7 +47,7 @@ uint cellKey(ivec3 cell, float side) {
 uint cellWord(uint slot, uint word) { return kLightCellHeader + slot * kLightCellWords + word; }
 
 const uint kCellProbes = 24u;
-const float kFlameCover = 2.6;  // quads one over the other, over what burns
+const float kFlameCover = 3.8;  // quads one over the other, over what burns
 const uint kNoCell = 0xFFFFFFFFu;
 uint findCell(uint key) {
     for (uint i = 0u; i < kCellProbes; ++i) {

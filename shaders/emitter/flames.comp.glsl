@@ -103,7 +103,7 @@ void main() {
         float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
         float wish = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
         // A front thinner than its flames are deep still has a row of them.
-        wish *= clamp(0.5 * likely * side / near.y, 1.0, 3.0);
+        wish *= clamp(0.7 * likely * side / near.y, 1.0, 4.0);
         // Lives must not depend on what burns, or a change would shake all of them.
         float scale = sqrt(clamp(6.0 * tileSide(tile.object), 0.05, 3.0));
 
