@@ -40,7 +40,7 @@ float meanTexelArea(const mesh::BurnDomain& domain) noexcept {
 
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED |
-                                FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE;
+                                FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_NO_SPREAD;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,

@@ -9,6 +9,7 @@ namespace fw::gpu {
 using uint = std::uint32_t;
 using glm::ivec2;
 using glm::ivec3;
+using glm::ivec4;
 using glm::uvec2;
 using glm::uvec3;
 using glm::uvec4;

@@ -298,6 +298,7 @@ typedef enum FwBurnableFlags {
     FW_BURNABLE_LITE = 16,      /* no temperature, fuel and water per texel: 8 bytes a texel less, and
                                    nothing to do for what burns behind the front. It burns by
                                    burnTime alone, and water stays until it is dried */
+    FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
 

@@ -1,0 +1,436 @@
+// Fire at a distance: what flames send to a receiver by radiation and plume, who may light whom,
+// and where embers land. Integers only, one text for C++ and GLSL; it loads nothing. Not what the
+// receiver makes of it (heat.h), nor how sources and receivers are found.
+//
+// World places are mm. A pair of places further apart than kExchangeFar does not exchange anything.
+// GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_EXCHANGE_H
+#define FW_SHARED_EXCHANGE_H
+#include "shared/heat.h"
+
+FW_SHARED_BEGIN
+
+FW_SHARED_CONST int kExchangeFar = 32767;       // mm, along each axis
+FW_SHARED_CONST uint kExchangeSteps = 4u;       // between two exchanges
+FW_SHARED_CONST uint kExchangeTicks = kExchangeSteps * kStepTicks;
+FW_SHARED_CONST uint kExchangeTurns = 8u;       // of a receiver's tiles, every so many'th each time
+FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
+FW_SHARED_CONST uint kSourceGrid = 4u;          // an object's sources: cells along its longest side
+FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most, so
+FW_SHARED_CONST uint kMaxBlockers = 64u;
+FW_SHARED_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
+FW_SHARED_CONST uint kPlumeTransfer = 25u;      // W/m^2/K
+FW_SHARED_CONST uint kNearest = 300u;           // mm: no fire counts as nearer than half of this
+FW_SHARED_CONST uint kPilotReach = 100u;        // mm around a flame in which it lights vapours
+FW_SHARED_CONST uint kContactGap = 50u;         // mm that a flame licks across
+FW_SHARED_CONST uint kChanceOne = 65536u;       // of chances
+
+// Of a world, as FwWorldFlags.
+FW_SHARED_CONST uint kRemoteRadiation = 1u;
+FW_SHARED_CONST uint kRemotePlume = 2u;
+FW_SHARED_CONST uint kRemoteContact = 4u;
+FW_SHARED_CONST uint kRemoteEmbers = 8u;
+// RemoteObject::flags
+FW_SHARED_CONST uint kRemoteLive = 1u;
+FW_SHARED_CONST uint kRemoteGives = 2u;         // its fire may reach others
+FW_SHARED_CONST uint kRemoteTwoSided = 4u;      // what falls on its back counts too
+
+struct RemoteObject {  // an object as others see it: latched at a step's start, so all integers
+    ivec4 row0;        // world mm = w + (xyz . position >> shift); position: units of its mesh
+    ivec4 row1;
+    ivec4 row2;
+    ivec4 turn0;       // xyz: its rotation, Q12; w: low corner of its box in the world, mm
+    ivec4 turn1;
+    ivec4 turn2;
+    ivec4 high;        // xyz: the other corner; w: 0
+    uvec4 power0;      // 1/16 W that a flaming texel gives, by material
+    uvec4 power1;
+    uint shift;
+    uint flags;
+    uint sourceBase;   // into sources
+    uint sourceCount;
+    uint neighbourFirst;  // into neighbours
+    uint neighbourCount;
+    uint chance;       // of each jump to another object, of kChanceOne
+    uint hopsMost;     // gives fire only if fewer jumps brought it here; kNoneTexel: no limit
+    uint lifeTicks;    // its front stops this long after it caught; kNoneTexel: never
+    uint tilesMost;    // none more of its tiles catches while so many burn; kNoneTexel: no limit
+    uint catches;      // of embers: damping by its moisture, Q8
+    uint texelArea;    // mm^2
+};
+FW_SHARED_SIZE(RemoteObject, 192)
+
+struct RemoteTile {    // one tile of a mesh, as a place that gives and receives
+    uint xy;           // middle of its texels, position units
+    uint z;            // z | source cell << 16 | material << 24
+    uint normal;       // their mean, signed 11:11:10
+    uint texels;       // real ones; 0: the tile is empty
+};
+FW_SHARED_SIZE(RemoteTile, 16)
+
+struct FireSource {    // what burns in one cell of an object
+    uint power;        // 1/16 W, summed by `cells`
+    uint texels;       // that flame
+    uint tiles;        // that they are in
+    uint sumX;         // of the tiles' middles, 4 position units
+    uint sumY;
+    uint sumZ;
+    uint object;       // slot
+    uint watts;        // from here on by `sources`; 0: nothing burns, or it gives nothing
+    ivec4 place;       // xyz: mm, world; w: height of the flame, mm
+    uint diameter;     // mm
+    uint scale;        // watts^0.4, Q8
+    uint ember;        // hash of the ember it sends this time; 0: none
+    uint hops;         // jumps that brought the fire here
+};
+FW_SHARED_SIZE(FireSource, 64)
+
+struct Blocker {       // a box that fire does not see, blow or fly through
+    ivec4 turn0;       // xyz: row of its rotation, world to box, Q12; w: middle, mm
+    ivec4 turn1;
+    ivec4 turn2;
+    uvec4 size;        // xyz: half of its sides, mm, [0, 30000]; w: 1 = in place
+};
+FW_SHARED_SIZE(Blocker, 64)
+
+struct ContactLink {   // a texel that another object's may light across a gap
+    uint object;       // slot, the one that catches
+    uint texel;
+    uint fromObject;
+    uint fromTexel;
+    uint delay;        // ticks
+    uint since;        // tick at which they came together
+    uint reserved0;
+    uint reserved1;
+};
+FW_SHARED_SIZE(ContactLink, 32)
+
+struct ExchangePush {  // push constants of the passes that exchange
+    uint now;          // tick after the step
+    uint flags;        // kRemote... of the world
+    uint burnParity;
+    uint row;          // counters row of the front list, appended to
+    uint parity;
+    uint predictParity;
+    uint switches;
+    uint count;        // object slots, or links
+    int upX;           // Q12
+    int upY;
+    int upZ;
+    int windX;         // mm/s
+    int windY;
+    int windZ;
+    uint chance;       // of the world, of kChanceOne
+    uint hopsMost;
+    uint tilesMost;
+    uint lifeTicks;
+    uint seed;
+    uint blockers;
+    uint brands;       // embers per 1/16 W and exchange, Q32
+    uint ambient;      // 1/16 K
+    uint reserved0;
+    uint reserved1;
+};
+FW_SHARED_SIZE(ExchangePush, 96)
+
+// ---- places
+
+FW_SHARED_FN ivec3 remotePlace(FW_IN(RemoteObject) o, ivec3 p) {
+    int s = int(o.shift);
+    return ivec3(o.row0.w + ((o.row0.x * p.x + o.row0.y * p.y + o.row0.z * p.z) >> s),
+                 o.row1.w + ((o.row1.x * p.x + o.row1.y * p.y + o.row1.z * p.z) >> s),
+                 o.row2.w + ((o.row2.x * p.x + o.row2.y * p.y + o.row2.z * p.z) >> s));
+}
+// Q12, of a normal in Q14.
+FW_SHARED_FN ivec3 remoteTurn(FW_IN(RemoteObject) o, ivec3 n) {
+    return ivec3((o.turn0.x * n.x + o.turn0.y * n.y + o.turn0.z * n.z) >> 14,
+                 (o.turn1.x * n.x + o.turn1.y * n.y + o.turn1.z * n.z) >> 14,
+                 (o.turn2.x * n.x + o.turn2.y * n.y + o.turn2.z * n.z) >> 14);
+}
+FW_SHARED_FN ivec3 tileMiddle(FW_IN(RemoteTile) t) {
+    return ivec3(int(t.xy & 0xFFFFu), int(t.xy >> 16u), int(t.z & 0xFFFFu));
+}
+FW_SHARED_FN uint tileCell(FW_IN(RemoteTile) t) { return (t.z >> 16u) & 0xFFu; }
+FW_SHARED_FN uint tileMaterial(FW_IN(RemoteTile) t) { return t.z >> 24u; }
+
+FW_SHARED_FN bool withinReach(ivec3 d) {
+    return d.x <= kExchangeFar && d.x >= -kExchangeFar && d.y <= kExchangeFar &&
+           d.y >= -kExchangeFar && d.z <= kExchangeFar && d.z >= -kExchangeFar;
+}
+FW_SHARED_FN uint absolute(int v) { return uint(v < 0 ? -v : v); }
+
+// Does the straight way from a to b, but for its ends, meet the box?
+FW_SHARED_FN bool blockerCuts(FW_IN(Blocker) k, ivec3 a, ivec3 b) {
+    if (k.size.w == 0u) return false;
+    ivec3 c = ivec3(k.turn0.w, k.turn1.w, k.turn2.w);
+    ivec3 m = ivec3(a.x - c.x + (b.x - a.x) / 2, a.y - c.y + (b.y - a.y) / 2,
+                    a.z - c.z + (b.z - a.z) / 2);
+    ivec3 d = ivec3((b.x - a.x) / 2, (b.y - a.y) / 2, (b.z - a.z) / 2);
+    uint far = mostOf(mostOf(absolute(m.x), absolute(m.y)), absolute(m.z));
+    uint reach = mostOf(mostOf(absolute(d.x), absolute(d.y)), absolute(d.z));
+    if (far > 131071u || reach > 65535u) return false;
+    // What hangs on a wall is not behind it: 6 cm of each end do not count.
+    uint length = isqrtNear(squareSum(ivec3(d.x / 4, d.y / 4, d.z / 4))) * 4u;
+    uint spare = leastOf(60u, length / 2u);
+    int kept = length == 0u ? 0 : int(divide((length - spare) << 12u, length));  // Q12
+    d = ivec3((d.x / 4 * kept) / 1024, (d.y / 4 * kept) / 1024, (d.z / 4 * kept) / 1024);
+    // In the box's own frame, 4 mm a unit: products stay below 2^31.
+    ivec3 o = ivec3((k.turn0.x * m.x + k.turn0.y * m.y + k.turn0.z * m.z) / 16384,
+                    (k.turn1.x * m.x + k.turn1.y * m.y + k.turn1.z * m.z) / 16384,
+                    (k.turn2.x * m.x + k.turn2.y * m.y + k.turn2.z * m.z) / 16384);
+    ivec3 h = ivec3((k.turn0.x * d.x + k.turn0.y * d.y + k.turn0.z * d.z) / 16384,
+                    (k.turn1.x * d.x + k.turn1.y * d.y + k.turn1.z * d.z) / 16384,
+                    (k.turn2.x * d.x + k.turn2.y * d.y + k.turn2.z * d.z) / 16384);
+    uint ex = (k.size.x + 3u) >> 2u, ey = (k.size.y + 3u) >> 2u, ez = (k.size.z + 3u) >> 2u;
+    uint hx = absolute(h.x), hy = absolute(h.y), hz = absolute(h.z);
+    if (absolute(o.x) > ex + hx || absolute(o.y) > ey + hy || absolute(o.z) > ez + hz) return false;
+    return absolute(o.y * h.z - o.z * h.y) <= ey * hz + ez * hy &&
+           absolute(o.z * h.x - o.x * h.z) <= ez * hx + ex * hz &&
+           absolute(o.x * h.y - o.y * h.x) <= ex * hy + ey * hx;
+}
+
+// ---- flames
+
+FW_SHARED_FN uint topBit(uint x) {  // of x > 0
+#ifdef __cplusplus
+    uint bit = 0u;
+    while ((x >> bit) > 1u) ++bit;
+    return bit;
+#else
+    return uint(findMSB(x));
+#endif
+}
+
+// x^0.4, Q8; 0 for 0.
+FW_SHARED_FN uint power04(uint x) {
+    if (x == 0u) return 0u;
+    uint fours = 0u;
+    while (x >= 32768u) {  // a 32nd of it is a 4th of the power
+        x >>= 5u;
+        fours += 2u;
+    }
+    uint k = topBit(x);
+    uint f = ((x << 15u) >> k) & 0x7FFFu;  // Q15
+    uint rest = k % 5u;
+    // 2^(0.4 rest), Q12
+    uint base = rest == 0u ? 4096u : rest == 1u ? 5405u : rest == 2u ? 7132u : rest == 3u ? 9410u : 12417u;
+    uint m = 32768u + ((10470u * f) >> 15u) + ((2140u * ((f * (32768u - f)) >> 15u)) >> 15u);  // Q15
+    return ((base * m) >> 19u) << (k / 5u * 2u + fours);
+}
+
+// mm, of the disc with this area in mm^2.
+FW_SHARED_FN uint fireDiameter(uint area) {
+    return isqrtNear(leastOf(mulShift(area, 83443u, 16u), 0xFFFC0000u));
+}
+// mm, Heskestad's; a wide weak fire is many small ones. scale: power04 of its watts.
+FW_SHARED_FN uint flameHeight(uint scale, uint diameter) {
+    uint tall = mulShift(scale, 3796u, 16u);
+    uint less = diameter + diameter / 50u;
+    return mostOf(tall - leastOf(less, tall), tall / 3u);
+}
+
+// From sums to a source in the world. What cannot be told from nothing stays nothing.
+FW_SHARED_FN void settleSource(FW_INOUT(FireSource) s, FW_IN(RemoteObject) o) {
+    s.watts = s.tiles == 0u ? 0u : s.power >> 4u;
+    if (s.watts == 0u) return;
+    ivec3 middle = ivec3(int(divide(s.sumX, s.tiles) * 4u), int(divide(s.sumY, s.tiles) * 4u),
+                         int(divide(s.sumZ, s.tiles) * 4u));
+    ivec3 at = remotePlace(o, middle);
+    s.scale = power04(s.watts);
+    s.diameter = fireDiameter(mulShift(leastOf(s.texels, 0x7FFFFFu) << 8u, o.texelArea, 8u));
+    s.place = ivec4(at.x, at.y, at.z, int(leastOf(flameHeight(s.scale, s.diameter), 30000u)));
+}
+
+FW_SHARED_FN ivec3 alongFlame(FW_IN(FireSource) s, ivec3 up, int eighths) {
+    int h = (s.place.w * eighths) >> 3;
+    return ivec3(s.place.x + ((up.x * h) >> 12), s.place.y + ((up.y * h) >> 12),
+                 s.place.z + ((up.z * h) >> 12));
+}
+
+// Radiation from one point of a flame. normal: Q12; nearest: mm.
+FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec3 normal, bool both) {
+    ivec3 d = ivec3(flame.x - at.x, flame.y - at.y, flame.z - at.z);
+    if (!withinReach(d)) return 0u;
+    uint length = mostOf(isqrtNear(squareSum(d)), 1u);
+    int along = (normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z;  // Q10
+    if (along <= 0 && !both) return 0u;
+    uint cosine = leastOf(divide(absolute(along), length) >> 2u, 256u);
+    uint far = mostOf(length, nearest);
+    return pointFlux(watts, kRadiantShare, cosine, divide(far * far + 50u, 100u));
+}
+
+// W/m^2 that a flame sends to a surface there.
+FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 normal, bool both) {
+    uint nearest = mostOf(s.diameter, kNearest) / 2u;
+    ivec3 middle = alongFlame(s, up, 4);
+    ivec3 d = ivec3(middle.x - at.x, middle.y - at.y, middle.z - at.z);
+    if (!withinReach(d)) return 0u;
+    uint size = mostOf(s.diameter, uint(s.place.w)) * 2u;
+    if (size >= 65535u || squareSum(d) <= size * size) {  // near: a row of four
+        uint part = s.watts / 4u, sum = 0u;
+        FW_UNROLL for (int i = 0; i < 4; ++i)
+            sum += fluxFrom(alongFlame(s, up, 2 * i + 1), part, nearest, at, normal, both);
+        return leastOf(sum, kFluxMost);
+    }
+    return fluxFrom(middle, s.watts, nearest, at, normal, both);
+}
+
+// K above ambient on the axis of a plume at z mm above its base: McCaffrey's three zones.
+FW_SHARED_FN uint plumeRise(uint z, uint scale) {
+    if (scale == 0u) return 0u;
+    uint q = divide(leastOf(z, 65535u) * 4057u, scale);  // 1/1000 of his z / Q^0.4
+    if (q < 80u) return 800u;
+    if (q < 200u) return divide(63000u, q);
+    uint rise = 315u << 8u;  // Q8, falls by (5/3)th powers: 0.315 an octave
+    while (q >= 400u) {
+        q = (q + 1u) >> 1u;
+        rise = (rise * 20643u) >> 16u;
+    }
+    uint x = q - 200u;  // [0, 200): four straight pieces, Q12 at their ends
+    uint part = x < 50u    ? 4096u - ((x * 1272u) / 50u)
+                : x < 100u ? 2824u - (((x - 50u) * 740u) / 50u)
+                : x < 150u ? 2084u - (((x - 100u) * 472u) / 50u)
+                           : 1612u - (((x - 150u) * 322u) / 50u);
+    return (rise * part) >> 20u;
+}
+
+struct FlameFrame {  // a receiver as a flame sees it
+    int above;       // mm over its base
+    uint beside2;    // mm^2 from its axis
+    bool near;       // within kExchangeFar
+};
+FW_SHARED_FN FlameFrame flameFrame(FW_IN(FireSource) s, ivec3 up, ivec3 at) {
+    FlameFrame f;
+    ivec3 d = ivec3(at.x - s.place.x, at.y - s.place.y, at.z - s.place.z);
+    f.near = withinReach(d);
+    f.above = 0;
+    f.beside2 = 0xFFFFFFFFu;
+    if (!f.near) return f;
+    f.above = (up.x * d.x + up.y * d.y + up.z * d.z) / 4096;
+    uint square = squareSum(d), high = absolute(f.above) * absolute(f.above);
+    f.beside2 = square - leastOf(high, square);
+    return f;
+}
+
+// W/m^2 that a plume gives to a surface at `heat`, 1/16 K; ambient, too.
+FW_SHARED_FN uint plumeFlux(FW_IN(FireSource) s, FW_IN(FlameFrame) f, uint heat, uint ambient) {
+    if (!f.near || f.above <= 0) return 0u;
+    uint width = (uint(f.above) * 492u) / 4096u + s.diameter / 2u;  // mm: 0.12 z + D/2
+    width = leastOf(mostOf(width, 10u), 20000u);
+    uint square = width * width;
+    if (f.beside2 >= square * 9u) return 0u;
+    uint x = divide(f.beside2, (square >> 12u) + 1u) * 23u;  // (r/b)^2 log2(e), Q16
+    uint gas = (plumeRise(uint(f.above), s.scale) * halvings(x)) >> 12u;  // 1/16 K
+    uint mine = heat > ambient ? heat - ambient : 0u;
+    return gas > mine ? ((gas - mine) * kPlumeTransfer) >> 4u : 0u;
+}
+
+// Does this flame light the vapours of a hot surface there?
+FW_SHARED_FN bool flameLights(FW_IN(FireSource) s, FW_IN(FlameFrame) f) {
+    if (!f.near || f.above < -int(kPilotReach) || f.above > s.place.w) return false;
+    uint reach = s.diameter / 2u + kPilotReach;
+    return f.beside2 <= reach * reach;
+}
+
+// How strongly a source acts on a place: to choose among many. W/cm^2, about.
+FW_SHARED_FN uint sourceWeight(FW_IN(FireSource) s, ivec3 at) {
+    ivec3 d = ivec3(s.place.x - at.x, s.place.y - at.y, s.place.z - at.z);
+    if (s.watts == 0u || !withinReach(d)) return 0u;
+    uint square = mostOf(divide(squareSum(d), 100u), 100u);
+    return divide(leastOf(s.watts, 0xFFFFFFu) << 8u, square) + 1u;
+}
+
+// ---- who may light whom
+
+FW_SHARED_FN uint bothChances(uint a, uint b) { return mulShift(a, b, 16u); }
+FW_SHARED_FN bool drawn(uint hash, uint chance) { return (hash >> 16u) < chance; }
+FW_SHARED_FN uint mixed(uint a, uint b) { return hash32(a ^ (hash32(b) + 0x9E3779B9u)); }
+
+// Decided once for a pair and a fire: `caught` is the tick at which the giver was found alight.
+FW_SHARED_FN bool mayJump(uint seed, uint from, uint to, uint caught, uint chance) {
+    return drawn(mixed(mixed(mixed(seed, from), to), caught), chance);
+}
+FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint worldHopsMost) {
+    return (o.flags & kRemoteGives) != 0u && hops < leastOf(o.hopsMost, worldHopsMost);
+}
+
+// Who lit an object: fewest jumps first, then the lowest slot, whatever the order. 0: nobody yet.
+FW_SHARED_CONST uint kLitByHand = 0xFFFFFFFFu;
+FW_SHARED_FN uint litBy(uint hops, uint from) {
+    return ~((leastOf(hops + 1u, 254u) << 24u) | (from & 0xFFFFFFu)) & 0xFFFFFFFFu;
+}
+FW_SHARED_FN uint hopsOf(uint by) { return (by == 0u || by == kLitByHand) ? 0u : (~by) >> 24u; }
+FW_SHARED_FN uint giverOf(uint by) {  // slot, or kNoneTexel
+    return (by == 0u || by == kLitByHand) ? kNoneTexel : (~by) & 0xFFFFFFu;
+}
+
+// When fire crosses a contact, or kNever. t: state of the texel it comes from.
+FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
+    if (!isSource(t)) return kNever;
+    uint begins = mostOf(t, since);
+    uint arrives = begins + delay;
+    if (arrives > now + kExchangeTicks) return kNever;
+    return flames(t, arrives, flameTicks) ? mostOf(arrives, now + 1u) : kNever;
+}
+
+// ---- embers
+
+struct Ember {
+    uint flight;     // ticks until it lands
+    uint energy;     // J that it still has then
+    ivec3 landing;   // mm; its height is where it set out, plus its loft
+};
+
+// Does this source send one this time? Its hash, not 0, or 0.
+FW_SHARED_FN uint emberOf(uint seed, uint from, uint cell, uint now, uint power, uint brands) {
+    uint roll = mixed(mixed(seed ^ 0x5EEDE3BEu, from * kSourcesPerObject + cell), now);
+    uint high, low;
+    umulExtended(power, brands, high, low);
+    uint chance = high != 0u ? 0xFFFFFFFFu : low;
+    return roll < chance ? (hash32(roll) | 1u) : 0u;
+}
+
+// A disc of char, 1 to 4 mm thick, that rose one to four flame heights and falls at its own speed.
+FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 wind) {
+    Ember e;
+    uint a = hash32(hash), b = hash32(hash + 1u), c = hash32(hash + 2u);
+    uint thick = (a & 3u);
+    uint falls = thick == 0u ? 1410u : thick == 1u ? 2000u : thick == 2u ? 2450u : 2830u;  // mm/s
+    uint loft = leastOf((mostOf(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u,
+                        30000u);
+    uint seconds = leastOf(divide(loft << 12u, falls), 20u << 12u);  // Q12: ticks, too
+    e.flight = seconds;
+    // Spread sideways by a quarter of the loft; winds carry it 28 m at most.
+    int spread = int(loft / 4u) + int(s.diameter / 2u);
+    int jx = (int(c & 0xFFFFu) - 32768) * (spread >> 2) / 8192;
+    int jz = (int(c >> 16u) - 32768) * (spread >> 2) / 8192;
+    ivec3 carried = ivec3((wind.x / 8) * int(seconds >> 4u) / 32, (wind.y / 8) * int(seconds >> 4u) / 32,
+                          (wind.z / 8) * int(seconds >> 4u) / 32);
+    // Jitter lies across `up`: along the two world axes that are least along it.
+    uint ux = absolute(up.x), uy = absolute(up.y), uz = absolute(up.z);
+    ivec3 jitter = (uy >= ux && uy >= uz) ? ivec3(jx, 0, jz)
+                   : (ux >= uz)           ? ivec3(0, jx, jz)
+                                          : ivec3(jx, jz, 0);
+    ivec3 shift = ivec3(carried.x + jitter.x, carried.y + jitter.y, carried.z + jitter.z);
+    int most = 28000;
+    shift = ivec3(shift.x > most ? most : (shift.x < -most ? -most : shift.x),
+                  shift.y > most ? most : (shift.y < -most ? -most : shift.y),
+                  shift.z > most ? most : (shift.z < -most ? -most : shift.z));
+    int h = int(loft);
+    e.landing = ivec3(s.place.x + shift.x + ((up.x * h) >> 12), s.place.y + shift.y + ((up.y * h) >> 12),
+                      s.place.z + shift.z + ((up.z * h) >> 12));
+    uint life = (thick + 1u) * (10u << 12u);  // it loses 0.1 mm a second
+    uint whole = (thick + 1u) * 225u;         // J
+    e.energy = seconds >= life ? 0u : divide(whole * ((life - seconds) >> 4u), life >> 4u);
+    return e;
+}
+
+// Chance of kChanceOne that it lights what it lies on: 1 - exp(-E / 200 J), damped by moisture.
+FW_SHARED_FN uint emberLights(uint energy, uint catches) {
+    uint unlit = halvings(leastOf(energy, 4000u) * 473u);  // Q16: log2(e) / 200
+    return ((65536u - leastOf(unlit, 65536u)) * leastOf(catches, 256u)) >> 8u;
+}
+
+FW_SHARED_END
+#endif

@@ -1,0 +1,348 @@
+// What flames send across a distance: radiation and plume against their formulas, boxes in the way,
+// who may light whom, embers, and the contacts of two meshes.
+#include "components/remote.h"
+#include "mesh/remote_tiles.h"
+#include "support/meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace fw::test {
+namespace {
+
+using gpu::ivec3;
+using gpu::ivec4;
+
+const ivec3 kUp(0, 4096, 0);
+
+gpu::FireSource sourceOf(uint32_t watts, uint32_t diameter) {
+    gpu::FireSource s{};
+    s.watts = watts;
+    s.diameter = diameter;
+    s.scale = gpu::power04(watts);
+    s.place = ivec4(0, 0, 0, int(gpu::flameHeight(s.scale, diameter)));
+    return s;
+}
+
+TEST(Exchange, ThePowerOfTwoFifths) {
+    EXPECT_EQ(0u, gpu::power04(0));
+    double worst = 0;
+    for (double x = 1; x < 4.2e9; x *= 1.037) {
+        const auto whole = uint32_t(x);
+        const double expected = std::pow(double(whole), 0.4) * 256;
+        worst = std::max(worst, std::fabs(double(gpu::power04(whole)) / expected - 1));
+    }
+    EXPECT_LT(worst, 0.006);
+}
+
+TEST(Exchange, AFlameIsAsTallAsHeskestadSays) {
+    for (const double kilowatts : {2.0, 30.0, 500.0, 20000.0}) {
+        for (const double diameter : {0.05, 0.3, 1.0}) {
+            const double tall = 0.235 * std::pow(kilowatts, 0.4);
+            const double expected = std::max(tall - 1.02 * diameter, tall / 3) * 1000;
+            const uint32_t scale = gpu::power04(uint32_t(kilowatts * 1000));
+            EXPECT_NEAR(expected, double(gpu::flameHeight(scale, uint32_t(diameter * 1000))),
+                        3 + expected * 0.02);
+        }
+    }
+    EXPECT_NEAR(1128.4, double(gpu::fireDiameter(1000000)), 1.0);
+}
+
+TEST(Exchange, RadiationFallsWithTheSquareAndTheCosine) {
+    const gpu::FireSource s = sourceOf(100000, 400);
+    for (const double metres : {3.0, 5.0, 10.0, 20.0}) {
+        const double half = s.place.w / 2000.0;
+        const double length = std::sqrt(metres * metres + half * half);
+        const double expected =
+            0.33 * 100000 / (4 * 3.14159265 * length * length) * metres / length;
+        const ivec3 at(int(metres * 1000), 0, 0);
+        EXPECT_NEAR(expected, gpu::radiantFlux(s, kUp, at, ivec3(-4096, 0, 0), false),
+                    3 + expected * 0.02);
+        const uint32_t slanted = gpu::radiantFlux(s, kUp, at, ivec3(-2048, 0, 3547), false);
+        EXPECT_NEAR(expected / 2, slanted, 3 + expected * 0.02);
+        EXPECT_EQ(0u, gpu::radiantFlux(s, kUp, at, ivec3(4096, 0, 0), false));
+        EXPECT_NEAR(expected, gpu::radiantFlux(s, kUp, at, ivec3(4096, 0, 0), true),
+                    3 + expected * 0.02);
+    }
+    // Near, a row of four: bounded by the least distance.
+    double sum = 0;
+    const double x = 0.35;
+    for (int i = 0; i < 4; ++i) {
+        const double y = s.place.w / 1000.0 * (2 * i + 1) / 8;
+        const double length = std::sqrt(x * x + y * y);
+        sum += 0.33 * 25000 / (4 * 3.14159265 * length * length) * x / length;
+    }
+    EXPECT_NEAR(sum, gpu::radiantFlux(s, kUp, ivec3(350, 0, 0), ivec3(-4096, 0, 0), false),
+                sum * 0.03);
+    EXPECT_LE(gpu::radiantFlux(s, kUp, ivec3(1, 10, 0), ivec3(-4096, 0, 0), true), 60000u);
+    EXPECT_EQ(0u, gpu::radiantFlux(s, kUp, ivec3(40000, 0, 0), ivec3(-4096, 0, 0), false));
+}
+
+TEST(Exchange, APlumeIsAsHotAsMcCaffreySays) {
+    for (const double kilowatts : {1.0, 30.0, 1000.0}) {
+        const uint32_t scale = gpu::power04(uint32_t(kilowatts * 1000));
+        double before = 1e9;
+        for (double z = 0.01; z < 12; z *= 1.1) {
+            const double q = z / std::pow(kilowatts, 0.4);
+            const double expected = q < 0.08  ? 800
+                                    : q < 0.2 ? 63 / q
+                                              : 21.6 * std::pow(q, -5.0 / 3);
+            const double rise = gpu::plumeRise(uint32_t(z * 1000), scale);
+            EXPECT_NEAR(expected, rise, 2 + expected * 0.06) << z;
+            EXPECT_LE(rise, before + 1);
+            before = rise;
+        }
+    }
+    // It is as wide as it should be, cools who is hotter not at all, and stays above the fire.
+    const gpu::FireSource s = sourceOf(50000, 300);
+    const uint32_t ambient = 293 * 16;
+    const auto flux = [&](int x, int y, uint32_t heat) {
+        return gpu::plumeFlux(s, gpu::flameFrame(s, kUp, ivec3(x, y, 0)), heat, ambient);
+    };
+    const double axis = gpu::plumeRise(1000, s.scale) * 25.0;
+    EXPECT_NEAR(axis, flux(0, 1000, ambient), axis * 0.02);
+    const double b = 0.12 * 1000 + 150;
+    EXPECT_NEAR(axis * std::exp(-1.0), flux(int(b), 1000, ambient), axis * 0.02);
+    EXPECT_NEAR(axis - 25 * 100, flux(0, 1000, ambient + 1600), axis * 0.02);
+    EXPECT_EQ(0u, flux(0, 1000, 65535));
+    EXPECT_EQ(0u, flux(0, -50, ambient));
+    EXPECT_EQ(0u, flux(900, 1000, ambient));
+    EXPECT_TRUE(gpu::flameLights(s, gpu::flameFrame(s, kUp, ivec3(200, 100, 0))));
+    EXPECT_FALSE(gpu::flameLights(s, gpu::flameFrame(s, kUp, ivec3(400, 100, 0))));
+    EXPECT_FALSE(gpu::flameLights(s, gpu::flameFrame(s, kUp, ivec3(0, 5000, 0))));
+}
+
+components::Pose randomPose(std::mt19937& random, float reach) {
+    const auto one = [&] { return float(random() % 20001) / 10000.0f - 1; };
+    glm::vec4 q(one(), one(), one(), one());
+    q /= std::max(glm::length(q), 1e-3f);
+    const float x = q.x, y = q.y, z = q.z, w = q.w;
+    const float m[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                           {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                           {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+    components::Pose pose;
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) pose.rotation[r][c] = m[r][c];
+        pose.translation[r] = one() * reach;
+    }
+    return pose;
+}
+
+TEST(Exchange, ABoxCutsTheWayAsInRealNumbers) {
+    std::mt19937 random(5);
+    uint32_t cut = 0, open = 0, near = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const components::Pose pose = randomPose(random, 1);
+        const float half[3] = {float(random() % 4000) / 1000, float(random() % 2000) / 1000,
+                               float(random() % 800) / 1000};
+        gpu::Blocker blocker{};
+        components::placeBlocker(pose, half, blocker);
+        int end[2][3];
+        for (auto& p : end)
+            for (int& value : p) value = int(random() % 8000) - 4000;
+        const bool told = gpu::blockerCuts(blocker, ivec3(end[0][0], end[0][1], end[0][2]),
+                                           ivec3(end[1][0], end[1][1], end[1][2]));
+        // Clipped in doubles, with the ends taken off; `slack` widens or shrinks the box.
+        const auto cuts = [&](double slack) {
+            double a[3], d[3], length = 0;
+            for (int k = 0; k < 3; ++k) {
+                d[k] = end[1][k] - end[0][k];
+                length += d[k] * d[k];
+            }
+            length = std::sqrt(length);
+            const double spare = std::min(60.0, length / 4) / std::max(length, 1e-9);
+            double low = spare, high = 1 - spare;
+            for (int axis = 0; axis < 3; ++axis) {
+                double from = 0, along = 0;
+                for (int k = 0; k < 3; ++k) {
+                    a[k] = end[0][k] - double(pose.translation[k]) * 1000;
+                    from += double(pose.rotation[k][axis]) * a[k];
+                    along += double(pose.rotation[k][axis]) * d[k];
+                }
+                const double size = double(half[axis]) * 1000 + slack;
+                if (size < 0) return false;
+                if (std::fabs(along) < 1e-9) {
+                    if (std::fabs(from) > size) return false;
+                    continue;
+                }
+                const double u = (-size - from) / along, v = (size - from) / along;
+                low = std::max(low, std::min(u, v));
+                high = std::min(high, std::max(u, v));
+            }
+            return low <= high;
+        };
+        const bool surely = cuts(-25), perhaps = cuts(25);
+        if (surely != perhaps) {
+            ++near;
+            continue;
+        }
+        EXPECT_EQ(surely, told) << i;
+        ++(told ? cut : open);
+    }
+    EXPECT_GT(cut, 3000u);
+    EXPECT_GT(open, 3000u);
+    EXPECT_LT(near, 3000u);
+}
+
+TEST(Exchange, WhoLitItDoesNotDependOnOrder) {
+    EXPECT_EQ(0u, gpu::hopsOf(0));
+    EXPECT_EQ(gpu::kNoneTexel, gpu::giverOf(gpu::kLitByHand));
+    std::mt19937 random(7);
+    for (int i = 0; i < 1000; ++i) {
+        const uint32_t hops = random() % 200, from = random() % 100000;
+        const uint32_t by = gpu::litBy(hops, from);
+        EXPECT_EQ(hops + 1, gpu::hopsOf(by));
+        EXPECT_EQ(from, gpu::giverOf(by));
+        EXPECT_GT(gpu::kLitByHand, by);
+        EXPECT_GT(by, gpu::litBy(hops + 1, 0));
+        EXPECT_GT(by, gpu::litBy(hops, from + 1));
+    }
+    uint32_t may = 0;
+    for (uint32_t to = 0; to < 20000; ++to) {
+        may += gpu::mayJump(9, 3, to, 128, gpu::kChanceOne / 4) ? 1 : 0;
+        EXPECT_TRUE(gpu::mayJump(9, 3, to, 128, gpu::kChanceOne));
+        EXPECT_FALSE(gpu::mayJump(9, 3, to, 128, 0));
+    }
+    EXPECT_NEAR(5000, may, 250);
+}
+
+TEST(Exchange, AContactTakesItsTimeFromTheLaterOfFireAndTouch) {
+    const uint32_t now = 100000;
+    EXPECT_EQ(gpu::kNever, gpu::contactTick(gpu::kNever, 8192, 400, 0, now));
+    EXPECT_EQ(gpu::kNever, gpu::contactTick(gpu::kOutWet, 8192, 400, 0, now));
+    EXPECT_EQ(99900u + 400, gpu::contactTick(99900, 8192, 400, 0, now));
+    EXPECT_EQ(now + 1, gpu::contactTick(99000, 8192, 400, 0, now));
+    EXPECT_EQ(99950u + 400, gpu::contactTick(99000, 8192, 400, 99950, now));
+    EXPECT_EQ(gpu::kNever, gpu::contactTick(99900, 8192, 4000, 0, now));     // not yet
+    EXPECT_EQ(gpu::kNever, gpu::contactTick(99900, 300, 400, 0, now));       // burnt out before
+    EXPECT_EQ(gpu::kNever, gpu::contactTick(10000, 8192, 400, 99950, now));  // touched too late
+}
+
+TEST(Exchange, EmbersComeAtTheirRateAndLandDownwind) {
+    const gpu::FireSource s = sourceOf(30000, 300);
+    // 0.06 a second: of 1/16 W and eight times a second, Q32.
+    const double perExchange = 0.06 / 8;
+    const auto brands = uint32_t(perExchange / (30000.0 * 16) * 4294967296.0);
+    uint32_t sent = 0;
+    double x = 0, downwind = 0, energy = 0;
+    for (uint32_t i = 0; i < 400000; ++i) {
+        const uint32_t hash = gpu::emberOf(1, 5, 2, i * 512, 30000 * 16, brands);
+        if (hash == 0) continue;
+        ++sent;
+        const gpu::Ember still = gpu::flyingEmber(s, hash, kUp, ivec3(0, 0, 0));
+        const gpu::Ember blown = gpu::flyingEmber(s, hash, kUp, ivec3(4000, 0, 0));
+        EXPECT_EQ(still.flight, blown.flight);
+        EXPECT_LE(std::abs(still.landing.x), s.place.w + 150);
+        EXPECT_NEAR(4000.0 * still.flight / 4096, blown.landing.x - still.landing.x, 20);
+        EXPECT_GE(still.landing.y, s.place.w - 1);
+        EXPECT_LE(still.landing.y, s.place.w * 4);
+        x += still.landing.x;
+        downwind += blown.landing.x;
+        energy += still.energy;
+    }
+    EXPECT_NEAR(400000 * perExchange, sent, 200);
+    EXPECT_NEAR(0, x / sent, 20);
+    EXPECT_GT(downwind / sent, 500);
+    EXPECT_GT(energy / sent, 300);
+    EXPECT_NEAR(65536 * (1 - std::exp(-1.0)), gpu::emberLights(200, 256), 200);
+    EXPECT_NEAR(32768 * (1 - std::exp(-1.0)), gpu::emberLights(200, 128), 200);
+    EXPECT_EQ(0u, gpu::emberLights(0, 256));
+    EXPECT_EQ(0u, gpu::emberLights(1000, 0));
+}
+
+struct Placed {
+    mesh::BurnDomain domain{std::pmr::get_default_resource()};
+    gpu::RemoteObject place{};
+    Placed(const Mesh& mesh, double density, const components::Pose& pose)
+        : domain(mesh::bake(mesh.input(density), std::pmr::get_default_resource())) {
+        components::placeRemote(pose, domain, place);
+    }
+    [[nodiscard]] glm::dvec3 real(const components::Pose& pose, uint32_t texel) const {
+        const mesh::TexelPosition& p = domain.texels[texel];
+        const float rest[3] = {domain.origin[0] + domain.quantum * float(p.x),
+                               domain.origin[1] + domain.quantum * float(p.y),
+                               domain.origin[2] + domain.quantum * float(p.z)};
+        float out[3];
+        components::toWorld(pose, rest, out);
+        return {double(out[0]) * 1000, double(out[1]) * 1000, double(out[2]) * 1000};
+    }
+};
+
+TEST(Exchange, PlacesAreRightToAMillimetre) {
+    std::mt19937 random(3);
+    for (int i = 0; i < 40; ++i) {
+        components::Pose pose = randomPose(random, 100);
+        pose.scale = i % 3 == 0 ? 1.0f : float(random() % 100 + 1) / 20;
+        const Placed placed(makeCube(0.5, 2), 32, pose);
+        for (uint32_t texel = 0; texel < placed.domain.texelCount(); texel += 7) {
+            if (!placed.domain.real(texel)) continue;
+            const mesh::TexelPosition& p = placed.domain.texels[texel];
+            const ivec3 at = gpu::remotePlace(placed.place, ivec3(p.x, p.y, p.z));
+            const glm::dvec3 real = placed.real(pose, texel);
+            const double allowed = 1.6 + double(pose.scale) * 0.2;
+            for (int k = 0; k < 3; ++k) {
+                EXPECT_NEAR(real[k], at[k], allowed);
+                EXPECT_GE(at[k], (k == 0   ? placed.place.turn0
+                                  : k == 1 ? placed.place.turn1
+                                           : placed.place.turn2)
+                                         .w -
+                                     2);
+                EXPECT_LE(at[k], placed.place.high[k] + 2);
+            }
+        }
+    }
+}
+
+TEST(Exchange, TilesKnowTheirMiddlesNormalsAndCells) {
+    const Placed placed(makeCube(0.6, 3), 64, {});
+    std::pmr::vector<gpu::RemoteTile> tiles;
+    const uint32_t cells = mesh::remoteTiles(placed.domain, tiles);
+    EXPECT_EQ(cells, mesh::sourceCells(placed.domain));
+    EXPECT_GE(cells, 20u);
+    EXPECT_LE(cells, 27u);  // a grid of 3, hollow
+    uint32_t texels = 0, seen = 0;
+    for (const gpu::RemoteTile& tile : tiles) {
+        texels += tile.texels;
+        if (tile.texels < 64) continue;  // inside one face
+        ++seen;
+        EXPECT_LT(gpu::tileCell(tile), cells);
+        const ivec3 n = gpu::decodeNormal(tile.normal);
+        const ivec3 at = gpu::remotePlace(placed.place, gpu::tileMiddle(tile));
+        for (int k = 0; k < 3; ++k)
+            if (std::abs(n[k]) > 16000) {
+                EXPECT_NEAR(n[k] > 0 ? 300 : -300, at[k], 3);
+            }
+    }
+    EXPECT_EQ(placed.domain.report.realTexels, texels);
+    EXPECT_GT(seen, 10u);
+}
+
+TEST(Exchange, ContactsAreNearestTexelsWithinTheGap) {
+    std::mt19937 random(11);
+    for (const float gap : {0.0f, 0.02f, 0.045f, 0.06f}) {
+        components::Pose a = randomPose(random, 3), b = a;
+        // Beside it along its own z.
+        for (int r = 0; r < 3; ++r) b.translation[r] = a.translation[r] + a.rotation[r][2] * gap;
+        const Placed one(makePlane(0.4, 0.3), 64, a), two(makePlane(0.4, 0.3), 64, b);
+        std::pmr::vector<mesh::Contact> contacts;
+        mesh::findContacts({&one.domain, &one.place, 1}, {&two.domain, &two.place, 1}, contacts);
+        if (gap > 0.05f) {
+            EXPECT_TRUE(contacts.empty());
+            continue;
+        }
+        EXPECT_GT(contacts.size(), 20u);
+        for (const mesh::Contact& contact : contacts) {
+            const glm::dvec3 p = one.real(a, contact.texel), q = two.real(b, contact.fromTexel);
+            EXPECT_NEAR(glm::length(p - q), contact.gap, 4);
+            EXPECT_NEAR(double(gap) * 1000, contact.gap, 8);
+        }
+        contacts.clear();
+        mesh::findContacts({&one.domain, &one.place, 0}, {&two.domain, &two.place, 1}, contacts);
+        EXPECT_TRUE(contacts.empty());  // it cannot burn
+    }
+}
+
+}  // namespace
+}  // namespace fw::test
