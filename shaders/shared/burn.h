@@ -49,6 +49,14 @@
 #define FW_BIND_HEAT_MATERIALS 37  // HeatMaterial[], 8 per object slot
 #define FW_BIND_HOT_LISTS 38  // uvec2[]: tiles whose heat changes, list A in x and B in y
 #define FW_BIND_TILE_FIRE 39  // float[] (per object): W that a tile gave off in the last heat step
+#define FW_BIND_REMOTE_OBJECTS 40  // RemoteObject[], by object slot: see exchange.h
+#define FW_BIND_REMOTE_TILES 41    // RemoteTile[] (per mesh)
+#define FW_BIND_SOURCES 42    // FireSource[] (per object)
+#define FW_BIND_NEIGHBOURS 43 // uint[]: object slot | what is seen of it, of 255, << 24
+#define FW_BIND_CONTACTS 44   // ContactLink[]
+#define FW_BIND_BLOCKERS 45   // Blocker[kMaxBlockers]
+#define FW_BIND_RECEIVERS 46  // uint[kReceiverWords] per object slot, see there
+#define FW_BIND_EMBERS 47     // uint[]: sources that send an ember
 #define FW_BIND_COUNT 70
 
 FW_SHARED_BEGIN
@@ -93,7 +101,8 @@ FW_SHARED_CONST uint kTileWarm = 64u;        // and not for cold water alone
 FW_SHARED_CONST uint kRowBurn = 0u;          // + parity of the burn list; run*: its BurnTiles / 64
 FW_SHARED_CONST uint kRowPredict = 2u;       // + parity of the predict list
 FW_SHARED_CONST uint kRowHot = 4u;           // + parity of the hot list
-FW_SHARED_CONST uint kRowIteration = 6u;     // + iteration of the frame
+FW_SHARED_CONST uint kRowExchange = 6u;      // run*: receivers; list*: embers / 64
+FW_SHARED_CONST uint kRowIteration = 7u;     // + iteration of the frame
 
 // StepPush::switches, as FwDebugSwitch
 FW_SHARED_CONST uint kSwitchDense = 1u;
@@ -101,6 +110,7 @@ FW_SHARED_CONST uint kSwitchShuffle = 2u;
 FW_SHARED_CONST uint kSwitchNoSeamWake = 4u;
 FW_SHARED_CONST uint kSwitchWrongReaders = 8u;
 FW_SHARED_CONST uint kSwitchNoWindWake = 16u;
+FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;  // ours: some object or the world limits its fire
 
 // TexelEvent::kind, as FwIgnitionKind
 FW_SHARED_CONST uint kEventIgnite = 0u;
@@ -193,11 +203,22 @@ struct ObjectCounters {
     uint frontTiles;  // of the last reduce: tiles of the front list
     uint lateClamps;  // since ever
     uint lastIgnition;  // end tick of the last window in which a texel caught
-    uint burningTiles;
+    uint burningTiles;  // of the last reduce, and those that caught since
     uint energyLow;   // heat released since ever, 2^-20 J: exactly what its texels' fuel lost
     uint energyHigh;  // 2^12 J
+    // Spread from object to object: exchange.h.
+    uint litBy;       // who lit it; 0: nobody yet
+    uint litTick;     // at which it was found alight; 0: it is not
+    uint stopTick;    // from here on its front stands; 0: never
+    uint until;       // tick until which it may be warmed by others
+    uint held;        // kHeld bits of the last exchange
+    uint spots;       // embers that lit it, since ever
+    uint spotTexel;   // one of those texels
+    uint reserved0;
 };
-FW_SHARED_SIZE(ObjectCounters, 32)
+FW_SHARED_SIZE(ObjectCounters, 64)
+FW_SHARED_CONST uint kHeldFull = 1u;     // as many tiles burn as may: no other one catches
+FW_SHARED_CONST uint kHeldStopped = 2u;  // its time is over
 
 struct TileHeat {     // of one tile, W/m^2 and flags; whoever writes one also puts its tile on the
     uint flux;        // hot list. From elsewhere, before what the surface absorbs of it.
@@ -232,8 +253,10 @@ struct StepPush {     // push constants of the simulation passes
     uint object;      // reset, published: slot
     uint publishedParity;  // plane that is read
     uint hotParity;   // of the hot list that is read (others: appended to)
+    uint tilesMost;   // of the world, with kSwitchGoverned: none more catches while so many burn
+    uint reserved0; uint reserved1; uint reserved2;
 };
-FW_SHARED_SIZE(StepPush, 48)
+FW_SHARED_SIZE(StepPush, 64)
 
 FW_SHARED_FN bool isSource(uint t) { return t < kLiveEnd; }
 FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }

@@ -365,20 +365,20 @@ FW_SHARED_FN uint giverOf(uint by) {  // slot, or kNoneTexel
     return (by == 0u || by == kLitByHand) ? kNoneTexel : (~by) & 0xFFFFFFu;
 }
 
-// When fire crosses a contact, or kNever. t: state of the texel it comes from.
+// When fire crossed a contact, or kNever: not yet, or never. t: state of the texel it comes from.
 FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
     if (!isSource(t)) return kNever;
     uint begins = mostOf(t, since);
     uint arrives = begins + delay;
-    if (arrives > now + kExchangeTicks) return kNever;
-    return flames(t, arrives, flameTicks) ? mostOf(arrives, now + 1u) : kNever;
+    if (arrives > now || !flames(t, arrives, flameTicks)) return kNever;
+    return arrives + kExchangeTicks < now ? now : arrives;
 }
 
 // ---- embers
 
 struct Ember {
-    uint flight;     // ticks until it lands
-    uint energy;     // J that it still has then
+    uint flight;     // ticks that it was under way: what lands now set out then
+    uint energy;     // J that it still has
     ivec3 landing;   // mm; its height is where it set out, plus its loft
 };
 

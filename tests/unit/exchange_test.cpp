@@ -209,15 +209,15 @@ TEST(Exchange, WhoLitItDoesNotDependOnOrder) {
 }
 
 TEST(Exchange, AContactTakesItsTimeFromTheLaterOfFireAndTouch) {
-    const uint32_t now = 100000;
-    EXPECT_EQ(gpu::kNever, gpu::contactTick(gpu::kNever, 8192, 400, 0, now));
-    EXPECT_EQ(gpu::kNever, gpu::contactTick(gpu::kOutWet, 8192, 400, 0, now));
-    EXPECT_EQ(99900u + 400, gpu::contactTick(99900, 8192, 400, 0, now));
-    EXPECT_EQ(now + 1, gpu::contactTick(99000, 8192, 400, 0, now));
-    EXPECT_EQ(99950u + 400, gpu::contactTick(99000, 8192, 400, 99950, now));
-    EXPECT_EQ(gpu::kNever, gpu::contactTick(99900, 8192, 4000, 0, now));     // not yet
-    EXPECT_EQ(gpu::kNever, gpu::contactTick(99900, 300, 400, 0, now));       // burnt out before
-    EXPECT_EQ(gpu::kNever, gpu::contactTick(10000, 8192, 400, 99950, now));  // touched too late
+    const uint32_t now = 100000, never = gpu::kNever;
+    EXPECT_EQ(never, gpu::contactTick(gpu::kNever, 8192, 400, 0, now));
+    EXPECT_EQ(never, gpu::contactTick(gpu::kOutWet, 8192, 400, 0, now));
+    EXPECT_EQ(99500u + 400, gpu::contactTick(99500, 8192, 400, 0, now));
+    EXPECT_EQ(now, gpu::contactTick(99000, 8192, 400, 0, now));  // it might have long ago
+    EXPECT_EQ(99550u + 400, gpu::contactTick(99000, 8192, 400, 99550, now));
+    EXPECT_EQ(never, gpu::contactTick(99700, 8192, 400, 0, now));      // not yet
+    EXPECT_EQ(never, gpu::contactTick(99500, 300, 400, 0, now));       // burnt out before
+    EXPECT_EQ(never, gpu::contactTick(10000, 8192, 400, 99550, now));  // touched too late
 }
 
 TEST(Exchange, EmbersComeAtTheirRateAndLandDownwind) {
