@@ -63,7 +63,7 @@ void arriveRow(uint work) {
     uint lit = 0u;
     uint lateCount = 0u;
     uint wake = kNever;
-    for (; x <= last; ++x) {
+    do {
         uint texel = item.z + x;
         Column right = columnAt(texel + 1u, bases, materialBase, held, m.burnTicks);
         if ((chosen & (1u << x)) != 0u) {
@@ -105,7 +105,8 @@ void arriveRow(uint work) {
         }
         left = middle;
         middle = right;
-    }
+        ++x;
+    } while (x <= last);
     if (wake != kNever) atomicMin(tileState[run[item.x >> 3u].x].wake, wake);
     if (changed == 0u) return;
     scratch[work * 12u + 1u] = chosen | (changed << 8u);
@@ -118,5 +119,10 @@ void arriveRow(uint work) {
 
 void main() {
     uint count = counters[push.row].workCount;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) arriveRow(i);
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+    do {
+        arriveRow(i);
+        i += gl_NumWorkGroups.x * 64u;
+    } while (i < count);
 }

@@ -96,5 +96,10 @@ void arrive(uint rimWork) {
 
 void main() {
     uint count = counters[push.row].rimCount;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) arrive(i);
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+    do {
+        arrive(i);
+        i += gl_NumWorkGroups.x * 64u;
+    } while (i < count);
 }

@@ -73,18 +73,23 @@ void commitTile(uint slot) {
 void commitRow(uint work) {
     uvec4 item = scratchQuads[work * 3u];
     uint at = objectBases(item.w).y + item.z;
-    for (uint changed = item.y >> 8u; changed != 0u; changed &= changed - 1u) {
+    uint changed = item.y >> 8u;
+    if (changed == 0u) return;
+    do {
         uint x = uint(findLSB(changed));
         state[at + x] = scratch[work * 12u + 4u + x];
-    }
+        changed &= changed - 1u;
+    } while (changed != 0u);
 }
 
 void main() {
     uint rowCount = counters[push.row].workCount;
     uint tileCount = counters[push.row].runCount;
-    for (uint i = gl_GlobalInvocationID.x; i < rowCount || i < tileCount;
-         i += gl_NumWorkGroups.x * 64u) {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= max(rowCount, tileCount)) return;
+    do {
         if (i < rowCount) commitRow(i);
         if (i < tileCount) commitTile(i);
-    }
+        i += gl_NumWorkGroups.x * 64u;
+    } while (i < max(rowCount, tileCount));
 }

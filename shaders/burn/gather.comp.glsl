@@ -98,15 +98,20 @@ void gatherRow(uint slot, uint row) {
     uint count = uint(bitCount(rim));
     uint first = atomicAdd(counters[push.row].rimCount, count);
     atomicMax(counters[push.row].rimX, min((first + count - 1u) / 64u + 1u, kMaxGroups));
-    for (; rim != 0u; rim &= rim - 1u) {
+    do {
         scratch[rimItem(first)] = item * 8u + uint(findLSB(rim));
         ++first;
-    }
+        rim &= rim - 1u;
+    } while (rim != 0u);
 }
 
 void main() {
     uint count = counters[push.row].runCount;
     uint row = gl_LocalInvocationID.x & 7u;
     uint slot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    for (; slot < count; slot += gl_NumWorkGroups.x * 8u) gatherRow(slot, row);
+    if (slot >= count) return;
+    do {
+        gatherRow(slot, row);
+        slot += gl_NumWorkGroups.x * 8u;
+    } while (slot < count);
 }

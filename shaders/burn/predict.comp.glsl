@@ -63,7 +63,7 @@ void predictRow(uint work) {
     uint changed = 0u;  // to a time
     uint spread = 0u;
     bool beyond = false;
-    for (; x <= last; ++x) {
+    do {
         uint texel = item.z + x;
         Column right = columnAt(texel + 1u, bases);
         if ((chosen & (1u << x)) != 0u) {
@@ -96,7 +96,8 @@ void predictRow(uint work) {
         }
         left = middle;
         middle = right;
-    }
+        ++x;
+    } while (x <= last);
     uint y = divide(item.z, bases.w);
     uint x0 = item.z - y * bases.w;
     uint height = objectSizes(item.w).y;
@@ -117,5 +118,10 @@ void predictRow(uint work) {
 
 void main() {
     uint count = counters[kRowPredict + push.predictParity].workCount;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) predictRow(i);
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+    do {
+        predictRow(i);
+        i += gl_NumWorkGroups.x * 64u;
+    } while (i < count);
 }

@@ -83,6 +83,10 @@ void predictTexel(uint rimWork) {
 
 void main() {
     uint count = counters[kRowPredict + push.predictParity].rimCount;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u)
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+    do {
         predictTexel(i);
+        i += gl_NumWorkGroups.x * 64u;
+    } while (i < count);
 }

@@ -92,7 +92,7 @@ void runBlock(uint object, int x, int y) {
     Row above1 = loadRow(from, width, height, x, y + 1);
     int end = min(y + int(kPublishedBlockY), height);
     uint rows = 0u;  // with a texel that passes; bit 31 is the last
-    for (; y < end; ++y) {
+    do {
         Row above2 = loadRow(from, width, height, x, y + 2);
         int at = (y * width + x) / 4;
         vec4 dLeft = quads[spread + at];
@@ -114,7 +114,7 @@ void runBlock(uint object, int x, int y) {
         below1 = centre;
         centre = above1;
         above1 = above2;
-    }
+    } while (++y < end);
     while (rows != 0u) {
         int bit = findMSB(rows);
         rows ^= 1u << uint(bit);
@@ -129,9 +129,12 @@ void main() {
     uint columns = objects[object].width / kPublishedBlockX;
     uint blocks =
         columns * ((objects[object].height + kPublishedBlockY - 1u) / kPublishedBlockY);
-    for (uint i = gl_GlobalInvocationID.x; i < blocks; i += gl_NumWorkGroups.x * 64u) {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= blocks) return;
+    do {
         uint blockY = divide(i, columns);
         runBlock(object, int((i - blockY * columns) * kPublishedBlockX),
                  int(blockY * kPublishedBlockY));
-    }
+        i += gl_NumWorkGroups.x * 64u;
+    } while (i < blocks);
 }

@@ -85,6 +85,10 @@ void reduceTile(uint worldTile, uint parity) {
 void main() {
     uint parity = push.burnParity;
     uint count = counters[kRowBurn + parity].listCount;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u)
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+    do {
         reduceTile(parity == 0u ? burnA[i] : burnB[i], parity);
+        i += gl_NumWorkGroups.x * 64u;
+    } while (i < count);
 }

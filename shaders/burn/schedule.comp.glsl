@@ -73,6 +73,10 @@ void main() {
         return;
     }
     uint count = counters[push.row].listCount;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u)
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+    do {
         schedule(push.parity == 0u ? listA[i] : listB[i], false);
+        i += gl_NumWorkGroups.x * 64u;
+    } while (i < count);
 }

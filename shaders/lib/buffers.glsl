@@ -5,7 +5,8 @@
 #include "shared/burn.h"
 
 // *_WORDS and *_QUADS are the same buffers by words or by four: a software device loads four words
-// at once for little more than one, and pays for every load, taken or not.
+// at once for little more than one, and pays for every load, taken or not. It also runs a loop's
+// text until no lane is left, and a `for` finds that out one turn late: hot loops are `do`, `while`.
 #define FW_READ_WRITE
 #define FW_BUFFER(number, access, block, type, name) \
     layout(std430, set = 0, binding = number) access buffer block { type name[]; }
