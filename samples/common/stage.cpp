@@ -53,6 +53,9 @@ VkPipeline makePipeline(const VulkanHost& host, const PipelineRequest& request) 
     raster.cullMode = request.cull;
     raster.frontFace = request.frontFace;
     raster.lineWidth = 1.0f;
+    raster.depthBiasEnable = request.depthBias != 0 || request.depthBiasSlope != 0;
+    raster.depthBiasConstantFactor = request.depthBias;
+    raster.depthBiasSlopeFactor = request.depthBiasSlope;
     VkPipelineMultisampleStateCreateInfo multisample{};
     multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
     multisample.rasterizationSamples = request.samples;
@@ -73,7 +76,7 @@ VkPipeline makePipeline(const VulkanHost& host, const PipelineRequest& request) 
     }
     VkPipelineColorBlendStateCreateInfo blend{};
     blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    blend.attachmentCount = 1;
+    blend.attachmentCount = request.fragment ? 1 : 0;
     blend.pAttachments = &attachment;
     const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     VkPipelineDynamicStateCreateInfo dynamic{};
@@ -82,7 +85,7 @@ VkPipeline makePipeline(const VulkanHost& host, const PipelineRequest& request) 
     dynamic.pDynamicStates = dynamics;
     VkGraphicsPipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-    info.stageCount = 2;
+    info.stageCount = request.fragment ? 2 : 1;
     info.pStages = stages;
     info.pVertexInputState = &vertexInput;
     info.pInputAssemblyState = &assembly;

@@ -92,7 +92,6 @@ static bool hasOpenSheets(int model) {
         case Kit::kBrokenRail:
         case Kit::kOak:
         case Kit::kPoplar:
-        case Kit::kPine:
         case Kit::kDeadTree:
         case Kit::kAutumnOak:
         case Kit::kBush:

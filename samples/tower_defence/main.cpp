@@ -210,6 +210,7 @@ int run(const sample::Options& options, const Choices& choices) {
                 {"fire", std::to_string(fires.caught()) + " things caught, " +
                              std::to_string(fires.burning()) + " still burn, " +
                              std::to_string(game.felled()) + " enemies down"},
+                {"triangles", "at most " + std::to_string(renderer.mostTriangles()) + " in a view"},
                 {"time", perFrame}};
             summary.passes = fire.passCosts();
             summary.files = film.close();

@@ -3,7 +3,6 @@
 #include "renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
@@ -14,7 +13,6 @@ namespace {
 
 #include "jet.frag.h"
 #include "jet.vert.h"
-#include "shadow.vert.h"
 #include "village.frag.h"
 #include "village.vert.h"
 
@@ -22,9 +20,7 @@ using sample::checkVulkan;
 using village::Vec3;
 
 constexpr uint32_t kMaxLights = 16;
-constexpr uint32_t kShadowSide = 1792;  // texels
 constexpr uint32_t kMaxParticles = 2048;
-constexpr VkFormat kShadowFormat = VK_FORMAT_D32_SFLOAT;
 
 struct FrameUniform {  // shaders/frame.glsl
     glm::mat4 viewProjection, shadowMatrix;
@@ -69,6 +65,9 @@ const std::vector<VkVertexInputAttributeDescription> kAttributes = {
     {5, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16},
     {6, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 32},
     {7, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 48}};
+const std::vector<VkVertexInputAttributeDescription> kCasterAttributes = {
+    kAttributes[0], kAttributes[4], kAttributes[5], kAttributes[6]};
+constexpr float kFineWithin = 36.0f;  // m; further off the fine parts of a model are left out
 
 // The sun looks at the whole play area; the map follows no camera, so shadows never swim.
 glm::mat4 sunClip(glm::vec3 toSun, float* texel) {
@@ -129,7 +128,7 @@ void writeImage(VkDevice device, VkDescriptorSet set, uint32_t binding, VkSample
 
 Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
                    const village::Scene& scene, const PaintedVillage& painted)
-    : host_(host) {
+    : host_(host), shadows_(host, kBindings, kCasterAttributes) {
     // One mip at a time: a software device pays for every texel it reads.
     VkSamplerCreateInfo bilinear{};
     bilinear.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
@@ -138,15 +137,7 @@ Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
         VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     bilinear.maxLod = VK_LOD_CLAMP_NONE;
     checkVulkan(vkCreateSampler(host.device, &bilinear, nullptr, &sampler_), "vkCreateSampler");
-    // Nowhere near every device filters depth, so this one is nearest in every way.
-    VkSamplerCreateInfo nearest{};
-    nearest.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    nearest.addressModeU = nearest.addressModeV = nearest.addressModeW =
-        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    checkVulkan(vkCreateSampler(host.device, &nearest, nullptr, &shadowSampler_),
-                "vkCreateSampler");
     makeLayouts();
-    makeShadow();
     makeGeometry(scene, painted);
     makeSlots(stage.made.framesInFlight, scene.instances.size());
     makePipelines(stage);
@@ -154,8 +145,7 @@ Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
 
 Renderer::~Renderer() {
     vkDeviceWaitIdle(host_.device);
-    for (VkPipeline p :
-         {model_, groundPipeline_, roadPipeline_, waterPipeline_, shadowPipeline_, jetPipeline_})
+    for (VkPipeline p : {model_, groundPipeline_, roadPipeline_, waterPipeline_, jetPipeline_})
         vkDestroyPipeline(host_.device, p, nullptr);
     for (Surface& s : surfaces_) {
         host_.destroy(s.color);
@@ -168,17 +158,9 @@ Renderer::~Renderer() {
     }
     host_.destroy(vertices_);
     host_.destroy(indices_);
-    host_.destroy(shadowMap_);
-    host_.destroy(stillShadow_);
-    vkDestroyFramebuffer(host_.device, shadowFramebuffer_, nullptr);
-    vkDestroyFramebuffer(host_.device, stillFramebuffer_, nullptr);
-    vkDestroyRenderPass(host_.device, shadowPass_, nullptr);
-    vkDestroyRenderPass(host_.device, stillPass_, nullptr);
     vkDestroySampler(host_.device, sampler_, nullptr);
-    vkDestroySampler(host_.device, shadowSampler_, nullptr);
     vkDestroyDescriptorPool(host_.device, pool_, nullptr);
     vkDestroyPipelineLayout(host_.device, layout_, nullptr);
-    vkDestroyPipelineLayout(host_.device, shadowLayout_, nullptr);
     vkDestroyDescriptorSetLayout(host_.device, frameLayout_, nullptr);
     vkDestroyDescriptorSetLayout(host_.device, surfaceLayout_, nullptr);
 }
@@ -202,7 +184,7 @@ void Renderer::makeLayouts() {
                 "vkCreateDescriptorSetLayout");
 
     const VkDescriptorSetLayout layouts[] = {frameLayout_, surfaceLayout_};
-    VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)};
+    const VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)};
     VkPipelineLayoutCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
     info.setLayoutCount = 2;
@@ -210,10 +192,6 @@ void Renderer::makeLayouts() {
     info.pushConstantRangeCount = 1;
     info.pPushConstantRanges = &range;
     checkVulkan(vkCreatePipelineLayout(host_.device, &info, nullptr, &layout_),
-                "vkCreatePipelineLayout");
-    range = {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(glm::mat4)};
-    info.setLayoutCount = 0;
-    checkVulkan(vkCreatePipelineLayout(host_.device, &info, nullptr, &shadowLayout_),
                 "vkCreatePipelineLayout");
 
     constexpr uint32_t kSets = 64;
@@ -228,87 +206,11 @@ void Renderer::makeLayouts() {
                 "vkCreateDescriptorPool");
 }
 
-// A depth-only pass; `still`: clears, and ends as the source of the copy that the moving casters'
-// pass begins with.
-static VkRenderPass makeShadowPass(VkDevice device, bool still) {
-    VkAttachmentDescription depth{};
-    depth.format = kShadowFormat;
-    depth.samples = VK_SAMPLE_COUNT_1_BIT;
-    depth.loadOp = still ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
-    depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    depth.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    depth.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    depth.initialLayout = still ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    depth.finalLayout = still ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
-                              : VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
-    VkSubpassDescription subpass{};
-    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    subpass.pDepthStencilAttachment = &reference;
-    constexpr VkPipelineStageFlags kDepthStages =
-        VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
-    std::array<VkSubpassDependency, 2> dependencies{};
-    dependencies[0] = {
-        VK_SUBPASS_EXTERNAL,
-        0,
-        VK_PIPELINE_STAGE_TRANSFER_BIT,
-        kDepthStages,
-        VK_ACCESS_TRANSFER_WRITE_BIT,
-        VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-        0};
-    dependencies[1] = {0,
-                       VK_SUBPASS_EXTERNAL,
-                       kDepthStages,
-                       VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
-                       VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                       VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT,
-                       0};
-    VkRenderPassCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
-    info.attachmentCount = 1;
-    info.pAttachments = &depth;
-    info.subpassCount = 1;
-    info.pSubpasses = &subpass;
-    info.dependencyCount = 2;
-    info.pDependencies = dependencies.data();
-    VkRenderPass pass = VK_NULL_HANDLE;
-    checkVulkan(vkCreateRenderPass(device, &info, nullptr, &pass), "vkCreateRenderPass");
-    return pass;
-}
-
-void Renderer::makeShadow() {
-    sample::ImageRequest request;
-    request.width = request.height = kShadowSide;
-    request.format = kShadowFormat;
-    request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    stillShadow_ = host_.createImage(request);
-    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                    VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    shadowMap_ = host_.createImage(request);
-    stillPass_ = makeShadowPass(host_.device, true);
-    shadowPass_ = makeShadowPass(host_.device, false);
-    auto target = [&](VkRenderPass pass, const sample::Image& image) {
-        VkFramebufferCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
-        info.renderPass = pass;
-        info.attachmentCount = 1;
-        info.pAttachments = &image.view;
-        info.width = info.height = kShadowSide;
-        info.layers = 1;
-        VkFramebuffer framebuffer = VK_NULL_HANDLE;
-        checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &framebuffer),
-                    "vkCreateFramebuffer");
-        return framebuffer;
-    };
-    stillFramebuffer_ = target(stillPass_, stillShadow_);
-    shadowFramebuffer_ = target(shadowPass_, shadowMap_);
-}
-
 void Renderer::makeSurface(const village::Model& model, const Painting& painting, village::Vec2 low,
                            village::Vec2 high, glm::vec2 metres) {
     Surface s;
     s.indexCount = uint32_t(model.indices.size());
+    s.farIndexCount = uint32_t(model.farTriangles) * 3;
     s.middle = (model.low + model.high) * 0.5f;
     s.radius = 0.5f * village::length(model.high - model.low);
     s.set = allocateSet(host_.device, pool_, surfaceLayout_);
@@ -377,69 +279,9 @@ void Renderer::makeSlots(uint32_t count, size_t instances) {
         write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
         write.pBufferInfo = &buffer;
         vkUpdateDescriptorSets(host_.device, 1, &write, 0, nullptr);
-        writeImage(host_.device, slot.set, 1, shadowSampler_, shadowMap_.view,
+        writeImage(host_.device, slot.set, 1, shadows_.sampler(), shadows_.view(),
                    VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
     }
-}
-
-// A pipeline without colour: the sample helpers' own always writes one.
-static VkPipeline makeShadowPipeline(const sample::VulkanHost& host, VkRenderPass pass,
-                                     VkPipelineLayout layout, VkShaderModule vertex) {
-    VkPipelineShaderStageCreateInfo stage{};
-    stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    stage.stage = VK_SHADER_STAGE_VERTEX_BIT;
-    stage.module = vertex;
-    stage.pName = "main";
-    const VkVertexInputAttributeDescription attributes[] = {kAttributes[0], kAttributes[4],
-                                                            kAttributes[5], kAttributes[6]};
-    VkPipelineVertexInputStateCreateInfo input{};
-    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-    input.vertexBindingDescriptionCount = uint32_t(kBindings.size());
-    input.pVertexBindingDescriptions = kBindings.data();
-    input.vertexAttributeDescriptionCount = 4;
-    input.pVertexAttributeDescriptions = attributes;
-    VkPipelineInputAssemblyStateCreateInfo assembly{};
-    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    const float side = float(kShadowSide);
-    const VkViewport viewport{0, 0, side, side, 0, 1};
-    const VkRect2D scissor{{0, 0}, {kShadowSide, kShadowSide}};
-    VkPipelineViewportStateCreateInfo window{};
-    window.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-    window.viewportCount = window.scissorCount = 1;
-    window.pViewports = &viewport;
-    window.pScissors = &scissor;
-    VkPipelineRasterizationStateCreateInfo raster{};
-    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-    raster.polygonMode = VK_POLYGON_MODE_FILL;
-    raster.depthBiasEnable = VK_TRUE;
-    raster.depthBiasConstantFactor = 1.0f;
-    raster.depthBiasSlopeFactor = 1.5f;
-    raster.lineWidth = 1;
-    VkPipelineMultisampleStateCreateInfo samples{};
-    samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-    VkPipelineDepthStencilStateCreateInfo depth{};
-    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
-    depth.depthCompareOp = VK_COMPARE_OP_LESS;
-    VkGraphicsPipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-    info.stageCount = 1;
-    info.pStages = &stage;
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &window;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &samples;
-    info.pDepthStencilState = &depth;
-    info.layout = layout;
-    info.renderPass = pass;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    checkVulkan(
-        vkCreateGraphicsPipelines(host.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-        "vkCreateGraphicsPipelines");
-    return pipeline;
 }
 
 void Renderer::makePipelines(const sample::Stage& stage) {
@@ -474,10 +316,6 @@ void Renderer::makePipelines(const sample::Stage& stage) {
     jetPipeline_ = sample::makePipeline(host_, request);
     vkDestroyShaderModule(host_.device, request.vertex, nullptr);
     vkDestroyShaderModule(host_.device, request.fragment, nullptr);
-
-    VkShaderModule shadow = host_.createShader(kShadowVert, sizeof kShadowVert);
-    shadowPipeline_ = makeShadowPipeline(host_, stillPass_, shadowLayout_, shadow);
-    vkDestroyShaderModule(host_.device, shadow, nullptr);
 }
 
 // Whether a ball is seen at all.
@@ -491,34 +329,57 @@ static bool inView(const glm::mat4& viewProjection, glm::vec3 place, float radiu
     return true;
 }
 
-// Sorts the instances by model into runs: what is seen, what casts a still shadow, what casts a
-// moving one.
+// Sorts the instances by model into runs: what is seen from near, what from afar, what casts a
+// still shadow, what casts a moving one.
 void Renderer::gather(Slot& slot, const SceneFrame& scene) {
     const float aspect = float(slot.extent.width) / float(slot.extent.height);
     const glm::mat4 viewProjection =
         sample::projectionMatrix(scene.camera, aspect) * sample::viewMatrix(scene.camera);
+    enum Seen : uint8_t { kNot, kNear, kFar };
+    std::vector<Seen> seen;
+    uint32_t triangles = (surfaces_[ground_].indexCount + surfaces_[road_].indexCount +
+                          surfaces_[water_].indexCount) /
+                         3;
+    for (const Placed& p : scene.placed) {
+        const Surface& s = surfaces_[size_t(p.model)];
+        const Vec3 c = p.frame.point(s.middle);
+        const glm::vec3 middle(c.x, c.y, c.z);
+        const float radius = s.radius * village::length(p.frame.x);
+        if (!inView(viewProjection, middle, radius)) {
+            seen.push_back(kNot);
+            continue;
+        }
+        // The library draws the whole of a model from everywhere.
+        const bool whole =
+            !p.drawn || glm::length(middle - scene.camera.eye) < kFineWithin + radius;
+        seen.push_back(!p.drawn ? kNot : whole ? kNear : kFar);
+        triangles += (whole ? s.indexCount : s.farIndexCount) / 3;
+    }
+    mostTriangles_ = std::max(mostTriangles_, triangles);
+
     auto* out = static_cast<DrawnInstance*>(slot.instances.mapped);
     uint32_t used = 0;
     out[used++] = drawnInstance(village::Frame{}, {1, 1, 1});  // the land's
-    auto seen = [&](const Placed& p) {
-        const Surface& s = surfaces_[size_t(p.model)];
-        const Vec3 c = p.frame.point(s.middle);
-        return p.drawn &&
-               inView(viewProjection, {c.x, c.y, c.z}, s.radius * village::length(p.frame.x));
-    };
-    auto collect = [&](std::vector<Run>& runs, auto&& wanted) {
-        runs.clear();
+    auto collect = [&](std::vector<Run>& runs, bool fine, auto&& wanted) {
         for (size_t model = 0; model < ground_; ++model) {
+            const Surface& s = surfaces_[model];
             const uint32_t first = used;
-            for (const Placed& p : scene.placed)
-                if (size_t(p.model) == model && wanted(p))
+            for (size_t i = 0; i < scene.placed.size(); ++i) {
+                const Placed& p = scene.placed[i];
+                if (size_t(p.model) == model && wanted(i))
                     out[used++] = drawnInstance(p.frame, p.tint);
-            if (used > first) runs.push_back({model, first, used - first});
+            }
+            if (used > first)
+                runs.push_back({model, fine ? s.indexCount : s.farIndexCount, first, used - first});
         }
     };
-    collect(solid_, seen);
-    collect(stillRuns_, [](const Placed& p) { return !p.moves; });
-    collect(movingRuns_, [](const Placed& p) { return p.moves; });
+    solid_.clear();
+    stillRuns_.clear();
+    movingRuns_.clear();
+    collect(solid_, true, [&](size_t i) { return seen[i] == kNear; });
+    collect(solid_, false, [&](size_t i) { return seen[i] == kFar; });
+    collect(stillRuns_, false, [&](size_t i) { return !scene.placed[i].moves; });
+    collect(movingRuns_, false, [&](size_t i) { return scene.placed[i].moves; });
 }
 
 void Renderer::upload(Slot& slot, const sample::StageFrame& frame, const SceneFrame& scene) {
@@ -556,62 +417,20 @@ void Renderer::bindGeometry(VkCommandBuffer commands, const Slot& slot) const {
     vkCmdBindIndexBuffer(commands, indices_.buffer, 0, VK_INDEX_TYPE_UINT32);
 }
 
-// A barrier over a whole depth image; the sample helpers' own are for colour.
-static void depthBarrier(VkCommandBuffer commands, VkImage image, VkPipelineStageFlags stageBefore,
-                         VkPipelineStageFlags stageAfter, VkAccessFlags accessAfter,
-                         VkImageLayout layoutAfter) {
-    VkImageMemoryBarrier barrier{};
-    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
-    barrier.dstAccessMask = accessAfter;
-    barrier.newLayout = layoutAfter;
-    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
-    vkCmdPipelineBarrier(commands, stageBefore, stageAfter, 0, 0, nullptr, 0, nullptr, 1, &barrier);
-}
-
-void Renderer::drawShadows(VkCommandBuffer commands, const Slot& slot, VkRenderPass pass,
-                           VkFramebuffer target, const std::vector<Run>& runs) {
-    VkClearValue clear{};
-    clear.depthStencil = {1.0f, 0};
-    VkRenderPassBeginInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
-    info.renderPass = pass;
-    info.framebuffer = target;
-    info.renderArea = {{0, 0}, {kShadowSide, kShadowSide}};
-    info.clearValueCount = 1;
-    info.pClearValues = &clear;
-    vkCmdBeginRenderPass(commands, &info, VK_SUBPASS_CONTENTS_INLINE);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, shadowPipeline_);
-    vkCmdPushConstants(commands, shadowLayout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof shadowClip_,
-                       &shadowClip_);
-    bindGeometry(commands, slot);
-    for (const Run& run : runs) {
-        const Surface& s = surfaces_[run.surface];
-        vkCmdDrawIndexed(commands, s.indexCount, run.count, s.firstIndex, s.firstVertex, run.first);
-    }
-    vkCmdEndRenderPass(commands);
-}
-
 void Renderer::prepare(const sample::StageFrame& frame, const SceneFrame& scene) {
     Slot& slot = slots_[frame.slot];
     slot.extent = frame.extent;
     gather(slot, scene);
     upload(slot, frame, scene);
-    // What stands still casts the same shadow in every frame: drawn once, copied ever after.
-    if (stillClip_ != shadowClip_) {
-        drawShadows(frame.commands, slot, stillPass_, stillFramebuffer_, stillRuns_);
-        stillClip_ = shadowClip_;
-    }
-    depthBarrier(frame.commands, shadowMap_.image, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
-                 VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    VkImageCopy copy{};
-    copy.srcSubresource = copy.dstSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1};
-    copy.extent = {kShadowSide, kShadowSide, 1};
-    vkCmdCopyImage(frame.commands, stillShadow_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                   shadowMap_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    drawShadows(frame.commands, slot, shadowPass_, shadowFramebuffer_, movingRuns_);
+    shadows_.record(frame.commands, shadowClip_, [&](bool moving) {
+        bindGeometry(frame.commands, slot);
+        for (const Run& run : moving ? movingRuns_ : stillRuns_) drawRun(frame.commands, run);
+    });
+}
+
+void Renderer::drawRun(VkCommandBuffer commands, const Run& run) const {
+    const Surface& s = surfaces_[run.surface];
+    vkCmdDrawIndexed(commands, run.indexCount, run.count, s.firstIndex, s.firstVertex, run.first);
 }
 
 void Renderer::drawSolid(const sample::StageFrame& frame) {
@@ -626,17 +445,18 @@ void Renderer::drawSolid(const sample::StageFrame& frame) {
                                 nullptr);
         vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof s.push,
                            &s.push);
-        vkCmdDrawIndexed(commands, s.indexCount, run.count, s.firstIndex, s.firstVertex, run.first);
+        drawRun(commands, run);
     };
+    auto drawLand = [&](size_t surface) { draw({surface, surfaces_[surface].indexCount, 0, 1}); };
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, model_);
     for (const Run& run : solid_) draw(run);
     // The land comes last: most of what lies under the models is then never shaded.
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, roadPipeline_);
-    draw({road_, 0, 1});
+    drawLand(road_);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, waterPipeline_);
-    draw({water_, 0, 1});
+    drawLand(water_);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, groundPipeline_);
-    draw({ground_, 0, 1});
+    drawLand(ground_);
 }
 
 void Renderer::drawJet(const sample::StageFrame& frame) {

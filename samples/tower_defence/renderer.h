@@ -12,6 +12,7 @@
 #include "jet.h"
 #include "light.h"
 #include "paint.h"
+#include "shadow_map.h"
 
 namespace tower {
 
@@ -54,12 +55,16 @@ class Renderer {
     // Inside the pass, last: the jet.
     void drawJet(const sample::StageFrame& frame);
 
+    // Of all frames so far: the most triangles in one view, the library's among them.
+    uint32_t mostTriangles() const { return mostTriangles_; }
+
  private:
     struct Push {
         float uvWindow[4], metres[4];
     };
     struct Surface {  // what a draw needs of one model
         uint32_t firstIndex = 0, indexCount = 0;
+        uint32_t farIndexCount = 0;  // without its fine parts
         int32_t firstVertex = 0;
         VkDescriptorSet set = VK_NULL_HANDLE;
         sample::Image color, relief;
@@ -69,6 +74,7 @@ class Renderer {
     };
     struct Run {  // instances of one model, consecutive in the slot's buffer
         size_t surface;
+        uint32_t indexCount;
         uint32_t first, count;
     };
     struct Slot {
@@ -78,7 +84,6 @@ class Renderer {
     };
 
     void makeLayouts();
-    void makeShadow();
     void makeGeometry(const village::Scene& scene, const PaintedVillage& painted);
     void makeSurface(const village::Model& model, const Painting& painting, village::Vec2 low,
                      village::Vec2 high, glm::vec2 metres);
@@ -86,8 +91,7 @@ class Renderer {
     void makePipelines(const sample::Stage& stage);
     void gather(Slot& slot, const SceneFrame& scene);
     void upload(Slot& slot, const sample::StageFrame& frame, const SceneFrame& scene);
-    void drawShadows(VkCommandBuffer commands, const Slot& slot, VkRenderPass pass,
-                     VkFramebuffer target, const std::vector<Run>& runs);
+    void drawRun(VkCommandBuffer commands, const Run& run) const;
     void bindGeometry(VkCommandBuffer commands, const Slot& slot) const;
 
     const sample::VulkanHost& host_;
@@ -96,19 +100,17 @@ class Renderer {
     sample::Buffer vertices_, indices_;
     std::vector<Slot> slots_;
     std::vector<Run> solid_, stillRuns_, movingRuns_;
-    uint32_t particleCount_ = 0;
-    glm::mat4 shadowClip_{1.0f}, stillClip_{0.0f};
+    uint32_t particleCount_ = 0, mostTriangles_ = 0;
+    glm::mat4 shadowClip_{1.0f};
+    ShadowMap shadows_;
 
-    sample::Image shadowMap_, stillShadow_;
-    VkRenderPass shadowPass_ = VK_NULL_HANDLE, stillPass_ = VK_NULL_HANDLE;
-    VkFramebuffer shadowFramebuffer_ = VK_NULL_HANDLE, stillFramebuffer_ = VK_NULL_HANDLE;
-    VkSampler shadowSampler_ = VK_NULL_HANDLE, sampler_ = VK_NULL_HANDLE;
+    VkSampler sampler_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout frameLayout_ = VK_NULL_HANDLE, surfaceLayout_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE, shadowLayout_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline model_ = VK_NULL_HANDLE, groundPipeline_ = VK_NULL_HANDLE;
     VkPipeline roadPipeline_ = VK_NULL_HANDLE, waterPipeline_ = VK_NULL_HANDLE;
-    VkPipeline shadowPipeline_ = VK_NULL_HANDLE, jetPipeline_ = VK_NULL_HANDLE;
+    VkPipeline jetPipeline_ = VK_NULL_HANDLE;
 };
 
 }  // namespace tower

@@ -174,7 +174,7 @@ Model makeTerrain() {
         const float k = 2 * t - 1;
         return 36 * (0.62f * k + 0.38f * k * k * k);
     };
-    b.grid(28, 26, 72, 72, [&](float u, float v) {
+    b.grid(24, 22, 72, 72, [&](float u, float v) {
         const Vec2 p{spread(u), -spread(v) - 4};
         const float dip = 0.5f * (1 - smoothStep(0.9f, 1.2f, pondDistance(p)));
         return Vec3{p.x, groundHeight(p) - dip, p.y};
@@ -227,27 +227,27 @@ Model makePondShore() {
     MeshBuilder b("pond shore", 5, 256);
     b.use(Texture::kGrass, Material::kGround, {1, 1, 1});
     b.crease = -1;
-    b.grid(28, 4, 24, 5, [](float u, float v) {
-        constexpr float kDistance[5] = {0.50f, 0.84f, 0.99f, 1.20f, 1.70f};
-        constexpr float kHeight[5] = {-0.80f, -0.34f, -0.15f, 0.03f, 0};
-        const int i = int(std::lround(v * 4));
+    b.grid(28, 3, 24, 5, [](float u, float v) {
+        constexpr float kDistance[] = {0.84f, 0.99f, 1.20f, 1.70f};
+        constexpr float kHeight[] = {-0.34f, -0.15f, 0.03f, 0};
+        const int i = int(std::lround(v * 3));
         const float t = -2 * kPi * std::fmod(u, 1.0f);
         const Vec2 p = shorePoint({std::cos(t), std::sin(t)}, kDistance[i]);
-        return Vec3{p.x, i == 4 ? groundHeight(p) - 0.06f : kHeight[i], p.y};
+        return Vec3{p.x, i == 3 ? groundHeight(p) - 0.06f : kHeight[i], p.y};
     });
     b.use(Texture::kLeaf, Material::kLeaf, {0.07f, 0.16f, 0.04f});
     for (int i = 0; i < 9; ++i) {
         const float t = 2.4f * float(i), reach = 0.55f + 0.045f * float(i);
         const Vec3 c{kPondCentre.x + 3.0f * reach * std::cos(t), kWaterLevel + 0.025f,
                      kPondCentre.y + 2.0f * reach * std::sin(t)};
-        b.disc(c, {0, 0, 1}, {1, 0, 0}, b.random(0.2f, 0.38f), 7);
+        b.disc(c, {0, 0, 1}, {1, 0, 0}, b.random(0.2f, 0.38f), 6);
     }
     b.use(Texture::kStone, Material::kStone, palette::kStone * 0.9f);
     for (int i = 0; i < 7; ++i) {
         const float t = 2 * kPi * (float(i) + b.random()) / 7;
         const float wide = b.random(0.25f, 0.5f), deep = b.random(0.25f, 0.45f);
         b.blob({kPondCentre.x + 4.4f * std::cos(t), -0.1f, kPondCentre.y + 3.0f * std::sin(t)},
-               {wide, 0.25f, deep}, 6, 3, 0.2f);
+               {wide, 0.25f, deep}, 5, 3, 0.2f);
     }
     return b.finish();
 }

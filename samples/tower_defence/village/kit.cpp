@@ -32,7 +32,6 @@ std::vector<Model> makeKit() {
     kit.push_back(makeRailFence(22, true));
     kit.push_back(makeOak("oak", palette::kLeafOak, 30));
     kit.push_back(makePoplar(31));
-    kit.push_back(makePine(32));
     kit.push_back(makeDeadTree(33));
     kit.push_back(makeOak("autumn oak", palette::kLeafAutumn, 34));
     kit.push_back(makeBush(35));

@@ -19,7 +19,6 @@ enum class Kit : int {
     kBrokenRail,
     kOak,
     kPoplar,
-    kPine,
     kDeadTree,
     kAutumnOak,
     kBush,

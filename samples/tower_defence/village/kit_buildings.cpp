@@ -25,7 +25,6 @@ struct ThatchRing {
 
 static std::vector<ThatchRing> thatchRings(int courses) {
     std::vector<ThatchRing> rings;
-    rings.push_back({0.78f, -0.10f, 0});
     rings.push_back({1.02f, -0.06f, 1});
     for (int c = 0; c < courses; ++c) {
         const float slope = 1 - float(c) / float(courses);
@@ -78,6 +77,7 @@ static void addThatchRidge(MeshBuilder& b, const Thatch& roof) {
     }
     b.use(Texture::kStraw, Material::kThatch, palette::kStraw * 0.55f);
     b.tube(path, radii, 6, true, 0.05f);
+    b.fine = true;
     useTimber(b, palette::kOldWood * 0.7f);
     for (int i = 0; i < 3; ++i) {  // crossed spars
         const float x = a * 0.7f * float(i - 1), y = crest(x);
@@ -85,6 +85,7 @@ static void addThatchRidge(MeshBuilder& b, const Thatch& roof) {
             b.beam({x + 0.05f * k, y - 0.34f, 0.52f * k}, {x, y + 0.46f, -0.16f * k}, 0.075f, 0.06f,
                    1, kSidesOnly);
     }
+    b.fine = false;
 }
 
 static void addThatch(MeshBuilder& b, const Thatch& roof) {
@@ -92,12 +93,8 @@ static void addThatch(MeshBuilder& b, const Thatch& roof) {
     if (roof.cone) {
         const float y = roof.ridge;
         b.use(Texture::kStraw, Material::kStraw, palette::kStraw * 0.7f);
-        b.lathe({{0.30f, y - 0.20f},
-                 {0.34f, y},
-                 {0.12f, y + 0.22f},
-                 {0.18f, y + 0.42f},
-                 {0.0f, y + 0.75f}},
-                7, 0.04f);
+        b.lathe({{0.34f, y - 0.10f}, {0.12f, y + 0.22f}, {0.18f, y + 0.42f}, {0.0f, y + 0.75f}}, 7,
+                0.04f);
     } else {
         addThatchRidge(b, roof);
     }
@@ -110,40 +107,43 @@ static void addWindow(MeshBuilder& b, Vec3 c, Vec3 shutter, bool flowers) {
     b.quad(c + Vec3{-0.27f, -0.32f, 0.02f}, c + Vec3{0.27f, -0.32f, 0.02f},
            c + Vec3{0.27f, 0.32f, 0.02f}, c + Vec3{-0.27f, 0.32f, 0.02f}, {0, 1, 0});
     useTimber(b);
-    b.box(c + Vec3{0, 0.32f, 0.03f}, {0.74f, 0.09f, 0.10f}, 1, {1, 0, 0});
+    b.box(c + Vec3{0, 0.32f, 0.03f}, {0.74f, 0.09f, 0.10f}, 1, {1, 0, 0}, kOpenBelowAndBehind);
+    b.fine = true;
     b.box(c + Vec3{0, -0.03f, 0.03f}, {0.54f, 0.05f, 0.04f}, 1, {1, 0, 0}, kFrontAndTop);
     b.box(c + Vec3{0, -0.32f, 0.03f}, {0.05f, 0.64f, 0.04f}, 1, {0, 1, 0}, kFrontAndSides);
+    b.fine = false;
     b.use(Texture::kPlank, Material::kPaint, shutter);
     for (float k : {-1.0f, 1.0f})
         b.box(c + Vec3{0.46f * k, -0.36f, 0.05f}, {0.34f, 0.72f, 0.06f}, 1, {0, 1, 0},
               kOpenBelowAndBehind);
     if (flowers) {
         b.use(Texture::kPlank, Material::kWood, palette::kWood);
-        b.box(c + Vec3{0, -0.52f, 0.12f}, {0.72f, 0.16f, 0.2f}, 1.1f, {1, 0, 0});
+        b.box(c + Vec3{0, -0.52f, 0.12f}, {0.72f, 0.16f, 0.2f}, 1.1f, {1, 0, 0}, kFrontAndSides);
         b.use(Texture::kLeaf, Material::kLeaf, {0.42f, 0.06f, 0.05f});
-        b.blob(c + Vec3{0, -0.33f, 0.14f}, {0.36f, 0.11f, 0.12f}, 5, 3, 0.2f);
+        b.blob(c + Vec3{0, -0.33f, 0.14f}, {0.38f, 0.13f, 0.13f}, 5, 2, 0.2f);
     } else {
         useTimber(b);
-        b.box(c + Vec3{0, -0.42f, 0.03f}, {0.8f, 0.09f, 0.14f}, 1, {1, 0, 0});
+        b.box(c + Vec3{0, -0.42f, 0.03f}, {0.8f, 0.09f, 0.14f}, 1, {1, 0, 0}, kOpenBelowAndBehind);
     }
 }
 
 // The wall stands on the stone plinth, at this height.
 constexpr float kSill = 0.35f;
 
-// Dark timbers stand a hand's breadth proud of the limewash.
+// Dark timbers stand a hand's breadth proud of the limewash. No hut shows its back to the camera,
+// which only has its corner posts.
 static void addHutFrame(MeshBuilder& b, const HutStyle& s) {
     const float y0 = kSill, y1 = kSill + s.wallHeight, a = s.length / 2, w = s.width / 2;
     useTimber(b);
-    for (float z : {-w, w}) {
-        b.beam({-a - 0.06f, y0 + 0.08f, z}, {a + 0.06f, y0 + 0.08f, z}, 0.13f, 0.16f);
-        for (int i = 0; i <= s.bays; ++i) {
-            const float x = -a + s.length * float(i) / float(s.bays);
-            b.beam({x, y0, z}, {x, y1, z}, 0.17f, 0.17f, 0.9f, kSidesOnly);
-        }
-        for (float k : {-1.0f, 1.0f})
-            b.beam({a * k, y0 + 0.1f, z}, {(a - 0.75f) * k, y1 - 0.15f, z}, 0.12f, 0.11f, 1,
-                   kSidesOnly);
+    auto post = [&](float x, float z) {
+        b.beam({x, y0, z}, {x, y1, z}, 0.17f, 0.17f, 0.9f, kSidesOnly);
+    };
+    b.beam({-a - 0.06f, y0 + 0.08f, w}, {a + 0.06f, y0 + 0.08f, w}, 0.13f, 0.16f);
+    for (int i = 0; i <= s.bays; ++i) post(-a + s.length * float(i) / float(s.bays), w);
+    for (float k : {-1.0f, 1.0f}) {
+        post(a * k, -w);
+        b.beam({a * k, y0 + 0.1f, w}, {(a - 0.75f) * k, y1 - 0.15f, w}, 0.12f, 0.11f, 1,
+               kSidesOnly);
     }
     for (float x : {-a, a}) {
         b.beam({x, y0, 0}, {x, y1, 0}, 0.15f, 0.15f, 1, kSidesOnly);
@@ -157,13 +157,16 @@ static void addHutDoor(MeshBuilder& b, const HutStyle& s, float x, float z) {
     b.box({x, y0 - 0.05f, z + 0.02f}, {0.82f, 1.5f, 0.08f}, 1, {0, 1, 0}, kOpenBelowAndBehind);
     useTimber(b);
     for (float k : {-1.0f, 1.0f})
-        b.box({x + 0.47f * k, y0 - 0.08f, z + 0.03f}, {0.13f, 1.62f, 0.14f});
-    b.box({x, y0 + 1.48f, z + 0.04f}, {1.16f, 0.15f, 0.18f}, 1, {1, 0, 0});
+        b.box({x + 0.47f * k, y0 - 0.08f, z + 0.03f}, {0.13f, 1.62f, 0.14f}, 1, {0, 1, 0},
+              kFrontAndSides);
+    b.box({x, y0 + 1.48f, z + 0.04f}, {1.16f, 0.15f, 0.18f}, 1, {1, 0, 0}, kOpenBelowAndBehind);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
+    b.fine = true;
     for (float y : {0.25f, 1.1f})
         b.box({x - 0.08f, y0 + y, z + 0.07f}, {0.6f, 0.06f, 0.02f}, 1, {1, 0, 0}, kFrontAndTop);
+    b.fine = false;
     b.use(Texture::kStone, Material::kStone, palette::kStone * 1.1f);
-    b.box({x, -0.3f, z + 0.42f}, {1.2f, 0.45f, 0.6f}, 0.95f, {1, 0, 0});
+    b.box({x, -0.3f, z + 0.42f}, {1.2f, 0.45f, 0.6f}, 0.95f, {1, 0, 0}, kOpenBelowAndBehind);
 }
 
 Model makeHut(const char* name, const HutStyle& s, uint32_t seed) {
@@ -183,8 +186,9 @@ Model makeHut(const char* name, const HutStyle& s, uint32_t seed) {
     }
     const float x = -s.length * 0.28f, top = eave + s.rise + 0.45f;
     b.use(Texture::kStone, Material::kStone, palette::kStone * 0.9f);
-    b.box({x, eave + 0.2f, -0.55f}, {0.66f, top - eave - 0.2f, 0.62f}, 0.86f, {1, 0, 0});
-    b.box({x, top - 0.16f, -0.55f}, {0.74f, 0.2f, 0.7f}, 1, {1, 0, 0}, kAllFaces);
+    b.box({x, eave + 0.2f, -0.55f}, {0.66f, top - eave - 0.2f, 0.62f}, 0.86f, {1, 0, 0},
+          kFrontAndSides);
+    b.box({x, top - 0.16f, -0.55f}, {0.74f, 0.2f, 0.7f}, 1, {1, 0, 0});
     addThatch(b, {s.length, s.width, eave - 0.18f, eave + s.rise, s.hip, 3, s.length > 5 ? 18 : 14,
                   s.roof});
     return b.finish();
@@ -198,6 +202,7 @@ Model makeRoundHut(uint32_t seed) {
     b.lathe({{1.62f, 0.5f}, {1.58f, 1.75f}}, 12);
     useTimber(b);
     for (int i = 0; i < 8; ++i) {
+        if (i == 5 || i == 6) continue;  // behind
         const float t = kPi * (float(i) + 0.5f) / 4, c = std::cos(t), s = std::sin(t);
         b.beam({1.62f * c, 0.55f, 1.62f * s}, {1.58f * c, 1.8f, 1.58f * s}, 0.14f, 0.14f, 1,
                kSidesOnly);
@@ -281,6 +286,7 @@ Model makeWindmill(uint32_t seed) {
     b.crease = 0.6f;
     useTimber(b);
     for (int i = 0; i < 8; ++i) {
+        if (i == 5 || i == 6) continue;  // behind
         float t = kPi * (i + 0.5f) / 4, c = std::cos(t), s = std::sin(t);
         b.beam({2.02f * c, 2.2f, 2.02f * s}, {1.43f * c, 6.8f, 1.43f * s}, 0.15f, 0.15f, 0.9f,
                kSidesOnly);
@@ -300,8 +306,7 @@ Model makeWindmill(uint32_t seed) {
     addWindow(b, {0, 5.5f, 1.46f}, palette::kBlue, false);
     b.use(Texture::kThatch, Material::kThatch, palette::kThatch);
     b.crease = 0.45f;
-    b.lathe({{1.3f, 6.75f},
-             {1.95f, 6.6f},
+    b.lathe({{1.95f, 6.6f},
              {1.98f, 6.85f},
              {1.62f, 7.4f},
              {1.68f, 7.3f},
@@ -311,22 +316,24 @@ Model makeWindmill(uint32_t seed) {
              {1.05f, 8.35f},
              {0.3f, 8.9f},
              {0.0f, 9.0f}},
-            12, 0.06f);
+            10, 0.06f);
     b.crease = 0.6f;
     b.use(Texture::kMetal, Material::kMetal, palette::kBrass);
     b.lathe({{0.07f, 8.9f}, {0.05f, 9.5f}, {0.14f, 9.6f}, {0.0f, 9.85f}}, 5);
     useTimber(b, palette::kOldWood);
     b.beam({0, 7.3f, 0.6f}, {0, 7.45f, 2.55f}, 0.34f, 0.34f);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
-    b.blob({0, 7.45f, 2.55f}, {0.28f, 0.28f, 0.22f}, 7, 4, 0);
+    b.blob({0, 7.45f, 2.55f}, {0.28f, 0.28f, 0.22f}, 7, 3, 0);
     Frame hub = translate(0, 7.45f, 2.45f) * rotateZ(0.62f);
     for (int i = 0; i < 4; ++i) {
         b.frame = hub * rotateZ(kPi / 2 * i);
         useTimber(b, palette::kOldWood * 0.8f);
         b.beam({0, 0, 0}, {0, 4.6f, 0}, 0.15f, 0.13f, 0.6f);
+        b.fine = true;
         for (int k = 0; k < 5; ++k)
             b.beam({-0.12f, 1.1f + 0.8f * k, 0}, {1.08f, 1.1f + 0.8f * k, -0.02f}, 0.06f, 0.06f, 1,
                    kSidesOnly);
+        b.fine = false;
         b.beam({1.05f, 1.05f, 0}, {1.05f, 4.35f, 0}, 0.06f, 0.06f, 1, kSidesOnly);
         b.use(Texture::kCloth, Material::kCloth,
               i & 1 ? palette::kWhite : palette::kCrimson * 1.1f);

@@ -31,14 +31,15 @@ Model makeWattle(uint32_t seed) {
     b.grid(6, 1, 0.8f, 2.0f, [](float u, float v) {
         return Vec3{2 * u - 1, 0.1f + 0.65f * v, 0.07f * std::cos(kPi * 3 * u)};
     });
+    b.fine = true;  // from afar the front shows on both sides
     b.grid(6, 1, 0.8f, 2.0f, [](float u, float v) {
         return Vec3{1 - 2 * u, 0.1f + 0.65f * v, 0.07f * std::cos(kPi * 3 * (1 - u)) - 0.02f};
     });
     return b.finish();
 }
 
-// A leaning trunk of the given height with bare limbs; leaves are the caller's.
-static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float reach) {
+// A leaning trunk of the given height with limbs; leaves are the caller's, unless it is bare.
+static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float reach, bool bare) {
     b.use(Texture::kBark, Material::kWood, palette::kOldWood * 0.75f);
     const float lean = b.random(-0.25f, 0.25f);
     b.tube({{0, -0.3f, 0},
@@ -46,6 +47,7 @@ static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float r
             {lean * 0.5f, height * 0.35f, 0.1f},
             {lean, height * top, 0}},
            {0.42f, 0.26f, 0.2f, 0.1f}, 5, false);
+    b.fine = !bare;  // leaves hide most of a limb
     for (int i = 0; i < limbs; ++i) {
         const float t = float(i) * 2.4f + b.random(), y = height * (0.3f + 0.07f * float(i));
         const Vec3 root{lean * 0.6f, y, 0};
@@ -55,6 +57,7 @@ static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float r
                                      reach * 0.35f * std::sin(t + 0.5f)};
         b.tube({root, knee, tip}, {0.12f, 0.075f, 0.015f}, 3, false);
     }
+    b.fine = false;
 }
 
 // Leaves keep soft normals: almost no edge of a crown is hard.
@@ -66,66 +69,54 @@ static void useLeaf(MeshBuilder& b, Vec3 tint) {
 Model makeOak(const char* name, Vec3 leaf, uint32_t seed) {
     MeshBuilder b(name, seed, 256);
     constexpr float kHeight = 4.6f;
-    addTrunk(b, kHeight, 0.6f, 2, 0.9f);
+    addTrunk(b, kHeight, 0.6f, 2, 0.9f, false);
     useLeaf(b, leaf);
     b.blob({0, kHeight * 0.72f, 0}, {1.45f, 1.15f, 1.4f}, 7, 4, 0.13f);
     for (int i = 0; i < 3; ++i) {
         const float t = 2.1f * float(i) + b.random();
         b.tint = leaf * b.random(0.85f, 1.2f);
         const float y = kHeight * b.random(0.52f, 0.64f);
-        b.blob({std::cos(t), y, std::sin(t)}, {1.0f, 0.8f, 0.95f}, 6, 4, 0.15f);
+        b.blob({std::cos(t), y, std::sin(t)}, {1.0f, 0.8f, 0.95f}, 6, 3, 0.15f);
     }
     b.tint = leaf * 1.2f;
     b.blob({0.2f, kHeight * 0.9f, 0.1f}, {0.85f, 0.65f, 0.8f}, 6, 3, 0.15f);
     return b.finish();
 }
 
-Model makePoplar(uint32_t seed) {
-    MeshBuilder b("poplar", seed, 256);
-    addTrunk(b, 6.5f, 0.6f, 0, 0);
-    useLeaf(b, palette::kLeafPoplar);
-    b.lathe({{0.2f, 0.9f}, {0.75f, 1.5f}, {1.0f, 2.6f}, {0.85f, 4.2f}, {0.5f, 5.6f}, {0, 6.9f}}, 7,
-            0.3f);
-    return b.finish();
-}
-
-Model makePine(uint32_t seed) {
-    MeshBuilder b("pine", seed, 256);
-    addTrunk(b, 6.2f, 0.6f, 0, 0);
-    useLeaf(b, palette::kLeafPine);
-    for (int i = 0; i < 4; ++i) {
-        const float y = 1.0f + 1.25f * float(i), r = 1.75f - 0.38f * float(i);
-        b.tint = palette::kLeafPine * (0.9f + 0.12f * float(i));
-        b.lathe({{r * 0.3f, y + 0.22f}, {r, y - 0.12f}, {r * 0.5f, y + 0.75f}, {0, y + 1.75f}}, 8,
-                0.22f, 0.5f * float(i));
-    }
-    return b.finish();
-}
-
 Model makeDeadTree(uint32_t seed) {
     MeshBuilder b("dead tree", seed, 128);
-    addTrunk(b, 4.6f, 0.62f, 5, 1.3f);
+    addTrunk(b, 4.6f, 0.62f, 5, 1.3f, true);
     return b.finish();
 }
 
 Model makeBush(uint32_t seed) {
     MeshBuilder b("bush", seed, 128);
     useLeaf(b, palette::kLeafOak);
-    b.blob({0, 0.4f, 0}, {0.75f, 0.6f, 0.65f}, 6, 4, 0.18f);
+    b.blob({0, 0.4f, 0}, {0.75f, 0.6f, 0.65f}, 6, 3, 0.18f);
     b.tint = palette::kLeafOak * 1.3f;
     b.blob({0.5f, 0.3f, 0.2f}, {0.45f, 0.4f, 0.45f}, 5, 3, 0.2f);
     return b.finish();
 }
 
-// The far trees of the forest belt have a third of the triangles.
-static void addFarTrunk(MeshBuilder& b) {
+// Where leaves hide all but its foot.
+static void addPlainTrunk(MeshBuilder& b) {
     b.use(Texture::kBark, Material::kWood, palette::kOldWood * 0.75f);
     b.beam({0, -0.3f, 0}, {0, 2.6f, 0}, 0.4f, 0.4f, 0.5f, kSidesOnly);
 }
 
+Model makePoplar(uint32_t seed) {
+    MeshBuilder b("poplar", seed, 256);
+    addPlainTrunk(b);
+    useLeaf(b, palette::kLeafPoplar);
+    b.lathe({{0.2f, 0.9f}, {0.75f, 1.5f}, {1.0f, 2.6f}, {0.85f, 4.2f}, {0.5f, 5.6f}, {0, 6.9f}}, 6,
+            0.3f);
+    return b.finish();
+}
+
+// The far trees of the forest belt have a quarter of the triangles.
 Model makeFarOak(const char* name, Vec3 leaf, uint32_t seed) {
     MeshBuilder b(name, seed, 128);
-    addFarTrunk(b);
+    addPlainTrunk(b);
     useLeaf(b, leaf);
     b.blob({0.35f, 3.5f, 0}, {1.4f, 1.2f, 1.35f}, 6, 3, 0.14f);
     b.tint = leaf * 1.12f;
@@ -135,7 +126,7 @@ Model makeFarOak(const char* name, Vec3 leaf, uint32_t seed) {
 
 Model makeFarPine(uint32_t seed) {
     MeshBuilder b("far pine", seed, 128);
-    addFarTrunk(b);
+    addPlainTrunk(b);
     useLeaf(b, palette::kLeafPine);
     for (int i = 0; i < 3; ++i) {
         const float y = 1.1f + 1.6f * float(i), r = 1.75f - 0.48f * float(i);
@@ -151,8 +142,9 @@ Model makeRoundBale(uint32_t seed) {
     MeshBuilder b("round bale", seed, 128);
     b.use(Texture::kStraw, Material::kStraw, palette::kHay);
     b.frame = translate(0, 0.68f, 0) * rotateX(kPi / 2) * translate(0, -0.6f, 0);
-    b.lathe({{0, 0}, {0.62f, 0}, {0.7f, 0.1f}, {0.7f, 1.1f}, {0.62f, 1.2f}, {0, 1.2f}}, 8, 0.04f);
+    b.lathe({{0, -0.02f}, {0.69f, 0.04f}, {0.69f, 1.16f}, {0, 1.22f}}, 8, 0.04f);
     b.use(Texture::kCloth, Material::kCloth, palette::kCrimson * 0.5f);
+    b.fine = true;
     for (float y : {0.35f, 0.85f}) b.lathe({{0.715f, y - 0.03f}, {0.715f, y + 0.03f}}, 8);
     return b.finish();
 }
@@ -162,11 +154,11 @@ Model makeHayrick(uint32_t seed) {
     b.use(Texture::kStraw, Material::kStraw, palette::kHay);
     b.lathe(
         {{1.0f, -0.1f}, {1.25f, 0.5f}, {1.3f, 1.1f}, {1.0f, 1.75f}, {0.45f, 2.45f}, {0.1f, 2.7f}},
-        10, 0.14f);
+        8, 0.14f);
     useTimber(b, palette::kOldWood);
     b.beam({0, 2.4f, 0}, {0.05f, 3.3f, 0}, 0.09f, 0.09f);
     b.use(Texture::kCloth, Material::kCloth, palette::kWood);
-    b.lathe({{1.33f, 1.0f}, {1.33f, 1.08f}}, 10);
+    b.lathe({{1.35f, 1.0f}, {1.35f, 1.08f}}, 8);
     return b.finish();
 }
 
@@ -180,9 +172,11 @@ Model makeBales(uint32_t seed) {
         b.use(Texture::kStraw, Material::kStraw, palette::kHay * b.random(0.9f, 1.15f));
         b.box({0, 0, 0}, {1.2f, 0.52f, 0.62f}, 0.96f, {1, 0, 0});
         b.use(Texture::kCloth, Material::kCloth, palette::kTimber);
+        b.fine = true;
         constexpr FaceMask kRound = 0b001011;
         for (float q : {-0.3f, 0.3f})
             b.box({q, 0, 0}, {0.05f, 0.53f, 0.635f}, 0.96f, {0, 1, 0}, kRound);
+        b.fine = false;
     }
     return b.finish();
 }
@@ -196,7 +190,9 @@ static void useBlades(MeshBuilder& b, Material material, Vec3 tint) {
 Model makeDryGrass(uint32_t seed) {
     MeshBuilder b("dry grass", seed, 64);
     useBlades(b, Material::kStraw, {0.46f, 0.33f, 0.11f});
-    b.blades({0, 0, 0}, 9, 0.55f, 0.15f, 0.42f);
+    b.blades({0, 0, 0}, 4, 0.55f, 0.17f, 0.42f);
+    b.fine = true;
+    b.blades({0, 0, 0}, 3, 0.55f, 0.17f, 0.42f);
     return b.finish();
 }
 
@@ -205,10 +201,14 @@ Model makeWheat(uint32_t seed) {
     MeshBuilder b("wheat", seed, 64);
     const Vec3 tint{0.60f, 0.40f, 0.10f};
     useBlades(b, Material::kStraw, tint);
-    for (int i = 0; i < 7; ++i) {
+    for (int i = 0; i < 5; ++i) {
         b.tint = tint * b.random(0.85f, 1.15f);
         const float z = b.random(-0.12f, 0.12f);
-        b.blades({-1 + 0.3f * float(i), 0, z}, 3, 0.98f, 0.26f, 0.30f);
+        const Vec3 root{-0.94f + 0.44f * float(i), 0, z};
+        b.fine = false;
+        b.blades(root, 2, 0.98f, 0.33f, 0.34f);
+        b.fine = true;
+        b.blades(root, 1, 0.98f, 0.33f, 0.34f);
     }
     return b.finish();
 }
@@ -223,13 +223,13 @@ Model makeReeds(uint32_t seed) {
 Model makeFlowers(uint32_t seed) {
     MeshBuilder b("flowers", seed, 64);
     useBlades(b, Material::kLeaf, {0.10f, 0.16f, 0.04f});
-    b.blades({0, 0, 0}, 7, 0.3f, 0.15f, 0.42f);
+    b.blades({0, 0, 0}, 5, 0.3f, 0.18f, 0.42f);
     for (int i = 0; i < 3; ++i) {
         const float t = float(i) * 2.1f;
         const Vec3 petal = i & 1 ? Vec3{0.7f, 0.66f, 0.55f} : Vec3{0.62f, 0.40f, 0.03f};
         b.use(Texture::kCloth, Material::kLeaf, petal);
-        b.blob({0.28f * std::cos(t), 0.3f + 0.04f * float(i), 0.28f * std::sin(t)},
-               {0.06f, 0.04f, 0.06f}, 3, 2, 0);
+        b.disc({0.28f * std::cos(t), 0.32f + 0.04f * float(i), 0.28f * std::sin(t)}, {0, 0, 1},
+               {1, 0, 0}, 0.07f, 4);
     }
     return b.finish();
 }

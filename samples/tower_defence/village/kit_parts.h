@@ -30,7 +30,6 @@ Model makeRailFence(uint32_t seed, bool broken);
 Model makeWattle(uint32_t seed);
 Model makeOak(const char* name, Vec3 leaf, uint32_t seed);
 Model makePoplar(uint32_t seed);
-Model makePine(uint32_t seed);
 Model makeDeadTree(uint32_t seed);
 Model makeBush(uint32_t seed);
 Model makeFarOak(const char* name, Vec3 leaf, uint32_t seed);

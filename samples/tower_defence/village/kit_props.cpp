@@ -8,12 +8,7 @@ static void addWheel(MeshBuilder& b, Vec3 c, float radius) {
     const Frame keep = b.frame;
     b.frame = b.frame * translate(c.x, c.y, c.z) * rotateZ(kPi / 2) * translate(0, -0.05f, 0);
     useTimber(b, palette::kWood * 0.7f);
-    b.lathe({{radius * 0.8f, 0},
-             {radius, 0},
-             {radius, 0.1f},
-             {radius * 0.8f, 0.1f},
-             {radius * 0.8f, 0}},
-            8);
+    b.lathe({{radius * 0.8f, 0}, {radius, 0}, {radius, 0.1f}, {radius * 0.8f, 0.1f}}, 8);
     for (int i = 0; i < 3; ++i) {
         float t = kPi * i / 3;
         b.beam({radius * 0.85f * std::cos(t), 0.05f, radius * 0.85f * std::sin(t)},
@@ -26,8 +21,9 @@ static void addWheel(MeshBuilder& b, Vec3 c, float radius) {
 Model makeBarrel(uint32_t seed) {
     MeshBuilder b("barrel", seed, 96);
     b.use(Texture::kPlank, Material::kWood, palette::kWood);
-    b.lathe({{0.3f, 0}, {0.38f, 0.3f}, {0.38f, 0.6f}, {0.3f, 0.9f}, {0.26f, 0.88f}, {0, 0.86f}}, 9);
+    b.lathe({{0.3f, 0}, {0.38f, 0.3f}, {0.38f, 0.6f}, {0.3f, 0.9f}, {0, 0.86f}}, 9);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
+    b.fine = true;
     for (float y : {0.2f, 0.7f}) b.lathe({{0.37f, y - 0.04f}, {0.37f, y + 0.04f}}, 9);
     return b.finish();
 }
@@ -52,7 +48,7 @@ Model makeHayCart(uint32_t seed) {
         addWheel(b, {0.85f * k, 0.6f, -0.3f}, 0.6f);
     }
     b.use(Texture::kStraw, Material::kStraw, palette::kHay * 1.1f);
-    b.blob({0, 1.15f, -0.1f}, {0.8f, 0.6f, 1.2f}, 8, 5, 0.12f);
+    b.blob({0, 1.15f, -0.1f}, {0.8f, 0.6f, 1.2f}, 8, 4, 0.12f);
     return b.finish();
 }
 
@@ -101,7 +97,7 @@ Model makeMarketStall(uint32_t seed) {
     for (int i = 0; i < 4; ++i) {
         b.use(Texture::kLeaf, Material::kLeaf,
               i & 1 ? Vec3{0.55f, 0.22f, 0.02f} : Vec3{0.4f, 0.05f, 0.02f});
-        b.blob({-0.8f + 0.5f * i, 0.95f, 0.3f}, {0.2f, 0.16f, 0.2f}, 6, 3, 0.1f);
+        b.blob({-0.8f + 0.5f * i, 0.95f, 0.3f}, {0.2f, 0.16f, 0.2f}, 5, 3, 0.1f);
     }
     return b.finish();
 }
@@ -129,7 +125,6 @@ Model makeLampPost(uint32_t seed) {
     b.beam({0, 2.35f, 0}, {0.65f, 2.5f, 0}, 0.09f, 0.09f);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
     b.beam({0.55f, 2.46f, 0}, {0.55f, 2.25f, 0}, 0.03f, 0.03f);
-    b.lathe({{0.2f, 2.2f}, {0.04f, 2.36f}}, 6);
     b.frame = translate(0.55f, 0, 0);
     b.lathe({{0.22f, 2.2f}, {0.04f, 2.38f}}, 6);
     b.use(Texture::kGlow, Material::kMetal, {0.5f, 0.35f, 0.15f}, 3);
@@ -166,7 +161,7 @@ Model makeGateArch(uint32_t seed) {
     }
     b.beam({-2.9f, 3.95f, 0}, {2.9f, 4.1f, 0}, 0.4f, 0.4f);
     b.use(Texture::kStraw, Material::kStraw, palette::kStraw);
-    b.blob({0, 4.85f, 0}, {0.6f, 0.65f, 0.5f}, 8, 5, 0.1f);
+    b.blob({0, 4.85f, 0}, {0.6f, 0.65f, 0.5f}, 8, 4, 0.1f);
     b.use(Texture::kGlow, Material::kStraw, {0.02f, 0.0f, 0.0f}, 2);
     for (int k : {-1, 1})
         b.triangle({0.22f * k - 0.14f, 4.85f, 0.5f}, {0.22f * k + 0.14f, 4.85f - 0.05f * k, 0.5f},

@@ -5,25 +5,22 @@ namespace village {
 
 static void addPlinth(MeshBuilder& b, Vec3 accent) {
     b.use(Texture::kStone, Material::kStone, palette::kStone * 1.15f);
-    b.lathe({{1.75f, -0.5f},
-             {1.7f, 0.35f},
-             {1.5f, 0.4f},
-             {1.45f, 0.95f},
-             {1.55f, 1.0f},
-             {1.55f, 1.18f},
-             {0, 1.18f}},
-            8, 0, 0.5f);
+    b.lathe(
+        {{1.75f, -0.5f}, {1.7f, 0.35f}, {1.5f, 0.4f}, {1.45f, 0.95f}, {1.55f, 1.18f}, {0, 1.18f}},
+        8, 0, 0.5f);
     for (int i = 0; i < 4; ++i) {
         b.frame = rotateY(kPi / 2 * i + kPi / 4);
         b.use(Texture::kCloth, Material::kCloth, accent);
-        b.grid(2, 3, 0.7f, 0.95f, [&](float u, float v) {
+        b.grid(2, 2, 0.7f, 0.95f, [&](float u, float v) {
             float w = v < 0.2f ? 0.65f : 1;
             return Vec3{0.7f * (u - 0.5f) * w,
                         1.15f - (v < 0.01f && std::fabs(u - 0.5f) < 0.1f ? 1.02f : 0.85f) * (1 - v),
                         1.56f + 0.22f * (1 - v)};
         });
         b.use(Texture::kMetal, Material::kMetal, palette::kBrass);
-        b.box({0, 1.1f, 1.5f}, {0.8f, 0.09f, 0.12f});
+        b.fine = true;
+        b.box({0, 1.1f, 1.5f}, {0.8f, 0.09f, 0.12f}, 1, {0, 1, 0}, kOpenBelowAndBehind);
+        b.fine = false;
     }
     b.frame = Frame{};
 }
@@ -40,7 +37,7 @@ Model makeFlamethrower(uint32_t seed) {
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
     b.lathe({{0.8f, 1.15f}, {0.7f, 1.4f}, {0.55f, 1.6f}}, 8);
     b.use(Texture::kMetal, Material::kMetal, palette::kCopper);
-    b.blob({0, 2.2f, -0.1f}, {0.82f, 0.8f, 0.82f}, 10, 6, 0);
+    b.blob({0, 2.2f, -0.1f}, {0.82f, 0.8f, 0.82f}, 10, 5, 0);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
     b.lathe({{0.86f, 2.12f}, {0.86f, 2.3f}}, 10);
     b.use(Texture::kGlow, Material::kMetal, {0.3f, 0.05f, 0.01f}, 5);
@@ -79,12 +76,11 @@ Model makeEmberMortar(uint32_t seed) {
         if (std::fabs(std::sin(t) - 1) < 0.15f) continue;
         Vec3 p{1.22f * std::cos(t), 1.1f, 1.22f * std::sin(t)};
         float h = b.random(0.7f, 0.9f);
-        b.tube({p, p + Vec3{0, h, 0}, p + Vec3{0, h + 0.28f, 0}}, {0.2f, 0.19f, 0.02f}, 5, false);
+        b.tube({p, p + Vec3{0, h, 0}, p + Vec3{0, h + 0.28f, 0}}, {0.2f, 0.19f, 0.02f}, 4, false);
     }
     b.frame = translate(0, 1.35f, -0.1f) * rotateX(0.55f);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron * 1.3f);
-    b.lathe({{0, -0.1f},
-             {0.62f, 0.05f},
+    b.lathe({{0.62f, 0.05f},
              {0.72f, 0.5f},
              {0.6f, 1.1f},
              {0.58f, 1.75f},
@@ -120,11 +116,11 @@ Model makeWaterCannon(uint32_t seed) {
         b.beam({0.93f * k, 1.3f, 0.93f}, {0.75f * k, 2.8f, -0.75f}, 0.1f, 0.1f);
     }
     b.use(Texture::kPlank, Material::kWood, palette::kWood * 1.1f);
-    b.lathe({{0, 2.95f}, {1.0f, 2.95f}, {1.12f, 3.5f}, {1.12f, 4.0f}, {1.0f, 4.55f}}, 10);
+    b.lathe({{1.0f, 2.95f}, {1.12f, 3.5f}, {1.12f, 4.0f}, {1.0f, 4.55f}}, 10);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);
     for (float y : {3.2f, 4.3f}) b.lathe({{1.1f, y - 0.07f}, {1.1f, y + 0.07f}}, 10);
     b.use(Texture::kPlank, Material::kPaint, palette::kSky);
-    b.lathe({{0.9f, 4.5f}, {1.45f, 4.42f}, {1.42f, 4.55f}, {0.7f, 5.15f}, {0, 5.95f}}, 10);
+    b.lathe({{1.45f, 4.42f}, {1.42f, 4.55f}, {0.7f, 5.15f}, {0, 5.95f}}, 10);
     b.use(Texture::kMetal, Material::kMetal, palette::kBrass);
     b.lathe({{0.1f, 5.8f}, {0.16f, 6.0f}, {0, 6.35f}}, 6);
     b.use(Texture::kMetal, Material::kMetal, palette::kBrass);
@@ -161,7 +157,7 @@ Model makeWindFan(uint32_t seed) {
     useTimber(b, palette::kWood);
     b.frame = b.frame * rotateX(kPi / 2);
     b.lathe({{1.75f, -0.16f}, {1.95f, -0.16f}, {1.95f, 0.16f}, {1.75f, 0.16f}, {1.75f, -0.16f}},
-            16);
+            14);
     b.frame = translate(0, 4.4f, 0.95f);
     for (int i = 0; i < 6; ++i) {
         b.frame = translate(0, 4.4f, 0.95f) * rotateZ(kPi / 3 * i + 0.2f);
@@ -175,7 +171,7 @@ Model makeWindFan(uint32_t seed) {
     }
     b.frame = translate(0, 4.4f, 0.95f);
     b.use(Texture::kMetal, Material::kMetal, palette::kBrass);
-    b.blob({0, 0, 0.08f}, {0.3f, 0.3f, 0.3f}, 8, 4, 0);
+    b.blob({0, 0, 0.08f}, {0.3f, 0.3f, 0.3f}, 7, 3, 0);
     return b.finish();
 }
 

@@ -40,7 +40,7 @@ void MeshBuilder::addTriangle(Vec3 a, Vec3 b, Vec3 c, Vec2 uvA, Vec2 uvB, Vec2 u
         vertex.glow = glow_;
         vertex.texture = texture_;
         vertex.material = material_;
-        corners_.push_back({vertex, chart, group_, crease});
+        corners_.push_back({vertex, chart, group_, crease, fine});
     }
 }
 
@@ -222,6 +222,7 @@ void MeshBuilder::blades(Vec3 base, int count, float height, float width, float 
 
 Model MeshBuilder::finish() {
     packCharts();
+    putFineLast();
     makeNormals();
     weld();
     return std::move(model_);
@@ -264,6 +265,17 @@ void MeshBuilder::packCharts() {
         const Chart& chart = charts_[size_t(c.chart)];
         c.vertex.uv = (c.vertex.uv + Vec2{chart.x, chart.y}) * (1 / side);
     }
+}
+
+void MeshBuilder::putFineLast() {
+    std::vector<Corner> ordered;
+    ordered.reserve(corners_.size());
+    for (bool wanted : {false, true}) {
+        for (const Corner& c : corners_)
+            if (c.fine == wanted) ordered.push_back(c);
+        if (!wanted) model_.farTriangles = int(ordered.size() / 3);
+    }
+    corners_ = std::move(ordered);
 }
 
 // Smooth inside one shape, hard across a crease; faces weigh by their area.

@@ -32,6 +32,7 @@ class MeshBuilder {
     Vec3 tint{1, 1, 1};   // linear albedo
     float crease = 0.6f;  // cosine below which an edge stays hard
     uint32_t seed;        // every random draw moves it on
+    bool fine = false;    // what follows is left out from afar
 
     void use(Texture texture, Material material, Vec3 newTint, float glow = 0);
     float random();                       // [0, 1]
@@ -71,6 +72,7 @@ class MeshBuilder {
         int chart;
         int group;  // corners share normals only inside one group
         float crease;
+        bool fine;
     };
     struct Chart {
         float width, height;  // m
@@ -81,6 +83,7 @@ class MeshBuilder {
     void addTriangle(Vec3 a, Vec3 b, Vec3 c, Vec2 uvA, Vec2 uvB, Vec2 uvC, int chart);
     bool placeCharts(std::span<const int> order, float side);
     void packCharts();
+    void putFineLast();
     void makeNormals();
     void weld();
 

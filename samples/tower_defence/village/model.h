@@ -57,6 +57,7 @@ struct Model {
     std::vector<Vertex> vertices;     // welded where all attributes agree
     std::vector<uint32_t> indices;    // three per triangle, counter-clockwise seen from outside
     std::vector<Material> materials;  // one per triangle
+    int farTriangles = 0;             // as many of the first show from afar; the rest is fine work
     float atlasSide = 1;              // m, the side of the square burn atlas
     int burnTexels = 256;             // the side the atlas was packed for: gutters are 2 texels
     Vec3 low{1e9f, 1e9f, 1e9f};       // m, bounds
