@@ -48,6 +48,8 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     BurnableMesh object;
     object.flags = def.flags;
     object.pose = makePose(def.transform, "FwBurnableMeshDef::transform");
+    std::copy_n(object.pose.stretch, 3, object.shape);  // the mesh takes it over
+    std::fill_n(object.pose.stretch, 3, 1.0f);
     checkValue(def.moisture, "FwBurnableMeshDef::moisture", 0, 2);
     object.moisture = def.moisture;
     checkValues(def.tint, 3, "FwBurnableMeshDef::tint", 0, 100);
@@ -101,6 +103,23 @@ std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
             slowness[texel] = uint16_t(std::clamp<uint32_t>(slow, 1, 65535));
         }
     return slowness;
+}
+
+void poseOnShape(BurnableMesh& object, const Pose& pose, const char* field) {
+    Pose made = pose;
+    if ((pose.stretch[0] < 0) != (object.shape[0] < 0))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s %s and the object's own transform %s; a mirror is settled when the object "
+                   "is created.",
+                   field, pose.stretch[0] < 0 ? "mirrors" : "does not mirror",
+                   object.shape[0] < 0 ? "does" : "does not");
+    bool even = true;
+    for (int i = 0; i < 3; ++i) {
+        made.stretch[i] = pose.stretch[i] / object.shape[i];
+        even &= std::abs(made.stretch[i] - 1) <= 2e-3f;
+    }
+    if (even) std::fill_n(made.stretch, 3, 1.0f);
+    object.pose = made;
 }
 
 // ---- drive
@@ -212,8 +231,10 @@ gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& d
 
 void poseRows(const Pose& pose, gpu::vec4 (&rows)[3]) noexcept {
     for (int r = 0; r < 3; ++r)
-        rows[r] = gpu::vec4(pose.rotation[r][0] * pose.scale, pose.rotation[r][1] * pose.scale,
-                            pose.rotation[r][2] * pose.scale, pose.translation[r]);
+        rows[r] =
+            gpu::vec4(pose.rotation[r][0] * pose.scale * pose.stretch[0],
+                      pose.rotation[r][1] * pose.scale * pose.stretch[1],
+                      pose.rotation[r][2] * pose.scale * pose.stretch[2], pose.translation[r]);
 }
 
 gpu::vec4 objectTint(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept {

@@ -17,7 +17,8 @@ namespace fw::components {
 constexpr uint32_t kMaterials = gpu::kMaterialsPerObject;
 
 struct BurnableMesh {
-    Pose pose;
+    Pose pose;                   // of the mesh in its shape
+    float shape[3] = {1, 1, 1};  // what its mesh was stretched by at creation, see mesh/shaped.h
     std::array<FwMaterialDef, kMaterials> materials{};  // by triangle material
     uint32_t materialMask = 0;  // bit i: materials[i] was given; the others cannot burn
     uint32_t flags = 0;         // FwBurnableFlags
@@ -49,6 +50,9 @@ struct Records {
 
 // Throws core::Error naming the field. Ids are the caller's: mesh, materials and image stay unset.
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def);
+// Takes a new pose. A shape other than the object's stretches what is drawn alone: the front keeps
+// the metric of its creation, times the pose's mean scale. Throws when it mirrors otherwise.
+void poseOnShape(BurnableMesh& object, const Pose& pose, const char* field);
 void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def) noexcept;
 // Can it burn, be it after drying?
 [[nodiscard]] bool burns(const BurnableMesh& object, uint32_t material) noexcept;

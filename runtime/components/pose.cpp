@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fw::components {
@@ -42,49 +43,60 @@ Pose makePose(const float transform[16], const char* field) {
     if (!(scale >= 1e-3 && scale <= 1e3))
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has scale %g; the limits are [0.001, 1000].",
                    field, scale);
-    for (int c = 0; c < 3; ++c)
-        if (std::fabs(length[c] - scale) > kTolerance * scale)
-            core::fail(
-                FW_ERROR_INVALID_ARGUMENT,
-                "%s scales axis %d by %g and the mean is %g; scale is uniform within 0.1 %%.",
-                field, c, length[c], scale);
+    const auto [shortest, longest] = std::minmax({length[0], length[1], length[2]});
+    if (!(longest <= shortest * double(kMostStretch)))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s scales its axes by %g, %g and %g; the largest is at most %g times the "
+                   "smallest.",
+                   field, length[0], length[1], length[2], double(kMostStretch));
     for (int c = 0; c < 3; ++c) {
         const int d = (c + 1) % 3;
         double dot = 0;
         for (int r = 0; r < 3; ++r) dot += column[c][r] * column[d][r];
-        if (std::fabs(dot) > kTolerance * scale * scale)
+        const double cosine = dot / (length[c] * length[d]);
+        if (std::fabs(cosine) > kTolerance)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "%s is sheared: axes %d and %d have cosine %g; the limit is 0.001.", field,
-                       c, d, dot / (scale * scale));
+                       c, d, cosine);
     }
     const double determinant =
         column[0][0] * (column[1][1] * column[2][2] - column[1][2] * column[2][1]) -
         column[1][0] * (column[0][1] * column[2][2] - column[0][2] * column[2][1]) +
         column[2][0] * (column[0][1] * column[1][2] - column[0][2] * column[1][1]);
-    if (determinant <= 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s mirrors: its determinant is %g; it is positive for a rigid pose.", field,
-                   determinant);
+    bool even = true;
+    for (int c = 0; c < 3; ++c) even &= std::fabs(length[c] - scale) <= kTolerance * scale;
     Pose pose;
     pose.scale = float(scale);
+    if (!even)
+        for (int c = 0; c < 3; ++c) pose.stretch[c] = float(length[c] / scale);
+    // A mirror is a mirror of x and a rotation.
+    const double turn = determinant < 0 ? -1 : 1;
+    pose.stretch[0] *= float(turn);
     for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) pose.rotation[r][c] = float(column[c][r] / length[c]);
+        for (int c = 0; c < 3; ++c)
+            pose.rotation[r][c] = float((c == 0 ? turn : 1) * column[c][r] / length[c]);
         pose.translation[r] = transform[12 + r];
     }
     return pose;
 }
 
+bool uniform(const Pose& pose) noexcept {
+    return pose.stretch[0] == 1 && pose.stretch[1] == 1 && pose.stretch[2] == 1;
+}
+
 void toWorld(const Pose& pose, const float point[3], float (&out)[3]) noexcept {
-    for (int r = 0; r < 3; ++r)
-        out[r] = pose.scale * (pose.rotation[r][0] * point[0] + pose.rotation[r][1] * point[1] +
-                               pose.rotation[r][2] * point[2]) +
-                 pose.translation[r];
+    for (int r = 0; r < 3; ++r) {
+        float sum = 0;
+        for (int c = 0; c < 3; ++c) sum += pose.rotation[r][c] * (pose.stretch[c] * point[c]);
+        out[r] = pose.scale * sum + pose.translation[r];
+    }
 }
 
 void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept {
     float from[3];
     for (int i = 0; i < 3; ++i) from[i] = (point[i] - pose.translation[i]) / pose.scale;
     directionToObject(pose, from, out);
+    for (int i = 0; i < 3; ++i) out[i] /= pose.stretch[i];
 }
 
 void directionToObject(const Pose& pose, const float vector[3], float (&out)[3]) noexcept {

@@ -1,4 +1,5 @@
-// Where an object stands: a rotation, one scale and a translation, checked once on entry.
+// Where an object stands: a rotation, a scale along each of its axes and a translation, checked
+// once on entry.
 #pragma once
 #include "flamewright/flamewright.h"
 
@@ -6,16 +7,21 @@ namespace fw::components {
 
 struct Pose {
     float rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // rows, object to world, no scale
-    float scale = 1;                                           // [1e-3, 1e3]
-    float translation[3] = {};                                 // m, within +-1e6
+    float scale = 1;               // mean of the three axes, [1e-3, 1e3]
+    float stretch[3] = {1, 1, 1};  // of each object axis, beyond scale; x < 0: mirrored
+    float translation[3] = {};     // m, within +-1e6
 };
 
+constexpr float kMostStretch = 16;  // longest axis over shortest
+
 // Throws core::Error naming `field`, the value and the limit unless every value is finite, the
-// last row is 0 0 0 1, and the upper 3x3 is a rotation times one scale within 1e-3.
+// last row is 0 0 0 1, and the upper 3x3 is a rotation times a scale per axis, without shear
+// (1e-3). Scales that agree within 1e-3 are one.
 Pose makePose(const float transform[16], const char* field);
 
 void toWorld(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
 void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
+[[nodiscard]] bool uniform(const Pose& pose) noexcept;  // and not mirrored
 // Directions: rotation only.
 void directionToObject(const Pose& pose, const float vector[3], float (&out)[3]) noexcept;
 

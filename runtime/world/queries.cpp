@@ -147,7 +147,7 @@ void World::stats(FwWorldStats& stats) noexcept {
     stats.tick = clock_.tick;
     stats.readbackFrame = readbackFrame_;
     stats.objects = objects_.live();
-    stats.meshes = meshes_.live();
+    stats.meshes = meshes_.live() - shapes_;
     stats.materials = materials_.live();
     stats.frontTiles = frontTiles_;
     stats.runTiles = runTiles_;

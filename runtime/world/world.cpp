@@ -2,6 +2,7 @@
 #include "world/world.h"
 
 #include "mesh/bake.h"
+#include "mesh/shaped.h"
 #include "world/mesh_input.h"
 
 #include <algorithm>
@@ -155,11 +156,19 @@ void World::releaseImageSlot(uint32_t imagePlus1) noexcept {
 // --------------------------------------------------------------------------------------
 
 FwMeshId World::createMesh(const FwMeshDef& def) {
+    return createEntry(makeEntry(makeDomain(def, memory_)));
+}
+
+MeshEntry World::makeEntry(core::Owned<mesh::BurnDomain> domain) const {
     MeshEntry entry;
-    entry.domain = makeDomain(def, memory_);
+    entry.domain = std::move(domain);
     for (const mesh::TexelPosition& texel : entry.domain->texels)
         if (texel.materialFlags & mesh::kTexelReal)
             ++entry.texelsOf[texel.materialFlags & 0xFF & (gpu::kMaterialsPerObject - 1)];
+    return entry;
+}
+
+FwMeshId World::createEntry(MeshEntry entry) {
     const mesh::BurnDomain& domain = *entry.domain;
     const FwMeshId id = meshes_.create(std::move(entry));
     try {
@@ -169,6 +178,35 @@ FwMeshId World::createMesh(const FwMeshDef& def) {
         throw;
     }
     return id;
+}
+
+uint32_t World::shapedSlot(uint32_t slot, const float shape[3]) {
+    if (shape[0] == 1 && shape[1] == 1 && shape[2] == 1) return slot;
+    for (uint32_t i = 0; i < meshes_.slotCount(); ++i) {
+        const MeshEntry* entry = meshes_.at(i);
+        if (!entry || entry->parentPlus1 != slot + 1) continue;
+        float most = 0;
+        for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(entry->shape[k] / shape[k] - 1));
+        if (most <= 1e-4f) return i;
+    }
+    MeshEntry entry = makeEntry(core::Owned<mesh::BurnDomain>::make(
+        memory_, mesh::shaped(*meshes_.at(slot)->domain, shape, memory_)));
+    entry.parentPlus1 = slot + 1;
+    std::copy_n(shape, 3, entry.shape);
+    const uint32_t made = createEntry(std::move(entry)).index1 - 1;
+    ++meshes_.at(slot)->users;
+    ++shapes_;
+    return made;
+}
+
+// What no object uses goes; a mesh of the host's stays.
+void World::releaseShape(uint32_t slot) noexcept {
+    const MeshEntry& entry = *meshes_.at(slot);
+    if (entry.users > 0 || entry.parentPlus1 == 0) return;
+    --meshes_.at(entry.parentPlus1 - 1)->users;
+    --shapes_;
+    backend_.destroyMesh(slot);
+    meshes_.destroy(meshes_.idOf(slot));
 }
 
 void World::destroyMesh(FwMeshId id) {
@@ -206,16 +244,29 @@ void World::meshInfo(FwMeshId id, FwMeshInfo& info) {
 // -----------------------------------------------------------------------------
 
 FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& def) {
-    MeshEntry& mesh = meshes_.get(def.mesh);
+    (void)meshes_.get(def.mesh);
     core::Owned<Object> owned = core::Owned<Object>::make(memory_, memory_);
     Object& object = *owned;
     object.data = components::makeBurnableMesh(def);
-    object.data.meshSlot = def.mesh.index1 - 1;
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
         if (def.materials[i].index1 != 0)
             components::setMaterial(object.data, i, materials_.get(def.materials[i]));
     if (def.baseColor.index1 != 0) object.data.imagePlus1 = images_.get(def.baseColor).slot + 1;
 
+    const uint32_t meshSlot = shapedSlot(def.mesh.index1 - 1, object.data.shape);
+    try {
+        return createOn(meshSlot, def, std::move(owned));
+    } catch (...) {
+        releaseShape(meshSlot);
+        throw;
+    }
+}
+
+FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
+                                 core::Owned<Object> owned) {
+    Object& object = *owned;
+    MeshEntry& mesh = *meshes_.at(meshSlot);
+    object.data.meshSlot = meshSlot;
     const mesh::BurnDomain& domain = *mesh.domain;
     const std::pmr::vector<uint16_t> slowness = components::makeSlowness(def, domain, memory_);
     for (uint32_t i = 0; i < domain.texelCount(); ++i)
@@ -259,7 +310,8 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     Object& object = *objects_.get(id);
     const uint32_t slot = object.slot;
     releaseImageSlot(object.data.imagePlus1);
-    --meshes_.at(object.data.meshSlot)->users;
+    const uint32_t meshSlot = object.data.meshSlot;
+    --meshes_.at(meshSlot)->users;
     std::erase_if(pending_, [&](const PendingTexel& p) { return p.object == slot; });
     std::erase_if(tags_, [&](const Tag& tag) { return tag.object.index1 == id.index1; });
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)
@@ -270,6 +322,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     if (object.map.wished) --mapsWished_;
     backend_.destroyObject(slot);
     objects_.destroy(id);
+    releaseShape(meshSlot);
 }
 
 void World::sendPose(const Object& object) noexcept {
@@ -281,7 +334,7 @@ void World::sendPose(const Object& object) noexcept {
 
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
     Object& object = *objects_.get(id);
-    object.data.pose = components::makePose(transform, "transform");
+    components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
     sendPose(object);
 }
 
@@ -316,7 +369,9 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
     const mesh::BurnDomain& domain = domainOf(object);
     float point[3];
     components::toObject(object.data.pose, def.position, point);
-    float radius = def.radius / object.data.pose.scale;
+    const components::Pose& pose = object.data.pose;
+    const float stretched = std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+    float radius = def.radius / (pose.scale * stretched);
     // A doused band holds only when it is thicker than the longest link across it.
     if (def.kind != FW_IGNITE && def.radius > 0)
         radius = std::max({radius, 1.5f * domain.texelSide, domain.linkMax});
@@ -333,7 +388,9 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
         const float x = domain.origin[0] + domain.quantum * float(p.x) - point[0];
         const float y = domain.origin[1] + domain.quantum * float(p.y) - point[1];
         const float z = domain.origin[2] + domain.quantum * float(p.z) - point[2];
-        return x * x + y * y + z * z > radius * radius;
+        const float d[3] = {x * pose.stretch[0], y * pose.stretch[1], z * pose.stretch[2]};
+        const float reached = radius * stretched;
+        return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reached * reached;
     });
     if (found_.empty()) found_.push_back(nearest);
     addPending(object, def.kind, tick, found_);

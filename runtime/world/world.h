@@ -19,7 +19,10 @@ namespace fw::world {
 struct MeshEntry {
     core::Owned<mesh::BurnDomain> domain;
     std::array<uint32_t, gpu::kMaterialsPerObject> texelsOf{};  // real texels per material index
-    uint32_t users = 0;                                         // objects
+    uint32_t users = 0;                                         // objects, and shapes of it
+    // A shape of another mesh, for objects whose scale is not uniform: lives while one uses it.
+    uint32_t parentPlus1 = 0;  // its slot + 1; 0: a mesh of the host's
+    float shape[3] = {1, 1, 1};
 };
 
 struct ImageEntry {
@@ -196,10 +199,17 @@ class World {
     uint32_t texelMaterial(const Object& object, uint32_t texel) const noexcept;
     [[nodiscard]] const mesh::BurnDomain& domainOf(const Object& object) const noexcept;
     // world.cpp
+    FwBurnableMeshId createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
+                              core::Owned<Object> owned);
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick, bool named);
     void addPending(const Object& object, uint32_t kind, uint32_t tick,
                     std::span<const uint32_t> texels);
     uint32_t eventTick(float delay) const;
+    MeshEntry makeEntry(core::Owned<mesh::BurnDomain> domain) const;
+    FwMeshId createEntry(MeshEntry entry);
+    // Slot of the mesh in this shape: itself, one that is there, or a new one.
+    uint32_t shapedSlot(uint32_t slot, const float shape[3]);
+    void releaseShape(uint32_t slot) noexcept;
     void releaseImageSlot(uint32_t imagePlus1) noexcept;
     void sendPose(const Object& object) noexcept;
 
@@ -216,6 +226,7 @@ class World {
     core::HandlePool<FwQueryId, Query> queries_;
     std::pmr::vector<uint32_t> imageUsers_;  // by backend slot: objects + 1 for a live id; 0: free
     std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing
+    uint32_t shapes_ = 0;                    // entries of meshes_ that are shapes
     uint64_t texels_ = 0;                    // of all objects, that can burn
     uint32_t mapsWished_ = 0;                // objects whose burn map is still to be asked for
     std::pmr::vector<Tag> tags_;

@@ -17,6 +17,7 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
+#include "lib/turn.glsl"
 
 // One thread per tile, without shared memory: a software device runs eight tiles a thread.
 void reduceTile(uint worldTile, uint parity) {
@@ -69,7 +70,7 @@ void reduceTile(uint worldTile, uint parity) {
     vec4 row1 = objects[object].worldRow1;
     vec4 row2 = objects[object].worldRow2;
     vec3 n = vec3(normal);
-    vec3 world = vec3(dot(row0.xyz, n), dot(row1.xyz, n), dot(row2.xyz, n));
+    vec3 world = turnNormal(row0.xyz, row1.xyz, row2.xyz, n);
     float size = length(world);
     BurnTile b;
     b.positionArea =

@@ -24,6 +24,7 @@ layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer 
 layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 #include "emitter/cells.glsl"
+#include "lib/turn.glsl"
 
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
@@ -135,9 +136,8 @@ void main() {
             vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest),
                               dot(object.worldRow2, rest));
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
-            vec3 normal = normalize(vec3(dot(object.worldRow0.xyz, n),
-                                         dot(object.worldRow1.xyz, n),
-                                         dot(object.worldRow2.xyz, n)) + up * 1e-4);
+            vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
+                                               object.worldRow2.xyz, n) + up * 1e-4);
             vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
             float r1 = unit(g), r2 = unit(g + 1u), r3 = unit(g + 2u), r4 = unit(g + 3u);
             float len = 0.85 * likely * (look.flame > 0.0 ? look.flame : 1.0);

@@ -25,6 +25,8 @@ layout(location = 3) out vec4 outTexture;   // xy: texels of the atlas; zw: UV
 layout(location = 4) out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) out vec4 outTint;      // w: ... mean direction to the flames
 
+#include "lib/turn.glsl"
+
 // One flame's share of the light here, and of its mean direction.
 void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, inout vec4 towards) {
     vec3 d = light.positionRadius.xyz - view.eye.xyz - position;
@@ -48,8 +50,7 @@ void main() {
     vec3 position = vec3(dot(draw.row0.xyz, inPosition), dot(draw.row1.xyz, inPosition),
                          dot(draw.row2.xyz, inPosition)) +
                     offset;
-    normal = normalize(
-        vec3(dot(draw.row0.xyz, normal), dot(draw.row1.xyz, normal), dot(draw.row2.xyz, normal)));
+    normal = normalize(turnNormal(draw.row0.xyz, draw.row1.xyz, draw.row2.xyz, normal));
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
     if ((draw.flags & kDrawVertexLight) != 0u) {

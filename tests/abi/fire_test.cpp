@@ -152,6 +152,84 @@ TEST(AbiFire, AScaledObjectBurnsInWorldMetres) {
     EXPECT_NEAR(expected, double(reached->value), 0.03 * expected);
 }
 
+// A sheet stretched fourfold along one axis, mirrored and turned: from its middle fire goes as far
+// along the one as along the other, in world metres.
+TEST(AbiFire, AStretchedObjectBurnsInWorldMetres) {
+    SheetWorld w(host::evenMaterial(kRate, 1000), 0.25f, 1.0f, 256);
+    for (const bool mirrored : {false, true}) {
+        SCOPED_TRACE(mirrored ? "mirrored" : "stretched");
+        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+        def.mesh = w.mesh;
+        def.materials[0] = w.materialId;
+        // Object x becomes world -z, or z where mirrored; y world y; z world x.
+        const float long_ = mirrored ? 4.0f : -4.0f;
+        const float placed[16] = {0, 0, long_, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1};
+        std::copy_n(placed, 16, def.transform);
+        FwBurnableMeshId id{};
+        ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+        std::swap(w.object, id);
+        const float z = mirrored ? 0.5f : -0.5f;
+        EXPECT_NEAR(3.14159 * 0.05 * 0.05 * 256 * 64, double(w.ball(FW_IGNITE, 0.5f, 0, z, 0.05f)),
+                    16);
+        w.run(0.3 / double(kRate));
+        const float reach = 0.35f;
+        for (const float side : {-1.0f, 1.0f}) {
+            EXPECT_EQ(uint32_t(FW_POINT_BURNING),
+                      w.point(0.5f + side * (reach - 0.02f), 0, z).kind);
+            EXPECT_EQ(uint32_t(FW_POINT_UNBURNT),
+                      w.point(0.5f + side * (reach + 0.02f), 0, z).kind);
+            EXPECT_EQ(uint32_t(FW_POINT_BURNING),
+                      w.point(0.5f, 0, z + side * (reach - 0.02f)).kind);
+            EXPECT_EQ(uint32_t(FW_POINT_UNBURNT),
+                      w.point(0.5f, 0, z + side * (reach + 0.02f)).kind);
+        }
+        const FwObjectState state = w.state();
+        EXPECT_NEAR(3.14159 * 0.35 * 0.35, double(state.burningArea), 0.02);
+        // The other hand is refused, another ratio only stretches what is asked and drawn.
+        float moved[16];
+        std::copy_n(placed, 16, moved);
+        moved[2] = -moved[2];
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetTransform(w.world, w.object, moved));
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find("a mirror is settled"));
+        moved[2] = placed[2] / 2;
+        ASSERT_EQ(FW_OK, fwWorld_SetTransform(w.world, w.object, moved)) << lastMessage(w.world);
+        EXPECT_EQ(uint32_t(FW_POINT_BURNING), w.point(0.5f, 0, (z + reach - 0.03f) / 2).kind);
+        EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(0.5f, 0, (z + reach + 0.03f) / 2).kind);
+        w.events();
+        std::swap(w.object, id);
+    }
+}
+
+TEST(AbiFire, ShapesOfAMeshAreSharedAndGoWithTheirLastUser) {
+    SheetWorld w(host::evenMaterial(kRate, 1000));
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.mesh = w.mesh;
+    def.materials[0] = w.materialId;
+    def.transform[0] = 2;
+    FwWorldStats stats{};
+    stats.structSize = sizeof stats;
+    FwBurnableMeshId ids[3] = {};
+    const auto bytes = [&] {
+        FwContextInfo info{};
+        info.structSize = sizeof info;
+        EXPECT_EQ(FW_OK, fwContext_GetInfo(w.context, &info));
+        return info.cpuMemoryUsed;
+    };
+    const uint64_t none = bytes();
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &ids[0])) << lastMessage(w.world);
+    const uint64_t one = bytes();
+    def.transform[5] = def.transform[10] = -1;  // turned, the same shape
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &ids[1]));
+    const uint64_t two = bytes();
+    EXPECT_LT(2 * (two - one), one - none) << "the shape is there";
+    ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
+    EXPECT_EQ(1u, stats.meshes);
+    ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, w.object));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_DestroyMesh(w.world, w.mesh));
+    for (int i = 0; i < 2; ++i) ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, ids[i]));
+    EXPECT_EQ(FW_OK, fwWorld_DestroyMesh(w.world, w.mesh)) << lastMessage(w.world);
+}
+
 TEST(AbiFire, PaceMultipliesSpreadAndBurnOut) {
     FwWorldDef def = fwDefaultWorldDef();
     def.paceFactor = 8;

@@ -307,7 +307,10 @@ typedef struct FwBurnableMeshDef {
     FwMeshId mesh;
     FwMaterialId materials[8];        /* by triangle material; null: noncombustible */
     FwImageId baseColor;              /* null: the material's base colour and procedural detail */
-    float transform[16];              /* object to world, rigid and uniform scale; default identity */
+    float transform[16];              /* object to world: rotation, a scale per axis (the largest at most
+                                         16 times the smallest), a mirror; no shear. Default identity.
+                                         Objects of one mesh and one shape share it; another shape costs a
+                                         copy of the mesh's planes. */
     float moisture;                   /* added to the materials' own, [0, 2] */
     float tint[3];                    /* multiplies the base colour, default 1,1,1 */
     const uint8_t* multiplier;        /* speed multiplier over the burn map, 128 = 1, 0 = cannot burn */
@@ -319,7 +322,10 @@ static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
 }
 FW_API FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld*, const FwBurnableMeshDef* def, FwBurnableMeshId* id); /* [world] */
 FW_API FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld*, FwBurnableMeshId id); /* [world] */
-/* Rigid with uniform scale; wind and gravity follow the new pose at the next latch. [world] */
+/* As FwBurnableMeshDef::transform; wind and gravity follow the new pose at the next latch, and so
+ * does the front's speed under another size. Another ratio of the axes than at creation stretches what
+ * is drawn and asked, while fire goes on in the metric of its creation (times the mean scale); a
+ * mirror is settled at creation. [world] */
 FW_API FwResult FW_CALL fwWorld_SetTransform(FwWorld*, FwBurnableMeshId id, const float transform[16]);
 FW_API FwResult FW_CALL fwWorld_SetHidden(FwWorld*, FwBurnableMeshId id, uint32_t hidden); /* [world] */
 

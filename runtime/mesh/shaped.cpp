@@ -1,0 +1,137 @@
+#include "mesh/shaped.h"
+
+#include "mesh/texels.h"
+#include "shared/front.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+constexpr double kLongestLink = 8000;  // units, as the bake
+
+glm::dvec3 unpackNormal(uint32_t packed) {
+    const auto n = gpu::decodeNormal(packed);
+    return glm::dvec3(n.x, n.y, n.z) / 16384.0;
+}
+
+// Texel that k-th in the ring of `texel` is, or kNone.
+uint32_t ringOf(const BurnDomain& domain, uint32_t texel, uint32_t k) {
+    const uint32_t x = texel % domain.width, y = texel / domain.width;
+    if (domain.texels[texel].materialFlags & kTexelRim) {
+        const TileStatic& tile = domain.tiles[y / kTileSide * domain.tilesX + x / kTileSide];
+        const uint32_t lane = y % kTileSide * kTileSide + x % kTileSide;
+        const uint64_t mask = uint64_t(tile.rimMaskHigh) << 32 | tile.rimMaskLow;
+        const uint64_t below = mask & ((uint64_t(1) << lane) - 1);
+        const uint32_t record = tile.rimBase + uint32_t(std::popcount(below));
+        return domain.links[size_t(record) * 8 + k];
+    }
+    const int nx = int(x) + kRingX[k], ny = int(y) + kRingY[k];
+    if (nx < 0 || ny < 0 || nx >= int(domain.width) || ny >= int(domain.height)) return kNone;
+    return uint32_t(ny) * domain.width + uint32_t(nx);
+}
+
+// Places of texels, m, stretched; and from them the lengths that the front needs to know.
+struct Places {
+    const BurnDomain& from;
+    glm::dvec3 shape;
+
+    [[nodiscard]] glm::dvec3 at(uint32_t texel) const {
+        const TexelPosition& p = from.texels[texel];
+        const double q = double(from.quantum);
+        return shape * (glm::dvec3(from.origin[0], from.origin[1], from.origin[2]) +
+                        q * glm::dvec3(p.x, p.y, p.z));
+    }
+};
+
+void measure(const Places& places, BurnDomain& out, std::pmr::memory_resource* memory) {
+    const BurnDomain& from = places.from;
+    std::pmr::vector<float> shorter(memory);
+    double longest = 0;
+    for (uint32_t i = 0; i < from.texelCount(); ++i) {
+        if (!from.real(i)) continue;
+        const glm::dvec3 here = places.at(i);
+        double side[2] = {};
+        for (uint32_t k = 0; k < 8; ++k) {
+            const uint32_t other = ringOf(from, i, k);
+            if (other == kNone || !from.real(other)) continue;
+            const double length = glm::length(places.at(other) - here);
+            longest = std::max(longest, length);
+            if (k == 0 || k == 2) side[k / 2] = length;
+        }
+        if (!(from.texels[i].materialFlags & kTexelRim) && side[0] > 0 && side[1] > 0)
+            shorter.push_back(float(std::min(side[0], side[1])));
+    }
+    const double least = std::min({std::abs(places.shape.x), places.shape.y, places.shape.z});
+    out.linkMax = float(longest);
+    out.linkShort = from.linkShort * float(least);
+    if (shorter.empty()) return;
+    const auto fifth = shorter.begin() + std::ptrdiff_t(shorter.size() / 20);
+    std::nth_element(shorter.begin(), fifth, shorter.end());
+    out.linkShort = std::max(out.linkShort, *fifth);
+}
+
+}  // namespace
+
+BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory_resource* memory) {
+    const glm::dvec3 shape(given[0], given[1], given[2]);
+    const double volume = std::abs(shape.x * shape.y * shape.z);
+    BurnDomain out(memory);
+    out = from;  // vectors keep `memory`
+    const Places places{from, shape};
+    measure(places, out, memory);
+
+    glm::dvec3 low, high;
+    for (int k = 0; k < 3; ++k) {
+        const double a = shape[k] * double(from.boundsLow[k]);
+        const double b = shape[k] * double(from.boundsHigh[k]);
+        low[k] = std::min(a, b);
+        high[k] = std::max(a, b);
+        out.origin[k] = out.boundsLow[k] = float(low[k]);
+        out.boundsHigh[k] = float(high[k]);
+    }
+    const glm::dvec3 size = high - low;
+    const double extent = std::max({size.x, size.y, size.z, 1e-12});
+    // As fine as the bake's own: a flattened axis keeps its share of the units.
+    const double fine = double(from.quantum) * std::cbrt(volume);
+    const double quantum = std::max({extent / 65535, fine, double(out.linkMax) / kLongestLink});
+    out.quantum = float(quantum);
+    if (double(out.quantum) < quantum) out.quantum = std::nextafter(out.quantum, 1e30f);
+
+    double areas = 0, before = 0;
+    for (uint32_t i = 0; i < from.texelCount(); ++i) {
+        if (!from.real(i)) continue;
+        const glm::dvec3 at = (places.at(i) - low) / double(out.quantum);
+        uint16_t* const fields[3] = {&out.texels[i].x, &out.texels[i].y, &out.texels[i].z};
+        for (int k = 0; k < 3; ++k)
+            *fields[k] = uint16_t(std::clamp(std::floor(at[k] + 0.5), 0.0, 65535.0));
+        const glm::dvec3 rest = unpackNormal(from.normals[i]);
+        const glm::dvec3 normal = rest / shape;
+        const double grown = glm::length(normal) / std::max(glm::length(rest), 1e-12);
+        out.normals[i] = packNormal(glm::normalize(normal));
+        // Area and the width of a slab along its normal trade against each other.
+        out.areas[i] = float(double(from.areas[i]) * volume * grown);
+        areas += double(out.areas[i]);
+        before += double(from.areas[i]);
+        if (from.thickness[i] != 0xFFFF)
+            out.thickness[i] = uint16_t(
+                std::clamp(std::floor(double(from.thickness[i]) / grown + 0.5), 1.0, 65534.0));
+    }
+    const double growth = before > 0 ? areas / before : 1;
+    out.texelSide = float(double(from.texelSide) * std::sqrt(growth));
+    out.report.meshArea = from.report.meshArea * growth;
+    out.report.texelArea = areas;
+    for (RenderVertex& v : out.vertices) {
+        for (int k = 0; k < 3; ++k) v.position[k] = float(shape[k] * double(v.position[k]));
+        v.normal = packNormal(glm::normalize(unpackNormal(v.normal) / shape));
+    }
+    if (shape.x * shape.y * shape.z < 0)  // faces go on turning outwards
+        for (size_t i = 0; i + 2 < out.indices.size(); i += 3)
+            std::swap(out.indices[i + 1], out.indices[i + 2]);
+    buildTileBounds(out);
+    return out;
+}
+
+}  // namespace fw::mesh
