@@ -3,10 +3,9 @@
 // in which engines differ: secondary command buffers, MSAA, depth, encoding, pacing.
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include "common/camera.h"
-#include "common/film.h"
+#include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
 #include "crate.h"
@@ -59,16 +58,13 @@ int run(const sample::Options& options, const Switches& switches) {
     sample::ValidationLog validation;
     {
         // The engine's part: instance, device, window or pictures, render pass.
-        sample::HostRequest hostRequest;
-        hostRequest.windowed = !options.headless;
-        if (options.validate) hostRequest.validation = &validation;
-        const sample::VulkanHost host(hostRequest);
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: a lent device";
         stageRequest.colorFormat = formatOf(switches.target);
         stageRequest.samples = switches.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
         stageRequest.reversedDepth = switches.reversed;
-        const uint32_t frames = options.frames ? options.frames : (options.headless ? 96u : 0u);
+        const uint32_t frames = sample::framesOf(options, 96 / options.fps);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 0.7f);
         studio.addBlock({0.40f, 0.055f, 0.48f}, {0.13f, 0.055f, 0.08f});
@@ -90,17 +86,9 @@ int run(const sample::Options& options, const Switches& switches) {
         studio.castShadow(crate.positions, crate.indices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
 
-        sample::FilmRequest filmRequest;
-        filmRequest.folder = options.out;
-        filmRequest.name = "lent_device";
-        filmRequest.framesPerSecond = options.fps;
-        filmRequest.frames = frames;
-        sample::Film film(filmRequest);
-        sample::Progress progress("lent_device", frames);
-        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
-            film.add(number, picture);
-            progress.update(number + 1);
-        };
+        sample::FilmRequest film;
+        film.name = "lent_device";
+        sample::Filming filming(stage, options, film);
 
         sample::OrbitCamera orbit;
         orbit.target = {0.0f, 0.27f, 0.0f};
@@ -112,12 +100,7 @@ int run(const sample::Options& options, const Switches& switches) {
         while (stage.next(frame)) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
             orbit.zoom(frame.input.wheel);
-            const float aspect =
-                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
-            const sample::Camera camera = orbit.camera();
-            sample::setCamera(view, sample::viewMatrix(camera),
-                              sample::projectionMatrix(camera, aspect, switches.reversed));
-            view.time = static_cast<float>(frame.time);
+            sample::setCamera(view, orbit.camera(), frame, switches.reversed);
             FwLight lights[8];
             const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
 
@@ -144,7 +127,6 @@ int run(const sample::Options& options, const Switches& switches) {
         }
 
         if (options.headless) {
-            progress.finish();
             sample::Summary summary;
             summary.title = "A burning crate on a lent device";
             summary.rows = {
@@ -153,10 +135,8 @@ int run(const sample::Options& options, const Switches& switches) {
                                (switches.reversed ? ", reversed depth" : "")},
                 {"size", std::to_string(options.width) + " x " + std::to_string(options.height) +
                              ", " + std::to_string(frames) + " frames"},
-                {"time", std::to_string(std::lround(progress.seconds())) + " s"}};
-            summary.passes = fire.passCosts();
-            summary.files = film.close();
-            sample::printSummary(summary);
+                {"time", std::to_string(std::lround(filming.seconds())) + " s"}};
+            filming.finish(summary, fire);
         }
     }
     return validation.exitCode();

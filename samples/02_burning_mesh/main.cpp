@@ -1,12 +1,12 @@
 // Any glTF mesh burns in a studio: imported, given a burn map, set alight in front, filmed.
 // In a window: drag to turn, wheel to zoom, click to light; V makes the click pour water, F fire.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "common/camera.h"
-#include "common/film.h"
+#include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
 #include "common/subject.h"
@@ -90,17 +90,12 @@ int run(const sample::Options& options, const Wishes& wishes) {
     }
     sample::ValidationLog validation;
     {
-        sample::HostRequest hostRequest;
-        hostRequest.windowed = !options.headless;
-        if (options.validate) hostRequest.validation = &validation;
-        const sample::VulkanHost host(hostRequest);
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: " + subject.name;
         stageRequest.reversedDepth = wishes.reversed;
         stageRequest.samples = wishes.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
-        const auto wanted = static_cast<uint32_t>(std::lround(wishes.seconds * options.fps));
-        const uint32_t frames =
-            options.frames ? options.frames : (options.headless ? std::max(1u, wanted) : 0u);
+        const uint32_t frames = sample::framesOf(options, wishes.seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
 
@@ -150,17 +145,9 @@ int run(const sample::Options& options, const Wishes& wishes) {
         glm::vec3 match(wishes.ignite[0], wishes.ignite[1], wishes.ignite[2]);
         if (!wishes.igniteGiven) match = matchPlace(subject, orbit.camera().eye).position;
 
-        sample::FilmRequest filmRequest;
-        filmRequest.folder = options.out;
-        filmRequest.name = "burning_mesh";
-        filmRequest.framesPerSecond = options.fps;
-        filmRequest.frames = frames;
-        sample::Film film(filmRequest);
-        sample::Progress progress("burning_mesh", frames);
-        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
-            film.add(number, picture);
-            progress.update(number + 1);
-        };
+        sample::FilmRequest film;
+        film.name = "burning_mesh";
+        sample::Filming filming(stage, options, film);
 
         FwIgnitionKind hand = FW_IGNITE;
         float dropped = 0;  // s that the simulation could not follow
@@ -169,13 +156,8 @@ int run(const sample::Options& options, const Wishes& wishes) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
             orbit.zoom(frame.input.wheel);
             orbit.yaw += glm::radians(wishes.turn) * frame.deltaTime;
-            const float aspect =
-                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
             const sample::Camera camera = orbit.camera();
-            const glm::mat4 viewMatrix = sample::viewMatrix(camera);
-            const glm::mat4 projection = sample::projectionMatrix(camera, aspect, wishes.reversed);
-            sample::setCamera(view, viewMatrix, projection);
-            view.time = static_cast<float>(frame.time);
+            sample::setCamera(view, camera, frame, wishes.reversed);
             // One frame of the untouched thing first.
             if (frame.number == 1) touch(fire, match, matchRadius, FW_IGNITE);
             for (int key : frame.input.keys) {
@@ -184,7 +166,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
             }
             if (frame.input.click) {
                 const glm::vec4 far =
-                    glm::inverse(projection * viewMatrix) *
+                    glm::inverse(glm::make_mat4(view.projection) * glm::make_mat4(view.view)) *
                     glm::vec4(2 * frame.input.clickX - 1, 2 * frame.input.clickY - 1, 0.5f, 1);
                 const glm::vec3 way = glm::normalize(glm::vec3(far) / far.w - camera.eye);
                 const SurfacePoint point = castRay(subject, camera.eye, way);
@@ -207,7 +189,6 @@ int run(const sample::Options& options, const Wishes& wishes) {
         }
 
         if (options.headless) {
-            progress.finish();
             FwMeshInfo info{};
             info.structSize = sizeof info;
             fwWorld_GetMeshInfo(fire.world, mesh, &info);
@@ -235,11 +216,9 @@ int run(const sample::Options& options, const Wishes& wishes) {
                 summary.rows.emplace_back("", line);
             }
             std::snprintf(line, sizeof line, "%u x %u, %u frames in %.0f s", options.width,
-                          options.height, frames, progress.seconds());
+                          options.height, frames, filming.seconds());
             summary.rows.emplace_back("run", line);
-            summary.passes = fire.passCosts();
-            summary.files = film.close();
-            sample::printSummary(summary);
+            filming.finish(summary, fire);
         }
     }
     return validation.exitCode();

@@ -1,12 +1,11 @@
 // The figure that papers on burning meshes show: a bunny of wood burns, from the chest, through
 // holes, to what is left standing. Without the assets folder it is a toy that burns.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
 #include "common/camera.h"
-#include "common/film.h"
+#include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
 #include "common/subject.h"
@@ -27,15 +26,10 @@ int run(const sample::Options& options, float seconds, float turn) {
     Subject subject = loadSubject(bunnyFile(), 0.62f);
     sample::ValidationLog validation;
     {
-        sample::HostRequest hostRequest;
-        hostRequest.windowed = !options.headless;
-        if (options.validate) hostRequest.validation = &validation;
-        const sample::VulkanHost host(hostRequest);
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: " + subject.name;
-        const auto wanted = static_cast<uint32_t>(std::lround(seconds * options.fps));
-        const uint32_t frames =
-            options.frames ? options.frames : (options.headless ? std::max(1u, wanted) : 0u);
+        const uint32_t frames = sample::framesOf(options, seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
 
@@ -79,29 +73,16 @@ int run(const sample::Options& options, float seconds, float turn) {
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
         const SurfacePoint match = matchPlace(subject, orbit.camera().eye);
 
-        sample::FilmRequest filmRequest;
-        filmRequest.folder = options.out;
-        filmRequest.name = "bunny";
-        filmRequest.framesPerSecond = options.fps;
-        filmRequest.frames = frames;
-        sample::Film film(filmRequest);
-        sample::Progress progress("bunny", frames);
-        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
-            film.add(number, picture);
-            progress.update(number + 1);
-        };
+        sample::FilmRequest film;
+        film.name = "bunny";
+        sample::Filming filming(stage, options, film);
 
         sample::StageFrame frame;
         while (stage.next(frame)) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
             orbit.zoom(frame.input.wheel);
             orbit.yaw += glm::radians(turn) * frame.deltaTime;
-            const float aspect =
-                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
-            const sample::Camera camera = orbit.camera();
-            sample::setCamera(view, sample::viewMatrix(camera),
-                              sample::projectionMatrix(camera, aspect));
-            view.time = static_cast<float>(frame.time);
+            sample::setCamera(view, orbit.camera(), frame);
             if (frame.number == 1) {
                 FwIgnitionDef ignition = fwDefaultIgnitionDef();
                 for (int c = 0; c < 3; ++c) ignition.position[c] = match.position[c];
@@ -119,7 +100,6 @@ int run(const sample::Options& options, float seconds, float turn) {
         }
 
         if (options.headless) {
-            progress.finish();
             FwObjectState state{};
             state.structSize = sizeof state;
             fwWorld_GetObjectState(fire.world, object, &state);
@@ -133,9 +113,7 @@ int run(const sample::Options& options, float seconds, float turn) {
                           static_cast<double>(100.0f * state.burntFraction));
             summary.rows.emplace_back("fire", line);
             summary.rows.emplace_back("burn map", bakeNote);
-            summary.passes = fire.passCosts();
-            summary.files = film.close();
-            sample::printSummary(summary);
+            filming.finish(summary, fire);
         }
     }
     return validation.exitCode();

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "common/camera.h"
-#include "common/film.h"
+#include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
 #include "panel.h"
@@ -81,15 +80,10 @@ void touch(sample::FireHost& fire, FwBurnableMeshId object, glm::vec3 position, 
 int run(const sample::Options& options, float seconds, int only) {
     sample::ValidationLog validation;
     {
-        sample::HostRequest hostRequest;
-        hostRequest.windowed = !options.headless;
-        if (options.validate) hostRequest.validation = &validation;
-        const sample::VulkanHost host(hostRequest);
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: eight materials";
-        const auto wanted = static_cast<uint32_t>(std::lround(seconds * options.fps));
-        const uint32_t frames =
-            options.frames ? options.frames : (options.headless ? std::max(1u, wanted) : 0u);
+        const uint32_t frames = sample::framesOf(options, seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 2.4f);
         studio.addBlock({0, 0.5f * kShelf, -0.24f}, {2.1f * kPitch, 0.5f * kShelf, 0.10f});
@@ -128,30 +122,17 @@ int run(const sample::Options& options, float seconds, int only) {
         orbit.pitch = glm::radians(7.0f);
         orbit.fieldOfView = 0.42f;
 
-        sample::FilmRequest filmRequest;
-        filmRequest.folder = options.out;
-        filmRequest.name = "materials";
-        filmRequest.framesPerSecond = options.fps;
-        filmRequest.frames = frames;
-        filmRequest.columns = 2;
-        filmRequest.animationWidth = 640;
-        sample::Film film(filmRequest);
-        sample::Progress progress("materials", frames);
-        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
-            film.add(number, picture);
-            progress.update(number + 1);
-        };
+        sample::FilmRequest film;
+        film.name = "materials";
+        film.columns = 2;
+        film.animationWidth = 640;
+        sample::Filming filming(stage, options, film);
 
         sample::StageFrame frame;
         while (stage.next(frame)) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
             orbit.zoom(frame.input.wheel);
-            const float aspect =
-                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
-            const sample::Camera camera = orbit.camera();
-            sample::setCamera(view, sample::viewMatrix(camera),
-                              sample::projectionMatrix(camera, aspect));
-            view.time = static_cast<float>(frame.time);
+            sample::setCamera(view, orbit.camera(), frame);
             for (uint32_t i = 0; frame.number <= 1 && i < kExhibitCount; ++i) {
                 if (objects[i].index1 == 0) continue;
                 const glm::vec3 face = placeOf(i) + glm::vec3(0, 0, 0.5f * kExhibits[i].thickness);
@@ -172,7 +153,6 @@ int run(const sample::Options& options, float seconds, int only) {
         }
 
         if (options.headless) {
-            progress.finish();
             sample::Summary summary;
             summary.title = "Eight materials";
             summary.rows.emplace_back("device", host.properties.deviceName);
@@ -190,9 +170,7 @@ int run(const sample::Options& options, float seconds, int only) {
                     "front, 1st",          "front, 2nd", "front, 3rd", "front, 4th"};
                 summary.rows.emplace_back(kPlaces[i], line);
             }
-            summary.passes = fire.passCosts();
-            summary.files = film.close();
-            sample::printSummary(summary);
+            filming.finish(summary, fire);
         }
     }
     return validation.exitCode();

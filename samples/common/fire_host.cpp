@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <string>
 
 namespace sample {
@@ -15,6 +16,16 @@ void FW_CALL printLog(void*, int32_t level, const char* message) {
 }
 
 }  // namespace
+
+void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool reversed) {
+    const float aspect =
+        static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
+    const glm::mat4 matrix = viewMatrix(camera);
+    const glm::mat4 projection = projectionMatrix(camera, aspect, reversed);
+    std::memcpy(view.view, &matrix[0][0], sizeof view.view);
+    std::memcpy(view.projection, &projection[0][0], sizeof view.projection);
+    view.time = static_cast<float>(frame.time);
+}
 
 FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef) : device_(host.device) {
     // The device goes over as it was made. What is not said here counts as not enabled.

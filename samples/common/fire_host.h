@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "common/camera.h"
 #include "common/progress.h"
 #include "common/stage.h"
 #include "flamewright/flamewright.h"
@@ -11,6 +12,9 @@
 #include "flamewright/flamewright_vulkan.h"
 
 namespace sample {
+
+// Where the frame is seen from, and when.
+void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool reversed = false);
 
 class FireHost {
  public:

@@ -165,6 +165,11 @@ bool OptionParser::parse(int argc, char** argv, Options& options) const {
     return true;
 }
 
+uint32_t framesOf(const Options& options, double seconds) {
+    if (options.frames || !options.headless) return options.frames;
+    return static_cast<uint32_t>(std::max(1L, std::lround(seconds * options.fps)));
+}
+
 int guardedMain(const char* name, const std::function<int()>& body) {
     try {
         return body();

@@ -56,6 +56,10 @@ class OptionParser {
     std::vector<Entry> entries_;
 };
 
+// How many frames a run takes that shows so many seconds where the options name no number of
+// frames; 0 with a window, which has no end.
+uint32_t framesOf(const Options& options, double seconds);
+
 // Throws Failure unless `text` is a whole number within [low, high].
 uint32_t parseWhole(const std::string& name, const std::string& text, uint32_t low, uint32_t high);
 // Throws Failure unless `text` is a finite number within [low, high].

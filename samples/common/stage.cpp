@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstring>
 
+#include "common/pipeline.h"
+
 namespace sample {
 namespace {
 
@@ -23,86 +25,6 @@ double clockSeconds() {
 }
 
 }  // namespace
-
-VkPipeline makePipeline(const VulkanHost& host, const PipelineRequest& request) {
-    VkPipelineShaderStageCreateInfo stages[2]{};
-    stages[0].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-    stages[0].module = request.vertex;
-    stages[0].pName = "main";
-    stages[0].pSpecializationInfo = request.specialization;
-    stages[1] = stages[0];
-    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
-    stages[1].module = request.fragment;
-    VkPipelineVertexInputStateCreateInfo vertexInput{};
-    vertexInput.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-    vertexInput.vertexBindingDescriptionCount = static_cast<uint32_t>(request.bindings.size());
-    vertexInput.pVertexBindingDescriptions = request.bindings.data();
-    vertexInput.vertexAttributeDescriptionCount = static_cast<uint32_t>(request.attributes.size());
-    vertexInput.pVertexAttributeDescriptions = request.attributes.data();
-    VkPipelineInputAssemblyStateCreateInfo assembly{};
-    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    VkPipelineViewportStateCreateInfo viewport{};
-    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-    viewport.viewportCount = 1;
-    viewport.scissorCount = 1;
-    VkPipelineRasterizationStateCreateInfo raster{};
-    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-    raster.polygonMode = VK_POLYGON_MODE_FILL;
-    raster.cullMode = request.cull;
-    raster.frontFace = request.frontFace;
-    raster.lineWidth = 1.0f;
-    raster.depthBiasEnable = request.depthBias != 0 || request.depthBiasSlope != 0;
-    raster.depthBiasConstantFactor = request.depthBias;
-    raster.depthBiasSlopeFactor = request.depthBiasSlope;
-    VkPipelineMultisampleStateCreateInfo multisample{};
-    multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    multisample.rasterizationSamples = request.samples;
-    VkPipelineDepthStencilStateCreateInfo depth{};
-    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    depth.depthTestEnable = request.depthTest;
-    depth.depthWriteEnable = request.depthWrite;
-    depth.depthCompareOp = request.depthCompare;
-    VkPipelineColorBlendAttachmentState attachment{};
-    attachment.colorWriteMask = 0xf;
-    if (request.blend || request.additive) {
-        attachment.blendEnable = VK_TRUE;
-        attachment.srcColorBlendFactor = VK_BLEND_FACTOR_ONE;
-        attachment.dstColorBlendFactor =
-            request.additive ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
-        attachment.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-        attachment.dstAlphaBlendFactor = attachment.dstColorBlendFactor;
-    }
-    VkPipelineColorBlendStateCreateInfo blend{};
-    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    blend.attachmentCount = request.fragment ? 1 : 0;
-    blend.pAttachments = &attachment;
-    const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    VkPipelineDynamicStateCreateInfo dynamic{};
-    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-    dynamic.dynamicStateCount = 2;
-    dynamic.pDynamicStates = dynamics;
-    VkGraphicsPipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-    info.stageCount = request.fragment ? 2 : 1;
-    info.pStages = stages;
-    info.pVertexInputState = &vertexInput;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &multisample;
-    info.pDepthStencilState = &depth;
-    info.pColorBlendState = &blend;
-    info.pDynamicState = &dynamic;
-    info.layout = request.layout;
-    info.renderPass = request.pass;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    checkVulkan(
-        vkCreateGraphicsPipelines(host.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-        "vkCreateGraphicsPipelines");
-    return pipeline;
-}
 
 Stage::Stage(const VulkanHost& host, const Options& options, const StageRequest& request,
              uint32_t frames)
@@ -260,43 +182,12 @@ void Stage::makePasses() {
 }
 
 void Stage::makePost() {
-    VkDescriptorSetLayoutBinding bindings[2]{};  // the scene and its bloom
-    for (uint32_t i = 0; i < 2; ++i) {
-        bindings[i].binding = i;
-        bindings[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-        bindings[i].descriptorCount = 1;
-        bindings[i].stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
-    }
-    VkDescriptorSetLayoutCreateInfo setInfo{};
-    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    setInfo.bindingCount = 2;
-    setInfo.pBindings = bindings;
-    checkVulkan(vkCreateDescriptorSetLayout(host_.device, &setInfo, nullptr, &postSetLayout_),
-                "vkCreateDescriptorSetLayout");
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2};
-    VkDescriptorPoolCreateInfo poolInfo{};
-    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    poolInfo.maxSets = 1;
-    poolInfo.poolSizeCount = 1;
-    poolInfo.pPoolSizes = &size;
-    checkVulkan(vkCreateDescriptorPool(host_.device, &poolInfo, nullptr, &descriptorPool_),
-                "vkCreateDescriptorPool");
-    VkDescriptorSetAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-    allocation.descriptorPool = descriptorPool_;
-    allocation.descriptorSetCount = 1;
-    allocation.pSetLayouts = &postSetLayout_;
-    checkVulkan(vkAllocateDescriptorSets(host_.device, &allocation, &postSet_),
-                "vkAllocateDescriptorSets");
-    const VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(PostPush)};
-    VkPipelineLayoutCreateInfo layoutInfo{};
-    layoutInfo.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    layoutInfo.setLayoutCount = 1;
-    layoutInfo.pSetLayouts = &postSetLayout_;
-    layoutInfo.pushConstantRangeCount = 1;
-    layoutInfo.pPushConstantRanges = &range;
-    checkVulkan(vkCreatePipelineLayout(host_.device, &layoutInfo, nullptr, &postLayout_),
-                "vkCreatePipelineLayout");
+    constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    postSetLayout_ = makeSetLayout(host_, {kImage, kImage});  // the scene and its bloom
+    descriptorPool_ = makeSetPool(host_, 1, 0, 2);
+    postSet_ = makeSet(host_, descriptorPool_, postSetLayout_);
+    postLayout_ =
+        makeLayout(host_, {postSetLayout_}, {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(PostPush)});
     PipelineRequest request;
     request.pass = postPass_;
     request.layout = postLayout_;
@@ -402,19 +293,8 @@ void Stage::makeTargets() {
                     "vkCreateFramebuffer");
         outputFramebuffers_.push_back(framebuffer);
     }
-    const VkDescriptorImageInfo images[] = {
-        {sampler_, color_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-        {sampler_, bloom_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
-    for (uint32_t i = 0; i < 2; ++i) {
-        VkWriteDescriptorSet write{};
-        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-        write.dstSet = postSet_;
-        write.dstBinding = i;
-        write.descriptorCount = 1;
-        write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-        write.pImageInfo = &images[i];
-        vkUpdateDescriptorSets(host_.device, 1, &write, 0, nullptr);
-    }
+    writeImage(host_, postSet_, 0, sampler_, color_.view);
+    writeImage(host_, postSet_, 1, sampler_, bloom_.view);
 }
 
 void Stage::dropTargets() {

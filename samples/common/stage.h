@@ -120,25 +120,4 @@ class Stage {
     VkSampler sampler_ = VK_NULL_HANDLE;
 };
 
-// The usual pipeline of a sample: triangles, dynamic viewport and scissor, at most one colour
-// attachment.
-struct PipelineRequest {
-    VkRenderPass pass = VK_NULL_HANDLE;
-    VkPipelineLayout layout = VK_NULL_HANDLE;
-    VkShaderModule vertex = VK_NULL_HANDLE;
-    VkShaderModule fragment = VK_NULL_HANDLE;  // none: depth only, and the pass has no colour
-    VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-    std::vector<VkVertexInputBindingDescription> bindings;
-    std::vector<VkVertexInputAttributeDescription> attributes;
-    VkCullModeFlags cull = VK_CULL_MODE_NONE;
-    VkFrontFace frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    bool depthTest = true, depthWrite = true;
-    VkCompareOp depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL;
-    float depthBias = 0, depthBiasSlope = 0;
-    bool blend = false;  // premultiplied alpha
-    bool additive = false;
-    const VkSpecializationInfo* specialization = nullptr;  // of both stages
-};
-VkPipeline makePipeline(const VulkanHost& host, const PipelineRequest& request);
-
 }  // namespace sample

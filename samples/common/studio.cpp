@@ -6,6 +6,8 @@
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "common/pipeline.h"
+
 namespace sample {
 namespace {
 
@@ -127,11 +129,6 @@ void duskLight(FwView& view) {
     view.emissionScale = 40.0f;  // the light above is in cd/m^2
 }
 
-void setCamera(FwView& view, const glm::mat4& viewMatrix, const glm::mat4& projection) {
-    std::memcpy(view.view, glm::value_ptr(viewMatrix), sizeof view.view);
-    std::memcpy(view.projection, glm::value_ptr(projection), sizeof view.projection);
-}
-
 Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, float size)
     : host_(host), center_(center), size_(size) {
     // A profile turned around the vertical: flat floor, a quarter circle, wall.
@@ -174,56 +171,18 @@ Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, flo
     clamp_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                 VK_SAMPLER_MIPMAP_MODE_NEAREST);
 
-    VkDescriptorSetLayoutBinding bindings[3]{};
-    bindings[0].descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    bindings[0].descriptorCount = 1;
-    bindings[0].stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    for (uint32_t i = 1; i < 3; ++i) {
-        bindings[i].binding = i;
-        bindings[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-        bindings[i].descriptorCount = 1;
-        bindings[i].stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
-    }
-    VkDescriptorSetLayoutCreateInfo setInfo{};
-    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    setInfo.bindingCount = 3;
-    setInfo.pBindings = bindings;
-    checkVulkan(vkCreateDescriptorSetLayout(host.device, &setInfo, nullptr, &setLayout_),
-                "vkCreateDescriptorSetLayout");
+    constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    setLayout_ = makeSetLayout(host, {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kImage, kImage});
     const uint32_t slots = stage.made.framesInFlight;
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, slots},
-                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * slots}};
-    VkDescriptorPoolCreateInfo poolInfo{};
-    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    poolInfo.maxSets = slots;
-    poolInfo.poolSizeCount = 2;
-    poolInfo.pPoolSizes = sizes;
-    checkVulkan(vkCreateDescriptorPool(host.device, &poolInfo, nullptr, &pool_),
-                "vkCreateDescriptorPool");
-    const std::vector<VkDescriptorSetLayout> layouts(slots, setLayout_);
-    sets_.resize(slots);
-    VkDescriptorSetAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-    allocation.descriptorPool = pool_;
-    allocation.descriptorSetCount = slots;
-    allocation.pSetLayouts = layouts.data();
-    checkVulkan(vkAllocateDescriptorSets(host.device, &allocation, sets_.data()),
-                "vkAllocateDescriptorSets");
+    pool_ = makeSetPool(host, slots, slots, 2 * slots);
     for (uint32_t i = 0; i < slots; ++i) {
+        sets_.push_back(makeSet(host, pool_, setLayout_));
         blocks_.push_back(
             host.createBuffer(sizeof(Block), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, true));
     }
     writeSets();
 
-    VkPipelineLayoutCreateInfo layoutInfo{};
-    layoutInfo.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    layoutInfo.setLayoutCount = 1;
-    layoutInfo.pSetLayouts = &setLayout_;
-    const VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(float)};
-    layoutInfo.pushConstantRangeCount = 1;
-    layoutInfo.pPushConstantRanges = &range;
-    checkVulkan(vkCreatePipelineLayout(host.device, &layoutInfo, nullptr, &layout_),
-                "vkCreatePipelineLayout");
+    layout_ = makeLayout(host, {setLayout_}, {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(float)});
     const int32_t display = stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT ? 0
                             : stage.made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB     ? 1
                                                                                     : 2;
@@ -260,22 +219,9 @@ Studio::~Studio() {
 
 void Studio::writeSets() {
     for (size_t i = 0; i < sets_.size(); ++i) {
-        const VkDescriptorBufferInfo buffer{blocks_[i].buffer, 0, VK_WHOLE_SIZE};
-        const VkDescriptorImageInfo images[] = {
-            {repeat_, plaster_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-            {clamp_, shadow_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}};
-        VkWriteDescriptorSet writes[3]{};
-        for (uint32_t k = 0; k < 3; ++k) {
-            writes[k].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-            writes[k].dstSet = sets_[i];
-            writes[k].dstBinding = k;
-            writes[k].descriptorCount = 1;
-            writes[k].descriptorType = k == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                              : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-            if (k == 0) writes[k].pBufferInfo = &buffer;
-            if (k > 0) writes[k].pImageInfo = &images[k - 1];
-        }
-        vkUpdateDescriptorSets(host_.device, 3, writes, 0, nullptr);
+        writeBuffer(host_, sets_[i], 0, blocks_[i].buffer);
+        writeImage(host_, sets_[i], 1, repeat_, plaster_.view);
+        writeImage(host_, sets_[i], 2, clamp_, shadow_.view);
     }
 }
 

@@ -54,6 +54,5 @@ class Studio {
 
 // Evening light in a studio, the light in which fire reads best; fills all but the matrices.
 void duskLight(FwView& view);
-void setCamera(FwView& view, const glm::mat4& viewMatrix, const glm::mat4& projection);
 
 }  // namespace sample

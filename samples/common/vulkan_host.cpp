@@ -106,6 +106,13 @@ int ValidationLog::exitCode() {
     return 1;
 }
 
+HostRequest hostRequest(const Options& options, ValidationLog& log) {
+    HostRequest request;
+    request.windowed = !options.headless;
+    if (options.validate) request.validation = &log;
+    return request;
+}
+
 VulkanHost::VulkanHost(const HostRequest& request) : made(request) {
     try {
         createInstance();

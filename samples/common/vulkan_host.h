@@ -36,6 +36,9 @@ struct HostRequest {
     const void* featureChain = nullptr;  // VkPhysicalDeviceFeatures2 chain instead of `features`
 };
 
+// As the options want it; messages go to `log` if they ask for validation.
+HostRequest hostRequest(const Options& options, ValidationLog& log);
+
 struct Buffer {
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "common/film.h"
+#include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/progress.h"
 #include "common/stage.h"
@@ -63,17 +63,12 @@ struct Overview {
 FwView fireView(const sample::Camera& camera, const tower::Daylight& light,
                 const sample::StageFrame& frame) {
     FwView view = fwDefaultView();
-    const glm::mat4 look = sample::viewMatrix(camera);
-    const glm::mat4 projection =
-        sample::projectionMatrix(camera, float(frame.extent.width) / float(frame.extent.height));
-    std::copy_n(&look[0][0], 16, view.view);
-    std::copy_n(&projection[0][0], 16, view.projection);
+    sample::setCamera(view, camera, frame);
     std::copy_n(&light.toSun[0], 3, view.sunDirection);
     std::copy_n(&light.sun[0], 3, view.sunColor);
     std::copy_n(&light.sky[0], 3, view.ambientSky);
     std::copy_n(&light.ground[0], 3, view.ambientGround);
     view.emissionScale = light.emission;
-    view.time = float(frame.time);
     return view;
 }
 
@@ -114,9 +109,8 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
 
 int run(const sample::Options& options, const Choices& choices) {
     tower::Daylight light = daylightOf(choices.light);
-    // Headless: ten seconds of story.
-    const uint32_t whole = static_cast<uint32_t>(std::lround(10.0 * options.fps));
-    const uint32_t frames = options.frames ? options.frames : options.headless ? whole : 0u;
+    constexpr double kStory = 10;  // s
+    const uint32_t frames = sample::framesOf(options, kStory);
     sample::Progress startUp("painting the village", 2);
     const village::Scene scene = village::makeVillage(options.seed);
     const tower::PaintedVillage painted = tower::paintVillage(scene);
@@ -124,10 +118,7 @@ int run(const sample::Options& options, const Choices& choices) {
 
     sample::ValidationLog validation;
     {
-        sample::HostRequest hostRequest;
-        hostRequest.windowed = !options.headless;
-        if (options.validate) hostRequest.validation = &validation;
-        sample::VulkanHost host(hostRequest);
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: tower defence";
         stageRequest.exposure = light.exposure;
@@ -152,18 +143,10 @@ int run(const sample::Options& options, const Choices& choices) {
             std::printf(
                 "drag or arrow keys: pan; wheel: zoom; 1 2 3: golden hour, noon, night; Escape\n");
 
-        sample::FilmRequest filmRequest;
-        filmRequest.folder = options.out;
-        filmRequest.name = "tower_defence";
-        filmRequest.framesPerSecond = options.fps;
-        filmRequest.frames = frames;
-        filmRequest.animationEvery = 3;
-        sample::Film film(filmRequest);
-        sample::Progress progress("tower_defence", std::max(1u, frames));
-        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
-            film.add(number, picture);
-            progress.update(number + 1);
-        };
+        sample::FilmRequest film;
+        film.name = "tower_defence";
+        film.animationEvery = 3;
+        sample::Filming filming(stage, options, film);
 
         Overview overview;
         sample::StageFrame frame;
@@ -197,12 +180,11 @@ int run(const sample::Options& options, const Choices& choices) {
         vkDeviceWaitIdle(host.device);
 
         if (options.headless) {
-            progress.finish();
             sample::Summary summary;
             summary.title = "The village under attack (" + choices.light + ")";
             char perFrame[64];
             std::snprintf(perFrame, sizeof perFrame, "%.0f ms a frame, pictures included",
-                          1000 * progress.seconds() / frames);
+                          1000 * filming.seconds() / frames);
             summary.rows = {
                 {"device", host.properties.deviceName},
                 {"size", std::to_string(options.width) + " x " + std::to_string(options.height) +
@@ -212,9 +194,7 @@ int run(const sample::Options& options, const Choices& choices) {
                              std::to_string(game.felled()) + " enemies down"},
                 {"triangles", "at most " + std::to_string(renderer.mostTriangles()) + " in a view"},
                 {"time", perFrame}};
-            summary.passes = fire.passCosts();
-            summary.files = film.close();
-            sample::printSummary(summary);
+            filming.finish(summary, fire);
         }
     }
     return validation.exitCode();

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "common/pipeline.h"
+
 namespace tower {
 
 namespace {
@@ -16,7 +18,6 @@ namespace {
 #include "village.frag.h"
 #include "village.vert.h"
 
-using sample::checkVulkan;
 using village::Vec3;
 
 constexpr uint32_t kMaxLights = 16;
@@ -100,43 +101,14 @@ glm::mat4 clipToPicture() {
     return m;
 }
 
-VkDescriptorSet allocateSet(VkDevice device, VkDescriptorPool pool, VkDescriptorSetLayout layout) {
-    VkDescriptorSetAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-    info.descriptorPool = pool;
-    info.descriptorSetCount = 1;
-    info.pSetLayouts = &layout;
-    VkDescriptorSet set = VK_NULL_HANDLE;
-    checkVulkan(vkAllocateDescriptorSets(device, &info, &set), "vkAllocateDescriptorSets");
-    return set;
-}
-
-void writeImage(VkDevice device, VkDescriptorSet set, uint32_t binding, VkSampler sampler,
-                VkImageView view, VkImageLayout layout) {
-    const VkDescriptorImageInfo image{sampler, view, layout};
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = set;
-    write.dstBinding = binding;
-    write.descriptorCount = 1;
-    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    write.pImageInfo = &image;
-    vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
-}
-
 }  // namespace
 
 Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
                    const village::Scene& scene, const PaintedVillage& painted)
     : host_(host), shadows_(host, kBindings, kCasterAttributes) {
     // One mip at a time: a software device pays for every texel it reads.
-    VkSamplerCreateInfo bilinear{};
-    bilinear.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    bilinear.magFilter = bilinear.minFilter = VK_FILTER_LINEAR;
-    bilinear.addressModeU = bilinear.addressModeV = bilinear.addressModeW =
-        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    bilinear.maxLod = VK_LOD_CLAMP_NONE;
-    checkVulkan(vkCreateSampler(host.device, &bilinear, nullptr, &sampler_), "vkCreateSampler");
+    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                  VK_SAMPLER_MIPMAP_MODE_NEAREST);
     makeLayouts();
     makeGeometry(scene, painted);
     makeSlots(stage.made.framesInFlight, scene.instances.size());
@@ -166,44 +138,13 @@ Renderer::~Renderer() {
 }
 
 void Renderer::makeLayouts() {
-    constexpr VkShaderStageFlags kBoth = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    const VkDescriptorSetLayoutBinding frameBindings[] = {
-        {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, kBoth, nullptr},
-        {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}};
-    const VkDescriptorSetLayoutBinding surfaceBindings[] = {
-        {0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr},
-        {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}};
-    VkDescriptorSetLayoutCreateInfo setInfo{};
-    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    setInfo.bindingCount = 2;
-    setInfo.pBindings = frameBindings;
-    checkVulkan(vkCreateDescriptorSetLayout(host_.device, &setInfo, nullptr, &frameLayout_),
-                "vkCreateDescriptorSetLayout");
-    setInfo.pBindings = surfaceBindings;
-    checkVulkan(vkCreateDescriptorSetLayout(host_.device, &setInfo, nullptr, &surfaceLayout_),
-                "vkCreateDescriptorSetLayout");
-
-    const VkDescriptorSetLayout layouts[] = {frameLayout_, surfaceLayout_};
-    const VkPushConstantRange range{VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)};
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.setLayoutCount = 2;
-    info.pSetLayouts = layouts;
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    checkVulkan(vkCreatePipelineLayout(host_.device, &info, nullptr, &layout_),
-                "vkCreatePipelineLayout");
-
+    constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    frameLayout_ = sample::makeSetLayout(host_, {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kImage});
+    surfaceLayout_ = sample::makeSetLayout(host_, {kImage, kImage});
+    layout_ = sample::makeLayout(host_, {frameLayout_, surfaceLayout_},
+                                 {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)});
     constexpr uint32_t kSets = 64;
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4},
-                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * kSets}};
-    VkDescriptorPoolCreateInfo poolInfo{};
-    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    poolInfo.maxSets = kSets;
-    poolInfo.poolSizeCount = 2;
-    poolInfo.pPoolSizes = sizes;
-    checkVulkan(vkCreateDescriptorPool(host_.device, &poolInfo, nullptr, &pool_),
-                "vkCreateDescriptorPool");
+    pool_ = sample::makeSetPool(host_, kSets, 4, 2 * kSets);
 }
 
 void Renderer::makeSurface(const village::Model& model, const Painting& painting, village::Vec2 low,
@@ -213,13 +154,11 @@ void Renderer::makeSurface(const village::Model& model, const Painting& painting
     s.farIndexCount = uint32_t(model.farTriangles) * 3;
     s.middle = (model.low + model.high) * 0.5f;
     s.radius = 0.5f * village::length(model.high - model.low);
-    s.set = allocateSet(host_.device, pool_, surfaceLayout_);
+    s.set = sample::makeSet(host_, pool_, surfaceLayout_);
     s.color = host_.createTexture(painting.width, painting.height, painting.color.data(), false);
     s.relief = host_.createTexture(painting.width, painting.height, painting.relief.data(), false);
-    writeImage(host_.device, s.set, 0, sampler_, s.color.view,
-               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    writeImage(host_.device, s.set, 1, sampler_, s.relief.view,
-               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    sample::writeImage(host_, s.set, 0, sampler_, s.color.view);
+    sample::writeImage(host_, s.set, 1, sampler_, s.relief.view);
     s.push = {{low.x, low.y, 1 / (high.x - low.x), 1 / (high.y - low.y)},
               {metres.x, metres.y, 0, 0}};
     surfaces_.push_back(s);
@@ -270,17 +209,10 @@ void Renderer::makeSlots(uint32_t count, size_t instances) {
                                             VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, true);
         slot.particles = host_.createBuffer(kMaxParticles * sizeof(JetParticle),
                                             VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, true);
-        slot.set = allocateSet(host_.device, pool_, frameLayout_);
-        const VkDescriptorBufferInfo buffer{slot.uniform.buffer, 0, sizeof(FrameUniform)};
-        VkWriteDescriptorSet write{};
-        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-        write.dstSet = slot.set;
-        write.descriptorCount = 1;
-        write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-        write.pBufferInfo = &buffer;
-        vkUpdateDescriptorSets(host_.device, 1, &write, 0, nullptr);
-        writeImage(host_.device, slot.set, 1, shadows_.sampler(), shadows_.view(),
-                   VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+        slot.set = sample::makeSet(host_, pool_, frameLayout_);
+        sample::writeBuffer(host_, slot.set, 0, slot.uniform.buffer);
+        sample::writeImage(host_, slot.set, 1, shadows_.sampler(), shadows_.view(),
+                           VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "common/pipeline.h"
+
 namespace tower {
 
 namespace {
@@ -80,13 +82,7 @@ ShadowMap::ShadowMap(const sample::VulkanHost& host,
     map_ = host_.createImage(request);
     stillTarget_ = makeTarget(still_, true);
     target_ = makeTarget(map_, false);
-    const VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(glm::mat4)};
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    checkVulkan(vkCreatePipelineLayout(host.device, &info, nullptr, &layout_),
-                "vkCreatePipelineLayout");
+    layout_ = sample::makeLayout(host, {}, {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(glm::mat4)});
     makePipeline(bindings, attributes);
 }
 
