@@ -49,7 +49,7 @@ MaterialLook pine() {
     m.facePeak = 12.0f;
     m.faceDecay = 26.0f;
     m.crackKelvin = 1125.0f;
-    m.crackLife = 125.0f;
+    m.crackLife = 180.0f;
     m.glowVariation = 170.0f;
     m.ashMax = 0.6f;
     m.ashStart = 260.0f;

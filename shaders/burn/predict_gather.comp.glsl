@@ -1,12 +1,15 @@
 // Finds the texels of the predict list's tiles whose shown arrival may change, and lists their rows
 // for `predict`, rim texels for `predict_rim`. States that are no arrival (wet, put out, ...) are
-// passed on here. What has an arrival already is gone over in about every eighth frame only. One
-// thread per row.
+// passed on here, of wet ones how near the fire is. What has an arrival already is gone over in
+// about every eighth frame only. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
 #define FW_USE_OBJECT_QUADS
+#define FW_USE_READERS readonly
+#define FW_USE_TILES readonly
 #define FW_USE_TILE_WORDS
 #define FW_USE_STATE readonly
 #define FW_USE_STATE_QUADS
@@ -16,13 +19,12 @@ layout(local_size_x = 64) in;
 #define FW_USE_SCRATCH_QUADS writeonly
 #define FW_USE_PREDICT FW_READ_WRITE
 #define FW_USE_PREDICT_QUADS
-#define FW_USE_GRADIENT writeonly
+#define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
-
-bool hasTime(uint p) { return p < kLiveEnd; }
+#include "lib/predict.glsl"
 
 // Bit i: column i - 1 of the row has a time.
 uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {
@@ -30,6 +32,29 @@ uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {
     uint times = 0u;
     FW_UNROLL for (int i = 0; i < 10; ++i) times |= hasTime(p[i]) ? 1u << uint(i) : 0u;
     return times;
+}
+
+// Texels from a wet texel to where the fire is or will be; below 0: far. y: 1 while it comes.
+const float kWetReach = 24.0;
+vec2 wetAhead(uint at, ivec2 place, uvec4 sizes, uint stride) {
+    vec2 least = vec2(-1.0, 0.0);
+    for (int k = 0; k < 9; ++k) {
+        ivec2 off = ivec2(k % 3 - 1, k / 3 - 1);
+        ivec2 to = place + off;
+        if (k == 4 || to.x < 0 || to.y < 0 || to.x >= int(stride) || to.y >= int(sizes.y)) continue;
+        uint n = uint(int(at) + off.y * int(stride) + off.x);
+        uint time = predict[n];
+        bool wet = time == kWet;
+        uint packed = gradient[n];
+        if ((!hasTime(time) && !wet) || (wet && packed == kNever)) continue;
+        int wait = wet ? 0 : max(int(time - push.now), 0);
+        float pace = max(length(unpackHalf2x16(packed)), 1e-3);  // s/texel
+        float far = wet ? uintBitsToFloat(packed) : float(wait) * (1.0 / 4096.0) / pace;
+        far += off.x != 0 && off.y != 0 ? 1.4142 : 1.0;
+        if (far < kWetReach && (least.x < 0.0 || far < least.x))
+            least = vec2(far, wait > 0 ? 1.0 : 0.0);
+    }
+    return least;
 }
 
 void gatherRow(uint slot, uint row) {
@@ -57,12 +82,14 @@ void gatherRow(uint slot, uint row) {
     uint open = 0u;  // unburnt: an arrival may be predicted
     uint known = 0u; // of these: with a time
     uint passed = 0u;
+    uint wet = 0u;
     FW_UNROLL for (int i = 0; i < 8; ++i) {
         uint bit = 1u << uint(i);
         bool differs = p[i] != t[i];
         lit |= isSource(t[i]) && differs ? bit : 0u;
         open |= t[i] == kNever ? bit : 0u;
         known |= t[i] == kNever && hasTime(p[i]) ? bit : 0u;
+        wet |= t[i] == kWet ? bit : 0u;
         passed |= !isSource(t[i]) && t[i] != kNever && differs ? bit : 0u;
     }
     for (; passed != 0u; passed &= passed - 1u) {
@@ -70,8 +97,30 @@ void gatherRow(uint slot, uint row) {
         uint code = state[i];
         uint time = predict[i];
         // What was put out keeps the look of the age it had: its gradient is that age.
-        if (hasTime(time) && code != kWet) gradient[i] = time <= push.now ? push.now - time : 0u;
+        if (code == kWet) gradient[i] = kNever;
+        else if (hasTime(time)) gradient[i] = time <= push.now ? push.now - time : 0u;
         predict[i] = code;
+    }
+    // About every fourth frame: water does not hurry.
+    bool soon = wet != 0u;
+    if (((hash32((push.now >> 7u) * 3u + worldTile) & 3u) != 0u)) wet = 0u;
+    soon = soon && wet == 0u;
+    uint nearer = 0u;
+    for (; wet != 0u; wet &= wet - 1u) {
+        uint i = uint(findLSB(wet));
+        vec2 ahead = wetAhead(at + i, ivec2(tileX * 8u + i, tileY * 8u + row), sizes, bases.w);
+        uint packed = gradient[at + i];
+        float before = packed == kNever ? 2.0 * kWetReach : uintBitsToFloat(packed);
+        soon = soon || ahead.y > 0.0;
+        if (ahead.x < 0.0 || ahead.x > before - 0.3) continue;
+        gradient[at + i] = floatBitsToUint(ahead.x);
+        nearer |= 1u << i;
+    }
+    if (nearer != 0u) {
+        uint bits = nearer << ((row & 3u) * 8u);
+        touchAround(worldTile, row < 4u ? uvec2(bits, 0u) : uvec2(0u, bits), object, tileX, tileY);
+    } else if (soon) {
+        predictTouch(push.predictParity ^ 1u, worldTile);
     }
     uint chosen = lit;
     bool again = (hash32((push.now >> 7u) + worldTile) & 7u) == 0u;

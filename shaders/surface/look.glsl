@@ -12,6 +12,7 @@ struct Site {     // what is known of one point of the surface
     float out_;   // [0, 1] extinguished
     float water;  // [0, 1] soaked
     float soot;   // [0, 1]
+    float keep;   // how much longer it glows than in the open: hollows keep their heat
     vec3 base;    // fresh albedo
     float baseRough;
     float delay;       // [-1, 1] of a strand, vein or thread
@@ -100,6 +101,11 @@ vec3 soaked(vec3 albedo, float k) {
     return albedo * (k < 0.5 ? mix(vec3(1.0), root, 2.0 * k) : mix(root, albedo, 2.0 * k - 1.0));
 }
 
+// Soot: a matt veil that hides colour but not relief.
+vec3 sooted(vec3 albedo, float soot) {
+    return albedo * mix(vec3(1.0), vec3(0.07, 0.065, 0.06), soot);
+}
+
 Skin burningSkin(Site s, MaterialLook m) {
     Skin o;
     float a = s.age - m.jitter * s.delay;
@@ -176,11 +182,11 @@ Skin burningSkin(Site s, MaterialLook m) {
                                   0.4 * (k.z - 0.5)) +
                breath;
     float face = 300.0 + (m.faceKelvin - 300.0) * smoothstep(0.0, m.facePeak, a) *
-                             exp(-max(0.0, a - m.facePeak) / m.faceDecay);
+                             exp(-max(0.0, a - m.facePeak) / (m.faceDecay * s.keep));
     vec3 emission = emberRadiance(limitGlow(face + dT, s)) *
                     (0.9 * (1.0 - 0.9 * ash) * smoothstep(0.0, 0.4, c));
     if ((kHasWood || kHasHide) && m.crackDepth > 0.0 && c > 0.0) {
-        float life = m.crackLife * (0.55 + 2.2 * nB.r * nB.r + 0.4 * k.z);
+        float life = m.crackLife * s.keep * (0.55 + 2.2 * nB.r * nB.r + 0.4 * k.z);
         float crack = 300.0 + (m.crackKelvin - 300.0) *
                                   smoothstep(0.3 * m.facePeak, 2.0 * m.facePeak, a) *
                                   exp(-a * a / (life * life));
@@ -213,9 +219,8 @@ Skin burningSkin(Site s, MaterialLook m) {
     }
     rough = mix(rough, 0.16 + 0.3 * c, m.melt * smoothstep(-0.7 * m.scorchWidth, 0.0, x));
 
-    // Soot: a matt veil that hides colour but not relief.
     float soot = saturate(s.soot * (0.7 + 0.6 * nB.r)) * (1.0 - ash);
-    albedo *= mix(vec3(1.0), vec3(0.07, 0.065, 0.06), soot);
+    albedo = sooted(albedo, soot);
     rough = mix(rough, 0.9, soot);
 
     // Water darkens what is porous; char only gets gloss.

@@ -36,10 +36,13 @@ layout(location = 3) in vec4 inTexture;
 layout(location = 4) in vec4 inDetail;
 layout(location = 5) in vec4 inTint;
 
+layout(location = 6) in float inSoot;
+
 layout(location = 0) out vec4 outColor;
 
 #include "lib/colour.glsl"
 #include "lib/look_noise.glsl"
+#include "surface/plume.glsl"
 #include "surface/base.glsl"
 #include "surface/look.glsl"
 
@@ -53,6 +56,7 @@ struct Arrival {
     float wet;      // [0, 1]
     float out_;     // [0, 1]
     float damp;     // [0, 1] unburnt and wet
+    float ahead;    // texels from those to the fire
 };
 
 // Bilinear over the taps that exist; towards chart borders each tap is continued along its own
@@ -67,7 +71,7 @@ Arrival arrivalAt(vec2 uv, float steepest) {
     o.age = 0.0;
     o.gradient = vec2(0.0);
     o.known = o.wet = o.out_ = o.damp = 0.0;
-    float total = 0.0, never = 0.0;
+    float total = 0.0, never = 0.0, ahead = 0.0;
     int taps = 4;
     for (int i = 0; i < taps; ++i) {
         ivec2 o2 = i < 4 ? ivec2(i & 1, i >> 1) : ivec2((i - 4) % 5 - 2, (i - 4) / 5 - 2);
@@ -92,6 +96,7 @@ Arrival arrivalAt(vec2 uv, float steepest) {
         o.out_ += doused ? w : 0.0;
         o.wet += t == kWet || t == kOutWet ? w : 0.0;
         o.damp += t == kWet ? w : 0.0;
+        ahead += t == kWet ? w * (packed == kNever ? 1e3 : min(uintBitsToFloat(packed), 1e3)) : 0.0;
         never += t == kNever ? w : 0.0;
         if (i == 3 && total == 0.0) taps = 29;
     }
@@ -102,6 +107,7 @@ Arrival arrivalAt(vec2 uv, float steepest) {
         // Wet texels say nothing of the time: see dampen().
         o.age = (o.age - never * draw.horizon) / (burnt + never);
     }
+    o.ahead = o.damp > 0.0 ? ahead / o.damp : 1e3;
     o.age += view.ambientGround.w * (1.0 / 4096.0);
     if (o.known > 0.0) o.gradient /= o.known;
     o.known *= inverse;
@@ -111,12 +117,13 @@ Arrival arrivalAt(vec2 uv, float steepest) {
     return o;
 }
 
-// At a wet border the age falls to where scorching starts: first fast to that of young char, so
-// that most of the texel between is brown, then evenly.
-float dampen(float age, float damp, float young, float cold) {
-    if (damp <= 0.0 || age <= cold) return age;
-    float top = min(age, young);
-    return damp < 0.25 ? mix(age, top, damp * 4.0) : mix(top, cold, (damp - 0.25) / 0.75);
+// Over a wet border the age falls to how near the fire is on the wet side: first fast to that of
+// young char, so that most of the texel between is brown, then evenly.
+float dampen(float age, float damp, float young, float wetAge) {
+    if (damp <= 0.0) return age;
+    float top = clamp(age, wetAge, young);
+    return damp < 0.25 ? mix(max(age, wetAge), top, damp * 4.0)
+                       : mix(top, wetAge, (damp - 0.25) / 0.75);
 }
 
 vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
@@ -135,9 +142,28 @@ vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
     return e * (s.albedo * (0.31831 * nl) + vec3((d * g * fresnel + gleam) * nl));
 }
 
-// `open`: share of the light from outside that gets here; no shadows are traced.
-vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open) {
+// `open`: share of the light from outside that gets here; no shadows are traced. `sootable`: how
+// much of what flames leave above them shows.
+vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float sootable) {
     if (dot(n, v) < 0.02) n = normalize(n + v * (0.04 - dot(n, v)));
+    // Of small triangles at their corners already, with the mean direction of what comes.
+    vec3 fire = vec3(inPositionFire.w, inRestFire.w, inNormalFire.w);
+    fire *= max(0.0, dot(n, vec3(inDetail.zw, inTint.w)) + 0.25) * 0.64;
+    float soot = inSoot;
+    bool small = (draw.flags & kDrawVertexLight) != 0u;
+    uint count = small ? 0u : min(view.lightCount, kSurfaceLights);
+    for (uint i = 0u; i < count; ++i) {
+        vec4 at = lights[i].positionRadius;
+        vec4 color = lights[i].colorIntensity;
+        if (color.w <= 0.0) break;  // strongest first
+        vec3 d = at.xyz - view.eye.xyz - position;
+        float r2 = dot(d, d);
+        float wrapped = max(0.0, dot(n, d) * inversesqrt(max(r2, 1e-8)) + 0.25) * 0.64;
+        soot += plumeSoot(d, lights[i].power, view.up.xyz);
+        fire += color.rgb * (color.w * wrapped / (r2 + max(at.w * at.w * 0.25, 0.004)));
+    }
+    s.albedo = sooted(s.albedo, sootable * saturate(soot));
+    s.rough = mix(s.rough, 0.9, sootable * saturate(soot));
     vec3 c = s.emission * (view.sunColor.w / kWhiteLuminance);
     c += lit(s, n, v, view.sunDirection.xyz,
              view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
@@ -151,20 +177,6 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open) {
     float fresnel = s.f0 + (max(1.0 - s.rough, s.f0) - s.f0) * m2 * m2 * m;
     c += env * (open * fresnel * s.occlusion * (1.0 - 0.5 * s.rough));
 
-    // Of small triangles at their corners already, with the mean direction of what comes.
-    vec3 fire = vec3(inPositionFire.w, inRestFire.w, inNormalFire.w);
-    fire *= max(0.0, dot(n, vec3(inDetail.zw, inTint.w)) + 0.25) * 0.64;
-    bool small = (draw.flags & kDrawVertexLight) != 0u;
-    uint count = small ? 0u : min(view.lightCount, kSurfaceLights);
-    for (uint i = 0u; i < count; ++i) {
-        vec4 at = lights[i].positionRadius;
-        vec4 color = lights[i].colorIntensity;
-        if (color.w <= 0.0) break;  // strongest first
-        vec3 d = at.xyz - view.eye.xyz - position;
-        float r2 = dot(d, d);
-        float wrapped = max(0.0, dot(n, d) * inversesqrt(max(r2, 1e-8)) + 0.25) * 0.64;
-        fire += color.rgb * (color.w * wrapped / (r2 + max(at.w * at.w * 0.25, 0.004)));
-    }
     fire *= kCandelaPerWatt * view.sunColor.w / kWhiteLuminance;
     // Softly limited: a flame that touches the surface must not bleach it.
     fire /= 1.0 + 0.4 * view.sunDirection.w * (fire.r + fire.g);
@@ -243,7 +255,7 @@ void main() {
     float rate = max(look.spreadRate, 1e-5);
     // A long shift could leave the chart: what is beyond half a texel goes the linear way.
     vec2 near = clamp(shift, -0.5, 0.5);
-    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 0.0);
+    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 0.0, 1e3);
     if (kBurns) {
         arrival =
             arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * max(length(gradU), 1.0)));
@@ -287,12 +299,19 @@ void main() {
     float steep = length(flat_);
     site.slow = clamp(length(slope), 0.25 / rate, 1.6 / rate);  // s/m
     float ahead = 1.3 * max(look.scorchWidth, look.wiltColor.w) * site.slow + 1.5 * look.jitter;
-    site.age = dampen(arrival.age * draw.timeScale, arrival.damp, 1.5 * look.charTime, -ahead);
+    // Water halves the way that heat gets.
+    float behind = 2.0 * (arrival.ahead - 0.7) * inversesqrt(max(dot(gradU, gradU), 1.0));  // m
+    float wetAge = clamp(-behind * site.slow, -1.2 * ahead, 0.0);
+    site.age = dampen(arrival.age * draw.timeScale, arrival.damp, 1.5 * look.charTime, wetAge);
     site.ahead = steep > 1e-6 ? flat_ / steep : vec2(0.0, 1.0);
     site.out_ = saturate(arrival.out_ * 1.5 + arrival.damp * 6.0);
+    // What is wet dries where the fire stands beside it.
     site.water = smoothstep(0.25, 0.75, arrival.wet);
+    if (arrival.damp > 0.0)
+        site.water *= 1.0 - 0.85 * smoothstep(-0.9 * ahead, -0.15 * ahead, site.age) * arrival.damp;
     bool inside = back && (draw.flags & kObjectTwoSided) == 0u;
-    site.soot = inside ? 0.92 * smoothstep(-10.0, -0.3, site.age / max(look.charTime, 1e-3)) : 0.0;
+    site.soot = inside ? 0.8 * smoothstep(-10.0, -0.3, site.age / max(look.charTime, 1e-3)) : 0.0;
+    site.keep = inside ? 2.5 : 1.0;
     site.base = color * fresh.factor * inTintColor;
     site.baseRough = fresh.rough;
     site.delay = delay;
@@ -309,7 +328,7 @@ void main() {
     vec3 facingNormal = back ? -normal : normal;
     float deep = -1.0;
     skin = freshSkin(site, look);
-    if (inside) skin.occlusion = 0.4;
+    if (inside) skin.occlusion = 0.5;
     if (kBurns && !cold) {
         float edge = holeEdge(site.age - look.jitter * delay, site, look);
         if (edge < 0.0) {
@@ -322,6 +341,7 @@ void main() {
             site.d += move;
             site.age -= site.slow * dot(rise, move);
             site.soot = 0.0;
+            site.keep = 1.0;
             vec2 bump = fine.rb - 0.5;
             // The wall faces the hole: away from fresh material.
             vec3 wall = -(axisX * site.ahead.x + axisY * site.ahead.y);
@@ -334,7 +354,7 @@ void main() {
             skin.slope = vec2(0.0);
             skin.occlusion *= 0.8;
         } else if (inside) {
-            skin.occlusion *= 0.5;
+            skin.occlusion *= 0.7;
         }
     }
 
@@ -346,6 +366,7 @@ void main() {
     tilt *= min(1.0, 1.6 * inversesqrt(max(dot(tilt, tilt), 1e-8)));
     vec3 n = normalize(facingNormal + (deep >= 0.0 ? vec3(0.0) : (back ? -tilt : tilt)));
 
-    vec3 linear = shade(skin, position, n, toEye, inside ? 0.3 : 1.0);
+    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0,
+                        (1.0 - charred) * (0.6 + 0.5 * coarse.r));
     outColor = vec4(encodeOutput(min(linear, vec3(60000.0)) * view.sunDirection.w, kEncoding), 1.0);
 }

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
+#include "surface/plume.glsl"
 
 layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
     BurnLight lights[kSurfaceLights];
@@ -24,6 +25,7 @@ layout(location = 2) out vec4 outNormal;    // w: blue
 layout(location = 3) out vec4 outTexture;   // xy: texels of the atlas; zw: UV
 layout(location = 4) out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) out vec4 outTint;      // w: ... mean direction to the flames
+layout(location = 6) out float outSoot;     // of flames below
 
 #include "lib/turn.glsl"
 
@@ -39,6 +41,7 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
     e *= clamp(4.0 * facing + 1.0, 0.0, 1.0);  // none from behind
     color += light.colorIntensity.rgb * e;
     towards += vec4(to, 1.0) * e;
+    outSoot += plumeSoot(d, light.power, view.up.xyz);
 }
 
 void main() {
@@ -51,6 +54,7 @@ void main() {
                          dot(draw.row2.xyz, inPosition)) +
                     offset;
     normal = normalize(turnNormal(draw.row0.xyz, draw.row1.xyz, draw.row2.xyz, normal));
+    outSoot = 0.0;
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
     if ((draw.flags & kDrawVertexLight) != 0u) {

@@ -517,8 +517,10 @@ void VkBackend::State::run(const FramePlan& plan) {
     }
     shownTick = plan.endTick;
     if (needs.predicting) {
-        recordPredict(recorder, lists, plan.endTick);
-        ++predictWalks;
+        // A ring a round: long frames need more to stay ahead of a fast front.
+        const size_t rounds = std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1;
+        for (size_t i = 0; i < rounds; ++i) recordPredict(recorder, lists, plan.endTick);
+        predictWalks += uint32_t(rounds);
     }
     slot.layout.predictParity = lists.predictParity;
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));

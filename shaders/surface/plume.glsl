@@ -1,0 +1,12 @@
+// Soot that a fire leaves on what stands above it, as dark as its flames are tall: those of the
+// moment, so it goes where they go.
+
+// `d`: m, from the surface to the light of the flames; `power`: W.
+float plumeSoot(vec3 d, float power, vec3 up) {
+    float tall = 0.02 + 0.014 * pow(max(power, 1.0), 0.4);  // m, somewhat over the flame
+    float above = -dot(d, up) / tall;
+    float aside2 = (dot(d, d) / (tall * tall) - above * above);
+    float width = 0.25 + 0.12 * max(above, 0.0);
+    return 0.85 * smoothstep(-0.1, 0.5, above) * exp2(-0.9 * max(above, 0.0)) *
+           exp2(-aside2 / (width * width));
+}
