@@ -217,7 +217,6 @@ gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& d
         horizon = std::max(horizon, uint32_t(std::clamp(ticks, 512.0f, 4.0e6f)));
     }
     made.horizon = horizon;
-    made.image = object.imagePlus1;
     made.originQuantum =
         gpu::vec4(domain.origin[0], domain.origin[1], domain.origin[2], domain.quantum);
     gpu::vec4 rows[3];

@@ -25,7 +25,7 @@ struct BurnableMesh {
     float moisture = 0;         // kg/kg, added to the materials' own, [0, 2]
     float tint[3] = {1, 1, 1};
     uint32_t meshSlot = 0;
-    uint32_t imagePlus1 = 0;  // base-colour image slot + 1, 0: none
+    std::array<uint32_t, kMaterials> imagesPlus1{};  // base-colour image slot + 1, 0: none
     uint64_t userData = 0;
 };
 

@@ -19,6 +19,7 @@ struct ObjectInit {
     std::span<const BurnMaterial> materials;  // kMaterialsPerObject
     // Per texel Q7, 0 = cannot burn; empty: the mesh's own with nothing painted. Width of the map.
     std::span<const uint16_t> slowness;
+    uint32_t images[kMaterialsPerObject] = {};  // base-colour image slot + 1, 0: none
     std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat plane
 };
 

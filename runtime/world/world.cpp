@@ -148,8 +148,9 @@ void World::destroyImage(FwImageId id) {
     --imageUsers_[slot];  // not given out again while an object still names it
 }
 
-void World::releaseImageSlot(uint32_t imagePlus1) noexcept {
-    if (imagePlus1 != 0) --imageUsers_[imagePlus1 - 1];
+void World::countImages(const components::BurnableMesh& object, bool more) noexcept {
+    for (const uint32_t plus1 : object.imagesPlus1)
+        if (plus1 != 0) imageUsers_[plus1 - 1] += more ? 1u : ~0u;
 }
 
 // ---- meshes
@@ -251,7 +252,10 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& def) {
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
         if (def.materials[i].index1 != 0)
             components::setMaterial(object.data, i, materials_.get(def.materials[i]));
-    if (def.baseColor.index1 != 0) object.data.imagePlus1 = images_.get(def.baseColor).slot + 1;
+    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
+        const FwImageId image = def.baseColors[i].index1 ? def.baseColors[i] : def.baseColor;
+        if (image.index1 != 0) object.data.imagesPlus1[i] = images_.get(image).slot + 1;
+    }
 
     const uint32_t meshSlot = shapedSlot(def.mesh.index1 - 1, object.data.shape);
     try {
@@ -283,6 +287,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     init.record = components::makeObject(object.data, domain, records);
     init.materials = records.materials;
     init.slowness = slowness;
+    std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
 
     object.firstFrame = lastFrame_ + 1;
     const uint32_t burnable = object.texels;
@@ -302,14 +307,14 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     }
     ++mesh.users;
     texels_ += burnable;
-    if (object.data.imagePlus1 != 0) ++imageUsers_[object.data.imagePlus1 - 1];
+    countImages(object.data, true);
     return id;
 }
 
 void World::destroyBurnableMesh(FwBurnableMeshId id) {
     Object& object = *objects_.get(id);
     const uint32_t slot = object.slot;
-    releaseImageSlot(object.data.imagePlus1);
+    countImages(object.data, false);
     const uint32_t meshSlot = object.data.meshSlot;
     --meshes_.at(meshSlot)->users;
     std::erase_if(pending_, [&](const PendingTexel& p) { return p.object == slot; });

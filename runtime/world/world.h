@@ -210,7 +210,7 @@ class World {
     // Slot of the mesh in this shape: itself, one that is there, or a new one.
     uint32_t shapedSlot(uint32_t slot, const float shape[3]);
     void releaseShape(uint32_t slot) noexcept;
-    void releaseImageSlot(uint32_t imagePlus1) noexcept;
+    void countImages(const components::BurnableMesh& object, bool more) noexcept;
     void sendPose(const Object& object) noexcept;
 
     std::pmr::memory_resource* memory_;

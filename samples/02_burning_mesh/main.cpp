@@ -62,12 +62,15 @@ FwBurnableMeshId placeSubject(sample::FireHost& fire, const Subject& subject, Fw
     FwMaterialId id{};
     fire.check(fwWorld_CreateMaterial(fire.world, &material, &id), "fwWorld_CreateMaterial");
     for (FwMaterialId& slot : def.materials) slot = id;
-    if (!subject.image.empty()) {
+    for (size_t slot = 0; slot < subject.pictures.size(); ++slot) {
+        if (subject.pictures[slot] < 0) continue;
+        const auto& picture = subject.model.images[static_cast<size_t>(subject.pictures[slot])];
         FwImageDef image = fwDefaultImageDef();
-        image.width = subject.imageWidth;
-        image.height = subject.imageHeight;
-        image.pixels = subject.image.data();
-        fire.check(fwWorld_CreateImage(fire.world, &image, &def.baseColor), "fwWorld_CreateImage");
+        image.width = picture.width;
+        image.height = picture.height;
+        image.pixels = picture.rgba.data();
+        fire.check(fwWorld_CreateImage(fire.world, &image, &def.baseColors[slot]),
+                   "fwWorld_CreateImage");
     }
     FwBurnableMeshId object{};
     fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object), "fwWorld_CreateBurnableMesh");

@@ -46,22 +46,30 @@ glm::vec3 meanColor(const fwimport::DecodedImage& image) {
     return glm::vec3(sum / static_cast<double>(std::max<size_t>(1, taken)));
 }
 
-// The plugin takes one picture for an object. One picture for all triangles is handed on; a mixture
-// is folded into the vertex colours.
+// Every picture gets a material slot of the burn map to itself; colours, and pictures that find no
+// slot, are folded into the vertex colours.
 void foldColors(Subject& subject) {
     fwimport::ImportedModel& model = subject.model;
-    bool onePicture = model.images.size() == 1 && model.hasUvs, plain = true;
+    bool plain = true, unpictured = false;
     for (const fwimport::ImportedMaterial& material : model.materials) {
-        onePicture = onePicture && material.image == 0;
         const auto& factor = material.baseColor;
         plain = plain && factor[0] == factor[1] && factor[1] == factor[2];
+        unpictured = unpictured || material.image < 0;
     }
-    subject.ownColors = onePicture || !plain || model.hasColors || !model.images.empty();
-    if (onePicture) {
-        subject.image = model.images[0].rgba;
-        subject.imageWidth = model.images[0].width;
-        subject.imageHeight = model.images[0].height;
+    const size_t pictures = model.images.size();
+    const size_t most = pictures + (unpictured ? 1 : 0) > subject.pictures.size()
+                            ? subject.pictures.size() - 1
+                            : pictures;
+    subject.pictures.fill(-1);
+    for (size_t i = 0; i < most; ++i) subject.pictures[i] = static_cast<int32_t>(i);
+    const auto pictured = [&](const fwimport::ImportedMaterial& material) {
+        return material.image >= 0 && static_cast<size_t>(material.image) < most;
+    };
+    for (const fwimport::ImportedMaterial& material : model.materials) {
+        const size_t slot = pictured(material) ? static_cast<size_t>(material.image) : most;
+        subject.slots.push_back(static_cast<uint8_t>(std::min<size_t>(slot, 7)));
     }
+    subject.ownColors = !plain || model.hasColors || !model.images.empty();
     if (!subject.ownColors) return;
     std::vector<bool> done(model.vertexCount(), false);
     for (size_t i = 0; i < model.indices.size(); ++i) {
@@ -70,7 +78,7 @@ void foldColors(Subject& subject) {
         done[vertex] = true;
         const auto& material = model.materials[model.triangleMaterials[i / 3]];
         glm::vec3 color(material.baseColor[0], material.baseColor[1], material.baseColor[2]);
-        if (!onePicture && material.image >= 0) {
+        if (material.image >= 0 && !pictured(material)) {
             color *= meanColor(model.images[static_cast<size_t>(material.image)]);
         }
         uint32_t packed = 0xff000000u;
@@ -223,12 +231,13 @@ FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMa
     const fwimport::ImportedModel& model = subject.model;
     std::vector<uint8_t> triangleMaterials(model.triangleCount());
     for (size_t i = 0; i < triangleMaterials.size(); ++i) {
-        triangleMaterials[i] = static_cast<uint8_t>(std::min(model.triangleMaterials[i], 7u));
+        triangleMaterials[i] = subject.slots[model.triangleMaterials[i]];
     }
     FwMeshDef def = fwDefaultMeshDef();
     def.positions = model.positions.data();
     def.normals = model.hasNormals ? model.normals.data() : nullptr;
-    def.uvs = model.hasUvs ? model.uvs.data() : nullptr;
+    // Parts without UVs have none that a picture needs.
+    def.uvs = model.hasUvs || !model.images.empty() ? model.uvs.data() : nullptr;
     def.colors = subject.ownColors ? model.colors.data() : nullptr;
     def.indices = model.indices.data();
     def.triangleMaterials = triangleMaterials.data();

@@ -2,6 +2,7 @@
 // the answers about its surface that the sample needs, and its burn map from the cache.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
@@ -15,8 +16,10 @@ struct Subject {
     fwimport::ImportedModel model;  // m, standing on y = 0, centred on the vertical axis
     bool ownColors = false;         // it brings colours; else the material's own are used
     float scale = 1.0f;             // that was applied to the file's units
-    std::vector<uint8_t> image;     // RGBA8, empty: none
-    uint32_t imageWidth = 0, imageHeight = 0;
+    // Materials by slot of the burn map: those with a picture have a slot to themselves as long as
+    // there are slots; the others share the last and bring their colour in the vertices.
+    std::vector<uint8_t> slots;        // by model material
+    std::array<int32_t, 8> pictures{}; // by slot: of model.images, -1: none
     float size() const;    // m, largest side
     float height() const;  // m
     float radius() const;  // m, of the ball around its middle

@@ -134,7 +134,7 @@ struct BurnObject {   // everything a pass needs to find an object's planes
     uint window;      // correction window, ticks
     uint substepShift;  // log2 of its substeps per step, 0..3
     uint horizon;     // ticks that the prediction looks ahead
-    uint image;       // base-colour image slot + 1, 0: none
+    uint reservedImage;
     vec4 originQuantum;  // m: rest position = origin + quantum * xyz
     vec4 worldRow0;   // object to world, rows of a 3x4 matrix
     vec4 worldRow1;

@@ -316,6 +316,7 @@ typedef struct FwBurnableMeshDef {
     const uint8_t* multiplier;        /* speed multiplier over the burn map, 128 = 1, 0 = cannot burn */
     uint32_t multiplierWidth, multiplierHeight; /* resampled (nearest) to the burn map */
     uint64_t userData;                /* comes back in events */
+    FwImageId baseColors[8];          /* by triangle material, default null: baseColor there too */
 } FwBurnableMeshDef;
 static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
     FwBurnableMeshDef d; fwInitDef(FW_DEF_BURNABLE_MESH, &d, (uint32_t)sizeof d); return d;

@@ -36,7 +36,7 @@ struct DrawItem {
     uint32_t material = 0;
     uint32_t firstIndex = 0, indexCount = 0;
     int32_t vertexOffset = 0;
-    uint32_t image = 0;    // as BurnObject::image
+    uint32_t image = 0;    // base-colour image slot + 1, 0: none
     uint32_t variant = 0;  // of the surface pass, from surfaceVariant
     SurfaceDraw draw{};
 };
@@ -55,8 +55,9 @@ class DrawRecorder {
 
 constexpr uint32_t kSurfaceVariants = 25;
 extern const DrawPass kSurfacePasses[kSurfaceVariants];
-// The variant for a material of an object; `touched`: some event reached it.
-uint32_t surfaceVariant(const BurnObject& object, const BurnMaterial& material, bool touched);
+// The variant for a material of an object with an image there or not; `touched`: some event
+// reached the object.
+uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched);
 // `edge`: m, mean edge of the object's triangles.
 SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge);
 bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items);

@@ -84,11 +84,11 @@ const DrawPass kSurfacePasses[kSurfaceVariants] = {
     variant(kHide | kSurfaceImage | kSurfaceBurns, Cull::front),
 };
 
-uint32_t surfaceVariant(const BurnObject& object, const BurnMaterial& material, bool touched) {
+uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched) {
     // Without fire an image is all that a material shows.
     uint32_t needs = touched ? kSurfaceBurns : 0;
-    if (touched || !object.image) needs |= familyOf(material.look);
-    if (object.image) needs |= kSurfaceImage;
+    if (touched || !image) needs |= familyOf(material.look);
+    if (image) needs |= kSurfaceImage;
     uint32_t i = 0;
     while ((needs & ~kSurfacePasses[i].variant) != 0) ++i;
     return i;

@@ -529,6 +529,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.heat[i] = init.heat[i];
     for (size_t i = 0; i < kMaterialsPerObject && i < init.materials.size(); ++i)
         fresh.materials[i] = init.materials[i];
+    std::copy(std::begin(init.images), std::end(init.images), std::begin(fresh.images));
     fresh.recordDirty = fresh.materialsDirty = fresh.resetDue = true;
     s.objects[slot] = fresh;
     s.recordsDirty = true;
@@ -609,10 +610,12 @@ void VkBackend::destroyImage(uint32_t slot) noexcept {
     s.retired.push(s.ring.newest(), entry.set.pool);
     entry = {};
     for (ObjectEntry& object : s.objects) {  // back to their own base colour
-        if (object.record.image != slot + 1) continue;
-        object.record.image = 0;
-        object.recordDirty = true;
-        s.recordsDirty = true;
+        for (uint32_t& image : object.images) {
+            if (image != slot + 1) continue;
+            image = 0;
+            object.recordDirty = true;
+            s.recordsDirty = true;
+        }
     }
 }
 

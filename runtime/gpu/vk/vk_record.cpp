@@ -306,8 +306,8 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
             if (end != first)
                 s.drawItems.push_back(
                     {i, m, mesh.indexRange.first + first, end - first,
-                     int32_t(mesh.vertexRange.first), object.record.image,
-                     surfaceVariant(object.record, object.materials[m], object.touched),
+                     int32_t(mesh.vertexRange.first), object.images[m],
+                     surfaceVariant(object.materials[m], object.images[m] != 0, object.touched),
                      drawOf(s, object, m)});
             first = end;
         }
@@ -380,7 +380,7 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event) {
     object.touched = true;
     for (DrawItem& item : s.drawItems) {
         if (item.object == event.object)
-            item.variant = surfaceVariant(object.record, object.materials[item.material], true);
+            item.variant = surfaceVariant(object.materials[item.material], item.image != 0, true);
     }
 }
 

@@ -42,6 +42,7 @@ struct ObjectEntry {
     uint32_t mesh = 0;
     BurnObject record{};
     BurnMaterial materials[kMaterialsPerObject]{};
+    uint32_t images[kMaterialsPerObject] = {};  // slot + 1, 0: none
     HeatMaterial heat[kMaterialsPerObject]{};  // with kObjectHeat
     RangeOf tiles, slowness, published, heatTiles;
     bool publishedTouched = false;  // as-published mode: some event reached it
