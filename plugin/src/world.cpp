@@ -23,6 +23,17 @@ void freeWorld(FwWorld* world) noexcept {
     std::pmr::polymorphic_allocator<>(&context->memory).delete_object(world);
 }
 
+template <class Id, class Def>
+FwResult createOf(const char* function, FwWorld* world, Id (world::World::*create)(const Def&),
+                  const Def* given, FwDefType type, const char* name, Id* id) {
+    return onWorld(function, world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        *id = (w.*create)(edge::readDef(given, type, name));
+        return FW_OK;
+    });
+}
+
 template <class Id>
 FwResult destroyOf(const char* function, FwWorld* world, void (world::World::*destroy)(Id), Id id) {
     return onWorld(function, world, [&](world::World& w) {
@@ -83,12 +94,8 @@ FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]) {
 
 FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* given,
                                         FwMaterialId* id) {
-    return onWorld("fwWorld_CreateMaterial", world, [&](world::World& w) {
-        checkPointer(id, "id");
-        *id = {};
-        *id = w.createMaterial(edge::readDef(given, FW_DEF_MATERIAL, "FwMaterialDef"));
-        return FW_OK;
-    });
+    return createOf("fwWorld_CreateMaterial", world, &world::World::createMaterial, given,
+                    FW_DEF_MATERIAL, "FwMaterialDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld* world, FwMaterialId id) {
@@ -96,12 +103,8 @@ FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld* world, FwMaterialId id) {
 }
 
 FwResult FW_CALL fwWorld_CreateImage(FwWorld* world, const FwImageDef* given, FwImageId* id) {
-    return onWorld("fwWorld_CreateImage", world, [&](world::World& w) {
-        checkPointer(id, "id");
-        *id = {};
-        *id = w.createImage(edge::readDef(given, FW_DEF_IMAGE, "FwImageDef"));
-        return FW_OK;
-    });
+    return createOf("fwWorld_CreateImage", world, &world::World::createImage, given, FW_DEF_IMAGE,
+                    "FwImageDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyImage(FwWorld* world, FwImageId id) {
@@ -109,12 +112,8 @@ FwResult FW_CALL fwWorld_DestroyImage(FwWorld* world, FwImageId id) {
 }
 
 FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMeshId* id) {
-    return onWorld("fwWorld_CreateMesh", world, [&](world::World& w) {
-        checkPointer(id, "id");
-        *id = {};
-        *id = w.createMesh(edge::readDef(given, FW_DEF_MESH, "FwMeshDef"));
-        return FW_OK;
-    });
+    return createOf("fwWorld_CreateMesh", world, &world::World::createMesh, given, FW_DEF_MESH,
+                    "FwMeshDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyMesh(FwWorld* world, FwMeshId id) {
@@ -136,12 +135,8 @@ FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld* world, FwMeshId id, FwMeshInfo* in
 
 FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld* world, const FwBurnableMeshDef* given,
                                             FwBurnableMeshId* id) {
-    return onWorld("fwWorld_CreateBurnableMesh", world, [&](world::World& w) {
-        checkPointer(id, "id");
-        *id = {};
-        *id = w.createBurnableMesh(edge::readDef(given, FW_DEF_BURNABLE_MESH, "FwBurnableMeshDef"));
-        return FW_OK;
-    });
+    return createOf("fwWorld_CreateBurnableMesh", world, &world::World::createBurnableMesh, given,
+                    FW_DEF_BURNABLE_MESH, "FwBurnableMeshDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld* world, FwBurnableMeshId id) {

@@ -19,22 +19,18 @@ constexpr VkFormat kColor = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFL
 
 void must(VkResult result) { ASSERT_EQ(result, VK_SUCCESS); }
 
-struct HostImage {
-    VkImage image = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    VkImageView view = VK_NULL_HANDLE;
-};
-
 // A host's pass with colour and depth, and a way to read the picture.
 class Golden : public GpuTest {
  protected:
     void SetUp() override {
         GpuTest::SetUp();
         if (!device_) return;
-        color_ = makeImage(kColor, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
-        depth_ = makeImage(kDepth,
-                           VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                           VK_IMAGE_ASPECT_DEPTH_BIT);
+        color_ = device_->makeImage(
+            kColor, {kWidth, kHeight}, 1,
+            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+        depth_ = device_->makeImage(
+            kDepth, {kWidth, kHeight}, 1,
+            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
         makePass();
         VkBufferCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
@@ -64,11 +60,6 @@ class Golden : public GpuTest {
             const VkDevice d = device_->device;
             vkDestroyFramebuffer(d, framebuffer_, nullptr);
             vkDestroyRenderPass(d, pass_, nullptr);
-            for (const HostImage& image : {color_, depth_}) {
-                vkDestroyImageView(d, image.view, nullptr);
-                vkDestroyImage(d, image.image, nullptr);
-                vkFreeMemory(d, image.memory, nullptr);
-            }
             vkDestroyBuffer(d, pixels_, nullptr);
             vkFreeMemory(d, pixelMemory_, nullptr);
         }
@@ -83,31 +74,6 @@ class Golden : public GpuTest {
         VkDeviceMemory memory = VK_NULL_HANDLE;
         must(vkAllocateMemory(device_->device, &info, nullptr, &memory));
         return memory;
-    }
-
-    HostImage makeImage(VkFormat format, VkImageUsageFlags usage, VkImageAspectFlags aspect) {
-        HostImage made;
-        VkImageCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = format;
-        info.extent = {kWidth, kHeight, 1};
-        info.mipLevels = info.arrayLayers = 1;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-        must(vkCreateImage(device_->device, &info, nullptr, &made.image));
-        VkMemoryRequirements needs{};
-        vkGetImageMemoryRequirements(device_->device, made.image, &needs);
-        made.memory = allocate(needs, 0);
-        must(vkBindImageMemory(device_->device, made.image, made.memory, 0));
-        VkImageViewCreateInfo view{};
-        view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-        view.image = made.image;
-        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = format;
-        view.subresourceRange = {aspect, 0, 1, 0, 1};
-        must(vkCreateImageView(device_->device, &view, nullptr, &made.view));
-        return made;
     }
 
     void makePass() {
@@ -352,7 +318,7 @@ class Golden : public GpuTest {
 
     FwContext* context_ = nullptr;
     std::unique_ptr<HostFrames> frames_;
-    HostImage color_, depth_;
+    TestImage color_, depth_;
     VkRenderPass pass_ = VK_NULL_HANDLE;
     VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
     VkBuffer pixels_ = VK_NULL_HANDLE;
