@@ -89,8 +89,7 @@ FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]) {
     });
 }
 
-// ---- materials, images, meshes
-// -------------------------------------------------------------------
+// ---- materials, images, meshes ----------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* given,
                                         FwMaterialId* id) {
@@ -130,8 +129,7 @@ FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld* world, FwMeshId id, FwMeshInfo* in
     });
 }
 
-// ---- burnable meshes
-// -----------------------------------------------------------------------------
+// ---- burnable meshes --------------------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld* world, const FwBurnableMeshDef* given,
                                             FwBurnableMeshId* id) {
@@ -168,8 +166,7 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
     });
 }
 
-// ---- running
-// -------------------------------------------------------------------------------------
+// ---- running ----------------------------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_Step(FwWorld* world, float deltaTime) {
     return onWorld("fwWorld_Step", world, [&](world::World& w) {
@@ -194,8 +191,7 @@ FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld* world, const FwOffscreenDef* g
     });
 }
 
-// ---- what a game asks
-// ----------------------------------------------------------------------------
+// ---- what a game asks -------------------------------------------------------------------------
 
 uint32_t FW_CALL fwWorld_PollEvents(FwWorld* world, FwEvent* events, uint32_t capacity) {
     uint32_t count = 0;

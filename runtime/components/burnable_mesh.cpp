@@ -122,8 +122,7 @@ void poseOnShape(BurnableMesh& object, const Pose& pose, const char* field) {
     object.pose = made;
 }
 
-// ---- drive
-// ---------------------------------------------------------------------------------------
+// ---- drive ------------------------------------------------------------------------------------
 
 void resetLatch(const BurnableMesh& object, const DriveInput& drive, Latch& latch) noexcept {
     for (fire::WindFilter& filter : latch.filters) fire::resetWind(filter, drive.wind);
@@ -180,8 +179,7 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
     return records;
 }
 
-// ---- records
-// -------------------------------------------------------------------------------------
+// ---- records ----------------------------------------------------------------------------------
 
 std::array<gpu::HeatMaterial, kMaterials> makeHeatMaterials(const BurnableMesh& object,
                                                             const mesh::BurnDomain& domain,

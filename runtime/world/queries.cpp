@@ -160,8 +160,7 @@ void World::stats(FwWorldStats& stats) noexcept {
     stats.texels = texels_;
 }
 
-// ---- flamewright_debug.h
-// -------------------------------------------------------------------------
+// ---- flamewright_debug.h ----------------------------------------------------------------------
 
 void World::requestBurnMap(FwBurnableMeshId id) {
     Object& object = *objects_.get(id);

@@ -112,8 +112,7 @@ void World::setWind(const float wind[3]) {
     std::copy_n(wind, 3, wind_);
 }
 
-// ---- materials and images
-// ------------------------------------------------------------------------
+// ---- materials and images ---------------------------------------------------------------------
 
 FwMaterialId World::createMaterial(const FwMaterialDef& def) {
     fire::checkMaterial(def);
@@ -153,8 +152,7 @@ void World::countImages(const components::BurnableMesh& object, bool more) noexc
         if (plus1 != 0) imageUsers_[plus1 - 1] += more ? 1u : ~0u;
 }
 
-// ---- meshes
-// --------------------------------------------------------------------------------------
+// ---- meshes -----------------------------------------------------------------------------------
 
 FwMeshId World::createMesh(const FwMeshDef& def) {
     return createEntry(makeEntry(makeDomain(def, memory_)));
@@ -241,8 +239,7 @@ void World::meshInfo(FwMeshId id, FwMeshInfo& info) {
     info.bakeMilliseconds = float(report.milliseconds);
 }
 
-// ---- burnable meshes
-// -----------------------------------------------------------------------------
+// ---- burnable meshes --------------------------------------------------------------------------
 
 FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& def) {
     (void)meshes_.get(def.mesh);
@@ -350,8 +347,7 @@ void World::setHidden(FwBurnableMeshId id, bool hidden) {
     sendPose(object);
 }
 
-// ---- ball events -> texels
-// -----------------------------------------------------------------------
+// ---- ball events -> texels --------------------------------------------------------------------
 
 uint32_t World::eventTick(float delay) const {
     const uint64_t tick =
@@ -370,7 +366,7 @@ void World::addPending(const Object& object, uint32_t kind, uint32_t tick,
     for (uint32_t texel : texels) pending_.push_back({object.slot, texel, kind, tick, order_++});
 }
 
-uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick, bool named) {
+uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick) {
     const mesh::BurnDomain& domain = domainOf(object);
     float point[3];
     components::toObject(object.data.pose, def.position, point);
@@ -384,7 +380,6 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
     if (!nearBounds(point, domain, reach)) return 0;
     const uint32_t nearest = mesh::nearestTexel(domain, point, reach);
     if (nearest == mesh::kNone) return 0;
-    (void)named;
     found_.clear();
     mesh::texelsNear(domain, point, radius, found_);
     // The ball itself decides: a centre off the surface reaches a smaller disc.
@@ -414,10 +409,10 @@ uint32_t World::ignite(const FwIgnitionDef& def) {
     const uint32_t tick = eventTick(def.delay);
     const size_t before = pending_.size();
     try {
-        if (def.object.index1 != 0) return igniteObject(*objects_.get(def.object), def, tick, true);
+        if (def.object.index1 != 0) return igniteObject(*objects_.get(def.object), def, tick);
         uint32_t texels = 0;
         for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-            if (auto* object = objects_.at(i)) texels += igniteObject(**object, def, tick, false);
+            if (auto* object = objects_.at(i)) texels += igniteObject(**object, def, tick);
         return texels;
     } catch (...) {
         pending_.resize(before);

@@ -201,7 +201,7 @@ class World {
     // world.cpp
     FwBurnableMeshId createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
                               core::Owned<Object> owned);
-    uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick, bool named);
+    uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
     void addPending(const Object& object, uint32_t kind, uint32_t tick,
                     std::span<const uint32_t> texels);
     uint32_t eventTick(float delay) const;

@@ -220,8 +220,7 @@ TEST(AbiSizes, InfosFillAnySizeAndNeverMore) {
     EXPECT_NE(std::string::npos, lastMessage(w.world).find("FwMeshInfo::structSize is 0"));
 }
 
-// ---- numbers
-// -------------------------------------------------------------------------------------
+// ---- numbers ----------------------------------------------------------------------------------
 
 // Sets one float of a good def to bad values; each must be refused, naming the field.
 template <class Def>

@@ -331,8 +331,7 @@ TEST(AbiFire, NonCombustibleDoesNotBurnAndRaisesNothing) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwInitMaterialPreset(&stone, FW_MATERIAL_PRESET_COUNT));
 }
 
-// ---- time
-// ----------------------------------------------------------------------------------------
+// ---- time -------------------------------------------------------------------------------------
 
 uint64_t hashAfter(float deltaTime, double seconds) {
     FwMaterialDef material = host::evenMaterial(kRate, 6);
