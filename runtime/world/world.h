@@ -179,7 +179,6 @@ class World {
 
     // step.cpp
     void planSteps(const ClockAdvance& time);
-    void planStepEvents(uint32_t step, uint32_t now);
     void planProbes();
     void commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept;
     // latch.cpp

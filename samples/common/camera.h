@@ -61,35 +61,4 @@ struct OrbitCamera {
     void zoom(float notches) { distance *= std::pow(0.9f, notches); }
 };
 
-// Above a map: keys or drag move over the ground, wheel zooms, the view tilts with height.
-struct StrategyCamera {
-    glm::vec3 focus{0.0f};   // m, on the ground
-    float distance = 40.0f;  // m, kept in [nearest, farthest]
-    float nearest = 8.0f, farthest = 90.0f;
-    float yaw = 0.0f;          // rad
-    float fieldOfView = 0.6f;  // rad
-
-    Camera camera() const {
-        const float height = (distance - nearest) / std::max(1.0f, farthest - nearest);
-        const float pitch = 0.55f + 0.45f * std::clamp(height, 0.0f, 1.0f);
-        Camera result;
-        result.target = focus;
-        result.eye = focus + distance * glm::vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
-                                                  std::cos(yaw) * std::cos(pitch));
-        result.fieldOfView = fieldOfView;
-        result.nearPlane = 0.5f;
-        result.farPlane = 600.0f;
-        return result;
-    }
-    // Along the ground, in the camera's frame: right and forward, m.
-    void move(float right, float forward) {
-        const glm::vec3 ahead(-std::sin(yaw), 0.0f, -std::cos(yaw));
-        const glm::vec3 side(std::cos(yaw), 0.0f, -std::sin(yaw));
-        focus += right * side + forward * ahead;
-    }
-    void zoom(float notches) {
-        distance = std::clamp(distance * std::pow(0.9f, notches), nearest, farthest);
-    }
-};
-
 }  // namespace sample

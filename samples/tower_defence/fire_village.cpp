@@ -269,11 +269,8 @@ void FireVillage::pollEvents() {
     FwEvent events[64];
     while (const uint32_t count = fwWorld_PollEvents(fire_.world, events, 64)) {
         for (uint32_t i = 0; i < count; ++i) {
-            if (events[i].type != FW_EVENT_BURNT_OUT || events[i].userData >= things.size())
-                continue;
-            Thing& thing = things[size_t(events[i].userData)];
-            burntOut_ += !thing.over;
-            thing.over = true;
+            if (events[i].type == FW_EVENT_BURNT_OUT && events[i].userData < things.size())
+                things[size_t(events[i].userData)].over = true;
         }
     }
 }

@@ -50,7 +50,6 @@ class FireVillage {
 
     uint32_t burning() const { return burning_; }
     uint32_t caught() const { return caught_; }
-    uint32_t burntOut() const { return burntOut_; }
     glm::vec3 fireCentre(const Thing& thing) const;  // m, world; about where it burns
 
  private:
@@ -72,7 +71,7 @@ class FireVillage {
     std::vector<PointLight> lights_;
     uint32_t seed_;
     float time_ = 0;  // s
-    uint32_t burning_ = 0, caught_ = 0, burntOut_ = 0;
+    uint32_t burning_ = 0, caught_ = 0;
 };
 
 // Whether the model is worth burning at all: has fuel and stands in the play area.

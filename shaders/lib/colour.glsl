@@ -39,10 +39,6 @@ vec3 encodeSrgb(vec3 c) {
                lessThanEqual(c, vec3(0.0031308)));
 }
 
-vec3 decodeSrgb(vec3 c) {
-    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThan(c, vec3(0.04045)));
-}
-
 // FwOutputEncoding: 0 linear, 1 tone mapped into an sRGB view, 2 tone mapped and encoded.
 vec3 encodeOutput(vec3 linear, uint encoding) {
     if (encoding == 0u) return linear;

@@ -19,8 +19,8 @@
 #define FW_BIND_TILE_STATE 9  // TileState[] (per object)
 #define FW_BIND_LIST_A 10     // uint[]: front list, world tile ids (ping)
 #define FW_BIND_LIST_B 11     // uint[]: front list (pong)
-#define FW_BIND_RUN 12        // uvec4[]: due tiles of this iteration, see kRun below
-#define FW_BIND_SCRATCH 13    // uint[]: gathered rows of texels from its start, see kScratch below;
+#define FW_BIND_RUN 12        // uvec4[]: due tiles: world tile, object, first texel, mesh tile
+#define FW_BIND_SCRATCH 13    // uint[]: gathered rows from its start (row, mask, texel, object, 8 ticks),
                               // rim texels from its end (row * 8 + column); 160 words per due tile
 #define FW_BIND_MASKS 14      // uvec4[]: texels changed (xy) and newly lit (zw) per due tile
 #define FW_BIND_COUNTERS 15   // IterationCounters[], see the kRow constants
