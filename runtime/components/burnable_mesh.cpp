@@ -26,6 +26,28 @@ fire::SpreadFacts facts(const BurnableMesh& object, const mesh::BurnDomain& doma
     return f;
 }
 
+// Notes how high, along up, the ground is that the object stands on.
+void standOnGround(const mesh::BurnDomain& domain,
+                   std::array<gpu::BurnMaterial, kMaterials>& materials) noexcept {
+    const auto any = std::find_if(materials.begin(), materials.end(),
+                                  [](const gpu::BurnMaterial& m) { return (m.flags & 1) != 0; });
+    if (any == materials.end()) return;
+    gpu::uvec4 up = any->upCeiling;
+    int64_t low = INT64_MAX, high = INT64_MIN;
+    // A few thousand texels tell; odd strides meet all columns.
+    const uint32_t count = domain.texelCount(), stride = (count / 4096) | 1u;
+    for (uint32_t i = 0; i < count; i += stride) {
+        if (!domain.real(i)) continue;
+        const mesh::TexelPosition& t = domain.texels[i];
+        const int64_t rise = int64_t(int32_t(up.x)) * t.x + int64_t(int32_t(up.y)) * t.y +
+                             int64_t(int32_t(up.z)) * t.z;
+        low = std::min(low, rise);
+        high = std::max(high, rise);
+    }
+    up.w = low > high ? 0 : uint32_t(int32_t(low + (high - low) / 25));
+    for (gpu::BurnMaterial& m : materials) m.upCeiling = up;
+}
+
 bool sameTurn(const Pose& a, const Pose& b) noexcept {
     return a.scale == b.scale && std::memcmp(a.rotation, b.rotation, sizeof a.rotation) == 0;
 }
@@ -172,7 +194,14 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
         // A look was tuned at a rate of its own: one twice as fast ages twice as fast.
         const float tuned = lookSpreadRate(def.look);
         if (tuned > 0 && def.spreadRate > 0) record.timeScale = drive.pace * def.spreadRate / tuned;
+        const gpu::MaterialLook look = materialLook(def.look);
+        if (record.timeScale > 0 && look.holeTime > 0) {
+            const float ticks = float(gpu::kTicksPerSecond) / record.timeScale;
+            record.holeTicks = uint32_t(std::min(look.holeTime * ticks, 4.0e9f));
+            record.baseColor.w = std::min(lookHoleEnd(look) * ticks, 4.0e8f);
+        }
     }
+    standOnGround(domain, records.materials);
     records.timing = fire::frontTiming(defs, f, winds, records.materials);
     for (uint32_t i = 0; i < kMaterials; ++i) latch.flameTicks[i] = records.materials[i].flameTicks;
     latch.substepShift = records.timing.substepShift;

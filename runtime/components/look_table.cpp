@@ -397,6 +397,11 @@ MaterialLook materialLook(uint32_t preset) noexcept {
     }
 }
 
+float lookHoleEnd(const gpu::MaterialLook& look) noexcept {  // see holeDelay in look.glsl
+    return look.holeTime + 0.45f * look.holeVariation * (0.9f + 0.8f * look.holeFine) +
+           2.3f * look.jitter;
+}
+
 float lookSpreadRate(uint32_t preset) noexcept { return materialLook(preset).spreadRate; }
 
 }  // namespace fw::components

@@ -13,6 +13,8 @@ constexpr uint32_t kLookCount = 14;  // FW_MATERIAL_PRESET_COUNT
 [[nodiscard]] gpu::MaterialLook materialLook(uint32_t preset) noexcept;
 // m/s at which the row's seconds were tuned; 0: never burns. BurnMaterial::timeScale is
 // spread rate (pace included) over this.
-[[nodiscard]] float lookSpreadRate(uint32_t preset) noexcept;
+[[nodiscard]] // s after ignition when nothing of it is left to see, with the latest noise.
+float lookHoleEnd(const gpu::MaterialLook& look) noexcept;
+float lookSpreadRate(uint32_t preset) noexcept;
 
 }  // namespace fw::components

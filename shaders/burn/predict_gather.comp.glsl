@@ -60,6 +60,11 @@ vec2 wetAhead(uint at, ivec2 place, uvec4 sizes, uint stride) {
 void gatherRow(uint slot, uint row) {
     uint counterRow = kRowPredict + push.predictParity;
     uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
+    if ((tileState[worldTile].flag & kTileFalling) != 0u) {  // what it shows is `support`'s
+        if (row == 0u)
+            atomicAnd(tileState[worldTile].flag, ~(kTilePredict << push.predictParity));
+        return;
+    }
     if (row == 0u)
         atomicAnd(tileState[worldTile].flag, ~(kTilePredict << push.predictParity));
     uint object = tileState[worldTile].object;

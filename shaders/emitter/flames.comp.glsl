@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_NORMALS readonly
 #define FW_USE_STATE readonly
 #define FW_USE_COUNTERS readonly
+#define FW_USE_TILE_STATE readonly
 #define FW_USE_BURN_TILES readonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
@@ -105,6 +106,9 @@ void main() {
         float wish = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
         // A front thinner than its flames are deep still has a row of them.
         wish *= clamp(0.7 * likely * side / near.y, 1.0, 4.0);
+        // What falls to ash has nothing left that flames.
+        uint worldTile = objects[tile.object].worldTileBase + tile.tile;
+        if ((tileState[worldTile].flag & kTileFalling) != 0u) wish = 0.0;
         // Lives must not depend on what burns, or a change would shake all of them.
         float scale = sqrt(clamp(6.0 * tileSide(tile.object), 0.05, 3.0));
 

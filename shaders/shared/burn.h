@@ -95,6 +95,15 @@ FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
 FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
 FW_SHARED_CONST uint kTileHot = 32u;         // in the hot list
 FW_SHARED_CONST uint kTileWarm = 64u;        // and not for cold water alone
+// Cosmetic, of `support`: facts of the tile's texels, what it found, and its distance to a hold.
+FW_SHARED_CONST uint kTileSidesShift = 8u;   // 4 bits: the tile beside goes on over that side
+FW_SHARED_CONST uint kTileSpent = 0x1000u;   // all its texels burn or have burnt
+FW_SHARED_CONST uint kTileGround = 0x2000u;
+FW_SHARED_CONST uint kTileMaterialShift = 14u; // 3 bits
+FW_SHARED_CONST uint kTileFacts = 0x1FF00u;
+FW_SHARED_CONST uint kTileSolid = 0x20000u;
+FW_SHARED_CONST uint kTileFalling = 0x40000u;
+FW_SHARED_CONST uint kTileDistanceShift = 21u; // 11 bits
 
 // Rows of IterationCounters. The first are lists that live on; list*: indirect groups of 64 tiles
 // (burn) or of 8 (predict, hot).
@@ -163,12 +172,13 @@ struct BurnMaterial { // integers of the spread law for one material on one obje
     float timeScale;  // look seconds per second: pace and spread rate against the look's own
     float thickness;  // m
     float roughness;
-    vec4 baseColor;   // linear albedo; w unused
-    uvec4 upCeiling;  // xyz: up in object space as int Q10 bits; w: 0
+    vec4 baseColor;   // linear albedo; w: ticks after ignition when nothing is left to see
+    uvec4 upCeiling;  // xyz: up in object space as int Q10 bits; w: what lies no higher, in these
+                      // units times position units, is on the ground (looks)
     uint flameTicks;  // as burnTicks, but thick fuel ends too: when it is consumed
     uint windowMax;   // the largest correction window its object may ever have, ticks
     uint air;         // Q8: what the wind makes of thick fuel's burning rate, 256 = still air
-    uint reserved1;
+    uint holeTicks;   // ticks after ignition when it gives way (looks); 0: never
 };
 FW_SHARED_SIZE(BurnMaterial, 112)
 

@@ -257,7 +257,9 @@ Skin freshSkin(Site s, MaterialLook m) {
 // surface. Nothing is looked up on the way: the edge is continued along its slope, and a rounded
 // wall makes that a quadratic.
 float rimHit(float edge, vec2 rise, float thickness, vec3 ray) {
-    float length_ = thickness / max(-ray.z, 0.12), bulge = 0.35 * thickness;
+    // Seen at a slant it is no plane for long: outlines of what is gone would stay as crumbs.
+    if (edge < -0.8 * thickness) return -1.0;
+    float length_ = thickness / max(-ray.z, 0.3), bulge = 0.35 * thickness;
     float a = 4.0 * bulge / (length_ * length_), b = dot(rise, ray.xy) + a * length_;
     float c = edge - bulge, square = b * b + 4.0 * a * c;
     if (square <= 0.0 || b <= 0.0) return -1.0;

@@ -349,6 +349,33 @@ TEST_F(Golden, ThatchByNight) {
     EXPECT_TRUE(matchesGolden("thatch_night", burnAndDraw(world, 7, view, false), kTolerance));
 }
 
+TEST_F(Golden, LeatherCracks) {
+    FwWorld* world = makeWorld(8);
+    addThing(world, FW_MATERIAL_LEATHER, 0.3f, 320, false);
+    const FwView view = makeView({0.1f, 0.05f, 0.5f}, false, false);
+    EXPECT_TRUE(matchesGolden("leather", burnAndDraw(world, 8, view, false), kTolerance));
+}
+
+TEST_F(Golden, CottonBurnsThrough) {
+    FwWorld* world = makeWorld(1);
+    addThing(world, FW_MATERIAL_COTTON, 0.3f, 384, false);
+    const FwView view = makeView({0.1f, 0.05f, 0.5f}, false, false);
+    EXPECT_TRUE(matchesGolden("cotton", burnAndDraw(world, 5, view, false), kTolerance));
+}
+
+TEST_F(Golden, WetPatchIsLeftOver) {
+    FwWorld* world = makeWorld(60);
+    addThing(world, FW_MATERIAL_PINE, 0.5f, 160, false);
+    FwIgnitionDef water = fwDefaultIgnitionDef();
+    water.kind = FW_WET;
+    water.position[0] = 0.03f;
+    water.position[1] = 0.06f;
+    water.radius = 0.10f;
+    ASSERT_EQ(fwWorld_Ignite(world, &water, nullptr), FW_OK);
+    const FwView view = makeView({0.15f, 0.1f, 0.85f}, false, false);
+    EXPECT_TRUE(matchesGolden("wet_patch", burnAndDraw(world, 9, view, false), kTolerance));
+}
+
 TEST_F(Golden, BurntOpenBox) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true);

@@ -33,7 +33,8 @@ class EveryPass : public GpuTest {
         for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
             object.materials[m] = plainMaterial(domain, 0.3, 1.0, 1.0);
             object.materials[m].look = FW_MATERIAL_POLYESTER;  // with the plants: all families
-            object.materials[m].baseColor = {0.8f, 0.4f, 0.2f, 0};
+            object.materials[m].baseColor = {0.8f, 0.4f, 0.2f, 900};
+            object.materials[m].holeTicks = 300;  // pieces fall
         }
         object.materials[1].look = FW_MATERIAL_THATCH;
         object.materials[2].look = FW_MATERIAL_PINE;

@@ -5,12 +5,13 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kMakeUses[] = {
-    {FW_BIND_OBJECTS, Access::read},    {FW_BIND_MATERIALS, Access::read},
-    {FW_BIND_TEXELS, Access::read},     {FW_BIND_NORMALS, Access::read},
-    {FW_BIND_STATE, Access::read},      {FW_BIND_COUNTERS, Access::read},
-    {FW_BIND_BURN_TILES, Access::read}, {FW_BIND_LIGHT_CELLS, Access::read},
-    {FW_BIND_LOOKS, Access::read},      {FW_BIND_FLAMES, Access::write},
-    {FW_BIND_DRAW_ARGS, Access::write}, {FW_BIND_VIEW, Access::uniformView},
+    {FW_BIND_OBJECTS, Access::read},     {FW_BIND_MATERIALS, Access::read},
+    {FW_BIND_TEXELS, Access::read},      {FW_BIND_NORMALS, Access::read},
+    {FW_BIND_STATE, Access::read},       {FW_BIND_COUNTERS, Access::read},
+    {FW_BIND_BURN_TILES, Access::read},  {FW_BIND_LIGHT_CELLS, Access::read},
+    {FW_BIND_TILE_STATE, Access::read},  {FW_BIND_LOOKS, Access::read},
+    {FW_BIND_FLAMES, Access::write},     {FW_BIND_DRAW_ARGS, Access::write},
+    {FW_BIND_VIEW, Access::uniformView},
 };
 constexpr Use kSortUses[] = {
     {FW_BIND_FLAMES, Access::read},

@@ -12,10 +12,10 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,       &kEventsPass,     &kWakePass,          &kSchedulePass,  &kGatherPass,
-    &kArrivalPass,     &kArrivalRimPass, &kCommitPass,        &kPublishedPass, &kReduceClearPass,
-    &kReduceFrontPass, &kReducePass,     &kPredictGatherPass, &kPredictPass,   &kPredictRimPass,
-    &kProbePass,       &kLightsPass,     &kFlameQuadsPass,    &kFlameSortPass};
+    &kResetPass,       &kEventsPass,     &kWakePass,          &kSchedulePass,   &kGatherPass,
+    &kArrivalPass,     &kArrivalRimPass, &kCommitPass,        &kPublishedPass,  &kReduceClearPass,
+    &kReduceFrontPass, &kReducePass,     &kPredictGatherPass, &kPredictPass,    &kPredictRimPass,
+    &kSupportPass,     &kProbePass,      &kLightsPass,        &kFlameQuadsPass, &kFlameSortPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -128,6 +128,16 @@ void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endT
     recorder.dispatchWork(kPredictPass, &push, kRowPredict + lists.predictParity);
     recorder.dispatchRim(kPredictRimPass, &push, kRowPredict + lists.predictParity);
     lists.predictParity ^= 1;
+}
+
+void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks, uint32_t first,
+                   uint32_t count) {
+    StepPush push{};
+    push.now = endTick;
+    push.count = ticks;
+    push.object = first;
+    push.iteration = count;
+    recorder.dispatch(kSupportPass, &push, groupsOf(count));
 }
 
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {

@@ -14,8 +14,8 @@ class FrameRecorder;
 
 extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kGatherPass,
     kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
-    kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kProbePass, kLightsPass,
-    kFlameQuadsPass, kFlameSortPass;
+    kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
+    kLightsPass, kFlameQuadsPass, kFlameSortPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -54,6 +54,9 @@ struct StepRecord {
 void recordCounters(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t iterations);
 void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord& step);
 void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick);
+// Tiles `first` .. + `count` of all; `ticks` since they last came to it.
+void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks, uint32_t first,
+                   uint32_t count);
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes);
 void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles);
 // False: it would draw nothing, do not bind it.

@@ -79,6 +79,7 @@ struct FrameNeeds {
     bool stimulus = false;                // an event or a latch
     bool findsAnew = false;               // the first step wakes what forgets
     bool burning = false, predicting = false, publishedRuns = false;
+    bool falling = false;                 // burnt pieces may lose their hold
     bool readback = false, work = false;  // no work: nothing is recorded
 };
 
@@ -153,10 +154,12 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         });
     needs.burning = !s.burnEmpty || needs.stimulus || needs.never;
     needs.predicting = !s.predictEmpty || needs.stimulus || needs.never;
+    needs.falling =
+        anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.iterations > 0 ||
                      needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
-    needs.work = needs.readback || forgets || s.recordsDirty || !s.uploads.empty() ||
-                 s.planes.movesPending();
+    needs.work = needs.readback || needs.falling || forgets || s.recordsDirty ||
+                 !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
 
@@ -384,6 +387,30 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event) {
     }
 }
 
+// Burnt pieces that lost their hold: a part of all tiles each frame, in turn.
+void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
+                   FrameRecorder& recorder) {
+    constexpr uint32_t kMostTiles = 16384;
+    if (burning) {
+        float latest = 0;
+        for (const ObjectEntry& object : s.objects) {
+            if (!object.live || !object.touched) continue;
+            for (const BurnMaterial& material : object.materials)
+                if (material.holeTicks) latest = std::max(latest, material.baseColor.w);
+        }
+        // After the last flame: until all is gone, and as long as it takes to notice.
+        s.supportUntil = plan.endTick + uint32_t(1.2f * latest) + 16 * kTicksPerSecond;
+        if (latest == 0) return;
+    }
+    const uint32_t tiles = s.planes.capacity(kSpaceObjectTiles);
+    const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
+    const uint32_t first = s.supportFirst < tiles ? s.supportFirst : 0;
+    const uint32_t count = std::min(tiles - first, kMostTiles);
+    s.supportFirst = first + count;
+    const auto ticks = uint32_t(plan.steps.size()) * kStepTicks * parts;
+    if (count) recordSupport(recorder, plan.endTick, ticks, first, count);
+}
+
 }  // namespace
 
 void VkBackend::State::openFrame(VkCommandBuffer commands, uint64_t ringFrame) {
@@ -522,6 +549,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         for (size_t i = 0; i < rounds; ++i) recordPredict(recorder, lists, plan.endTick);
         predictWalks += uint32_t(rounds);
     }
+    if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
     slot.layout.predictParity = lists.predictParity;
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }

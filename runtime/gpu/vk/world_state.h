@@ -143,7 +143,9 @@ struct VkBackend::State {
     uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0;
     uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
     bool frontEmpty = true, burnEmpty = true, predictEmpty = true;  // known from a readback
-    uint32_t shownTick = 0;  // tick of the state that draws show
+    uint32_t supportUntil = 0;  // tick until which burnt pieces may still fall
+    uint32_t supportFirst = 0;  // tile that the next look at what holds what begins at
+    uint32_t shownTick = 0;     // tick of the state that draws show
     float wind[3] = {};
     float tickFraction = 0;
 

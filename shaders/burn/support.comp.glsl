@@ -1,0 +1,127 @@
+// What holds what, for looks: a tile's distance, over tiles that are there, to something that stays:
+// unburnt texels, or the ground. A piece without such a way falls to ash: its shown age runs ahead.
+// One thread per tile; the distance heals itself, a tile a frame, and loops count up to the limit.
+// Not the simulation: that knows no gravity.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_OBJECT_QUADS
+#define FW_USE_MATERIALS readonly
+#define FW_USE_TEXELS readonly
+#define FW_USE_READERS readonly
+#define FW_USE_TILES readonly
+#define FW_USE_STATE readonly
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_PREDICT FW_READ_WRITE
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+
+const uint kFar = 2047u;      // of distances
+const uint kLookEvery = 32u;  // frames, about, between looks at a tile's texels
+const float kFallTime = 1.1;  // s from the first flake to the last
+
+uint distanceOf(uint flag) { return flag >> kTileDistanceShift; }
+
+// Sides 0..3: left, right, below, above; texel `i` of our side, or beside it in the next tile.
+uint sideTexel(uint corner, uint width, uint side, uint i, bool beside) {
+    uint off = beside ? 1u : 0u;
+    if (side < 2u) return corner + i * width + (side == 0u ? 0u - off : 7u + off);
+    return corner + i + (side == 2u ? 0u - off * width : (7u + off) * width);
+}
+
+// What the texels say: spent, on the ground, which sides lead on, material.
+uint lookAt(uint object, uvec4 bases, uvec4 sizes, uvec2 tile) {
+    uint corner = (tile.y * bases.w + tile.x) * 8u;
+    uvec4 up = materials[object * kMaterialsPerObject].upCeiling;
+    uint facts = kTileSpent;
+    for (uint lane = 0u; lane < 64u; ++lane) {
+        uint texel = corner + (lane >> 3u) * bases.w + (lane & 7u);
+        uint t = state[bases.y + texel];
+        uvec2 place = texels[bases.x + texel];
+        uint flags = place.y >> 16u;
+        if ((flags & kTexelReal) == 0u) continue;
+        if (!isSource(t) || t > push.now) facts &= ~kTileSpent;
+        int rise = int(place.x & 0xFFFFu) * int(up.x) + int(place.x >> 16u) * int(up.y) +
+                   int(place.y & 0xFFFFu) * int(up.z);
+        if (rise <= int(up.w)) facts |= kTileGround;
+        facts = (facts & ~(7u << kTileMaterialShift)) | ((flags & 7u) << kTileMaterialShift);
+    }
+    for (uint k = 0u; k < 32u; ++k) {
+        uint side = k >> 3u;
+        if (side == 0u && tile.x == 0u || side == 1u && tile.x + 1u >= sizes.z) continue;
+        if (side == 2u && tile.y == 0u || side == 3u && (tile.y + 1u) * 8u >= sizes.y) continue;
+        uint mine = texels[bases.x + sideTexel(corner, bases.w, side, k & 7u, false)].y;
+        uint other = texels[bases.x + sideTexel(corner, bases.w, side, k & 7u, true)].y;
+        if ((mine & other & (kTexelReal << 16u)) != 0u) facts |= 1u << (kTileSidesShift + side);
+    }
+    return facts;
+}
+
+// The distance that a neighbour offers.
+uint offer(uint worldTile) {
+    uint flag = tileState[worldTile].flag;
+    if (tileState[worldTile].lastChange == kFarPast) return kFar;  // soon it burns, or is known
+    return (flag & kTileSolid) != 0u ? distanceOf(flag) : kFar;
+}
+
+void supportTile(uint worldTile) {
+    uint last = tileState[worldTile].lastChange;
+    if (last == kFarPast) return;
+    TileRef ref = tileRef(worldTile);
+    if (!ref.alive) return;
+    uint flag = tileState[worldTile].flag;
+    uint object = ref.object;
+    uvec4 bases = objectBases(object);
+    uvec4 places = objectPlaces(object);
+    uvec4 sizes = objectSizes(object);
+    if ((places.w & (kObjectNoHoles | kObjectPublished)) != 0u) return;
+    uvec2 tile = uvec2(ref.local % sizes.z, ref.local / sizes.z);
+    bool falls = (flag & kTileFalling) != 0u;
+    // Eight tiles at once, the width of a software device.
+    bool looks = !falls && hash32((worldTile >> 3u) + (push.now >> 7u)) % kLookEvery == 0u;
+    if (looks) flag = (flag & ~kTileFacts) | lookAt(object, bases, sizes, tile);
+    uint material = object * kMaterialsPerObject + ((flag >> kTileMaterialShift) & 7u);
+    uint holeTicks = materials[material].holeTicks;
+    bool spent = (flag & kTileSpent) != 0u;
+    bool solid = !falls && holeTicks != 0u && (!spent || push.now - last < holeTicks);
+    if (holeTicks == 0u) solid = true;
+    uint before = distanceOf(flag);
+    uint found = kFar;
+    if (!falls && (!spent || holeTicks == 0u || (solid && (flag & kTileGround) != 0u))) found = 0u;
+    for (uint side = 0u; side < 4u && found != 0u; ++side) {
+        if ((flag >> (kTileSidesShift + side) & 1u) == 0u) continue;
+        uint other = side < 2u ? worldTile + (side == 0u ? 0u - 1u : 1u)
+                               : worldTile + (side == 2u ? 0u - sizes.z : sizes.z);
+        found = min(found, offer(other) + 1u);
+    }
+    uvec2 seam = tiles[(sizes.x + ref.local) * 2u].zw;
+    for (uint r = 0u; r < seam.y && found != 0u; ++r)
+        found = min(found, offer(places.x + readers[places.z + seam.x + r]) + 1u);
+    // Farther than before: count up fast, a way that is there corrects it.
+    if (found > before) found = min(max(found, before + 3u), kFar);
+    uint limit = min(uint(4.0 * sqrt(float(sizes.w))) + 48u, kFar - 8u);
+    if (spent && holeTicks != 0u && found >= limit) falls = true;
+    flag &= ~(kTileSolid | kTileFalling | (kFar << kTileDistanceShift));
+    flag |= (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) |
+            (min(found, kFar) << kTileDistanceShift);
+    tileState[worldTile].flag = flag;
+    float fallTicks = materials[material].baseColor.w;
+    if (!falls || float(push.now - last) > 1.2 * fallTicks) return;
+    // `count`: ticks since this tile was last seen to.
+    uint step = uint(min(float(push.count) * (fallTicks / (kFallTime * 4096.0)), 1e8));
+    uint corner = (tile.y * bases.w + tile.x) * 8u;
+    for (uint lane = 0u; lane < 64u; ++lane) {
+        uint at = bases.y + corner + (lane >> 3u) * bases.w + (lane & 7u);
+        uint time = predict[at];
+        if (time >= kLiveEnd || int(push.now - time) > int(1.2 * fallTicks)) continue;
+        predict[at] = min(time - step, kLiveEnd - 1u);  // before the world began, too
+    }
+}
+
+void main() {
+    // `object`: the first tile; `iteration`: how many.
+    for (uint i = gl_GlobalInvocationID.x; i < push.iteration; i += gl_NumWorkGroups.x * 64u)
+        supportTile(push.object + i);
+}

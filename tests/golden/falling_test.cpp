@@ -1,0 +1,106 @@
+// Burnt pieces that nothing holds fall to ash: a tall strip of wood burns through in the middle,
+// and what is above must go long before it is consumed; with something unburnt above, it must stay.
+#include "flamewright/flamewright.h"
+#include "support/meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace fw::test {
+namespace {
+
+constexpr uint32_t kWidth = 64, kHeight = 256;  // px: a strip of 0.15 x 1.2 m fills the height
+
+class Falling : public testing::Test {
+ protected:
+    void SetUp() override {
+        const FwContextDef def = fwDefaultContextDef();
+        FwErrorInfo info{};
+        if (fwCreateContext(&def, &context_, &info) != FW_OK) GTEST_SKIP() << info.message;
+    }
+    void TearDown() override { fwDestroyContext(context_); }
+
+    void touch(uint32_t kind, float y, float radius) {
+        FwIgnitionDef def = fwDefaultIgnitionDef();
+        def.kind = kind;
+        def.position[0] = 0.075f;
+        def.position[1] = y;
+        def.radius = radius;
+        ASSERT_EQ(fwWorld_Ignite(world_, &def, nullptr), FW_OK);
+    }
+
+    // Burns from the middle for `seconds`; the foot is wet. Share of the upper part that is seen.
+    double upperPart(bool wetTop, float seconds) {
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.maxStepsPerFrame = 8;
+        worldDef.maxFlames = 0;
+        EXPECT_EQ(fwCreateWorld(context_, &worldDef, &world_), FW_OK);
+        const Mesh mesh = makePlane(0.15, 1.2, 0, 1, 0, 4);
+        FwMeshDef def = fwDefaultMeshDef();
+        def.positions = mesh.positions.data();
+        def.uvs = mesh.uvs.data();
+        def.indices = mesh.indices.data();
+        def.vertexCount = mesh.vertexCount();
+        def.indexCount = uint32_t(mesh.indices.size());
+        def.texelsPerMetre = 128;
+        def.noiseAmplitude = 0;
+        FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
+        object.flags = FW_BURNABLE_TWO_SIDED;
+        EXPECT_EQ(fwWorld_CreateMesh(world_, &def, &object.mesh), FW_OK);
+        FwMaterialDef pine = fwDefaultMaterialDef();
+        pine.upGain = 0;
+        pine.spreadRate = 0.06f;  // a look second is 10 ms: holes come after 6.2 s
+        EXPECT_EQ(fwWorld_CreateMaterial(world_, &pine, &object.materials[0]), FW_OK);
+        FwBurnableMeshId id{};
+        EXPECT_EQ(fwWorld_CreateBurnableMesh(world_, &object, &id), FW_OK);
+        touch(FW_WET, 0.0f, 0.25f);
+        if (wetTop) touch(FW_WET, 1.2f, 0.12f);
+        touch(FW_IGNITE, 0.45f, 0.08f);
+        fwWorld_Step(world_, 0);
+        for (float t = 0; t < seconds; t += 1.0f / 32) fwWorld_Step(world_, 1.0f / 32);
+        std::vector<uint8_t> pixels(size_t{kWidth} * kHeight * 4);
+        FwOffscreenDef shot = fwDefaultOffscreenDef();
+        shot.width = kWidth;
+        shot.height = kHeight;
+        shot.pixels = pixels.data();
+        shot.view = fwDefaultView();
+        const float blue[4] = {0, 0, 1, 1};
+        std::copy_n(blue, 4, shot.background);
+        // Orthographic: 0.3 x 1.2 m, y up.
+        std::memset(shot.view.view, 0, sizeof shot.view.view);
+        std::memset(shot.view.projection, 0, sizeof shot.view.projection);
+        for (int i = 0; i < 4; ++i) shot.view.view[i * 5] = 1;
+        shot.view.view[12] = -0.075f;
+        shot.view.view[13] = -0.6f;
+        shot.view.view[14] = -1;
+        shot.view.projection[0] = 1 / 0.15f;
+        shot.view.projection[5] = -1 / 0.6f;
+        shot.view.projection[10] = -0.25f;
+        shot.view.projection[15] = 1;
+        EXPECT_EQ(fwWorld_RenderOffscreen(world_, &shot), FW_OK);
+        uint32_t seen = 0, all = 0;
+        for (uint32_t y = 0; y < kHeight * 2 / 5; ++y) {  // above 0.72 m
+            for (uint32_t x = kWidth / 4 + 1; x < kWidth * 3 / 4 - 1; ++x, ++all)
+                seen += pixels[(size_t{y} * kWidth + x) * 4 + 2] != 255;
+        }
+        fwDestroyWorld(world_);
+        return double(seen) / double(all);
+    }
+
+    FwContext* context_ = nullptr;
+    FwWorld* world_ = nullptr;
+};
+
+TEST_F(Falling, WhatNothingHoldsFallsToAsh) {
+    // The front is at the top after 12.5 s. The middle is gone then, above it all stands.
+    EXPECT_GT(upperPart(false, 9), 0.9);
+    // By itself the uppermost part would go after some 19 s.
+    EXPECT_LT(upperPart(false, 15.5f), 0.02);
+}
+
+TEST_F(Falling, WhatIsHeldStays) { EXPECT_GT(upperPart(true, 13.0f), 0.4); }
+
+}  // namespace
+}  // namespace fw::test
