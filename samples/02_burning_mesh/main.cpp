@@ -102,16 +102,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
 
-        sample::OrbitCamera orbit;
-        orbit.target = {0, 0.5f * subject.height(), 0};
-        orbit.yaw = glm::radians(wishes.yaw);
-        orbit.pitch = glm::radians(wishes.pitch);
-        orbit.fieldOfView = 0.5f;
-        const float shape =
-            static_cast<float>(stage.extent().width) / static_cast<float>(stage.extent().height);
-        orbit.distance = 1.0f;
-        const glm::vec3 back = orbit.camera().eye - orbit.target;
-        orbit.distance = fittingDistance(subject, orbit.target, back, orbit.fieldOfView, shape);
+        sample::OrbitCamera orbit = orbitAround(subject, wishes.yaw, wishes.pitch, stage.extent());
 
         // Faster than wood burns: so that the fire is through the subject before the run is over.
         FwMaterialDef material = fwDefaultMaterialDef();

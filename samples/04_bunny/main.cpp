@@ -33,16 +33,7 @@ int run(const sample::Options& options, float seconds, float turn) {
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
 
-        sample::OrbitCamera orbit;
-        orbit.target = {0, 0.5f * subject.height(), 0};
-        orbit.yaw = glm::radians(-24.0f);
-        orbit.pitch = glm::radians(9.0f);
-        orbit.fieldOfView = 0.5f;
-        const float shape =
-            static_cast<float>(stage.extent().width) / static_cast<float>(stage.extent().height);
-        orbit.distance = 1.0f;
-        const glm::vec3 back = orbit.camera().eye - orbit.target;
-        orbit.distance = fittingDistance(subject, orbit.target, back, orbit.fieldOfView, shape);
+        sample::OrbitCamera orbit = orbitAround(subject, -24.0f, 9.0f, stage.extent());
 
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.paceFactor = 150.0f * kFillingSeconds / std::max(1.0f, seconds);

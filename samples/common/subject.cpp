@@ -210,20 +210,29 @@ SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye) {
     return lowest;
 }
 
-float fittingDistance(const Subject& subject, glm::vec3 target, glm::vec3 back, float fieldOfView,
-                      float aspect) {
+sample::OrbitCamera orbitAround(const Subject& subject, float yaw, float pitch,
+                                VkExtent2D picture) {
     constexpr float kFilled = 0.80f;  // of the picture's height, or of its width
+    sample::OrbitCamera orbit;
+    orbit.target = {0, 0.5f * subject.height(), 0};
+    orbit.yaw = glm::radians(yaw);
+    orbit.pitch = glm::radians(pitch);
+    orbit.fieldOfView = 0.5f;
+    orbit.distance = 1.0f;
+    const glm::vec3 back = orbit.camera().eye - orbit.target;
     const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back));
     const glm::vec3 up = glm::cross(back, right);
-    const float tall = kFilled * std::tan(0.5f * fieldOfView), wide = tall * aspect;
-    float distance = 0.1f * subject.size();
+    const float tall = kFilled * std::tan(0.5f * orbit.fieldOfView);
+    const float wide =
+        tall * (static_cast<float>(picture.width) / static_cast<float>(picture.height));
+    orbit.distance = 0.1f * subject.size();
     for (uint32_t i = 0; i < subject.model.vertexCount(); ++i) {
-        const glm::vec3 p = vertexOf(subject.model, i) - target;
+        const glm::vec3 p = vertexOf(subject.model, i) - orbit.target;
         const float away =
             std::max(std::abs(glm::dot(p, right)) / wide, std::abs(glm::dot(p, up)) / tall);
-        distance = std::max(distance, away + glm::dot(p, back));
+        orbit.distance = std::max(orbit.distance, away + glm::dot(p, back));
     }
-    return distance;
+    return orbit;
 }
 
 FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMapRequest& request,

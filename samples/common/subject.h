@@ -18,11 +18,11 @@ struct Subject {
     float scale = 1.0f;             // that was applied to the file's units
     // Materials by slot of the burn map: those with a picture have a slot to themselves as long as
     // there are slots; the others share the last and bring their colour in the vertices.
-    std::vector<uint8_t> slots;        // by model material
-    std::array<int32_t, 8> pictures{}; // by slot: of model.images, -1: none
-    float size() const;    // m, largest side
-    float height() const;  // m
-    float radius() const;  // m, of the ball around its middle
+    std::vector<uint8_t> slots;         // by model material
+    std::array<int32_t, 8> pictures{};  // by slot: of model.images, -1: none
+    float size() const;                 // m, largest side
+    float height() const;               // m
+    float radius() const;               // m, of the ball around its middle
 };
 
 // `file` empty: the wooden toy. Throws sample::Failure with the importer's message.
@@ -37,9 +37,8 @@ SurfacePoint castRay(const Subject& subject, glm::vec3 origin, glm::vec3 directi
 // A low place that faces the viewer: where one would hold the match.
 SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye);
 
-// How far from `target`, m, an eye in the direction `back` sees all of it with a margin.
-float fittingDistance(const Subject& subject, glm::vec3 target, glm::vec3 back, float fieldOfView,
-                      float aspect);
+// Around its middle, as far off as shows all of it with a margin. Yaw and pitch in degrees.
+sample::OrbitCamera orbitAround(const Subject& subject, float yaw, float pitch, VkExtent2D picture);
 
 struct BurnMapRequest {
     uint32_t mapSize = 1024;  // texels
