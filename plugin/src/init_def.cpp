@@ -31,6 +31,7 @@ void defaults(FwWorldDef& def) noexcept {
     def.maxStepsPerFrame = 8;
     def.maxLights = 16;
     def.maxFlames = 4096;
+    def.maxRefinedTriangles = 400000;
 }
 
 void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }
@@ -48,6 +49,8 @@ void defaults(FwMeshDef& def) noexcept {
 
 void defaults(FwBurnableMeshDef& def) noexcept {
     identity(def.transform);
+    def.refineDepth = 5;
+    def.refinePixelsPerEdge = 8;
     set(def.tint, 1, 1, 1);
 }
 

@@ -72,6 +72,7 @@ class VulkanDevice final : public Device {
         gpu::vk::WorldLimits limits;
         limits.maxLights = def.maxLights;
         limits.maxFlames = def.maxFlames;
+        limits.maxRefinedTriangles = def.maxRefinedTriangles;
         limits.seed = def.seed;
         std::copy_n(def.up, 3, limits.up);
         limits.paceFactor = def.paceFactor;

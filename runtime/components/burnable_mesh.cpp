@@ -3,6 +3,7 @@
 #include "components/look_table.h"
 #include "core/error.h"
 #include "fire/presets.h"
+#include "shared/refine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,8 @@ float meanTexelArea(const mesh::BurnDomain& domain) noexcept {
 
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED |
-                                FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_NO_SPREAD;
+                                FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_REFINE |
+                                FW_BURNABLE_NO_SPREAD;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
@@ -77,6 +79,11 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     checkValues(def.tint, 3, "FwBurnableMeshDef::tint", 0, 100);
     std::copy_n(def.tint, 3, object.tint);
     object.userData = def.userData;
+    if (def.refineDepth > gpu::kRefineDepth)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwBurnableMeshDef::refineDepth is %u; the limits are [0, %u].", def.refineDepth,
+                   gpu::kRefineDepth);
+    checkValue(def.refinePixelsPerEdge, "FwBurnableMeshDef::refinePixelsPerEdge", 1, 1000);
     if (def.multiplier) {
         const uint32_t sides[2] = {def.multiplierWidth, def.multiplierHeight};
         static constexpr const char* kNames[2] = {"multiplierWidth", "multiplierHeight"};

@@ -2,7 +2,7 @@
 // (records into a command buffer) and cpu (the same integers, at once, no device). Plain data in,
 // readbacks out; a backend decides nothing about the game.
 #pragma once
-#include "mesh/burn_domain.h"
+#include "mesh/refine/model.h"
 #include "shared/burn.h"
 #include "shared/heat.h"
 
@@ -20,6 +20,9 @@ struct ObjectInit {
     // Per texel Q7, 0 = cannot burn; empty: the mesh's own with nothing painted. Width of the map.
     std::span<const uint16_t> slowness;
     uint32_t images[kMaterialsPerObject] = {};  // base-colour image slot + 1, 0: none
+    bool refine = false;  // createRefinement was called for its mesh and this depth
+    uint32_t refineDepth = 0;
+    float refinePixelsPerEdge = 8;
     std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat plane
 };
 
@@ -92,6 +95,9 @@ class Backend {
     // numbers, dense from 0. A domain outlives its mesh.
     virtual void createMesh(uint32_t slot, const mesh::BurnDomain& domain) = 0;
     virtual void destroyMesh(uint32_t slot) noexcept = 0;
+    // What objects of the mesh need that refine down to `depth`; once for each. Looks only.
+    virtual void createRefinement(uint32_t /*mesh*/, uint32_t /*depth*/, const mesh::BurnDomain&,
+                                  const mesh::RefineModel&) {}
     virtual void createObject(uint32_t slot, const ObjectInit& init) = 0;
     virtual void destroyObject(uint32_t slot) noexcept = 0;
     // Pose, tint and flags; the rest of the record stays.

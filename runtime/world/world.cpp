@@ -43,6 +43,8 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     checkLimit(def.reserved, "FwWorldDef::reserved", 0, 0);
     checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
     checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, 64);
+    checkLimit(def.maxRefinedTriangles, "FwWorldDef::maxRefinedTriangles", 1000, 16000000);
+    checkLimit(def.reserved1, "FwWorldDef::reserved1", 0, 0);
     checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
     return def;
 }
@@ -285,6 +287,12 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     init.materials = records.materials;
     init.slowness = slowness;
     std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
+    if (def.flags & FW_BURNABLE_REFINE) {
+        refineMesh(mesh, init.mesh, def, object.data);
+        init.refine = true;
+        init.refineDepth = def.refineDepth;
+        init.refinePixelsPerEdge = def.refinePixelsPerEdge;
+    }
 
     object.firstFrame = lastFrame_ + 1;
     const uint32_t burnable = object.texels;
@@ -306,6 +314,21 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     texels_ += burnable;
     countImages(object.data, true);
     return id;
+}
+
+// Once per mesh and depth. The wall's thickness is that of the material of the first who asks.
+void World::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
+                       const components::BurnableMesh& object) {
+    if (mesh.refinements >> def.refineDepth & 1u) return;
+    mesh::RefineOptions options;
+    options.depth = def.refineDepth;
+    float wall = 0;
+    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
+        if (components::burns(object, i)) wall = std::max(wall, object.materials[i].thickness);
+    if (wall > 0) options.wall = std::clamp(wall, 1e-4f, 0.5f);
+    backend_.createRefinement(slot, def.refineDepth, *mesh.domain,
+                              mesh::bakeRefine(*mesh.domain, options, memory_));
+    mesh.refinements |= 1u << def.refineDepth;
 }
 
 void World::destroyBurnableMesh(FwBurnableMeshId id) {

@@ -23,6 +23,7 @@ struct MeshEntry {
     // A shape of another mesh, for objects whose scale is not uniform: lives while one uses it.
     uint32_t parentPlus1 = 0;  // its slot + 1; 0: a mesh of the host's
     float shape[3] = {1, 1, 1};
+    uint32_t refinements = 0;  // bit per depth that the backend has
 };
 
 struct ImageEntry {
@@ -210,6 +211,8 @@ class World {
     uint32_t shapedSlot(uint32_t slot, const float shape[3]);
     void releaseShape(uint32_t slot) noexcept;
     void countImages(const components::BurnableMesh& object, bool more) noexcept;
+    void refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
+                    const components::BurnableMesh& object);
     void sendPose(const Object& object) noexcept;
 
     std::pmr::memory_resource* memory_;

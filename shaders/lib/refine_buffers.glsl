@@ -1,52 +1,58 @@
-// Storage buffers of the refinement passes, of one object. A shader defines FW_USE_<NAME> as the
-// access it needs before it includes this; only those are declared.
+// Storage buffers of the refinement passes. A shader defines FW_USE_<NAME> as the access it needs
+// before it includes this; only those are declared. One list entry is one workgroup's share.
 #ifndef FW_LIB_REFINE_BUFFERS_GLSL
 #define FW_LIB_REFINE_BUFFERS_GLSL
+#include "shared/burn.h"
 #include "shared/refine.h"
 
 #define FW_READ_WRITE
 #define FW_BUFFER(number, access, block, type, name) \
     layout(std430, set = 0, binding = number) access buffer block { type name[]; }
 
-#ifdef FW_USE_TABLE
-FW_BUFFER(FW_REFINE_BIND_TABLE, FW_USE_TABLE, TableBuffer, uint, table);
-uint tableToken(uint entry) { return (table[entry >> 1u] >> (16u * (entry & 1u))) & 0xFFFFu; }
+FW_BUFFER(FW_BIND_REFINE_WORK, FW_USE_WORK, RefineWorkBuffer, uint, work);
+FW_BUFFER(FW_BIND_REFINE_OBJECTS, readonly, RefineObjectsBuffer, RefineObject, refined);
+#ifdef FW_USE_WORDS
+FW_BUFFER(FW_BIND_REFINE_WORDS, FW_USE_WORDS, RefineWordsBuffer, uint, words);
+uint tableToken(uint entry) { return (words[entry >> 1u] >> (16u * (entry & 1u))) & 0xFFFFu; }
 #endif
 #ifdef FW_USE_TRIANGLES
-FW_BUFFER(FW_REFINE_BIND_TRIANGLES, FW_USE_TRIANGLES, TrianglesBuffer, RefineTriangle, triangles);
+FW_BUFFER(FW_BIND_REFINE_TRIANGLES, FW_USE_TRIANGLES, RefineTrianglesBuffer, RefineTriangle,
+          triangles);
 #endif
 #ifdef FW_USE_EDGES
-FW_BUFFER(FW_REFINE_BIND_EDGES, FW_USE_EDGES, EdgesBuffer, RefineEdge, edges);
+FW_BUFFER(FW_BIND_REFINE_EDGES, FW_USE_EDGES, RefineEdgesBuffer, RefineEdge, edges);
 #endif
 #ifdef FW_USE_SLOTS
-FW_BUFFER(FW_REFINE_BIND_SLOTS, FW_USE_SLOTS, SlotsBuffer, RefineSlot, slots);
-#endif
-#ifdef FW_USE_HEAT
-FW_BUFFER(FW_REFINE_BIND_HEAT, FW_USE_HEAT, HeatBuffer, uint, heat);
+FW_BUFFER(FW_BIND_REFINE_SLOTS, FW_USE_SLOTS, RefineSlotsBuffer, RefineSlot, slots);
 #endif
 #ifdef FW_USE_ITEMS
-FW_BUFFER(FW_REFINE_BIND_ITEMS, FW_USE_ITEMS, ItemsBuffer, RefineLevel, items);
+FW_BUFFER(FW_BIND_REFINE_ITEMS, FW_USE_ITEMS, RefineItemsBuffer, RefineLevel, items);
+#endif
+#ifdef FW_USE_HEAT
+FW_BUFFER(FW_BIND_REFINE_HEAT, FW_USE_HEAT, RefineHeatBuffer, uint, heat);
 #endif
 #ifdef FW_USE_LEVELS
-FW_BUFFER(FW_REFINE_BIND_LEVELS, FW_USE_LEVELS, LevelsBuffer, uint, levels);
-#endif
-#ifdef FW_USE_SUMS
-FW_BUFFER(FW_REFINE_BIND_SUMS, FW_USE_SUMS, SumsBuffer, uint, sums);
-#endif
-#ifdef FW_USE_STARTS
-FW_BUFFER(FW_REFINE_BIND_STARTS, FW_USE_STARTS, StartsBuffer, uint, starts);
-#endif
-#ifdef FW_USE_INDICES
-FW_BUFFER(FW_REFINE_BIND_INDICES, FW_USE_INDICES, IndicesBuffer, uint, indices);
+FW_BUFFER(FW_BIND_REFINE_LEVELS, FW_USE_LEVELS, RefineLevelsBuffer, uvec2, levels);
 #endif
 #ifdef FW_USE_VERTICES
-FW_BUFFER(FW_REFINE_BIND_VERTICES, FW_USE_VERTICES, VerticesBuffer, RefineVertex, vertices);
+FW_BUFFER(FW_BIND_REFINE_VERTICES, FW_USE_VERTICES, RefineVerticesBuffer, RefineVertex, vertices);
 #endif
-#ifdef FW_USE_TICKS
-FW_BUFFER(FW_REFINE_BIND_TICKS, FW_USE_TICKS, TicksBuffer, uint, ticks);
+#ifdef FW_USE_INDICES
+FW_BUFFER(FW_BIND_REFINE_INDICES, FW_USE_INDICES, RefineIndicesBuffer, uint, indices);
 #endif
-layout(std430, set = 0, binding = FW_REFINE_BIND_FRAME) readonly buffer FrameBuffer {
-    RefineFrameParams frame;
-};
-layout(push_constant) uniform Push { uint phase; } push;
+#ifdef FW_USE_DRAWS
+FW_BUFFER(FW_BIND_REFINE_DRAWS, FW_USE_DRAWS, RefineDrawsBuffer, uint, draws);
+#endif
+#ifdef FW_USE_STATE
+FW_BUFFER(FW_BIND_STATE, FW_USE_STATE, StateBuffer, uint, state);
+FW_BUFFER(FW_BIND_GRADIENT, FW_USE_STATE, GradientBuffer, uint, gradient);
+#endif
+layout(push_constant) uniform Push { RefinePush push; };
+
+const uint kMostGroups = 65535u;  // of a dispatch; the rest is strided over
+
+uint edgeList() { return kRefineWorkLists; }
+uint triangleList() { return edgeList() + 2u * push.edgeGroups; }
+uint cornerList() { return triangleList() + 2u * push.triangleGroups; }
+uint objectList() { return cornerList() + 2u * push.cornerGroups; }
 #endif

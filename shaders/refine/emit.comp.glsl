@@ -1,31 +1,40 @@
-// One lane per output triangle: finds its coarse triangle, looks its pattern's triangle up, writes
-// three draw vertices.
+// One lane per output triangle of the objects whose levels changed: finds its coarse triangle, looks
+// its pattern's triangle up, writes three draw vertices.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_TABLE readonly
+#define FW_USE_WORK readonly
+#define FW_USE_WORDS readonly
 #define FW_USE_TRIANGLES readonly
 #define FW_USE_LEVELS readonly
-#define FW_USE_STARTS readonly
 #define FW_USE_INDICES writeonly
 #include "lib/refine_buffers.glsl"
 
 void main() {
-    uint count = min(starts[frame.triangleCount], frame.capacity);
-    for (uint k = gl_GlobalInvocationID.x; k < count; k += gl_NumWorkGroups.x * 64u) {
-        uint low = 0u;  // starts[low] <= k < starts[high]
-        uint high = frame.triangleCount;
+    uint jobs = work[kRefineWorkEmit + 3u];
+    for (uint job = gl_WorkGroupID.x; job < jobs; job += gl_NumWorkGroups.x) {
+        uint object = work[push.emitJobs + 2u * job];
+        uint k = work[push.emitJobs + 2u * job + 1u] + gl_LocalInvocationID.x;
+        uint total = work[objectList() + 2u * refined[object].ordinal + 1u];
+        bool here = k < total;
+        k = min(k, total - 1u);
+        uint base = refined[object].triangles;
+        uint low = 0u;  // its start <= k < that of high
+        uint high = refined[object].triangleCount;
         while (high - low > 1u) {
             uint middle = (low + high) >> 1u;
-            if (starts[middle] <= k) low = middle;
-            else high = middle;
+            bool below = levels[base + middle].y <= k;
+            low = below ? middle : low;
+            high = below ? high : middle;
         }
-        uint packed = levels[low];
-        RefinePlace place = refineLocate(packed, k - starts[low]);
-        uvec3 codes = refineCodes(packed, place, tableToken(place.entry));
-        RefineTriangle t = triangles[low];
-        indices[k * 3u] = refineDrawVertex(t, packed, codes.x);
-        indices[k * 3u + 1u] = refineDrawVertex(t, packed, codes.y);
-        indices[k * 3u + 2u] = refineDrawVertex(t, packed, codes.z);
+        uvec2 packed = levels[base + low];
+        RefinePlace place = refineLocate(packed.x, k - packed.y);
+        uvec3 codes = refineCodes(packed.x, place, tableToken(place.entry));
+        RefineTriangle t = triangles[refined[object].meshTriangles + low];
+        uint at = refined[object].indices + k * 3u;
+        if (!here) continue;
+        indices[at] = refineDrawVertex(t, packed.x, codes.x);
+        indices[at + 1u] = refineDrawVertex(t, packed.x, codes.y);
+        indices[at + 2u] = refineDrawVertex(t, packed.x, codes.z);
     }
 }

@@ -1,97 +1,140 @@
 // Levels of edges and interiors, in phases with a barrier between: 0 aim (items), 1 what each bias
-// would come to (triangles), 2 move (items), 3 pack (triangles), and where that is more than there
-// is room for, 4 go at once (items), 5 pack again (triangles). `sums` is zero before phase 1.
+// would come to (triangles; only where not all fit), 2 move (items), 3 pack (triangles): what changed
+// makes its object emit, what moves is listed to be placed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
+#define FW_USE_WORK FW_READ_WRITE
 #define FW_USE_TRIANGLES readonly
 #define FW_USE_EDGES readonly
 #define FW_USE_SLOTS readonly
-#define FW_USE_HEAT readonly
+#define FW_USE_HEAT FW_READ_WRITE
 #define FW_USE_ITEMS FW_READ_WRITE
 #define FW_USE_LEVELS FW_READ_WRITE
-#define FW_USE_SUMS FW_READ_WRITE
 #include "lib/refine_buffers.glsl"
 
-float edgeLod(RefineEdge edge) {
-    if (frame.viewCount == 0u) return float(kRefineDepth + 1u);
-    vec3 a = vec3(slots[edge.low].x, slots[edge.low].y, slots[edge.low].z);
-    vec3 b = vec3(slots[edge.high].x, slots[edge.high].y, slots[edge.high].z);
-    float most = 0.0;
-    for (uint v = 0u; v < frame.viewCount; ++v)
-        most = max(most, refineLod(a, b, frame.eye[v].xyz, frame.eye[v].w, frame.pixelsPerEdge));
-    return most;
+float edgeLod(uint object, RefineEdge edge) {
+    vec4 eye = refined[object].eye;
+    uint base = refined[object].meshSlots;
+    vec3 a = vec3(slots[base + edge.low].x, slots[base + edge.low].y, slots[base + edge.low].z);
+    vec3 b = vec3(slots[base + edge.high].x, slots[base + edge.high].y, slots[base + edge.high].z);
+    float lod = refineLod(a, b, eye.xyz, eye.w, refined[object].pixelsPerEdge);
+    return eye.w > 0.0 ? lod : float(kRefineDepth + 1u);
 }
 
 // Numbers of edges and interiors, for the order in which they lose levels.
-uint spreadId(uint item) {
-    return item < frame.edgeCount ? item * 2u : (item - frame.edgeCount) * 2u + 1u;
+uint spreadId(uint item, uint edgeCount) {
+    return item < edgeCount ? item * 2u : (item - edgeCount) * 2u + 1u;
 }
 
-float wanted(uint item, float bias) {
-    float target = items[item].target;
+float wanted(uint object, uint item, float bias) {
+    uint at = refined[object].items + item;
+    float target = items[at].target;
     if (target == 0.0 || bias == 0.0) return target;
-    return refineBiased(target, bias, refineSpread(spreadId(item), heat[item]));
+    return refineBiased(target, bias,
+                        refineSpread(spreadId(item, refined[object].edgeCount),
+                                     heat[at] >> kRefineHeatShift));
 }
 
 float leastBias() {
+    if (push.budget == 0u) return 0.0;
     for (uint k = 0u; k + 1u < kRefineBiases; ++k)
-        if (sums[k] <= frame.budget) return float(k) * kRefineBiasStep;
+        if (work[kRefineWorkSums + k] <= push.budget) return float(k) * kRefineBiasStep;
     return float(kRefineBiases - 1u) * kRefineBiasStep;
 }
 
-uint aimedLevels(uint triangle, float bias) {
-    RefineTriangle t = triangles[triangle];
-    uint a = refineTop(wanted(t.edge[0], bias));
-    uint b = refineTop(wanted(t.edge[1], bias));
-    uint c = refineTop(wanted(t.edge[2], bias));
-    return refinePack(a, b, c, refineFit(a, b, c, refineTop(wanted(frame.edgeCount + triangle, bias))));
+uint aimedLevels(uint object, uint triangle, float bias) {
+    RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
+    uint a = refineTop(wanted(object, t.edge[0], bias));
+    uint b = refineTop(wanted(object, t.edge[1], bias));
+    uint c = refineTop(wanted(object, t.edge[2], bias));
+    uint m = refineTop(wanted(object, refined[object].edgeCount + triangle, bias));
+    return refinePack(a, b, c, refineFit(a, b, c, m));
 }
 
-void aim(uint item) {
-    RefineLevel s = items[item];
-    float lod = 0.0;
-    float depth;
-    if (item < frame.edgeCount) {
-        lod = edgeLod(edges[item]);
-        depth = float(edges[item].flags & 15u);
-    } else {
-        RefineTriangle t = triangles[item - frame.edgeCount];
-        for (uint e = 0u; e < 3u; ++e) lod = max(lod, edgeLod(edges[t.edge[e]]));
-        depth = float(refineInteriorDepth(t.flags));
+void aim(uint object, uint item) {
+    uint at = refined[object].items + item;
+    uint edgeCount = refined[object].edgeCount;
+    bool fresh = (refined[object].flags & kRefineIsFresh) != 0u;
+    RefineLevel s = items[at];
+    if (fresh) s = RefineLevel(0.0, 0.0, -kRefineNever, kRefineNever);
+    uint warm = heat[at] & 3u;
+    if (push.full != 0u) warm = kRefineHot | kRefineBurning;
+    heat[at] = warm << kRefineHeatShift;
+    // Most of a mesh has no heat and nothing left of it.
+    uint awake = warm == 0u && s.level == 0.0 && s.target == 0.0 ? 0u : 1u;
+    while (awake != 0u) {
+        float lod = 0.0;
+        float depth;
+        if (item < edgeCount) {
+            RefineEdge edge = edges[refined[object].meshEdges + item];
+            lod = edgeLod(object, edge);
+            depth = float(edge.flags & 15u);
+        } else {
+            RefineTriangle t = triangles[refined[object].meshTriangles + item - edgeCount];
+            for (uint e = 0u; e < 3u; ++e)
+                lod = max(lod, edgeLod(object, edges[refined[object].meshEdges + t.edge[e]]));
+            depth = float(refineInteriorDepth(t.flags));
+        }
+        refineAim(s, warm, lod, depth, refined[object].now, kRefineCool);
+        awake = 0u;
     }
-    refineAim(s, heat[item], lod, depth, frame.now, frame.cool);
-    items[item] = s;
+    items[at] = s;
 }
 
-void pack(uint triangle) {
-    RefineTriangle t = triangles[triangle];
-    uint a = refineTop(items[t.edge[0]].level);
-    uint b = refineTop(items[t.edge[1]].level);
-    uint c = refineTop(items[t.edge[2]].level);
-    uint m = refineTop(items[frame.edgeCount + triangle].level);
-    uint packed = refinePack(a, b, c, refineFit(a, b, c, m));
-    levels[triangle] = packed;
-    if (push.phase == 3u) atomicAdd(sums[kRefineBiases], refineCount(packed));
+void move(uint object, uint item) {
+    uint at = refined[object].items + item;
+    RefineLevel s = items[at];
+    float before = s.level;
+    float now = refined[object].now;
+    refineMove(s, wanted(object, item, leastBias()), now, push.dt, kRefineRate, kRefineGrace);
+    items[at] = s;
+    if (s.level != before || now - s.lastHot < kRefineCool) heat[at] |= kRefineMoving;
+}
+
+void pack(uint object, uint triangle) {
+    RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
+    uint base = refined[object].items;
+    uint own = base + refined[object].edgeCount + triangle;
+    uint a = refineTop(items[base + t.edge[0]].level);
+    uint b = refineTop(items[base + t.edge[1]].level);
+    uint c = refineTop(items[base + t.edge[2]].level);
+    uint m = refineFit(a, b, c, refineTop(items[own].level));
+    uint packed = refinePack(a, b, c, m);
+    uint at = refined[object].triangles + triangle;
+    bool changed = (refined[object].flags & kRefineIsFresh) != 0u || levels[at].x != packed;
+    levels[at].x = packed;
+    if (changed) atomicOr(work[objectList() + 2u * refined[object].ordinal + 1u], 1u);
+    uint moving = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
+    if (m >= 2u && (changed || (moving & kRefineMoving) != 0u)) {
+        uint job = atomicAdd(work[kRefineWorkPlace + 3u], 1u);
+        atomicMax(work[kRefineWorkPlace], min(job + 1u, kMostGroups));
+        work[push.placeJobs + 2u * job] = object;
+        work[push.placeJobs + 2u * job + 1u] = triangle;
+    }
 }
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
     bool perItem = (push.phase & 1u) == 0u;
-    if (i >= (perItem ? frame.edgeCount + frame.triangleCount : frame.triangleCount)) return;
-    if (push.phase >= 4u && sums[kRefineBiases] <= frame.capacity) return;
-    if (push.phase == 0u) {
-        aim(i);
-    } else if (push.phase == 1u) {
-        for (uint k = 0u; k < kRefineBiases; ++k)
-            atomicAdd(sums[k], refineCount(aimedLevels(i, float(k) * kRefineBiasStep)));
-    } else if (push.phase == 2u) {
-        RefineLevel s = items[i];
-        refineMove(s, wanted(i, leastBias()), frame.now, frame.dt, frame.rate, frame.grace);
-        items[i] = s;
-    } else if (push.phase == 4u) {
-        items[i].level = wanted(i, leastBias());
-    } else {
-        pack(i);
+    uint first = perItem ? 0u : push.edgeGroups;
+    uint last = push.edgeGroups + push.triangleGroups;
+    for (uint g = first + gl_WorkGroupID.x; g < last; g += gl_NumWorkGroups.x) {
+        uint object = work[edgeList() + 2u * g];
+        uint i = work[edgeList() + 2u * g + 1u] + gl_LocalInvocationID.x;
+        bool edge = g < push.edgeGroups;
+        uint count = edge ? refined[object].edgeCount : refined[object].triangleCount;
+        bool here = i < count;
+        uint item = edge ? i : refined[object].edgeCount + i;
+        if (push.phase == 0u) {
+            if (here) aim(object, item);
+        } else if (push.phase == 1u) {
+            for (uint k = 0u; here && k < kRefineBiases; ++k)
+                atomicAdd(work[kRefineWorkSums + k],
+                          refineCount(aimedLevels(object, i, float(k) * kRefineBiasStep)));
+        } else if (push.phase == 2u) {
+            if (here) move(object, item);
+        } else if (here) {
+            pack(object, i);
+        }
     }
 }

@@ -1,99 +1,146 @@
-// Places of all vertices in use, in phases with a barrier between: 0 corners, a lane each; 1 edges, a
-// lane each, their own places and then the morph of their newest points; 2 interiors, a workgroup
-// each, own places; 3 interiors, the morph.
+// Places of the vertices that move, in phases with a barrier between: 0 corners, a lane each; 1 edges,
+// a lane each, their own places and then the morph of their newest points; 2 interiors, a workgroup
+// each, the same.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
+#define FW_USE_WORK readonly
 #define FW_USE_TRIANGLES readonly
 #define FW_USE_EDGES readonly
 #define FW_USE_SLOTS readonly
 #define FW_USE_ITEMS readonly
+#define FW_USE_HEAT readonly
 #define FW_USE_LEVELS readonly
-#define FW_USE_VERTICES FW_READ_WRITE
-#define FW_USE_TICKS readonly
+#define FW_USE_VERTICES coherent
+#define FW_USE_STATE readonly
 #include "lib/refine_buffers.glsl"
 
-float arrivalAt(uint base, uint weights) {
-    uint up = base + frame.textureWidth;
-    uvec4 t = uvec4(ticks[base], ticks[base + 1u], ticks[up], ticks[up + 1u]);
-    return refineArrival(t, weights, frame.nowTick, frame.epochTick);
+bool isDoused(uint t) { return t == kOut || t == kOutWet; }
+
+// A texel that was put out stays as burnt as it was: it is younger every frame.
+float arrivalAt(uint object, uint base, uint weights) {
+    uint at = refined[object].stateBase + base;
+    uint up = at + refined[object].textureWidth;
+    uvec4 t = uvec4(state[at], state[at + 1u], state[up], state[up + 1u]);
+    bool doused = isDoused(t.x) || isDoused(t.y) || isDoused(t.z) || isDoused(t.w);
+    while (doused) {
+        uvec4 burnt = uvec4(gradient[at], gradient[at + 1u], gradient[up], gradient[up + 1u]);
+        for (int k = 0; k < 4; ++k)
+            if (isDoused(t[k])) t[k] = push.nowTick - min(burnt[k], push.nowTick);
+        doused = false;
+    }
+    return refineArrival(t, weights, push.nowTick, refined[object].epochTick);
 }
 
-void evaluate(uint s) {
-    RefineSlot slot = slots[s];
-    float own = arrivalAt(slot.texel & 0xFFFFFFu, slot.weights);
+void evaluate(uint object, uint s) {
+    RefineSlot slot = slots[refined[object].meshSlots + s];
+    float own = arrivalAt(object, slot.texel & 0xFFFFFFu, slot.weights);
     float opposite = kRefineNever;
-    if (slot.opposite != kRefineOpposed)
-        opposite = arrivalAt(slot.opposite & 0xFFFFFFu, refineOppositeWeights(slot.opposite));
-    vec4 v = refineEvaluate(slot, own, opposite, frame.now, frame.burnSeconds[slot.texel >> 24u],
-                            frame.recede);
-    vertices[s].x = v.x;
-    vertices[s].y = v.y;
-    vertices[s].z = v.z;
-    vertices[s].hole = v.w;
+    bool walled = slot.opposite != kRefineOpposed;
+    while (walled) {
+        opposite = arrivalAt(object, slot.opposite & 0xFFFFFFu, refineOppositeWeights(slot.opposite));
+        walled = false;
+    }
+    uint material = slot.texel >> 24u;
+    vec4 low = refined[object].burnSeconds0;
+    vec4 high = refined[object].burnSeconds1;
+    float seconds = material < 4u ? low[material & 3u] : high[material & 3u];
+    vec4 v = refineEvaluate(slot, own, opposite, refined[object].now, seconds, push.recede);
+    uint at = refined[object].vertices + s;
+    vertices[at].x = v.x;
+    vertices[at].y = v.y;
+    vertices[at].z = v.z;
+    vertices[at].hole = v.w;
 }
 
-vec3 placeOf(uint s) { return vec3(vertices[s].x, vertices[s].y, vertices[s].z); }
-
-void morph(uint s, vec3 a, vec3 b, float age) {
-    vec3 p = refineMorph(placeOf(s), a, b, age);
-    vertices[s].x = p.x;
-    vertices[s].y = p.y;
-    vertices[s].z = p.z;
+vec3 placeOf(uint object, uint s) {
+    uint at = refined[object].vertices + s;
+    return vec3(vertices[at].x, vertices[at].y, vertices[at].z);
 }
 
-vec3 latticePlace(RefineTriangle t, uint packed, uint c1, uint c2) {
+void morph(uint object, uint s, vec3 a, vec3 b, float age) {
+    vec3 p = refineMorph(placeOf(object, s), a, b, age);
+    uint at = refined[object].vertices + s;
+    vertices[at].x = p.x;
+    vertices[at].y = p.y;
+    vertices[at].z = p.z;
+}
+
+vec3 latticePlace(uint object, RefineTriangle t, uint packed, uint c1, uint c2) {
     RefineSpot spot = refineSpot(t, packed, c1, c2);
-    if (spot.side == 3u) return placeOf(refineInnerSlot(t, c1, c2, refineInterior(packed)));
-    RefineEdge edge = edges[t.edge[spot.side]];
+    if (spot.side == 3u)
+        return placeOf(object, refineInnerSlot(t, c1, c2, refineInterior(packed)));
+    RefineEdge edge = edges[refined[object].meshEdges + t.edge[spot.side]];
     uint l = refineSide(packed, spot.side);
-    vec3 a = placeOf(refineEdgeSlot(edge, spot.i, l));
+    vec3 a = placeOf(object, refineEdgeSlot(edge, spot.i, l));
     if (spot.f == 0.0) return a;
-    return a + (placeOf(refineEdgeSlot(edge, spot.i + 1u, l)) - a) * spot.f;
+    return a + (placeOf(object, refineEdgeSlot(edge, spot.i + 1u, l)) - a) * spot.f;
 }
 
-void edgeLane(uint e) {
-    RefineEdge edge = edges[e];
-    float level = items[e].level;
-    uint l = refineTop(level), steps = 1u << l;
-    for (uint i = 1u; i < steps; ++i) evaluate(refineEdgeSlot(edge, i, l));
+void edgeLane(uint object, uint e) {
+    uint item = refined[object].items + e;
+    RefineEdge edge = edges[refined[object].meshEdges + e];
+    float level = items[item].level;
+    bool moves = (heat[item] & kRefineMoving) != 0u;
+    uint l = refineTop(level), steps = moves ? 1u << l : 0u;
+    for (uint i = 1u; i < steps; ++i) evaluate(object, refineEdgeSlot(edge, i, l));
     float age = refineAge(level, l);
-    if (l == 0u || age >= 1.0) return;
+    steps = l == 0u || age >= 1.0 ? 0u : steps;
     for (uint i = 1u; i < steps; i += 2u)
-        morph(refineEdgeSlot(edge, i, l), placeOf(refineEdgeSlot(edge, i - 1u, l)),
-              placeOf(refineEdgeSlot(edge, i + 1u, l)), age);
+        morph(object, refineEdgeSlot(edge, i, l), placeOf(object, refineEdgeSlot(edge, i - 1u, l)),
+              placeOf(object, refineEdgeSlot(edge, i + 1u, l)), age);
 }
 
-void interiorGroup(uint triangle) {
-    RefineTriangle t = triangles[triangle];
-    uint packed = levels[triangle];
+// Lane k's lattice point: rows from both ends are put together, so that no lane is idle.
+uvec2 latticePoint(uint k, uint n) {
+    uint width = n - 1u;  // of a row and its partner: (n - 2) + 1, (n - 3) + 2, ...
+    uint row = k / width, at = k % width;
+    uint length = n - 2u - row;
+    bool first = at < length;
+    return first ? uvec2(at + 1u, row + 1u) : uvec2(at - length + 1u, n - 2u - row);
+}
+
+void interiorGroup(uint object, uint triangle) {
+    RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
+    uint packed = levels[refined[object].triangles + triangle].x;
     uint m = refineInterior(packed);
-    if (m < 2u) return;
-    float level = items[frame.edgeCount + triangle].level;
+    float level = items[refined[object].items + refined[object].edgeCount + triangle].level;
     float age = refineTop(level) == m ? refineAge(level, m) : 1.0;
-    if (push.phase == 3u && age >= 1.0) return;
     uint n = 1u << m;
-    uint side = n - 2u;
-    for (uint k = gl_LocalInvocationID.x; k < side * side; k += 64u) {
-        uint c1 = k % side + 1u, c2 = k / side + 1u;
-        if (c1 + c2 >= n) continue;
-        uint s = refineInnerSlot(t, c1, c2, m);
-        if (push.phase == 2u) {
-            evaluate(s);
-        } else if (refineIsNew(c1, c2)) {
-            RefineParents p = refineParents(c1, c2);
-            morph(s, latticePlace(t, packed, p.a1, p.a2), latticePlace(t, packed, p.b1, p.b2), age);
-        }
+    uint count = refineInnerCount(m);
+    for (uint k = gl_LocalInvocationID.x; k < count; k += 64u) {
+        uvec2 c = latticePoint(k, n);
+        evaluate(object, refineInnerSlot(t, c.x, c.y, m));
+    }
+    memoryBarrierBuffer();
+    barrier();
+    count = age >= 1.0 ? 0u : count;
+    for (uint k = gl_LocalInvocationID.x; k < count; k += 64u) {
+        uvec2 c = latticePoint(k, n);
+        if (!refineIsNew(c.x, c.y)) continue;
+        RefineParents p = refineParents(c.x, c.y);
+        morph(object, refineInnerSlot(t, c.x, c.y, m), latticePlace(object, t, packed, p.a1, p.a2),
+              latticePlace(object, t, packed, p.b1, p.b2), age);
     }
 }
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
-    if (push.phase == 0u) {
-        if (i < frame.cornerCount) evaluate(i);
-    } else if (push.phase == 1u) {
-        if (i < frame.edgeCount) edgeLane(i);
-    } else if (gl_WorkGroupID.x < frame.triangleCount) {
-        interiorGroup(gl_WorkGroupID.x);
+    if (push.phase == 2u) {
+        uint jobs = work[kRefineWorkPlace + 3u];
+        for (uint job = gl_WorkGroupID.x; job < jobs; job += gl_NumWorkGroups.x)
+            interiorGroup(work[push.placeJobs + 2u * job], work[push.placeJobs + 2u * job + 1u]);
+        return;
+    }
+    bool edge = push.phase == 1u;
+    uint list = edge ? edgeList() : cornerList();
+    uint groups = edge ? push.edgeGroups : push.cornerGroups;
+    for (uint g = gl_WorkGroupID.x; g < groups; g += gl_NumWorkGroups.x) {
+        uint object = work[list + 2u * g];
+        uint i = work[list + 2u * g + 1u] + gl_LocalInvocationID.x;
+        if (edge) {
+            if (i < refined[object].edgeCount) edgeLane(object, i);
+        } else if (i < refined[object].cornerCount) {
+            evaluate(object, i);
+        }
     }
 }

@@ -1,20 +1,25 @@
-// Where each triangle's output begins: an exclusive sum of its count, by one workgroup.
+// Where each triangle's output begins: an exclusive sum of its count, by one workgroup per object. Of
+// objects whose levels changed; they get new draw arguments, and their output is listed to be emitted.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
-#define FW_USE_LEVELS readonly
-#define FW_USE_STARTS writeonly
+#define FW_USE_WORK coherent
+#define FW_USE_LEVELS coherent
+#define FW_USE_DRAWS writeonly
 #include "lib/refine_buffers.glsl"
 
 shared uint part[128];
+shared uint firstJob;
 
-void main() {
+void scan(uint object, uint ordinal) {
     uint lane = gl_LocalInvocationID.x;
-    uint each = (frame.triangleCount + 127u) / 128u;
-    uint first = min(lane * each, frame.triangleCount);
-    uint end = min(first + each, frame.triangleCount);
+    uint count = refined[object].triangleCount;
+    uint base = refined[object].triangles;
+    uint each = (count + 127u) / 128u;
+    uint first = min(lane * each, count);
+    uint end = min(first + each, count);
     uint sum = 0u;
-    for (uint i = first; i < end; ++i) sum += refineCount(levels[i]);
+    for (uint i = first; i < end; ++i) sum += refineCount(levels[base + i].x);
     part[lane] = sum;
     barrier();
     for (uint step = 1u; step < 128u; step <<= 1u) {
@@ -25,8 +30,52 @@ void main() {
     }
     uint start = part[lane] - sum;
     for (uint i = first; i < end; ++i) {
-        starts[i] = start;
-        start += refineCount(levels[i]);
+        levels[base + i].y = start;
+        start += refineCount(levels[base + i].x);
     }
-    if (lane == 127u) starts[frame.triangleCount] = part[127];
+    memoryBarrierBuffer();
+    barrier();
+    uint total = part[127];
+    uint jobs = (total + 63u) / 64u;
+    if (lane == 0u) {
+        work[objectList() + 2u * ordinal + 1u] = total;
+        firstJob = atomicAdd(work[kRefineWorkEmit + 3u], jobs);
+        atomicMax(work[kRefineWorkEmit], min(firstJob + jobs, kMostGroups));
+    }
+    if (lane < kMaterialsPerObject) {
+        uvec4 low = refined[object].materialEnd0;
+        uvec4 high = refined[object].materialEnd1;
+        uint to = lane < 4u ? low[lane & 3u] : high[lane & 3u];
+        uint before = max(lane, 1u) - 1u;
+        uint from = before < 4u ? low[before & 3u] : high[before & 3u];
+        from = lane == 0u ? 0u : from;
+        uint a = from < count ? levels[base + min(from, count - 1u)].y : total;
+        uint b = to < count ? levels[base + min(to, count - 1u)].y : total;
+        uint at = (object * kMaterialsPerObject + lane) * 5u;
+        draws[at] = (b - a) * 3u;
+        draws[at + 1u] = 1u;
+        draws[at + 2u] = refined[object].indices + a * 3u;
+        draws[at + 3u] = refined[object].meshDraws;
+        draws[at + 4u] = 0u;
+    }
+    barrier();
+    for (uint k = lane; k < jobs; k += 128u) {
+        uint at = push.emitJobs + 2u * (firstJob + k);
+        work[at] = object;
+        work[at + 1u] = k * 64u;
+    }
+}
+
+void main() {
+    for (uint o = gl_WorkGroupID.x; o < push.objects; o += gl_NumWorkGroups.x) {
+        uint object = work[objectList() + 2u * o];
+        // A loop, as a branch that all of a group takes costs a software device the same either way.
+        uint changed = work[objectList() + 2u * o + 1u];
+        barrier();
+        while (changed != 0u) {
+            scan(object, o);
+            changed = 0u;
+        }
+        barrier();
+    }
 }

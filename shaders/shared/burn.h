@@ -57,7 +57,19 @@
 #define FW_BIND_BLOCKERS 45   // Blocker[kMaxBlockers]
 #define FW_BIND_RECEIVERS 46  // uint[kReceiverWords] per object slot, see there
 #define FW_BIND_EMBERS 47     // uint[]: sources that send an ember
-#define FW_BIND_COUNT 70
+#define FW_BIND_REFINE_WORK 60      // uint[]: what this frame refines, see kRefineWork... in refine.h
+#define FW_BIND_REFINE_OBJECTS 61   // RefineObject[], by object slot
+#define FW_BIND_REFINE_TRIANGLES 62 // RefineTriangle[] (per mesh)
+#define FW_BIND_REFINE_EDGES 63     // RefineEdge[] (per mesh)
+#define FW_BIND_REFINE_SLOTS 64     // RefineSlot[] (per mesh)
+#define FW_BIND_REFINE_WORDS 65     // uint[]: the pattern table; per mesh: what each tile warms
+#define FW_BIND_REFINE_ITEMS 66     // RefineLevel[]: edges, then interiors (per object)
+#define FW_BIND_REFINE_HEAT 67      // uint[], as items: kRefineHeat...
+#define FW_BIND_REFINE_LEVELS 68    // uvec2[], per triangle of an object: levels, first output triangle
+#define FW_BIND_REFINE_VERTICES 69  // RefineVertex[], per slot of an object
+#define FW_BIND_REFINE_INDICES 70   // uint[]: output triangles
+#define FW_BIND_REFINE_DRAWS 71     // uint[]: indexed indirect draws, 8 per object slot
+#define FW_BIND_COUNT 72
 
 FW_SHARED_BEGIN
 
@@ -119,6 +131,7 @@ FW_SHARED_CONST uint kSwitchShuffle = 2u;
 FW_SHARED_CONST uint kSwitchNoSeamWake = 4u;
 FW_SHARED_CONST uint kSwitchWrongReaders = 8u;
 FW_SHARED_CONST uint kSwitchNoWindWake = 16u;
+FW_SHARED_CONST uint kSwitchRefineFull = 64u;
 FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;  // ours: some object or the world limits its fire
 
 // TexelEvent::kind, as FwIgnitionKind

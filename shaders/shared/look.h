@@ -150,11 +150,13 @@ struct SurfaceDraw {
     uint width;              // texels
     uint height;
     uint flags;              // kObject..., kDrawVertexLight
-    uint reserved0;
+    uint places;             // with kDrawPlaced: of vertex slot 0 among the refined places
 };
 FW_SHARED_SIZE(SurfaceDraw, 112)
 // SurfaceDraw::flags, beyond kObject...: triangles are small, flames light their corners.
 FW_SHARED_CONST uint kDrawVertexLight = 0x10000u;
+// Vertices lie where the refinement placed their slots.
+FW_SHARED_CONST uint kDrawPlaced = 0x20000u;
 
 struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m

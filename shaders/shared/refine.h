@@ -19,22 +19,6 @@
 #define FW_CONSTANT_FN
 #endif
 
-// Bindings of set 0 of the refinement passes.
-#define FW_REFINE_BIND_TABLE 0      // uint[]: two tokens per word
-#define FW_REFINE_BIND_TRIANGLES 1  // RefineTriangle[]
-#define FW_REFINE_BIND_EDGES 2      // RefineEdge[]
-#define FW_REFINE_BIND_SLOTS 3      // RefineSlot[]
-#define FW_REFINE_BIND_HEAT 4       // uint[], per item: edges, then interiors
-#define FW_REFINE_BIND_ITEMS 5      // RefineLevel[], per item
-#define FW_REFINE_BIND_LEVELS 6     // uint[], per triangle
-#define FW_REFINE_BIND_SUMS 7       // uint[17]: triangles with each bias; with the levels as they are
-#define FW_REFINE_BIND_STARTS 8     // uint[], per triangle and one: first output triangle
-#define FW_REFINE_BIND_INDICES 9    // uint[]: draw vertices
-#define FW_REFINE_BIND_VERTICES 10  // RefineVertex[], per slot
-#define FW_REFINE_BIND_TICKS 11     // uint[]: state of the texels
-#define FW_REFINE_BIND_FRAME 12     // RefineFrameParams
-#define FW_REFINE_BIND_COUNT 13
-
 FW_SHARED_BEGIN
 
 #ifdef __cplusplus
@@ -110,27 +94,74 @@ struct RefineCorner {    // of a triangle of the cut shell
     uint high;           // the same, or a cut point of the small edge low < high; kRefineInside
 };
 
-struct RefineFrameParams {  // of an object and a frame; see mesh/refine/frame.h
+// An object in the frame's passes, rewritten in each frame that refines it. Bases are in records of
+// the planes; mesh...: what objects share.
+struct RefineObject {
+    uint items;          // edges, then interiors
+    uint triangles;
+    uint vertices;
+    uint indices;        // of the output
+    uint meshTriangles;
+    uint meshEdges;
+    uint meshSlots;
+    uint meshWords;      // per tile and one: where its items start; then the items
     uint edgeCount;
-    uint triangleCount;
+    uint triangleCount;  // sorted by material
     uint cornerCount;
     uint textureWidth;   // texels
-    uint nowTick;
-    uint epochTick;
-    uint budget;         // triangles
-    uint capacity;
-    float now;           // s since the epoch
-    float dt;
+    uint stateBase;      // as BurnObject
+    uint epochTick;      // s count from here
+    uint flags;          // kRefineIs...
+    uint ordinal;        // in the frame's list of objects
+    uint meshDraws;      // first draw vertex
+    uint tileCount;
     float pixelsPerEdge;
-    float rate;          // levels per s
-    float cool;          // s
-    float grace;         // s
-    float recede;
-    uint viewCount;      // of `eye`
-    vec4 eye[4];         // m, object space; w: focal
-    float burnSeconds[8]; // per material
+    float now;           // s since the epoch
+    vec4 eye;            // m, object space; w: pixels of 1 m at 1 m, 0: no limit by size
+    vec4 burnSeconds0;   // per material: a wall burnt through; negative: it never opens
+    vec4 burnSeconds1;
+    uvec4 materialEnd0;  // per material: its last triangle + 1
+    uvec4 materialEnd1;
+    uint reserved0; uint reserved1; uint reserved2; uint reserved3;
+    uint reserved4; uint reserved5; uint reserved6; uint reserved7;
 };
-FW_SHARED_SIZE(RefineFrameParams, 160)
+FW_SHARED_SIZE(RefineObject, 192)
+FW_SHARED_CONST uint kRefineIsActive = 1u;
+FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing of it is initialised yet
+
+// A word of the heat plane: what the lists of tiles say for the next frame; the same for this one; and
+// whether this frame places the item anew.
+FW_SHARED_CONST uint kRefineHeatShift = 8u;
+FW_SHARED_CONST uint kRefineMoving = 0x10000u;
+
+// The work plane: two indirect dispatches, sums, then lists of two words (object slot, number).
+FW_SHARED_CONST uint kRefineWorkEmit = 0u;    // x, y, z, jobs: 64 output triangles each
+FW_SHARED_CONST uint kRefineWorkPlace = 4u;   // x, y, z, jobs: an interior each
+FW_SHARED_CONST uint kRefineWorkSums = 8u;    // triangles with each bias
+FW_SHARED_CONST uint kRefineWorkLists = 32u;
+
+struct RefinePush {
+    uint phase;
+    uint nowTick;
+    uint budget;      // triangles; 0: all fit
+    uint row;         // heat: counters row of the list
+    uint parity;      // heat: of the list; + 2: it is the burn list
+    uint full;        // 1: everything at its deepest and moving, for comparison
+    float dt;         // s since the last frame
+    float recede;     // share of a slot's reach, below 1
+    uint edgeGroups;  // 64 edges each; lists follow each other in this order
+    uint triangleGroups;
+    uint cornerGroups;
+    uint objects;     // (object slot, triangles that it emits; 0: none)
+    uint emitJobs;    // first words of the lists that the device writes
+    uint placeJobs;
+    uint objectEnd;   // object slots with a record
+    uint reserved0;
+};
+FW_SHARED_SIZE(RefinePush, 64)
+FW_SHARED_CONST float kRefineRate = 4.0f;    // levels per s, once a surface has moved
+FW_SHARED_CONST float kRefineCool = 1.0f;    // s that a level outlives its heat
+FW_SHARED_CONST float kRefineGrace = 0.25f;  // s of burning during which a surface counts as flat
 
 // ---- levels of a triangle in one word: sides at bits 0, 4, 8, interior at 12
 

@@ -10,6 +10,9 @@ layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
     BurnLight lights[kSurfaceLights];
 };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(set = 0, binding = FW_BIND_REFINE_VERTICES, std430) readonly buffer Places {
+    vec4 places[];
+};
 layout(push_constant) uniform Push { SurfaceDraw draw; };
 
 layout(location = 0) in vec3 inPosition;
@@ -18,6 +21,7 @@ layout(location = 2) in vec2 inAtlas;
 layout(location = 3) in vec2 inTexture;
 layout(location = 4) in vec2 inDetail;
 layout(location = 5) in vec4 inTint;
+layout(location = 6) in uint inSlot;  // of refined vertices
 
 layout(location = 0) out vec4 outPosition;  // m, world, from the eye; w: flames' light, red
 layout(location = 1) out vec4 outRest;      // m, object axes, world scale; w: green
@@ -49,9 +53,15 @@ void main() {
     int n = int(inNormal);
     vec3 normal = vec3(float((n << 21) >> 21), float((n << 10) >> 21), float(n >> 22) * 2.0);
 
+    vec3 rest = inPosition;
+    bool placed = (draw.flags & kDrawPlaced) != 0u;
+    while (placed) {  // a branch would cost every mesh the load
+        rest = places[draw.places + inSlot].xyz;
+        placed = false;
+    }
     vec3 offset = vec3(draw.row0.w, draw.row1.w, draw.row2.w) - view.eye.xyz;
-    vec3 position = vec3(dot(draw.row0.xyz, inPosition), dot(draw.row1.xyz, inPosition),
-                         dot(draw.row2.xyz, inPosition)) +
+    vec3 position = vec3(dot(draw.row0.xyz, rest), dot(draw.row1.xyz, rest),
+                         dot(draw.row2.xyz, rest)) +
                     offset;
     normal = normalize(turnNormal(draw.row0.xyz, draw.row1.xyz, draw.row2.xyz, normal));
     outSoot = 0.0;

@@ -29,6 +29,7 @@ class EveryPass : public GpuTest {
         SceneObject object;
         object.substepShift = 1;
         if (published) object.flags = gpu::kObjectPublished;
+        object.refine = !published;
         const mesh::BurnDomain& domain = scene.domains[0];
         for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
             object.materials[m] = plainMaterial(domain, 0.3, 1.0, 1.0);
@@ -49,6 +50,7 @@ class EveryPass : public GpuTest {
         limits.exactBuffers = true;
         limits.maxFlames = 64;  // fewer than the scene wishes for
         limits.maxLights = 4;
+        limits.maxRefinedTriangles = 500;  // fewer than it wishes for
         rig_ = std::make_unique<VkRig>(
             *device_, 2, 0, limits,
             shortBinding == kNoBinding ? nullptr : shorteningEntry(shortBinding));

@@ -104,11 +104,24 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     init.record.tint = {1, 1, 1, domain.texelSide * domain.texelSide};
     init.materials = object.materials;
     init.slowness = object.slowness;
+    init.refine = object.refine;
+    init.refineDepth = 4;
     return init;
 }
 
 void BurnScene::create(gpu::Backend& backend) const {
     for (uint32_t i = 0; i < domains.size(); ++i) backend.createMesh(i, domains[i]);
+    std::vector<bool> refined(domains.size());
+    for (const SceneObject& object : objects) {
+        if (!object.refine || refined[object.mesh]) continue;
+        mesh::RefineOptions options;
+        options.depth = 4;
+        const mesh::BurnDomain& domain = domains[object.mesh];
+        backend.createRefinement(
+            object.mesh, 4, domain,
+            mesh::bakeRefine(domain, options, std::pmr::get_default_resource()));
+        refined[object.mesh] = true;
+    }
     for (uint32_t i = 0; i < objects.size(); ++i) backend.createObject(i, init(i));
 }
 

@@ -166,6 +166,9 @@ typedef struct FwWorldDef {
     uint32_t maxLights;         /* [0, 64], default 16 */
     uint32_t maxFlames;         /* [0, 65536], default 4096 flame quads alive; drawn: at most 4096 */
     uint64_t userData;
+    uint32_t maxRefinedTriangles; /* [1000, 16000000], default 400000: what refined objects aim to
+                                     stay within, together; software devices do well with 60000 */
+    uint32_t reserved1;         /* 0 */
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
     FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;
@@ -298,6 +301,8 @@ typedef enum FwBurnableFlags {
     FW_BURNABLE_LITE = 16,      /* no temperature, fuel and water per texel: 8 bytes a texel less, and
                                    nothing to do for what burns behind the front. It burns by
                                    burnTime alone, and water stays until it is dried */
+    FW_BURNABLE_REFINE = 32,    /* drawn with finer triangles where it burns, down to its burn map's
+                                   cells, which recede as the material is consumed */
     FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
@@ -317,6 +322,8 @@ typedef struct FwBurnableMeshDef {
     uint32_t multiplierWidth, multiplierHeight; /* resampled (nearest) to the burn map */
     uint64_t userData;                /* comes back in events */
     FwImageId baseColors[8];          /* by triangle material, default null: baseColor there too */
+    uint32_t refineDepth;             /* FW_BURNABLE_REFINE: halvings of an edge, [0, 5], default 5 */
+    float refinePixelsPerEdge;        /* length on the screen of the finest edges, [1, 1000], default 8 */
 } FwBurnableMeshDef;
 static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
     FwBurnableMeshDef d; fwInitDef(FW_DEF_BURNABLE_MESH, &d, (uint32_t)sizeof d); return d;

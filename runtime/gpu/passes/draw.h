@@ -38,6 +38,7 @@ struct DrawItem {
     int32_t vertexOffset = 0;
     uint32_t image = 0;    // base-colour image slot + 1, 0: none
     uint32_t variant = 0;  // of the surface pass, from surfaceVariant
+    bool refined = false;  // its triangles are in the refinement's planes
     SurfaceDraw draw{};
 };
 
@@ -59,7 +60,9 @@ extern const DrawPass kSurfacePasses[kSurfaceVariants];
 // reached the object.
 uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched);
 // `edge`: m, mean edge of the object's triangles.
-SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge);
+// `places`: of the object's vertices among the refined ones.
+SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge,
+                        uint32_t places);
 bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items);
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items);
 extern const DrawPass kFlamesPass;

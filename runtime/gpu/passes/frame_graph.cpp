@@ -12,10 +12,13 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,       &kEventsPass,     &kWakePass,          &kSchedulePass,   &kGatherPass,
-    &kArrivalPass,     &kArrivalRimPass, &kCommitPass,        &kPublishedPass,  &kReduceClearPass,
-    &kReduceFrontPass, &kReducePass,     &kPredictGatherPass, &kPredictPass,    &kPredictRimPass,
-    &kSupportPass,     &kProbePass,      &kLightsPass,        &kFlameQuadsPass, &kFlameSortPass};
+    &kResetPass,         &kEventsPass,       &kWakePass,        &kSchedulePass,
+    &kGatherPass,        &kArrivalPass,      &kArrivalRimPass,  &kCommitPass,
+    &kPublishedPass,     &kReduceClearPass,  &kReduceFrontPass, &kReducePass,
+    &kPredictGatherPass, &kPredictPass,      &kPredictRimPass,  &kSupportPass,
+    &kProbePass,         &kLightsPass,       &kFlameQuadsPass,  &kFlameSortPass,
+    &kRefineHeatPass,    &kRefineLevelsPass, &kRefineScanPass,  &kRefineEmitPass,
+    &kRefinePlacePass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -172,6 +175,30 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
     push.burnParity = lists.burnParity;
     recorder.dispatch(kFlameQuadsPass, &push, 16);
     recorder.dispatch(kFlameSortPass, nullptr, 1);
+}
+
+void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with) {
+    RefinePush push = with;
+    push.row = lists.row;
+    push.parity = lists.parity;
+    recorder.dispatchList(kRefineHeatPass, &push, lists.row);
+    push.row = kRowBurn + lists.burnParity;
+    push.parity = 2 + lists.burnParity;
+    recorder.dispatchList(kRefineHeatPass, &push, push.row);
+    const uint32_t items = push.edgeGroups + push.triangleGroups;
+    for (push.phase = 0; push.phase < 4; ++push.phase) {
+        if (push.phase == 1 && push.budget == 0) continue;
+        recorder.dispatch(kRefineLevelsPass, &push,
+                          std::min((push.phase & 1) ? push.triangleGroups : items, kMaxGroups));
+    }
+    recorder.dispatch(kRefineScanPass, &push, std::min(push.objects, kMaxGroups));
+    recorder.dispatchIndirect(kRefineEmitPass, &push, FW_BIND_REFINE_WORK, kRefineWorkEmit * 4);
+    push.phase = 0;
+    recorder.dispatch(kRefinePlacePass, &push, std::min(push.cornerGroups, kMaxGroups));
+    push.phase = 1;
+    recorder.dispatch(kRefinePlacePass, &push, std::min(push.edgeGroups, kMaxGroups));
+    push.phase = 2;
+    recorder.dispatchIndirect(kRefinePlacePass, &push, FW_BIND_REFINE_WORK, kRefineWorkPlace * 4);
 }
 
 }  // namespace fw::gpu

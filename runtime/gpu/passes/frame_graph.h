@@ -2,6 +2,7 @@
 #pragma once
 #include "gpu/passes/draw.h"
 #include "gpu/passes/pass.h"
+#include "shared/refine.h"
 
 #include <cstddef>
 #include <span>
@@ -15,7 +16,8 @@ class FrameRecorder;
 extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kGatherPass,
     kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
     kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
-    kLightsPass, kFlameQuadsPass, kFlameSortPass;
+    kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
+    kRefineScanPass, kRefineEmitPass, kRefinePlacePass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -65,5 +67,8 @@ void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawIte
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 // For the frame's view, after the lights: flames and their order.
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
+
+// After the steps. The work plane holds its lists, and zero before them. `lists`: see FrameLists.
+void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& push);
 
 }  // namespace fw::gpu

@@ -43,7 +43,7 @@ struct ComputePass {
 enum class VertexInput : uint8_t {
     none,  // the vertex shader makes its own from gl_VertexIndex and storage buffers
     mesh,  // mesh::RenderVertex: 0 position vec3, 1 normal uint, 2 atlas vec2, 3 texture uv vec2,
-           // 4 detail vec2, 5 tint RGBA8 as vec4
+           // 4 detail vec2, 5 tint RGBA8 as vec4, 6 material (refined: slot) uint
 };
 enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
 enum class Blend : uint8_t { opaque, premultiplied, additive };

@@ -6,9 +6,10 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {
-    {FW_BIND_PREDICT, Access::drawRead},   {FW_BIND_GRADIENT, Access::drawRead},
-    {FW_BIND_LIGHTS, Access::drawUniform}, {FW_BIND_LOOKS, Access::drawUniform},
-    {FW_BIND_VIEW, Access::uniformView},
+    {FW_BIND_PREDICT, Access::drawRead},           {FW_BIND_GRADIENT, Access::drawRead},
+    {FW_BIND_LIGHTS, Access::drawUniform},         {FW_BIND_LOOKS, Access::drawUniform},
+    {FW_BIND_VIEW, Access::uniformView},           {FW_BIND_REFINE_VERTICES, Access::drawRead},
+    {FW_BIND_REFINE_INDICES, Access::vertexInput}, {FW_BIND_REFINE_DRAWS, Access::indirect},
 };
 
 constexpr DrawPass variant(uint32_t features, Cull cull = Cull::none) {
@@ -94,7 +95,8 @@ uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched) 
     return i;
 }
 
-SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge) {
+SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge,
+                        uint32_t places) {
     SurfaceDraw draw{};
     draw.row0 = object.worldRow0;
     draw.row1 = object.worldRow1;
@@ -112,6 +114,7 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, 
     draw.width = object.width;
     draw.height = object.height;
     draw.flags = object.flags | (edge < kSmallEdge ? kDrawVertexLight : 0);
+    draw.places = places;
     return draw;
 }
 
@@ -130,7 +133,9 @@ bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items) {
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
         if (!drawnBy(variant, item.variant)) continue;
-        recorder.drawItem(item, &item.draw);
+        SurfaceDraw draw = item.draw;
+        if (item.refined) draw.flags |= kDrawPlaced;
+        recorder.drawItem(item, &draw);
     }
 }
 

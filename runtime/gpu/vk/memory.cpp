@@ -9,7 +9,7 @@ namespace {
 
 constexpr VkDeviceSize kBlockSize = VkDeviceSize(16) << 20;
 constexpr const char* kComponentNames[kComponentCount] = {
-    "meshes", "objects", "lists",   "predict",  "heat",
+    "meshes", "objects", "lists",   "predict",  "heat",   "refine",
     "flames", "images",  "staging", "readback", "targets"};
 
 VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) noexcept {

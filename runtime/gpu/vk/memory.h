@@ -41,6 +41,7 @@ enum Component : uint32_t {
     kComponentLists,
     kComponentPredict,
     kComponentHeat,
+    kComponentRefine,
     kComponentFlames,
     kComponentImages,
     kComponentStaging,

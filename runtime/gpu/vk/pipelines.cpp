@@ -313,13 +313,14 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     using mesh::RenderVertex;
     const VkVertexInputBindingDescription binding{0, sizeof(RenderVertex),
                                                   VK_VERTEX_INPUT_RATE_VERTEX};
-    const std::array<VkVertexInputAttributeDescription, 6> attributes{{
+    const std::array<VkVertexInputAttributeDescription, 7> attributes{{
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(RenderVertex, position)},
         {1, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, normal)},
         {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, atlasUv)},
         {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, textureUv)},
         {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, detail)},
         {5, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(RenderVertex, tint)},
+        {6, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, material)},
     }};
     auto input = typed<VkPipelineVertexInputStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "shared/heat.h"
 #include "shared/look.h"
+#include "shared/refine.h"
 
 #include <algorithm>
 
@@ -65,12 +66,34 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_FLAMES, kSpaceFixed, sizeof(FlameQuad), true, kComponentFlames, "flames", 0},
     {FW_BIND_DRAW_ARGS, kSpaceFixed, 4, true, kComponentFlames, "draw arguments",
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_REFINE_OBJECTS, kSpaceObjects, sizeof(RefineObject), true, kComponentRefine,
+     "refined objects", 0},
+    {FW_BIND_REFINE_DRAWS, kSpaceObjects, 20 * kMaterialsPerObject, true, kComponentRefine,
+     "refined draws", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_REFINE_TRIANGLES, kSpaceRefineMeshTriangles, sizeof(RefineTriangle), true,
+     kComponentRefine, "coarse triangles", 0},
+    {FW_BIND_REFINE_EDGES, kSpaceRefineMeshEdges, sizeof(RefineEdge), true, kComponentRefine,
+     "coarse edges", 0},
+    {FW_BIND_REFINE_SLOTS, kSpaceRefineMeshSlots, sizeof(RefineSlot), true, kComponentRefine,
+     "refined rest places", 0},
+    {FW_BIND_REFINE_WORDS, kSpaceRefineWords, 4, true, kComponentRefine, "refinement tables", 0},
+    {FW_BIND_REFINE_ITEMS, kSpaceRefineItems, sizeof(RefineLevel), true, kComponentRefine, "levels",
+     0},
+    {FW_BIND_REFINE_HEAT, kSpaceRefineItems, 4, true, kComponentRefine, "refinement heat", 0},
+    {FW_BIND_REFINE_LEVELS, kSpaceRefineTriangles, 8, true, kComponentRefine, "triangle levels", 0},
+    {FW_BIND_REFINE_VERTICES, kSpaceRefineSlots, sizeof(RefineVertex), true, kComponentRefine,
+     "refined places", 0},
+    {FW_BIND_REFINE_INDICES, kSpaceRefineIndices, 4, true, kComponentRefine, "refined indices",
+     VK_BUFFER_USAGE_INDEX_BUFFER_BIT},
+    {FW_BIND_REFINE_WORK, kSpaceRefineWork, 4, false, kComponentRefine, "refinement work",
+     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
 };
 
 constexpr uint32_t kInitialUnits[kSpaceCount] = {
-    64, 1024, 512, 512, 1024, 1024, 4096, 16384, kCounterRows, 4096, 1024, 1024, 1, 1, 1};
+    64,  1024, 512,  512,  1024, 1024, 4096, 16384, kCounterRows, 4096, 1024, 1024,
+    256, 256,  1024, 1024, 512,  256,  1024, 4096,  256,          1,    1,    1};
 
 }  // namespace
 

@@ -23,9 +23,18 @@ enum Space : uint32_t {
     kSpaceEvents,      // per frame
     kSpaceWakeGroups,  // per frame
     kSpaceProbes,      // per frame
-    kSpacePublished,   // 8x8 tiles of objects in as-published mode
-    kSpaceHeat,        // 8x8 tiles of objects with heat
-    kSpaceFixed,       // one unit
+    kSpaceRefineMeshTriangles,
+    kSpaceRefineMeshEdges,
+    kSpaceRefineMeshSlots,
+    kSpaceRefineWords,
+    kSpaceRefineItems,      // of objects: edges and interiors
+    kSpaceRefineTriangles,  // of objects
+    kSpaceRefineSlots,      // of objects
+    kSpaceRefineIndices,    // words, of objects
+    kSpaceRefineWork,       // words, per frame
+    kSpacePublished,        // 8x8 tiles of objects in as-published mode
+    kSpaceHeat,             // 8x8 tiles of objects with heat
+    kSpaceFixed,            // one unit
     kSpaceCount,
 };
 

@@ -36,6 +36,13 @@ void FrameRecorder::dispatchAt(const ComputePass& pass, const void* push, uint64
     t_.slot->timers.end(*t_.device, t_.commands);
 }
 
+void FrameRecorder::dispatchIndirect(const ComputePass& pass, const void* push, uint32_t resource,
+                                     uint64_t at) {
+    bind(pass, push);
+    t_.device->table.CmdDispatchIndirect(t_.commands, t_.planes->buffer(resource).handle, at);
+    t_.slot->timers.end(*t_.device, t_.commands);
+}
+
 void FrameRecorder::dispatchWork(const ComputePass& pass, const void* push, uint32_t row) {
     dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, workX));
 }

@@ -29,6 +29,10 @@ class FrameRecorder {
     void dispatchRun(const ComputePass& pass, const void* push, uint32_t row);
     void dispatchList(const ComputePass& pass, const void* push, uint32_t row);
 
+    // Groups from four words of a resource.
+    void dispatchIndirect(const ComputePass& pass, const void* push, uint32_t resource,
+                          uint64_t at);
+
     void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);
     void copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes);
     // The same range of another resource.

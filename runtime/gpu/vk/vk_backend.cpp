@@ -137,6 +137,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       quarantine(pmr),
       published(pmr),
       drawItems(pmr),
+      refine(pmr),
       givenObjects(pmr),
       givenAnswers(pmr),
       givenTexels(pmr),
@@ -156,6 +157,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
         if (!limits.looks.textures.empty())
             addImage(lookTextures, 512, 512, kLookTextureLayers, 10, VK_FORMAT_R8G8B8A8_UNORM,
                      limits.looks.textures, "look textures");
+        uploadRefineTable();
         if (!limits.looks.table.empty()) {
             PendingUpload& upload = stage(limits.looks.table.size_bytes(), "looks");
             std::memcpy(upload.staging.mapped, limits.looks.table.data(),
@@ -463,6 +465,8 @@ void VkBackend::destroyMesh(uint32_t slot) noexcept {
     s.planes.release(kSpaceReaders, entry.readers.first, entry.readers.units);
     s.planes.release(kSpaceVertices, entry.vertexRange.first, entry.vertexRange.units);
     s.planes.release(kSpaceIndices, entry.indexRange.first, entry.indexRange.units);
+    for (RefineMesh& one : entry.refine)
+        if (one.live) one.release(s.planes);
     entry = {};
 }
 
@@ -484,6 +488,13 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         s.planes.atLeast(kSpaceObjects, slot + 1, last);
         s.freeQuarantine();
         fresh.tiles = {s.planes.allocate(kSpaceObjectTiles, mesh.tiles, last), mesh.tiles};
+        if (init.refine) {
+            fresh.refine.on = true;
+            fresh.refine.depth = init.refineDepth;
+            fresh.refine.pixelsPerEdge = init.refinePixelsPerEdge;
+            fresh.refine.epochTick = s.shownTick;
+            fresh.refine.allocate(s.planes, mesh.refine[init.refineDepth], last);
+        }
         if (!init.slowness.empty()) {
             fresh.slowness = {s.planes.allocate(kSpaceSlowness, mesh.tiles, last), mesh.tiles};
             PendingUpload& upload = s.stage(init.slowness.size_bytes(), "slowness staging");
@@ -497,6 +508,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         if (!init.heat.empty())
             fresh.heatTiles = {s.planes.allocate(kSpaceHeat, mesh.tiles, last), mesh.tiles};
     } catch (...) {
+        fresh.refine.release(s.planes);
         if (fresh.published.units)
             s.planes.release(kSpacePublished, fresh.published.first, fresh.published.units);
         if (fresh.tiles.units)
@@ -533,6 +545,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     fresh.recordDirty = fresh.materialsDirty = fresh.resetDue = true;
     s.objects[slot] = fresh;
     s.recordsDirty = true;
+    s.refine.users += fresh.refine.on ? 1 : 0;
     ++s.liveObjects;
 }
 
@@ -547,6 +560,8 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
         s.planes.release(kSpaceObjectTiles, entry.tiles.first, entry.tiles.units);
     if (entry.slowness.units)
         s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
+    s.refine.users -= entry.refine.on ? 1 : 0;
+    entry.refine.release(s.planes);
     if (entry.published.units)
         s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
     if (entry.heatTiles.units)

@@ -43,12 +43,13 @@ class Context {
 };
 
 struct WorldLimits {
-    uint32_t maxLights = 16;    // [0, 64]
-    uint32_t maxFlames = 4096;  // [0, 65536]
-    uint32_t seed = 1;          // of everything cosmetic
-    float up[3] = {0, 1, 0};    // world up
-    float paceFactor = 1;       // as FwWorldDef
-    LookSources looks;          // empty: recordInside draws nothing
+    uint32_t maxLights = 16;                // [0, 64]
+    uint32_t maxFlames = 4096;              // [0, 65536]
+    uint32_t maxRefinedTriangles = 400000;  // aimed at, of all objects
+    uint32_t seed = 1;                      // of everything cosmetic
+    float up[3] = {0, 1, 0};                // world up
+    float paceFactor = 1;                   // as FwWorldDef
+    LookSources looks;                      // empty: recordInside draws nothing
     // Buffers end where the last thing in them does, so that a validation layer sees an access past
     // it. For tests: every new object grows them.
     bool exactBuffers = false;
@@ -73,6 +74,8 @@ class VkBackend final : public Backend {
 
     void createMesh(uint32_t slot, const mesh::BurnDomain& domain) override;
     void destroyMesh(uint32_t slot) noexcept override;
+    void createRefinement(uint32_t mesh, uint32_t depth, const mesh::BurnDomain& domain,
+                          const mesh::RefineModel& model) override;
     void createObject(uint32_t slot, const ObjectInit& init) override;
     void destroyObject(uint32_t slot) noexcept override;
     void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,

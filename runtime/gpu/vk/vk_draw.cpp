@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 namespace fw::gpu::vk {
@@ -33,7 +34,22 @@ class PassRecorder : public DrawRecorder {
             vk.CmdPushConstants(commands_, layout_,
                                 VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                                 pass_.pushBytes, push);
-        vk.CmdDrawIndexed(commands_, item.indexCount, 1, item.firstIndex, item.vertexOffset, 0);
+        if (item.refined != refined_) {
+            vk.CmdBindIndexBuffer(
+                commands_,
+                item.refined ? s_.planes.buffer(FW_BIND_REFINE_INDICES).handle : s_.drawIndices, 0,
+                VK_INDEX_TYPE_UINT32);
+            refined_ = item.refined;
+        }
+        // One draw per call: several would need a feature.
+        if (item.refined)
+            vk.CmdDrawIndexedIndirect(
+                commands_, s_.planes.buffer(FW_BIND_REFINE_DRAWS).handle,
+                (uint64_t(item.object) * kMaterialsPerObject + item.material) *
+                    sizeof(VkDrawIndexedIndirectCommand),
+                1, 0);
+        else
+            vk.CmdDrawIndexed(commands_, item.indexCount, 1, item.firstIndex, item.vertexOffset, 0);
     }
     void drawIndirect(uint32_t resource, uint64_t offset) override {
         s_.device.table.CmdDrawIndirect(commands_, s_.planes.buffer(resource).handle, offset, 1, 0);
@@ -45,6 +61,7 @@ class PassRecorder : public DrawRecorder {
     const DrawPass& pass_;
     VkPipelineLayout layout_;
     VkDescriptorSet bound_ = VK_NULL_HANDLE;
+    bool refined_ = false;  // whose indices are bound
 };
 
 VkImageMemoryBarrier imageBarrier(const FwVulkanImage& image, bool depth, VkFormat format) {
@@ -77,6 +94,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     if (!drawVertices || !lookTextures.live || !limits.looks.viewParams) return;
     const Table& vk = device.table;
     const uint32_t viewOffset = pushView(slot, view, viewport);
+    refine.height = std::fabs(viewport.height);
     vk.CmdSetViewport(commands, 0, 1, &viewport);
     VkRect2D scissor{};
     const float left = std::max(viewport.x, 0.0f), top = std::max(viewport.y, 0.0f);

@@ -42,6 +42,9 @@ const Readback* VkBackend::State::nextReadback() {
             if (layout.answers > 0)
                 std::memcpy(givenAnswers.data(), from + layout.answersAt,
                             uint64_t(layout.answers) * 4);
+            for (uint32_t i = 0; i < std::min(layout.objects, uint32_t(objects.size())); ++i)
+                if (givenObjects[i].burning != 0 || givenObjects[i].frontTiles != 0)
+                    noteFire(i, one.endTick);
             uint64_t at = 0;
             for (uint32_t i = 0; i < layout.mapCount; ++i) {
                 const ReadbackLayout::MapAt& map = layout.maps[i];

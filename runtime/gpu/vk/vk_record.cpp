@@ -116,6 +116,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         needs.uploadBytes +=
             uploaded(step.events.size_bytes()) + uploaded(wake * sizeof(WakeGroup));
         for (const TexelEvent& event : step.events) {
+            s.noteFire(event.object, plan.endTick);
             if (event.kind == kEventWet || event.kind == kEventExtinguish)
                 s.objects[event.object].lastDouse = s.open.ringFrame;
         }
@@ -158,7 +159,9 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.iterations > 0 ||
                      needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
-    needs.work = needs.readback || needs.falling || forgets || s.recordsDirty ||
+    const uint64_t refineBytes = s.planRefine(plan);
+    needs.uploadBytes += refineBytes;
+    needs.work = needs.readback || needs.falling || refineBytes > 0 || forgets || s.recordsDirty ||
                  !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
@@ -272,7 +275,7 @@ SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_
     const vec4 row = object.record.worldRow0;
     const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
     return surfaceDraw(object.record, object.materials[material],
-                       s.meshes[object.mesh].edge * scale);
+                       s.meshes[object.mesh].edge * scale, object.refine.slots.first);
 }
 
 // Records of objects that are new, moved or gone, and the list of what draws show.
@@ -311,7 +314,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                     {i, m, mesh.indexRange.first + first, end - first,
                      int32_t(mesh.vertexRange.first), object.images[m],
                      surfaceVariant(object.materials[m], object.images[m] != 0, object.touched),
-                     drawOf(s, object, m)});
+                     object.refine.started, drawOf(s, object, m)});
             first = end;
         }
     }
@@ -497,8 +500,9 @@ void VkBackend::State::run(const FramePlan& plan) {
     if (planes.recordMoves(vk, open.commands, open.ringFrame))
         barriers.begin(vk, open.commands);  // rare: waits for all of the moves
     if (!initialized) {
-        for (const uint32_t resource : {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS,
-                                        FW_BIND_LIGHT_CELLS, FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS})
+        for (const uint32_t resource :
+             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
+              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS})
             recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
         initialized = true;
     }
@@ -572,6 +576,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
         recordLights(looks, lists, open.endTick);
         if (view) recordFlameQuads(looks, lists, open.endTick);
     }
+    recordRefinement(slot, view);
     FrameRecorder recorder(target);
     if (open.readback && open.planFrame) {
         const ReadbackLayout& layout = slot.layout;

@@ -23,11 +23,39 @@ struct RangeOf {  // of a space
     uint32_t first = 0, units = 0;
 };
 
+struct SpaceRange {
+    RangeOf* range;
+    Space space;
+};
+
+// A mesh's refinement at one depth: what its objects share.
+struct RefineMesh {
+    bool live = false;
+    uint32_t edgeCount = 0, triangleCount = 0, cornerCount = 0, slotCount = 0;
+    uint32_t fullCount = 0;                          // triangles with everything at its deepest
+    uint32_t materialEnd[kMaterialsPerObject] = {};  // of its triangles
+    RangeOf triangles, edges, slots, words, draws;
+    void release(Planes& planes) noexcept;
+};
+
+struct RefineUse {  // an object's own
+    bool on = false;
+    bool started = false;  // it is drawn refined: some frame placed it
+    uint32_t depth = 0;
+    float pixelsPerEdge = 8;
+    uint32_t epochTick = 0;
+    uint32_t quietTick = 0;  // it is refined before this; 0: no fire yet
+    RangeOf items, triangles, slots, indices;
+    void allocate(Planes& planes, const RefineMesh& mesh, uint64_t last);
+    void release(Planes& planes) noexcept;
+};
+
 struct MeshEntry {
     bool live = false;
     uint32_t width = 0, height = 0, tilesX = 0, tiles = 0, vertices = 0, indices = 0;
     RangeOf meshTiles, slowness, links, readers, vertexRange, indexRange;
     uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
+    RefineMesh refine[kRefineDepth + 1];             // by depth
     float edge = 0;  // m at scale 1: side of a square as large as two mean triangles
 };
 
@@ -45,6 +73,7 @@ struct ObjectEntry {
     uint32_t images[kMaterialsPerObject] = {};  // slot + 1, 0: none
     HeatMaterial heat[kMaterialsPerObject]{};  // with kObjectHeat
     RangeOf tiles, slowness, published, heatTiles;
+    RefineUse refine;
     bool publishedTouched = false;  // as-published mode: some event reached it
     uint32_t publishedParity = 0;
 };
@@ -159,6 +188,15 @@ struct VkBackend::State {
     } open;
     std::pmr::vector<PublishedStep> published;  // scratch of run
     std::pmr::vector<DrawItem> drawItems;       // objects that draws show
+    struct Refine {
+        explicit Refine(std::pmr::memory_resource* memory) : lists(memory) {}
+        std::pmr::vector<uint32_t> lists;  // of the frame's work plane
+        RefinePush push{};                 // of the frame; no objects: nothing is refined
+        uint32_t users = 0;                // objects that refine
+        vec4 eye{};                        // m, world; w: pixels of 1 m at 1 m, 0: no limit by size
+        float height = 0;                  // px, of what was last drawn; 0: nothing was
+        double lastTick = 0;
+    } refine;
 
     // Readbacks, oldest first.
     std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
@@ -185,6 +223,12 @@ struct VkBackend::State {
     void closeFrame(const FwView* view);
     RecordTarget recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept;
     uint32_t pushView(FrameInFlight& slot, const FwView& view, const VkViewport& viewport);
+    // vk_refine.cpp
+    void uploadRefineTable();
+    void noteFire(uint32_t object, uint32_t tick) noexcept;
+    uint64_t planRefine(const FramePlan& plan);
+    void recordRefinement(FrameInFlight& slot, const FwView* view);
+    RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
     const Readback* nextReadback();

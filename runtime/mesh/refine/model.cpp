@@ -200,8 +200,24 @@ RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
     check(options);
     const double texel = double(domain.texelSide);
     const Surface surface = surfaceOf(domain, memory);
-    const CoarseMesh coarse =
+    CoarseMesh coarse =
         coarseMesh(surface, double(options.splitTexels) * texel, options.maxTriangles, memory);
+    const auto materialOf = [&](const CoarseTriangle& t) {
+        const uint32_t source = surface.triangles[t.source].source;
+        return domain.vertices[domain.indices[size_t(source) * 3]].material;
+    };
+    // Draws are by material.
+    std::pmr::vector<CoarseTriangle> sorted(memory);
+    sorted.reserve(coarse.triangles.size());
+    for (uint32_t m = 0, next = 0; m != kNone; m = next) {
+        next = kNone;
+        for (const CoarseTriangle& t : coarse.triangles) {
+            const uint32_t own = materialOf(t);
+            if (own == m) sorted.push_back(t);
+            if (own > m) next = std::min(next, own);
+        }
+    }
+    coarse.triangles = std::move(sorted);
     RefineModel model(memory);
     model.textureWidth = domain.width;
     model.tileCount = domain.tileCount();

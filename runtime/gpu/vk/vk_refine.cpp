@@ -1,0 +1,299 @@
+// Adaptive refinement's side of the backend: what a mesh and an object bring to the planes, and
+// which objects a frame refines. What their passes do is in shaders/refine.
+#include "core/error.h"
+#include "gpu/vk/world_state.h"
+#include "mesh/refine/model.h"
+#include "mesh/refine/table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr uint32_t kTableWords = kRefineTableSize / 2;
+// Ticks that an object is refined beyond the last sign of fire: levels outlive their heat by a
+// second, take five quarters more to fall, and readbacks come late.
+constexpr uint32_t kQuietTicks = 4 * kTicksPerSecond;
+constexpr float kRecede = 0.9f;
+constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
+
+uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
+
+uint32_t materialOf(const mesh::BurnDomain& domain, const RefineTriangle& triangle) {
+    const uint32_t corner = domain.indices[size_t(triangle.source) * 3];
+    return std::min(domain.vertices[corner].material, kMaterialsPerObject - 1);
+}
+
+template <class T>
+void append(PendingUpload& upload, uint64_t& from, uint32_t resource, uint64_t first,
+            std::span<const T> data) {
+    if (data.empty()) return;
+    std::memcpy(upload.staging.mapped + from, data.data(), data.size_bytes());
+    upload.regions[upload.regionCount++] = {resource, from, first * sizeof(T), data.size_bytes()};
+    from += data.size_bytes();
+}
+
+void releaseAll(Planes& planes, std::span<const SpaceRange> ranges) noexcept {
+    for (const SpaceRange& one : ranges)
+        if (one.range->units) planes.release(one.space, one.range->first, one.range->units);
+}
+
+}  // namespace
+
+// The pattern table is the first thing in the plane of words.
+void VkBackend::State::uploadRefineTable() {
+    const uint32_t first = planes.allocate(kSpaceRefineWords, kTableWords, 0);
+    PendingUpload& upload = stage(kTableWords * 4, "refinement table");
+    uint64_t from = 0;
+    append(upload, from, FW_BIND_REFINE_WORDS, uint64_t(first) * 2,
+           std::span<const uint16_t>(mesh::kRefineTable));
+}
+
+void VkBackend::createRefinement(uint32_t slot, uint32_t depth, const mesh::BurnDomain& domain,
+                                 const mesh::RefineModel& model) {
+    State& s = *state_;
+    const uint64_t last = s.ring.newest();
+    RefineMesh fresh;
+    fresh.live = true;
+    fresh.edgeCount = uint32_t(model.edges.size());
+    fresh.triangleCount = uint32_t(model.triangles.size());
+    fresh.cornerCount = model.cornerCount;
+    fresh.slotCount = uint32_t(model.slots.size());
+    fresh.fullCount = uint32_t(model.fullCount());
+    for (const RefineTriangle& t : model.triangles) ++fresh.materialEnd[materialOf(domain, t)];
+    for (uint32_t m = 1; m < kMaterialsPerObject; ++m)
+        fresh.materialEnd[m] += fresh.materialEnd[m - 1];
+
+    std::pmr::vector<mesh::RenderVertex> vertices(s.memory);
+    vertices.reserve(model.draws.size());
+    for (uint32_t d = 0; d < model.draws.size(); ++d) {
+        // The place of a slot that no triangle draws is never asked for.
+        vertices.push_back(model.draws[d].triangle == mesh::kNone
+                               ? mesh::RenderVertex{}
+                               : mesh::refineRenderVertex(domain, model, d));
+        vertices.back().material = model.draws[d].slot;
+    }
+    const size_t uploadsBefore = s.uploads.size();
+    const auto units = [](size_t count) { return std::max(1u, uint32_t(count)); };
+    const size_t words = model.tileStart.size() + model.tileItems.size();
+    const struct {
+        SpaceRange place;
+        uint32_t units;
+    } wanted[] = {
+        {{&fresh.triangles, kSpaceRefineMeshTriangles}, units(fresh.triangleCount)},
+        {{&fresh.edges, kSpaceRefineMeshEdges}, units(fresh.edgeCount)},
+        {{&fresh.slots, kSpaceRefineMeshSlots}, units(fresh.slotCount)},
+        {{&fresh.words, kSpaceRefineWords}, units(words)},
+        {{&fresh.draws, kSpaceVertices}, units(vertices.size())},
+    };
+    try {
+        for (const auto& one : wanted)
+            *one.place.range = {s.planes.allocate(one.place.space, one.units, last), one.units};
+        PendingUpload& upload = s.stage(model.triangles.size() * sizeof(RefineTriangle) +
+                                            model.edges.size() * sizeof(RefineEdge) +
+                                            model.slots.size() * sizeof(RefineSlot) + words * 4 +
+                                            vertices.size() * sizeof(mesh::RenderVertex),
+                                        "refinement staging");
+        uint64_t from = 0;
+        append(upload, from, FW_BIND_REFINE_TRIANGLES, fresh.triangles.first,
+               std::span<const RefineTriangle>(model.triangles));
+        append(upload, from, FW_BIND_REFINE_EDGES, fresh.edges.first,
+               std::span<const RefineEdge>(model.edges));
+        append(upload, from, FW_BIND_REFINE_SLOTS, fresh.slots.first,
+               std::span<const RefineSlot>(model.slots));
+        append(upload, from, FW_BIND_REFINE_WORDS, fresh.words.first,
+               std::span<const uint32_t>(model.tileStart));
+        append(upload, from, FW_BIND_REFINE_WORDS, fresh.words.first + model.tileStart.size(),
+               std::span<const uint32_t>(model.tileItems));
+        append(upload, from, kResourceVertices, fresh.draws.first,
+               std::span<const mesh::RenderVertex>(vertices));
+    } catch (...) {
+        fresh.release(s.planes);
+        while (s.uploads.size() > uploadsBefore) {
+            s.deviceMemory.destroy(s.uploads.back().staging);
+            s.uploads.pop_back();
+        }
+        throw;
+    }
+    s.meshes[slot].refine[depth] = fresh;
+}
+
+void RefineMesh::release(Planes& planes) noexcept {
+    const SpaceRange all[] = {{&triangles, kSpaceRefineMeshTriangles},
+                              {&edges, kSpaceRefineMeshEdges},
+                              {&slots, kSpaceRefineMeshSlots},
+                              {&words, kSpaceRefineWords},
+                              {&draws, kSpaceVertices}};
+    releaseAll(planes, all);
+    *this = {};
+}
+
+void RefineUse::allocate(Planes& planes, const RefineMesh& mesh, uint64_t last) {
+    const auto take = [&](RangeOf& range, Space space, uint32_t units) {
+        units = std::max(1u, units);
+        range = {planes.allocate(space, units, last), units};
+    };
+    take(items, kSpaceRefineItems, mesh.edgeCount + mesh.triangleCount);
+    take(triangles, kSpaceRefineTriangles, mesh.triangleCount);
+    take(slots, kSpaceRefineSlots, mesh.slotCount);
+    take(indices, kSpaceRefineIndices, mesh.fullCount * 3);
+}
+
+void RefineUse::release(Planes& planes) noexcept {
+    const SpaceRange all[] = {{&items, kSpaceRefineItems},
+                              {&triangles, kSpaceRefineTriangles},
+                              {&slots, kSpaceRefineSlots},
+                              {&indices, kSpaceRefineIndices}};
+    releaseAll(planes, all);
+    *this = {};
+}
+
+void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
+    RefineUse& use = objects[object].refine;
+    if (use.on) use.quietTick = std::max(use.quietTick, tick + kQuietTicks);
+}
+
+// Which objects the frame refines, and the bytes that it uploads for it. May throw.
+uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
+    refine.lists.clear();
+    refine.push = {};
+    if (refine.users == 0) return 0;
+    uint64_t emitJobs = 0, placeJobs = 0, full = 0;
+    const auto each = [&](auto&& use) {
+        for (uint32_t i = 0; i < objects.size(); ++i) {
+            const ObjectEntry& object = objects[i];
+            if (object.live && object.refine.on && object.refine.quietTick > plan.endTick)
+                use(i, meshes[object.mesh].refine[object.refine.depth]);
+        }
+    };
+    const auto list = [&](uint32_t object, uint32_t count) {
+        for (uint32_t k = 0; k < count; k += 64) {
+            refine.lists.push_back(object);
+            refine.lists.push_back(k);
+        }
+        return groupsOf(count);
+    };
+    refine.lists.resize(kRefineWorkLists, 0);
+    for (const uint32_t at : {kRefineWorkEmit, kRefineWorkPlace})
+        refine.lists[at + 1] = refine.lists[at + 2] = 1;
+    RefinePush& push = refine.push;
+    each([&](uint32_t i, const RefineMesh& m) { push.edgeGroups += list(i, m.edgeCount); });
+    each([&](uint32_t i, const RefineMesh& m) { push.triangleGroups += list(i, m.triangleCount); });
+    each([&](uint32_t i, const RefineMesh& m) { push.cornerGroups += list(i, m.cornerCount); });
+    each([&](uint32_t i, const RefineMesh& m) {
+        refine.lists.push_back(i);
+        refine.lists.push_back(0);
+        ++push.objects;
+        emitJobs += groupsOf(m.fullCount);
+        placeJobs += m.triangleCount;
+        full += m.fullCount;
+        push.objectEnd = i + 1;
+    });
+    if (push.objects == 0) return 0;
+    push.budget = full > limits.maxRefinedTriangles ? limits.maxRefinedTriangles : 0;
+    push.full = (plan.switches & kSwitchRefineFull) != 0 ? 1 : 0;
+    push.recede = kRecede;
+    push.emitJobs = uint32_t(refine.lists.size());
+    push.placeJobs = push.emitJobs + uint32_t(2 * emitJobs);
+    planes.atLeast(kSpaceRefineWork, push.placeJobs + uint32_t(2 * placeJobs), ring.newest());
+    return refine.lists.size() * 4 + uint64_t(push.objectEnd) * sizeof(RefineObject) + 64;
+}
+
+// `view`: its eye and size on the screen limit levels; null: as last drawn.
+void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view) {
+    RefinePush& push = refine.push;
+    if (push.objects == 0) return;
+    if (view && limits.looks.viewParams) {
+        ViewInput input;
+        input.view = view;
+        input.viewport[2] = input.viewport[3] = refine.height > 0 ? refine.height : kDefaultHeight;
+        ViewParams params{};
+        limits.looks.viewParams(input, params);
+        refine.eye = params.eye;
+        refine.eye.w = params.forward.w > 0.5f ? 1 / params.eye.w : 0;
+    }
+    const double now = double(shownTick) + double(tickFraction);
+    push.nowTick = shownTick;
+    push.dt = float(std::clamp((now - refine.lastTick) / kTicksPerSecond, 0.0, 1.0));
+    refine.lastTick = now;
+
+    FrameRecorder recorder(recordTarget(slot, open.commands));
+    uint64_t at = (slot.uploadUsed + 15) / 16 * 16;
+    std::memcpy(slot.upload.mapped + at, refine.lists.data(), refine.lists.size() * 4);
+    recorder.copyIn(at, FW_BIND_REFINE_WORK, 0, refine.lists.size() * 4);
+    at += (refine.lists.size() * 4 + 15) / 16 * 16;
+    const uint64_t recordsAt = at;
+    uint32_t ordinal = 0;
+    for (uint32_t i = 0; i < push.objectEnd; ++i, at += sizeof(RefineObject)) {
+        RefineObject record{};
+        ObjectEntry& object = objects[i];
+        const bool active =
+            object.live && object.refine.on && object.refine.quietTick > open.endTick;
+        if (active) {
+            record = refineRecord(object, push.full != 0);
+            record.ordinal = ordinal++;
+            if (!object.refine.started) {
+                record.flags |= kRefineIsFresh;
+                const RangeOf& items = object.refine.items;
+                recorder.fillZero(FW_BIND_REFINE_HEAT, uint64_t(items.first) * 4,
+                                  uint64_t(items.units) * 4);
+                object.refine.started = true;
+            }
+        }
+        std::memcpy(slot.upload.mapped + at, &record, sizeof record);
+    }
+    slot.uploadUsed = at;
+    recorder.copyIn(recordsAt, FW_BIND_REFINE_OBJECTS, 0,
+                    uint64_t(push.objectEnd) * sizeof(RefineObject));
+    recordRefine(recorder, lists, push);
+    for (DrawItem& item : drawItems) item.refined = objects[item.object].refine.started;
+}
+
+RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full) const noexcept {
+    const MeshEntry& entry = meshes[object.mesh];
+    const RefineMesh& mesh = entry.refine[object.refine.depth];
+    const RefineUse& use = object.refine;
+    RefineObject r{};
+    r.items = use.items.first;
+    r.triangles = use.triangles.first;
+    r.vertices = use.slots.first;
+    r.indices = use.indices.first;
+    r.meshTriangles = mesh.triangles.first;
+    r.meshEdges = mesh.edges.first;
+    r.meshSlots = mesh.slots.first;
+    r.meshWords = mesh.words.first;
+    r.meshDraws = mesh.draws.first;
+    r.edgeCount = mesh.edgeCount;
+    r.triangleCount = mesh.triangleCount;
+    r.cornerCount = mesh.cornerCount;
+    r.textureWidth = entry.width;
+    r.tileCount = entry.tiles;
+    r.stateBase = object.record.stateBase;
+    r.epochTick = use.epochTick;
+    r.flags = kRefineIsActive;
+    r.pixelsPerEdge = use.pixelsPerEdge;
+    r.now =
+        float((double(shownTick) - double(use.epochTick) + double(tickFraction)) / kTicksPerSecond);
+    // Rows are s * R: the eye in object space is (R^T / s) (eye - t).
+    const vec4 &x = object.record.worldRow0, &y = object.record.worldRow1,
+               &z = object.record.worldRow2;
+    const float square = std::max(x.x * x.x + x.y * x.y + x.z * x.z, 1e-12f);
+    const float d[3] = {refine.eye.x - x.w, refine.eye.y - y.w, refine.eye.z - z.w};
+    r.eye = {(x.x * d[0] + y.x * d[1] + z.x * d[2]) / square,
+             (x.y * d[0] + y.y * d[1] + z.y * d[2]) / square,
+             (x.z * d[0] + y.z * d[1] + z.z * d[2]) / square, full ? 0.0f : refine.eye.w};
+    const auto seconds = [&](uint32_t m) {
+        const uint32_t ticks = object.materials[m].flameTicks;
+        return ticks == kNoneTexel ? 1e6f : std::max(float(ticks) / float(kTicksPerSecond), 1e-3f);
+    };
+    r.burnSeconds0 = {seconds(0), seconds(1), seconds(2), seconds(3)};
+    r.burnSeconds1 = {seconds(4), seconds(5), seconds(6), seconds(7)};
+    const auto* end = mesh.materialEnd;
+    r.materialEnd0 = {end[0], end[1], end[2], end[3]};
+    r.materialEnd1 = {end[4], end[5], end[6], end[7]};
+    return r;
+}
+
+}  // namespace fw::gpu::vk

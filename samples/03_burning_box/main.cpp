@@ -1,0 +1,178 @@
+// A box of twelve triangles burns: refined just ahead of the fire, it recedes, chars and opens;
+// what has burnt out is coarse again. --plain draws the twelve triangles as they are.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/camera.h"
+#include "common/film.h"
+#include "common/fire_host.h"
+#include "common/studio.h"
+
+namespace {
+
+struct Wishes {
+    bool plain = false;
+    float seconds = 12;      // of a headless run
+    float pace = 60;         // so that boards of 20 mm are gone in the run
+    float depth = 5;         // halvings of an edge
+    float turn = 0;          // degrees a second
+    float wall = 0.02f;      // m
+    float distance = 2.35f;  // m
+};
+
+struct Box {
+    std::vector<float> positions;
+    std::vector<uint32_t> indices;
+};
+
+// Corners are shared: eight vertices, twelve triangles, counter-clockwise from outside.
+Box makeBox(glm::vec3 low, glm::vec3 high) {
+    Box box;
+    for (int i = 0; i < 8; ++i)
+        for (int c = 0; c < 3; ++c) box.positions.push_back((i >> c & 1) ? high[c] : low[c]);
+    box.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                   2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    return box;
+}
+
+FwBurnableMeshId placeBox(sample::FireHost& fire, const Box& box, const Wishes& wishes) {
+    FwMeshDef mesh = fwDefaultMeshDef();
+    mesh.positions = box.positions.data();
+    mesh.indices = box.indices.data();
+    mesh.vertexCount = static_cast<uint32_t>(box.positions.size() / 3);
+    mesh.indexCount = static_cast<uint32_t>(box.indices.size());
+    mesh.texelsPerMetre = 128;
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    fire.check(fwWorld_CreateMesh(fire.world, &mesh, &def.mesh), "fwWorld_CreateMesh");
+    FwMaterialDef pine = fwDefaultMaterialDef();
+    pine.thickness = wishes.wall;
+    pine.spreadRate *= 2;  // dry kindling
+    fire.check(fwWorld_CreateMaterial(fire.world, &pine, &def.materials[0]),
+               "fwWorld_CreateMaterial");
+    if (!wishes.plain) def.flags |= FW_BURNABLE_REFINE;
+    def.refineDepth = static_cast<uint32_t>(std::lround(wishes.depth));
+    FwBurnableMeshId object{};
+    fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object), "fwWorld_CreateBurnableMesh");
+    return object;
+}
+
+int run(const sample::Options& options, const Wishes& wishes) {
+    const Box box = makeBox({-0.4f, 0, -0.3f}, {0.4f, 0.6f, 0.3f});
+    sample::ValidationLog validation;
+    {
+        sample::HostRequest hostRequest;
+        hostRequest.windowed = !options.headless;
+        if (options.validate) hostRequest.validation = &validation;
+        const sample::VulkanHost host(hostRequest);
+        sample::StageRequest stageRequest;
+        stageRequest.title = "Flamewright: a burning box";
+        const auto wanted = static_cast<uint32_t>(std::lround(wishes.seconds * options.fps));
+        const uint32_t frames =
+            options.frames ? options.frames : (options.headless ? std::max(1u, wanted) : 0u);
+        sample::Stage stage(host, options, stageRequest, frames);
+        sample::Studio studio(host, stage, {0, 0, 0}, 0.8f);
+        sample::OrbitCamera orbit;
+        orbit.target = {0, 0.29f, 0};
+        orbit.yaw = glm::radians(32.0f);
+        orbit.pitch = glm::radians(20.0f);
+        orbit.fieldOfView = 0.5f;
+        orbit.distance = wishes.distance;
+
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.paceFactor = wishes.pace;
+        worldDef.seed = options.seed;
+        worldDef.maxStepsPerFrame = 64;
+        worldDef.maxRefinedTriangles = 60000;
+        sample::FireHost fire(host, worldDef);
+        fire.registerTarget(stage);
+        const FwBurnableMeshId object = placeBox(fire, box, wishes);
+        FwView view = fwDefaultView();
+        sample::duskLight(view);
+        studio.castShadow(box.positions, box.indices, glm::mat4(1.0f),
+                          {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
+
+        sample::FilmRequest filmRequest;
+        filmRequest.folder = options.out;
+        filmRequest.name = "burning_box";
+        filmRequest.framesPerSecond = options.fps;
+        filmRequest.frames = frames;
+        sample::Film film(filmRequest);
+        sample::Progress progress("burning_box", frames);
+        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
+            film.add(number, picture);
+            progress.update(number + 1);
+        };
+        sample::StageFrame frame;
+        while (stage.next(frame)) {
+            orbit.turn(frame.input.dragX, frame.input.dragY);
+            orbit.zoom(frame.input.wheel);
+            orbit.yaw += glm::radians(wishes.turn) * frame.deltaTime;
+            const float aspect =
+                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
+            const sample::Camera camera = orbit.camera();
+            sample::setCamera(view, sample::viewMatrix(camera),
+                              sample::projectionMatrix(camera, aspect, false));
+            view.time = static_cast<float>(frame.time);
+            if (frame.number == 1) {  // one frame of the untouched thing first
+                FwIgnitionDef match = fwDefaultIgnitionDef();
+                match.position[0] = 0.1f;
+                match.position[1] = 0.3f;
+                match.position[2] = 0.3f;
+                match.radius = 0.02f;
+                fire.check(fwWorld_Ignite(fire.world, &match, nullptr), "fwWorld_Ignite");
+            }
+            FwLight lights[8];
+            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
+            fire.recordOutside(frame, view);
+            stage.beginScene(frame);
+            studio.draw(frame, frame.commands, view, {lights, lightCount});
+            fire.recordInside(frame, view);
+            stage.endScene(frame);
+            stage.finish(frame);
+        }
+        if (options.headless) {
+            progress.finish();
+            FwObjectState state{};
+            state.structSize = sizeof state;
+            fwWorld_GetObjectState(fire.world, object, &state);
+            char line[160];
+            sample::Summary summary;
+            summary.title = "A box of twelve triangles";
+            summary.rows.emplace_back("device", host.properties.deviceName);
+            std::snprintf(line, sizeof line, "%.0f times as fast as real; %.0f %% caught fire",
+                          wishes.pace, 100.0f * state.burntFraction);
+            summary.rows.emplace_back("fire", line);
+            summary.passes = fire.passCosts();
+            summary.files = film.close();
+            sample::printSummary(summary);
+        }
+    }
+    return validation.exitCode();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return sample::guardedMain("03_burning_box", [&] {
+        sample::Options options;
+        options.fps = 10.0;
+        options.width = 640;
+        options.height = 480;
+        Wishes wishes;
+        sample::OptionParser parser("03_burning_box", "twelve triangles burn");
+        parser.addFlag("--plain", "without refinement", wishes.plain);
+        parser.addNumber("--depth", "halvings of an edge", wishes.depth, 0.0f, 5.0f);
+        parser.addNumber("--pace", "how much faster than real", wishes.pace, 0.1f, 1000.0f);
+        parser.addNumber("--seconds", "length of a headless run", wishes.seconds, 0.1f, 600.0f);
+        parser.addNumber("--turn", "turntable, degrees a second", wishes.turn, -360.0f, 360.0f);
+        parser.addNumber("--wall", "thickness of the boards, m", wishes.wall, 0.001f, 0.1f);
+        parser.addNumber("--distance", "of the camera, m", wishes.distance, 0.3f, 50.0f);
+        if (!parser.parse(argc, argv, options)) return 0;
+        if (options.list) {
+            std::printf("one box\n");
+            return 0;
+        }
+        return run(options, wishes);
+    });
+}
