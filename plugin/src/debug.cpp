@@ -48,7 +48,13 @@ FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld* world, FwBurnableMeshId id, uint3
         if (ticks)
             std::copy_n(map->ticks.begin(), std::min<uint64_t>(capacity, map->ticks.size()), ticks);
         if (count) *count = map->ticks.size();
-        if (hash) *hash = core::hashWords(map->ticks);
+        if (hash) {
+            *hash = core::hashWords(map->ticks);
+            for (const gpu::uvec2& texel : map->heat) {
+                const uint32_t words[2] = {texel.x, texel.y};
+                *hash = core::hashWords(words, *hash);
+            }
+        }
         if (tick) *tick = map->tick;
         return FW_OK;
     });

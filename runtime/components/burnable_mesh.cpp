@@ -23,7 +23,7 @@ fire::SpreadFacts facts(const BurnableMesh& object, const mesh::BurnDomain& doma
     std::copy_n(drive.up, 3, f.up);
     f.pace = drive.pace;
     f.moisture = object.moisture;
-    f.dries = hasHeat(object);
+    f.heat = hasHeat(object);
     return f;
 }
 
@@ -110,8 +110,7 @@ bool burns(const BurnableMesh& object, uint32_t material) noexcept {
 }
 
 bool hasHeat(const BurnableMesh& object) noexcept {
-    constexpr bool kFrameRunsHeat = false;
-    return kFrameRunsHeat && (object.flags & (FW_BURNABLE_LITE | FW_BURNABLE_PUBLISHED)) == 0;
+    return (object.flags & (FW_BURNABLE_LITE | FW_BURNABLE_PUBLISHED)) == 0;
 }
 
 std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,

@@ -106,7 +106,7 @@ gpu::HeatMaterial heatMaterial(const FwMaterialDef& def, const HeatPlace& place)
     const double joules = double(def.heatOfCombustion) * double(arealFuel(def)) *
                           double(place.texelArea) / gpu::kFuelFull;  // of a unit
     m.energy = fixed(joules, 1048576);
-    m.watts = float(joules / seconds);
+    if (def.burnTime <= 0) m.watts = float(joules / seconds);
     return m;
 }
 

@@ -124,7 +124,7 @@ float moistureFactor(float moisture, float extinctionMoisture) noexcept {
 
 float baseRate(const FwMaterialDef& def, const SpreadFacts& facts) noexcept {
     float factor = moistureFactor(def.moisture + facts.moisture, def.extinctionMoisture);
-    if (factor <= 0 && facts.dries) factor = 1;  // its texels wait until heat has dried them
+    if (factor <= 0 && facts.heat) factor = 1;  // its texels wait until heat has dried them
     return def.spreadRate * factor * facts.pace;
 }
 
@@ -183,6 +183,8 @@ gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& fact
             double(def.burningFlux) > 0 ? double(arealFuel(def)) / double(def.burningFlux) : 0;
         m.flameTicks =
             consumed > 0 ? durationTicks(consumed / double(facts.pace)) : gpu::kNoneTexel;
+        // How long it really flames its heat decides; what is surely dead lights nothing.
+        if (facts.heat && m.flameTicks < kMaxBurnTicks / 2) m.burnTicks = 2 * m.flameTicks;
     }
     m.powerPerArea = def.heatOfCombustion * def.burningFlux;
     const double speed = std::sqrt(double(wind[0]) * wind[0] + double(wind[1]) * wind[1] +

@@ -19,7 +19,7 @@ struct SpreadFacts {      // of an object, its mesh and its world
     float up[3] = {0, 1, 0};                                   // world, unit
     float pace = 1;      // fires spread and burn out this much faster, [0.1, 1000]
     float moisture = 0;  // kg/kg, added to the material's own
-    bool dries = false;  // has heat: what is too damp to burn may dry
+    bool heat = false;   // has a heat plane: what is too damp to burn may dry, thick fuel ends
 };
 
 struct FrontTiming {

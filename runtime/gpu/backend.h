@@ -60,19 +60,21 @@ struct FramePlan {
 struct BurnMap {
     uint32_t object = 0;
     std::span<const uint32_t> ticks;
+    std::span<const uvec2> heat;  // packed HeatTexel; empty: none
 };
 
 struct Readback {  // valid until the next call of nextReadback
     uint64_t frameIndex = 0;
     uint32_t endTick = 0;
     std::span<const ObjectCounters> objects;  // by object slot
-    std::span<const uint32_t> answers;        // of the probes of that frame
+    std::span<const ProbeAnswer> answers;     // of the probes of that frame
     std::span<const BurnMap> burnMaps;
     std::span<const BurnLight> lights;
     uint32_t frontTiles = 0;  // length of the front list: 0 and no events = idle
     uint32_t runTiles = 0;    // tiles run in the frame
     uint32_t burningTiles = 0;
     uint32_t flames = 0;
+    uint32_t hotTiles = 0;  // length of the hot list
 };
 
 struct PassTime {

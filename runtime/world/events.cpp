@@ -47,6 +47,7 @@ void World::collectReadbacks() {
         frontTiles_ = readback->frontTiles;
         runTiles_ = readback->runTiles;
         burningTiles_ = readback->burningTiles;
+        hotTiles_ = readback->hotTiles;
         flames_ = readback->flames;
         takeCounters(*readback);
         takeAnswers(*readback);
@@ -58,11 +59,13 @@ void World::collectReadbacks() {
             BurnMapCopy& copy = (*owned)->map;
             if (!copy.pending || copy.ticks.size() != map.ticks.size()) continue;
             std::copy(map.ticks.begin(), map.ticks.end(), copy.ticks.begin());
+            if (copy.heat.size() == map.heat.size())
+                std::copy(map.heat.begin(), map.heat.end(), copy.heat.begin());
             copy.tick = readback->endTick;
             copy.pending = false;
             copy.ready = true;
         }
-        if (frontTiles_ == 0 && burningTiles_ == 0 &&
+        if (frontTiles_ == 0 && burningTiles_ == 0 && hotTiles_ == 0 &&
             readback->endTick >= lastStimulus_ + kSettleTicks)
             idle_ = true;
     }
@@ -80,6 +83,7 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         object.countersFrame = readback.frameIndex;
         object.mostIgnited = std::max(object.mostIgnited, now.ignited);
         clamps += now.lateClamps;
+        takeEnergy(object, readback.endTick);
         float place[3];
         if (now.burning > 0) object.lastBurning = readback.endTick;
 
@@ -122,6 +126,20 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
     lateClamps_ = clamps;
 }
 
+void World::takeEnergy(Object& object, uint32_t endTick) noexcept {
+    const gpu::ObjectCounters& now = object.counters;
+    const uint64_t energy = uint64_t(now.energyHigh) << 32 | now.energyLow;
+    const uint64_t steps = endTick / (gpu::kHeatSteps * gpu::kStepTicks);
+    if (steps == object.heatSteps) return;
+    const double seconds = double(steps - object.heatSteps) * gpu::kHeatSteps / 32;
+    object.power =
+        now.burning == 0
+            ? 0.0f
+            : float(double(energy - object.energy) / 1048576 / seconds / double(def_.paceFactor));
+    object.energy = energy;
+    object.heatSteps = steps;
+}
+
 void World::takeAnswers(const gpu::Readback& readback) noexcept {
     const auto known = std::find_if(
         probeFrames_.begin(), probeFrames_.end(),
@@ -133,7 +151,7 @@ void World::takeAnswers(const gpu::Readback& readback) noexcept {
         auto* owned = objects_.find(ref.object);
         if (!owned) continue;
         const Object& object = **owned;
-        const uint32_t code = readback.answers[i];
+        const uint32_t code = readback.answers[i].state;
         if (ref.isTag) {
             if (!gpu::isSource(code) || code > readback.endTick) continue;
             const auto tag = std::find_if(tags_.begin(), tags_.end(), [&](const Tag& t) {
@@ -149,7 +167,7 @@ void World::takeAnswers(const gpu::Readback& readback) noexcept {
                   float(double(code) / gpu::kTicksPerSecond));
         } else if (Query* query = queries_.find(ref.query)) {
             const float distance = query->distance;
-            query->answer = pointState(object, ref.texel, code, readback);
+            query->answer = pointState(object, ref.texel, readback.answers[i], readback);
             query->answer.distance = distance;
             query->ready = true;
         }

@@ -63,7 +63,12 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
             ? float(mesh.domain->report.texelArea) / float(mesh.domain->report.realTexels)
             : 0.0f;
     state.burningArea = float(object.counters.burning) * texelArea * scale * scale;
-    state.power = state.burningArea * components::powerPerArea(object.data, mesh.texelsOf);
+    if (components::hasHeat(object.data)) {
+        state.power = object.power;
+        state.energy = double(object.energy) / 1048576;
+    } else {
+        state.power = state.burningArea * components::powerPerArea(object.data, mesh.texelsOf);
+    }
 }
 
 FwQueryId World::requestPoint(FwBurnableMeshId id, const float position[3]) {
@@ -88,11 +93,20 @@ FwQueryId World::requestPoint(FwBurnableMeshId id, const float position[3]) {
     return queries_.create(query);
 }
 
-FwPointState World::pointState(const Object& object, uint32_t texel, uint32_t code,
+FwPointState World::pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,
                                const gpu::Readback& readback) const noexcept {
     FwPointState state{};
     state.frameIndex = readback.frameIndex;
     state.age = -1;
+    const uint32_t code = answer.state;
+    const gpu::HeatTexel heat = gpu::unpackHeat({answer.heatX, answer.heatY});
+    state.fuel = 1;
+    if (answer.heat) {
+        state.temperature = float(heat.heat) / 16;
+        state.fuel = float(heat.fuel) / float(gpu::kFuelFull);
+        state.charred = float(heat.charred) / 255;
+        state.water = float(heat.film);
+    }
     texelPosition(object, texel, state.position);
     if (gpu::isSource(code)) {
         if (code > readback.endTick) {
@@ -102,7 +116,15 @@ FwPointState World::pointState(const Object& object, uint32_t texel, uint32_t co
         const uint32_t age = readback.endTick - code;
         state.age = float(double(age) / gpu::kTicksPerSecond);
         const uint32_t burns = object.latch.flameTicks[texelMaterial(object, texel)];
-        state.kind = burns == gpu::kNoneTexel || age < burns ? FW_POINT_BURNING : FW_POINT_BURNT;
+        if (answer.heat) {
+            state.kind = heat.phase == gpu::kPhaseBurnt ? FW_POINT_BURNT : FW_POINT_BURNING;
+            return state;
+        }
+        const bool burning = burns == gpu::kNoneTexel || age < burns;
+        state.kind = burning ? FW_POINT_BURNING : FW_POINT_BURNT;
+        state.fuel =
+            burns == gpu::kNoneTexel ? 1 : float(gpu::thinFuel(age, burns)) / gpu::kFuelFull;
+        state.charred = 1 - state.fuel;
         return state;
     }
     switch (code) {
@@ -114,6 +136,7 @@ FwPointState World::pointState(const Object& object, uint32_t texel, uint32_t co
             break;
         case gpu::kInert:
             state.kind = FW_POINT_INERT;
+            state.fuel = 0;
             break;
         default:
             state.kind = FW_POINT_EXTINGUISHED;
@@ -152,6 +175,7 @@ void World::stats(FwWorldStats& stats) noexcept {
     stats.frontTiles = frontTiles_;
     stats.runTiles = runTiles_;
     stats.burningTiles = burningTiles_;
+    stats.hotTiles = hotTiles_;
     stats.flames = flames_;
     stats.lateClamps = lateClamps_;
     stats.droppedSteps = uint32_t(droppedSteps_);
@@ -165,6 +189,7 @@ void World::stats(FwWorldStats& stats) noexcept {
 void World::requestBurnMap(FwBurnableMeshId id) {
     Object& object = *objects_.get(id);
     object.map.ticks.resize(domainOf(object).texelCount());  // so that a readback needs no memory
+    if (components::hasHeat(object.data)) object.map.heat.resize(domainOf(object).texelCount());
     if (!object.map.wished) ++mapsWished_;
     object.map.wished = true;
     object.map.ready = false;

@@ -80,10 +80,12 @@ void World::planSteps(const ClockAdvance& time) {
         gpu::StepPlan plan;
         plan.now = now;
         plan.reduce = (now / gpu::kStepTicks) % kReduceEvery == kReduceEvery - 1;
+        plan.heat = (now / gpu::kStepTicks) % gpu::kHeatSteps == gpu::kHeatSteps - 1;
         const size_t firstEvent = frame_.events.size();
         for (; nextDue < frame_.due.size() && frame_.due[nextDue].step == step; ++nextDue) {
             const PendingTexel& event = frame_.due[nextDue].event;
-            frame_.events.push_back({event.object, event.texel, event.kind, event.tick});
+            frame_.events.push_back({event.object, event.texel, event.kind,
+                                     event.kind == FW_WET ? event.water : event.tick});
         }
         plan.events = std::span<const gpu::TexelEvent>(frame_.events).subspan(firstEvent);
         firstUpdate[step] = frame_.updates.size();
@@ -147,6 +149,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
         Object& object = **objects_.at(due.event.object);
         if (!object.touched) {  // room for every object was found at its creation
             object.touched = true;
+            object.heatSteps = clock_.tick / (gpu::kHeatSteps * gpu::kStepTicks);
             touched_.insert(std::lower_bound(
                                 touched_.begin(), touched_.end(), &object,
                                 [](const Object* a, const Object* b) { return a->slot < b->slot; }),

@@ -287,6 +287,11 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     init.materials = records.materials;
     init.slowness = slowness;
     std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
+    std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat;
+    if (components::hasHeat(object.data)) {
+        heat = components::makeHeatMaterials(object.data, domain, def_.paceFactor);
+        init.heat = heat;
+    }
     if (def.flags & FW_BURNABLE_REFINE) {
         refineMesh(mesh, init.mesh, def, object.data);
         init.refine = true;
@@ -378,7 +383,7 @@ uint32_t World::eventTick(float delay) const {
     return uint32_t(std::min<uint64_t>(tick, Clock::kLastTick));
 }
 
-void World::addPending(const Object& object, uint32_t kind, uint32_t tick,
+void World::addPending(const Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                        std::span<const uint32_t> texels) {
     if (pending_.size() + texels.size() > kMaxPending)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -386,7 +391,8 @@ void World::addPending(const Object& object, uint32_t kind, uint32_t tick,
                    texels.size(), kMaxPending);
     pending_.reserve(std::max(pending_.size() + texels.size(),
                               std::min(pending_.capacity() * 2, size_t(65536))));
-    for (uint32_t texel : texels) pending_.push_back({object.slot, texel, kind, tick, order_++});
+    for (uint32_t texel : texels)
+        pending_.push_back({object.slot, texel, kind, tick, water, order_++});
 }
 
 uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick) {
@@ -416,7 +422,9 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
         return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reached * reached;
     });
     if (found_.empty()) found_.push_back(nearest);
-    addPending(object, def.kind, tick, found_);
+    const uint32_t water =
+        def.water > 0 ? std::max(uint32_t(std::lround(def.water)), 1u) : gpu::kFilmMost;
+    addPending(object, def.kind, tick, water, found_);
     return uint32_t(found_.size());
 }
 
@@ -425,7 +433,8 @@ uint32_t World::ignite(const FwIgnitionDef& def) {
     checkValues(def.position, 3, "FwIgnitionDef::position", -1e6f, 1e6f);
     checkValue(def.radius, "FwIgnitionDef::radius", 0.0f, 1e6f);
     checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
-    for (uint32_t i = 0; i < 3; ++i)
+    checkValue(def.water, "FwIgnitionDef::water", 0.0f, def.kind == FW_WET ? 1023.0f : 0.0f);
+    for (uint32_t i = 0; i < 2; ++i)
         if (def.reserved[i] != 0)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "FwIgnitionDef::reserved[%u] is %u; it is zero.",
                        i, def.reserved[i]);
@@ -451,7 +460,7 @@ void World::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint3
         if (texels[i] >= count)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "texels[%zu] is %u; the map has %u texels.", i,
                        texels[i], count);
-    addPending(object, kind, uint32_t(clock_.tick), texels);
+    addPending(object, kind, uint32_t(clock_.tick), gpu::kFilmMost, texels);
 }
 
 }  // namespace fw::world

@@ -32,9 +32,10 @@ struct ImageEntry {
 
 struct BurnMapCopy {  // of fwDebug_RequestBurnMap
     std::pmr::vector<uint32_t> ticks;
+    std::pmr::vector<gpu::uvec2> heat;  // packed HeatTexel; empty: none
     uint64_t tick = 0;
     bool wished = false, pending = false, ready = false;
-    explicit BurnMapCopy(std::pmr::memory_resource* memory) : ticks(memory) {}
+    explicit BurnMapCopy(std::pmr::memory_resource* memory) : ticks(memory), heat(memory) {}
 };
 
 struct Object {
@@ -61,6 +62,8 @@ struct Object {
     uint32_t mostIgnited = 0;
     uint32_t clampsTold = 0;  // late clamps that an event has told
     uint64_t countersFrame = 0;
+    uint64_t energy = 0, heatSteps = 0;  // 2^-20 J after so many heat steps
+    float power = 0;                     // W, at pace 1; of objects with heat
     BurnMapCopy map;
 };
 
@@ -78,7 +81,7 @@ struct Query {
 };
 
 struct PendingTexel {  // an event that waits for its step
-    uint32_t object = 0, texel = 0, kind = 0, tick = 0;
+    uint32_t object = 0, texel = 0, kind = 0, tick = 0, water = 0;  // g/m^2
     uint64_t order = 0;
 };
 
@@ -188,12 +191,13 @@ class World {
     // events.cpp
     void collectReadbacks();  // throws std::bad_alloc; the readback then stays with the backend
     void takeCounters(const gpu::Readback& readback) noexcept;
+    void takeEnergy(Object& object, uint32_t endTick) noexcept;
     void takeAnswers(const gpu::Readback& readback) noexcept;
     void takeLights(const gpu::Readback& readback) noexcept;
     void raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
                const float position[3], float value) noexcept;
     // queries.cpp
-    FwPointState pointState(const Object& object, uint32_t texel, uint32_t code,
+    FwPointState pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,
                             const gpu::Readback& readback) const noexcept;
     void texelPosition(const Object& object, uint32_t texel, float (&out)[3]) const noexcept;
     uint32_t texelMaterial(const Object& object, uint32_t texel) const noexcept;
@@ -202,7 +206,7 @@ class World {
     FwBurnableMeshId createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
                               core::Owned<Object> owned);
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
-    void addPending(const Object& object, uint32_t kind, uint32_t tick,
+    void addPending(const Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                     std::span<const uint32_t> texels);
     uint32_t eventTick(float delay) const;
     MeshEntry makeEntry(core::Owned<mesh::BurnDomain> domain) const;
@@ -249,6 +253,7 @@ class World {
     // As of the last readback.
     uint64_t readbackFrame_ = 0, readbackTick_ = 0;
     uint32_t frontTiles_ = 0, runTiles_ = 0, burningTiles_ = 0, flames_ = 0, lateClamps_ = 0;
+    uint32_t hotTiles_ = 0;
     std::pmr::vector<FwLight> lights_, lightsBefore_;
     uint32_t nextLight_ = 1;
 };

@@ -20,6 +20,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
 #define FW_USE_BURN_LISTS FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
+#define FW_USE_HOT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
@@ -46,10 +47,12 @@ void commitTile(uint slot) {
         atomicAdd(objectCounters[object].ignited, lit);
         atomicMax(objectCounters[object].lastIgnition, end);
         bits |= kTileBurning;
+        if ((objects[object].flags & kObjectHeat) != 0u) bits |= kTileHot | kTileWarm;
     }
     uint old = atomicOr(tileState[worldTile].flag, kTileListed | bits);
     if ((old & kTileListed) == 0u) frontAppend(parity, row, worldTile);
     if ((bits & ~old & kTileBurning) != 0u) burnAppend(push.burnParity, worldTile);
+    if ((bits & ~old & kTileHot) != 0u) hotAppend(push.hotParity, worldTile);
     if ((old & (kTilePredict << push.predictParity)) == 0u)
         predictAppend(push.predictParity, worldTile);
 

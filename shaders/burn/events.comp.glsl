@@ -16,8 +16,12 @@ layout(local_size_x = 64) in;
 #define FW_USE_BURN_LISTS FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #define FW_USE_PUBLISHED FW_READ_WRITE
+#define FW_USE_TEXELS readonly
+#define FW_USE_HEAT FW_READ_WRITE
+#define FW_USE_HEAT_MATERIALS
+#define FW_USE_HOT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
-#include "shared/front.h"
+#include "shared/heat.h"
 #include "lib/lists.glsl"
 
 void applyRun(uint first) {
@@ -27,12 +31,30 @@ void applyRun(uint first) {
     uint before = state[at];
     uint now = before;
     uint last = first;
-    do {
-        now = applyEvent(now, events[last].kind, events[last].tick, push.now);
-        ++last;
-    } while (last < push.count && events[last].object == object && events[last].texel == texel);
-    if (now == before) return;
-    state[at] = now;
+    bool heats = (objects[object].flags & kObjectHeat) != 0u;
+    bool warms = false;
+    if (heats) {
+        uint heatAt = objects[object].heatBase + texel;
+        uint kind = texels[objects[object].texelBase + texel].y >> 16u;
+        HeatMaterial m = heatMaterial(object * kMaterialsPerObject + (kind & 7u));
+        uvec2 had = heat[heatAt];
+        HeatTexel x = unpackHeat(had);
+        do {
+            now = heatEvent(x, m, now, events[last].kind, events[last].tick, push.now);
+            ++last;
+        } while (last < push.count && events[last].object == object &&
+                 events[last].texel == texel);
+        uvec2 has = packHeat(x);
+        heat[heatAt] = has;
+        warms = has != had || now != before;
+    } else {
+        do {
+            now = applyEvent(now, events[last].kind, events[last].tick, push.now);
+            ++last;
+        } while (last < push.count && events[last].object == object &&
+                 events[last].texel == texel);
+    }
+    if (now == before && !warms) return;
 
     uint width = objects[object].width;
     uint x = texel % width;
@@ -40,6 +62,9 @@ void applyRun(uint first) {
     uint local = (y >> 3u) * objects[object].tilesX + (x >> 3u);
     uint lane = (y & 7u) * 8u + (x & 7u);
     uint worldTile = objects[object].worldTileBase + local;
+    if (warms) hotTouch(push.hotParity, worldTile);
+    if (now == before) return;
+    state[at] = now;
 
     if (isSource(now) != isSource(before))
         atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
@@ -59,23 +84,8 @@ void applyRun(uint first) {
     }
 
     tileState[worldTile].lastChange = push.now;
-    touchTile(push.parity, push.row, worldTile, kTileTouched);
-    uvec2 mask = lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u));
-    uint beside = neighboursOf(mask.x, mask.y);
-    for (uint k = 0u; k < 8u; ++k) {
-        if ((beside & (1u << k)) == 0u) continue;
-        uint other = besideTile(int(objects[object].tilesX), int(objects[object].height >> 3u),
-                                int(x >> 3u), int(y >> 3u), k);
-        if (other != kNoneTexel)
-            touchTile(push.parity, push.row, objects[object].worldTileBase + other, kTileTouched);
-    }
-    uvec4 seam = tiles[(objects[object].tileBase + local) * 2u];
-    if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u ||
-        (push.switches & kSwitchNoSeamWake) != 0u)
-        return;
-    for (uint r = 0u; r < seam.w; ++r)
-        touchTile(push.parity, push.row,
-                  objects[object].worldTileBase + readerTile(object, seam.z, r), kTileTouched);
+    touchReaders(object, local,
+                 lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u)));
 }
 
 void main() {

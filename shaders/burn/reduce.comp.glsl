@@ -14,8 +14,10 @@ layout(local_size_x = 64) in;
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
 #define FW_USE_BURN_LISTS FW_READ_WRITE
 #define FW_USE_BURN_TILES writeonly
+#define FW_USE_HEAT readonly
+#define FW_USE_TILE_FIRE readonly
 #include "lib/buffers.glsl"
-#include "shared/front.h"
+#include "shared/heat.h"
 #include "lib/lists.glsl"
 #include "lib/turn.glsl"
 
@@ -32,18 +34,30 @@ void reduceTile(uint worldTile, uint parity) {
     uvec3 position = uvec3(0u);
     ivec3 normal = ivec3(0);
     float power = 0.0;
+    bool heats = (objects[object].flags & kObjectHeat) != 0u;
+    uint heatBase = objects[object].heatBase;
     for (uint lane = 0u; tile.alive && lane < 64u; ++lane) {
         uint texel = corner + (lane >> 3u) * width + (lane & 7u);
         uint t = state[stateBase + texel];
         if (!isSource(t)) continue;
         uvec2 packedTexel = texels[texelBase + texel];
         uint material = object * kMaterialsPerObject + ((packedTexel.y >> 16u) & 7u);
-        if (!flames(t, push.now, materials[material].flameTicks)) continue;
+        bool burns = flames(t, push.now, materials[material].flameTicks);
+        bool nominal = true;
+        if (heats) {
+            uint phase = heat[heatBase + texel].y >> 30u;
+            burns = t <= push.now && phase != kPhaseBurnt;
+            // Thick fuel's power is what it lost, once a heat step has met it; thin fuel's looks
+            // want its mean.
+            nominal = phase != kPhaseBurning ||
+                      materials[material].burnTicks == materials[material].flameTicks;
+        }
+        if (!burns) continue;
         ++count;
         age += min(push.now - t, 0xFFFFFFu) >> 2u;
         position += uvec3(packedTexel.x & 0xFFFFu, packedTexel.x >> 16u, packedTexel.y & 0xFFFFu);
         normal += decodeNormal(normals[texelBase + texel]);
-        power += materials[material].powerPerArea;
+        power += nominal ? materials[material].powerPerArea : 0.0;
     }
     if (count == 0u) {
         atomicAnd(tileState[worldTile].flag, ~kTileBurning);
@@ -75,7 +89,8 @@ void reduceTile(uint worldTile, uint parity) {
     BurnTile b;
     b.positionArea =
         vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
-    b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0), power * area);
+    b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0),
+                         power * area + (heats ? tileFire[worldTile] : 0.0));
     b.object = object;
     b.tile = tile.local;
     b.texels = count;

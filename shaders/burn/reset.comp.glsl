@@ -13,8 +13,12 @@ layout(local_size_x = 64) in;
 #define FW_USE_PREDICT writeonly
 #define FW_USE_GRADIENT writeonly
 #define FW_USE_PUBLISHED writeonly
+#define FW_USE_HEAT writeonly
+#define FW_USE_TILE_HEAT writeonly
+#define FW_USE_HEAT_MATERIALS
+#define FW_USE_TILE_FIRE writeonly
 #include "lib/buffers.glsl"
-#include "shared/front.h"
+#include "shared/heat.h"
 #include "shared/published.h"
 
 void resetTile(uint local, uint lane) {
@@ -25,8 +29,15 @@ void resetTile(uint local, uint lane) {
     uint material = object * kMaterialsPerObject + ((packedTexel.y >> 16u) & 7u);
     bool burns = texelBurns(packedTexel.y >> 16u, slow, materials[material].flags);
     uint at = objects[object].stateBase + texel;
-    state[at] = burns ? kNever : kInert;
-    predict[at] = burns ? kNever : kInert;
+    uint code = burns ? kNever : kInert;
+    if ((objects[object].flags & kObjectHeat) != 0u) {
+        HeatMaterial m = heatMaterial(material);
+        HeatTexel x = heatRests(m, burns);
+        heat[objects[object].heatBase + texel] = packHeat(x);
+        code = wetState(code, heatClosed(x, m));
+    }
+    state[at] = code;
+    predict[at] = code;
     gradient[at] = 0u;
     if (lane == 0u) {
         uint worldTile = objects[object].worldTileBase + local;
@@ -34,6 +45,8 @@ void resetTile(uint local, uint lane) {
         tileState[worldTile].flag = 0u;
         tileState[worldTile].lastChange = kFarPast;
         tileState[worldTile].object = object;
+        tileHeat[worldTile] = TileHeat(0u, 0u);
+        tileFire[worldTile] = 0.0;
     }
     if ((objects[object].flags & kObjectPublished) == 0u) return;
     uint plane = objects[object].width * objects[object].height;

@@ -3,6 +3,9 @@
 #ifndef FW_LIB_BUFFERS_GLSL
 #define FW_LIB_BUFFERS_GLSL
 #include "shared/burn.h"
+#ifdef FW_USE_HEAT_MATERIALS
+#include "shared/heat.h"
+#endif
 
 // *_WORDS and *_QUADS are the same buffers by words or by four: a software device loads four words
 // at once for little more than one, and pays for every load, taken or not. It also runs a loop's
@@ -148,10 +151,38 @@ FW_BUFFER(FW_BIND_PREDICT_LIST_B, FW_USE_PREDICT_LISTS, PredictListBBuffer, uint
 FW_BUFFER(FW_BIND_PROBES, FW_USE_PROBES, ProbesBuffer, uvec2, probes);
 #endif
 #ifdef FW_USE_ANSWERS
-FW_BUFFER(FW_BIND_ANSWERS, FW_USE_ANSWERS, AnswersBuffer, uint, answers);
+FW_BUFFER(FW_BIND_ANSWERS, FW_USE_ANSWERS, AnswersBuffer, ProbeAnswer, answers);
 #endif
 #ifdef FW_USE_PUBLISHED
 FW_BUFFER(FW_BIND_PUBLISHED, FW_USE_PUBLISHED, PublishedBuffer, float, published);
+#endif
+#ifdef FW_USE_HEAT
+FW_BUFFER(FW_BIND_HEAT, FW_USE_HEAT, HeatBuffer, uvec2, heat);
+#endif
+#ifdef FW_USE_HEAT_QUADS
+FW_BUFFER(FW_BIND_HEAT, readonly, HeatPairsBuffer, uvec4, heatPairs);  // two texels each
+#endif
+#ifdef FW_USE_TILE_HEAT
+FW_BUFFER(FW_BIND_TILE_HEAT, FW_USE_TILE_HEAT, TileHeatBuffer, TileHeat, tileHeat);
+#endif
+#ifdef FW_USE_HEAT_MATERIALS
+FW_BUFFER(FW_BIND_HEAT_MATERIALS, readonly, HeatMaterialsBuffer, uvec4, heatQuads);
+HeatMaterial heatMaterial(uint material) {
+    uvec4 a = heatQuads[material * 6u];
+    uvec4 b = heatQuads[material * 6u + 1u];
+    uvec4 c = heatQuads[material * 6u + 2u];
+    uvec4 d = heatQuads[material * 6u + 3u];
+    uvec4 e = heatQuads[material * 6u + 4u];
+    uvec4 f = heatQuads[material * 6u + 5u];
+    return HeatMaterial(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w, d.x, d.y, d.z,
+                        d.w, e.x, e.y, e.z, e.w, f.x, f.y, f.z, uintBitsToFloat(f.w));
+}
+#endif
+#ifdef FW_USE_HOT_LISTS
+FW_BUFFER(FW_BIND_HOT_LISTS, FW_USE_HOT_LISTS, HotListsBuffer, uvec2, hotLists);
+#endif
+#ifdef FW_USE_TILE_FIRE
+FW_BUFFER(FW_BIND_TILE_FIRE, FW_USE_TILE_FIRE, TileFireBuffer, float, tileFire);
 #endif
 
 #ifdef FW_USE_PUSH

@@ -37,6 +37,20 @@ void burnAppend(uint parity, uint worldTile) {
 }
 #endif
 
+#ifdef FW_USE_HOT_LISTS
+uint hotTile(uint parity, uint slot) { return parity == 0u ? hotLists[slot].x : hotLists[slot].y; }
+void hotAppend(uint parity, uint worldTile) {
+    uint slot = listSlot(kRowHot + parity, 8u);
+    if (parity == 0u) hotLists[slot].x = worldTile;
+    else hotLists[slot].y = worldTile;
+}
+// Of objects with heat only: something of the tile's temperature, water or flux changes from now on.
+void hotTouch(uint parity, uint worldTile) {
+    uint old = atomicOr(tileState[worldTile].flag, kTileHot | kTileWarm);
+    if ((old & kTileHot) == 0u) hotAppend(parity, worldTile);
+}
+#endif
+
 #ifdef FW_USE_PREDICT_LISTS
 void predictAppend(uint parity, uint worldTile) {
     uint slot = listSlot(kRowPredict + parity, 8u);
@@ -62,5 +76,27 @@ uint readerTile(uint object, uint readerStart, uint r) {
     uint reader = readers[objects[object].readerBase + readerStart + r];
     return (push.switches & kSwitchWrongReaders) != 0u ? 0u : reader;
 }
+#if defined(FW_USE_LISTS) && defined(FW_USE_TILES) && defined(FW_USE_OBJECTS)
+// Texels of this mask of a tile changed between iterations: touches the tile and all who read them.
+void touchReaders(uint object, uint local, uvec2 mask) {
+    uint worldTileBase = objects[object].worldTileBase;
+    touchTile(push.parity, push.row, worldTileBase + local, kTileTouched);
+    uint tilesX = objects[object].tilesX;
+    uint tileY = divide(local, tilesX);
+    uint tileX = local - tileY * tilesX;
+    int tilesY = int(objects[object].height >> 3u);
+    for (uint beside = neighboursOf(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
+        uint other = besideTile(int(tilesX), tilesY, int(tileX), int(tileY), uint(findLSB(beside)));
+        if (other != kNoneTexel)
+            touchTile(push.parity, push.row, worldTileBase + other, kTileTouched);
+    }
+    if ((push.switches & kSwitchNoSeamWake) != 0u) return;
+    uvec4 seam = tiles[(objects[object].tileBase + local) * 2u];
+    if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
+    for (uint r = 0u; r < seam.w; ++r)
+        touchTile(push.parity, push.row, worldTileBase + readerTile(object, seam.z, r),
+                  kTileTouched);
+}
+#endif
 #endif
 #endif

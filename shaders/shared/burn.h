@@ -36,7 +36,7 @@
 #define FW_BIND_PREDICT_LIST_A 24
 #define FW_BIND_PREDICT_LIST_B 25
 #define FW_BIND_PROBES 26     // uvec2[]: object slot, texel
-#define FW_BIND_ANSWERS 27    // uint[]: state of each probe
+#define FW_BIND_ANSWERS 27    // ProbeAnswer[]: of each probe
 #define FW_BIND_PUBLISHED 28  // float[]: 3 planes of an as-published object: S*D ping, pong, D
 #define FW_BIND_LIGHTS 29     // BurnLight[]
 #define FW_BIND_LIGHT_CELLS 30  // uint[]: hash grid of burning cells
@@ -48,7 +48,7 @@
 #define FW_BIND_TILE_HEAT 36  // TileHeat[] (per object): what comes to a tile from elsewhere
 #define FW_BIND_HEAT_MATERIALS 37  // HeatMaterial[], 8 per object slot
 #define FW_BIND_HOT_LISTS 38  // uvec2[]: tiles whose heat changes, list A in x and B in y
-#define FW_BIND_TILE_FIRE 39  // float[] (per object): W that a tile gave off in the last heat step
+#define FW_BIND_TILE_FIRE 39  // float[] (per object): W of a tile's thick fuel in the last heat step
 #define FW_BIND_REMOTE_OBJECTS 40  // RemoteObject[], by object slot: see exchange.h
 #define FW_BIND_REMOTE_TILES 41    // RemoteTile[] (per mesh)
 #define FW_BIND_SOURCES 42    // FireSource[] (per object)
@@ -248,6 +248,13 @@ struct TileHeat {     // of one tile, W/m^2 and flags; whoever writes one also p
     uint pilot;       // 1: a flame is near
 };
 FW_SHARED_SIZE(TileHeat, 8)
+
+struct ProbeAnswer {
+    uint state;
+    uint heatX; uint heatY;  // packed HeatTexel
+    uint heat;        // 1: its object has heat
+};
+FW_SHARED_SIZE(ProbeAnswer, 16)
 
 struct BurnTile {     // one burning 8x8 tile, for flames and lights (cosmetic)
     vec4 positionArea;  // world m; flaming area m^2

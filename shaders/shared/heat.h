@@ -21,6 +21,8 @@ FW_SHARED_CONST uint kFluxMost = 500000u;       // W/m^2, in or net: beyond any 
 FW_SHARED_CONST uint kFilmMost = 1023u;         // g/m^2
 FW_SHARED_CONST uint kMoistMost = 255u;         // 1/128 kg/kg
 FW_SHARED_CONST uint kSoaksOut = 3u;            // steps under a film before a flame dies: one more
+FW_SHARED_CONST uint kLukewarm = 16u;           // 1/16 K off the ambient that still count as at rest
+FW_SHARED_CONST uint kDozes = 32u;              // steps between those of a tile with cold water only
 
 // HeatTexel::phase
 FW_SHARED_CONST uint kPhaseFresh = 0u;
@@ -73,7 +75,7 @@ struct HeatMaterial {     // one material, one step length and one pace: fire/he
     uint moistAtRest;     // 1/128
     uint burnTicks;       // thin: ticks that a whole texel flames
     uint energy;          // of a fuel unit of one texel, 2^-20 J
-    float watts;          // of a fuel unit a step (looks)
+    float watts;          // thick: of a fuel unit a step (looks)
 };
 FW_SHARED_SIZE(HeatMaterial, 96)
 
@@ -197,9 +199,10 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
     net = net > most ? most : (net < -most ? -most : net);
     uint size = uint(net < 0 ? -net : net);
 
-    // What it takes to warm the skin: linearly implicit, so no step is too long.
-    uint capacity = m.capacityLeast;
-    if (m.inertia != 0u) {
+    // What it takes to warm the skin: linearly implicit, so no step is too long. What boils water
+    // off has the least, as depth cannot follow; ash a quarter of that.
+    uint capacity = m.capacityLeast >> (x.phase == kPhaseBurnt ? 2u : 0u);
+    if (m.inertia != 0u && x.phase != kPhaseBurnt && (x.film == 0u || x.heat <= kBoiling)) {
         uint rise = uint(above < 0 ? -above : above);
         uint reach = divide(rise << 12u, mostOf(size, 1u));  // K per W/m^2, Q16
         capacity = mulShift(m.inertia, reach, 8u);
@@ -270,6 +273,101 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
     uint eaten = (kFuelFull - x.fuel) >> 8u;
     if ((m.flags & kHeatBurns) != 0u) x.charred = mostOf(x.charred, mostOf(scorch, eaten));
     return told;
+}
+
+// ---- A texel and its state in the front ----------------------------------------------------------
+// The state stays the front's: these say what it becomes. A texel under water, or too damp, is a
+// barrier (kWet, kOutWet) exactly while it is that.
+
+FW_SHARED_FN bool heatClosed(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m) {
+    return x.film != 0u || x.moist >= m.moistDies;
+}
+FW_SHARED_FN uint wetState(uint t, bool closed) {
+    if (t == kNever || t == kWet) return closed ? kWet : kNever;
+    if (t == kOut || t == kOutWet) return closed ? kOutWet : kOut;
+    return t;
+}
+
+// A new texel. What cannot burn is as good as burnt.
+FW_SHARED_FN HeatTexel heatRests(FW_IN(HeatMaterial) m, bool burns) {
+    HeatTexel x;
+    x.fuel = kFuelFull;
+    x.heat = m.ambient;
+    x.film = 0u;
+    x.soaked = 0u;
+    x.moist = m.moistAtRest;
+    x.charred = 0u;
+    x.epoch = 0u;
+    x.phase = burns ? kPhaseFresh : kPhaseBurnt;
+    return x;
+}
+
+// What one event makes of texel and state. Water does not put out by itself: heat steps do, when it
+// takes more than the fire gives. tick: as TexelEvent; now: start of the step.
+FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind,
+                            uint tick, uint now) {
+    if (kind == kEventIgnite) return applyEvent(t, kind, tick, now);
+    if (kind == kEventWet) heatWets(x, tick, m);
+    if (kind == kEventDry) x.film = 0u;
+    if (kind == kEventExtinguish && isSource(t) && x.phase != kPhaseBurnt) {
+        if (x.phase == kPhaseBurning) x.phase = kPhaseOut;
+        x.heat = leastOf(x.heat, m.diesAt);
+        t = kOut;
+    }
+    return wetState(t, heatClosed(x, m));
+}
+
+// A draw of its own for every texel and step; `step`: a hash of the step's tick.
+FW_SHARED_FN uint heatChance(uint texel, uint step) { return hash32(texel * 0x9E3779B9u + step); }
+
+// Has a heat step anything to do here? (A flux from elsewhere apart.) 1: water; 2: all else.
+FW_SHARED_FN uint heatWork(FW_IN(HeatTexel) x, uint t, uint ambient) {
+    uint off = x.heat > ambient ? x.heat - ambient : ambient - x.heat;
+    bool warm = off > kLukewarm || x.phase == kPhaseBurning ||
+                (isSource(t) && x.phase != kPhaseBurnt);
+    return (warm ? 2u : 0u) | (x.film != 0u ? 1u : 0u);
+}
+
+// One heat step at tick `now`, of a texel with state t; the new state comes back. burnt: fuel units.
+FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint now,
+                                uint flux, bool pilot, uint air, uint chance,
+                                FW_OUT(uint) burnt) {
+    bool lit = isSource(t) && t <= now;
+    bool fresh = lit && (x.phase == kPhaseFresh || x.phase == kPhaseOut);  // the front lit it
+    if (fresh) {
+        x.epoch = (x.epoch + (x.phase == kPhaseOut ? 1u : 0u)) & 3u;
+        x.phase = kPhaseBurning;
+        x.heat = mostOf(x.heat, m.ignitesAt);
+    }
+    uint gone = 0u;
+    if (lit && x.phase == kPhaseBurning && (m.flags & kHeatThick) == 0u) {
+        // Re-lit, it goes on from the fuel it has. (Nothing to search where it is not.)
+        uint age = thinAge(x.fuel, x.epoch != 0u ? m.burnTicks : 0u);
+        uint next = thinFuel(age + kHeatSteps * kStepTicks, m.burnTicks);
+        uint left = thinFuel(now - t, m.burnTicks);
+        left = leastOf(x.epoch != 0u ? leastOf(left, next) : left, x.fuel);
+        gone = x.fuel - left;
+        x.fuel = left;
+    }
+    uint evaporated;
+    uint told = heatStep(x, m, flux, air, pilot, chance, burnt, evaporated);
+    burnt += gone;
+    if ((told & kHeatExtinguishes) != 0u) t = kOut;
+    if ((told & kHeatIgnites) != 0u) t = now;
+    return wetState(t, heatClosed(x, m));
+}
+
+// The same for a tile where nothing but cold water is left, once in kDozes steps.
+FW_SHARED_FN uint heatDozes(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint chance) {
+    uint dries = m.airDries * kDozes;
+    uint dried = (dries >> 16u) + ((dries & 0xFFFFu) > (chance & 0xFFFFu) ? 1u : 0u);
+    x.film -= leastOf(dried, x.film);
+    return wetState(t, heatClosed(x, m));
+}
+// Is it the turn of such a tile?
+FW_SHARED_FN bool dozeEnds(uint object, uint tile, uint now) {
+    uint turn = now / (kStepTicks * kHeatSteps) + hash32(object * 0x9E3779B9u + tile);
+    return (turn & (kDozes - 1u)) == 0u;
 }
 
 FW_SHARED_END

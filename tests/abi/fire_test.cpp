@@ -448,14 +448,15 @@ TEST(AbiTime, AnIdleWorldSkipsItsSteps) {
     ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
     EXPECT_EQ(0u, stats.steps);
     w.ball(FW_IGNITE, 0.1f, 0, 0.1f, 0.05f);
-    w.run(6.0);
+    w.run(26.0);  // burns out and cools down
     ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
     EXPECT_LT(32u, stats.steps);
+    EXPECT_EQ(0u, stats.hotTiles);
     const uint64_t ran = stats.steps;
     w.run(6.0);
     ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
     EXPECT_EQ(ran, stats.steps);
-    EXPECT_EQ(15u * 4096, stats.tick);
+    EXPECT_EQ(35u * 4096, stats.tick);
     EXPECT_EQ(0u, stats.burningTiles);
 }
 

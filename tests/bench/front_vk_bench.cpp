@@ -4,6 +4,8 @@
 #include <vulkan/vulkan.h>
 
 #include "core/memory.h"
+#include "fire/heat.h"
+#include "fire/presets.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/vk/vk_backend.h"
 #include "support/meshes.h"
@@ -137,14 +139,17 @@ class Bench {
         domains_.push_back(&domain);
     }
     // rate: texels per second.
-    uint32_t addObject(uint32_t mesh, double rate, uint32_t flags = 0) {
+    // `heat`: one record for all materials, or null.
+    uint32_t addObject(uint32_t mesh, double rate, uint32_t flags = 0,
+                       const gpu::HeatMaterial* heat = nullptr) {
         const mesh::BurnDomain& domain = *domains_[mesh];
         gpu::BurnMaterial m{};
         m.sigma0 = uint32_t(std::lround(4096 / (rate * double(domain.texelSide)) *
                                         double(domain.quantum) / 8 * 4194304));
         m.driveMax = 60 * 1024;
         m.breadthMax = 14 * 256;
-        m.burnTicks = m.flameTicks = 4 * 4096;
+        m.burnTicks = m.flameTicks = heat ? gpu::kNoneTexel : 4 * 4096;
+        m.air = 256;
         m.upCeiling = {0, 1024, 0, 0};
         m.flags = 1;
         m.windowMax = 1u << 20;
@@ -163,6 +168,9 @@ class Bench {
         init.record.worldRow2 = {0, 0, 1, 0};
         init.record.tint = {1, 1, 1, domain.texelSide * domain.texelSide};
         init.materials = materials;
+        std::vector<gpu::HeatMaterial> heats(heat ? gpu::kMaterialsPerObject : 0);
+        for (gpu::HeatMaterial& one : heats) one = *heat;
+        init.heat = heats;
         backend_.createObject(objects_, init);
         return objects_++;
     }
@@ -170,13 +178,14 @@ class Bench {
         events_.push_back({object, texel, gpu::kEventIgnite, now_ + 1});
     }
     // Returns the seconds from submit to the end.
-    double step(uint32_t switches = 0, bool reduce = false) {
+    double step(uint32_t switches = 0, bool reduce = false, bool heat = false) {
         std::sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) {
             return a.object != b.object ? a.object < b.object : a.texel < b.texel;
         });
         gpu::StepPlan step;
         step.now = now_;
         step.reduce = reduce;
+        step.heat = heat;
         step.events = events_;
         gpu::FramePlan plan;
         plan.frameIndex = ++index_;
@@ -468,6 +477,38 @@ void frontMesh(benchmark::State& state, const char* name, Kernel kernel) {
     state.counters["map_tiles"] = domain.tileCount();
 }
 
+// Thick wood on half of a real mesh in 1024^2 texels, all of it flaming; each step a heat step and
+// a reduction, of which a world has one in four.
+void heatMesh(benchmark::State& state) {
+    Mesh mesh;
+    std::string error;
+    if (!loadGlb("bunny_31k.glb", mesh, error)) return state.SkipWithError(error.c_str());
+    const mesh::BurnDomain domain =
+        mesh::bake(mesh.input(4096, 1024), std::pmr::get_default_resource());
+    fire::HeatPlace place;
+    place.texelArea = domain.texelSide * domain.texelSide;
+    const gpu::HeatMaterial wood = fire::heatMaterial(fire::presetDef(FW_MATERIAL_PINE), place);
+    Bench bench;
+    bench.addMesh(0, domain);
+    const uint32_t object = bench.addObject(0, 0.001, 0, &wood);
+    uint32_t lit = 0;
+    for (uint32_t i = 0; i < domain.texelCount() / 2; ++i) {
+        if (!domain.real(i)) continue;
+        bench.ignite(object, i);
+        ++lit;
+    }
+    for (int i = 0; i < 6; ++i) bench.step(0, true, true);
+    bench.forgetTimes();
+    std::vector<double> cpu;
+    for (auto _ : state) {
+        state.SetIterationTime(bench.step(0, true, true));
+        cpu.push_back(bench.stepCpuSeconds);
+    }
+    bench.report(state);
+    state.counters["cpu_ms"] = median(cpu) * 1e3;
+    state.counters["texels"] = lit;
+}
+
 // CPU time of recording a frame of a world that does not burn.
 void recordIdle(benchmark::State& state) {
     Bench bench;
@@ -513,6 +554,11 @@ FW_MESH_ROW(published, kPublished, bunny4k, "bunny_4k.glb");
 FW_MESH_ROW(dense, kDense, bunny31k, "bunny_31k.glb");
 FW_MESH_ROW(sparse, kSparse, bunny31k, "bunny_31k.glb");
 FW_MESH_ROW(published, kPublished, bunny31k, "bunny_31k.glb");
+BENCHMARK(heatMesh)
+    ->Name("heat/bunny31k/1024")
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(12);
 BENCHMARK(frontRatio)
     ->Name("front/dense_over_sparse3")
     ->Arg(512)

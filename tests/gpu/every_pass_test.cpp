@@ -41,6 +41,7 @@ class EveryPass : public GpuTest {
         object.materials[2].look = FW_MATERIAL_PINE;
         object.slowness.assign(domain.slowness.begin(), domain.slowness.end());
         scene.objects.push_back(object);
+        if (!published) scene.addHeat();
         return scene;
     }
 
@@ -100,6 +101,7 @@ class EveryPass : public GpuTest {
             step.now = now_;
             step.substepShift = scene_->objects[0].substepShift;
             step.reduce = true;
+            step.heat = true;
             if (&step == steps.data()) {
                 step.events = events;
                 if (what.latch) step.materials = {&update, 1};

@@ -13,9 +13,26 @@ class FrontEquality : public GpuTest {
     struct Outcome {
         bool equal = true;
         uint32_t step = 0, object = 0, texel = 0;
-        uint64_t ignitions = 0;
+        uint64_t ignitions = 0, lost = 0;  // fuel units
         uint32_t compared = 0, runTiles = 0;
     };
+
+    // P12: the account of an object with heat is what its texels lost.
+    static uint64_t checkBook(const BurnScene& scene, const gpu::cpu::CpuBackend& cpu,
+                              uint32_t object) {
+        const SceneObject& what = scene.objects[object];
+        const mesh::BurnDomain& domain = scene.domains[what.mesh];
+        uint64_t energy = 0, units = 0;
+        for (uint32_t i = 0; i < cpu.heat(object).size(); ++i) {
+            if (!domain.real(i)) continue;
+            const uint64_t gone = gpu::kFuelFull - gpu::unpackHeat(cpu.heat(object)[i]).fuel;
+            energy += gone * what.heat[domain.texels[i].materialFlags & 7].energy;
+            units += gone;
+        }
+        const gpu::ObjectCounters& counters = cpu.counters(object);
+        EXPECT_EQ(energy, uint64_t(counters.energyHigh) << 32 | counters.energyLow) << object;
+        return units;
+    }
 
     // Runs the same plans on both; vk may get switches of its own.
     Outcome compare(const BurnScene& scene, uint32_t steps, uint32_t stepsPerFrame,
@@ -55,6 +72,8 @@ class FrontEquality : public GpuTest {
         check(rig.finish());
         for (uint32_t o = 0; o < scene.objects.size(); ++o)
             outcome.ignitions += cpu.counters(o).ignited;
+        for (uint32_t o = 0; o < scene.objects.size(); ++o)
+            outcome.lost += checkBook(scene, cpu, o);
         return outcome;
     }
 
@@ -70,12 +89,22 @@ class FrontEquality : public GpuTest {
             for (size_t i = 0; i < want.maps[o].size(); ++i) {
                 if (want.maps[o][i] != got.maps[o][i]) return differ(uint32_t(o), uint32_t(i));
             }
+            for (size_t i = 0; i < want.heat[o].size(); ++i) {
+                if (want.heat[o][i] != got.heat[o][i]) return differ(uint32_t(o), uint32_t(i));
+            }
             ++outcome.compared;
         }
-        if (want.answers != got.answers) return differ(0xFFFFFFFFu, 0);
+        for (size_t i = 0; i < want.answers.size(); ++i) {
+            const gpu::ProbeAnswer &a = want.answers[i], &b = got.answers[i];
+            if (a.state != b.state || a.heatX != b.heatX || a.heatY != b.heatY || a.heat != b.heat)
+                return differ(0xFFFFFFFFu, uint32_t(i));
+        }
+        if (want.hotTiles != got.hotTiles) return differ(0xFFFFFFFEu, got.hotTiles);
         for (size_t o = 0; o < want.counters.size(); ++o) {
-            if (want.counters[o].ignited != got.counters[o].ignited)
-                return differ(uint32_t(o), 0xFFFFFFFEu);
+            const gpu::ObjectCounters &a = want.counters[o], &b = got.counters[o];
+            if (a.ignited != b.ignited) return differ(uint32_t(o), 0xFFFFFFFEu);
+            if (a.energyLow != b.energyLow || a.energyHigh != b.energyHigh)
+                return differ(uint32_t(o), 0xFFFFFFFDu);
         }
     }
 };
@@ -109,6 +138,18 @@ TEST_F(FrontEquality, P7_DenseEqualsSparse) {
     const BurnScene scene = BurnScene::make(13, 0.6);
     const Outcome outcome = compare(scene, 320, 4, 10, 3, FW_DEBUG_DENSE);
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
+}
+
+TEST_F(FrontEquality, P7_HeatAndWaterAreEqual) {
+    if (!device_) return;
+    BurnScene scene = BurnScene::make(16, 0.5);
+    scene.addHeat();
+    const Outcome outcome = compare(scene, 4000, 8, 5, 6);
+    EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
+    EXPECT_GT(outcome.ignitions, 1000u);
+    EXPECT_GT(outcome.lost, uint64_t(1000) * gpu::kFuelFull);
+    std::printf("P7: heat of %zu objects, 4000 steps, %u maps compared, %u tiles run\n",
+                scene.objects.size(), outcome.compared, outcome.runTiles);
 }
 
 // The as-published mode is for comparison, and floats; equal all the same.

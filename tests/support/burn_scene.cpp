@@ -3,6 +3,8 @@
 #include "components/look_table.h"
 #include "components/look_textures.h"
 #include "components/view_params.h"
+#include "fire/heat.h"
+#include "fire/presets.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -36,6 +38,7 @@ gpu::BurnMaterial plainMaterial(const mesh::BurnDomain& domain, double rate, dou
     m.ceiling = 77;
     m.flags = 1;
     m.windowMax = 1u << 20;
+    m.air = 256;
     m.powerPerArea = 1e5f;
     m.timeScale = 1;
     return m;
@@ -87,6 +90,24 @@ BurnScene BurnScene::make(uint32_t seed, double scale) {
     return scene;
 }
 
+void BurnScene::addHeat() {
+    for (uint32_t o = 0; o < objects.size(); ++o) {
+        SceneObject& object = objects[o];
+        for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
+            const uint32_t number = o + m;
+            FwMaterialDef def = fire::presetDef(number % 2 ? FW_MATERIAL_COTTON : FW_MATERIAL_PINE);
+            if (number % 3 == 1) def.moisture = 1.5f * def.extinctionMoisture;
+            if (number % 5 == 2) def.flameFeedback = 9000;
+            fire::HeatPlace place;
+            place.texelArea = domains[object.mesh].texelSide * domains[object.mesh].texelSide;
+            place.pace = number % 2 ? 10.0f : 150.0f;
+            gpu::HeatMaterial heat = fire::heatMaterial(def, place);
+            if (!(heat.flags & gpu::kHeatThick)) heat.burnTicks = object.materials[m].flameTicks;
+            object.heat.push_back(heat);
+        }
+    }
+}
+
 gpu::ObjectInit BurnScene::init(uint32_t index) const {
     const SceneObject& object = objects[index];
     const mesh::BurnDomain& domain = domains[object.mesh];
@@ -104,6 +125,7 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     init.record.tint = {1, 1, 1, domain.texelSide * domain.texelSide};
     init.materials = object.materials;
     init.slowness = object.slowness;
+    init.heat = object.heat;
     init.refine = object.refine;
     init.refineDepth = 4;
     return init;
@@ -148,7 +170,8 @@ void PlanMaker::ball(std::vector<gpu::TexelEvent>& out, uint32_t object, uint32_
     std::pmr::vector<uint32_t> texels;
     mesh::texelsNear(domain, point, radius * domain.texelSide, texels);
     for (const uint32_t texel : texels)
-        out.push_back({object, texel, kind, now_ + 1 + pick(gpu::kStepTicks)});
+        out.push_back({object, texel, kind,
+                       kind == gpu::kEventWet ? 1 + pick(300) : now_ + 1 + pick(gpu::kStepTicks)});
 }
 
 OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
@@ -162,6 +185,7 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
         for (const SceneObject& object : scene_.objects)
             step.substepShift = std::max(step.substepShift, object.substepShift);
         step.reduce = step_ % 4 == 0;
+        step.heat = step_ % gpu::kHeatSteps == 2;
         std::vector<gpu::TexelEvent> texels;
         if (step_ == 0) {
             for (uint32_t o = 0; o < objects; ++o) ball(texels, o, gpu::kEventIgnite, 3);
@@ -200,6 +224,7 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
                 update.materials[m].driveX = drive[0];
                 update.materials[m].driveY = drive[1];
                 update.materials[m].driveZ = drive[2];
+                update.materials[m].air = 256 + uint32_t(drive[0] + 512) / 8;
             }
             updates.push_back(update);
         }
@@ -273,11 +298,15 @@ FrameAnswer copyAnswer(const gpu::Readback& readback) {
     answer.counters.assign(readback.objects.begin(), readback.objects.end());
     answer.answers.assign(readback.answers.begin(), readback.answers.end());
     answer.maps.resize(readback.burnMaps.empty() ? 0 : readback.objects.size());
-    for (const gpu::BurnMap& map : readback.burnMaps)
+    answer.heat.resize(answer.maps.size());
+    for (const gpu::BurnMap& map : readback.burnMaps) {
         answer.maps[map.object].assign(map.ticks.begin(), map.ticks.end());
+        answer.heat[map.object].assign(map.heat.begin(), map.heat.end());
+    }
     answer.frontTiles = readback.frontTiles;
     answer.runTiles = readback.runTiles;
     answer.burningTiles = readback.burningTiles;
+    answer.hotTiles = readback.hotTiles;
     return answer;
 }
 

@@ -16,8 +16,9 @@ struct SceneObject {
     std::array<gpu::BurnMaterial, gpu::kMaterialsPerObject> materials{};
     std::vector<uint16_t> slowness;  // empty: the mesh's
     uint32_t window = 512, substepShift = 0;
-    uint32_t flags = 0;   // kObject..., beyond live
-    bool refine = false;  // down to 4 halvings
+    uint32_t flags = 0;                   // kObject..., beyond live
+    std::vector<gpu::HeatMaterial> heat;  // empty: none
+    bool refine = false;                  // down to 4 halvings
 };
 
 struct BurnScene {
@@ -26,6 +27,8 @@ struct BurnScene {
 
     // `densityScale` 1: some 2000 texels a mesh. With $FLAMEWRIGHT_ASSETS also two read ones.
     static BurnScene make(uint32_t seed, double densityScale = 1);
+    // Gives all objects heat: thick wood and thin cloth, damp and dry, at some 100 times the pace.
+    void addHeat();
     void create(gpu::Backend& backend) const;
     [[nodiscard]] gpu::ObjectInit init(uint32_t object) const;
 };
@@ -75,8 +78,10 @@ FwView testView(const float eye[3], const float target[3], float degrees, float 
 struct FrameAnswer {
     uint64_t frameIndex = 0;
     std::vector<std::vector<uint32_t>> maps;  // by object
+    std::vector<std::vector<gpu::uvec2>> heat;
     std::vector<gpu::ObjectCounters> counters;
-    std::vector<uint32_t> answers;
+    std::vector<gpu::ProbeAnswer> answers;
+    uint32_t hotTiles = 0;
     uint32_t frontTiles = 0, runTiles = 0, burningTiles = 0;
 };
 FrameAnswer copyAnswer(const gpu::Readback& readback);

@@ -92,7 +92,7 @@ class Recorder final : public gpu::Backend {
     struct Answer {
         gpu::Readback readback;
         std::vector<gpu::ObjectCounters> counters;
-        std::vector<uint32_t> answers;
+        std::vector<gpu::ProbeAnswer> answers;
     };
     std::vector<Frame> frames;
     std::deque<Answer> ready;
@@ -104,7 +104,7 @@ class Recorder final : public gpu::Backend {
                 uint32_t code = gpu::kNever) {
         Answer made;
         made.counters = {counters};
-        made.answers.assign(frames[frame].probes.size(), code);
+        made.answers.assign(frames[frame].probes.size(), gpu::ProbeAnswer{code, 0, 0, 0});
         made.readback.frameIndex = frames[frame].index;
         made.readback.endTick = frames[frame].endTick;
         made.readback.frontTiles = front;

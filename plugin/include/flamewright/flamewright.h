@@ -218,7 +218,7 @@ typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md */
     float ignitionTemperature;     /* K of its surface, with a flame near, [300, 2000] */
     float autoIgnitionTemperature; /* K without one, [ignitionTemperature, 3000] */
     float flameFeedback;           /* W/m^2 that its own flame gives back to it, [0, 200000]; default
-                                      25000. Below some 12000 a lone flame goes out, as real planks do */
+                                      25000. Below some 9000 a lone flame goes out, as real planks do */
     float charFloor;               /* thick fuel: share of its burning rate that no char stops, (0, 1] */
     float waterHeld;               /* g/m^2 of water that stay on it, [0, 1023]; more runs off */
     float radiantFraction;         /* of its heat that leaves as radiation, [0, 1] */
@@ -339,7 +339,9 @@ FW_API FwResult FW_CALL fwWorld_SetHidden(FwWorld*, FwBurnableMeshId id, uint32_
 
 typedef enum FwIgnitionKind {
     FW_IGNITE = 0,      /* receptive texels catch fire now */
-    FW_WET = 1,         /* wets: burning texels go out, wet ones cannot catch until dried */
+    FW_WET = 1,         /* wets: what burns goes out if the water takes more heat than the fire gives,
+                           wet texels cannot catch until heat or air has dried them (FW_BURNABLE_LITE:
+                           goes out at once, stays wet until FW_DRY) */
     FW_DRY = 2,         /* dries what was wetted */
     FW_EXTINGUISH = 3,  /* puts out, leaves dry: may catch again from a live neighbour */
     FW_IGNITION_KIND_FORCE32 = 0x7fffffff
@@ -351,7 +353,8 @@ typedef struct FwIgnitionDef { /* a ball against one object or all of them */
     float position[3];        /* m, world */
     float radius;             /* m, >= 0; the nearest texel within reach counts at least */
     float delay;              /* s from now, [0, 3600] */
-    uint32_t reserved[3];
+    float water;              /* FW_WET: g/m^2, [0, 1023]; 0: as much as the material holds */
+    uint32_t reserved[2];
 } FwIgnitionDef;
 static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
     FwIgnitionDef d; fwInitDef(FW_DEF_IGNITION, &d, (uint32_t)sizeof d); return d;
@@ -428,8 +431,9 @@ typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU
     uint32_t frontTiles;       /* tiles on which the front can still move */
     float burntFraction;       /* ignited / texels */
     float burningArea;         /* m^2 */
-    float power;               /* W */
+    float power;               /* W, at pace 1 */
     float reserved1;
+    double energy;             /* J that its fuel gave off; 0 with FW_BURNABLE_LITE */
 } FwObjectState;
 FW_API FwResult FW_CALL fwWorld_GetObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state); /* [world] */
 
@@ -445,6 +449,10 @@ typedef struct FwPointState {
     float distance;            /* m from the asked point to the texel */
     float position[3];         /* m, world, of the texel */
     float reserved;
+    float temperature;         /* K of the surface; 0: not known (FW_BURNABLE_LITE) */
+    float fuel;                /* [0, 1], that is left */
+    float charred;             /* [0, 1], for looks: scorched to burnt */
+    float water;               /* g/m^2 on the surface */
 } FwPointState;
 /* Asks for the texel nearest to `position` (m, world). The answer comes with a later frame's
  * readback (at once on the cpu backend) and stays until fetched once; at most 1024 are open. [world] */
@@ -474,6 +482,7 @@ typedef struct FwWorldStats {
     uint32_t burningTiles, flames;
     uint32_t lateClamps, droppedSteps;
     uint64_t texels;               /* of all objects' burn maps */
+    uint32_t hotTiles, reserved2;  /* whose temperature or water changes */
 } FwWorldStats;
 FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [world] */
 

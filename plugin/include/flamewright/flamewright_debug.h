@@ -16,7 +16,7 @@ FW_API uint32_t FW_CALL fwDebug_GetPassTimes(FwWorld*, FwPassTime* times, uint32
 /* Asks for the ignition ticks of an object. A later frame's readback brings them (cpu: at once). [world] */
 FW_API FwResult FW_CALL fwDebug_RequestBurnMap(FwWorld*, FwBurnableMeshId id);
 /* FW_NOT_READY until it is here. Writes min(capacity, texels) words, row-major; *count: all of them;
- * *hash: FNV-1a over the words; *tick: the simulation tick it was taken at. [world] */
+ * *hash: FNV-1a over the words, and over the heat plane where there is one; *tick: the simulation tick it was taken at. [world] */
 FW_API FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld*, FwBurnableMeshId id, uint32_t* ticks, uint64_t capacity,
                                              uint64_t* count, uint64_t* hash, uint64_t* tick);
 

@@ -22,8 +22,8 @@ static_assert(kSwitchDense == FW_DEBUG_DENSE && kSwitchShuffle == FW_DEBUG_SHUFF
 
 namespace {
 
-constexpr const char* kTimerNames[kTimerCount] = {"wake",   "events",    "schedule", "arrival",
-                                                  "commit", "published", "reduce"};
+constexpr const char* kTimerNames[kTimerCount] = {"wake",    "events", "heat",      "schedule",
+                                                  "arrival", "commit", "published", "reduce"};
 
 class Stopwatch {
  public:
@@ -58,6 +58,10 @@ CpuBackend::State::State(std::pmr::memory_resource* memory_, uint32_t maxLights_
       listOut(memory_),
       runList(memory_),
       burnList(memory_),
+      hotList(memory_),
+      hotOut(memory_),
+      tileHeat(memory_),
+      tileFire(memory_),
       results(memory_),
       scratch(memory_),
       burnTiles(memory_),
@@ -126,11 +130,17 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
         CpuObject& object = *objects[first.object];
         uint32_t& texel = object.state[first.texel];
         const uint32_t before = texel;
+        const size_t begin = i;
+        while (i < step.events.size() && step.events[i].object == first.object &&
+               step.events[i].texel == first.texel)
+            ++i;
+        const auto events = step.events.subspan(begin, i - begin);
         uint32_t now = before;
-        for (; i < step.events.size() && step.events[i].object == first.object &&
-               step.events[i].texel == first.texel;
-             ++i)
-            now = applyEvent(now, step.events[i].kind, step.events[i].tick, step.now);
+        if (!object.heat.empty())
+            now = heatEvents(object, events, step.now);
+        else
+            for (const TexelEvent& event : events)
+                now = applyEvent(now, event.kind, event.tick, step.now);
         if (now == before) continue;
         texel = now;
         const uint32_t x = first.texel % object.domain->width;
@@ -266,6 +276,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
             object.counters.ignited += uint32_t(std::popcount(result.lit));
             object.counters.lastIgnition = std::max(object.counters.lastIgnition, end);
             burning(worldTile);
+            if (!object.heat.empty()) hot(worldTile);
         }
         touchReaders(object, local, result.changed);
     }
@@ -285,7 +296,10 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
         core::fail(FW_ERROR_OUT_OF_MEMORY, "The world has %zu tiles; the limit is %u.", total,
                    0x7FFFFFFFu);
     // All or nothing: room first, then the size that says so.
-    for (auto* entries : {&list, &listOut, &runList, &burnList}) entries->reserve(total);
+    for (auto* entries : {&list, &listOut, &runList, &burnList, &hotList, &hotOut})
+        entries->reserve(total);
+    tileHeat.reserve(total);
+    tileFire.reserve(total);
     burnTiles.reserve(total);
     results.reserve(total);
     scratch.reserve(total * 64);
@@ -293,6 +307,8 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
     results.resize(total);
     scratch.resize(total * 64);
     tiles.resize(total);
+    tileHeat.resize(total);
+    tileFire.resize(total);
     return uint32_t(first);
 }
 
@@ -343,6 +359,10 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
         const bool burns = texelBurns(flags, slow[i], object->materials[flags & 7].flags);
         object->state[i] = burns ? kNever : kInert;
     }
+    if (!init.heat.empty()) {
+        std::copy_n(init.heat.begin(), kMaterialsPerObject, object->heatMaterials.begin());
+        createHeat(*object);
+    }
     if ((init.record.flags & kObjectPublished) != 0) createPublished(*object);
     if (slot >= s.objects.size()) s.objects.resize(slot + 1);
     s.freeTiles.reserve(s.objects.size() + s.freeTiles.size() + 1);
@@ -354,8 +374,11 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     object->record.tileCount = domain.tileCount();
     object->record.flags |= kObjectLive;
     object->live = true;
-    for (uint32_t local = 0; local < domain.tileCount(); ++local)
+    for (uint32_t local = 0; local < domain.tileCount(); ++local) {
         s.tiles[first + local] = {kNever, 0, kFarPast, slot};
+        s.tileHeat[first + local] = {};
+        s.tileFire[first + local] = 0;
+    }
     if (!object->published.empty()) ++s.publishedObjects;
     s.objects[slot] = std::move(object);
 }
@@ -365,7 +388,7 @@ void CpuBackend::destroyObject(uint32_t slot) noexcept {
     if (slot >= s.objects.size() || !s.objects[slot]) return;
     const uint32_t first = s.objects[slot]->record.worldTileBase;
     const uint32_t count = s.objects[slot]->record.tileCount;
-    for (auto* entries : {&s.list, &s.burnList})
+    for (auto* entries : {&s.list, &s.burnList, &s.hotList})
         std::erase_if(*entries, [&](uint32_t tile) { return tile - first < count; });
     std::erase_if(s.burnTiles, [&](const BurnTile& tile) { return tile.object == slot; });
     if (!s.objects[slot]->published.empty()) --s.publishedObjects;
@@ -393,12 +416,16 @@ void CpuBackend::run(const FramePlan& plan) {
         s.readbacks.emplace_back(s.memory);
     }
     ReadbackStore& store = s.readbacks[(s.head + s.waiting) % s.readbacks.size()];
-    size_t words = 0;
-    for (uint32_t slot : plan.burnMaps)
-        if (slot < s.objects.size() && s.objects[slot]) words += s.objects[slot]->state.size();
+    size_t words = 0, heatTexels = 0;
+    for (uint32_t slot : plan.burnMaps) {
+        if (slot >= s.objects.size() || !s.objects[slot]) continue;
+        words += s.objects[slot]->state.size();
+        heatTexels += s.objects[slot]->heat.size();
+    }
     store.objects.resize(s.objects.size());
     store.answers.resize(plan.probes.size());
     store.mapTicks.resize(words);
+    store.mapHeat.resize(heatTexels);
     store.maps.clear();
     store.maps.reserve(plan.burnMaps.size());
     store.lights.clear();
@@ -416,6 +443,10 @@ void CpuBackend::run(const FramePlan& plan) {
         if (!step.events.empty()) {
             Stopwatch watch(s, kTimerEvents);
             s.applyEvents(step);
+        }
+        if (step.heat && !s.hotList.empty()) {
+            Stopwatch watch(s, kTimerHeat);
+            s.heatStep(step.now);
         }
         if (!s.list.empty() || (s.switches & kSwitchDense) != 0)
             for (uint32_t k = 0; k < 1u << step.substepShift; ++k) s.iterate(step, k);
@@ -435,15 +466,27 @@ void CpuBackend::run(const FramePlan& plan) {
         const Probe& probe = plan.probes[i];
         const bool known = probe.object < s.objects.size() && s.objects[probe.object] &&
                            probe.texel < s.objects[probe.object]->state.size();
-        store.answers[i] = known ? s.objects[probe.object]->state[probe.texel] : kInert;
+        ProbeAnswer& answer = store.answers[i];
+        answer = {kInert, 0, 0, 0};
+        if (!known) continue;
+        const CpuObject& object = *s.objects[probe.object];
+        answer.state = object.state[probe.texel];
+        if (object.heat.empty()) continue;
+        answer.heatX = object.heat[probe.texel].x;
+        answer.heatY = object.heat[probe.texel].y;
+        answer.heat = 1;
     }
-    size_t at = 0;
+    size_t at = 0, heatAt = 0;
     for (uint32_t slot : plan.burnMaps) {
         if (slot >= s.objects.size() || !s.objects[slot]) continue;
         const std::pmr::vector<uint32_t>& ticks = s.objects[slot]->state;
         std::copy(ticks.begin(), ticks.end(), store.mapTicks.begin() + std::ptrdiff_t(at));
-        store.maps.push_back({slot, {store.mapTicks.data() + at, ticks.size()}});
+        store.maps.push_back({slot, {store.mapTicks.data() + at, ticks.size()}, {}});
         at += ticks.size();
+        const std::pmr::vector<uvec2>& heat = s.objects[slot]->heat;
+        std::copy(heat.begin(), heat.end(), store.mapHeat.begin() + std::ptrdiff_t(heatAt));
+        store.maps.back().heat = {store.mapHeat.data() + heatAt, heat.size()};
+        heatAt += heat.size();
     }
     s.findLights(store.lights);
     store.readback = {};
@@ -456,6 +499,7 @@ void CpuBackend::run(const FramePlan& plan) {
     store.readback.frontTiles = uint32_t(s.list.size());
     store.readback.runTiles = uint32_t(std::min<uint64_t>(s.runTiles, 0xFFFFFFFFu));
     store.readback.burningTiles = uint32_t(s.burnTiles.size());
+    store.readback.hotTiles = uint32_t(s.hotList.size());
     ++s.waiting;
 
     s.timesCount = 0;
@@ -487,21 +531,31 @@ void CpuBackend::memoryRows(std::pmr::vector<MemoryRow>& out) {
     MemoryRow states{"cpu texel states", 0, 0};
     for (const core::Owned<CpuObject>& object : s.objects) {
         if (!object) continue;
-        states.bytes += object->state.size() * sizeof(uint32_t) +
-                        object->slowness.size() * sizeof(uint16_t) +
-                        object->published.size() * sizeof(float);
+        states.bytes +=
+            object->state.size() * sizeof(uint32_t) + object->slowness.size() * sizeof(uint16_t) +
+            object->published.size() * sizeof(float) + object->heat.size() * sizeof(uvec2);
         states.capacity += object->state.capacity() * sizeof(uint32_t) +
                            object->slowness.capacity() * sizeof(uint16_t) +
-                           object->published.capacity() * sizeof(float);
+                           object->published.capacity() * sizeof(float) +
+                           object->heat.capacity() * sizeof(uvec2);
     }
     out.push_back(states);
-    const size_t perTile = sizeof(TileState) + 4 * sizeof(uint32_t) + sizeof(FrontTile) +
-                           64 * sizeof(uint32_t) + sizeof(BurnTile);
+    const size_t perTile = sizeof(TileState) + 6 * sizeof(uint32_t) + sizeof(TileHeat) +
+                           sizeof(float) + sizeof(FrontTile) + 64 * sizeof(uint32_t) +
+                           sizeof(BurnTile);
     out.push_back({"cpu tiles and lists", s.tiles.size() * perTile, s.tiles.capacity() * perTile});
 }
 
 std::span<const uint32_t> CpuBackend::state(uint32_t slot) const {
     return state_->objects[slot]->state;
+}
+
+std::span<const uvec2> CpuBackend::heat(uint32_t slot) const { return state_->objects[slot]->heat; }
+
+void CpuBackend::setTileHeat(uint32_t slot, uint32_t tile, const TileHeat& heat) {
+    const uint32_t worldTile = state_->objects[slot]->record.worldTileBase + tile;
+    state_->tileHeat[worldTile] = heat;
+    state_->hot(worldTile);
 }
 
 const ObjectCounters& CpuBackend::counters(uint32_t slot) const {

@@ -30,6 +30,9 @@ class CpuBackend final : public Backend {
     // For tests and benches: the whole state of an object, one word per texel.
     [[nodiscard]] std::span<const uint32_t> state(uint32_t slot) const;
     [[nodiscard]] const ObjectCounters& counters(uint32_t slot) const;
+    [[nodiscard]] std::span<const uvec2> heat(uint32_t slot) const;  // packed HeatTexel
+    // What comes to a tile (local number) from elsewhere, until it is set again.
+    void setTileHeat(uint32_t slot, uint32_t tile, const TileHeat& heat);
 
     struct State;
 

@@ -47,13 +47,18 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
         uint32_t count = 0, age = 0, position[3] = {};
         int normal[3] = {};
         float power = 0;
+        const bool heats = !object.heat.empty();
+        if (heats) power = tileFire[worldTile];  // of thick fuel
         for (uint32_t lane = 0; lane < 64; ++lane) {
             const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
             const uint32_t t = object.state[texel];
             if (!isSource(t)) continue;
             const mesh::TexelPosition& at = domain.texels[texel];
             const BurnMaterial& material = object.materials[at.materialFlags & 7];
-            if (!flames(t, now, material.flameTicks)) continue;
+            const uint32_t phase = heats ? object.heat[texel].y >> 30 : kPhaseFresh;
+            const bool burns =
+                heats ? t <= now && phase != kPhaseBurnt : flames(t, now, material.flameTicks);
+            if (!burns) continue;
             ++count;
             age += std::min(now - t, 0xFFFFFFu) >> 2;
             position[0] += at.x;
@@ -61,7 +66,8 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
             position[2] += at.z;
             const ivec3 n = decodeNormal(domain.normals[texel]);
             for (int i = 0; i < 3; ++i) normal[i] += n[i];
-            power += material.powerPerArea * object.record.tint.w;
+            if (phase != kPhaseBurning || material.burnTicks == material.flameTicks)
+                power += material.powerPerArea * object.record.tint.w;
         }
         if (count == 0) {
             tiles[worldTile].flag &= ~kTileBurning;

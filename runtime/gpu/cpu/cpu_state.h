@@ -9,7 +9,7 @@ namespace fw::gpu::cpu {
 
 struct CpuObject {
     explicit CpuObject(std::pmr::memory_resource* memory)
-        : state(memory), slowness(memory), published(memory) {}
+        : state(memory), slowness(memory), published(memory), heat(memory) {}
     bool live = false;
     uint32_t mesh = 0;
     BurnObject record{};
@@ -19,8 +19,13 @@ struct CpuObject {
     std::pmr::vector<uint32_t> state;     // one per texel
     std::pmr::vector<uint16_t> slowness;  // empty: the mesh's own
     std::pmr::vector<float> published;    // as-published objects only: see cpu_published.cpp
+    std::pmr::vector<uvec2> heat;         // packed HeatTexel, one per texel; empty: none
+    std::array<HeatMaterial, kMaterialsPerObject> heatMaterials{};
     uint32_t publishedParity = 0;
 };
+
+// cpu_heat.cpp; after the states are there, which become as wet as their texels.
+void createHeat(CpuObject& object);
 
 // cpu_published.cpp; after the states are there.
 void createPublished(CpuObject& object);
@@ -28,10 +33,17 @@ void publishedEvent(CpuObject& object, uint32_t texel, bool burns) noexcept;
 
 struct ReadbackStore {
     explicit ReadbackStore(std::pmr::memory_resource* memory)
-        : objects(memory), answers(memory), mapTicks(memory), maps(memory), lights(memory) {}
+        : objects(memory),
+          answers(memory),
+          mapTicks(memory),
+          mapHeat(memory),
+          maps(memory),
+          lights(memory) {}
     Readback readback;
     std::pmr::vector<ObjectCounters> objects;
-    std::pmr::vector<uint32_t> answers, mapTicks;
+    std::pmr::vector<ProbeAnswer> answers;
+    std::pmr::vector<uint32_t> mapTicks;
+    std::pmr::vector<uvec2> mapHeat;
     std::pmr::vector<BurnMap> maps;
     std::pmr::vector<BurnLight> lights;
 };
@@ -39,6 +51,7 @@ struct ReadbackStore {
 enum Timer : uint32_t {
     kTimerWake,
     kTimerEvents,
+    kTimerHeat,
     kTimerSchedule,
     kTimerArrival,
     kTimerCommit,
@@ -54,6 +67,8 @@ struct CpuBackend::State {
     void touch(uint32_t worldTile, uint32_t bits) noexcept;
     void touchReaders(const CpuObject& object, uint32_t local, uint64_t mask) noexcept;
     void burning(uint32_t worldTile) noexcept;
+    // Of objects with heat: something of the tile's temperature, water or flux changes from now on.
+    void hot(uint32_t worldTile) noexcept;
     void applyEvents(const StepPlan& step) noexcept;
     void wake(const StepPlan& step) noexcept;
     void iterate(const StepPlan& step, uint32_t iteration) noexcept;
@@ -61,6 +76,10 @@ struct CpuBackend::State {
     void scheduleTile(const StepPlan& step, uint32_t iteration, uint32_t worldTile,
                       bool dense) noexcept;
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
+    uint32_t heatEvents(CpuObject& object, std::span<const TexelEvent> events,
+                        uint32_t now) noexcept;  // cpu_heat.cpp: the texel's state after them
+    void heatStep(uint32_t now) noexcept;
+    void heatTile(uint32_t worldTile, bool doze, uint32_t now) noexcept;
     void publishedStep(uint32_t now) noexcept;                   // cpu_published.cpp
     void reduce(uint32_t now) noexcept;                          // cpu_reduce.cpp
     void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
@@ -73,7 +92,9 @@ struct CpuBackend::State {
     std::pmr::vector<core::Owned<CpuObject>> objects;
     // By world tile. A tile is in a list at most once, so all lists have room for all tiles.
     std::pmr::vector<TileState> tiles;
-    std::pmr::vector<uint32_t> list, listOut, runList, burnList;
+    std::pmr::vector<uint32_t> list, listOut, runList, burnList, hotList, hotOut;
+    std::pmr::vector<TileHeat> tileHeat;
+    std::pmr::vector<float> tileFire;     // W in the last heat step
     std::pmr::vector<FrontTile> results;  // per due tile
     std::pmr::vector<uint32_t> scratch;   // 64 words per due tile
     std::pmr::vector<BurnTile> burnTiles;

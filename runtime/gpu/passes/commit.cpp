@@ -22,6 +22,7 @@ constexpr Use kUses[] = {
     {FW_BIND_BURN_B, Access::write},
     {FW_BIND_PREDICT_LIST_A, Access::write},
     {FW_BIND_PREDICT_LIST_B, Access::write},
+    {FW_BIND_HOT_LISTS, Access::write},
 };
 
 }  // namespace

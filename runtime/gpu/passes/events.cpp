@@ -12,7 +12,9 @@ constexpr Use kUses[] = {
     {FW_BIND_EVENTS, Access::read},          {FW_BIND_OBJECT_COUNTERS, Access::write},
     {FW_BIND_BURN_A, Access::write},         {FW_BIND_BURN_B, Access::write},
     {FW_BIND_PREDICT_LIST_A, Access::write}, {FW_BIND_PREDICT_LIST_B, Access::write},
-    {FW_BIND_PUBLISHED, Access::write},
+    {FW_BIND_PUBLISHED, Access::write},      {FW_BIND_TEXELS, Access::read},
+    {FW_BIND_HEAT, Access::write},           {FW_BIND_HEAT_MATERIALS, Access::read},
+    {FW_BIND_HOT_LISTS, Access::write},
 };
 
 }  // namespace

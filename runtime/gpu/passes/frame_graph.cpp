@@ -12,12 +12,11 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,         &kEventsPass,       &kWakePass,        &kSchedulePass,
-    &kGatherPass,        &kArrivalPass,      &kArrivalRimPass,  &kCommitPass,
-    &kPublishedPass,     &kReduceClearPass,  &kReduceFrontPass, &kReducePass,
-    &kPredictGatherPass, &kPredictPass,      &kPredictRimPass,  &kSupportPass,
-    &kProbePass,         &kLightsPass,       &kFlameQuadsPass,  &kFlameSortPass,
-    &kRefineHeatPass,    &kRefineLevelsPass, &kRefineScanPass,  &kRefineEmitPass,
+    &kResetPass,       &kEventsPass,      &kHeatPass,         &kWakePass,          &kSchedulePass,
+    &kGatherPass,      &kArrivalPass,     &kArrivalRimPass,   &kCommitPass,        &kPublishedPass,
+    &kReduceClearPass, &kReduceFrontPass, &kReducePass,       &kPredictGatherPass, &kPredictPass,
+    &kPredictRimPass,  &kSupportPass,     &kProbePass,        &kLightsPass,        &kFlameQuadsPass,
+    &kFlameSortPass,   &kRefineHeatPass,  &kRefineLevelsPass, &kRefineScanPass,    &kRefineEmitPass,
     &kRefinePlacePass};
 
 constexpr const DrawPass* kDrawPasses[] = {
@@ -74,6 +73,7 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         push.parity = lists.parity;
         push.burnParity = lists.burnParity;
         push.predictParity = lists.predictParity;
+        push.hotParity = lists.hotParity;
         push.switches = step.switches;
         return push;
     };
@@ -89,6 +89,12 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
                         uint64_t(step.events.count) * sizeof(TexelEvent));
         push.count = step.events.count;
         recorder.dispatch(kEventsPass, &push, (push.count + 63) / 64);
+    }
+    if (step.heat) {
+        push = pushNow();
+        zeroRow(recorder, kRowHot + (lists.hotParity ^ 1));
+        recorder.dispatchList(kHeatPass, &push, kRowHot + lists.hotParity);
+        lists.hotParity ^= 1;
     }
     for (uint32_t k = 0; step.iterate && k < 1u << step.stepShift; ++k) {
         push = pushNow();

@@ -13,7 +13,7 @@ namespace vk {
 class FrameRecorder;
 }
 
-extern const ComputePass kResetPass, kEventsPass, kWakePass, kSchedulePass, kGatherPass,
+extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedulePass, kGatherPass,
     kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
     kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
@@ -30,6 +30,7 @@ struct FrameLists {
     uint32_t parity = 0;           // 0: it is list A
     uint32_t burnParity = 0;
     uint32_t predictParity = 0;
+    uint32_t hotParity = 0;
 };
 
 struct Staged {  // in the frame's upload buffer
@@ -46,6 +47,7 @@ struct StepRecord {
     uint32_t now = 0, stepShift = 0, switches = 0;
     bool iterate = true;  // false: the front is known to be empty
     bool reduce = false;
+    bool heat = false;
     Staged events;
     Staged wakeGroups;  // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;

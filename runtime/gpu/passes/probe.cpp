@@ -5,10 +5,8 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {
-    {FW_BIND_OBJECTS, Access::read},
-    {FW_BIND_STATE, Access::read},
-    {FW_BIND_PROBES, Access::read},
-    {FW_BIND_ANSWERS, Access::write},
+    {FW_BIND_OBJECTS, Access::read},  {FW_BIND_STATE, Access::read}, {FW_BIND_PROBES, Access::read},
+    {FW_BIND_ANSWERS, Access::write}, {FW_BIND_HEAT, Access::read},
 };
 
 }  // namespace

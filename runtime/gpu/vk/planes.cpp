@@ -51,7 +51,7 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_EVENTS, kSpaceEvents, sizeof(TexelEvent), false, kComponentLists, "events", 0},
     {FW_BIND_WAKE_GROUPS, kSpaceWakeGroups, 8, false, kComponentLists, "wake groups", 0},
     {FW_BIND_PROBES, kSpaceProbes, 8, false, kComponentLists, "probes", 0},
-    {FW_BIND_ANSWERS, kSpaceProbes, 4, false, kComponentLists, "answers", 0},
+    {FW_BIND_ANSWERS, kSpaceProbes, sizeof(ProbeAnswer), false, kComponentLists, "answers", 0},
     {FW_BIND_PUBLISHED, kSpacePublished, 3 * 4 * kTileTexels, true, kComponentObjects, "published",
      0},
     {FW_BIND_HEAT, kSpaceHeat, 8 * kTileTexels, true, kComponentHeat, "heat", 0},

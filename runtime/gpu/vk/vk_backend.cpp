@@ -141,6 +141,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       givenObjects(pmr),
       givenAnswers(pmr),
       givenTexels(pmr),
+      givenHeat(pmr),
       givenMaps(pmr),
       givenLights(pmr),
       times(pmr) {
@@ -262,7 +263,8 @@ void VkBackend::State::freeQuarantine() noexcept {
     for (const Quarantined& one : quarantine) {
         const bool passed = (frontWalks > one.frontWalks || frontEmpty) &&
                             (burnWalks > one.burnWalks || burnEmpty) &&
-                            (predictWalks > one.predictWalks || predictEmpty);
+                            (predictWalks > one.predictWalks || predictEmpty) &&
+                            (hotWalks > one.hotWalks || hotEmpty);
         if (passed)
             planes.release(kSpaceObjectTiles, one.tiles.first, one.tiles.units);
         else
@@ -555,7 +557,8 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
     if (!entry.live) return;
     const bool met = !entry.resetDue;  // by a recorded frame, so lists may name its tiles
     if (met)
-        s.quarantine.push_back({entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks});
+        s.quarantine.push_back(
+            {entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks, s.hotWalks});
     else
         s.planes.release(kSpaceObjectTiles, entry.tiles.first, entry.tiles.units);
     if (entry.slowness.units)

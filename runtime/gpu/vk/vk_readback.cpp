@@ -27,11 +27,15 @@ const Readback* VkBackend::State::nextReadback() {
         if (slot && !stolen) {
             // Room first: it may throw, and then the readback is still there.
             const ReadbackLayout& layout = slot->layout;
-            uint64_t texels = 0;
-            for (uint32_t i = 0; i < layout.mapCount; ++i) texels += layout.maps[i].texels;
+            uint64_t texels = 0, heatTexels = 0;
+            for (uint32_t i = 0; i < layout.mapCount; ++i) {
+                texels += layout.maps[i].texels;
+                heatTexels += layout.maps[i].heat ? layout.maps[i].texels : 0;
+            }
             givenObjects.resize(layout.objects);
             givenAnswers.resize(layout.answers);
             givenTexels.resize(texels);
+            givenHeat.resize(heatTexels);
             givenMaps.resize(layout.mapCount);
             givenLights.reserve(layout.lights);
             const std::byte* from = slot->readback.mapped;
@@ -41,16 +45,21 @@ const Readback* VkBackend::State::nextReadback() {
                             layout.objects * sizeof(ObjectCounters));
             if (layout.answers > 0)
                 std::memcpy(givenAnswers.data(), from + layout.answersAt,
-                            uint64_t(layout.answers) * 4);
+                            uint64_t(layout.answers) * sizeof(ProbeAnswer));
             for (uint32_t i = 0; i < std::min(layout.objects, uint32_t(objects.size())); ++i)
                 if (givenObjects[i].burning != 0 || givenObjects[i].frontTiles != 0)
                     noteFire(i, one.endTick);
-            uint64_t at = 0;
+            uint64_t at = 0, heatAt = 0;
             for (uint32_t i = 0; i < layout.mapCount; ++i) {
                 const ReadbackLayout::MapAt& map = layout.maps[i];
                 std::memcpy(givenTexels.data() + at, from + map.at, uint64_t(map.texels) * 4);
-                givenMaps[i] = {map.object, {givenTexels.data() + at, map.texels}};
+                givenMaps[i] = {map.object, {givenTexels.data() + at, map.texels}, {}};
                 at += map.texels;
+                if (!map.heat) continue;
+                std::memcpy(givenHeat.data() + heatAt, from + map.heatAt,
+                            uint64_t(map.texels) * sizeof(uvec2));
+                givenMaps[i].heat = {givenHeat.data() + heatAt, map.texels};
+                heatAt += map.texels;
             }
             const auto row = [&](uint32_t number) {
                 IterationCounters counters;
@@ -64,6 +73,7 @@ const Readback* VkBackend::State::nextReadback() {
                 given.runTiles += row(i).runCount;
             given.frontTiles = row(layout.rows).listCount;
             given.burningTiles = row(kRowBurn + layout.burnParity).runCount;
+            given.hotTiles = row(kRowHot + layout.hotParity).listCount;
             givenLights.clear();
             for (uint32_t i = 0; i < layout.lights; ++i) {
                 BurnLight light;
@@ -77,7 +87,8 @@ const Readback* VkBackend::State::nextReadback() {
                 std::any_of(objects.begin(), objects.end(),
                             [](const ObjectEntry& object) { return object.publishedTouched; });
             if (one.ringFrame >= lastStimulus && !spreading) {
-                frontEmpty = given.frontTiles == 0;
+                hotEmpty = given.hotTiles == 0;
+                frontEmpty = given.frontTiles == 0 && hotEmpty;
                 burnEmpty = frontEmpty && row(kRowBurn + layout.burnParity).listCount == 0;
                 predictEmpty = frontEmpty && row(kRowPredict + layout.predictParity).listCount == 0;
             }

@@ -78,7 +78,7 @@ struct FrameNeeds {
     uint32_t events = 0, wakeGroups = 0;  // of the largest step
     bool stimulus = false;                // an event or a latch
     bool findsAnew = false;               // the first step wakes what forgets
-    bool burning = false, predicting = false, publishedRuns = false;
+    bool burning = false, predicting = false, publishedRuns = false, heating = false;
     bool falling = false;                 // burnt pieces may lose their hold
     bool readback = false, work = false;  // no work: nothing is recorded
 };
@@ -117,8 +117,12 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
             uploaded(step.events.size_bytes()) + uploaded(wake * sizeof(WakeGroup));
         for (const TexelEvent& event : step.events) {
             s.noteFire(event.object, plan.endTick);
-            if (event.kind == kEventWet || event.kind == kEventExtinguish)
-                s.objects[event.object].lastDouse = s.open.ringFrame;
+            if (event.kind != kEventWet && event.kind != kEventExtinguish) continue;
+            ObjectEntry& object = s.objects[event.object];
+            object.lastDouse = s.open.ringFrame;
+            object.douseEnds = step.now;  // water takes some heat steps
+            if (object.record.flags & kObjectHeat)
+                object.douseEnds += (kSoaksOut + 2) * kHeatSteps * kStepTicks;
         }
         needs.stimulus |= bringsNews(step);
         iterates |= bringsNews(step);
@@ -130,7 +134,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     uint64_t forgetGroups = 0;
     for (ObjectEntry& object : s.objects) {
         object.forget = object.live && object.lastDouse != 0 &&
-                        object.lastDouse < s.open.ringFrame && (anyStep || s.frontEmpty);
+                        object.lastDouse < s.open.ringFrame && (anyStep || s.frontEmpty) &&
+                        (plan.endTick > object.douseEnds || s.frontEmpty);
         if (!object.forget) continue;
         forgets = true;
         forgetGroups += wakeGroupsOf(object);
@@ -153,11 +158,12 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         std::any_of(s.published.begin(), s.published.end(), [&](const PublishedStep& one) {
             return needs.stimulus || s.objects[one.object].publishedTouched;
         });
+    needs.heating = !s.hotEmpty || needs.stimulus || needs.never;
     needs.burning = !s.burnEmpty || needs.stimulus || needs.never;
     needs.predicting = !s.predictEmpty || needs.stimulus || needs.never;
     needs.falling =
         anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
-    needs.readback = needs.burning || needs.predicting || needs.iterations > 0 ||
+    needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
                      needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
     const uint64_t refineBytes = s.planRefine(plan);
     needs.uploadBytes += refineBytes;
@@ -184,7 +190,7 @@ ReadbackLayout layoutOf(const VkBackend::State& s, const FramePlan& plan, const 
     const uint64_t lastRow = needs.iterations ? kRowIteration + needs.iterations : s.lists.row;
     layout.countersAt = place((lastRow + 1) * sizeof(IterationCounters));
     layout.objectsAt = place(layout.objects * sizeof(ObjectCounters));
-    layout.answersAt = place(uint64_t(layout.answers) * 4);
+    layout.answersAt = place(uint64_t(layout.answers) * sizeof(ProbeAnswer));
     layout.lightsAt = place(uint64_t(layout.lights) * sizeof(BurnLight));
     layout.flamesAt = place(16);
     for (const uint32_t object : plan.burnMaps) {
@@ -192,6 +198,8 @@ ReadbackLayout layoutOf(const VkBackend::State& s, const FramePlan& plan, const 
         map.object = object;
         map.texels = s.objects[object].record.width * s.objects[object].record.height;
         map.at = place(uint64_t(map.texels) * 4);
+        map.heat = (s.objects[object].record.flags & kObjectHeat) != 0;
+        if (map.heat) map.heatAt = place(uint64_t(map.texels) * sizeof(uvec2));
     }
     return layout;
 }
@@ -524,6 +532,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         step.objectSlots = uint32_t(objects.size());
         step.iterate = iterates;
         step.reduce = planned.reduce && needs.burning;
+        step.heat = planned.heat && needs.heating;
         recordMaterials(*this, planned.materials, recorder, writer);
         const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
         step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);
@@ -539,12 +548,14 @@ void VkBackend::State::run(const FramePlan& plan) {
         recordStep(recorder, lists, step);
         frontWalks += step.iterate ? 1 : 0;
         burnWalks += step.reduce ? 1 : 0;
+        hotWalks += step.heat ? 1 : 0;
     }
     slot.layout.rows = lists.row;
     slot.layout.burnParity = lists.burnParity;
+    slot.layout.hotParity = lists.hotParity;
     if (needs.stimulus) {
         lastStimulus = open.ringFrame;
-        frontEmpty = burnEmpty = predictEmpty = false;
+        frontEmpty = burnEmpty = predictEmpty = hotEmpty = false;
     }
     shownTick = plan.endTick;
     if (needs.predicting) {
@@ -587,15 +598,21 @@ void VkBackend::State::closeFrame(const FwView* view) {
             recorder.copyOut(FW_BIND_OBJECT_COUNTERS, 0, layout.objectsAt,
                              layout.objects * sizeof(ObjectCounters));
         if (layout.answers)
-            recorder.copyOut(FW_BIND_ANSWERS, 0, layout.answersAt, uint64_t(layout.answers) * 4);
+            recorder.copyOut(FW_BIND_ANSWERS, 0, layout.answersAt,
+                             uint64_t(layout.answers) * sizeof(ProbeAnswer));
         if (layout.lights)
             recorder.copyOut(FW_BIND_LIGHTS, 0, layout.lightsAt,
                              uint64_t(layout.lights) * sizeof(BurnLight));
         recorder.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
-        for (uint32_t i = 0; i < layout.mapCount; ++i)
-            recorder.copyOut(FW_BIND_STATE,
-                             uint64_t(objects[layout.maps[i].object].record.stateBase) * 4,
-                             layout.maps[i].at, uint64_t(layout.maps[i].texels) * 4);
+        for (uint32_t i = 0; i < layout.mapCount; ++i) {
+            const ReadbackLayout::MapAt& map = layout.maps[i];
+            const BurnObject& object = objects[map.object].record;
+            recorder.copyOut(FW_BIND_STATE, uint64_t(object.stateBase) * 4, map.at,
+                             uint64_t(map.texels) * 4);
+            if (map.heat)
+                recorder.copyOut(FW_BIND_HEAT, uint64_t(object.heatBase) * sizeof(uvec2),
+                                 map.heatAt, uint64_t(map.texels) * sizeof(uvec2));
+        }
         slot.readbackPending = true;
         PendingReadback one;
         one.ringFrame = open.ringFrame;

@@ -66,6 +66,7 @@ struct ObjectEntry {
     bool drawable = false;   // a recorded frame holds it
     bool touched = false;    // some event reached it: it may burn, or be wet
     uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
+    uint32_t douseEnds = 0;  // tick by which that has had its effect
     bool forget = false;     // scratch of run
     uint32_t mesh = 0;
     BurnObject record{};
@@ -101,7 +102,7 @@ struct PendingUpload {
 // Tiles of a destroyed object: list entries may still name them. Free once every list was walked.
 struct Quarantined {
     RangeOf tiles;
-    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0;  // counts that must be passed
+    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;  // to be passed
 };
 
 struct PendingReadback {  // in the order of frames
@@ -169,9 +170,10 @@ struct VkBackend::State {
 
     // Lists on the device, as the frames recorded so far leave them.
     FrameLists lists;
-    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0;
+    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;
     uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
-    bool frontEmpty = true, burnEmpty = true, predictEmpty = true;  // known from a readback
+    // Known from a readback. While a tile is hot, its front may move again.
+    bool frontEmpty = true, burnEmpty = true, predictEmpty = true, hotEmpty = true;
     uint32_t supportUntil = 0;  // tick until which burnt pieces may still fall
     uint32_t supportFirst = 0;  // tile that the next look at what holds what begins at
     uint32_t shownTick = 0;     // tick of the state that draws show
@@ -203,7 +205,9 @@ struct VkBackend::State {
     uint32_t pendingFirst = 0, pendingCount = 0;
     Readback given;
     std::pmr::vector<ObjectCounters> givenObjects;
-    std::pmr::vector<uint32_t> givenAnswers, givenTexels;
+    std::pmr::vector<ProbeAnswer> givenAnswers;
+    std::pmr::vector<uint32_t> givenTexels;
+    std::pmr::vector<uvec2> givenHeat;
     std::pmr::vector<BurnMap> givenMaps;
     std::pmr::vector<BurnLight> givenLights;
     std::pmr::vector<PassTime> times;

@@ -1,0 +1,121 @@
+// Temperature, fuel and water on the CPU, as heat.comp and the heat part of events.comp. The maths
+// is shared/heat.h; which tiles, and who hears of it, is here.
+#include "gpu/cpu/cpu_state.h"
+
+#include <algorithm>
+
+namespace fw::gpu::cpu {
+
+void createHeat(CpuObject& object) {
+    const mesh::BurnDomain& domain = *object.domain;
+    object.heat.resize(domain.texelCount());
+    for (uint32_t i = 0; i < domain.texelCount(); ++i) {
+        const HeatMaterial& m = object.heatMaterials[domain.texels[i].materialFlags & 7];
+        const HeatTexel x = heatRests(m, object.state[i] != kInert);
+        object.heat[i] = packHeat(x);
+        object.state[i] = wetState(object.state[i], heatClosed(x, m));
+    }
+}
+
+void CpuBackend::State::hot(uint32_t worldTile) noexcept {
+    uint32_t& flag = tiles[worldTile].flag;
+    if ((flag & kTileHot) == 0) hotList.push_back(worldTile);
+    flag |= kTileHot | kTileWarm;
+}
+
+uint32_t CpuBackend::State::heatEvents(CpuObject& object, std::span<const TexelEvent> events,
+                                       uint32_t now) noexcept {
+    const uint32_t texel = events[0].texel;
+    const mesh::BurnDomain& domain = *object.domain;
+    const HeatMaterial& m = object.heatMaterials[domain.texels[texel].materialFlags & 7];
+    const uvec2 had = object.heat[texel];
+    const uint32_t before = object.state[texel];
+    HeatTexel x = unpackHeat(had);
+    uint32_t after = before;
+    for (const TexelEvent& event : events)
+        after = heatEvent(x, m, after, event.kind, event.tick, now);
+    object.heat[texel] = packHeat(x);
+    if (after != before || object.heat[texel] != had) {
+        const uint32_t tile =
+            (texel / domain.width >> 3) * domain.tilesX + (texel % domain.width >> 3);
+        hot(object.record.worldTileBase + tile);
+    }
+    return after;
+}
+
+void CpuBackend::State::heatTile(uint32_t worldTile, bool doze, uint32_t now) noexcept {
+    TileState& tile = tiles[worldTile];
+    CpuObject& object = *objects[tile.object];
+    const mesh::BurnDomain& domain = *object.domain;
+    const uint32_t local = worldTile - object.record.worldTileBase;
+    const uint32_t corner =
+        (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+    const TileHeat comes = tileHeat[worldTile];
+    const uint32_t ambient = object.heatMaterials[0].ambient;
+    const uint32_t step = hash32(now);
+    uint64_t energy = 0, changed = 0;
+    uint32_t lit = 0, gone = 0, work = comes.flux != 0 ? 2 : 0;
+    float watts = 0;
+    for (uint32_t lane = 0; lane < 64; ++lane) {
+        const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+        const uint32_t kind = domain.texels[texel].materialFlags;
+        if ((kind & kTexelReal) == 0) continue;
+        const uint32_t before = object.state[texel];
+        HeatTexel x = unpackHeat(object.heat[texel]);
+        if (comes.flux == 0 && heatWork(x, before, ambient) == 0) continue;
+        const HeatMaterial& m = object.heatMaterials[kind & 7];
+        const uint32_t chance = heatChance(texel, step);
+        uint32_t after = before;
+        if (doze) {
+            after = heatDozes(x, m, before, chance);
+        } else {
+            uint32_t units = 0;
+            after = heatTexelStep(x, m, before, now, comes.flux, comes.pilot != 0,
+                                  object.materials[kind & 7].air, chance, units);
+            energy += uint64_t(units) * m.energy;
+            watts += float(units) * m.watts;
+        }
+        object.heat[texel] = packHeat(x);
+        work |= heatWork(x, after, ambient);
+        if (after == before) continue;
+        object.state[texel] = after;
+        changed |= 1ull << lane;
+        lit += isSource(after) && !isSource(before) ? 1 : 0;
+        gone += isSource(before) && !isSource(after) ? 1 : 0;
+    }
+    if (work != 0) {
+        tile.flag = (work & 2) != 0 ? tile.flag | kTileWarm : tile.flag & ~kTileWarm;
+        hotOut.push_back(worldTile);
+    } else {
+        tile.flag &= ~(kTileHot | kTileWarm);
+    }
+    tileFire[worldTile] = watts;
+    energy += uint64_t(object.counters.energyHigh) << 32 | object.counters.energyLow;
+    object.counters.energyLow = uint32_t(energy);
+    object.counters.energyHigh = uint32_t(energy >> 32);
+    if (changed == 0) return;
+    object.counters.ignited += lit - gone;
+    if (lit != 0) {
+        object.counters.lastIgnition = std::max(object.counters.lastIgnition, now + kStepTicks);
+        burning(worldTile);
+    }
+    tile.lastChange = now;
+    touchReaders(object, local, changed);
+}
+
+void CpuBackend::State::heatStep(uint32_t now) noexcept {
+    if ((switches & kSwitchShuffle) != 0) shuffle(hotList);
+    hotOut.clear();
+    for (uint32_t worldTile : hotList) {
+        const TileState& tile = tiles[worldTile];
+        const CpuObject& object = *objects[tile.object];
+        const bool doze = (tile.flag & kTileWarm) == 0 && tileHeat[worldTile].flux == 0;
+        if (doze && !dozeEnds(tile.object, worldTile - object.record.worldTileBase, now))
+            hotOut.push_back(worldTile);  // sleeps on
+        else
+            heatTile(worldTile, doze, now);
+    }
+    hotList.swap(hotOut);
+}
+
+}  // namespace fw::gpu::cpu

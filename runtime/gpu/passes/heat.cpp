@@ -1,0 +1,25 @@
+// Temperature, fuel and water of the texels where they change.
+#include "gpu/passes/frame_graph.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_COUNTERS, Access::indirect},    {FW_BIND_OBJECTS, Access::read},
+    {FW_BIND_MATERIALS, Access::read},       {FW_BIND_TEXELS, Access::read},
+    {FW_BIND_TILES, Access::read},           {FW_BIND_READERS, Access::read},
+    {FW_BIND_STATE, Access::write},          {FW_BIND_TILE_STATE, Access::write},
+    {FW_BIND_LIST_A, Access::write},         {FW_BIND_LIST_B, Access::write},
+    {FW_BIND_COUNTERS, Access::write},       {FW_BIND_OBJECT_COUNTERS, Access::write},
+    {FW_BIND_BURN_A, Access::write},         {FW_BIND_BURN_B, Access::write},
+    {FW_BIND_PREDICT_LIST_A, Access::write}, {FW_BIND_PREDICT_LIST_B, Access::write},
+    {FW_BIND_HEAT, Access::write},           {FW_BIND_TILE_HEAT, Access::read},
+    {FW_BIND_HEAT_MATERIALS, Access::read},  {FW_BIND_HOT_LISTS, Access::write},
+    {FW_BIND_TILE_FIRE, Access::write},
+};
+
+}  // namespace
+
+const ComputePass kHeatPass{"heat", "heat.comp", kUses, sizeof(StepPush)};
+
+}  // namespace fw::gpu

@@ -1,0 +1,298 @@
+// Heat, char and water through the C ABI, on the cpu and on a device of our own: P10, P12, P13, and
+// what FW_BURNABLE_LITE leaves out. Without a device the second half skips aloud.
+#include "abi/abi_support.h"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+namespace {
+
+using host::lastMessage;
+
+// A sheet of 0.1 m, wholly lit when asked.
+class AbiHeat : public ::testing::TestWithParam<uint32_t> {
+ protected:
+    void SetUp() override {
+        FwContextDef def = fwDefaultContextDef();
+        def.backend = GetParam();
+        def.callbacks = host_.callbacks();
+        FwErrorInfo error{};
+        if (fwCreateContext(&def, &context_, &error) == FW_OK) return;
+        if (std::getenv("FLAMEWRIGHT_REQUIRE_GPU")) ADD_FAILURE() << error.message;
+        GTEST_SKIP() << "no Vulkan device";
+    }
+    void TearDown() override {
+        fwDestroyContext(context_);
+        EXPECT_EQ(0, host_.blocks);
+    }
+
+    void make(const FwMaterialDef& material, float pace, uint32_t flags = 0, float moisture = 0) {
+        FwWorldDef def = fwDefaultWorldDef();
+        def.paceFactor = pace;
+        ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_)) << lastMessage(context_);
+        const host::Sheet sheet(0.1f, 0.1f);
+        const FwMeshDef meshDef = sheet.def(64);
+        FwMeshId mesh{};
+        ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world_, &meshDef, &mesh)) << lastMessage(world_);
+        mesh_ = mesh;
+        FwMaterialId id{};
+        ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(world_, &material, &id)) << lastMessage(world_);
+        FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
+        object.mesh = mesh;
+        object.materials[0] = id;
+        object.flags = flags;
+        object.moisture = moisture;
+        ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world_, &object, &object_))
+            << lastMessage(world_);
+    }
+    void all(uint32_t kind, float water = 0) {
+        FwIgnitionDef def = fwDefaultIgnitionDef();
+        def.kind = kind;
+        def.radius = 1;
+        def.water = water;
+        ASSERT_EQ(FW_OK, fwWorld_Ignite(world_, &def, nullptr)) << lastMessage(world_);
+    }
+    void run(double seconds) {
+        for (double t = 0; t < seconds - 1e-9; t += 0.125)
+            ASSERT_EQ(FW_OK, fwWorld_Step(world_, 0.125f)) << lastMessage(world_);
+    }
+    FwPointState point(float x = 0.05f, float z = 0.05f) {
+        const float position[3] = {x, 0, z};
+        FwQueryId query{};
+        EXPECT_EQ(FW_OK, fwWorld_RequestPoint(world_, object_, position, &query));
+        FwPointState made{};
+        made.structSize = sizeof made;
+        FwResult result = FW_NOT_READY;
+        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+            EXPECT_EQ(FW_OK, fwWorld_Step(world_, 0));
+            result = fwWorld_FetchPoint(world_, query, &made);
+        }
+        EXPECT_EQ(FW_OK, result) << lastMessage(world_);
+        return made;
+    }
+    // Positions of the map's real texels.
+    std::vector<std::array<float, 3>> texels() {
+        uint64_t count = 0;
+        EXPECT_EQ(FW_OK, fwDebug_GetTexelPositions(world_, mesh_, nullptr, nullptr, 0, &count));
+        std::vector<float> positions(3 * count);
+        std::vector<uint32_t> flags(count);
+        EXPECT_EQ(FW_OK, fwDebug_GetTexelPositions(world_, mesh_, positions.data(), flags.data(),
+                                                   count, &count));
+        std::vector<std::array<float, 3>> real;
+        for (size_t i = 0; i < count; ++i)
+            if (flags[i])
+                real.push_back({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
+        return real;
+    }
+    FwObjectState state() {
+        FwObjectState made{};
+        made.structSize = sizeof made;
+        EXPECT_EQ(FW_OK, fwWorld_GetObjectState(world_, object_, &made));
+        return made;
+    }
+    FwWorldStats stats() {
+        FwWorldStats made{};
+        made.structSize = sizeof made;
+        EXPECT_EQ(FW_OK, fwWorld_GetStats(world_, &made));
+        return made;
+    }
+    static FwMaterialDef preset(uint32_t which) {
+        FwMaterialDef def = fwDefaultMaterialDef();
+        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&def, which));
+        return def;
+    }
+
+    host::Host host_;
+    FwContext* context_ = nullptr;
+    FwWorld* world_ = nullptr;
+    FwMeshId mesh_{};
+    FwBurnableMeshId object_{};
+};
+
+TEST_P(AbiHeat, P10_CharDepthOfAnHour) {
+    const float limits[2][2] = {{450, 0.65f}, {660, 0.50f}};  // kg/m^3, mm/min: EN 1995-1-2
+    for (const auto& [density, rate] : limits) {
+        FwMaterialDef wood = preset(FW_MATERIAL_PINE);
+        wood.density = density;
+        wood.thickness = rate * 0.06f;  // an hour's worth
+        wood.burningFlux = rate / 60000 * density;
+        make(wood, 60);
+        all(FW_IGNITE);
+        run(30);
+        const float half = (1 - point().fuel) * wood.thickness * 1000;
+        run(30);
+        const float whole = (1 - point().fuel) * wood.thickness * 1000;
+        std::printf("%.0f kg/m^3: %.1f mm in half an hour, %.1f in one\n", double(density),
+                    double(half), double(whole));
+        EXPECT_NEAR(rate * 60, whole, 0.1f * rate * 60);
+        EXPECT_LT(rate * 30, half);  // char slows it down
+        EXPECT_LT(half, whole * 0.75f);
+        EXPECT_NEAR(773.0f, point().temperature, 60.0f);
+    }
+}
+
+TEST_P(AbiHeat, P12_TheBookOfEnergyIsExact) {
+    for (const uint32_t which : {uint32_t(FW_MATERIAL_PAPER), uint32_t(FW_MATERIAL_PINE)}) {
+        const bool pine = which == FW_MATERIAL_PINE;
+        make(preset(which), pine ? 20 : 2);
+        all(FW_IGNITE);
+        for (int part = 0; part < 4; ++part) {
+            run(part == 3 ? 90 : 0.25);
+            if (part == 1 && pine) all(FW_WET, 3);
+            uint64_t units = 0;
+            for (const auto& at : texels())
+                units += uint64_t(std::lround(65535 * (1 - double(point(at[0], at[2]).fuel))));
+            const FwMaterialDef def = preset(which);
+            const double fuel = double(def.burnTime > 0 ? def.burningFlux * def.burnTime
+                                                        : def.density * def.thickness);  // kg/m^2
+            const FwObjectState now = state();
+            ASSERT_EQ(texels().size(), now.texels);
+            EXPECT_LT(0u, units);
+            const double book = now.energy * 1048576;
+            EXPECT_EQ(std::floor(book), book);
+            EXPECT_EQ(0u, uint64_t(book) % units) << "each unit is worth the same";
+            EXPECT_NEAR(
+                double(def.heatOfCombustion) * fuel * 0.01 * double(units) / 65535 / now.texels,
+                now.energy, 0.01 * now.energy);
+            if (part == 3) {
+                EXPECT_EQ(now.texels * 65535, units);
+                EXPECT_EQ(0u, now.burning);
+                EXPECT_EQ(0.0f, now.power);
+                EXPECT_EQ(FW_POINT_BURNT, int(point().kind));
+            } else {
+                EXPECT_EQ(now.texels, now.burning);
+                EXPECT_LT(0.0f, now.power);
+            }
+        }
+    }
+}
+
+TEST_P(AbiHeat, P13_WaterPutsOutAndMustGoFirst) {
+    make(preset(FW_MATERIAL_COTTON), 1);
+    all(FW_IGNITE);
+    run(3);
+    EXPECT_EQ(FW_POINT_BURNING, int(point().kind));
+    EXPECT_LT(600.0f, point().temperature);
+    const float before = point().fuel;
+    EXPECT_LT(0.3f, before);
+    EXPECT_GT(0.95f, before);
+    all(FW_WET, 1000);
+    run(1);
+    FwPointState wet = point();
+    EXPECT_EQ(FW_POINT_EXTINGUISHED, int(wet.kind));
+    EXPECT_GE(373.2f, wet.temperature);
+    EXPECT_LT(200.0f, wet.water);
+    EXPECT_GE(400.0f, wet.water) << "the surplus runs off";
+    EXPECT_EQ(0u, state().burning);
+    EXPECT_NEAR(before, wet.fuel, 0.1f);
+    // Not while it is wet.
+    all(FW_IGNITE);
+    run(1);
+    EXPECT_EQ(FW_POINT_EXTINGUISHED, int(point().kind));
+    EXPECT_EQ(0u, state().burning);
+    all(FW_DRY);
+    run(0.5);
+    EXPECT_EQ(0.0f, point().water);
+    all(FW_IGNITE);
+    run(1);
+    EXPECT_EQ(FW_POINT_BURNING, int(point().kind));
+    EXPECT_GT(wet.fuel, point().fuel) << "on from the fuel it has";
+    run(6);
+    EXPECT_EQ(FW_POINT_BURNT, int(point().kind)) << "and so it ends earlier than a new one";
+}
+
+TEST_P(AbiHeat, ALittleWaterBoilsOff) {
+    make(preset(FW_MATERIAL_PINE), 4);
+    all(FW_IGNITE);
+    run(20);
+    all(FW_WET, 5);
+    run(1);
+    EXPECT_EQ(FW_POINT_BURNING, int(point().kind));
+    EXPECT_EQ(0.0f, point().water);
+    all(FW_WET);
+    run(1);
+    EXPECT_EQ(FW_POINT_EXTINGUISHED, int(point().kind));
+}
+
+TEST_P(AbiHeat, AirDriesWhatIsWet) {
+    FwMaterialDef paper = preset(FW_MATERIAL_PAPER);
+    make(paper, 100);
+    all(FW_WET, 60);
+    run(10);
+    const float water = point().water;
+    EXPECT_EQ(FW_POINT_WET, int(point().kind));
+    EXPECT_LT(0.0f, water);
+    EXPECT_GT(59.0f, water);
+    EXPECT_LT(0u, stats().hotTiles);
+    run(20);
+    EXPECT_EQ(FW_POINT_UNBURNT, int(point().kind));
+    EXPECT_EQ(0.0f, point().water);
+    EXPECT_EQ(0u, stats().hotTiles);
+    const uint64_t steps = stats().steps;
+    run(4);
+    EXPECT_EQ(steps, stats().steps) << "a dry, cold world is idle";
+    all(FW_IGNITE);
+    run(0.5);
+    EXPECT_EQ(state().texels, state().ignited);
+}
+
+TEST_P(AbiHeat, TooDampToCatch) {
+    FwMaterialDef paper = preset(FW_MATERIAL_PAPER);
+    make(paper, 1, 0, 0.5f);
+    EXPECT_LT(30u, state().texels) << "it could, once dry";
+    all(FW_IGNITE);
+    run(1);
+    EXPECT_EQ(0u, state().ignited);
+    EXPECT_EQ(FW_POINT_WET, int(point().kind));
+}
+
+TEST_P(AbiHeat, StarvedOfItsFlamesHeatAPlankGoesOut) {
+    for (const float feedback : {25000.0f, 4000.0f}) {
+        FwMaterialDef wood = preset(FW_MATERIAL_PINE);
+        wood.flameFeedback = feedback;
+        make(wood, 20);
+        all(FW_IGNITE);
+        run(50);
+        EXPECT_EQ(feedback > 10000 ? FW_POINT_BURNING : FW_POINT_EXTINGUISHED, int(point().kind))
+            << point().temperature << " K";
+    }
+}
+
+TEST_P(AbiHeat, LiteBurnsByItsTimeAlone) {
+    make(preset(FW_MATERIAL_PAPER), 1, FW_BURNABLE_LITE);
+    all(FW_IGNITE);
+    run(3.5);
+    EXPECT_EQ(0.0f, point().temperature);
+    EXPECT_NEAR(0.5f, point().fuel, 0.05f);
+    EXPECT_EQ(0.0, state().energy);
+    EXPECT_NEAR(15.6e6f * 0.017f * 0.01f, state().power, 0.1f * 2652);
+    EXPECT_EQ(0u, stats().hotTiles);
+    all(FW_WET);
+    run(0.25);
+    EXPECT_EQ(FW_POINT_EXTINGUISHED, int(point().kind));
+}
+
+TEST_P(AbiHeat, WaterIsChecked) {
+    make(preset(FW_MATERIAL_PAPER), 1);
+    FwIgnitionDef def = fwDefaultIgnitionDef();
+    def.kind = FW_WET;
+    def.water = 2000;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Ignite(world_, &def, nullptr));
+    EXPECT_NE(std::string::npos, lastMessage(world_).find("FwIgnitionDef::water is 2000"))
+        << lastMessage(world_);
+    FwMaterialDef material = preset(FW_MATERIAL_PINE);
+    material.autoIgnitionTemperature = 500;
+    FwMaterialId id{};
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateMaterial(world_, &material, &id));
+    EXPECT_NE(std::string::npos, lastMessage(world_).find("autoIgnitionTemperature is 500"));
+}
+
+std::string backendName(const ::testing::TestParamInfo<uint32_t>& backend) {
+    return backend.param == FW_BACKEND_CPU ? "Cpu" : "OwnDevice";
+}
+INSTANTIATE_TEST_SUITE_P(Backends, AbiHeat,
+                         ::testing::Values(uint32_t(FW_BACKEND_CPU), uint32_t(FW_BACKEND_VULKAN)),
+                         backendName);
+
+}  // namespace
