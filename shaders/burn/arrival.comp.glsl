@@ -1,6 +1,6 @@
 // The front kernel over the gathered rows, one thread each: a ring moves along the row, so that a
-// texel loads one column of it. New ticks to scratch, changed texels to masks, the earliest pending
-// arrival to the tile. Reads states, writes none: updates are Jacobi.
+// texel loads one column of it. Arrivals to `pendingTick`, changed texels to masks, the earliest that
+// is to come to the tile. Reads states, writes none: updates are Jacobi.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -18,6 +18,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_MASK_WORDS
 #define FW_USE_COUNTERS readonly
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_PENDING writeonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 
@@ -45,8 +46,8 @@ Column columnAt(uint texel, uvec4 bases, uint materialBase, uint material, uint 
 }
 
 void arriveRow(uint work) {
-    uvec4 item = scratchQuads[work * 3u];
-    uint chosen = item.y;
+    uvec4 item = scratchQuads[work];
+    uint chosen = item.y & 0xFFu;
     if (chosen == 0u) return;
     uvec4 bases = objectBases(item.w);
     uvec4 times = objectTimes(item.w);
@@ -63,6 +64,7 @@ void arriveRow(uint work) {
     uint lit = 0u;
     uint lateCount = 0u;
     uint wake = kNever;
+    bool ahead = false;  // is more than arrivals waited for?
     do {
         uint texel = item.z + x;
         Column right = columnAt(texel + 1u, bases, materialBase, held, m.burnTicks);
@@ -94,22 +96,28 @@ void arriveRow(uint work) {
             uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel,
                                           pending);
             uint decided = frontDecide(t, candidate, end, floorTick, pending, late);
+            uint known = isReceptive(t) ? candidate : kNever;
             if (decided != t) {
-                scratch[work * 12u + 4u + x] = decided;
+                known = decided;
                 changed |= 1u << x;
                 if (isReceptive(t)) lit |= 1u << x;
                 lateCount += late;
             } else {
-                wake = min(wake, isReceptive(t) ? pending : future);
+                uint next = isReceptive(t) ? pending : future;
+                ahead = ahead || next < known;
+                wake = min(wake, next);
             }
+            pendingTick[bases.y + texel] = known;
         }
         left = middle;
         middle = right;
         ++x;
     } while (x <= last);
-    if (wake != kNever) atomicMin(tileState[run[item.x >> 3u].x].wake, wake);
+    uint worldTile = run[item.x >> 3u].x;
+    if (wake != kNever) atomicMin(tileState[worldTile].wake, wake);
+    if (ahead) atomicOr(tileState[worldTile].flag, kTileAhead);
     if (changed == 0u) return;
-    scratch[work * 12u + 1u] = chosen | (changed << 8u);
+    scratch[work * 4u + 1u] = chosen | (changed << 8u);
     uint row = item.x & 7u;
     uint word = (item.x >> 3u) * 4u + (row >> 2u);
     atomicOr(maskWords[word], changed << ((row & 3u) * 8u));

@@ -20,6 +20,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_MASK_WORDS
 #define FW_USE_COUNTERS readonly
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_PENDING writeonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 
@@ -27,7 +28,7 @@ void arrive(uint rimWork) {
     uint packedTexel = scratch[rimItem(rimWork)];
     uint work = packedTexel >> 3u;
     uint x = packedTexel & 7u;
-    uvec4 item = scratchQuads[work * 3u];
+    uvec4 item = scratchQuads[work];
     uint slot = item.x >> 3u;
     uint object = item.w;
     uint texel = item.z + x;
@@ -82,8 +83,8 @@ void arrive(uint rimWork) {
         decided = frontDecide(t, candidate, end, floorTick, pending, late);
     }
     if (decided != t) {
-        scratch[work * 12u + 4u + x] = decided;
-        atomicOr(scratch[work * 12u + 1u], 0x100u << x);
+        pendingTick[bases.y + texel] = decided;
+        atomicOr(scratch[work * 4u + 1u], 0x100u << x);
         uint word = slot * 4u + (lane >> 5u);
         atomicOr(maskWords[word], 1u << (lane & 31u));
         if (isReceptive(t)) atomicOr(maskWords[word + 2u], 1u << (lane & 31u));

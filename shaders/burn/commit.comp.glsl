@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_LISTS FW_READ_WRITE
 #define FW_USE_RUN readonly
 #define FW_USE_OBJECT_QUADS
-#define FW_USE_SCRATCH readonly
+#define FW_USE_PENDING readonly
 #define FW_USE_SCRATCH_QUADS readonly
 #define FW_USE_MASKS readonly
 #define FW_USE_COUNTERS FW_READ_WRITE
@@ -74,13 +74,13 @@ void commitTile(uint slot) {
 }
 
 void commitRow(uint work) {
-    uvec4 item = scratchQuads[work * 3u];
+    uvec4 item = scratchQuads[work];
     uint at = objectBases(item.w).y + item.z;
     uint changed = item.y >> 8u;
     if (changed == 0u) return;
     do {
-        uint x = uint(findLSB(changed));
-        state[at + x] = scratch[work * 12u + 4u + x];
+        uint i = at + uint(findLSB(changed));
+        state[i] = pendingTick[i];
         changed &= changed - 1u;
     } while (changed != 0u);
 }

@@ -1,6 +1,7 @@
 // Finds the texels of the due tiles that have something to answer to, and lists their rows densely
 // for `arrival`: few rows of a tile have any, and a software device pays for idle lanes. Rim texels,
-// whose ring is elsewhere, go to `arrival_rim` unseen. One thread per row of a tile.
+// whose ring is elsewhere, go to `arrival_rim` unseen. In a tile that woke to a known arrival all
+// others are known too, and nothing is left for `arrival`. One thread per row of a tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -13,6 +14,8 @@ layout(local_size_x = 64) in;
 #define FW_USE_RUN readonly
 #define FW_USE_SCRATCH writeonly
 #define FW_USE_SCRATCH_QUADS writeonly
+#define FW_USE_MASK_WORDS
+#define FW_USE_PENDING_QUADS
 #define FW_USE_COUNTERS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
@@ -43,7 +46,8 @@ void gatherRow(uint slot, uint row) {
     uvec4 times = objectTimes(tile.y);
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
     uint floorTick = frontFloor(end - windowTicks(push.stepShift, times.y), times.x);
-    uint texel = tile.z + row * bases.w;
+    bool woken = (tile.z & kRunWoken) != 0u;
+    uint texel = (tile.z & ~kRunWoken) + row * bases.w;
     uint at = bases.y + texel;
     uvec4 a = stateQuads[at >> 2u];
     uvec4 b = stateQuads[(at >> 2u) + 1u];
@@ -56,6 +60,7 @@ void gatherRow(uint slot, uint row) {
     uint inner = eligible & ~rim;
     rim &= eligible;
     uint chosen = 0u;
+    uint lit = 0u;
     uint pending = kNever;
     if (inner != 0u) {
         // An inner texel has its ring around it in the map.
@@ -87,13 +92,30 @@ void gatherRow(uint slot, uint row) {
             if ((quiet & (1u << uint(i))) != 0u)
                 pending = min(pending, min(min(column[i], column[i + 2]),
                                            min(d.future[i + 1], u.future[i + 1])));
+        if (pending != kNever) atomicOr(tileState[tile.x].flag, kTileAhead);
+        if (woken) {
+            uvec4 pa = pendingQuads[at >> 2u];
+            uvec4 pb = pendingQuads[(at >> 2u) + 1u];
+            uint tick[8] = uint[8](pa.x, pa.y, pa.z, pa.w, pb.x, pb.y, pb.z, pb.w);
+            FW_UNROLL for (int i = 0; i < 8; ++i) {
+                uint t = (chosen & (1u << uint(i))) != 0u ? tick[i] : kNever;
+                lit |= t <= end ? 1u << uint(i) : 0u;
+                pending = min(pending, t > end ? t : kNever);
+            }
+            chosen = 0u;
+        }
     }
     if (pending != kNever) atomicMin(tileState[tile.x].wake, pending);
-    if ((chosen | rim) == 0u) return;
+    if ((chosen | lit | rim) == 0u) return;
+    if (lit != 0u) {
+        uint word = slot * 4u + (row >> 2u);
+        atomicOr(maskWords[word], lit << ((row & 3u) * 8u));
+        atomicOr(maskWords[word + 2u], lit << ((row & 3u) * 8u));
+    }
     uint item = atomicAdd(counters[push.row].workCount, 1u);
     if ((item & 63u) == 0u)
         atomicMax(counters[push.row].workX, min(item / 64u + 1u, kMaxGroups));
-    scratchQuads[item * 3u] = uvec4(slot * 8u + row, chosen, texel, tile.y);
+    scratchQuads[item] = uvec4(slot * 8u + row, chosen | (lit << 8u), texel, tile.y);
     if (rim == 0u) return;
     uint count = uint(bitCount(rim));
     uint first = atomicAdd(counters[push.row].rimCount, count);

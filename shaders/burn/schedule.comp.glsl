@@ -15,7 +15,7 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "lib/lists.glsl"
 
-void runTile(uint worldTile, TileRef tile, uint flag) {
+void runTile(uint worldTile, TileRef tile, uint flag, bool woken) {
     uint slot = atomicAdd(counters[push.row].runCount, 1u);
     if ((slot & 7u) == 0u) atomicMax(counters[push.row].runX, min(slot / 8u + 1u, kMaxGroups));
     if ((slot & 63u) == 0u) atomicMax(counters[push.row].workX, min(slot / 64u + 1u, kMaxGroups));
@@ -30,11 +30,12 @@ void runTile(uint worldTile, TileRef tile, uint flag) {
     uint tilesX = objects[tile.object].tilesX;
     uint tileY = divide(tile.local, tilesX);
     run[slot] = uvec4(worldTile, tile.object,
-                      (tileY * objects[tile.object].width + tile.local - tileY * tilesX) * 8u,
+                      (tileY * objects[tile.object].width + tile.local - tileY * tilesX) * 8u +
+                          (woken ? kRunWoken : 0u),
                       objects[tile.object].tileBase + tile.local);
     masks[slot] = uvec4(0u);
     tileState[worldTile].wake = kNever;
-    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched);
+    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileAhead);
 }
 
 void schedule(uint worldTile, bool dense) {
@@ -52,9 +53,11 @@ void schedule(uint worldTile, bool dense) {
         return;
     }
     uint wake = tileState[worldTile].wake;
-    if (dense || (flag & kTileTouched) != 0u ||
-        wake <= iterationEnd(push.now, push.iteration, push.stepShift, shift)) {
-        runTile(worldTile, tile, flag);
+    uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);
+    bool touched = dense || (flag & kTileTouched) != 0u;
+    if (touched || wake <= end) {
+        bool inTime = wake > end - windowTicks(push.stepShift, shift);
+        runTile(worldTile, tile, flag, !touched && inTime && (flag & kTileAhead) == 0u);
     } else if (wake != kNever) {
         frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
     } else {

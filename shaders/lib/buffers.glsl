@@ -86,6 +86,12 @@ FW_BUFFER(FW_BIND_STATE, FW_USE_STATE, StateBuffer, uint, state);
 #ifdef FW_USE_STATE_QUADS
 FW_BUFFER(FW_BIND_STATE, readonly, StateQuadsBuffer, uvec4, stateQuads);
 #endif
+#ifdef FW_USE_PENDING
+FW_BUFFER(FW_BIND_PENDING, FW_USE_PENDING, PendingBuffer, uint, pendingTick);
+#endif
+#ifdef FW_USE_PENDING_QUADS
+FW_BUFFER(FW_BIND_PENDING, readonly, PendingQuadsBuffer, uvec4, pendingQuads);
+#endif
 #ifdef FW_USE_TILE_STATE
 FW_BUFFER(FW_BIND_TILE_STATE, FW_USE_TILE_STATE, TileStateBuffer, TileState, tileState);
 #endif
@@ -94,8 +100,10 @@ FW_BUFFER(FW_BIND_LIST_A, FW_USE_LISTS, ListABuffer, uint, listA);
 FW_BUFFER(FW_BIND_LIST_B, FW_USE_LISTS, ListBBuffer, uint, listB);
 #endif
 #ifdef FW_USE_RUN
-// World tile; object; its first texel in the object's map; its row of `tiles`.
+// World tile; object; its first texel in the object's map, a multiple of eight, + kRunWoken; its row
+// of `tiles`.
 FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uvec4, run);
+const uint kRunWoken = 1u;  // due because a known arrival is: nothing else has changed
 #endif
 #ifdef FW_USE_SCRATCH
 FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH, ScratchBuffer, uint, scratch);
@@ -103,9 +111,9 @@ FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH, ScratchBuffer, uint, scratch);
 uint rimItem(uint i) { return uint(scratch.length()) - 1u - i; }
 #endif
 #ifdef FW_USE_SCRATCH_QUADS
-// Three quads per gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel,
-// object), then its eight new ticks. Of the prediction one: (world tile * 8 + row, chosen texels,
-// first texel, object). The scratch's end lists rim texels, see rimItem.
+// A gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel, object). Of
+// the prediction: (world tile * 8 + row, chosen texels, first texel, object). The scratch's end lists
+// rim texels, see rimItem.
 FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH_QUADS, ScratchQuadsBuffer, uvec4, scratchQuads);
 #endif
 #ifdef FW_USE_MASKS

@@ -19,9 +19,9 @@
 #define FW_BIND_TILE_STATE 9  // TileState[] (per object)
 #define FW_BIND_LIST_A 10     // uint[]: front list, world tile ids (ping)
 #define FW_BIND_LIST_B 11     // uint[]: front list (pong)
-#define FW_BIND_RUN 12        // uvec4[]: due tiles: world tile, object, first texel, mesh tile
-#define FW_BIND_SCRATCH 13    // uint[]: gathered rows from its start (row, mask, texel, object, 8 ticks),
-                              // rim texels from its end (row * 8 + column); 160 words per due tile
+#define FW_BIND_RUN 12        // uvec4[]: due tiles: world tile, object, first texel + kRunWoken, mesh tile
+#define FW_BIND_SCRATCH 13    // uint[]: gathered rows from its start (row, mask, texel, object), rim
+                              // texels from its end (row * 8 + column); 96 words per due tile
 #define FW_BIND_MASKS 14      // uvec4[]: texels changed (xy) and newly lit (zw) per due tile
 #define FW_BIND_COUNTERS 15   // IterationCounters[], see the kRow constants
 #define FW_BIND_EVENTS 16     // TexelEvent[]
@@ -69,7 +69,9 @@
 #define FW_BIND_REFINE_VERTICES 69  // RefineVertex[], per slot of an object
 #define FW_BIND_REFINE_INDICES 70   // uint[]: output triangles
 #define FW_BIND_REFINE_DRAWS 71     // uint[]: indexed indirect draws, 8 per object slot
-#define FW_BIND_COUNT 72
+#define FW_BIND_PENDING 72    // uint[], as state: when a texel catches, and what `commit` writes; true
+                              // of receptive texels beside a source, until something beside changes
+#define FW_BIND_COUNT 73
 
 FW_SHARED_BEGIN
 
@@ -105,6 +107,7 @@ FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
 FW_SHARED_CONST uint kTileTouched = 2u;      // an input changed: due now
 FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
 FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
+FW_SHARED_CONST uint kTileAhead = 128u;      // `wake` may be another thing than a known arrival
 FW_SHARED_CONST uint kTileHot = 32u;         // in the hot list
 FW_SHARED_CONST uint kTileWarm = 64u;        // and not for cold water alone
 // Cosmetic, of `support`: facts of the tile's texels, what it found, and its distance to a hold.

@@ -8,6 +8,35 @@ namespace fw::gpu::cpu {
 
 static_assert(kTexelReal == mesh::kTexelReal && kTexelRim == mesh::kTexelRim);
 
+namespace {
+
+// Is one of `count` texels a source?
+bool anySource(const uint32_t* first, uint32_t count) noexcept {
+    uint32_t least = kNever;
+    for (uint32_t i = 0; i < count; ++i) least = std::min(least, first[i]);
+    return isSource(least);
+}
+
+// Of eight texels of a row those that may change: all that are eligible, or none where no inner one
+// has a source in its ring. Rim texels have theirs elsewhere and are taken unseen.
+uint32_t chosenOfRow(const uint32_t* row, uint32_t width, uint32_t rim,
+                     uint32_t floorTick) noexcept {
+    uint32_t eligible = 0;
+    for (uint32_t x = 0; x < 8; ++x) eligible |= uint32_t(frontEligible(row[x], floorTick)) << x;
+    const uint32_t inner = eligible & ~rim;
+    if (inner == 0) return eligible;
+    // The rows beside an inner texel exist, and so do the columns beside an outermost one.
+    const uint32_t left = inner & 1u;
+    const uint32_t count = 8 + left + (inner >> 7);
+    const uint32_t* middle = row - left;
+    return anySource(middle - width, count) || anySource(middle, count) ||
+                   anySource(middle + width, count)
+               ? eligible
+               : eligible & rim;
+}
+
+}  // namespace
+
 FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t windowEnd,
                        uint32_t floorTick, uint32_t* scratch) noexcept {
     FrontTile out;
@@ -19,13 +48,17 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
     const uint32_t corner =
         (tile / planes.tilesX) * 8u * planes.width + (tile % planes.tilesX) * 8u;
 
+    uint64_t chosen = 0;
+    for (uint32_t row = 0; row < 8; ++row)
+        chosen |= uint64_t(chosenOfRow(planes.state + corner + row * planes.width, planes.width,
+                                       uint32_t(rimMask >> row * 8) & 0xFFu, floorTick))
+                  << row * 8;
     FrontPrep prep{};  // kept while normal, slowness and material stay
     uint64_t prepKey = ~0ull;
-    for (uint32_t lane = 0; lane < 64; ++lane) {
+    for (; chosen != 0; chosen &= chosen - 1) {
+        const auto lane = uint32_t(std::countr_zero(chosen));
         const uint32_t texel = corner + (lane >> 3) * planes.width + (lane & 7);
         const uint32_t t = planes.state[texel];
-        if (!frontEligible(t, floorTick)) continue;
-
         FrontRing ring;
         uint32_t other[8];
         uint32_t present = 0xFF;

@@ -5,21 +5,14 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {
-    {FW_BIND_COUNTERS, Access::indirect},
-    {FW_BIND_OBJECTS, Access::read},
-    {FW_BIND_MATERIALS, Access::read},
-    {FW_BIND_TEXELS, Access::read},
-    {FW_BIND_NORMALS, Access::read},
-    {FW_BIND_SLOWNESS, Access::read},
-    {FW_BIND_LINKS, Access::read},
-    {FW_BIND_TILES, Access::read},
-    {FW_BIND_STATE, Access::read},
-    {FW_BIND_TILE_STATE, Access::write},
-    {FW_BIND_RUN, Access::read},
-    {FW_BIND_SCRATCH, Access::write},
-    {FW_BIND_MASKS, Access::write},
-    {FW_BIND_COUNTERS, Access::read},
-    {FW_BIND_OBJECT_COUNTERS, Access::write},
+    {FW_BIND_COUNTERS, Access::indirect}, {FW_BIND_OBJECTS, Access::read},
+    {FW_BIND_MATERIALS, Access::read},    {FW_BIND_TEXELS, Access::read},
+    {FW_BIND_NORMALS, Access::read},      {FW_BIND_SLOWNESS, Access::read},
+    {FW_BIND_LINKS, Access::read},        {FW_BIND_TILES, Access::read},
+    {FW_BIND_STATE, Access::read},        {FW_BIND_PENDING, Access::write},
+    {FW_BIND_TILE_STATE, Access::write},  {FW_BIND_RUN, Access::read},
+    {FW_BIND_SCRATCH, Access::write},     {FW_BIND_MASKS, Access::write},
+    {FW_BIND_COUNTERS, Access::read},     {FW_BIND_OBJECT_COUNTERS, Access::write},
 };
 
 }  // namespace

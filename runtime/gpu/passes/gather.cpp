@@ -9,6 +9,7 @@ constexpr Use kUses[] = {
     {FW_BIND_TILES, Access::read},        {FW_BIND_STATE, Access::read},
     {FW_BIND_TILE_STATE, Access::write},  {FW_BIND_RUN, Access::read},
     {FW_BIND_SCRATCH, Access::write},     {FW_BIND_COUNTERS, Access::write},
+    {FW_BIND_MASKS, Access::write},       {FW_BIND_PENDING, Access::read},
 };
 
 }  // namespace
