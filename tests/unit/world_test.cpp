@@ -165,6 +165,7 @@ class PlannedWorld : public ::testing::Test {
         def.paceFactor = 1;
         def.maxStepsPerFrame = 8;
         def.maxLights = 16;
+        def.maxRefinedTriangles = 400000;
         world.emplace(def, backend, log, std::pmr::new_delete_resource());
         FwMeshDef mesh{};
         mesh.structSize = sizeof mesh;
