@@ -185,6 +185,7 @@ class PlannedWorld : public ::testing::Test {
         object.materials[0] = world->createMaterial(material);
         for (int i = 0; i < 4; ++i) object.transform[i * 5] = 1;
         object.tint[0] = object.tint[1] = object.tint[2] = 1;
+        object.refinePixelsPerEdge = 8;
         id = world->createBurnableMesh(object);
     }
     uint32_t ignite(float x, float delay = 0, uint32_t kind = FW_IGNITE) {
