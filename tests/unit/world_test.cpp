@@ -374,6 +374,7 @@ TEST_F(PlannedWorld, ReadbacksOfAnOlderObjectInTheSameSlotAreNotBelieved) {
     step(1.0f / 32);
     world->destroyBurnableMesh(id);
     FwBurnableMeshDef object{};
+    object.refinePixelsPerEdge = 8;
     object.structSize = sizeof object;
     object.mesh = meshId;
     for (int i = 0; i < 4; ++i) object.transform[i * 5] = 1;
