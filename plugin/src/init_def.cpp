@@ -48,6 +48,7 @@ void defaults(FwMeshDef& def) noexcept {
 }
 
 void defaults(FwBurnableMeshDef& def) noexcept {
+    def.ground = -1e9f;
     identity(def.transform);
     def.refineDepth = 5;
     def.refinePixelsPerEdge = 8;

@@ -64,6 +64,7 @@ float meanTexelArea(const mesh::BurnDomain& domain) noexcept {
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED |
                                 FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_REFINE |
+                                FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS |
                                 FW_BURNABLE_NO_SPREAD;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,

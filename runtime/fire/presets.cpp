@@ -11,7 +11,7 @@ struct Preset {
     const char* name;
     float spreadRate, windGain, upGain, headGain, backGain, driveMax, lengthToBreadth;
     float burnTime, moisture, extinctionMoisture, thickness, heatOfCombustion, burningFlux;
-    float baseColor[3], baseRoughness;
+    float baseColor[3], baseRoughness, recede, shrink, curl;
 };
 struct HeatPreset {
     float density, specificHeat, conductivity, ignition, autoIgnition, water, radiant, soot;
@@ -19,21 +19,21 @@ struct HeatPreset {
 
 // clang-format off
 constexpr Preset kPresets[FW_MATERIAL_PRESET_COUNT] = {
-    //  name            rate     wind   up    head  back  max   L/B   burn  M     Mx     thick    J/kg    flux    colour                   rough
-    {"noncombustible",  0.0f,    0.0f,  0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.3f,  0.05f,   0.0f,   0.0f,   {0.45f, 0.44f, 0.42f}, 0.8f},
-    {"pine",            0.0003f, 0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 0.0f, 0.0f, 0.4f,  0.02f,   15.0e6f, 0.0075f, {0.50f, 0.33f, 0.18f}, 0.7f},
-    {"painted wood",    0.0004f, 0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 0.0f, 0.0f, 0.4f,  0.02f,   16.0e6f, 0.0085f, {0.35f, 0.10f, 0.07f}, 0.5f},
-    {"newspaper",       0.009f,  0.35f, 1.0f, 7.0f, 3.0f, 4.0f, 2.0f, 4.0f, 0.0f, 0.3f, 0.00008f, 15.6e6f, 0.017f, {0.62f, 0.60f, 0.54f}, 0.9f},
-    {"paper",           0.0055f, 0.35f, 1.0f, 7.0f, 3.0f, 4.0f, 2.0f, 7.0f, 0.0f, 0.3f, 0.0001f, 15.6e6f, 0.017f, {0.80f, 0.79f, 0.75f}, 0.8f},
-    {"cotton",          0.011f,  0.35f, 1.0f, 7.2f, 4.5f, 4.0f, 3.5f, 9.0f, 0.0f, 0.3f, 0.0005f, 15.6e6f, 0.018f, {0.62f, 0.58f, 0.50f}, 0.9f},
-    {"polyester",       0.010f,  0.35f, 1.0f, 1.0f, 0.3f, 4.0f, 3.5f, 15.0f, 0.0f, 0.3f, 0.0005f, 20.0e6f, 0.015f, {0.15f, 0.22f, 0.42f}, 0.6f},
-    {"dry leaf",        0.012f,  0.5f,  1.0f, 6.0f, 2.5f, 4.0f, 2.0f, 3.0f, 0.0f, 0.35f, 0.0002f, 17.0e6f, 0.015f, {0.32f, 0.19f, 0.07f}, 0.7f},
-    {"green leaf",      0.012f,  0.5f,  1.0f, 6.0f, 2.5f, 4.0f, 2.0f, 5.0f, 0.7f, 1.2f,  0.0003f, 17.0e6f, 0.010f, {0.08f, 0.18f, 0.04f}, 0.5f},
-    {"thatch",          0.006f,  0.5f,  1.0f, 7.0f, 2.5f, 6.0f, 2.5f, 60.0f, 0.0f, 0.35f, 0.15f, 15.6e6f, 0.02f, {0.42f, 0.31f, 0.15f}, 0.95f},
-    {"dry grass",       0.020f,  1.0f,  0.6f, 10.0f, 1.0f, 63.0f, 3.5f, 10.0f, 0.0f, 0.25f, 0.001f, 15.6e6f, 0.03f, {0.45f, 0.36f, 0.15f}, 0.95f},
-    {"plywood",         0.001f,  0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 300.0f, 0.0f, 0.4f, 0.005f, 15.0e6f, 0.0085f, {0.55f, 0.40f, 0.24f}, 0.6f},
-    {"leather",         0.0015f, 0.35f, 1.0f, 4.0f, 2.0f, 4.0f, 2.0f, 60.0f, 0.0f, 0.4f, 0.003f, 18.0e6f, 0.012f, {0.20f, 0.09f, 0.04f}, 0.5f},
-    {"plastic",         0.002f,  0.35f, 1.0f, 5.0f, 1.5f, 4.0f, 2.0f, 120.0f, 0.0f, 0.3f, 0.003f, 30.0e6f, 0.015f, {0.30f, 0.32f, 0.34f}, 0.35f},
+    //  name            rate     wind   up    head  back  max   L/B   burn  M     Mx     thick    J/kg    flux    colour                   rough  recede shrink curl
+    {"noncombustible",  0.0f,    0.0f,  0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.3f,  0.05f,   0.0f,   0.0f,   {0.45f, 0.44f, 0.42f}, 0.8f, 0.0f, 0.0f, 0.0f},
+    {"pine",            0.0003f, 0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 0.0f, 0.0f, 0.4f,  0.02f,   15.0e6f, 0.0075f, {0.50f, 0.33f, 0.18f}, 0.7f, 0.3f, 0.0f, 0.0f},
+    {"painted wood",    0.0004f, 0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 0.0f, 0.0f, 0.4f,  0.02f,   16.0e6f, 0.0085f, {0.35f, 0.10f, 0.07f}, 0.5f, 0.3f, 0.0f, 0.0f},
+    {"newspaper",       0.009f,  0.35f, 1.0f, 7.0f, 3.0f, 4.0f, 2.0f, 4.0f, 0.0f, 0.3f, 0.00008f, 15.6e6f, 0.017f, {0.62f, 0.60f, 0.54f}, 0.9f, 1.0f, 0.04f, 45.0f},
+    {"paper",           0.0055f, 0.35f, 1.0f, 7.0f, 3.0f, 4.0f, 2.0f, 7.0f, 0.0f, 0.3f, 0.0001f, 15.6e6f, 0.017f, {0.80f, 0.79f, 0.75f}, 0.8f, 1.0f, 0.05f, 35.0f},
+    {"cotton",          0.011f,  0.35f, 1.0f, 7.2f, 4.5f, 4.0f, 3.5f, 9.0f, 0.0f, 0.3f, 0.0005f, 15.6e6f, 0.018f, {0.62f, 0.58f, 0.50f}, 0.9f, 1.0f, 0.10f, 12.0f},
+    {"polyester",       0.010f,  0.35f, 1.0f, 1.0f, 0.3f, 4.0f, 3.5f, 15.0f, 0.0f, 0.3f, 0.0005f, 20.0e6f, 0.015f, {0.15f, 0.22f, 0.42f}, 0.6f, 1.0f, 0.25f, 25.0f},
+    {"dry leaf",        0.012f,  0.5f,  1.0f, 6.0f, 2.5f, 4.0f, 2.0f, 3.0f, 0.0f, 0.35f, 0.0002f, 17.0e6f, 0.015f, {0.32f, 0.19f, 0.07f}, 0.7f, 1.0f, 0.12f, 70.0f},
+    {"green leaf",      0.012f,  0.5f,  1.0f, 6.0f, 2.5f, 4.0f, 2.0f, 5.0f, 0.7f, 1.2f,  0.0003f, 17.0e6f, 0.010f, {0.08f, 0.18f, 0.04f}, 0.5f, 1.0f, 0.15f, 50.0f},
+    {"thatch",          0.006f,  0.5f,  1.0f, 7.0f, 2.5f, 6.0f, 2.5f, 60.0f, 0.0f, 0.35f, 0.15f, 15.6e6f, 0.02f, {0.42f, 0.31f, 0.15f}, 0.95f, 0.8f, 0.05f, 10.0f},
+    {"dry grass",       0.020f,  1.0f,  0.6f, 10.0f, 1.0f, 63.0f, 3.5f, 10.0f, 0.0f, 0.25f, 0.001f, 15.6e6f, 0.03f, {0.45f, 0.36f, 0.15f}, 0.95f, 1.0f, 0.1f, 30.0f},
+    {"plywood",         0.001f,  0.35f, 1.0f, 8.0f, 2.0f, 4.0f, 2.0f, 300.0f, 0.0f, 0.4f, 0.005f, 15.0e6f, 0.0085f, {0.55f, 0.40f, 0.24f}, 0.6f, 0.3f, 0.0f, 0.0f},
+    {"leather",         0.0015f, 0.35f, 1.0f, 4.0f, 2.0f, 4.0f, 2.0f, 60.0f, 0.0f, 0.4f, 0.003f, 18.0e6f, 0.012f, {0.20f, 0.09f, 0.04f}, 0.5f, 0.3f, 0.20f, 12.0f},
+    {"plastic",         0.002f,  0.35f, 1.0f, 5.0f, 1.5f, 4.0f, 2.0f, 120.0f, 0.0f, 0.3f, 0.003f, 30.0e6f, 0.015f, {0.30f, 0.32f, 0.34f}, 0.35f, 0.8f, 0.20f, 15.0f},
 };
 
 // Wood: EN 1995-1-2 and Babrauskas (2001), piloted at 300 to 365 C. Paper's auto-ignition is of a
@@ -92,6 +92,9 @@ FwMaterialDef presetDef(uint32_t preset) noexcept {
     def.waterHeld = heat.water;
     def.radiantFraction = heat.radiant;
     def.sootYield = heat.soot;
+    def.recede = p.recede;
+    def.shrink = p.shrink;
+    def.curl = p.curl;
     return def;
 }
 

@@ -45,6 +45,9 @@ constexpr Limit kLimits[] = {
     {"waterHeld", &FwMaterialDef::waterHeld, 0, 1023},
     {"radiantFraction", &FwMaterialDef::radiantFraction, 0, 1},
     {"sootYield", &FwMaterialDef::sootYield, 0, 1},
+    {"recede", &FwMaterialDef::recede, 0, 1},
+    {"shrink", &FwMaterialDef::shrink, 0, 0.5f},
+    {"curl", &FwMaterialDef::curl, 0, 200},
 };
 
 uint32_t fixed(double value, double unit, double high) {

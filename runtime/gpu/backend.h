@@ -2,6 +2,7 @@
 // (records into a command buffer) and cpu (the same integers, at once, no device). Plain data in,
 // readbacks out; a backend decides nothing about the game.
 #pragma once
+#include "mesh/deform/model.h"
 #include "mesh/refine/model.h"
 #include "shared/burn.h"
 #include "shared/heat.h"
@@ -24,6 +25,9 @@ struct ObjectInit {
     uint32_t refineDepth = 0;
     float refinePixelsPerEdge = 8;
     std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat plane
+    // Of an object that deforms; the model outlives the mesh. Bases are the backend's to fill.
+    const mesh::DeformModel* deformModel = nullptr;
+    const DeformObject* deform = nullptr;
 };
 
 struct MaterialUpdate {  // new records of one object at a step's start (a wind or pose latch)

@@ -1,6 +1,7 @@
 // Ids and what stands behind them: materials, images, meshes, objects; ball events to texels.
 #include "world/world.h"
 
+#include "components/deform.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
 #include "world/mesh_input.h"
@@ -248,6 +249,7 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& def) {
     core::Owned<Object> owned = core::Owned<Object>::make(memory_, memory_);
     Object& object = *owned;
     object.data = components::makeBurnableMesh(def);
+    components::checkDeform(def);
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
         if (def.materials[i].index1 != 0)
             components::setMaterial(object.data, i, materials_.get(def.materials[i]));
@@ -297,6 +299,17 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
         init.refine = true;
         init.refineDepth = def.refineDepth;
         init.refinePixelsPerEdge = def.refinePixelsPerEdge;
+    }
+    gpu::DeformObject deform{};
+    if (components::deforms(object.data)) {
+        if (!mesh.deform) {
+            auto model = core::Owned<mesh::DeformModel>::make(memory_, memory_);
+            *model = mesh::makeDeformModel(domain, memory_);
+            mesh.deform = std::move(model);
+        }
+        deform = components::makeDeform(def, object.data, records);
+        init.deformModel = mesh.deform.get();
+        init.deform = &deform;
     }
 
     object.firstFrame = lastFrame_ + 1;

@@ -18,6 +18,7 @@ namespace fw::world {
 
 struct MeshEntry {
     core::Owned<mesh::BurnDomain> domain;
+    core::Owned<mesh::DeformModel> deform;                      // once an object deforms
     std::array<uint32_t, gpu::kMaterialsPerObject> texelsOf{};  // real texels per material index
     uint32_t users = 0;                                         // objects, and shapes of it
     // A shape of another mesh, for objects whose scale is not uniform: lives while one uses it.

@@ -57,6 +57,12 @@
 #define FW_BIND_BLOCKERS 45   // Blocker[kMaxBlockers]
 #define FW_BIND_RECEIVERS 46  // uint[kReceiverWords] per object slot, see there
 #define FW_BIND_EMBERS 47     // uint[]: sources that send an ember
+#define FW_BIND_SHOWN 48          // ShownVertex[]: drawn instead of the mesh's (per object); vertex input too
+#define FW_BIND_DEFORM_NODES 49   // DeformNode[] (per mesh)
+#define FW_BIND_DEFORM_COATS 50   // DeformCoat[] (per mesh)
+#define FW_BIND_DEFORM_OBJECTS 51 // DeformObject[], by object slot
+#define FW_BIND_DEFORM_GROUPS 52  // uvec2[]: object slot, first of 64 nodes or vertices
+#define FW_BIND_SOFT 53           // vec4[]: 3 per shown vertex of a sheet: place, place, normal and bend
 #define FW_BIND_REFINE_WORK 60      // uint[]: what this frame refines, see kRefineWork... in refine.h
 #define FW_BIND_REFINE_OBJECTS 61   // RefineObject[], by object slot
 #define FW_BIND_REFINE_TRIANGLES 62 // RefineTriangle[] (per mesh)

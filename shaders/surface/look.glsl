@@ -8,6 +8,7 @@ struct Site {     // what is known of one point of the surface
     float pixel;  // m per pixel
     float age;    // since ignition; negative: predicted
     float slow;   // s/m, slope of the ignition time
+    float lead;   // s that holes come earlier
     vec2 ahead;   // unit, towards fresh material, in detail space
     float out_;   // [0, 1] extinguished
     float water;  // [0, 1] soaked
@@ -59,7 +60,7 @@ float holeDelay(vec4 grown, vec4 fine, float delay, MaterialLook m) {
 // m from here to the rim of the hole; negative: gone.
 float holeEdge(float a, Site s, MaterialLook m) {
     if (m.holeTime <= 0.0) return 1.0;
-    return (m.holeTime + holeDelay(s.grown, s.fine, s.delay, m) - a) / s.slow;
+    return (m.holeTime + holeDelay(s.grown, s.fine, s.delay, m) - s.lead - a) / s.slow;
 }
 
 // x: 0 block .. 1 crack; y: m to the crack; z: random per block; w: pillow. `c`: texel of the char.

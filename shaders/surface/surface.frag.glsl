@@ -36,7 +36,7 @@ layout(location = 3) in vec4 inTexture;
 layout(location = 4) in vec4 inDetail;
 layout(location = 5) in vec4 inTint;
 
-layout(location = 6) in float inSoot;
+layout(location = 6) in vec2 inSootLead;
 
 layout(location = 0) out vec4 outColor;
 
@@ -149,7 +149,7 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float sootable) {
     // Of small triangles at their corners already, with the mean direction of what comes.
     vec3 fire = vec3(inPositionFire.w, inRestFire.w, inNormalFire.w);
     fire *= max(0.0, dot(n, vec3(inDetail.zw, inTint.w)) + 0.25) * 0.64;
-    float soot = inSoot;
+    float soot = inSootLead.x;
     bool small = (draw.flags & kDrawVertexLight) != 0u;
     uint count = small ? 0u : min(view.lightCount, kSurfaceLights);
     for (uint i = 0u; i < count; ++i) {
@@ -322,7 +322,9 @@ void main() {
     site.grown = grown;
     site.bubbleSlope = vec2(dot(swell, axisX), dot(swell, axisY));
 
-    bool cold = !kBurns || look.spreadRate <= 0.0 || site.age < -ahead;
+    // What the wall behind has burnt is missing here too, even before this side catches.
+    site.lead = inSootLead.y;
+    bool cold = !kBurns || look.spreadRate <= 0.0 || (site.age < -ahead && site.lead < 1e-3);
     Skin skin;
     vec3 position = inPosition;
     vec3 facingNormal = back ? -normal : normal;
@@ -330,7 +332,7 @@ void main() {
     skin = freshSkin(site, look);
     if (inside) skin.occlusion = 0.5;
     if (kBurns && !cold) {
-        float edge = holeEdge(site.age - look.jitter * delay, site, look);
+        float edge = holeEdge(max(site.age, -ahead) - look.jitter * delay, site, look);
         if (edge < 0.0) {
             vec3 ray = vec3(dot(-toEye, axisX), dot(-toEye, axisY), -abs(dot(toEye, normal)));
             vec2 rise = vec2(dot(laterSlope, axisX), dot(laterSlope, axisY)) / site.slow;

@@ -15,13 +15,15 @@ layout(set = 0, binding = FW_BIND_REFINE_VERTICES, std430) readonly buffer Place
 };
 layout(push_constant) uniform Push { SurfaceDraw draw; };
 
-layout(location = 0) in vec3 inPosition;
+layout(location = 0) in vec3 inPosition;  // m, object space, as it is shown
 layout(location = 1) in uint inNormal;  // signed 11:11:10
 layout(location = 2) in vec2 inAtlas;
 layout(location = 3) in vec2 inTexture;
 layout(location = 4) in vec2 inDetail;
 layout(location = 5) in vec4 inTint;
-layout(location = 6) in uint inSlot;  // of refined vertices
+layout(location = 6) in uint inSlot;   // of refined vertices
+layout(location = 7) in float inLead;  // look seconds that holes come earlier
+layout(location = 8) in vec3 inRest;   // m, object space: where the material is as it was
 
 layout(location = 0) out vec4 outPosition;  // m, world, from the eye; w: flames' light, red
 layout(location = 1) out vec4 outRest;      // m, object axes, world scale; w: green
@@ -29,7 +31,7 @@ layout(location = 2) out vec4 outNormal;    // w: blue
 layout(location = 3) out vec4 outTexture;   // xy: texels of the atlas; zw: UV
 layout(location = 4) out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) out vec4 outTint;      // w: ... mean direction to the flames
-layout(location = 6) out float outSoot;     // of flames below
+layout(location = 6) out vec2 outSootLead;  // soot of flames below; look seconds, see inLead
 
 #include "lib/turn.glsl"
 
@@ -45,7 +47,7 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
     e *= clamp(4.0 * facing + 1.0, 0.0, 1.0);  // none from behind
     color += light.colorIntensity.rgb * e;
     towards += vec4(to, 1.0) * e;
-    outSoot += plumeSoot(d, light.power, view.up.xyz);
+    outSootLead.x += plumeSoot(d, light.power, view.up.xyz);
 }
 
 void main() {
@@ -64,7 +66,7 @@ void main() {
                          dot(draw.row2.xyz, rest)) +
                     offset;
     normal = normalize(turnNormal(draw.row0.xyz, draw.row1.xyz, draw.row2.xyz, normal));
-    outSoot = 0.0;
+    outSootLead = vec2(0.0, inLead);
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
     if ((draw.flags & kDrawVertexLight) != 0u) {
@@ -89,7 +91,7 @@ void main() {
     towards.xyz /= towards.w;
 
     outPosition = vec4(position, color.r);
-    outRest = vec4(inPosition * scale, color.g);
+    outRest = vec4(inRest * scale, color.g);
     outNormal = vec4(normal, color.b);
     outTexture = vec4(inAtlas, inTexture);
     outDetail = vec4(inDetail * scale, towards.xy);

@@ -284,6 +284,9 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
         {&FwMaterialDef::heatOfCombustion, "heatOfCombustion", {-1.0f}},
         {&FwMaterialDef::burningFlux, "burningFlux", {-1.0f}},
         {&FwMaterialDef::baseRoughness, "baseRoughness", {-0.1f, 1.1f}},
+        {&FwMaterialDef::recede, "recede", {-0.1f, 1.1f}},
+        {&FwMaterialDef::shrink, "shrink", {-0.1f, 0.6f}},
+        {&FwMaterialDef::curl, "curl", {-1.0f, 201.0f}},
     };
     for (const Field& field : fields)
         refuseFloat<FwMaterialDef>(pine, field.field, field.name, makeMaterial, worldMessage,
@@ -329,6 +332,34 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeBurnable(&def));
         EXPECT_NE(std::string::npos, lastMessage(w.world).find("tint")) << lastMessage(w.world);
     }
+
+    refuseFloat<FwBurnableMeshDef>(burnable, &FwBurnableMeshDef::ground, "ground", makeBurnable,
+                                   worldMessage, {2e9f});
+    const auto refusedDeform = [&](const FwBurnableMeshDef& def, const char* what) {
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeBurnable(&def)) << what;
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find(what)) << lastMessage(w.world);
+    };
+    FwPin pin{};
+    FwBurnableMeshDef sheet = burnable;
+    sheet.flags = FW_BURNABLE_SHELL;
+    sheet.pinCount = 1;
+    refusedDeform(sheet, "pins is null");
+    sheet.pins = &pin;
+    EXPECT_EQ(FW_OK, makeBurnable(&sheet)) << lastMessage(w.world);
+    sheet.pinCount = 9;
+    refusedDeform(sheet, "pinCount is 9");
+    sheet.pinCount = 1;
+    pin.radius = -1;
+    refusedDeform(sheet, "FwPin::radius");
+    pin = {};
+    pin.to[1] = kNan;
+    refusedDeform(sheet, "FwPin::to");
+    pin = {};
+    pin.reserved = 1;
+    refusedDeform(sheet, "FwPin::reserved");
+    pin = {};
+    sheet.flags = uint32_t{FW_BURNABLE_SHELL} | uint32_t{FW_BURNABLE_RECEDE};
+    refusedDeform(sheet, "one is possible");
 
     FwIgnitionDef ignition = fwDefaultIgnitionDef();
     ignition.radius = 0.05f;

@@ -40,6 +40,21 @@ class EveryPass : public GpuTest {
         object.materials[1].look = FW_MATERIAL_THATCH;
         object.materials[2].look = FW_MATERIAL_PINE;
         object.slowness.assign(domain.slowness.begin(), domain.slowness.end());
+        if (!published) {
+            scene.models.push_back(mesh::makeDeformModel(domain, std::pmr::get_default_resource()));
+            object.deform.flags = gpu::kDeformRecede;
+            for (gpu::DeformMaterial& m : object.deform.materials)
+                m = {.charTicks = 4096, .depth = 0.01f, .holeTicks = 8192, .holeSeconds = 2};
+        }
+        scene.objects.push_back(object);
+        if (published) return scene;
+        object.deform.flags = gpu::kDeformShell;
+        object.deform.pinCount = 1;
+        object.deform.pins[0] = {0.25f, 0.25f, 0.25f, 0.1f};
+        object.deform.pins[1] = {-0.25f, 0.25f, 0.25f, 0};
+        scene.objects.push_back(object);
+        object.deform.flags = gpu::kDeformSprings;
+        object.deform.springs = 500;
         scene.objects.push_back(object);
         if (!published) scene.addHeat();
         return scene;
@@ -78,8 +93,10 @@ class EveryPass : public GpuTest {
 
     void texels(std::vector<gpu::TexelEvent>& out, uint32_t kind, uint32_t every) {
         const mesh::BurnDomain& domain = scene_->domains[0];
-        for (uint32_t i = 0; i < domain.texelCount(); i += every)
-            if (domain.real(i) || every == 1) out.push_back({0, i, kind, now_ + 1 + i % 100});
+        for (uint32_t object = 0; object < scene_->objects.size(); ++object)
+            for (uint32_t i = 0; i < domain.texelCount(); i += every)
+                if (domain.real(i) || every == 1)
+                    out.push_back({object, i, kind, now_ + 1 + i % 100});
     }
 
     struct Frame {

@@ -128,6 +128,10 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     init.heat = object.heat;
     init.refine = object.refine;
     init.refineDepth = 4;
+    if (object.deform.flags) {
+        init.deformModel = &models[object.mesh];
+        init.deform = &object.deform;
+    }
     return init;
 }
 

@@ -17,13 +17,15 @@ struct SceneObject {
     std::vector<uint16_t> slowness;  // empty: the mesh's
     uint32_t window = 512, substepShift = 0;
     uint32_t flags = 0;                   // kObject..., beyond live
-    std::vector<gpu::HeatMaterial> heat;  // empty: none
     bool refine = false;                  // down to 4 halvings
+    gpu::DeformObject deform{};           // without flags: it does not
+    std::vector<gpu::HeatMaterial> heat;  // empty: none
 };
 
 struct BurnScene {
     std::vector<mesh::BurnDomain> domains;
     std::vector<SceneObject> objects;
+    std::vector<mesh::DeformModel> models;  // of the domains, if an object deforms
 
     // `densityScale` 1: some 2000 texels a mesh. With $FLAMEWRIGHT_ASSETS also two read ones.
     static BurnScene make(uint32_t seed, double densityScale = 1);

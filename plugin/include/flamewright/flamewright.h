@@ -223,6 +223,10 @@ typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md */
     float waterHeld;               /* g/m^2 of water that stay on it, [0, 1023]; more runs off */
     float radiantFraction;         /* of its heat that leaves as radiation, [0, 1] */
     float sootYield;               /* kg of soot per kg burnt, [0, 1] */
+    float recede;         /* share of the thickness that is gone when it is consumed, [0, 1]; the
+                             rest stays as char. Used by FW_BURNABLE_RECEDE */
+    float shrink;         /* of lengths of a charred sheet, [0, 0.5] */
+    float curl;           /* 1/m, of a charred sheet, [0, 200] */
 } FwMaterialDef;
 static inline FwMaterialDef fwDefaultMaterialDef(void) { /* pine */
     FwMaterialDef d; fwInitDef(FW_DEF_MATERIAL, &d, (uint32_t)sizeof d); return d;
@@ -303,10 +307,17 @@ typedef enum FwBurnableFlags {
                                    burnTime alone, and water stays until it is dried */
     FW_BURNABLE_REFINE = 32,    /* drawn with finer triangles where it burns, down to its burn map's
                                    cells, which recede as the material is consumed */
+    FW_BURNABLE_RECEDE = 128,   /* what we draw recedes as it is consumed; for solids */
+    FW_BURNABLE_SHELL = 256,    /* a thin sheet: hangs, flutters, curls and shrinks as it chars, tears;
+                                   see pins. Cosmetic: fire spreads and is found where it rests */
+    FW_BURNABLE_SPRINGS = 512,  /* deformed by the published mass-spring model, for comparison */
     FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
 
+typedef struct FwPin { /* holds the points of a sheet within radius m of a segment; object space, m */
+    float from[3], to[3], radius, reserved; /* radius >= 0; reserved: 0 */
+} FwPin;
 typedef struct FwBurnableMeshDef {
     uint32_t structSize, flags;       /* FwBurnableFlags */
     FwMeshId mesh;
@@ -324,6 +335,9 @@ typedef struct FwBurnableMeshDef {
     FwImageId baseColors[8];          /* by triangle material, default null: baseColor there too */
     uint32_t refineDepth;             /* FW_BURNABLE_REFINE: halvings of an edge, [0, 5], default 5 */
     float refinePixelsPerEdge;        /* length on the screen of the finest edges, [1, 1000], default 8 */
+    const FwPin* pins;                /* of FW_BURNABLE_SHELL, or null: it falls */
+    uint32_t pinCount;                /* [0, 8] */
+    float ground;                     /* m, world, along up: sheets fall no deeper; default -1e9 */
 } FwBurnableMeshDef;
 static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
     FwBurnableMeshDef d; fwInitDef(FW_DEF_BURNABLE_MESH, &d, (uint32_t)sizeof d); return d;

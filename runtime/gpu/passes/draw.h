@@ -36,9 +36,10 @@ struct DrawItem {
     uint32_t material = 0;
     uint32_t firstIndex = 0, indexCount = 0;
     int32_t vertexOffset = 0;
-    uint32_t image = 0;    // base-colour image slot + 1, 0: none
-    uint32_t variant = 0;  // of the surface pass, from surfaceVariant
-    bool refined = false;  // its triangles are in the refinement's planes
+    uint32_t shown = kNoneTexel;  // first of its own shown vertices; kNoneTexel: the mesh's
+    uint32_t image = 0;           // base-colour image slot + 1, 0: none
+    uint32_t variant = 0;         // of the surface pass, from surfaceVariant
+    bool refined = false;         // its triangles are in the refinement's planes
     SurfaceDraw draw{};
 };
 

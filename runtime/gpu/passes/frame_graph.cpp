@@ -17,7 +17,8 @@ constexpr const ComputePass* kComputePasses[] = {
     &kReduceClearPass, &kReduceFrontPass, &kReducePass,       &kPredictGatherPass, &kPredictPass,
     &kPredictRimPass,  &kSupportPass,     &kProbePass,        &kLightsPass,        &kFlameQuadsPass,
     &kFlameSortPass,   &kRefineHeatPass,  &kRefineLevelsPass, &kRefineScanPass,    &kRefineEmitPass,
-    &kRefinePlacePass};
+    &kRefinePlacePass, &kRecedePass,      &kBendPass,         &kSoftPass,          &kSpringsPass,
+    &kDrapePass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -147,6 +148,28 @@ void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks
     push.object = first;
     push.iteration = count;
     recorder.dispatch(kSupportPass, &push, groupsOf(count));
+}
+
+void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform) {
+    if (deform.groups.count == 0) return;
+    recorder.copyIn(deform.groups.at, FW_BIND_DEFORM_GROUPS, 0, uint64_t(deform.groups.count) * 8);
+    const auto dispatch = [&](const ComputePass& pass, uint32_t first, uint32_t groups,
+                              uint32_t parity) {
+        DeformPush push = deform.push;
+        push.parity = parity;
+        for (uint32_t done = 0; done < groups; done += kMaxGroups) {
+            push.first = first + done;
+            recorder.dispatch(pass, &push, std::min(groups - done, kMaxGroups));
+        }
+    };
+    const uint32_t sheets = deform.nodeGroups, springs = sheets + deform.sheetGroups;
+    dispatch(kRecedePass, 0, deform.nodeGroups, deform.steps << 1);
+    for (uint32_t i = 0; i < deform.steps; ++i) {
+        dispatch(kBendPass, sheets, deform.sheetGroups, i & 1);
+        dispatch(kSoftPass, sheets, deform.sheetGroups, i & 1);
+        dispatch(kSpringsPass, springs, deform.springGroups, i & 1);
+    }
+    dispatch(kDrapePass, springs + deform.springGroups, deform.vertexGroups, 0);
 }
 
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {

@@ -2,6 +2,7 @@
 #pragma once
 #include "gpu/passes/draw.h"
 #include "gpu/passes/pass.h"
+#include "shared/deform.h"
 #include "shared/refine.h"
 
 #include <cstddef>
@@ -17,7 +18,8 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
     kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
-    kRefineScanPass, kRefineEmitPass, kRefinePlacePass;
+    kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRecedePass, kBendPass, kSoftPass,
+    kSpringsPass, kDrapePass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -36,6 +38,15 @@ struct FrameLists {
 struct Staged {  // in the frame's upload buffer
     uint64_t at = 0;
     uint32_t count = 0;
+};
+
+// Groups of 64 of the objects that deform in this frame, in this order: nodes of all, of sheets and
+// of springs; drawn vertices of all.
+struct DeformRecord {
+    DeformPush push{};
+    Staged groups;
+    uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;
+    uint32_t steps = 0;  // of sheets and springs
 };
 
 struct PublishedStep {  // one object in as-published mode
@@ -61,6 +72,7 @@ void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endT
 // Tiles `first` .. + `count` of all; `ticks` since they last came to it.
 void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks, uint32_t first,
                    uint32_t count);
+void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform);
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes);
 void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles);
 // False: it would draw nothing, do not bind it.

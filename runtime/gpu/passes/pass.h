@@ -42,8 +42,9 @@ struct ComputePass {
 
 enum class VertexInput : uint8_t {
     none,  // the vertex shader makes its own from gl_VertexIndex and storage buffers
-    mesh,  // mesh::RenderVertex: 0 position vec3, 1 normal uint, 2 atlas vec2, 3 texture uv vec2,
-           // 4 detail vec2, 5 tint RGBA8 as vec4, 6 material (refined: slot) uint
+    mesh,  // mesh::RenderVertex: 2 atlas vec2, 3 texture uv vec2, 4 detail vec2, 5 tint RGBA8 as
+           // vec4, 6 material (refined: slot) uint, 8 rest position vec3; ShownVertex, or the
+           // mesh's: 0 position vec3, 1 normal uint, 7 lead float
 };
 enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
 enum class Blend : uint8_t { opaque, premultiplied, additive };

@@ -4,6 +4,7 @@
 #include "gpu/passes/frame_graph.h"
 #include "mesh/burn_domain.h"
 #include "shaders_embedded.h"
+#include "shared/deform.h"
 
 #include <array>
 #include <cstddef>
@@ -311,11 +312,20 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
 
     using mesh::RenderVertex;
-    const VkVertexInputBindingDescription binding{0, sizeof(RenderVertex),
-                                                  VK_VERTEX_INPUT_RATE_VERTEX};
-    const std::array<VkVertexInputAttributeDescription, 7> attributes{{
-        {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(RenderVertex, position)},
-        {1, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, normal)},
+    // Binding 1 is the object's own shown vertices, or the mesh's again: the same record where it
+    // matters, and a material index is no time at all.
+    static_assert(sizeof(RenderVertex) == sizeof(ShownVertex) &&
+                  offsetof(RenderVertex, position) == offsetof(ShownVertex, x) &&
+                  offsetof(RenderVertex, normal) == offsetof(ShownVertex, normal) &&
+                  offsetof(RenderVertex, material) == offsetof(ShownVertex, lead));
+    const std::array<VkVertexInputBindingDescription, 2> vertexBindings{
+        {{0, sizeof(RenderVertex), VK_VERTEX_INPUT_RATE_VERTEX},
+         {1, sizeof(ShownVertex), VK_VERTEX_INPUT_RATE_VERTEX}}};
+    const std::array<VkVertexInputAttributeDescription, 9> attributes{{
+        {0, 1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(ShownVertex, x)},
+        {1, 1, VK_FORMAT_R32_UINT, offsetof(ShownVertex, normal)},
+        {8, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(RenderVertex, position)},
+        {7, 1, VK_FORMAT_R32_SFLOAT, offsetof(ShownVertex, lead)},
         {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, atlasUv)},
         {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, textureUv)},
         {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, detail)},
@@ -325,8 +335,8 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     auto input = typed<VkPipelineVertexInputStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
     if (pass.vertexInput == VertexInput::mesh) {
-        input.vertexBindingDescriptionCount = 1;
-        input.pVertexBindingDescriptions = &binding;
+        input.vertexBindingDescriptionCount = uint32_t(vertexBindings.size());
+        input.pVertexBindingDescriptions = vertexBindings.data();
         input.vertexAttributeDescriptionCount = uint32_t(attributes.size());
         input.pVertexAttributeDescriptions = attributes.data();
     }

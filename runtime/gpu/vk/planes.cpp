@@ -1,6 +1,7 @@
 #include "gpu/vk/planes.h"
 
 #include "core/error.h"
+#include "shared/deform.h"
 #include "shared/heat.h"
 #include "shared/look.h"
 #include "shared/refine.h"
@@ -61,6 +62,14 @@ constexpr Plane kPlanes[] = {
      kComponentHeat, "heat materials", 0},
     {FW_BIND_HOT_LISTS, kSpaceObjectTiles, 8, true, kComponentHeat, "hot lists", 0},
     {FW_BIND_TILE_FIRE, kSpaceObjectTiles, 4, true, kComponentHeat, "tile fire", 0},
+    {FW_BIND_DEFORM_OBJECTS, kSpaceDeformers, sizeof(DeformObject), true, kComponentObjects,
+     "deforming objects", 0},
+    {FW_BIND_SHOWN, kSpaceShown, sizeof(ShownVertex), true, kComponentObjects, "shown vertices",
+     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
+    {FW_BIND_SOFT, kSpaceSoft, 16 * kSoftQuads, true, kComponentObjects, "soft vertices", 0},
+    {FW_BIND_DEFORM_NODES, kSpaceNodes, sizeof(DeformNode), true, kComponentMeshes, "nodes", 0},
+    {FW_BIND_DEFORM_COATS, kSpaceCoats, sizeof(DeformCoat), true, kComponentMeshes, "coats", 0},
+    {FW_BIND_DEFORM_GROUPS, kSpaceDeformGroups, 8, false, kComponentLists, "deform groups", 0},
     {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},
@@ -93,8 +102,9 @@ constexpr Plane kPlanes[] = {
 };
 
 constexpr uint32_t kInitialUnits[kSpaceCount] = {
-    64,  1024, 512,  512,  1024, 1024, 4096, 16384, kCounterRows, 4096, 1024, 1024,
-    256, 256,  1024, 1024, 512,  256,  1024, 4096,  256,          1,    1,    1};
+    64,   1024, 512, 512,  1024, 1024, 4096, 16384, kCounterRows, 4096, 1024,
+    1024, 256,  256, 1024, 1024, 512,  256,  1024,  4096,         256,  1,
+    1,    1,    1,   1,    1,    1,    1,    1};
 
 }  // namespace
 

@@ -34,6 +34,12 @@ enum Space : uint32_t {
     kSpaceRefineWork,       // words, per frame
     kSpacePublished,        // 8x8 tiles of objects in as-published mode
     kSpaceHeat,             // 8x8 tiles of objects with heat
+    kSpaceDeformers,        // objects that deform
+    kSpaceShown,            // drawn vertices of such objects
+    kSpaceSoft,             // those of sheets and springs
+    kSpaceNodes,            // of meshes that deform
+    kSpaceCoats,            // drawn vertices of such meshes
+    kSpaceDeformGroups,     // per frame
     kSpaceFixed,            // one unit
     kSpaceCount,
 };

@@ -371,6 +371,52 @@ struct DrawnOrder {
     }
 };
 
+// Records of a mesh that deforms, with vertices as the device numbers them.
+void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
+                      const mesh::DeformModel& model, uint32_t firstNode, uint32_t firstCoat) {
+    const DrawnOrder order(domain, s.memory);
+    const uint64_t nodeBytes = model.nodes.size() * sizeof(DeformNode);
+    const uint64_t coatBytes = model.coats.size() * sizeof(DeformCoat);
+    PendingUpload& upload = s.stage(nodeBytes + coatBytes, "deformation staging");
+    const auto number = [&](uint32_t& vertex) {
+        if (vertex != kNoneTexel) vertex = order.numbers[vertex];
+    };
+    std::byte* to = upload.staging.mapped;
+    for (DeformNode node : model.nodes) {
+        number(node.vertex);
+        for (uint32_t& vertex : node.ring) number(vertex);
+        for (uint32_t& vertex : node.cross_) number(vertex);
+        std::memcpy(to, &node, sizeof node);
+        to += sizeof node;
+    }
+    for (const uint32_t old : order.vertices) {
+        DeformCoat coat = model.coats[old];
+        number(coat.node);
+        for (uint32_t& vertex : coat.ring) number(vertex);
+        std::memcpy(to, &coat, sizeof coat);
+        to += sizeof coat;
+    }
+    upload.regions[0] = {FW_BIND_DEFORM_NODES, 0, uint64_t(firstNode) * sizeof(DeformNode),
+                         nodeBytes};
+    upload.regions[1] = {FW_BIND_DEFORM_COATS, nodeBytes, uint64_t(firstCoat) * sizeof(DeformCoat),
+                         coatBytes};
+    upload.regionCount = 2;
+}
+
+// All of an object's but its tiles, which lists may still name.
+void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
+    if (entry.slowness.units)
+        s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
+    if (entry.published.units)
+        s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
+    if (entry.heatTiles.units)
+        s.planes.release(kSpaceHeat, entry.heatTiles.first, entry.heatTiles.units);
+    if (entry.deformer.units)
+        s.planes.release(kSpaceDeformers, entry.deformer.first, entry.deformer.units);
+    if (entry.soft.units) s.planes.release(kSpaceSoft, entry.soft.first, entry.soft.units);
+    if (entry.shown.units) s.planes.release(kSpaceShown, entry.shown.first, entry.shown.units);
+}
+
 }  // namespace
 
 void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
@@ -385,6 +431,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     fresh.tiles = domain.tileCount();
     fresh.vertices = uint32_t(domain.vertices.size());
     fresh.indices = uint32_t(domain.indices.size());
+    fresh.domain = &domain;
     measureDrawn(domain, fresh);
     const DrawnOrder order(domain, s.memory);
     const size_t uploadsBefore = s.uploads.size();
@@ -469,13 +516,16 @@ void VkBackend::destroyMesh(uint32_t slot) noexcept {
     s.planes.release(kSpaceIndices, entry.indexRange.first, entry.indexRange.units);
     for (RefineMesh& one : entry.refine)
         if (one.live) one.release(s.planes);
+    if (entry.nodes.units) s.planes.release(kSpaceNodes, entry.nodes.first, entry.nodes.units);
+    if (entry.coats.units) s.planes.release(kSpaceCoats, entry.coats.first, entry.coats.units);
     entry = {};
 }
 
 void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
-    const MeshEntry& mesh = s.meshes[init.mesh];
+    MeshEntry& mesh = s.meshes[init.mesh];
+    RangeOf nodes = mesh.nodes, coats = mesh.coats;
     const size_t uploadsBefore = s.uploads.size();
     ObjectEntry fresh;
     fresh.live = true;
@@ -509,14 +559,28 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             fresh.published = {s.planes.allocate(kSpacePublished, mesh.tiles, last), mesh.tiles};
         if (!init.heat.empty())
             fresh.heatTiles = {s.planes.allocate(kSpaceHeat, mesh.tiles, last), mesh.tiles};
+        if (init.deform) {
+            const mesh::DeformModel& model = *init.deformModel;
+            fresh.deformer = {s.planes.allocate(kSpaceDeformers, 1, last), 1};
+            if (init.deform->flags & (kDeformShell | kDeformSprings))
+                fresh.soft = {s.planes.allocate(kSpaceSoft, mesh.vertices, last), mesh.vertices};
+            fresh.shown = {s.planes.allocate(kSpaceShown, mesh.vertices, last), mesh.vertices};
+            if (nodes.units == 0) {
+                const auto count = uint32_t(model.nodes.size());
+                nodes = {s.planes.allocate(kSpaceNodes, count, last), count};
+                coats = {s.planes.allocate(kSpaceCoats, mesh.vertices, last), mesh.vertices};
+                stageDeformModel(s, *mesh.domain, model, nodes.first, coats.first);
+            }
+        }
     } catch (...) {
         fresh.refine.release(s.planes);
-        if (fresh.published.units)
-            s.planes.release(kSpacePublished, fresh.published.first, fresh.published.units);
+        if (mesh.nodes.units == 0) {
+            if (nodes.units) s.planes.release(kSpaceNodes, nodes.first, nodes.units);
+            if (coats.units) s.planes.release(kSpaceCoats, coats.first, coats.units);
+        }
+        releaseRanges(s, fresh);
         if (fresh.tiles.units)
             s.planes.release(kSpaceObjectTiles, fresh.tiles.first, fresh.tiles.units);
-        if (fresh.slowness.units)
-            s.planes.release(kSpaceSlowness, fresh.slowness.first, fresh.slowness.units);
         while (s.uploads.size() > uploadsBefore) {
             s.deviceMemory.destroy(s.uploads.back().staging);
             s.uploads.pop_back();
@@ -545,6 +609,25 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.materials[i] = init.materials[i];
     std::copy(std::begin(init.images), std::end(init.images), std::begin(fresh.images));
     fresh.recordDirty = fresh.materialsDirty = fresh.resetDue = true;
+    if (init.deform) {
+        mesh.nodes = nodes;
+        mesh.coats = coats;
+        fresh.deform = *init.deform;
+        fresh.deform.nodeBase = nodes.first;
+        fresh.deform.nodeCount = nodes.units;
+        fresh.deform.coatBase = coats.first;
+        fresh.deform.vertexCount = mesh.vertices;
+        fresh.deform.shownBase = fresh.shown.first;
+        fresh.deform.softBase = fresh.soft.first;
+        fresh.deform.stateBase = r.stateBase;
+        fresh.deform.slot = slot;
+        fresh.deform.scale = length(vec3(r.worldRow0));
+        for (const DeformMaterial& m : fresh.deform.materials)
+            for (const uint32_t ticks : {m.charTicks, m.holeTicks})
+                if (ticks != kNoneTexel) fresh.deformTicks = std::max(fresh.deformTicks, ticks);
+        fresh.deformTicks += kTicksPerSecond;  // readbacks come late
+        fresh.deformDirty = fresh.deformReset = true;
+    }
     s.objects[slot] = fresh;
     s.recordsDirty = true;
     s.refine.users += fresh.refine.on ? 1 : 0;
@@ -561,14 +644,9 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
             {entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks, s.hotWalks});
     else
         s.planes.release(kSpaceObjectTiles, entry.tiles.first, entry.tiles.units);
-    if (entry.slowness.units)
-        s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
     s.refine.users -= entry.refine.on ? 1 : 0;
     entry.refine.release(s.planes);
-    if (entry.published.units)
-        s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
-    if (entry.heatTiles.units)
-        s.planes.release(kSpaceHeat, entry.heatTiles.first, entry.heatTiles.units);
+    releaseRanges(s, entry);
     entry = {};
     entry.recordDirty = true;  // a record without kObjectLive: list entries fall out
     s.recordsDirty = true;
@@ -583,6 +661,11 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
     entry.record.worldRow1 = rows[1];
     entry.record.worldRow2 = rows[2];
     entry.record.tint = tint;
+    if (entry.shown.units) {
+        entry.deform.scale = length(vec3(rows[0]));
+        entry.deformDirty = true;
+        entry.softUntil = 0;  // it swings anew
+    }
     constexpr uint32_t kFixed = kObjectPublished | kObjectHeat;
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
     entry.recordDirty = true;

@@ -30,6 +30,7 @@ class PassRecorder : public DrawRecorder {
                                      &set, 0, nullptr);
             bound_ = set;
         }
+        if (item.shown != shown_) bindVertices(item);
         if (pass_.pushBytes)
             vk.CmdPushConstants(commands_, layout_,
                                 VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
@@ -41,6 +42,7 @@ class PassRecorder : public DrawRecorder {
                 VK_INDEX_TYPE_UINT32);
             refined_ = item.refined;
         }
+        const bool own = item.shown != kNoneTexel;
         // One draw per call: several would need a feature.
         if (item.refined)
             vk.CmdDrawIndexedIndirect(
@@ -49,7 +51,19 @@ class PassRecorder : public DrawRecorder {
                     sizeof(VkDrawIndexedIndirectCommand),
                 1, 0);
         else
-            vk.CmdDrawIndexed(commands_, item.indexCount, 1, item.firstIndex, item.vertexOffset, 0);
+            vk.CmdDrawIndexed(commands_, item.indexCount, 1, item.firstIndex,
+                              own ? 0 : item.vertexOffset, 0);
+    }
+    // Of ordinary items all is bound from the first vertex on, of one with shown vertices of its
+    // own both its ranges.
+    void bindVertices(const DrawItem& item) {
+        const bool own = item.shown != kNoneTexel;
+        const VkBuffer buffers[2] = {s_.drawVertices, own ? s_.drawShown : s_.drawVertices};
+        const VkDeviceSize offsets[2] = {
+            own ? VkDeviceSize(item.vertexOffset) * sizeof(mesh::RenderVertex) : 0,
+            own ? VkDeviceSize(item.shown) * sizeof(ShownVertex) : 0};
+        s_.device.table.CmdBindVertexBuffers(commands_, 0, 2, buffers, offsets);
+        shown_ = item.shown;
     }
     void drawIndirect(uint32_t resource, uint64_t offset) override {
         s_.device.table.CmdDrawIndirect(commands_, s_.planes.buffer(resource).handle, offset, 1, 0);
@@ -62,6 +76,7 @@ class PassRecorder : public DrawRecorder {
     VkPipelineLayout layout_;
     VkDescriptorSet bound_ = VK_NULL_HANDLE;
     bool refined_ = false;  // whose indices are bound
+    uint32_t shown_ = kNoneTexel;
 };
 
 VkImageMemoryBarrier imageBarrier(const FwVulkanImage& image, bool depth, VkFormat format) {
@@ -122,8 +137,9 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
                                      &depth, 0, nullptr);
         if (surface) {
-            const VkDeviceSize zero = 0;
-            vk.CmdBindVertexBuffers(commands, 0, 1, &drawVertices, &zero);
+            const VkDeviceSize zeros[2] = {};
+            const VkBuffer vertices[2] = {drawVertices, drawVertices};
+            vk.CmdBindVertexBuffers(commands, 0, 2, vertices, zeros);
             vk.CmdBindIndexBuffer(commands, drawIndices, 0, VK_INDEX_TYPE_UINT32);
         }
         PassRecorder recorder(*this, commands, i);

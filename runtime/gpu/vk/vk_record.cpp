@@ -68,6 +68,29 @@ bool bringsNews(const StepPlan& step) noexcept {
     return !step.events.empty() || !step.materials.empty();
 }
 
+constexpr uint64_t kSettleTicks = 12 * kTicksPerSecond;  // that a sheet may swing
+
+// Groups of 64.
+uint32_t groupsOf(uint32_t items) noexcept { return (items + 63) / 64; }
+
+// Does it still move, as far as is known? What burns does, until the last texel that caught has
+// burnt out.
+bool deforms(const VkBackend::State& s, uint32_t slot, uint64_t now) noexcept {
+    const ObjectEntry& object = s.objects[slot];
+    if (!object.live || object.shown.units == 0) return false;
+    if (object.deformReset) return true;
+    if (object.deform.flags & kDeformShell) {
+        const bool wind = s.wind[0] != 0 || s.wind[1] != 0 || s.wind[2] != 0;
+        const bool hidden = (object.record.flags & kObjectHidden) != 0;
+        if (!hidden && (wind || now <= object.softUntil)) return true;
+    }
+    if (!object.touched) return false;
+    uint64_t last = object.lastEvent;
+    if (slot < s.givenObjects.size())
+        last = std::max<uint64_t>(last, s.givenObjects[slot].lastIgnition);
+    return now <= last + object.deformTicks;
+}
+
 // --- Before the first command ---
 
 // What a plan asks of its frame: how much room, and which passes have anything to do.
@@ -79,8 +102,12 @@ struct FrameNeeds {
     bool stimulus = false;                // an event or a latch
     bool findsAnew = false;               // the first step wakes what forgets
     bool burning = false, predicting = false, publishedRuns = false, heating = false;
-    bool falling = false;                 // burnt pieces may lose their hold
+    bool falling = false;  // burnt pieces may lose their hold
+    uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;  // what deforms
     bool readback = false, work = false;  // no work: nothing is recorded
+    [[nodiscard]] uint32_t deformGroups() const noexcept {
+        return nodeGroups + sheetGroups + springGroups + vertexGroups;
+    }
 };
 
 // Also marks what objects `forget`, and fills `published`; throws where a limit is exceeded.
@@ -91,10 +118,21 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     uint64_t denseGroups = 0;
     s.published.clear();
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
-        const ObjectEntry& object = s.objects[i];
+        ObjectEntry& object = s.objects[i];
         if (object.recordDirty) needs.uploadBytes += uploaded(sizeof(BurnObject));
         if (object.materialsDirty)
             needs.uploadBytes += uploaded(sizeof object.materials) + uploaded(sizeof object.heat);
+        if (object.deformDirty) needs.uploadBytes += uploaded(sizeof object.deform);
+        if (object.soft.units && object.softUntil == 0)
+            object.softUntil = plan.endTick + kSettleTicks;
+        object.deformsNow = deforms(s, i, plan.endTick);
+        if (object.deformsNow) {
+            const uint32_t groups = groupsOf(object.deform.nodeCount);
+            needs.nodeGroups += groups;
+            if (object.deform.flags & kDeformShell) needs.sheetGroups += groups;
+            if (object.deform.flags & kDeformSprings) needs.springGroups += groups;
+            needs.vertexGroups += groupsOf(object.deform.vertexCount);
+        }
         if (!object.live) continue;
         if (needs.dense) denseGroups += wakeGroupsOf(object);
         if (object.record.flags & kObjectPublished)
@@ -145,6 +183,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         needs.wakeGroups += uint32_t(forgetGroups);
         needs.uploadBytes += uploaded(forgetGroups * sizeof(WakeGroup));
     }
+    needs.uploadBytes += uploaded(uint64_t(needs.deformGroups()) * 8);
     needs.uploadBytes += uploaded(plan.probes.size_bytes());
     if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are asked for; the limit is %u.",
@@ -167,8 +206,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
                      needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
     const uint64_t refineBytes = s.planRefine(plan);
     needs.uploadBytes += refineBytes;
-    needs.work = needs.readback || needs.falling || refineBytes > 0 || forgets || s.recordsDirty ||
-                 !s.uploads.empty() || s.planes.movesPending();
+    needs.work = needs.readback || needs.falling || needs.nodeGroups > 0 || refineBytes > 0 ||
+                 forgets || s.recordsDirty || !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
 
@@ -210,6 +249,7 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     s.planes.atLeast(kSpaceEvents, needs.events, last);
     s.planes.atLeast(kSpaceWakeGroups, needs.wakeGroups, last);
     s.planes.atLeast(kSpaceProbes, uint32_t(plan.probes.size()), last);
+    s.planes.atLeast(kSpaceDeformGroups, needs.deformGroups(), last);
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);
@@ -305,7 +345,13 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                                 sizeof object.heat);
             }
         }
-        object.recordDirty = object.materialsDirty = false;
+        if (object.deformDirty) {
+            const Staged staged = writer.write(std::span<const DeformObject>(&object.deform, 1));
+            recorder.copyIn(staged.at, FW_BIND_DEFORM_OBJECTS,
+                            uint64_t(object.deformer.first) * sizeof(DeformObject),
+                            sizeof(DeformObject));
+        }
+        object.recordDirty = object.materialsDirty = object.deformDirty = false;
     }
     s.drawItems.clear();
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
@@ -320,7 +366,8 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
             if (end != first)
                 s.drawItems.push_back(
                     {i, m, mesh.indexRange.first + first, end - first,
-                     int32_t(mesh.vertexRange.first), object.images[m],
+                     int32_t(mesh.vertexRange.first),
+                     object.shown.units ? object.shown.first : kNoneTexel, object.images[m],
                      surfaceVariant(object.materials[m], object.images[m] != 0, object.touched),
                      object.refine.started, drawOf(s, object, m)});
             first = end;
@@ -390,6 +437,7 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
 void noteEvent(VkBackend::State& s, const TexelEvent& event) {
     ObjectEntry& object = s.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
+    object.lastEvent = std::max<uint64_t>(object.lastEvent, event.tick);
     if (object.touched) return;
     object.touched = true;
     for (DrawItem& item : s.drawItems) {
@@ -420,6 +468,31 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     s.supportFirst = first + count;
     const auto ticks = uint32_t(plan.steps.size()) * kStepTicks * parts;
     if (count) recordSupport(recorder, plan.endTick, ticks, first, count);
+}
+
+// What deforms in this frame, in the order of DeformRecord; `steps`: that it moves by.
+Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer) {
+    Staged staged = writer.begin();
+    const auto append = [&](const ObjectEntry& object, uint32_t items) {
+        const uint32_t marks =
+            (object.deformReset ? kDeformReset : 0) | (object.softOdd ? kDeformOdd : 0);
+        for (uint32_t first = 0; first < items; first += 64) {
+            const WakeGroup group{object.deformer.first, first | marks};
+            writer.append(staged, std::span<const WakeGroup>(&group, 1));
+        }
+    };
+    for (const uint32_t tier : {~0u, kDeformShell, kDeformSprings})
+        for (const ObjectEntry& object : s.objects)
+            if (object.deformsNow && (tier == ~0u || (object.deform.flags & tier)))
+                append(object, object.deform.nodeCount);
+    for (ObjectEntry& object : s.objects) {
+        if (!object.deformsNow) continue;
+        append(object, object.deform.vertexCount);
+        object.deformReset = false;
+        if (object.soft.units) object.softOdd ^= (steps & 1) != 0;
+    }
+    writer.end();
+    return staged;
 }
 
 }  // namespace
@@ -483,6 +556,12 @@ void VkBackend::State::run(const FramePlan& plan) {
     open.readback = needs.readback;
     std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(wind));
     tickFraction = plan.tickFraction;
+    // Sheets and springs step at a rate of their own; a hitch drops steps and never stretches one.
+    const double ticks = double(plan.endTick) + double(plan.tickFraction) * kStepTicks;
+    const auto softNow = uint64_t(ticks / kSoftTicks);
+    const auto softSteps =
+        uint32_t(std::min<uint64_t>(softNow > softStep ? softNow - softStep : 0, kMostSoftSteps));
+    softStep = softNow;
     if (!needs.work) {
         open.ran = true;
         shownTick = plan.endTick;
@@ -519,6 +598,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     recordForgetting(*this, recorder);
     drawVertices = planes.buffer(kResourceVertices).handle;
     drawIndices = planes.buffer(kResourceIndices).handle;
+    drawShown = planes.buffer(FW_BIND_SHOWN).handle;
 
     if (needs.iterations) recordCounters(recorder, lists, uint32_t(needs.iterations));
     slot.layout.firstRow = lists.row;
@@ -566,6 +646,22 @@ void VkBackend::State::run(const FramePlan& plan) {
     }
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
     slot.layout.predictParity = lists.predictParity;
+    if (needs.nodeGroups) {
+        DeformRecord deform;
+        deform.nodeGroups = needs.nodeGroups;
+        deform.sheetGroups = needs.sheetGroups;
+        deform.springGroups = needs.springGroups;
+        deform.steps = softSteps;
+        deform.vertexGroups = needs.vertexGroups;
+        deform.groups = writeDeformGroups(*this, softSteps, writer);
+        deform.push.now = plan.endTick;
+        deform.push.step = float(kSoftTicks) / float(kTicksPerSecond);
+        deform.push.wind = {wind[0], wind[1], wind[2],
+                            float(softStep % (4096 * 128)) * deform.push.step};
+        deform.push.up = {limits.up[0], limits.up[1], limits.up[2],
+                          tickFraction * float(kStepTicks)};
+        recordDeform(recorder, deform);
+    }
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }
 

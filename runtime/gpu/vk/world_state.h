@@ -57,6 +57,8 @@ struct MeshEntry {
     uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
     RefineMesh refine[kRefineDepth + 1];             // by depth
     float edge = 0;  // m at scale 1: side of a square as large as two mean triangles
+    const mesh::BurnDomain* domain = nullptr;
+    RangeOf nodes, coats;  // once an object deforms
 };
 
 struct ObjectEntry {
@@ -72,11 +74,20 @@ struct ObjectEntry {
     BurnObject record{};
     BurnMaterial materials[kMaterialsPerObject]{};
     uint32_t images[kMaterialsPerObject] = {};  // slot + 1, 0: none
-    HeatMaterial heat[kMaterialsPerObject]{};  // with kObjectHeat
+    HeatMaterial heat[kMaterialsPerObject]{};   // with kObjectHeat
     RangeOf tiles, slowness, published, heatTiles;
     RefineUse refine;
     bool publishedTouched = false;  // as-published mode: some event reached it
     uint32_t publishedParity = 0;
+    // Deformation: none if `shown` is empty.
+    RangeOf deformer, shown, soft;  // soft: sheets and springs
+    DeformObject deform{};
+    bool deformDirty = false, deformReset = false;
+    bool deformsNow = false;   // scratch of run
+    uint32_t deformTicks = 0;  // that something moves after the last texel caught
+    uint64_t lastEvent = 0;    // tick
+    bool softOdd = false;      // its places are the second ones
+    uint64_t softUntil = 0;    // tick until which it is not yet at rest
 };
 
 struct ImageEntry {
@@ -165,7 +176,9 @@ struct VkBackend::State {
     std::pmr::vector<Quarantined> quarantine;
     uint32_t liveObjects = 0;
     bool initialized = false;  // the planes that must start as zero do
-    VkBuffer drawVertices = VK_NULL_HANDLE, drawIndices = VK_NULL_HANDLE;  // as last recorded
+    // As last recorded.
+    VkBuffer drawVertices = VK_NULL_HANDLE, drawIndices = VK_NULL_HANDLE,
+             drawShown = VK_NULL_HANDLE;
     bool recordsDirty = false;  // some object has dirty records or a reset due
 
     // Lists on the device, as the frames recorded so far leave them.
@@ -179,6 +192,7 @@ struct VkBackend::State {
     uint32_t shownTick = 0;     // tick of the state that draws show
     float wind[3] = {};
     float tickFraction = 0;
+    uint64_t softStep = 0;  // number of the step that sheets and springs have come to
 
     // The frame that is open.
     struct Open {

@@ -1,0 +1,109 @@
+#include "components/deform.h"
+
+#include "components/look_table.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::components {
+namespace {
+
+constexpr uint32_t kTiers = FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS;
+
+// How thin things are in the air: m/s that a sheet falls at, flat, at 0.08 kg/m^2.
+constexpr float kFlutter = 1.2f;
+
+uint32_t ticksOf(float seconds) noexcept {
+    return uint32_t(std::clamp(seconds * float(gpu::kTicksPerSecond), 1.0f, 4.0e9f));
+}
+
+// [0, 1] against bending, fresh.
+float softness(uint32_t look) noexcept {
+    switch (look) {
+        case FW_MATERIAL_COTTON:
+            return 0.03f;
+        case FW_MATERIAL_POLYESTER:
+            return 0.05f;
+        case FW_MATERIAL_LEATHER:
+            return 0.4f;
+        default:
+            return 0.8f;
+    }
+}
+
+gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMaterial& record,
+                                 bool holes, bool sheet) noexcept {
+    gpu::DeformMaterial made{};
+    made.charTicks = made.holeTicks = gpu::kNoneTexel;
+    const float weight = std::max(def.thickness * def.density, 0.02f);  // kg/m^2
+    made.drag = 9.81f / (kFlutter * std::sqrt(weight / 0.08f));
+    made.shrink = def.shrink;
+    made.curl = def.curl;
+    made.bend = softness(def.look);
+    if (!(record.flags & 1)) return made;
+    made.charTicks = record.flameTicks;
+    made.depth = def.recede * def.thickness;
+    const float opens = materialLook(def.look).holeTime;
+    if (holes && opens > 0 && record.timeScale > 0) {
+        made.holeSeconds = opens;
+        made.holeTicks = ticksOf(opens / record.timeScale);
+        // A sheet is gone where it has a hole, and curls before.
+        if (sheet) made.charTicks = uint32_t(float(made.holeTicks) * 1.15f);
+    }
+    return made;
+}
+
+}  // namespace
+
+void checkDeform(const FwBurnableMeshDef& def) {
+    const uint32_t tiers = def.flags & (kTiers | FW_BURNABLE_REFINE);
+    if (tiers & (tiers - 1))
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "FwBurnableMeshDef::flags is 0x%x; of REFINE, RECEDE, SHELL and SPRINGS one is possible.",
+            def.flags);
+    checkValue(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
+    if (def.pinCount > gpu::kMaxPins)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwBurnableMeshDef::pinCount is %u; the limits are [0, %u].", def.pinCount,
+                   gpu::kMaxPins);
+    if (def.pinCount && !def.pins)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwBurnableMeshDef::pins is null but pinCount is %u.",
+                   def.pinCount);
+    for (uint32_t i = 0; i < def.pinCount; ++i) {
+        checkValues(def.pins[i].from, 3, "FwPin::from", -1e6f, 1e6f);
+        checkValues(def.pins[i].to, 3, "FwPin::to", -1e6f, 1e6f);
+        checkValue(def.pins[i].radius, "FwPin::radius", 0, 1e6f);
+        checkValue(def.pins[i].reserved, "FwPin::reserved", 0, 0);
+    }
+}
+
+bool deforms(const BurnableMesh& object) noexcept { return (object.flags & kTiers) != 0; }
+
+gpu::DeformObject makeDeform(const FwBurnableMeshDef& def, const BurnableMesh& object,
+                             const Records& records) noexcept {
+    gpu::DeformObject made{};
+    if (object.flags & FW_BURNABLE_RECEDE) made.flags |= gpu::kDeformRecede;
+    if (object.flags & FW_BURNABLE_SHELL) made.flags |= gpu::kDeformShell;
+    if (object.flags & FW_BURNABLE_SPRINGS) made.flags |= gpu::kDeformSprings;
+    made.ground = def.ground;
+    made.scale = object.pose.scale;
+    constexpr float kStep = float(gpu::kSoftTicks) / float(gpu::kTicksPerSecond);
+    made.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
+    made.pinCount = def.pinCount;
+    for (uint32_t i = 0; i < def.pinCount; ++i) {
+        const FwPin& pin = def.pins[i];
+        made.pins[i * 2] = gpu::vec4(pin.from[0], pin.from[1], pin.from[2], pin.radius);
+        made.pins[i * 2 + 1] = gpu::vec4(pin.to[0], pin.to[1], pin.to[2], 0);
+    }
+    const bool sheet = (object.flags & FW_BURNABLE_SHELL) != 0;
+    const bool holes = (object.flags & FW_BURNABLE_NO_HOLES) == 0;
+    for (uint32_t i = 0; i < kMaterials; ++i)
+        if (object.materialMask >> i & 1)
+            made.materials[i] =
+                makeMaterial(object.materials[i], records.materials[i], holes, sheet);
+    return made;
+}
+
+}  // namespace fw::components

@@ -1,0 +1,18 @@
+// Drawn vertices of deforming objects: places and normals from their nodes.
+#include "gpu/passes/frame_graph.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_DEFORM_OBJECTS, Access::read},
+    {FW_BIND_DEFORM_GROUPS, Access::read},
+    {FW_BIND_DEFORM_COATS, Access::read},
+    {FW_BIND_SHOWN, Access::write},
+};
+
+}  // namespace
+
+const ComputePass kDrapePass{"drape", "drape.comp", kUses, sizeof(DeformPush)};
+
+}  // namespace fw::gpu

@@ -1,0 +1,17 @@
+// One step of the nodes of sheets.
+#include "gpu/passes/frame_graph.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_DEFORM_OBJECTS, Access::read}, {FW_BIND_DEFORM_GROUPS, Access::read},
+    {FW_BIND_OBJECTS, Access::read},        {FW_BIND_DEFORM_NODES, Access::read},
+    {FW_BIND_SHOWN, Access::write},         {FW_BIND_SOFT, Access::write},
+};
+
+}  // namespace
+
+const ComputePass kSoftPass{"soft", "soft.comp", kUses, sizeof(DeformPush)};
+
+}  // namespace fw::gpu

@@ -1,0 +1,17 @@
+// One step of the published mass-spring model.
+#include "gpu/passes/frame_graph.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_DEFORM_OBJECTS, Access::read}, {FW_BIND_DEFORM_GROUPS, Access::read},
+    {FW_BIND_DEFORM_NODES, Access::read},   {FW_BIND_SHOWN, Access::write},
+    {FW_BIND_SOFT, Access::write},
+};
+
+}  // namespace
+
+const ComputePass kSpringsPass{"springs", "springs.comp", kUses, sizeof(DeformPush)};
+
+}  // namespace fw::gpu

@@ -1,0 +1,434 @@
+#include "mesh/deform/model.h"
+
+#include "mesh/bake.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+namespace fw::mesh {
+namespace {
+
+using gpu::DeformCoat;
+using gpu::DeformNode;
+using gpu::kDeformRing;
+using gpu::kDeformTexels;
+
+constexpr double kLongest = 2;          // of an offset
+constexpr double kDepthShare = 0.45;    // of the way to the wall behind
+constexpr double kAltitudeShare = 0.5;  // of the lowest altitude of the triangles around
+constexpr double kNoWall = 1e30;
+constexpr size_t kMostSteps = 256;  // around one node; of more triangles than that the first
+constexpr double kThickest = 0.25;  // m: walls farther apart never burn through together
+
+glm::dvec3 placeOf(const RenderVertex& v) {
+    return {double(v.position[0]), double(v.position[1]), double(v.position[2])};
+}
+
+glm::dvec3 unitOr(glm::dvec3 v, glm::dvec3 otherwise) {
+    const double length = glm::length(v);
+    return length > 1e-30 ? v / length : otherwise;
+}
+
+// Which corners belong to a node: a list per node of (triangle * 3 + corner).
+struct Corners {
+    explicit Corners(std::pmr::memory_resource* memory) : start(memory), list(memory) {}
+    std::pmr::vector<uint32_t> start, list;
+    [[nodiscard]] std::span<const uint32_t> of(uint32_t node) const {
+        return {list.data() + start[node], start[node + 1] - start[node]};
+    }
+};
+
+// Vertices with the same position are one node, which the lowest of them keeps.
+void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory) {
+    const auto count = uint32_t(domain.vertices.size());
+    std::pmr::vector<uint32_t> order(count, memory);
+    for (uint32_t i = 0; i < count; ++i) order[i] = i;
+    const auto key = [&](uint32_t i) {
+        std::array<float, 3> p{};
+        for (size_t k = 0; k < 3; ++k) p[k] = domain.vertices[i].position[k] + 0.0f;  // no -0
+        return p;
+    };
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        const auto p = key(a), q = key(b);
+        return p != q ? p < q : a < b;
+    });
+    std::pmr::vector<uint32_t> keeper(count, memory);
+    for (uint32_t i = 0; i < count; ++i)
+        keeper[order[i]] =
+            i && key(order[i]) == key(order[i - 1]) ? keeper[order[i - 1]] : order[i];
+    model.nodeOf.resize(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (keeper[i] == i) {
+            model.nodeOf[i] = uint32_t(model.nodes.size());
+            DeformNode node{};
+            const RenderVertex& v = domain.vertices[i];
+            node.x = v.position[0];
+            node.y = v.position[1];
+            node.z = v.position[2];
+            node.vertex = i;
+            node.opposite = kNone;
+            std::fill(std::begin(node.texels), std::end(node.texels), kNone);
+            std::fill(std::begin(node.ring), std::end(node.ring), i);
+            std::fill(std::begin(node.cross_), std::end(node.cross_), kNone);
+            model.nodes.push_back(node);
+        } else {
+            model.nodeOf[i] = model.nodeOf[keeper[i]];
+        }
+    }
+}
+
+Corners cornersOf(const BurnDomain& domain, const DeformModel& model,
+                  std::pmr::memory_resource* memory) {
+    Corners corners(memory);
+    corners.start.assign(model.nodes.size() + 1, 0);
+    for (const uint32_t v : domain.indices) ++corners.start[model.nodeOf[v] + 1];
+    for (size_t i = 1; i < corners.start.size(); ++i) corners.start[i] += corners.start[i - 1];
+    corners.list.resize(domain.indices.size());
+    std::pmr::vector<uint32_t> next(corners.start.begin(), corners.start.end() - 1, memory);
+    for (uint32_t i = 0; i < domain.indices.size(); ++i)
+        corners.list[next[model.nodeOf[domain.indices[i]]]++] = i;
+    return corners;
+}
+
+struct Step {  // one triangle around a node: from one neighbour to the next
+    uint32_t from, to;
+};
+
+// The steps around a node as one walk, the longest there is; true: it closes.
+bool walk(std::pmr::vector<Step>& steps, std::pmr::vector<uint32_t>& out,
+          std::pmr::vector<uint32_t>& best) {
+    best.clear();
+    bool bestCloses = false;
+    while (!steps.empty()) {
+        // An open fan begins at the neighbour that no step leads to.
+        size_t first = 0;
+        for (size_t i = 0; i < steps.size(); ++i) {
+            const uint32_t from = steps[i].from;
+            if (std::none_of(steps.begin(), steps.end(),
+                             [from](const Step& s) { return s.to == from; })) {
+                first = i;
+                break;
+            }
+        }
+        out.assign({steps[first].from});
+        uint32_t at = steps[first].to;
+        const uint32_t start = steps[first].from;
+        steps.erase(steps.begin() + std::ptrdiff_t(first));
+        while (at != start) {
+            out.push_back(at);
+            const auto next = std::find_if(steps.begin(), steps.end(),
+                                           [at](const Step& s) { return s.from == at; });
+            if (next == steps.end()) break;
+            at = next->to;
+            steps.erase(next);
+        }
+        const bool closes = at == start;
+        if (out.size() > best.size()) {
+            best = out;
+            bestCloses = closes;
+        }
+    }
+    return bestCloses;
+}
+
+class Builder {
+ public:
+    Builder(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory)
+        : domain_(domain),
+          model_(model),
+          corners_(cornersOf(domain, model, memory)),
+          steps_(memory),
+          walk_(memory),
+          best_(memory),
+          texels_(memory),
+          texelStart_(memory),
+          texelList_(memory) {}
+
+    void run() {
+        sortTexels();
+        for (uint32_t i = 0; i < model_.nodes.size(); ++i) {
+            offset(i);
+            sample(i);
+            neighbours(i);
+        }
+        for (uint32_t i = 0; i < model_.nodes.size(); ++i) farther(i);
+        lengths();
+        for (uint32_t i = 0; i < domain_.vertices.size(); ++i) coat(i);
+    }
+
+ private:
+    [[nodiscard]] uint32_t vertexAt(uint32_t triangle, uint32_t corner) const {
+        return domain_.indices[size_t(triangle) * 3 + corner % 3];
+    }
+    [[nodiscard]] glm::dvec3 cornerPlace(uint32_t triangle, uint32_t corner) const {
+        return placeOf(domain_.vertices[vertexAt(triangle, corner)]);
+    }
+    [[nodiscard]] uint32_t keeperAt(uint32_t triangle, uint32_t corner) const {
+        return model_.nodes[model_.nodeOf[vertexAt(triangle, corner)]].vertex;
+    }
+    [[nodiscard]] glm::dvec3 areaNormal(uint32_t triangle) const {  // twice the area long
+        const glm::dvec3 a = cornerPlace(triangle, 0);
+        return glm::cross(cornerPlace(triangle, 1) - a, cornerPlace(triangle, 2) - a);
+    }
+
+    // Real texels by their triangle.
+    void sortTexels() {
+        texelStart_.assign(domain_.indices.size() / 3 + 1, 0);
+        const auto triangleOf = [&](uint32_t texel) {
+            return domain_.real(texel) ? domain_.triangleOf[texel] : kNone;
+        };
+        for (uint32_t i = 0; i < domain_.texelCount(); ++i)
+            if (triangleOf(i) != kNone) ++texelStart_[triangleOf(i) + 1];
+        for (size_t i = 1; i < texelStart_.size(); ++i) texelStart_[i] += texelStart_[i - 1];
+        texelList_.resize(texelStart_.back());
+        std::pmr::vector<uint32_t> next(texelStart_.begin(), texelStart_.end() - 1,
+                                        texelStart_.get_allocator());
+        for (uint32_t i = 0; i < domain_.texelCount(); ++i)
+            if (triangleOf(i) != kNone) texelList_[next[triangleOf(i)]++] = i;
+    }
+
+    // Which way the node recedes: an offset with o.N = -1 for all faces, by least squares; where
+    // they say nothing, along the mean normal. And how far, by the triangles around.
+    void offset(uint32_t number) {
+        DeformNode& node = model_.nodes[number];
+        glm::dmat3 squares(0);
+        glm::dvec3 sum(0);
+        double weights = 0, altitude = 1e30, area = 0;
+        for (const uint32_t corner : corners_.of(number)) {
+            const uint32_t triangle = corner / 3;
+            const glm::dvec3 twice = areaNormal(triangle);
+            const double size = glm::length(twice);
+            if (!(size > 1e-30)) continue;
+            const glm::dvec3 n = twice / size;
+            // By the angle at the corner, so that a fan's cut does not matter.
+            const glm::dvec3 at = cornerPlace(triangle, corner % 3);
+            const glm::dvec3 a = unitOr(cornerPlace(triangle, corner % 3 + 1) - at, n);
+            const glm::dvec3 b = unitOr(cornerPlace(triangle, corner % 3 + 2) - at, n);
+            const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) + 1e-6;
+            squares += glm::outerProduct(n, n) * angle;
+            sum += n * angle;
+            weights += angle;
+            area += size / 6;
+            double longest = 0;
+            for (uint32_t k = 0; k < 3; ++k)
+                longest = std::max(
+                    longest, glm::length(cornerPlace(triangle, k) - cornerPlace(triangle, k + 1)));
+            altitude = std::min(altitude, size / std::max(longest, 1e-30));
+        }
+        node.area = float(area);
+        if (!(weights > 0)) return;
+        const glm::dvec3 mean = sum / weights;
+        const double square = glm::dot(mean, mean);
+        if (square < 1e-6) return;  // the two sides of a sheet: it cannot recede
+        const glm::dvec3 guess = -mean / std::max(square, 0.25);
+        const double little = 1e-3 * weights;
+        glm::dvec3 o = glm::inverse(squares + glm::dmat3(little)) * (guess * little - sum);
+        const double length = glm::length(o);
+        if (length > kLongest) o *= kLongest / length;
+        node.outX = float(o.x);
+        node.outY = float(o.y);
+        node.outZ = float(o.z);
+        node.limit = float(kAltitudeShare * altitude / std::max(glm::length(o), 1e-6));
+    }
+
+    // The texels that speak for a node: spread over its ring as those of the mip of eq. (9) would
+    // be, each of them one texel of that mip's; the wall behind.
+    void sample(uint32_t number) {
+        DeformNode& node = model_.nodes[number];
+        texels_.clear();
+        uint32_t material = 0;
+        for (const uint32_t corner : corners_.of(number)) {
+            const uint32_t triangle = corner / 3;
+            material = domain_.vertices[domain_.indices[corner]].material;
+            for (uint32_t i = texelStart_[triangle]; i < texelStart_[triangle + 1]; ++i)
+                texels_.push_back(texelList_[i]);
+        }
+        node.flags = material & 7u;
+        const uint32_t mip = gpu::mipOfRing(uint32_t(texels_.size()), kDeformTexels);
+        const uint32_t mask = (1u << mip) - 1, half = mask / 2;
+        const auto central = [&](uint32_t texel) {
+            return (texel % domain_.width & mask) == half && (texel / domain_.width & mask) == half;
+        };
+        // Those in the middle of a texel of the mip first.
+        std::stable_partition(texels_.begin(), texels_.end(), central);
+        const auto middles = size_t(std::count_if(texels_.begin(), texels_.end(), central));
+        const size_t from = middles >= kDeformTexels / 2 ? middles : texels_.size();
+        const size_t taken = std::min<size_t>(from, kDeformTexels);
+        for (size_t i = 0; i < taken; ++i) node.texels[i] = texels_[i * from / taken];
+        const float place[3] = {node.x, node.y, node.z};
+        if (taken == 0) node.texels[0] = nearestTexel(domain_, place, 1e6f);
+
+        double thin = kNoWall;
+        for (const uint32_t texel : node.texels)
+            if (texel != kNone && domain_.thickness[texel] != 0xFFFF)
+                thin = std::min(thin, double(domain_.thickness[texel]) * 1e-4);
+        const glm::dvec3 out(double(node.outX), double(node.outY), double(node.outZ));
+        const double stretch = std::max(glm::length(out), 1e-6);
+        node.limit = float(std::min(double(node.limit), kDepthShare * thin / stretch));
+        if (thin > kThickest || node.texels[0] == kNone) return;
+        const glm::dvec3 behind =
+            glm::dvec3(double(node.x), double(node.y), double(node.z)) + out / stretch * thin;
+        const float point[3] = {float(behind.x), float(behind.y), float(behind.z)};
+        const float reach = float(0.5 * thin) + domain_.texelSide;
+        const uint32_t texel = nearestTexel(domain_, point, reach);
+        if (texel == kNone) return;
+        const glm::vec3 facing = gpu::unpackDirection(domain_.normals[texel]);
+        if (glm::dot(facing, glm::vec3(out / stretch)) > 0.3f) node.opposite = texel;
+    }
+
+    // Neighbours in their order around the node.
+    void neighbours(uint32_t number) {
+        DeformNode& node = model_.nodes[number];
+        steps_.clear();
+        for (const uint32_t corner : corners_.of(number)) {
+            const uint32_t triangle = corner / 3;
+            const Step step{keeperAt(triangle, corner % 3 + 1), keeperAt(triangle, corner % 3 + 2)};
+            if (step.from != step.to && step.from != node.vertex && step.to != node.vertex &&
+                steps_.size() < kMostSteps)
+                steps_.push_back(step);
+        }
+        const bool closes = walk(steps_, walk_, best_);
+        const size_t all = best_.size(), kept = std::min<size_t>(all, kDeformRing);
+        for (size_t i = 0; i < kept; ++i) node.ring[i] = best_[i * all / kept];
+        // Repeats, so that loops over eight see no triangle there.
+        for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
+            node.ring[i] = closes ? node.ring[0] : node.ring[kept - 1];
+        node.flags |= (closes ? gpu::kNodeClosed : 0u) | uint32_t(kept) << gpu::kNodeRingShift;
+    }
+    // Two steps straight on from every neighbour: what Provot's flexion springs link.
+    void farther(uint32_t number) {
+        DeformNode& node = model_.nodes[number];
+        const glm::dvec3 at = placeOf(domain_.vertices[node.vertex]);
+        for (uint32_t i = 0; i < (node.flags >> gpu::kNodeRingShift & 15u); ++i) {
+            const DeformNode& next = model_.nodes[model_.nodeOf[node.ring[i]]];
+            const glm::dvec3 middle = placeOf(domain_.vertices[next.vertex]);
+            const glm::dvec3 way = unitOr(middle - at, glm::dvec3(0));
+            double straightest = 0.9;
+            for (const uint32_t over : next.ring) {
+                if (over == node.vertex || over == next.vertex) continue;
+                const double c =
+                    glm::dot(way, unitOr(placeOf(domain_.vertices[over]) - middle, glm::dvec3(0)));
+                if (c <= straightest) continue;
+                straightest = c;
+                node.cross_[i] = over;
+            }
+        }
+    }
+
+    [[nodiscard]] float restLength(const DeformNode& node, uint32_t vertex) const {
+        const DeformNode& other = model_.nodes[model_.nodeOf[vertex]];
+        const glm::dvec3 d(double(other.x) - double(node.x), double(other.y) - double(node.y),
+                           double(other.z) - double(node.z));
+        return float(glm::length(d));
+    }
+    // Forces need both ends to know of a link: what only one end lists has no length.
+    void lengths() {
+        for (DeformNode& node : model_.nodes) {
+            glm::dvec3 mean(0), turned(0), before(0), first(0);
+            double links = 0;
+            const auto mutual = [&](uint32_t vertex, bool ring) {
+                const DeformNode& other = model_.nodes[model_.nodeOf[vertex]];
+                const uint32_t* list = ring ? other.ring : other.cross_;
+                return vertex != node.vertex &&
+                       std::find(list, list + kDeformRing, node.vertex) != list + kDeformRing;
+            };
+            float ring[kDeformRing]{}, cross[kDeformRing]{};
+            const uint32_t count = node.flags >> gpu::kNodeRingShift & 15u;
+            for (uint32_t i = 0; i < kDeformRing; ++i) {
+                const glm::dvec3 arm = placeOf(domain_.vertices[node.ring[i]]) -
+                                       placeOf(domain_.vertices[node.vertex]);
+                turned += glm::cross(before, arm);
+                before = arm;
+                if (i == 0) first = arm;
+                if (i < count && mutual(node.ring[i], true)) {
+                    ring[i] = restLength(node, node.ring[i]);
+                    mean += arm;
+                    links += 1;
+                }
+                if (node.cross_[i] != kNone && mutual(node.cross_[i], false))
+                    cross[i] = restLength(node, node.cross_[i]);
+            }
+            if (node.flags & gpu::kNodeClosed) turned += glm::cross(before, first);
+            const glm::dvec3 normal = unitOr(turned, glm::dvec3(0));
+            mean /= std::max(links, 1.0);
+            node.rise = float(glm::dot(mean, normal));
+            const bool whole = (node.flags & gpu::kNodeClosed) && links == double(count);
+            const auto even = [&](glm::dvec3 to, float reach) {
+                return whole &&
+                       glm::length(to - normal * glm::dot(to, normal)) < 0.06 * double(reach);
+            };
+            if (even(mean, ring[0])) node.flags |= gpu::kNodeEven;
+            glm::dvec3 farMean(0);
+            uint32_t farLinks = 0;
+            for (uint32_t i = 0; i < count; ++i) {
+                if (!(cross[i] > 0)) continue;
+                farMean += placeOf(domain_.vertices[node.cross_[i]]) -
+                           placeOf(domain_.vertices[node.vertex]);
+                ++farLinks;
+            }
+            if (farLinks == count && even(farMean / double(std::max(count, 1u)), cross[0]))
+                node.flags |= gpu::kNodeFarEven;
+            for (uint32_t i = 0; i < kDeformRing / 2; ++i) {
+                node.ringLength[i] = glm::packHalf2x16({ring[i * 2], ring[i * 2 + 1]});
+                node.crossLength[i] = glm::packHalf2x16({cross[i * 2], cross[i * 2 + 1]});
+            }
+        }
+    }
+
+    // A drawn normal turns with the triangles that share it.
+    void coat(uint32_t vertex) {
+        const RenderVertex& v = domain_.vertices[vertex];
+        const uint32_t node = model_.nodeOf[vertex];
+        DeformCoat made{};
+        made.node = model_.nodes[node].vertex;
+        made.normal = v.normal;
+        steps_.clear();
+        glm::dvec3 face(0);
+        for (const uint32_t corner : corners_.of(node)) {
+            if (domain_.vertices[domain_.indices[corner]].normal != v.normal) continue;
+            const uint32_t triangle = corner / 3;
+            const Step step{keeperAt(triangle, corner % 3 + 1), keeperAt(triangle, corner % 3 + 2)};
+            if (step.from != step.to && step.from != made.node && step.to != made.node &&
+                steps_.size() < kMostSteps)
+                steps_.push_back(step);
+        }
+        const bool closes = walk(steps_, walk_, best_);
+        const size_t all = best_.size();
+        const size_t kept = std::min<size_t>(all, kDeformRing - (closes ? 1 : 0));
+        for (size_t i = 0; i < kDeformRing; ++i) made.ring[i] = made.node;
+        for (size_t i = 0; i < kept; ++i) made.ring[i] = best_[i * all / kept];
+        for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
+            made.ring[i] = closes ? made.ring[0] : made.ring[kept - 1];
+        const glm::dvec3 at = placeOf(v);
+        for (size_t i = 0; i + 1 < kDeformRing; ++i)
+            face += glm::cross(placeOf(domain_.vertices[made.ring[i]]) - at,
+                               placeOf(domain_.vertices[made.ring[i + 1]]) - at);
+        face = unitOr(face, glm::dvec3(0));
+        made.faceX = float(face.x);
+        made.faceY = float(face.y);
+        made.faceZ = float(face.z);
+        model_.coats.push_back(made);
+    }
+
+    const BurnDomain& domain_;
+    DeformModel& model_;
+    Corners corners_;
+    std::pmr::vector<Step> steps_;
+    std::pmr::vector<uint32_t> walk_, best_, texels_, texelStart_, texelList_;
+};
+
+}  // namespace
+
+DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory) {
+    DeformModel model(memory);
+    weld(domain, model, memory);
+    model.coats.reserve(domain.vertices.size());
+    Builder(domain, model, memory).run();
+    return model;
+}
+
+}  // namespace fw::mesh

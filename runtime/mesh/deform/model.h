@@ -1,0 +1,22 @@
+// What deformation needs to know of a mesh: its nodes (points of the drawn mesh, with all vertices
+// on them), which way and how far each may recede, the texels around it, its neighbours; and what
+// normals follow. Static, per mesh, made when the first object wants it. Moves nothing itself.
+#pragma once
+#include "mesh/burn_domain.h"
+#include "shared/deform.h"
+
+namespace fw::mesh {
+
+struct DeformModel {
+    explicit DeformModel(std::pmr::memory_resource* memory)
+        : nodes(memory), coats(memory), nodeOf(memory) {}
+
+    std::pmr::vector<gpu::DeformNode> nodes;  // `vertex`, `ring`, `cross_`: of BurnDomain::vertices
+    std::pmr::vector<gpu::DeformCoat> coats;  // per vertex of the domain
+    std::pmr::vector<uint32_t> nodeOf;        // per vertex of the domain
+};
+
+// Vertices at one place are one node, whatever their normals and UVs.
+DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory);
+
+}  // namespace fw::mesh

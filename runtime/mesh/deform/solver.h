@@ -1,0 +1,47 @@
+// Deformation on the CPU, as the passes of the same names do it on a device: for tests, tools and
+// the bench. One object, in its own axes.
+#pragma once
+#include "mesh/deform/model.h"
+
+#include <span>
+
+namespace fw::mesh {
+
+struct DeformState {  // of one object; per vertex of the domain
+    explicit DeformState(std::pmr::memory_resource* memory) : shown(memory), soft(memory) {}
+    std::pmr::vector<gpu::ShownVertex> shown;
+    struct Soft {             // of what moves; only vertices that keep a node's state count
+        gpu::vec3 place[2];   // m: where it would be without constraints, now and next
+        gpu::vec3 normal;     // unit
+        float reach[2] = {};  // m to a pin along links that hold; 0: pinned
+        gpu::vec3 bend[2]{}, share[2]{};  // m: of it, and of each neighbour
+        uint32_t holds = 0;               // bits of the links that count: near, far << 8
+    };
+    std::pmr::vector<Soft> soft;
+    uint32_t parity = 0;
+};
+
+struct SheetDrive {  // object axes
+    gpu::vec3 up{0, 1, 0};
+    gpu::vec3 wind{0};                           // m/s
+    float gravity = 9.81f;                       // m/s^2
+    float step = float(gpu::kSoftTicks) / 4096;  // s
+    float time = 0;                              // s
+};
+
+// At rest.
+void resetDeform(const DeformModel& model, DeformState& state);
+// Of what moves, after resetDeform: whatever lies within a pin is pinned.
+void resetSoft(const DeformModel& model, const gpu::DeformObject& object, DeformState& state);
+// `states`: the object's burn map (ticks or codes).
+void recede(const DeformModel& model, const gpu::DeformObject& object,
+            std::span<const uint32_t> states, uint32_t now, DeformState& state);
+void drape(const DeformModel& model, DeformState& state);
+// One step of a sheet: passes bend and soft.
+void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
+               DeformState& state);
+// One step of the published springs; `lost`: m that every node recedes in it.
+void springStep(const DeformModel& model, const gpu::DeformObject& object, float step,
+                std::span<const float> lost, float damping, DeformState& state);
+
+}  // namespace fw::mesh

@@ -1,0 +1,220 @@
+// A sheet of paper held at one corner and a cloth that hangs from a rod, in a breath of wind; both
+// are lit below. In a window: drag to turn, wheel to zoom.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "common/camera.h"
+#include "common/filming.h"
+#include "common/fire_host.h"
+#include "common/studio.h"
+
+namespace {
+
+struct Sheet {
+    std::vector<float> positions, details;
+    std::vector<uint32_t> indices;
+};
+
+// `width` x `height` m, its lower left corner at the origin, in the plane z = 0 but for soft waves.
+Sheet makeSheet(float width, float height, float cell, float waves) {
+    Sheet sheet;
+    const auto columns = static_cast<uint32_t>(std::lround(width / cell));
+    const auto rows = static_cast<uint32_t>(std::lround(height / cell));
+    for (uint32_t y = 0; y <= rows; ++y)
+        for (uint32_t x = 0; x <= columns; ++x) {
+            const float u = static_cast<float>(x) / static_cast<float>(columns);
+            const float v = static_cast<float>(y) / static_cast<float>(rows);
+            const float z = waves * std::sin(18.0f * u) * (1.2f - v) + 0.3f * waves * v * v;
+            sheet.positions.insert(sheet.positions.end(), {u * width, v * height, z});
+            sheet.details.insert(sheet.details.end(), {u * width, v * height});
+        }
+    for (uint32_t y = 0; y < rows; ++y)
+        for (uint32_t x = 0; x < columns; ++x) {
+            const uint32_t a = y * (columns + 1) + x, b = a + 1, c = a + columns + 1, d = c + 1;
+            if ((x + y) % 2)
+                sheet.indices.insert(sheet.indices.end(), {a, b, c, b, d, c});
+            else
+                sheet.indices.insert(sheet.indices.end(), {a, b, d, a, d, c});
+        }
+    return sheet;
+}
+
+struct Exhibit {
+    const char* name;
+    uint32_t preset;
+    float width, height, cell, waves;  // m
+    glm::vec3 place;                   // of its lower left corner, m
+    float turn;                        // degrees about up
+    float haste;                       // how much faster than real, in a run of ten seconds
+    glm::vec3 match;                   // m, from its lower left corner
+};
+constexpr Exhibit kExhibits[] = {
+    {"paper",
+     FW_MATERIAL_PAPER,
+     0.21f,
+     0.297f,
+     0.0075f,
+     0.0f,
+     {-0.42f, 0.36f, 0.05f},
+     20,
+     4.0f,
+     {0.16f, 0.0f, 0}},
+    {"cotton",
+     FW_MATERIAL_COTTON,
+     0.44f,
+     0.56f,
+     0.0125f,
+     0.010f,
+     {0.02f, 0.12f, 0},
+     -8,
+     4.5f,
+     {0.30f, 0.0f, 0}},
+};
+
+glm::mat4 poseOf(const Exhibit& exhibit) {
+    return glm::rotate(glm::translate(glm::mat4(1.0f), exhibit.place), glm::radians(exhibit.turn),
+                       glm::vec3(0, 1, 0));
+}
+
+FwBurnableMeshId placeExhibit(sample::FireHost& fire, const Exhibit& exhibit, float seconds) {
+    const Sheet sheet = makeSheet(exhibit.width, exhibit.height, exhibit.cell, exhibit.waves);
+    FwMeshDef mesh = fwDefaultMeshDef();
+    mesh.positions = sheet.positions.data();
+    mesh.details = sheet.details.data();
+    mesh.indices = sheet.indices.data();
+    mesh.vertexCount = static_cast<uint32_t>(sheet.positions.size() / 3);
+    mesh.indexCount = static_cast<uint32_t>(sheet.indices.size());
+    mesh.mapSize = 512;
+    mesh.texelsPerMetre = 512;
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.flags = uint32_t{FW_BURNABLE_TWO_SIDED} | uint32_t{FW_BURNABLE_SHELL};
+    fire.check(fwWorld_CreateMesh(fire.world, &mesh, &def.mesh), "fwWorld_CreateMesh");
+    FwMaterialDef material = fwDefaultMaterialDef();
+    fire.check(fwInitMaterialPreset(&material, exhibit.preset), "fwInitMaterialPreset");
+    const float haste = exhibit.haste * 10.0f / seconds;
+    material.spreadRate *= haste;
+    material.burnTime /= haste;
+    fire.check(fwWorld_CreateMaterial(fire.world, &material, &def.materials[0]),
+               "fwWorld_CreateMaterial");
+    // The paper hangs from a clip at its upper left corner, the cloth from a rod along its top.
+    FwPin pin{};
+    pin.from[1] = pin.to[1] = exhibit.height;
+    pin.radius = exhibit.preset == FW_MATERIAL_PAPER ? 0.016f : 0.004f;
+    if (exhibit.preset != FW_MATERIAL_PAPER) pin.to[0] = exhibit.width;
+    pin.from[2] = pin.to[2] = 0.3f * exhibit.waves;
+    pin.radius += 1.2f * exhibit.waves;
+    def.pins = &pin;
+    def.pinCount = 1;
+    def.ground = 0.004f;
+    std::copy_n(glm::value_ptr(poseOf(exhibit)), 16, def.transform);
+    FwBurnableMeshId object{};
+    fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object), "fwWorld_CreateBurnableMesh");
+    return object;
+}
+
+void light(sample::FireHost& fire, FwBurnableMeshId object, const Exhibit& exhibit) {
+    FwIgnitionDef def = fwDefaultIgnitionDef();
+    def.object = object;
+    const glm::vec4 at = poseOf(exhibit) * glm::vec4(exhibit.match, 1);
+    for (int c = 0; c < 3; ++c) def.position[c] = at[c];
+    def.radius = 0.012f;
+    fire.check(fwWorld_Ignite(fire.world, &def, nullptr), "fwWorld_Ignite");
+}
+
+int run(const sample::Options& options, float seconds) {
+    sample::ValidationLog validation;
+    {
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
+        sample::StageRequest stageRequest;
+        stageRequest.title = "Flamewright: paper and cloth";
+        const uint32_t frames = sample::framesOf(options, seconds);
+        sample::Stage stage(host, options, stageRequest, frames);
+        sample::Studio studio(host, stage, {0, 0, 0}, 1.1f);
+        // A rod and its stand, a clip.
+        studio.addBlock({0.245f, 0.684f, -0.03f}, {0.27f, 0.005f, 0.005f});
+        studio.addBlock({0.52f, 0.34f, -0.07f}, {0.008f, 0.35f, 0.008f});
+        studio.addBlock({-0.44f, 0.34f, 0.045f}, {0.006f, 0.33f, 0.006f});
+
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.wind[0] = 0.25f;
+        worldDef.wind[2] = 0.35f;
+        worldDef.seed = options.seed;
+        sample::FireHost fire(host, worldDef);
+        fire.registerTarget(stage);
+        FwBurnableMeshId objects[2]{};
+        for (size_t i = 0; i < 2; ++i) objects[i] = placeExhibit(fire, kExhibits[i], seconds);
+
+        FwView view = fwDefaultView();
+        sample::duskLight(view);
+        sample::OrbitCamera orbit;
+        orbit.target = {0.05f, 0.37f, 0};
+        orbit.distance = 1.95f;
+        orbit.yaw = glm::radians(18.0f);
+        orbit.pitch = glm::radians(8.0f);
+        orbit.fieldOfView = 0.46f;
+
+        sample::FilmRequest film;
+        film.name = "paper_and_cloth";
+        film.moments = 9;
+        film.columns = 3;
+        sample::Filming filming(stage, options, film);
+
+        sample::StageFrame frame;
+        while (stage.next(frame)) {
+            orbit.turn(frame.input.dragX, frame.input.dragY);
+            orbit.zoom(frame.input.wheel);
+            sample::setCamera(view, orbit.camera(), frame);
+            // Once both hang still.
+            if (frame.number == static_cast<uint32_t>(1 + frames / 12))
+                for (size_t i = 0; i < 2; ++i) light(fire, objects[i], kExhibits[i]);
+            FwLight lights[8];
+            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
+            fire.recordOutside(frame, view);
+            stage.beginScene(frame);
+            studio.draw(frame, frame.commands, view, {lights, lightCount});
+            studio.drawBlocks(frame, frame.commands);
+            fire.recordInside(frame, view);
+            stage.endScene(frame);
+            stage.finish(frame);
+        }
+
+        if (options.headless) {
+            sample::Summary summary;
+            summary.title = "Paper and cloth";
+            summary.rows.emplace_back("device", host.properties.deviceName);
+            for (size_t i = 0; i < 2; ++i) {
+                FwObjectState state{};
+                state.structSize = sizeof state;
+                fwWorld_GetObjectState(fire.world, objects[i], &state);
+                char line[96];
+                std::snprintf(line, sizeof line, "%.0f %% caught fire",
+                              static_cast<double>(100.0f * state.burntFraction));
+                summary.rows.emplace_back(kExhibits[i].name, line);
+            }
+            filming.finish(summary, fire);
+        }
+    }
+    return validation.exitCode();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return sample::guardedMain("05_paper_and_cloth", [&] {
+        sample::Options options;
+        options.fps = 24.0;
+        options.width = 640;
+        options.height = 400;
+        float seconds = 10;
+        sample::OptionParser parser("05_paper_and_cloth", "sheets that curl, shrink and fall");
+        parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
+        if (!parser.parse(argc, argv, options)) return 0;
+        if (options.list) {
+            for (const Exhibit& exhibit : kExhibits) std::printf("%s\n", exhibit.name);
+            return 0;
+        }
+        return run(options, seconds);
+    });
+}

@@ -1,0 +1,278 @@
+// Deformation of burning meshes: records of its planes, and the maths that C++ and the shaders share.
+// Cosmetic floats, derived from the authoritative burn state. A *node* is a point of the drawn mesh
+// with all vertices that lie on it; its state is kept with one of them.
+// GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_DEFORM_H
+#define FW_SHARED_DEFORM_H
+#include "shared/burn.h"
+
+#ifdef __cplusplus
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#endif
+
+FW_SHARED_BEGIN
+
+FW_SHARED_CONST uint kDeformTexels = 16u;     // of a node's ring that it samples, as eq. (9)'s k
+FW_SHARED_CONST uint kDeformRing = 8u;        // neighbours of a node
+FW_SHARED_CONST uint kDeformNodeQuads = 13u;  // of a DeformNode
+FW_SHARED_CONST uint kDeformCoatQuads = 4u;
+FW_SHARED_CONST uint kDeformObjectQuads = 36u; // of a DeformObject: materials from 4, pins from 20
+FW_SHARED_CONST uint kShownQuads = 3u;        // of a ShownVertex
+FW_SHARED_CONST uint kMaxPins = 8u;
+// In the second word of a group, above the first node or vertex.
+FW_SHARED_CONST uint kDeformReset = 0x80000000u;  // start from rest
+FW_SHARED_CONST uint kDeformOdd = 0x40000000u;    // its places are the second ones
+FW_SHARED_CONST uint kDeformItem = 0x3FFFFFFFu;
+FW_SHARED_CONST uint kSoftQuads = 3u;         // of a vertex of what moves: place, place, normal and bend
+FW_SHARED_CONST uint kSoftTicks = 32u;        // of one of its steps: 1/128 s
+FW_SHARED_CONST uint kMostSoftSteps = 6u;     // of a frame; a hitch drops the rest
+
+// DeformObject::flags
+FW_SHARED_CONST uint kDeformRecede = 1u;      // tier A: along the offset, no forces
+FW_SHARED_CONST uint kDeformShell = 2u;       // tier B: a thin sheet
+FW_SHARED_CONST uint kDeformSprings = 4u;     // tier C: the published mass-spring model
+
+// DeformNode::flags, above the material (bits 0..7)
+FW_SHARED_CONST uint kNodeClosed = 0x100u;    // its ring of neighbours closes
+FW_SHARED_CONST uint kNodeEven = 0x200u;      // it rests in the middle of its neighbours, seen from above
+FW_SHARED_CONST uint kNodeFarEven = 0x400u;   // and of those two steps away, of which none is missing
+FW_SHARED_CONST uint kNodeRingShift = 16u;    // how many neighbours: bits 16..19
+
+struct DeformNode {       // static, per mesh
+    float x; float y; float z;   // m, rest
+    uint vertex;                 // that keeps its state, from the mesh's first
+    float outX; float outY; float outZ; // which way it recedes: -1 along every face's normal, if it can
+    float limit;                 // m, most it may recede
+    uint flags;                  // material, kNode...
+    uint opposite;               // texel on the wall behind, kNoneTexel: none
+    float area;                  // m^2, a third of its triangles
+    float rise;                  // m that its neighbours' mean lies above it along the rest normal
+    uint texels[16];             // of its ring, in the burn map; kNoneTexel after the last
+    uint ring[8];                // vertices of its neighbours, in order around it
+    uint ringLength[4];          // m, halfs
+    uint cross_[8];              // two steps straight on, by neighbour; kNoneTexel: none
+    uint crossLength[4];         // m, halfs
+};
+FW_SHARED_SIZE(DeformNode, 208)
+
+struct DeformCoat {       // static, per drawn vertex: what its normal follows
+    uint node;            // vertex that keeps its node's state
+    uint normal;          // at rest, signed 11:11:10
+    uint reserved0; uint reserved1;
+    uint ring[8];         // chain of vertices around it, the last repeated: of triangles that share the normal
+    float faceX; float faceY; float faceZ;  // unit, their area-weighted normal at rest
+    float reserved2;
+};
+FW_SHARED_SIZE(DeformCoat, 64)
+
+struct ShownVertex {      // what is drawn instead of a mesh::RenderVertex's position and normal
+    float x; float y; float z;   // m, object space
+    uint normal;                 // signed 11:11:10
+    float burnt;                 // [0, 1] mean over the node's texels; never falls
+    float reserved[6];
+    float lead;                  // s of look time that holes come earlier here
+};
+FW_SHARED_SIZE(ShownVertex, 48)
+
+struct DeformMaterial {   // one material on one object
+    uint charTicks;       // from ignition to consumed (recession) or charred (sheets)
+    float depth;          // m, recession when consumed
+    float shrink;         // [0, 0.5] of lengths, when charred
+    float curl;           // 1/m, when charred
+    uint holeTicks;       // from ignition to a hole; kNoneTexel: it never opens
+    float holeSeconds;    // the same in look time
+    float bend;           // [0, 1] stiffness against bending, before it chars
+    float drag;           // 1/s, of the air across it
+};
+FW_SHARED_SIZE(DeformMaterial, 32)
+
+struct DeformObject {     // per object slot
+    uint nodeBase;        // into the nodes
+    uint nodeCount;
+    uint coatBase;        // into the coats
+    uint vertexCount;
+    uint shownBase;       // into the shown vertices
+    uint stateBase;       // as BurnObject
+    uint flags;           // kDeform...
+    uint pinCount;
+    float ground;         // m, world, along up: nothing falls below; -1e9: no ground
+    uint slot;            // of its BurnObject
+    float scale;          // m in the world of 1 m
+    float springs;        // 1/s^2, stiffness over mass of the published model
+    uint softBase;        // into the soft vertices
+    float reserved0; float reserved1; float reserved2;
+    DeformMaterial materials[8];
+    vec4 pins[16];        // from xyz, radius; to xyz, 0: object space, m
+};
+FW_SHARED_SIZE(DeformObject, 576)
+
+struct DeformPush {       // push constants of the deformation passes
+    uint now;             // tick of the state that is shown
+    uint first;           // group in the list
+    uint parity;          // of the substep
+    float step;           // s
+    vec4 wind;            // m/s, world; w: s, cosmetic time
+    vec4 up;              // world; w: ticks into the running step
+};
+FW_SHARED_SIZE(DeformPush, 48)
+
+#ifdef __cplusplus
+using glm::cross;
+using glm::dot;
+using glm::length;
+using glm::packHalf2x16;
+using glm::unpackHalf2x16;
+inline float inversesqrt(float x) { return 1.0f / std::sqrt(x); }
+inline float deformFloor(float x) { return std::floor(x); }
+#else
+float deformFloor(float x) { return floor(x); }
+#endif
+FW_SHARED_FN float leastF(float a, float b) { return a < b ? a : b; }
+FW_SHARED_FN float mostF(float a, float b) { return a > b ? a : b; }
+FW_SHARED_FN float mixF(float a, float b, float t) { return a + (b - a) * t; }
+FW_SHARED_FN float unitF(float x) { return x < 0.0f ? 0.0f : (x > 1.0f ? 1.0f : x); }
+
+// Eq. (9) with areas: the mip of a burn map of which about k texels cover a ring of `texels`.
+FW_SHARED_FN uint mipOfRing(uint texels, uint k) {
+    uint mip = 0u;
+    while (texels >= k * 4u) {
+        texels /= 4u;
+        ++mip;
+    }
+    return mip;
+}
+
+// Share of a texel's fuel that is gone at tick `now` and `more`, if it caught at t.
+FW_SHARED_FN float burntShare(uint t, uint now, float more, uint charTicks) {
+    if (!isSource(t) || now < t) return 0.0f;
+    if (charTicks == kNoneTexel || charTicks == 0u) return 0.0f;
+    return leastF((float(now - t) + more) / float(charTicks), 1.0f);
+}
+
+// m that a node recedes: never so far that walls or the triangles around would cross.
+FW_SHARED_FN float recession(float burnt, float depth, float limit) {
+    return leastF(burnt * depth, limit);
+}
+
+// The rest normal `n`, turned as its faces turned from `a` to `b`; all unit.
+FW_SHARED_FN vec3 turnedNormal(vec3 n, vec3 a, vec3 b) {
+    float c = dot(a, b);
+    if (c > 0.9999995f) return n;
+    if (c < -0.99f) return b;  // turned over: the least turn says nothing
+    vec3 sum = a + b;
+    vec3 turned = n - sum * (dot(sum, n) / (1.0f + c)) + b * (2.0f * dot(a, n));
+    return turned * inversesqrt(mostF(dot(turned, turned), 1e-20f));
+}
+
+// ---- sheets: position based, every node corrects itself from what its neighbours were --------------
+
+FW_SHARED_CONST float kReachNone = 60000.0f;  // m along unburnt links to a pin: none known
+FW_SHARED_CONST float kBendUnit = 4096.0f;    // of packed bends, per m
+// Neighbours correct at the same time: a pattern of alternating nodes is corrected by up to 4 times
+// the one and twice 3.4 times the other, and with speeds that is stable while it is below 4/3.
+FW_SHARED_CONST float kLinkRelax = 0.2f;
+FW_SHARED_CONST float kBendRelax = 0.08f;
+FW_SHARED_CONST float kSheetDamping = 0.01f;  // of the velocity, in 1/128 s
+FW_SHARED_CONST float kFastest = 12.0f;       // m/s
+FW_SHARED_CONST float kPinBurns = 0.6f;       // a pin lets go of what has burnt so far
+
+// Does the link between two nodes still hold? Links part one by one as both ends are consumed.
+FW_SHARED_FN bool linkHolds(float burntA, float burntB, uint a, uint b) {
+    uint h = ((a ^ b) * 0x9E3779B1u) ^ ((a + b) * 0x85EBCA6Bu);
+    h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
+    return leastF(burntA, burntB) < 0.80f + 0.15f * float((h >> 8u) & 0xFFFFu) * (1.0f / 65536.0f);
+}
+
+// A relaxation that stands for the same stiffness whatever the step.
+FW_SHARED_FN float relaxAt(float relax, float dt) {
+    float steps = dt * 128.0f;
+    return steps < 1.0f ? relax * steps * steps : relax;
+}
+
+// Of a velocity, after one step; charred sheets move as through honey.
+FW_SHARED_FN float sheetDamping(float charred, float dt) {
+    return 1.0f - kSheetDamping * (1.0f + 5.0f * charred) * (dt * 128.0f);
+}
+
+// How far shrinking and curling have come: all of it before links part.
+FW_SHARED_FN float charredShare(float burnt) {
+    float x = unitF(burnt * 1.8f);
+    return x * x * (3.0f - 2.0f * x);
+}
+
+// What moves x towards the rest length from y; share: 1/2, or 1 if y is pinned.
+FW_SHARED_FN vec3 linkPush(vec3 x, vec3 y, float rest, float share) {
+    vec3 d = y - x;
+    float l = length(d);
+    return d * (share * (l - rest) / mostF(l, 1e-9f));
+}
+
+// Which way it curls, seen along its normal: towards the side that flames lick, from below.
+FW_SHARED_FN float curlSide(vec3 normal, vec3 up) {
+    float s = 0.7f - 2.0f * dot(normal, up);
+    return s < -1.0f ? -1.0f : (s > 1.0f ? 1.0f : s);
+}
+
+// What a node's place must give for its neighbours' mean to lie `rise` above it. Of an even node all
+// of the way there: that is the slope of an energy, which a part of it along a normal is not.
+FW_SHARED_FN vec3 bendOf(vec3 toMean, vec3 normal, float rise, float neighbours, float stiff, bool even) {
+    vec3 off = even ? toMean - normal * rise : normal * (dot(toMean, normal) - rise);
+    off *= stiff * kBendRelax * neighbours / (neighbours + 1.0f);
+    float square = dot(off, off);
+    return square > 1e-4f ? off * (1e-2f * inversesqrt(square)) : off;
+}
+
+// m that a curl lifts the mean of neighbours whose squared distances have this mean; no more than
+// they can be lifted without lying on top of each other.
+FW_SHARED_FN float curlRise(float curl, float square) {
+    float rise = 0.25f * curl * square, most = 0.3f * square * inversesqrt(mostF(square, 1e-20f));
+    return rise > most ? most : (rise < -most ? -most : rise);
+}
+
+FW_SHARED_FN vec3 noFasterThan(vec3 v, float most) {
+    float square = dot(v, v);
+    return square > most * most ? v * (most * inversesqrt(square)) : v;
+}
+
+// Nearest point of a pin's segment.
+FW_SHARED_FN vec3 pinPoint(vec3 x, vec3 from, vec3 to) {
+    vec3 d = to - from;
+    return from + d * unitF(dot(x - from, d) / mostF(dot(d, d), 1e-12f));
+}
+
+// ---- springs, as published ------------------------------------------------------------------------
+
+FW_SHARED_CONST float kSpringShare = 0.2f;   // alpha of eq. (3)
+FW_SHARED_CONST float kDecayShare = 1.0f;    // beta
+FW_SHARED_CONST float kSpringDamping = 0.08f;  // of the velocity, per step
+
+// Eq. (4): of one spring, per unit mass.
+FW_SHARED_FN vec3 springPull(vec3 x, vec3 y, float rest, float stiffness) {
+    return linkPush(x, y, rest, stiffness);
+}
+// Eqs. (5) to (8): what a recession by `depth` within a step of dt is as an acceleration.
+FW_SHARED_FN vec3 decayPull(vec3 normal, float depth, float dt) {
+    return normal * (-2.0f * depth / (dt * dt));
+}
+// Semi-implicit Euler is stable below 2 / w, w^2 <= 2 * springs * stiffness (Gershgorin): the
+// stiffness at `share` of that bound.
+FW_SHARED_FN float springsAt(float share, float dt, float springs) {
+    float w = 2.0f * share / dt;
+    return w * w / (2.0f * springs);
+}
+
+FW_SHARED_FN uint packDirection(vec3 n) {  // signed 11:11:10
+    int x = int(deformFloor(n.x * 1023.0f + 0.5f)), y = int(deformFloor(n.y * 1023.0f + 0.5f));
+    int z = int(deformFloor(n.z * 511.0f + 0.5f));
+    return (uint(x) & 0x7FFu) | ((uint(y) & 0x7FFu) << 11u) | ((uint(z) & 0x3FFu) << 22u);
+}
+FW_SHARED_FN vec3 unpackDirection(uint packed) {
+    int n = int(packed);
+    vec3 v = vec3(float((n << 21) >> 21), float((n << 10) >> 21), float(n >> 22) * 2.0f);
+    return v * inversesqrt(mostF(dot(v, v), 1e-20f));
+}
+
+FW_SHARED_END
+#endif

@@ -1,0 +1,338 @@
+// Deformation, tiers B and C: sheets that curl, shrink, tear and fall, and the published springs.
+// The CPU's text of the passes' maths.
+#include "mesh/deform/solver.h"
+
+#include "unit/mesh_checks.h"
+
+#include <random>
+
+namespace {
+
+using namespace fw;
+using namespace fw::test;
+using gpu::vec3;
+using mesh::DeformModel;
+using mesh::DeformState;
+using mesh::SheetDrive;
+
+constexpr double kPaper = 0.2;  // m
+constexpr float kStep = float(gpu::kSoftTicks) / 4096;
+
+Mesh sheet(int cells, double size = kPaper) {
+    Mesh mesh;
+    for (int y = 0; y <= cells; ++y)
+        for (int x = 0; x <= cells; ++x)
+            mesh.addVertex(size * x / cells, size * y / cells, 0, double(x) / cells,
+                           double(y) / cells);
+    for (int y = 0; y < cells; ++y)
+        for (int x = 0; x < cells; ++x) {
+            const uint32_t a = uint32_t(y * (cells + 1) + x), b = a + 1;
+            const uint32_t c = a + uint32_t(cells) + 1, d = c + 1;
+            if ((x + y) & 1) {
+                mesh.addTriangle(a, b, c);
+                mesh.addTriangle(b, d, c);
+            } else {
+                mesh.addTriangle(a, b, d);
+                mesh.addTriangle(a, d, c);
+            }
+        }
+    return mesh;
+}
+
+gpu::DeformObject paper(float curl, float shrink = 0) {
+    gpu::DeformObject object{};
+    object.flags = gpu::kDeformShell;
+    object.ground = -1e9f;
+    object.scale = 1;
+    for (gpu::DeformMaterial& m : object.materials) {
+        m.curl = curl;
+        m.shrink = shrink;
+        m.bend = 0.5f;
+        m.drag = 0;
+    }
+    return object;
+}
+void pin(gpu::DeformObject& object, vec3 from, vec3 to, float radius) {
+    object.pins[object.pinCount * 2] = gpu::vec4(from, radius);
+    object.pins[object.pinCount * 2 + 1] = gpu::vec4(to, 0);
+    ++object.pinCount;
+}
+
+struct Sheet {
+    BurnDomain domain;
+    DeformModel model;
+    DeformState state;
+    gpu::DeformObject object;
+    SheetDrive drive;
+
+    Sheet(int cells, const gpu::DeformObject& what)
+        : domain(bakeOf(sheet(cells).input(64))),
+          model(mesh::makeDeformModel(domain, std::pmr::new_delete_resource())),
+          state(std::pmr::new_delete_resource()),
+          object(what) {
+        mesh::resetDeform(model, state);
+        mesh::resetSoft(model, object, state);
+        drive.gravity = 0;
+    }
+    void run(int steps) {
+        for (int i = 0; i < steps; ++i) mesh::sheetStep(model, object, drive, state);
+    }
+    vec3 at(const gpu::DeformNode& node) const {
+        const gpu::ShownVertex& v = state.shown[node.vertex];
+        return {v.x, v.y, v.z};
+    }
+    vec3 nearest(vec3 rest) const {
+        const gpu::DeformNode* best = nullptr;
+        float least = 1e30f;
+        for (const gpu::DeformNode& node : model.nodes) {
+            const float d = gpu::length(vec3(node.x, node.y, node.z) - rest);
+            if (d >= least) continue;
+            least = d;
+            best = &node;
+        }
+        return at(*best);
+    }
+    template <class Of>
+    void burn(Of of) {
+        for (const gpu::DeformNode& node : model.nodes)
+            state.shown[node.vertex].burnt = of(vec3(node.x, node.y, node.z));
+    }
+    double kinetic() const {
+        double sum = 0;
+        for (const gpu::DeformNode& node : model.nodes) {
+            const vec3 v = state.soft[node.vertex].place[state.parity] - at(node);
+            sum += double(gpu::dot(v, v)) / double(drive.step) / double(drive.step) / 2;
+        }
+        return sum;
+    }
+    // All of it per unit mass: speeds, and what links and bends could still do.
+    double energy() const {
+        const double perStep = 1 / double(drive.step) / double(drive.step);
+        double sum = kinetic();
+        for (const gpu::DeformNode& node : model.nodes) {
+            const DeformState::Soft& self = state.soft[node.vertex];
+            for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
+                const float rest = gpu::unpackHalf2x16(node.ringLength[k / 2])[int(k & 1)];
+                if (!(rest > 0)) continue;
+                const double over =
+                    double(gpu::length(state.soft[node.ring[k]].place[state.parity] -
+                                       self.place[state.parity]) -
+                           rest);
+                sum += double(gpu::kLinkRelax) / 8 * over * over * perStep;
+            }
+            for (const vec3 bend : self.bend)  // of the step before
+                sum += double(gpu::dot(bend, bend)) / 2 / double(gpu::kBendRelax) /
+                       double(std::max(object.materials[0].bend, 1e-3f)) * perStep;
+        }
+        return sum;
+    }
+    // Of links between nodes that hold, longest over rest.
+    double stretch() const {
+        double worst = 0;
+        for (const gpu::DeformNode& node : model.nodes)
+            for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
+                const float rest = gpu::unpackHalf2x16(node.ringLength[k / 2])[int(k & 1)];
+                if (!(rest > 0)) continue;
+                const gpu::DeformNode& other = model.nodes[model.nodeOf[node.ring[k]]];
+                if (!gpu::linkHolds(state.shown[node.vertex].burnt, state.shown[other.vertex].burnt,
+                                    node.vertex, other.vertex))
+                    continue;
+                worst = std::max(worst, double(gpu::length(at(node) - at(other)) / rest));
+            }
+        return worst;
+    }
+};
+
+TEST(DeformSheet, StaysFlatWithoutFireOrForce) {
+    Sheet s(16, paper(30));
+    s.run(500);
+    for (const gpu::DeformNode& node : s.model.nodes)
+        ASSERT_LT(gpu::length(s.at(node) - vec3(node.x, node.y, node.z)), 1e-4f);
+}
+
+// From a crumpled start and without any input, motion only ever fades.
+TEST(DeformSheet, EnergyNeverGrowsOver10000Steps) {
+    for (const float bend : {0.0f, 0.3f, 0.8f}) {
+        gpu::DeformObject object = paper(0);
+        for (gpu::DeformMaterial& m : object.materials) m.bend = bend;
+        Sheet s(16, object);
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> off(-0.0005f, 0.0005f);
+        for (const gpu::DeformNode& node : s.model.nodes) {
+            vec3& p = s.state.soft[node.vertex].place[0];
+            p += vec3(off(random), off(random), off(random) + 0.01f * std::sin(20 * node.x));
+        }
+        double before = 1e30;
+        for (int window = 0; window < 40; ++window) {
+            double energy = 0;  // it swings between its forms
+            for (int i = 0; i < 50; ++i) {
+                s.run(5);
+                energy = std::max(energy, s.energy());
+            }
+            ASSERT_TRUE(std::isfinite(energy));
+            ASSERT_LE(energy, before * 1.001 + 1e-5) << "window " << window << " bend " << bend;
+            before = energy;
+        }
+        EXPECT_LT(before, 0.05);
+        EXPECT_LT(s.kinetic(), 1e-3);
+        EXPECT_LT(s.stretch(), 1.02);
+    }
+}
+
+// m that a sheet that chars towards one edge, held at the other, leaves its plane by: mean, most.
+struct Curl {
+    double mean = 0, most = 0;
+};
+Curl curlOf(float step, float curl) {
+    gpu::DeformObject object = paper(curl);
+    pin(object, {0, 0, 0}, {0, float(kPaper), 0}, 0.001f);
+    for (gpu::DeformMaterial& m : object.materials) m.drag = 8;
+    Sheet s(16, object);
+    s.drive.step = step;
+    s.burn([](vec3 at) { return 0.75f * std::max(0.0f, 2 * at.x / float(kPaper) - 1); });
+    s.run(int(8.0f / step));
+    Curl made;
+    for (const gpu::DeformNode& node : s.model.nodes) {
+        const double z = std::fabs(double(s.at(node).z));
+        made.mean += z / double(s.model.nodes.size());
+        made.most = std::max(made.most, z);
+    }
+    return made;
+}
+
+TEST(DeformSheet, CharredPaperCurlsAndTheStepDoesNotMatter) {
+    const Curl flat = curlOf(kStep, 0), curled = curlOf(kStep, 60), finer = curlOf(kStep / 2, 60);
+    std::printf(
+        "[   FIGURE ] of %.2f m: %.4f m in the mean, %.4f at most; at half the step %.4f, %.4f\n",
+        kPaper, curled.mean, curled.most, finer.mean, finer.most);
+    EXPECT_LT(flat.most, 1e-4);
+    EXPECT_GT(curled.most, 0.02);
+    EXPECT_NEAR(1, finer.mean / curled.mean, 0.05);
+}
+
+TEST(DeformSheet, CharredClothShrinks) {
+    Sheet s(16, paper(0, 0.2f));
+    s.burn([](vec3) { return 0.75f; });
+    s.run(2000);
+    const float side = gpu::length(s.nearest({float(kPaper), 0, 0}) - s.nearest({0, 0, 0}));
+    EXPECT_NEAR(0.8 * kPaper, side, 0.02 * kPaper);
+}
+
+// A hanging cloth holds its length; what is cut off below falls.
+TEST(DeformSheet, HangsAndFallsWhenBurntOff) {
+    gpu::DeformObject object = paper(0);
+    pin(object, {0, float(kPaper), 0}, {float(kPaper), float(kPaper), 0}, 0.001f);
+    object.ground = -0.5f;
+    for (gpu::DeformMaterial& m : object.materials) m.drag = 4;
+    Sheet s(24, object);
+    s.drive.gravity = 9.81f;
+    s.run(1000);
+    const vec3 corner = s.nearest({0, 0, 0});
+    EXPECT_LT(corner.y, 0.002f);
+    EXPECT_GT(corner.y, -0.02f * float(kPaper));  // stretched by 2 % at most
+    s.burn([](vec3 at) { return std::fabs(at.y - 0.1f) < 0.012f ? 1.0f : 0.0f; });
+    s.run(600);
+    EXPECT_LT(s.nearest({0.1f, 0.02f, 0}).y, -0.45f);
+    EXPECT_GE(s.nearest({0.1f, 0.02f, 0}).y, -0.501f);
+    EXPECT_GT(s.nearest({0.1f, 0.18f, 0}).y, 0.15f);
+}
+
+TEST(DeformSheet, UnburntLinksNeverPart) {
+    for (uint32_t a = 0; a < 50; ++a)
+        for (uint32_t b = 0; b < 50; ++b) {
+            EXPECT_TRUE(gpu::linkHolds(0.79f, 1, a, b));
+            EXPECT_TRUE(gpu::linkHolds(1, 0.79f, a, b));
+            EXPECT_FALSE(gpu::linkHolds(0.96f, 1, a, b));
+            EXPECT_EQ(gpu::linkHolds(0.87f, 0.9f, a, b), gpu::linkHolds(0.9f, 0.87f, b, a));
+        }
+}
+
+TEST(DeformSheet, AbsurdMeshesAreSurvived) {
+    for (uint32_t seed = 0; seed < 16; ++seed) {
+        const Mesh soup = makeSoup(seed);
+        if (!refusal(soup.input(32)).empty()) continue;
+        const BurnDomain domain = bakeOf(soup.input(32));
+        const DeformModel model = mesh::makeDeformModel(domain, std::pmr::new_delete_resource());
+        DeformState state(std::pmr::new_delete_resource());
+        mesh::resetDeform(model, state);
+        const gpu::DeformObject object = paper(100, 0.5f);
+        mesh::resetSoft(model, object, state);
+        SheetDrive drive;
+        drive.wind = {30, -20, 10};
+        for (gpu::ShownVertex& v : state.shown) v.burnt = 0.7f;
+        for (int i = 0; i < 300; ++i) mesh::sheetStep(model, object, drive, state);
+        mesh::drape(model, state);
+        for (const gpu::ShownVertex& v : state.shown)
+            ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) << seed;
+    }
+}
+
+// ---- tier C
+
+// A row of nodes with a spring between neighbours: the bound on its fastest motion is sharp.
+double springSpread(float share) {
+    constexpr uint32_t kNodes = 64;
+    constexpr float kRest = 0.0625f;
+    DeformModel model(std::pmr::new_delete_resource());
+    DeformState state(std::pmr::new_delete_resource());
+    model.coats.resize(kNodes);
+    for (uint32_t i = 0; i < kNodes; ++i) {
+        gpu::DeformNode node{};
+        node.x = kRest * float(i);
+        node.vertex = i;
+        std::fill(std::begin(node.ring), std::end(node.ring), i);
+        std::fill(std::begin(node.cross_), std::end(node.cross_), i);
+        node.ring[0] = i ? i - 1 : i;
+        node.ring[1] = i + 1 < kNodes ? i + 1 : i;
+        node.ringLength[0] = gpu::packHalf2x16({i ? kRest : 0.0f, i + 1 < kNodes ? kRest : 0.0f});
+        model.nodes.push_back(node);
+        model.coats[i].node = i;
+        for (uint32_t& other : model.coats[i].ring) other = i;
+    }
+    mesh::resetDeform(model, state);
+    gpu::DeformObject object{};
+    mesh::resetSoft(model, object, state);
+    object.springs = gpu::springsAt(share, kStep, 2) / gpu::kSpringShare;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> off(-1e-5f, 1e-5f);
+    for (uint32_t i = 0; i < kNodes; ++i) state.soft[i].place[0].x += off(random);
+    double worst = 0;
+    for (int i = 0; i < 10000; ++i) {
+        mesh::springStep(model, object, kStep, {}, 0, state);
+        if (i % 100) continue;
+        for (uint32_t n = 0; n < kNodes; ++n)
+            worst = std::max(worst, double(std::fabs(state.shown[n].x - model.nodes[n].x)));
+        if (!std::isfinite(worst) || worst > 1) return 1e9;
+    }
+    return worst;
+}
+
+TEST(DeformSprings, StableBelowTheBoundAndNotAbove) {
+    EXPECT_LT(springSpread(0.7f), 0.01);
+    EXPECT_LT(springSpread(0.98f), 0.02);
+    EXPECT_GT(springSpread(1.03f), 1.0);
+}
+
+TEST(DeformSprings, DecayPushesInwardsByWhatIsLost) {
+    const Mesh ball = makeCube(0.2, 8, true);
+    const BurnDomain domain = bakeOf(ball.input(64));
+    const DeformModel model = mesh::makeDeformModel(domain, std::pmr::new_delete_resource());
+    DeformState state(std::pmr::new_delete_resource());
+    mesh::resetDeform(model, state);
+    gpu::DeformObject object{};
+    object.springs = gpu::springsAt(0.7f, kStep, 16);
+    mesh::resetSoft(model, object, state);
+    const std::vector<float> lost(model.nodes.size(), 1e-5f);
+    for (int i = 0; i < 128; ++i)
+        mesh::springStep(model, object, kStep, lost, gpu::kSpringDamping, state);
+    double sum = 0;
+    for (const gpu::DeformNode& node : model.nodes) {
+        const gpu::ShownVertex& v = state.shown[node.vertex];
+        const float r = gpu::length(vec3(v.x, v.y, v.z));
+        ASSERT_GT(r, 0.05f);
+        sum += double(r);
+    }
+    EXPECT_LT(sum / double(model.nodes.size()), 0.0995);
+}
+
+}  // namespace
