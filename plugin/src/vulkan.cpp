@@ -29,6 +29,7 @@ void defaults(FwVulkanTargetDef& def) noexcept {
 void defaults(FwVulkanFrame&) noexcept {}
 void defaults(FwVulkanWishes& def) noexcept { def.minimumApiVersion = VK_API_VERSION_1_0; }
 void defaults(FwVulkanComposite&) noexcept {}
+void defaults(FwVulkanVertices& def) noexcept { def.stride = 12; }
 
 template <class Def>
 bool write(void* out) noexcept {
@@ -252,6 +253,22 @@ void checkTarget(const FwVulkanTargetDef& def) {
                    def.depthMode, int(def.depthFormat));
 }
 
+void checkVertices(const FwVulkanVertices& def) {
+    checkPointer(def.buffer, "FwVulkanVertices::buffer");
+    const auto limit = [](uint32_t value, const char* field) {
+        if (value < 12 || value > 2048 || value % 4 != 0)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanVertices::%s is %u; it is a multiple of 4 in [12, 2048].", field,
+                       value);
+    };
+    limit(def.stride, "stride");
+    if (def.normalOffset) limit(def.normalOffset, "normalOffset");
+    if (def.offset % 4 != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanVertices::offset is %llu; it is a multiple of 4.",
+                   static_cast<unsigned long long>(def.offset));
+}
+
 // False: there is nothing to draw on.
 bool checkViewport(const VkViewport* given) {
     checkPointer(given, "viewport");
@@ -281,6 +298,8 @@ size_t vulkanDefSize(uint32_t type) noexcept {
             return sizeof(FwVulkanWishes);
         case FW_DEF_VULKAN_COMPOSITE:
             return sizeof(FwVulkanComposite);
+        case FW_DEF_VULKAN_VERTICES:
+            return sizeof(FwVulkanVertices);
         default:
             return 0;
     }
@@ -298,6 +317,8 @@ bool writeVulkanDefaults(uint32_t type, void* def) noexcept {
             return write<FwVulkanWishes>(def);
         case FW_DEF_VULKAN_COMPOSITE:
             return write<FwVulkanComposite>(def);
+        case FW_DEF_VULKAN_VERTICES:
+            return write<FwVulkanVertices>(def);
         default:
             return false;
     }
@@ -386,6 +407,18 @@ FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* given
         const FwView view = edge::checkedView(givenView);
         if (!edge::checkViewport(viewport)) return FW_OK;
         return backend.recordInside(frame, target, view, *viewport) ? FW_OK : FW_NOT_READY;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld* world, FwBurnableMeshId id,
+                                         const FwVulkanVertices* given) {
+    return onWorld("fwWorld_SetVertexBuffer", world, [&](world::World& w) {
+        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        const FwVulkanVertices def =
+            edge::readDef(given, FW_DEF_VULKAN_VERTICES, "FwVulkanVertices");
+        edge::checkVertices(def);
+        backend.setVertexBuffer(w.skinnedSlot(id, def.vertexCount), def);
+        return FW_OK;
     });
 }
 

@@ -150,6 +150,16 @@ FwResult FW_CALL fwWorld_SetTransform(FwWorld* world, FwBurnableMeshId id,
     });
 }
 
+FwResult FW_CALL fwWorld_SetVertexPositions(FwWorld* world, FwBurnableMeshId id,
+                                            const float* positions, const float* normals,
+                                            uint32_t vertexCount) {
+    return onWorld("fwWorld_SetVertexPositions", world, [&](world::World& w) {
+        checkPointer(positions, "positions");
+        w.setVertexPositions(id, positions, normals, vertexCount);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_SetHidden(FwWorld* world, FwBurnableMeshId id, uint32_t hidden) {
     return onWorld("fwWorld_SetHidden", world, [&](world::World& w) {
         w.setHidden(id, hidden != 0);

@@ -65,7 +65,7 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED |
                                 FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_REFINE |
                                 FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS |
-                                FW_BURNABLE_NO_SPREAD;
+                                FW_BURNABLE_NO_SPREAD | FW_BURNABLE_SKINNED;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
@@ -283,6 +283,7 @@ uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain)
     if (object.flags & FW_BURNABLE_NO_HOLES) flags |= gpu::kObjectNoHoles;
     if (object.flags & FW_BURNABLE_HIDDEN) flags |= gpu::kObjectHidden;
     if (domain.hasDetail) flags |= gpu::kObjectDetail;
+    if (object.flags & FW_BURNABLE_SKINNED) flags |= gpu::kObjectSkinned;
     if (hasHeat(object)) flags |= gpu::kObjectHeat;
     return flags;
 }

@@ -57,12 +57,17 @@ gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMateri
 }  // namespace
 
 void checkDeform(const FwBurnableMeshDef& def) {
+    if ((def.flags & FW_BURNABLE_SKINNED) && (def.flags & (kTiers | FW_BURNABLE_REFINE)))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_SKINNED moves what "
+                   "deformation or refinement would: one of them.",
+                   def.flags);
     const uint32_t tiers = def.flags & (kTiers | FW_BURNABLE_REFINE);
     if (tiers & (tiers - 1))
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
-            "FwBurnableMeshDef::flags is 0x%x; of REFINE, RECEDE, SHELL and SPRINGS one is possible.",
-            def.flags);
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwBurnableMeshDef::flags is 0x%x; of REFINE, RECEDE, SHELL and SPRINGS one is "
+                   "possible.",
+                   def.flags);
     checkValue(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
     if (def.pinCount > gpu::kMaxPins)
         core::fail(FW_ERROR_INVALID_ARGUMENT,

@@ -28,6 +28,7 @@ struct ObjectInit {
     // Of an object that deforms; the model outlives the mesh. Bases are the backend's to fill.
     const mesh::DeformModel* deformModel = nullptr;
     const DeformObject* deform = nullptr;
+    float shape[3] = {1, 1, 1};  // what the mesh was stretched by since the host gave it
 };
 
 struct MaterialUpdate {  // new records of one object at a step's start (a wind or pose latch)
@@ -109,6 +110,10 @@ class Backend {
     // Pose, tint and flags; the rest of the record stays.
     virtual void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                                uint32_t flags) = 0;
+    // Of an object with kObjectSkinned: where the host's vertices are from the next frame on, m,
+    // object space, 3 each; normals 3 each or none. Never throws, needs no memory. Looks alone.
+    virtual void setVertices(uint32_t slot, std::span<const float> positions,
+                             std::span<const float> normals) noexcept = 0;
     // RGBA8 sRGB. The cpu backend keeps nothing.
     virtual void createImage(uint32_t slot, uint32_t width, uint32_t height,
                              std::span<const std::byte> pixels) = 0;

@@ -41,6 +41,8 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
 // `point` (object space, m); at least the nearest texel. Straight distance. For events.
 void texelsNear(const BurnDomain& domain, const float point[3], float radius,
                 std::pmr::vector<uint32_t>& out);
+// Weights of the corners of a real texel's triangle, in [0, 1], of sum 1.
+void texelWeights(const BurnDomain& domain, uint32_t texel, float (&weights)[3]) noexcept;
 // Nearest real texel, or kNone when farther than maxDistance m.
 uint32_t nearestTexel(const BurnDomain& domain, const float point[3], float maxDistance);
 

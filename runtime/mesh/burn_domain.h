@@ -82,6 +82,7 @@ struct BurnDomain {
           tiles(memory),
           tileBounds(memory),
           vertices(memory),
+          sources(memory),
           indices(memory) {}
 
     uint32_t width = 0, height = 0;  // texels, multiples of 8
@@ -106,6 +107,7 @@ struct BurnDomain {
     std::pmr::vector<TileStatic> tiles;       // tilesX * tilesY
     std::pmr::vector<TileBounds> tileBounds;  // per tile, for queries; not stored when cooked
     std::pmr::vector<RenderVertex> vertices;  // what is drawn, split at chart borders
+    std::pmr::vector<uint32_t> sources;       // per drawn vertex: the host's, for skinning
     std::pmr::vector<uint32_t> indices;       // 3 per triangle
     BakeReport report;
 

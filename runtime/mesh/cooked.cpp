@@ -14,7 +14,7 @@ namespace fw::mesh {
 namespace {
 
 constexpr uint32_t kMagic = 0x44425746;  // "FWBD"
-constexpr uint32_t kVersion = 1;         // of the format
+constexpr uint32_t kVersion = 2;         // of the format
 constexpr uint32_t kBakeVersion = 2;     // of the algorithm: part of the key
 constexpr size_t kHeaderBytes = 32;
 constexpr uint64_t kFnvPrime = 1099511628211ull;
@@ -129,7 +129,7 @@ void arrays(Stream& s, Domain& d) {
     };
     all(d.texels), all(d.normals), all(d.areas), all(d.thickness), all(d.slowness);
     all(d.triangleOf), all(d.tiles), all(d.links), all(d.readers), all(d.vertices);
-    all(d.indices);
+    all(d.sources), all(d.indices);
 }
 
 [[noreturn]] void refuse(const char* what, uint64_t element, uint64_t value, uint64_t limit) {
@@ -208,6 +208,8 @@ void checkDrawn(const BurnDomain& d) {
         require(finite, "A vertex", i);
         if (v.material >= d.materialCount)
             refuse("Material of vertex", i, v.material, d.materialCount);
+        if (d.sources[i] >= d.report.vertices)
+            refuse("Source of vertex", i, d.sources[i], d.report.vertices);
     }
 }
 
@@ -262,7 +264,7 @@ std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
     std::pmr::vector<std::byte> out(memory);
     out.reserve(kHeaderBytes + 512 + domain.texelCount() * kTexelBytes +
                 domain.tiles.size() * sizeof(TileStatic) + domain.links.size() * 4 +
-                domain.readers.size() * 4 + domain.vertices.size() * sizeof(RenderVertex) +
+                domain.readers.size() * 4 + domain.vertices.size() * (sizeof(RenderVertex) + 4) +
                 domain.indices.size() * 4);
     out.resize(kHeaderBytes);
     Writer writer(out);
@@ -335,7 +337,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     const uint64_t expected = texels * kTexelBytes +
                               uint64_t(domain.tileCount()) * sizeof(TileStatic) +
                               (uint64_t(counts.linkWords) + counts.readers + counts.indices) * 4 +
-                              uint64_t(counts.vertices) * sizeof(RenderVertex);
+                              uint64_t(counts.vertices) * (sizeof(RenderVertex) + 4);
     if (expected != reader.left())
         core::fail(FW_ERROR_BAD_DATA, "The cooked mesh's arrays need %llu bytes; it has %zu.",
                    static_cast<unsigned long long>(expected), reader.left());
@@ -350,6 +352,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     domain.links.resize(counts.linkWords);
     domain.readers.resize(counts.readers);
     domain.vertices.resize(counts.vertices);
+    domain.sources.resize(counts.vertices);
     domain.indices.resize(counts.indices);
     arrays(reader, domain);
     checkTexels(domain);

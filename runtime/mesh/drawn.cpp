@@ -98,6 +98,7 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
             if (same == kNone) {
                 same = uint32_t(domain.vertices.size());
                 domain.vertices.push_back(v);
+                domain.sources.push_back(uint32_t(source));
                 next.push_back(first[source]);
                 first[source] = same;
             }

@@ -2,6 +2,7 @@
 // machine picks the same texels. Nothing is built: tiles are skipped by their bounds.
 #include "mesh/texels.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fw::mesh {
@@ -87,6 +88,37 @@ void texelsNear(const BurnDomain& domain, const float point[3], float radius,
     visitWithin(domain, {{p.x, p.y, p.z}}, limit,
                 [&](uint32_t texel, int64_t) { out.push_back(texel); });
     std::sort(out.begin(), out.end());
+}
+
+void texelWeights(const BurnDomain& domain, uint32_t texel, float (&weights)[3]) noexcept {
+    const TexelPosition& t = domain.texels[texel];
+    const uint16_t units[3] = {t.x, t.y, t.z};
+    double corner[3][3], at[3];
+    for (int c = 0; c < 3; ++c) {
+        at[c] = double(domain.origin[c]) + double(domain.quantum) * units[c];
+        for (size_t k = 0; k < 3; ++k)
+            corner[k][c] =
+                double(domain.vertices[domain.indices[size_t(domain.triangleOf[texel]) * 3 + k]]
+                           .position[c]);
+    }
+    // Least squares in the triangle's plane.
+    double aa = 0, ab = 0, bb = 0, ap = 0, bp = 0;
+    for (int c = 0; c < 3; ++c) {
+        const double a = corner[0][c] - corner[2][c], b = corner[1][c] - corner[2][c];
+        const double p = at[c] - corner[2][c];
+        aa += a * a, ab += a * b, bb += b * b, ap += a * p, bp += b * p;
+    }
+    const double determinant = aa * bb - ab * ab;
+    double u = 1.0 / 3, v = 1.0 / 3;
+    if (determinant > 1e-12 * aa * bb) {
+        u = (ap * bb - bp * ab) / determinant;
+        v = (bp * aa - ap * ab) / determinant;
+    }
+    u = std::clamp(u, 0.0, 1.0);
+    v = std::clamp(v, 0.0, 1.0 - u);
+    weights[0] = float(u);
+    weights[1] = float(v);
+    weights[2] = float(1 - u - v);
 }
 
 }  // namespace fw::mesh

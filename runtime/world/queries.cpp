@@ -13,12 +13,43 @@ const mesh::BurnDomain& World::domainOf(const Object& object) const noexcept {
 }
 
 void World::texelPosition(const Object& object, uint32_t texel, float (&out)[3]) const noexcept {
+    float place[3];
+    texelPlace(object, texel, place);
+    components::toWorld(object.data.pose, place, out);
+}
+
+void World::texelPlace(const Object& object, uint32_t texel, float (&out)[3]) const noexcept {
     const mesh::BurnDomain& domain = domainOf(object);
     const mesh::TexelPosition& p = domain.texels[texel];
-    const float rest[3] = {domain.origin[0] + domain.quantum * float(p.x),
-                           domain.origin[1] + domain.quantum * float(p.y),
-                           domain.origin[2] + domain.quantum * float(p.z)};
-    components::toWorld(object.data.pose, rest, out);
+    const uint16_t units[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) out[i] = domain.origin[i] + domain.quantum * float(units[i]);
+    if (!object.skinMoved || domain.triangleOf[texel] == mesh::kNone) return;
+    float weights[3];
+    mesh::texelWeights(domain, texel, weights);
+    std::fill_n(out, 3, 0.0f);
+    for (size_t k = 0; k < 3; ++k) {
+        const uint32_t vertex = domain.indices[size_t(domain.triangleOf[texel]) * 3 + k];
+        const float* at = &object.skin[size_t(domain.sources[vertex]) * 3];
+        for (int i = 0; i < 3; ++i) out[i] += weights[k] * at[i];
+    }
+}
+
+uint32_t World::nearestTexel(const Object& object, const float point[3],
+                             float reach) const noexcept {
+    const mesh::BurnDomain& domain = domainOf(object);
+    if (!object.skinMoved) return mesh::nearestTexel(domain, point, reach);
+    uint32_t nearest = mesh::kNone;
+    float least = reach * reach;
+    for (uint32_t i = 0; i < domain.texelCount(); ++i) {
+        if (!domain.real(i)) continue;
+        float place[3], sum = 0;
+        texelPlace(object, i, place);
+        for (int k = 0; k < 3; ++k) sum += (place[k] - point[k]) * (place[k] - point[k]);
+        if (sum > least || (sum == least && nearest != mesh::kNone)) continue;
+        least = sum;
+        nearest = i;
+    }
+    return nearest;
 }
 
 uint32_t World::texelMaterial(const Object& object, uint32_t texel) const noexcept {
@@ -40,7 +71,7 @@ void World::tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag)
                    tags_.size(), kMaxTags);
     float point[3];
     components::toObject(object.data.pose, position, point);
-    const uint32_t texel = mesh::nearestTexel(domainOf(object), point, 1e30f);
+    const uint32_t texel = nearestTexel(object, point, 1e18f);
     if (texel == mesh::kNone)
         core::fail(FW_ERROR_BAD_DATA, "The mesh of burnable mesh %u has no texel.", id.index1);
     tags_.push_back({id, texel, tag});
@@ -79,10 +110,9 @@ FwQueryId World::requestPoint(FwBurnableMeshId id, const float position[3]) {
                    queries_.live(), kMaxQueries);
     float point[3];
     components::toObject(object.data.pose, position, point);
-    const mesh::BurnDomain& domain = domainOf(object);
     Query query;
     query.object = id;
-    query.texel = mesh::nearestTexel(domain, point, 1e30f);
+    query.texel = nearestTexel(object, point, 1e18f);
     if (query.texel == mesh::kNone)
         core::fail(FW_ERROR_BAD_DATA, "The mesh of burnable mesh %u has no texel.", id.index1);
     float place[3];

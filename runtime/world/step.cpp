@@ -161,11 +161,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
             if (!object.ignitionKnown && !object.sawFire) {
                 object.ignitionKnown = true;
                 object.firstIgnition = due.event.tick;
-                const mesh::BurnDomain& domain = domainOf(object);
-                const mesh::TexelPosition& p = domain.texels[due.event.texel];
-                const uint16_t xyz[3] = {p.x, p.y, p.z};
-                for (int i = 0; i < 3; ++i)
-                    object.ignitionPoint[i] = domain.origin[i] + domain.quantum * float(xyz[i]);
+                texelPlace(object, due.event.texel, object.ignitionPoint);
             }
         } else if (due.event.kind == FW_WET || due.event.kind == FW_EXTINGUISH) {
             object.lastDouse = due.event.tick;

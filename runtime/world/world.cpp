@@ -294,6 +294,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
         heat = components::makeHeatMaterials(object.data, domain, def_.paceFactor);
         init.heat = heat;
     }
+    std::copy_n(object.data.shape, 3, init.shape);
     if (def.flags & FW_BURNABLE_REFINE) {
         refineMesh(mesh, init.mesh, def, object.data);
         init.refine = true;
@@ -301,7 +302,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
         init.refinePixelsPerEdge = def.refinePixelsPerEdge;
     }
     gpu::DeformObject deform{};
-    if (components::deforms(object.data)) {
+    if (components::deforms(object.data) || (object.data.flags & FW_BURNABLE_SKINNED)) {
         if (!mesh.deform) {
             auto model = core::Owned<mesh::DeformModel>::make(memory_, memory_);
             *model = mesh::makeDeformModel(domain, memory_);
@@ -381,6 +382,41 @@ void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
     sendPose(object);
 }
 
+uint32_t World::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {
+    const Object& object = *objects_.get(id);
+    if (!(object.data.flags & FW_BURNABLE_SKINNED))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Burnable mesh %u was created without FW_BURNABLE_SKINNED.", id.index1);
+    const uint32_t vertices = domainOf(object).report.vertices;
+    if (vertexCount != vertices)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "vertexCount is %u; the mesh has %u vertices.",
+                   vertexCount, vertices);
+    return object.slot;
+}
+
+void World::setVertexPositions(FwBurnableMeshId id, const float* positions, const float* normals,
+                               uint32_t count) {
+    Object& object = **objects_.at(skinnedSlot(id, count));
+    const unsigned values = count * 3;
+    checkValues(positions, values, "positions", -1e6f, 1e6f);
+    if (normals) checkValues(normals, values, "normals", -1e6f, 1e6f);
+    object.skin.resize(values);
+    object.skinNormals.resize(normals ? values : 0);
+    const float* shape = object.data.shape;
+    for (unsigned i = 0; i < values; ++i) object.skin[i] = positions[i] * shape[i % 3];
+    for (unsigned i = 0; normals && i < values; i += 3) {
+        float sum = 0;
+        for (unsigned k = 0; k < 3; ++k) {
+            object.skinNormals[i + k] = normals[i + k] / shape[k];
+            sum += object.skinNormals[i + k] * object.skinNormals[i + k];
+        }
+        const float scale = sum > 0 ? 1 / std::sqrt(sum) : 0;
+        for (unsigned k = 0; k < 3; ++k) object.skinNormals[i + k] *= scale;
+    }
+    object.skinMoved = true;
+    backend_.setVertices(object.slot, object.skin, object.skinNormals);
+}
+
 void World::setHidden(FwBurnableMeshId id, bool hidden) {
     Object& object = *objects_.get(id);
     object.data.flags = (object.data.flags & ~uint32_t(FW_BURNABLE_HIDDEN)) |
@@ -419,18 +455,20 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
     if (def.kind != FW_IGNITE && def.radius > 0)
         radius = std::max({radius, 1.5f * domain.texelSide, domain.linkMax});
     const float reach = std::max(radius, domain.texelSide);
-    if (!nearBounds(point, domain, reach)) return 0;
-    const uint32_t nearest = mesh::nearestTexel(domain, point, reach);
+    if (!object.skinMoved && !nearBounds(point, domain, reach)) return 0;
+    const uint32_t nearest = nearestTexel(object, point, reach);
     if (nearest == mesh::kNone) return 0;
     found_.clear();
-    mesh::texelsNear(domain, point, radius, found_);
+    if (!object.skinMoved)
+        mesh::texelsNear(domain, point, radius, found_);
+    else
+        for (uint32_t i = 0; i < domain.texelCount(); ++i)
+            if (domain.real(i)) found_.push_back(i);
     // The ball itself decides: a centre off the surface reaches a smaller disc.
     std::erase_if(found_, [&](uint32_t texel) {
-        const mesh::TexelPosition& p = domain.texels[texel];
-        const float x = domain.origin[0] + domain.quantum * float(p.x) - point[0];
-        const float y = domain.origin[1] + domain.quantum * float(p.y) - point[1];
-        const float z = domain.origin[2] + domain.quantum * float(p.z) - point[2];
-        const float d[3] = {x * pose.stretch[0], y * pose.stretch[1], z * pose.stretch[2]};
+        float d[3];
+        texelPlace(object, texel, d);
+        for (int i = 0; i < 3; ++i) d[i] = (d[i] - point[i]) * pose.stretch[i];
         const float reached = radius * stretched;
         return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reached * reached;
     });

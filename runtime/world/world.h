@@ -40,7 +40,8 @@ struct BurnMapCopy {  // of fwDebug_RequestBurnMap
 };
 
 struct Object {
-    explicit Object(std::pmr::memory_resource* memory) : map(memory) {}
+    explicit Object(std::pmr::memory_resource* memory)
+        : map(memory), skin(memory), skinNormals(memory) {}
 
     components::BurnableMesh data;
     components::Latch latch;  // the drive that its front sees
@@ -66,6 +67,10 @@ struct Object {
     uint64_t energy = 0, heatSteps = 0;  // 2^-20 J after so many heat steps
     float power = 0;                     // W, at pace 1; of objects with heat
     BurnMapCopy map;
+    // Of a skinned object: the host's vertices, m, in its mesh's shape; 3 each. Normals are
+    // scratch.
+    std::pmr::vector<float> skin, skinNormals;
+    bool skinMoved = false;  // else they are at rest
 };
 
 struct Tag {
@@ -110,6 +115,10 @@ class World {
     FwBurnableMeshId createBurnableMesh(const FwBurnableMeshDef& def);
     void destroyBurnableMesh(FwBurnableMeshId id);
     void setTransform(FwBurnableMeshId id, const float transform[16]);
+    // Its backend slot; throws unless it is skinned and has so many vertices.
+    uint32_t skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount);
+    void setVertexPositions(FwBurnableMeshId id, const float* positions, const float* normals,
+                            uint32_t count);
     void setHidden(FwBurnableMeshId id, bool hidden);
     uint32_t ignite(const FwIgnitionDef& def);  // texels addressed
 
@@ -201,6 +210,10 @@ class World {
     FwPointState pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,
                             const gpu::Readback& readback) const noexcept;
     void texelPosition(const Object& object, uint32_t texel, float (&out)[3]) const noexcept;
+    // Where a texel is, m, object space: at rest, or on the vertices that the host moved.
+    void texelPlace(const Object& object, uint32_t texel, float (&out)[3]) const noexcept;
+    // Nearest texel within `reach` m of a point in object space, or kNone.
+    uint32_t nearestTexel(const Object& object, const float point[3], float reach) const noexcept;
     uint32_t texelMaterial(const Object& object, uint32_t texel) const noexcept;
     [[nodiscard]] const mesh::BurnDomain& domainOf(const Object& object) const noexcept;
     // world.cpp

@@ -20,6 +20,7 @@ layout(local_size_x = 64) in;
 #include "shared/heat.h"
 #include "lib/lists.glsl"
 #include "lib/turn.glsl"
+#include "lib/skin.glsl"
 
 // One thread per tile, without shared memory: a software device runs eight tiles a thread.
 void reduceTile(uint worldTile, uint parity) {
@@ -30,7 +31,7 @@ void reduceTile(uint worldTile, uint parity) {
     uint width = objects[object].width;
     uint corner = texelOf(object, tile.local, 0u);
     uint count = 0u;
-    uint age = 0u;
+    uint age = 0u, anchor = 0u;
     uvec3 position = uvec3(0u);
     ivec3 normal = ivec3(0);
     float power = 0.0;
@@ -54,6 +55,7 @@ void reduceTile(uint worldTile, uint parity) {
         }
         if (!burns) continue;
         ++count;
+        anchor = texel;
         age += min(push.now - t, 0xFFFFFFu) >> 2u;
         position += uvec3(packedTexel.x & 0xFFFFu, packedTexel.x >> 16u, packedTexel.y & 0xFFFFu);
         normal += decodeNormal(normals[texelBase + texel]);
@@ -84,6 +86,13 @@ void reduceTile(uint worldTile, uint parity) {
     vec4 row1 = objects[object].worldRow1;
     vec4 row2 = objects[object].worldRow2;
     vec3 n = vec3(normal);
+    // A tile moves with one of its texels.
+    bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
+    SkinPlace moved = skinPlace(skinned, objects[object].skinBase + anchor, objects[object].shownBase);
+    if (skinned) {
+        rest.xyz = moved.place;
+        n = moved.normal;
+    }
     vec3 world = turnNormal(row0.xyz, row1.xyz, row2.xyz, n);
     float size = length(world);
     BurnTile b;

@@ -26,6 +26,7 @@ layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint dr
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 #include "emitter/cells.glsl"
 #include "lib/turn.glsl"
+#include "lib/skin.glsl"
 
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
@@ -137,9 +138,15 @@ void main() {
                                  object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
                                                                packedTexel.x >> 16u,
                                                                packedTexel.y & 0xFFFFu), 1.0);
+            vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
+            bool skinned = (object.flags & kObjectSkinned) != 0u;
+            SkinPlace moved = skinPlace(skinned, object.skinBase + foot.texel, object.shownBase);
+            if (skinned) {
+                rest.xyz = moved.place;
+                n = moved.normal;
+            }
             vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest),
                               dot(object.worldRow2, rest));
-            vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);
             vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);

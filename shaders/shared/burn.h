@@ -63,6 +63,9 @@
 #define FW_BIND_DEFORM_OBJECTS 51 // DeformObject[], by object slot
 #define FW_BIND_DEFORM_GROUPS 52  // uvec2[]: object slot, first of 64 nodes or vertices
 #define FW_BIND_SOFT 53           // vec4[]: 3 per shown vertex of a sheet: place, place, normal and bend
+#define FW_BIND_SKIN_TEXELS 56    // uvec4[]: three vertices and two unorm16 weights per texel (per mesh)
+#define FW_BIND_SKIN_SOURCES 57   // uint[]: per drawn vertex the host's (per mesh)
+#define FW_BIND_SKIN_GIVEN 58     // uint[]: what hosts' vertex buffers held (per object)
 #define FW_BIND_REFINE_WORK 60      // uint[]: what this frame refines, see kRefineWork... in refine.h
 #define FW_BIND_REFINE_OBJECTS 61   // RefineObject[], by object slot
 #define FW_BIND_REFINE_TRIANGLES 62 // RefineTriangle[] (per mesh)
@@ -107,6 +110,7 @@ FW_SHARED_CONST uint kObjectNoHoles = 8u;
 FW_SHARED_CONST uint kObjectHidden = 16u;
 FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinates
 FW_SHARED_CONST uint kObjectHeat = 64u;      // has a heat plane
+FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // the host moves its vertices
 
 // TileState::flag
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
@@ -165,7 +169,7 @@ struct BurnObject {   // everything a pass needs to find an object's planes
     uint window;      // correction window, ticks
     uint substepShift;  // log2 of its substeps per step, 0..3
     uint horizon;     // ticks that the prediction looks ahead
-    uint reservedImage;
+    uint shownBase;   // into the shown vertices; with kObjectSkinned
     vec4 originQuantum;  // m: rest position = origin + quantum * xyz
     vec4 worldRow0;   // object to world, rows of a 3x4 matrix
     vec4 worldRow1;
@@ -173,7 +177,8 @@ struct BurnObject {   // everything a pass needs to find an object's planes
     vec4 tint;        // rgb; w: mean texel area, m^2, world scale
     uint publishedBase;  // into published, as-published objects only
     uint heatBase;    // into heat; with kObjectHeat
-    uint reserved1; uint reserved2;
+    uint skinBase;    // into the skin texels; with kObjectSkinned
+    uint reserved2;
 };
 FW_SHARED_SIZE(BurnObject, 160)
 

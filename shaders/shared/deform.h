@@ -118,6 +118,18 @@ struct DeformPush {       // push constants of the deformation passes
 };
 FW_SHARED_SIZE(DeformPush, 48)
 
+struct SkinPush {         // push constants of the skin pass
+    uint count;           // drawn vertices
+    uint sourceBase;      // into the sources
+    uint shownBase;       // into the shown vertices
+    uint given;           // word of the host's first position
+    uint stride;          // words
+    uint normal;          // words from a position to its normal; kNoneTexel: none
+    uint scaleX; uint scaleY; uint scaleZ; // float bits: the mesh's shape
+    uint reserved0; uint reserved1; uint reserved2;
+};
+FW_SHARED_SIZE(SkinPush, 48)
+
 #ifdef __cplusplus
 using glm::cross;
 using glm::dot;

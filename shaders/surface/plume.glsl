@@ -3,6 +3,7 @@
 
 // `d`: m, from the surface to the light of the flames; `power`: W.
 float plumeSoot(vec3 d, float power, vec3 up) {
+    if (power <= 0.0) return 0.0;  // no light here
     float tall = 0.02 + 0.014 * pow(max(power, 1.0), 0.4);  // m, somewhat over the flame
     float above = -dot(d, up) / tall;
     float aside2 = (dot(d, d) / (tall * tall) - above * above);

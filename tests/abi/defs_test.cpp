@@ -49,6 +49,7 @@ const DefCase kDefs[] = {
     {"host", FW_DEF_VULKAN_HOST, sizeof(FwVulkanHost)},
     {"target", FW_DEF_VULKAN_TARGET, sizeof(FwVulkanTargetDef)},
     {"frame", FW_DEF_VULKAN_FRAME, sizeof(FwVulkanFrame)},
+    {"vertices", FW_DEF_VULKAN_VERTICES, sizeof(FwVulkanVertices)},
     {"wishes", FW_DEF_VULKAN_WISHES, sizeof(FwVulkanWishes)},
     {"composite", FW_DEF_VULKAN_COMPOSITE, sizeof(FwVulkanComposite)},
 };

@@ -190,6 +190,121 @@ TEST(AbiDrawn, BothSidesOfAnOpenMeshBurnFromOneMap) {
     EXPECT_GT(changed(under, below, 4, 28), 150) << "and its other side";
 }
 
+// A strip that its host bends into a half pipe while it burns.
+void bend(const host::Sheet& sheet, float turn, float lift, std::vector<float>& out) {
+    out.resize(sheet.positions.size());
+    for (size_t i = 0; i < out.size(); i += 3) {
+        const float x = sheet.positions[i] - 0.5f;
+        const float radius = 1 / std::max(turn, 1e-3f);
+        out[i] = 0.5f + radius * std::sin(x / radius);
+        out[i + 1] = lift + radius * (1 - std::cos(x / radius));
+        out[i + 2] = sheet.positions[i + 2];
+    }
+}
+
+TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
+    FwWorldDef worldDef = fwDefaultWorldDef();
+    worldDef.paceFactor = 10;
+    DRAWN_WORLD_OR_SKIP(w, worldDef);
+    const host::Sheet sheet(1.0f, 0.5f, 16);
+    const FwMeshDef mesh = sheet.def(64);
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
+    def.flags = FW_BURNABLE_SKINNED | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES;
+    for (FwMaterialId& id : def.materials) id = w.material(FW_MATERIAL_PINE);
+    FwBurnableMeshId id{};
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
+    const auto lit = [](const Color& c) { return c.r + c.g + c.b > 30; };
+    EXPECT_EQ(64 * 32, count(w.look(), 0, 64, lit)) << "at rest";
+    std::vector<float> places;
+    const auto count3 = uint32_t(sheet.positions.size() / 3);
+    bend(sheet, 3.14159f, 0.5f, places);  // a half circle 0.64 m wide, half a metre up
+    ASSERT_EQ(FW_OK, fwWorld_SetVertexPositions(w.world, id, places.data(), nullptr, count3))
+        << lastMessage(w.world);
+    ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.0f));
+    std::vector<Color> picture = w.look();
+    EXPECT_EQ(0, count(picture, 0, 10, lit));
+    EXPECT_EQ(0, count(picture, 54, 64, lit));
+    EXPECT_EQ(36 * 32, count(picture, 14, 50, lit));
+    // Its floor faces the sun, its walls turn away from it: normals follow the triangles.
+    const auto sum = [&](int x0, int x1) {
+        int all = 0;
+        count(picture, x0, x1, [&](const Color& c) { return all += c.r + c.g + c.b, true; });
+        return all / (x1 - x0);
+    };
+    EXPECT_GT(sum(30, 34), sum(47, 51) * 6 / 5);
+    // Lit where it is, not where it was; the light stands there too.
+    FwIgnitionDef match = fwDefaultIgnitionDef();
+    match.object = id;
+    match.position[0] = 0.5f;
+    match.position[2] = 0.25f;
+    match.radius = 0.1f;
+    uint32_t texels = 1;
+    ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels));
+    EXPECT_EQ(0u, texels) << "nothing is at the place of its rest";
+    match.position[1] = 0.5f;
+    ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels));
+    EXPECT_GT(texels, 60u);
+    for (int i = 0; i < 12; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.125f));
+    FwLight lights[64];
+    const uint32_t known = fwWorld_GetLights(w.world, lights, 64);
+    ASSERT_GT(known, 0u);
+    for (uint32_t i = 0; i < known; ++i) {
+        EXPECT_GT(lights[i].position[1], 0.4f) << i;
+        EXPECT_LT(lights[i].position[1], 1.2f) << i;
+    }
+    // The host's own normals: all of them up, and the walls are as bright as the floor.
+    std::vector<float> up(places.size(), 0.0f);
+    for (size_t i = 1; i < up.size(); i += 3) up[i] = 2;
+    ASSERT_EQ(FW_OK, fwWorld_SetVertexPositions(w.world, id, places.data(), up.data(), count3));
+    picture = w.look();
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
+              fwWorld_SetVertexPositions(w.world, id, places.data(), nullptr, count3 - 1));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("vertexCount is"));
+    places[7] = std::nanf("");
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
+              fwWorld_SetVertexPositions(w.world, id, places.data(), nullptr, count3));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("positions[7]"));
+    EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
+}
+
+TEST(AbiSkin, FireDoesNotKnowOfIt) {
+    uint64_t hashes[2] = {};
+    for (const bool skinned : {false, true}) {
+        host::SheetWorld w(host::evenMaterial(0.05f, 10), 1.0f, 0.5f, 64);
+        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+        def.mesh = w.mesh;
+        def.materials[0] = w.materialId;
+        def.flags = skinned ? FW_BURNABLE_SKINNED : 0;
+        ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &w.object));
+        EXPECT_GT(w.ball(FW_IGNITE, 0.3f, 0, 0.25f, 0.05f), 10u);
+        std::vector<float> places = w.sheet.positions;
+        for (int i = 0; i < 40; ++i) {
+            if (skinned) {
+                for (size_t k = 1; k < places.size(); k += 3) places[k] += 0.05f;
+                ASSERT_EQ(FW_OK, fwWorld_SetVertexPositions(w.world, w.object, places.data(),
+                                                            nullptr, uint32_t(places.size() / 3)))
+                    << lastMessage(w.world);
+            }
+            w.run(0.125);
+        }
+        hashes[skinned] = w.hash();
+        if (!skinned) continue;
+        // Answers are of where it is: two metres up.
+        const FwPointState point = w.point(0.3f, 2.0f, 0.25f);
+        EXPECT_EQ(uint32_t(FW_POINT_BURNING), point.kind);
+        EXPECT_NEAR(2.0f, point.position[1], 1e-3f);
+        EXPECT_LT(point.distance, 0.02f);
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+    host::SheetWorld plain(host::evenMaterial(0.05f, 10));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
+              fwWorld_SetVertexPositions(plain.world, plain.object, plain.sheet.positions.data(),
+                                         nullptr, 4));
+    EXPECT_NE(std::string::npos, lastMessage(plain.world).find("without FW_BURNABLE_SKINNED"));
+}
+
 // What objects of one mesh share costs once: with more objects only their own planes grow, each by
 // the same.
 TEST(AbiDrawn, ObjectsOfAMeshShareItsPlanes) {

@@ -14,8 +14,8 @@ constexpr uint32_t kSide = 48;  // px
 
 class EveryPass : public GpuTest {
  protected:
-    // A small box whose faces are charts, each of them with seams: one object of the model, or one
-    // in as-published mode.
+    // A small box whose faces are charts, each of them with seams: one object of the model that
+    // recedes, or one in as-published mode whose vertices the host moves.
     static const BurnScene& scene(bool published) {
         static const BurnScene scenes[2] = {makeScene(false), makeScene(true)};
         return scenes[published ? 1 : 0];
@@ -28,7 +28,7 @@ class EveryPass : public GpuTest {
         scene.domains.push_back(mesh::bake(input, std::pmr::get_default_resource()));
         SceneObject object;
         object.substepShift = 1;
-        if (published) object.flags = gpu::kObjectPublished;
+        if (published) object.flags = gpu::kObjectPublished | gpu::kObjectSkinned;
         object.refine = !published;
         const mesh::BurnDomain& domain = scene.domains[0];
         for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
@@ -40,8 +40,8 @@ class EveryPass : public GpuTest {
         object.materials[1].look = FW_MATERIAL_THATCH;
         object.materials[2].look = FW_MATERIAL_PINE;
         object.slowness.assign(domain.slowness.begin(), domain.slowness.end());
+        scene.models.push_back(mesh::makeDeformModel(domain, std::pmr::get_default_resource()));
         if (!published) {
-            scene.models.push_back(mesh::makeDeformModel(domain, std::pmr::get_default_resource()));
             object.deform.flags = gpu::kDeformRecede;
             for (gpu::DeformMaterial& m : object.deform.materials)
                 m = {.charTicks = 4096, .depth = 0.01f, .holeTicks = 8192, .holeSeconds = 2};
@@ -86,9 +86,51 @@ class EveryPass : public GpuTest {
             VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         const float eye[3] = {0.9f, 0.7f, 1.1f}, at[3] = {0, 0, 0};
         rig_->view = testView(eye, at, 40, 1, false);
+        if (published) makeVertices();
         now_ = 4096;
         index_ = 0;
         passes_.clear();
+    }
+
+    // The box's corners where a host has them: a little larger, in a buffer without a word to
+    // spare.
+    void makeVertices() {
+        const mesh::BurnDomain& domain = scene_->domains[0];
+        std::vector<float> places(domain.report.vertices * 3);
+        for (size_t i = 0; i < domain.vertices.size(); ++i)
+            for (size_t c = 0; c < 3; ++c)
+                places[domain.sources[i] * 3 + c] = 1.1f * domain.vertices[i].position[c];
+        VkBufferCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+        info.size = places.size() * sizeof(float);
+        info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+        ASSERT_EQ(vkCreateBuffer(device_->device, &info, nullptr, &buffer_), VK_SUCCESS);
+        VkMemoryRequirements needs{};
+        vkGetBufferMemoryRequirements(device_->device, buffer_, &needs);
+        VkMemoryAllocateInfo allocate{};
+        allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+        allocate.allocationSize = needs.size;
+        allocate.memoryTypeIndex =
+            device_->memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                                          VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+        ASSERT_EQ(vkAllocateMemory(device_->device, &allocate, nullptr, &memory_), VK_SUCCESS);
+        vkBindBufferMemory(device_->device, buffer_, memory_, 0);
+        void* mapped = nullptr;
+        vkMapMemory(device_->device, memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
+        std::copy(places.begin(), places.end(), static_cast<float*>(mapped));
+        vkUnmapMemory(device_->device, memory_);
+    }
+    void moveVertices() {
+        if (!buffer_) return;
+        FwVulkanVertices vertices{};
+        vertices.vertexCount = scene_->domains[0].report.vertices;
+        vertices.buffer = buffer_;
+        vertices.stride = 12;
+        vertices.stageBefore = VK_PIPELINE_STAGE_HOST_BIT;
+        vertices.accessBefore = VK_ACCESS_HOST_WRITE_BIT;
+        vertices.stageAfter = VK_PIPELINE_STAGE_HOST_BIT;
+        vertices.accessAfter = VK_ACCESS_HOST_WRITE_BIT;
+        rig_->backend.setVertexBuffer(0, vertices);
     }
 
     void texels(std::vector<gpu::TexelEvent>& out, uint32_t kind, uint32_t every) {
@@ -136,6 +178,7 @@ class EveryPass : public GpuTest {
         if (what.probes) plan.burnMaps = {&map, 1};
         plan.switches = what.switches;
         plan.endTick = now_;
+        moveVertices();
         rig_->alsoRecord = [&](const FwVulkanFrame& host) {
             if (what.draw) draw(host);
         };
@@ -206,6 +249,10 @@ class EveryPass : public GpuTest {
 
     void TearDown() override {
         rig_.reset();
+        if (device_ && buffer_) {
+            vkDestroyBuffer(device_->device, buffer_, nullptr);
+            vkFreeMemory(device_->device, memory_, nullptr);
+        }
         GpuTest::TearDown();
     }
 
@@ -213,6 +260,8 @@ class EveryPass : public GpuTest {
     const BurnScene* scene_ = nullptr;
     FwTargetId target_{};
     TestImage color_, depth_;
+    VkBuffer buffer_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
     std::set<std::string> passes_;  // that took time
     uint32_t now_ = 0;
     uint64_t index_ = 0;

@@ -125,7 +125,7 @@ TEST(MeshCooked, SaysWhatIsWrong) {
               refusalOf(bytes));
     bytes = good;
     bytes[4] = std::byte(99);
-    EXPECT_EQ("The cooked mesh has format version 99; this library reads version 1.",
+    EXPECT_EQ("The cooked mesh has format version 99; this library reads version 2.",
               refusalOf(bytes));
     bytes = good;
     bytes.resize(bytes.size() - 1);

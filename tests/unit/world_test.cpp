@@ -119,6 +119,7 @@ class Recorder final : public gpu::Backend {
         ++objects;
     }
     void destroyObject(uint32_t) noexcept override { --objects; }
+    void setVertices(uint32_t, std::span<const float>, std::span<const float>) noexcept override {}
     void setObjectPose(uint32_t, const gpu::vec4*, const gpu::vec4&, uint32_t flags) override {
         lastFlags = flags;
     }

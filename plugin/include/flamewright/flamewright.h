@@ -93,7 +93,7 @@ typedef enum FwDefType {
     FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
-    FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104,
+    FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
 } FwDefType;
 /* Writes defaults for the first structSize bytes, and zero for what this library does not know;
@@ -311,6 +311,7 @@ typedef enum FwBurnableFlags {
     FW_BURNABLE_SHELL = 256,    /* a thin sheet: hangs, flutters, curls and shrinks as it chars, tears;
                                    see pins. Cosmetic: fire spreads and is found where it rests */
     FW_BURNABLE_SPRINGS = 512,  /* deformed by the published mass-spring model, for comparison */
+    FW_BURNABLE_SKINNED = 1024, /* the host moves its vertices: fwWorld_SetVertexPositions */
     FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
@@ -349,6 +350,12 @@ FW_API FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld*, FwBurnableMeshId i
  * is drawn and asked, while fire goes on in the metric of its creation (times the mean scale); a
  * mirror is settled at creation. [world] */
 FW_API FwResult FW_CALL fwWorld_SetTransform(FwWorld*, FwBurnableMeshId id, const float transform[16]);
+/* Of an object with FW_BURNABLE_SKINNED: where the vertices of its mesh (FwMeshDef's, in its order
+ * and object space) are from the next frame on; 3 floats each, m, within +-1e6. normals: 3 each, or null:
+ * they follow the triangles. Fire spreads in the metric and under the normals of the mesh at rest and
+ * does not know of this; what is drawn, flames, lights, ignitions, queries and tags follow. [world] */
+FW_API FwResult FW_CALL fwWorld_SetVertexPositions(FwWorld*, FwBurnableMeshId id, const float* positions,
+                                                   const float* normals, uint32_t vertexCount);
 FW_API FwResult FW_CALL fwWorld_SetHidden(FwWorld*, FwBurnableMeshId id, uint32_t hidden); /* [world] */
 
 typedef enum FwIgnitionKind {

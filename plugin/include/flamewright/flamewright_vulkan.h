@@ -161,6 +161,24 @@ static inline FwVulkanComposite fwDefaultVulkanComposite(void) {
  * without the flag: do one of them when you destroy views, as on a resize. [record] */
 FW_API FwResult FW_CALL fwWorld_RecordComposite(FwWorld*, const FwVulkanFrame* frame, FwTargetId target,
                                                const FwView* view, const FwVulkanComposite* images);
+typedef struct FwVulkanVertices { /* skinned vertices in a buffer of yours, in the mesh's order */
+    uint32_t structSize;
+    uint32_t vertexCount;             /* the mesh's */
+    VkBuffer buffer;                  /* usage TRANSFER_SRC */
+    uint64_t offset;                  /* bytes, a multiple of 4: the first position, 3 floats, m, object space */
+    uint32_t stride;                  /* bytes from vertex to vertex, a multiple of 4 in [12, 2048] */
+    uint32_t normalOffset;            /* bytes from a position to its normal, 3 floats, a multiple of 4 in
+                                         [12, 2048]; 0: none, they follow the triangles */
+    VkPipelineStageFlags stageBefore, stageAfter; /* who wrote it, who uses it after us */
+    VkAccessFlags accessBefore, accessAfter;
+} FwVulkanVertices;
+static inline FwVulkanVertices fwDefaultVulkanVertices(void) {
+    FwVulkanVertices d; fwInitDef(FW_DEF_VULKAN_VERTICES, &d, (uint32_t)sizeof d); return d;
+}
+/* As fwWorld_SetVertexPositions, from a buffer: the next RecordOutside copies it, with the barriers
+ * before and after, and forgets the handle. Call it for each frame in which they move. Ignitions,
+ * queries and tags go by the last fwWorld_SetVertexPositions, or by the mesh at rest. [world] */
+FW_API FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld*, FwBurnableMeshId id, const FwVulkanVertices* vertices);
 /* Tell us the device is lost: nothing more is recorded, destroy still frees. [any] */
 FW_API void FW_CALL fwContext_NotifyDeviceLost(FwContext*);
 

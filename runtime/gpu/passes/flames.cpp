@@ -11,7 +11,8 @@ constexpr Use kMakeUses[] = {
     {FW_BIND_BURN_TILES, Access::read},  {FW_BIND_LIGHT_CELLS, Access::read},
     {FW_BIND_TILE_STATE, Access::read},  {FW_BIND_LOOKS, Access::read},
     {FW_BIND_FLAMES, Access::write},     {FW_BIND_DRAW_ARGS, Access::write},
-    {FW_BIND_VIEW, Access::uniformView},
+    {FW_BIND_VIEW, Access::uniformView}, {FW_BIND_SKIN_TEXELS, Access::read},
+    {FW_BIND_SHOWN, Access::read},
 };
 constexpr Use kSortUses[] = {
     {FW_BIND_FLAMES, Access::read},

@@ -18,7 +18,7 @@ constexpr const ComputePass* kComputePasses[] = {
     &kPredictRimPass,  &kSupportPass,     &kProbePass,        &kLightsPass,        &kFlameQuadsPass,
     &kFlameSortPass,   &kRefineHeatPass,  &kRefineLevelsPass, &kRefineScanPass,    &kRefineEmitPass,
     &kRefinePlacePass, &kRecedePass,      &kBendPass,         &kSoftPass,          &kSpringsPass,
-    &kDrapePass};
+    &kDrapePass,       &kSkinPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -148,6 +148,10 @@ void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks
     push.object = first;
     push.iteration = count;
     recorder.dispatch(kSupportPass, &push, groupsOf(count));
+}
+
+void recordSkin(vk::FrameRecorder& recorder, const SkinPush& push) {
+    recorder.dispatch(kSkinPass, &push, std::min(groupsOf(push.count), kMaxGroups));
 }
 
 void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform) {

@@ -19,6 +19,8 @@ constexpr Use kUses[] = {
     {FW_BIND_BURN_TILES, Access::write},
     {FW_BIND_HEAT, Access::read},
     {FW_BIND_TILE_FIRE, Access::read},
+    {FW_BIND_SKIN_TEXELS, Access::read},
+    {FW_BIND_SHOWN, Access::read},
 };
 
 }  // namespace

@@ -182,7 +182,7 @@ void Device::checkDevice() {
         {"maxDescriptorSetStorageBuffers", limits.maxDescriptorSetStorageBuffers,
          kStorageBuffersNeeded},
         {"maxPushConstantsSize", limits.maxPushConstantsSize, 128},
-        {"maxBoundDescriptorSets", limits.maxBoundDescriptorSets, 3},
+        {"maxBoundDescriptorSets", limits.maxBoundDescriptorSets, 4},
         {"maxComputeWorkGroupInvocations", limits.maxComputeWorkGroupInvocations, 128},
         {"maxComputeWorkGroupSize[0]", limits.maxComputeWorkGroupSize[0], 128},
         {"maxComputeSharedMemorySize", limits.maxComputeSharedMemorySize, 16384},

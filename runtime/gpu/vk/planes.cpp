@@ -70,6 +70,9 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_DEFORM_NODES, kSpaceNodes, sizeof(DeformNode), true, kComponentMeshes, "nodes", 0},
     {FW_BIND_DEFORM_COATS, kSpaceCoats, sizeof(DeformCoat), true, kComponentMeshes, "coats", 0},
     {FW_BIND_DEFORM_GROUPS, kSpaceDeformGroups, 8, false, kComponentLists, "deform groups", 0},
+    {FW_BIND_SKIN_SOURCES, kSpaceSkinSources, 4, true, kComponentMeshes, "skin sources", 0},
+    {FW_BIND_SKIN_GIVEN, kSpaceSkinGiven, 4, false, kComponentObjects, "skin vertices", 0},
+    {FW_BIND_SKIN_TEXELS, kSpaceSkin, 16 * kTileTexels, true, kComponentMeshes, "skin texels", 0},
     {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},
@@ -102,9 +105,10 @@ constexpr Plane kPlanes[] = {
 };
 
 constexpr uint32_t kInitialUnits[kSpaceCount] = {
-    64,   1024, 512, 512,  1024, 1024, 4096, 16384, kCounterRows, 4096, 1024,
-    1024, 256,  256, 1024, 1024, 512,  256,  1024,  4096,         256,  1,
-    1,    1,    1,   1,    1,    1,    1,    1};
+    64,   1024, 512,  512, 1024, 1024, 4096, 16384, kCounterRows,
+    4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
+    1024, 4096, 256,  1,   1,    1,    1,    1,     1,
+    1,    1,    1,    1,   1,    1};
 
 }  // namespace
 

@@ -40,6 +40,9 @@ enum Space : uint32_t {
     kSpaceNodes,            // of meshes that deform
     kSpaceCoats,            // drawn vertices of such meshes
     kSpaceDeformGroups,     // per frame
+    kSpaceSkin,             // 8x8 tiles of meshes with skinned objects
+    kSpaceSkinSources,      // drawn vertices of such meshes
+    kSpaceSkinGiven,        // words of hosts' vertex buffers
     kSpaceFixed,            // one unit
     kSpaceCount,
 };

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "gpu/vk/world_state.h"
+#include "mesh/bake.h"
 
 #include <glm/glm.hpp>
 
@@ -135,6 +136,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       images(pmr),
       uploads(pmr),
       quarantine(pmr),
+      skins(pmr),
       published(pmr),
       drawItems(pmr),
       refine(pmr),
@@ -403,6 +405,53 @@ void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
     upload.regionCount = 2;
 }
 
+// Where each texel is on its triangle.
+void stageSkinTexels(VkBackend::State& s, const mesh::BurnDomain& domain, const DrawnOrder& order,
+                     uint32_t firstTile, uint32_t firstSource) {
+    const uint64_t bytes = uint64_t(domain.texelCount()) * sizeof(uvec4);
+    const uint64_t sourceBytes = order.vertices.size() * 4;
+    PendingUpload& upload = s.stage(bytes + sourceBytes, "skin staging");
+    for (size_t i = 0; i < order.vertices.size(); ++i)
+        std::memcpy(upload.staging.mapped + bytes + i * 4, &domain.sources[order.vertices[i]], 4);
+    upload.regions[upload.regionCount++] = {FW_BIND_SKIN_SOURCES, bytes, uint64_t(firstSource) * 4,
+                                            sourceBytes};
+    for (uint32_t i = 0; i < domain.texelCount(); ++i) {
+        uvec4 record{0, 0, 0, 0};
+        if (domain.triangleOf[i] != mesh::kNone) {
+            uint32_t number[3];
+            for (uint32_t k = 0; k < 3; ++k)
+                number[k] = order.numbers[domain.indices[size_t(domain.triangleOf[i]) * 3 + k]];
+            float weights[3];
+            mesh::texelWeights(domain, i, weights);
+            const auto unorm = [](float w) { return uint32_t(w * 65535.0f + 0.5f); };
+            record = {number[0], number[1], number[2], unorm(weights[0]) | unorm(weights[1]) << 16};
+        }
+        std::memcpy(upload.staging.mapped + size_t(i) * sizeof record, &record, sizeof record);
+    }
+    upload.regions[upload.regionCount++] = {
+        FW_BIND_SKIN_TEXELS, 0, uint64_t(firstTile) * kTileTexels * sizeof(uvec4), bytes};
+}
+
+// A skinned object's vertices at rest: kept here, and on their way to the device.
+void stageSkin(VkBackend::State& s, const mesh::BurnDomain& domain, const DrawnOrder& order,
+               Skin& skin, uint32_t firstShown) {
+    skin.shown.assign(domain.vertices.size(), ShownVertex{});
+    skin.sources.resize(domain.vertices.size());
+    for (size_t i = 0; i < order.vertices.size(); ++i) {
+        const mesh::RenderVertex& v = domain.vertices[order.vertices[i]];
+        skin.shown[i].x = v.position[0];
+        skin.shown[i].y = v.position[1];
+        skin.shown[i].z = v.position[2];
+        skin.shown[i].normal = v.normal;
+        skin.sources[i] = domain.sources[order.vertices[i]];
+    }
+    const uint64_t bytes = skin.shown.size() * sizeof(ShownVertex);
+    PendingUpload& upload = s.stage(bytes, "skin staging");
+    std::memcpy(upload.staging.mapped, skin.shown.data(), bytes);
+    upload.regions[upload.regionCount++] = {FW_BIND_SHOWN, 0,
+                                            uint64_t(firstShown) * sizeof(ShownVertex), bytes};
+}
+
 // All of an object's but its tiles, which lists may still name.
 void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
     if (entry.slowness.units)
@@ -415,6 +464,13 @@ void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
         s.planes.release(kSpaceDeformers, entry.deformer.first, entry.deformer.units);
     if (entry.soft.units) s.planes.release(kSpaceSoft, entry.soft.first, entry.soft.units);
     if (entry.shown.units) s.planes.release(kSpaceShown, entry.shown.first, entry.shown.units);
+    if (entry.skinPlus1) {
+        s.skins[entry.skinPlus1 - 1].shown.clear();
+        Skin& skin = s.skins[entry.skinPlus1 - 1];
+        skin.dirty = skin.givenDue = false;
+        if (skin.words.units) s.planes.release(kSpaceSkinGiven, skin.words.first, skin.words.units);
+        skin.words = {};
+    }
 }
 
 }  // namespace
@@ -518,6 +574,9 @@ void VkBackend::destroyMesh(uint32_t slot) noexcept {
         if (one.live) one.release(s.planes);
     if (entry.nodes.units) s.planes.release(kSpaceNodes, entry.nodes.first, entry.nodes.units);
     if (entry.coats.units) s.planes.release(kSpaceCoats, entry.coats.first, entry.coats.units);
+    if (entry.skin.units) s.planes.release(kSpaceSkin, entry.skin.first, entry.skin.units);
+    if (entry.skinSources.units)
+        s.planes.release(kSpaceSkinSources, entry.skinSources.first, entry.skinSources.units);
     entry = {};
 }
 
@@ -525,7 +584,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
     MeshEntry& mesh = s.meshes[init.mesh];
-    RangeOf nodes = mesh.nodes, coats = mesh.coats;
+    RangeOf nodes = mesh.nodes, coats = mesh.coats, skin = mesh.skin, sources = mesh.skinSources;
     const size_t uploadsBefore = s.uploads.size();
     ObjectEntry fresh;
     fresh.live = true;
@@ -572,11 +631,29 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
                 stageDeformModel(s, *mesh.domain, model, nodes.first, coats.first);
             }
         }
+        if (init.record.flags & kObjectSkinned) {
+            const DrawnOrder order(*mesh.domain, s.memory);
+            if (skin.units == 0) {
+                skin = {s.planes.allocate(kSpaceSkin, mesh.tiles, last), mesh.tiles};
+                sources = {s.planes.allocate(kSpaceSkinSources, mesh.vertices, last),
+                           mesh.vertices};
+                stageSkinTexels(s, *mesh.domain, order, skin.first, sources.first);
+            }
+            uint32_t free = 0;
+            while (free < s.skins.size() && !s.skins[free].shown.empty()) ++free;
+            if (free == s.skins.size()) s.skins.emplace_back();
+            fresh.skinPlus1 = free + 1;
+            stageSkin(s, *mesh.domain, order, s.skins[free], fresh.shown.first);
+        }
     } catch (...) {
         fresh.refine.release(s.planes);
         if (mesh.nodes.units == 0) {
             if (nodes.units) s.planes.release(kSpaceNodes, nodes.first, nodes.units);
             if (coats.units) s.planes.release(kSpaceCoats, coats.first, coats.units);
+        }
+        if (mesh.skin.units == 0) {
+            if (skin.units) s.planes.release(kSpaceSkin, skin.first, skin.units);
+            if (sources.units) s.planes.release(kSpaceSkinSources, sources.first, sources.units);
         }
         releaseRanges(s, fresh);
         if (fresh.tiles.units)
@@ -628,6 +705,14 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.deformTicks += kTicksPerSecond;  // readbacks come late
         fresh.deformDirty = fresh.deformReset = true;
     }
+    if (fresh.skinPlus1) {
+        mesh.skin = skin;
+        mesh.skinSources = sources;
+        r.skinBase = skin.first * kTileTexels;
+        r.shownBase = fresh.shown.first;
+        std::copy_n(init.shape, 3, fresh.shape);
+        fresh.deformReset = false;  // at rest already
+    }
     s.objects[slot] = fresh;
     s.recordsDirty = true;
     s.refine.users += fresh.refine.on ? 1 : 0;
@@ -670,6 +755,41 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
     entry.recordDirty = true;
     s.recordsDirty = true;
+}
+
+void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
+                            std::span<const float> normals) noexcept {
+    State& s = *state_;
+    Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
+    for (size_t i = 0; i < skin.shown.size(); ++i) {
+        ShownVertex& v = skin.shown[i];
+        const size_t from = size_t(skin.sources[i]) * 3;
+        v.x = positions[from];
+        v.y = positions[from + 1];
+        v.z = positions[from + 2];
+        if (!normals.empty())
+            v.normal = packDirection({normals[from], normals[from + 1], normals[from + 2]});
+    }
+    skin.dirty = true;
+    skin.givenDue = false;
+    skin.normals = !normals.empty();
+}
+
+void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices) {
+    State& s = *state_;
+    Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
+    const uint64_t last = vertices.normalOffset ? uint64_t(vertices.normalOffset) + 12 : 12;
+    const uint64_t words = (uint64_t(vertices.vertexCount - 1) * vertices.stride + last) / 4;
+    if (skin.words.units < words) {
+        const RangeOf fresh{s.planes.allocate(kSpaceSkinGiven, uint32_t(words), s.ring.newest()),
+                            uint32_t(words)};
+        if (skin.words.units) s.planes.release(kSpaceSkinGiven, skin.words.first, skin.words.units);
+        skin.words = fresh;
+    }
+    skin.given = vertices;
+    skin.givenDue = true;
+    skin.dirty = false;
+    skin.normals = vertices.normalOffset != 0;
 }
 
 void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,

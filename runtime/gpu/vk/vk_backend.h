@@ -80,9 +80,15 @@ class VkBackend final : public Backend {
     void destroyObject(uint32_t slot) noexcept override;
     void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                        uint32_t flags) override;
+    void setVertices(uint32_t slot, std::span<const float> positions,
+                     std::span<const float> normals) noexcept override;
     void createImage(uint32_t slot, uint32_t width, uint32_t height,
                      std::span<const std::byte> pixels) override;
     void destroyImage(uint32_t slot) noexcept override;
+
+    // Vertices as setVertices', from a buffer that the next frame copies. Throws where memory is
+    // refused.
+    void setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices);
 
     // Checks pacing and opens the frame. False: pipelines are not built yet. Throws core::Error:
     // FW_ERROR_INVALID_ARGUMENT for pacing, FW_ERROR_DEVICE_LOST once latched.

@@ -5,6 +5,7 @@
 #include "gpu/vk/world_state.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -77,7 +78,7 @@ uint32_t groupsOf(uint32_t items) noexcept { return (items + 63) / 64; }
 // burnt out.
 bool deforms(const VkBackend::State& s, uint32_t slot, uint64_t now) noexcept {
     const ObjectEntry& object = s.objects[slot];
-    if (!object.live || object.shown.units == 0) return false;
+    if (!object.live || object.shown.units == 0 || object.skinPlus1) return false;
     if (object.deformReset) return true;
     if (object.deform.flags & kDeformShell) {
         const bool wind = s.wind[0] != 0 || s.wind[1] != 0 || s.wind[2] != 0;
@@ -104,6 +105,7 @@ struct FrameNeeds {
     bool burning = false, predicting = false, publishedRuns = false, heating = false;
     bool falling = false;  // burnt pieces may lose their hold
     uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;  // what deforms
+    bool skins = false;                   // a host moved vertices
     bool readback = false, work = false;  // no work: nothing is recorded
     [[nodiscard]] uint32_t deformGroups() const noexcept {
         return nodeGroups + sheetGroups + springGroups + vertexGroups;
@@ -132,6 +134,15 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
             if (object.deform.flags & kDeformShell) needs.sheetGroups += groups;
             if (object.deform.flags & kDeformSprings) needs.springGroups += groups;
             needs.vertexGroups += groupsOf(object.deform.vertexCount);
+        }
+        const Skin* moved = object.skinPlus1 ? &s.skins[object.skinPlus1 - 1] : nullptr;
+        if (moved && (moved->dirty || moved->givenDue)) {
+            const Skin& skin = *moved;
+            needs.skins = true;
+            if (skin.dirty) needs.uploadBytes += uploaded(skin.shown.size() * sizeof(ShownVertex));
+            // Normals that the host does not give follow the triangles.
+            object.deformsNow = !skin.normals;
+            if (object.deformsNow) needs.vertexGroups += groupsOf(object.deform.vertexCount);
         }
         if (!object.live) continue;
         if (needs.dense) denseGroups += wakeGroupsOf(object);
@@ -206,8 +217,9 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
                      needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
     const uint64_t refineBytes = s.planRefine(plan);
     needs.uploadBytes += refineBytes;
-    needs.work = needs.readback || needs.falling || needs.nodeGroups > 0 || refineBytes > 0 ||
-                 forgets || s.recordsDirty || !s.uploads.empty() || s.planes.movesPending();
+    needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
+                 refineBytes > 0 || forgets || s.recordsDirty || !s.uploads.empty() ||
+                 s.planes.movesPending();
     return needs;
 }
 
@@ -470,6 +482,67 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     if (count) recordSupport(recorder, plan.endTick, ticks, first, count);
 }
 
+// A host's vertex buffer into our plane, and from there to what is drawn.
+void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry& object,
+                 const Skin& skin) {
+    const Table& vk = s.device.table;
+    const FwVulkanVertices& from = skin.given;
+    const uint64_t bytes = uint64_t(skin.words.units) * 4;
+    const uint64_t last = from.normalOffset ? uint64_t(from.normalOffset) + 12 : 12;
+    const uint64_t used = uint64_t(from.vertexCount - 1) * from.stride + last;
+    auto barrier = typed<VkBufferMemoryBarrier>(VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER);
+    barrier.srcAccessMask = from.accessBefore;
+    barrier.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.buffer = from.buffer;
+    barrier.offset = from.offset;
+    barrier.size = used;
+    const VkPipelineStageFlags before =
+        from.stageBefore ? from.stageBefore
+                         : VkPipelineStageFlags(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT);
+    vk.CmdPipelineBarrier(s.open.commands, before, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 1,
+                          &barrier, 0, nullptr);
+    const Use uses[] = {{FW_BIND_SKIN_GIVEN, Access::copyWrite}};
+    s.barriers.use(vk, s.open.commands, uses);
+    const VkBufferCopy copy{from.offset, uint64_t(skin.words.first) * 4, std::min(used, bytes)};
+    vk.CmdCopyBuffer(s.open.commands, from.buffer, s.planes.buffer(FW_BIND_SKIN_GIVEN).handle, 1,
+                     &copy);
+    barrier.srcAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+    barrier.dstAccessMask = from.accessAfter;
+    const VkPipelineStageFlags after =
+        from.stageAfter ? from.stageAfter
+                        : VkPipelineStageFlags(VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT);
+    vk.CmdPipelineBarrier(s.open.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, after, 0, 0, nullptr, 1,
+                          &barrier, 0, nullptr);
+    SkinPush push{};
+    push.count = object.deform.vertexCount;
+    push.sourceBase = s.meshes[object.mesh].skinSources.first;
+    push.shownBase = object.shown.first;
+    push.given = skin.words.first;
+    push.stride = from.stride / 4;
+    push.normal = from.normalOffset ? from.normalOffset / 4 : kNoneTexel;
+    push.scaleX = std::bit_cast<uint32_t>(object.shape[0]);
+    push.scaleY = std::bit_cast<uint32_t>(object.shape[1]);
+    push.scaleZ = std::bit_cast<uint32_t>(object.shape[2]);
+    recordSkin(recorder, push);
+}
+
+// Vertices as hosts have moved them.
+void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
+    for (const ObjectEntry& object : s.objects) {
+        if (!object.live || !object.skinPlus1) continue;
+        Skin& skin = s.skins[object.skinPlus1 - 1];
+        if (skin.givenDue) recordGiven(s, recorder, object, skin);
+        skin.givenDue = false;
+        if (!skin.dirty) continue;
+        const Staged staged = writer.write(std::span<const ShownVertex>(skin.shown));
+        recorder.copyIn(staged.at, FW_BIND_SHOWN,
+                        uint64_t(object.shown.first) * sizeof(ShownVertex),
+                        skin.shown.size() * sizeof(ShownVertex));
+        skin.dirty = false;
+    }
+}
+
 // What deforms in this frame, in the order of DeformRecord; `steps`: that it moves by.
 Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer) {
     Staged staged = writer.begin();
@@ -483,7 +556,8 @@ Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writ
     };
     for (const uint32_t tier : {~0u, kDeformShell, kDeformSprings})
         for (const ObjectEntry& object : s.objects)
-            if (object.deformsNow && (tier == ~0u || (object.deform.flags & tier)))
+            if (object.deformsNow && !object.skinPlus1 &&
+                (tier == ~0u || (object.deform.flags & tier)))
                 append(object, object.deform.nodeCount);
     for (ObjectEntry& object : s.objects) {
         if (!object.deformsNow) continue;
@@ -599,6 +673,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     drawVertices = planes.buffer(kResourceVertices).handle;
     drawIndices = planes.buffer(kResourceIndices).handle;
     drawShown = planes.buffer(FW_BIND_SHOWN).handle;
+    if (needs.skins) recordSkins(*this, recorder, writer);
 
     if (needs.iterations) recordCounters(recorder, lists, uint32_t(needs.iterations));
     slot.layout.firstRow = lists.row;
@@ -646,7 +721,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     }
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
     slot.layout.predictParity = lists.predictParity;
-    if (needs.nodeGroups) {
+    if (needs.vertexGroups) {
         DeformRecord deform;
         deform.nodeGroups = needs.nodeGroups;
         deform.sheetGroups = needs.sheetGroups;

@@ -6,6 +6,8 @@
 #include "gpu/vk/recorder.h"
 #include "gpu/vk/vk_backend.h"
 
+#include "shared/deform.h"
+
 #include <optional>
 
 namespace fw::gpu::vk {
@@ -58,7 +60,8 @@ struct MeshEntry {
     RefineMesh refine[kRefineDepth + 1];             // by depth
     float edge = 0;  // m at scale 1: side of a square as large as two mean triangles
     const mesh::BurnDomain* domain = nullptr;
-    RangeOf nodes, coats;  // once an object deforms
+    RangeOf nodes, coats;       // once an object deforms
+    RangeOf skin, skinSources;  // once one is skinned
 };
 
 struct ObjectEntry {
@@ -83,11 +86,36 @@ struct ObjectEntry {
     RangeOf deformer, shown, soft;  // soft: sheets and springs
     DeformObject deform{};
     bool deformDirty = false, deformReset = false;
-    bool deformsNow = false;   // scratch of run
-    uint32_t deformTicks = 0;  // that something moves after the last texel caught
-    uint64_t lastEvent = 0;    // tick
-    bool softOdd = false;      // its places are the second ones
-    uint64_t softUntil = 0;    // tick until which it is not yet at rest
+    bool deformsNow = false;     // scratch of run
+    uint32_t deformTicks = 0;    // that something moves after the last texel caught
+    uint64_t lastEvent = 0;      // tick
+    bool softOdd = false;        // its places are the second ones
+    uint64_t softUntil = 0;      // tick until which it is not yet at rest
+    uint32_t skinPlus1 = 0;      // of a skinned object: its Skin
+    float shape[3] = {1, 1, 1};  // what its mesh was stretched by
+};
+
+// Vertices that a host moves, as they go to the device with the next frame.
+struct Skin {
+    std::pmr::vector<ShownVertex> shown;  // by drawn vertex, in the device's order; empty: free
+    std::pmr::vector<uint32_t> sources;   // the host's vertex of each
+    bool dirty = false, normals = false;  // normals: the host's; else they follow the triangles
+    // Instead of `shown`, what a buffer of the host's holds: copied by the next frame.
+    FwVulkanVertices given{};
+    bool givenDue = false;
+    RangeOf words;  // where it is copied to
+    using allocator_type = std::pmr::polymorphic_allocator<>;
+    explicit Skin(const allocator_type& a) : shown(a), sources(a) {}
+    Skin(Skin&&) = default;
+    Skin(Skin&& other, const allocator_type& a)
+        : shown(std::move(other.shown), a),
+          sources(std::move(other.sources), a),
+          dirty(other.dirty),
+          normals(other.normals),
+          given(other.given),
+          givenDue(other.givenDue),
+          words(other.words) {}
+    Skin& operator=(Skin&&) = default;
 };
 
 struct ImageEntry {
@@ -174,6 +202,7 @@ struct VkBackend::State {
     ImageEntry white, lookTextures;
     std::pmr::vector<PendingUpload> uploads;
     std::pmr::vector<Quarantined> quarantine;
+    std::pmr::vector<Skin> skins;
     uint32_t liveObjects = 0;
     bool initialized = false;  // the planes that must start as zero do
     // As last recorded.

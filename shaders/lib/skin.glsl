@@ -1,0 +1,25 @@
+// Where a texel is on the vertices that the host moves. Every thread loads: others than skinned
+// objects read the first records.
+#ifndef FW_LIB_SKIN_GLSL
+#define FW_LIB_SKIN_GLSL
+layout(std430, set = 0, binding = FW_BIND_SKIN_TEXELS) readonly buffer SkinTexelsBuffer {
+    uvec4 skinTexels[];
+};
+layout(std430, set = 0, binding = FW_BIND_SHOWN) readonly buffer SkinShownBuffer { vec4 skinShown[]; };
+
+struct SkinPlace {
+    vec3 place, normal;  // m, object space; of the triangle, Q14 as decodeNormal's
+};
+SkinPlace skinPlace(bool skinned, uint skinTexel, uint shownBase) {
+    uvec4 of = skinTexels[skinned ? skinTexel : 0u];
+    vec2 weight = unpackUnorm2x16(of.w);
+    vec3 a = skinShown[skinned ? (shownBase + of.x) * 3u : 0u].xyz;
+    vec3 b = skinShown[skinned ? (shownBase + of.y) * 3u : 0u].xyz;
+    vec3 c = skinShown[skinned ? (shownBase + of.z) * 3u : 0u].xyz;
+    SkinPlace found;
+    found.place = a * weight.x + b * weight.y + c * (1.0 - weight.x - weight.y);
+    vec3 across = cross(b - a, c - a);
+    found.normal = across * (16384.0 * inversesqrt(max(dot(across, across), 1e-30)));
+    return found;
+}
+#endif
