@@ -1,11 +1,10 @@
 // A box of twelve triangles burns: refined just ahead of the fire, it recedes, chars and opens;
 // what has burnt out is coarse again. --plain draws the twelve triangles as they are.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "common/camera.h"
-#include "common/film.h"
+#include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
 
@@ -61,15 +60,10 @@ int run(const sample::Options& options, const Wishes& wishes) {
     const Box box = makeBox({-0.4f, 0, -0.3f}, {0.4f, 0.6f, 0.3f});
     sample::ValidationLog validation;
     {
-        sample::HostRequest hostRequest;
-        hostRequest.windowed = !options.headless;
-        if (options.validate) hostRequest.validation = &validation;
-        const sample::VulkanHost host(hostRequest);
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: a burning box";
-        const auto wanted = static_cast<uint32_t>(std::lround(wishes.seconds * options.fps));
-        const uint32_t frames =
-            options.frames ? options.frames : (options.headless ? std::max(1u, wanted) : 0u);
+        const uint32_t frames = sample::framesOf(options, wishes.seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 0.8f);
         sample::OrbitCamera orbit;
@@ -92,28 +86,15 @@ int run(const sample::Options& options, const Wishes& wishes) {
         studio.castShadow(box.positions, box.indices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
 
-        sample::FilmRequest filmRequest;
-        filmRequest.folder = options.out;
-        filmRequest.name = "burning_box";
-        filmRequest.framesPerSecond = options.fps;
-        filmRequest.frames = frames;
-        sample::Film film(filmRequest);
-        sample::Progress progress("burning_box", frames);
-        stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
-            film.add(number, picture);
-            progress.update(number + 1);
-        };
+        sample::FilmRequest film;
+        film.name = "burning_box";
+        sample::Filming filming(stage, options, film);
         sample::StageFrame frame;
         while (stage.next(frame)) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
             orbit.zoom(frame.input.wheel);
             orbit.yaw += glm::radians(wishes.turn) * frame.deltaTime;
-            const float aspect =
-                static_cast<float>(frame.extent.width) / static_cast<float>(frame.extent.height);
-            const sample::Camera camera = orbit.camera();
-            sample::setCamera(view, sample::viewMatrix(camera),
-                              sample::projectionMatrix(camera, aspect, false));
-            view.time = static_cast<float>(frame.time);
+            sample::setCamera(view, orbit.camera(), frame);
             if (frame.number == 1) {  // one frame of the untouched thing first
                 FwIgnitionDef match = fwDefaultIgnitionDef();
                 match.position[0] = 0.1f;
@@ -132,7 +113,6 @@ int run(const sample::Options& options, const Wishes& wishes) {
             stage.finish(frame);
         }
         if (options.headless) {
-            progress.finish();
             FwObjectState state{};
             state.structSize = sizeof state;
             fwWorld_GetObjectState(fire.world, object, &state);
@@ -143,9 +123,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
             std::snprintf(line, sizeof line, "%.0f times as fast as real; %.0f %% caught fire",
                           wishes.pace, 100.0f * state.burntFraction);
             summary.rows.emplace_back("fire", line);
-            summary.passes = fire.passCosts();
-            summary.files = film.close();
-            sample::printSummary(summary);
+            filming.finish(summary, fire);
         }
     }
     return validation.exitCode();
