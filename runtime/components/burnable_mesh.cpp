@@ -283,7 +283,8 @@ uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain)
     if (object.flags & FW_BURNABLE_NO_HOLES) flags |= gpu::kObjectNoHoles;
     if (object.flags & FW_BURNABLE_HIDDEN) flags |= gpu::kObjectHidden;
     if (domain.hasDetail) flags |= gpu::kObjectDetail;
-    if (object.flags & FW_BURNABLE_SKINNED) flags |= gpu::kObjectSkinned;
+    if (object.flags & (FW_BURNABLE_SKINNED | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS))
+        flags |= gpu::kObjectSkinned;
     if (hasHeat(object)) flags |= gpu::kObjectHeat;
     return flags;
 }

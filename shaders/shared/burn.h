@@ -110,7 +110,7 @@ FW_SHARED_CONST uint kObjectNoHoles = 8u;
 FW_SHARED_CONST uint kObjectHidden = 16u;
 FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinates
 FW_SHARED_CONST uint kObjectHeat = 64u;      // has a heat plane
-FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // the host moves its vertices
+FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire stands on its shown vertices
 
 // TileState::flag
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list

@@ -44,7 +44,7 @@ class EveryPass : public GpuTest {
         if (!published) {
             object.deform.flags = gpu::kDeformRecede;
             for (gpu::DeformMaterial& m : object.deform.materials)
-                m = {.charTicks = 4096, .depth = 0.01f, .holeTicks = 8192, .holeSeconds = 2};
+                m = gpu::DeformMaterial{4096, 0.01f, 0, 0, 8192, 2, 0, 0};
         }
         scene.objects.push_back(object);
         if (published) return scene;

@@ -639,11 +639,13 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
                            mesh.vertices};
                 stageSkinTexels(s, *mesh.domain, order, skin.first, sources.first);
             }
-            uint32_t free = 0;
-            while (free < s.skins.size() && !s.skins[free].shown.empty()) ++free;
-            if (free == s.skins.size()) s.skins.emplace_back();
-            fresh.skinPlus1 = free + 1;
-            stageSkin(s, *mesh.domain, order, s.skins[free], fresh.shown.first);
+            if (!(init.deform->flags & (kDeformShell | kDeformSprings))) {  // the host moves it
+                uint32_t free = 0;
+                while (free < s.skins.size() && !s.skins[free].shown.empty()) ++free;
+                if (free == s.skins.size()) s.skins.emplace_back();
+                fresh.skinPlus1 = free + 1;
+                stageSkin(s, *mesh.domain, order, s.skins[free], fresh.shown.first);
+            }
         }
     } catch (...) {
         fresh.refine.release(s.planes);
@@ -705,11 +707,13 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.deformTicks += kTicksPerSecond;  // readbacks come late
         fresh.deformDirty = fresh.deformReset = true;
     }
-    if (fresh.skinPlus1) {
+    if (init.record.flags & kObjectSkinned) {
         mesh.skin = skin;
         mesh.skinSources = sources;
         r.skinBase = skin.first * kTileTexels;
         r.shownBase = fresh.shown.first;
+    }
+    if (fresh.skinPlus1) {
         std::copy_n(init.shape, 3, fresh.shape);
         fresh.deformReset = false;  // at rest already
     }
