@@ -166,29 +166,20 @@ int run(const sample::Options& options, const Wishes& wishes) {
                 const SurfacePoint point = castRay(subject, camera.eye, way);
                 if (point.hit) touch(fire, point.position, matchRadius, hand);
             }
-            FwLight lights[8];
-            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
             FwEvent events[32];
             while (const uint32_t count = fwWorld_PollEvents(fire.world, events, 32)) {
                 for (uint32_t i = 0; i < count; ++i) {
                     if (events[i].type == FW_EVENT_TIME_DROPPED) dropped += events[i].value;
                 }
             }
-            fire.recordOutside(frame, view);
-            stage.beginScene(frame);
-            studio.draw(frame, frame.commands, view, {lights, lightCount});
-            fire.recordInside(frame, view);
-            stage.endScene(frame);
-            stage.finish(frame);
+            sample::showStudio(frame, stage, studio, fire, view);
         }
 
         if (options.headless) {
             FwMeshInfo info{};
             info.structSize = sizeof info;
             fwWorld_GetMeshInfo(fire.world, mesh, &info);
-            FwObjectState state{};
-            state.structSize = sizeof state;
-            fwWorld_GetObjectState(fire.world, object, &state);
+            const FwObjectState state = fire.objectState(object);
             char line[160];
             sample::Summary summary;
             summary.title = "Burning " + subject.name;

@@ -80,20 +80,11 @@ int run(const sample::Options& options, float seconds, float turn) {
                 ignition.radius = 0.02f * subject.size();
                 fire.check(fwWorld_Ignite(fire.world, &ignition, nullptr), "fwWorld_Ignite");
             }
-            FwLight lights[8];
-            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
-            fire.recordOutside(frame, view);
-            stage.beginScene(frame);
-            studio.draw(frame, frame.commands, view, {lights, lightCount});
-            fire.recordInside(frame, view);
-            stage.endScene(frame);
-            stage.finish(frame);
+            sample::showStudio(frame, stage, studio, fire, view);
         }
 
         if (options.headless) {
-            FwObjectState state{};
-            state.structSize = sizeof state;
-            fwWorld_GetObjectState(fire.world, object, &state);
+            const FwObjectState state = fire.objectState(object);
             char line[160];
             sample::Summary summary;
             summary.title = "Burning " + subject.name;

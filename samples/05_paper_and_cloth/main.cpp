@@ -169,15 +169,7 @@ int run(const sample::Options& options, float seconds) {
             // Once both hang still.
             if (frame.number == static_cast<uint32_t>(1 + frames / 12))
                 for (size_t i = 0; i < 2; ++i) light(fire, objects[i], kExhibits[i]);
-            FwLight lights[8];
-            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
-            fire.recordOutside(frame, view);
-            stage.beginScene(frame);
-            studio.draw(frame, frame.commands, view, {lights, lightCount});
-            studio.drawBlocks(frame, frame.commands);
-            fire.recordInside(frame, view);
-            stage.endScene(frame);
-            stage.finish(frame);
+            sample::showStudio(frame, stage, studio, fire, view);
         }
 
         if (options.headless) {
@@ -185,9 +177,7 @@ int run(const sample::Options& options, float seconds) {
             summary.title = "Paper and cloth";
             summary.rows.emplace_back("device", host.properties.deviceName);
             for (size_t i = 0; i < 2; ++i) {
-                FwObjectState state{};
-                state.structSize = sizeof state;
-                fwWorld_GetObjectState(fire.world, objects[i], &state);
+                const FwObjectState state = fire.objectState(objects[i]);
                 char line[96];
                 std::snprintf(line, sizeof line, "%.0f %% caught fire",
                               static_cast<double>(100.0f * state.burntFraction));

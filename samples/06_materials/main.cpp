@@ -141,15 +141,7 @@ int run(const sample::Options& options, float seconds, int only) {
                 else
                     touch(fire, objects[i], face + glm::vec3(-0.14f, 0.10f, 0), 0.02f, FW_IGNITE);
             }
-            FwLight lights[8];
-            const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
-            fire.recordOutside(frame, view);
-            stage.beginScene(frame);
-            studio.draw(frame, frame.commands, view, {lights, lightCount});
-            studio.drawBlocks(frame, frame.commands);
-            fire.recordInside(frame, view);
-            stage.endScene(frame);
-            stage.finish(frame);
+            sample::showStudio(frame, stage, studio, fire, view);
         }
 
         if (options.headless) {
@@ -158,9 +150,7 @@ int run(const sample::Options& options, float seconds, int only) {
             summary.rows.emplace_back("device", host.properties.deviceName);
             for (uint32_t i = 0; i < kExhibitCount; ++i) {
                 if (objects[i].index1 == 0) continue;
-                FwObjectState state{};
-                state.structSize = sizeof state;
-                fwWorld_GetObjectState(fire.world, objects[i], &state);
+                const FwObjectState state = fire.objectState(objects[i]);
                 char line[160];
                 std::snprintf(line, sizeof line, "%s; %.0f %% caught fire",
                               fwMaterialPresetName(kExhibits[i].preset),

@@ -122,6 +122,13 @@ void FireHost::check(FwResult result, const char* what) const {
     throw Failure(std::string(what) + ": " + (text[0] ? text : fwResultName(result)));
 }
 
+FwObjectState FireHost::objectState(FwBurnableMeshId object) const {
+    FwObjectState state{};
+    state.structSize = sizeof state;
+    check(fwWorld_GetObjectState(world, object, &state), "fwWorld_GetObjectState");
+    return state;
+}
+
 void FireHost::countPasses() {
     FwPassTime times[64];
     const uint32_t count = std::min(fwDebug_GetPassTimes(world, times, 64), 64u);

@@ -35,6 +35,8 @@ class FireHost {
     // Throws Failure("<what>: <why>") unless result is FW_OK.
     void check(FwResult result, const char* what) const;
 
+    // As of the last readback.
+    FwObjectState objectState(FwBurnableMeshId object) const;
     // Mean milliseconds per pass over the frames so far, for the summary.
     std::vector<PassCost> passCosts() const { return costs_; }
 

@@ -332,4 +332,17 @@ void Studio::drawBlocks(const StageFrame& frame, VkCommandBuffer commands) {
     vkCmdDraw(commands, static_cast<uint32_t>(blockCorners_.size() / 2), 1, 0, 0);
 }
 
+void showStudio(const StageFrame& frame, Stage& stage, Studio& studio, FireHost& fire,
+                const FwView& view) {
+    FwLight lights[8];
+    const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
+    fire.recordOutside(frame, view);
+    stage.beginScene(frame);
+    studio.draw(frame, frame.commands, view, {lights, lightCount});
+    studio.drawBlocks(frame, frame.commands);
+    fire.recordInside(frame, view);
+    stage.endScene(frame);
+    stage.finish(frame);
+}
+
 }  // namespace sample

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/fire_host.h"
 #include "common/stage.h"
 #include "flamewright/flamewright.h"
 
@@ -51,6 +52,11 @@ class Studio {
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
+
+// The whole of a frame in a studio: the fire's step, the backdrop in the light of the fires, the
+// blocks, and the fire. Lights are those before this frame's step.
+void showStudio(const StageFrame& frame, Stage& stage, Studio& studio, FireHost& fire,
+                const FwView& view);
 
 // Evening light in a studio, the light in which fire reads best; fills all but the matrices.
 void duskLight(FwView& view);

@@ -1,6 +1,6 @@
-// Deformation of burning meshes: records of its planes, and the maths that C++ and the shaders share.
-// Cosmetic floats, derived from the authoritative burn state. A *node* is a point of the drawn mesh
-// with all vertices that lie on it; its state is kept with one of them.
+// Deformation of burning meshes: records of its planes, and the maths that C++ and shaders share.
+// Cosmetic floats, derived from the authoritative burn state. A *node* is a point of the drawn
+// mesh with all vertices that lie on it; its state is kept with one of them.
 // GLSL too, and laid out by hand.
 // clang-format off
 #ifndef FW_SHARED_DEFORM_H

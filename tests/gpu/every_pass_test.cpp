@@ -100,31 +100,15 @@ class EveryPass : public GpuTest {
         for (size_t i = 0; i < domain.vertices.size(); ++i)
             for (size_t c = 0; c < 3; ++c)
                 places[domain.sources[i] * 3 + c] = 1.1f * domain.vertices[i].position[c];
-        VkBufferCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-        info.size = places.size() * sizeof(float);
-        info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-        ASSERT_EQ(vkCreateBuffer(device_->device, &info, nullptr, &buffer_), VK_SUCCESS);
-        VkMemoryRequirements needs{};
-        vkGetBufferMemoryRequirements(device_->device, buffer_, &needs);
-        VkMemoryAllocateInfo allocate{};
-        allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-        allocate.allocationSize = needs.size;
-        allocate.memoryTypeIndex =
-            device_->memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                                          VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-        ASSERT_EQ(vkAllocateMemory(device_->device, &allocate, nullptr, &memory_), VK_SUCCESS);
-        vkBindBufferMemory(device_->device, buffer_, memory_, 0);
-        void* mapped = nullptr;
-        vkMapMemory(device_->device, memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
-        std::copy(places.begin(), places.end(), static_cast<float*>(mapped));
-        vkUnmapMemory(device_->device, memory_);
+        vertices_ =
+            device_->makeBuffer(places.size() * sizeof(float), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+        std::copy(places.begin(), places.end(), static_cast<float*>(vertices_.mapped));
     }
     void moveVertices() {
-        if (!buffer_) return;
+        if (!vertices_.buffer) return;
         FwVulkanVertices vertices{};
         vertices.vertexCount = scene_->domains[0].report.vertices;
-        vertices.buffer = buffer_;
+        vertices.buffer = vertices_.buffer;
         vertices.stride = 12;
         vertices.stageBefore = VK_PIPELINE_STAGE_HOST_BIT;
         vertices.accessBefore = VK_ACCESS_HOST_WRITE_BIT;
@@ -249,10 +233,6 @@ class EveryPass : public GpuTest {
 
     void TearDown() override {
         rig_.reset();
-        if (device_ && buffer_) {
-            vkDestroyBuffer(device_->device, buffer_, nullptr);
-            vkFreeMemory(device_->device, memory_, nullptr);
-        }
         GpuTest::TearDown();
     }
 
@@ -260,8 +240,7 @@ class EveryPass : public GpuTest {
     const BurnScene* scene_ = nullptr;
     FwTargetId target_{};
     TestImage color_, depth_;
-    VkBuffer buffer_ = VK_NULL_HANDLE;
-    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    TestBuffer vertices_;
     std::set<std::string> passes_;  // that took time
     uint32_t now_ = 0;
     uint64_t index_ = 0;

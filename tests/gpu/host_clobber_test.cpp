@@ -43,11 +43,6 @@ struct Case {
     }
 };
 
-struct Buffer {
-    VkBuffer handle = VK_NULL_HANDLE;
-    void* mapped = nullptr;
-};
-
 // One rectangle of the host's, in pixels.
 struct Rect {
     int32_t x0, y0, x1, y1;
@@ -131,25 +126,9 @@ class HostClobber : public GpuTest {
     }
 
     template <class T>
-    Buffer makeBuffer(VkBufferUsageFlags usage, const std::vector<T>& content) {
-        VkBufferCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-        info.size = content.size() * sizeof(T);
-        info.usage = usage;
-        Buffer out;
-        out.handle = made(vkCreateBuffer, vkDestroyBuffer, info);
-        VkMemoryRequirements needs{};
-        vkGetBufferMemoryRequirements(device_->device, out.handle, &needs);
-        VkMemoryAllocateInfo allocate{};
-        allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-        allocate.allocationSize = needs.size;
-        allocate.memoryTypeIndex =
-            device_->memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                                          VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-        const VkDeviceMemory memory = made(vkAllocateMemory, vkFreeMemory, allocate);
-        FW_MUST(vkBindBufferMemory(device_->device, out.handle, memory, 0));
-        FW_MUST(vkMapMemory(device_->device, memory, 0, VK_WHOLE_SIZE, 0, &out.mapped));
-        std::memcpy(out.mapped, content.data(), size_t(info.size));
+    TestBuffer makeBuffer(VkBufferUsageFlags usage, const std::vector<T>& content) {
+        const TestBuffer out = device_->makeBuffer(content.size() * sizeof(T), usage);
+        std::memcpy(out.mapped, content.data(), content.size() * sizeof(T));
         return out;
     }
 
@@ -175,8 +154,8 @@ class HostClobber : public GpuTest {
         const auto uniform = [&](std::vector<float> values) {
             return makeBuffer(VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, values);
         };
-        const Buffer uniforms[2] = {uniform({0.9f, 0.8f, 0.7f, 1}),
-                                    uniform({0.05f, 0.1f, 0.15f, 0})};
+        const TestBuffer uniforms[2] = {uniform({0.9f, 0.8f, 0.7f, 1}),
+                                        uniform({0.05f, 0.1f, 0.15f, 0})};
         layout_ = makeLayout(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                              VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 20,
                              uniforms, sets_);
@@ -208,11 +187,11 @@ class HostClobber : public GpuTest {
             add(shades, {1, 1, 1, 1});
         }
         const VkBufferUsageFlags vertex = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
-        vertices_[0] = makeBuffer(vertex, positions).handle;
-        vertices_[1] = makeBuffer(vertex, colors).handle;
-        vertices_[2] = makeBuffer(vertex, shades).handle;
-        vertices_[3] = makeBuffer(vertex, std::vector<float>{1, 0.9f, 0.95f, 1}).handle;
-        indices_ = makeBuffer(VK_BUFFER_USAGE_INDEX_BUFFER_BIT, indices).handle;
+        vertices_[0] = makeBuffer(vertex, positions).buffer;
+        vertices_[1] = makeBuffer(vertex, colors).buffer;
+        vertices_[2] = makeBuffer(vertex, shades).buffer;
+        vertices_[3] = makeBuffer(vertex, std::vector<float>{1, 0.9f, 0.95f, 1}).buffer;
+        indices_ = makeBuffer(VK_BUFFER_USAGE_INDEX_BUFFER_BIT, indices).buffer;
         pixels_ = makeBuffer(VK_BUFFER_USAGE_TRANSFER_DST_BIT, std::vector<uint32_t>(3 * kPixels));
 
         VkFormatProperties properties{};
@@ -228,7 +207,7 @@ class HostClobber : public GpuTest {
     }
 
     VkPipelineLayout makeLayout(VkDescriptorType type, VkShaderStageFlags stages, uint32_t push,
-                                const Buffer (&buffers)[2], VkDescriptorSet (&sets)[2]) {
+                                const TestBuffer (&buffers)[2], VkDescriptorSet (&sets)[2]) {
         const VkDescriptorSetLayoutBinding binding{0, type, 1, stages, nullptr};
         VkDescriptorSetLayoutCreateInfo setInfo{};
         setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
@@ -244,7 +223,7 @@ class HostClobber : public GpuTest {
         allocate.pSetLayouts = both;
         FW_MUST(vkAllocateDescriptorSets(device_->device, &allocate, sets));
         for (int i = 0; i < 2; ++i) {
-            const VkDescriptorBufferInfo whole{buffers[i].handle, 0, VK_WHOLE_SIZE};
+            const VkDescriptorBufferInfo whole{buffers[i].buffer, 0, VK_WHOLE_SIZE};
             VkWriteDescriptorSet write{};
             write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
             write.dstSet = sets[i];
@@ -541,7 +520,7 @@ class HostClobber : public GpuTest {
             region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
             region.imageExtent = {kWidth, kHeight, 1};
             vkCmdCopyImageToBuffer(commands, stage.resolved, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                   pixels_.handle, 1, &region);
+                                   pixels_.buffer, 1, &region);
         }
         toHost(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
         frames_->submit();
@@ -629,7 +608,7 @@ class HostClobber : public GpuTest {
     VkDescriptorSet sets_[2]{};
     VkBuffer vertices_[4]{}, indices_ = VK_NULL_HANDLE;
     VkQueryPool queries_ = VK_NULL_HANDLE;
-    Buffer pixels_;
+    TestBuffer pixels_;
     std::vector<std::function<void()>> cleanup_;
 };
 
@@ -687,8 +666,8 @@ TEST_F(HostClobber, ItsNumbersAreItsOwnAroundOurWork) {
         in[i] = i * 2654435761u;
         want[i] = i ^ 0x5A5A;
     }
-    const Buffer buffers[2] = {makeBuffer(VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, in),
-                               makeBuffer(VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, want)};
+    const TestBuffer buffers[2] = {makeBuffer(VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, in),
+                                   makeBuffer(VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, want)};
     VkDescriptorSet sets[2]{};
     const VkPipelineLayout layout = makeLayout(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                                VK_SHADER_STAGE_COMPUTE_BIT, 4, buffers, sets);

@@ -212,23 +212,8 @@ class HostDraw : public GpuTest {
             resolved = device_->makeImage(shot.color, {kWidth, kHeight}, 1, colorUsage);
         const uint32_t pixelBytes = shot.color == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
 
-        VkBufferCreateInfo bufferInfo{};
-        bufferInfo.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-        bufferInfo.size = uint64_t(kWidth) * kHeight * pixelBytes;
-        bufferInfo.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-        VkBuffer buffer = VK_NULL_HANDLE;
-        EXPECT_EQ(vkCreateBuffer(device_->device, &bufferInfo, nullptr, &buffer), VK_SUCCESS);
-        VkMemoryRequirements needs{};
-        vkGetBufferMemoryRequirements(device_->device, buffer, &needs);
-        VkMemoryAllocateInfo allocate{};
-        allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-        allocate.allocationSize = needs.size;
-        allocate.memoryTypeIndex =
-            device_->memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                                          VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-        VkDeviceMemory memory = VK_NULL_HANDLE;
-        EXPECT_EQ(vkAllocateMemory(device_->device, &allocate, nullptr, &memory), VK_SUCCESS);
-        vkBindBufferMemory(device_->device, buffer, memory, 0);
+        const TestBuffer read = device_->makeBuffer(uint64_t(kWidth) * kHeight * pixelBytes,
+                                                    VK_BUFFER_USAGE_TRANSFER_DST_BIT);
 
         const VkRenderPass pass = shot.composite ? VK_NULL_HANDLE : makePass(shot);
         const FwTargetId target = registerTarget(shot, pass);
@@ -324,7 +309,7 @@ class HostDraw : public GpuTest {
             region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
             region.imageExtent = {kWidth, kHeight, 1};
             vkCmdCopyImageToBuffer(commands, resolved.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                   buffer, 1, &region);
+                                   read.buffer, 1, &region);
             VkMemoryBarrier toHost{};
             toHost.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
             toHost.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
@@ -342,18 +327,14 @@ class HostDraw : public GpuTest {
 
         Picture picture;
         picture.rgb.resize(size_t(kWidth) * kHeight * 3);
-        void* mapped = nullptr;
-        vkMapMemory(device_->device, memory, 0, VK_WHOLE_SIZE, 0, &mapped);
         for (size_t i = 0; i < size_t(kWidth) * kHeight; ++i) {
             for (size_t c = 0; c < 3; ++c) {
                 picture.rgb[i * 3 + c] =
                     pixelBytes == 8
-                        ? halfToFloat(static_cast<const uint16_t*>(mapped)[i * 4 + c])
-                        : float(static_cast<const uint8_t*>(mapped)[i * 4 + c]) / 255.0f;
+                        ? halfToFloat(static_cast<const uint16_t*>(read.mapped)[i * 4 + c])
+                        : float(static_cast<const uint8_t*>(read.mapped)[i * 4 + c]) / 255.0f;
             }
         }
-        vkFreeMemory(device_->device, memory, nullptr);
-        vkDestroyBuffer(device_->device, buffer, nullptr);
         rig_->context.unregisterTarget(target);
         return picture;
     }

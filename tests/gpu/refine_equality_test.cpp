@@ -59,10 +59,6 @@ class RefineRig {
     }
     ~RefineRig() {
         for (VkPipeline p : pipelines_) vkDestroyPipeline(device_.device, p, nullptr);
-        for (uint32_t k = 0; k < FW_BIND_COUNT; ++k) {
-            vkDestroyBuffer(device_.device, buffers_[k], nullptr);
-            vkFreeMemory(device_.device, memory_[k], nullptr);
-        }
         vkDestroyDescriptorPool(device_.device, pool_, nullptr);
         vkDestroyPipelineLayout(device_.device, layout_, nullptr);
         vkDestroyDescriptorSetLayout(device_.device, setLayout_, nullptr);
@@ -149,26 +145,12 @@ class RefineRig {
     }
 
     void make(uint32_t binding, size_t bytes, const void* content = nullptr) {
-        VkBufferCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-        info.size = bytes;
-        info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-        must(vkCreateBuffer(device_.device, &info, nullptr, &buffers_[binding]));
-        VkMemoryRequirements needs{};
-        vkGetBufferMemoryRequirements(device_.device, buffers_[binding], &needs);
-        VkMemoryAllocateInfo allocate{};
-        allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-        allocate.allocationSize = needs.size;
-        allocate.memoryTypeIndex =
-            device_.memoryType(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                                         VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-        must(vkAllocateMemory(device_.device, &allocate, nullptr, &memory_[binding]));
-        must(vkBindBufferMemory(device_.device, buffers_[binding], memory_[binding], 0));
-        must(vkMapMemory(device_.device, memory_[binding], 0, VK_WHOLE_SIZE, 0, &data_[binding]));
+        const TestBuffer made = device_.makeBuffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        data_[binding] = made.mapped;
         sizes_[binding] = bytes;
         std::memset(data_[binding], 0, bytes);
         if (content != nullptr) std::memcpy(data_[binding], content, bytes);
-        const VkDescriptorBufferInfo buffer{buffers_[binding], 0, VK_WHOLE_SIZE};
+        const VkDescriptorBufferInfo buffer{made.buffer, 0, VK_WHOLE_SIZE};
         VkWriteDescriptorSet write{};
         write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
         write.dstSet = set_;
@@ -228,8 +210,6 @@ class RefineRig {
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     VkPipeline pipelines_[4] = {};
-    VkBuffer buffers_[FW_BIND_COUNT] = {};
-    VkDeviceMemory memory_[FW_BIND_COUNT] = {};
     void* data_[FW_BIND_COUNT] = {};
     size_t sizes_[FW_BIND_COUNT] = {};
 };

@@ -179,6 +179,10 @@ TestDevice::~TestDevice() {
             vkDestroyImage(device, one.image, nullptr);
             vkFreeMemory(device, one.memory, nullptr);
         }
+        for (const TestBuffer& one : buffers_) {
+            vkDestroyBuffer(device, one.buffer, nullptr);
+            vkFreeMemory(device, one.memory, nullptr);
+        }
         vkDestroyCommandPool(device, pool, nullptr);
         vkDestroyDevice(device, nullptr);
     }
@@ -240,6 +244,27 @@ uint32_t TestDevice::memoryType(uint32_t allowed, VkMemoryPropertyFlags flags) c
     }
     ADD_FAILURE() << "no memory type " << flags;
     return 0;
+}
+
+TestBuffer TestDevice::makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags usage) {
+    TestBuffer& out = buffers_.emplace_back();
+    VkBufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+    info.size = bytes;
+    info.usage = usage;
+    must(vkCreateBuffer(device, &info, nullptr, &out.buffer), "vkCreateBuffer");
+    VkMemoryRequirements needs{};
+    vkGetBufferMemoryRequirements(device, out.buffer, &needs);
+    VkMemoryAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocate.allocationSize = needs.size;
+    allocate.memoryTypeIndex =
+        memoryType(needs.memoryTypeBits,
+                   VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    must(vkAllocateMemory(device, &allocate, nullptr, &out.memory), "vkAllocateMemory");
+    must(vkBindBufferMemory(device, out.buffer, out.memory, 0), "vkBindBufferMemory");
+    must(vkMapMemory(device, out.memory, 0, VK_WHOLE_SIZE, 0, &out.mapped), "vkMapMemory");
+    return out;
 }
 
 TestImage TestDevice::makeImage(VkFormat format, VkExtent2D extent, uint32_t samples,

@@ -29,6 +29,12 @@ struct TestImage {
     VkImageView view = VK_NULL_HANDLE;
 };
 
+struct TestBuffer {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    void* mapped = nullptr;
+};
+
 class TestDevice {
  public:
     // Null, with the reason, where there is no device or no validation layer.
@@ -45,6 +51,8 @@ class TestDevice {
     // A 2D image with one mip and layer; lives as long as the device.
     TestImage makeImage(VkFormat format, VkExtent2D extent, uint32_t samples,
                         VkImageUsageFlags usage);
+    // A buffer that the host sees, mapped, of unknown content; lives as long as the device.
+    TestBuffer makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags usage);
 
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
@@ -64,6 +72,7 @@ class TestDevice {
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkPhysicalDeviceFeatures2 features_{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, nullptr, {}};
     std::vector<TestImage> images_;
+    std::vector<TestBuffer> buffers_;
     std::mutex mutex_;
     std::vector<std::string> messages_;
 };

@@ -280,16 +280,21 @@ class Builder {
         if (glm::dot(facing, glm::vec3(out / stretch)) > 0.3f) node.opposite = texel;
     }
 
+    // The way past `center` along the far side of a corner's triangle.
+    void addStep(uint32_t corner, uint32_t center) {
+        const uint32_t triangle = corner / 3;
+        const Step step{keeperAt(triangle, corner % 3 + 1), keeperAt(triangle, corner % 3 + 2)};
+        if (step.from != step.to && step.from != center && step.to != center &&
+            steps_.size() < kMostSteps)
+            steps_.push_back(step);
+    }
+
     // Neighbours in their order around the node.
     void neighbours(uint32_t number) {
         DeformNode& node = model_.nodes[number];
         steps_.clear();
         for (const uint32_t corner : corners_.of(number)) {
-            const uint32_t triangle = corner / 3;
-            const Step step{keeperAt(triangle, corner % 3 + 1), keeperAt(triangle, corner % 3 + 2)};
-            if (step.from != step.to && step.from != node.vertex && step.to != node.vertex &&
-                steps_.size() < kMostSteps)
-                steps_.push_back(step);
+            addStep(corner, node.vertex);
         }
         const bool closes = walk(steps_, walk_, best_);
         const size_t all = best_.size(), kept = std::min<size_t>(all, kDeformRing);
@@ -390,11 +395,7 @@ class Builder {
         glm::dvec3 face(0);
         for (const uint32_t corner : corners_.of(node)) {
             if (domain_.vertices[domain_.indices[corner]].normal != v.normal) continue;
-            const uint32_t triangle = corner / 3;
-            const Step step{keeperAt(triangle, corner % 3 + 1), keeperAt(triangle, corner % 3 + 2)};
-            if (step.from != step.to && step.from != made.node && step.to != made.node &&
-                steps_.size() < kMostSteps)
-                steps_.push_back(step);
+            addStep(corner, made.node);
         }
         const bool closes = walk(steps_, walk_, best_);
         const size_t all = best_.size();
