@@ -52,7 +52,9 @@ void main() {
             for (uint i = 0u; i < bases.w; ++i) {
                 vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
                 vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
-                if (length(place - pinPoint(place, from.xyz, to.xyz)) <= from.w) reach = 0.0;
+                // Known from the start, or a sheet would fall until word of its pins came to it.
+                float away = length(place - pinPoint(place, from.xyz, to.xyz)) - from.w;
+                reach = min(reach, max(away, 0.0));
             }
         }
         if (reach == 0.0 && burnt > kPinBurns) reach = kReachNone;

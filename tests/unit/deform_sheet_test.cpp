@@ -237,6 +237,23 @@ TEST(DeformSheet, HangsAndFallsWhenBurntOff) {
     EXPECT_GT(s.nearest({0.1f, 0.18f, 0}).y, 0.15f);
 }
 
+// From the moment that it is made: it neither drops until word of its pins reaches it nor is flung
+// back up then.
+TEST(DeformSheet, PinsHoldFromTheFirstStep) {
+    gpu::DeformObject object = paper(0);
+    pin(object, {0, float(kPaper), 0}, {float(kPaper), float(kPaper), 0}, 0.001f);
+    for (gpu::DeformMaterial& m : object.materials) m.drag = 4;
+    Sheet s(24, object);
+    s.drive.gravity = 9.81f;
+    float worst = 0;
+    for (int step = 0; step < 128; ++step) {
+        s.run(1);
+        for (const gpu::DeformNode& node : s.model.nodes)
+            worst = std::max(worst, gpu::length(s.at(node) - vec3(node.x, node.y, node.z)));
+    }
+    EXPECT_LT(worst, 0.02f * float(kPaper));
+}
+
 TEST(DeformSheet, UnburntLinksNeverPart) {
     for (uint32_t a = 0; a < 50; ++a)
         for (uint32_t b = 0; b < 50; ++b) {

@@ -93,13 +93,15 @@ void resetSoft(const DeformModel& model, const gpu::DeformObject& object, Deform
     for (const DeformNode& node : model.nodes) {
         DeformState::Soft& soft = state.soft[node.vertex];
         soft.place[0] = soft.place[1] = restOf(node);
-        soft.reach[0] = soft.reach[1] = gpu::kReachNone;
+        // Known from the start, or a sheet would fall until word of its pins came to it.
+        float reach = gpu::kReachNone;
         for (uint32_t i = 0; i < object.pinCount; ++i) {
-            const vec3 from(object.pins[i * 2]), to(object.pins[i * 2 + 1]);
-            if (gpu::length(restOf(node) - gpu::pinPoint(restOf(node), from, to)) <=
-                object.pins[i * 2].w)
-                soft.reach[0] = soft.reach[1] = 0;
+            const vec3 point =
+                gpu::pinPoint(restOf(node), vec3(object.pins[i * 2]), vec3(object.pins[i * 2 + 1]));
+            const float away = gpu::length(restOf(node) - point) - object.pins[i * 2].w;
+            reach = std::min(reach, std::max(away, 0.0f));
         }
+        soft.reach[0] = soft.reach[1] = reach;
     }
 }
 
