@@ -352,7 +352,7 @@ MaterialLook leather() {
     m.rimWidth = 0.0045f;
     m.thickness = 0.003f;
     m.curl = 0.7f;
-    m.wetDark = 0.7f;
+    m.wetDark = 0.45f;
     m.wetGloss = 0.5f;
     m.holeTiles = 4.0f;
     m.holeFine = 0.16f;

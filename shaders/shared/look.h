@@ -151,12 +151,22 @@ struct SurfaceDraw {
     uint height;
     uint flags;              // kObject..., kDrawVertexLight
     uint places;             // with kDrawPlaced: of vertex slot 0 among the refined places
+    uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
+    float filmMost;          // g/m^2 of water that stay on it; 0: no heat plane
+    uint reserved0;
+    uint reserved1;
 };
-FW_SHARED_SIZE(SurfaceDraw, 112)
+FW_SHARED_SIZE(SurfaceDraw, 128)
 // SurfaceDraw::flags, beyond kObject...: triangles are small, flames light their corners.
 FW_SHARED_CONST uint kDrawVertexLight = 0x10000u;
 // Vertices lie where the refinement placed their slots.
 FW_SHARED_CONST uint kDrawPlaced = 0x20000u;
+// Its heat plane says how hot it is and how deep its char.
+FW_SHARED_CONST uint kDrawHeat = 0x40000u;
+// Water reached it, some day.
+FW_SHARED_CONST uint kDrawWet = 0x80000u;
+// It chars through from the surface.
+FW_SHARED_CONST uint kDrawThick = 0x100000u;
 
 struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m

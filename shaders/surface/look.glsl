@@ -10,7 +10,10 @@ struct Site {     // what is known of one point of the surface
     float slow;   // s/m, slope of the ignition time
     float lead;   // s that holes come earlier
     vec2 ahead;   // unit, towards fresh material, in detail space
-    float out_;   // [0, 1] extinguished
+    float out_;   // [0, 1] extinguished and cold
+    float deep;   // [0, 1] of how deep char gets
+    float gain;   // K that it glows hotter
+    float brown;  // [0, 1] by heat from elsewhere
     float water;  // [0, 1] soaked
     float soot;   // [0, 1]
     float keep;   // how much longer it glows than in the open: hollows keep their heat
@@ -47,7 +50,7 @@ vec2 frontWarp(vec2 d, float pixel, MaterialLook m, out vec4 coarse, out vec4 fi
 }
 
 float limitGlow(float kelvin, Site s) {
-    return mix(kelvin, 300.0 + 0.45 * (kelvin - 300.0), s.out_);
+    return mix(kelvin + s.gain, 300.0 + 0.45 * (kelvin - 300.0), s.out_);
 }
 
 // s that a hole comes later here than where its noise and the fresh detail say nothing.
@@ -68,7 +71,8 @@ vec4 charCracks(float a, Site s, MaterialLook m, vec4 c) {
     float random = s.coarse.a;
     float open1 = smoothstep(m.charTime * 0.6, m.crackTime, a - m.crackTime * 0.15 * random);
     float open2 = smoothstep(m.crackTime * 0.6, m.crackTime * 2.2, a);
-    float w1 = m.crackWidth * open1, w2 = m.crackWidth * 0.45 * open2;
+    float deep = 0.7 + 0.8 * s.deep;  // char cracks wider the deeper it goes
+    float w1 = m.crackWidth * deep * open1, w2 = m.crackWidth * deep * 0.45 * open2;
     float d1 = mix(c.r, c.g, m.isotropic) * m.cellX;
     float d2 = mix(c.g, c.r, m.isotropic) * m.cellX * 0.4;
     // Widened to the pixel with the area kept, or wood reads as lava from two metres.
@@ -102,6 +106,11 @@ vec3 soaked(vec3 albedo, float k) {
     return albedo * (k < 0.5 ? mix(vec3(1.0), root, 2.0 * k) : mix(root, albedo, 2.0 * k - 1.0));
 }
 
+// Gloss of a film of water: what drinks it shines only where it stands.
+float wetShine(Site s, MaterialLook m) {
+    return mix(m.wetGloss, max(m.wetGloss, 0.7), smoothstep(0.75, 1.0, s.water));
+}
+
 // Soot: a matt veil that hides colour but not relief.
 vec3 sooted(vec3 albedo, float soot) {
     return albedo * mix(vec3(1.0), vec3(0.07, 0.065, 0.06), soot);
@@ -124,7 +133,8 @@ Skin burningSkin(Site s, MaterialLook m) {
         k = charCracks(a, s, m, texel);
         float open = smoothstep(m.charTime * 0.6, m.crackTime, a);
         vec2 slope = texel.ba * 2.0 - 1.0;
-        o.slope += slope * (kCrackSlopeRange * m.crackDepth * far * open) / vec2(m.cellX, m.cellY);
+        o.slope += slope * (kCrackSlopeRange * m.crackDepth * far * open * (0.5 + 1.2 * s.deep)) /
+                   vec2(m.cellX, m.cellY);
     }
     if ((kHasSheet || kHasPlant || kHasHide) && m.crumple > 0.0 && c > 0.0) {
         vec2 slope = lookLayer(s.d * 13.0, kLayerRelief, noiseLod(s.pixel, 13.0)).rg * 2.0 - 1.0;
@@ -133,6 +143,7 @@ Skin burningSkin(Site s, MaterialLook m) {
 
     // Heating: through brown first, then absorption; plain absorption turns blue paint green.
     float pre = smoothstep(-m.scorchWidth, 0.0, x + m.scorchWidth * 0.35 * (nB.r - 0.5));
+    pre = max(pre, min(s.brown * (0.75 + 0.5 * nB.r), 1.0));
     float q = m.scorchGain * (pre * pre * 0.75 + 1.1 * smoothstep(0.0, 0.5 * m.charTime, a));
     vec3 heated = s.base;
     float wilt = m.wiltColor.w;
@@ -146,7 +157,8 @@ Skin burningSkin(Site s, MaterialLook m) {
 
     // Char keeps the relief of what it was.
     vec3 charred = m.charColor.rgb * ((0.65 + 0.7 * nA.b) * (0.85 + 0.3 * k.z) *
-                                      (0.35 + 0.85 * s.cavity) * (0.75 + 0.6 * (nB.r - 0.3)));
+                                      (0.35 + 0.85 * s.cavity) * (0.75 + 0.6 * (nB.r - 0.3)) *
+                                      (1.25 - 0.5 * s.deep));
     albedo = mix(albedo, charred, c);
     rough = mix(rough, m.charColor.w + 0.25 * (nA.g - 0.5) + 0.2 * (k.z - 0.5), c);
     float f0 = mix(0.04, 0.05, c);
@@ -227,13 +239,13 @@ Skin burningSkin(Site s, MaterialLook m) {
     // Water darkens what is porous; char only gets gloss.
     albedo = soaked(albedo, m.wetDark * s.water * (1.0 - 0.85 * c));
     albedo *= 1.0 - 0.25 * min(m.wetDark, 1.0) * s.water * (1.0 - c);
-    rough = mix(rough, 0.18, s.water * mix(m.wetGloss, 0.8, c));
+    rough = mix(rough, 0.16, s.water * mix(wetShine(s, m), 0.85, c));
 
     o.albedo = albedo;
     o.rough = clamp(rough, 0.08, 1.0);
     o.f0 = mix(f0, 0.03, s.water);
     o.emission = emission;
-    o.occlusion = (1.0 - 0.75 * k.x) * (1.0 - 0.25 * c * (1.0 - k.w));
+    o.occlusion = (1.0 - (0.6 + 0.35 * s.deep) * k.x) * (1.0 - 0.25 * c * (1.0 - k.w));
     o.edge = edge;
     o.sheen = m.sheen * c * (1.0 - ash);
     return o;
@@ -243,7 +255,7 @@ Skin burningSkin(Site s, MaterialLook m) {
 Skin freshSkin(Site s, MaterialLook m) {
     Skin o;
     o.albedo = soaked(s.base, m.wetDark * s.water) * (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water);
-    o.rough = clamp(mix(s.baseRough, 0.18, s.water * m.wetGloss), 0.08, 1.0);
+    o.rough = clamp(mix(s.baseRough, 0.16, s.water * wetShine(s, m)), 0.08, 1.0);
     o.f0 = mix(0.04, 0.03, s.water);
     o.emission = vec3(0.0);
     o.occlusion = 1.0;

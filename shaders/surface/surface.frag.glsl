@@ -3,6 +3,7 @@
 // look.glsl say what that looks like, and lights it. Writes linear HDR or what the target shows.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
+#include "shared/heat.h"
 #include "shared/look.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
@@ -19,6 +20,7 @@ const bool kBurns = (kVariant & kSurfaceBurns) != 0u;
 
 layout(set = 0, binding = FW_BIND_PREDICT, std430) readonly buffer Predict { uint predict[]; };
 layout(set = 0, binding = FW_BIND_GRADIENT, std430) readonly buffer Gradient { uint gradient[]; };
+layout(set = 0, binding = FW_BIND_HEAT, std430) readonly buffer Heat { uint heat[]; };
 layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
     BurnLight lights[kSurfaceLights];
 };
@@ -53,7 +55,6 @@ struct Arrival {
     float age;      // s since ignition, look time not applied; very negative: not in sight
     vec2 gradient;  // s/texel
     float known;    // [0, 1] weight of texels with a tick
-    float wet;      // [0, 1]
     float out_;     // [0, 1]
     float damp;     // [0, 1] unburnt and wet
     float ahead;    // texels from those to the fire
@@ -70,7 +71,7 @@ Arrival arrivalAt(vec2 uv, float steepest) {
     Arrival o;
     o.age = 0.0;
     o.gradient = vec2(0.0);
-    o.known = o.wet = o.out_ = o.damp = 0.0;
+    o.known = o.out_ = o.damp = 0.0;
     float total = 0.0, never = 0.0, ahead = 0.0;
     int taps = 4;
     for (int i = 0; i < taps; ++i) {
@@ -94,7 +95,6 @@ Arrival arrivalAt(vec2 uv, float steepest) {
         o.gradient += w * g;
         o.known += live ? w : 0.0;
         o.out_ += doused ? w : 0.0;
-        o.wet += t == kWet || t == kOutWet ? w : 0.0;
         o.damp += t == kWet ? w : 0.0;
         ahead += t == kWet ? w * (packed == kNever ? 1e3 : min(uintBitsToFloat(packed), 1e3)) : 0.0;
         never += t == kNever ? w : 0.0;
@@ -111,10 +111,71 @@ Arrival arrivalAt(vec2 uv, float steepest) {
     o.age += view.ambientGround.w * (1.0 / 4096.0);
     if (o.known > 0.0) o.gradient /= o.known;
     o.known *= inverse;
-    o.wet *= inverse;
     o.out_ *= inverse;
     o.damp *= inverse;
     return o;
+}
+
+struct Warmth {
+    float kelvin;
+    float eaten;  // [0, 1] of the fuel
+};
+
+// Of the heat plane; loops, as a branch would cost every mesh the loads.
+Warmth warmthAt(vec2 uv) {
+    vec2 st = uv - 0.5;
+    vec2 corner = floor(st);
+    ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
+    float total = 1e-6, kelvin = 300.0 * total, fuel = total;
+    int taps = (draw.flags & kDrawHeat) != 0u ? 4 : 0;
+    for (int i = 0; i < taps; ++i) {
+        ivec2 o2 = ivec2(i & 1, i >> 1);
+        ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
+        uint word = heat[2u * (draw.heatBase + uint(texel.y) * draw.width + uint(texel.x))];
+        vec2 share = 1.0 - abs(st - corner - vec2(o2));
+        float w = share.x * share.y;
+        total += w;
+        kelvin += w * float(word >> 16u) * (1.0 / 16.0);
+        fuel += w * float(word & 0xFFFFu) * (1.0 / float(kFuelFull));
+    }
+    return Warmth(kelvin / total, 1.0 - fuel / total);
+}
+
+// x: water on it, [0, 1] of what stays on it; y: browned by heat from elsewhere, [0, 1]. What was
+// poured has an edge of a texel: shown over five. Five texels tell whether there is an edge.
+vec2 coatAt(vec2 uv) {
+    vec2 middle = floor(uv), off = uv - middle - 0.5;
+    ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
+    vec2 sum = vec2(0.0);
+    float total = 1e-6, least = 1.0, most = 0.0;
+    bool plane = draw.filmMost > 0.0;
+    float perGram = 1.5 / max(draw.filmMost, 1.0);
+    int taps = (draw.flags & kDrawWet) != 0u ? 5 : 0;
+    for (int i = 0; i < taps; ++i) {
+        ivec2 o2 = i < 4 ? ivec2((i & 1) * 4 - 2, (i >> 1) * 4 - 2) : ivec2(0);
+        if (i > 4) o2 = ivec2((i - 5) % 5 - 2, (i - 5) / 5 - 2);
+        ivec2 texel = clamp(ivec2(middle) + o2, ivec2(0), limit);
+        uint index = uint(texel.y) * draw.width + uint(texel.x);
+        uint t = predict[draw.stateBase + index];
+        uint word = plane ? heat[2u * (draw.heatBase + index) + 1u] : 0u;
+        float film = min(float(word & 0x3FFu) * perGram, 1.0);
+        float brown = t < kLiveEnd ? 0.0 : float((word >> 20u) & 0xFFu) * (1.0 / 160.0);
+        if (!plane) film = t == kWet || t == kOutWet ? 1.0 : 0.0;
+        vec2 x = abs(off - vec2(o2)) * 0.6;
+        vec2 tail = max(1.5 - x, 0.0);
+        vec2 k = mix(0.5 * tail * tail, 0.75 - x * x, lessThan(x, vec2(0.5)));
+        float w = t == kInert ? 0.0 : k.x * k.y;
+        least = t == kInert ? least : min(least, film);
+        most = t == kInert ? most : max(most, film);
+        total += w;
+        sum += w * vec2(film, min(brown, 1.0));
+        if (i == 4 && most > least + 0.02) {
+            taps = 30;
+            total = 1e-6;
+            sum = vec2(0.0);
+        }
+    }
+    return sum / total;
 }
 
 // Over a wet border the age falls to how near the fire is on the wet side: first fast to that of
@@ -255,11 +316,16 @@ void main() {
     float rate = max(look.spreadRate, 1e-5);
     // A long shift could leave the chart: what is beyond half a texel goes the linear way.
     vec2 near = clamp(shift, -0.5, 0.5);
-    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 0.0, 1e3);
+    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3);
+    Warmth warmth = Warmth(300.0, 0.0);
+    vec2 coat = vec2(0.0);
     if (kBurns) {
         arrival =
             arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * max(length(gradU), 1.0)));
         arrival.age -= dot(arrival.gradient, shift - near);
+        warmth = warmthAt(inAtlas + near);
+        vec2 creeps = vec2(coarse.r + 0.4 * fine.b, coarse.g + 0.4 * fine.r) * 3.0 - 2.0;
+        coat = coatAt(inAtlas + clamp(creeps, -1.0, 1.0));
     }
 
     // Where holes come first; in wood also where its rings wander.
@@ -305,8 +371,15 @@ void main() {
     site.age = dampen(arrival.age * draw.timeScale, arrival.damp, 1.5 * look.charTime, wetAge);
     site.ahead = steep > 1e-6 ? flat_ / steep : vec2(0.0, 1.0);
     site.out_ = saturate(arrival.out_ * 1.5 + arrival.damp * 6.0);
-    // What is wet dries where the fire stands beside it.
-    site.water = smoothstep(0.25, 0.75, arrival.wet);
+    // As hot as its heat plane says: what is out goes on glowing until it has cooled.
+    bool thick = (draw.flags & kDrawThick) != 0u;
+    float hot = smoothstep(430.0, 620.0, warmth.kelvin);
+    if ((draw.flags & kDrawHeat) != 0u) site.out_ = (thick ? 1.0 : site.out_) * (1.0 - hot);
+    site.deep = thick ? smoothstep(0.02, 0.5, warmth.eaten) : 0.45;
+    site.gain = thick ? clamp(0.5 * (warmth.kelvin - 715.0), -50.0, 120.0) : 0.0;
+    site.brown = coat.y;
+    // Water creeps along what is uneven, and dries where the fire stands beside it.
+    site.water = smoothstep(0.05, 0.85, coat.x);
     if (arrival.damp > 0.0)
         site.water *= 1.0 - 0.85 * smoothstep(-0.9 * ahead, -0.15 * ahead, site.age) * arrival.damp;
     bool inside = back && (draw.flags & kObjectTwoSided) == 0u;
@@ -324,7 +397,8 @@ void main() {
 
     // What the wall behind has burnt is missing here too, even before this side catches.
     site.lead = inSootLead.y;
-    bool cold = !kBurns || look.spreadRate <= 0.0 || (site.age < -ahead && site.lead < 1e-3);
+    bool cold = !kBurns || look.spreadRate <= 0.0 ||
+                (site.age < -ahead && site.lead < 1e-3 && site.brown < 0.01);
     Skin skin;
     vec3 position = inPosition;
     vec3 facingNormal = back ? -normal : normal;

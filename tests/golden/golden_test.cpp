@@ -376,6 +376,20 @@ TEST_F(Golden, WetPatchIsLeftOver) {
     EXPECT_TRUE(matchesGolden("wet_patch", burnAndDraw(world, 9, view, false), kTolerance));
 }
 
+// Water's edge is soft where no fire has come, and it dries from there.
+TEST_F(Golden, WetPatchBeforeTheFire) {
+    FwWorld* world = makeWorld(1);
+    addThing(world, FW_MATERIAL_PINE, 0.5f, 160, false);
+    FwIgnitionDef water = fwDefaultIgnitionDef();
+    water.kind = FW_WET;
+    water.position[0] = 0.05f;
+    water.position[1] = 0.06f;
+    water.radius = 0.13f;
+    ASSERT_EQ(fwWorld_Ignite(world, &water, nullptr), FW_OK);
+    const FwView view = makeView({0.15f, 0.1f, 0.85f}, false, false);
+    EXPECT_TRUE(matchesGolden("wet_fresh", burnAndDraw(world, 2, view, false), kTolerance));
+}
+
 TEST_F(Golden, BurntOpenBox) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true);

@@ -2,6 +2,7 @@
 #pragma once
 #include "flamewright/flamewright.h"
 #include "gpu/passes/pass.h"
+#include "shared/heat.h"
 #include "shared/look.h"
 
 #include <cstddef>
@@ -62,8 +63,9 @@ extern const DrawPass kSurfacePasses[kSurfaceVariants];
 uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched);
 // `edge`: m, mean edge of the object's triangles.
 // `places`: of the object's vertices among the refined ones.
-SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge,
-                        uint32_t places);
+// `doused`: something wetted it or put it out, some day.
+SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
+                        const HeatMaterial& heat, float edge, uint32_t places, bool doused);
 bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items);
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items);
 extern const DrawPass kFlamesPass;

@@ -6,10 +6,15 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {
-    {FW_BIND_PREDICT, Access::drawRead},           {FW_BIND_GRADIENT, Access::drawRead},
-    {FW_BIND_LIGHTS, Access::drawUniform},         {FW_BIND_LOOKS, Access::drawUniform},
-    {FW_BIND_VIEW, Access::uniformView},           {FW_BIND_REFINE_VERTICES, Access::drawRead},
-    {FW_BIND_REFINE_INDICES, Access::vertexInput}, {FW_BIND_REFINE_DRAWS, Access::indirect},
+    {FW_BIND_PREDICT, Access::drawRead},
+    {FW_BIND_GRADIENT, Access::drawRead},
+    {FW_BIND_LIGHTS, Access::drawUniform},
+    {FW_BIND_LOOKS, Access::drawUniform},
+    {FW_BIND_VIEW, Access::uniformView},
+    {FW_BIND_REFINE_VERTICES, Access::drawRead},
+    {FW_BIND_REFINE_INDICES, Access::vertexInput},
+    {FW_BIND_REFINE_DRAWS, Access::indirect},
+    {FW_BIND_HEAT, Access::drawRead},
 };
 
 constexpr DrawPass variant(uint32_t features, Cull cull = Cull::none) {
@@ -95,8 +100,8 @@ uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched) 
     return i;
 }
 
-SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, float edge,
-                        uint32_t places) {
+SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
+                        const HeatMaterial& heat, float edge, uint32_t places, bool doused) {
     SurfaceDraw draw{};
     draw.row0 = object.worldRow0;
     draw.row1 = object.worldRow1;
@@ -115,6 +120,13 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material, 
     draw.height = object.height;
     draw.flags = object.flags | (edge < kSmallEdge ? kDrawVertexLight : 0);
     draw.places = places;
+    const bool heated = (object.flags & kObjectHeat) != 0;
+    draw.heatBase = object.heatBase;
+    draw.filmMost = heated ? float(heat.filmMost) : 0.0f;
+    // What is thin and never doused is as hot as its age says.
+    if (heated && (doused || (heat.flags & kHeatThick))) draw.flags |= kDrawHeat;
+    if (heated && (heat.flags & kHeatThick)) draw.flags |= kDrawThick;
+    if (doused) draw.flags |= kDrawWet;
     return draw;
 }
 

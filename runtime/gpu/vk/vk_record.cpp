@@ -334,8 +334,9 @@ void recordUploads(VkBackend::State& s) {
 SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
     const vec4 row = object.record.worldRow0;
     const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
-    return surfaceDraw(object.record, object.materials[material],
-                       s.meshes[object.mesh].edge * scale, object.refine.slots.first);
+    return surfaceDraw(object.record, object.materials[material], object.heat[material],
+                       s.meshes[object.mesh].edge * scale, object.refine.slots.first,
+                       object.doused);
 }
 
 // Records of objects that are new, moved or gone, and the list of what draws show.
@@ -450,11 +451,14 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event) {
     ObjectEntry& object = s.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
     object.lastEvent = std::max<uint64_t>(object.lastEvent, event.tick);
-    if (object.touched) return;
+    const bool douses = event.kind != kEventIgnite && !object.doused;
+    if (object.touched && !douses) return;
     object.touched = true;
+    object.doused = object.doused || douses;
     for (DrawItem& item : s.drawItems) {
-        if (item.object == event.object)
-            item.variant = surfaceVariant(object.materials[item.material], item.image != 0, true);
+        if (item.object != event.object) continue;
+        item.variant = surfaceVariant(object.materials[item.material], item.image != 0, true);
+        item.draw = drawOf(s, object, item.material);
     }
 }
 

@@ -70,6 +70,7 @@ struct ObjectEntry {
     bool resetDue = false;
     bool drawable = false;   // a recorded frame holds it
     bool touched = false;    // some event reached it: it may burn, or be wet
+    bool doused = false;     // one of them was not fire
     uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
     uint32_t douseEnds = 0;  // tick by which that has had its effect
     bool forget = false;     // scratch of run
