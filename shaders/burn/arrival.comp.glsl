@@ -1,6 +1,7 @@
 // The front kernel over the gathered rows, one thread each: a ring moves along the row, so that a
 // texel loads one column of it. Arrivals to `pendingTick`, changed texels to masks, the earliest that
-// is to come to the tile. Reads states, writes none: updates are Jacobi.
+// is to come to the tile; which texels are settled, whatever catches beside them. Reads states, writes
+// none: updates are Jacobi.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -19,6 +20,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_COUNTERS readonly
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
 #define FW_USE_PENDING writeonly
+#define FW_USE_SETTLED FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 
@@ -34,10 +36,8 @@ Column columnAt(uint texel, uvec4 bases, uint materialBase, uint material, uint 
     FW_UNROLL for (int i = 0; i < 3; ++i) {
         uint at = texel + uint(i - 1) * bases.w;
         c.tick[i] = state[bases.y + at];
-        c.place[i] = uvec2(0u);
+        c.place[i] = texels[bases.x + at];
         c.burn[i] = burnTicks;
-        // Of others than the row's own, only sources are looked at.
-        if (i == 1 || isSource(c.tick[i])) c.place[i] = texels[bases.x + at];
         uint theirs = (c.place[i].y >> 16u) & 7u;
         if (isSource(c.tick[i]) && theirs != material)
             c.burn[i] = burnTicksOf(materialBase + theirs);
@@ -65,6 +65,9 @@ void arriveRow(uint work) {
     uint lateCount = 0u;
     uint wake = kNever;
     bool ahead = false;  // is more than arrivals waited for?
+    bool uneven = false;
+    uint settled = 0u;
+    uint window = windowTicks(push.stepShift, times.y);
     do {
         uint texel = item.z + x;
         Column right = columnAt(texel + 1u, bases, materialBase, held, m.burnTicks);
@@ -93,14 +96,21 @@ void arriveRow(uint work) {
             uint future = pending;  // a source of the ring begins then: may correct us too
             FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]),
                                     slownessAt(bases.z, texel), m);
-            uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel,
-                                          pending);
+            uint news = kNever;
+            uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, true,
+                                          pending, news);
+            // Texels that just catch do so within a step of its own tick, at the earliest.
+            uint own = min(t, candidate);
+            if (news <= own && own - news >= kStepTicks - 1u && candidate >= floorTick &&
+                (isReceptive(t) || t <= end))
+                settled |= 1u << x;
             uint decided = frontDecide(t, candidate, end, floorTick, pending, late);
             uint known = isReceptive(t) ? candidate : kNever;
             if (decided != t) {
                 known = decided;
                 changed |= 1u << x;
                 if (isReceptive(t)) lit |= 1u << x;
+                uneven = uneven || !isReceptive(t) || decided <= end - window;
                 lateCount += late;
             } else {
                 uint next = isReceptive(t) ? pending : future;
@@ -115,7 +125,10 @@ void arriveRow(uint work) {
     } while (x <= last);
     uint worldTile = run[item.x >> 3u].x;
     if (wake != kNever) atomicMin(tileState[worldTile].wake, wake);
-    if (ahead) atomicOr(tileState[worldTile].flag, kTileAhead);
+    uint marks = (ahead ? kTileAhead : 0u) | (uneven ? kTileUneven : 0u);
+    if (marks != 0u) atomicOr(tileState[worldTile].flag, marks);
+    uint at = (bases.y + item.z) >> 3u;
+    settledRows[at] = (settledRows[at] & ~chosen) | settled;
     if (changed == 0u) return;
     scratch[work * 4u + 1u] = chosen | (changed << 8u);
     uint row = item.x & 7u;

@@ -79,7 +79,9 @@ void arrive(uint rimWork) {
     if (counts != 0u) {
         FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
                                 m);
-        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, pending);
+        uint news = kNever;
+        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false,
+                                      pending, news);
         decided = frontDecide(t, candidate, end, floorTick, pending, late);
     }
     if (decided != t) {
@@ -88,6 +90,8 @@ void arrive(uint rimWork) {
         uint word = slot * 4u + (lane >> 5u);
         atomicOr(maskWords[word], 1u << (lane & 31u));
         if (isReceptive(t)) atomicOr(maskWords[word + 2u], 1u << (lane & 31u));
+        if (!isReceptive(t) || decided <= end - windowTicks(push.stepShift, times.y))
+            atomicOr(tileState[tile.x].flag, kTileUneven);
         if (late != 0u) atomicAdd(objectCounters[object].lateClamps, 1u);
     } else {
         uint next = isReceptive(t) ? pending : future;

@@ -42,7 +42,8 @@ void commitTile(uint slot) {
                             objects[object].substepShift);
     tileState[worldTile].lastChange = end;
     uint lit = uint(bitCount(mask.z) + bitCount(mask.w));
-    uint bits = kTileTouched | (kTilePredict << push.predictParity);
+    uint touched = (tileState[worldTile].flag & kTileUneven) != 0u ? kTileTouched : kTileNews;
+    uint bits = touched | (kTilePredict << push.predictParity);
     if (lit != 0u) {
         atomicAdd(objectCounters[object].ignited, lit);
         atomicMax(objectCounters[object].lastIgnition, end);
@@ -64,13 +65,13 @@ void commitTile(uint slot) {
     for (; beside != 0u; beside &= beside - 1u) {
         uint k = uint(findLSB(beside));
         uint other = besideTile(int(tilesX), tilesY, int(tileX), int(tileY), k);
-        if (other != kNoneTexel) touchTile(parity, row, worldTileBase + other, kTileTouched);
+        if (other != kNoneTexel) touchTile(parity, row, worldTileBase + other, touched);
     }
     if ((push.switches & kSwitchNoSeamWake) != 0u) return;
     uvec4 seam = tiles[tile.w * 2u];
     if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
     for (uint r = 0u; r < seam.w; ++r)
-        touchTile(parity, row, worldTileBase + readerTile(object, seam.z, r), kTileTouched);
+        touchTile(parity, row, worldTileBase + readerTile(object, seam.z, r), touched);
 }
 
 void commitRow(uint work) {

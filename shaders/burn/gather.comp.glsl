@@ -1,7 +1,8 @@
 // Finds the texels of the due tiles that have something to answer to, and lists their rows densely
 // for `arrival`: few rows of a tile have any, and a software device pays for idle lanes. Rim texels,
 // whose ring is elsewhere, go to `arrival_rim` unseen. In a tile that woke to a known arrival all
-// others are known too, and nothing is left for `arrival`. One thread per row of a tile.
+// others are known too, and nothing is left for `arrival`; where texels just caught, settled ones are
+// passed over. One thread per row of a tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -16,6 +17,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_SCRATCH_QUADS writeonly
 #define FW_USE_MASK_WORDS
 #define FW_USE_PENDING_QUADS
+#define FW_USE_SETTLED readonly
 #define FW_USE_COUNTERS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
@@ -25,6 +27,7 @@ struct Row {
     uint sources;     // bits: burn by the window's end
     uint walls;       // bits: barriers
     uint future[10];  // ticks of those that will burn later, kNever: no such
+    uint tick[10];
 };
 
 Row rowOf(uint left, uvec4 a, uvec4 b, uint right, uint end) {
@@ -32,6 +35,7 @@ Row rowOf(uint left, uvec4 a, uvec4 b, uint right, uint end) {
     Row r;
     r.sources = 0u;
     r.walls = 0u;
+    r.tick = t;
     FW_UNROLL for (int i = 0; i < 10; ++i) {
         r.sources |= t[i] <= end ? 1u << uint(i) : 0u;
         r.walls |= isBarrier(t[i]) ? 1u << uint(i) : 0u;
@@ -45,9 +49,10 @@ void gatherRow(uint slot, uint row) {
     uvec4 bases = objectBases(tile.y);
     uvec4 times = objectTimes(tile.y);
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
-    uint floorTick = frontFloor(end - windowTicks(push.stepShift, times.y), times.x);
+    uint before = end - windowTicks(push.stepShift, times.y);
+    uint floorTick = frontFloor(before, times.x);
     bool woken = (tile.z & kRunWoken) != 0u;
-    uint texel = (tile.z & ~kRunWoken) + row * bases.w;
+    uint texel = (tile.z & ~kRunBits) + row * bases.w;
     uint at = bases.y + texel;
     uvec4 a = stateQuads[at >> 2u];
     uvec4 b = stateQuads[(at >> 2u) + 1u];
@@ -84,6 +89,15 @@ void gatherRow(uint slot, uint row) {
                         (d.sources & (openDown | openLeft)) |
                         ((d.sources >> 2u) & (openDown | openRight));
         chosen = inner & (straight | diagonal);
+        // A source of before this iteration was looked at since a source beside it caught that is
+        // older than all news, and so its bit is true.
+        uint settled = (tile.z & kRunNews) != 0u ? settledRows[at >> 3u] : 0u;
+        FW_UNROLL for (int i = 0; i < 8; ++i) {
+            uint least = min(min(m.tick[i], m.tick[i + 2]), min(d.tick[i + 1], u.tick[i + 1]));
+            if (own[i] > before || least > own[i] || own[i] - least < kStepTicks)
+                settled &= ~(1u << uint(i));
+        }
+        chosen &= ~settled;
         uint quiet = inner & ~chosen;
         uint column[10];
         FW_UNROLL for (int i = 0; i < 10; ++i)
@@ -98,7 +112,8 @@ void gatherRow(uint slot, uint row) {
             uvec4 pb = pendingQuads[(at >> 2u) + 1u];
             uint tick[8] = uint[8](pa.x, pa.y, pa.z, pa.w, pb.x, pb.y, pb.z, pb.w);
             FW_UNROLL for (int i = 0; i < 8; ++i) {
-                uint t = (chosen & (1u << uint(i))) != 0u ? tick[i] : kNever;
+                bool known = (chosen & (1u << uint(i))) != 0u && isReceptive(own[i]);
+                uint t = known ? tick[i] : kNever;
                 lit |= t <= end ? 1u << uint(i) : 0u;
                 pending = min(pending, t > end ? t : kNever);
             }

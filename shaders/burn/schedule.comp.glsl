@@ -15,7 +15,7 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "lib/lists.glsl"
 
-void runTile(uint worldTile, TileRef tile, uint flag, bool woken) {
+void runTile(uint worldTile, TileRef tile, uint flag, uint why) {
     uint slot = atomicAdd(counters[push.row].runCount, 1u);
     if ((slot & 7u) == 0u) atomicMax(counters[push.row].runX, min(slot / 8u + 1u, kMaxGroups));
     if ((slot & 63u) == 0u) atomicMax(counters[push.row].workX, min(slot / 64u + 1u, kMaxGroups));
@@ -30,19 +30,19 @@ void runTile(uint worldTile, TileRef tile, uint flag, bool woken) {
     uint tilesX = objects[tile.object].tilesX;
     uint tileY = divide(tile.local, tilesX);
     run[slot] = uvec4(worldTile, tile.object,
-                      (tileY * objects[tile.object].width + tile.local - tileY * tilesX) * 8u +
-                          (woken ? kRunWoken : 0u),
+                      (tileY * objects[tile.object].width + tile.local - tileY * tilesX) * 8u + why,
                       objects[tile.object].tileBase + tile.local);
     masks[slot] = uvec4(0u);
     tileState[worldTile].wake = kNever;
-    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileAhead);
+    tileState[worldTile].flag =
+        flag & ~(kTileListed | kTileTouched | kTileNews | kTileAhead | kTileUneven);
 }
 
 void schedule(uint worldTile, bool dense) {
     TileRef tile = tileRef(worldTile);
     uint flag = tileState[worldTile].flag;
     if (!tile.alive) {
-        tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched);
+        tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileNews);
         return;
     }
     if (dense && (objects[tile.object].flags & kObjectPublished) != 0u) return;
@@ -55,9 +55,12 @@ void schedule(uint worldTile, bool dense) {
     uint wake = tileState[worldTile].wake;
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);
     bool touched = dense || (flag & kTileTouched) != 0u;
-    if (touched || wake <= end) {
+    bool news = (flag & kTileNews) != 0u;
+    if (touched || news || wake <= end) {
         bool inTime = wake > end - windowTicks(push.stepShift, shift);
-        runTile(worldTile, tile, flag, !touched && inTime && (flag & kTileAhead) == 0u);
+        uint why = news ? kRunNews : inTime ? kRunWoken : 0u;
+        if (touched || (flag & kTileAhead) != 0u) why = 0u;
+        runTile(worldTile, tile, flag, why);
     } else if (wake != kNever) {
         frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
     } else {

@@ -92,6 +92,9 @@ FW_BUFFER(FW_BIND_PENDING, FW_USE_PENDING, PendingBuffer, uint, pendingTick);
 #ifdef FW_USE_PENDING_QUADS
 FW_BUFFER(FW_BIND_PENDING, readonly, PendingQuadsBuffer, uvec4, pendingQuads);
 #endif
+#ifdef FW_USE_SETTLED
+FW_BUFFER(FW_BIND_SETTLED, FW_USE_SETTLED, SettledBuffer, uint, settledRows);
+#endif
 #ifdef FW_USE_TILE_STATE
 FW_BUFFER(FW_BIND_TILE_STATE, FW_USE_TILE_STATE, TileStateBuffer, TileState, tileState);
 #endif
@@ -100,10 +103,12 @@ FW_BUFFER(FW_BIND_LIST_A, FW_USE_LISTS, ListABuffer, uint, listA);
 FW_BUFFER(FW_BIND_LIST_B, FW_USE_LISTS, ListBBuffer, uint, listB);
 #endif
 #ifdef FW_USE_RUN
-// World tile; object; its first texel in the object's map, a multiple of eight, + kRunWoken; its row
+// World tile; object; its first texel in the object's map, a multiple of eight, + kRun bits; its row
 // of `tiles`.
 FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uvec4, run);
 const uint kRunWoken = 1u;  // due because a known arrival is: nothing else has changed
+const uint kRunNews = 2u;   // due because texels just caught: settled ones need no run
+const uint kRunBits = 3u;
 #endif
 #ifdef FW_USE_SCRATCH
 FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH, ScratchBuffer, uint, scratch);

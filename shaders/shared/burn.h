@@ -80,7 +80,8 @@
 #define FW_BIND_REFINE_DRAWS 71     // uint[]: indexed indirect draws, 8 per object slot
 #define FW_BIND_PENDING 72    // uint[], as state: when a texel catches, and what `commit` writes; true
                               // of receptive texels beside a source, until something beside changes
-#define FW_BIND_COUNT 73
+#define FW_BIND_SETTLED 73    // uint[]: per row of eight texels, those that `arrival` found settled
+#define FW_BIND_COUNT 74
 
 FW_SHARED_BEGIN
 
@@ -115,6 +116,8 @@ FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire stands on its shown v
 // TileState::flag
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
 FW_SHARED_CONST uint kTileTouched = 2u;      // an input changed: due now
+FW_SHARED_CONST uint kTileNews = 0x80000u;   // so it is, but by texels that just caught, nothing else
+FW_SHARED_CONST uint kTileUneven = 0x100000u; // of this run: a texel changed that did not just catch
 FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
 FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
 FW_SHARED_CONST uint kTileAhead = 128u;      // `wake` may be another thing than a known arrival

@@ -202,12 +202,13 @@ FW_SHARED_FN int pairStart(int ra, int rb, int w) {
     return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6);
 }
 
-// Does arrival get earlier on the way from source a to source b? Arrival is convex along the
-// segment, so the slope at a's end tells: if not, a alone is the best of the two.
-// l: length of a, 1/8 units.
-FW_SHARED_FN bool pairFalls(int ra, int rb, ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
+// How travel time begins to change on the way from source a to source b, 1/16 ticks over the whole
+// way. Arrival is convex along it: does this not outweigh the delay of b, a alone is the best of the
+// two. l: length of a, 1/8 units.
+FW_SHARED_CONST int kPairFalls = -0x7FFFFFFF;  // whatever the delay
+FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
     ivec3 side = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
-    if (l == 0u) return true;
+    if (l == 0u) return kPairFalls;
     // Change of distance over the whole segment at this rate: side . a / |a|, in whole units.
     int along = int(uint(dotInt(side, a)) * 8u);
     int stretch = int(divide(uint(along < 0 ? -along : along), l));
@@ -215,7 +216,7 @@ FW_SHARED_FN bool pairFalls(int ra, int rb, ivec3 a, ivec3 b, uint l, FW_IN(Fron
     int y = int((uint(stretch) << 16u) - (uint(dotInt(side, p.e)) << 2u));  // Q13 of 1/8 units
     uint t = mulHighRound(p.A, uint(y < 0 ? -y : y));
     int change = int(t < 0x0FFFFFFFu ? t : 0x0FFFFFFFu) * 2;
-    return (y < 0 ? -change : change) < ra - rb;
+    return y < 0 ? -change : change;
 }
 
 // Best over the segment between two sources: three weights, one parabola step, one more. The ends
@@ -305,17 +306,22 @@ ivec3 pickLink(FrontRing ring, int k) {
 
 // Arrival tick from the counting sources, kNever if none is left. A source burnt out before it
 // could light this texel is dropped; `wake` then falls to the tick after which it can no longer
-// count again under another wind: until then its reader must stay on the list.
+// count again under another wind: until then its reader must stay on the list. `settles`: asks for
+// `news` too, the tick from which on another source of this ring would leave the answer as it is,
+// kNever: unknown. It wants the links of all eight.
 FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPrep) p,
                                uint windowMax, uint windowEnd, uint floorTick, uint texel,
-                               FW_INOUT(uint) wake) {
+                               bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) news) {
     int cost[8];
     uint base = kNever;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
-        if ((counts & (1u << uint(k))) != 0u) {
-            uint t = ring.tick[k];
+        bool counting = (counts & (1u << uint(k))) != 0u;
+        if (counting || settles) {
             ivec3 l = ring.link[k];
             cost[k] = linkCost(ivec3(l.x * 8, l.y * 8, l.z * 8), p);
+        }
+        if (counting) {
+            uint t = ring.tick[k];
             uint end = ring.burn[k] != kNoneTexel ? t + ring.burn[k] : kNever;
             uint reach = t + (uint(cost[k] + 8) >> 4u);
             if (end < (reach > floorTick ? reach : floorTick)) {
@@ -331,6 +337,7 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
     int rel[8];
     int best = 0x7FFFFFFF;
     int bestK = 0;
+    int idle = 0x3FFFFFFF;  // the least cost of those that do not count
     FW_UNROLL for (int k = 0; k < 8; ++k) {
         if ((counts & (1u << uint(k))) != 0u) {
             uint delay = ring.tick[k] - base;
@@ -340,18 +347,34 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
                 best = cost[k];
                 bestK = k;
             }
+        } else {
+            rel[k] = 0;
+            if (settles) idle = cost[k] < idle ? cost[k] : idle;
         }
     }
     int hop = best;
     bool hasC = (counts & (1u << uint((bestK + 1) & 7))) != 0u;
     bool hasA = (counts & (1u << uint((bestK + 7) & 7))) != 0u;
-    int c = hasC ? (bestK + 1) & 7 : bestK;
-    int a = hasA ? (bestK + 7) & 7 : bestK;
+    int c = hasC || settles ? (bestK + 1) & 7 : bestK;
+    int a = hasA || settles ? (bestK + 7) & 7 : bestK;
     int relB = pick(rel, bestK), relC = pick(rel, c), relA = pick(rel, a);
     ivec3 linkB = pickLink(ring, bestK), linkC = pickLink(ring, c), linkA = pickLink(ring, a);
     uint l = isqrtNear(squareSum(linkB) * 64u);
-    bool byC = hasC && pairFalls(relB, relC, linkB, linkC, l, p);
-    bool byA = hasA && pairFalls(relB, relA, linkB, linkA, l, p);
+    int changeC = hasC || settles ? pairChange(linkB, linkC, l, p) : 0;
+    int changeA = hasA || settles ? pairChange(linkB, linkA, l, p) : 0;
+    bool byC = hasC && changeC < relB - relC;
+    bool byA = hasA && changeA < relB - relA;
+    if (settles && hop < (1 << 28)) {
+        // Another source would have to be the best hop, or to make a pair with it.
+        int bound = hop - idle + 1;
+        int soonC = relB - (changeC > -(1 << 29) ? changeC : -(1 << 29));
+        int soonA = relB - (changeA > -(1 << 29) ? changeA : -(1 << 29));
+        bound = !hasC && soonC > bound ? soonC : bound;
+        bound = !hasA && soonA > bound ? soonA : bound;
+        int ticks = (bound + 15) >> 4;
+        uint before = uint(ticks < 0 ? -ticks : 0);
+        news = ticks >= 0 ? base + uint(ticks) : base - (before < base ? before : base);
+    }
     if (byC) {
         int g = bestOfPair(relB, relC, hop, pick(cost, c), linkB, linkC, p);
         best = g < best ? g : best;

@@ -104,10 +104,10 @@ TEST(Front, KernelSurvivesExtremes) {
             const auto unit = [&] { return int(random() % 9458) - 4729; };
             ring.link[k] = {unit(), unit(), unit()};
         }
-        uint32_t wake = gpu::kNever;
+        uint32_t wake = gpu::kNever, news = gpu::kNever;
         const uint32_t counts = random() & 0xFF;
-        const uint32_t t =
-            gpu::frontArrival(ring, counts, p, 1 << 20, 0x7FFFFFFF, 1000, random(), wake);
+        const uint32_t t = gpu::frontArrival(ring, counts, p, 1 << 20, 0x7FFFFFFF, 1000, random(),
+                                             true, wake, news);
         if (t == gpu::kNever) continue;
         uint32_t least = gpu::kNever;
         for (int k = 0; k < 8; ++k)
@@ -115,6 +115,63 @@ TEST(Front, KernelSurvivesExtremes) {
         ASSERT_GE(t, least);
         ASSERT_LT(t, 0x90000000u);
     }
+}
+
+// Of a ring of the shape that a bake makes: sources no sooner than `news` change nothing, sooner
+// ones sometimes do.
+TEST(Front, NewsOfLaterSourcesChangesNothing) {
+    std::mt19937 random(29);
+    uint32_t asked = 0, early = 0, changed = 0;
+    for (int i = 0; i < 400000; ++i) {
+        gpu::BurnMaterial m{};
+        m.sigma0 = 1u << (14 + random() % 6);
+        m.headGain = random() % 1024;
+        m.backGain = random() % 1024;
+        m.driveMax = 60 * 1024;
+        m.breadthMax = 14 * 256;
+        const auto part = [&] { return random() % 3 ? int(random() % 2049) - 1024 : 0; };
+        m.driveX = part();
+        m.driveY = part();
+        const gpu::FrontPrep p = gpu::frontPrep({0, 0, 16384}, 96 + random() % 64, m);
+        const int unit = 100 + int(random() % 900), skew = int(random() % 3) * unit / 3;
+        const uint32_t now = 100000, floorTick = 99000;
+        gpu::FrontRing ring;
+        for (int k = 0; k < 8; ++k) {
+            const auto jitter = [&] { return int(random() % uint32_t(unit)) / 3 - unit / 6; };
+            ring.tick[k] = now - random() % 800;
+            ring.burn[k] = random() % 5 ? gpu::kNoneTexel : random() % 4000;
+            const int x = gpu::kFrontRingX[k], y = gpu::kFrontRingY[k];
+            ring.link[k] = {-x * unit + y * skew + jitter(), -y * unit + jitter(), jitter()};
+        }
+        const uint32_t counts = random() & 0xFF & random(), texel = random();
+        uint32_t wake = gpu::kNever, news = gpu::kNever, unused = gpu::kNever;
+        const auto arrival = [&](uint32_t sources, bool settles, uint32_t& out) {
+            return gpu::frontArrival(ring, sources, p, 1 << 20, now, floorTick, texel, settles,
+                                     wake, out);
+        };
+        const uint32_t t = arrival(counts, true, news);
+        ASSERT_EQ(t, arrival(counts, false, unused));
+        ASSERT_EQ(unused, gpu::kNever);
+        if (news == gpu::kNever) continue;
+        const bool soon = i % 2 != 0;
+        const uint32_t others = random() & 0xFF & ~counts;
+        for (int k = 0; k < 8; ++k) {
+            if ((others >> k & 1) == 0) continue;
+            ring.tick[k] = soon ? news - 1 - random() % 200 : news + random() % 100;
+            ring.burn[k] = gpu::kNoneTexel;
+        }
+        const uint32_t after = arrival(counts | others, false, unused);
+        if (soon) {
+            early += others ? 1 : 0;
+            changed += after != t ? 1 : 0;
+        } else {
+            ASSERT_EQ(t, after) << i;
+            asked += others ? 1 : 0;
+        }
+    }
+    EXPECT_GT(asked, 50000u);
+    EXPECT_GT(changed, early / 20);
+    std::printf("news: %u rings, and %u of %u that came sooner changed\n", asked, changed, early);
 }
 
 TEST(Front, P1_PlanarFrontSpeed) {

@@ -102,9 +102,10 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
                 prep = frontPrep(decodeNormal(normal), slow, planes.materials[material]);
                 prepKey = key;
             }
+            uint32_t news = kNever;
             const uint32_t candidate =
                 frontArrival(ring, counts, prep, planes.materials[material].windowMax, windowEnd,
-                             floorTick, texel, pending);
+                             floorTick, texel, false, pending, news);
             decided = frontDecide(t, candidate, windowEnd, floorTick, pending, late);
         }
         if (decided != t) {

@@ -33,6 +33,8 @@ constexpr Plane kPlanes[] = {
      VK_BUFFER_USAGE_INDEX_BUFFER_BIT},
     {FW_BIND_STATE, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentObjects, "state", 0},
     {FW_BIND_PENDING, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentObjects, "pending", 0},
+    {FW_BIND_SETTLED, kSpaceObjectTiles, 4 * kTileTexels / 8, true, kComponentObjects, "settled",
+     0},
     {FW_BIND_TILE_STATE, kSpaceObjectTiles, sizeof(TileState), true, kComponentObjects,
      "tile state", 0},
     {FW_BIND_LIST_A, kSpaceObjectTiles, 4, true, kComponentLists, "front list A", 0},
