@@ -19,7 +19,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_SCRATCH readonly
 #define FW_USE_SCRATCH_QUADS readonly
 #define FW_USE_PREDICT FW_READ_WRITE
-#define FW_USE_GRADIENT writeonly
+#define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"

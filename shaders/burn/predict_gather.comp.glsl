@@ -45,11 +45,11 @@ vec2 wetAhead(uint at, ivec2 place, uvec4 sizes, uint stride) {
         uint n = uint(int(at) + off.y * int(stride) + off.x);
         uint time = predict[n];
         bool wet = time == kWet;
-        uint packed = gradient[n];
-        if ((!hasTime(time) && !wet) || (wet && packed == kNever)) continue;
+        uint word = gradient[n];
+        if ((!hasTime(time) && !wet) || (wet && (word & ~0xFFu) == kAheadFar)) continue;
         int wait = wet ? 0 : max(int(time - push.now), 0);
-        float pace = max(length(unpackHalf2x16(packed)), 1e-3);  // s/texel
-        float far = wet ? uintBitsToFloat(packed) : float(wait) * (1.0 / 4096.0) / pace;
+        float pace = max(length(unpackGradient(word)), 1e-3);  // s/texel
+        float far = wet ? unpackAhead(word) : float(wait) * (1.0 / 4096.0) / pace;
         far += off.x != 0 && off.y != 0 ? 1.4142 : 1.0;
         if (far < kWetReach && (least.x < 0.0 || far < least.x))
             least = vec2(far, wait > 0 ? 1.0 : 0.0);
@@ -102,7 +102,7 @@ void gatherRow(uint slot, uint row) {
         uint code = state[i];
         uint time = predict[i];
         // What was put out keeps the look of the age it had: its gradient is that age.
-        if (code == kWet) gradient[i] = kNever;
+        if (code == kWet) gradient[i] = kAheadFar | (gradient[i] & 0xFFu);
         else if (hasTime(time)) gradient[i] = time <= push.now ? push.now - time : 0u;
         predict[i] = code;
     }
@@ -114,11 +114,11 @@ void gatherRow(uint slot, uint row) {
     for (; wet != 0u; wet &= wet - 1u) {
         uint i = uint(findLSB(wet));
         vec2 ahead = wetAhead(at + i, ivec2(tileX * 8u + i, tileY * 8u + row), sizes, bases.w);
-        uint packed = gradient[at + i];
-        float before = packed == kNever ? 2.0 * kWetReach : uintBitsToFloat(packed);
+        uint word = gradient[at + i];
+        float before = min(unpackAhead(word), 2.0 * kWetReach);
         soon = soon || ahead.y > 0.0;
         if (ahead.x < 0.0 || ahead.x > before - 0.3) continue;
-        gradient[at + i] = floatBitsToUint(ahead.x);
+        gradient[at + i] = packAhead(ahead.x) | (word & 0xFFu);
         nearer |= 1u << i;
     }
     if (nearer != 0u) {

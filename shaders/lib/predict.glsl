@@ -3,6 +3,8 @@
 #ifndef FW_LIB_PREDICT_GLSL
 #define FW_LIB_PREDICT_GLSL
 
+#include "lib/gradient.glsl"
+
 bool hasTime(uint p) { return p < kLiveEnd; }
 
 // Difference quotient over +-2 texels along one axis, s per texel; 0 where neither side is known.
@@ -27,9 +29,10 @@ float slope(uint centreAt, uint at, uint size, uint stride, uint centre) {
     return span == 0 ? 0.0 : float(int(high - low)) / (float(span) * float(kTicksPerSecond));
 }
 
+// As packGradient; the soot there stays.
 uint gradientOf(uint at, uint x, uint y, uint width, uint height, uint now) {
-    return packHalf2x16(
-        vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now)));
+    return packGradient(vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now))) |
+           (gradient[at] & 0xFFu);
 }
 
 // Is this change worth a neighbour's while? Rings would chase rounding for ever; and the farther

@@ -31,8 +31,8 @@
 #define FW_BIND_BURN_B 20     // uint[]: tiles that flame (pong)
 #define FW_BIND_BURN_TILES 21 // BurnTile[]: what `reduce` says of each of them
 #define FW_BIND_PREDICT 22    // uint[]: arrival ticks for looking at, ahead of the front too, or codes
-#define FW_BIND_GRADIENT 23   // uint[]: packHalf2x16 gradient of the above, s/texel; kOut, kOutWet:
-                              // ticks that the texel had burnt when it was put out
+#define FW_BIND_GRADIENT 23   // uint[]: gradient of the above, s/texel, and soot: lib/gradient.glsl;
+                              // kOut, kOutWet: ticks that the texel had burnt when it was put out
 #define FW_BIND_PREDICT_LIST_A 24
 #define FW_BIND_PREDICT_LIST_B 25
 #define FW_BIND_PROBES 26     // uvec2[]: object slot, texel

@@ -43,6 +43,7 @@ layout(location = 6) in vec2 inSootLead;
 layout(location = 0) out vec4 outColor;
 
 #include "lib/colour.glsl"
+#include "lib/gradient.glsl"
 #include "lib/look_noise.glsl"
 #include "surface/plume.glsl"
 #include "surface/base.glsl"
@@ -58,6 +59,7 @@ struct Arrival {
     float out_;     // [0, 1]
     float damp;     // [0, 1] unburnt and wet
     float ahead;    // texels from those to the fire
+    float soot;     // [0, 1]
 };
 
 // Bilinear over the taps that exist; towards chart borders each tap is continued along its own
@@ -72,7 +74,7 @@ Arrival arrivalAt(vec2 uv, float steepest) {
     o.age = 0.0;
     o.gradient = vec2(0.0);
     o.known = o.out_ = o.damp = 0.0;
-    float total = 0.0, never = 0.0, ahead = 0.0;
+    float total = 0.0, never = 0.0, ahead = 0.0, soot = 0.0;
     int taps = 4;
     for (int i = 0; i < taps; ++i) {
         ivec2 o2 = i < 4 ? ivec2(i & 1, i >> 1) : ivec2((i - 4) % 5 - 2, (i - 4) / 5 - 2);
@@ -86,7 +88,7 @@ Arrival arrivalAt(vec2 uv, float steepest) {
         if (t == kInert) w = 0.0;
         total += w;
         bool live = t < kLiveEnd, doused = t == kOut || t == kOutWet;
-        vec2 g = live ? unpackHalf2x16(packed) : vec2(0.0);
+        vec2 g = live ? unpackGradient(packed) : vec2(0.0);
         g *= min(1.0, steepest * inversesqrt(max(dot(g, g), 1e-12)));
         float age = float(int(view.now - t)) * (1.0 / 4096.0) - 0.5 * dot(g, off);
         // How long it had burnt.
@@ -96,11 +98,13 @@ Arrival arrivalAt(vec2 uv, float steepest) {
         o.known += live ? w : 0.0;
         o.out_ += doused ? w : 0.0;
         o.damp += t == kWet ? w : 0.0;
-        ahead += t == kWet ? w * (packed == kNever ? 1e3 : min(uintBitsToFloat(packed), 1e3)) : 0.0;
+        ahead += t == kWet ? w * unpackAhead(packed) : 0.0;
+        soot += doused ? 0.0 : w * float(packed & 0xFFu);
         never += t == kNever ? w : 0.0;
         if (i == 3 && total == 0.0) taps = 29;
     }
     float inverse = 1.0 / max(total, 1e-6), burnt = o.known + o.out_;
+    o.soot = soot * inverse * (1.0 / 255.0);
     if (burnt <= 0.0) {
         o.age = -1e6;
     } else {
@@ -203,14 +207,13 @@ vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
     return e * (s.albedo * (0.31831 * nl) + vec3((d * g * fresnel + gleam) * nl));
 }
 
-// `open`: share of the light from outside that gets here; no shadows are traced. `sootable`: how
-// much of what flames leave above them shows.
-vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float sootable) {
+// `open`: share of the light from outside that gets here; no shadows are traced. `soot`: [0, 1] that
+// lies here; `sootable`: how much of it shows.
+vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float sootable) {
     if (dot(n, v) < 0.02) n = normalize(n + v * (0.04 - dot(n, v)));
     // Of small triangles at their corners already, with the mean direction of what comes.
     vec3 fire = vec3(inPositionFire.w, inRestFire.w, inNormalFire.w);
     fire *= max(0.0, dot(n, vec3(inDetail.zw, inTint.w)) + 0.25) * 0.64;
-    float soot = inSootLead.x;
     bool small = (draw.flags & kDrawVertexLight) != 0u;
     uint count = small ? 0u : min(view.lightCount, kSurfaceLights);
     for (uint i = 0u; i < count; ++i) {
@@ -220,7 +223,7 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float sootable) {
         vec3 d = at.xyz - view.eye.xyz - position;
         float r2 = dot(d, d);
         float wrapped = max(0.0, dot(n, d) * inversesqrt(max(r2, 1e-8)) + 0.25) * 0.64;
-        soot += plumeSoot(d, lights[i].power, view.up.xyz);
+        if (!kBurns) soot += plumeSoot(d, lights[i].power, view.up.xyz);
         fire += color.rgb * (color.w * wrapped / (r2 + max(at.w * at.w * 0.25, 0.004)));
     }
     s.albedo = sooted(s.albedo, sootable * saturate(soot));
@@ -316,7 +319,7 @@ void main() {
     float rate = max(look.spreadRate, 1e-5);
     // A long shift could leave the chart: what is beyond half a texel goes the linear way.
     vec2 near = clamp(shift, -0.5, 0.5);
-    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3);
+    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3, inSootLead.x);
     Warmth warmth = Warmth(300.0, 0.0);
     vec2 coat = vec2(0.0);
     if (kBurns) {
@@ -442,7 +445,7 @@ void main() {
     tilt *= min(1.0, 1.6 * inversesqrt(max(dot(tilt, tilt), 1e-8)));
     vec3 n = normalize(facingNormal + (deep >= 0.0 ? vec3(0.0) : (back ? -tilt : tilt)));
 
-    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0,
+    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, arrival.soot,
                         (1.0 - charred) * (0.6 + 0.5 * coarse.r));
     outColor = vec4(encodeOutput(min(linear, vec3(60000.0)) * view.sunDirection.w, kEncoding), 1.0);
 }

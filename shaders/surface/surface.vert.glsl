@@ -6,6 +6,8 @@
 #include "shared/look.h"
 #include "surface/plume.glsl"
 
+layout(constant_id = 2) const uint kVariant = 127u;  // see surface.frag
+
 layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
     BurnLight lights[kSurfaceLights];
 };
@@ -47,7 +49,9 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
     e *= clamp(4.0 * facing + 1.0, 0.0, 1.0);  // none from behind
     color += light.colorIntensity.rgb * e;
     towards += vec4(to, 1.0) * e;
-    outSootLead.x += plumeSoot(d, light.power, view.up.xyz);
+    // Where something has burnt, texels know their soot.
+    if ((kVariant & kSurfaceBurns) == 0u)
+        outSootLead.x += plumeSoot(d, light.power, view.up.xyz);
 }
 
 void main() {

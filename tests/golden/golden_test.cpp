@@ -390,6 +390,19 @@ TEST_F(Golden, WetPatchBeforeTheFire) {
     EXPECT_TRUE(matchesGolden("wet_fresh", burnAndDraw(world, 2, view, false), kTolerance));
 }
 
+// Put out, it stays as black as it was, above the char too.
+TEST_F(Golden, SootOutlivesItsFlame) {
+    FwWorld* world = makeWorld(1);
+    addThing(world, FW_MATERIAL_COTTON, 0.4f, 256, false);
+    const FwView view = makeView({0.1f, 0.05f, 0.65f}, false, false);
+    burnAndDraw(world, 3, view, false);
+    FwIgnitionDef end = fwDefaultIgnitionDef();
+    end.kind = FW_EXTINGUISH;
+    end.radius = 1;
+    ASSERT_EQ(fwWorld_Ignite(world, &end, nullptr), FW_OK);
+    EXPECT_TRUE(matchesGolden("soot_stays", burnAndDraw(world, 3, view, false), kTolerance));
+}
+
 TEST_F(Golden, BurntOpenBox) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true);

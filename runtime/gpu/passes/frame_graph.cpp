@@ -18,7 +18,7 @@ constexpr const ComputePass* kComputePasses[] = {
     &kPredictRimPass,  &kSupportPass,     &kProbePass,        &kLightsPass,        &kFlameQuadsPass,
     &kFlameSortPass,   &kRefineHeatPass,  &kRefineLevelsPass, &kRefineScanPass,    &kRefineEmitPass,
     &kRefinePlacePass, &kRecedePass,      &kBendPass,         &kSoftPass,          &kSpringsPass,
-    &kDrapePass,       &kSkinPass};
+    &kDrapePass,       &kSkinPass,        &kSootPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -148,6 +148,14 @@ void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks
     push.object = first;
     push.iteration = count;
     recorder.dispatch(kSupportPass, &push, groupsOf(count));
+}
+
+void recordSoot(vk::FrameRecorder& recorder, uint32_t ticks, uint32_t first, uint32_t count) {
+    StepPush push{};
+    push.count = ticks;
+    push.object = first;
+    push.iteration = count;
+    recorder.dispatch(kSootPass, &push, std::min((count + 7) / 8, kMaxGroups));
 }
 
 void recordSkin(vk::FrameRecorder& recorder, const SkinPush& push) {

@@ -19,7 +19,7 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRecedePass, kBendPass, kSoftPass,
-    kSpringsPass, kDrapePass, kSkinPass;
+    kSpringsPass, kDrapePass, kSkinPass, kSootPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -72,6 +72,8 @@ void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endT
 // Tiles `first` .. + `count` of all; `ticks` since they last came to it.
 void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks, uint32_t first,
                    uint32_t count);
+// After the lights; tiles and ticks as recordSupport's.
+void recordSoot(vk::FrameRecorder& recorder, uint32_t ticks, uint32_t first, uint32_t count);
 void recordSkin(vk::FrameRecorder& recorder, const SkinPush& push);
 void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform);
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes);

@@ -486,6 +486,20 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     if (count) recordSupport(recorder, plan.endTick, ticks, first, count);
 }
 
+// Soot above this frame's flames: a part of all tiles each frame, in turn.
+void recordSooting(VkBackend::State& s, FrameRecorder& recorder) {
+    constexpr uint32_t kMostTiles = 1024;
+    const uint32_t tiles = s.planes.capacity(kSpaceObjectTiles);
+    const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
+    const uint32_t first = s.sootFirst < tiles ? s.sootFirst : 0;
+    const uint32_t count = std::min(tiles - first, kMostTiles);
+    const uint32_t ticks = std::min(s.open.endTick - s.sootTick, kTicksPerSecond);
+    s.sootTick = s.open.endTick;
+    if (count == 0 || ticks == 0) return;
+    s.sootFirst = first + count;
+    recordSoot(recorder, ticks * parts, first, count);
+}
+
 // A host's vertex buffer into our plane, and from there to what is drawn.
 void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry& object,
                  const Skin& skin) {
@@ -760,6 +774,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
         target.viewOffset = pushView(slot, view ? *view : none, whole);
         FrameRecorder looks(target);
         recordLights(looks, lists, open.endTick);
+        recordSooting(*this, looks);
         if (view) recordFlameQuads(looks, lists, open.endTick);
     }
     recordRefinement(slot, view);

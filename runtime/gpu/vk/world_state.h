@@ -217,9 +217,10 @@ struct VkBackend::State {
     uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
     // Known from a readback. While a tile is hot, its front may move again.
     bool frontEmpty = true, burnEmpty = true, predictEmpty = true, hotEmpty = true;
-    uint32_t supportUntil = 0;  // tick until which burnt pieces may still fall
-    uint32_t supportFirst = 0;  // tile that the next look at what holds what begins at
-    uint32_t shownTick = 0;     // tick of the state that draws show
+    uint32_t supportUntil = 0;             // tick until which burnt pieces may still fall
+    uint32_t supportFirst = 0;             // tile that the next look at what holds what begins at
+    uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
+    uint32_t shownTick = 0;                // tick of the state that draws show
     float wind[3] = {};
     float tickFraction = 0;
     uint64_t softStep = 0;  // number of the step that sheets and springs have come to

@@ -1,0 +1,87 @@
+// Soot that flames leave on what stands above them, and that stays: in the low byte of each texel's
+// gradient, 255 a matt black. It grows towards what the fires of the moment would lay there and never
+// fades. One thread per row of a tile, a part of all tiles each frame, in turn. Looks only.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_TEXELS readonly
+#define FW_USE_TILE_STATE readonly
+#define FW_USE_PREDICT readonly
+#define FW_USE_GRADIENT FW_READ_WRITE
+#include "lib/buffers.glsl"
+#include "lib/skin.glsl"
+#include "shared/look.h"
+#include "surface/plume.glsl"
+
+layout(std430, set = 0, binding = FW_BIND_LIGHTS) readonly buffer LightsBuffer {
+    BurnLight lights[];
+};
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+
+const float kSootPerSecond = 2.0;  // simulated: slower than a tongue licks, faster than it burns
+
+vec3 inWorld(uint object, vec3 rest) {
+    vec4 at = vec4(rest, 1.0);
+    return vec3(dot(objects[object].worldRow0, at), dot(objects[object].worldRow1, at),
+                dot(objects[object].worldRow2, at));
+}
+vec3 restOf(uint object, uvec2 texel) {
+    return objects[object].originQuantum.xyz +
+           objects[object].originQuantum.w *
+               vec3(texel.x & 0xFFFFu, texel.x >> 16u, texel.y & 0xFFFFu);
+}
+
+void sootRow(uint worldTile, uint row) {
+    TileRef tile = tileRef(worldTile);
+    if (!tile.alive) return;
+    uint object = tile.object;
+    uint first = texelOf(object, tile.local, row * 8u);
+    uint texelAt = objects[object].texelBase + first, at = objects[object].stateBase + first;
+    uint anchor = 0u;  // the middle may be outside its chart
+    uvec2 texel = uvec2(0u);
+    for (uint x = 0u; x < 8u && (texel.y & (kTexelReal << 16u)) == 0u; ++x) {
+        anchor = (x * 3u + 4u) & 7u;
+        texel = texels[texelAt + anchor];
+    }
+    if ((texel.y & (kTexelReal << 16u)) == 0u) return;
+    vec3 middle = restOf(object, texel);
+    bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
+    SkinPlace moved =
+        skinPlace(skinned, objects[object].skinBase + first + anchor, objects[object].shownBase);
+    vec3 shift = skinned ? moved.place - middle : vec3(0.0);
+    middle = inWorld(object, middle + shift);
+    float reach = 9.0 * sqrt(max(objects[object].tint.w, 0.0));  // m
+    uint near = 0u;
+    uint count = min(view.lightCount, kSurfaceLights);
+    for (uint i = 0u; i < count && lights[i].power > 0.0; ++i)
+        near |= plumeNear(lights[i].positionRadius.xyz - middle, lights[i].power, view.up.xyz, reach)
+                    ? 1u << i
+                    : 0u;
+    uint most = uint(min(255.0 * kSootPerSecond / float(kTicksPerSecond) * float(push.count), 255.0));
+    for (uint x = 0u; near != 0u && x < 8u; ++x) {
+        uint t = predict[at + x];
+        if (t == kInert || t == kOut || t == kOutWet) continue;  // the word is another thing then
+        vec3 place = inWorld(object, restOf(object, texels[texelAt + x]) + shift);
+        float soot = 0.0;
+        for (uint bits = near; bits != 0u; bits &= bits - 1u) {
+            uint i = uint(findLSB(bits));
+            soot += plumeSoot(lights[i].positionRadius.xyz - place, lights[i].power, view.up.xyz);
+        }
+        uint word = gradient[at + x];
+        uint lies = word & 0xFFu, wants = uint(255.0 * min(soot, 1.0));
+        if (wants > lies) gradient[at + x] = (word & ~0xFFu) | min(wants, lies + max(most, 1u));
+    }
+}
+
+void main() {
+    // `object`: the first tile; `iteration`: how many.
+    uint row = gl_LocalInvocationID.x & 7u;
+    uint i = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
+    if (i >= push.iteration) return;
+    do {
+        sootRow(push.object + i, row);
+        i += gl_NumWorkGroups.x * 8u;
+    } while (i < push.iteration);
+}
