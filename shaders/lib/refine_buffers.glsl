@@ -43,6 +43,13 @@ FW_BUFFER(FW_BIND_REFINE_INDICES, FW_USE_INDICES, RefineIndicesBuffer, uint, ind
 #ifdef FW_USE_DRAWS
 FW_BUFFER(FW_BIND_REFINE_DRAWS, FW_USE_DRAWS, RefineDrawsBuffer, uint, draws);
 #endif
+#ifdef FW_USE_MESH_VERTICES
+FW_BUFFER(FW_BIND_VERTICES, FW_USE_MESH_VERTICES, MeshVerticesBuffer, uvec4, meshVertices);
+#endif
+#ifdef FW_USE_CUTS
+FW_BUFFER(FW_BIND_REFINE_CUTS, FW_USE_CUTS, RefineCutsBuffer, uvec4, cuts);
+FW_BUFFER(FW_BIND_REFINE_CUT_DRAWS, FW_USE_CUTS, RefineCutDrawsBuffer, uint, cutDraws);
+#endif
 #ifdef FW_USE_STATE
 FW_BUFFER(FW_BIND_STATE, FW_USE_STATE, StateBuffer, uint, state);
 FW_BUFFER(FW_BIND_GRADIENT, FW_USE_STATE, GradientBuffer, uint, gradient);
@@ -55,4 +62,6 @@ uint edgeList() { return kRefineWorkLists; }
 uint triangleList() { return edgeList() + 2u * push.edgeGroups; }
 uint cornerList() { return triangleList() + 2u * push.triangleGroups; }
 uint objectList() { return cornerList() + 2u * push.cornerGroups; }
+// Per object of the list: cut triangles of each material, then the first for which there is no room.
+uint cutCounts(uint ordinal) { return objectList() + 2u * push.objects + 16u * ordinal; }
 #endif

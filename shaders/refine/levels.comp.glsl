@@ -58,9 +58,13 @@ void aim(uint object, uint item) {
     bool fresh = (refined[object].flags & kRefineIsFresh) != 0u;
     RefineLevel s = items[at];
     if (fresh) s = RefineLevel(0.0, 0.0, -kRefineNever, kRefineNever);
-    uint warm = heat[at] & 3u;
+    uint seen = heat[at];
+    uint warm = seen & 3u;
+    // As long as it opens, and where the rim of a hole stays, it keeps its levels.
+    uint rim = kRefineGone | kRefineStays;
+    if ((seen & kRefineGoing) != 0u || (seen & rim) == rim) warm |= kRefineHot;
     if (push.full != 0u) warm = kRefineHot | kRefineBurning;
-    heat[at] = warm << kRefineHeatShift;
+    heat[at] = (seen & kRefineGone) | (warm << kRefineHeatShift);
     // Most of a mesh has no heat and nothing left of it.
     uint awake = warm == 0u && s.level == 0.0 && s.target == 0.0 ? 0u : 1u;
     while (awake != 0u) {
@@ -102,7 +106,8 @@ void pack(uint object, uint triangle) {
     uint m = refineFit(a, b, c, refineTop(items[own].level));
     uint packed = refinePack(a, b, c, m);
     uint at = refined[object].triangles + triangle;
-    bool changed = (refined[object].flags & kRefineIsFresh) != 0u || levels[at].x != packed;
+    bool changed = (refined[object].flags & (kRefineIsFresh | kRefineIsWhole)) != 0u ||
+                   levels[at].x != packed;
     levels[at].x = packed;
     if (changed) atomicOr(work[objectList() + 2u * refined[object].ordinal + 1u], 1u);
     uint moving = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];

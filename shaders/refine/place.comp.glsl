@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_EDGES readonly
 #define FW_USE_SLOTS readonly
 #define FW_USE_ITEMS readonly
-#define FW_USE_HEAT readonly
+#define FW_USE_HEAT FW_READ_WRITE
 #define FW_USE_LEVELS readonly
 #define FW_USE_VERTICES coherent
 #define FW_USE_STATE readonly
@@ -32,7 +32,13 @@ float arrivalAt(uint object, uint base, uint weights) {
     return refineArrival(t, weights, push.nowTick, refined[object].epochTick);
 }
 
-void evaluate(uint object, uint s) {
+// What a vertex that is burnt through at `hole` says of its edge or interior.
+uint fateOf(uint object, float hole) {
+    if (hole <= refined[object].now) return kRefineGone;
+    return hole < kRefineNever ? kRefineStays | kRefineGoing : kRefineStays;
+}
+
+uint evaluate(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
     float own = arrivalAt(object, slot.texel & 0xFFFFFFu, slot.weights);
     float opposite = kRefineNever;
@@ -51,6 +57,7 @@ void evaluate(uint object, uint s) {
     vertices[at].y = v.y;
     vertices[at].z = v.z;
     vertices[at].hole = v.w;
+    return fateOf(object, v.w);
 }
 
 vec3 placeOf(uint object, uint s) {
@@ -83,7 +90,10 @@ void edgeLane(uint object, uint e) {
     float level = items[item].level;
     bool moves = (heat[item] & kRefineMoving) != 0u;
     uint l = refineTop(level), steps = moves ? 1u << l : 0u;
-    for (uint i = 1u; i < steps; ++i) evaluate(object, refineEdgeSlot(edge, i, l));
+    uint fate = fateOf(object, vertices[refined[object].vertices + edge.low].hole) |
+                fateOf(object, vertices[refined[object].vertices + edge.high].hole);
+    for (uint i = 1u; i < steps; ++i) fate |= evaluate(object, refineEdgeSlot(edge, i, l));
+    if (moves) atomicOr(heat[item], fate);
     float age = refineAge(level, l);
     steps = l == 0u || age >= 1.0 ? 0u : steps;
     for (uint i = 1u; i < steps; i += 2u)
@@ -107,11 +117,13 @@ void interiorGroup(uint object, uint triangle) {
     float level = items[refined[object].items + refined[object].edgeCount + triangle].level;
     float age = refineTop(level) == m ? refineAge(level, m) : 1.0;
     uint n = 1u << m;
-    uint count = refineInnerCount(m);
+    uint count = refineInnerCount(m), fate = 0u;
     for (uint k = gl_LocalInvocationID.x; k < count; k += 64u) {
         uvec2 c = latticePoint(k, n);
-        evaluate(object, refineInnerSlot(t, c.x, c.y, m));
+        fate |= evaluate(object, refineInnerSlot(t, c.x, c.y, m));
     }
+    if (fate != 0u)
+        atomicOr(heat[refined[object].items + refined[object].edgeCount + triangle], fate);
     memoryBarrierBuffer();
     barrier();
     count = age >= 1.0 ? 0u : count;

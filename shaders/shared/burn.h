@@ -81,7 +81,10 @@
 #define FW_BIND_PENDING 72    // uint[], as state: when a texel catches, and what `commit` writes; true
                               // of receptive texels beside a source, until something beside changes
 #define FW_BIND_SETTLED 73    // uint[]: per row of eight texels, those that `arrival` found settled
-#define FW_BIND_COUNT 74
+#define FW_BIND_VERTICES 74   // mesh::RenderVertex[], as three uvec4 (per mesh)
+#define FW_BIND_REFINE_CUTS 75      // vertices along holes (per object), see kRefineCut... in refine.h
+#define FW_BIND_REFINE_CUT_DRAWS 76 // uint[]: indirect draws, 8 per object slot
+#define FW_BIND_COUNT 77
 
 FW_SHARED_BEGIN
 

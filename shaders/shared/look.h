@@ -153,8 +153,8 @@ struct SurfaceDraw {
     uint places;             // with kDrawPlaced: of vertex slot 0 among the refined places
     uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
     float filmMost;          // g/m^2 of water that stay on it; 0: no heat plane
+    float now;               // with kDrawCut: s on the clock of its holes
     uint reserved0;
-    uint reserved1;
 };
 FW_SHARED_SIZE(SurfaceDraw, 128)
 // SurfaceDraw::flags, beyond kObject...: triangles are small, flames light their corners.
@@ -167,6 +167,8 @@ FW_SHARED_CONST uint kDrawHeat = 0x40000u;
 FW_SHARED_CONST uint kDrawWet = 0x80000u;
 // It chars through from the surface.
 FW_SHARED_CONST uint kDrawThick = 0x100000u;
+// Holes are cut out of the triangles: vertices know how long each point still stands.
+FW_SHARED_CONST uint kDrawCut = 0x200000u;
 
 struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m

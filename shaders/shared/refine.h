@@ -37,6 +37,10 @@ FW_SHARED_CONST uint kRefineOpposed = 0xFFFFFFFFu; // RefineSlot::opposite: none
 // Heat of a tile, an edge or an interior.
 FW_SHARED_CONST uint kRefineHot = 1u;      // the front is near, or it burns
 FW_SHARED_CONST uint kRefineBurning = 2u;  // something of it burns
+// What its vertices say when they are placed.
+FW_SHARED_CONST uint kRefineGone = 4u;     // some are burnt through; kept
+FW_SHARED_CONST uint kRefineStays = 8u;    // some are not
+FW_SHARED_CONST uint kRefineGoing = 16u;   // some of these are lit
 
 struct RefineTriangle {  // a coarse triangle; corners and sides counter-clockwise, side e = e, e + 1
     uint edge[3];
@@ -122,22 +126,27 @@ struct RefineObject {
     vec4 burnSeconds1;
     uvec4 materialEnd0;  // per material: its last triangle + 1
     uvec4 materialEnd1;
-    uint reserved0; uint reserved1; uint reserved2; uint reserved3;
-    uint reserved4; uint reserved5; uint reserved6; uint reserved7;
+    uint cuts;           // first of its cut vertices
+    uint cutTriangles;   // room for; shared out to materials by their triangles
+    uint reserved0; uint reserved1;
+    uint reserved2; uint reserved3; uint reserved4; uint reserved5;
 };
 FW_SHARED_SIZE(RefineObject, 192)
 FW_SHARED_CONST uint kRefineIsActive = 1u;
 FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing of it is initialised yet
+FW_SHARED_CONST uint kRefineIsCut = 4u;    // near: holes are cut; else fragments are discarded
+FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all its triangles are emitted again
 
 // A word of the heat plane: what the lists of tiles say for the next frame; the same for this one; and
 // whether this frame places the item anew.
 FW_SHARED_CONST uint kRefineHeatShift = 8u;
 FW_SHARED_CONST uint kRefineMoving = 0x10000u;
 
-// The work plane: two indirect dispatches, sums, then lists of two words (object slot, number).
+// The work plane: three indirect dispatches, sums, then lists of two words (object slot, number).
 FW_SHARED_CONST uint kRefineWorkEmit = 0u;    // x, y, z, jobs: 64 output triangles each
 FW_SHARED_CONST uint kRefineWorkPlace = 4u;   // x, y, z, jobs: an interior each
 FW_SHARED_CONST uint kRefineWorkSums = 8u;    // triangles with each bias
+FW_SHARED_CONST uint kRefineWorkCut = 24u;    // x, y, z, jobs: a triangle with a hole each
 FW_SHARED_CONST uint kRefineWorkLists = 32u;
 
 struct RefinePush {
@@ -156,7 +165,7 @@ struct RefinePush {
     uint emitJobs;    // first words of the lists that the device writes
     uint placeJobs;
     uint objectEnd;   // object slots with a record
-    uint reserved0;
+    uint cutJobs;
 };
 FW_SHARED_SIZE(RefinePush, 64)
 FW_SHARED_CONST float kRefineRate = 4.0f;    // levels per s, once a surface has moved
@@ -586,6 +595,23 @@ FW_SHARED_FN uint refineCutCount(FW_IN(RefineCut) cut, bool inner) {
     uint fan = cut.points - 2u;
     return inner ? 2u * fan + 2u * refineCutWalls(cut) : fan;
 }
+// Outer skin and the wall along the hole: what is drawn of a cut small triangle. The k-th of them is
+// refineCutTriangle's of refineCutDrawn.
+FW_SHARED_FN uint refineCutDrawnCount(FW_IN(RefineCut) cut) {
+    if (cut.points == 0u) return 0u;
+    return cut.points - 2u + (cut.rim < 4u ? 2u : 0u);
+}
+FW_SHARED_FN uint refineCutDrawn(FW_IN(RefineCut) cut, uint k) {
+    return k < cut.points - 2u ? k : k + cut.points - 2u;
+}
+// Room for cut triangles before those of a material whose first triangle of `triangles` is `first`.
+FW_SHARED_FN uint refineCutShare(uint room, uint first, uint triangles) {
+    return room * (first < triangles ? first : triangles) / triangles;
+}
+FW_SHARED_CONST uint kRefineCutMost = 1u << 14u;  // cut triangles of an object
+// Last word of a cut vertex, a float: s to the hole, 0 at it; of walls instead:
+FW_SHARED_CONST float kRefineCutRim = -1.0f;   // at the outer skin
+FW_SHARED_CONST float kRefineCutDeep = -2.0f;  // at the inner skin
 // Polygon points of its k-th triangle; + 4: on the inner skin.
 FW_SHARED_FN uvec3 refineCutTriangle(FW_IN(RefineCut) cut, uint k) {
     uint fan = cut.points - 2u;

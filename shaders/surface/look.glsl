@@ -9,6 +9,7 @@ struct Site {     // what is known of one point of the surface
     float age;    // since ignition; negative: predicted
     float slow;   // s/m, slope of the ignition time
     float lead;   // s that holes come earlier
+    float left;   // s to the hole, where the mesh is cut; negative: as the noise says
     vec2 ahead;   // unit, towards fresh material, in detail space
     float out_;   // [0, 1] extinguished and cold
     float deep;   // [0, 1] of how deep char gets
@@ -63,6 +64,7 @@ float holeDelay(vec4 grown, vec4 fine, float delay, MaterialLook m) {
 // m from here to the rim of the hole; negative: gone.
 float holeEdge(float a, Site s, MaterialLook m) {
     if (m.holeTime <= 0.0) return 1.0;
+    if (s.left >= 0.0) return s.left / s.slow;
     return (m.holeTime + holeDelay(s.grown, s.fine, s.delay, m) - s.lead - a) / s.slow;
 }
 
@@ -219,7 +221,9 @@ Skin burningSkin(Site s, MaterialLook m) {
         if (m.rimKelvin > 0.0) {
             // A line thinner than a pixel keeps its energy.
             float wide = 0.35 * m.rimWidth / (0.35 * m.rimWidth + 0.5 * s.pixel);
-            float rim = 300.0 + (m.rimKelvin - 300.0) * exp(-e * wide / m.rimWidth) +
+            // The rim of a hole that grows no more dies down.
+            float old = s.left < 0.0 ? 0.0 : max(0.0, a - 1.1 * m.holeTime) / (3.0 * m.faceDecay);
+            float rim = 300.0 + (m.rimKelvin - 300.0) * exp(-e * wide / m.rimWidth - old) +
                         (kHasSheet ? 0.4 : 0.8) * dT;
             emission += emberRadiance(limitGlow(rim, s)) * (0.9 * (1.0 - 0.6 * ash) * wide);
             albedo = mix(albedo, m.charColor.rgb * 0.7, 0.9 * exp(-e / (2.5 * m.rimWidth)));

@@ -265,6 +265,10 @@ void main() {
     vec3 toEye = view.forward.w > 0.5 ? normalize(-inPosition) : -view.forward.xyz;
     vec3 face = cross(px, py);
     face *= dot(face, toEye) < 0.0 ? -1.0 : 1.0;
+    // Walls of holes that were cut have no normals of their own.
+    bool cut = kBurns && (draw.flags & kDrawCut) != 0u;
+    bool wall = cut && inSootLead.y < -0.5;
+    if (wall) normal = normalize(face);
     bool back = dot(face, normal) < 0.0;
     vec3 r1 = cross(py, normal), r2 = cross(normal, px);
     float det = dot(px, r1);
@@ -399,9 +403,16 @@ void main() {
     site.bubbleSlope = vec2(dot(swell, axisX), dot(swell, axisY));
 
     // What the wall behind has burnt is missing here too, even before this side catches.
-    site.lead = inSootLead.y;
+    site.lead = cut ? 0.0 : inSootLead.y;
+    site.left = cut ? max(inSootLead.y, 0.0) * draw.timeScale : -1.0;
+    if (wall) {
+        // As char that has burnt through; what glows at its rim fades inwards.
+        site.age = max(site.age, look.holeTime);
+        site.left = saturate(-1.0 - inSootLead.y) * look.thickness * site.slow;
+    }
+    bool soon = site.lead >= 1e-3 || (cut && site.left < look.holeTime);
     bool cold = !kBurns || look.spreadRate <= 0.0 ||
-                (site.age < -ahead && site.lead < 1e-3 && site.brown < 0.01);
+                (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;
     vec3 position = inPosition;
     vec3 facingNormal = back ? -normal : normal;
@@ -410,6 +421,11 @@ void main() {
     if (inside) skin.occlusion = 0.5;
     if (kBurns && !cold) {
         float edge = holeEdge(max(site.age, -ahead) - look.jitter * delay, site, look);
+        if (wall) {
+            deep = 0.0;
+            vec2 bump = fine.rb - 0.5;
+            facingNormal = normalize(normal + 0.8 * (axisX * bump.x + axisY * bump.y));
+        }
         if (edge < 0.0) {
             vec3 ray = vec3(dot(-toEye, axisX), dot(-toEye, axisY), -abs(dot(toEye, normal)));
             vec2 rise = vec2(dot(laterSlope, axisX), dot(laterSlope, axisY)) / site.slow;

@@ -33,7 +33,8 @@ layout(location = 2) out vec4 outNormal;    // w: blue
 layout(location = 3) out vec4 outTexture;   // xy: texels of the atlas; zw: UV
 layout(location = 4) out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) out vec4 outTint;      // w: ... mean direction to the flames
-layout(location = 6) out vec2 outSootLead;  // soot of flames below; look seconds, see inLead
+layout(location = 6) out vec2 outSootLead;  // soot of flames below; look seconds, see inLead; with
+                                            // kDrawCut the last word of a cut vertex, in s
 
 #include "lib/turn.glsl"
 
@@ -60,9 +61,12 @@ void main() {
     vec3 normal = vec3(float((n << 21) >> 21), float((n << 10) >> 21), float(n >> 22) * 2.0);
 
     vec3 rest = inPosition;
+    float lead = inLead;
     bool placed = (draw.flags & kDrawPlaced) != 0u;
     while (placed) {  // a branch would cost every mesh the load
-        rest = places[draw.places + inSlot].xyz;
+        vec4 place = places[draw.places + inSlot];
+        rest = place.xyz;
+        lead = (draw.flags & kDrawCut) != 0u ? clamp(place.w - draw.now, 0.0, 1000.0) : 0.0;
         placed = false;
     }
     vec3 offset = vec3(draw.row0.w, draw.row1.w, draw.row2.w) - view.eye.xyz;
@@ -70,7 +74,7 @@ void main() {
                          dot(draw.row2.xyz, rest)) +
                     offset;
     normal = normalize(turnNormal(draw.row0.xyz, draw.row1.xyz, draw.row2.xyz, normal));
-    outSootLead = vec2(0.0, inLead);
+    outSootLead = vec2(0.0, lead);
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
     if ((draw.flags & kDrawVertexLight) != 0u) {

@@ -30,6 +30,7 @@ class EveryPass : public GpuTest {
         object.substepShift = 1;
         if (published) object.flags = gpu::kObjectPublished | gpu::kObjectSkinned;
         object.refine = !published;
+        object.refinePixelsPerEdge = 2;  // its holes are cut
         const mesh::BurnDomain& domain = scene.domains[0];
         for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
             object.materials[m] = plainMaterial(domain, 0.3, 1.0, 1.0);

@@ -128,6 +128,7 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     init.heat = object.heat;
     init.refine = object.refine;
     init.refineDepth = 4;
+    init.refinePixelsPerEdge = object.refinePixelsPerEdge;
     if (object.deform.flags || (object.flags & gpu::kObjectSkinned)) {
         init.deformModel = &models[object.mesh];
         init.deform = &object.deform;

@@ -16,8 +16,9 @@ struct SceneObject {
     std::array<gpu::BurnMaterial, gpu::kMaterialsPerObject> materials{};
     std::vector<uint16_t> slowness;  // empty: the mesh's
     uint32_t window = 512, substepShift = 0;
-    uint32_t flags = 0;                   // kObject..., beyond live
-    bool refine = false;                  // down to 4 halvings
+    uint32_t flags = 0;   // kObject..., beyond live
+    bool refine = false;  // down to 4 halvings
+    float refinePixelsPerEdge = 8;
     gpu::DeformObject deform{};           // without flags: it does not
     std::vector<gpu::HeatMaterial> heat;  // empty: none
 };

@@ -41,6 +41,7 @@ struct DrawItem {
     uint32_t image = 0;           // base-colour image slot + 1, 0: none
     uint32_t variant = 0;         // of the surface pass, from surfaceVariant
     bool refined = false;         // its triangles are in the refinement's planes
+    bool cut = false;             // and holes are cut out of them
     SurfaceDraw draw{};
 };
 
@@ -49,6 +50,8 @@ class DrawRecorder {
  public:
     // One indexed draw with its set 1; `push` has DrawPass::pushBytes.
     virtual void drawItem(const DrawItem& item, const void* push) = 0;
+    // What is left of its triangles along holes.
+    virtual void drawCut(const DrawItem& item, const void* push) = 0;
     // A VkDrawIndirectCommand at `offset` bytes of the resource.
     virtual void drawIndirect(uint32_t resource, uint64_t offset) = 0;
 

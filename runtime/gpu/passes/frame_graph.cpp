@@ -18,7 +18,7 @@ constexpr const ComputePass* kComputePasses[] = {
     &kPredictRimPass,  &kSupportPass,     &kProbePass,        &kLightsPass,        &kFlameQuadsPass,
     &kFlameSortPass,   &kRefineHeatPass,  &kRefineLevelsPass, &kRefineScanPass,    &kRefineEmitPass,
     &kRefinePlacePass, &kRecedePass,      &kBendPass,         &kSoftPass,          &kSpringsPass,
-    &kDrapePass,       &kSkinPass,        &kSootPass};
+    &kDrapePass,       &kSkinPass,        &kSootPass,         &kRefineCutPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -218,7 +218,8 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
     recorder.dispatch(kFlameSortPass, nullptr, 1);
 }
 
-void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with) {
+void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with,
+                  bool cuts) {
     RefinePush push = with;
     push.row = lists.row;
     push.parity = lists.parity;
@@ -240,6 +241,13 @@ void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const Re
     recorder.dispatch(kRefinePlacePass, &push, std::min(push.edgeGroups, kMaxGroups));
     push.phase = 2;
     recorder.dispatchIndirect(kRefinePlacePass, &push, FW_BIND_REFINE_WORK, kRefineWorkPlace * 4);
+    if (!cuts) return;
+    push.phase = 0;
+    recorder.dispatch(kRefineCutPass, &push, std::min(push.triangleGroups, kMaxGroups));
+    push.phase = 1;
+    recorder.dispatchIndirect(kRefineCutPass, &push, FW_BIND_REFINE_WORK, kRefineWorkCut * 4);
+    push.phase = 2;
+    recorder.dispatch(kRefineCutPass, &push, groupsOf(push.objects * kMaterialsPerObject));
 }
 
 }  // namespace fw::gpu

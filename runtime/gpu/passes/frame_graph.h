@@ -18,8 +18,8 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
     kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
-    kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRecedePass, kBendPass, kSoftPass,
-    kSpringsPass, kDrapePass, kSkinPass, kSootPass;
+    kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRecedePass, kBendPass,
+    kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -86,6 +86,8 @@ void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 
 // After the steps. The work plane holds its lists, and zero before them. `lists`: see FrameLists.
-void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& push);
+// `cuts`: some object is kRefineIsCut.
+void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& push,
+                  bool cuts);
 
 }  // namespace fw::gpu

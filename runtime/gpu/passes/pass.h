@@ -11,8 +11,8 @@ namespace fw::gpu {
 // Resources are numbered by their binding (FW_BIND_*), so one list says both. Beyond them, what no
 // shader binds:
 enum Resource : uint32_t {
-    kResourceVertices = FW_BIND_COUNT,  // RenderVertex[]
-    kResourceIndices,                   // uint[]
+    kResourceVertices = FW_BIND_VERTICES,
+    kResourceIndices = FW_BIND_COUNT,  // uint[]
     kResourceCount,
 };
 

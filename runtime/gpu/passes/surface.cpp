@@ -15,6 +15,8 @@ constexpr Use kUses[] = {
     {FW_BIND_REFINE_INDICES, Access::vertexInput},
     {FW_BIND_REFINE_DRAWS, Access::indirect},
     {FW_BIND_HEAT, Access::drawRead},
+    {FW_BIND_REFINE_CUTS, Access::vertexInput},
+    {FW_BIND_REFINE_CUT_DRAWS, Access::indirect},
 };
 
 constexpr DrawPass variant(uint32_t features, Cull cull = Cull::none) {
@@ -146,8 +148,12 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
     for (const DrawItem& item : items) {
         if (!drawnBy(variant, item.variant)) continue;
         SurfaceDraw draw = item.draw;
+        if (item.cut) draw.flags |= kDrawCut;
         if (item.refined) draw.flags |= kDrawPlaced;
         recorder.drawItem(item, &draw);
+        if (!item.cut) continue;
+        draw.flags &= ~kDrawPlaced;
+        recorder.drawCut(item, &draw);
     }
 }
 

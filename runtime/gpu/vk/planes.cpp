@@ -100,6 +100,10 @@ constexpr Plane kPlanes[] = {
      "refined places", 0},
     {FW_BIND_REFINE_INDICES, kSpaceRefineIndices, 4, true, kComponentRefine, "refined indices",
      VK_BUFFER_USAGE_INDEX_BUFFER_BIT},
+    {FW_BIND_REFINE_CUTS, kSpaceRefineCuts, 48, true, kComponentRefine, "cut vertices",
+     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
+    {FW_BIND_REFINE_CUT_DRAWS, kSpaceObjects, 16 * kMaterialsPerObject, true, kComponentRefine,
+     "cut draws", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_REFINE_WORK, kSpaceRefineWork, 4, false, kComponentRefine, "refinement work",
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks",
@@ -107,10 +111,9 @@ constexpr Plane kPlanes[] = {
 };
 
 constexpr uint32_t kInitialUnits[kSpaceCount] = {
-    64,   1024, 512,  512, 1024, 1024, 4096, 16384, kCounterRows,
-    4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
-    1024, 4096, 256,  1,   1,    1,    1,    1,     1,
-    1,    1,    1,    1,   1,    1};
+    64,  1024, 512,  512, 1024, 1024, 4096, 16384, kCounterRows, 4096, 1024, 1024, 256,
+    256, 1024, 1024, 512, 256,  1024, 4096, 256,   256,          1,    1,    1,    1,
+    1,   1,    1,    1,   1,    1,    1,    1};
 
 }  // namespace
 

@@ -31,6 +31,7 @@ enum Space : uint32_t {
     kSpaceRefineTriangles,  // of objects
     kSpaceRefineSlots,      // of objects
     kSpaceRefineIndices,    // words, of objects
+    kSpaceRefineCuts,       // vertices, of objects
     kSpaceRefineWork,       // words, per frame
     kSpacePublished,        // 8x8 tiles of objects in as-published mode
     kSpaceHeat,             // 8x8 tiles of objects with heat

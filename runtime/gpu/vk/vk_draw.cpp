@@ -22,19 +22,8 @@ class PassRecorder : public DrawRecorder {
 
     void drawItem(const DrawItem& item, const void* push) override {
         const Table& vk = s_.device.table;
-        VkDescriptorSet set = s_.white.set.set;
-        if (item.image && item.image - 1 < s_.images.size() && s_.images[item.image - 1].live)
-            set = s_.images[item.image - 1].set.set;
-        if (set != bound_) {
-            vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1,
-                                     &set, 0, nullptr);
-            bound_ = set;
-        }
+        bindFor(item, push);
         if (item.shown != shown_) bindVertices(item);
-        if (pass_.pushBytes)
-            vk.CmdPushConstants(commands_, layout_,
-                                VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                                pass_.pushBytes, push);
         if (item.refined != refined_) {
             vk.CmdBindIndexBuffer(
                 commands_,
@@ -53,6 +42,34 @@ class PassRecorder : public DrawRecorder {
         else
             vk.CmdDrawIndexed(commands_, item.indexCount, 1, item.firstIndex,
                               own ? 0 : item.vertexOffset, 0);
+    }
+    void drawCut(const DrawItem& item, const void* push) override {
+        bindFor(item, push);
+        if (shown_ != kCuts) {
+            const VkBuffer cuts = s_.planes.buffer(FW_BIND_REFINE_CUTS).handle;
+            const VkBuffer buffers[2] = {cuts, cuts};
+            const VkDeviceSize zeros[2] = {};
+            s_.device.table.CmdBindVertexBuffers(commands_, 0, 2, buffers, zeros);
+            shown_ = kCuts;
+        }
+        drawIndirect(FW_BIND_REFINE_CUT_DRAWS,
+                     (uint64_t(item.object) * kMaterialsPerObject + item.material) *
+                         sizeof(VkDrawIndirectCommand));
+    }
+    void bindFor(const DrawItem& item, const void* push) {
+        const Table& vk = s_.device.table;
+        VkDescriptorSet set = s_.white.set.set;
+        if (item.image && item.image - 1 < s_.images.size() && s_.images[item.image - 1].live)
+            set = s_.images[item.image - 1].set.set;
+        if (set != bound_) {
+            vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1,
+                                     &set, 0, nullptr);
+            bound_ = set;
+        }
+        if (pass_.pushBytes)
+            vk.CmdPushConstants(commands_, layout_,
+                                VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                                pass_.pushBytes, push);
     }
     // Of ordinary items all is bound from the first vertex on, of one with shown vertices of its
     // own both its ranges.
@@ -77,6 +94,7 @@ class PassRecorder : public DrawRecorder {
     VkDescriptorSet bound_ = VK_NULL_HANDLE;
     bool refined_ = false;  // whose indices are bound
     uint32_t shown_ = kNoneTexel;
+    static constexpr uint32_t kCuts = kNoneTexel - 1;  // as `shown`: cut vertices are bound
 };
 
 VkImageMemoryBarrier imageBarrier(const FwVulkanImage& image, bool depth, VkFormat format) {

@@ -382,7 +382,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                      int32_t(mesh.vertexRange.first),
                      object.shown.units ? object.shown.first : kNoneTexel, object.images[m],
                      surfaceVariant(object.materials[m], object.images[m] != 0, object.touched),
-                     object.refine.started, drawOf(s, object, m)});
+                     object.refine.started, object.refine.cut, drawOf(s, object, m)});
             first = end;
         }
     }

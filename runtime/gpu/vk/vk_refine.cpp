@@ -17,6 +17,9 @@ constexpr uint32_t kTableWords = kRefineTableSize / 2;
 // second, take five quarters more to fall, and readbacks come late.
 constexpr uint32_t kQuietTicks = 4 * kTicksPerSecond;
 constexpr float kRecede = 0.9f;
+// Holes are cut where a mean edge is longer than this, in segments of the finest; what was is until
+// it is shorter than the second.
+constexpr float kCutFrom = 4, kCutTo = 3;
 constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
 
 uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
@@ -62,6 +65,10 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, const mesh::Burn
     fresh.cornerCount = model.cornerCount;
     fresh.slotCount = uint32_t(model.slots.size());
     fresh.fullCount = uint32_t(model.fullCount());
+    for (const RefineEdge& e : model.edges) {
+        const RefineSlot &a = model.slots[e.low], &b = model.slots[e.high];
+        fresh.edgeLength += std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) / float(fresh.edgeCount);
+    }
     for (const RefineTriangle& t : model.triangles) ++fresh.materialEnd[materialOf(domain, t)];
     for (uint32_t m = 1; m < kMaterialsPerObject; ++m)
         fresh.materialEnd[m] += fresh.materialEnd[m - 1];
@@ -139,20 +146,27 @@ void RefineUse::allocate(Planes& planes, const RefineMesh& mesh, uint64_t last) 
     take(triangles, kSpaceRefineTriangles, mesh.triangleCount);
     take(slots, kSpaceRefineSlots, mesh.slotCount);
     take(indices, kSpaceRefineIndices, mesh.fullCount * 3);
+    // Along rims, of up to four for a small triangle.
+    take(cuts, kSpaceRefineCuts, 3 * std::min(mesh.fullCount / 4 + 64, kRefineCutMost));
 }
 
 void RefineUse::release(Planes& planes) noexcept {
     const SpaceRange all[] = {{&items, kSpaceRefineItems},
                               {&triangles, kSpaceRefineTriangles},
                               {&slots, kSpaceRefineSlots},
-                              {&indices, kSpaceRefineIndices}};
+                              {&indices, kSpaceRefineIndices},
+                              {&cuts, kSpaceRefineCuts}};
     releaseAll(planes, all);
     *this = {};
 }
 
 void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
     RefineUse& use = objects[object].refine;
-    if (use.on) use.quietTick = std::max(use.quietTick, tick + kQuietTicks);
+    if (!use.on) return;
+    uint32_t opens = 0;  // what burns may open later than it goes out
+    for (const BurnMaterial& m : objects[object].materials) opens = std::max(opens, m.holeTicks);
+    const uint64_t quiet = uint64_t(tick) + kQuietTicks + opens;
+    use.quietTick = std::max(use.quietTick, uint32_t(std::min<uint64_t>(quiet, kLiveEnd)));
 }
 
 // Which objects the frame refines, and the bytes that it uploads for it. May throw.
@@ -176,7 +190,7 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
         return groupsOf(count);
     };
     refine.lists.resize(kRefineWorkLists, 0);
-    for (const uint32_t at : {kRefineWorkEmit, kRefineWorkPlace})
+    for (const uint32_t at : {kRefineWorkEmit, kRefineWorkPlace, kRefineWorkCut})
         refine.lists[at + 1] = refine.lists[at + 2] = 1;
     RefinePush& push = refine.push;
     each([&](uint32_t i, const RefineMesh& m) { push.edgeGroups += list(i, m.edgeCount); });
@@ -192,19 +206,27 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
         push.objectEnd = i + 1;
     });
     if (push.objects == 0) return 0;
+    for (uint32_t o = 0; o < push.objects; ++o) {  // counts, ends
+        refine.lists.insert(refine.lists.end(), kMaterialsPerObject, 0);
+        refine.lists.insert(refine.lists.end(), kMaterialsPerObject, kNoneTexel);
+    }
     push.budget = full > limits.maxRefinedTriangles ? limits.maxRefinedTriangles : 0;
     push.full = (plan.switches & kSwitchRefineFull) != 0 ? 1 : 0;
     push.recede = kRecede;
     push.emitJobs = uint32_t(refine.lists.size());
     push.placeJobs = push.emitJobs + uint32_t(2 * emitJobs);
-    planes.atLeast(kSpaceRefineWork, push.placeJobs + uint32_t(2 * placeJobs), ring.newest());
+    push.cutJobs = push.placeJobs + uint32_t(2 * placeJobs);
+    planes.atLeast(kSpaceRefineWork, push.cutJobs + uint32_t(2 * placeJobs), ring.newest());
     return refine.lists.size() * 4 + uint64_t(push.objectEnd) * sizeof(RefineObject) + 64;
 }
 
 // `view`: its eye and size on the screen limit levels; null: as last drawn.
 void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view) {
     RefinePush& push = refine.push;
-    if (push.objects == 0) return;
+    if (push.objects == 0) {
+        showRefined();
+        return;
+    }
     if (view && limits.looks.viewParams) {
         ViewInput input;
         input.view = view;
@@ -226,6 +248,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view)
     at += (refine.lists.size() * 4 + 15) / 16 * 16;
     const uint64_t recordsAt = at;
     uint32_t ordinal = 0;
+    bool cuts = false;
     for (uint32_t i = 0; i < push.objectEnd; ++i, at += sizeof(RefineObject)) {
         RefineObject record{};
         ObjectEntry& object = objects[i];
@@ -234,6 +257,12 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view)
         if (active) {
             record = refineRecord(object, push.full != 0);
             record.ordinal = ordinal++;
+            const bool cut = isNear(object, record);
+            if (object.refine.cut && !cut) record.flags |= kRefineIsWhole;
+            if (cut) record.flags |= kRefineIsCut;
+            object.refine.cut = cut;
+            object.refine.now = record.now;
+            cuts |= cut;
             if (!object.refine.started) {
                 record.flags |= kRefineIsFresh;
                 const RangeOf& items = object.refine.items;
@@ -247,8 +276,35 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view)
     slot.uploadUsed = at;
     recorder.copyIn(recordsAt, FW_BIND_REFINE_OBJECTS, 0,
                     uint64_t(push.objectEnd) * sizeof(RefineObject));
-    recordRefine(recorder, lists, push);
-    for (DrawItem& item : drawItems) item.refined = objects[item.object].refine.started;
+    recordRefine(recorder, lists, push, cuts);
+    showRefined();
+}
+
+void VkBackend::State::showRefined() noexcept {
+    for (DrawItem& item : drawItems) {
+        const RefineUse& use = objects[item.object].refine;
+        item.refined = use.started;
+        item.cut = use.cut;
+        item.draw.now = use.now;
+    }
+}
+
+// Near enough for its holes to be cut: far ones are small, and discarded.
+bool VkBackend::State::isNear(const ObjectEntry& object,
+                              const RefineObject& record) const noexcept {
+    if ((object.record.flags & kObjectNoHoles) != 0) return false;
+    if (record.eye.w == 0) return true;
+    const MeshEntry& entry = meshes[object.mesh];
+    float square = 0;
+    const float eye[3] = {record.eye.x, record.eye.y, record.eye.z};
+    for (int k = 0; k < 3; ++k) {
+        const float out = std::max(
+            {entry.domain->boundsLow[k] - eye[k], eye[k] - entry.domain->boundsHigh[k], 0.0f});
+        square += out * out;
+    }
+    const float pixels = entry.refine[object.refine.depth].edgeLength * record.eye.w;
+    const float least = record.pixelsPerEdge * (object.refine.cut ? kCutTo : kCutFrom);
+    return pixels > least * std::sqrt(square);
 }
 
 RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full) const noexcept {
@@ -284,9 +340,16 @@ RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full
     r.eye = {(x.x * d[0] + y.x * d[1] + z.x * d[2]) / square,
              (x.y * d[0] + y.y * d[1] + z.y * d[2]) / square,
              (x.z * d[0] + y.z * d[1] + z.z * d[2]) / square, full ? 0.0f : refine.eye.w};
+    r.cuts = use.cuts.first;
+    r.cutTriangles = use.cuts.units / 3;
+    // A wall is gone when it looks gone.
     const auto seconds = [&](uint32_t m) {
-        const uint32_t ticks = object.materials[m].flameTicks;
-        return ticks == kNoneTexel ? 1e6f : std::max(float(ticks) / float(kTicksPerSecond), 1e-3f);
+        const BurnMaterial& material = object.materials[m];
+        const bool opens = material.holeTicks != 0 && !(object.record.flags & kObjectNoHoles);
+        const uint32_t ticks = opens ? material.holeTicks : material.flameTicks;
+        const float s =
+            ticks == kNoneTexel ? 1e6f : std::max(float(ticks) / float(kTicksPerSecond), 1e-3f);
+        return opens ? s : -s;
     };
     r.burnSeconds0 = {seconds(0), seconds(1), seconds(2), seconds(3)};
     r.burnSeconds1 = {seconds(4), seconds(5), seconds(6), seconds(7)};

@@ -35,6 +35,7 @@ struct RefineMesh {
     bool live = false;
     uint32_t edgeCount = 0, triangleCount = 0, cornerCount = 0, slotCount = 0;
     uint32_t fullCount = 0;                          // triangles with everything at its deepest
+    float edgeLength = 0;                            // m, mean of its edges
     uint32_t materialEnd[kMaterialsPerObject] = {};  // of its triangles
     RangeOf triangles, edges, slots, words, draws;
     void release(Planes& planes) noexcept;
@@ -47,7 +48,9 @@ struct RefineUse {  // an object's own
     float pixelsPerEdge = 8;
     uint32_t epochTick = 0;
     uint32_t quietTick = 0;  // it is refined before this; 0: no fire yet
-    RangeOf items, triangles, slots, indices;
+    bool cut = false;        // near: its holes are cut
+    float now = 0;           // s since its epoch, of the frame that last placed it
+    RangeOf items, triangles, slots, indices, cuts;
     void allocate(Planes& planes, const RefineMesh& mesh, uint64_t last);
     void release(Planes& planes) noexcept;
 };
@@ -278,6 +281,8 @@ struct VkBackend::State {
     uint64_t planRefine(const FramePlan& plan);
     void recordRefinement(FrameInFlight& slot, const FwView* view);
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
+    bool isNear(const ObjectEntry& object, const RefineObject& record) const noexcept;
+    void showRefined() noexcept;
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
     const Readback* nextReadback();

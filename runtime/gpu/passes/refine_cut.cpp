@@ -1,0 +1,22 @@
+// Holes cut out of refined triangles, and the walls along them.
+#include "gpu/passes/frame_graph.h"
+#include "shared/refine.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_REFINE_WORK, Access::indirect},   {FW_BIND_REFINE_WORK, Access::write},
+    {FW_BIND_REFINE_OBJECTS, Access::read},    {FW_BIND_REFINE_WORDS, Access::read},
+    {FW_BIND_REFINE_TRIANGLES, Access::read},  {FW_BIND_REFINE_SLOTS, Access::read},
+    {FW_BIND_REFINE_HEAT, Access::read},       {FW_BIND_REFINE_LEVELS, Access::read},
+    {FW_BIND_REFINE_VERTICES, Access::read},   {FW_BIND_VERTICES, Access::read},
+    {FW_BIND_REFINE_INDICES, Access::write},   {FW_BIND_REFINE_CUTS, Access::write},
+    {FW_BIND_REFINE_CUT_DRAWS, Access::write},
+};
+
+}  // namespace
+
+const ComputePass kRefineCutPass{"refine_cut", "refine_cut.comp", kUses, sizeof(RefinePush)};
+
+}  // namespace fw::gpu

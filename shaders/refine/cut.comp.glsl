@@ -1,0 +1,187 @@
+// Holes of the objects near the eye, cut out of their small triangles, in phases with a barrier
+// between: 0 lists the coarse triangles with a hole, a lane each; 1 a workgroup each: small triangles
+// that a hole crosses leave the index list, and what is left of them is written as vertices, with a
+// wall along the hole; without room they stay whole; 2 draw arguments.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_WORK FW_READ_WRITE
+#define FW_USE_WORDS readonly
+#define FW_USE_TRIANGLES readonly
+#define FW_USE_SLOTS readonly
+#define FW_USE_HEAT readonly
+#define FW_USE_LEVELS readonly
+#define FW_USE_VERTICES readonly
+#define FW_USE_INDICES writeonly
+#define FW_USE_MESH_VERTICES readonly
+#define FW_USE_CUTS writeonly
+#include "lib/refine_buffers.glsl"
+
+uint slotOf(uint object, uint vertex) {
+    return meshVertices[(refined[object].meshDraws + vertex) * 3u + 2u].w;
+}
+
+void find(uint object, uint triangle) {
+    RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
+    uint base = refined[object].items;
+    uint seen = heat[base + refined[object].edgeCount + triangle] | heat[base + t.edge[0]] |
+                heat[base + t.edge[1]] | heat[base + t.edge[2]];
+    if ((seen & kRefineGone) == 0u) return;
+    uint job = atomicAdd(work[kRefineWorkCut + 3u], 1u);
+    atomicMax(work[kRefineWorkCut], min(job + 1u, kMostGroups));
+    work[push.cutJobs + 2u * job] = object;
+    work[push.cutJobs + 2u * job + 1u] = triangle;
+}
+
+// Of the first triangle of material m, and its end.
+uint materialStart(uint object, uint m) {
+    uvec4 low = refined[object].materialEnd0;
+    uvec4 high = refined[object].materialEnd1;
+    uint before = max(m, 1u) - 1u;
+    uint start = before < 4u ? low[before & 3u] : high[before & 3u];
+    return m == 0u ? 0u : start;
+}
+uint roomBefore(uint object, uint m) {
+    return refineCutShare(refined[object].cutTriangles, materialStart(object, m),
+                          refined[object].triangleCount);
+}
+
+struct Point {   // of a kept polygon
+    vec3 outer;
+    vec3 inner;
+    uvec4 atlas;   // second and third word quads of its vertex, but the last word
+    uvec4 detail;
+    uint normal;
+    float left;    // s to the hole
+};
+
+// `at`: see RefineCut::corner.
+Point pointOf(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, uint at) {
+    uint i = at & 3u, j = at < 4u ? i : refineNext(i);
+    bool ordered = slots_[i] <= slots_[j];
+    uint a = ordered ? i : j, b = ordered ? j : i;
+    float fa = fields[a], fb = fields[b];
+    float share = at < 4u ? 0.0 : refineCutAt(fa, fb);
+    RefineVertex va = vertices[refined[object].vertices + slots_[a]];
+    RefineVertex vb = vertices[refined[object].vertices + slots_[b]];
+    vec3 innerA = refineInnerSkin(slots[refined[object].meshSlots + slots_[a]]);
+    vec3 innerB = refineInnerSkin(slots[refined[object].meshSlots + slots_[b]]);
+    Point p;
+    p.outer = vec3(va.x, va.y, va.z);
+    p.inner = innerA;
+    p.left = fa;
+    if (at >= 4u) {
+        p.outer = refineCutPoint(p.outer, vec3(vb.x, vb.y, vb.z), fa, fb);
+        p.inner = refineCutPoint(innerA, innerB, fa, fb);
+        p.left = 0.0;
+    }
+    uint first = (refined[object].meshDraws + drawn[a]) * 3u;
+    uint second = (refined[object].meshDraws + drawn[b]) * 3u;
+    bool near = share < 0.5;
+    p.normal = meshVertices[near ? first : second].w;
+    uvec4 a1 = meshVertices[first + 1u], b1 = meshVertices[second + 1u];
+    uvec4 a2 = meshVertices[first + 2u], b2 = meshVertices[second + 2u];
+    p.atlas = floatBitsToUint(mix(uintBitsToFloat(a1), uintBitsToFloat(b1), share));
+    p.detail.xy =
+        floatBitsToUint(mix(uintBitsToFloat(a2.xy), uintBitsToFloat(b2.xy), share));
+    p.detail.z = near ? a2.z : b2.z;
+    p.detail.w = 0u;
+    return p;
+}
+
+void writeVertex(uint at, Point p, bool inner, float left) {
+    vec3 place = inner ? p.inner : p.outer;
+    cuts[at * 3u] = uvec4(floatBitsToUint(place), p.normal);
+    cuts[at * 3u + 1u] = p.atlas;
+    cuts[at * 3u + 2u] = uvec4(p.detail.xyz, floatBitsToUint(left));
+}
+
+void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, uint first) {
+    Point points[4];
+    for (uint i = 0u; i < 4u; ++i)
+        points[i] = pointOf(object, drawn, slots_, fields, cut.corner[min(i, cut.points - 1u)]);
+    uint count = refineCutDrawnCount(cut);
+    for (uint k = 0u; k < count; ++k) {
+        uvec3 corners = refineCutTriangle(cut, refineCutDrawn(cut, k));
+        bool wall = k + 2u >= cut.points;
+        for (uint v = 0u; v < 3u; ++v) {
+            uint p = corners[v];
+            bool inner = p >= 4u;
+            float left = inner ? kRefineCutDeep : wall ? kRefineCutRim : points[p & 3u].left;
+            writeVertex(first + 3u * k + v, points[p & 3u], inner, left);
+        }
+    }
+}
+
+void cutGroup(uint object, uint triangle) {
+    RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
+    uvec2 packed = levels[refined[object].triangles + triangle];
+    float now = refined[object].now;
+    uint material = 0u;
+    for (uint m = 1u; m < kMaterialsPerObject; ++m)
+        material += triangle >= materialStart(object, m) ? 1u : 0u;
+    uint counts = cutCounts(refined[object].ordinal) + material;
+    uint before = roomBefore(object, material);
+    uint room = roomBefore(object, material + 1u) - before;
+    uint count = refineCount(packed.x);
+    for (uint k = gl_LocalInvocationID.x; k < count; k += 64u) {
+        RefinePlace place = refineLocate(packed.x, k);
+        uvec3 codes = refineCodes(packed.x, place, tableToken(place.entry));
+        uvec3 drawn, slots_;
+        vec3 fields;
+        uint solid = 0u;
+        for (uint v = 0u; v < 3u; ++v) {
+            drawn[v] = refineDrawVertex(t, packed.x, codes[v]);
+            slots_[v] = slotOf(object, drawn[v]);
+            fields[v] = refineField(vertices[refined[object].vertices + slots_[v]].hole, now);
+            solid |= fields[v] > 0.0 ? 1u << v : 0u;
+        }
+        bool whole = solid == 7u;
+        uint crossed = solid != 7u && solid != 0u ? 1u : 0u;
+        while (crossed != 0u) {
+            RefineCut cut = refineCut(solid, 0u);
+            uint pieces = refineCutDrawnCount(cut);
+            uint at = atomicAdd(work[counts], pieces);
+            whole = at + pieces > room;
+            if (whole)
+                atomicMin(work[counts + 8u], at);
+            else
+                cutTriangle(object, drawn, slots_, fields, cut,
+                            refined[object].cuts + 3u * (before + at));
+            crossed = 0u;
+        }
+        uint to = refined[object].indices + (packed.y + k) * 3u;
+        indices[to] = drawn.x;
+        indices[to + 1u] = whole ? drawn.y : drawn.x;
+        indices[to + 2u] = whole ? drawn.z : drawn.x;
+    }
+}
+
+void main() {
+    if (push.phase == 0u) {
+        for (uint g = gl_WorkGroupID.x; g < push.triangleGroups; g += gl_NumWorkGroups.x) {
+            uint object = work[triangleList() + 2u * g];
+            uint i = work[triangleList() + 2u * g + 1u] + gl_LocalInvocationID.x;
+            bool cut = (refined[object].flags & kRefineIsCut) != 0u;
+            if (cut && i < refined[object].triangleCount) find(object, i);
+        }
+        return;
+    }
+    if (push.phase == 1u) {
+        uint jobs = work[kRefineWorkCut + 3u];
+        for (uint job = gl_WorkGroupID.x; job < jobs; job += gl_NumWorkGroups.x)
+            cutGroup(work[push.cutJobs + 2u * job], work[push.cutJobs + 2u * job + 1u]);
+        return;
+    }
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.objects * kMaterialsPerObject) return;
+    uint ordinal = i / kMaterialsPerObject, material = i % kMaterialsPerObject;
+    uint object = work[objectList() + 2u * ordinal];
+    if ((refined[object].flags & kRefineIsCut) == 0u) return;
+    uint counts = cutCounts(ordinal) + material;
+    uint at = (object * kMaterialsPerObject + material) * 4u;
+    cutDraws[at] = 3u * min(work[counts], work[counts + 8u]);
+    cutDraws[at + 1u] = 1u;
+    cutDraws[at + 2u] = refined[object].cuts + 3u * roomBefore(object, material);
+    cutDraws[at + 3u] = 0u;
+}
