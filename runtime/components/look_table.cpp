@@ -402,6 +402,16 @@ float lookHoleEnd(const gpu::MaterialLook& look) noexcept {  // see holeDelay in
            2.3f * look.jitter;
 }
 
+mesh::RefineHoles holesOf(const gpu::MaterialLook& look) noexcept {
+    mesh::RefineHoles holes;
+    if (!(look.holeTime > 0)) return holes;
+    holes.variation = look.holeVariation / look.holeTime;
+    holes.wood = look.base == gpu::kBaseWood || look.base == gpu::kBasePaint;
+    holes.tilesX = holes.wood ? 2.6f : look.holeTiles;
+    holes.tilesY = holes.wood ? 0.3f * 2.6f : look.holeTiles / look.drip;
+    return holes;
+}
+
 float lookSpreadRate(uint32_t preset) noexcept { return materialLook(preset).spreadRate; }
 
 }  // namespace fw::components

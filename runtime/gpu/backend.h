@@ -3,7 +3,7 @@
 // readbacks out; a backend decides nothing about the game.
 #pragma once
 #include "mesh/deform/model.h"
-#include "mesh/refine/model.h"
+#include "mesh/refine/roughen.h"
 #include "shared/burn.h"
 #include "shared/heat.h"
 
@@ -104,7 +104,8 @@ class Backend {
     virtual void destroyMesh(uint32_t slot) noexcept = 0;
     // What objects of the mesh need that refine down to `depth`; once for each. Looks only.
     virtual void createRefinement(uint32_t /*mesh*/, uint32_t /*depth*/, const mesh::BurnDomain&,
-                                  const mesh::RefineModel&) {}
+                                  const mesh::RefineModel&,
+                                  std::span<const mesh::RefineHoles> /*materials*/) {}
     virtual void createObject(uint32_t slot, const ObjectInit& init) = 0;
     virtual void destroyObject(uint32_t slot) noexcept = 0;
     // Pose, tint and flags; the rest of the record stays.

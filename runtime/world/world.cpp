@@ -2,6 +2,7 @@
 #include "world/world.h"
 
 #include "components/deform.h"
+#include "components/look_table.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
 #include "world/mesh_input.h"
@@ -335,7 +336,8 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     return id;
 }
 
-// Once per mesh and depth. The wall's thickness is that of the material of the first who asks.
+// Once per mesh and depth. The walls and their holes are those of the materials of the first who
+// asks.
 void World::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
                        const components::BurnableMesh& object) {
     if (mesh.refinements >> def.refineDepth & 1u) return;
@@ -345,8 +347,12 @@ void World::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
         if (components::burns(object, i)) wall = std::max(wall, object.materials[i].thickness);
     if (wall > 0) options.wall = std::clamp(wall, 1e-4f, 0.5f);
+    std::array<mesh::RefineHoles, gpu::kMaterialsPerObject> holes;
+    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
+        if (components::burns(object, i))
+            holes[i] = components::holesOf(components::materialLook(object.materials[i].look));
     backend_.createRefinement(slot, def.refineDepth, *mesh.domain,
-                              mesh::bakeRefine(*mesh.domain, options, memory_));
+                              mesh::bakeRefine(*mesh.domain, options, memory_), holes);
     mesh.refinements |= 1u << def.refineDepth;
 }
 

@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -146,7 +147,8 @@ void BurnScene::create(gpu::Backend& backend) const {
         const mesh::BurnDomain& domain = domains[object.mesh];
         backend.createRefinement(
             object.mesh, 4, domain,
-            mesh::bakeRefine(domain, options, std::pmr::get_default_resource()));
+            mesh::bakeRefine(domain, options, std::pmr::get_default_resource()),
+            std::array<mesh::RefineHoles, 1>{{{0.4f, 2.6f, 0.8f, true}}});
         refined[object.mesh] = true;
     }
     for (uint32_t i = 0; i < objects.size(); ++i) backend.createObject(i, init(i));

@@ -75,7 +75,8 @@ class VkBackend final : public Backend {
     void createMesh(uint32_t slot, const mesh::BurnDomain& domain) override;
     void destroyMesh(uint32_t slot) noexcept override;
     void createRefinement(uint32_t mesh, uint32_t depth, const mesh::BurnDomain& domain,
-                          const mesh::RefineModel& model) override;
+                          const mesh::RefineModel& model,
+                          std::span<const mesh::RefineHoles> materials) override;
     void createObject(uint32_t slot, const ObjectInit& init) override;
     void destroyObject(uint32_t slot) noexcept override;
     void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,

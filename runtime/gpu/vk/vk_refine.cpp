@@ -16,7 +16,8 @@ constexpr uint32_t kTableWords = kRefineTableSize / 2;
 // Ticks that an object is refined beyond the last sign of fire: levels outlive their heat by a
 // second, take five quarters more to fall, and readbacks come late.
 constexpr uint32_t kQuietTicks = 4 * kTicksPerSecond;
-constexpr float kRecede = 0.9f;
+constexpr float kRecede = 0.6f;  // what is left is char, and shows at rims
+constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
 // Holes are cut where a mean edge is longer than this, in segments of the finest; what was is until
 // it is shorter than the second.
 constexpr float kCutFrom = 4, kCutTo = 3;
@@ -45,17 +46,25 @@ void releaseAll(Planes& planes, std::span<const SpaceRange> ranges) noexcept {
 
 }  // namespace
 
-// The pattern table is the first thing in the plane of words.
+// The pattern table is the first thing in the plane of words. Of the look textures the noise of
+// holes is kept: a mip of the first layer, its first channel.
 void VkBackend::State::uploadRefineTable() {
-    const uint32_t first = planes.allocate(kSpaceRefineWords, kTableWords, 0);
+    const size_t texels = size_t(kNoiseSide) * kNoiseSide;
+    size_t first = 0;
+    for (uint32_t side = kLookSide; side > kNoiseSide; side /= 2) first += size_t(side) * side * 4;
+    if (limits.looks.textures.size() >= first + texels * 4)
+        for (size_t i = 0; i < texels; ++i)
+            refine.noise.push_back(uint8_t(limits.looks.textures[first + i * 4]));
+    const uint32_t table = planes.allocate(kSpaceRefineWords, kTableWords, 0);
     PendingUpload& upload = stage(kTableWords * 4, "refinement table");
     uint64_t from = 0;
-    append(upload, from, FW_BIND_REFINE_WORDS, uint64_t(first) * 2,
+    append(upload, from, FW_BIND_REFINE_WORDS, uint64_t(table) * 2,
            std::span<const uint16_t>(mesh::kRefineTable));
 }
 
 void VkBackend::createRefinement(uint32_t slot, uint32_t depth, const mesh::BurnDomain& domain,
-                                 const mesh::RefineModel& model) {
+                                 const mesh::RefineModel& model,
+                                 std::span<const mesh::RefineHoles> materials) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
     RefineMesh fresh;
@@ -82,6 +91,9 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, const mesh::Burn
                                : mesh::refineRenderVertex(domain, model, d));
         vertices.back().material = model.draws[d].slot;
     }
+    std::pmr::vector<RefineSlot> slots(model.slots, s.memory);
+    if (!s.refine.noise.empty())
+        mesh::refineRoughen(domain, model, materials, s.refine.noise, kNoiseSide, slots);
     const size_t uploadsBefore = s.uploads.size();
     const auto units = [](size_t count) { return std::max(1u, uint32_t(count)); };
     const size_t words = model.tileStart.size() + model.tileItems.size();
@@ -109,7 +121,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, const mesh::Burn
         append(upload, from, FW_BIND_REFINE_EDGES, fresh.edges.first,
                std::span<const RefineEdge>(model.edges));
         append(upload, from, FW_BIND_REFINE_SLOTS, fresh.slots.first,
-               std::span<const RefineSlot>(model.slots));
+               std::span<const RefineSlot>(slots));
         append(upload, from, FW_BIND_REFINE_WORDS, fresh.words.first,
                std::span<const uint32_t>(model.tileStart));
         append(upload, from, FW_BIND_REFINE_WORDS, fresh.words.first + model.tileStart.size(),

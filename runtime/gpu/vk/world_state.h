@@ -239,8 +239,9 @@ struct VkBackend::State {
     std::pmr::vector<PublishedStep> published;  // scratch of run
     std::pmr::vector<DrawItem> drawItems;       // objects that draws show
     struct Refine {
-        explicit Refine(std::pmr::memory_resource* memory) : lists(memory) {}
+        explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
         std::pmr::vector<uint32_t> lists;  // of the frame's work plane
+        std::pmr::vector<uint8_t> noise;   // of holes, tiling
         RefinePush push{};                 // of the frame; no objects: nothing is refined
         uint32_t users = 0;                // objects that refine
         vec4 eye{};                        // m, world; w: pixels of 1 m at 1 m, 0: no limit by size
