@@ -3,6 +3,8 @@
 // lib/colour.glsl and the families of surface.frag. Order matters to the eye: heat, char, film,
 // ash, glow, rim, soot, water.
 
+const float kThinRim = 0.007;  // m, rimWidth: its glow is a line
+
 struct Site {     // what is known of one point of the surface
     vec2 d;       // m, detail coordinates, y along the grain
     float pixel;  // m per pixel
@@ -10,6 +12,7 @@ struct Site {     // what is known of one point of the surface
     float slow;   // s/m, slope of the ignition time
     float lead;   // s that holes come earlier
     float left;   // s to the hole, where the mesh is cut; negative: as the noise says
+    float steep;  // m/m, at least 1: how fast the way to the hole shrinks along the surface
     vec2 ahead;   // unit, towards fresh material, in detail space
     float out_;   // [0, 1] extinguished and cold
     float deep;   // [0, 1] of how deep char gets
@@ -143,6 +146,14 @@ Skin burningSkin(Site s, MaterialLook m) {
         o.slope += slope * (kCrumpleSlopeRange * 13.0 * 0.5 * m.crumple * c);
     }
 
+    if (kHasHide && m.crumple > 0.0 && x > -2.0 * m.scorchWidth) {  // leather puckers as it shrinks
+        vec2 fold = lookLayer(s.d * 3.1, kLayerRelief, noiseLod(s.pixel, 3.1)).rg * 2.0 - 1.0;
+        float drawn = smoothstep(-2.0 * m.scorchWidth, -0.4 * m.scorchWidth, x) * (1.0 - 0.5 * c);
+        o.slope += fold * (kCrumpleSlopeRange * 3.1 * 4.0 * m.crumple * drawn);
+        float u = (x + 0.6 * m.scorchWidth) / (0.5 * m.scorchWidth);  // and rolls up along the fire
+        o.slope -= s.ahead * (1.6 * u * exp(-u * u) * (0.3 + 1.4 * nB.r));
+    }
+
     // Heating: through brown first, then absorption; plain absorption turns blue paint green.
     float pre = smoothstep(-m.scorchWidth, 0.0, x + m.scorchWidth * 0.35 * (nB.r - 0.5));
     pre = max(pre, min(s.brown * (0.75 + 0.5 * nB.r), 1.0));
@@ -217,14 +228,16 @@ Skin burningSkin(Site s, MaterialLook m) {
         emission += emberRadiance(limitGlow(m.wormKelvin + 0.5 * dT, s)) * worm;
     }
     if (m.holeTime > 0.0) {
-        float e = max(edge, 0.0);
+        float e = max(edge, 0.0) / s.steep;
         if (m.rimKelvin > 0.0) {
-            // A line thinner than a pixel keeps its energy.
-            float wide = 0.35 * m.rimWidth / (0.35 * m.rimWidth + 0.5 * s.pixel);
+            // A line thinner than a pixel keeps its energy; of thin things it is two wide, or it
+            // would be dots.
+            float least = m.rimWidth < kThinRim ? 1.5 * s.pixel : 0.5 * s.pixel;
+            float wide = 0.35 * m.rimWidth / (0.35 * m.rimWidth + least);
             // The rim of a hole that grows no more dies down.
             float old = s.left < 0.0 ? 0.0 : max(0.0, a - 1.1 * m.holeTime) / (3.0 * m.faceDecay);
             float rim = 300.0 + (m.rimKelvin - 300.0) * exp(-e * wide / m.rimWidth - old) +
-                        (kHasSheet ? 0.4 : 0.8) * dT;
+                        (kHasSheet ? 0.3 : 0.8) * dT;
             emission += emberRadiance(limitGlow(rim, s)) * (0.9 * (1.0 - 0.6 * ash) * wide);
             albedo = mix(albedo, m.charColor.rgb * 0.7, 0.9 * exp(-e / (2.5 * m.rimWidth)));
         }

@@ -394,6 +394,7 @@ void main() {
     site.keep = inside ? 2.5 : 1.0;
     site.base = color * fresh.factor * inTintColor;
     site.baseRough = fresh.rough;
+    site.steep = 1.0;
     site.delay = delay;
     site.cavity = fresh.cavity;
     site.time = view.ambientSky.w;
@@ -420,6 +421,9 @@ void main() {
     skin = freshSkin(site, look);
     if (inside) skin.occlusion = 0.5;
     if (kBurns && !cold) {
+        vec2 uneven = vec2(dot(laterSlope, axisX), dot(laterSlope, axisY)) / site.slow;
+        if (look.rimWidth < kThinRim && !cut)
+            site.steep = clamp(length(site.ahead + uneven), 1.0, 4.0);
         float edge = holeEdge(max(site.age, -ahead) - look.jitter * delay, site, look);
         if (wall) {
             deep = 0.0;
@@ -428,9 +432,10 @@ void main() {
         }
         if (edge < 0.0) {
             vec3 ray = vec3(dot(-toEye, axisX), dot(-toEye, axisY), -abs(dot(toEye, normal)));
-            vec2 rise = vec2(dot(laterSlope, axisX), dot(laterSlope, axisY)) / site.slow;
+            vec2 rise = uneven;
             rise = site.ahead + rise * min(1.0, 1.2 * inversesqrt(max(dot(rise, rise), 1e-8)));
-            deep = rimHit(edge, rise, look.thickness, ray);
+            // A wall thinner than a pixel would be there in some.
+            if (look.thickness > pixel) deep = rimHit(edge, rise, look.thickness, ray);
             if (deep < 0.0) discard;
             vec2 move = ray.xy * deep;
             site.d += move;
