@@ -22,7 +22,23 @@ std::filesystem::path bunnyFile() {
     return {};
 }
 
-int run(const sample::Options& options, float seconds, float turn) {
+// One of the same mesh beside it, as the papers had it: their 16-tap kernel carries the fire, and
+// what burns is a thin skin without heat of its own.
+FwBurnableMeshId placePublished(sample::FireHost& fire, FwBurnableMeshDef def, float aside) {
+    FwMaterialDef material = fwDefaultMaterialDef();
+    fire.check(fwInitMaterialPreset(&material, FW_MATERIAL_PINE), "fwInitMaterialPreset");
+    material.thickness = 0.002f;
+    FwMaterialId skin{};
+    fire.check(fwWorld_CreateMaterial(fire.world, &material, &skin), "fwWorld_CreateMaterial");
+    for (FwMaterialId& slot : def.materials) slot = skin;
+    def.flags = uint32_t{FW_BURNABLE_PUBLISHED} | uint32_t{FW_BURNABLE_LITE};
+    def.transform[12] = aside;
+    FwBurnableMeshId object{};
+    fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object), "fwWorld_CreateBurnableMesh");
+    return object;
+}
+
+int run(const sample::Options& options, float seconds, float turn, bool compare) {
     Subject subject = loadSubject(bunnyFile(), 0.62f);
     sample::ValidationLog validation;
     {
@@ -34,6 +50,11 @@ int run(const sample::Options& options, float seconds, float turn) {
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
 
         sample::OrbitCamera orbit = orbitAround(subject, -24.0f, 9.0f, stage.extent());
+        const SurfacePoint match = matchPlace(subject, orbit.camera().eye);
+        // Ours to the right, where the camera looks straight at the two.
+        const float aside = compare ? 0.62f * subject.size() : 0.0f;
+        if (compare) orbit.yaw = 0;
+        if (compare) orbit.distance *= 1.15f;
 
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.paceFactor = 150.0f * kFillingSeconds / std::max(1.0f, seconds);
@@ -54,18 +75,31 @@ int run(const sample::Options& options, float seconds, float turn) {
         FwMaterialId pine{};
         fire.check(fwWorld_CreateMaterial(fire.world, &material, &pine), "fwWorld_CreateMaterial");
         for (FwMaterialId& slot : def.materials) slot = pine;
+        if (compare) placePublished(fire, def, -aside);
+        def.transform[12] = aside;
         FwBurnableMeshId object{};
         fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object),
                    "fwWorld_CreateBurnableMesh");
 
         FwView view = fwDefaultView();
         sample::duskLight(view);
-        studio.castShadow(subject.model.positions, subject.model.indices, glm::mat4(1.0f),
+        std::vector<float> shadows = subject.model.positions;
+        std::vector<uint32_t> shadowIndices = subject.model.indices;
+        if (compare) {
+            const auto count = static_cast<uint32_t>(shadows.size() / 3);
+            shadows.insert(shadows.end(), subject.model.positions.begin(),
+                           subject.model.positions.end());
+            for (size_t i = 0; i < shadows.size(); i += 3)
+                shadows[i] += i < shadows.size() / 2 ? -aside : aside;
+            for (const uint32_t index : subject.model.indices)
+                shadowIndices.push_back(count + index);
+        }
+        studio.castShadow(shadows, shadowIndices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
-        const SurfacePoint match = matchPlace(subject, orbit.camera().eye);
 
         sample::FilmRequest film;
-        film.name = "bunny";
+        film.name = compare ? "compared" : "bunny";
+        if (compare) film.columns = 2;
         sample::Filming filming(stage, options, film);
 
         sample::StageFrame frame;
@@ -78,7 +112,11 @@ int run(const sample::Options& options, float seconds, float turn) {
                 FwIgnitionDef ignition = fwDefaultIgnitionDef();
                 for (int c = 0; c < 3; ++c) ignition.position[c] = match.position[c];
                 ignition.radius = 0.02f * subject.size();
+                ignition.position[0] = match.position[0] + aside;
                 fire.check(fwWorld_Ignite(fire.world, &ignition, nullptr), "fwWorld_Ignite");
+                ignition.position[0] = match.position[0] - aside;
+                if (compare)
+                    fire.check(fwWorld_Ignite(fire.world, &ignition, nullptr), "fwWorld_Ignite");
             }
             sample::showStudio(frame, stage, studio, fire, view);
         }
@@ -110,9 +148,11 @@ int main(int argc, char** argv) {
         options.width = 768;
         options.height = 432;
         float seconds = kFillingSeconds, turn = 0;
+        bool compare = false;
         sample::OptionParser parser("04_bunny", "a wooden bunny burns");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--turn", "turntable, degrees a second", turn, -360.0f, 360.0f);
+        parser.addFlag("--compare", "beside it, to the left, one as the papers had it", compare);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf(
@@ -120,6 +160,6 @@ int main(int argc, char** argv) {
                 "bunny_31k.glb\n");
             return 0;
         }
-        return run(options, seconds, turn);
+        return run(options, seconds, turn, compare);
     });
 }
