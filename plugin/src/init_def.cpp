@@ -32,6 +32,7 @@ void defaults(FwWorldDef& def) noexcept {
     def.maxLights = 16;
     def.maxFlames = 4096;
     def.maxRefinedTriangles = 400000;
+    def.spreadChance = 1;
 }
 
 void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }
@@ -53,6 +54,12 @@ void defaults(FwBurnableMeshDef& def) noexcept {
     def.refineDepth = 5;
     def.refinePixelsPerEdge = 8;
     set(def.tint, 1, 1, 1);
+    def.spreadChance = 1;
+}
+
+void defaults(FwBlockerDef& def) noexcept {
+    identity(def.transform);
+    set(def.halfSize, 0.5f, 0.5f, 0.5f);
 }
 
 void defaults(FwIgnitionDef& def) noexcept { def.kind = FW_IGNITE; }
@@ -107,6 +114,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwView);
         case FW_DEF_OFFSCREEN:
             return sizeof(FwOffscreenDef);
+        case FW_DEF_BLOCKER:
+            return sizeof(FwBlockerDef);
         default:
             return vulkanDefSize(type);
     }
@@ -140,6 +149,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_OFFSCREEN:
             write<FwOffscreenDef>(def);
+            return true;
+        case FW_DEF_BLOCKER:
+            write<FwBlockerDef>(def);
             return true;
         default:
             return writeVulkanDefaults(type, def);

@@ -89,6 +89,34 @@ FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]) {
     });
 }
 
+FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags) {
+    return onWorld("fwWorld_SetFlags", world, [&](world::World& w) {
+        w.setFlags(flags);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_AddBlocker(FwWorld* world, const FwBlockerDef* given, FwBlockerId* id) {
+    return onWorld("fwWorld_AddBlocker", world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        *id = w.addBlocker(edge::readDef(given, FW_DEF_BLOCKER, "FwBlockerDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_MoveBlocker(FwWorld* world, FwBlockerId id, const float transform[16]) {
+    return onWorld("fwWorld_MoveBlocker", world, [&](world::World& w) {
+        checkPointer(transform, "transform");
+        w.moveBlocker(id, transform);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld* world, FwBlockerId id) {
+    return destroyOf("fwWorld_RemoveBlocker", world, &world::World::removeBlocker, id);
+}
+
 // ---- materials, images, meshes ----------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* given,

@@ -61,11 +61,22 @@ float meanTexelArea(const mesh::BurnDomain& domain) noexcept {
 
 }  // namespace
 
+FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given, uint32_t worldFlags) noexcept {
+    FwBurnableMeshDef def = given;
+    if (worldFlags & FW_WORLD_NO_SPREAD) def.flags |= FW_BURNABLE_NO_SPREAD;
+    if (worldFlags & FW_WORLD_NO_DAMAGE) def.flags |= FW_BURNABLE_NO_DAMAGE;
+    if (worldFlags & FW_WORLD_NO_HOLES) def.flags |= FW_BURNABLE_NO_HOLES;
+    if (!(def.flags & FW_BURNABLE_NO_DAMAGE)) return def;
+    def.flags |= FW_BURNABLE_NO_HOLES;  // and nothing that only shows damage
+    def.flags &= ~uint32_t(FW_BURNABLE_REFINE | FW_BURNABLE_RECEDE | FW_BURNABLE_SPRINGS);
+    return def;
+}
+
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED |
                                 FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_REFINE |
                                 FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS |
-                                FW_BURNABLE_NO_SPREAD | FW_BURNABLE_SKINNED;
+                                FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
@@ -184,6 +195,18 @@ bool sameDrive(const BurnableMesh& object, const Latch& a, const Latch& b) noexc
     return sameTurn(a.pose, b.pose);
 }
 
+bool atRest(const BurnableMesh& object, const mesh::BurnDomain& domain, const DriveInput& drive,
+            const Latch& latch) noexcept {
+    if (!latch.sent || !sameTurn(latch.pose, object.pose)) return false;
+    const fire::SpreadFacts f = facts(object, domain, drive, latch.pose);
+    for (uint32_t i = 0; i < kMaterials; ++i)
+        if ((object.materialMask >> i & 1) &&
+            !fire::windAtRest(latch.filters[i], drive.wind,
+                              fire::linkTicks(object.materials[i], f)))
+            return false;
+    return true;
+}
+
 Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
                     const DriveInput& drive, Latch& latch) noexcept {
     const fire::SpreadFacts f = facts(object, domain, drive, latch.pose);
@@ -282,6 +305,7 @@ uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain)
     if (object.flags & FW_BURNABLE_TWO_SIDED) flags |= gpu::kObjectTwoSided;
     if (object.flags & FW_BURNABLE_NO_HOLES) flags |= gpu::kObjectNoHoles;
     if (object.flags & FW_BURNABLE_HIDDEN) flags |= gpu::kObjectHidden;
+    if (object.flags & FW_BURNABLE_NO_DAMAGE) flags |= gpu::kObjectNoDamage;
     if (domain.hasDetail) flags |= gpu::kObjectDetail;
     if (object.flags & (FW_BURNABLE_SKINNED | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS))
         flags |= gpu::kObjectSkinned;

@@ -48,6 +48,9 @@ struct Records {
     fire::FrontTiming timing;
 };
 
+// A def as its world's flags (FwWorldFlags) change it: what shows damage is off without damage.
+[[nodiscard]] FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given,
+                                              uint32_t worldFlags) noexcept;
 // Throws core::Error naming the field. Ids are the caller's: mesh, materials and image stay unset.
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def);
 // Takes a new pose. A shape other than the object's stretches what is drawn alone: the front keeps
@@ -72,6 +75,9 @@ void filterLatch(const BurnableMesh& object, const mesh::BurnDomain& domain,
 // Takes over the filtered wind and the pose; false: they are what is latched already.
 bool latchDrive(const BurnableMesh& object, Latch& latch) noexcept;
 [[nodiscard]] bool sameDrive(const BurnableMesh& object, const Latch& a, const Latch& b) noexcept;
+// Would filtering and latching change nothing, and does the backend know of it?
+[[nodiscard]] bool atRest(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                          const DriveInput& drive, const Latch& latch) noexcept;
 // Records under the latched drive; notes their flameTicks and substepShift in the latch.
 Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
                     const DriveInput& drive, Latch& latch) noexcept;

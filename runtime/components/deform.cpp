@@ -33,7 +33,7 @@ float softness(uint32_t look) noexcept {
 }
 
 gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMaterial& record,
-                                 bool holes, bool sheet) noexcept {
+                                 bool harmed, bool holes, bool sheet) noexcept {
     gpu::DeformMaterial made{};
     made.charTicks = made.holeTicks = gpu::kNoneTexel;
     const float weight = std::max(def.thickness * def.density, 0.02f);  // kg/m^2
@@ -41,7 +41,7 @@ gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMateri
     made.shrink = def.shrink;
     made.curl = def.curl;
     made.bend = softness(def.look);
-    if (!(record.flags & 1)) return made;
+    if (!(record.flags & 1) || !harmed) return made;
     made.charTicks = record.flameTicks;
     made.depth = def.recede * def.thickness;
     const float opens = materialLook(def.look).holeTime;
@@ -104,10 +104,11 @@ gpu::DeformObject makeDeform(const FwBurnableMeshDef& def, const BurnableMesh& o
     }
     const bool sheet = (object.flags & FW_BURNABLE_SHELL) != 0;
     const bool holes = (object.flags & FW_BURNABLE_NO_HOLES) == 0;
+    const bool harmed = (object.flags & FW_BURNABLE_NO_DAMAGE) == 0;
     for (uint32_t i = 0; i < kMaterials; ++i)
         if (object.materialMask >> i & 1)
             made.materials[i] =
-                makeMaterial(object.materials[i], records.materials[i], holes, sheet);
+                makeMaterial(object.materials[i], records.materials[i], harmed, holes, sheet);
     return made;
 }
 

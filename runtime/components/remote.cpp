@@ -17,7 +17,8 @@ int whole(double value) noexcept {
 
 void turn(const Pose& pose, gpu::ivec4 (&rows)[3]) noexcept {
     for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) rows[r][c] = whole(double(pose.rotation[r][c]) * 4096);
+        for (int c = 0; c < 3; ++c)
+            rows[r][c] = whole(double(pose.rotation[r][c]) * (pose.stretch[c] < 0 ? -4096 : 4096));
 }
 
 double texelAreaOf(const mesh::BurnDomain& domain) noexcept {  // m^2 at scale 1
@@ -36,7 +37,10 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
     // Three products of 16 bits of position and a row must stay below 2^31.
     const double unit = double(domain.quantum) * double(pose.scale) * kMillimetres;
     out.shift = 0;
-    while (out.shift < 24 && unit * double(2u << out.shift) * 3 * 65536 < 2147483647.0) ++out.shift;
+    double longest = 0;
+    for (const float s : pose.stretch) longest = std::max(longest, std::fabs(double(s)));
+    while (out.shift < 24 && unit * longest * double(2u << out.shift) * 3 * 65536 < 2147483647.0)
+        ++out.shift;
     gpu::ivec4* rows[3] = {&out.row0, &out.row1, &out.row2};
     gpu::ivec4* turns[3] = {&out.turn0, &out.turn1, &out.turn2};
     gpu::ivec4 turned[3]{};
@@ -53,7 +57,8 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
         low[i] = units(domain.boundsLow[i]);
         high[i] = units(domain.boundsHigh[i]);
         for (int c = 0; c < 3; ++c)
-            (*rows[i])[c] = whole(double(pose.rotation[i][c]) * unit * double(1u << out.shift));
+            (*rows[i])[c] = whole(double(pose.rotation[i][c]) * double(pose.stretch[c]) * unit *
+                                  double(1u << out.shift));
         (*rows[i])[3] = whole(double(origin[i]) * kMillimetres);
         *turns[i] = turned[i];
     }
@@ -110,8 +115,9 @@ void placeBlocker(const Pose& pose, const float halfSize[3], gpu::Blocker& out) 
         for (int c = 0; c < 3; ++c)  // transposed: world to box
             (*turns[r])[c] = whole(double(pose.rotation[c][r]) * 4096);
         (*turns[r])[3] = whole(double(pose.translation[r]) * kMillimetres);
-        out.size[r] = uint32_t(
-            std::clamp(double(halfSize[r]) * double(pose.scale) * kMillimetres, 0.0, 30000.0));
+        out.size[r] = uint32_t(std::clamp(double(halfSize[r]) * double(pose.scale) *
+                                              std::fabs(double(pose.stretch[r])) * kMillimetres,
+                                          0.0, 30000.0));
     }
     out.size[3] = 1;
 }

@@ -48,4 +48,10 @@ bool latchWind(WindFilter& filter) noexcept {
     return true;
 }
 
+bool windAtRest(const WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept {
+    WindFilter next = filter;
+    filterWind(next, wind, tauTicks);
+    return next.value == filter.value && filteredWind(filter) == filter.latched;
+}
+
 }  // namespace fw::fire

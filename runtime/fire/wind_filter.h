@@ -26,6 +26,8 @@ void resetWind(WindFilter& filter, const WindVector& wind) noexcept;
 void filterWind(WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept;
 // True, and `latched` is new, if the filtered wind is another one by a unit or more.
 bool latchWind(WindFilter& filter) noexcept;
+// Would a step and a latch leave it exactly as it is?
+bool windAtRest(const WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept;
 // What latchWind would latch.
 WindVector filteredWind(const WindFilter& filter) noexcept;
 

@@ -5,7 +5,7 @@
 #include "mesh/deform/model.h"
 #include "mesh/refine/roughen.h"
 #include "shared/burn.h"
-#include "shared/heat.h"
+#include "shared/exchange.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -38,11 +38,28 @@ struct MaterialUpdate {  // new records of one object at a step's start (a wind 
     uint32_t substepShift = 0;
 };
 
+// Who is where, as others see it, from a step's start on. Objects are known to the exchange from
+// their first update on.
+struct RemoteUpdate {
+    struct Placed {
+        uint32_t object = 0;
+        RemoteObject record;  // sources are the backend's to fill
+    };
+    std::span<const Placed> objects;       // that changed
+    std::span<const uint32_t> neighbours;  // all of them: slot | what is seen of it, of 255, << 24
+    std::span<const ContactLink> links;    // all of them
+    std::span<const Blocker> blockers;     // all of them, at most kMaxBlockers
+};
+
 struct StepPlan {               // one fixed step of 1/32 s
     uint32_t now = 0;           // tick at its start
     uint32_t substepShift = 0;  // log2 of its iterations: the largest of the objects that burn
     bool reduce = false;        // also count burning texels and rebuild BurnTiles
     bool heat = false;          // also a heat step: kHeatSteps steps at once, at its start
+    bool exchange = false;      // with `reduce`: fire at a distance, and who may go on burning
+    bool governed = false;      // some object or the world limits its fire
+    ExchangePush rules{};       // of the exchange; what places things in lists is the backend's
+    const RemoteUpdate* remote = nullptr;       // null: nothing changed
     std::span<const TexelEvent> events;         // sorted by (object, texel, order)
     std::span<const MaterialUpdate> materials;  // applied first; each object's tiles wake
 };
@@ -80,6 +97,7 @@ struct Readback {  // valid until the next call of nextReadback
     uint32_t burningTiles = 0;
     uint32_t flames = 0;
     uint32_t hotTiles = 0;  // length of the hot list
+    uint32_t receivers = 0;  // objects that others may warm
 };
 
 struct PassTime {

@@ -78,12 +78,6 @@ int cellOf(int mm) noexcept {
     return mm >= 0 ? mm / kSide : -((kSide - 1 - mm) / kSide);
 }
 
-struct Placed {
-    uint64_t key = 0;
-    int place[3] = {};
-    uint32_t texel = 0;
-};
-
 bool inside(const gpu::ivec3& p, const Box& box, int more) noexcept {
     for (int i = 0; i < 3; ++i)
         if (p[i] < box.low[i] - more || p[i] > box.high[i] + more) return false;
@@ -190,10 +184,11 @@ int gapOf(const Box& a, const Box& b) noexcept {
     return int(std::min<int64_t>(gap, std::numeric_limits<int>::max()));
 }
 
-void findContacts(const ContactSide& to, const ContactSide& from, std::pmr::vector<Contact>& out) {
+void findContacts(const ContactSide& to, const ContactSide& from,
+                  std::pmr::vector<ContactPlace>& placed, std::pmr::vector<Contact>& out) {
     constexpr int kGap = int(gpu::kContactGap);
     if (gapOf(wholeBox(to), wholeBox(from)) > kGap) return;
-    std::pmr::vector<Placed> placed(out.get_allocator());
+    placed.clear();
     const Box toBox = wholeBox(to);
     nearTiles(from, toBox, [&](uint32_t tile, const Box&) {
         const uint32_t corner = tile / from.domain->tilesX * kTileSide * from.domain->width +
@@ -208,7 +203,7 @@ void findContacts(const ContactSide& to, const ContactSide& from, std::pmr::vect
         }
     });
     if (placed.empty()) return;
-    std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    std::sort(placed.begin(), placed.end(), [](const ContactPlace& a, const ContactPlace& b) {
         return a.key != b.key ? a.key < b.key : a.texel < b.texel;
     });
     const size_t most = out.size() + kMostContacts;
@@ -227,9 +222,9 @@ void findContacts(const ContactSide& to, const ContactSide& from, std::pmr::vect
                 for (int around = 0; around < 9; ++around) {
                     const int cx = cell[0] + around / 3 - 1, cy = cell[1] + around % 3 - 1;
                     const uint64_t last = keyOf(cx, cy, cell[2] + 1);
-                    auto entry =
-                        std::lower_bound(placed.begin(), placed.end(), keyOf(cx, cy, cell[2] - 1),
-                                         [](const Placed& a, uint64_t key) { return a.key < key; });
+                    auto entry = std::lower_bound(
+                        placed.begin(), placed.end(), keyOf(cx, cy, cell[2] - 1),
+                        [](const ContactPlace& a, uint64_t key) { return a.key < key; });
                     for (; entry != placed.end() && entry->key <= last; ++entry) {
                         const gpu::ivec3 d(entry->place[0] - p.x, entry->place[1] - p.y,
                                            entry->place[2] - p.z);

@@ -33,6 +33,12 @@ struct ContactSide {
 // Per block of 4 x 4 texels of `to`, its texel that is nearest to one of `from`; at most
 // kMostContacts, then the rest of the tiles is left out. Appends.
 constexpr size_t kMostContacts = 8192;
-void findContacts(const ContactSide& to, const ContactSide& from, std::pmr::vector<Contact>& out);
+struct ContactPlace {  // scratch: a texel of `from`, by the cell that it is in
+    uint64_t key = 0;
+    int place[3] = {};
+    uint32_t texel = 0;
+};
+void findContacts(const ContactSide& to, const ContactSide& from,
+                  std::pmr::vector<ContactPlace>& scratch, std::pmr::vector<Contact>& out);
 
 }  // namespace fw::mesh

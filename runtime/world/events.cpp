@@ -17,12 +17,13 @@ constexpr uint32_t kClampsToTell = 32;
 }  // namespace
 
 void World::raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
-                  const float position[3], float value) noexcept {
+                  const float position[3], float value, FwBurnableMeshId other) noexcept {
     FwEvent event{};
     event.type = type;
     event.tag = tag;
     event.frameIndex = frameIndex;
     event.value = value;
+    event.other = other;
     if (object) {
         event.userData = object->data.userData;
         event.object = object->id;
@@ -48,6 +49,7 @@ void World::collectReadbacks() {
         runTiles_ = readback->runTiles;
         burningTiles_ = readback->burningTiles;
         hotTiles_ = readback->hotTiles;
+        receivers_ = readback->receivers;
         flames_ = readback->flames;
         takeCounters(*readback);
         takeAnswers(*readback);
@@ -65,7 +67,7 @@ void World::collectReadbacks() {
             copy.pending = false;
             copy.ready = true;
         }
-        if (frontTiles_ == 0 && burningTiles_ == 0 && hotTiles_ == 0 &&
+        if (frontTiles_ == 0 && burningTiles_ == 0 && hotTiles_ == 0 && receivers_ == 0 &&
             readback->endTick >= lastStimulus_ + kSettleTicks)
             idle_ = true;
     }
@@ -84,6 +86,7 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         object.mostIgnited = std::max(object.mostIgnited, now.ignited);
         clamps += now.lateClamps;
         takeEnergy(object, readback.endTick);
+        tellSpread(object, readback);
         float place[3];
         if (now.burning > 0) object.lastBurning = readback.endTick;
 

@@ -14,7 +14,7 @@ components::DriveInput World::driveInput() const noexcept {
     return drive;
 }
 
-void World::planLatches(uint32_t now, size_t firstEvent) {
+void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
     const components::DriveInput drive = driveInput();
     const auto sendRecords = [&](Object& object, components::Latch& latch) {
         const components::Records records =
@@ -45,14 +45,25 @@ void World::planLatches(uint32_t now, size_t firstEvent) {
         latch.sent = components::sameDrive(object.data, latch, object.latch);
         if (!latch.sent) sendRecords(object, latch);
         frame_.latches.push_back({&object, latch, true});
+        object.planStamp = planStamp_;
     }
+    const bool fresh = firstEvent < frame_.events.size();
+    if (remoteOn()) {
+        if (fresh || placed) touchNear();
+        // Nobody knows which of them the fire reaches first.
+        if (fresh)
+            for (Frame::LatchOf& entry : frame_.latches)
+                if (!entry.latch.sent) sendRecords(*entry.object, entry.latch);
+    }
+    // While anything burns or is hot, any of them may be next.
+    const bool anyActive = remoteOn() && (fresh || !idle_);
     const bool latchNow = now % fire::kWindLatchTicks == 0;
     for (Frame::LatchOf& entry : frame_.latches) {
         Object& object = *entry.object;
         components::filterLatch(object.data, domainOf(object), drive, entry.latch);
         if (!latchNow || !components::latchDrive(object.data, entry.latch)) continue;
         entry.latch.sent = false;
-        if (object.active || entry.due) sendRecords(object, entry.latch);
+        if (object.active || entry.due || anyActive) sendRecords(object, entry.latch);
     }
 }
 

@@ -70,7 +70,19 @@ void World::planSteps(const ClockAdvance& time) {
                std::tie(b.step, b.event.object, b.event.texel, b.event.order);
     });
     frame_.events.reserve(frame_.due.size());  // spans into it must hold
-    for (Object* object : touched_) frame_.latches.push_back({object, object->latch, false});
+    frame_.remoteUsed = 0;
+    frame_.remoteLatched = frame_.remoteFlushed = false;
+    ++planStamp_;
+    const bool awake =
+        !idle_ || !frame_.due.empty() || (switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;
+    const components::DriveInput drive = driveInput();
+    for (Object* object : touched_) {
+        // Where fire goes from object to object, many wait for it under a wind that they know.
+        if (remoteOn() && components::atRest(object->data, domainOf(*object), drive, object->latch))
+            continue;
+        frame_.latches.push_back({object, object->latch, false});
+        object->planStamp = planStamp_;
+    }
 
     // Updates of all steps share one vector; its room is known only when all are there.
     size_t firstUpdate[kMaxSteps + 1] = {};
@@ -89,15 +101,19 @@ void World::planSteps(const ClockAdvance& time) {
         }
         plan.events = std::span<const gpu::TexelEvent>(frame_.events).subspan(firstEvent);
         firstUpdate[step] = frame_.updates.size();
-        planLatches(now, firstEvent);
+        planRemote(plan, now, awake);
+        planLatches(now, firstEvent, plan.remote != nullptr);
         frame_.steps.push_back(plan);
     }
     firstUpdate[time.steps] = frame_.updates.size();
     // The largest shift that any object at work wants, before or after a latch, serves all steps
     // of the frame: an object takes part in as many iterations as its own shift says.
     uint32_t shift = 0;
+    const bool others = remoteOn();  // then any of them may burn before we hear of it
+    for (const Object* object : touched_)
+        if (others) shift = std::max(shift, object->latch.substepShift);
     for (const Frame::LatchOf& entry : frame_.latches)
-        if (entry.object->active || entry.due)
+        if (others || entry.object->active || entry.due)
             shift = std::max({shift, entry.latch.substepShift, entry.object->latch.substepShift});
     for (uint32_t step = 0; step < time.steps; ++step) {
         frame_.steps[step].substepShift = shift;
@@ -145,16 +161,20 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
         --mapsWished_;
     }
     for (const Frame::LatchOf& entry : frame_.latches) entry.object->latch = entry.latch;
+    const auto touch = [&](Object& object) {
+        if (object.touched) return;  // room for every object was found at its creation
+        object.touched = true;
+        object.heatSteps = clock_.tick / (gpu::kHeatSteps * gpu::kStepTicks);
+        touched_.insert(
+            std::lower_bound(touched_.begin(), touched_.end(), &object,
+                             [](const Object* a, const Object* b) { return a->slot < b->slot; }),
+            &object);
+    };
+    for (const Frame::LatchOf& entry : frame_.latches) touch(*entry.object);
+    commitRemote();
     for (const Frame::Due& due : frame_.due) {
         Object& object = **objects_.at(due.event.object);
-        if (!object.touched) {  // room for every object was found at its creation
-            object.touched = true;
-            object.heatSteps = clock_.tick / (gpu::kHeatSteps * gpu::kStepTicks);
-            touched_.insert(std::lower_bound(
-                                touched_.begin(), touched_.end(), &object,
-                                [](const Object* a, const Object* b) { return a->slot < b->slot; }),
-                            &object);
-        }
+        touch(object);
         object.active = true;
         object.lastStimulus = std::max<uint64_t>(object.lastStimulus, due.event.tick);
         if (due.event.kind == FW_IGNITE) {

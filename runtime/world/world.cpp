@@ -31,7 +31,9 @@ void checkLimit(uint32_t value, const char* field, uint32_t low, uint32_t high) 
 
 FwWorldDef checkedDef(const FwWorldDef& given) {
     FwWorldDef def = given;
-    checkFlags(def.flags, 0, "FwWorldDef::flags");
+    checkFlags(def.flags, kWorldFlags, "FwWorldDef::flags");
+    checkValue(def.spreadChance, "FwWorldDef::spreadChance", 0.0f, 1.0f);
+    checkValue(def.timeToLive, "FwWorldDef::timeToLive", 0.0f, 1e6f);
     checkValues(def.up, 3, "FwWorldDef::up", -1.001f, 1.001f);
     const float length =
         std::sqrt(def.up[0] * def.up[0] + def.up[1] * def.up[1] + def.up[2] * def.up[2]);
@@ -83,6 +85,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       meshes_("Mesh", memory),
       objects_("Burnable mesh", memory),
       queries_("Query", memory),
+      blockers_("Blocker", memory),
+      remote_(memory),
       imageUsers_(memory),
       touched_(memory),
       tags_(memory),
@@ -94,6 +98,9 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       lights_(memory),
       lightsBefore_(memory) {
     std::copy_n(def_.wind, 3, wind_);
+    setFlags(def_.flags);
+    remote_.governance = {def_.spreadChance, def_.maxHops, def_.maxBurningTiles, def_.timeToLive};
+    remote_.governed = def_.maxBurningTiles != 0 || def_.timeToLive > 0;
     frame_.steps.reserve(kMaxSteps);
     lights_.reserve(64);
     lightsBefore_.reserve(64);
@@ -245,8 +252,9 @@ void World::meshInfo(FwMeshId id, FwMeshInfo& info) {
 
 // ---- burnable meshes --------------------------------------------------------------------------
 
-FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& def) {
-    (void)meshes_.get(def.mesh);
+FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
+    (void)meshes_.get(given.mesh);
+    const FwBurnableMeshDef def = components::underSwitches(given, remote_.objectFlags);
     core::Owned<Object> owned = core::Owned<Object>::make(memory_, memory_);
     Object& object = *owned;
     object.data = components::makeBurnableMesh(def);
@@ -314,6 +322,10 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
         init.deform = &deform;
     }
 
+    checkValue(def.spreadChance, "FwBurnableMeshDef::spreadChance", 0.0f, 1.0f);
+    checkValue(def.timeToLive, "FwBurnableMeshDef::timeToLive", 0.0f, 1e6f);
+    object.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
+    object.remoteDue = true;
     object.firstFrame = lastFrame_ + 1;
     const uint32_t burnable = object.texels;
     const FwBurnableMeshId id = objects_.create(std::move(owned));
@@ -325,12 +337,15 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
         findRoom(frame_.updates, objects_.slotCount());
         findRoom(frame_.burnMaps, objects_.slotCount());
         findRoom(touched_, objects_.slotCount());
+        findRoom(remote_.due, objects_.slotCount());
         backend_.createObject(object.slot, init);
     } catch (...) {
         objects_.destroy(id);
         throw;
     }
     ++mesh.users;
+    remote_.due.push_back(object.slot);  // room was found above
+    remote_.governed |= object.governance.tilesMost != 0 || object.governance.life > 0;
     texels_ += burnable;
     countImages(object.data, true);
     return id;
@@ -368,6 +383,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
         if (Query* query = queries_.at(i); query && query->object.index1 == id.index1)
             query->orphaned = true;
     std::erase(touched_, &object);
+    std::erase(remote_.due, slot);
     texels_ -= object.texels;
     if (object.map.wished) --mapsWished_;
     backend_.destroyObject(slot);
@@ -385,6 +401,10 @@ void World::sendPose(const Object& object) noexcept {
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
     Object& object = *objects_.get(id);
     components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
+    if (!object.remoteDue) {  // at most once each: room was found at its creation
+        object.remoteDue = true;
+        remote_.due.push_back(object.slot);
+    }
     sendPose(object);
 }
 

@@ -2,13 +2,14 @@
 // CPU code, the same for every backend; it knows no device and no C edge. Calls throw core::Error
 // or std::bad_alloc and then have changed nothing. One thread at a time.
 #pragma once
-#include "components/burnable_mesh.h"
+#include "components/remote.h"
 #include "core/handle_pool.h"
 #include "core/log.h"
 #include "core/owned.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/backend.h"
 #include "mesh/burn_domain.h"
+#include "mesh/remote_tiles.h"
 #include "world/clock.h"
 #include "world/event_queue.h"
 
@@ -59,6 +60,16 @@ struct Object {
     uint64_t firstIgnition = 0;  // tick of the ignition that started this fire
     bool doused = false, ignitionKnown = false;
     float ignitionPoint[3] = {};  // m, object space
+    // Fire at a distance: as others see it, latched every kRemoteLatchTicks.
+    components::Governance governance;
+    gpu::RemoteObject remote{};
+    uint32_t reach = 0;          // mm
+    uint32_t remoteVersion = 0;  // grows with every latch; 0: never placed
+    uint64_t planStamp = 0;      // of the plan whose latches hold it
+    bool remoteDue = false;      // pose or def changed since its latch: it is in remote_.due
+    bool remoteSent = true;      // the backend has the latched record
+    uint32_t litTold = 0;        // litTick of the last SPREAD_TO
+    uint32_t spotsTold = 0;
     // As of the last readback.
     gpu::ObjectCounters counters{};
     uint32_t mostIgnited = 0;
@@ -86,6 +97,86 @@ struct Query {
     bool asked = false, ready = false, orphaned = false;
 };
 
+constexpr uint32_t kWaysOfFire =
+    FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
+constexpr uint32_t kWorldFlags =
+    kWaysOfFire | FW_WORLD_NO_SPREAD | FW_WORLD_NO_DAMAGE | FW_WORLD_NO_HOLES;
+
+struct BlockerEntry {
+    components::Pose pose;
+    float halfSize[3] = {};
+};
+
+// Contacts of two objects as they were last found.
+struct PairContacts {
+    explicit PairContacts(std::pmr::memory_resource* memory) : links(memory) {}
+    // Another pair in the same room.
+    void begin(uint32_t first, uint32_t second) noexcept {
+        slots[0] = first;
+        slots[1] = second;
+        versions[0] = versions[1] = 0;
+        ids[0] = ids[1] = {};
+        links.clear();
+    }
+    uint32_t slots[2] = {}, versions[2] = {};
+    FwBurnableMeshId ids[2] = {};
+    bool used = true;
+    std::pmr::vector<gpu::ContactLink> links;
+};
+
+struct Seen {  // what the host said of a pair
+    uint64_t pair = 0;
+    uint32_t versions[2] = {};
+    uint32_t part = 255;  // of 255
+    bool used = true;
+};
+
+// What the frame plans of who is where. Kept across frames, so that what did not move is not sought
+// again; a frame that fails leaves it stale at worst, and `unsent` makes the next one send anew.
+struct RemoteBook {
+    explicit RemoteBook(std::pmr::memory_resource* memory)
+        : due(memory),
+          neighbours(memory),
+          order(memory),
+          near(memory),
+          seen(memory),
+          pairs(memory),
+          contacts(memory),
+          contactPlaces(memory),
+          links(memory),
+          blockers(memory) {}
+    uint32_t flags = 0;        // FwWorldFlags that open ways
+    uint32_t objectFlags = 0;  // and those that objects are created under
+    components::Governance governance;
+    bool governed = false;  // some object or the world limits its fire
+    bool unsent = false;    // the backend does not know the latest
+    bool blockersDue = false;
+    bool warms = false;                     // flags ever let fire shine or blow on others
+    uint64_t fades = 0;                     // tick until which what they received is taken back
+    std::pmr::vector<uint32_t> due;         // slots to latch
+    std::pmr::vector<uint32_t> neighbours;  // flat, by RemoteObject::neighbourFirst
+    uint32_t version = 0;                   // of the last latched object
+    std::pmr::vector<uint32_t> order;       // scratch
+    std::pmr::vector<uint64_t> near;        // pairs of slots, both ways, sorted
+    std::pmr::vector<Seen> seen;            // by pair
+    std::pmr::vector<PairContacts> pairs;   // the first `pairsUsed`; the rest keep their room
+    size_t pairsUsed = 0;
+    std::pmr::vector<mesh::Contact> contacts;            // scratch
+    std::pmr::vector<mesh::ContactPlace> contactPlaces;  // scratch
+    std::pmr::vector<gpu::ContactLink> links;
+    std::pmr::vector<gpu::Blocker> blockers;  // latched
+};
+
+struct RemoteTables {  // what a RemoteUpdate of a frame points to
+    explicit RemoteTables(std::pmr::memory_resource* memory)
+        : objects(memory), neighbours(memory), links(memory), blockers(memory) {}
+    std::pmr::vector<gpu::RemoteUpdate::Placed> objects;
+    std::pmr::vector<uint32_t> neighbours;
+    std::pmr::vector<gpu::ContactLink> links;
+    std::pmr::vector<gpu::Blocker> blockers;
+    gpu::RemoteUpdate update;
+};
+
 struct PendingTexel {  // an event that waits for its step
     uint32_t object = 0, texel = 0, kind = 0, tick = 0, water = 0;  // g/m^2
     uint64_t order = 0;
@@ -103,6 +194,10 @@ class World {
     World& operator=(const World&) = delete;
 
     void setWind(const float wind[3]);
+    void setFlags(uint32_t given);
+    FwBlockerId addBlocker(const FwBlockerDef& def);
+    void moveBlocker(FwBlockerId id, const float transform[16]);
+    void removeBlocker(FwBlockerId id);
 
     FwMaterialId createMaterial(const FwMaterialDef& def);
     void destroyMaterial(FwMaterialId id) { materials_.destroy(id); }
@@ -112,7 +207,7 @@ class World {
     void destroyMesh(FwMeshId id);
     void meshInfo(FwMeshId id, FwMeshInfo& info);
 
-    FwBurnableMeshId createBurnableMesh(const FwBurnableMeshDef& def);
+    FwBurnableMeshId createBurnableMesh(const FwBurnableMeshDef& given);
     void destroyBurnableMesh(FwBurnableMeshId id);
     void setTransform(FwBurnableMeshId id, const float transform[16]);
     // Its backend slot; throws unless it is skinned and has so many vertices.
@@ -145,6 +240,9 @@ class World {
     void setSwitches(uint32_t switches);
     void pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels);
     const mesh::BurnDomain& domain(FwMeshId id) { return *meshes_.get(id).domain; }
+    const mesh::BurnDomain& objectDomain(FwBurnableMeshId id) {
+        return domainOf(*objects_.get(id));
+    }
 
  private:
     static constexpr uint32_t kMaxSteps = 64;
@@ -172,7 +270,8 @@ class World {
               updates(memory),
               latches(memory),
               probes(memory),
-              burnMaps(memory) {}
+              burnMaps(memory),
+              remote(memory) {}
         struct Due {
             PendingTexel event;
             uint32_t step = 0;
@@ -189,6 +288,9 @@ class World {
         std::pmr::vector<LatchOf> latches;  // of touched objects, as they are at the frame's end
         std::pmr::vector<gpu::Probe> probes;
         std::pmr::vector<uint32_t> burnMaps;
+        std::pmr::vector<core::Owned<RemoteTables>> remote;  // the first `remoteUsed` of them
+        size_t remoteUsed = 0;
+        bool remoteLatched = false, remoteFlushed = false;
     };
 
     // step.cpp
@@ -196,8 +298,23 @@ class World {
     void planProbes();
     void commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept;
     // latch.cpp
-    void planLatches(uint32_t now, size_t firstEvent);
+    void planLatches(uint32_t now, size_t firstEvent, bool placed);
     [[nodiscard]] components::DriveInput driveInput() const noexcept;
+    // remote.cpp
+    [[nodiscard]] bool remoteOn() const noexcept {
+        return remote_.flags != 0 || remote_.governed || clock_.tick < remote_.fades;
+    }
+    void planRemote(gpu::StepPlan& step, uint32_t now, bool awake);
+    void latchRemote(uint32_t now);
+    void findNeighbours();
+    void findLinks(uint32_t now);
+    gpu::ExchangePush exchangeRules() const noexcept;
+    void touchNear();
+    uint32_t seenOf(uint32_t from, uint32_t to);
+    void linkPair(const Object& to, const Object& from, uint32_t since,
+                  std::pmr::vector<gpu::ContactLink>& out);
+    void commitRemote() noexcept;
+    void tellSpread(Object& object, const gpu::Readback& readback) noexcept;
     // events.cpp
     void collectReadbacks();  // throws std::bad_alloc; the readback then stays with the backend
     void takeCounters(const gpu::Readback& readback) noexcept;
@@ -205,7 +322,7 @@ class World {
     void takeAnswers(const gpu::Readback& readback) noexcept;
     void takeLights(const gpu::Readback& readback) noexcept;
     void raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
-               const float position[3], float value) noexcept;
+               const float position[3], float value, FwBurnableMeshId other = {}) noexcept;
     // queries.cpp
     FwPointState pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,
                             const gpu::Readback& readback) const noexcept;
@@ -244,6 +361,8 @@ class World {
     core::HandlePool<FwMeshId, MeshEntry> meshes_;
     core::HandlePool<FwBurnableMeshId, core::Owned<Object>> objects_;
     core::HandlePool<FwQueryId, Query> queries_;
+    core::HandlePool<FwBlockerId, BlockerEntry> blockers_;
+    RemoteBook remote_;
     std::pmr::vector<uint32_t> imageUsers_;  // by backend slot: objects + 1 for a live id; 0: free
     std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing
     uint32_t shapes_ = 0;                    // entries of meshes_ that are shapes
@@ -263,11 +382,13 @@ class World {
     uint64_t lastStimulus_ = 0;  // tick
     bool idle_ = true;
     uint32_t switches_ = 0;
+    uint64_t planStamp_ = 0;
 
     // As of the last readback.
     uint64_t readbackFrame_ = 0, readbackTick_ = 0;
     uint32_t frontTiles_ = 0, runTiles_ = 0, burningTiles_ = 0, flames_ = 0, lateClamps_ = 0;
     uint32_t hotTiles_ = 0;
+    uint32_t receivers_ = 0;
     std::pmr::vector<FwLight> lights_, lightsBefore_;
     uint32_t nextLight_ = 1;
 };

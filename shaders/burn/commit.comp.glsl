@@ -52,7 +52,10 @@ void commitTile(uint slot) {
     }
     uint old = atomicOr(tileState[worldTile].flag, kTileListed | bits);
     if ((old & kTileListed) == 0u) frontAppend(parity, row, worldTile);
-    if ((bits & ~old & kTileBurning) != 0u) burnAppend(push.burnParity, worldTile);
+    if ((bits & ~old & kTileBurning) != 0u) {
+        burnAppend(push.burnParity, worldTile);
+        atomicAdd(objectCounters[object].burningTiles, 1u);
+    }
     if ((bits & ~old & kTileHot) != 0u) hotAppend(push.hotParity, worldTile);
     if ((old & (kTilePredict << push.predictParity)) == 0u)
         predictAppend(push.predictParity, worldTile);

@@ -21,8 +21,9 @@ layout(local_size_x = 64) in;
 #define FW_USE_HEAT_MATERIALS
 #define FW_USE_HOT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
-#include "shared/heat.h"
+#include "shared/exchange.h"
 #include "lib/lists.glsl"
+#include "lib/change.glsl"
 
 void applyRun(uint first) {
     uint object = events[first].object;
@@ -56,36 +57,18 @@ void applyRun(uint first) {
     }
     if (now == before && !warms) return;
 
-    uint width = objects[object].width;
-    uint x = texel % width;
-    uint y = texel / width;
-    uint local = (y >> 3u) * objects[object].tilesX + (x >> 3u);
-    uint lane = (y & 7u) * 8u + (x & 7u);
-    uint worldTile = objects[object].worldTileBase + local;
-    if (warms) hotTouch(push.hotParity, worldTile);
+    TexelPlace p = placeOfTexel(object, texel);
+    if (warms) hotTouch(push.hotParity, p.worldTile);
     if (now == before) return;
     state[at] = now;
 
     if (isSource(now) != isSource(before))
         atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
     if (isSource(now)) {
-        atomicMax(objectCounters[object].lastIgnition, push.now + kStepTicks);
-        if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u)
-            burnAppend(push.burnParity, worldTile);
+        nowBurns(object, p.worldTile, push.now + kStepTicks);
+        if (!isSource(before)) litFrom(object, kLitByHand);
     }
-    predictTouch(push.predictParity, worldTile);
-    if ((objects[object].flags & kObjectPublished) != 0u) {
-        uint plane = objects[object].width * objects[object].height;
-        uint base = objects[object].publishedBase + texel;
-        float q = isSource(now) ? published[base + 2u * plane] : 0.0;
-        published[base] = q;
-        published[base + plane] = q;
-        return;
-    }
-
-    tileState[worldTile].lastChange = push.now;
-    touchReaders(object, local,
-                 lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u)));
+    texelChanged(object, texel, p, isSource(now));
 }
 
 void main() {

@@ -126,8 +126,10 @@ void finishTile(uint worldTile, TileRef tile, uint thread, bool flux) {
     if (lit != gone) atomicAdd(objectCounters[object].ignited, lit - gone);
     if (lit != 0u) {
         atomicMax(objectCounters[object].lastIgnition, push.now + kStepTicks);
-        if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u)
+        if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
             burnAppend(push.burnParity, worldTile);
+            atomicAdd(objectCounters[object].burningTiles, 1u);
+        }
     }
     tileState[worldTile].lastChange = push.now;
     predictTouch(push.predictParity, worldTile);

@@ -27,8 +27,10 @@ void light(uint object, int x, int y, uint at) {
     atomicMax(objectCounters[object].lastIgnition, end);
     uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX +
                      uint(x >> 3);
-    if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u)
+    if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
         burnAppend(push.burnParity, worldTile);
+        atomicAdd(objectCounters[object].burningTiles, 1u);
+    }
     predictTouch(push.predictParity, worldTile);
 }
 

@@ -1,14 +1,28 @@
-// Zeroes the per-object figures that the next passes count anew.
+// Zeroes the per-object figures and fire sources that the next passes sum anew.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_PUSH
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_SOURCES writeonly
 #include "lib/buffers.glsl"
 
 void main() {
     uint object = gl_GlobalInvocationID.x;
     if (object >= push.count) return;
+    uint count = objectCounters[object].burningTiles != 0u ? remoteObjects[object].sourceCount : 0u;
+    for (uint i = 0u; i < count; ++i) {
+        uint source = remoteObjects[object].sourceBase + i;
+        sources[source].power = 0u;
+        sources[source].texels = 0u;
+        sources[source].tiles = 0u;
+        sources[source].sumX = 0u;
+        sources[source].sumY = 0u;
+        sources[source].sumZ = 0u;
+        sources[source].watts = 0u;
+        sources[source].ember = 0u;
+    }
     objectCounters[object].burning = 0u;
     objectCounters[object].burningTiles = 0u;
     objectCounters[object].frontTiles = 0u;

@@ -11,6 +11,8 @@ layout(local_size_x = 64) in;
 #define FW_USE_RUN writeonly
 #define FW_USE_MASKS writeonly
 #define FW_USE_WAKE_GROUPS readonly
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_OBJECT_COUNTERS readonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
@@ -51,6 +53,19 @@ void schedule(uint worldTile, bool dense) {
     if (!wanted) {
         if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
         return;
+    }
+    // A loop, because devices without branches load under an `if` too.
+    for (bool governed = (push.switches & kSwitchGoverned) != 0u; governed; governed = false) {
+        if (stoppedAt(objectCounters[tile.object].stopTick, push.now)) {
+            tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileNews);
+            return;
+        }
+        if (holdsTile(flag, counters[kRowBurn + push.burnParity].listCount, push.tilesMost,
+                      objectCounters[tile.object].burningTiles, remoteObjects[tile.object].flags,
+                      remoteObjects[tile.object].tilesMost)) {
+            if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
+            return;
+        }
     }
     uint wake = tileState[worldTile].wake;
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);

@@ -3,6 +3,9 @@
 #ifndef FW_LIB_BUFFERS_GLSL
 #define FW_LIB_BUFFERS_GLSL
 #include "shared/burn.h"
+#if defined(FW_USE_REMOTE_OBJECTS) || defined(FW_USE_EXCHANGE_PUSH)
+#include "shared/exchange.h"
+#endif
 #ifdef FW_USE_HEAT_MATERIALS
 #include "shared/heat.h"
 #endif
@@ -198,6 +201,31 @@ FW_BUFFER(FW_BIND_HOT_LISTS, FW_USE_HOT_LISTS, HotListsBuffer, uvec2, hotLists);
 FW_BUFFER(FW_BIND_TILE_FIRE, FW_USE_TILE_FIRE, TileFireBuffer, float, tileFire);
 #endif
 
+#ifdef FW_USE_REMOTE_OBJECTS
+FW_BUFFER(FW_BIND_REMOTE_OBJECTS, readonly, RemoteObjectsBuffer, RemoteObject, remoteObjects);
+#endif
+#ifdef FW_USE_REMOTE_TILES
+FW_BUFFER(FW_BIND_REMOTE_TILES, readonly, RemoteTilesBuffer, RemoteTile, remoteTiles);
+#endif
+#ifdef FW_USE_SOURCES
+FW_BUFFER(FW_BIND_SOURCES, FW_USE_SOURCES, SourcesBuffer, FireSource, sources);
+#endif
+#ifdef FW_USE_NEIGHBOURS
+FW_BUFFER(FW_BIND_NEIGHBOURS, readonly, NeighboursBuffer, uint, neighbours);
+#endif
+#ifdef FW_USE_CONTACTS
+FW_BUFFER(FW_BIND_CONTACTS, readonly, ContactsBuffer, ContactLink, contacts);
+#endif
+#ifdef FW_USE_BLOCKERS
+FW_BUFFER(FW_BIND_BLOCKERS, readonly, BlockersBuffer, Blocker, blockers);
+#endif
+#ifdef FW_USE_RECEIVERS
+FW_BUFFER(FW_BIND_RECEIVERS, FW_USE_RECEIVERS, ReceiversBuffer, uint, receivers);
+#endif
+
+#ifdef FW_USE_EXCHANGE_PUSH
+layout(push_constant) uniform ExchangePushBlock { ExchangePush push; };
+#endif
 #ifdef FW_USE_PUSH
 layout(push_constant) uniform StepPushBlock { StepPush push; };
 #endif

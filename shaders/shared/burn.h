@@ -56,7 +56,6 @@
 #define FW_BIND_CONTACTS 44   // ContactLink[]
 #define FW_BIND_BLOCKERS 45   // Blocker[kMaxBlockers]
 #define FW_BIND_RECEIVERS 46  // uint[kReceiverWords] per object slot, see there
-#define FW_BIND_EMBERS 47     // uint[]: sources that send an ember
 #define FW_BIND_SHOWN 48          // ShownVertex[]: drawn instead of the mesh's (per object); vertex input too
 #define FW_BIND_DEFORM_NODES 49   // DeformNode[] (per mesh)
 #define FW_BIND_DEFORM_COATS 50   // DeformCoat[] (per mesh)
@@ -114,6 +113,7 @@ FW_SHARED_CONST uint kObjectNoHoles = 8u;
 FW_SHARED_CONST uint kObjectHidden = 16u;
 FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinates
 FW_SHARED_CONST uint kObjectHeat = 64u;      // has a heat plane
+FW_SHARED_CONST uint kObjectNoDamage = 128u; // flames, and looks as before
 FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire stands on its shown vertices
 
 // TileState::flag
@@ -262,6 +262,7 @@ struct ObjectCounters {
 FW_SHARED_SIZE(ObjectCounters, 64)
 FW_SHARED_CONST uint kHeldFull = 1u;     // as many tiles burn as may: no other one catches
 FW_SHARED_CONST uint kHeldStopped = 2u;  // its time is over
+FW_SHARED_CONST uint kHeldWarm = 4u;     // not held, but warmed by others
 
 struct TileHeat {     // of one tile, W/m^2 and flags; whoever writes one also puts its tile on the
     uint flux;        // hot list. From elsewhere, before what the surface absorbs of it.

@@ -19,6 +19,8 @@ FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
 FW_SHARED_CONST uint kSourceGrid = 4u;          // an object's sources: cells along its longest side
 FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most, so
 FW_SHARED_CONST uint kMaxBlockers = 64u;
+FW_SHARED_CONST uint kReceiverWords = 66u;  // a slot; then its sources: how many, and
+                                            // source | what is seen of it, of 255, << 24
 FW_SHARED_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
 FW_SHARED_CONST uint kPlumeTransfer = 25u;      // W/m^2/K
 FW_SHARED_CONST uint kNearest = 300u;           // mm: no fire counts as nearer than half of this
@@ -129,8 +131,8 @@ struct ExchangePush {  // push constants of the passes that exchange
     uint blockers;
     uint brands;       // embers per 1/16 W and exchange, Q32
     uint ambient;      // 1/16 K
-    uint reserved0;
-    uint reserved1;
+    uint hotParity;
+    uint warms;        // 1: some object may be warmed by others
 };
 FW_SHARED_SIZE(ExchangePush, 96)
 
@@ -333,6 +335,28 @@ FW_SHARED_FN bool flameLights(FW_IN(FireSource) s, FW_IN(FlameFrame) f) {
     return f.beside2 <= reach * reach;
 }
 
+FW_SHARED_FN ivec3 boxMiddle(FW_IN(RemoteObject) o) {
+    return ivec3(o.turn0.w + (o.high.x - o.turn0.w) / 2, o.turn1.w + (o.high.y - o.turn1.w) / 2,
+                 o.turn2.w + (o.high.z - o.turn2.w) / 2);
+}
+
+struct Received {
+    uint flux;   // W/m^2
+    uint pilot;  // 1: a flame is near
+};
+// What one source sends to a place, under the world's switches; seen: of 255.
+FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient, ivec3 up, ivec3 at,
+                                   ivec3 normal, bool both, uint seen) {
+    Received r;
+    FlameFrame f = flameFrame(s, up, at);
+    uint flux = 0u;
+    if ((flags & kRemoteRadiation) != 0u) flux += radiantFlux(s, up, at, normal, both);
+    if ((flags & kRemotePlume) != 0u) flux += plumeFlux(s, f, ambient, ambient);
+    r.flux = divide(leastOf(flux, kFluxMost) * leastOf(seen, 255u), 255u);
+    r.pilot = (flags & (kRemoteRadiation | kRemotePlume)) != 0u && flameLights(s, f) ? 1u : 0u;
+    return r;
+}
+
 // How strongly a source acts on a place: to choose among many. W/cm^2, about.
 FW_SHARED_FN uint sourceWeight(FW_IN(FireSource) s, ivec3 at) {
     ivec3 d = ivec3(s.place.x - at.x, s.place.y - at.y, s.place.z - at.z);
@@ -355,6 +379,21 @@ FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint worldHopsMost) 
     return (o.flags & kRemoteGives) != 0u && hops < leastOf(o.hopsMost, worldHopsMost);
 }
 
+// What the exchange notes of an object: when it was found alight, and when its front stops.
+FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o,
+                           FW_IN(ExchangePush) rules) {
+    if (c.ignited == 0u) {
+        // Who warms it may have lit it by the next time.
+        if ((c.held & kHeldWarm) == 0u) c.litBy = 0u;
+        c.litTick = 0u;
+        c.stopTick = 0u;
+    } else if (c.litTick == 0u) {
+        uint life = leastOf(o.lifeTicks, rules.lifeTicks);
+        c.litTick = rules.now;
+        c.stopTick = life > 0xF0000000u ? 0u : rules.now + life;
+    }
+}
+
 // Who lit an object: fewest jumps first, then the lowest slot, whatever the order. 0: nobody yet.
 FW_SHARED_CONST uint kLitByHand = 0xFFFFFFFFu;
 FW_SHARED_FN uint litBy(uint hops, uint from) {
@@ -365,9 +404,31 @@ FW_SHARED_FN uint giverOf(uint by) {  // slot, or kNoneTexel
     return (by == 0u || by == kLitByHand) ? kNoneTexel : (~by) & 0xFFFFFFu;
 }
 
-// When fire crossed a contact, or kNever: not yet, or never. t: state of the texel it comes from.
+FW_SHARED_FN bool stoppedAt(uint stopTick, uint now) { return stopTick != 0u && now >= stopTick; }
+// May a tile that does not burn not catch, because enough do? Counts are of before the iteration.
+FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint worldMost, uint objectBurning,
+                            uint objectFlags, uint objectMost) {
+    if ((tileFlag & kTileBurning) != 0u) return false;
+    return burning >= worldMost ||
+           ((objectFlags & kRemoteLive) != 0u && objectBurning >= objectMost);
+}
+// What the exchange finds of an object: kHeld bits.
+FW_SHARED_FN uint heldBits(uint burning, uint worldMost, uint objectBurning, uint objectMost,
+                           uint stopTick, uint now) {
+    uint held = (burning >= worldMost || objectBurning >= objectMost) ? kHeldFull : 0u;
+    return held | (stoppedAt(stopTick, now) ? kHeldStopped : 0u);
+}
+// May a tile with this flag be lit from afar?
+FW_SHARED_FN bool mayCatch(uint held, uint tileFlag) {
+    return (held & kHeldStopped) == 0u &&
+           ((held & kHeldFull) == 0u || (tileFlag & kTileBurning) != 0u);
+}
+
+// When fire crossed a contact, or kNever: not yet, or never. t: state of the texel it comes from,
+// which burnt at the exchange before this one: so none that is lit in this one counts yet, in
+// whatever order.
 FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
-    if (!isSource(t)) return kNever;
+    if (!isSource(t) || t + kExchangeTicks >= now) return kNever;
     uint begins = mostOf(t, since);
     uint arrives = begins + delay;
     if (arrives > now || !flames(t, arrives, flameTicks)) return kNever;
@@ -375,6 +436,49 @@ FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, u
 }
 
 // ---- embers
+
+// Axis of the world that is most along `up`, and how far along it (b * 2 | 1: downwards).
+FW_SHARED_FN uint upAxis(ivec3 up) {
+    uint ux = absolute(up.x), uy = absolute(up.y), uz = absolute(up.z);
+    uint axis = (uy >= ux && uy >= uz) ? 1u : ux >= uz ? 0u : 2u;
+    int along = axis == 0u ? up.x : axis == 1u ? up.y : up.z;
+    return axis * 2u + (along < 0 ? 1u : 0u);
+}
+FW_SHARED_FN int heightOf(ivec3 p, uint axis) {
+    int h = axis < 2u ? p.x : axis < 4u ? p.y : p.z;
+    return (axis & 1u) != 0u ? -h : h;
+}
+FW_SHARED_FN ivec3 acrossUp(ivec3 p, uint axis) {
+    return axis < 2u ? ivec3(0, p.y, p.z) : axis < 4u ? ivec3(p.x, 0, p.z) : ivec3(p.x, p.y, 0);
+}
+// Top of an object that is below a place, mm; kNoTop: the place is beside or under that.
+FW_SHARED_CONST int kNoTop = -2147483647;
+FW_SHARED_FN int topBelow(FW_IN(RemoteObject) o, ivec3 at, uint axis) {
+    ivec3 low = acrossUp(ivec3(o.turn0.w, o.turn1.w, o.turn2.w), axis);
+    ivec3 high = acrossUp(ivec3(o.high.x, o.high.y, o.high.z), axis);
+    ivec3 p = acrossUp(at, axis);
+    if (p.x < low.x || p.y < low.y || p.z < low.z || p.x > high.x || p.y > high.y || p.z > high.z)
+        return kNoTop;
+    int top = (axis & 1u) != 0u ? heightOf(ivec3(o.turn0.w, o.turn1.w, o.turn2.w), axis)
+                                : heightOf(ivec3(o.high.x, o.high.y, o.high.z), axis);
+    return top <= heightOf(at, axis) ? top : kNoTop;
+}
+// How badly a tile fits what falls down there, [0, kMisses]: least wins.
+FW_SHARED_CONST uint kMisses = 16383u;
+FW_SHARED_FN uint landingMiss(FW_IN(RemoteObject) o, FW_IN(RemoteTile) tile, ivec3 at, int top,
+                              uint axis) {
+    if (tile.texels == 0u) return kMisses;
+    int facing = heightOf(remoteTurn(o, decodeNormal(tile.normal)), axis);
+    if ((o.flags & kRemoteTwoSided) != 0u) facing = facing < 0 ? -facing : facing;
+    if (facing < 512) return kMisses;
+    ivec3 p = remotePlace(o, tileMiddle(tile));
+    ivec3 d = acrossUp(ivec3(p.x - at.x, p.y - at.y, p.z - at.z), axis);
+    if (absolute(d.x) > 2000u || absolute(d.y) > 2000u || absolute(d.z) > 2000u) return kMisses;
+    uint beside = isqrtNear(squareSum(d));
+    int below = top - heightOf(p, axis);
+    uint miss = beside * 2u + uint(below < 0 ? 0 : (below > 16000 ? 16000 : below)) / 2u;
+    return leastOf(miss, kMisses);
+}
 
 struct Ember {
     uint flight;     // ticks that it was under way: what lands now set out then
@@ -408,10 +512,8 @@ FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 w
     ivec3 carried = ivec3((wind.x / 8) * int(seconds >> 4u) / 32, (wind.y / 8) * int(seconds >> 4u) / 32,
                           (wind.z / 8) * int(seconds >> 4u) / 32);
     // Jitter lies across `up`: along the two world axes that are least along it.
-    uint ux = absolute(up.x), uy = absolute(up.y), uz = absolute(up.z);
-    ivec3 jitter = (uy >= ux && uy >= uz) ? ivec3(jx, 0, jz)
-                   : (ux >= uz)           ? ivec3(0, jx, jz)
-                                          : ivec3(jx, jz, 0);
+    uint axis = upAxis(up);
+    ivec3 jitter = axis < 2u ? ivec3(0, jx, jz) : axis < 4u ? ivec3(jx, 0, jz) : ivec3(jx, jz, 0);
     ivec3 shift = ivec3(carried.x + jitter.x, carried.y + jitter.y, carried.z + jitter.z);
     int most = 28000;
     shift = ivec3(shift.x > most ? most : (shift.x < -most ? -most : shift.x),
@@ -424,6 +526,18 @@ FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 w
     uint whole = (thick + 1u) * 225u;         // J
     e.energy = seconds >= life ? 0u : divide(whole * ((life - seconds) >> 4u), life >> 4u);
     return e;
+}
+
+// mm, [0, 65535], that a texel is beside a place as seen from above.
+FW_SHARED_FN uint besidePlace(FW_IN(RemoteObject) o, ivec3 position, ivec3 at, uint axis) {
+    ivec3 p = remotePlace(o, position);
+    ivec3 d = acrossUp(ivec3(p.x - at.x, p.y - at.y, p.z - at.z), axis);
+    return withinReach(d) ? isqrtNear(squareSum(d)) : 65535u;
+}
+// Is `other` in the disc that an ember on `lane` of the same tile lights?
+FW_SHARED_FN bool besideLane(uint lane, uint other) {
+    int dx = int(lane & 7u) - int(other & 7u), dy = int(lane >> 3u) - int(other >> 3u);
+    return dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
 }
 
 // Chance of kChanceOne that it lights what it lies on: 1 - exp(-E / 200 J), damped by moisture.

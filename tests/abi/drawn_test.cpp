@@ -269,6 +269,81 @@ TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
 }
 
+// What a fire leaves of a sheet of paper: nothing; without damage all, without holes a charred one.
+TEST(AbiDrawn, WithoutDamageNothingIsSeenOfAFireThatWas) {
+    FwWorldDef worldDef = fwDefaultWorldDef();
+    worldDef.paceFactor = 20;
+    worldDef.maxLights = 0;
+    DRAWN_WORLD_OR_SKIP(w, worldDef);
+    const host::Sheet sheet(0.2f, 0.5f, 8);
+    const FwMeshDef mesh = sheet.def(64);
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
+    for (FwMaterialId& id : def.materials) id = w.material(FW_MATERIAL_PAPER);
+    FwPin pin{};  // all of a sheet, so that it shows where it always was
+    pin.radius = 2;
+    def.pins = &pin;
+    const struct {
+        uint32_t world, object;
+        bool harmed;
+    } cases[4] = {{0, 0, true},
+                  {0, FW_BURNABLE_NO_DAMAGE, false},
+                  {FW_WORLD_NO_DAMAGE, FW_BURNABLE_SHELL, false},
+                  {FW_WORLD_NO_HOLES, 0, true}};
+    FwBurnableMeshId ids[4] = {};
+    for (int i = 0; i < 4; ++i) {
+        ASSERT_EQ(FW_OK, fwWorld_SetFlags(w.world, cases[i].world)) << lastMessage(w.world);
+        def.flags = FW_BURNABLE_TWO_SIDED | cases[i].object;
+        def.pinCount = cases[i].object & FW_BURNABLE_SHELL ? 1u : 0u;
+        def.transform[12] = float(i) * 0.25f + 0.025f;
+        ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &ids[i]))
+            << lastMessage(w.world);
+    }
+    ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
+    const std::vector<Color> fresh = w.look();
+    for (int i = 0; i < 4; ++i) {
+        FwIgnitionDef match = fwDefaultIgnitionDef();
+        match.object = ids[i];
+        match.position[0] = float(i) * 0.25f + 0.125f;
+        match.position[2] = 0.25f;
+        match.radius = 0.05f;
+        uint32_t texels = 0;
+        ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels));
+        EXPECT_LT(0u, texels);
+    }
+    for (int k = 0; k < 60; ++k) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.25f));
+    const std::vector<Color> burnt = w.look();
+    const auto there = [](const Color& c) { return c.r + c.g + c.b > 3; };
+    FwObjectState first{};
+    for (int i = 0; i < 4; ++i) {
+        int changed = 0;
+        for (int y = 0; y < 32; ++y)
+            for (int x = i * 16; x < i * 16 + 16; ++x) {
+                const size_t p = size_t(y * 64 + x);
+                changed += std::abs(fresh[p].r - burnt[p].r) > 12 ? 1 : 0;
+            }
+        if (cases[i].harmed) {
+            EXPECT_GT(changed, 12 * 32 / 2) << i;
+        } else {
+            EXPECT_EQ(0, changed) << i;
+        }
+        FwObjectState state{};
+        state.structSize = sizeof state;
+        ASSERT_EQ(FW_OK, fwWorld_GetObjectState(w.world, ids[i], &state));
+        if (i == 0) first = state;
+        EXPECT_EQ(first.ignited, state.ignited) << "the fire is the same";
+        EXPECT_LT(300u, state.ignited);
+        const int before = count(fresh, i * 16, i * 16 + 16, there);
+        const int after = count(burnt, i * 16, i * 16 + 16, there);
+        if (i == 3) {
+            EXPECT_EQ(before, after);
+        }
+        if (i == 0) {
+            EXPECT_LT(after, before / 4);
+        }
+    }
+}
+
 TEST(AbiSkin, FireDoesNotKnowOfIt) {
     uint64_t hashes[2] = {};
     for (const bool skinned : {false, true}) {

@@ -19,6 +19,7 @@ int fwTestCallEverything(int* calls) {
     const FwBurnableMeshId object = {0, 0};
     const FwTargetId target = {0, 0};
     const FwQueryId query = {0, 0};
+    const FwBlockerId blocker = {0, 0};
 
     RUNS(fwResultName(FW_OK));
     RUNS(fwGetVersion());
@@ -33,6 +34,10 @@ int fwTestCallEverything(int* calls) {
     RUNS(fwDestroyWorld(NULL));
     IS_ZERO(fwWorld_GetLastMessage(NULL, NULL, 0));
     REFUSES(fwWorld_SetWind(NULL, NULL));
+    REFUSES(fwWorld_SetFlags(NULL, 0));
+    REFUSES(fwWorld_AddBlocker(NULL, NULL, NULL));
+    REFUSES(fwWorld_MoveBlocker(NULL, blocker, NULL));
+    REFUSES(fwWorld_RemoveBlocker(NULL, blocker));
     REFUSES(fwInitMaterialPreset(NULL, 0));
     RUNS(fwMaterialPresetName(0));
     REFUSES(fwWorld_CreateMaterial(NULL, NULL, NULL));
@@ -82,6 +87,7 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultBurnableMeshDef().structSize == sizeof(FwBurnableMeshDef) ? 0 : 1;
     wrong += fwDefaultIgnitionDef().structSize == sizeof(FwIgnitionDef) ? 0 : 1;
     wrong += fwDefaultView().structSize == sizeof(FwView) ? 0 : 1;
+    wrong += fwDefaultBlockerDef().structSize == sizeof(FwBlockerDef) ? 0 : 1;
     wrong += fwDefaultOffscreenDef().structSize == sizeof(FwOffscreenDef) ? 0 : 1;
     wrong += fwDefaultVulkanHost().structSize == sizeof(FwVulkanHost) ? 0 : 1;
     wrong += fwDefaultVulkanTargetDef().structSize == sizeof(FwVulkanTargetDef) ? 0 : 1;

@@ -1,7 +1,7 @@
 // The front on a device: what a step costs when everything runs, when three tiles in a hundred do,
 // when the published kernel runs, and how that grows with maps and objects. Rows that are compared
 // run in turns within one process; the times are those of submit and wait, without the recording.
-#include <vulkan/vulkan.h>
+#include "bench/bench_device.h"
 
 #include "core/memory.h"
 #include "fire/heat.h"
@@ -13,34 +13,13 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <map>
 #include <string>
 
 namespace fw::test {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// CPU time of the whole process, which on a software device is the device's: what a step costs
-// however busy the machine is.
-double cpuSeconds() {
-    std::timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values.empty() ? 0 : values[values.size() / 2];
-}
 
 // A flat map of `side` x `side` texels; all of it real.
 const mesh::BurnDomain& flatMap(uint32_t side) {
@@ -52,67 +31,6 @@ const mesh::BurnDomain& flatMap(uint32_t side) {
     mesh::BakeInput input = plane.input(density, side);
     input.trustUvs = true;
     return maps.emplace(side, mesh::bake(input, std::pmr::get_default_resource())).first->second;
-}
-
-struct DeviceWithoutLayers {
-    VkInstance instance = VK_NULL_HANDLE;
-    VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
-    VkDevice device = VK_NULL_HANDLE;
-    VkQueue queue = VK_NULL_HANDLE;
-    uint32_t family = 0;
-    VkCommandPool pool = VK_NULL_HANDLE;
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    VkFence fence = VK_NULL_HANDLE;
-
-    DeviceWithoutLayers() {
-        VkApplicationInfo application{};
-        application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-        application.apiVersion = VK_API_VERSION_1_0;
-        VkInstanceCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-        info.pApplicationInfo = &application;
-        if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) return;
-        uint32_t count = 1;
-        vkEnumeratePhysicalDevices(instance, &count, &physicalDevice);
-        const float priority = 1;
-        VkDeviceQueueCreateInfo queueInfo{};
-        queueInfo.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-        queueInfo.queueCount = 1;
-        queueInfo.pQueuePriorities = &priority;
-        VkDeviceCreateInfo deviceInfo{};
-        deviceInfo.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-        deviceInfo.queueCreateInfoCount = 1;
-        deviceInfo.pQueueCreateInfos = &queueInfo;
-        if (vkCreateDevice(physicalDevice, &deviceInfo, nullptr, &device) != VK_SUCCESS) return;
-        vkGetDeviceQueue(device, 0, 0, &queue);
-        VkCommandPoolCreateInfo poolInfo{};
-        poolInfo.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-        poolInfo.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-        vkCreateCommandPool(device, &poolInfo, nullptr, &pool);
-        VkCommandBufferAllocateInfo allocate{};
-        allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-        allocate.commandPool = pool;
-        allocate.commandBufferCount = 1;
-        vkAllocateCommandBuffers(device, &allocate, &commands);
-        VkFenceCreateInfo fenceInfo{};
-        fenceInfo.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-        vkCreateFence(device, &fenceInfo, nullptr, &fence);
-    }
-    FwVulkanHost host() const {
-        FwVulkanHost host{};
-        host.structSize = sizeof host;
-        host.apiVersion = VK_API_VERSION_1_0;
-        host.getInstanceProcAddr = vkGetInstanceProcAddr;
-        host.instance = instance;
-        host.physicalDevice = physicalDevice;
-        host.device = device;
-        return host;
-    }
-};
-
-DeviceWithoutLayers& benchDevice() {
-    static DeviceWithoutLayers device;
-    return device;
 }
 
 // Is this pass part of a step of the front? (The others are its looks: predict, reduce.)

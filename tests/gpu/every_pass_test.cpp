@@ -1,6 +1,7 @@
 // Every pass and shader once, on buffers that end where the last thing in them does. Under
 // GPU-assisted validation (tests/run --gpu-assisted) each access past an end is reported, and the
 // second test proves that; without it the software device would never notice.
+#include "components/remote.h"
 #include "gpu/passes/frame_graph.h"
 #include "support/burn_scene.h"
 
@@ -129,8 +130,30 @@ class EveryPass : public GpuTest {
     struct Frame {
         uint32_t kind = 0, every = 0;  // events: of each `every`-th texel, 0: none
         uint32_t steps = 2, switches = 0;
-        bool latch = false, probes = false, draw = true;
+        bool latch = false, probes = false, draw = true, exchange = false;
     };
+    // The box as its own neighbour: it shines on itself, touches itself and throws embers at
+    // itself.
+    void placeBox() {
+        placed_.object = 0;
+        components::placeRemote({}, scene_->domains[0], placed_.record);
+        gpu::RemoteObject& o = placed_.record;
+        o.flags = gpu::kRemoteLive | gpu::kRemoteGives | gpu::kRemoteTwoSided;
+        o.power0 = o.power1 = {16000, 16000, 16000, 16000};
+        o.chance = gpu::kChanceOne;
+        o.hopsMost = o.lifeTicks = o.tilesMost = gpu::kNoneTexel;
+        o.catches = 256;
+        o.texelArea = 1700;
+        o.neighbourCount = 1;
+        links_.clear();
+        for (uint32_t i = 0; i < scene_->domains[0].texelCount(); i += 3)
+            links_.push_back({0, i, 0, scene_->domains[0].texelCount() - 1 - i, 100, 0, 0, 0});
+        blocker_.size = {10, 10, 10, 1};
+        remote_.objects = {&placed_, 1};
+        remote_.neighbours = {&self_, 1};
+        remote_.links = links_;
+        remote_.blockers = {&blocker_, 1};
+    }
     void frame(const Frame& what) {
         std::vector<gpu::StepPlan> steps(what.steps);
         std::vector<gpu::TexelEvent> events;
@@ -149,6 +172,16 @@ class EveryPass : public GpuTest {
             if (&step == steps.data()) {
                 step.events = events;
                 if (what.latch) step.materials = {&update, 1};
+                if (what.exchange) step.remote = &remote_;
+            }
+            if (what.exchange) {
+                step.exchange = step.governed = true;
+                step.rules.flags = 15;
+                step.rules.warms = 1;
+                step.rules.upY = 4096;
+                step.rules.chance = gpu::kChanceOne;
+                step.rules.hopsMost = step.rules.lifeTicks = step.rules.tilesMost = gpu::kNoneTexel;
+                step.rules.brands = 0xFFFFFFFFu;
             }
             now_ += gpu::kStepTicks;
         }
@@ -222,6 +255,11 @@ class EveryPass : public GpuTest {
         frame({gpu::kEventIgnite, 1, 3, 0, true, true});
         frame({.steps = 2, .switches = gpu::kSwitchDense, .probes = true});
         for (int i = 0; i < 3; ++i) frame({.steps = 4});
+        placeBox();
+        frame({gpu::kEventExtinguish, 2});
+        frame({gpu::kEventDry, 1});
+        frame({gpu::kEventIgnite, 7});
+        for (int i = 0; i < 3; ++i) frame({.steps = 6, .exchange = true});
         rig_->backend.destroyObject(0);
         rig_->backend.createObject(0, scene_->init(0));
         frame({gpu::kEventIgnite, 1, 2, 0, true, true});
@@ -243,6 +281,11 @@ class EveryPass : public GpuTest {
     TestImage color_, depth_;
     TestBuffer vertices_;
     std::set<std::string> passes_;  // that took time
+    gpu::RemoteUpdate::Placed placed_{};
+    gpu::RemoteUpdate remote_;
+    std::vector<gpu::ContactLink> links_;
+    gpu::Blocker blocker_{};
+    const uint32_t self_ = 0xFF000000u;
     uint32_t now_ = 0;
     uint64_t index_ = 0;
 };

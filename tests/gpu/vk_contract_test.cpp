@@ -3,12 +3,16 @@
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_backend.h"
+#include "gpu/passes/frame_graph.h"
 #include "support/burn_scene.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <set>
+#include <span>
 #include <thread>
 
 namespace fw::test {
@@ -350,6 +354,26 @@ TEST_F(VkContract, LostDeviceIsLatched) {
     const core::Error error = errorOf([&] { (void)rig.backend.beginOutside(frame); });
     EXPECT_EQ(error.result, FW_ERROR_DEVICE_LOST);
     rig.backend.destroyObject(0);  // and all the rest goes with the rig
+}
+
+// Devices are asked for 20 storage buffers in a stage (gpu/vk/device.cpp): no pass may bind more.
+TEST(VkContractFloor, NoPassBindsMoreStorageBuffersThanDevicesAreAskedFor) {
+    const auto bound = [](std::span<const gpu::Use> uses) {
+        std::set<uint32_t> all;
+        for (const gpu::Use& use : uses)
+            if (use.access == gpu::Access::read || use.access == gpu::Access::write ||
+                use.access == gpu::Access::drawRead)
+                all.insert(use.resource);
+        return all.size();
+    };
+    size_t most = 0;
+    for (const gpu::ComputePass* pass : gpu::computePasses()) {
+        EXPECT_LE(bound(pass->uses), 20u) << pass->name;
+        most = std::max(most, bound(pass->uses));
+    }
+    for (const gpu::DrawPass* pass : gpu::drawPasses())
+        EXPECT_LE(bound(pass->uses), 20u) << pass->name;
+    EXPECT_EQ(most, 20u) << "then devices may be asked for fewer";
 }
 
 TEST_F(VkContract, BadHostsAreRefused) {

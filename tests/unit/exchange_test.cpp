@@ -212,11 +212,12 @@ TEST(Exchange, AContactTakesItsTimeFromTheLaterOfFireAndTouch) {
     const uint32_t now = 100000, never = gpu::kNever;
     EXPECT_EQ(never, gpu::contactTick(gpu::kNever, 8192, 400, 0, now));
     EXPECT_EQ(never, gpu::contactTick(gpu::kOutWet, 8192, 400, 0, now));
-    EXPECT_EQ(99500u + 400, gpu::contactTick(99500, 8192, 400, 0, now));
+    EXPECT_EQ(99480u + 500, gpu::contactTick(99480, 8192, 500, 0, now));
     EXPECT_EQ(now, gpu::contactTick(99000, 8192, 400, 0, now));  // it might have long ago
     EXPECT_EQ(99550u + 400, gpu::contactTick(99000, 8192, 400, 99550, now));
-    EXPECT_EQ(never, gpu::contactTick(99700, 8192, 400, 0, now));      // not yet
-    EXPECT_EQ(never, gpu::contactTick(99500, 300, 400, 0, now));       // burnt out before
+    EXPECT_EQ(never, gpu::contactTick(99480, 8192, 600, 0, now));  // not yet
+    EXPECT_EQ(never, gpu::contactTick(99500, 8192, 100, 0, now));  // lit since the last exchange
+    EXPECT_EQ(never, gpu::contactTick(99400, 300, 400, 0, now));   // burnt out before
     EXPECT_EQ(never, gpu::contactTick(10000, 8192, 400, 99550, now));  // touched too late
 }
 
@@ -327,7 +328,9 @@ TEST(Exchange, ContactsAreNearestTexelsWithinTheGap) {
         for (int r = 0; r < 3; ++r) b.translation[r] = a.translation[r] + a.rotation[r][2] * gap;
         const Placed one(makePlane(0.4, 0.3), 64, a), two(makePlane(0.4, 0.3), 64, b);
         std::pmr::vector<mesh::Contact> contacts;
-        mesh::findContacts({&one.domain, &one.place, 1}, {&two.domain, &two.place, 1}, contacts);
+        std::pmr::vector<mesh::ContactPlace> scratch;
+        mesh::findContacts({&one.domain, &one.place, 1}, {&two.domain, &two.place, 1}, scratch,
+                           contacts);
         if (gap > 0.05f) {
             EXPECT_TRUE(contacts.empty());
             continue;
@@ -339,7 +342,8 @@ TEST(Exchange, ContactsAreNearestTexelsWithinTheGap) {
             EXPECT_NEAR(double(gap) * 1000, contact.gap, 8);
         }
         contacts.clear();
-        mesh::findContacts({&one.domain, &one.place, 0}, {&two.domain, &two.place, 1}, contacts);
+        mesh::findContacts({&one.domain, &one.place, 0}, {&two.domain, &two.place, 1}, scratch,
+                           contacts);
         EXPECT_TRUE(contacts.empty());  // it cannot burn
     }
 }

@@ -45,6 +45,7 @@ typedef struct FwMeshId { uint32_t index1, generation; } FwMeshId;
 typedef struct FwBurnableMeshId { uint32_t index1, generation; } FwBurnableMeshId;
 typedef struct FwTargetId { uint32_t index1, generation; } FwTargetId;
 typedef struct FwQueryId { uint32_t index1, generation; } FwQueryId;
+typedef struct FwBlockerId { uint32_t index1, generation; } FwBlockerId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -92,6 +93,7 @@ FW_API uint32_t FW_CALL fwGetVersion(void);
 typedef enum FwDefType {
     FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
+    FW_DEF_BLOCKER = 10,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -154,8 +156,20 @@ FW_API uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRo
 
 /* ---- world ------------------------------------------------------------------------------------- */
 
+typedef enum FwWorldFlags { /* how fire reaches other objects; none of them: it does not */
+    FW_WORLD_RADIATION = 1, /* flames heat what they shine on until it catches */
+    FW_WORLD_PLUME = 2,     /* hot gas heats what is above */
+    FW_WORLD_CONTACT = 4,   /* flames lick across gaps of up to 5 cm */
+    FW_WORLD_EMBERS = 8,    /* burning bits fly downwind and may light what they land on */
+    /* For every object that is created while they are set, as if it had the flag of that name. */
+    FW_WORLD_NO_SPREAD = 16,
+    FW_WORLD_NO_DAMAGE = 32,
+    FW_WORLD_NO_HOLES = 64,
+    FW_WORLD_FLAGS_FORCE32 = 0x7fffffff
+} FwWorldFlags;
+
 typedef struct FwWorldDef {
-    uint32_t structSize, flags; /* 0 */
+    uint32_t structSize, flags; /* FwWorldFlags, default 0; see fwWorld_SetFlags */
     float up[3];                /* unit vector, default 0,1,0 */
     float paceFactor;           /* [0.1, 1000], default 1: how much faster than wood fire spreads
                                    and burns out. Games use 5 to 30. */
@@ -169,6 +183,19 @@ typedef struct FwWorldDef {
     uint32_t maxRefinedTriangles; /* [1000, 16000000], default 400000: what refined objects aim to
                                      stay within, together; software devices do well with 60000 */
     uint32_t reserved1;         /* 0 */
+    /* Limits of spread, for the world; objects have their own beside these. The stricter counts. */
+    float spreadChance;         /* [0, 1], default 1: of each jump from object to object, decided once for
+                                   a pair and a fire, and of each ember */
+    uint32_t maxHops;           /* fire that came over this many jumps goes to no other object; 0: no limit */
+    uint32_t maxBurningTiles;   /* while as many tiles of 8 x 8 texels burn, none more catches but by
+                                   fwWorld_Ignite. Checked before each substep: one substep's arrivals
+                                   may exceed it. 0: no limit */
+    float timeToLive;           /* s that the front of an object moves after the object caught; 0: no limit */
+    /* How much of `from` a fire of its sees `to`, 0 to 1: asked when one of them moved, kept until then.
+       Null: all. Called from the thread that steps the world; it must give the same answer to the same
+       poses wherever worlds are to be equal. */
+    float (FW_CALL* visibility)(void* visibilityData, FwBurnableMeshId from, FwBurnableMeshId to);
+    void* visibilityData;
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
     FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;
@@ -179,6 +206,23 @@ FW_API size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t 
 /* Uniform wind, m/s, world space, each component within +-120. Filtered over a material's link
  * time before it reaches a front. [world] */
 FW_API FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]);
+/* FwWorldFlags from the next exchange on: fire reaches other objects eight times a second. What
+ * they say of objects counts for those created from now on. [world] */
+FW_API FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags);
+
+typedef struct FwBlockerDef { /* a box that radiation, plumes and embers do not pass: a wall, a door */
+    uint32_t structSize, flags; /* 0 */
+    float transform[16];        /* box to world, rigid and uniform scale; default identity */
+    float halfSize[3];          /* m, each [0, 30]; 0: a quad. Default 0.5 */
+    uint32_t reserved;          /* 0 */
+} FwBlockerDef;
+static inline FwBlockerDef fwDefaultBlockerDef(void) {
+    FwBlockerDef d; fwInitDef(FW_DEF_BLOCKER, &d, (uint32_t)sizeof d); return d;
+}
+/* At most 64 at a time. What is within 6 cm of a box's surface is not behind it. [world] */
+FW_API FwResult FW_CALL fwWorld_AddBlocker(FwWorld*, const FwBlockerDef* def, FwBlockerId* id);
+FW_API FwResult FW_CALL fwWorld_MoveBlocker(FwWorld*, FwBlockerId id, const float transform[16]); /* [world] */
+FW_API FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld*, FwBlockerId id); /* [world] */
 
 /* ---- materials ------------------------------------------------------------------------------------ */
 
@@ -313,6 +357,8 @@ typedef enum FwBurnableFlags {
     FW_BURNABLE_SPRINGS = 512,  /* deformed by the published mass-spring model, for comparison */
     FW_BURNABLE_SKINNED = 1024, /* the host moves its vertices: fwWorld_SetVertexPositions */
     FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
+    FW_BURNABLE_NO_DAMAGE = 4096, /* its fire takes its course, and nothing is seen of it but flames:
+                                     no char, no holes, no recession, no curling, no refinement */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
 
@@ -339,6 +385,11 @@ typedef struct FwBurnableMeshDef {
     const FwPin* pins;                /* of FW_BURNABLE_SHELL, or null: it falls */
     uint32_t pinCount;                /* [0, 8] */
     float ground;                     /* m, world, along up: sheets fall no deeper; default -1e9 */
+    float spreadChance;               /* as in FwWorldDef, of this object: the chance of its fire to jump,
+                                         times the world's; default 1 */
+    uint32_t maxHops;                 /* 0: no limit */
+    uint32_t maxBurningTiles;         /* of this object; 0: no limit */
+    float timeToLive;                 /* s, 0: no limit */
 } FwBurnableMeshDef;
 static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
     FwBurnableMeshDef d; fwInitDef(FW_DEF_BURNABLE_MESH, &d, (uint32_t)sizeof d); return d;
@@ -428,6 +479,9 @@ typedef enum FwEventType {
     FW_EVENT_FRONT_LIMITED = 5, /* many arrivals come late: the front is faster than 8 substeps
                                    can follow; value: how many since the last such event */
     FW_EVENT_TIME_DROPPED = 6,  /* more steps were due than maxStepsPerFrame; value: s dropped */
+    FW_EVENT_SPREAD_TO = 7,     /* `object` was lit by `other`; tag: jumps since the first fire; value: s
+                                   since world start; position: of `object`'s box's middle */
+    FW_EVENT_SPOT_FIRE = 8,     /* an ember lit `object`; position: there; value: how many since the last */
     FW_EVENT_TYPE_FORCE32 = 0x7fffffff
 } FwEventType;
 typedef struct FwEvent {        /* 64 bytes for ever */
@@ -436,7 +490,8 @@ typedef struct FwEvent {        /* 64 bytes for ever */
     FwBurnableMeshId object;
     uint64_t frameIndex;        /* the frame whose work raised it */
     float position[3], value;
-    uint64_t reserved[2];
+    FwBurnableMeshId other;     /* FW_EVENT_SPREAD_TO: who lit it; else null */
+    uint64_t reserved;
 } FwEvent;
 /* Oldest first; returns how many were written, 0 when there are no more. At most 4096 wait; then
  * the oldest are dropped and the next one says so in the log. [world] */

@@ -6,6 +6,7 @@
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_state.h"
+#include "mesh/remote_tiles.h"
 
 #include <algorithm>
 #include <bit>
@@ -22,8 +23,8 @@ static_assert(kSwitchDense == FW_DEBUG_DENSE && kSwitchShuffle == FW_DEBUG_SHUFF
 
 namespace {
 
-constexpr const char* kTimerNames[kTimerCount] = {"wake",    "events", "heat",      "schedule",
-                                                  "arrival", "commit", "published", "reduce"};
+constexpr const char* kTimerNames[kTimerCount] = {
+    "wake", "events", "heat", "schedule", "arrival", "commit", "published", "reduce", "exchange"};
 
 class Stopwatch {
  public:
@@ -91,7 +92,10 @@ void CpuBackend::State::touch(uint32_t worldTile, uint32_t bits) noexcept {
 
 void CpuBackend::State::burning(uint32_t worldTile) noexcept {
     uint32_t& flag = tiles[worldTile].flag;
-    if ((flag & kTileBurning) == 0) burnList.push_back(worldTile);
+    if ((flag & kTileBurning) == 0) {
+        burnList.push_back(worldTile);
+        ++objects[tiles[worldTile].object]->counters.burningTiles;
+    }
     flag |= kTileBurning;
 }
 
@@ -152,6 +156,7 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             object.counters.lastIgnition =
                 std::max(object.counters.lastIgnition, step.now + kStepTicks);
             burning(worldTile);
+            if (!isSource(before)) litFrom(object, kLitByHand);
         }
         if (!object.published.empty()) {
             publishedEvent(object, first.texel, isSource(now));
@@ -186,6 +191,19 @@ void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, u
         if ((tile.flag & kTileListed) != 0) listOut.push_back(worldTile);
         return;
     }
+    if (step.governed) {
+        const CpuObject& object = *objects[tile.object];
+        const bool listed = (tile.flag & kTileListed) != 0;
+        if (stoppedAt(object.counters.stopTick, step.now)) {
+            tile.flag &= ~(kTileListed | kTileTouched);
+            return;
+        }
+        if (holdsTile(tile.flag, scheduledBurning, step.rules.tilesMost,
+                      object.counters.burningTiles, object.remote.flags, object.remote.tilesMost)) {
+            if (listed) listOut.push_back(worldTile);
+            return;
+        }
+    }
     const uint32_t end = iterationEnd(step.now, iteration, step.substepShift, record.substepShift);
     if (dense || (tile.flag & kTileTouched) != 0 || tile.wake <= end) {
         runList.push_back(worldTile);
@@ -201,6 +219,7 @@ void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, u
 void CpuBackend::State::schedule(const StepPlan& step, uint32_t iteration) noexcept {
     runList.clear();
     listOut.clear();
+    scheduledBurning = uint32_t(burnList.size()) + goneBurning;
     if ((switches & kSwitchDense) != 0) {
         for (const core::Owned<CpuObject>& object : objects) {
             if (!object || !object->live || !object->published.empty()) continue;
@@ -333,8 +352,12 @@ CpuBackend::CpuBackend(std::pmr::memory_resource* memory, uint32_t maxLights)
 CpuBackend::~CpuBackend() = default;
 
 void CpuBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
+    std::pmr::vector<RemoteTile> tiles(state_->memory);
+    (void)mesh::remoteTiles(domain, tiles);
+    if (slot >= state_->remoteTiles.size()) state_->remoteTiles.resize(slot + 1);
     if (slot >= state_->meshes.size()) state_->meshes.resize(slot + 1, nullptr);
     state_->meshes[slot] = &domain;
+    state_->remoteTiles[slot].swap(tiles);
 }
 
 void CpuBackend::destroyMesh(uint32_t slot) noexcept {
@@ -364,6 +387,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
         createHeat(*object);
     }
     if ((init.record.flags & kObjectPublished) != 0) createPublished(*object);
+    object->sources.resize(mesh::sourceCells(domain));
     if (slot >= s.objects.size()) s.objects.resize(slot + 1);
     s.freeTiles.reserve(s.objects.size() + s.freeTiles.size() + 1);
     const uint32_t first = s.allocateTiles(domain.tileCount());
@@ -388,6 +412,8 @@ void CpuBackend::destroyObject(uint32_t slot) noexcept {
     if (slot >= s.objects.size() || !s.objects[slot]) return;
     const uint32_t first = s.objects[slot]->record.worldTileBase;
     const uint32_t count = s.objects[slot]->record.tileCount;
+    s.goneBurning += uint32_t(std::count_if(s.burnList.begin(), s.burnList.end(),
+                                            [&](uint32_t tile) { return tile - first < count; }));
     for (auto* entries : {&s.list, &s.burnList, &s.hotList})
         std::erase_if(*entries, [&](uint32_t tile) { return tile - first < count; });
     std::erase_if(s.burnTiles, [&](const BurnTile& tile) { return tile.object == slot; });
@@ -431,11 +457,15 @@ void CpuBackend::run(const FramePlan& plan) {
     store.lights.clear();
     store.lights.reserve(s.maxLights);
 
+    for (const StepPlan& step : plan.steps)
+        if (step.remote) s.reserveRemote(*step.remote);
+
     s.switches = plan.switches;
     s.runTiles = 0;
     s.milliseconds.fill(0);
     s.timed.fill(0);
     for (const StepPlan& step : plan.steps) {
+        if (step.remote) s.placeRemote(*step.remote);
         if (!step.materials.empty()) {
             Stopwatch watch(s, kTimerWake);
             s.wake(step);
@@ -457,6 +487,10 @@ void CpuBackend::run(const FramePlan& plan) {
         if (step.reduce) {
             Stopwatch watch(s, kTimerReduce);
             s.reduce(step.now + kStepTicks);
+        }
+        if (step.exchange) {
+            Stopwatch watch(s, kTimerExchange);
+            s.exchange(step.rules, step.now + kStepTicks);
         }
     }
 
@@ -500,6 +534,7 @@ void CpuBackend::run(const FramePlan& plan) {
     store.readback.runTiles = uint32_t(std::min<uint64_t>(s.runTiles, 0xFFFFFFFFu));
     store.readback.burningTiles = uint32_t(s.burnTiles.size());
     store.readback.hotTiles = uint32_t(s.hotList.size());
+    store.readback.receivers = s.receivers;
     ++s.waiting;
 
     s.timesCount = 0;

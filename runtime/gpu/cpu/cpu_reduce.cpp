@@ -37,6 +37,7 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
     for (uint32_t worldTile : list) ++objects[tiles[worldTile].object]->counters.frontTiles;
 
     burnTiles.clear();
+    goneBurning = 0;
     size_t kept = 0;
     for (uint32_t worldTile : burnList) {
         CpuObject& object = *objects[tiles[worldTile].object];

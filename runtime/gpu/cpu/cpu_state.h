@@ -9,7 +9,7 @@ namespace fw::gpu::cpu {
 
 struct CpuObject {
     explicit CpuObject(std::pmr::memory_resource* memory)
-        : state(memory), slowness(memory), published(memory), heat(memory) {}
+        : state(memory), slowness(memory), published(memory), heat(memory), sources(memory) {}
     bool live = false;
     uint32_t mesh = 0;
     BurnObject record{};
@@ -22,6 +22,8 @@ struct CpuObject {
     std::pmr::vector<uvec2> heat;         // packed HeatTexel, one per texel; empty: none
     std::array<HeatMaterial, kMaterialsPerObject> heatMaterials{};
     uint32_t publishedParity = 0;
+    RemoteObject remote{};                 // without kRemoteLive until its first update
+    std::pmr::vector<FireSource> sources;  // by cell, see mesh/remote_tiles.h
 };
 
 // cpu_heat.cpp; after the states are there, which become as wet as their texels.
@@ -57,6 +59,7 @@ enum Timer : uint32_t {
     kTimerCommit,
     kTimerPublished,
     kTimerReduce,
+    kTimerExchange,
     kTimerCount
 };
 
@@ -80,8 +83,26 @@ struct CpuBackend::State {
                         uint32_t now) noexcept;  // cpu_heat.cpp: the texel's state after them
     void heatStep(uint32_t now) noexcept;
     void heatTile(uint32_t worldTile, bool doze, uint32_t now) noexcept;
-    void publishedStep(uint32_t now) noexcept;                   // cpu_published.cpp
-    void reduce(uint32_t now) noexcept;                          // cpu_reduce.cpp
+    void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
+    void reduce(uint32_t now) noexcept;         // cpu_reduce.cpp
+    // cpu_exchange.cpp
+    void reserveRemote(const RemoteUpdate& update);  // throws std::bad_alloc
+    void placeRemote(const RemoteUpdate& update) noexcept;
+    void exchange(const ExchangePush& given, uint32_t now) noexcept;
+    void sumSources() noexcept;
+    void settleSources(const ExchangePush& rules) noexcept;
+    void warmAll(const ExchangePush& rules) noexcept;
+    void gatherSources(uint32_t slot, const ExchangePush& rules) noexcept;
+    void warmTile(uint32_t slot, uint32_t local, const ExchangePush& rules) noexcept;
+    void contacts(const ExchangePush& rules) noexcept;
+    void embers(const ExchangePush& rules) noexcept;
+    bool light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by, uint32_t now) noexcept;
+    uint32_t landsOn(const ivec3& at, uint32_t axis, int& top) const noexcept;
+    void landEmber(const FireSource& source, const Ember& ember, uint32_t target, int top,
+                   uint32_t axis, const ExchangePush& rules) noexcept;
+    static uint32_t nearestLane(const CpuObject& object, uint32_t tile, const ivec3& at,
+                                uint32_t axis) noexcept;
+    void litFrom(CpuObject& object, uint32_t by) noexcept;
     void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
     uint32_t allocateTiles(uint32_t count);
     void releaseTiles(uint32_t first, uint32_t count) noexcept;
@@ -108,6 +129,20 @@ struct CpuBackend::State {
     uint32_t random = 1;  // of the shuffle switch
     uint64_t runTiles = 0;
     uint32_t publishedObjects = 0;
+    // Fire at a distance.
+    std::pmr::vector<std::pmr::vector<RemoteTile>> remoteTiles{memory};  // by mesh
+    std::pmr::vector<uint32_t> neighbours{memory};
+    std::pmr::vector<ContactLink> links{memory};
+    std::pmr::vector<Blocker> blockers{memory};
+    uint32_t receivers = 0;
+    struct Warms {  // a source of the receiver at hand
+        const FireSource* source = nullptr;
+        uint32_t seen = 0;  // of 255
+    };
+    std::array<Warms, kSourcesPerReceiver> warms{};
+    uint32_t warmCount = 0;
+    uint32_t scheduledBurning = 0;  // burning tiles as an iteration begins
+    uint32_t goneBurning = 0;       // of destroyed objects, which count until the next reduce
     std::array<double, kTimerCount> milliseconds{};
     std::array<uint32_t, kTimerCount> timed{};
     std::array<PassTime, kTimerCount> times{};

@@ -12,13 +12,14 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,       &kEventsPass,      &kHeatPass,         &kWakePass,          &kSchedulePass,
-    &kGatherPass,      &kArrivalPass,     &kArrivalRimPass,   &kCommitPass,        &kPublishedPass,
-    &kReduceClearPass, &kReduceFrontPass, &kReducePass,       &kPredictGatherPass, &kPredictPass,
-    &kPredictRimPass,  &kSupportPass,     &kProbePass,        &kLightsPass,        &kFlameQuadsPass,
-    &kFlameSortPass,   &kRefineHeatPass,  &kRefineLevelsPass, &kRefineScanPass,    &kRefineEmitPass,
-    &kRefinePlacePass, &kRecedePass,      &kBendPass,         &kSoftPass,          &kSpringsPass,
-    &kDrapePass,       &kSkinPass,        &kSootPass,         &kRefineCutPass};
+    &kResetPass,       &kEventsPass,      &kHeatPass,       &kWakePass,         &kSchedulePass,
+    &kGatherPass,      &kArrivalPass,     &kArrivalRimPass, &kCommitPass,       &kPublishedPass,
+    &kReduceClearPass, &kReduceFrontPass, &kReducePass,     &kFireCellsPass,    &kFireSourcesPass,
+    &kReceiversPass,   &kExchangePass,    &kContactsPass,   &kEmbersPass,       &kPredictGatherPass,
+    &kPredictPass,     &kPredictRimPass,  &kSupportPass,    &kProbePass,        &kLightsPass,
+    &kFlameQuadsPass,  &kFlameSortPass,   &kRefineHeatPass, &kRefineLevelsPass, &kRefineScanPass,
+    &kRefineEmitPass,  &kRefinePlacePass, &kRecedePass,     &kBendPass,         &kSoftPass,
+    &kSpringsPass,     &kDrapePass,       &kSkinPass,       &kSootPass,         &kRefineCutPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -64,6 +65,36 @@ void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles) {
     recorder.dispatch(kResetPass, &push, std::min(tiles, kMaxGroups));
 }
 
+namespace {
+
+void recordExchange(vk::FrameRecorder& recorder, const FrameLists& lists, const StepRecord& step) {
+    ExchangePush push = step.rules;
+    push.now = step.now + kStepTicks;
+    push.burnParity = lists.burnParity;
+    push.row = lists.row;
+    push.parity = lists.parity;
+    push.predictParity = lists.predictParity;
+    push.switches = step.switches;
+    push.hotParity = lists.hotParity;
+    push.count = step.objectSlots;
+    zeroRow(recorder, kRowExchange);
+    recorder.dispatchRun(kFireCellsPass, &push, kRowBurn + lists.burnParity);
+    recorder.dispatch(kFireSourcesPass, &push, std::max(groupsOf(push.count), 1u));
+    if (push.warms != 0) {
+        recorder.dispatch(kReceiversPass, &push, std::max(groupsOf(push.count), 1u));
+        recorder.dispatchRun(kExchangePass, &push, kRowExchange);
+    }
+    if ((push.flags & kRemoteContact) && step.links) {
+        push.count = step.links;
+        recorder.dispatch(kContactsPass, &push, (step.links + 63) / 64);
+    }
+    push.count = step.objectSlots;
+    if (push.flags & kRemoteEmbers)
+        recorder.dispatch(kEmbersPass, &push, std::max(groupsOf(push.count), 1u));
+}
+
+}  // namespace
+
 void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord& step) {
     const bool dense = (step.switches & kSwitchDense) != 0;
     const auto pushNow = [&] {
@@ -75,7 +106,8 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         push.burnParity = lists.burnParity;
         push.predictParity = lists.predictParity;
         push.hotParity = lists.hotParity;
-        push.switches = step.switches;
+        push.switches = step.switches | (step.governed ? kSwitchGoverned : 0u);
+        push.tilesMost = step.rules.tilesMost;
         return push;
     };
     StepPush push = pushNow();
@@ -127,6 +159,7 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
     recorder.dispatchList(kReduceFrontPass, &push, lists.row);
     recorder.dispatchList(kReducePass, &push, kRowBurn + lists.burnParity);
     lists.burnParity ^= 1;
+    if (step.exchange) recordExchange(recorder, lists, step);
 }
 
 void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick) {

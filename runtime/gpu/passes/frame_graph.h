@@ -3,6 +3,7 @@
 #include "gpu/passes/draw.h"
 #include "gpu/passes/pass.h"
 #include "shared/deform.h"
+#include "shared/exchange.h"
 #include "shared/refine.h"
 
 #include <cstddef>
@@ -16,7 +17,8 @@ class FrameRecorder;
 
 extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedulePass, kGatherPass,
     kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
-    kReducePass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
+    kReducePass, kFireCellsPass, kFireSourcesPass, kReceiversPass, kExchangePass, kContactsPass,
+    kEmbersPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRecedePass, kBendPass,
     kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass;
@@ -63,6 +65,10 @@ struct StepRecord {
     Staged wakeGroups;  // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;
     std::span<const PublishedStep> published;
+    bool governed = false;
+    bool exchange = false;
+    ExchangePush rules{};  // of the exchange, but for what the lists say
+    uint32_t links = 0;    // contacts
 };
 
 // Makes counters row kRowIteration the front list's and zeroes the `iterations` rows after it.

@@ -1,4 +1,4 @@
-// Zeroes the figures that the two passes after it count.
+// Zeroes the figures and fire sources that the passes after it sum.
 #include "gpu/passes/frame_graph.h"
 
 namespace fw::gpu {
@@ -6,6 +6,8 @@ namespace {
 
 constexpr Use kUses[] = {
     {FW_BIND_OBJECT_COUNTERS, Access::write},
+    {FW_BIND_REMOTE_OBJECTS, Access::read},
+    {FW_BIND_SOURCES, Access::write},
 };
 
 }  // namespace

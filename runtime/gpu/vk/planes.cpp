@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "shared/deform.h"
-#include "shared/heat.h"
+#include "shared/exchange.h"
 #include "shared/look.h"
 #include "shared/refine.h"
 
@@ -75,6 +75,17 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_SKIN_SOURCES, kSpaceSkinSources, 4, true, kComponentMeshes, "skin sources", 0},
     {FW_BIND_SKIN_GIVEN, kSpaceSkinGiven, 4, false, kComponentObjects, "skin vertices", 0},
     {FW_BIND_SKIN_TEXELS, kSpaceSkin, 16 * kTileTexels, true, kComponentMeshes, "skin texels", 0},
+    {FW_BIND_REMOTE_OBJECTS, kSpaceObjects, sizeof(RemoteObject), true, kComponentObjects,
+     "remote objects", 0},
+    {FW_BIND_REMOTE_TILES, kSpaceMeshTiles, sizeof(RemoteTile), true, kComponentMeshes,
+     "remote tiles", 0},
+    {FW_BIND_SOURCES, kSpaceSources, sizeof(FireSource), true, kComponentObjects, "fire sources",
+     0},
+    {FW_BIND_RECEIVERS, kSpaceObjects, 4 * kReceiverWords, false, kComponentLists, "receivers", 0},
+    {FW_BIND_NEIGHBOURS, kSpaceNeighbours, 4, true, kComponentObjects, "neighbours", 0},
+    {FW_BIND_CONTACTS, kSpaceContacts, sizeof(ContactLink), true, kComponentObjects, "contacts", 0},
+    {FW_BIND_BLOCKERS, kSpaceFixed, sizeof(Blocker) * kMaxBlockers, true, kComponentObjects,
+     "blockers", 0},
     {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},
@@ -111,9 +122,11 @@ constexpr Plane kPlanes[] = {
 };
 
 constexpr uint32_t kInitialUnits[kSpaceCount] = {
-    64,  1024, 512,  512, 1024, 1024, 4096, 16384, kCounterRows, 4096, 1024, 1024, 256,
-    256, 1024, 1024, 512, 256,  1024, 4096, 256,   256,          1,    1,    1,    1,
-    1,   1,    1,    1,   1,    1,    1,    1};
+    64,   1024, 512,  512, 1024, 1024, 4096, 16384, kCounterRows,
+    4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
+    1024, 4096, 256,  256, 1,    1,    1,    1,     1,
+    1,    1,    1,    1,   1,    1,    1024, 1,     1,
+    1};
 
 }  // namespace
 

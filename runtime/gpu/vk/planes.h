@@ -44,6 +44,9 @@ enum Space : uint32_t {
     kSpaceSkin,             // 8x8 tiles of meshes with skinned objects
     kSpaceSkinSources,      // drawn vertices of such meshes
     kSpaceSkinGiven,        // words of hosts' vertex buffers
+    kSpaceSources,          // fire sources of objects
+    kSpaceNeighbours,       // words, and
+    kSpaceContacts,         // links between objects, as of the last update
     kSpaceFixed,            // one unit
     kSpaceCount,
 };

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "gpu/vk/world_state.h"
 #include "mesh/bake.h"
+#include "mesh/remote_tiles.h"
 
 #include <glm/glm.hpp>
 
@@ -460,6 +461,8 @@ void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
         s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
     if (entry.heatTiles.units)
         s.planes.release(kSpaceHeat, entry.heatTiles.first, entry.heatTiles.units);
+    if (entry.sources.units)
+        s.planes.release(kSpaceSources, entry.sources.first, entry.sources.units);
     if (entry.deformer.units)
         s.planes.release(kSpaceDeformers, entry.deformer.first, entry.deformer.units);
     if (entry.soft.units) s.planes.release(kSpaceSoft, entry.soft.first, entry.soft.units);
@@ -489,6 +492,8 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     fresh.indices = uint32_t(domain.indices.size());
     fresh.domain = &domain;
     measureDrawn(domain, fresh);
+    std::pmr::vector<RemoteTile> remoteTiles(s.memory);
+    fresh.sourceCells = mesh::remoteTiles(domain, remoteTiles);
     const DrawnOrder order(domain, s.memory);
     const size_t uploadsBefore = s.uploads.size();
     const struct {
@@ -519,6 +524,8 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
              uint64_t(fresh.meshTiles.first) * kTileTexels * 4},
             {FW_BIND_TILES, domain.tiles.data(), domain.tiles.size() * 32,
              uint64_t(fresh.meshTiles.first) * 32},
+            {FW_BIND_REMOTE_TILES, remoteTiles.data(), remoteTiles.size() * sizeof(RemoteTile),
+             uint64_t(fresh.meshTiles.first) * sizeof(RemoteTile)},
             {FW_BIND_SLOWNESS, domain.slowness.data(), domain.slowness.size() * 2,
              uint64_t(fresh.slowness.first) * kTileTexels * 2},
             {FW_BIND_LINKS, domain.links.data(), domain.links.size() * 4,
@@ -616,6 +623,8 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         }
         if (init.record.flags & kObjectPublished)
             fresh.published = {s.planes.allocate(kSpacePublished, mesh.tiles, last), mesh.tiles};
+        fresh.sources = {s.planes.allocate(kSpaceSources, mesh.sourceCells, last),
+                         mesh.sourceCells};
         if (!init.heat.empty())
             fresh.heatTiles = {s.planes.allocate(kSpaceHeat, mesh.tiles, last), mesh.tiles};
         if (init.deform) {

@@ -49,6 +49,14 @@ const Readback* VkBackend::State::nextReadback() {
             for (uint32_t i = 0; i < std::min(layout.objects, uint32_t(objects.size())); ++i)
                 if (givenObjects[i].burning != 0 || givenObjects[i].frontTiles != 0)
                     noteFire(i, one.endTick);
+            // What another object lit is drawn as one that burns, from now on.
+            for (size_t i = 0; i < objects.size() && i < givenObjects.size(); ++i) {
+                if (objects[i].touched || !objects[i].live || objects[i].resetDue ||
+                    givenObjects[i].ignited == 0)
+                    continue;
+                objects[i].touched = true;
+                recordsDirty = true;
+            }
             uint64_t at = 0, heatAt = 0;
             for (uint32_t i = 0; i < layout.mapCount; ++i) {
                 const ReadbackLayout::MapAt& map = layout.maps[i];
@@ -72,6 +80,7 @@ const Readback* VkBackend::State::nextReadback() {
             for (uint32_t i = layout.firstRow; i < layout.rows; ++i)
                 given.runTiles += row(i).runCount;
             given.frontTiles = row(layout.rows).listCount;
+            given.receivers = row(kRowExchange).runCount;
             given.burningTiles = row(kRowBurn + layout.burnParity).runCount;
             given.hotTiles = row(kRowHot + layout.hotParity).listCount;
             givenLights.clear();
@@ -89,7 +98,8 @@ const Readback* VkBackend::State::nextReadback() {
             if (one.ringFrame >= lastStimulus && !spreading) {
                 hotEmpty = given.hotTiles == 0;
                 frontEmpty = given.frontTiles == 0 && hotEmpty;
-                burnEmpty = frontEmpty && row(kRowBurn + layout.burnParity).listCount == 0;
+                burnEmpty = frontEmpty && given.receivers == 0 &&
+                            row(kRowBurn + layout.burnParity).listCount == 0;
                 predictEmpty = frontEmpty && row(kRowPredict + layout.predictParity).listCount == 0;
             }
             given.answers = givenAnswers;

@@ -100,6 +100,9 @@ struct FrameNeeds {
     uint64_t uploadBytes = 0;             // at most
     uint64_t iterations = 0;              // of all steps
     uint32_t events = 0, wakeGroups = 0;  // of the largest step
+    uint32_t neighbours = 0, links = 0;   // of the largest remote update
+    bool placing = false;                 // there is one
+    bool exchanges = false;               // fire may come from other objects
     bool stimulus = false;                // an event or a latch
     bool findsAnew = false;               // the first step wakes what forgets
     bool burning = false, predicting = false, publishedRuns = false, heating = false;
@@ -150,8 +153,10 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
             s.published.push_back({i, publishedGroups(object.record), 0});
     }
     const bool anyStep = !plan.steps.empty();
+    // What burns may light something anew, where no front is left.
     bool iterates = !s.frontEmpty || needs.dense || needs.never;
     for (const StepPlan& step : plan.steps) {
+        iterates |= step.exchange && !s.burnEmpty;
         if (step.events.size() > size_t(kMaxGroups) * 64)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "One step has %zu texel events; the limit is %u.",
                        step.events.size(), kMaxGroups * 64);
@@ -160,6 +165,17 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
             needs.uploadBytes += uploaded(sizeof update.materials) + kUploadAlignment;
             if (!needs.dense) wake += wakeGroupsOf(s.objects[update.object]);
         }
+        if (step.remote) {
+            const RemoteUpdate& update = *step.remote;
+            needs.placing = true;
+            needs.neighbours = std::max(needs.neighbours, uint32_t(update.neighbours.size()));
+            needs.links = std::max(needs.links, uint32_t(update.links.size()));
+            needs.uploadBytes += update.objects.size() * uploaded(sizeof(RemoteObject)) +
+                                 uploaded(update.neighbours.size_bytes()) +
+                                 uploaded(update.links.size_bytes()) +
+                                 uploaded(update.blockers.size_bytes());
+        }
+        needs.exchanges |= step.exchange;
         needs.events = std::max(needs.events, uint32_t(step.events.size()));
         needs.wakeGroups = std::max(needs.wakeGroups, uint32_t(wake));
         needs.uploadBytes +=
@@ -206,11 +222,13 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     needs.publishedRuns =
         anyStep &&
         std::any_of(s.published.begin(), s.published.end(), [&](const PublishedStep& one) {
-            return needs.stimulus || s.objects[one.object].publishedTouched;
+            return needs.stimulus || needs.exchanges || s.objects[one.object].publishedTouched;
         });
-    needs.heating = !s.hotEmpty || needs.stimulus || needs.never;
     needs.burning = !s.burnEmpty || needs.stimulus || needs.never;
-    needs.predicting = !s.predictEmpty || needs.stimulus || needs.never;
+    needs.heating =
+        !s.hotEmpty || (needs.exchanges && needs.burning) || needs.stimulus || needs.never;
+    needs.predicting =
+        !s.predictEmpty || (needs.exchanges && needs.burning) || needs.stimulus || needs.never;
     needs.falling =
         anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
@@ -218,8 +236,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     const uint64_t refineBytes = s.planRefine(plan);
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
-                 refineBytes > 0 || forgets || s.recordsDirty || !s.uploads.empty() ||
-                 s.planes.movesPending();
+                 refineBytes > 0 || forgets || needs.placing || s.recordsDirty ||
+                 !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
 
@@ -262,6 +280,8 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     s.planes.atLeast(kSpaceWakeGroups, needs.wakeGroups, last);
     s.planes.atLeast(kSpaceProbes, uint32_t(plan.probes.size()), last);
     s.planes.atLeast(kSpaceDeformGroups, needs.deformGroups(), last);
+    s.planes.atLeast(kSpaceNeighbours, needs.neighbours, last);
+    s.planes.atLeast(kSpaceContacts, needs.links, last);
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);
@@ -331,6 +351,10 @@ void recordUploads(VkBackend::State& s) {
     s.uploads.clear();
 }
 
+bool looksBurnt(const ObjectEntry& object) noexcept {
+    return object.touched && (object.record.flags & kObjectNoDamage) == 0;
+}
+
 SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
     const vec4 row = object.record.worldRow0;
     const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
@@ -343,6 +367,10 @@ SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_
 void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
         ObjectEntry& object = s.objects[i];
+        if (object.resetDue ||
+            (object.recordDirty && !object.live))  // until it is placed others do not see it
+            recorder.fillZero(FW_BIND_REMOTE_OBJECTS, i * sizeof(RemoteObject),
+                              sizeof(RemoteObject));
         if (object.recordDirty) {
             const Staged staged = writer.write(std::span<const BurnObject>(&object.record, 1));
             recorder.copyIn(staged.at, FW_BIND_OBJECTS, uint64_t(i) * sizeof(BurnObject),
@@ -369,7 +397,11 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
     s.drawItems.clear();
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
         ObjectEntry& object = s.objects[i];
-        if (object.resetDue) recordReset(recorder, i, object.record.tileCount);
+        if (object.resetDue) {
+            recordReset(recorder, i, object.record.tileCount);
+            recorder.fillZero(FW_BIND_SOURCES, object.sources.first * sizeof(FireSource),
+                              object.sources.units * sizeof(FireSource));
+        }
         object.resetDue = false;
         if (!object.live || (object.record.flags & kObjectHidden)) continue;
         const MeshEntry& mesh = s.meshes[object.mesh];
@@ -381,7 +413,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                     {i, m, mesh.indexRange.first + first, end - first,
                      int32_t(mesh.vertexRange.first),
                      object.shown.units ? object.shown.first : kNoneTexel, object.images[m],
-                     surfaceVariant(object.materials[m], object.images[m] != 0, object.touched),
+                     surfaceVariant(object.materials[m], object.images[m] != 0, looksBurnt(object)),
                      object.refine.started, object.refine.cut, drawOf(s, object, m)});
             first = end;
         }
@@ -422,6 +454,29 @@ void recordMaterials(VkBackend::State& s, std::span<const MaterialUpdate> update
     }
 }
 
+// Who is where from this step on. A record is known without sources: those are ours.
+void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder& recorder,
+                  UploadWriter& writer) {
+    for (const RemoteUpdate::Placed& placed : update.objects) {
+        RemoteObject record = placed.record;
+        record.sourceBase = s.objects[placed.object].sources.first;
+        record.sourceCount = s.objects[placed.object].sources.units;
+        const Staged staged = writer.write(std::span<const RemoteObject>(&record, 1));
+        recorder.copyIn(staged.at, FW_BIND_REMOTE_OBJECTS, uint64_t(placed.object) * sizeof record,
+                        sizeof record);
+    }
+    const auto copy = [&](auto data, uint32_t resource) {
+        if (data.empty()) return;
+        const Staged staged = writer.write(data);
+        recorder.copyIn(staged.at, resource, 0, data.size_bytes());
+    };
+    copy(update.neighbours, FW_BIND_NEIGHBOURS);
+    copy(update.links, FW_BIND_CONTACTS);
+    copy(update.blockers, FW_BIND_BLOCKERS);
+    s.links = uint32_t(update.links.size());
+    s.blockers = uint32_t(update.blockers.size());
+}
+
 // The tiles that a step looks at anew: those of latched objects and of forgetful ones, or all.
 Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate> updates,
                        bool dense, bool findsAnew, UploadWriter& writer) {
@@ -457,7 +512,8 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event) {
     object.doused = object.doused || douses;
     for (DrawItem& item : s.drawItems) {
         if (item.object != event.object) continue;
-        item.variant = surfaceVariant(object.materials[item.material], item.image != 0, true);
+        item.variant =
+            surfaceVariant(object.materials[item.material], item.image != 0, looksBurnt(object));
         item.draw = drawOf(s, object, item.material);
     }
 }
@@ -681,7 +737,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     if (!initialized) {
         for (const uint32_t resource :
              {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
-              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS})
+              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS})
             recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
         initialized = true;
     }
@@ -697,7 +753,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     slot.layout.firstRow = lists.row;
     bool iterates = !frontEmpty || needs.dense || needs.never;
     for (const StepPlan& planned : plan.steps) {
-        iterates |= bringsNews(planned);
+        iterates |= bringsNews(planned) || (planned.exchange && !burnEmpty);
         StepRecord step;
         step.now = planned.now;
         step.stepShift = planned.substepShift;
@@ -706,6 +762,12 @@ void VkBackend::State::run(const FramePlan& plan) {
         step.iterate = iterates;
         step.reduce = planned.reduce && needs.burning;
         step.heat = planned.heat && needs.heating;
+        step.exchange = step.reduce && planned.exchange;
+        step.governed = planned.governed;
+        step.rules = planned.rules;
+        if (planned.remote) recordRemote(*this, *planned.remote, recorder, writer);
+        step.links = links;
+        step.rules.blockers = blockers;
         recordMaterials(*this, planned.materials, recorder, writer);
         const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
         step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);

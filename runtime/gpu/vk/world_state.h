@@ -61,6 +61,7 @@ struct MeshEntry {
     RangeOf meshTiles, slowness, links, readers, vertexRange, indexRange;
     uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
     RefineMesh refine[kRefineDepth + 1];             // by depth
+    uint32_t sourceCells = 1;                        // see mesh/remote_tiles.h
     float edge = 0;  // m at scale 1: side of a square as large as two mean triangles
     const mesh::BurnDomain* domain = nullptr;
     RangeOf nodes, coats;       // once an object deforms
@@ -82,7 +83,7 @@ struct ObjectEntry {
     BurnMaterial materials[kMaterialsPerObject]{};
     uint32_t images[kMaterialsPerObject] = {};  // slot + 1, 0: none
     HeatMaterial heat[kMaterialsPerObject]{};   // with kObjectHeat
-    RangeOf tiles, slowness, published, heatTiles;
+    RangeOf tiles, slowness, published, heatTiles, sources;
     RefineUse refine;
     bool publishedTouched = false;  // as-published mode: some event reached it
     uint32_t publishedParity = 0;
@@ -135,7 +136,7 @@ struct PendingUpload {
         uint32_t resource = 0;
         uint64_t from = 0, at = 0, bytes = 0;
     };
-    static constexpr uint32_t kMaxRegions = 8;
+    static constexpr uint32_t kMaxRegions = 10;
     Region regions[kMaxRegions];
     uint32_t regionCount = 0;
     VkImage image = VK_NULL_HANDLE;  // instead of regions
@@ -224,6 +225,7 @@ struct VkBackend::State {
     uint32_t supportFirst = 0;             // tile that the next look at what holds what begins at
     uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
     uint32_t shownTick = 0;                // tick of the state that draws show
+    uint32_t links = 0, blockers = 0;      // of the last remote update
     float wind[3] = {};
     float tickFraction = 0;
     uint64_t softStep = 0;  // number of the step that sheets and springs have come to

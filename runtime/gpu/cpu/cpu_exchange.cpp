@@ -1,0 +1,332 @@
+// Fire at a distance, every fourth step after `reduce`: the passes of shaders/exchange, on vectors.
+#include "core/error.h"
+#include "gpu/cpu/cpu_state.h"
+#include "mesh/remote_tiles.h"
+
+#include <algorithm>
+
+namespace fw::gpu::cpu {
+namespace {
+
+ivec3 upOf(const ExchangePush& rules) noexcept { return {rules.upX, rules.upY, rules.upZ}; }
+
+uint32_t powerOf(const RemoteObject& object, uint32_t material) noexcept {
+    return (material < 4 ? object.power0 : object.power1)[int(material & 3)];
+}
+
+}  // namespace
+
+void CpuBackend::State::reserveRemote(const RemoteUpdate& update) {
+    neighbours.reserve(update.neighbours.size());
+    links.reserve(update.links.size());
+    blockers.reserve(update.blockers.size());
+}
+
+void CpuBackend::State::placeRemote(const RemoteUpdate& update) noexcept {
+    for (const RemoteUpdate::Placed& placed : update.objects)
+        if (placed.object < objects.size() && objects[placed.object])
+            objects[placed.object]->remote = placed.record;
+    neighbours.assign(update.neighbours.begin(), update.neighbours.end());
+    links.assign(update.links.begin(), update.links.end());
+    blockers.assign(update.blockers.begin(), update.blockers.end());
+}
+
+void CpuBackend::State::litFrom(CpuObject& object, uint32_t by) noexcept {
+    if (object.counters.litTick == 0) object.counters.litBy = std::max(object.counters.litBy, by);
+}
+
+void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexcept {
+    ExchangePush rules = given;
+    rules.now = now;
+    sumSources();
+    settleSources(rules);
+    if (rules.warms != 0) warmAll(rules);
+    if ((rules.flags & kRemoteContact) != 0) contacts(rules);
+    if ((rules.flags & kRemoteEmbers) != 0) embers(rules);
+}
+
+void CpuBackend::State::sumSources() noexcept {
+    for (core::Owned<CpuObject>& object : objects)
+        if (object && (object->remote.flags & kRemoteLive) != 0)
+            std::fill(object->sources.begin(), object->sources.end(), FireSource{});
+    for (const BurnTile& burning : burnTiles) {
+        CpuObject& object = *objects[burning.object];
+        if ((object.remote.flags & kRemoteLive) == 0) continue;
+        const RemoteTile& tile = remoteTiles[object.mesh][burning.tile];
+        FireSource& source = object.sources[tileCell(tile)];
+        const ivec3 middle = tileMiddle(tile);
+        source.power += burning.texels * powerOf(object.remote, tileMaterial(tile));
+        source.texels += burning.texels;
+        source.tiles += 1;
+        source.sumX += uint32_t(middle.x) >> 2;
+        source.sumY += uint32_t(middle.y) >> 2;
+        source.sumZ += uint32_t(middle.z) >> 2;
+    }
+}
+
+void CpuBackend::State::settleSources(const ExchangePush& rules) noexcept {
+    const auto burningTiles = uint32_t(burnTiles.size());
+    for (uint32_t slot = 0; slot < objects.size(); ++slot) {
+        if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
+        CpuObject& object = *objects[slot];
+        ObjectCounters& c = object.counters;
+        noteFire(c, object.remote, rules);
+        c.held = heldBits(burningTiles, rules.tilesMost, c.burningTiles, object.remote.tilesMost,
+                          c.stopTick, rules.now);
+        if (c.burning == 0) continue;
+        const uint32_t hops = hopsOf(c.litBy);
+        const bool gives = mayGive(object.remote, hops, rules.hopsMost);
+        if (gives && (rules.flags & (kRemoteRadiation | kRemotePlume)) != 0)
+            for (uint32_t n = 0; n < object.remote.neighbourCount; ++n) {
+                const uint32_t other = neighbours[object.remote.neighbourFirst + n] & 0xFFFFFFu;
+                if (other >= objects.size() || !objects[other]) continue;
+                ObjectCounters& theirs = objects[other]->counters;
+                theirs.until = std::max(theirs.until, rules.now + kExchangeTurns * kExchangeTicks);
+            }
+        for (uint32_t cell = 0; cell < object.sources.size(); ++cell) {
+            FireSource& source = object.sources[cell];
+            if (!gives) {
+                source.watts = 0;
+                continue;
+            }
+            settleSource(source, object.remote);
+            source.object = slot;
+            source.hops = hops;
+            source.ember = 0;
+            if ((rules.flags & kRemoteEmbers) != 0 && source.watts != 0)
+                source.ember =
+                    emberOf(rules.seed, slot, cell, rules.now, source.power, rules.brands);
+        }
+    }
+}
+
+bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by,
+                              uint32_t now) noexcept {
+    CpuObject& object = *objects[slot];
+    if (texel >= object.state.size() || !isReceptive(object.state[texel])) return false;
+    const uint32_t x = texel % object.domain->width, y = texel / object.domain->width;
+    const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
+    const uint32_t worldTile = object.record.worldTileBase + local;
+    if (!mayCatch(object.counters.held, tiles[worldTile].flag)) return false;
+    object.state[texel] = tick;
+    ++object.counters.ignited;
+    object.counters.lastIgnition = std::max(object.counters.lastIgnition, now);
+    burning(worldTile);
+    if (!object.heat.empty()) hot(worldTile);
+    litFrom(object, by);
+    if (!object.published.empty()) {
+        publishedEvent(object, texel, true);
+        return true;
+    }
+    tiles[worldTile].lastChange = now;
+    touchReaders(object, local, 1ull << ((y & 7) * 8 + (x & 7)));
+    return true;
+}
+
+void CpuBackend::State::warmAll(const ExchangePush& rules) noexcept {
+    receivers = 0;
+    const uint32_t turn = rules.now / kExchangeTicks % kExchangeTurns;
+    for (uint32_t slot = 0; slot < objects.size(); ++slot) {
+        if (!objects[slot]) continue;
+        CpuObject& object = *objects[slot];
+        if (object.counters.until < rules.now || object.heat.empty() ||
+            (object.remote.flags & kRemoteLive) == 0)
+            continue;
+        ++receivers;
+        object.counters.held |= kHeldWarm;
+        gatherSources(slot, rules);
+        for (uint32_t local = turn; local < object.record.tileCount; local += kExchangeTurns)
+            warmTile(slot, local, rules);
+    }
+}
+
+void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) noexcept {
+    const CpuObject& object = *objects[slot];
+    const ivec3 middle = boxMiddle(object.remote);
+    // Counts the sources of weight [low, high), or lists them.
+    const auto pass = [&](uint32_t low, uint32_t high, bool takes) {
+        uint32_t count = 0;
+        for (uint32_t n = 0; n < object.remote.neighbourCount; ++n) {
+            const uint32_t entry = neighbours[object.remote.neighbourFirst + n];
+            const uint32_t slotOf = entry & 0xFFFFFFu;
+            if (entry >> 24 == 0 || slotOf >= objects.size() || !objects[slotOf]) continue;
+            const CpuObject& from = *objects[slotOf];
+            if ((from.remote.flags & kRemoteLive) == 0 || from.counters.burning == 0 ||
+                !mayGive(from.remote, hopsOf(from.counters.litBy), rules.hopsMost) ||
+                !mayJump(rules.seed, slotOf, slot, from.counters.litTick,
+                         bothChances(rules.chance, from.remote.chance)))
+                continue;
+            for (const FireSource& source : from.sources) {
+                const uint32_t weight = sourceWeight(source, middle);
+                if (weight < low || weight >= high) continue;
+                if (takes && warmCount < kSourcesPerReceiver)
+                    warms[warmCount++] = {&source, entry >> 24};
+                ++count;
+            }
+        }
+        return count;
+    };
+    uint32_t low = 1;
+    while (pass(low, kNoneTexel, false) > kSourcesPerReceiver) low *= 2;
+    warmCount = 0;
+    pass(low, kNoneTexel, true);
+    if (low > 1) pass(low / 2, low, true);
+}
+
+void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
+                                 const ExchangePush& rules) noexcept {
+    CpuObject& object = *objects[slot];
+    const RemoteTile& tile = remoteTiles[object.mesh][local];
+    if (tile.texels == 0) return;
+    const uint32_t worldTile = object.record.worldTileBase + local;
+    const ivec3 up = upOf(rules);
+    const ivec3 at = remotePlace(object.remote, tileMiddle(tile));
+    const ivec3 normal = remoteTurn(object.remote, decodeNormal(tile.normal));
+    const bool both = (object.remote.flags & kRemoteTwoSided) != 0;
+    const bool may = mayCatch(object.counters.held, tiles[worldTile].flag);
+    uint32_t flux = 0, pilot = 0, strongest = 0, by = 0;
+    for (uint32_t i = 0; may && i < warmCount; ++i) {
+        const FireSource& source = *warms[i].source;
+        const Received got =
+            receivedFrom(source, rules.flags, rules.ambient, up, at, normal, both, warms[i].seen);
+        if ((got.flux | got.pilot) == 0) continue;
+        const ivec3 flame = alongFlame(source, up, 4);
+        if (std::any_of(blockers.begin(), blockers.end(),
+                        [&](const Blocker& b) { return blockerCuts(b, flame, at); }))
+            continue;
+        flux = std::min(flux + got.flux, kFluxMost);
+        pilot |= got.pilot;
+        const uint32_t key = litBy(source.hops, source.object);
+        if (got.flux > strongest || (got.flux == strongest && key > by)) {
+            strongest = got.flux;
+            by = key;
+        }
+    }
+    if (flux != 0) litFrom(object, by);
+    TileHeat& comes = tileHeat[worldTile];
+    if (comes.flux == flux && comes.pilot == pilot) return;
+    comes = {flux, pilot};
+    hot(worldTile);
+}
+
+void CpuBackend::State::contacts(const ExchangePush& rules) noexcept {
+    for (size_t i = 0; i < links.size();) {
+        const uint32_t slot = links[i].object, texel = links[i].texel;
+        uint32_t best = kNever, by = 0;
+        for (; i < links.size() && links[i].object == slot && links[i].texel == texel; ++i) {
+            const ContactLink& link = links[i];
+            if (link.fromObject >= objects.size() || !objects[link.fromObject]) continue;
+            const CpuObject& from = *objects[link.fromObject];
+            const uint32_t hops = hopsOf(from.counters.litBy);
+            if ((from.remote.flags & kRemoteLive) == 0 || from.counters.burning == 0 ||
+                !mayGive(from.remote, hops, rules.hopsMost))
+                continue;
+            const uint32_t material =
+                from.domain->texels[link.fromTexel].materialFlags & (kMaterialsPerObject - 1);
+            const uint32_t tick =
+                contactTick(from.state[link.fromTexel], from.materials[material].flameTicks,
+                            link.delay, link.since, rules.now);
+            if (tick == kNever || !mayJump(rules.seed, link.fromObject, slot, from.counters.litTick,
+                                           bothChances(rules.chance, from.remote.chance)))
+                continue;
+            const uint32_t key = litBy(hops, link.fromObject);
+            if (tick < best || (tick == best && key > by)) by = key;
+            best = std::min(best, tick);
+        }
+        if (best == kNever || slot >= objects.size() || !objects[slot] ||
+            (objects[slot]->remote.flags & kRemoteLive) == 0)
+            continue;
+        light(slot, texel, best, by, rules.now);
+    }
+}
+
+// Object below a place with the highest top, or kNoneTexel.
+uint32_t CpuBackend::State::landsOn(const ivec3& at, uint32_t axis, int& top) const noexcept {
+    uint32_t found = kNoneTexel;
+    top = kNoTop;
+    for (uint32_t slot = 0; slot < objects.size(); ++slot) {
+        if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
+        const int here = topBelow(objects[slot]->remote, at, axis);
+        if (here > top) {
+            top = here;
+            found = slot;
+        }
+    }
+    return found;
+}
+
+void CpuBackend::State::embers(const ExchangePush& rules) noexcept {
+    const ivec3 up = upOf(rules), wind(rules.windX, rules.windY, rules.windZ);
+    const uint32_t axis = upAxis(up);
+    for (uint32_t slot = 0; slot < objects.size(); ++slot) {
+        if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
+        const CpuObject& from = *objects[slot];
+        if (from.counters.burning == 0) continue;
+        for (const FireSource& source : from.sources) {
+            if (source.watts == 0 || source.ember == 0) continue;
+            const Ember ember = flyingEmber(source, source.ember, up, wind);
+            int top = kNoTop;
+            const uint32_t target = landsOn(ember.landing, axis, top);
+            if (target == kNoneTexel) continue;
+            landEmber(source, ember, target, top, axis, rules);
+        }
+    }
+}
+
+void CpuBackend::State::landEmber(const FireSource& source, const Ember& ember, uint32_t target,
+                                  int top, uint32_t axis, const ExchangePush& rules) noexcept {
+    CpuObject& object = *objects[target];
+    const std::pmr::vector<RemoteTile>& at = remoteTiles[object.mesh];
+    uint32_t least = kMisses, tile = kNoneTexel;
+    for (uint32_t i = 0; i < at.size(); ++i) {
+        const uint32_t miss = landingMiss(object.remote, at[i], ember.landing, top, axis);
+        if (miss < least) {
+            least = miss;
+            tile = i;
+        }
+    }
+    if (tile == kNoneTexel) return;
+    const ivec3 place = remotePlace(object.remote, tileMiddle(at[tile]));
+    for (const Blocker& blocker : blockers)
+        if (blockerCuts(blocker, alongFlame(source, upOf(rules), 8), ember.landing) ||
+            blockerCuts(blocker, ember.landing, place))
+            return;
+    const uint32_t chance =
+        bothChances(emberLights(ember.energy, object.remote.catches),
+                    bothChances(rules.chance, objects[source.object]->remote.chance));
+    if (!drawn(hash32(source.ember + 7u), chance)) return;
+    const uint32_t lane = nearestLane(object, tile, ember.landing, axis);
+    if (lane == kNoneTexel) return;
+    const uint32_t corner =
+        tile / object.domain->tilesX * 8 * object.domain->width + tile % object.domain->tilesX * 8;
+    uint32_t lit = 0;
+    for (uint32_t other = 0; other < 64; ++other) {
+        if (!besideLane(lane, other)) continue;
+        const uint32_t texel = corner + (other >> 3) * object.domain->width + (other & 7);
+        if (light(target, texel, rules.now, litBy(source.hops, source.object), rules.now)) {
+            lit = 1;
+            object.counters.spotTexel = texel;
+        }
+    }
+    object.counters.spots += lit;
+}
+
+uint32_t CpuBackend::State::nearestLane(const CpuObject& object, uint32_t tile, const ivec3& at,
+                                        uint32_t axis) noexcept {
+    const mesh::BurnDomain& domain = *object.domain;
+    const uint32_t corner = tile / domain.tilesX * 8 * domain.width + tile % domain.tilesX * 8;
+    uint32_t nearest = kNoneTexel, found = kNoneTexel;
+    for (uint32_t lane = 0; lane < 64; ++lane) {
+        const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+        if (object.state[texel] == kInert) continue;
+        const mesh::TexelPosition& p = domain.texels[texel];
+        const uint32_t beside = besidePlace(object.remote, ivec3(p.x, p.y, p.z), at, axis);
+        if (beside < nearest) {
+            nearest = beside;
+            found = lane;
+        }
+    }
+    return found;
+}
+
+}  // namespace fw::gpu::cpu

@@ -1,0 +1,21 @@
+// Radiation and plumes on the tiles of receivers.
+#include "shared/exchange.h"
+#include "gpu/passes/frame_graph.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_COUNTERS, Access::indirect}, {FW_BIND_COUNTERS, Access::write},
+    {FW_BIND_OBJECTS, Access::read},      {FW_BIND_OBJECT_COUNTERS, Access::write},
+    {FW_BIND_TILE_STATE, Access::write},  {FW_BIND_TILE_HEAT, Access::write},
+    {FW_BIND_HOT_LISTS, Access::write},   {FW_BIND_REMOTE_OBJECTS, Access::read},
+    {FW_BIND_REMOTE_TILES, Access::read}, {FW_BIND_SOURCES, Access::read},
+    {FW_BIND_RECEIVERS, Access::read},    {FW_BIND_BLOCKERS, Access::read},
+};
+
+}  // namespace
+
+const ComputePass kExchangePass{"exchange", "exchange.comp", kUses, sizeof(ExchangePush)};
+
+}  // namespace fw::gpu

@@ -1,0 +1,19 @@
+// Burning tiles into fire sources, summed.
+#include "gpu/passes/frame_graph.h"
+#include "shared/exchange.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_COUNTERS, Access::indirect},   {FW_BIND_COUNTERS, Access::read},
+    {FW_BIND_OBJECTS, Access::read},        {FW_BIND_BURN_TILES, Access::read},
+    {FW_BIND_REMOTE_OBJECTS, Access::read}, {FW_BIND_REMOTE_TILES, Access::read},
+    {FW_BIND_SOURCES, Access::write},
+};
+
+}  // namespace
+
+const ComputePass kFireCellsPass{"fire cells", "fire_cells.comp", kUses, sizeof(ExchangePush)};
+
+}  // namespace fw::gpu

@@ -1,0 +1,67 @@
+// Fire across gaps of a few centimetres: each texel's run of links by the thread of its first.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_EXCHANGE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_TILES readonly
+#define FW_USE_READERS readonly
+#define FW_USE_STATE FW_READ_WRITE
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_LISTS FW_READ_WRITE
+#define FW_USE_COUNTERS FW_READ_WRITE
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_BURN_LISTS FW_READ_WRITE
+#define FW_USE_PREDICT_LISTS FW_READ_WRITE
+#define FW_USE_HOT_LISTS FW_READ_WRITE
+#define FW_USE_PUBLISHED FW_READ_WRITE
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_TEXELS readonly
+#define FW_USE_MATERIALS readonly
+#define FW_USE_CONTACTS
+#include "lib/buffers.glsl"
+#include "lib/lists.glsl"
+#include "lib/change.glsl"
+#include "lib/light.glsl"
+
+// When this link's source lights what it leads to, or kNever.
+uint linkTick(uint i, out uint by) {
+    uint from = contacts[i].fromObject;
+    uint texel = contacts[i].fromTexel;
+    by = 0u;
+    uint hops = hopsOf(objectCounters[from].litBy);
+    if ((remoteObjects[from].flags & kRemoteLive) == 0u || objectCounters[from].burning == 0u ||
+        !mayGive(remoteObjects[from], hops, push.hopsMost))
+        return kNever;
+    uint material = (texels[objects[from].texelBase + texel].y >> 16u) & (kMaterialsPerObject - 1u);
+    uint tick = contactTick(state[objects[from].stateBase + texel],
+                            materials[from * kMaterialsPerObject + material].flameTicks,
+                            contacts[i].delay, contacts[i].since, push.now);
+    if (tick == kNever ||
+        !mayJump(push.seed, from, contacts[i].object, objectCounters[from].litTick,
+                 bothChances(push.chance, remoteObjects[from].chance)))
+        return kNever;
+    by = litBy(hops, from);
+    return tick;
+}
+
+void main() {
+    uint first = gl_GlobalInvocationID.x;
+    if (first >= push.count) return;
+    uint object = contacts[first].object;
+    uint texel = contacts[first].texel;
+    if (first > 0u && contacts[first - 1u].object == object && contacts[first - 1u].texel == texel)
+        return;
+    if ((remoteObjects[object].flags & kRemoteLive) == 0u) return;
+    uint best = kNever;
+    uint by = 0u;
+    uint i = first;
+    do {
+        uint key;
+        uint tick = linkTick(i, key);
+        if (tick < best || (tick == best && key > by)) by = key;
+        best = min(best, tick);
+        ++i;
+    } while (i < push.count && contacts[i].object == object && contacts[i].texel == texel);
+    if (best != kNever) lightTexel(object, texel, best, by);
+}

@@ -1,0 +1,68 @@
+// What sources send to the tiles of the objects that they may warm, an eighth of the tiles each
+// time. A group a receiver, a thread a tile.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_EXCHANGE_PUSH
+#define FW_USE_COUNTERS FW_READ_WRITE
+#define FW_USE_OBJECTS readonly
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_TILE_HEAT FW_READ_WRITE
+#define FW_USE_HOT_LISTS FW_READ_WRITE
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_REMOTE_TILES
+#define FW_USE_SOURCES readonly
+#define FW_USE_RECEIVERS readonly
+#define FW_USE_BLOCKERS
+#include "lib/buffers.glsl"
+#include "lib/lists.glsl"
+
+bool blocked(FireSource s, ivec3 up, ivec3 at) {
+    for (uint b = 0u; b < push.blockers; ++b)
+        if (blockerCuts(blockers[b], alongFlame(s, up, 4), at)) return true;
+    return false;
+}
+
+void warmTile(uint slot, uint local) {
+    RemoteTile tile = remoteTiles[objects[slot].tileBase + local];
+    if (tile.texels == 0u) return;
+    uint worldTile = objects[slot].worldTileBase + local;
+    ivec3 up = ivec3(push.upX, push.upY, push.upZ);
+    ivec3 at = remotePlace(remoteObjects[slot], tileMiddle(tile));
+    ivec3 normal = remoteTurn(remoteObjects[slot], decodeNormal(tile.normal));
+    bool both = (remoteObjects[slot].flags & kRemoteTwoSided) != 0u;
+    uint count = receivers[slot * kReceiverWords + 1u];
+    if (!mayCatch(objectCounters[slot].held, tileState[worldTile].flag)) count = 0u;
+    uint flux = 0u, pilot = 0u, strongest = 0u, by = 0u;
+    for (uint i = 0u; i < count; ++i) {
+        uint entry = receivers[slot * kReceiverWords + 2u + i];
+        FireSource s = sources[entry & 0xFFFFFFu];
+        Received r = receivedFrom(s, push.flags, push.ambient, up, at, normal, both, entry >> 24u);
+        if ((r.flux | r.pilot) == 0u || blocked(s, up, at)) continue;
+        flux = min(flux + r.flux, kFluxMost);
+        pilot |= r.pilot;
+        uint key = litBy(s.hops, s.object);
+        if (r.flux > strongest || (r.flux == strongest && key > by)) {
+            strongest = r.flux;
+            by = key;
+        }
+    }
+    if (flux != 0u && objectCounters[slot].litTick == 0u)
+        atomicMax(objectCounters[slot].litBy, by);
+    if (tileHeat[worldTile].flux == flux && tileHeat[worldTile].pilot == pilot) return;
+    tileHeat[worldTile].flux = flux;
+    tileHeat[worldTile].pilot = pilot;
+    hotTouch(push.hotParity, worldTile);
+}
+
+void main() {
+    uint count = counters[kRowExchange].runCount;
+    uint turn = (push.now / kExchangeTicks) % kExchangeTurns;
+    for (uint g = gl_WorkGroupID.x; g < count; g += gl_NumWorkGroups.x) {
+        uint slot = receivers[g * kReceiverWords];
+        for (uint local = turn + gl_LocalInvocationID.x * kExchangeTurns;
+             local < objects[slot].tileCount; local += 64u * kExchangeTurns)
+            warmTile(slot, local);
+    }
+}

@@ -1,0 +1,36 @@
+// Burning tiles into the fire sources of their objects: sums, so that order is of no account. 64 of
+// the tiles that `reduce` found a group.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_EXCHANGE_PUSH
+#define FW_USE_COUNTERS readonly
+#define FW_USE_OBJECTS readonly
+#define FW_USE_BURN_TILES readonly
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_REMOTE_TILES
+#define FW_USE_SOURCES FW_READ_WRITE
+#include "lib/buffers.glsl"
+
+void sumTile(uint i) {
+    uint object = burnTiles[i].object;
+    if ((remoteObjects[object].flags & kRemoteLive) == 0u) return;
+    uint texels = burnTiles[i].texels;
+    RemoteTile tile = remoteTiles[objects[object].tileBase + burnTiles[i].tile];
+    uint material = tileMaterial(tile);
+    uint power = material < 4u ? remoteObjects[object].power0[material & 3u]
+                               : remoteObjects[object].power1[material & 3u];
+    uint source = remoteObjects[object].sourceBase + tileCell(tile);
+    ivec3 middle = tileMiddle(tile);
+    atomicAdd(sources[source].power, texels * power);
+    atomicAdd(sources[source].texels, texels);
+    atomicAdd(sources[source].tiles, 1u);
+    atomicAdd(sources[source].sumX, uint(middle.x) >> 2u);
+    atomicAdd(sources[source].sumY, uint(middle.y) >> 2u);
+    atomicAdd(sources[source].sumZ, uint(middle.z) >> 2u);
+}
+
+void main() {
+    uint count = counters[kRowBurn + push.burnParity].runCount;
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) sumTile(i);
+}

@@ -1,0 +1,54 @@
+// Per object: who lit it, whether it may go on, where its sources stand in the world and which of
+// them send an ember. Wakes whom they may warm. One thread an object slot.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_EXCHANGE_PUSH
+#define FW_USE_COUNTERS readonly
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_SOURCES FW_READ_WRITE
+#define FW_USE_NEIGHBOURS
+#include "lib/buffers.glsl"
+
+void settle(uint slot, uint hops, bool gives) {
+    RemoteObject o = remoteObjects[slot];
+    for (uint cell = 0u; cell < o.sourceCount; ++cell) {
+        uint at = o.sourceBase + cell;
+        if (!gives) {
+            sources[at].watts = 0u;
+            continue;
+        }
+        FireSource s = sources[at];
+        settleSource(s, o);
+        s.object = slot;
+        s.hops = hops;
+        s.ember = 0u;
+        if ((push.flags & kRemoteEmbers) != 0u && s.watts != 0u)
+            s.ember = emberOf(push.seed, slot, cell, push.now, s.power, push.brands);
+        sources[at] = s;
+    }
+}
+
+void main() {
+    uint slot = gl_GlobalInvocationID.x;
+    if (slot >= push.count || (remoteObjects[slot].flags & kRemoteLive) == 0u) return;
+    ObjectCounters c = objectCounters[slot];
+    noteFire(c, remoteObjects[slot], push);
+    objectCounters[slot].litBy = c.litBy;
+    objectCounters[slot].litTick = c.litTick;
+    objectCounters[slot].stopTick = c.stopTick;
+    objectCounters[slot].held =
+        heldBits(counters[kRowBurn + push.burnParity].runCount, push.tilesMost, c.burningTiles,
+                 remoteObjects[slot].tilesMost, c.stopTick, push.now);
+    for (bool once = c.burning != 0u; once; once = false) {
+        uint hops = hopsOf(c.litBy);
+        bool gives = mayGive(remoteObjects[slot], hops, push.hopsMost);
+        settle(slot, hops, gives);
+        uint warms = gives && (push.flags & (kRemoteRadiation | kRemotePlume)) != 0u
+                         ? remoteObjects[slot].neighbourCount : 0u;
+        for (uint n = 0u; n < warms; ++n)
+            atomicMax(objectCounters[neighbours[remoteObjects[slot].neighbourFirst + n] & 0xFFFFFFu].until,
+                      push.now + kExchangeTurns * kExchangeTicks);
+    }
+}

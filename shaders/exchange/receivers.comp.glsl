@@ -1,0 +1,76 @@
+// Which objects others may warm now, and by which sources: the strongest 64, found by halving. One
+// thread an object slot.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_EXCHANGE_PUSH
+#define FW_USE_COUNTERS FW_READ_WRITE
+#define FW_USE_OBJECTS readonly
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_SOURCES readonly
+#define FW_USE_NEIGHBOURS
+#define FW_USE_RECEIVERS writeonly
+#include "lib/buffers.glsl"
+
+// Does a neighbour (an entry of the table) give fire to this object?
+bool gives(uint slot, uint entry) {
+    uint from = entry & 0xFFFFFFu;
+    return (entry >> 24u) != 0u && (remoteObjects[from].flags & kRemoteLive) != 0u &&
+           objectCounters[from].burning != 0u &&
+           mayGive(remoteObjects[from], hopsOf(objectCounters[from].litBy), push.hopsMost) &&
+           mayJump(push.seed, from, slot, objectCounters[from].litTick,
+                   bothChances(push.chance, remoteObjects[from].chance));
+}
+
+// Counts the sources of weight [low, high), or lists them from `listed` on.
+uint pass(uint slot, ivec3 middle, uint low, uint high, bool list, uint listed) {
+    uint first = remoteObjects[slot].neighbourFirst;
+    uint count = 0u;
+    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {
+        uint entry = neighbours[first + n];
+        if (!gives(slot, entry)) continue;
+        uint from = entry & 0xFFFFFFu;
+        uint base = remoteObjects[from].sourceBase;
+        for (uint cell = 0u; cell < remoteObjects[from].sourceCount; ++cell) {
+            uint weight = sourceWeight(sources[base + cell], middle);
+            if (weight < low || weight >= high) continue;
+            if (list && listed + count < kSourcesPerReceiver)
+                receivers[slot * kReceiverWords + 2u + listed + count] =
+                    (base + cell) | (entry & 0xFF000000u);
+            ++count;
+        }
+    }
+    return count;
+}
+
+void gather(uint slot) {
+    uint at = atomicAdd(counters[kRowExchange].runCount, 1u);
+    atomicMax(counters[kRowExchange].runX, min(at + 1u, kMaxGroups));
+    if (at == 0u) {
+        counters[kRowExchange].runY = 1u;
+        counters[kRowExchange].runZ = 1u;
+    }
+    receivers[at * kReceiverWords] = slot;
+    ivec3 middle = boxMiddle(remoteObjects[slot]);
+    uint low = 1u;
+    uint count = pass(slot, middle, low, kNoneTexel, false, 0u);
+    while (count > kSourcesPerReceiver) {
+        low *= 2u;
+        count = pass(slot, middle, low, kNoneTexel, false, 0u);
+    }
+    count = pass(slot, middle, low, kNoneTexel, true, 0u);
+    if (low > 1u) count += pass(slot, middle, low / 2u, low, true, count);
+    receivers[slot * kReceiverWords + 1u] = min(count, kSourcesPerReceiver);
+}
+
+void main() {
+    uint slot = gl_GlobalInvocationID.x;
+    if (slot >= push.count) return;
+    for (bool warm = objectCounters[slot].until >= push.now; warm; warm = false)
+        if ((remoteObjects[slot].flags & kRemoteLive) != 0u &&
+            (objects[slot].flags & kObjectHeat) != 0u) {
+            objectCounters[slot].held |= kHeldWarm;
+            gather(slot);
+        }
+}

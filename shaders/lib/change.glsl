@@ -1,0 +1,47 @@
+// What follows a texel's change that is not the front kernel's: its tile and whoever reads it are
+// due, and counters and lists know of it. For events, contacts and embers.
+#ifndef FW_LIB_CHANGE_GLSL
+#define FW_LIB_CHANGE_GLSL
+
+struct TexelPlace {
+    uint local, lane, worldTile;
+};
+TexelPlace placeOfTexel(uint object, uint texel) {
+    uint width = objects[object].width;
+    uint x = texel % width;
+    uint y = texel / width;
+    TexelPlace p;
+    p.local = (y >> 3u) * objects[object].tilesX + (x >> 3u);
+    p.lane = (y & 7u) * 8u + (x & 7u);
+    p.worldTile = objects[object].worldTileBase + p.local;
+    return p;
+}
+
+// `end`: end tick of the window in which a texel caught.
+void nowBurns(uint object, uint worldTile, uint end) {
+    atomicMax(objectCounters[object].lastIgnition, end);
+    if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
+        burnAppend(push.burnParity, worldTile);
+        atomicAdd(objectCounters[object].burningTiles, 1u);
+    }
+}
+void litFrom(uint object, uint by) {
+    if (objectCounters[object].litTick == 0u) atomicMax(objectCounters[object].litBy, by);
+}
+
+// `burns`: the texel is a source now.
+void texelChanged(uint object, uint texel, TexelPlace p, bool burns) {
+    predictTouch(push.predictParity, p.worldTile);
+    if ((objects[object].flags & kObjectPublished) != 0u) {
+        uint plane = objects[object].width * objects[object].height;
+        uint base = objects[object].publishedBase + texel;
+        float q = burns ? published[base + 2u * plane] : 0.0;
+        published[base] = q;
+        published[base + plane] = q;
+        return;
+    }
+    tileState[p.worldTile].lastChange = push.now;
+    touchReaders(object, p.local,
+                 p.lane < 32u ? uvec2(1u << p.lane, 0u) : uvec2(0u, 1u << (p.lane - 32u)));
+}
+#endif

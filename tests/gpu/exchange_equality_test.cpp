@@ -1,0 +1,304 @@
+// Fire from object to object on a device against the cpu backend: two worlds that hear the same
+// calls, one of them some frames late, end in the same texels.
+#include "gpu/cpu/cpu_backend.h"
+#include "support/burn_scene.h"
+#include "world/world.h"
+
+#include "fire/presets.h"
+#include "flamewright/flamewright_debug.h"
+
+#include <random>
+
+namespace fw::test {
+namespace {
+
+FwWorldDef worldDef(uint32_t flags) {
+    FwWorldDef def{};
+    def.structSize = sizeof def;
+    def.flags = flags;
+    def.up[1] = 1;
+    def.paceFactor = 20;
+    def.seed = 3;
+    def.maxStepsPerFrame = 64;
+    def.maxLights = 4;
+    def.maxFlames = 64;
+    def.maxRefinedTriangles = 1000;
+    def.spreadChance = 1;
+    return def;
+}
+
+void moved(float (&transform)[16], float x, float y, float z, float turn) {
+    std::fill(std::begin(transform), std::end(transform), 0.0f);
+    transform[0] = transform[10] = std::cos(turn);
+    transform[8] = std::sin(turn);
+    transform[2] = -transform[8];
+    transform[5] = transform[15] = 1;
+    transform[12] = x;
+    transform[13] = y;
+    transform[14] = z;
+}
+
+class ExchangeEquality : public GpuTest {
+ protected:
+    struct Both {
+        explicit Both(TestDevice& device, const FwWorldDef& def)
+            : rig(device),
+              cpuBackend(std::pmr::get_default_resource(), 4),
+              vk(def, rig.backend, log, std::pmr::get_default_resource()),
+              cpu(def, cpuBackend, log, std::pmr::get_default_resource()) {}
+        core::Log log{FwCallbacks{}};
+        VkRig rig;
+        gpu::cpu::CpuBackend cpuBackend;
+        world::World vk, cpu;
+        std::vector<FwBurnableMeshId> ids;
+
+        template <class Call>
+        void each(Call&& call) {
+            call(vk);
+            call(cpu);
+        }
+        void add(const Mesh& mesh, uint32_t preset, float x, float y, float z, float turn,
+                 uint32_t flags, float moisture = 0,
+                 const components::Governance& governance = {}) {
+            FwBurnableMeshId id{};
+            each([&](world::World& w) {
+                FwMeshDef def{};
+                def.structSize = sizeof def;
+                def.positions = mesh.positions.data();
+                def.vertexCount = mesh.vertexCount();
+                def.indices = mesh.indices.data();
+                def.indexCount = uint32_t(mesh.indices.size());
+                def.indexSize = 4;
+                def.mapSize = 128;
+                def.texelsPerMetre = 48;
+                def.noiseAmplitude = 0.15f;
+                def.noiseFeature = 0.05f;
+                FwBurnableMeshDef object{};
+                object.structSize = sizeof object;
+                object.flags = flags;
+                object.mesh = w.createMesh(def);
+                FwMaterialDef material = fire::presetDef(preset);
+                object.materials[0] = w.createMaterial(material);
+                moved(object.transform, x, y, z, turn);
+                object.tint[0] = object.tint[1] = object.tint[2] = 1;
+                object.moisture = moisture;
+                object.refinePixelsPerEdge = 8;
+                object.spreadChance = governance.chance;
+                object.maxHops = governance.hopsMost;
+                object.maxBurningTiles = governance.tilesMost;
+                object.timeToLive = governance.life;
+                id = w.createBurnableMesh(object);
+            });
+            ids.push_back(id);
+        }
+        void step(float deltaTime) {
+            const FwVulkanFrame frame = rig.frames.begin();
+            ASSERT_TRUE(rig.backend.beginOutside(frame));
+            vk.advance(frame.frameIndex, deltaTime);
+            rig.backend.endOutside(rig.view);
+            rig.frames.submit();
+            cpu.advance(frame.frameIndex, deltaTime);
+        }
+        // Maps of all objects, taken at the next frame's end; empty if they differ.
+        void compare(const std::string& when) {
+            each([&](world::World& w) {
+                for (const FwBurnableMeshId id : ids) w.requestBurnMap(id);
+            });
+            for (int i = 0; i < 8; ++i) step(0);
+            for (size_t i = 0; i < ids.size(); ++i) {
+                const world::BurnMapCopy* a = vk.fetchBurnMap(ids[i]);
+                const world::BurnMapCopy* b = cpu.fetchBurnMap(ids[i]);
+                ASSERT_TRUE(a && b) << when;
+                ASSERT_EQ(a->tick, b->tick) << when;
+                size_t differ = 0, first = 0;
+                for (size_t t = 0; t < a->ticks.size(); ++t)
+                    if (a->ticks[t] != b->ticks[t] && differ++ == 0) first = t;
+                ASSERT_EQ(0u, differ) << when << ", object " << i << ", texel " << first << ": "
+                                      << a->ticks[first] << " for " << b->ticks[first];
+                ASSERT_EQ(a->heat.size(), b->heat.size()) << when;
+                for (size_t t = 0; t < a->heat.size(); ++t) {
+                    ASSERT_EQ(a->heat[t].x, b->heat[t].x) << when << ", heat of " << i << ", " << t;
+                    ASSERT_EQ(a->heat[t].y, b->heat[t].y) << when << ", heat of " << i << ", " << t;
+                    wet += (b->heat[t].y & 0x3FFu) != 0 ? 1 : 0;
+                }
+                heats += a->heat.empty() ? 0 : 1;
+                FwObjectState mine{}, theirs{};
+                vk.objectState(ids[i], mine);
+                cpu.objectState(ids[i], theirs);
+                ASSERT_EQ(theirs.ignited, mine.ignited) << when << ", object " << i;
+                ASSERT_EQ(theirs.energy, mine.energy) << when << ", object " << i;
+            }
+        }
+        uint32_t heats = 0, wet = 0;  // objects with heat, and texels under water, compared
+    };
+
+    static uint32_t burning(Both& both) {
+        uint32_t caught = 0;
+        for (const FwBurnableMeshId id : both.ids) {
+            FwObjectState state{};
+            both.cpu.objectState(id, state);
+            caught += state.ignited > 0 ? 1 : 0;
+        }
+        return caught;
+    }
+};
+
+TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
+    if (!device_) return;
+    FwWorldDef def = worldDef(15);
+    def.maxBurningTiles = 90;
+    def.maxHops = 6;
+    def.spreadChance = 0.8f;
+    Both both(*device_, def);
+    std::mt19937 random(5);
+    const auto one = [&](float most) { return float(random() % 1000) / 1000 * most; };
+    const Mesh board = makePlane(0.5, 0.3), box = makeCube(0.25, 2);
+    const uint32_t presets[] = {FW_MATERIAL_PAPER, FW_MATERIAL_COTTON, FW_MATERIAL_DRY_LEAF,
+                                FW_MATERIAL_PLYWOOD, FW_MATERIAL_PINE};
+    for (int i = 0; i < 24; ++i) {
+        components::Governance governance;
+        if (i % 7 == 3) governance.life = 4;
+        if (i % 7 == 4) governance.tilesMost = 5;
+        if (i % 7 == 5) governance.hopsMost = 1;
+        both.add(i % 3 == 0 ? box : board, presets[random() % 5], one(1.6f), one(0.6f), one(1.6f),
+                 one(6), i % 8 == 1 ? uint32_t(FW_BURNABLE_LITE) : 0u, i % 5 == 2 ? 0.15f : 0.0f,
+                 governance);
+    }
+    both.each([&](world::World& w) {
+        FwBlockerDef wall{};
+        wall.structSize = sizeof wall;
+        moved(wall.transform, 0.8f, 0.3f, 0.8f, 0.4f);
+        wall.halfSize[0] = 0.02f;
+        wall.halfSize[1] = wall.halfSize[2] = 0.3f;
+        (void)w.addBlocker(wall);
+    });
+    const auto ignite = [&](size_t i, uint32_t kind, float radius) {
+        both.each([&](world::World& w) {
+            const mesh::BurnDomain& domain = w.objectDomain(both.ids[i]);
+            std::vector<uint32_t> texels;
+            uint32_t centre = uint32_t(i * 7919) % domain.texelCount();
+            for (uint32_t t = 0; t < domain.texelCount(); ++t)
+                if (domain.real(t) && (radius > 1 || (t >= centre && texels.size() < 12)))
+                    texels.push_back(t);
+            w.pushTexels(both.ids[i], kind, texels);
+        });
+    };
+    // The lists of the cpu in another order each step: that order must not matter.
+    both.cpu.setSwitches(FW_DEBUG_SHUFFLE);
+    ignite(0, FW_IGNITE, 0);
+    uint32_t steps = 0, mostCaught = 0;
+    for (uint32_t frame = 0; frame < 700; ++frame) {
+        const uint32_t count = 1 + random() % 8;
+        if (random() % 12 == 0) {
+            const size_t i = random() % both.ids.size();
+            float transform[16];
+            moved(transform, one(1.6f), one(0.6f), one(1.6f), one(6));
+            both.each([&](world::World& w) { w.setTransform(both.ids[i], transform); });
+        }
+        if (random() % 15 == 0) {
+            const float wind[3] = {one(6) - 3, 0, one(6) - 3};
+            both.each([&](world::World& w) { w.setWind(wind); });
+        }
+        if (random() % 60 == 0) {
+            const size_t i = random() % both.ids.size();
+            ignite(i, FW_EXTINGUISH, 2);
+        }
+        if (random() % 20 == 0) ignite(random() % both.ids.size(), FW_WET, 0);
+        if (random() % 10 == 0) ignite(random() % both.ids.size(), FW_DRY, 2);
+        if (random() % 15 == 0) ignite(random() % both.ids.size(), FW_IGNITE, 0);
+        if (random() % 60 == 0) {
+            const uint32_t flags = random() % 3 == 0 ? uint32_t(random() % 16) : 15u;
+            both.each([&](world::World& w) { w.setFlags(flags); });
+        }
+        both.step(float(count) / 32);
+        if (HasFatalFailure()) return;
+        steps += count;
+        if (frame % 50 != 49) continue;
+        both.compare("after " + std::to_string(steps) + " steps");
+        if (HasFatalFailure()) return;
+        mostCaught = std::max(mostCaught, burning(both));
+    }
+    EXPECT_GT(mostCaught, 10u);
+    EXPECT_GT(both.heats, 100u);
+    EXPECT_GT(both.wet, 100u);
+    std::printf("%u steps, %u of %zu objects alight\n", steps, mostCaught, both.ids.size());
+}
+
+// With all of it on, among objects that come and go within reach of each other: nothing is asked of
+// the device or the heap once every pair has met.
+TEST_F(ExchangeEquality, SteadyFramesAskNothing) {
+    if (!device_) return;
+    core::Log log{FwCallbacks{}};
+    VkRig rig(*device_, 2, 0, {}, countingEntry());
+    FwWorldDef def = worldDef(15);
+    def.paceFactor = 1;
+    def.maxBurningTiles = 500;
+    world::World world(def, rig.backend, log, &rig.memory);
+    const Mesh board = makePlane(0.5, 0.3);
+    FwMeshDef mesh{};
+    mesh.structSize = sizeof mesh;
+    mesh.positions = board.positions.data();
+    mesh.vertexCount = board.vertexCount();
+    mesh.indices = board.indices.data();
+    mesh.indexCount = uint32_t(board.indices.size());
+    mesh.indexSize = 4;
+    mesh.mapSize = 128;
+    mesh.texelsPerMetre = 48;
+    mesh.noiseFeature = 0.05f;
+    FwBurnableMeshDef object{};
+    object.structSize = sizeof object;
+    object.mesh = world.createMesh(mesh);
+    object.materials[0] = world.createMaterial(fire::presetDef(FW_MATERIAL_PLYWOOD));
+    object.tint[0] = object.tint[1] = object.tint[2] = 1;
+    object.spreadChance = 1;
+    object.refinePixelsPerEdge = 8;
+    std::vector<FwBurnableMeshId> ids;
+    for (int i = 0; i < 8; ++i) {
+        moved(object.transform, float(i) * 0.52f, 0, 0, 0);
+        ids.push_back(world.createBurnableMesh(object));
+    }
+    FwBlockerDef wall{};
+    wall.structSize = sizeof wall;
+    moved(wall.transform, 1.5f, 0.5f, 0, 0);
+    wall.halfSize[0] = wall.halfSize[1] = wall.halfSize[2] = 0.1f;
+    const FwBlockerId blocker = world.addBlocker(wall);
+    for (const size_t i : {size_t(0), size_t(4)}) {
+        FwIgnitionDef ball{};
+        ball.structSize = sizeof ball;
+        ball.kind = FW_IGNITE;
+        ball.object = ids[i];
+        ball.position[0] = float(i) * 0.52f + 0.2f;
+        ball.position[1] = 0.1f;
+        ball.radius = 0.05f;
+        ASSERT_LT(0u, world.ignite(ball));
+    }
+    const auto frame = [&](int f) {
+        float transform[16];
+        const float far = f / 8 % 2 == 0 ? 0.0f : 0.2f;
+        moved(transform, 7 * 0.52f + far, 0, 0, 0);
+        world.setTransform(ids[7], transform);
+        moved(transform, 1.5f, 0.5f + far, 0, 0);
+        world.moveBlocker(blocker, transform);
+        const float wind[3] = {far * 5, 0, 0};
+        world.setWind(wind);
+        const FwVulkanFrame begun = rig.frames.begin();
+        ASSERT_TRUE(rig.backend.beginOutside(begun));
+        world.advance(begun.frameIndex, 1.0f / 32);
+        rig.backend.endOutside(rig.view);
+        rig.frames.submit();
+    };
+    for (int f = 0; f < 96; ++f) frame(f);  // warm-up
+    (void)takeCounts();
+    const uint64_t allocations = rig.memory.allocations();
+    for (int f = 96; f < 96 + 320; ++f) frame(f);
+    const VulkanCounts counts = takeCounts();
+    EXPECT_EQ(counts.total(), 0u) << counts.submits << " submits, " << counts.waits << " waits, "
+                                  << counts.memory << " allocations, " << counts.pipelines
+                                  << " pipelines, " << counts.descriptorPools << " pools, "
+                                  << counts.objects << " objects";
+    EXPECT_EQ(rig.memory.allocations(), allocations);
+    EXPECT_GT(counts.work, 320u);
+}
+
+}  // namespace
+}  // namespace fw::test
