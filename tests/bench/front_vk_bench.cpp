@@ -198,14 +198,16 @@ uint32_t flagsOf(Kernel kernel) {
     return kernel == kPublished ? uint32_t(gpu::kObjectPublished) : 0;
 }
 
-void runSteps(benchmark::State& state, Bench& bench, Kernel kernel) {
+void runSteps(benchmark::State& state, Bench& bench, Kernel kernel, bool heat = false) {
     const uint32_t switches = kernel == kDense ? uint32_t(FW_DEBUG_DENSE) : 0;
-    for (int i = 0; i < 6; ++i) bench.step(switches);
+    int step = 0;
+    const auto run = [&] { return bench.step(switches, false, heat && step++ % 4 == 2); };
+    for (int i = 0; i < 6; ++i) run();
     bench.forgetTimes();
     double tiles = 0;
     std::vector<double> cpu;
     for (auto _ : state) {
-        state.SetIterationTime(bench.step(switches));
+        state.SetIterationTime(run());
         tiles += bench.runTiles;
         cpu.push_back(bench.stepCpuSeconds);
     }
@@ -257,21 +259,31 @@ void frontRatio(benchmark::State& state) {
         100 * tiles / double(a.size()) / (double(side / 8) * (side / 8));
 }
 
+// Thick wood on a map of so many texels a side.
+const gpu::HeatMaterial& woodOn(uint32_t side) {
+    static std::map<uint32_t, gpu::HeatMaterial> woods;
+    const mesh::BurnDomain& domain = flatMap(side);
+    fire::HeatPlace place;
+    place.texelArea = domain.texelSide * domain.texelSide;
+    return woods.try_emplace(side, fire::heatMaterial(fire::presetDef(FW_MATERIAL_PINE), place))
+        .first->second;
+}
+
 // A front across a whole 1024 map.
-void frontWide(benchmark::State& state) {
+void frontWide(benchmark::State& state, bool heat) {
     Bench bench;
     bench.addMesh(0, flatMap(1024));
-    const uint32_t object = bench.addObject(0, 12);
+    const uint32_t object = bench.addObject(0, 12, 0, heat ? &woodOn(1024) : nullptr);
     for (uint32_t x = 0; x < 1024; ++x) bench.ignite(object, 512 * 1024 + x);
-    runSteps(state, bench, kSparse);
+    runSteps(state, bench, kSparse, heat);
 }
 
 // What a step of some case took, step by step, and how long each pass.
 struct Samples {
     std::vector<double> seconds, cpu, record;
     std::map<std::string, double> passes;  // ms a step
-    void add(Bench& bench, bool reduce) {
-        seconds.push_back(bench.step(0, reduce));
+    void add(Bench& bench, bool reduce, bool heat = false) {
+        seconds.push_back(bench.step(0, reduce, heat));
         cpu.push_back(bench.stepCpuSeconds);
         record.push_back(bench.recordSeconds);
     }
@@ -287,13 +299,14 @@ struct InTurns {
     static constexpr int kSteps = 60;
     Samples samples[2];
     bool shown[2] = {true, true};
-    void measure(Bench& a, Bench& b) {
+    // A step in four reduces, and another one heats.
+    void measure(Bench& a, Bench& b, bool heat) {
         *this = {};
         a.forgetTimes();
         b.forgetTimes();
         for (int i = 0; i < kSteps; ++i) {
-            samples[0].add(a, i % 4 == 0);
-            samples[1].add(b, i % 4 == 0);
+            samples[0].add(a, i % 4 == 0, heat && i % 4 == 2);
+            samples[1].add(b, i % 4 == 0, heat && i % 4 == 2);
         }
         samples[0].finish(a);
         samples[1].finish(b);
@@ -314,22 +327,26 @@ struct InTurns {
     }
 };
 
-void burningAndIdle(Bench& bench, uint32_t burning, uint32_t idle) {
+// `heat`: all of them have heat planes.
+void burningAndIdle(Bench& bench, uint32_t burning, uint32_t idle, bool heat = false) {
+    const gpu::HeatMaterial* wood = heat ? &woodOn(128) : nullptr;
     bench.addMesh(0, flatMap(128));
     bench.addMesh(1, flatMap(64));
-    for (uint32_t i = 0; i < burning; ++i) bench.ignite(bench.addObject(0, 12), 64 * 128 + 64);
-    for (uint32_t i = 0; i < idle; ++i) bench.addObject(1, 12);
-    for (int i = 0; i < 20; ++i) bench.step(0, i % 4 == 0);
+    for (uint32_t i = 0; i < burning; ++i)
+        bench.ignite(bench.addObject(0, 12, 0, wood), 64 * 128 + 64);
+    for (uint32_t i = 0; i < idle; ++i) bench.addObject(1, 12, 0, wood);
+    for (int i = 0; i < 20; ++i) bench.step(0, i % 4 == 0, heat && i % 4 == 2);
 }
 
 // Ten burning objects, without and with a thousand idle ones beside them.
-void objectsBurning(benchmark::State& state, int which) {
-    static InTurns turns;
+void objectsBurning(benchmark::State& state, int which, bool heat) {
+    static InTurns both[2];
+    InTurns& turns = both[heat];
     if (turns.shown[which]) {
         Bench few, many;
-        burningAndIdle(few, 10, 0);
-        burningAndIdle(many, 10, 1000);
-        turns.measure(few, many);
+        burningAndIdle(few, 10, 0, heat);
+        burningAndIdle(many, 10, 1000, heat);
+        turns.measure(few, many, heat);
     }
     turns.show(state, which);
 }
@@ -351,18 +368,20 @@ void objectCount(benchmark::State& state, bool burn) {
 }
 
 // The same small fire on a small and on a large map.
-void mapSize(benchmark::State& state, int which) {
-    static InTurns turns;
+void mapSize(benchmark::State& state, int which, bool heat) {
+    static InTurns both[2];
+    InTurns& turns = both[heat];
     if (turns.shown[which]) {
-        const auto setUp = [](Bench& bench, uint32_t side) {
+        const auto setUp = [&](Bench& bench, uint32_t side) {
             bench.addMesh(0, flatMap(side));
-            bench.ignite(bench.addObject(0, 12), side / 2 * side + side / 2);
-            for (int i = 0; i < 30; ++i) bench.step();
+            const gpu::HeatMaterial* wood = heat ? &woodOn(side) : nullptr;
+            bench.ignite(bench.addObject(0, 12, 0, wood), side / 2 * side + side / 2);
+            for (int i = 0; i < 30; ++i) bench.step(0, false, heat && i % 4 == 2);
         };
         Bench small, large;
         setUp(small, 256);
         setUp(large, 1024);
-        turns.measure(small, large);
+        turns.measure(small, large, heat);
     }
     turns.show(state, which);
 }
@@ -484,31 +503,30 @@ BENCHMARK(frontRatio)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(15);
-BENCHMARK(frontWide)
+BENCHMARK_CAPTURE(frontWide, plain, false)
     ->Name("front/wide/1024")
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(20);
-BENCHMARK_CAPTURE(objectsBurning, alone, 0)
-    ->Name("objects/burning10")
+BENCHMARK_CAPTURE(frontWide, heat, true)
+    ->Name("front/wide_heat/1024")
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(InTurns::kSteps);
-BENCHMARK_CAPTURE(objectsBurning, beside_idle, 1)
-    ->Name("objects/burning10_idle1000")
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(InTurns::kSteps);
-BENCHMARK_CAPTURE(mapSize, small, 0)
-    ->Name("front/mapsize_smallfire/256")
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(InTurns::kSteps);
-BENCHMARK_CAPTURE(mapSize, large, 1)
-    ->Name("front/mapsize_smallfire/1024")
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(InTurns::kSteps);
+    ->Iterations(20);
+#define FW_IN_TURNS(function, name, which, heat)             \
+    BENCHMARK_CAPTURE(function, which##_##heat, which, heat) \
+        ->Name(name)                                         \
+        ->UseManualTime()                                    \
+        ->Unit(benchmark::kMillisecond)                      \
+        ->Iterations(InTurns::kSteps)
+FW_IN_TURNS(objectsBurning, "objects/burning10", 0, false);
+FW_IN_TURNS(objectsBurning, "objects/burning10_idle1000", 1, false);
+FW_IN_TURNS(objectsBurning, "objects/burning10_heat", 0, true);
+FW_IN_TURNS(objectsBurning, "objects/burning10_idle1000_heat", 1, true);
+FW_IN_TURNS(mapSize, "front/mapsize_smallfire/256", 0, false);
+FW_IN_TURNS(mapSize, "front/mapsize_smallfire/1024", 1, false);
+FW_IN_TURNS(mapSize, "front/mapsize_smallfire_heat/256", 0, true);
+FW_IN_TURNS(mapSize, "front/mapsize_smallfire_heat/1024", 1, true);
 BENCHMARK_CAPTURE(objectCount, idle, false)
     ->Name("objects/idle")
     ->RangeMultiplier(10)
