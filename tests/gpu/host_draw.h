@@ -79,6 +79,7 @@ class HostDraw : public GpuTest {
         burn();
     }
     void TearDown() override {
+        for (const Kept& kept : targets_) rig_->context.unregisterTarget(kept.target);
         for (const auto& drop : cleanup_) drop();
         rig_.reset();
         GpuTest::TearDown();
@@ -183,6 +184,20 @@ class HostDraw : public GpuTest {
         return rig_->context.registerTarget(def);
     }
 
+    // One for all shots of a kind: pipelines are made per target, and take long.
+    std::pair<VkRenderPass, FwTargetId> targetFor(const Shot& shot) {
+        for (const Kept& kept : targets_)
+            if (kept.shot.color == shot.color && kept.shot.encoding == shot.encoding &&
+                kept.shot.samples == shot.samples && kept.shot.composite == shot.composite &&
+                kept.shot.reversedDepth == shot.reversedDepth && kept.shot.depth == shot.depth &&
+                kept.shot.depthMode == shot.depthMode && kept.shot.flags == shot.flags &&
+                kept.shot.depthSamples == shot.depthSamples)
+                return {kept.pass, kept.target};
+        const VkRenderPass pass = shot.composite ? VK_NULL_HANDLE : makePass(shot);
+        targets_.push_back({shot, pass, registerTarget(shot, pass)});
+        return {pass, targets_.back().target};
+    }
+
     // The host's own pixels: a strip left of us, before; one right of us, after; and an occluder
     // with the nearest depth over the left half.
     static void clearRect(VkCommandBuffer commands, VkClearColorValue color, int32_t x0,
@@ -215,8 +230,9 @@ class HostDraw : public GpuTest {
         const TestBuffer read = device_->makeBuffer(uint64_t(kWidth) * kHeight * pixelBytes,
                                                     VK_BUFFER_USAGE_TRANSFER_DST_BIT);
 
-        const VkRenderPass pass = shot.composite ? VK_NULL_HANDLE : makePass(shot);
-        const FwTargetId target = registerTarget(shot, pass);
+        const std::pair<VkRenderPass, FwTargetId> into = targetFor(shot);
+        const VkRenderPass pass = into.first;
+        const FwTargetId target = into.second;
         VkFramebuffer framebuffer = VK_NULL_HANDLE;
         if (pass) {
             std::vector<VkImageView> views{color.view};
@@ -335,7 +351,6 @@ class HostDraw : public GpuTest {
                         : float(static_cast<const uint8_t*>(read.mapped)[i * 4 + c]) / 255.0f;
             }
         }
-        rig_->context.unregisterTarget(target);
         return picture;
     }
 
@@ -439,6 +454,12 @@ class HostDraw : public GpuTest {
         EXPECT_LT(right, 2600u) << "and left the background alone";
     }
 
+    struct Kept {
+        Shot shot;
+        VkRenderPass pass;
+        FwTargetId target;
+    };
+    std::vector<Kept> targets_;
     std::unique_ptr<VkRig> rig_;
     BurnScene scene_;
     FwView normal_{}, reversed_{};

@@ -221,6 +221,7 @@ TEST_F(HostDraw, KeptCompositesMakeNothing) {
     Shot shot;
     shot.composite = true;
     const FwTargetId target = registerTarget(shot, VK_NULL_HANDLE);
+    shot.flags = FW_TARGET_NO_SURFACES;  // sooner made
     FwTargetId second = registerTarget(shot, VK_NULL_HANDLE);
     TestImage colors[2], depths[2];
     for (int i = 0; i < 2; ++i) {
