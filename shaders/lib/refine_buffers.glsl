@@ -50,9 +50,9 @@ FW_BUFFER(FW_BIND_VERTICES, FW_USE_MESH_VERTICES, MeshVerticesBuffer, uvec4, mes
 FW_BUFFER(FW_BIND_REFINE_CUTS, FW_USE_CUTS, RefineCutsBuffer, uvec4, cuts);
 FW_BUFFER(FW_BIND_REFINE_CUT_DRAWS, FW_USE_CUTS, RefineCutDrawsBuffer, uint, cutDraws);
 #endif
-#ifdef FW_USE_STATE
-FW_BUFFER(FW_BIND_STATE, FW_USE_STATE, StateBuffer, uint, state);
-FW_BUFFER(FW_BIND_GRADIENT, FW_USE_STATE, GradientBuffer, uint, gradient);
+#ifdef FW_USE_PREDICT
+FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);
+FW_BUFFER(FW_BIND_GRADIENT, FW_USE_PREDICT, GradientBuffer, uint, gradient);
 #endif
 layout(push_constant) uniform Push { RefinePush push; };
 

@@ -27,6 +27,21 @@ void find(uint object, uint triangle) {
     uint seen = heat[base + refined[object].edgeCount + triangle] | heat[base + t.edge[0]] |
                 heat[base + t.edge[1]] | heat[base + t.edge[2]];
     if ((seen & kRefineGone) == 0u) return;
+    // Most of what is burnt is gone, and coarse again: no workgroup for that.
+    uvec2 packed = levels[refined[object].triangles + triangle];
+    uint gone = 0u, coarse = packed.x == 0u ? 1u : 0u;
+    while (coarse != 0u) {
+        for (uint v = 0u; v < 3u; ++v) {
+            uint at = refined[object].vertices + slotOf(object, t.corner[v]);
+            gone += vertices[at].hole <= refined[object].now ? 1u : 0u;
+        }
+        coarse = 0u;
+    }
+    if (gone == 3u) {
+        uint to = refined[object].indices + packed.y * 3u;
+        indices[to] = indices[to + 1u] = indices[to + 2u] = t.corner[0];
+        return;
+    }
     uint job = atomicAdd(work[kRefineWorkCut + 3u], 1u);
     atomicMax(work[kRefineWorkCut], min(job + 1u, kMostGroups));
     work[push.cutJobs + 2u * job] = object;

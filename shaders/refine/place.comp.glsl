@@ -12,16 +12,17 @@ layout(local_size_x = 64) in;
 #define FW_USE_HEAT FW_READ_WRITE
 #define FW_USE_LEVELS readonly
 #define FW_USE_VERTICES coherent
-#define FW_USE_STATE readonly
+#define FW_USE_PREDICT readonly
 #include "lib/refine_buffers.glsl"
 
 bool isDoused(uint t) { return t == kOut || t == kOutWet; }
 
-// A texel that was put out stays as burnt as it was: it is younger every frame.
+// As the surface shows it: what nothing holds falls to ash early, and a texel that was put out stays
+// as burnt as it was, younger every frame.
 float arrivalAt(uint object, uint base, uint weights) {
     uint at = refined[object].stateBase + base;
     uint up = at + refined[object].textureWidth;
-    uvec4 t = uvec4(state[at], state[at + 1u], state[up], state[up + 1u]);
+    uvec4 t = uvec4(predict[at], predict[at + 1u], predict[up], predict[up + 1u]);
     bool doused = isDoused(t.x) || isDoused(t.y) || isDoused(t.z) || isDoused(t.w);
     while (doused) {
         uvec4 burnt = uvec4(gradient[at], gradient[at + 1u], gradient[up], gradient[up + 1u]);

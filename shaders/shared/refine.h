@@ -432,10 +432,12 @@ FW_SHARED_FN vec3 refineOffset(uint offset) {
 }
 
 // Arrival at a slot, s since `epoch`, from its four texels: over those lit by `now` (ticks) only.
+// Ticks may lie before the world began.
 FW_SHARED_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uint epoch) {
     float sum = 0.0f, weight = 0.0f;
     for (int k = 0; k < 4; ++k) {
-        uint w = ticks[k] <= now ? (weights >> (8u * uint(k))) & 255u : 0u;
+        bool lit = ticks[k] < kLiveEnd && int(now - ticks[k]) >= 0;
+        uint w = lit ? (weights >> (8u * uint(k))) & 255u : 0u;
         sum += float(int(w)) * float(int(ticks[k] - epoch));
         weight += float(int(w));
     }

@@ -67,7 +67,9 @@ float holeDelay(vec4 grown, vec4 fine, float delay, MaterialLook m) {
 // m from here to the rim of the hole; negative: gone.
 float holeEdge(float a, Site s, MaterialLook m) {
     if (m.holeTime <= 0.0) return 1.0;
-    if (s.left >= 0.0) return s.left / s.slow;
+    // A cut is smooth: its glow has patches.
+    if (s.left >= 0.0)
+        return s.left / s.slow + 0.5 * m.rimWidth * smoothstep(0.42, 0.62, s.fine.r);
     return (m.holeTime + holeDelay(s.grown, s.fine, s.delay, m) - s.lead - a) / s.slow;
 }
 

@@ -16,12 +16,11 @@ namespace {
 
 // What the passes bind.
 constexpr uint32_t kBindings[] = {
-    FW_BIND_STATE,          FW_BIND_GRADIENT,         FW_BIND_REFINE_WORK,
-    FW_BIND_REFINE_OBJECTS, FW_BIND_REFINE_TRIANGLES, FW_BIND_REFINE_EDGES,
-    FW_BIND_REFINE_SLOTS,   FW_BIND_REFINE_WORDS,     FW_BIND_REFINE_ITEMS,
-    FW_BIND_REFINE_HEAT,    FW_BIND_REFINE_LEVELS,    FW_BIND_REFINE_VERTICES,
-    FW_BIND_REFINE_INDICES, FW_BIND_REFINE_DRAWS,     FW_BIND_VERTICES,
-    FW_BIND_REFINE_CUTS,    FW_BIND_REFINE_CUT_DRAWS};
+    FW_BIND_PREDICT,          FW_BIND_GRADIENT,     FW_BIND_REFINE_WORK,   FW_BIND_REFINE_OBJECTS,
+    FW_BIND_REFINE_TRIANGLES, FW_BIND_REFINE_EDGES, FW_BIND_REFINE_SLOTS,  FW_BIND_REFINE_WORDS,
+    FW_BIND_REFINE_ITEMS,     FW_BIND_REFINE_HEAT,  FW_BIND_REFINE_LEVELS, FW_BIND_REFINE_VERTICES,
+    FW_BIND_REFINE_INDICES,   FW_BIND_REFINE_DRAWS, FW_BIND_VERTICES,      FW_BIND_REFINE_CUTS,
+    FW_BIND_REFINE_CUT_DRAWS};
 
 class RefineRig {
  public:
@@ -53,7 +52,7 @@ class RefineRig {
         make(FW_BIND_VERTICES, vertices.size() * sizeof vertices[0], vertices.data());
         make(FW_BIND_REFINE_CUTS, std::max(cutTriangles, 1u) * 3 * sizeof(mesh::RenderVertex));
         make(FW_BIND_REFINE_CUT_DRAWS, 8 * 16);
-        make(FW_BIND_STATE, scene.ticks.size() * 4, scene.ticks.data());
+        make(FW_BIND_PREDICT, scene.ticks.size() * 4, scene.ticks.data());
         make(FW_BIND_GRADIENT, scene.ticks.size() * 4);
         push_.objects = push_.objectEnd = 1;
         push_.recede = mesh::RefineSettings{}.recede;

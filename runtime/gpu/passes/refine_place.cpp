@@ -11,7 +11,7 @@ constexpr Use kUses[] = {
     {FW_BIND_REFINE_EDGES, Access::read},    {FW_BIND_REFINE_SLOTS, Access::read},
     {FW_BIND_REFINE_ITEMS, Access::read},    {FW_BIND_REFINE_HEAT, Access::write},
     {FW_BIND_REFINE_LEVELS, Access::read},   {FW_BIND_REFINE_VERTICES, Access::write},
-    {FW_BIND_STATE, Access::read},           {FW_BIND_GRADIENT, Access::read},
+    {FW_BIND_PREDICT, Access::read},         {FW_BIND_GRADIENT, Access::read},
 };
 
 }  // namespace

@@ -1,0 +1,75 @@
+// Ragged holes: noise makes slots burn through earlier or later, the same on both sides of a wall.
+#include "mesh/refine/roughen.h"
+#include "support/refine_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace fw::test {
+namespace {
+
+constexpr uint32_t kSide = 16;
+
+std::vector<gpu::RefineSlot> roughened(const RefineScene& scene,
+                                       const std::vector<uint8_t>& noise) {
+    std::vector<gpu::RefineSlot> slots(scene.model.slots.begin(), scene.model.slots.end());
+    const mesh::RefineHoles holes{0.5f, 2.6f, 0.8f, true};
+    mesh::refineRoughen(scene.domain, scene.model, {&holes, 1}, noise, kSide, slots);
+    return slots;
+}
+
+// Of a slot's time to a hole.
+double scaleOf(const RefineScene& scene, const std::vector<gpu::RefineSlot>& slots, size_t i) {
+    return double(slots[i].reach >> 16) / double(scene.model.slots[i].reach >> 16);
+}
+
+TEST(RefineRoughen, DarkIsEarlierThanBrightIsLater) {
+    const RefineScene scene(gridBox(0.6, 0.5, 0.4, 1, 1, 1), {}, 64);
+    const auto scales = [&](uint8_t level) {
+        const auto slots = roughened(scene, std::vector<uint8_t>(kSide * kSide, level));
+        double low = 1e9, high = 0;
+        for (size_t i = 0; i < slots.size(); ++i) {
+            if (scene.model.draws[i].triangle == mesh::kNone) continue;
+            low = std::min(low, scaleOf(scene, slots, i));
+            high = std::max(high, scaleOf(scene, slots, i));
+            EXPECT_EQ(scene.model.slots[i].reach & 0xFFFFu, slots[i].reach & 0xFFFFu);
+        }
+        EXPECT_NEAR(low, high, 0.01) << int(level);
+        return low;
+    };
+    EXPECT_NEAR(1 - 0.5 * 0.9, scales(0), 0.01);
+    EXPECT_NEAR(1 + 0.5 * 0.9 * 0.45, scales(255), 0.01);
+    EXPECT_NEAR(1, scales(128), 0.01);
+}
+
+TEST(RefineRoughen, BothSidesOfAWallAgree) {
+    const RefineScene scene(gridBox(0.6, 0.5, 0.02, 2, 2, 1, 13), {}, 96);
+    std::vector<uint8_t> noise(kSide * kSide);
+    for (uint32_t i = 0; i < noise.size(); ++i) noise[i] = uint8_t(gpu::hash32(i) >> 24);
+    const auto slots = roughened(scene, noise);
+    std::map<std::pair<long, long>, double> below;
+    const auto key = [](const gpu::RefineSlot& s) {
+        return std::make_pair(std::lround(double(s.x) * 8192), std::lround(double(s.y) * 8192));
+    };
+    const auto inside = [](const gpu::RefineSlot& s) {
+        return s.x > 0.03f && s.y > 0.03f && s.x < 0.57f && s.y < 0.47f;
+    };
+    for (size_t i = 0; i < slots.size(); ++i)
+        if (slots[i].z == 0 && inside(slots[i])) below[key(slots[i])] = scaleOf(scene, slots, i);
+    uint32_t pairs = 0;
+    double low = 1e9, high = 0;
+    for (size_t i = 0; i < slots.size(); ++i) {
+        const auto other = below.find(key(slots[i]));
+        if (slots[i].z < 0.019f || other == below.end()) continue;
+        const double scale = scaleOf(scene, slots, i);
+        ASSERT_NEAR(other->second, scale, 0.01);
+        low = std::min(low, scale);
+        high = std::max(high, scale);
+        ++pairs;
+    }
+    EXPECT_GT(pairs, 20u);
+    EXPECT_LT(low, 0.9);
+    EXPECT_GT(high, 1.05);
+}
+
+}  // namespace
+}  // namespace fw::test
