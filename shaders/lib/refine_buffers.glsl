@@ -61,6 +61,8 @@ const uint kMostGroups = 65535u;  // of a dispatch; the rest is strided over
 uint edgeList() { return kRefineWorkLists; }
 uint triangleList() { return edgeList() + 2u * push.edgeGroups; }
 uint cornerList() { return triangleList() + 2u * push.triangleGroups; }
+uint morphJobs() { return push.placeJobs + ((push.cutJobs - push.placeJobs) >> 1u); }
+uint edgeJobs() { return push.cutJobs + ((push.cutJobs - push.placeJobs) >> 1u); }
 uint objectList() { return cornerList() + 2u * push.cornerGroups; }
 // Per object of the list: cut triangles of each material, then the first for which there is no room.
 uint cutCounts(uint ordinal) { return objectList() + 2u * push.objects + 16u * ordinal; }

@@ -1,6 +1,6 @@
-// Places of the vertices that move, in phases with a barrier between: 0 corners, a lane each; 1 edges,
-// a lane each, their own places and then the morph of their newest points; 2 interiors, a workgroup
-// each, the same.
+// Places of the vertices that move, in phases with a barrier between: 0 corners, a lane each; 1 edges
+// that move, a lane each, their own places and then the morph of their newest points; 2 interiors,
+// half a workgroup each; 3 their morph.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_ITEMS readonly
 #define FW_USE_HEAT FW_READ_WRITE
 #define FW_USE_LEVELS readonly
-#define FW_USE_VERTICES coherent
+#define FW_USE_VERTICES FW_READ_WRITE
 #define FW_USE_PREDICT readonly
 #include "lib/refine_buffers.glsl"
 
@@ -89,12 +89,11 @@ void edgeLane(uint object, uint e) {
     uint item = refined[object].items + e;
     RefineEdge edge = edges[refined[object].meshEdges + e];
     float level = items[item].level;
-    bool moves = (heat[item] & kRefineMoving) != 0u;
-    uint l = refineTop(level), steps = moves ? 1u << l : 0u;
+    uint l = refineTop(level), steps = 1u << l;
     uint fate = fateOf(object, vertices[refined[object].vertices + edge.low].hole) |
                 fateOf(object, vertices[refined[object].vertices + edge.high].hole);
     for (uint i = 1u; i < steps; ++i) fate |= evaluate(object, refineEdgeSlot(edge, i, l));
-    if (moves) atomicOr(heat[item], fate);
+    atomicOr(heat[item], fate);
     float age = refineAge(level, l);
     steps = l == 0u || age >= 1.0 ? 0u : steps;
     for (uint i = 1u; i < steps; i += 2u)
@@ -111,24 +110,28 @@ uvec2 latticePoint(uint k, uint n) {
     return first ? uvec2(at + 1u, row + 1u) : uvec2(at - length + 1u, n - 2u - row);
 }
 
-void interiorGroup(uint object, uint triangle) {
+void placeInterior(uint object, uint triangle, uint lane) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
-    uint packed = levels[refined[object].triangles + triangle].x;
-    uint m = refineInterior(packed);
-    float level = items[refined[object].items + refined[object].edgeCount + triangle].level;
-    float age = refineTop(level) == m ? refineAge(level, m) : 1.0;
+    uint m = refineInterior(levels[refined[object].triangles + triangle].x);
     uint n = 1u << m;
     uint count = refineInnerCount(m), fate = 0u;
-    for (uint k = gl_LocalInvocationID.x; k < count; k += 64u) {
+    for (uint k = lane; k < count; k += 32u) {
         uvec2 c = latticePoint(k, n);
         fate |= evaluate(object, refineInnerSlot(t, c.x, c.y, m));
     }
     if (fate != 0u)
         atomicOr(heat[refined[object].items + refined[object].edgeCount + triangle], fate);
-    memoryBarrierBuffer();
-    barrier();
-    count = age >= 1.0 ? 0u : count;
-    for (uint k = gl_LocalInvocationID.x; k < count; k += 64u) {
+}
+
+void morphInterior(uint object, uint triangle, uint lane) {
+    RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
+    uint packed = levels[refined[object].triangles + triangle].x;
+    uint m = refineInterior(packed);
+    float level = items[refined[object].items + refined[object].edgeCount + triangle].level;
+    float age = refineAge(level, m);
+    uint n = 1u << m;
+    uint count = refineInnerCount(m);
+    for (uint k = lane; k < count; k += 32u) {
         uvec2 c = latticePoint(k, n);
         if (!refineIsNew(c.x, c.y)) continue;
         RefineParents p = refineParents(c.x, c.y);
@@ -137,23 +140,39 @@ void interiorGroup(uint object, uint triangle) {
     }
 }
 
+// Half a workgroup per interior.
+void interiors(uint dispatched, uint list, bool morphs) {
+    uint jobs = work[dispatched + 3u];
+    uint lane = gl_LocalInvocationID.x & 31u;
+    for (uint job = gl_GlobalInvocationID.x >> 5u; job < jobs; job += gl_NumWorkGroups.x * 2u) {
+        uint object = work[list + 2u * job], triangle = work[list + 2u * job + 1u];
+        if (morphs)
+            morphInterior(object, triangle, lane);
+        else
+            placeInterior(object, triangle, lane);
+    }
+}
+
 void main() {
-    if (push.phase == 2u) {
-        uint jobs = work[kRefineWorkPlace + 3u];
-        for (uint job = gl_WorkGroupID.x; job < jobs; job += gl_NumWorkGroups.x)
-            interiorGroup(work[push.placeJobs + 2u * job], work[push.placeJobs + 2u * job + 1u]);
+    // Loops, as a software device takes both sides of a branch.
+    uint phase = push.phase;
+    while (phase == 0u) {
+        for (uint g = gl_WorkGroupID.x; g < push.cornerGroups; g += gl_NumWorkGroups.x) {
+            uint object = work[cornerList() + 2u * g];
+            uint i = work[cornerList() + 2u * g + 1u] + gl_LocalInvocationID.x;
+            if (i < refined[object].cornerCount) evaluate(object, i);
+        }
         return;
     }
-    bool edge = push.phase == 1u;
-    uint list = edge ? edgeList() : cornerList();
-    uint groups = edge ? push.edgeGroups : push.cornerGroups;
-    for (uint g = gl_WorkGroupID.x; g < groups; g += gl_NumWorkGroups.x) {
-        uint object = work[list + 2u * g];
-        uint i = work[list + 2u * g + 1u] + gl_LocalInvocationID.x;
-        if (edge) {
-            if (i < refined[object].edgeCount) edgeLane(object, i);
-        } else if (i < refined[object].cornerCount) {
-            evaluate(object, i);
-        }
+    while (phase == 1u) {
+        uint jobs = work[kRefineWorkEdges + 3u];
+        for (uint i = gl_GlobalInvocationID.x; i < jobs; i += gl_NumWorkGroups.x * 64u)
+            edgeLane(work[edgeJobs() + 2u * i], work[edgeJobs() + 2u * i + 1u]);
+        return;
     }
+    while (phase == 2u) {
+        interiors(kRefineWorkPlace, push.placeJobs, false);
+        return;
+    }
+    interiors(kRefineWorkMorph, morphJobs(), true);
 }

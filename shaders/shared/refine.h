@@ -142,12 +142,14 @@ FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all its triangles a
 FW_SHARED_CONST uint kRefineHeatShift = 8u;
 FW_SHARED_CONST uint kRefineMoving = 0x10000u;
 
-// The work plane: three indirect dispatches, sums, then lists of two words (object slot, number).
+// The work plane: five indirect dispatches, sums, then lists of two words (object slot, number).
 FW_SHARED_CONST uint kRefineWorkEmit = 0u;    // x, y, z, jobs: 64 output triangles each
-FW_SHARED_CONST uint kRefineWorkPlace = 4u;   // x, y, z, jobs: an interior each
+FW_SHARED_CONST uint kRefineWorkPlace = 4u;   // x, y, z, jobs: interiors, two a group
 FW_SHARED_CONST uint kRefineWorkSums = 8u;    // triangles with each bias
 FW_SHARED_CONST uint kRefineWorkCut = 24u;    // x, y, z, jobs: a triangle with a hole each
-FW_SHARED_CONST uint kRefineWorkLists = 32u;
+FW_SHARED_CONST uint kRefineWorkEdges = 28u;  // x, y, z, jobs: edges that move, 64 a group
+FW_SHARED_CONST uint kRefineWorkMorph = 32u;  // as place: those with points on their way
+FW_SHARED_CONST uint kRefineWorkLists = 36u;
 
 struct RefinePush {
     uint phase;
@@ -163,9 +165,9 @@ struct RefinePush {
     uint cornerGroups;
     uint objects;     // (object slot, triangles that it emits; 0: none)
     uint emitJobs;    // first words of the lists that the device writes
-    uint placeJobs;
+    uint placeJobs;   // half way to cutJobs: of the morph
     uint objectEnd;   // object slots with a record
-    uint cutJobs;
+    uint cutJobs;     // as far behind it: edges
 };
 FW_SHARED_SIZE(RefinePush, 64)
 FW_SHARED_CONST float kRefineRate = 4.0f;    // levels per s, once a surface has moved

@@ -14,11 +14,11 @@ bool plumeNear(vec3 d, float power, vec3 up, float reach) {
 
 // `d`: m, from the surface to the light of the flames; `power`: W.
 float plumeSoot(vec3 d, float power, vec3 up) {
-    if (power <= 0.0) return 0.0;  // no light here
     float tall = plumeHeight(power);
     float above = -dot(d, up) / tall;
     float aside2 = (dot(d, d) / (tall * tall) - above * above);
     float width = 0.25 + 0.12 * max(above, 0.0);
-    return 0.85 * smoothstep(-0.1, 0.5, above) * exp2(-0.9 * max(above, 0.0)) *
-           exp2(-aside2 / (width * width));
+    float soot = 0.85 * smoothstep(-0.1, 0.5, above) * exp2(-0.9 * max(above, 0.0)) *
+                 exp2(-aside2 / (width * width));
+    return mix(0.0, soot, power > 0.0);  // else no light is here
 }

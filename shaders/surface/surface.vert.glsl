@@ -38,6 +38,8 @@ layout(location = 6) out vec2 outSootLead;  // soot of flames below; look second
 
 #include "lib/turn.glsl"
 
+uint flags;
+
 // One flame's share of the light here, and of its mean direction.
 void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, inout vec4 towards) {
     vec3 d = light.positionRadius.xyz - view.eye.xyz - position;
@@ -45,7 +47,7 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
     float radius = light.positionRadius.w;
     vec3 to = d * inversesqrt(max(r2, 1e-8));
     float facing = dot(normal, to);
-    if ((draw.flags & kObjectTwoSided) != 0u) facing = abs(facing);  // thin: both sides glow
+    if ((flags & kObjectTwoSided) != 0u) facing = abs(facing);  // thin: both sides glow
     float e = light.colorIntensity.w / (r2 + max(radius * radius * 0.25, 0.004));
     e *= clamp(4.0 * facing + 1.0, 0.0, 1.0);  // none from behind
     color += light.colorIntensity.rgb * e;
@@ -56,17 +58,21 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
 }
 
 void main() {
+    // Zero. A software device compiles a shader anew, in milliseconds a draw, for each set of
+    // constants that alone decide its branches.
+    uint zero = uint(gl_VertexIndex) >> 31u;
+    flags = draw.flags | zero;
     float scale = length(draw.row0.xyz);
     int n = int(inNormal);
     vec3 normal = vec3(float((n << 21) >> 21), float((n << 10) >> 21), float(n >> 22) * 2.0);
 
     vec3 rest = inPosition;
     float lead = inLead;
-    bool placed = (draw.flags & kDrawPlaced) != 0u;
+    bool placed = (flags & kDrawPlaced) != 0u;
     while (placed) {  // a branch would cost every mesh the load
         vec4 place = places[draw.places + inSlot];
         rest = place.xyz;
-        lead = (draw.flags & kDrawCut) != 0u ? clamp(place.w - draw.now, 0.0, 1000.0) : 0.0;
+        lead = (flags & kDrawCut) != 0u ? clamp(place.w - draw.now, 0.0, 1000.0) : 0.0;
         placed = false;
     }
     vec3 offset = vec3(draw.row0.w, draw.row1.w, draw.row2.w) - view.eye.xyz;
@@ -77,24 +83,27 @@ void main() {
     outSootLead = vec2(0.0, lead);
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
-    if ((draw.flags & kDrawVertexLight) != 0u) {
+    bool lit = (flags & kDrawVertexLight) != 0u;
+    uint count = view.lightCount | zero;
+    while (lit) {
         // Constant indices: software devices read the block once for all vertices then.
-        if (view.lightCount > 0u) addFlame(lights[0], position, normal, color, towards);
-        if (view.lightCount > 1u) addFlame(lights[1], position, normal, color, towards);
-        if (view.lightCount > 2u) addFlame(lights[2], position, normal, color, towards);
-        if (view.lightCount > 3u) addFlame(lights[3], position, normal, color, towards);
-        if (view.lightCount > 4u) addFlame(lights[4], position, normal, color, towards);
-        if (view.lightCount > 5u) addFlame(lights[5], position, normal, color, towards);
-        if (view.lightCount > 6u) addFlame(lights[6], position, normal, color, towards);
-        if (view.lightCount > 7u) addFlame(lights[7], position, normal, color, towards);
-        if (view.lightCount > 8u) addFlame(lights[8], position, normal, color, towards);
-        if (view.lightCount > 9u) addFlame(lights[9], position, normal, color, towards);
-        if (view.lightCount > 10u) addFlame(lights[10], position, normal, color, towards);
-        if (view.lightCount > 11u) addFlame(lights[11], position, normal, color, towards);
-        if (view.lightCount > 12u) addFlame(lights[12], position, normal, color, towards);
-        if (view.lightCount > 13u) addFlame(lights[13], position, normal, color, towards);
-        if (view.lightCount > 14u) addFlame(lights[14], position, normal, color, towards);
-        if (view.lightCount > 15u) addFlame(lights[15], position, normal, color, towards);
+        if (count > 0u) addFlame(lights[0], position, normal, color, towards);
+        if (count > 1u) addFlame(lights[1], position, normal, color, towards);
+        if (count > 2u) addFlame(lights[2], position, normal, color, towards);
+        if (count > 3u) addFlame(lights[3], position, normal, color, towards);
+        if (count > 4u) addFlame(lights[4], position, normal, color, towards);
+        if (count > 5u) addFlame(lights[5], position, normal, color, towards);
+        if (count > 6u) addFlame(lights[6], position, normal, color, towards);
+        if (count > 7u) addFlame(lights[7], position, normal, color, towards);
+        if (count > 8u) addFlame(lights[8], position, normal, color, towards);
+        if (count > 9u) addFlame(lights[9], position, normal, color, towards);
+        if (count > 10u) addFlame(lights[10], position, normal, color, towards);
+        if (count > 11u) addFlame(lights[11], position, normal, color, towards);
+        if (count > 12u) addFlame(lights[12], position, normal, color, towards);
+        if (count > 13u) addFlame(lights[13], position, normal, color, towards);
+        if (count > 14u) addFlame(lights[14], position, normal, color, towards);
+        if (count > 15u) addFlame(lights[15], position, normal, color, towards);
+        lit = false;
     }
     towards.xyz /= towards.w;
 

@@ -68,8 +68,8 @@ class RefineRig {
         lists_.insert(lists_.end(), gpu::kMaterialsPerObject, gpu::kNoneTexel);
         push_.emitJobs = uint32_t(lists_.size());
         push_.placeJobs = push_.emitJobs + uint32_t(2 * (full / 64 + 1));
-        push_.cutJobs = push_.placeJobs + uint32_t(2 * m.triangles.size());
-        make(FW_BIND_REFINE_WORK, (push_.cutJobs + 2 * m.triangles.size()) * 4);
+        push_.cutJobs = push_.placeJobs + uint32_t(4 * m.triangles.size());
+        make(FW_BIND_REFINE_WORK, (push_.cutJobs + 2 * (m.triangles.size() + m.edges.size())) * 4);
         const char* names[5] = {"refine_levels.comp", "refine_scan.comp", "refine_emit.comp",
                                 "refine_place.comp", "refine_cut.comp"};
         for (int k = 0; k < 5; ++k) pipelines_[k] = makePipeline(names[k]);
@@ -113,8 +113,9 @@ class RefineRig {
             dispatch(commands, 1, 0, 1);
             dispatch(commands, 2, 0, 32);
             dispatch(commands, 3, 0, push_.cornerGroups);
-            dispatch(commands, 3, 1, push_.edgeGroups);
+            dispatch(commands, 3, 1, 4);
             dispatch(commands, 3, 2, 32);
+            dispatch(commands, 3, 3, 32);
             if (cutTriangles_ == 0) return;
             dispatch(commands, 4, 0, push_.triangleGroups);
             dispatch(commands, 4, 1, 32);

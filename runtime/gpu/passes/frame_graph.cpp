@@ -271,9 +271,11 @@ void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const Re
     push.phase = 0;
     recorder.dispatch(kRefinePlacePass, &push, std::min(push.cornerGroups, kMaxGroups));
     push.phase = 1;
-    recorder.dispatch(kRefinePlacePass, &push, std::min(push.edgeGroups, kMaxGroups));
+    recorder.dispatchIndirect(kRefinePlacePass, &push, FW_BIND_REFINE_WORK, kRefineWorkEdges * 4);
     push.phase = 2;
     recorder.dispatchIndirect(kRefinePlacePass, &push, FW_BIND_REFINE_WORK, kRefineWorkPlace * 4);
+    push.phase = 3;
+    recorder.dispatchIndirect(kRefinePlacePass, &push, FW_BIND_REFINE_WORK, kRefineWorkMorph * 4);
     if (!cuts) return;
     push.phase = 0;
     recorder.dispatch(kRefineCutPass, &push, std::min(push.triangleGroups, kMaxGroups));

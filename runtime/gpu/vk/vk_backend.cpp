@@ -871,7 +871,10 @@ void VkBackend::cancelOutside() noexcept {
     state_->ring.undoOutside();
 }
 
-void VkBackend::beginOwn() { state_->beginOwn(); }
+void VkBackend::beginOwn() {
+    state_->beginOwn();
+    state_->open.unseen = true;  // pictures are frames of their own
+}
 void VkBackend::endOwn() {
     state_->closeFrame(nullptr);
     state_->submitOwn();

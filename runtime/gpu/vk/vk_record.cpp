@@ -839,7 +839,10 @@ void VkBackend::State::closeFrame(const FwView* view) {
         recordSooting(*this, looks);
         if (view) recordFlameQuads(looks, lists, open.endTick);
     }
-    recordRefinement(slot, view);
+    if (view)
+        recordRefinement(slot, *view);
+    else
+        showRefined();
     FrameRecorder recorder(target);
     if (open.readback && open.planFrame) {
         const ReadbackLayout& layout = slot.layout;

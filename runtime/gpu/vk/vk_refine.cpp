@@ -181,17 +181,22 @@ void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
     use.quietTick = std::max(use.quietTick, uint32_t(std::min<uint64_t>(quiet, kLiveEnd)));
 }
 
+// Once more after it is quiet: pictures may be seconds apart.
+bool VkBackend::State::refines(const ObjectEntry& object) const noexcept {
+    return object.live && object.refine.on && double(object.refine.quietTick) > refine.lastTick;
+}
+
 // Which objects the frame refines, and the bytes that it uploads for it. May throw.
 uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
     refine.lists.clear();
     refine.push = {};
-    if (refine.users == 0) return 0;
-    uint64_t emitJobs = 0, placeJobs = 0, full = 0;
+    refine.full = (plan.switches & kSwitchRefineFull) != 0;
+    if (refine.users == 0 || open.unseen) return 0;
+    uint64_t emitJobs = 0, placeJobs = 0, edgeJobs = 0, full = 0;
     const auto each = [&](auto&& use) {
         for (uint32_t i = 0; i < objects.size(); ++i) {
             const ObjectEntry& object = objects[i];
-            if (object.live && object.refine.on && object.refine.quietTick > plan.endTick)
-                use(i, meshes[object.mesh].refine[object.refine.depth]);
+            if (refines(object)) use(i, meshes[object.mesh].refine[object.refine.depth]);
         }
     };
     const auto list = [&](uint32_t object, uint32_t count) {
@@ -202,7 +207,8 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
         return groupsOf(count);
     };
     refine.lists.resize(kRefineWorkLists, 0);
-    for (const uint32_t at : {kRefineWorkEmit, kRefineWorkPlace, kRefineWorkCut})
+    for (const uint32_t at :
+         {kRefineWorkEmit, kRefineWorkPlace, kRefineWorkCut, kRefineWorkEdges, kRefineWorkMorph})
         refine.lists[at + 1] = refine.lists[at + 2] = 1;
     RefinePush& push = refine.push;
     each([&](uint32_t i, const RefineMesh& m) { push.edgeGroups += list(i, m.edgeCount); });
@@ -214,6 +220,7 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
         ++push.objects;
         emitJobs += groupsOf(m.fullCount);
         placeJobs += m.triangleCount;
+        edgeJobs += m.edgeCount;
         full += m.fullCount;
         push.objectEnd = i + 1;
     });
@@ -223,25 +230,26 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
         refine.lists.insert(refine.lists.end(), kMaterialsPerObject, kNoneTexel);
     }
     push.budget = full > limits.maxRefinedTriangles ? limits.maxRefinedTriangles : 0;
-    push.full = (plan.switches & kSwitchRefineFull) != 0 ? 1 : 0;
+    push.full = refine.full ? 1 : 0;
     push.recede = kRecede;
     push.emitJobs = uint32_t(refine.lists.size());
     push.placeJobs = push.emitJobs + uint32_t(2 * emitJobs);
-    push.cutJobs = push.placeJobs + uint32_t(2 * placeJobs);
-    planes.atLeast(kSpaceRefineWork, push.cutJobs + uint32_t(2 * placeJobs), ring.newest());
+    push.cutJobs = push.placeJobs + uint32_t(4 * placeJobs);
+    planes.atLeast(kSpaceRefineWork, push.cutJobs + uint32_t(2 * (placeJobs + edgeJobs)),
+                   ring.newest());
     return refine.lists.size() * 4 + uint64_t(push.objectEnd) * sizeof(RefineObject) + 64;
 }
 
-// `view`: its eye and size on the screen limit levels; null: as last drawn.
-void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view) {
+// `view`: its eye and the last picture's height limit levels.
+void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view) {
     RefinePush& push = refine.push;
     if (push.objects == 0) {
         showRefined();
         return;
     }
-    if (view && limits.looks.viewParams) {
+    if (limits.looks.viewParams) {
         ViewInput input;
-        input.view = view;
+        input.view = &view;
         input.viewport[2] = input.viewport[3] = refine.height > 0 ? refine.height : kDefaultHeight;
         ViewParams params{};
         limits.looks.viewParams(input, params);
@@ -250,8 +258,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view)
     }
     const double now = double(shownTick) + double(tickFraction);
     push.nowTick = shownTick;
-    push.dt = float(std::clamp((now - refine.lastTick) / kTicksPerSecond, 0.0, 1.0));
-    refine.lastTick = now;
+    push.dt = float(std::clamp((now - refine.lastTick) / kTicksPerSecond, 0.0, 2.0));
 
     FrameRecorder recorder(recordTarget(slot, open.commands));
     uint64_t at = (slot.uploadUsed + 15) / 16 * 16;
@@ -264,10 +271,8 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view)
     for (uint32_t i = 0; i < push.objectEnd; ++i, at += sizeof(RefineObject)) {
         RefineObject record{};
         ObjectEntry& object = objects[i];
-        const bool active =
-            object.live && object.refine.on && object.refine.quietTick > open.endTick;
-        if (active) {
-            record = refineRecord(object, push.full != 0);
+        if (refines(object)) {
+            record = refineRecord(object, refine.full);
             record.ordinal = ordinal++;
             const bool cut = isNear(object, record);
             if (object.refine.cut && !cut) record.flags |= kRefineIsWhole;
@@ -288,6 +293,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView* view)
     slot.uploadUsed = at;
     recorder.copyIn(recordsAt, FW_BIND_REFINE_OBJECTS, 0,
                     uint64_t(push.objectEnd) * sizeof(RefineObject));
+    refine.lastTick = now;
     recordRefine(recorder, lists, push, cuts);
     showRefined();
 }

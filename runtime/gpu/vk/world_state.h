@@ -233,6 +233,7 @@ struct VkBackend::State {
     // The frame that is open.
     struct Open {
         bool open = false, ran = false, recording = false, readback = false;
+        bool unseen = false;  // nothing draws before the next one
         VkCommandBuffer commands = VK_NULL_HANDLE;
         uint64_t ringFrame = 0, planFrame = 0;
         uint32_t endTick = 0;
@@ -248,7 +249,8 @@ struct VkBackend::State {
         uint32_t users = 0;                // objects that refine
         vec4 eye{};                        // m, world; w: pixels of 1 m at 1 m, 0: no limit by size
         float height = 0;                  // px, of what was last drawn; 0: nothing was
-        double lastTick = 0;
+        double lastTick = 0;               // of the last frame that refined
+        bool full = false;                 // everything at its deepest
     } refine;
 
     // Readbacks, oldest first.
@@ -281,8 +283,9 @@ struct VkBackend::State {
     // vk_refine.cpp
     void uploadRefineTable();
     void noteFire(uint32_t object, uint32_t tick) noexcept;
+    [[nodiscard]] bool refines(const ObjectEntry& object) const noexcept;
     uint64_t planRefine(const FramePlan& plan);
-    void recordRefinement(FrameInFlight& slot, const FwView* view);
+    void recordRefinement(FrameInFlight& slot, const FwView& view);
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
     bool isNear(const ObjectEntry& object, const RefineObject& record) const noexcept;
     void showRefined() noexcept;

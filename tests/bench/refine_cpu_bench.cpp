@@ -1,7 +1,8 @@
-// Refinement on the CPU, one thread: the whole geometry cost of a frame with everything fine
-// (refine/full: every vertex placed, indices static) and with levels (refine/adaptive: heat,
-// levels, scan, emission when a level changed, vertices), over two seconds around the moment when
-// 25 % (or 5 %) are lit. Not the cost of drawing: that goes with the triangles, which are counted.
+// Refinement in the library, one thread: the whole geometry cost of a frame with everything fine
+// (refine_cpu/full: every vertex placed, indices static) and with levels (refine_cpu/adaptive:
+// heat, levels, scan, emission when a level changed, vertices), over two seconds around the moment
+// when 25 % (or 5 %) are lit. Not the cost of drawing: that goes with the triangles, which are
+// counted.
 //
 // Counters of adaptive rows, measured in the same run: ratio = full / adaptive time; ratio_still =
 // a full mesh that leaves still parts alone / adaptive; triangles = full / drawn.
@@ -123,7 +124,7 @@ void refine(benchmark::State& state, const Model& model, double lit, bool adapti
 
 #define FW_REFINE_ROW(row, model, lit, adaptive)                      \
     BENCHMARK_CAPTURE(refine, row##_##model, k##model, lit, adaptive) \
-        ->Name("refine/" #row "/" #model)                             \
+        ->Name("refine_cpu/" #row "/" #model)                         \
         ->UseManualTime()                                             \
         ->Unit(benchmark::kMillisecond)
 
