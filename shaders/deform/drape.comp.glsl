@@ -1,5 +1,5 @@
 // Drawn vertices follow their nodes: place, and the rest normal turned as its triangles turned.
-// 64 vertices of one object a group.
+// kDeformGroup vertices of one object a group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -10,34 +10,42 @@ layout(local_size_x = 64) in;
 
 void main() {
     DeformItem item = deformItem();
-    uvec4 sizes = deformObjects[item.object], bases = deformObjects[item.object + 1u];
-    if (item.number >= sizes.w) return;
-    uint at = (sizes.z + item.number) * kDeformCoatQuads;
-    uvec4 coat = deformCoats[at], face = deformCoats[at + 3u];
-    uint node = bases.x + coat.x;
-    vec3 place = shown[node * kShownQuads].xyz;
-    float lead = shown[node * kShownQuads + 2u].w;
+    uvec4 sizes = deformObjects[item.object];
+    uint shownBase = deformObjects[item.object + 1u].x;
 
-    vec3 turned = vec3(0.0), before = vec3(0.0);
-    FW_UNROLL for (uint q = 0u; q < kDeformRing / 4u; ++q) {
-        uvec4 ring = deformCoats[at + 1u + q];
-        FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
-            vec3 arm = shown[(bases.x + ring[k]) * kShownQuads].xyz - place;
-            turned += cross(before, arm);
-            before = arm;
+    uint last = min(item.end, sizes.w);
+    uint number = item.number;
+    if (number >= last) return;
+    do {
+        uint at = (sizes.z + number) * kDeformCoatQuads;
+        uvec2 coat = deformCoats[at].xy;
+        uvec3 face = deformCoats[at + 3u].xyz;
+        uint node = shownBase + coat.x;
+        vec3 place = shown[node * kShownQuads].xyz;
+        float lead = shown[node * kShownQuads + 2u].w;
+
+        vec3 turned = vec3(0.0), before = vec3(0.0);
+        FW_UNROLL for (uint q = 0u; q < kDeformRing / 4u; ++q) {
+            uvec4 ring = deformCoats[at + 1u + q];
+            FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
+                vec3 arm = shown[(shownBase + ring[k]) * kShownQuads].xyz - place;
+                turned += cross(before, arm);
+                before = arm;
+            }
         }
-    }
-    float size = length(turned);
-    vec3 rest = unpackDirection(coat.y);
-    vec3 normal = rest;
-    if (size > 1e-18) normal = turnedNormal(rest, uintBitsToFloat(face.xyz), turned / size);
-    // At rest exactly what the mesh has.
-    uint packed = all(equal(normal, rest)) ? coat.y : packDirection(normal);
-    uint self = bases.x + item.number;
-    if (self == node) {
-        shownWords[self * kShownQuads * 4u + 3u] = packed;
-    } else {
-        shown[self * kShownQuads] = vec4(place, uintBitsToFloat(packed));
-        shown[self * kShownQuads + 2u] = vec4(0.0, 0.0, 0.0, lead);
-    }
+        float size = length(turned);
+        vec3 rest = unpackDirection(coat.y);
+        vec3 normal = rest;
+        if (size > 1e-18) normal = turnedNormal(rest, uintBitsToFloat(face), turned / size);
+        // At rest exactly what the mesh has.
+        uint packed = all(equal(normal, rest)) ? coat.y : packDirection(normal);
+        uint self = shownBase + number;
+        if (self == node) {
+            shownWords[self * kShownQuads * 4u + 3u] = packed;
+        } else {
+            shown[self * kShownQuads] = vec4(place, uintBitsToFloat(packed));
+            shown[self * kShownQuads + 2u] = vec4(0.0, 0.0, 0.0, lead);
+        }
+        number += 64u;
+    } while (number < last);
 }

@@ -1,5 +1,5 @@
 // One step of sheets: every node moves to where its links, its bending and its pins allow, and on
-// with the speed that this gives it. 64 nodes of one object a group.
+// with the speed that this gives it. kDeformGroup nodes of one object a group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -11,93 +11,98 @@ layout(local_size_x = 64) in;
 
 void main() {
     DeformItem item = deformItem();
-    uvec4 sizes = deformObjects[item.object], bases = deformObjects[item.object + 1u];
+    uvec2 sizes = deformObjects[item.object].xy;
+    uvec4 bases = deformObjects[item.object + 1u];
     uvec4 facts2 = deformObjects[item.object + 2u];
-    if (item.number >= sizes.y) return;
     uint softBase = deformObjects[item.object + 3u].x;
-    uint at = (sizes.x + item.number) * kDeformNodeQuads;
-    uvec4 node = deformNodes[at];
-    uint vertex = node.w;
-    uvec4 facts = deformNodes[at + 2u];
-    uvec4 lengths = deformNodes[at + 9u];
-    uint materialAt = item.object + 4u + (facts.x & 7u) * 2u;
-    float shrink = uintBitsToFloat(deformObjects[materialAt].z);
-    float drag = uintBitsToFloat(deformObjects[materialAt + 1u].w);
-    float scale = uintBitsToFloat(facts2.z);
-    vec3 up = upHere(facts2);
+    uvec4 material0 = deformObjects[item.object + 4u], more0 = deformObjects[item.object + 5u];
+    float ground = uintBitsToFloat(facts2.x), scale = uintBitsToFloat(facts2.z);
+    vec3 up = upHere(facts2), wind = toObject(facts2, push.wind.xyz) / scale;
+    vec4 height = heightHere(facts2);
 
-    uint own = (softBase + vertex) * kSoftQuads;
-    uvec4 self = soft[own + item.parity], bent = soft[own + 2u];
-    vec3 x = uintBitsToFloat(self.xyz), normal = bentNormal(bent.x);
-    vec2 reachBurnt = unpackHalf2x16(self.w);
-    float burnt = reachBurnt.y, charred = charredShare(burnt);
-    bool pinned = reachBurnt.x == 0.0;
-
-    vec3 links = vec3(0.0);
-    vec3 bending = nearBend(bent) + farBend(bent);
-    float reach = kReachNone;
-    FW_UNROLL for (uint k = 0u; k < kDeformRing; ++k) {
-        uint other = deformNodes[at + 7u + k / 4u][k & 3u];
-        vec2 pair = unpackHalf2x16(lengths[k / 2u]);
-        float rest = (k & 1u) == 0u ? pair.x : pair.y;
-        bool holds = (bent.x >> k & 1u) != 0u, farHolds = (bent.x >> (k + 8u) & 1u) != 0u;
-        uint theirs = (softBase + other) * kSoftQuads;
-        uvec4 there = soft[theirs + item.parity], otherBent = soft[theirs + 2u];
-        vec2 otherFacts = unpackHalf2x16(there.w);
-        float wanted = rest * (1.0 - shrink * 0.5 * (charred + charredShare(otherFacts.y)));
-        vec3 p = linkPush(x, uintBitsToFloat(there.xyz), wanted, otherFacts.x == 0.0 ? 1.0 : 0.5);
-        links += holds ? p : vec3(0.0);
-        bending -= holds ? nearBend(otherBent) * bendShare(otherBent) : vec3(0.0);
-        reach = holds ? min(reach, otherFacts.x + rest) : reach;
-        uint farther = farHolds ? deformNodes[at + 10u + k / 4u][k & 3u] : vertex;
-        otherBent = soft[(softBase + farther) * kSoftQuads + 2u];
-        bending -= farHolds ? farBend(otherBent) * bendShare(otherBent) : vec3(0.0);
-    }
-    uint shownAt = (bases.x + vertex) * kShownQuads;
-    vec3 last = shown[shownAt].xyz;
-    vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
-                 bending * (relaxAt(1.0, push.step) / kBendUnit);
-    // No farther from the nearest pin than its way there over links that hold.
-    if (reach < 0.5 * kReachNone) {
-        vec3 anchor = vec3(0.0);
-        float nearest = 1e30, radius = 0.0;
-        for (uint i = 0u; i < bases.w; ++i) {
-            vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
-            vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
-            vec3 point = pinPoint(moved, from.xyz, to.xyz);
-            float d = length(moved - point);
-            if (d < nearest) {
-                nearest = d;
-                anchor = point;
-                radius = from.w;
-            }
+    uint last = min(item.end, sizes.y);
+    uint number = item.number;
+    if (number >= last) return;
+    do {
+        uint at = (sizes.x + number) * kDeformNodeQuads;
+        uvec2 facts = deformNodes[at].xy;
+        uint vertex = facts.x;
+        float shrink = uintBitsToFloat(material0.z), drag = uintBitsToFloat(more0.w);
+        if ((facts.y & 7u) != 0u) {
+            uint materialAt = item.object + 4u + (facts.y & 7u) * 2u;
+            shrink = uintBitsToFloat(deformObjects[materialAt].z);
+            drag = uintBitsToFloat(deformObjects[materialAt + 1u].w);
         }
-        float most = reach + radius;
-        if (nearest < 1e29 && nearest > most) moved = anchor + (moved - anchor) * (most / nearest);
-    }
-    float ground = uintBitsToFloat(facts2.x);
-    float height = heightHere(facts2, moved);
-    bool down = height < ground;
-    if (down) moved += up * ((ground - height) / scale);
 
-    vec3 velocity = noFasterThan((moved - last) / push.step, kFastest / scale);
-    velocity *= down ? 0.5 : sheetDamping(charred, push.step);
-    // The air goes with the wind, in gusts, and rises where it burns.
-    float phase = dot(x, vec3(3.1, 2.3, 2.7)) * scale;
-    float time = push.wind.w;
-    float gust = 0.7 + 0.3 * sin(2.3 * time + phase) + 0.25 * sin(5.9 * time - 1.7 * phase);
-    vec3 air = toObject(facts2, push.wind.xyz) * gust / scale;
-    air += up * (1.2 / scale) * smoothstep(0.02, 0.2, burnt) * (1.0 - smoothstep(0.7, 1.0, burnt));
-    float slowed = 1.0 - exp(-drag * (1.0 + 2.0 * charred) * push.step);
-    velocity += normal * (dot(normal, air - velocity) * slowed);
-    velocity -= up * (9.81 / scale * push.step);
+        uint own = (softBase + number) * kSoftQuads;
+        uvec4 seen = soft[own + kSoftSeen], bent = soft[own + kSoftOwn];
+        vec3 x = uintBitsToFloat(seen.xyz), normal = bentNormal(bent.x);
+        float burnt = burntOf(bent.z), reach = reachOf(bent.z), charred = charredShare(burnt);
+        bool pinned = reach == 0.0;
+        // Both ends of a link agree on its length.
+        float shrunk = shrink * 0.5 / kCharredSteps, mine = floor(charred * kCharredSteps + 0.5);
 
-    vec3 next = moved + velocity * push.step;
-    if (pinned) {
-        moved = next = uintBitsToFloat(node.xyz);
-        reach = 0.0;
-    }
-    shown[shownAt] = vec4(moved, 0.0);
-    soft[own + (item.parity ^ 1u)] =
-        uvec4(floatBitsToUint(next), packHalf2x16(vec2(min(reach, kReachNone), burnt)));
+        vec3 links = vec3(0.0);
+        // Who bends far has as many neighbours there as here.
+        vec3 bending = (shareOf(seen.w) + shareOf(bent.w)) * nearCount(bent.x);
+        uint far = 0u, turns = (facts.y & kNodeFarHeard) != 0u ? 2u : 1u;
+        do {  // the neighbours, then those two steps away
+            uint ringAt = at + 1u + 4u * far;
+            uvec4 ring[2] = uvec4[2](deformNodes[ringAt], deformNodes[ringAt + 1u]);
+            uvec4 lengths = deformNodes[ringAt + 2u];
+            FW_UNROLL for (uint k = 0u; k < kDeformRing; ++k) {
+                bool holds = (bent.x >> (k + 8u * far) & 1u) != 0u;
+                uint other = ring[k / 4u][k & 3u] & kDeformNode;
+                uvec4 there = soft[(softBase + other) * kSoftQuads + kSoftSeen + far];
+                bending -= holds ? shareOf(there.w) : vec3(0.0);
+                if (far != 0u) continue;
+                vec2 pair = unpackHalf2x16(lengths[k / 2u]);
+                float theirs = float(bent.y >> (4u * k) & 15u);
+                float wanted = ((k & 1u) == 0u ? pair.x : pair.y) * (1.0 - shrunk * (mine + theirs));
+                vec3 p = linkPush(x, uintBitsToFloat(there.xyz), wanted,
+                                  (bent.z >> (24u + k) & 1u) != 0u ? 1.0 : 0.5);
+                links += holds ? p : vec3(0.0);
+            }
+        } while (++far < turns);
+        uint shownAt = (bases.x + vertex) * kShownQuads;
+        vec3 before = shown[shownAt].xyz;
+        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
+                     bending * (relaxAt(1.0, push.step) / kBendUnit);
+        // No farther from the nearest pin than its way there over links that hold.
+        if (reach < 0.5 * kReachNone) {
+            vec3 anchor = vec3(0.0);
+            float nearest = 1e30, radius = 0.0;
+            uint i = 0u;
+            do {
+                vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
+                vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
+                vec3 point = pinPoint(moved, from.xyz, to.xyz);
+                float d = length(moved - point);
+                if (d < nearest) {
+                    nearest = d;
+                    anchor = point;
+                    radius = from.w;
+                }
+            } while (++i < bases.w);
+            float most = reach * kReachSlack + radius;
+            if (nearest > most) moved = anchor + (moved - anchor) * (most / nearest);
+        }
+        float above = dot(height.xyz, moved) + height.w - ground;
+        bool down = above < 0.0;
+        if (down) moved -= up * (above / scale);
+
+        vec3 velocity = noFasterThan((moved - before) / push.step, kFastest / scale);
+        velocity *= down ? 0.5 : sheetDamping(charred, push.step);
+        vec3 air = wind * gustAt(x, scale, push.wind.w) + up * (updraftAt(burnt) / scale);
+        float slowed = drag * (1.0 + 2.0 * charred) * push.step;
+        velocity += normal * (dot(normal, air - velocity) * slowed / (1.0 + slowed));
+        velocity -= up * (9.81 / scale * push.step);
+
+        vec3 next = moved + velocity * push.step;
+        if (pinned) moved = next = uintBitsToFloat(deformNodes[at + 4u].xyz);
+        shown[shownAt] = vec4(moved, 0.0);
+        soft[own + (item.parity ^ 1u)] =
+            uvec4(floatBitsToUint(next), packFacts(reach, burnt));
+        number += 64u;
+    } while (number < last);
 }

@@ -21,9 +21,24 @@ FW_BUFFER(FW_BIND_SHOWN, FW_USE_SHOWN_WORDS, ShownWordsBuffer, uint, shownWords)
 #endif
 
 #ifdef FW_USE_SOFT
-// Per shown vertex two places (xyz, packed reach to a pin and burnt share) and bend.comp's result.
+// Per node: two places, each with its facts; what neighbours see of bend.comp's result, the
+// place and a share; what is the node's own of it: normal and links that hold (near, far << 8),
+// neighbours' charred shares, way to a pin and which of them are pinned, a share for those two
+// steps away.
 FW_BUFFER(FW_BIND_SOFT, FW_USE_SOFT, SoftBuffer, uvec4, soft);
-// The third quad: the normal, coarsely, and which links hold (near, far << 8); near and far bends.
+const uint kSoftSeen = 2u, kSoftOwn = 3u;
+
+const float kCharredSteps = 15.0;  // in which neighbours know of it
+// Way to a pin, burnt share (8 bits), charred share (4 bits) and whether it is pinned.
+uint packFacts(float reach, float burnt) {
+    return (packHalf2x16(vec2(reach, 0.0)) & 0xFFFFu) | uint(burnt * 255.0) << 16u |
+           uint(charredShare(burnt) * kCharredSteps + 0.5) << 24u | (reach == 0.0 ? 1u << 28u : 0u);
+}
+float reachOf(uint facts) { return unpackHalf2x16(facts).x; }
+float burntOf(uint facts) { return float(facts >> 16u & 255u) * (1.0 / 255.0); }
+uint charredOf(uint facts) { return facts >> 24u & 15u; }
+uint pinnedOf(uint facts) { return facts >> 28u; }
+
 uint packBent(vec3 n, uint links) {
     n /= abs(n.x) + abs(n.y) + abs(n.z);
     vec2 o = n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
@@ -35,22 +50,29 @@ vec3 bentNormal(uint packed) {
     if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
     return normalize(n);
 }
-vec3 nearBend(uvec4 bent) {
-    return vec3(unpackHalf2x16(bent.y), unpackHalf2x16(bent.z).x);
+// Every neighbour's share of what the node gives way by, which is that often what a share is: who
+// bends has all of them. Halfs, shortened to 11, 11 and 10 bits: all see the same.
+uint packShare(vec3 share) {
+    uvec3 h = uvec3(packHalf2x16(share.xy), 0u, packHalf2x16(vec2(share.z, 0.0)) & 0xFFFFu);
+    h = uvec3(h.x & 0xFFFFu, h.x >> 16u, h.z) + uvec3(16u, 16u, 32u);
+    return h.x >> 5u | (h.y >> 5u) << 11u | (h.z >> 6u) << 22u;
 }
-vec3 farBend(uvec4 bent) {
-    return vec3(unpackHalf2x16(bent.z).y, unpackHalf2x16(bent.w));
+vec3 shareOf(uint packed) {
+    return vec3(unpackHalf2x16((packed & 0x7FFu) << 5u | (packed & 0x3FF800u) << 10u),
+                unpackHalf2x16(packed >> 22u << 6u).x);
 }
-// Of each neighbour: who bends has all of them.
-float bendShare(uvec4 bent) { return 1.0 / float(max(bitCount(bent.x & 0xFFu), 1)); }
+float nearCount(uint links) { return float(bitCount(links & 0xFFu)); }
 #endif
 
 layout(push_constant) uniform DeformPushBlock { DeformPush push; };
 
-// One thread's object and item: a node or a vertex, which may be beyond the last.
+// One thread's object and items, every 64th: nodes or vertices. Several, as what is an object's is
+// read once for all of them. Loops over them ask at their end: where software runs several threads
+// as one, a loop that asks at its start goes through its text once more with nobody in it.
 struct DeformItem {
     uint object;  // quad of its DeformObject
     uint number;
+    uint end;     // of the group; there may be fewer
     uint parity;  // of the places that are read
     bool reset;
 };
@@ -59,6 +81,7 @@ DeformItem deformItem() {
     DeformItem item;
     item.object = group.x * kDeformObjectQuads;
     item.number = (group.y & kDeformItem) + gl_LocalInvocationID.x;
+    item.end = (group.y & kDeformItem) + kDeformGroup;
     item.parity = ((group.y & kDeformOdd) != 0u ? 1u : 0u) ^ (push.parity & 1u);
     item.reset = (group.y & kDeformReset) != 0u;
     return item;
@@ -72,12 +95,10 @@ vec3 toObject(uvec4 facts, vec3 v) {  // a direction, its length kept
            uintBitsToFloat(facts.z);
 }
 vec3 upHere(uvec4 facts) { return toObject(facts, push.up.xyz); }
-float heightHere(uvec4 facts, vec3 place) {  // m, world, along up
-    float h = 0.0;
-    FW_UNROLL for (uint row = 0u; row < 3u; ++row) {
-        vec4 r = uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row]);
-        h += push.up[row] * (dot(r.xyz, place) + r.w);
-    }
+vec4 heightHere(uvec4 facts) {  // m, world, along up: of (place, 1)
+    vec4 h = vec4(0.0);
+    FW_UNROLL for (uint row = 0u; row < 3u; ++row)
+        h += push.up[row] * uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row]);
     return h;
 }
 #endif

@@ -16,16 +16,18 @@ FW_SHARED_BEGIN
 
 FW_SHARED_CONST uint kDeformTexels = 16u;     // of a node's ring that it samples, as eq. (9)'s k
 FW_SHARED_CONST uint kDeformRing = 8u;        // neighbours of a node
-FW_SHARED_CONST uint kDeformNodeQuads = 13u;  // of a DeformNode
+FW_SHARED_CONST uint kDeformNodeQuads = 16u;  // of a DeformNode
 FW_SHARED_CONST uint kDeformCoatQuads = 4u;
 FW_SHARED_CONST uint kDeformObjectQuads = 36u; // of a DeformObject: materials from 4, pins from 20
 FW_SHARED_CONST uint kShownQuads = 3u;        // of a ShownVertex
 FW_SHARED_CONST uint kMaxPins = 8u;
+FW_SHARED_CONST uint kDeformGroup = 512u;     // nodes or vertices of a workgroup: 8 a thread
 // In the second word of a group, above the first node or vertex.
 FW_SHARED_CONST uint kDeformReset = 0x80000000u;  // start from rest
 FW_SHARED_CONST uint kDeformOdd = 0x40000000u;    // its places are the second ones
 FW_SHARED_CONST uint kDeformItem = 0x3FFFFFFFu;
-FW_SHARED_CONST uint kSoftQuads = 3u;         // of a vertex of what moves: place, place, normal and bend
+FW_SHARED_CONST uint kDeformNode = 0xFFFFFFu; // of a node's ring: its neighbour
+FW_SHARED_CONST uint kSoftQuads = 4u;         // of a vertex of what moves: see lib/deform_buffers.glsl
 FW_SHARED_CONST uint kSoftTicks = 32u;        // of one of its steps: 1/128 s
 FW_SHARED_CONST uint kMostSoftSteps = 6u;     // of a frame; a hitch drops the rest
 
@@ -38,24 +40,27 @@ FW_SHARED_CONST uint kDeformSprings = 4u;     // tier C: the published mass-spri
 FW_SHARED_CONST uint kNodeClosed = 0x100u;    // its ring of neighbours closes
 FW_SHARED_CONST uint kNodeEven = 0x200u;      // it rests in the middle of its neighbours, seen from above
 FW_SHARED_CONST uint kNodeFarEven = 0x400u;   // and of those two steps away, of which none is missing
+FW_SHARED_CONST uint kNodeFarHeard = 0x800u;  // one of those, or itself, is kNodeFarEven
 FW_SHARED_CONST uint kNodeRingShift = 16u;    // how many neighbours: bits 16..19
 
-struct DeformNode {       // static, per mesh
+struct DeformNode {       // static, per mesh; 64 bytes each that are read together
+    uint vertex;                 // that keeps what is shown of it, from the mesh's first
+    uint flags;                  // material, kNode...
+    float rise;                  // m that its neighbours' mean lies above it along the rest normal
+    uint opposite;               // texel on the wall behind, kNoneTexel: none
+    uint ring[8];                // vertices around it, in order; on devices nodes, with the link's
+                                 // odds (linkOdds) above bit 23
+    uint ringLength[4];          // m, halfs
     float x; float y; float z;   // m, rest
-    uint vertex;                 // that keeps its state, from the mesh's first
+    float area;                  // m^2, a third of its triangles
+    uint cross_[8];              // as ring, two steps straight on; no length or kNoneTexel: none
+    uint crossLength[4];         // m, halfs
+    uint texels[16];             // of its ring, in the burn map; kNoneTexel after the last
     float outX; float outY; float outZ; // which way it recedes: -1 along every face's normal, if it can
     float limit;                 // m, most it may recede
-    uint flags;                  // material, kNode...
-    uint opposite;               // texel on the wall behind, kNoneTexel: none
-    float area;                  // m^2, a third of its triangles
-    float rise;                  // m that its neighbours' mean lies above it along the rest normal
-    uint texels[16];             // of its ring, in the burn map; kNoneTexel after the last
-    uint ring[8];                // vertices of its neighbours, in order around it
-    uint ringLength[4];          // m, halfs
-    uint cross_[8];              // two steps straight on, by neighbour; kNoneTexel: none
-    uint crossLength[4];         // m, halfs
+    uint reserved[12];
 };
-FW_SHARED_SIZE(DeformNode, 208)
+FW_SHARED_SIZE(DeformNode, 256)
 
 struct DeformCoat {       // static, per drawn vertex: what its normal follows
     uint node;            // vertex that keeps its node's state
@@ -101,7 +106,7 @@ struct DeformObject {     // per object slot
     uint slot;            // of its BurnObject
     float scale;          // m in the world of 1 m
     float springs;        // 1/s^2, stiffness over mass of the published model
-    uint softBase;        // into the soft vertices
+    uint softBase;        // into the soft nodes
     float reserved0; float reserved1; float reserved2;
     DeformMaterial materials[8];
     vec4 pins[16];        // from xyz, radius; to xyz, 0: object space, m
@@ -132,6 +137,7 @@ FW_SHARED_SIZE(SkinPush, 48)
 
 #ifdef __cplusplus
 using glm::cross;
+using std::sin;
 using glm::dot;
 using glm::length;
 using glm::packHalf2x16;
@@ -181,6 +187,7 @@ FW_SHARED_FN vec3 turnedNormal(vec3 n, vec3 a, vec3 b) {
 // ---- sheets: position based, every node corrects itself from what its neighbours were --------------
 
 FW_SHARED_CONST float kReachNone = 60000.0f;  // m along unburnt links to a pin: none known
+FW_SHARED_CONST float kReachSlack = 1.001f;   // it is kept as a half
 FW_SHARED_CONST float kBendUnit = 4096.0f;    // of packed bends, per m
 // Neighbours correct at the same time: a pattern of alternating nodes is corrected by up to 4 times
 // the one and twice 3.4 times the other, and with speeds that is stable while it is below 4/3.
@@ -190,11 +197,13 @@ FW_SHARED_CONST float kSheetDamping = 0.01f;  // of the velocity, in 1/128 s
 FW_SHARED_CONST float kFastest = 12.0f;       // m/s
 FW_SHARED_CONST float kPinBurns = 0.6f;       // a pin lets go of what has burnt so far
 
-// Does the link between two nodes still hold? Links part one by one as both ends are consumed.
-FW_SHARED_FN bool linkHolds(float burntA, float burntB, uint a, uint b) {
+// Links part one by one as both ends are consumed: when, of 256.
+FW_SHARED_FN uint linkOdds(uint a, uint b) {
     uint h = ((a ^ b) * 0x9E3779B1u) ^ ((a + b) * 0x85EBCA6Bu);
-    h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
-    return leastF(burntA, burntB) < 0.80f + 0.15f * float((h >> 8u) & 0xFFFFu) * (1.0f / 65536.0f);
+    return ((h ^ (h >> 15u)) * 0x2C1B3C6Du) >> 24u;
+}
+FW_SHARED_FN bool linkHolds(float burntA, float burntB, uint odds) {
+    return leastF(burntA, burntB) < 0.80f + 0.15f / 256.0f * float(odds);
 }
 
 // A relaxation that stands for the same stiffness whatever the step.
@@ -212,6 +221,17 @@ FW_SHARED_FN float sheetDamping(float charred, float dt) {
 FW_SHARED_FN float charredShare(float burnt) {
     float x = unitF(burnt * 1.8f);
     return x * x * (3.0f - 2.0f * x);
+}
+
+// The air at a node, in its object's units: it goes with the wind, in gusts, and rises where it burns.
+FW_SHARED_CONST float kUpdraft = 1.2f;  // m/s
+FW_SHARED_FN float gustAt(vec3 x, float scale, float time) {
+    float phase = dot(x, vec3(3.1f, 2.3f, 2.7f)) * scale;
+    return 0.7f + 0.3f * sin(2.3f * time + phase) + 0.25f * sin(5.9f * time - 1.7f * phase);
+}
+FW_SHARED_FN float updraftAt(float burnt) {
+    float a = unitF((burnt - 0.02f) / 0.18f), b = unitF((burnt - 0.7f) / 0.3f);
+    return kUpdraft * a * a * (3.0f - 2.0f * a) * (1.0f - b * b * (3.0f - 2.0f * b));
 }
 
 // What moves x towards the rest length from y; share: 1/2, or 1 if y is pinned.

@@ -1,14 +1,10 @@
 // The refinement passes on a device against the library: integers equal, floats near. A rig of its
 // own: one object, buffers the host can see, a barrier after every phase.
 #include "mesh/refine/table.h"
+#include "support/pass_rig.h"
 #include "support/refine_scene.h"
-#include "support/vulkan_device.h"
-
-#include "shaders_embedded.h"
-#include "shared/burn.h"
 
 #include <array>
-#include <cstring>
 #include <map>
 
 namespace fw::test {
@@ -26,34 +22,36 @@ class RefineRig {
  public:
     // cutTriangles: room for; 0: nothing is cut.
     RefineRig(TestDevice& device, const RefineScene& scene, uint32_t cutTriangles = 0)
-        : device_(device), scene_(scene), cutTriangles_(cutTriangles) {
+        : device_(device),
+          scene_(scene),
+          rig_(device, kBindings, sizeof push_),
+          cutTriangles_(cutTriangles) {
         const mesh::RefineModel& m = scene.model;
         const size_t items = m.edges.size() + m.triangles.size();
         const size_t full = size_t(m.fullCount());
-        makeLayouts();
-        make(FW_BIND_REFINE_WORDS, sizeof mesh::kRefineTable, mesh::kRefineTable.data());
-        make(FW_BIND_REFINE_TRIANGLES, m.triangles.size() * sizeof m.triangles[0],
-             m.triangles.data());
-        make(FW_BIND_REFINE_EDGES, m.edges.size() * sizeof m.edges[0], m.edges.data());
-        make(FW_BIND_REFINE_SLOTS, m.slots.size() * sizeof m.slots[0], m.slots.data());
-        make(FW_BIND_REFINE_HEAT, items * 4);
-        make(FW_BIND_REFINE_ITEMS, items * sizeof(gpu::RefineLevel));
-        make(FW_BIND_REFINE_LEVELS, m.triangles.size() * 8);
-        make(FW_BIND_REFINE_INDICES, full * 12);
-        make(FW_BIND_REFINE_VERTICES, m.slots.size() * sizeof(gpu::RefineVertex));
-        make(FW_BIND_REFINE_OBJECTS, sizeof(gpu::RefineObject));
-        make(FW_BIND_REFINE_DRAWS, 8 * 20);
+        rig_.make(FW_BIND_REFINE_WORDS, sizeof mesh::kRefineTable, mesh::kRefineTable.data());
+        rig_.make(FW_BIND_REFINE_TRIANGLES, m.triangles.size() * sizeof m.triangles[0],
+                  m.triangles.data());
+        rig_.make(FW_BIND_REFINE_EDGES, m.edges.size() * sizeof m.edges[0], m.edges.data());
+        rig_.make(FW_BIND_REFINE_SLOTS, m.slots.size() * sizeof m.slots[0], m.slots.data());
+        rig_.make(FW_BIND_REFINE_HEAT, items * 4);
+        rig_.make(FW_BIND_REFINE_ITEMS, items * sizeof(gpu::RefineLevel));
+        rig_.make(FW_BIND_REFINE_LEVELS, m.triangles.size() * 8);
+        rig_.make(FW_BIND_REFINE_INDICES, full * 12);
+        rig_.make(FW_BIND_REFINE_VERTICES, m.slots.size() * sizeof(gpu::RefineVertex));
+        rig_.make(FW_BIND_REFINE_OBJECTS, sizeof(gpu::RefineObject));
+        rig_.make(FW_BIND_REFINE_DRAWS, 8 * 20);
         std::vector<mesh::RenderVertex> vertices(m.draws.size());
         for (uint32_t d = 0; d < m.draws.size(); ++d) {
             if (m.draws[d].triangle != mesh::kNone)
                 vertices[d] = mesh::refineRenderVertex(scene.domain, m, d);
             vertices[d].material = m.draws[d].slot;
         }
-        make(FW_BIND_VERTICES, vertices.size() * sizeof vertices[0], vertices.data());
-        make(FW_BIND_REFINE_CUTS, std::max(cutTriangles, 1u) * 3 * sizeof(mesh::RenderVertex));
-        make(FW_BIND_REFINE_CUT_DRAWS, 8 * 16);
-        make(FW_BIND_PREDICT, scene.ticks.size() * 4, scene.ticks.data());
-        make(FW_BIND_GRADIENT, scene.ticks.size() * 4);
+        rig_.make(FW_BIND_VERTICES, vertices.size() * sizeof vertices[0], vertices.data());
+        rig_.make(FW_BIND_REFINE_CUTS, std::max(cutTriangles, 1u) * 3 * sizeof(mesh::RenderVertex));
+        rig_.make(FW_BIND_REFINE_CUT_DRAWS, 8 * 16);
+        rig_.make(FW_BIND_PREDICT, scene.ticks.size() * 4, scene.ticks.data());
+        rig_.make(FW_BIND_GRADIENT, scene.ticks.size() * 4);
         push_.objects = push_.objectEnd = 1;
         push_.recede = mesh::RefineSettings{}.recede;
         lists_.assign(gpu::kRefineWorkLists, 0);
@@ -69,23 +67,15 @@ class RefineRig {
         push_.emitJobs = uint32_t(lists_.size());
         push_.placeJobs = push_.emitJobs + uint32_t(2 * (full / 64 + 1));
         push_.cutJobs = push_.placeJobs + uint32_t(4 * m.triangles.size());
-        make(FW_BIND_REFINE_WORK, (push_.cutJobs + 2 * (m.triangles.size() + m.edges.size())) * 4);
+        rig_.make(FW_BIND_REFINE_WORK,
+                  (push_.cutJobs + 2 * (m.triangles.size() + m.edges.size())) * 4);
         const char* names[5] = {"refine_levels.comp", "refine_scan.comp", "refine_emit.comp",
                                 "refine_place.comp", "refine_cut.comp"};
-        for (int k = 0; k < 5; ++k) pipelines_[k] = makePipeline(names[k]);
+        for (int k = 0; k < 5; ++k) pipelines_[k] = rig_.add(names[k]);
     }
-    ~RefineRig() {
-        for (VkPipeline p : pipelines_) vkDestroyPipeline(device_.device, p, nullptr);
-        vkDestroyDescriptorPool(device_.device, pool_, nullptr);
-        vkDestroyPipelineLayout(device_.device, layout_, nullptr);
-        vkDestroyDescriptorSetLayout(device_.device, setLayout_, nullptr);
-    }
-    RefineRig(const RefineRig&) = delete;
-    RefineRig& operator=(const RefineRig&) = delete;
-
     template <typename T>
     [[nodiscard]] std::span<T> of(uint32_t binding) const {
-        return {static_cast<T*>(data_[binding]), size_t(sizes_[binding]) / sizeof(T)};
+        return rig_.of<T>(binding);
     }
 
     void frame(gpu::RefineObject object, uint32_t nowTick, float dt, uint32_t budget) {
@@ -106,8 +96,7 @@ class RefineRig {
         push_.dt = dt;
         push_.budget = budget;
         device_.run([&](VkCommandBuffer commands) {
-            vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &set_,
-                                    0, nullptr);
+            rig_.begin(commands);
             for (uint32_t phase = 0; phase < 4; ++phase)
                 dispatch(commands, 0, phase, push_.edgeGroups + push_.triangleGroups);
             dispatch(commands, 1, 0, 1);
@@ -124,8 +113,6 @@ class RefineRig {
     }
 
  private:
-    void must(VkResult result) { ASSERT_EQ(VK_SUCCESS, result); }
-
     uint32_t list(uint32_t count) {
         for (uint32_t k = 0; k < count; k += 64) {
             lists_.push_back(0);
@@ -134,109 +121,19 @@ class RefineRig {
         return (count + 63) / 64;
     }
 
-    void makeLayouts() {
-        constexpr auto kCount = uint32_t(std::size(kBindings));
-        VkDescriptorSetLayoutBinding bindings[kCount]{};
-        for (uint32_t k = 0; k < kCount; ++k)
-            bindings[k] = {kBindings[k], VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                           VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
-        VkDescriptorSetLayoutCreateInfo set{};
-        set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-        set.bindingCount = kCount;
-        set.pBindings = bindings;
-        must(vkCreateDescriptorSetLayout(device_.device, &set, nullptr, &setLayout_));
-        const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push_};
-        VkPipelineLayoutCreateInfo layout{};
-        layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-        layout.setLayoutCount = 1;
-        layout.pSetLayouts = &setLayout_;
-        layout.pushConstantRangeCount = 1;
-        layout.pPushConstantRanges = &push;
-        must(vkCreatePipelineLayout(device_.device, &layout, nullptr, &layout_));
-        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kCount};
-        VkDescriptorPoolCreateInfo pool{};
-        pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-        pool.maxSets = 1;
-        pool.poolSizeCount = 1;
-        pool.pPoolSizes = &size;
-        must(vkCreateDescriptorPool(device_.device, &pool, nullptr, &pool_));
-        VkDescriptorSetAllocateInfo allocate{};
-        allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-        allocate.descriptorPool = pool_;
-        allocate.descriptorSetCount = 1;
-        allocate.pSetLayouts = &setLayout_;
-        must(vkAllocateDescriptorSets(device_.device, &allocate, &set_));
-    }
-
-    void make(uint32_t binding, size_t bytes, const void* content = nullptr) {
-        const TestBuffer made = device_.makeBuffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-        data_[binding] = made.mapped;
-        sizes_[binding] = bytes;
-        std::memset(data_[binding], 0, bytes);
-        if (content != nullptr) std::memcpy(data_[binding], content, bytes);
-        const VkDescriptorBufferInfo buffer{made.buffer, 0, VK_WHOLE_SIZE};
-        VkWriteDescriptorSet write{};
-        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-        write.dstSet = set_;
-        write.dstBinding = binding;
-        write.descriptorCount = 1;
-        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        write.pBufferInfo = &buffer;
-        vkUpdateDescriptorSets(device_.device, 1, &write, 0, nullptr);
-    }
-
-    VkPipeline makePipeline(const char* name) {
-        const gpu::ShaderCode* code = gpu::findShader(name);
-        if (code == nullptr) {
-            ADD_FAILURE() << name << " is not embedded";
-            return VK_NULL_HANDLE;
-        }
-        VkShaderModuleCreateInfo module{};
-        module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-        module.codeSize = code->words.size_bytes();
-        module.pCode = code->words.data();
-        VkComputePipelineCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-        info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.pName = "main";
-        info.layout = layout_;
-        must(vkCreateShaderModule(device_.device, &module, nullptr, &info.stage.module));
-        VkPipeline pipeline = VK_NULL_HANDLE;
-        must(
-            vkCreateComputePipelines(device_.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
-        vkDestroyShaderModule(device_.device, info.stage.module, nullptr);
-        return pipeline;
-    }
-
     void dispatch(VkCommandBuffer commands, int pipeline, uint32_t phase, uint32_t groups) {
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelines_[pipeline]);
         push_.phase = phase;
-        vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push_, &push_);
-        vkCmdDispatch(commands, groups, 1, 1);
-        VkMemoryBarrier barrier{};
-        barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-        barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
-        barrier.dstAccessMask =
-            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_HOST_READ_BIT;
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                             VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0,
-                             1, &barrier, 0, nullptr, 0, nullptr);
+        rig_.dispatch(commands, pipelines_[pipeline], &push_, groups);
     }
 
     TestDevice& device_;
     const RefineScene& scene_;
+    PassRig rig_;
     std::vector<uint32_t> lists_;  // of the work plane, as a frame begins
     gpu::RefinePush push_{};
     uint32_t cutTriangles_ = 0;
     bool fresh_ = true;
-    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkDescriptorPool pool_ = VK_NULL_HANDLE;
-    VkDescriptorSet set_ = VK_NULL_HANDLE;
-    VkPipeline pipelines_[5] = {};
-    void* data_[FW_BIND_COUNT] = {};
-    size_t sizes_[FW_BIND_COUNT] = {};
+    uint32_t pipelines_[5] = {};
 };
 
 class RefineEquality : public GpuTest {

@@ -95,6 +95,27 @@ Mesh makeCube(double size, int cells, bool sphere, bool turned, double gap) {
     return mesh;
 }
 
+Mesh makeSheet(double size, int cells) {
+    Mesh mesh;
+    for (int y = 0; y <= cells; ++y)
+        for (int x = 0; x <= cells; ++x)
+            mesh.addVertex(size * x / cells, size * y / cells, 0, double(x) / cells,
+                           double(y) / cells);
+    for (int y = 0; y < cells; ++y)
+        for (int x = 0; x < cells; ++x) {
+            const uint32_t a = uint32_t(y * (cells + 1) + x), b = a + 1;
+            const uint32_t c = a + uint32_t(cells) + 1, d = c + 1;
+            if ((x + y) & 1) {
+                mesh.addTriangle(a, b, c);
+                mesh.addTriangle(b, d, c);
+            } else {
+                mesh.addTriangle(a, b, d);
+                mesh.addTriangle(a, d, c);
+            }
+        }
+    return mesh;
+}
+
 Mesh makeCylinder(double radius, double height, int segments, int rows, int cuts, bool turned) {
     Mesh mesh;
     double offset = 0;

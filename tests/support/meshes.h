@@ -29,6 +29,8 @@ Mesh makePlane(double width, double height, double turnDegrees = 0, double stret
                double tiltDegrees = 0, int cells = 1);
 // Six charts of cells x cells; `turned`: each by its own angle. As a sphere: equal-angle.
 Mesh makeCube(double size, int cells, bool sphere = false, bool turned = true, double gap = 0.05);
+// Upright, its lower left corner at the origin, with diagonals in turns.
+Mesh makeSheet(double size, int cells);
 // Open cylinder side about y, in `cuts` charts.
 Mesh makeCylinder(double radius, double height, int segments, int rows, int cuts, bool turned);
 // Square of cells x cells x 2 triangles, each its own chart, shuffled over the atlas.

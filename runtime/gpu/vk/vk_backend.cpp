@@ -385,10 +385,9 @@ void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
         if (vertex != kNoneTexel) vertex = order.numbers[vertex];
     };
     std::byte* to = upload.staging.mapped;
-    for (DeformNode node : model.nodes) {
+    for (uint32_t i = 0; i < model.nodes.size(); ++i) {
+        DeformNode node = mesh::deviceNode(model, i);
         number(node.vertex);
-        for (uint32_t& vertex : node.ring) number(vertex);
-        for (uint32_t& vertex : node.cross_) number(vertex);
         std::memcpy(to, &node, sizeof node);
         to += sizeof node;
     }
@@ -630,11 +629,11 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         if (init.deform) {
             const mesh::DeformModel& model = *init.deformModel;
             fresh.deformer = {s.planes.allocate(kSpaceDeformers, 1, last), 1};
+            const auto count = uint32_t(model.nodes.size());
             if (init.deform->flags & (kDeformShell | kDeformSprings))
-                fresh.soft = {s.planes.allocate(kSpaceSoft, mesh.vertices, last), mesh.vertices};
+                fresh.soft = {s.planes.allocate(kSpaceSoft, count, last), count};
             fresh.shown = {s.planes.allocate(kSpaceShown, mesh.vertices, last), mesh.vertices};
             if (nodes.units == 0) {
-                const auto count = uint32_t(model.nodes.size());
                 nodes = {s.planes.allocate(kSpaceNodes, count, last), count};
                 coats = {s.planes.allocate(kSpaceCoats, mesh.vertices, last), mesh.vertices};
                 stageDeformModel(s, *mesh.domain, model, nodes.first, coats.first);

@@ -69,10 +69,16 @@ bool bringsNews(const StepPlan& step) noexcept {
     return !step.events.empty() || !step.materials.empty();
 }
 
+// Does a group of its nodes learn in this frame what has burnt? Of a sheet, which moves by steps of
+// its own, every other one.
+bool recedes(const ObjectEntry& object, uint32_t group) noexcept {
+    return (object.deform.flags & kDeformShell) == 0 || object.deformReset ||
+           (group & 1) == (object.recedeOdd ? 1u : 0u);
+}
+
 constexpr uint64_t kSettleTicks = 12 * kTicksPerSecond;  // that a sheet may swing
 
-// Groups of 64.
-uint32_t groupsOf(uint32_t items) noexcept { return (items + 63) / 64; }
+uint32_t groupsOf(uint32_t items) noexcept { return (items + kDeformGroup - 1) / kDeformGroup; }
 
 // Does it still move, as far as is known? What burns does, until the last texel that caught has
 // burnt out.
@@ -133,7 +139,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         object.deformsNow = deforms(s, i, plan.endTick);
         if (object.deformsNow) {
             const uint32_t groups = groupsOf(object.deform.nodeCount);
-            needs.nodeGroups += groups;
+            for (uint32_t group = 0; group < groups; ++group)
+                needs.nodeGroups += recedes(object, group) ? 1 : 0;
             if (object.deform.flags & kDeformShell) needs.sheetGroups += groups;
             if (object.deform.flags & kDeformSprings) needs.springGroups += groups;
             needs.vertexGroups += groupsOf(object.deform.vertexCount);
@@ -620,10 +627,11 @@ void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& wri
 // What deforms in this frame, in the order of DeformRecord; `steps`: that it moves by.
 Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer) {
     Staged staged = writer.begin();
-    const auto append = [&](const ObjectEntry& object, uint32_t items) {
+    const auto append = [&](const ObjectEntry& object, uint32_t items, bool recede = false) {
         const uint32_t marks =
             (object.deformReset ? kDeformReset : 0) | (object.softOdd ? kDeformOdd : 0);
-        for (uint32_t first = 0; first < items; first += 64) {
+        for (uint32_t first = 0; first < items; first += kDeformGroup) {
+            if (recede && !recedes(object, first / kDeformGroup)) continue;
             const WakeGroup group{object.deformer.first, first | marks};
             writer.append(staged, std::span<const WakeGroup>(&group, 1));
         }
@@ -632,11 +640,12 @@ Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writ
         for (const ObjectEntry& object : s.objects)
             if (object.deformsNow && !object.skinPlus1 &&
                 (tier == ~0u || (object.deform.flags & tier)))
-                append(object, object.deform.nodeCount);
+                append(object, object.deform.nodeCount, tier == ~0u);
     for (ObjectEntry& object : s.objects) {
         if (!object.deformsNow) continue;
         append(object, object.deform.vertexCount);
         object.deformReset = false;
+        object.recedeOdd = !object.recedeOdd;
         if (object.soft.units) object.softOdd ^= (steps & 1) != 0;
     }
     writer.end();

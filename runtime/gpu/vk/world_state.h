@@ -92,6 +92,7 @@ struct ObjectEntry {
     DeformObject deform{};
     bool deformDirty = false, deformReset = false;
     bool deformsNow = false;     // scratch of run
+    bool recedeOdd = false;      // which half of a sheet learns next what has burnt
     uint32_t deformTicks = 0;    // that something moves after the last texel caught
     uint64_t lastEvent = 0;      // tick
     bool softOdd = false;        // its places are the second ones

@@ -42,6 +42,20 @@ struct Corners {
     }
 };
 
+// Where a vertex is on a curve through the mesh's bounds (Morton's).
+uint32_t alongCurve(const BurnDomain& domain, uint32_t vertex) {
+    uint32_t code = 0;
+    float side = 1e-30f;
+    for (size_t k = 0; k < 3; ++k)
+        side = std::max(side, domain.boundsHigh[k] - domain.boundsLow[k]);
+    for (size_t k = 0; k < 3; ++k) {
+        const float share = (domain.vertices[vertex].position[k] - domain.boundsLow[k]) / side;
+        uint32_t x = uint32_t(std::clamp(share, 0.0f, 1.0f) * 1023);
+        for (uint32_t bit = 0; bit < 10; ++bit) code |= (x >> bit & 1u) << (3 * bit + uint32_t(k));
+    }
+    return code;
+}
+
 // Vertices with the same position are one node, which the lowest of them keeps.
 void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory) {
     const auto count = uint32_t(domain.vertices.size());
@@ -60,25 +74,28 @@ void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resourc
     for (uint32_t i = 0; i < count; ++i)
         keeper[order[i]] =
             i && key(order[i]) == key(order[i - 1]) ? keeper[order[i - 1]] : order[i];
+    // Neighbours are near each other in memory too: that is most of what a step costs.
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        const uint32_t x = alongCurve(domain, a), y = alongCurve(domain, b);
+        return x != y ? x < y : a < b;
+    });
     model.nodeOf.resize(count);
-    for (uint32_t i = 0; i < count; ++i) {
-        if (keeper[i] == i) {
-            model.nodeOf[i] = uint32_t(model.nodes.size());
-            DeformNode node{};
-            const RenderVertex& v = domain.vertices[i];
-            node.x = v.position[0];
-            node.y = v.position[1];
-            node.z = v.position[2];
-            node.vertex = i;
-            node.opposite = kNone;
-            std::fill(std::begin(node.texels), std::end(node.texels), kNone);
-            std::fill(std::begin(node.ring), std::end(node.ring), i);
-            std::fill(std::begin(node.cross_), std::end(node.cross_), kNone);
-            model.nodes.push_back(node);
-        } else {
-            model.nodeOf[i] = model.nodeOf[keeper[i]];
-        }
+    for (const uint32_t i : order) {
+        if (keeper[i] != i) continue;
+        model.nodeOf[i] = uint32_t(model.nodes.size());
+        DeformNode node{};
+        const RenderVertex& v = domain.vertices[i];
+        node.x = v.position[0];
+        node.y = v.position[1];
+        node.z = v.position[2];
+        node.vertex = i;
+        node.opposite = kNone;
+        std::fill(std::begin(node.texels), std::end(node.texels), kNone);
+        std::fill(std::begin(node.ring), std::end(node.ring), i);
+        std::fill(std::begin(node.cross_), std::end(node.cross_), kNone);
+        model.nodes.push_back(node);
     }
+    for (uint32_t i = 0; i < count; ++i) model.nodeOf[i] = model.nodeOf[keeper[i]];
 }
 
 Corners cornersOf(const BurnDomain& domain, const DeformModel& model,
@@ -157,6 +174,7 @@ class Builder {
         }
         for (uint32_t i = 0; i < model_.nodes.size(); ++i) farther(i);
         lengths();
+        hear();
         for (uint32_t i = 0; i < domain_.vertices.size(); ++i) coat(i);
     }
 
@@ -384,6 +402,27 @@ class Builder {
         }
     }
 
+    // Who must look two steps away: what bends there, and what it bends against. A few such nodes
+    // of an uneven mesh change nothing that shows.
+    void hear() {
+        size_t even = 0, closed = 0;
+        for (const DeformNode& node : model_.nodes) {
+            even += (node.flags & gpu::kNodeFarEven) ? 1 : 0;
+            closed += (node.flags & gpu::kNodeClosed) ? 1 : 0;
+        }
+        if (even * 2 < closed) {
+            for (DeformNode& node : model_.nodes) node.flags &= ~gpu::kNodeFarEven;
+            return;
+        }
+        for (DeformNode& node : model_.nodes) {
+            bool heard = (node.flags & gpu::kNodeFarEven) != 0;
+            for (uint32_t i = 0; i < kDeformRing && !heard; ++i)
+                heard = node.cross_[i] != kNone &&
+                        (model_.nodes[model_.nodeOf[node.cross_[i]]].flags & gpu::kNodeFarEven);
+            if (heard) node.flags |= gpu::kNodeFarHeard;
+        }
+    }
+
     // A drawn normal turns with the triangles that share it.
     void coat(uint32_t vertex) {
         const RenderVertex& v = domain_.vertices[vertex];
@@ -430,6 +469,17 @@ DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource*
     model.coats.reserve(domain.vertices.size());
     Builder(domain, model, memory).run();
     return model;
+}
+
+gpu::DeformNode deviceNode(const DeformModel& model, uint32_t number) noexcept {
+    DeformNode node = model.nodes[number];
+    const auto linked = [&](uint32_t& vertex) {
+        const uint32_t other = vertex == kNone ? number : model.nodeOf[vertex];
+        vertex = other | gpu::linkOdds(number, other) << 24;
+    };
+    for (uint32_t& vertex : node.ring) linked(vertex);
+    for (uint32_t& vertex : node.cross_) linked(vertex);
+    return node;
 }
 
 }  // namespace fw::mesh

@@ -19,4 +19,7 @@ struct DeformModel {
 // Vertices at one place are one node, whatever their normals and UVs.
 DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory);
 
+// A node as devices have it: its neighbours by number, with the odds of their links.
+gpu::DeformNode deviceNode(const DeformModel& model, uint32_t number) noexcept;
+
 }  // namespace fw::mesh

@@ -46,6 +46,7 @@ void bendPass(const DeformModel& model, const gpu::DeformObject& object, const S
               DeformState& state) {
     for (const DeformNode& node : model.nodes) {
         DeformState::Soft& self = state.soft[node.vertex];
+        const auto number = uint32_t(&node - model.nodes.data());
         const DeformMaterial& material = object.materials[node.flags & 7u];
         const float burnt = state.shown[node.vertex].burnt;
         const vec3 x = self.place[state.parity];
@@ -63,7 +64,8 @@ void bendPass(const DeformModel& model, const gpu::DeformObject& object, const S
                 const float rest = links.rest[k];
                 if (!(rest > 0)) continue;
                 const vec3 arm = state.soft[other].place[state.parity] - x;
-                if (!gpu::linkHolds(burnt, state.shown[other].burnt, node.vertex, other) ||
+                if (!gpu::linkHolds(burnt, state.shown[other].burnt,
+                                    gpu::linkOdds(number, model.nodeOf[other])) ||
                     (far && gpu::length(arm) > 1.3f * rest))
                     continue;
                 self.holds |= 1u << (k + 8 * far);
@@ -151,7 +153,7 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
                 anchor = point;
                 radius = object.pins[i * 2].w;
             }
-            const float most = reach + radius;
+            const float most = reach * gpu::kReachSlack + radius;
             if (nearest < 1e29f && nearest > most)
                 moved = anchor + (moved - anchor) * (most / nearest);
         }
@@ -160,8 +162,10 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
         if (down) moved += drive.up * (object.ground - height);
         vec3 velocity = gpu::noFasterThan((moved - last) / drive.step, gpu::kFastest);
         velocity *= down ? 0.5f : gpu::sheetDamping(charred, drive.step);
-        const float slowed = 1 - std::exp(-material.drag * (1 + 2 * charred) * drive.step);
-        velocity += self.normal * (gpu::dot(self.normal, drive.wind - velocity) * slowed);
+        const float slowed = material.drag * (1 + 2 * charred) * drive.step;
+        const vec3 air = drive.wind * gpu::gustAt(x, 1, drive.time) +
+                         drive.up * (drive.updraft * gpu::updraftAt(shown.burnt));
+        velocity += self.normal * (gpu::dot(self.normal, air - velocity) * slowed / (1 + slowed));
         velocity -= drive.up * (drive.gravity * drive.step);
         vec3 next = moved + velocity * drive.step;
         if (self.reach[now] == 0) {

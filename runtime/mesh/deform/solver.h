@@ -26,7 +26,8 @@ struct SheetDrive {  // object axes
     gpu::vec3 wind{0};                           // m/s
     float gravity = 9.81f;                       // m/s^2
     float step = float(gpu::kSoftTicks) / 4096;  // s
-    float time = 0;                              // s
+    float time = 0;                              // s, of its gusts
+    float updraft = 1;                           // of fire's, 0: none
 };
 
 // At rest.

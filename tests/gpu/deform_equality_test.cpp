@@ -1,0 +1,291 @@
+// The deformation passes on a device against the library: the same mesh, the same fire, step for
+// step. Floats, and devices keep bends and burnt shares in fewer bits: near, to a written distance.
+#include "mesh/bake.h"
+#include "mesh/deform/solver.h"
+#include "support/meshes.h"
+#include "support/pass_rig.h"
+
+#include <bit>
+
+namespace fw::test {
+namespace {
+
+using gpu::vec3;
+
+constexpr uint32_t kBindings[] = {
+    FW_BIND_STATE,        FW_BIND_OBJECTS,      FW_BIND_DEFORM_OBJECTS, FW_BIND_DEFORM_GROUPS,
+    FW_BIND_DEFORM_NODES, FW_BIND_DEFORM_COATS, FW_BIND_SHOWN,          FW_BIND_SOFT};
+constexpr float kStep = float(gpu::kSoftTicks) / float(gpu::kTicksPerSecond);
+constexpr float kSide = 0.2f;  // m
+
+// One object on both sides.
+struct Pair {
+    Pair(TestDevice& testDevice, const Mesh& mesh, const gpu::DeformObject& what)
+        : device(testDevice),
+          domain(mesh::bake(mesh.input(64), std::pmr::new_delete_resource())),
+          model(mesh::makeDeformModel(domain, std::pmr::new_delete_resource())),
+          state(std::pmr::new_delete_resource()),
+          object(what),
+          states(domain.texelCount(), gpu::kInert),
+          rig(testDevice, kBindings, sizeof(gpu::DeformPush)) {
+        object.nodeCount = uint32_t(model.nodes.size());
+        object.vertexCount = uint32_t(domain.vertices.size());
+        object.ground = -1e9f;
+        object.scale = 1;
+        mesh::resetDeform(model, state);
+        mesh::resetSoft(model, object, state);
+        std::vector<gpu::DeformNode> nodes;
+        for (uint32_t i = 0; i < model.nodes.size(); ++i)
+            nodes.push_back(mesh::deviceNode(model, i));
+        groups = (std::max(object.nodeCount, object.vertexCount) + gpu::kDeformGroup - 1) /
+                 gpu::kDeformGroup;
+        const gpu::vec4 rows[10] = {{}, {}, {}, {}, {}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+        rig.make(FW_BIND_STATE, states.size() * 4);
+        rig.make(FW_BIND_OBJECTS, sizeof rows, rows);
+        rig.make(FW_BIND_DEFORM_OBJECTS, sizeof object, &object);
+        rig.make(FW_BIND_DEFORM_GROUPS, groups * 8);
+        rig.make(FW_BIND_DEFORM_NODES, nodes.size() * sizeof nodes[0], nodes.data());
+        rig.make(FW_BIND_DEFORM_COATS, model.coats.size() * sizeof model.coats[0],
+                 model.coats.data());
+        rig.make(FW_BIND_SHOWN, domain.vertices.size() * sizeof(gpu::ShownVertex));
+        rig.make(FW_BIND_SOFT, nodes.size() * 16 * gpu::kSoftQuads);
+        for (const char* name :
+             {"recede.comp", "bend.comp", "soft.comp", "springs.comp", "drape.comp"})
+            rig.add(name);
+        push.up = {0, 1, 0, 0};
+        push.step = kStep;
+    }
+
+    // What has burnt since tick 1, of what `when` gives a time from ignition; s.
+    template <class When>
+    void burn(When when) {
+        for (uint32_t i = 0; i < states.size(); ++i)
+            if (domain.real(i)) states[i] = 1 + when(i);
+        std::copy(states.begin(), states.end(), rig.of<uint32_t>(FW_BIND_STATE).begin());
+    }
+
+    // A frame at `now` with `steps` of its solver.
+    void frame(uint32_t now, uint32_t steps) {
+        const bool soft = (object.flags & gpu::kDeformRecede) == 0;
+        const bool springs = (object.flags & gpu::kDeformSprings) != 0;
+        const auto marks = (fresh ? gpu::kDeformReset : 0) | (odd ? gpu::kDeformOdd : 0);
+        for (uint32_t i = 0; i < groups; ++i)
+            rig.of<gpu::uvec2>(FW_BIND_DEFORM_GROUPS)[i] = {0, (i * gpu::kDeformGroup) | marks};
+        push.now = now;
+        device.run([&](VkCommandBuffer commands) {
+            rig.begin(commands);
+            push.parity = steps << 1;
+            rig.dispatch(commands, 0, &push, groups);
+            for (uint32_t i = 0; i < steps && soft; ++i) {
+                push.parity = i & 1;
+                if (!springs) rig.dispatch(commands, 1, &push, groups);
+                rig.dispatch(commands, springs ? 3 : 2, &push, groups);
+            }
+            push.parity = 0;
+            rig.dispatch(commands, 4, &push, groups);
+        });
+        if (soft && (steps & 1)) odd = !odd;
+
+        const std::pmr::vector<gpu::ShownVertex> before = state.shown;
+        mesh::recede(model, object, states, now, state);
+        std::vector<float> lost;
+        for (const gpu::DeformNode& node : model.nodes) {
+            gpu::ShownVertex& shown = state.shown[node.vertex];
+            const gpu::ShownVertex& last = before[node.vertex];
+            const float more = fresh ? 0 : shown.burnt - last.burnt;
+            lost.push_back(more * object.materials[node.flags & 7u].depth / float(steps));
+            if (!soft) continue;
+            if (!springs) shown.burnt = std::floor(shown.burnt * 255) / 255;  // as devices keep it
+            shown.x = last.x;
+            shown.y = last.y;
+            shown.z = last.z;
+        }
+        drive.wind = vec3(push.wind);
+        for (uint32_t i = 0; i < steps && soft; ++i) {
+            if (springs)
+                mesh::springStep(model, object, kStep, lost, gpu::kSpringDamping, state);
+            else
+                mesh::sheetStep(model, object, drive, state);
+        }
+        mesh::drape(model, state);
+        fresh = false;
+    }
+
+    // The device goes on from where the library is. Its next frame packs the other facts anew.
+    void sync() {
+        const auto shown = rig.of<gpu::ShownVertex>(FW_BIND_SHOWN);
+        const auto soft = rig.of<gpu::uvec4>(FW_BIND_SOFT);
+        for (size_t i = 0; i < model.nodes.size(); ++i) {
+            const uint32_t vertex = model.nodes[i].vertex;
+            const mesh::DeformState::Soft& own = state.soft[vertex];
+            const vec3 at = own.place[state.parity];
+            soft[i * gpu::kSoftQuads + (odd ? 1 : 0)] = {
+                std::bit_cast<uint32_t>(at.x), std::bit_cast<uint32_t>(at.y),
+                std::bit_cast<uint32_t>(at.z),
+                gpu::packHalf2x16({std::min(own.reach[state.parity], gpu::kReachNone), 0})};
+            shown[vertex].x = state.shown[vertex].x;
+            shown[vertex].y = state.shown[vertex].y;
+            shown[vertex].z = state.shown[vertex].z;
+        }
+    }
+
+    struct Apart {
+        double place = 0;   // m, at most
+        double mean = 0;    // m
+        double normal = 0;  // degrees, in the mean
+        double lead = 0;    // s
+        double moved = 0;   // m from rest, at most
+    };
+    [[nodiscard]] Apart apart() const {
+        Apart worst;
+        const auto shown = rig.of<gpu::ShownVertex>(FW_BIND_SHOWN);
+        for (size_t i = 0; i < shown.size(); ++i) {
+            const gpu::ShownVertex &a = shown[i], &b = state.shown[i];
+            const auto* rest = domain.vertices[i].position;
+            const vec3 at(a.x, a.y, a.z);
+            const double off = double(gpu::length(at - vec3(b.x, b.y, b.z)));
+            worst.place = std::max(worst.place, off);
+            worst.mean += off / double(shown.size());
+            worst.moved =
+                std::max(worst.moved, double(gpu::length(at - vec3(rest[0], rest[1], rest[2]))));
+            const float c =
+                gpu::dot(gpu::unpackDirection(a.normal), gpu::unpackDirection(b.normal));
+            worst.normal +=
+                std::acos(double(std::clamp(c, -1.0f, 1.0f))) * 57.3 / double(shown.size());
+            worst.lead = std::max(worst.lead, double(std::fabs(a.lead - b.lead)));
+        }
+        return worst;
+    }
+
+    TestDevice& device;
+    mesh::BurnDomain domain;
+    mesh::DeformModel model;
+    mesh::DeformState state;
+    gpu::DeformObject object;
+    std::vector<uint32_t> states;
+    PassRig rig;
+    gpu::DeformPush push{};
+    mesh::SheetDrive drive;
+    uint32_t groups = 0;
+    bool fresh = true, odd = false;
+};
+
+class DeformEquality : public GpuTest {
+ protected:
+    static gpu::DeformObject object(uint32_t tier) {
+        gpu::DeformObject made{};
+        made.flags = tier;
+        for (gpu::DeformMaterial& m : made.materials) {
+            m.charTicks = 8 * gpu::kTicksPerSecond;
+            m.depth = 0.004f;
+            m.curl = 40;
+            m.shrink = 0.05f;
+            m.bend = 0.5f;
+            m.drag = 8;
+            m.holeTicks = 12 * gpu::kTicksPerSecond;
+            m.holeSeconds = 3;
+        }
+        return made;
+    }
+    static gpu::DeformObject sheet() {
+        gpu::DeformObject made = object(gpu::kDeformShell);
+        made.pinCount = 2;
+        made.pins[0] = {0, kSide, 0, 0.012f};
+        made.pins[1] = {0.05f, kSide, 0, 0};
+        made.pins[2] = made.pins[3] = {kSide, kSide, 0, 0.012f};
+        return made;
+    }
+    // A front that climbs in some 4 s.
+    static void light(Pair& pair) {
+        pair.burn([&](uint32_t texel) { return texel / pair.domain.width * 512u; });
+        pair.push.wind = {0.4f, 0, 0.7f, 0};
+    }
+};
+
+TEST_F(DeformEquality, ReceedingSolids) {
+    Pair pair(*device_, makeCube(kSide, 10, true), object(gpu::kDeformRecede));
+    pair.burn([&](uint32_t texel) { return (texel * 37u) % 9000u; });
+    for (uint32_t now = 100; now < 60000; now += 9000) {
+        pair.frame(now, 0);
+        const Pair::Apart apart = pair.apart();
+        ASSERT_LT(apart.place, 1e-6);
+        ASSERT_LT(apart.normal, 0.2);
+        ASSERT_LT(apart.lead, 1e-4);
+    }
+    EXPECT_GT(pair.apart().moved, 0.003);
+    EXPECT_LT(0, std::count_if(pair.model.nodes.begin(), pair.model.nodes.end(),
+                               [](const auto& n) { return n.opposite != mesh::kNone; }));
+}
+
+// A sheet that hangs, blows, chars, curls and tears for ten seconds. It flaps, and so doubles any
+// difference some ten times a second: what is compared is every twelve steps by themselves, and of
+// those the middle one, as a piece that tears off may do so a step sooner on one side.
+constexpr double kApart = 1e-4;  // m, in the mean
+Pair::Apart apartAfter12(Pair& pair) {
+    pair.frame(100, 1);
+    std::vector<double> means, normals;
+    Pair::Apart made;
+    for (uint32_t frame = 1; frame < 160; ++frame) {
+        if (frame % 4 == 1) pair.sync();
+        pair.frame(100 + frame * 256, 3);
+        if (frame % 4 != 0) continue;
+        const Pair::Apart apart = pair.apart();
+        means.push_back(apart.mean);
+        normals.push_back(apart.normal);
+        made.place = std::max(made.place, apart.place);
+        made.moved = std::max(made.moved, apart.moved);
+    }
+    for (std::vector<double>* all : {&means, &normals})
+        std::nth_element(all->begin(), all->begin() + std::ptrdiff_t(all->size() / 2), all->end());
+    made.mean = means[means.size() / 2];
+    made.normal = normals[normals.size() / 2];
+    return made;
+}
+
+TEST_F(DeformEquality, Sheets) {
+    Pair pair(*device_, makeSheet(double(kSide), 20), sheet());
+    light(pair);
+    const Pair::Apart apart = apartAfter12(pair);
+    std::printf("[   FIGURE ] %.6f m in the mean, %.6f at most, %.3f degrees; moved %.3f m\n",
+                apart.mean, apart.place, apart.normal, apart.moved);
+    EXPECT_GT(apart.moved, 0.05);
+    EXPECT_GT(std::count_if(pair.state.shown.begin(), pair.state.shown.end(),
+                            [](const gpu::ShownVertex& v) { return v.burnt > 0.97f; }),
+              20);
+    EXPECT_LT(apart.mean, kApart);
+    EXPECT_LT(apart.place, 0.01);
+    EXPECT_LT(apart.normal, 1);
+}
+
+// Whatever one side does differently is seen: curl, weight, a pin, shrinking, drag.
+TEST_F(DeformEquality, ADifferenceIsSeen) {
+    for (uint32_t what = 0; what < 5; ++what) {
+        Pair pair(*device_, makeSheet(double(kSide), 20), sheet());
+        light(pair);
+        if (what == 1) pair.drive.gravity = 9.0f;
+        if (what == 2) pair.object.pinCount = 1;
+        for (gpu::DeformMaterial& m : pair.object.materials) {
+            if (what == 0) m.curl = 0;
+            if (what == 3) m.shrink = 0.10f;
+            if (what == 4) m.drag = 4;
+        }
+        const double apart = apartAfter12(pair).mean;
+        std::printf("[   FIGURE ] %u: %.6f m\n", what, apart);
+        EXPECT_GT(apart, 3 * kApart) << what;
+    }
+}
+
+TEST_F(DeformEquality, PublishedSprings) {
+    gpu::DeformObject made = object(gpu::kDeformSprings);
+    made.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
+    Pair pair(*device_, makeCube(kSide, 10, true), made);
+    pair.burn([&](uint32_t texel) { return (texel * 37u) % 9000u; });
+    for (uint32_t frame = 0; frame < 100; ++frame) {
+        pair.frame(100 + frame * 256, 2);
+        ASSERT_LT(pair.apart().place, 1e-5) << frame;
+    }
+    EXPECT_GT(pair.apart().moved, 1e-3);
+}
+
+}  // namespace
+}  // namespace fw::test
