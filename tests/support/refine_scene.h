@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 
 namespace fw::test {
 
@@ -212,6 +213,47 @@ struct RefinePlayer {
     }
     [[nodiscard]] uint32_t triangles() const { return state.starts.back(); }
 };
+
+// Coarse triangles as they are, without a first split.
+inline mesh::RefineOptions unsplit(uint32_t depth, float cellTexels = 0) {
+    mesh::RefineOptions o;
+    o.depth = depth;
+    o.cellTexels = cellTexels;
+    o.splitTexels = 0;
+    return o;
+}
+
+inline uint32_t levelOf(const mesh::RefineModel& model, const mesh::RefineState& state, uint32_t i,
+                        uint32_t interior) {
+    const gpu::RefineTriangle& t = model.triangles[i];
+    const auto top = [&](uint32_t k) { return gpu::refineTop(state.edges[t.edge[k]].level); };
+    return gpu::refinePack(top(0), top(1), top(2),
+                           gpu::refineFit(top(0), top(1), top(2), interior));
+}
+
+// Random levels everywhere; the output edges that should have no partner.
+inline uint32_t randomLevels(const mesh::RefineModel& model, std::mt19937& random,
+                             mesh::RefineState& state) {
+    uint32_t open = 0;
+    for (uint32_t e = 0; e < model.edges.size(); ++e) {
+        const uint32_t level = uint32_t(random()) % ((model.edges[e].flags & 15) + 1);
+        state.edges[e].level = float(level);
+        int turns = 0;  // owners that run with the edge less those against it
+        for (uint32_t o = model.ownerStart[e]; o < model.ownerStart[e + 1]; ++o)
+            turns +=
+                gpu::refineFlipped(model.triangles[model.owners[o] >> 2].flags, model.owners[o] & 3)
+                    ? -1
+                    : 1;
+        if (turns != 0) open += 1u << level;
+    }
+    for (uint32_t i = 0; i < model.triangles.size(); ++i)
+        state.levels[i] =
+            levelOf(model, state, i,
+                    uint32_t(random()) % (gpu::refineInteriorDepth(model.triangles[i].flags) + 1));
+    mesh::refineScan(model, state);
+    mesh::refineEmit(model, state);
+    return open;
+}
 
 // Every directed edge once, its reverse once.
 struct Closedness {

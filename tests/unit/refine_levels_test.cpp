@@ -13,46 +13,6 @@ namespace {
 
 using mesh::RefineOptions;
 
-RefineOptions unsplit(uint32_t depth, float cellTexels = 0) {
-    RefineOptions o;
-    o.depth = depth;
-    o.cellTexels = cellTexels;
-    o.splitTexels = 0;
-    return o;
-}
-
-uint32_t levelOf(const mesh::RefineModel& model, const mesh::RefineState& state, uint32_t i,
-                 uint32_t interior) {
-    const gpu::RefineTriangle& t = model.triangles[i];
-    const auto top = [&](uint32_t k) { return gpu::refineTop(state.edges[t.edge[k]].level); };
-    return gpu::refinePack(top(0), top(1), top(2),
-                           gpu::refineFit(top(0), top(1), top(2), interior));
-}
-
-// Random levels everywhere; the output edges that should have no partner.
-uint32_t randomLevels(const mesh::RefineModel& model, std::mt19937& random,
-                      mesh::RefineState& state) {
-    uint32_t open = 0;
-    for (uint32_t e = 0; e < model.edges.size(); ++e) {
-        const uint32_t level = uint32_t(random()) % ((model.edges[e].flags & 15) + 1);
-        state.edges[e].level = float(level);
-        int turns = 0;  // owners that run with the edge less those against it
-        for (uint32_t o = model.ownerStart[e]; o < model.ownerStart[e + 1]; ++o)
-            turns +=
-                gpu::refineFlipped(model.triangles[model.owners[o] >> 2].flags, model.owners[o] & 3)
-                    ? -1
-                    : 1;
-        if (turns != 0) open += 1u << level;
-    }
-    for (uint32_t i = 0; i < model.triangles.size(); ++i)
-        state.levels[i] =
-            levelOf(model, state, i,
-                    uint32_t(random()) % (gpu::refineInteriorDepth(model.triangles[i].flags) + 1));
-    mesh::refineScan(model, state);
-    mesh::refineEmit(model, state);
-    return open;
-}
-
 void expectTight(const char* name, const RefineScene& scene, int sets) {
     mesh::RefineState state(scene.model, std::pmr::new_delete_resource());
     std::mt19937 random(7);
