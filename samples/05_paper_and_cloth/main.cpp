@@ -1,5 +1,5 @@
-// A sheet of paper held at one corner and a cloth that hangs from a rod, in a breath of wind; both
-// are lit below. In a window: drag to turn, wheel to zoom.
+// A sheet of paper and a cloth that hang from rods, in a breath of wind; both are lit below. In a
+// window: drag to turn, wheel to zoom.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -58,7 +58,7 @@ constexpr Exhibit kExhibits[] = {
      0.0075f,
      0.0f,
      {-0.42f, 0.36f, 0.05f},
-     20,
+     0,
      4.0f,
      {0.16f, 0.0f, 0}},
     {"cotton",
@@ -98,13 +98,12 @@ FwBurnableMeshId placeExhibit(sample::FireHost& fire, const Exhibit& exhibit, fl
     material.burnTime /= haste;
     fire.check(fwWorld_CreateMaterial(fire.world, &material, &def.materials[0]),
                "fwWorld_CreateMaterial");
-    // The paper hangs from a clip at its upper left corner, the cloth from a rod along its top.
+    // Along its top.
     FwPin pin{};
     pin.from[1] = pin.to[1] = exhibit.height;
-    pin.radius = exhibit.preset == FW_MATERIAL_PAPER ? 0.016f : 0.004f;
-    if (exhibit.preset != FW_MATERIAL_PAPER) pin.to[0] = exhibit.width;
+    pin.to[0] = exhibit.width;
     pin.from[2] = pin.to[2] = 0.3f * exhibit.waves;
-    pin.radius += 1.2f * exhibit.waves;
+    pin.radius = 0.004f + 1.2f * exhibit.waves;
     def.pins = &pin;
     def.pinCount = 1;
     def.ground = 0.004f;
@@ -132,10 +131,11 @@ int run(const sample::Options& options, float seconds) {
         const uint32_t frames = sample::framesOf(options, seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 1.1f);
-        // A rod and its stand, a clip.
+        // Two rods and their stands.
         studio.addBlock({0.245f, 0.684f, -0.03f}, {0.27f, 0.005f, 0.005f});
         studio.addBlock({0.52f, 0.34f, -0.07f}, {0.008f, 0.35f, 0.008f});
-        studio.addBlock({-0.44f, 0.34f, 0.045f}, {0.006f, 0.33f, 0.006f});
+        studio.addBlock({-0.32f, 0.662f, 0.02f}, {0.124f, 0.005f, 0.005f});
+        studio.addBlock({-0.44f, 0.33f, 0.02f}, {0.006f, 0.33f, 0.006f});
 
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.wind[0] = 0.25f;
