@@ -1,0 +1,93 @@
+// A frame of a world on its way to commands: what it needs, and linear writes into its upload
+// buffer. Internal to vk_record.cpp and the files that help it.
+#pragma once
+#include "gpu/vk/world_state.h"
+
+#include <cstring>
+
+namespace fw::gpu::vk {
+
+constexpr uint64_t kUploadAlignment = 16;  // bytes
+
+constexpr uint64_t alignUp(uint64_t value, uint64_t alignment) noexcept {
+    return (value + alignment - 1) / alignment * alignment;
+}
+
+constexpr uint64_t uploaded(uint64_t bytes) noexcept { return alignUp(bytes, kUploadAlignment); }
+
+// Linear writes into the frame's upload buffer.
+class UploadWriter {
+ public:
+    explicit UploadWriter(FrameInFlight& slot) : slot_(slot) {}
+    template <class T>
+    Staged write(std::span<const T> data) {
+        Staged staged = begin();
+        append(staged, data);
+        end();
+        return staged;
+    }
+    // Piece by piece: begin, append any number of times, end.
+    [[nodiscard]] Staged begin() const { return {slot_.uploadUsed, 0}; }
+    template <class T>
+    void append(Staged& staged, std::span<const T> data) {
+        if (!data.empty())
+            std::memcpy(slot_.upload.mapped + slot_.uploadUsed, data.data(), data.size_bytes());
+        slot_.uploadUsed += data.size_bytes();
+        staged.count += uint32_t(data.size());
+    }
+    void end() { slot_.uploadUsed = uploaded(slot_.uploadUsed); }
+
+ private:
+    FrameInFlight& slot_;
+};
+
+// 64 tiles of an object, or kDeformGroup nodes or vertices of a deformer.
+struct WakeGroup {
+    uint32_t object, firstTile;
+};
+
+inline uint32_t wakeGroupsOf(const ObjectEntry& object) noexcept {
+    return (object.record.tileCount + 63) / 64;
+}
+
+inline bool bringsNews(const StepPlan& step) noexcept {
+    return !step.events.empty() || !step.materials.empty();
+}
+
+// What a plan asks of its frame: how much room, and which passes have anything to do.
+struct FrameNeeds {
+    bool dense = false, never = false;    // debug switches: every tile; never idle
+    uint64_t uploadBytes = 0;             // at most
+    uint64_t iterations = 0;              // of all steps
+    uint32_t events = 0, wakeGroups = 0;  // of the largest step
+    uint32_t neighbours = 0, links = 0;   // of the largest remote update
+    bool placing = false;                 // there is one
+    bool exchanges = false;               // fire may come from other objects
+    bool stimulus = false;                // an event or a latch
+    bool findsAnew = false;               // the first step wakes what forgets
+    bool burning = false, predicting = false, publishedRuns = false, heating = false;
+    bool falling = false;  // burnt pieces may lose their hold
+    uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;  // what deforms
+    bool skins = false;                   // a host moved vertices
+    bool readback = false, work = false;  // no work: nothing is recorded
+    [[nodiscard]] uint32_t deformGroups() const noexcept {
+        return nodeGroups + sheetGroups + springGroups + vertexGroups;
+    }
+};
+
+// vk_needs.cpp
+// Also marks what objects `forget`, and fills `published`; throws where a limit is exceeded.
+[[nodiscard]] FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan);
+// All that may fail: buffers of the size that the frame needs, and sets that name them.
+[[nodiscard]] FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan,
+                                      const FrameNeeds& needs);
+
+// vk_deform.cpp
+// What object `slot` needs to deform or to be skinned in this frame; marks if it does.
+void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameNeeds& needs);
+// Vertices as hosts have moved them.
+void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer);
+// What deforms in this frame, in the order of DeformRecord; `steps`: that it moves by.
+[[nodiscard]] Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer);
+
+}  // namespace fw::gpu::vk

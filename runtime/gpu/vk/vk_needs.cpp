@@ -1,0 +1,189 @@
+// What a plan asks of its frame, and room for it: everything that can fail, before the first
+// command.
+#include "core/error.h"
+#include "flamewright/flamewright_debug.h"
+#include "gpu/vk/frame_needs.h"
+
+#include <algorithm>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr uint32_t kMaxGroups = 65535;  // of a dispatch at the floor
+
+// A host-visible buffer of at least `bytes`; never shrinks. Throws and then left the old one.
+void ensure(VkBackend::State& s, Buffer& buffer, uint64_t bytes, VkBufferUsageFlags usage,
+            MemoryKind kind, Component component, const char* name) {
+    if (buffer.size >= bytes) return;
+    Buffer fresh = s.deviceMemory.createBuffer(std::max<uint64_t>(bytes + bytes / 2, 65536), usage,
+                                               kind, component, name);
+    s.deviceMemory.destroy(buffer);  // its frame is done: the slot was free
+    buffer = fresh;
+}
+
+// Where the pieces of the frame's readback will lie; `bytes`: all of it.
+ReadbackLayout layoutOf(const VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
+                        uint64_t& bytes) {
+    ReadbackLayout layout;
+    layout.frameIndex = plan.frameIndex;
+    layout.endTick = plan.endTick;
+    layout.objects = uint32_t(s.objects.size());
+    layout.answers = uint32_t(plan.probes.size());
+    layout.lights = s.limits.maxLights;
+    bytes = 0;
+    const auto place = [&](uint64_t size) {
+        const uint64_t at = bytes;
+        bytes = alignUp(bytes + size, 16);
+        return at;
+    };
+    const uint64_t lastRow = needs.iterations ? kRowIteration + needs.iterations : s.lists.row;
+    layout.countersAt = place((lastRow + 1) * sizeof(IterationCounters));
+    layout.objectsAt = place(layout.objects * sizeof(ObjectCounters));
+    layout.answersAt = place(uint64_t(layout.answers) * sizeof(ProbeAnswer));
+    layout.lightsAt = place(uint64_t(layout.lights) * sizeof(BurnLight));
+    layout.flamesAt = place(16);
+    for (const uint32_t object : plan.burnMaps) {
+        ReadbackLayout::MapAt& map = layout.maps[layout.mapCount++];
+        map.object = object;
+        map.texels = s.objects[object].record.width * s.objects[object].record.height;
+        map.at = place(uint64_t(map.texels) * 4);
+        map.heat = (s.objects[object].record.flags & kObjectHeat) != 0;
+        if (map.heat) map.heatAt = place(uint64_t(map.texels) * sizeof(uvec2));
+    }
+    return layout;
+}
+
+}  // namespace
+
+FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
+    FrameNeeds needs;
+    needs.dense = (plan.switches & kSwitchDense) != 0;
+    needs.never = (plan.switches & FW_DEBUG_NEVER_IDLE) != 0;
+    uint64_t denseGroups = 0;
+    s.published.clear();
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+        ObjectEntry& object = s.objects[i];
+        if (object.recordDirty) needs.uploadBytes += uploaded(sizeof(BurnObject));
+        if (object.materialsDirty)
+            needs.uploadBytes += uploaded(sizeof object.materials) + uploaded(sizeof object.heat);
+        if (object.deformDirty) needs.uploadBytes += uploaded(sizeof object.deform);
+        addDeformNeeds(s, i, plan.endTick, needs);
+        if (!object.live) continue;
+        if (needs.dense) denseGroups += wakeGroupsOf(object);
+        if (object.record.flags & kObjectPublished)
+            s.published.push_back({i, publishedGroups(object.record), 0});
+    }
+    const bool anyStep = !plan.steps.empty();
+    // What burns may light something anew, where no front is left.
+    bool iterates = !s.frontEmpty || needs.dense || needs.never;
+    for (const StepPlan& step : plan.steps) {
+        iterates |= step.exchange && !s.burnEmpty;
+        if (step.events.size() > size_t(kMaxGroups) * 64)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "One step has %zu texel events; the limit is %u.",
+                       step.events.size(), kMaxGroups * 64);
+        uint64_t wake = needs.dense ? denseGroups : 0;
+        for (const MaterialUpdate& update : step.materials) {
+            needs.uploadBytes += uploaded(sizeof update.materials) + kUploadAlignment;
+            if (!needs.dense) wake += wakeGroupsOf(s.objects[update.object]);
+        }
+        if (step.remote) {
+            const RemoteUpdate& update = *step.remote;
+            needs.placing = true;
+            needs.neighbours = std::max(needs.neighbours, uint32_t(update.neighbours.size()));
+            needs.links = std::max(needs.links, uint32_t(update.links.size()));
+            needs.uploadBytes += update.objects.size() * uploaded(sizeof(RemoteObject)) +
+                                 uploaded(update.neighbours.size_bytes()) +
+                                 uploaded(update.links.size_bytes()) +
+                                 uploaded(update.blockers.size_bytes());
+        }
+        needs.exchanges |= step.exchange;
+        needs.events = std::max(needs.events, uint32_t(step.events.size()));
+        needs.wakeGroups = std::max(needs.wakeGroups, uint32_t(wake));
+        needs.uploadBytes +=
+            uploaded(step.events.size_bytes()) + uploaded(wake * sizeof(WakeGroup));
+        for (const TexelEvent& event : step.events) {
+            s.noteFire(event.object, plan.endTick);
+            if (event.kind != kEventWet && event.kind != kEventExtinguish) continue;
+            ObjectEntry& object = s.objects[event.object];
+            object.lastDouse = s.open.ringFrame;
+            object.douseEnds = step.now;  // water takes some heat steps
+            if (object.record.flags & kObjectHeat)
+                object.douseEnds += (kSoaksOut + 2) * kHeatSteps * kStepTicks;
+        }
+        needs.stimulus |= bringsNews(step);
+        iterates |= bringsNews(step);
+        if (iterates) needs.iterations += uint64_t(1) << step.substepShift;
+    }
+    // Once a dousing is over, what its object sees coming is forgotten and found anew: predictions
+    // that lost their fire would keep each other alive.
+    bool forgets = false;
+    uint64_t forgetGroups = 0;
+    for (ObjectEntry& object : s.objects) {
+        object.forget = object.live && object.lastDouse != 0 &&
+                        object.lastDouse < s.open.ringFrame && (anyStep || s.frontEmpty) &&
+                        (plan.endTick > object.douseEnds || s.frontEmpty);
+        if (!object.forget) continue;
+        forgets = true;
+        forgetGroups += wakeGroupsOf(object);
+    }
+    needs.findsAnew = forgets && anyStep && !s.frontEmpty && !needs.dense;
+    if (needs.findsAnew) {
+        needs.wakeGroups += uint32_t(forgetGroups);
+        needs.uploadBytes += uploaded(forgetGroups * sizeof(WakeGroup));
+    }
+    needs.uploadBytes += uploaded(uint64_t(needs.deformGroups()) * 8);
+    needs.uploadBytes += uploaded(plan.probes.size_bytes());
+    if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are asked for; the limit is %u.",
+                   plan.burnMaps.size(), ReadbackLayout::kMaxMaps);
+    const auto mostIterations = uint64_t(s.planes.capacity(kSpaceIterations)) - kRowIteration - 1;
+    if (needs.iterations > mostIterations)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has %llu iterations; the limit is %llu.",
+                   (unsigned long long)needs.iterations, (unsigned long long)mostIterations);
+    needs.publishedRuns =
+        anyStep &&
+        std::any_of(s.published.begin(), s.published.end(), [&](const PublishedStep& one) {
+            return needs.stimulus || needs.exchanges || s.objects[one.object].publishedTouched;
+        });
+    needs.burning = !s.burnEmpty || needs.stimulus || needs.never;
+    needs.heating =
+        !s.hotEmpty || (needs.exchanges && needs.burning) || needs.stimulus || needs.never;
+    needs.predicting =
+        !s.predictEmpty || (needs.exchanges && needs.burning) || needs.stimulus || needs.never;
+    needs.falling =
+        anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
+    needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
+                     needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
+    const uint64_t refineBytes = s.planRefine(plan);
+    needs.uploadBytes += refineBytes;
+    needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
+                 refineBytes > 0 || forgets || needs.placing || s.recordsDirty ||
+                 !s.uploads.empty() || s.planes.movesPending();
+    return needs;
+}
+
+FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs) {
+    const uint64_t last = s.ring.newest();
+    s.planes.atLeast(kSpaceEvents, needs.events, last);
+    s.planes.atLeast(kSpaceWakeGroups, needs.wakeGroups, last);
+    s.planes.atLeast(kSpaceProbes, uint32_t(plan.probes.size()), last);
+    s.planes.atLeast(kSpaceDeformGroups, needs.deformGroups(), last);
+    s.planes.atLeast(kSpaceNeighbours, needs.neighbours, last);
+    s.planes.atLeast(kSpaceContacts, needs.links, last);
+    FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
+    uint64_t readbackBytes = 0;
+    const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);
+    if (slot.upload.size < needs.uploadBytes ||
+        (needs.readback && slot.readback.size < readbackBytes))
+        slot.readbackPending = false;
+    ensure(s, slot.upload, needs.uploadBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryKind::upload,
+           kComponentStaging, "frame upload");
+    if (needs.readback)
+        ensure(s, slot.readback, readbackBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+               MemoryKind::readback, kComponentReadback, "frame readback");
+    s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last);
+    slot.layout = layout;
+    return slot;
+}
+
+}  // namespace fw::gpu::vk
