@@ -96,7 +96,7 @@ struct Readback {  // valid until the next call of nextReadback
     uint32_t runTiles = 0;    // tiles run in the frame
     uint32_t burningTiles = 0;
     uint32_t flames = 0;
-    uint32_t hotTiles = 0;  // length of the hot list
+    uint32_t hotTiles = 0;   // length of the hot list
     uint32_t receivers = 0;  // objects that others may warm
 };
 
