@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "fire/presets.h"
 #include "gpu/vk/vk_backend.h"
-#include "support/meshes.h"
+#include "support/world_defs.h"
 #include "world/world.h"
 
 #include <benchmark/benchmark.h>
@@ -15,21 +15,6 @@
 
 namespace fw::test {
 namespace {
-
-FwWorldDef worldDef(uint32_t flags) {
-    FwWorldDef def{};
-    def.structSize = sizeof def;
-    def.flags = flags;
-    def.up[1] = 1;
-    def.paceFactor = 1;
-    def.seed = 1;
-    def.maxStepsPerFrame = 64;
-    def.maxLights = 4;
-    def.maxFlames = 256;
-    def.maxRefinedTriangles = 1000;
-    def.spreadChance = 1;
-    return def;
-}
 
 class WorldBench {
  public:
@@ -40,31 +25,16 @@ class WorldBench {
           context_(&host_, 0, &memory_, log_),
           backend_(context_, {}, &memory_, log_),
           view_(fwDefaultView()),
-          world(worldDef(flags), backend_, log_, &memory_) {
+          world(plainWorldDef(flags), backend_, log_, &memory_) {
         context_.prepare();
     }
     // Boards of 0.5 m that lie flat, in rows 1.5 m apart; the first ten stand apart and burn
     // slowly.
     void fill(uint32_t burning, uint32_t idle) {
         const Mesh board = makePlane(0.5, 0.5);
-        FwMeshDef mesh{};
-        mesh.structSize = sizeof mesh;
-        mesh.positions = board.positions.data();
-        mesh.vertexCount = board.vertexCount();
-        mesh.indices = board.indices.data();
-        mesh.indexCount = uint32_t(board.indices.size());
-        mesh.indexSize = 4;
-        mesh.mapSize = 128;
-        mesh.texelsPerMetre = 192;
-        mesh.noiseFeature = 0.05f;
-        FwBurnableMeshDef def{};
-        def.structSize = sizeof def;
-        def.mesh = world.createMesh(mesh);
+        FwBurnableMeshDef def = plainBurnableDef(world.createMesh(plainMeshDef(board, 192)));
         FwMaterialDef wood = fire::presetDef(FW_MATERIAL_PLYWOOD);
         def.materials[0] = world.createMaterial(wood);
-        def.tint[0] = def.tint[1] = def.tint[2] = 1;
-        def.spreadChance = 1;
-        def.refinePixelsPerEdge = 8;
         for (const int i : {0, 5, 10, 15}) def.transform[i] = 1;
         for (uint32_t i = 0; i < burning + idle; ++i) {
             const bool lit = i < burning;

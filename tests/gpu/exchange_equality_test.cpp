@@ -2,6 +2,7 @@
 // calls, one of them some frames late, end in the same texels.
 #include "gpu/cpu/cpu_backend.h"
 #include "support/burn_scene.h"
+#include "support/world_defs.h"
 #include "world/world.h"
 
 #include "fire/presets.h"
@@ -13,17 +14,10 @@ namespace fw::test {
 namespace {
 
 FwWorldDef worldDef(uint32_t flags) {
-    FwWorldDef def{};
-    def.structSize = sizeof def;
-    def.flags = flags;
-    def.up[1] = 1;
+    FwWorldDef def = plainWorldDef(flags);
     def.paceFactor = 20;
     def.seed = 3;
-    def.maxStepsPerFrame = 64;
-    def.maxLights = 4;
     def.maxFlames = 64;
-    def.maxRefinedTriangles = 1000;
-    def.spreadChance = 1;
     return def;
 }
 
@@ -62,27 +56,14 @@ class ExchangeEquality : public GpuTest {
                  const components::Governance& governance = {}) {
             FwBurnableMeshId id{};
             each([&](world::World& w) {
-                FwMeshDef def{};
-                def.structSize = sizeof def;
-                def.positions = mesh.positions.data();
-                def.vertexCount = mesh.vertexCount();
-                def.indices = mesh.indices.data();
-                def.indexCount = uint32_t(mesh.indices.size());
-                def.indexSize = 4;
-                def.mapSize = 128;
-                def.texelsPerMetre = 48;
+                FwMeshDef def = plainMeshDef(mesh, 48);
                 def.noiseAmplitude = 0.15f;
-                def.noiseFeature = 0.05f;
-                FwBurnableMeshDef object{};
-                object.structSize = sizeof object;
+                FwBurnableMeshDef object = plainBurnableDef(w.createMesh(def));
                 object.flags = flags;
-                object.mesh = w.createMesh(def);
                 FwMaterialDef material = fire::presetDef(preset);
                 object.materials[0] = w.createMaterial(material);
                 moved(object.transform, x, y, z, turn);
-                object.tint[0] = object.tint[1] = object.tint[2] = 1;
                 object.moisture = moisture;
-                object.refinePixelsPerEdge = 8;
                 object.spreadChance = governance.chance;
                 object.maxHops = governance.hopsMost;
                 object.maxBurningTiles = governance.tilesMost;
@@ -235,23 +216,8 @@ TEST_F(ExchangeEquality, SteadyFramesAskNothing) {
     def.maxBurningTiles = 500;
     world::World world(def, rig.backend, log, &rig.memory);
     const Mesh board = makePlane(0.5, 0.3);
-    FwMeshDef mesh{};
-    mesh.structSize = sizeof mesh;
-    mesh.positions = board.positions.data();
-    mesh.vertexCount = board.vertexCount();
-    mesh.indices = board.indices.data();
-    mesh.indexCount = uint32_t(board.indices.size());
-    mesh.indexSize = 4;
-    mesh.mapSize = 128;
-    mesh.texelsPerMetre = 48;
-    mesh.noiseFeature = 0.05f;
-    FwBurnableMeshDef object{};
-    object.structSize = sizeof object;
-    object.mesh = world.createMesh(mesh);
+    FwBurnableMeshDef object = plainBurnableDef(world.createMesh(plainMeshDef(board, 48)));
     object.materials[0] = world.createMaterial(fire::presetDef(FW_MATERIAL_PLYWOOD));
-    object.tint[0] = object.tint[1] = object.tint[2] = 1;
-    object.spreadChance = 1;
-    object.refinePixelsPerEdge = 8;
     std::vector<FwBurnableMeshId> ids;
     for (int i = 0; i < 8; ++i) {
         moved(object.transform, float(i) * 0.52f, 0, 0, 0);
