@@ -11,7 +11,6 @@
 namespace fw::gpu::vk {
 namespace {
 
-constexpr uint32_t kTileTexels = 64;
 constexpr uint32_t kCounterRows = kRowIteration + 64 * kMaxSubsteps + 1;  // one more to carry over
 
 constexpr Plane kPlanes[] = {

@@ -9,6 +9,8 @@
 
 namespace fw::gpu::vk {
 
+constexpr uint32_t kTileTexels = 64;
+
 // What ranges are allocated of, and the unit.
 enum Space : uint32_t {
     kSpaceObjects,      // object slots

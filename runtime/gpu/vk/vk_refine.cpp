@@ -130,10 +130,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, const mesh::Burn
                std::span<const mesh::RenderVertex>(vertices));
     } catch (...) {
         fresh.release(s.planes);
-        while (s.uploads.size() > uploadsBefore) {
-            s.deviceMemory.destroy(s.uploads.back().staging);
-            s.uploads.pop_back();
-        }
+        s.dropUploads(uploadsBefore);
         throw;
     }
     s.meshes[slot].refine[depth] = fresh;

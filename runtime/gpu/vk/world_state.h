@@ -180,6 +180,13 @@ struct OwnDevice {  // command pool and offscreen images of the own-device mode
     uint32_t width = 0, height = 0;
 };
 
+// An entry of a table by slot, which grows as needed.
+template <class T>
+T& slotOf(std::pmr::vector<T>& table, uint32_t slot) {
+    if (slot >= table.size()) table.resize(slot + 1);
+    return table[slot];
+}
+
 struct VkBackend::State {
     State(Context::State& contextState, const WorldLimits& limits, std::pmr::memory_resource* pmr,
           const core::Log& logTo);
@@ -271,10 +278,12 @@ struct VkBackend::State {
     // vk_backend.cpp
     void failIfLost() const;
     PendingUpload& stage(uint64_t bytes, const char* name);
+    void dropUploads(size_t kept) noexcept;  // all but the first
+    void freeQuarantine() noexcept;
+    // vk_images.cpp
     void addImage(ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
                   uint32_t mips, VkFormat format, std::span<const std::byte> pixels,
                   const char* name);
-    void freeQuarantine() noexcept;
     // vk_record.cpp
     void openFrame(VkCommandBuffer commands, uint64_t ringFrame);
     void run(const FramePlan& plan);

@@ -1,0 +1,142 @@
+// Base colours and look textures: images with their mips, and their way to the device.
+#include "core/error.h"
+#include "gpu/vk/world_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::gpu::vk {
+namespace {
+
+uint32_t mipsOf(uint32_t width, uint32_t height) noexcept {
+    uint32_t mips = 1;
+    while (std::max(width, height) >> mips) ++mips;
+    return mips;
+}
+
+// Box-filtered RGBA8 sRGB mips in linear light, appended one behind the other.
+struct SrgbTable {
+    float toLinear[256];
+    SrgbTable() {
+        for (int i = 0; i < 256; ++i) {
+            const float s = float(i) / 255.0f;
+            toLinear[i] = s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+        }
+    }
+    static std::byte fromLinear(float value) {
+        const float s =
+            value <= 0.0031308f ? value * 12.92f : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+        return std::byte(std::clamp(int(s * 255.0f + 0.5f), 0, 255));
+    }
+};
+
+void halveSrgb(const SrgbTable& table, const std::byte* from, uint32_t width, uint32_t height,
+               std::byte* to) {
+    const uint32_t w = std::max(width / 2, 1u), h = std::max(height / 2, 1u);
+    for (uint32_t y = 0; y < h; ++y) {
+        for (uint32_t x = 0; x < w; ++x) {
+            const uint32_t x0 = std::min(x * 2, width - 1), x1 = std::min(x * 2 + 1, width - 1);
+            const uint32_t y0 = std::min(y * 2, height - 1), y1 = std::min(y * 2 + 1, height - 1);
+            const std::byte* taps[4] = {
+                from + (size_t(y0) * width + x0) * 4, from + (size_t(y0) * width + x1) * 4,
+                from + (size_t(y1) * width + x0) * 4, from + (size_t(y1) * width + x1) * 4};
+            std::byte* out = to + (size_t(y) * w + x) * 4;
+            for (int c = 0; c < 3; ++c) {
+                float sum = 0;
+                for (const std::byte* tap : taps) sum += table.toLinear[uint8_t(tap[c])];
+                out[c] = SrgbTable::fromLinear(sum * 0.25f);
+            }
+            uint32_t alpha = 2;
+            for (const std::byte* tap : taps) alpha += uint8_t(tap[3]);
+            out[3] = std::byte(alpha / 4);
+        }
+    }
+}
+
+}  // namespace
+
+void VkBackend::State::addImage(ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
+                                uint32_t mips, VkFormat format, std::span<const std::byte> pixels,
+                                const char* name) {
+    retired.promise(2);
+    auto info = typed<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent = {width, height, 1};
+    info.mipLevels = mips;
+    info.arrayLayers = layers;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    ImageEntry fresh;
+    fresh.image = deviceMemory.createImage(info, VK_IMAGE_ASPECT_COLOR_BIT, kComponentImages, name);
+    try {
+        fresh.set = makeImageSet(device, context.pipelines, fresh.image.view);
+        PendingUpload& upload = stage(pixels.size(), name);
+        std::memcpy(upload.staging.mapped, pixels.data(), pixels.size());
+        upload.image = fresh.image.handle;
+        upload.width = width;
+        upload.height = height;
+        upload.mips = mips;
+        upload.layers = layers;
+    } catch (...) {
+        device.table.DestroyDescriptorPool(device.handle, fresh.set.pool,
+                                           device.allocationCallbacks);
+        deviceMemory.destroy(fresh.image);
+        throw;
+    }
+    fresh.live = true;
+    entry = fresh;
+}
+
+void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
+                            std::span<const std::byte> pixels) {
+    State& s = *state_;
+    const uint32_t most = s.device.properties.limits.maxImageDimension2D;
+    if (width > most || height > most)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The image is %u x %u pixels; the device's maxImageDimension2D is %u.", width,
+                   height, most);
+    ImageEntry& entry = slotOf(s.images, slot);
+    const uint32_t mips = mipsOf(width, height);
+    size_t bytes = 0;
+    for (uint32_t mip = 0; mip < mips; ++mip)
+        bytes += size_t(std::max(width >> mip, 1u)) * std::max(height >> mip, 1u) * 4;
+    std::pmr::vector<std::byte> all(bytes, s.memory);
+    std::memcpy(all.data(), pixels.data(), size_t(width) * height * 4);
+    const SrgbTable table;
+    size_t at = 0;
+    for (uint32_t mip = 0; mip + 1 < mips; ++mip) {
+        const uint32_t w = std::max(width >> mip, 1u), h = std::max(height >> mip, 1u);
+        halveSrgb(table, all.data() + at, w, h, all.data() + at + size_t(w) * h * 4);
+        at += size_t(w) * h * 4;
+    }
+    s.addImage(entry, width, height, 1, mips, VK_FORMAT_R8G8B8A8_SRGB, all, "base colour");
+}
+
+void VkBackend::destroyImage(uint32_t slot) noexcept {
+    State& s = *state_;
+    ImageEntry& entry = s.images[slot];
+    if (!entry.live) return;
+    for (size_t i = 0; i < s.uploads.size(); ++i) {
+        if (s.uploads[i].image != entry.image.handle) continue;
+        s.deviceMemory.destroy(s.uploads[i].staging);
+        s.uploads.erase(s.uploads.begin() + std::ptrdiff_t(i));
+        break;
+    }
+    s.retired.push(s.ring.newest(), entry.image);
+    s.retired.push(s.ring.newest(), entry.set.pool);
+    entry = {};
+    for (ObjectEntry& object : s.objects) {  // back to their own base colour
+        for (uint32_t& image : object.images) {
+            if (image != slot + 1) continue;
+            image = 0;
+            object.recordDirty = true;
+            s.recordsDirty = true;
+        }
+    }
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,330 @@
+// Objects as they come and go, and where hosts move them. What becomes of them within a frame is
+// vk_record.cpp's.
+#include "gpu/vk/drawn_order.h"
+#include "gpu/vk/world_state.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace fw::gpu::vk {
+namespace {
+
+// Records of a mesh that deforms, with vertices as the device numbers them.
+void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
+                      const mesh::DeformModel& model, uint32_t firstNode, uint32_t firstCoat) {
+    const DrawnOrder order(domain, s.memory);
+    const uint64_t nodeBytes = model.nodes.size() * sizeof(DeformNode);
+    const uint64_t coatBytes = model.coats.size() * sizeof(DeformCoat);
+    PendingUpload& upload = s.stage(nodeBytes + coatBytes, "deformation staging");
+    const auto number = [&](uint32_t& vertex) {
+        if (vertex != kNoneTexel) vertex = order.numbers[vertex];
+    };
+    std::byte* to = upload.staging.mapped;
+    for (uint32_t i = 0; i < model.nodes.size(); ++i) {
+        DeformNode node = mesh::deviceNode(model, i);
+        number(node.vertex);
+        std::memcpy(to, &node, sizeof node);
+        to += sizeof node;
+    }
+    for (const uint32_t old : order.vertices) {
+        DeformCoat coat = model.coats[old];
+        number(coat.node);
+        for (uint32_t& vertex : coat.ring) number(vertex);
+        std::memcpy(to, &coat, sizeof coat);
+        to += sizeof coat;
+    }
+    upload.regions[0] = {FW_BIND_DEFORM_NODES, 0, uint64_t(firstNode) * sizeof(DeformNode),
+                         nodeBytes};
+    upload.regions[1] = {FW_BIND_DEFORM_COATS, nodeBytes, uint64_t(firstCoat) * sizeof(DeformCoat),
+                         coatBytes};
+    upload.regionCount = 2;
+}
+
+// Where each texel is on its triangle.
+void stageSkinTexels(VkBackend::State& s, const mesh::BurnDomain& domain, const DrawnOrder& order,
+                     uint32_t firstTile, uint32_t firstSource) {
+    const uint64_t bytes = uint64_t(domain.texelCount()) * sizeof(uvec4);
+    const uint64_t sourceBytes = order.vertices.size() * 4;
+    PendingUpload& upload = s.stage(bytes + sourceBytes, "skin staging");
+    for (size_t i = 0; i < order.vertices.size(); ++i)
+        std::memcpy(upload.staging.mapped + bytes + i * 4, &domain.sources[order.vertices[i]], 4);
+    upload.regions[upload.regionCount++] = {FW_BIND_SKIN_SOURCES, bytes, uint64_t(firstSource) * 4,
+                                            sourceBytes};
+    for (uint32_t i = 0; i < domain.texelCount(); ++i) {
+        uvec4 record{0, 0, 0, 0};
+        if (domain.triangleOf[i] != mesh::kNone) {
+            uint32_t number[3];
+            for (uint32_t k = 0; k < 3; ++k)
+                number[k] = order.numbers[domain.indices[size_t(domain.triangleOf[i]) * 3 + k]];
+            float weights[3];
+            mesh::texelWeights(domain, i, weights);
+            const auto unorm = [](float w) { return uint32_t(w * 65535.0f + 0.5f); };
+            record = {number[0], number[1], number[2], unorm(weights[0]) | unorm(weights[1]) << 16};
+        }
+        std::memcpy(upload.staging.mapped + size_t(i) * sizeof record, &record, sizeof record);
+    }
+    upload.regions[upload.regionCount++] = {
+        FW_BIND_SKIN_TEXELS, 0, uint64_t(firstTile) * kTileTexels * sizeof(uvec4), bytes};
+}
+
+// A skinned object's vertices at rest: kept here, and on their way to the device.
+void stageSkin(VkBackend::State& s, const mesh::BurnDomain& domain, const DrawnOrder& order,
+               Skin& skin, uint32_t firstShown) {
+    skin.shown.assign(domain.vertices.size(), ShownVertex{});
+    skin.sources.resize(domain.vertices.size());
+    for (size_t i = 0; i < order.vertices.size(); ++i) {
+        const mesh::RenderVertex& v = domain.vertices[order.vertices[i]];
+        skin.shown[i].x = v.position[0];
+        skin.shown[i].y = v.position[1];
+        skin.shown[i].z = v.position[2];
+        skin.shown[i].normal = v.normal;
+        skin.sources[i] = domain.sources[order.vertices[i]];
+    }
+    const uint64_t bytes = skin.shown.size() * sizeof(ShownVertex);
+    PendingUpload& upload = s.stage(bytes, "skin staging");
+    std::memcpy(upload.staging.mapped, skin.shown.data(), bytes);
+    upload.regions[upload.regionCount++] = {FW_BIND_SHOWN, 0,
+                                            uint64_t(firstShown) * sizeof(ShownVertex), bytes};
+}
+
+// All of an object's but its tiles, which lists may still name.
+void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
+    if (entry.slowness.units)
+        s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
+    if (entry.published.units)
+        s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
+    if (entry.heatTiles.units)
+        s.planes.release(kSpaceHeat, entry.heatTiles.first, entry.heatTiles.units);
+    if (entry.sources.units)
+        s.planes.release(kSpaceSources, entry.sources.first, entry.sources.units);
+    if (entry.deformer.units)
+        s.planes.release(kSpaceDeformers, entry.deformer.first, entry.deformer.units);
+    if (entry.soft.units) s.planes.release(kSpaceSoft, entry.soft.first, entry.soft.units);
+    if (entry.shown.units) s.planes.release(kSpaceShown, entry.shown.first, entry.shown.units);
+    if (entry.skinPlus1) {
+        s.skins[entry.skinPlus1 - 1].shown.clear();
+        Skin& skin = s.skins[entry.skinPlus1 - 1];
+        skin.dirty = skin.givenDue = false;
+        if (skin.words.units) s.planes.release(kSpaceSkinGiven, skin.words.first, skin.words.units);
+        skin.words = {};
+    }
+}
+
+}  // namespace
+
+void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
+    State& s = *state_;
+    const uint64_t last = s.ring.newest();
+    MeshEntry& mesh = s.meshes[init.mesh];
+    RangeOf nodes = mesh.nodes, coats = mesh.coats, skin = mesh.skin, sources = mesh.skinSources;
+    const size_t uploadsBefore = s.uploads.size();
+    ObjectEntry fresh;
+    fresh.live = true;
+    fresh.mesh = init.mesh;
+    fresh.record = init.record;
+    try {
+        s.quarantine.reserve(s.quarantine.size() + s.liveObjects + 1);
+        s.drawItems.reserve((s.liveObjects + 1) * kMaterialsPerObject);
+        s.published.reserve(s.liveObjects + 1);
+        s.givenObjects.reserve(std::max<size_t>(slot + 1, s.objects.size()));
+        (void)slotOf(s.objects, slot);
+        s.planes.atLeast(kSpaceObjects, slot + 1, last);
+        s.freeQuarantine();
+        fresh.tiles = {s.planes.allocate(kSpaceObjectTiles, mesh.tiles, last), mesh.tiles};
+        if (init.refine) {
+            fresh.refine.on = true;
+            fresh.refine.depth = init.refineDepth;
+            fresh.refine.pixelsPerEdge = init.refinePixelsPerEdge;
+            fresh.refine.epochTick = s.shownTick;
+            fresh.refine.allocate(s.planes, mesh.refine[init.refineDepth], last);
+        }
+        if (!init.slowness.empty()) {
+            fresh.slowness = {s.planes.allocate(kSpaceSlowness, mesh.tiles, last), mesh.tiles};
+            PendingUpload& upload = s.stage(init.slowness.size_bytes(), "slowness staging");
+            std::memcpy(upload.staging.mapped, init.slowness.data(), init.slowness.size_bytes());
+            upload.regions[upload.regionCount++] = {
+                FW_BIND_SLOWNESS, 0, uint64_t(fresh.slowness.first) * kTileTexels * 2,
+                init.slowness.size_bytes()};
+        }
+        if (init.record.flags & kObjectPublished)
+            fresh.published = {s.planes.allocate(kSpacePublished, mesh.tiles, last), mesh.tiles};
+        fresh.sources = {s.planes.allocate(kSpaceSources, mesh.sourceCells, last),
+                         mesh.sourceCells};
+        if (!init.heat.empty())
+            fresh.heatTiles = {s.planes.allocate(kSpaceHeat, mesh.tiles, last), mesh.tiles};
+        if (init.deform) {
+            const mesh::DeformModel& model = *init.deformModel;
+            fresh.deformer = {s.planes.allocate(kSpaceDeformers, 1, last), 1};
+            const auto count = uint32_t(model.nodes.size());
+            if (init.deform->flags & (kDeformShell | kDeformSprings))
+                fresh.soft = {s.planes.allocate(kSpaceSoft, count, last), count};
+            fresh.shown = {s.planes.allocate(kSpaceShown, mesh.vertices, last), mesh.vertices};
+            if (nodes.units == 0) {
+                nodes = {s.planes.allocate(kSpaceNodes, count, last), count};
+                coats = {s.planes.allocate(kSpaceCoats, mesh.vertices, last), mesh.vertices};
+                stageDeformModel(s, *mesh.domain, model, nodes.first, coats.first);
+            }
+        }
+        if (init.record.flags & kObjectSkinned) {
+            const DrawnOrder order(*mesh.domain, s.memory);
+            if (skin.units == 0) {
+                skin = {s.planes.allocate(kSpaceSkin, mesh.tiles, last), mesh.tiles};
+                sources = {s.planes.allocate(kSpaceSkinSources, mesh.vertices, last),
+                           mesh.vertices};
+                stageSkinTexels(s, *mesh.domain, order, skin.first, sources.first);
+            }
+            if (!(init.deform->flags & (kDeformShell | kDeformSprings))) {  // the host moves it
+                uint32_t free = 0;
+                while (free < s.skins.size() && !s.skins[free].shown.empty()) ++free;
+                if (free == s.skins.size()) s.skins.emplace_back();
+                fresh.skinPlus1 = free + 1;
+                stageSkin(s, *mesh.domain, order, s.skins[free], fresh.shown.first);
+            }
+        }
+    } catch (...) {
+        fresh.refine.release(s.planes);
+        if (mesh.nodes.units == 0) {
+            if (nodes.units) s.planes.release(kSpaceNodes, nodes.first, nodes.units);
+            if (coats.units) s.planes.release(kSpaceCoats, coats.first, coats.units);
+        }
+        if (mesh.skin.units == 0) {
+            if (skin.units) s.planes.release(kSpaceSkin, skin.first, skin.units);
+            if (sources.units) s.planes.release(kSpaceSkinSources, sources.first, sources.units);
+        }
+        releaseRanges(s, fresh);
+        if (fresh.tiles.units)
+            s.planes.release(kSpaceObjectTiles, fresh.tiles.first, fresh.tiles.units);
+        s.dropUploads(uploadsBefore);
+        throw;
+    }
+    BurnObject& r = fresh.record;
+    r.texelBase = mesh.meshTiles.first * kTileTexels;
+    r.stateBase = fresh.tiles.first * kTileTexels;
+    r.slowBase =
+        (fresh.slowness.units ? fresh.slowness.first : mesh.slowness.first) * (kTileTexels / 2);
+    r.tileBase = mesh.meshTiles.first;
+    r.worldTileBase = fresh.tiles.first;
+    r.linkBase = mesh.links.first;
+    r.readerBase = mesh.readers.first;
+    r.publishedBase = fresh.published.first * kTileTexels * 3;
+    r.heatBase = fresh.heatTiles.first * kTileTexels;
+    r.width = mesh.width;
+    r.height = mesh.height;
+    r.tilesX = mesh.tilesX;
+    r.tileCount = mesh.tiles;
+    r.flags = (r.flags & ~kObjectHeat) | kObjectLive | (init.heat.empty() ? 0 : kObjectHeat);
+    for (size_t i = 0; i < kMaterialsPerObject && i < init.heat.size(); ++i)
+        fresh.heat[i] = init.heat[i];
+    for (size_t i = 0; i < kMaterialsPerObject && i < init.materials.size(); ++i)
+        fresh.materials[i] = init.materials[i];
+    std::copy(std::begin(init.images), std::end(init.images), std::begin(fresh.images));
+    fresh.recordDirty = fresh.materialsDirty = fresh.resetDue = true;
+    if (init.deform) {
+        mesh.nodes = nodes;
+        mesh.coats = coats;
+        fresh.deform = *init.deform;
+        fresh.deform.nodeBase = nodes.first;
+        fresh.deform.nodeCount = nodes.units;
+        fresh.deform.coatBase = coats.first;
+        fresh.deform.vertexCount = mesh.vertices;
+        fresh.deform.shownBase = fresh.shown.first;
+        fresh.deform.softBase = fresh.soft.first;
+        fresh.deform.stateBase = r.stateBase;
+        fresh.deform.slot = slot;
+        fresh.deform.scale = length(vec3(r.worldRow0));
+        for (const DeformMaterial& m : fresh.deform.materials)
+            for (const uint32_t ticks : {m.charTicks, m.holeTicks})
+                if (ticks != kNoneTexel) fresh.deformTicks = std::max(fresh.deformTicks, ticks);
+        fresh.deformTicks += kTicksPerSecond;  // readbacks come late
+        fresh.deformDirty = fresh.deformReset = true;
+    }
+    if (init.record.flags & kObjectSkinned) {
+        mesh.skin = skin;
+        mesh.skinSources = sources;
+        r.skinBase = skin.first * kTileTexels;
+        r.shownBase = fresh.shown.first;
+    }
+    if (fresh.skinPlus1) {
+        std::copy_n(init.shape, 3, fresh.shape);
+        fresh.deformReset = false;  // at rest already
+    }
+    s.objects[slot] = fresh;
+    s.recordsDirty = true;
+    s.refine.users += fresh.refine.on ? 1 : 0;
+    ++s.liveObjects;
+}
+
+void VkBackend::destroyObject(uint32_t slot) noexcept {
+    State& s = *state_;
+    ObjectEntry& entry = s.objects[slot];
+    if (!entry.live) return;
+    const bool met = !entry.resetDue;  // by a recorded frame, so lists may name its tiles
+    if (met)
+        s.quarantine.push_back(
+            {entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks, s.hotWalks});
+    else
+        s.planes.release(kSpaceObjectTiles, entry.tiles.first, entry.tiles.units);
+    s.refine.users -= entry.refine.on ? 1 : 0;
+    entry.refine.release(s.planes);
+    releaseRanges(s, entry);
+    entry = {};
+    entry.recordDirty = true;  // a record without kObjectLive: list entries fall out
+    s.recordsDirty = true;
+    --s.liveObjects;
+    std::erase_if(s.drawItems, [slot](const DrawItem& item) { return item.object == slot; });
+}
+
+void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint, uint32_t flags) {
+    State& s = *state_;
+    ObjectEntry& entry = s.objects[slot];
+    entry.record.worldRow0 = rows[0];
+    entry.record.worldRow1 = rows[1];
+    entry.record.worldRow2 = rows[2];
+    entry.record.tint = tint;
+    if (entry.shown.units) {
+        entry.deform.scale = length(vec3(rows[0]));
+        entry.deformDirty = true;
+        entry.softUntil = 0;  // it swings anew
+    }
+    constexpr uint32_t kFixed = kObjectPublished | kObjectHeat;
+    entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
+    entry.recordDirty = true;
+    s.recordsDirty = true;
+}
+
+void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
+                            std::span<const float> normals) noexcept {
+    State& s = *state_;
+    Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
+    for (size_t i = 0; i < skin.shown.size(); ++i) {
+        ShownVertex& v = skin.shown[i];
+        const size_t from = size_t(skin.sources[i]) * 3;
+        v.x = positions[from];
+        v.y = positions[from + 1];
+        v.z = positions[from + 2];
+        if (!normals.empty())
+            v.normal = packDirection({normals[from], normals[from + 1], normals[from + 2]});
+    }
+    skin.dirty = true;
+    skin.givenDue = false;
+    skin.normals = !normals.empty();
+}
+
+void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices) {
+    State& s = *state_;
+    Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
+    const uint64_t last = vertices.normalOffset ? uint64_t(vertices.normalOffset) + 12 : 12;
+    const uint64_t words = (uint64_t(vertices.vertexCount - 1) * vertices.stride + last) / 4;
+    if (skin.words.units < words) {
+        const RangeOf fresh{s.planes.allocate(kSpaceSkinGiven, uint32_t(words), s.ring.newest()),
+                            uint32_t(words)};
+        if (skin.words.units) s.planes.release(kSpaceSkinGiven, skin.words.first, skin.words.units);
+        skin.words = fresh;
+    }
+    skin.given = vertices;
+    skin.givenDue = true;
+    skin.dirty = false;
+    skin.normals = vertices.normalOffset != 0;
+}
+
+}  // namespace fw::gpu::vk
