@@ -1,5 +1,6 @@
 // Black-body colour and the film curve that turns deep orange into yellow-white.
-// Not a tone mapper for hosts that have their own: they get linear values.
+// Not a tone mapper for hosts that have their own: they get linear values. Soot: black_body.h.
+#include "shared/black_body.h"
 
 // Luminance in cd/m^2 of glowing char, Wien's form; chromaticity linear in T. Valid 800..2500 K.
 // Cameras see embers more orange than they are: the chromaticity is that of a hotter body.
@@ -14,13 +15,6 @@ vec3 blackbodyChroma(float kelvin) {
 vec3 emberRadiance(float kelvin) {
     float luminance = 2.67 * exp2(34797.8 * (0.001 - 1.0 / max(kelvin, 400.0)));
     return blackbodyChroma(kelvin + kEmberHueShift) * (kelvin < 760.0 ? 0.0 : luminance);
-}
-
-// Thin soot, luminance 1 at 1600 K.
-vec3 sootRadiance(float kelvin) {
-    float luminance = exp2(34981.0 * (1.0 / 1600.0 - 1.0 / max(kelvin, 400.0)));
-    float g = max(0.0, 2.85e-4 * (kelvin - 940.0)), b = max(0.0, 1.35e-4 * (kelvin - 1815.0));
-    return vec3(1.0, g, b) * (luminance / (0.2126 + 0.7152 * g + 0.0722 * b));
 }
 
 // Channel-mixing film curve (the well-known fit of the ACES reference rendering).

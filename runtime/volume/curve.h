@@ -1,0 +1,73 @@
+// The curve of a flame: a cubic B-spline through a base, with a radius along it, laid out as evenly
+// spaced nodes with bisector planes and a frame that does not twist. Fixed storage, no heap.
+// Any finite points are fine: coincident, collinear, looping, few. What moves them: motion.h.
+#pragma once
+#include "shared/volume.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace fw::volume {
+
+using gpu::vec2;
+using gpu::vec3;
+using gpu::vec4;
+
+constexpr uint32_t kMaxControlPoints = 32;
+constexpr uint32_t kArcEntries = 64;  // intervals of the arc-length table
+
+struct ControlPoint {
+    vec3 position{0.0f};  // m
+    float radius = 0.0f;  // m, >= 0
+};
+
+struct CurveSample {
+    vec3 position{0.0f};
+    vec3 tangent{0.0f, 1.0f, 0.0f};  // unit
+    float radius = 0.0f;
+};
+
+// The spline itself, by parameter and by arc length.
+class Curve {
+ public:
+    // Takes the first kMaxControlPoints. Points that are all one become a straight stub along `up`.
+    void set(std::span<const ControlPoint> points, vec3 up) noexcept;
+    [[nodiscard]] float length() const noexcept { return arc_[kArcEntries]; }  // m, > 0
+    // At s metres from the base; straight on beyond either end.
+    [[nodiscard]] CurveSample at(float s) const noexcept;
+
+ private:
+    [[nodiscard]] CurveSample evaluate(float u) const noexcept;  // u in [0, 1]
+    [[nodiscard]] vec3 slope(float u) const noexcept;            // dp/du
+
+    std::array<vec4, kMaxControlPoints + 2> points_{};  // with a phantom at each end
+    std::array<float, kArcEntries + 1> arc_{};          // m from the base
+    uint32_t spans_ = 1;
+    vec3 up_{0.0f, 1.0f, 0.0f};
+};
+
+using FlameNodes = std::array<gpu::FlameNode, gpu::kFlameNodes>;
+
+// Nodes every length / (kFlameNodes - 1) metres. Radii are clamped so that no two neighbouring
+// bisector planes meet inside the tube: each point of it then lies between one pair of planes.
+void layNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept;
+// The clamp alone, for nodes that something moved; `nodes` keep their places. Frames are made anew.
+void mendNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept;
+
+// The place of a point in the curve's coordinates: of all pairs of planes that it lies between, the
+// one whose axis it is nearest to, counted in radii. None: before the base or beyond the end.
+struct Located {
+    gpu::FlamePlace place;
+    float rho = 0.0f;    // |p| over radius
+    float angle = 0.0f;  // radians around the axis, from `side`
+    uint32_t segment = 0;
+};
+std::optional<Located> locate(std::span<const gpu::FlameNode> nodes, vec3 point) noexcept;
+
+struct Bounds {
+    vec3 low{0.0f}, high{0.0f};
+};
+
+}  // namespace fw::volume

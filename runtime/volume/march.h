@@ -1,0 +1,35 @@
+// The march of one ray through a flame on the CPU: the reference that the march pass is compared
+// with. For tests, tools and queries, not for frames.
+#pragma once
+#include "volume/curve.h"
+#include "volume/profile.h"
+
+namespace fw::volume {
+
+struct MarchRules {
+    uint32_t steps = 64;    // >= 1, over what the ray sees of the flame
+    float jitter = 0.5f;    // [0, 1) of a step, where in it the sample lies
+    float pixel = 0.0f;     // m per m away, width of a pixel
+    float detail = 0.0f;    // m: noise finer than this fades; 0: by step and pixel
+    float farthest = 1e9f;  // m, the scene behind
+    bool smoke = true;
+};
+
+gpu::FlameMedium sampleFlame(const gpu::FlameRecord& flame, const Profile& profile,
+                             const gpu::FlamePlace& at, float size, bool smoke) noexcept;
+
+// m along the curve to which anything shows.
+float topOf(const gpu::FlameRecord& flame) noexcept;
+// Of everything that shows. Conservative: outside there is nothing.
+Bounds flameBounds(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes) noexcept;
+
+// From where to where a ray is in the tube, m; empty where x >= y. Conservative.
+vec2 flameSpan(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes, vec3 from,
+               vec3 direction) noexcept;
+
+// `direction` is unit. What is behind the flame shows by ray.through.
+gpu::FlameRay marchRay(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes,
+                       const Profile& profile, vec3 from, vec3 direction,
+                       const MarchRules& rules) noexcept;
+
+}  // namespace fw::volume

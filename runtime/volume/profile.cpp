@@ -1,0 +1,232 @@
+// Fire-profiles: resampling, ranges, and the cooked file. The reader trusts nothing.
+#include "volume/profile.h"
+
+#include "core/error.h"
+#include "core/hash.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+namespace fw::volume {
+namespace {
+
+constexpr uint32_t kMagic = 0x50465746;  // "FWFP"
+constexpr uint32_t kVersion = 1;
+constexpr size_t kHeaderBytes = 24;
+
+constexpr uint32_t kW = gpu::kProfileWidth, kH = gpu::kProfileHeight;
+constexpr uint32_t levelWidth(uint32_t level) { return kW >> (level + 2); }
+constexpr uint32_t levelHeight(uint32_t level) { return kH >> (level + 2); }
+constexpr uint32_t levelBase(uint32_t level) {
+    uint32_t base = 0;
+    for (uint32_t k = 0; k < level; ++k) base += levelWidth(k) * levelHeight(k);
+    return base;
+}
+static_assert(levelBase(Profile::kLevels) == Profile::kCells);
+
+float burning(gpu::vec2 v) noexcept { return std::max(std::min(v.x, 1.0f), v.y); }
+
+void findRanges(Profile& p) noexcept {
+    const auto at = [&](int x, int y) {
+        x = std::clamp(x, 0, int(kW) - 1), y = std::clamp(y, 0, int(kH) - 1);
+        return burning(glm::unpackHalf2x16(p.texels[uint32_t(y) * kW + uint32_t(x)]));
+    };
+    // A lookup anywhere in a cell reaches one texel beyond it.
+    for (uint32_t cy = 0; cy < levelHeight(0); ++cy)
+        for (uint32_t cx = 0; cx < levelWidth(0); ++cx) {
+            ProfileRange r{1e9f, 0.0f};
+            for (int y = int(4 * cy) - 1; y <= int(4 * cy) + 4; ++y)
+                for (int x = int(4 * cx) - 1; x <= int(4 * cx) + 4; ++x)
+                    r.low = std::min(r.low, at(x, y)), r.high = std::max(r.high, at(x, y));
+            p.ranges[cy * levelWidth(0) + cx] = r;
+        }
+    for (uint32_t level = 1; level < Profile::kLevels; ++level)
+        for (uint32_t cy = 0; cy < levelHeight(level); ++cy)
+            for (uint32_t cx = 0; cx < levelWidth(level); ++cx) {
+                ProfileRange r{1e9f, 0.0f};
+                for (uint32_t k = 0; k < 4; ++k) {
+                    const ProfileRange& f =
+                        p.ranges[levelBase(level - 1) + (2 * cy + k / 2) * levelWidth(level - 1) +
+                                 2 * cx + k % 2];
+                    r.low = std::min(r.low, f.low), r.high = std::max(r.high, f.high);
+                }
+                p.ranges[levelBase(level) + cy * levelWidth(level) + cx] = r;
+            }
+}
+
+void checkTexel(float kelvin, float soot, uint32_t x, uint32_t y) {
+    if (!(kelvin >= 0.0f && kelvin <= kMaxProfileKelvin))
+        core::fail(
+            FW_ERROR_BAD_DATA,
+            "temperature of texel (%u, %u) of the fire profile is %g K; it must lie in [0, %g].", x,
+            y, double(kelvin), double(kMaxProfileKelvin));
+    if (!(soot >= 0.0f && soot <= kMaxProfileSoot))
+        core::fail(FW_ERROR_BAD_DATA,
+                   "soot of texel (%u, %u) of the fire profile is %g; it must lie in [0, %g].", x,
+                   y, double(soot), double(kMaxProfileSoot));
+}
+
+void checkSize(uint32_t width, uint32_t height) {
+    if (width < kMinProfileSide || width > kMaxProfileSide || height < kMinProfileSide ||
+        height > kMaxProfileSide)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "the fire profile is %u x %u texels; each side must lie in [%u, %u].", width,
+                   height, kMinProfileSide, kMaxProfileSide);
+}
+
+// `read(x, y)`: a texel of the source. Bilinear, texel centres on texel centres.
+template <typename Read>
+void resample(uint32_t width, uint32_t height, const Read& read, Profile& out) {
+    bool burns = false;
+    for (uint32_t y = 0; y < kH; ++y)
+        for (uint32_t x = 0; x < kW; ++x) {
+            const float u = std::max((float(x) + 0.5f) * float(width) / float(kW) - 0.5f, 0.0f);
+            const float v = std::max((float(y) + 0.5f) * float(height) / float(kH) - 0.5f, 0.0f);
+            const uint32_t x0 = std::min(uint32_t(u), width - 1), x1 = std::min(x0 + 1, width - 1);
+            const uint32_t y0 = std::min(uint32_t(v), height - 1),
+                           y1 = std::min(y0 + 1, height - 1);
+            const float fu = u - float(x0), fv = v - float(y0);
+            const gpu::vec2 texel = glm::mix(glm::mix(read(x0, y0), read(x1, y0), fu),
+                                             glm::mix(read(x0, y1), read(x1, y1), fu), fv);
+            burns = burns || burning(texel) > 0.0f;
+            out.texels[y * kW + x] = glm::packHalf2x16(texel);
+        }
+    if (!burns)
+        core::fail(
+            FW_ERROR_BAD_DATA,
+            "the fire profile holds neither soot nor hot gas; at least one texel must be above 0.");
+    findRanges(out);
+}
+
+}  // namespace
+
+gpu::vec2 Profile::sample(float rho, float y) const noexcept {
+    if (y >= 1.0f || y < 0.0f) return gpu::vec2(0.0f);
+    const float u = std::clamp(rho / gpu::kProfileReach * float(kW) - 0.5f, 0.0f, float(kW - 1));
+    const float v = std::clamp(y * float(kH) - 0.5f, 0.0f, float(kH - 1));
+    const uint32_t x0 = uint32_t(u), y0 = uint32_t(v);
+    const uint32_t x1 = std::min(x0 + 1, kW - 1), y1 = std::min(y0 + 1, kH - 1);
+    const auto at = [&](uint32_t x, uint32_t row) {
+        return glm::unpackHalf2x16(texels[row * kW + x]);
+    };
+    return glm::mix(glm::mix(at(x0, y0), at(x1, y0), u - float(x0)),
+                    glm::mix(at(x0, y1), at(x1, y1), u - float(x0)), v - float(y0));
+}
+
+ProfileRange Profile::over(float rho0, float rho1, float y0, float y1) const noexcept {
+    const bool outside = y0 < 0.0f || y1 >= 1.0f;  // some of it is where nothing burns
+    if (y1 < 0.0f || y0 >= 1.0f) return {};
+    const auto cell = [](float v, float reach, uint32_t side) {
+        return std::clamp(int(std::floor(v / reach * float(side))), 0, int(side) - 1) / 4;
+    };
+    int x0 = cell(rho0, gpu::kProfileReach, kW), x1 = cell(rho1, gpu::kProfileReach, kW);
+    int v0 = cell(y0, 1.0f, kH), v1 = cell(y1, 1.0f, kH);
+    uint32_t level = 0;  // the finest at which it is at most two cells wide and high
+    while (level + 1 < kLevels && (x1 - x0 > 1 || v1 - v0 > 1)) {
+        ++level;
+        x0 >>= 1, x1 >>= 1, v0 >>= 1, v1 >>= 1;
+    }
+    ProfileRange r{outside ? 0.0f : 1e9f, 0.0f};
+    for (int v = v0; v <= v1; ++v)
+        for (int x = x0; x <= x1; ++x) {
+            const ProfileRange& c =
+                ranges[levelBase(level) + uint32_t(v) * levelWidth(level) + uint32_t(x)];
+            r.low = std::min(r.low, c.low), r.high = std::max(r.high, c.high);
+        }
+    return r;
+}
+
+void paintProfile(std::span<const float> kelvin, std::span<const float> soot, uint32_t width,
+                  uint32_t height, Profile& profile) {
+    checkSize(width, height);
+    const size_t count = size_t(width) * height;
+    if (kelvin.size() != count || soot.size() != count)
+        core::fail(
+            FW_ERROR_BAD_DATA,
+            "the fire profile has %zu temperatures and %zu soot values; %u x %u texels need %zu.",
+            kelvin.size(), soot.size(), width, height, count);
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x)
+            checkTexel(kelvin[size_t(y) * width + x], soot[size_t(y) * width + x], x, y);
+    Profile made;
+    resample(
+        width, height,
+        [&](uint32_t x, uint32_t y) {
+            const size_t k = size_t(y) * width + x;
+            return gpu::vec2(0.001f * kelvin[k], soot[k]);
+        },
+        made);
+    profile = made;
+}
+
+namespace {
+
+uint32_t wordAt(std::span<const std::byte> bytes, size_t at) {
+    uint32_t word = 0;
+    for (size_t k = 0; k < 4; ++k) word |= uint32_t(bytes[at + k]) << (8 * k);
+    return word;
+}
+
+// Of everything but the checksum itself.
+uint64_t checksum(std::span<const std::byte> bytes) {
+    uint64_t hash = core::kFnvOffset;
+    const auto add = [&](std::span<const std::byte> part) {
+        for (std::byte b : part) hash = (hash ^ uint64_t(b)) * 1099511628211ull;
+    };
+    add(bytes.first(16));
+    add(bytes.subspan(kHeaderBytes));
+    return hash;
+}
+
+}  // namespace
+
+std::pmr::vector<std::byte> cookProfile(const Profile& profile, std::pmr::memory_resource* memory) {
+    std::pmr::vector<std::byte> out(memory);
+    out.reserve(kHeaderBytes + 4 * Profile::kTexels);
+    const auto put = [&](uint64_t value, uint32_t bytes) {
+        for (uint32_t k = 0; k < bytes; ++k) out.push_back(std::byte(value >> (8 * k)));
+    };
+    put(kMagic, 4), put(kVersion, 4), put(kW, 4), put(kH, 4), put(0, 8);
+    for (uint32_t texel : profile.texels) put(texel, 4);
+    const uint64_t sum = checksum(out);
+    for (uint32_t k = 0; k < 8; ++k) out[16 + k] = std::byte(sum >> (8 * k));
+    return out;
+}
+
+void readProfile(std::span<const std::byte> bytes, Profile& profile) {
+    if (bytes.size() < kHeaderBytes)
+        core::fail(FW_ERROR_BAD_DATA, "the .fwprofile has %zu bytes; its header alone has %zu.",
+                   bytes.size(), kHeaderBytes);
+    if (wordAt(bytes, 0) != kMagic)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "the .fwprofile begins with 0x%08x; it must begin with 0x%08x.",
+                   wordAt(bytes, 0), kMagic);
+    if (wordAt(bytes, 4) != kVersion)
+        core::fail(FW_ERROR_VERSION,
+                   "the .fwprofile has version %u; this library reads version %u.",
+                   wordAt(bytes, 4), kVersion);
+    const uint32_t width = wordAt(bytes, 8), height = wordAt(bytes, 12);
+    checkSize(width, height);
+    const size_t expected = kHeaderBytes + size_t(4) * width * height;
+    if (bytes.size() != expected)
+        core::fail(FW_ERROR_BAD_DATA, "the .fwprofile has %zu bytes; %u x %u texels need %zu.",
+                   bytes.size(), width, height, expected);
+    const uint64_t sum = wordAt(bytes, 16) | uint64_t(wordAt(bytes, 20)) << 32;
+    if (sum != checksum(bytes))
+        core::fail(
+            FW_ERROR_BAD_DATA, "the .fwprofile's checksum is 0x%016llx; its content has 0x%016llx.",
+            static_cast<unsigned long long>(sum), static_cast<unsigned long long>(checksum(bytes)));
+    const auto texel = [&](uint32_t x, uint32_t y) {
+        return glm::unpackHalf2x16(wordAt(bytes, kHeaderBytes + 4 * (size_t(y) * width + x)));
+    };
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x)
+            checkTexel(1000.0f * texel(x, y).x, texel(x, y).y, x, y);
+    Profile made;
+    resample(width, height, texel, made);
+    profile = made;
+}
+
+}  // namespace fw::volume

@@ -1,0 +1,383 @@
+// Volumetric flames: records, coordinates along a curve, noise, and what a point in a flame emits and
+// absorbs. The march's loop and the profile's fetch are the caller's: between flameLookup and
+// flameMedium it reads the profile. Lengths m, times s, temperatures K.
+// GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_VOLUME_H
+#define FW_SHARED_VOLUME_H
+#include "shared/black_body.h"
+
+FW_SHARED_BEGIN
+#ifdef __cplusplus
+using glm::clamp;
+using glm::cross;
+using glm::dot;
+using glm::length;
+using glm::min;
+using glm::mix;
+using glm::smoothstep;
+using std::abs;
+using std::exp;
+using std::floor;
+using std::pow;
+using std::sin;
+using std::sqrt;
+#endif
+
+FW_SHARED_CONST uint kFlameNodes = 24u;          // of a curve
+FW_SHARED_CONST uint kFlameOctaves = 4u;         // most of a flame
+FW_SHARED_CONST uint kProfileWidth = 64u;        // texels over rho in [0, kProfileReach]
+FW_SHARED_CONST uint kProfileHeight = 128u;      // over y in [0, 1]
+FW_SHARED_CONST float kProfileReach = 1.25f;     // rho at the profile's right edge
+FW_SHARED_CONST float kFlameReach = 1.2f;        // |p| over the tube's radius beyond which nothing burns
+FW_SHARED_CONST float kFlameTop = 2.6f;          // y beyond which nothing burns
+FW_SHARED_CONST float kFlameWrap = 4096.0f;      // cells after which noise repeats along a flame
+FW_SHARED_CONST float kFlameMeanAbs = 0.177f;    // E|flameNoise|: what makes ridged noise unbiased
+FW_SHARED_CONST float kFlamePuffLag = 1.6f;      // a bulge travels slower than the gas
+
+struct FlameNode {        // of a curve, evenly spaced along it
+    vec4 centre;          // xyz m, world; w: m, radius of the tube
+    vec4 along;           // xyz unit: normal of the bisector plane; w: m from the base
+    vec4 side;            // xyz unit, of the rotation-minimising frame; w: >= 1, how much a wall widens the tube
+    vec4 squeeze;         // xyz: unit, which way a wall flattens it; w: [0, 0.9] how much
+};
+FW_SHARED_SIZE(FlameNode, 64)
+
+struct FlameRecord {      // one flame of a frame
+    vec4 low;             // xyz m, world: bounds of all that it shows; w: m, diameter
+    vec4 high;            // w: m, height of the profile: what is seen is higher, see heightFactor
+    vec4 scroll;          // cells that each octave has risen, [0, kFlameWrap)
+    vec4 place;           // xyz: cells, where in the noise it lies; w: [0, 1) phase of the puffing
+    vec4 tint;            // rgb linear; w: weight, 0 is black body
+    vec4 glow;            // xyz m, world: where smoke is lit from; w: strength, radiance m^2
+
+    vec4 air;             // rgb: light from all sides that smoke scatters; w: [0, 1] density, fades flames
+
+    float warpScroll; float columnScroll; float smokeScroll; // cells, as scroll
+    float speed;          // m/s, of gas at half height
+
+    float tauStart;       // m, of the speed's virtual origin below the base
+    float tauFree;        // m, from here the speed no longer grows
+    float lambda;         // m, wavelength of turbulence
+    float lambdaWarp;     // m, of rolling eddies
+
+    float lambdaColumn;   // m, of the slow field that makes tongues unequal
+    float stretch;        // 1 isotropic; more: silky
+    float turbulence;     // amplitude of the height's displacement
+    float radial;         // amplitude of the radius' displacement
+
+    float warp;           // amplitude of eddies, of the diameter
+    float columns;        // amplitude of columns
+    float ridge;          // 0 signed noise, 1 ridged
+    float converge;       // how far tongues lean inward
+
+    float puff;           // amplitude of a travelling bulge; 0 where the curve's radii carry it
+    float soot;           // 1/m, absorption where the profile says 1
+    float blue;           // radiance per diameter, of gas without soot
+    float blueHeight;     // of y
+
+    float erode;          // thinning with height
+    float filament;       // [0, 1] how much of the soot lies in sheets
+    float filamentWidth; float filamentBase;
+
+    float filamentHeight; // y at which sheets are whole
+    float tipFill;        // one-sided fill of sheets at the top
+    float smoke;          // 1/m
+    float smokeTop;       // y at which smoke ends
+
+    float smokeAlbedo;
+    float tintWhite;      // [0, 1] whiteness of the hottest under a tint
+    float tintLow; float tintHigh; // K
+
+    uint nodeBase; uint nodeCount; // into the nodes
+    uint profile;         // layer
+    uint octaves;         // [1, 4]
+};
+FW_SHARED_SIZE(FlameRecord, 256)
+
+struct FlamePlace {       // of a point, in a curve's own coordinates
+    vec2 p;               // m off the axis, along side and cross(along, side)
+    float s;              // m along
+    float radius;         // m of the tube there
+};
+
+struct FlameLookup {      // where in the profile to look, and what is done to the answer
+    float rho; float y;
+    float erode; float sheet; float guard;
+    float lit;            // 0: nothing here, do not fetch
+};
+
+struct FlameMedium {
+    float soot;           // 1/m
+    float smoke;          // 1/m
+    float smokeShade;     // [0, 1] crest of its billows
+    vec3 emission;        // radiance per m
+};
+
+struct FlameRay {
+    vec3 radiance;
+    vec3 through;         // transmittance
+};
+
+// ---- noise: gradient noise, mean 0, rms 0.220, |n| < 1; repeats along y after kFlameWrap cells
+
+FW_SHARED_FN vec3 flameGradient(int x, int y, int z) {
+    uint a = uint(x) * 1664525u + 1013904223u;
+    uint b = uint(y & 4095) * 1664525u + 1013904223u;
+    uint c = uint(z) * 1664525u + 1013904223u;
+    a += b * c; b += c * a; c += a * b;
+    a ^= a >> 16; b ^= b >> 16; c ^= c >> 16;
+    a += b * c; b += c * a; c += a * b;
+    return vec3(float(a >> 8), float(b >> 8), float(c >> 8)) * (2.0f / 16777215.0f) - vec3(1.0f);
+}
+
+FW_SHARED_FN float flameNoise(vec3 x) {
+    vec3 cell = floor(x);
+    vec3 f = x - cell;
+    vec3 u = f * f * f * (f * (f * 6.0f - vec3(15.0f)) + vec3(10.0f));
+    int i = int(cell.x); int j = int(cell.y); int k = int(cell.z);
+    float a = dot(flameGradient(i, j, k), f);
+    float b = dot(flameGradient(i + 1, j, k), f - vec3(1.0f, 0.0f, 0.0f));
+    float c = dot(flameGradient(i, j + 1, k), f - vec3(0.0f, 1.0f, 0.0f));
+    float d = dot(flameGradient(i + 1, j + 1, k), f - vec3(1.0f, 1.0f, 0.0f));
+    float e = dot(flameGradient(i, j, k + 1), f - vec3(0.0f, 0.0f, 1.0f));
+    float g = dot(flameGradient(i + 1, j, k + 1), f - vec3(1.0f, 0.0f, 1.0f));
+    float h = dot(flameGradient(i, j + 1, k + 1), f - vec3(0.0f, 1.0f, 1.0f));
+    float l = dot(flameGradient(i + 1, j + 1, k + 1), f - vec3(1.0f, 1.0f, 1.0f));
+    return 1.15f * mix(mix(mix(a, b, u.x), mix(c, d, u.x), u.y),
+                       mix(mix(e, g, u.x), mix(h, l, u.x), u.y), u.z);
+}
+
+FW_SHARED_FN vec3 flameNoiseSlope(vec3 x) {
+    vec3 cell = floor(x);
+    vec3 f = x - cell;
+    vec3 u = f * f * f * (f * (f * 6.0f - vec3(15.0f)) + vec3(10.0f));
+    vec3 du = 30.0f * f * f * (f * (f - vec3(2.0f)) + vec3(1.0f));
+    int i = int(cell.x); int j = int(cell.y); int k = int(cell.z);
+    vec3 ga = flameGradient(i, j, k);
+    vec3 gb = flameGradient(i + 1, j, k);
+    vec3 gc = flameGradient(i, j + 1, k);
+    vec3 gd = flameGradient(i + 1, j + 1, k);
+    vec3 ge = flameGradient(i, j, k + 1);
+    vec3 gf = flameGradient(i + 1, j, k + 1);
+    vec3 gg = flameGradient(i, j + 1, k + 1);
+    vec3 gh = flameGradient(i + 1, j + 1, k + 1);
+    float va = dot(ga, f);
+    float vb = dot(gb, f - vec3(1.0f, 0.0f, 0.0f));
+    float vc = dot(gc, f - vec3(0.0f, 1.0f, 0.0f));
+    float vd = dot(gd, f - vec3(1.0f, 1.0f, 0.0f));
+    float ve = dot(ge, f - vec3(0.0f, 0.0f, 1.0f));
+    float vf = dot(gf, f - vec3(1.0f, 0.0f, 1.0f));
+    float vg = dot(gg, f - vec3(0.0f, 1.0f, 1.0f));
+    float vh = dot(gh, f - vec3(1.0f, 1.0f, 1.0f));
+    vec3 slope = mix(mix(mix(ga, gb, u.x), mix(gc, gd, u.x), u.y),
+                     mix(mix(ge, gf, u.x), mix(gg, gh, u.x), u.y), u.z);
+    slope.x += du.x * mix(mix(vb - va, vd - vc, u.y), mix(vf - ve, vh - vg, u.y), u.z);
+    slope.y += du.y * mix(mix(vc - va, vd - vb, u.x), mix(vg - ve, vh - vf, u.x), u.z);
+    slope.z += du.z * mix(mix(ve - va, vf - vb, u.x), mix(vg - vc, vh - vd, u.x), u.y);
+    return 1.15f * slope;
+}
+
+// Divergence-free, and limited so that no eddy throws fire far from the flame.
+FW_SHARED_FN vec3 flameCurl(vec3 x) {
+    vec3 other = vec3(1.03f * x.x + 31.4f, x.y + 17.7f, 1.03f * x.z + 53.1f);
+    vec3 w = cross(flameNoiseSlope(x), flameNoiseSlope(other));
+    return w / (1.0f + 0.6f * length(w));
+}
+
+// ---- rise
+
+// Residence time from the base to s: McCaffrey's speed 6.84 sqrt(s), then constant. A pattern that
+// is a function of tau - t moves at the gas' speed everywhere and is stretched as the gas is.
+FW_SHARED_FN float flameTau(float s, float tauStart, float tauFree) {
+    float a = clamp(s, 0.0f, tauFree);
+    return (2.0f / 6.84f) * (sqrt(a + tauStart) - sqrt(tauStart)) +
+           max(s - tauFree, 0.0f) / (6.84f * sqrt(tauFree + tauStart));
+}
+
+// ---- curve
+
+FW_SHARED_FN float flamePlane(vec3 x, FlameNode node) {
+    return dot(x - vec3(node.centre), vec3(node.along));
+}
+
+// Of a point between the bisector planes of two nodes: da >= 0 in front of the first, db < 0 before
+// the second. Continuous from segment to segment.
+FW_SHARED_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da, float db) {
+    float w = da / max(da - db, 1e-9f);
+    vec4 centre = mix(a.centre, b.centre, w);
+    vec3 off = x - vec3(centre);
+    vec3 side = mix(vec3(a.side), vec3(b.side), w);
+    vec3 along = mix(vec3(a.along), vec3(b.along), w);
+    vec3 flat_ = mix(vec3(a.squeeze), vec3(b.squeeze), w);
+    float squeeze = mix(a.squeeze.w, b.squeeze.w, w);
+    off += flat_ * (dot(off, flat_) * squeeze / (1.0f - squeeze));
+    FlamePlace place;
+    place.p = vec2(dot(off, side), dot(off, cross(along, side))) / mix(a.side.w, b.side.w, w);
+    place.s = mix(a.along.w, b.along.w, w);
+    place.radius = centre.w / mix(a.side.w, b.side.w, w);
+    return place;
+}
+
+// Where a ray is near a segment: x to y, nothing where x >= y. A sphere around it; conservative.
+// `reach`: m from the axis that matter.
+FW_SHARED_FN vec2 flameSegmentSpan(vec3 from, vec3 direction, FlameNode a, FlameNode b, float reach) {
+    vec3 half_ = 0.5f * (vec3(b.centre) - vec3(a.centre));
+    float radius = length(half_) + reach;
+    vec3 to = vec3(a.centre) + half_ - from;
+    float at = dot(to, direction);
+    float room = radius * radius - (dot(to, to) - at * at);
+    float along = sqrt(max(room, 0.0f));
+    return room > 0.0f ? vec2(max(at - along, 0.0f), at + along) : vec2(0.0f);
+}
+
+// ---- look
+
+// `size`: m, footprint of the sample, the larger of its step and its pixel: detail below it fades.
+FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
+    FlameLookup look;
+    look.lit = 0.0f; look.rho = 2.0f; look.y = 2.0f;
+    look.erode = 0.0f; look.sheet = 1.0f; look.guard = 0.0f;
+    float diameter = f.low.w;
+    float y = at.s / f.high.w;
+    float tau = flameTau(at.s, f.tauStart, f.tauFree);
+    float swell = sin(6.2831853f * (f.place.w - kFlamePuffLag * tau / sqrt(diameter) * 1.5f));
+    float radius = at.radius * (1.0f + f.puff * smoothstep(0.0f, 0.5f, y) * swell);
+    float rim = length(at.p) / max(radius, 1e-6f);
+    if (y < 0.0f || y > kFlameTop || rim > kFlameReach || radius < 1e-5f) return look;
+    float rise = smoothstep(0.0f, 1.0f, y);
+    float grow = smoothstep(0.02f, 0.9f, y);
+    float z = f.speed * tau / f.stretch;
+
+    // Gas comes in from a wider base: tongues lean inward.
+    float narrow = 1.0f - 0.6f * f.converge * rise;
+    vec2 p = at.p / narrow;
+    // Eddies that roll.
+    vec3 eddy = flameCurl(vec3(p.x / f.lambdaWarp + f.place.x, z / f.lambdaWarp + f.place.y - f.warpScroll,
+                               p.y / f.lambdaWarp + f.place.z));
+    p += vec2(eddy.x, eddy.z) * (f.warp * diameter * grow);
+    float yw = y + eddy.y * (0.5f * f.warp * grow);
+    // Some tongues are tall and some short, for a while.
+    float column = flameNoise(vec3(p.x / f.lambdaColumn + f.place.y,
+                                   0.35f * z / f.lambdaColumn + f.place.z - f.columnScroll,
+                                   p.y / f.lambdaColumn + f.place.x));
+    yw /= max(0.25f, 1.0f + f.columns * (column + 0.10f));
+    // Turbulence without bias: half signed, half ridged; smaller eddies move at their own speeds.
+    vec3 x = vec3(p.x / f.lambda + f.place.z, z / f.lambda + f.place.x, p.y / f.lambda + f.place.y);
+    float rough = 0.0f; float sheet = 0.0f; float weight = 1.0f; float size2 = 2.0f * size;
+    float lambda = f.lambda * narrow;
+    FW_UNROLL
+    for (uint o = 0u; o < kFlameOctaves; ++o) {
+        float fade = o == 0u ? 1.0f : clamp(lambda / size2 - 0.5f, 0.0f, 1.0f);
+        if (o >= f.octaves || fade <= 0.0f) break;
+        float n = flameNoise(x - vec3(0.0f, f.scroll[int(o)], 0.0f));
+        rough += weight * fade * mix(1.3f * n, 2.2f * (kFlameMeanAbs - abs(n)), f.ridge);
+        sheet += weight * fade * n * (o == 0u ? 1.0f : 0.6f);
+        weight *= 0.5f; lambda *= 0.5f;
+        x = vec3(2.03f * x.x + 11.3f, 2.0f * x.y + 7.7f, 2.03f * x.z + 5.1f);
+    }
+    // The foot stays lit whatever the noise says.
+    look.y = max(yw - f.turbulence * sqrt(y) * rough, 0.5f * y * (1.0f - grow));
+    look.rho = length(p) * narrow / radius *
+               (1.0f - f.radial * rough * smoothstep(0.0f, 0.4f, y));
+    look.erode = f.erode * smoothstep(0.2f, 1.2f, y);
+    // Soot lies in sheets where the carried noise is 0, the crests of the displacement.
+    float thin = 0.7f * size / (f.lambda * narrow);
+    float width = sqrt(f.filamentWidth * f.filamentWidth + thin * thin);
+    float filament = f.filamentWidth / width * exp(-sheet * sheet / (width * width));
+    if (sheet > 0.0f) filament = max(filament, f.tipFill * smoothstep(0.3f, 0.9f, y));
+    look.sheet = mix(1.0f, f.filamentBase + (1.6f - f.filamentBase) * filament,
+                     f.filament * smoothstep(0.0f, f.filamentHeight, y));
+    // No islands beside the foot, no edge where the tube ends.
+    look.guard = (1.0f - smoothstep(0.0f, 0.30f, rim - mix(0.90f, 0.75f, rise))) *
+                 (1.0f - smoothstep(kFlameTop - 0.3f, kFlameTop, y));
+    look.lit = look.y < 1.0f && look.rho < kProfileReach && look.guard > 0.0f ? 1.0f : 0.0f;
+    return look;
+}
+
+FW_SHARED_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
+    vec3 radiance = sootRadiance(kelvin);
+    if (f.tint.w > 0.0f) {  // coloured fire keeps the luminance
+        float luminance = dot(radiance, vec3(0.2126f, 0.7152f, 0.0722f));
+        float hot = smoothstep(f.tintLow, f.tintHigh, kelvin);
+        vec3 hue = vec3(f.tint);
+        radiance = mix(radiance, 1.1f * luminance * mix(hue, mix(hue, vec3(1.0f), f.tintWhite), hot * hot),
+                       f.tint.w);
+    }
+    return radiance;
+}
+
+// `profile`: what the fire-profile texture says at look.rho, look.y: x in 1000 K, 0 where no gas is hot; y soot.
+FW_SHARED_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profile) {
+    FlameMedium m;
+    float soot = max(0.0f, profile.y - look.erode) / (1.0f - look.erode) * look.sheet * look.guard;
+    m.soot = f.soot * f.air.w * soot;
+    m.smoke = 0.0f; m.smokeShade = 0.5f;
+    m.emission = m.soot * flameRadiance(f, 1000.0f * profile.x);
+    float foot = smoothstep(0.0f, 0.02f, look.y) *
+                 (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, look.y));
+    float gas = clamp(profile.x, 0.0f, 1.0f) * foot * look.guard * (1.0f - 0.8f * min(soot, 1.0f));
+    m.emission += f.blue * f.air.w / f.low.w * gas * mix(vec3(0.02f, 0.10f, 1.0f), vec3(f.tint), f.tint.w);
+    return m;
+}
+
+// Smoke above a flame: billows in a plume that widens. x: 1/m; y: how bright it takes light, [0, 1].
+FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
+    float y = at.s / f.high.w;
+    if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return vec2(0.0f, 0.5f);
+    float diameter = f.low.w;
+    float wide = 0.45f * diameter + 0.16f * max(at.s - 0.6f * f.high.w, 0.0f);
+    float body = exp(-1.2f * dot(at.p, at.p) / (wide * wide));
+    if (body < 0.01f) return vec2(0.0f, 0.5f);
+    float scale = 0.55f * diameter * (0.7f + 0.35f * y);  // lateral only: along, it would shear
+    vec3 x = vec3(at.p.x / scale + f.place.x,
+                  f.speed * flameTau(at.s, f.tauStart, f.tauFree) / (0.75f * diameter) - f.smokeScroll +
+                      f.place.y,
+                  at.p.y / scale + f.place.z);
+    x += 0.22f * flameCurl(vec3(0.6f * x.x, x.y, 0.6f * x.z));
+    float billow = 0.0f; float weight = 1.0f;
+    FW_UNROLL
+    for (uint o = 0u; o < 4u; ++o) {
+        billow += weight * (2.0f * abs(flameNoise(x)) - 0.5f);
+        weight *= 0.5f;
+        x = vec3(2.1f * x.x + 3.1f, 2.0f * x.y, 2.1f * x.z + 9.2f);
+    }
+    float density = smoothstep(0.05f, 1.0f, 1.15f * body + 0.55f * billow - 0.25f * (1.0f - body) - 0.12f);
+    density *= smoothstep(0.6f, 1.7f, y) * (1.0f - smoothstep(0.7f * f.smokeTop, f.smokeTop, y));
+    density *= smoothstep(0.01f, 0.06f, body);
+    float thin = 0.45f * diameter / wide;
+    return vec2(f.smoke * density * thin * thin, clamp(0.5f + 0.8f * billow, 0.0f, 1.0f));
+}
+
+// m from the axis that anything shows between two places along, in a tube of that radius.
+FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius) {
+    float reach = kFlameReach * (1.0f + f.puff) * radius;
+    if (f.smoke <= 0.0f || s1 < 0.6f * f.high.w || s0 > f.smokeTop * f.high.w) return reach;
+    return max(reach, 1.96f * (0.45f * f.low.w + 0.16f * max(s1 - 0.6f * f.high.w, 0.0f)));
+}
+
+// What smoke scatters towards the eye, of the flame below and of the air around, per unit of density.
+FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade) {
+    vec3 fire = flameRadiance(f, 0.5f * (f.tintLow + f.tintHigh)) * (f.glow.w / (distance2 + 0.3f * f.low.w * f.low.w));
+    return f.smokeAlbedo * (fire * mix(1.25f, 0.5f, shade) + vec3(f.air) * mix(0.7f, 1.1f, shade));
+}
+
+// ---- light along a ray
+
+// (1 - exp(-k d)) / k, exact where k d is small too.
+FW_SHARED_FN float flameThickness(float k, float d) {
+    float x = k * d;
+    return x < 0.02f ? d * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : (1.0f - exp(-x)) / k;
+}
+
+// One step of emission and absorption, exact for a medium that is constant over it. Soot takes more
+// of the blue: thick flame reddens. `incoming`: what smoke scatters towards the eye.
+FW_SHARED_FN FlameRay flameStep(FlameRay ray, FlameMedium m, vec3 incoming, float d) {
+    vec3 k = m.soot * vec3(0.9f, 1.1f, 1.35f) + vec3(m.smoke);
+    vec3 thickness = vec3(flameThickness(k.x, d), flameThickness(k.y, d), flameThickness(k.z, d));
+    ray.radiance += ray.through * (m.emission + m.smoke * incoming) * thickness;
+    ray.through *= vec3(1.0f) - k * thickness;
+    return ray;
+}
+FW_SHARED_END
+#endif

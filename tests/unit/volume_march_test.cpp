@@ -1,0 +1,182 @@
+// Light along a ray: exact for a constant medium (T4.1), independent of the step count, confined to
+// the bounds, continuous where the seed method was not; noise in metres (T4.7).
+#include "volume_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace {
+
+using namespace volume_scene;
+using fw::gpu::FlameMedium;
+using fw::gpu::FlameRay;
+
+TEST(VolumeMarch, T4_1_ConstantMediumForAnyNumberOfSteps) {
+    for (const float k : {0.0f, 1e-5f, 0.01f, 0.5f, 3.0f, 20.0f})
+        for (const float chord : {0.05f, 0.6f, 4.0f})
+            for (uint32_t n = 4; n <= 64; ++n) {
+                const vec3 source(2.0f, 1.0f, 0.25f);  // radiance of the medium itself
+                FlameMedium m{k, 0.0f, 0.5f, k * source};
+                FlameRay ray{vec3(0.0f), vec3(1.0f)};
+                for (uint32_t s = 0; s < n; ++s)
+                    ray = fw::gpu::flameStep(ray, m, vec3(0), chord / float(n));
+                const vec3 absorb(0.9f, 1.1f, 1.35f);
+                for (int c = 0; c < 3; ++c) {
+                    const double exact = double(source[c]) / double(absorb[c]) *
+                                         -std::expm1(-double(k * absorb[c] * chord));
+                    EXPECT_NEAR(ray.radiance[c], exact, 0.005 * exact + 1e-9)
+                        << k << " " << chord << " " << n;
+                    EXPECT_NEAR(ray.through[c], std::exp(-k * absorb[c] * chord), 0.005);
+                }
+            }
+}
+
+// Gas that emits and does not absorb must not lose its light to a small-number guard.
+TEST(VolumeMarch, T4_1_ClearGas) {
+    FlameMedium m{0.0f, 0.0f, 0.5f, vec3(0.1f, 0.5f, 4.0f)};
+    FlameRay ray{vec3(0.0f), vec3(1.0f)};
+    for (int s = 0; s < 10; ++s) ray = fw::gpu::flameStep(ray, m, vec3(0), 0.03f);
+    EXPECT_NEAR(ray.radiance.b, 1.2f, 1e-4f);
+    EXPECT_EQ(ray.through, vec3(1.0f));
+}
+
+double meanRadiance(const Flame& f, uint32_t steps, float detail) {
+    MarchRules rules;
+    rules.steps = steps, rules.smoke = false, rules.detail = detail, rules.jitter = -1.0f;
+    const float tall = 2.0f * f.size.height;
+    const Camera camera{{0, 0.4f * tall, 6.0f * tall}, {0, 0.4f * tall, 0}, 0.1f};
+    double sum = 0;
+    for (int part = 0; part < 2; ++part)
+        for (const vec3& p : picture(f, camera, 40, 60, rules, [](vec3, vec3) {
+                 return std::pair{vec3(0.0f), 1e9f};
+             }))
+            sum += double(p.r + p.g + p.b);
+    return sum;
+}
+
+TEST(VolumeMarch, BrightnessDoesNotDependOnTheStepCount) {
+    Flame f = Flame::preset(FlamePreset::CampFire);
+    f.run(3.0);
+    const double fine = meanRadiance(f, 256, 0.03f);
+    for (const uint32_t steps : {32u, 64u, 128u}) {
+        const double here = meanRadiance(f, steps, 0.03f);
+        EXPECT_NEAR(here / fine, 1.0, steps == 32 ? 0.02 : 0.01) << steps << " steps";
+    }
+}
+
+TEST(VolumeMarch, NothingShowsOutsideTheBounds) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
+        Flame f = Flame::preset(FlamePreset(k));
+        f.run(1.7);
+        const Bounds b = flameBounds(f.record, f.nodes);
+        const vec3 size = b.high - b.low;
+        int lit = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+            const vec3 x =
+                b.low - 0.25f * size + 1.5f * size * vec3(unit(random), unit(random), unit(random));
+            const auto at = locate(f.nodes, x);
+            if (!at) continue;
+            const FlameMedium m = sampleFlame(f.record, *f.profile, at->place, 0.001f, true);
+            if (m.soot + m.smoke + m.emission.r + m.emission.g + m.emission.b <= 0.0f) continue;
+            ++lit;
+            ASSERT_TRUE(glm::all(glm::greaterThanEqual(x, b.low)) &&
+                        glm::all(glm::lessThanEqual(x, b.high)))
+                << presetName(FlamePreset(k));
+        }
+        EXPECT_GT(lit, 20) << presetName(FlamePreset(k));
+    }
+}
+
+TEST(VolumeMarch, RaysFindAllThatIsInTheTube) {
+    Flame f = Flame::preset(FlamePreset::Torch);
+    f.run(0.9);
+    std::mt19937 random(9);
+    std::normal_distribution<float> normal;
+    for (int trial = 0; trial < 2000; ++trial) {
+        vec3 d(normal(random), normal(random), normal(random));
+        d = glm::normalize(d);
+        const vec3 through(0.05f * normal(random), 0.15f + 0.1f * normal(random),
+                           0.05f * normal(random));
+        const vec3 from = through - 2.0f * d;
+        const vec2 span = flameSpan(f.record, f.nodes, from, d);
+        for (float t = 0.0f; t < 4.0f; t += 0.01f) {
+            const auto at = locate(f.nodes, from + t * d);
+            if (!at || (t > span.x && t < span.y)) continue;
+            const FlameMedium m = sampleFlame(f.record, *f.profile, at->place, 0.001f, true);
+            ASSERT_EQ(m.soot + m.smoke + m.emission.r + m.emission.b, 0.0f) << "at " << t;
+        }
+    }
+}
+
+TEST(VolumeMarch, FromInsideAndBehindAWall) {
+    Flame f = Flame::preset(FlamePreset::CampFire);
+    f.run(1.0);
+    MarchRules rules;
+    const vec3 eye(0, 0.15f, 0);  // in the middle of the fire
+    const FlameRay inside = marchRay(f.record, f.nodes, *f.profile, eye, vec3(0, 0, 1), rules);
+    EXPECT_GT(inside.radiance.r, 0.05f);
+    EXPECT_TRUE(std::isfinite(inside.radiance.r) && inside.through.r <= 1.0f);
+    // A wall that nears from behind takes the light away bit by bit.
+    float before = 1e9f;
+    for (float wall = 2.0f; wall > 0.5f; wall -= 0.01f) {
+        rules.farthest = wall, rules.steps = 128, rules.detail = 0.02f;
+        const float here =
+            marchRay(f.record, f.nodes, *f.profile, vec3(0, 0.2f, 1.2f), vec3(0, 0, -1), rules)
+                .radiance.r;
+        if (before < 1e8f) {
+            EXPECT_LT(std::abs(here - before), 0.35f) << "wall at " << wall;
+        }
+        before = here;
+    }
+    EXPECT_EQ(before, 0.0f) << "a wall before the flame hides it all";
+}
+
+TEST(VolumeMarch, T4_7_NoiseIsInMetres) {
+    // The same fire ten times as large is the same picture, seen from ten times as far.
+    const FlameLook look = presetDef(FlamePreset::CampFire).look;
+    Flame small(look, 60.0f, 0.6f, 0.6f), large(look, 60.0f, 6.0f, 6.0f);
+    EXPECT_NEAR(large.record.lambda / small.record.lambda, 10.0f, 1e-3f);
+    // A flame twice as high over the same bed has tongues as wide as before, not stretched ones.
+    Flame tall(look, 400.0f, 0.6f, 2.4f), taller(look, 1600.0f, 0.6f, 4.8f);
+    EXPECT_NEAR(taller.record.lambda / tall.record.lambda, 1.0f, 1e-3f);
+}
+
+TEST(VolumeMarch, NoiseIsUnbiasedAndWraps) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0.0f, 4096.0f);
+    double sum = 0, magnitude = 0;
+    constexpr int kSamples = 400000;
+    float most = 0;
+    for (int k = 0; k < kSamples; ++k) {
+        const float n =
+            fw::gpu::flameNoise(vec3(0.1f * unit(random), unit(random), 0.1f * unit(random)));
+        sum += double(n), magnitude += double(std::abs(n));
+        most = std::max(most, std::abs(n));
+    }
+    EXPECT_NEAR(sum / kSamples, 0.0, 0.002);
+    EXPECT_NEAR(magnitude / kSamples, double(fw::gpu::kFlameMeanAbs), 0.002);
+    EXPECT_LT(most, 1.0f);
+    for (float y = 0.0f; y < 1.0f; y += 0.0625f)
+        EXPECT_FLOAT_EQ(fw::gpu::flameNoise(vec3(3.3f, y, 7.1f)),
+                        fw::gpu::flameNoise(vec3(3.3f, y + fw::gpu::kFlameWrap, 7.1f)));
+}
+
+TEST(VolumeMarch, SlopeIsTheDerivativeOfTheNoise) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> unit(0.0f, 50.0f);
+    for (int k = 0; k < 200; ++k) {
+        const vec3 x(unit(random), unit(random), unit(random));
+        const vec3 slope = fw::gpu::flameNoiseSlope(x);
+        for (int c = 0; c < 3; ++c) {
+            vec3 h(0);
+            h[c] = 0.01f;
+            const float finite = (fw::gpu::flameNoise(x + h) - fw::gpu::flameNoise(x - h)) / 0.02f;
+            EXPECT_NEAR(slope[c], finite, 0.02f);
+        }
+    }
+}
+
+}  // namespace

@@ -1,0 +1,147 @@
+// Fire-profiles: painting, lookups, ranges for skipping, the cooked file and how it fails.
+#include "core/error.h"
+#include "volume/look.h"
+#include "volume/profile.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+namespace {
+
+using namespace fw::volume;
+using testing::HasSubstr;
+
+template <typename Do>
+std::string failure(const Do& act) {
+    try {
+        act();
+    } catch (const fw::core::Error& e) {
+        return e.message;
+    }
+    return "nothing failed";
+}
+
+Profile painted() {
+    Profile p;
+    paintLook(presetDef(FlamePreset::CampFire).look, p);
+    return p;
+}
+
+TEST(VolumeProfile, LookupsGiveWhatWasPainted) {
+    std::vector<float> kelvin(64 * 128), soot(64 * 128);
+    for (size_t y = 0; y < 128; ++y)
+        for (size_t x = 0; x < 64; ++x)
+            kelvin[y * 64 + x] = 1000.0f + float(x) + 4.0f * float(y),
+                            soot[y * 64 + x] = float(x) / 64.0f;
+    Profile p;
+    paintProfile(kelvin, soot, 64, 128, p);
+    for (const auto& [x, y] : {std::pair{0, 0}, {10, 100}, {63, 127}, {33, 5}}) {
+        const auto v = p.sample((float(x) + 0.5f) / 64.0f * fw::gpu::kProfileReach,
+                                (float(y) + 0.5f) / 128.0f);
+        EXPECT_NEAR(v.x, 0.001f * kelvin[size_t(y * 64 + x)], 0.001f);
+        EXPECT_NEAR(v.y, soot[size_t(y * 64 + x)], 0.001f);
+    }
+    EXPECT_EQ(p.sample(0.3f, 1.0f).y, 0.0f) << "nothing burns above";
+    EXPECT_EQ(p.sample(0.3f, -0.1f).y, 0.0f);
+}
+
+TEST(VolumeProfile, OtherSizesAreResampled) {
+    std::vector<float> kelvin(16 * 32), soot(16 * 32);
+    for (size_t y = 0; y < 32; ++y)
+        for (size_t x = 0; x < 16; ++x)
+            kelvin[y * 16 + x] = 1500.0f, soot[y * 16 + x] = float(y) / 31.0f;
+    Profile p;
+    paintProfile(kelvin, soot, 16, 32, p);
+    EXPECT_NEAR(p.sample(0.5f, 0.5f).y, 0.5f, 0.02f);
+    EXPECT_NEAR(p.sample(0.5f, 0.999f).y, 1.0f, 0.02f);
+    EXPECT_NEAR(p.sample(1.0f, 0.2f).x, 1.5f, 0.001f);
+}
+
+TEST(VolumeProfile, RangesAreConservative) {
+    for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
+        Profile p;
+        paintLook(presetDef(FlamePreset(k)).look, p);
+        std::mt19937 random(k);
+        std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+        int empty = 0;
+        for (int trial = 0; trial < 3000; ++trial) {
+            const float r0 = 1.4f * unit(random), r1 = r0 + 0.5f * unit(random) * unit(random);
+            const float y0 = 1.3f * unit(random) - 0.1f,
+                        y1 = y0 + 0.5f * unit(random) * unit(random);
+            const ProfileRange range = p.over(r0, r1, y0, y1);
+            empty += range.high <= 0.0f;
+            for (int s = 0; s < 8; ++s) {
+                const auto v =
+                    p.sample(glm::mix(r0, r1, unit(random)), glm::mix(y0, y1, unit(random)));
+                const float burns = std::max(std::min(v.x, 1.0f), v.y);
+                ASSERT_LE(burns, range.high + 1e-6f) << presetName(FlamePreset(k));
+                ASSERT_GE(burns, range.low - 1e-6f) << presetName(FlamePreset(k));
+            }
+        }
+        EXPECT_GT(empty, 300) << presetName(FlamePreset(k)) << ": there is something to skip";
+    }
+}
+
+TEST(VolumeProfile, CookedFormComesBackBitForBit) {
+    const Profile p = painted();
+    const auto bytes = cookProfile(p, std::pmr::get_default_resource());
+    EXPECT_EQ(bytes.size(), 24u + 4u * 64u * 128u);
+    Profile back;
+    readProfile(bytes, back);
+    EXPECT_EQ(back.texels, p.texels);
+}
+
+TEST(VolumeProfile, BadInputIsNamedWithItsValueAndLimit) {
+    std::vector<float> kelvin(64 * 128, 1500.0f), soot(64 * 128, 0.5f);
+    Profile p = painted();
+    const Profile before = p;
+    const auto paint = [&](uint32_t w, uint32_t h) {
+        return failure([&] { paintProfile(kelvin, soot, w, h, p); });
+    };
+    EXPECT_THAT(paint(4, 128), HasSubstr("4 x 128 texels; each side must lie in [8, 512]"));
+    EXPECT_THAT(paint(64, 64), HasSubstr("64 x 64 texels need 4096"));
+    kelvin[64 * 3 + 5] = 3001.0f;
+    EXPECT_THAT(paint(64, 128),
+                HasSubstr("temperature of texel (5, 3) of the fire profile is 3001 K"));
+    kelvin[64 * 3 + 5] = NAN;
+    EXPECT_THAT(paint(64, 128), HasSubstr("nan K; it must lie in [0, 3000]"));
+    kelvin[64 * 3 + 5] = 1500.0f, soot[0] = -0.25f;
+    EXPECT_THAT(paint(64, 128), HasSubstr("soot of texel (0, 0) of the fire profile is -0.25"));
+    std::fill(kelvin.begin(), kelvin.end(), 0.0f), std::fill(soot.begin(), soot.end(), 0.0f);
+    EXPECT_THAT(paint(64, 128), HasSubstr("neither soot nor hot gas"));
+    EXPECT_EQ(p.texels, before.texels) << "what failed changed nothing";
+}
+
+TEST(VolumeProfile, BadFilesAreRefusedWithAReason) {
+    const auto good = cookProfile(painted(), std::pmr::get_default_resource());
+    const auto read = [&](std::pmr::vector<std::byte> bytes) {
+        Profile p;
+        return failure([&] { readProfile(bytes, p); });
+    };
+    auto b = good;
+    b.resize(10);
+    EXPECT_THAT(read(b), HasSubstr("has 10 bytes; its header alone has 24"));
+    b = good, b[0] = std::byte(0);
+    EXPECT_THAT(read(b), HasSubstr("must begin with 0x50465746"));
+    b = good, b[4] = std::byte(9);
+    EXPECT_THAT(read(b), HasSubstr("version 9; this library reads version 1"));
+    b = good, b[8] = std::byte(3);
+    EXPECT_THAT(read(b), HasSubstr("3 x 128 texels"));
+    b = good, b.pop_back();
+    EXPECT_THAT(read(b), HasSubstr("64 x 128 texels need 32792"));
+    b = good, b[5000] ^= std::byte(1);
+    EXPECT_THAT(read(b), HasSubstr("checksum"));
+    // No byte, whatever it becomes, passes unseen or does harm.
+    std::mt19937 random(1);
+    for (int k = 0; k < 200; ++k) {
+        b = good;
+        b[random() % b.size()] ^= std::byte(1u << (random() % 8));
+        EXPECT_NE(read(b), "nothing failed");
+    }
+}
+
+}  // namespace
