@@ -68,7 +68,8 @@ FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given, uint32_t worldFl
     if (worldFlags & FW_WORLD_NO_HOLES) def.flags |= FW_BURNABLE_NO_HOLES;
     if (!(def.flags & FW_BURNABLE_NO_DAMAGE)) return def;
     def.flags |= FW_BURNABLE_NO_HOLES;  // and nothing that only shows damage
-    def.flags &= ~uint32_t(FW_BURNABLE_REFINE | FW_BURNABLE_RECEDE | FW_BURNABLE_SPRINGS);
+    def.flags &= ~uint32_t(FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_RECEDE |
+                           FW_BURNABLE_SPRINGS);
     return def;
 }
 
@@ -76,7 +77,8 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED |
                                 FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_REFINE |
                                 FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS |
-                                FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED;
+                                FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE |
+                                FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE_PUBLISHED;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
@@ -96,6 +98,8 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
                    "FwBurnableMeshDef::refineDepth is %u; the limits are [0, %u].", def.refineDepth,
                    gpu::kRefineDepth);
     checkValue(def.refinePixelsPerEdge, "FwBurnableMeshDef::refinePixelsPerEdge", 1, 1000);
+    checkValue(def.heatPsi, "FwBurnableMeshDef::heatPsi", 0, 1e8f);
+    checkValue(def.heatStep, "FwBurnableMeshDef::heatStep", 0, 1000);
     if (def.multiplier) {
         const uint32_t sides[2] = {def.multiplierWidth, def.multiplierHeight};
         static constexpr const char* kNames[2] = {"multiplierWidth", "multiplierHeight"};

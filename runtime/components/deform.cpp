@@ -10,6 +10,7 @@ namespace fw::components {
 namespace {
 
 constexpr uint32_t kTiers = FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS;
+constexpr uint32_t kOne = kTiers | FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED;  // of these
 
 // How thin things are in the air: m/s that a sheet falls at, flat, at 0.08 kg/m^2.
 constexpr float kFlutter = 1.2f;
@@ -57,15 +58,16 @@ gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMateri
 }  // namespace
 
 void checkDeform(const FwBurnableMeshDef& def) {
-    if ((def.flags & FW_BURNABLE_SKINNED) && (def.flags & (kTiers | FW_BURNABLE_REFINE)))
+    if ((def.flags & FW_BURNABLE_SKINNED) && (def.flags & kOne))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_SKINNED moves what "
                    "deformation or refinement would: one of them.",
                    def.flags);
-    const uint32_t tiers = def.flags & (kTiers | FW_BURNABLE_REFINE);
+    const uint32_t tiers = def.flags & kOne;
     if (tiers & (tiers - 1))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwBurnableMeshDef::flags is 0x%x; of REFINE, RECEDE, SHELL and SPRINGS one is "
+                   "FwBurnableMeshDef::flags is 0x%x; of REFINE, REFINE_PUBLISHED, RECEDE, SHELL "
+                   "and SPRINGS one is "
                    "possible.",
                    def.flags);
     checkValue(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);

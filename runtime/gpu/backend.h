@@ -3,6 +3,7 @@
 // readbacks out; a backend decides nothing about the game.
 #pragma once
 #include "mesh/deform/model.h"
+#include "mesh/refine/published_frame.h"
 #include "mesh/refine/roughen.h"
 #include "shared/burn.h"
 #include "shared/exchange.h"
@@ -24,6 +25,9 @@ struct ObjectInit {
     bool refine = false;  // createRefinement was called for its mesh and this depth
     uint32_t refineDepth = 0;
     float refinePixelsPerEdge = 8;
+    // Refined by the published scheme; the model outlives the mesh.
+    const mesh::ArpModel* arpModel = nullptr;
+    mesh::ArpSettings arp;
     std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat plane
     // Of an object that deforms; the model outlives the mesh. Bases are the backend's to fill.
     const mesh::DeformModel* deformModel = nullptr;
@@ -120,15 +124,19 @@ class Backend {
     // numbers, dense from 0. A domain outlives its mesh.
     virtual void createMesh(uint32_t slot, const mesh::BurnDomain& domain) = 0;
     virtual void destroyMesh(uint32_t slot) noexcept = 0;
-    // What objects of the mesh need that refine down to `depth`; once for each. Looks only.
-    virtual void createRefinement(uint32_t /*mesh*/, uint32_t /*depth*/, const mesh::BurnDomain&,
-                                  const mesh::RefineModel&,
+    // What objects of the mesh need that refine down to `depth`, by the published scheme or ours;
+    // once for each. Looks only.
+    virtual void createRefinement(uint32_t /*mesh*/, uint32_t /*depth*/, bool /*published*/,
+                                  const mesh::BurnDomain&, const mesh::RefineModel&,
                                   std::span<const mesh::RefineHoles> /*materials*/) {}
     virtual void createObject(uint32_t slot, const ObjectInit& init) = 0;
     virtual void destroyObject(uint32_t slot) noexcept = 0;
     // Pose, tint and flags; the rest of the record stays.
     virtual void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                                uint32_t flags) = 0;
+    // Of an object with an arpModel: its heat boundary begins at a point (m, object space), once.
+    virtual void startBoundary(uint32_t /*slot*/, const float /*point*/[3],
+                               uint32_t /*tick*/) noexcept {}
     // Of an object with kObjectSkinned: where the host's vertices are from the next frame on, m,
     // object space, 3 each; normals 3 each or none. Never throws, needs no memory. Looks alone.
     virtual void setVertices(uint32_t slot, std::span<const float> positions,

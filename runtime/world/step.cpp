@@ -182,6 +182,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
                 object.ignitionKnown = true;
                 object.firstIgnition = due.event.tick;
                 texelPlace(object, due.event.texel, object.ignitionPoint);
+                backend_.startBoundary(object.slot, object.ignitionPoint, due.event.tick);
             }
         } else if (due.event.kind == FW_WET || due.event.kind == FW_EXTINGUISH) {
             object.lastDouse = due.event.tick;

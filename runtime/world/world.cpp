@@ -304,11 +304,15 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
         init.heat = heat;
     }
     std::copy_n(object.data.shape, 3, init.shape);
-    if (def.flags & FW_BURNABLE_REFINE) {
+    if (def.flags & (FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED)) {
         refineMesh(mesh, init.mesh, def, object.data);
         init.refine = true;
         init.refineDepth = def.refineDepth;
         init.refinePixelsPerEdge = def.refinePixelsPerEdge;
+        if (def.flags & FW_BURNABLE_REFINE_PUBLISHED) {
+            init.arpModel = mesh.arps[def.refineDepth].get();
+            init.arp = arpSettings(def, *init.arpModel, object.data);
+        }
     }
     gpu::DeformObject deform{};
     if (components::deforms(object.data) || (object.data.flags & FW_BURNABLE_SKINNED)) {
@@ -355,8 +359,11 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
 // asks.
 void World::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
                        const components::BurnableMesh& object) {
-    if (mesh.refinements >> def.refineDepth & 1u) return;
+    const bool published = (def.flags & FW_BURNABLE_REFINE_PUBLISHED) != 0;
+    const uint32_t bit = 1u << (def.refineDepth + (published ? 16 : 0));
+    if (mesh.refinements & bit) return;
     mesh::RefineOptions options;
+    if (published) options = mesh::arpOptions(def.refineDepth);
     options.depth = def.refineDepth;
     float wall = 0;
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
@@ -366,9 +373,28 @@ void World::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
         if (components::burns(object, i))
             holes[i] = components::holesOf(components::materialLook(object.materials[i].look));
-    backend_.createRefinement(slot, def.refineDepth, *mesh.domain,
-                              mesh::bakeRefine(*mesh.domain, options, memory_), holes);
-    mesh.refinements |= 1u << def.refineDepth;
+    const mesh::RefineModel model = mesh::bakeRefine(*mesh.domain, options, memory_);
+    core::Owned<mesh::ArpModel> arp;
+    if (published) {
+        arp = core::Owned<mesh::ArpModel>::make(memory_, memory_);
+        *arp = mesh::makeArpModel(*mesh.domain, model, def.refineDepth, memory_);
+    }
+    backend_.createRefinement(slot, def.refineDepth, published, *mesh.domain, model, holes);
+    if (published) mesh.arps[def.refineDepth] = std::move(arp);
+    mesh.refinements |= bit;
+}
+
+// The boundary keeps up with the head of a fire that climbs.
+mesh::ArpSettings World::arpSettings(const FwBurnableMeshDef& def, const mesh::ArpModel& model,
+                                     const components::BurnableMesh& object) const {
+    float speed = 0;
+    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
+        if (!components::burns(object, i)) continue;
+        const FwMaterialDef& m = object.materials[i];
+        speed = std::max(speed, m.spreadRate * (1 + m.headGain * std::min(m.upGain, m.driveMax)));
+    }
+    return mesh::arpSettings(model, def.heatPsi, def.heatStep,
+                             speed * def_.paceFactor / object.pose.scale);
 }
 
 void World::destroyBurnableMesh(FwBurnableMeshId id) {

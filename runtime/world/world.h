@@ -25,7 +25,9 @@ struct MeshEntry {
     // A shape of another mesh, for objects whose scale is not uniform: lives while one uses it.
     uint32_t parentPlus1 = 0;  // its slot + 1; 0: a mesh of the host's
     float shape[3] = {1, 1, 1};
-    uint32_t refinements = 0;  // bit per depth that the backend has
+    uint32_t refinements = 0;  // bit per depth that the backend has; 16 higher: as published
+    // By depth, once an object is refined by the published scheme.
+    std::array<core::Owned<mesh::ArpModel>, gpu::kRefineDepth + 1> arps;
 };
 
 struct ImageEntry {
@@ -348,6 +350,8 @@ class World {
     void countImages(const components::BurnableMesh& object, bool more) noexcept;
     void refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
                     const components::BurnableMesh& object);
+    mesh::ArpSettings arpSettings(const FwBurnableMeshDef& def, const mesh::ArpModel& model,
+                                  const components::BurnableMesh& object) const;
     void sendPose(const Object& object) noexcept;
 
     std::pmr::memory_resource* memory_;

@@ -1,5 +1,6 @@
 // A box of twelve triangles burns: refined just ahead of the fire, it recedes, chars and opens;
-// what has burnt out is coarse again. --plain draws the twelve triangles as they are.
+// what has burnt out is coarse again. --plain draws the twelve triangles as they are, --published
+// puts a second box beside it, refined by the published scheme.
 #include <cmath>
 #include <cstdio>
 
@@ -11,7 +12,7 @@
 namespace {
 
 struct Wishes {
-    bool plain = false;
+    bool plain = false, published = false;
     float seconds = 12;      // of a headless run
     float pace = 60;         // so that boards of 20 mm are gone in the run
     float depth = 5;         // halvings of an edge
@@ -35,7 +36,9 @@ Box makeBox(glm::vec3 low, glm::vec3 high) {
     return box;
 }
 
-FwBurnableMeshId placeBox(sample::FireHost& fire, const Box& box, const Wishes& wishes) {
+constexpr float kApart = 0.6f;  // m, of two boxes from the middle
+
+FwBurnableMeshDef describeBox(sample::FireHost& fire, const Box& box, const Wishes& wishes) {
     FwMeshDef mesh = fwDefaultMeshDef();
     mesh.positions = box.positions.data();
     mesh.indices = box.indices.data();
@@ -49,11 +52,26 @@ FwBurnableMeshId placeBox(sample::FireHost& fire, const Box& box, const Wishes& 
     pine.spreadRate *= 2;  // dry kindling
     fire.check(fwWorld_CreateMaterial(fire.world, &pine, &def.materials[0]),
                "fwWorld_CreateMaterial");
-    if (!wishes.plain) def.flags |= FW_BURNABLE_REFINE;
     def.refineDepth = static_cast<uint32_t>(std::lround(wishes.depth));
+    return def;
+}
+
+FwBurnableMeshId placeBox(sample::FireHost& fire, FwBurnableMeshDef def, uint32_t refined,
+                          glm::vec3 aside) {
+    def.flags |= refined;
+    for (int i = 0; i < 3; ++i) def.transform[12 + i] = aside[i];
     FwBurnableMeshId object{};
     fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object), "fwWorld_CreateBurnableMesh");
     return object;
+}
+
+void light(sample::FireHost& fire, FwBurnableMeshId object, glm::vec3 aside) {
+    FwIgnitionDef match = fwDefaultIgnitionDef();
+    const glm::vec3 place = aside + glm::vec3(0.1f, 0.3f, 0.3f);
+    for (int i = 0; i < 3; ++i) match.position[i] = place[i];
+    match.radius = 0.02f;
+    match.object = object;
+    fire.check(fwWorld_Ignite(fire.world, &match, nullptr), "fwWorld_Ignite");
 }
 
 int run(const sample::Options& options, const Wishes& wishes) {
@@ -71,7 +89,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
         orbit.yaw = glm::radians(32.0f);
         orbit.pitch = glm::radians(20.0f);
         orbit.fieldOfView = 0.5f;
-        orbit.distance = wishes.distance;
+        orbit.distance = wishes.distance * (wishes.published ? 1.5f : 1.0f);
 
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.paceFactor = wishes.pace;
@@ -80,10 +98,26 @@ int run(const sample::Options& options, const Wishes& wishes) {
         worldDef.maxRefinedTriangles = 60000;
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
-        const FwBurnableMeshId object = placeBox(fire, box, wishes);
+        const FwBurnableMeshDef def = describeBox(fire, box, wishes);
+        // To the right, as the camera first stands.
+        const glm::vec3 right(std::cos(orbit.yaw), 0, -std::sin(orbit.yaw));
+        const glm::vec3 aside = right * (wishes.published ? kApart : 0.0f);
+        const FwBurnableMeshId object =
+            placeBox(fire, def, wishes.plain ? 0u : uint32_t(FW_BURNABLE_REFINE), -aside);
+        FwBurnableMeshId other{};
+        if (wishes.published) other = placeBox(fire, def, FW_BURNABLE_REFINE_PUBLISHED, aside);
         FwView view = fwDefaultView();
         sample::duskLight(view);
-        studio.castShadow(box.positions, box.indices, glm::mat4(1.0f),
+        std::vector<float> positions = box.positions;
+        std::vector<uint32_t> indices = box.indices;
+        if (wishes.published) {
+            for (size_t i = 0; i < box.positions.size(); ++i)
+                positions.push_back(box.positions[i] + aside[int(i % 3)]);
+            for (size_t i = 0; i < box.positions.size(); ++i) positions[i] -= aside[int(i % 3)];
+            for (const uint32_t i : box.indices)
+                indices.push_back(i + static_cast<uint32_t>(box.positions.size() / 3));
+        }
+        studio.castShadow(positions, indices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
 
         sample::FilmRequest film;
@@ -96,12 +130,8 @@ int run(const sample::Options& options, const Wishes& wishes) {
             orbit.yaw += glm::radians(wishes.turn) * frame.deltaTime;
             sample::setCamera(view, orbit.camera(), frame);
             if (frame.number == 1) {  // one frame of the untouched thing first
-                FwIgnitionDef match = fwDefaultIgnitionDef();
-                match.position[0] = 0.1f;
-                match.position[1] = 0.3f;
-                match.position[2] = 0.3f;
-                match.radius = 0.02f;
-                fire.check(fwWorld_Ignite(fire.world, &match, nullptr), "fwWorld_Ignite");
+                light(fire, object, -aside);
+                if (wishes.published) light(fire, other, aside);
             }
             sample::showStudio(frame, stage, studio, fire, view);
         }
@@ -131,6 +161,8 @@ int main(int argc, char** argv) {
         Wishes wishes;
         sample::OptionParser parser("03_burning_box", "twelve triangles burn");
         parser.addFlag("--plain", "without refinement", wishes.plain);
+        parser.addFlag("--published", "beside it one refined by the published scheme",
+                       wishes.published);
         parser.addNumber("--depth", "halvings of an edge", wishes.depth, 0.0f, 5.0f);
         parser.addNumber("--pace", "how much faster than real", wishes.pace, 0.1f, 1000.0f);
         parser.addNumber("--seconds", "length of a headless run", wishes.seconds, 0.1f, 600.0f);

@@ -9,7 +9,9 @@
 #define FW_BUFFER(number, access, block, type, name) \
     layout(std430, set = 0, binding = number) access buffer block { type name[]; }
 
+#ifdef FW_USE_WORK
 FW_BUFFER(FW_BIND_REFINE_WORK, FW_USE_WORK, RefineWorkBuffer, uint, work);
+#endif
 FW_BUFFER(FW_BIND_REFINE_OBJECTS, readonly, RefineObjectsBuffer, RefineObject, refined);
 #ifdef FW_USE_WORDS
 FW_BUFFER(FW_BIND_REFINE_WORDS, FW_USE_WORDS, RefineWordsBuffer, uint, words);
@@ -54,6 +56,12 @@ FW_BUFFER(FW_BIND_REFINE_CUT_DRAWS, FW_USE_CUTS, RefineCutDrawsBuffer, uint, cut
 FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);
 FW_BUFFER(FW_BIND_GRADIENT, FW_USE_PREDICT, GradientBuffer, uint, gradient);
 #endif
+#ifdef FW_USE_ARP
+#include "shared/arp.h"
+FW_BUFFER(FW_BIND_ARP_GROUPS, readonly, ArpGroupsBuffer, uvec2, groups);
+FW_BUFFER(FW_BIND_ARP_LIST, readonly, ArpListBuffer, uint, arpList);
+layout(push_constant) uniform Push { ArpPush push; };
+#else
 layout(push_constant) uniform Push { RefinePush push; };
 
 const uint kMostGroups = 65535u;  // of a dispatch; the rest is strided over
@@ -66,4 +74,5 @@ uint edgeJobs() { return push.cutJobs + ((push.cutJobs - push.placeJobs) >> 1u);
 uint objectList() { return cornerList() + 2u * push.cornerGroups; }
 // Per object of the list: cut triangles of each material, then the first for which there is no room.
 uint cutCounts(uint ordinal) { return objectList() + 2u * push.objects + 16u * ordinal; }
+#endif
 #endif

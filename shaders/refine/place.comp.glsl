@@ -14,24 +14,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_VERTICES FW_READ_WRITE
 #define FW_USE_PREDICT readonly
 #include "lib/refine_buffers.glsl"
-
-bool isDoused(uint t) { return t == kOut || t == kOutWet; }
-
-// As the surface shows it: what nothing holds falls to ash early, and a texel that was put out stays
-// as burnt as it was, younger every frame.
-float arrivalAt(uint object, uint base, uint weights) {
-    uint at = refined[object].stateBase + base;
-    uint up = at + refined[object].textureWidth;
-    uvec4 t = uvec4(predict[at], predict[at + 1u], predict[up], predict[up + 1u]);
-    bool doused = isDoused(t.x) || isDoused(t.y) || isDoused(t.z) || isDoused(t.w);
-    while (doused) {
-        uvec4 burnt = uvec4(gradient[at], gradient[at + 1u], gradient[up], gradient[up + 1u]);
-        for (int k = 0; k < 4; ++k)
-            if (isDoused(t[k])) t[k] = push.nowTick - min(burnt[k], push.nowTick);
-        doused = false;
-    }
-    return refineArrival(t, weights, push.nowTick, refined[object].epochTick);
-}
+#include "lib/refine_arrival.glsl"
 
 // What a vertex that is burnt through at `hole` says of its edge or interior.
 uint fateOf(uint object, float hole) {
@@ -41,24 +24,9 @@ uint fateOf(uint object, float hole) {
 
 uint evaluate(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
-    float own = arrivalAt(object, slot.texel & 0xFFFFFFu, slot.weights);
-    float opposite = kRefineNever;
-    bool walled = slot.opposite != kRefineOpposed;
-    while (walled) {
-        opposite = arrivalAt(object, slot.opposite & 0xFFFFFFu, refineOppositeWeights(slot.opposite));
-        walled = false;
-    }
-    uint material = slot.texel >> 24u;
-    vec4 low = refined[object].burnSeconds0;
-    vec4 high = refined[object].burnSeconds1;
-    float seconds = material < 4u ? low[material & 3u] : high[material & 3u];
-    vec4 v = refineEvaluate(slot, own, opposite, refined[object].now, seconds, push.recede);
-    uint at = refined[object].vertices + s;
-    vertices[at].x = v.x;
-    vertices[at].y = v.y;
-    vertices[at].z = v.z;
-    vertices[at].hole = v.w;
-    return fateOf(object, v.w);
+    RefineVertex v = refineNow(object, slot, push.nowTick, push.recede);
+    vertices[refined[object].vertices + s] = v;
+    return fateOf(object, v.hole);
 }
 
 vec3 placeOf(uint object, uint s) {

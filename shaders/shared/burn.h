@@ -83,7 +83,9 @@
 #define FW_BIND_VERTICES 74   // mesh::RenderVertex[], as three uvec4 (per mesh)
 #define FW_BIND_REFINE_CUTS 75      // vertices along holes (per object), see kRefineCut... in refine.h
 #define FW_BIND_REFINE_CUT_DRAWS 76 // uint[]: indirect draws, 8 per object slot
-#define FW_BIND_COUNT 77
+#define FW_BIND_ARP_GROUPS 77       // uvec2[]: object slot, first of 64 slots or listed triangles
+#define FW_BIND_ARP_LIST 78         // uint[]: drawn triangles of the published scheme, see arp.h
+#define FW_BIND_COUNT 79
 
 FW_SHARED_BEGIN
 

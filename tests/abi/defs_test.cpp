@@ -337,6 +337,21 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
 
     refuseFloat<FwBurnableMeshDef>(burnable, &FwBurnableMeshDef::ground, "ground", makeBurnable,
                                    worldMessage, {2e9f});
+    FwBurnableMeshDef refined = burnable;
+    refined.flags = FW_BURNABLE_REFINE_PUBLISHED;
+    refuseFloat<FwBurnableMeshDef>(refined, &FwBurnableMeshDef::heatPsi, "heatPsi", makeBurnable,
+                                   worldMessage, {-1.0f, 2e8f});
+    refuseFloat<FwBurnableMeshDef>(refined, &FwBurnableMeshDef::heatStep, "heatStep", makeBurnable,
+                                   worldMessage, {-1.0f, 2000.0f});
+    for (const uint32_t other : {FW_BURNABLE_REFINE, FW_BURNABLE_RECEDE, FW_BURNABLE_SHELL,
+                                 FW_BURNABLE_SPRINGS, FW_BURNABLE_SKINNED}) {
+        refined.flags = FW_BURNABLE_REFINE_PUBLISHED | other;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeBurnable(&refined)) << other;
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find("FwBurnableMeshDef::flags is 0x"))
+            << lastMessage(w.world);
+    }
+    refined.flags = FW_BURNABLE_REFINE_PUBLISHED;
+    EXPECT_EQ(FW_OK, makeBurnable(&refined)) << lastMessage(w.world);
     const auto refusedDeform = [&](const FwBurnableMeshDef& def, const char* what) {
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeBurnable(&def)) << what;
         EXPECT_NE(std::string::npos, lastMessage(w.world).find(what)) << lastMessage(w.world);

@@ -13,7 +13,7 @@ namespace fw::test {
 namespace {
 
 constexpr uint32_t kSide = 48;  // px
-constexpr std::string_view kOfPublished[] = {"published", "skin"};
+constexpr std::string_view kOfPublished[] = {"published", "skin", "refine_published"};
 
 class EveryPass : public GpuTest {
  protected:
@@ -51,7 +51,13 @@ class EveryPass : public GpuTest {
                 m = gpu::DeformMaterial{4096, 0.01f, 0, 0, 8192, 2, 0, 0};
         }
         scene.objects.push_back(object);
-        if (published) return scene;
+        if (published) {  // and one that is refined so too
+            object.flags = gpu::kObjectPublished;
+            object.arp = true;
+            scene.objects.push_back(object);
+            scene.addPublished();
+            return scene;
+        }
         object.deform.flags = gpu::kDeformShell;
         object.deform.pinCount = 1;
         object.deform.pins[0] = {0.25f, 0.25f, 0.25f, 0.1f};
@@ -248,6 +254,10 @@ class EveryPass : public GpuTest {
     // again in a slot that was given back.
     void burn() {
         frame({});
+        if (scene_->arp) {
+            const float corner[3] = {0.25f, 0.25f, 0.25f};
+            rig_->backend.startBoundary(1, corner, now_);
+        }
         frame({gpu::kEventIgnite, 40});
         frame({.latch = true});
         frame({gpu::kEventWet, 3});

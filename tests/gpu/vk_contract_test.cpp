@@ -81,11 +81,15 @@ TEST_F(VkContract, ApiOneThreeBurnsTheSame) {
 
 TEST_F(VkContract, SteadyFramesAskNothingOfTheDevice) {
     if (!device_) return;
-    const BurnScene scene = BurnScene::make(21, 0.6);
+    BurnScene scene = BurnScene::make(21, 0.6);
+    scene.objects[0].arp = true;  // the first object refines as published
+    scene.addPublished();
     gpu::vk::WorldLimits limits;
     limits.looks = testLooks();
     VkRig rig(*device_, 2, 0, limits, countingEntry());
     scene.create(rig.backend);
+    const float* low = scene.domains[0].boundsLow;
+    rig.backend.startBoundary(0, low, 4096 + 60 * gpu::kStepTicks);
     PlanMaker maker(scene, 6);
     maker.events = 0.1;
     for (int f = 0; f < 40; ++f) rig.run(maker.next(1, false).plan);  // warm-up

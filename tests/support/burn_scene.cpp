@@ -109,6 +109,17 @@ void BurnScene::addHeat() {
     }
 }
 
+namespace {
+constexpr uint32_t kArpDepth = 2;
+}
+
+void BurnScene::addPublished() {
+    auto* memory = std::pmr::get_default_resource();
+    arp = std::make_shared<const mesh::ArpModel>(mesh::makeArpModel(
+        domains[0], mesh::bakeRefine(domains[0], mesh::arpOptions(kArpDepth), memory), kArpDepth,
+        memory));
+}
+
 gpu::ObjectInit BurnScene::init(uint32_t index) const {
     const SceneObject& object = objects[index];
     const mesh::BurnDomain& domain = domains[object.mesh];
@@ -130,6 +141,12 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     init.refine = object.refine;
     init.refineDepth = 4;
     init.refinePixelsPerEdge = object.refinePixelsPerEdge;
+    if (object.arp) {
+        init.refine = true;
+        init.refineDepth = kArpDepth;
+        init.arpModel = arp.get();
+        init.arp = mesh::arpSettings(*arp, 0, 0, 0.3f);
+    }
     if (object.deform.flags || (object.flags & gpu::kObjectSkinned)) {
         init.deformModel = &models[object.mesh];
         init.deform = &object.deform;
@@ -146,10 +163,16 @@ void BurnScene::create(gpu::Backend& backend) const {
         options.depth = 4;
         const mesh::BurnDomain& domain = domains[object.mesh];
         backend.createRefinement(
-            object.mesh, 4, domain,
+            object.mesh, 4, false, domain,
             mesh::bakeRefine(domain, options, std::pmr::get_default_resource()),
             std::array<mesh::RefineHoles, 1>{{{0.4f, 2.6f, 0.8f, true}}});
         refined[object.mesh] = true;
+    }
+    if (arp) {
+        auto* memory = std::pmr::get_default_resource();
+        backend.createRefinement(0, kArpDepth, true, domains[0],
+                                 mesh::bakeRefine(domains[0], mesh::arpOptions(kArpDepth), memory),
+                                 {});
     }
     for (uint32_t i = 0; i < objects.size(); ++i) backend.createObject(i, init(i));
 }

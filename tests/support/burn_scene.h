@@ -18,6 +18,7 @@ struct SceneObject {
     uint32_t window = 512, substepShift = 0;
     uint32_t flags = 0;   // kObject..., beyond live
     bool refine = false;  // down to 4 halvings
+    bool arp = false;     // as published, by the scene's model
     float refinePixelsPerEdge = 8;
     gpu::DeformObject deform{};           // without flags: it does not
     std::vector<gpu::HeatMaterial> heat;  // empty: none
@@ -26,12 +27,15 @@ struct SceneObject {
 struct BurnScene {
     std::vector<mesh::BurnDomain> domains;
     std::vector<SceneObject> objects;
-    std::vector<mesh::DeformModel> models;  // of the domains, if an object deforms
+    std::vector<mesh::DeformModel> models;      // of the domains, if an object deforms
+    std::shared_ptr<const mesh::ArpModel> arp;  // of the first, if one is refined as published
 
     // `densityScale` 1: some 2000 texels a mesh. With $FLAMEWRIGHT_ASSETS also two read ones.
     static BurnScene make(uint32_t seed, double densityScale = 1);
     // Gives all objects heat: thick wood and thin cloth, damp and dry, at some 100 times the pace.
     void addHeat();
+    // Makes `arp`: of two halvings.
+    void addPublished();
     void create(gpu::Backend& backend) const;
     [[nodiscard]] gpu::ObjectInit init(uint32_t object) const;
 };

@@ -6,7 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <map>
 #include <random>
+#include <set>
 
 namespace fw::test {
 namespace {
@@ -57,6 +60,37 @@ TEST(RefineModel, ABoxIsNumberedAsEulerSays) {
         }
     }
     EXPECT_LT(worst, 1e-6) << "m between a draw vertex's slot and its place on its triangle";
+}
+
+// Whoever draws a point, from whichever chart and at whichever level: the same bits.
+TEST(RefineModel, SharedVerticesAreBitwiseEqual) {
+    RefineScene scene(gridBox(1.1, 0.9, 1.3, 1, 1, 1, 11), unsplit(5), 32);
+    const mesh::RefineModel& m = scene.model;
+    for (uint32_t d = 0; d < m.draws.size(); ++d) {
+        const mesh::RenderVertex v = refineRenderVertex(scene.domain, m, d);
+        EXPECT_EQ(0, std::memcmp(v.position, &m.slots[m.draws[d].slot].x, sizeof v.position));
+    }
+    mesh::RefineState state(m, std::pmr::new_delete_resource());
+    std::mt19937 random(3);
+    for (int k = 0; k < 20; ++k) {
+        (void)randomLevels(m, random, state);
+        // Per edge and level, the slots that its owners' triangles have on it.
+        std::map<uint32_t, std::set<uint32_t>> seen;
+        for (uint32_t i = 0; i < m.triangles.size(); ++i) {
+            const uint32_t levels = state.levels[i];
+            for (uint32_t e = 0; e < 3; ++e) {
+                std::set<uint32_t> slots;
+                const uint32_t steps = 1u << gpu::refineSide(levels, e);
+                for (uint32_t s = 0; s <= steps; ++s)
+                    slots.insert(m.draws[gpu::refineDrawVertex(m.triangles[i], levels,
+                                                               gpu::refineOnSide(e, s))]
+                                     .slot);
+                const auto [at, fresh] = seen.insert({m.triangles[i].edge[e], slots});
+                EXPECT_TRUE(fresh || at->second == slots) << "edge " << at->first;
+            }
+        }
+        EXPECT_EQ(18u, seen.size());
+    }
 }
 
 TEST(RefineModel, SplittingKeepsTheShapeAndTheBudget) {

@@ -1,6 +1,10 @@
 // The published scheme: what its rules do as printed, and that the repaired ones come to rest.
 #include "mesh/refine/published.h"
 
+#include "core/error.h"
+#include "mesh/refine/published_frame.h"
+#include "support/refine_scene.h"
+
 #include <gtest/gtest.h>
 
 #include <set>
@@ -52,8 +56,7 @@ Outcome look(const std::pmr::vector<ArpTriangle>& arp, const std::vector<int8_t>
 }
 
 struct Growth {
-    std::pmr::vector<ArpTriangle> arp =
-        makeArpTemplate(kArpLevels, std::pmr::new_delete_resource());
+    std::pmr::vector<ArpTriangle> arp = makeArpTemplate(4, std::pmr::new_delete_resource());
     std::vector<int8_t> status = std::vector<int8_t>(arp.size(), kArpInitial);
     uint32_t cycles = 0, mostSweeps = 0;
     std::vector<Outcome> at;  // radius 8, 20, 32, 44
@@ -79,7 +82,7 @@ struct Growth {
 };
 
 TEST(RefinePublished, TheTemplateIsFourWaySplits) {
-    const auto arp = makeArpTemplate(kArpLevels, std::pmr::new_delete_resource());
+    const auto arp = makeArpTemplate(4, std::pmr::new_delete_resource());
     ASSERT_EQ(1u + 4 + 16 + 64 + 256, arp.size());
     int finest = 0;
     for (uint32_t i = 0; i < arp.size(); ++i) {
@@ -119,6 +122,37 @@ TEST(RefinePublished, RepairedRulesCoverEverythingOnce) {
     }
 }
 
+std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& arp,
+                               const std::pmr::vector<int8_t>& status) {
+    std::set<uint32_t> drawn;
+    for (uint32_t i = 0; i < arp.size(); ++i)
+        if (arp[i].setLevel == kArpLevels && arpDrawn(status, i)) drawn.insert(i);
+    return drawn;
+}
+
+// The seed's rules, run serially on one triangle while a fire grows over it, and what we draw: the
+// same finest triangles at every radius, and at the end the same picture, of finest triangles
+// alone.
+TEST(RefinePublished, StatusMachineEndsWhereTheSeedsSerialRulesDo) {
+    auto* memory = std::pmr::new_delete_resource();
+    const auto arp = makeArpTemplate(4, memory);
+    std::pmr::vector<int8_t> seeds(arp.size(), kArpInitial), ours = seeds, parallel = seeds;
+    std::vector<uint8_t> eligible(arp.size());
+    for (int radius = 0; radius <= 96; radius += 4) {
+        arpMarkCircle(arp, 20, 14, float(radius), eligible);
+        for (int sweep = 0; sweep < 12; ++sweep) {  // the printed rules come to no rest
+            arpSweep(arp, ArpRules::printed, eligible, true, seeds, memory);
+            arpSweep(arp, ArpRules::repaired, eligible, false, parallel, memory);
+        }
+        arpSweep(arp, ArpRules::repaired, eligible, true, ours, memory);
+        EXPECT_EQ(finestDrawn(arp, seeds), finestDrawn(arp, ours)) << radius;
+        EXPECT_EQ(ours, parallel) << radius;
+    }
+    EXPECT_EQ(256u, finestDrawn(arp, ours).size());
+    for (uint32_t i = 0; i < arp.size(); ++i)
+        EXPECT_EQ(arp[i].setLevel == kArpLevels, arpDrawn(ours, i)) << i;
+}
+
 // The boundary's noise is absolute in R^2: a rough edge close in, a smooth one far out.
 TEST(RefinePublished, TheHeatBoundaryIsRoughFirstAndSmoothLater) {
     const ArpHeat heat{{0, 0, 0}, 0, 0.1f, 1};
@@ -146,7 +180,7 @@ TEST(RefinePublished, PointsInsideMakeATriangleEligible) {
 }
 
 TEST(RefinePublished, TwoBurntChildrenHideTheirParent) {
-    const auto arp = makeArpTemplate(kArpLevels, std::pmr::new_delete_resource());
+    const auto arp = makeArpTemplate(4, std::pmr::new_delete_resource());
     std::vector<uint32_t> burn(arp.size(), 0);
     uint32_t parent = 0;
     while (arp[parent].setLevel != kArpLevels - 1) ++parent;
@@ -160,6 +194,148 @@ TEST(RefinePublished, TwoBurntChildrenHideTheirParent) {
     burn[arp[0].firstChild] = burn[arp[0].firstChild + 1] = 9;
     EXPECT_FALSE(arpHidden(arp, burn, 0)) << "coarse triangles are shown whatever burns";
     EXPECT_FALSE(arpHidden(arp, burn, uint32_t(arp.size() - 1))) << "the finest have no children";
+}
+
+// ---- on a whole mesh
+
+glm::vec3 placeOf(const RefineModel& model, uint32_t draw) {
+    const gpu::RefineSlot& slot = model.slots[model.draws[draw].slot];
+    return {slot.x, slot.y, slot.z};
+}
+
+struct Burning {
+    test::RefineScene scene;
+    ArpModel model;
+    ArpSettings settings;
+    ArpState state{std::pmr::new_delete_resource()};
+    explicit Burning(uint32_t depth)
+        : scene(test::gridBox(1, 0.8, 1.2, 1, 1, 1, 11), arpOptions(depth), 32),
+          model(makeArpModel(scene.domain, scene.model, depth, std::pmr::new_delete_resource())),
+          settings(arpSettings(model, 0, 0, 0.05f)) {
+        state.reset(model);
+    }
+    // Times that each of a coarse triangle's finest is covered by the list; -1: not all the same.
+    [[nodiscard]] int covered() const {
+        const uint32_t n = 1u << model.depth;
+        std::vector<int> covers(size_t(model.triangles()) * n * n * 2, 0);
+        for (const uint32_t word : state.list) {
+            const uint32_t side = 1u << (model.depth - gpu::arpHalvings(word));
+            const auto a = gpu::arpPoint(word, model.depth, 0);
+            const bool down = (word & gpu::kArpDown) != 0;
+            for (uint32_t y = 0; y < side; ++y)
+                for (uint32_t x = 0; x < side - y; ++x)
+                    for (uint32_t turned = 0; turned < (x + y + 1 < side ? 2u : 1u); ++turned) {
+                        const uint32_t u = down ? a.x - x - 1 : a.x + x;
+                        const uint32_t v = down ? a.y - y - 1 : a.y + y;
+                        const uint32_t half = down ? 1 - turned : turned;
+                        ++covers[((size_t(gpu::arpCoarse(word)) * n + v) * n + u) * 2 + half];
+                    }
+        }
+        int all = -2;
+        for (uint32_t i = 0; i < model.triangles(); ++i)
+            for (uint32_t v = 0; v < n; ++v)
+                for (uint32_t u = 0; u + v < n; ++u)
+                    for (uint32_t half = 0; half < (u + v + 1 < n ? 2u : 1u); ++half) {
+                        const int own = covers[((size_t(i) * n + v) * n + u) * 2 + half];
+                        all = all == -2 || all == own ? own : -1;
+                    }
+        return all;
+    }
+};
+
+TEST(RefinePublished, WordsNameTheVerticesOfTheirTriangles) {
+    for (const uint32_t depth : {0u, 1u, 2u, 5u}) {
+        const Burning b(depth);
+        double worst = 0;
+        for (uint32_t i = 0; i < b.model.triangles(); ++i) {
+            const glm::vec3* corner = &b.model.corners[size_t(i) * 3];
+            const gpu::RefineTriangle& t = b.scene.model.triangles[i];
+            for (uint32_t k = 0; k < b.model.arp.size(); ++k) {
+                std::set<Point> wanted, named;
+                for (uint32_t p = 0; p < (b.model.arp[k].setLevel == kArpLevels ? 3u : 6u); ++p) {
+                    const auto c = gpu::arpPoint(b.model.words[k], depth, p);
+                    const float u = float(c.x) / float(1u << depth),
+                                v = float(c.y) / float(1u << depth);
+                    const glm::vec3 at = corner[0] * (1 - u - v) + corner[1] * u + corner[2] * v;
+                    const uint32_t draw = gpu::arpDrawVertex(t, c.x, c.y);
+                    worst =
+                        std::max(worst, double(glm::distance(at, placeOf(b.scene.model, draw))));
+                    if (p < 3) named.insert({c.x << (6 - depth), c.y << (6 - depth)});
+                }
+                for (int c = 0; c < 3; ++c) wanted.insert(cornerOf(b.model.arp[k], c));
+                EXPECT_EQ(wanted, named);
+            }
+        }
+        EXPECT_LT(worst, 1e-6) << "m, depth " << depth;
+    }
+}
+
+TEST(RefinePublished, AMeshIsCoveredOnceAtEveryMomentAndDistance) {
+    Burning b(4);
+    ASSERT_EQ(12u, b.model.triangles());
+    EXPECT_TRUE(arpAdvance(b.model, b.settings, 1000, {}, false, b.state));
+    EXPECT_EQ(12u, b.state.list.size()) << "no fire yet";
+    arpIgnite(b.model, b.settings, {0.5f, 0.4f, 1.2f}, 1000, b.state);
+    uint32_t changes = 0, last = 0;
+    for (uint32_t tick = 1000; tick < 1000 + 60 * 4096; tick += 2048) {
+        const uint32_t step = tick / 2048 % 4;
+        ArpView view{{0.5f, 0.4f, 1.2f + float(step)}, step == 0 ? 0.0f : 60.0f};
+        changes += arpAdvance(b.model, b.settings, tick, view, false, b.state);
+        ASSERT_EQ(1, b.covered()) << "s: " << (tick - 1000) / 4096.0;
+        if (step != 0) continue;
+        EXPECT_GE(b.state.list.size(), last) << "the boundary only grows";
+        last = uint32_t(b.state.list.size());
+    }
+    arpAdvance(b.model, b.settings, 1e6, {}, false, b.state);
+    EXPECT_EQ(b.model.most(), b.state.list.size()) << "all of it is finest";
+    EXPECT_EQ(b.model.most(), b.state.listed[0]);
+    EXPECT_GT(changes, 20u);
+    EXPECT_FALSE(arpAdvance(b.model, b.settings, 1e6, {}, false, b.state)) << "at rest";
+}
+
+// A fire of a centimetre in the middle of a triangle, far from its corners.
+TEST(RefinePublished, TheHeatWaveFindsAFireMidTriangleAtOnce) {
+    Burning b(5), again(5);
+    for (Burning* one : {&b, &again}) {
+        arpIgnite(one->model, one->settings, {0.55f, 0.35f, 1.2f}, 4096, one->state);
+        arpAdvance(one->model, one->settings, 4096 + gpu::kStepTicks, {}, false, one->state);
+    }
+    EXPECT_GT(b.state.list.size(), 12u);
+    EXPECT_LT(b.state.list.size(), 200u);
+    EXPECT_EQ(b.state.list, again.state.list);
+    arpIgnite(b.model, b.settings, {0, 0, 0}, 5000, b.state);
+    EXPECT_EQ(4096u, b.state.litTick) << "one source";
+    // What is refined lies around the fire.
+    const float radius = arpRadius(b.settings, b.state, 4096 + gpu::kStepTicks);
+    for (const uint32_t word : b.state.list) {
+        if (gpu::arpHalvings(word) < 5) continue;
+        const auto c = gpu::arpPoint(word, 5, 0);
+        const glm::vec3 at =
+            placeOf(b.scene.model,
+                    gpu::arpDrawVertex(b.scene.model.triangles[gpu::arpCoarse(word)], c.x, c.y));
+        EXPECT_LT(glm::distance(at, b.state.heat.origin),
+                  (radius + 2.0f) / std::sqrt(b.settings.psi) + 2 * b.model.finest);
+    }
+}
+
+TEST(RefinePublished, ConsumedIsTwoOfFourChildren) {
+    EXPECT_FALSE(gpu::arpConsumed(3, true));
+    EXPECT_TRUE(gpu::arpConsumed(7, true));
+    EXPECT_TRUE(gpu::arpConsumed(7, false));
+    EXPECT_FALSE(gpu::arpConsumed(1 | 8 | 32, false)) << "one child";
+    EXPECT_TRUE(gpu::arpConsumed(1 | 8 | 16 | 32, false)) << "that and the middle";
+    EXPECT_TRUE(gpu::arpConsumed(1 | 2 | 8 | 16 | 32, false));
+    EXPECT_FALSE(gpu::arpConsumed(1 | 2 | 8, false));
+}
+
+TEST(RefinePublished, RefusesWhatIsTooMuch) {
+    test::RefineScene scene(test::gridBox(1, 1, 1, 17, 17, 17), arpOptions(0), 16);
+    try {
+        (void)makeArpModel(scene.domain, scene.model, 5, std::pmr::new_delete_resource());
+        FAIL() << "3468 triangles of 1365 statuses";
+    } catch (const core::Error& error) {
+        EXPECT_NE(std::string::npos, std::string(error.message).find("refineDepth is 5"));
+    }
 }
 
 }  // namespace

@@ -351,6 +351,12 @@ typedef enum FwBurnableFlags {
                                    burnTime alone, and water stays until it is dried */
     FW_BURNABLE_REFINE = 32,    /* drawn with finer triangles where it burns, down to its burn map's
                                    cells, which recede as the material is consumed */
+    FW_BURNABLE_REFINE_PUBLISHED = 64, /* instead of FW_BURNABLE_REFINE: by the published scheme, for
+                                   comparison. A template of four-way splits on each triangle, refined
+                                   where a heat boundary has come to that grows from the first place
+                                   a host lights (what another object lights stays coarse); burnt
+                                   triangles vanish whole. It cracks where levels meet, and has no
+                                   budget. Same fire, same mesh */
     FW_BURNABLE_RECEDE = 128,   /* what we draw recedes as it is consumed; for solids */
     FW_BURNABLE_SHELL = 256,    /* a thin sheet: hangs, flutters, curls and shrinks as it chars, tears;
                                    see pins. Cosmetic: fire spreads and is found where it rests */
@@ -380,7 +386,7 @@ typedef struct FwBurnableMeshDef {
     uint32_t multiplierWidth, multiplierHeight; /* resampled (nearest) to the burn map */
     uint64_t userData;                /* comes back in events */
     FwImageId baseColors[8];          /* by triangle material, default null: baseColor there too */
-    uint32_t refineDepth;             /* FW_BURNABLE_REFINE: halvings of an edge, [0, 5], default 5 */
+    uint32_t refineDepth;             /* FW_BURNABLE_REFINE..: halvings of an edge, [0, 5], default 5 */
     float refinePixelsPerEdge;        /* length on the screen of the finest edges, [1, 1000], default 8 */
     const FwPin* pins;                /* of FW_BURNABLE_SHELL, or null: it falls */
     uint32_t pinCount;                /* [0, 8] */
@@ -390,6 +396,12 @@ typedef struct FwBurnableMeshDef {
     uint32_t maxHops;                 /* 0: no limit */
     uint32_t maxBurningTiles;         /* of this object; 0: no limit */
     float timeToLive;                 /* s, 0: no limit */
+    /* Of FW_BURNABLE_REFINE_PUBLISHED: its heat boundary at a radius r is where
+     * r^2 = |sin(pi Theta / heatStep) + sin(pi Theta) + heatPsi |x - x0|^2|, Theta random. */
+    float heatPsi;                    /* 1/m^2, [0, 1e8]; 0, default: one over the square of the mean
+                                         finest edge */
+    float heatStep;                   /* delta r: what r grows by in a step of 1/32 s, [0, 1000]; 0,
+                                         default: as fast as the materials' fastest fire */
 } FwBurnableMeshDef;
 static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
     FwBurnableMeshDef d; fwInitDef(FW_DEF_BURNABLE_MESH, &d, (uint32_t)sizeof d); return d;

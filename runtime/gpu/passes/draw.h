@@ -42,6 +42,7 @@ struct DrawItem {
     uint32_t variant = 0;         // of the surface pass, from surfaceVariant
     bool refined = false;         // its triangles are in the refinement's planes
     bool cut = false;             // and holes are cut out of them
+    bool consumed = false;        // those burnt through are left out, whole: nothing is cut
     SurfaceDraw draw{};
 };
 

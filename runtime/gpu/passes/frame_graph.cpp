@@ -12,14 +12,17 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,       &kEventsPass,      &kHeatPass,       &kWakePass,         &kSchedulePass,
-    &kGatherPass,      &kArrivalPass,     &kArrivalRimPass, &kCommitPass,       &kPublishedPass,
-    &kReduceClearPass, &kReduceFrontPass, &kReducePass,     &kFireCellsPass,    &kFireSourcesPass,
-    &kReceiversPass,   &kExchangePass,    &kContactsPass,   &kEmbersPass,       &kPredictGatherPass,
-    &kPredictPass,     &kPredictRimPass,  &kSupportPass,    &kProbePass,        &kLightsPass,
-    &kFlameQuadsPass,  &kFlameSortPass,   &kRefineHeatPass, &kRefineLevelsPass, &kRefineScanPass,
-    &kRefineEmitPass,  &kRefinePlacePass, &kRecedePass,     &kBendPass,         &kSoftPass,
-    &kSpringsPass,     &kDrapePass,       &kSkinPass,       &kSootPass,         &kRefineCutPass};
+    &kResetPass,          &kEventsPass,     &kHeatPass,        &kWakePass,
+    &kSchedulePass,       &kGatherPass,     &kArrivalPass,     &kArrivalRimPass,
+    &kCommitPass,         &kPublishedPass,  &kReduceClearPass, &kReduceFrontPass,
+    &kReducePass,         &kFireCellsPass,  &kFireSourcesPass, &kReceiversPass,
+    &kExchangePass,       &kContactsPass,   &kEmbersPass,      &kPredictGatherPass,
+    &kPredictPass,        &kPredictRimPass, &kSupportPass,     &kProbePass,
+    &kLightsPass,         &kFlameQuadsPass, &kFlameSortPass,   &kRefineHeatPass,
+    &kRefineLevelsPass,   &kRefineScanPass, &kRefineEmitPass,  &kRefinePlacePass,
+    &kRecedePass,         &kBendPass,       &kSoftPass,        &kSpringsPass,
+    &kDrapePass,          &kSkinPass,       &kSootPass,        &kRefineCutPass,
+    &kRefinePublishedPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
@@ -283,6 +286,19 @@ void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const Re
     recorder.dispatchIndirect(kRefineCutPass, &push, FW_BIND_REFINE_WORK, kRefineWorkCut * 4);
     push.phase = 2;
     recorder.dispatch(kRefineCutPass, &push, groupsOf(push.objects * kMaterialsPerObject));
+}
+
+void recordRefinePublished(vk::FrameRecorder& recorder, const ArpPush& with, uint32_t placeGroups,
+                           uint32_t nameGroups) {
+    ArpPush push = with;
+    for (push.phase = 0; push.phase < 2; ++push.phase) {
+        const uint32_t first = push.phase ? placeGroups : 0;
+        const uint32_t groups = push.phase ? nameGroups : placeGroups;
+        for (uint32_t done = 0; done < groups; done += kMaxGroups) {
+            push.firstGroup = first + done;
+            recorder.dispatch(kRefinePublishedPass, &push, std::min(groups - done, kMaxGroups));
+        }
+    }
 }
 
 }  // namespace fw::gpu

@@ -2,9 +2,9 @@
 #pragma once
 #include "gpu/passes/draw.h"
 #include "gpu/passes/pass.h"
+#include "shared/arp.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
-#include "shared/refine.h"
 
 #include <cstddef>
 #include <span>
@@ -20,8 +20,8 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kReducePass, kFireCellsPass, kFireSourcesPass, kReceiversPass, kExchangePass, kContactsPass,
     kEmbersPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
-    kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRecedePass, kBendPass,
-    kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass;
+    kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
+    kRecedePass, kBendPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -95,5 +95,9 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
 // `cuts`: some object is kRefineIsCut.
 void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& push,
                   bool cuts);
+
+// The published scheme's, after the steps: groups of vertices, then of listed triangles.
+void recordRefinePublished(vk::FrameRecorder& recorder, const ArpPush& push, uint32_t placeGroups,
+                           uint32_t nameGroups);
 
 }  // namespace fw::gpu

@@ -148,7 +148,7 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
     for (const DrawItem& item : items) {
         if (!drawnBy(variant, item.variant)) continue;
         SurfaceDraw draw = item.draw;
-        if (item.cut) draw.flags |= kDrawCut;
+        if (item.cut || (item.refined && item.consumed)) draw.flags |= kDrawCut;
         if (item.refined) draw.flags |= kDrawPlaced;
         recorder.drawItem(item, &draw);
         if (!item.cut) continue;

@@ -114,6 +114,8 @@ constexpr Plane kPlanes[] = {
      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
     {FW_BIND_REFINE_CUT_DRAWS, kSpaceObjects, 16 * kMaterialsPerObject, true, kComponentRefine,
      "cut draws", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_ARP_LIST, kSpaceArpList, 4, true, kComponentRefine, "template triangles", 0},
+    {FW_BIND_ARP_GROUPS, kSpaceArpGroups, 8, false, kComponentRefine, "template groups", 0},
     {FW_BIND_REFINE_WORK, kSpaceRefineWork, 4, false, kComponentRefine, "refinement work",
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks",
@@ -124,8 +126,8 @@ constexpr uint32_t kInitialUnits[kSpaceCount] = {
     64,   1024, 512,  512, 1024, 1024, 4096, 16384, kCounterRows,
     4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
     1024, 4096, 256,  256, 1,    1,    1,    1,     1,
-    1,    1,    1,    1,   1,    1,    1024, 1,     1,
-    1};
+    1,    1,    1,    1,   1,    1,    1,    1,     1024,
+    1,    1,    1};
 
 }  // namespace
 

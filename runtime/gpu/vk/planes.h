@@ -35,6 +35,8 @@ enum Space : uint32_t {
     kSpaceRefineIndices,    // words, of objects
     kSpaceRefineCuts,       // vertices, of objects
     kSpaceRefineWork,       // words, per frame
+    kSpaceArpList,          // listed triangles, of objects
+    kSpaceArpGroups,        // per frame
     kSpacePublished,        // 8x8 tiles of objects in as-published mode
     kSpaceHeat,             // 8x8 tiles of objects with heat
     kSpaceDeformers,        // objects that deform

@@ -31,6 +31,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       uploads(pmr),
       quarantine(pmr),
       skins(pmr),
+      arps(pmr),
       published(pmr),
       drawItems(pmr),
       refine(pmr),

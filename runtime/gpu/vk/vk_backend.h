@@ -74,13 +74,14 @@ class VkBackend final : public Backend {
 
     void createMesh(uint32_t slot, const mesh::BurnDomain& domain) override;
     void destroyMesh(uint32_t slot) noexcept override;
-    void createRefinement(uint32_t mesh, uint32_t depth, const mesh::BurnDomain& domain,
-                          const mesh::RefineModel& model,
+    void createRefinement(uint32_t mesh, uint32_t depth, bool published,
+                          const mesh::BurnDomain& domain, const mesh::RefineModel& model,
                           std::span<const mesh::RefineHoles> materials) override;
     void createObject(uint32_t slot, const ObjectInit& init) override;
     void destroyObject(uint32_t slot) noexcept override;
     void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                        uint32_t flags) override;
+    void startBoundary(uint32_t slot, const float point[3], uint32_t tick) noexcept override;
     void setVertices(uint32_t slot, std::span<const float> positions,
                      std::span<const float> normals) noexcept override;
     void createImage(uint32_t slot, uint32_t width, uint32_t height,

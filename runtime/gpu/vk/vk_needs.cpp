@@ -154,7 +154,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
                      needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
-    const uint64_t refineBytes = s.planRefine(plan);
+    const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
                  refineBytes > 0 || forgets || needs.placing || s.recordsDirty ||

@@ -133,10 +133,14 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.tiles = {s.planes.allocate(kSpaceObjectTiles, mesh.tiles, last), mesh.tiles};
         if (init.refine) {
             fresh.refine.on = true;
-            fresh.refine.depth = init.refineDepth;
+            fresh.refine.key = refineKey(init.arpModel != nullptr, init.refineDepth);
             fresh.refine.pixelsPerEdge = init.refinePixelsPerEdge;
             fresh.refine.epochTick = s.shownTick;
-            fresh.refine.allocate(s.planes, mesh.refine[init.refineDepth], last);
+            const RefineMesh& refined = mesh.refine[fresh.refine.key];
+            if (init.arpModel)
+                s.takeArp(fresh.refine, init, refined, last);
+            else
+                fresh.refine.allocate(s.planes, refined, last);
         }
         if (!init.slowness.empty()) {
             fresh.slowness = {s.planes.allocate(kSpaceSlowness, mesh.tiles, last), mesh.tiles};
@@ -182,6 +186,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             }
         }
     } catch (...) {
+        s.dropArp(fresh.refine);
         fresh.refine.release(s.planes);
         if (mesh.nodes.units == 0) {
             if (nodes.units) s.planes.release(kSpaceNodes, nodes.first, nodes.units);
@@ -250,7 +255,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     }
     s.objects[slot] = fresh;
     s.recordsDirty = true;
-    s.refine.users += fresh.refine.on ? 1 : 0;
+    (fresh.refine.arpPlus1 ? s.arp.users : s.refine.users) += fresh.refine.on ? 1 : 0;
     ++s.liveObjects;
 }
 
@@ -264,7 +269,8 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
             {entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks, s.hotWalks});
     else
         s.planes.release(kSpaceObjectTiles, entry.tiles.first, entry.tiles.units);
-    s.refine.users -= entry.refine.on ? 1 : 0;
+    (entry.refine.arpPlus1 ? s.arp.users : s.refine.users) -= entry.refine.on ? 1 : 0;
+    s.dropArp(entry.refine);
     entry.refine.release(s.planes);
     releaseRanges(s, entry);
     entry = {};

@@ -124,7 +124,8 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                      int32_t(mesh.vertexRange.first),
                      object.shown.units ? object.shown.first : kNoneTexel, object.images[m],
                      surfaceVariant(object.materials[m], object.images[m] != 0, looksBurnt(object)),
-                     object.refine.started, object.refine.cut, drawOf(s, object, m)});
+                     object.refine.started, object.refine.cut, object.refine.arpPlus1 != 0,
+                     drawOf(s, object, m)});
             first = end;
         }
     }
@@ -462,10 +463,11 @@ void VkBackend::State::closeFrame(const FwView* view) {
         recordSooting(*this, looks);
         if (view) recordFlameQuads(looks, lists, open.endTick);
     }
-    if (view)
+    if (view) {
         recordRefinement(slot, *view);
-    else
-        showRefined();
+        recordArp(slot, *view);
+    }
+    showRefined();
     FrameRecorder recorder(target);
     if (open.readback && open.planFrame) {
         const ReadbackLayout& layout = slot.layout;

@@ -62,8 +62,8 @@ void VkBackend::State::uploadRefineTable() {
            std::span<const uint16_t>(mesh::kRefineTable));
 }
 
-void VkBackend::createRefinement(uint32_t slot, uint32_t depth, const mesh::BurnDomain& domain,
-                                 const mesh::RefineModel& model,
+void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
+                                 const mesh::BurnDomain& domain, const mesh::RefineModel& model,
                                  std::span<const mesh::RefineHoles> materials) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
@@ -133,7 +133,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, const mesh::Burn
         s.dropUploads(uploadsBefore);
         throw;
     }
-    s.meshes[slot].refine[depth] = fresh;
+    s.meshes[slot].refine[refineKey(published, depth)] = fresh;
 }
 
 void RefineMesh::release(Planes& planes) noexcept {
@@ -159,12 +159,17 @@ void RefineUse::allocate(Planes& planes, const RefineMesh& mesh, uint64_t last) 
     take(cuts, kSpaceRefineCuts, 3 * std::min(mesh.fullCount / 4 + 64, kRefineCutMost));
 }
 
+void RefineUse::allocateArp(Planes& planes, const RefineMesh& mesh, uint64_t last) {
+    slots = {planes.allocate(kSpaceRefineSlots, mesh.slotCount, last), mesh.slotCount};
+    const uint32_t listed = groupsOf(mesh.fullCount) * 64;
+    arpList = {planes.allocate(kSpaceArpList, listed, last), listed};
+    indices = {planes.allocate(kSpaceRefineIndices, listed * 3, last), listed * 3};
+}
+
 void RefineUse::release(Planes& planes) noexcept {
-    const SpaceRange all[] = {{&items, kSpaceRefineItems},
-                              {&triangles, kSpaceRefineTriangles},
-                              {&slots, kSpaceRefineSlots},
-                              {&indices, kSpaceRefineIndices},
-                              {&cuts, kSpaceRefineCuts}};
+    const SpaceRange all[] = {{&items, kSpaceRefineItems}, {&triangles, kSpaceRefineTriangles},
+                              {&slots, kSpaceRefineSlots}, {&indices, kSpaceRefineIndices},
+                              {&cuts, kSpaceRefineCuts},   {&arpList, kSpaceArpList}};
     releaseAll(planes, all);
     *this = {};
 }
@@ -180,7 +185,8 @@ void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
 
 // Once more after it is quiet: pictures may be seconds apart.
 bool VkBackend::State::refines(const ObjectEntry& object) const noexcept {
-    return object.live && object.refine.on && double(object.refine.quietTick) > refine.lastTick;
+    return object.live && object.refine.on && !object.refine.arpPlus1 &&
+           double(object.refine.quietTick) > refine.lastTick;
 }
 
 // Which objects the frame refines, and the bytes that it uploads for it. May throw.
@@ -193,7 +199,7 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
     const auto each = [&](auto&& use) {
         for (uint32_t i = 0; i < objects.size(); ++i) {
             const ObjectEntry& object = objects[i];
-            if (refines(object)) use(i, meshes[object.mesh].refine[object.refine.depth]);
+            if (refines(object)) use(i, meshes[object.mesh].refine[object.refine.key]);
         }
     };
     const auto list = [&](uint32_t object, uint32_t count) {
@@ -240,19 +246,8 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
 // `view`: its eye and the last picture's height limit levels.
 void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view) {
     RefinePush& push = refine.push;
-    if (push.objects == 0) {
-        showRefined();
-        return;
-    }
-    if (limits.looks.viewParams) {
-        ViewInput input;
-        input.view = &view;
-        input.viewport[2] = input.viewport[3] = refine.height > 0 ? refine.height : kDefaultHeight;
-        ViewParams params{};
-        limits.looks.viewParams(input, params);
-        refine.eye = params.eye;
-        refine.eye.w = params.forward.w > 0.5f ? 1 / params.eye.w : 0;
-    }
+    if (push.objects == 0) return;
+    lookFrom(view);
     const double now = double(shownTick) + double(tickFraction);
     push.nowTick = shownTick;
     push.dt = float(std::clamp((now - refine.lastTick) / kTicksPerSecond, 0.0, 2.0));
@@ -292,7 +287,17 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
                     uint64_t(push.objectEnd) * sizeof(RefineObject));
     refine.lastTick = now;
     recordRefine(recorder, lists, push, cuts);
-    showRefined();
+}
+
+void VkBackend::State::lookFrom(const FwView& view) noexcept {
+    if (!limits.looks.viewParams) return;
+    ViewInput input;
+    input.view = &view;
+    input.viewport[2] = input.viewport[3] = refine.height > 0 ? refine.height : kDefaultHeight;
+    ViewParams params{};
+    limits.looks.viewParams(input, params);
+    refine.eye = params.eye;
+    refine.eye.w = params.forward.w > 0.5f ? 1 / params.eye.w : 0;
 }
 
 void VkBackend::State::showRefined() noexcept {
@@ -300,6 +305,7 @@ void VkBackend::State::showRefined() noexcept {
         const RefineUse& use = objects[item.object].refine;
         item.refined = use.started;
         item.cut = use.cut;
+        item.consumed = use.arpPlus1 != 0;
         item.draw.now = use.now;
     }
 }
@@ -317,14 +323,14 @@ bool VkBackend::State::isNear(const ObjectEntry& object,
             {entry.domain->boundsLow[k] - eye[k], eye[k] - entry.domain->boundsHigh[k], 0.0f});
         square += out * out;
     }
-    const float pixels = entry.refine[object.refine.depth].edgeLength * record.eye.w;
+    const float pixels = entry.refine[object.refine.key].edgeLength * record.eye.w;
     const float least = record.pixelsPerEdge * (object.refine.cut ? kCutTo : kCutFrom);
     return pixels > least * std::sqrt(square);
 }
 
 RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full) const noexcept {
     const MeshEntry& entry = meshes[object.mesh];
-    const RefineMesh& mesh = entry.refine[object.refine.depth];
+    const RefineMesh& mesh = entry.refine[object.refine.key];
     const RefineUse& use = object.refine;
     RefineObject r{};
     r.items = use.items.first;

@@ -6,6 +6,7 @@
 #include "gpu/vk/recorder.h"
 #include "gpu/vk/vk_backend.h"
 
+#include "core/owned.h"
 #include "shared/deform.h"
 
 #include <optional>
@@ -44,23 +45,38 @@ struct RefineMesh {
 struct RefineUse {  // an object's own
     bool on = false;
     bool started = false;  // it is drawn refined: some frame placed it
-    uint32_t depth = 0;
+    uint32_t key = 0;      // of its mesh's refinement
     float pixelsPerEdge = 8;
     uint32_t epochTick = 0;
     uint32_t quietTick = 0;  // it is refined before this; 0: no fire yet
     bool cut = false;        // near: its holes are cut
     float now = 0;           // s since its epoch, of the frame that last placed it
     RangeOf items, triangles, slots, indices, cuts;
+    uint32_t arpPlus1 = 0;  // by the published scheme: its ArpUse
+    RangeOf arpList;
     void allocate(Planes& planes, const RefineMesh& mesh, uint64_t last);
+    void allocateArp(Planes& planes, const RefineMesh& mesh, uint64_t last);
     void release(Planes& planes) noexcept;
 };
+
+// What the published scheme keeps of an object.
+struct ArpUse {
+    explicit ArpUse(std::pmr::memory_resource* memory) : state(memory) {}
+    const mesh::ArpModel* model = nullptr;  // null: free
+    mesh::ArpSettings settings;
+    mesh::ArpState state;
+};
+
+constexpr uint32_t refineKey(bool published, uint32_t depth) noexcept {
+    return published ? kRefineDepth + 1 + depth : depth;
+}
 
 struct MeshEntry {
     bool live = false;
     uint32_t width = 0, height = 0, tilesX = 0, tiles = 0, vertices = 0, indices = 0;
     RangeOf meshTiles, slowness, links, readers, vertexRange, indexRange;
     uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
-    RefineMesh refine[kRefineDepth + 1];             // by depth
+    RefineMesh refine[2 * (kRefineDepth + 1)];       // by refineKey
     uint32_t sourceCells = 1;                        // see mesh/remote_tiles.h
     float edge = 0;  // m at scale 1: side of a square as large as two mean triangles
     const mesh::BurnDomain* domain = nullptr;
@@ -216,6 +232,7 @@ struct VkBackend::State {
     std::pmr::vector<PendingUpload> uploads;
     std::pmr::vector<Quarantined> quarantine;
     std::pmr::vector<Skin> skins;
+    std::pmr::vector<core::Owned<ArpUse>> arps;
     uint32_t liveObjects = 0;
     bool initialized = false;  // the planes that must start as zero do
     // As last recorded.
@@ -260,6 +277,11 @@ struct VkBackend::State {
         double lastTick = 0;               // of the last frame that refined
         bool full = false;                 // everything at its deepest
     } refine;
+    struct Arp {             // of the frame, refined by the published scheme
+        uint32_t users = 0;  // objects
+        uint32_t placeGroups = 0, nameGroups = 0;
+        double lastTick = 0;  // of the last frame with any
+    } arp;
 
     // Readbacks, oldest first.
     std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
@@ -299,6 +321,13 @@ struct VkBackend::State {
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
     bool isNear(const ObjectEntry& object, const RefineObject& record) const noexcept;
     void showRefined() noexcept;
+    void lookFrom(const FwView& view) noexcept;
+    // vk_published.cpp
+    [[nodiscard]] bool refinesAsPublished(const ObjectEntry& object) const noexcept;
+    void takeArp(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh, uint64_t last);
+    void dropArp(RefineUse& use) noexcept;
+    uint64_t planArp();
+    void recordArp(FrameInFlight& slot, const FwView& view);
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
     const Readback* nextReadback();

@@ -71,12 +71,13 @@ class Sweep {
 
 }  // namespace
 
-std::pmr::vector<ArpTriangle> makeArpTemplate(uint32_t levels, std::pmr::memory_resource* memory) {
+std::pmr::vector<ArpTriangle> makeArpTemplate(uint32_t depth, std::pmr::memory_resource* memory) {
     std::pmr::vector<ArpTriangle> arp(memory);
-    arp.push_back(make({0, 0}, {kArpLattice, 0}, {0, kArpLattice}, 1, kArpNone));
+    const uint32_t coarse = kArpLevels - std::min(depth, kArpLevels);
+    arp.push_back(make({0, 0}, {kArpLattice, 0}, {0, kArpLattice}, coarse, kArpNone));
     for (uint32_t i = 0; i < arp.size(); ++i) {
         const ArpTriangle t = arp[i];
-        if (t.setLevel >= std::min(levels, kArpLevels)) continue;
+        if (t.setLevel >= kArpLevels) continue;
         uint8_t middle[3][2];
         for (int k = 0; k < 3; ++k)
             for (int c = 0; c < 2; ++c)

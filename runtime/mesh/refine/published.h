@@ -12,7 +12,7 @@
 namespace fw::mesh {
 
 constexpr uint32_t kArpLattice = 64;  // corner coordinates of the template are in 1/64
-constexpr uint32_t kArpLevels = 5;    // SetLevel 1..5
+constexpr uint32_t kArpLevels = 5;    // SetLevel of the finest
 constexpr uint32_t kArpNone = 0xFFFFFFFFu;
 
 // Status values. Drawn: active and processed, and the root while it is initial.
@@ -20,13 +20,14 @@ constexpr int8_t kArpInactive = -1, kArpInitial = 0, kArpActive = 1, kArpProcess
 
 struct ArpTriangle {       // its number is the id; parents come before children
     uint8_t corner[3][2];  // barycentrics 1 and 2
-    uint8_t setLevel;      // 1: the coarse triangle
+    uint8_t setLevel;      // kArpLevels: the finest
     uint32_t parent;       // or kArpNone
     uint32_t firstChild;   // of four, who are each other's siblings; or kArpNone
 };
 
-// The template with SetLevel 1..levels, levels in 1..kArpLevels.
-std::pmr::vector<ArpTriangle> makeArpTemplate(uint32_t levels, std::pmr::memory_resource* memory);
+// The template of `depth` halvings, in 0..5. The finest have SetLevel kArpLevels, so with four the
+// coarse triangle has 1.
+std::pmr::vector<ArpTriangle> makeArpTemplate(uint32_t depth, std::pmr::memory_resource* memory);
 
 enum class ArpRules {
     printed,   // comes to no rest, and draws most of the area twice

@@ -1,0 +1,139 @@
+// The published refinement scheme's side of the backend: its statuses advance on the CPU, what they
+// draw is uploaded when it changes, and a pass places its vertices. Needs no readback.
+#include "gpu/vk/frame_needs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr float kRecede = 0.6f;  // as the product's
+
+uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
+
+// Groups of its list, at most.
+uint32_t mostGroups(const ObjectEntry& object) { return object.refine.arpList.units / 64; }
+
+}  // namespace
+
+void VkBackend::State::takeArp(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh,
+                               uint64_t last) {
+    uint32_t free = 0;
+    while (free < arps.size() && arps[free]->model) ++free;
+    if (free == arps.size()) arps.push_back(core::Owned<ArpUse>::make(memory, memory));
+    ArpUse& taken = *arps[free];
+    taken.state.reset(*init.arpModel);
+    use.allocateArp(planes, mesh, last);
+    taken.model = init.arpModel;
+    taken.settings = init.arp;
+    use.arpPlus1 = free + 1;
+}
+
+void VkBackend::State::dropArp(RefineUse& use) noexcept {
+    if (use.arpPlus1) arps[use.arpPlus1 - 1]->model = nullptr;
+    use.arpPlus1 = 0;
+}
+
+void VkBackend::startBoundary(uint32_t slot, const float point[3], uint32_t tick) noexcept {
+    State& s = *state_;
+    const uint32_t plus1 = s.objects[slot].refine.arpPlus1;
+    if (plus1 == 0) return;
+    ArpUse& use = *s.arps[plus1 - 1];
+    mesh::arpIgnite(*use.model, use.settings, {point[0], point[1], point[2]}, tick, use.state);
+}
+
+// Where no host lit it there is no boundary: such an object is drawn as its mesh.
+bool VkBackend::State::refinesAsPublished(const ObjectEntry& object) const noexcept {
+    return object.live && object.refine.arpPlus1 && arps[object.refine.arpPlus1 - 1]->state.lit &&
+           double(object.refine.quietTick) > arp.lastTick;
+}
+
+// The bytes that the frame may upload for it. May throw.
+uint64_t VkBackend::State::planArp() {
+    arp.placeGroups = arp.nameGroups = 0;
+    if (arp.users == 0 || open.unseen) return 0;
+    uint64_t bytes = 0;
+    for (const ObjectEntry& object : objects) {
+        if (!refinesAsPublished(object)) continue;
+        arp.placeGroups += groupsOf(meshes[object.mesh].refine[object.refine.key].slotCount);
+        arp.nameGroups += mostGroups(object);
+        bytes += uploaded(sizeof(RefineObject)) + uploaded(mostGroups(object) * 256ull) +
+                 uploaded(kMaterialsPerObject * sizeof(VkDrawIndexedIndirectCommand));
+    }
+    if (bytes == 0) return 0;
+    planes.atLeast(kSpaceArpGroups, arp.placeGroups + arp.nameGroups, ring.newest());
+    return bytes + uploaded((arp.placeGroups + arp.nameGroups) * sizeof(WakeGroup));
+}
+
+namespace {
+
+// The list, filled up to whole groups, and a draw for each material.
+void writeList(const ObjectEntry& object, uint32_t slot, const RefineMesh& mesh,
+               const mesh::ArpState& state, FrameRecorder& recorder, UploadWriter& writer) {
+    Staged staged = writer.begin();
+    writer.append(staged, std::span<const uint32_t>(state.list));
+    const uint32_t nothing = kArpNothing;
+    while (staged.count % 64 != 0) writer.append(staged, std::span<const uint32_t>(&nothing, 1));
+    writer.end();
+    recorder.copyIn(staged.at, FW_BIND_ARP_LIST, uint64_t(object.refine.arpList.first) * 4,
+                    uint64_t(staged.count) * 4);
+    VkDrawIndexedIndirectCommand draws[kMaterialsPerObject]{};
+    uint32_t first = object.refine.indices.first;
+    for (uint32_t m = 0; m < kMaterialsPerObject; ++m) {
+        draws[m] = {state.listed[m] * 3, 1, first, int32_t(mesh.draws.first), 0};
+        first += state.listed[m] * 3;
+    }
+    const Staged args = writer.write(std::span<const VkDrawIndexedIndirectCommand>(draws));
+    recorder.copyIn(args.at, FW_BIND_REFINE_DRAWS, uint64_t(slot) * sizeof draws, sizeof draws);
+}
+
+}  // namespace
+
+void VkBackend::State::recordArp(FrameInFlight& slot, const FwView& view) {
+    if (arp.placeGroups == 0) return;
+    lookFrom(view);
+    FrameRecorder recorder(recordTarget(slot, open.commands));
+    UploadWriter writer(slot);
+    const double now = double(shownTick) + double(tickFraction) * kStepTicks;
+    for (uint32_t i = 0; i < objects.size(); ++i) {
+        ObjectEntry& object = objects[i];
+        if (!refinesAsPublished(object)) continue;
+        const RefineMesh& refined = meshes[object.mesh].refine[object.refine.key];
+        ArpUse& use = *arps[object.refine.arpPlus1 - 1];
+        RefineObject record = refineRecord(object, refine.full);
+        record.items = object.refine.arpList.first;
+        record.cornerCount = refined.slotCount;
+        const Staged staged = writer.write(std::span<const RefineObject>(&record, 1));
+        recorder.copyIn(staged.at, FW_BIND_REFINE_OBJECTS, uint64_t(i) * sizeof record,
+                        sizeof record);
+        use.settings.pixelsPerEdge = object.refine.pixelsPerEdge;
+        const mesh::ArpView from{{record.eye.x, record.eye.y, record.eye.z}, record.eye.w};
+        if (mesh::arpAdvance(*use.model, use.settings, now, from, refine.full, use.state))
+            writeList(object, i, refined, use.state, recorder, writer);
+        object.refine.started = true;
+        object.refine.now = record.now;
+    }
+    Staged groups = writer.begin();
+    uint32_t places = 0;
+    for (const bool naming : {false, true})
+        for (uint32_t i = 0; i < objects.size(); ++i) {
+            const ObjectEntry& object = objects[i];
+            if (!refinesAsPublished(object)) continue;
+            const auto count = naming
+                                   ? uint32_t(arps[object.refine.arpPlus1 - 1]->state.list.size())
+                                   : meshes[object.mesh].refine[object.refine.key].slotCount;
+            for (uint32_t first = 0; first < count; first += 64) {
+                const WakeGroup group{i, first};
+                writer.append(groups, std::span<const WakeGroup>(&group, 1));
+            }
+            if (!naming) places = groups.count;
+        }
+    writer.end();
+    recorder.copyIn(groups.at, FW_BIND_ARP_GROUPS, 0, groups.count * sizeof(WakeGroup));
+    arp.lastTick = now;
+    recordRefinePublished(recorder, {0, shownTick, 0, kRecede}, places, groups.count - places);
+}
+
+}  // namespace fw::gpu::vk

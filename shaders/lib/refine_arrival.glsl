@@ -1,0 +1,40 @@
+// A refined vertex now, from the arrivals around its texel and around the wall behind it. Expects the
+// buffers of lib/refine_buffers.glsl with FW_USE_PREDICT.
+#ifndef FW_LIB_REFINE_ARRIVAL_GLSL
+#define FW_LIB_REFINE_ARRIVAL_GLSL
+
+bool isDoused(uint t) { return t == kOut || t == kOutWet; }
+
+// As the surface shows it: what nothing holds falls to ash early, and a texel that was put out stays
+// as burnt as it was, younger every frame.
+float arrivalAt(uint object, uint base, uint weights, uint nowTick) {
+    uint at = refined[object].stateBase + base;
+    uint up = at + refined[object].textureWidth;
+    uvec4 t = uvec4(predict[at], predict[at + 1u], predict[up], predict[up + 1u]);
+    bool doused = isDoused(t.x) || isDoused(t.y) || isDoused(t.z) || isDoused(t.w);
+    while (doused) {
+        uvec4 burnt = uvec4(gradient[at], gradient[at + 1u], gradient[up], gradient[up + 1u]);
+        for (int k = 0; k < 4; ++k)
+            if (isDoused(t[k])) t[k] = nowTick - min(burnt[k], nowTick);
+        doused = false;
+    }
+    return refineArrival(t, weights, nowTick, refined[object].epochTick);
+}
+
+RefineVertex refineNow(uint object, RefineSlot slot, uint nowTick, float recede) {
+    float own = arrivalAt(object, slot.texel & 0xFFFFFFu, slot.weights, nowTick);
+    float opposite = kRefineNever;
+    bool walled = slot.opposite != kRefineOpposed;
+    while (walled) {
+        opposite = arrivalAt(object, slot.opposite & 0xFFFFFFu,
+                             refineOppositeWeights(slot.opposite), nowTick);
+        walled = false;
+    }
+    uint material = slot.texel >> 24u;
+    vec4 low = refined[object].burnSeconds0;
+    vec4 high = refined[object].burnSeconds1;
+    float seconds = material < 4u ? low[material & 3u] : high[material & 3u];
+    vec4 v = refineEvaluate(slot, own, opposite, refined[object].now, seconds, recede);
+    return RefineVertex(v.x, v.y, v.z, v.w);
+}
+#endif

@@ -1,0 +1,50 @@
+// The published refinement scheme's share of a frame, in phases with a barrier between: 0 places all
+// vertices of its templates, a lane each; 1 names the three of each triangle that the host's
+// statuses draw, none where it is consumed.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_ARP
+#define FW_USE_TRIANGLES readonly
+#define FW_USE_SLOTS readonly
+#define FW_USE_VERTICES FW_READ_WRITE
+#define FW_USE_INDICES writeonly
+#define FW_USE_MESH_VERTICES readonly
+#define FW_USE_PREDICT readonly
+#include "lib/refine_buffers.glsl"
+#include "lib/refine_arrival.glsl"
+
+void place(uint object, uint s) {
+    RefineSlot slot = slots[refined[object].meshSlots + s];
+    vertices[refined[object].vertices + s] = refineNow(object, slot, push.nowTick, push.recede);
+}
+
+void name(uint object, uint entry) {
+    uint word = arpList[refined[object].items + entry];
+    if (word == kArpNothing) return;
+    RefineTriangle t = triangles[refined[object].meshTriangles + arpCoarse(word)];
+    uint depth = refineInteriorDepth(t.flags);
+    bool finest = arpHalvings(word) == depth;
+    uint drawn[3];
+    uint gone = 0u;
+    for (uint k = 0u; k < (finest ? 3u : 6u); ++k) {
+        uvec2 c = arpPoint(word, depth, k);
+        uint vertex = arpDrawVertex(t, c.x, c.y);
+        uint slot = meshVertices[(refined[object].meshDraws + vertex) * 3u + 2u].w;
+        bool open = vertices[refined[object].vertices + slot].hole <= refined[object].now;
+        gone |= open ? 1u << k : 0u;
+        if (k < 3u) drawn[k] = vertex;
+    }
+    bool consumed = arpConsumed(gone, finest);
+    uint to = refined[object].indices + entry * 3u;
+    indices[to] = drawn[0];
+    indices[to + 1u] = consumed ? drawn[0] : drawn[1];
+    indices[to + 2u] = consumed ? drawn[0] : drawn[2];
+}
+
+void main() {
+    uvec2 group = groups[push.firstGroup + gl_WorkGroupID.x];
+    uint i = group.y + gl_LocalInvocationID.x;
+    if (push.phase != 0u) name(group.x, i);
+    else if (i < refined[group.x].cornerCount) place(group.x, i);
+}

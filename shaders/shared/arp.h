@@ -1,0 +1,64 @@
+// The published refinement scheme per lane, one text for C++ and GLSL: a triangle of its template as
+// a word, the vertices it names, and which of its children are consumed. It loads nothing. Which
+// triangles are drawn is decided in runtime/mesh/refine; the product's scheme is refine.h.
+// GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_ARP_H
+#define FW_SHARED_ARP_H
+#include "shared/refine.h"
+
+FW_SHARED_BEGIN
+
+// A word: bits 0 and 6: lattice point of the corner with the right angle, in steps of 2^depth from
+// corner 0 of the coarse triangle towards corners 1 and 2; 12: halvings; 15: it points down; 16: the
+// coarse triangle.
+FW_SHARED_CONST uint kArpNothing = 0xFFFFFFFFu;  // fills a list up to whole groups
+FW_SHARED_CONST uint kArpDown = 0x8000u;
+FW_SHARED_CONST uint kArpMostTriangles = 65535u;  // coarse
+
+FW_SHARED_FN uint arpWord(uint c1, uint c2, uint halvings, bool down) {
+    return c1 | (c2 << 6u) | (halvings << 12u) | (down ? kArpDown : 0u);
+}
+FW_SHARED_FN uint arpHalvings(uint word) { return (word >> 12u) & 7u; }
+FW_SHARED_FN uint arpCoarse(uint word) { return word >> 16u; }
+
+// Lattice point k: the corners, then the middles of the sides from corner k - 3.
+FW_SHARED_FN uvec2 arpPoint(uint word, uint depth, uint k) {
+    uint c1 = word & 63u, c2 = (word >> 6u) & 63u;
+    uint side = 1u << (depth - arpHalvings(word)), half_ = side >> 1u;
+    uint d1 = k == 1u ? side : k == 3u || k == 4u ? half_ : 0u;
+    uint d2 = k == 2u ? side : k == 4u || k == 5u ? half_ : 0u;
+    bool down = (word & kArpDown) != 0u;
+    return uvec2(down ? c1 - d1 : c1 + d1, down ? c2 - d2 : c2 + d2);
+}
+
+// The draw vertex at a lattice point of a coarse triangle whose sides are all of its depth.
+FW_SHARED_FN uint arpDrawVertex(FW_IN(RefineTriangle) t, uint c1, uint c2) {
+    uint depth = refineInteriorDepth(t.flags);
+    uint c0 = (1u << depth) - c1 - c2;
+    uint code = refineInside(c1, c2);
+    if (c1 == 0u) code = refineOnSide(2u, c0);
+    if (c0 == 0u) code = refineOnSide(1u, c2);
+    if (c2 == 0u) code = refineOnSide(0u, c1);
+    return refineDrawVertex(t, refinePack(depth, depth, depth, depth), code);
+}
+
+// The burn-level rule, as it is drawn. gone: a bit for each of the six points that is burnt through.
+// A triangle is consumed when its corners are, or two of its four children; finest: it has none.
+FW_SHARED_FN bool arpConsumed(uint gone, bool finest) {
+    if (finest || (gone & 7u) == 7u) return (gone & 7u) == 7u;
+    uint children = ((gone & 0x29u) == 0x29u ? 1u : 0u) + ((gone & 0x1Au) == 0x1Au ? 1u : 0u) +
+                    ((gone & 0x34u) == 0x34u ? 1u : 0u) + ((gone & 0x38u) == 0x38u ? 1u : 0u);
+    return children >= 2u;
+}
+
+struct ArpPush {
+    uint phase;
+    uint nowTick;
+    uint firstGroup;  // of the phase, in the list
+    float recede;     // share of a slot's reach, below 1
+};
+FW_SHARED_SIZE(ArpPush, 16)
+
+FW_SHARED_END
+#endif
