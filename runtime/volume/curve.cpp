@@ -123,6 +123,18 @@ void layNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept {
     mendNodes(nodes, vec3(nodes[0].along));
 }
 
+void standNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weight) noexcept {
+    for (gpu::FlameNode& node : nodes) {
+        const float level =
+            weight - weight * glm::smoothstep(0.0f, std::max(over, kTiny), node.along.w);
+        // Where gas flows down or along, its own way counts.
+        const float upright = glm::smoothstep(0.05f, 0.4f, glm::dot(vec3(node.along), up));
+        node.along =
+            vec4(unitOr(glm::mix(vec3(node.along), up, level * upright), up), node.along.w);
+    }
+    mendNodes(nodes, up);
+}
+
 void mendNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept {
     if (nodes.empty()) return;
     const size_t n = nodes.size();

@@ -53,7 +53,10 @@ using FlameNodes = std::array<gpu::FlameNode, gpu::kFlameNodes>;
 // Nodes every length / (kFlameNodes - 1) metres. Radii are clamped so that no two neighbouring
 // bisector planes meet inside the tube: each point of it then lies between one pair of planes.
 void layNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept;
-// The clamp alone, for nodes that something moved; `nodes` keep their places. Frames are made anew.
+// Turns the lowest planes level, so that a leaning flame stands on its bed and not on edge: wholly
+// at the base, no more at `over` metres; all of it `weight` much.
+void standNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weight) noexcept;
+// Clamp and frames alone, for nodes that something moved; `nodes` keep their places.
 void mendNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept;
 
 // The place of a point in the curve's coordinates: of all pairs of planes that it lies between, the

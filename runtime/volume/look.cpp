@@ -86,19 +86,21 @@ FlamePresetDef presetDef(FlamePreset preset) noexcept {
             l.painter = Painter::Candle;
             l.turbulence = 0.015f, l.radial = 0.0f, l.warp = 0.04f, l.columns = 0.0f,
             l.filament = 0.0f;
-            l.erode = 0.0f, l.converge = 0.0f, l.puff = 0.03f, l.burn = 0.22f, l.octaves = 1;
+            l.erode = 0.0f, l.converge = 0.0f, l.puff = 0.03f, l.burn = 0.22f, l.octaves = 1,
+            l.dispersion = 0.05f;
             l.core = 1830.0f, l.tip = 1640.0f, l.thickness = 0.77f, l.blue = 0.5f,
             l.blueHeight = 0.32f;
             l.lambda = 1.8f, l.lambdaWarp = 2.7f, l.smoke = 0.0f, l.smokeTop = 1.0f,
             l.flicker = 0.05f;
-            l.heightFactor = 0.93f;
+            l.heightFactor = 0.93f, l.heightSlope = 0.0f;
             break;
         case FlamePreset::Torch:
             d.power = 5.0f, d.diameter = 0.13f;
             l.stretch = 2.2f, l.converge = 0.55f, l.lambda = 0.36f, l.warp = 0.34f,
             l.columns = 1.1f;
             l.baseSoft = 0.10f, l.baseRound = 0.16f, l.coolCore = 0.02f, l.filamentHeight = 0.4f;
-            l.puff = 0.08f, l.burn = 1.1f, l.smoke = 2.0f, l.smokeTop = 3.0f, l.heightFactor = 1.3f;
+            l.puff = 0.08f, l.burn = 1.1f, l.smoke = 2.0f, l.smokeTop = 3.0f,
+            l.heightFactor = 1.27f, l.heightSlope = 0.02f;
             break;
         case FlamePreset::Bonfire:
             d.power = 600.0f, d.diameter = 1.3f;
@@ -114,18 +116,20 @@ FlamePresetDef presetDef(FlamePreset preset) noexcept {
             l.converge = 0.95f, l.warp = 0.44f, l.radial = 0.12f, l.erode = 0.2f,
             l.thickness = 6.0f;
             l.smoke = 1.5f, l.smokeAlbedo = 0.25f, l.smokeTop = 5.5f;
+            l.heightFactor = 1.58f;
             break;
         case FlamePreset::GasBurner:
             d.power = 0.6f, d.diameter = 0.045f;
             l.painter = Painter::Burner;
             l.turbulence = 0.05f, l.radial = 0.03f, l.warp = 0.05f, l.columns = 0.1f,
             l.filament = 0.0f;
-            l.erode = 0.0f, l.converge = 0.0f, l.puff = 0.02f, l.burn = 1.5f, l.octaves = 2;
+            l.erode = 0.0f, l.converge = 0.0f, l.puff = 0.02f, l.burn = 1.5f, l.octaves = 2,
+            l.dispersion = 0.03f;
             l.blue = 0.9f, l.blueHeight = 2.5f, l.thickness = 2.0f, l.smoke = 0.0f,
             l.smokeTop = 1.0f;
             l.core = 1750.0f, l.tip = 1500.0f, l.flicker = 0.03f, l.radiant = 0.12f;
             tint(0.10f, 0.32f, 1.0f);
-            l.heightFactor = 0.95f;
+            l.heightFactor = 0.95f, l.heightSlope = 0.0f;
             break;
         case FlamePreset::MagicBlue:
         case FlamePreset::MagicGreen:
@@ -139,7 +143,7 @@ FlamePresetDef presetDef(FlamePreset preset) noexcept {
             d.power = 2.5f, d.diameter = 0.45f;
             l.stretch = 2.3f, l.converge = 0.8f, l.core = 1500.0f, l.tip = 1180.0f,
             l.thickness = 3.0f;
-            l.burn = 0.8f, l.columns = 2.0f, l.smoke = 2.0f, l.blue = 0.3f, l.puff = 0.2f,
+            l.burn = 0.8f, l.columns = 2.0f, l.smoke = 2.0f, l.blue = 0.1f, l.puff = 0.2f,
             l.flicker = 0.3f;
             break;
         default:  // camp fire
@@ -185,8 +189,10 @@ float plumeExcess(float power, float z) noexcept {
 }
 
 float heightFactor(const FlameLook& look, float height, float diameter) noexcept {
-    const float slender = std::log2(std::clamp(height / std::max(diameter, 1e-4f), 0.25f, 32.0f));
-    return std::clamp(look.heightFactor + look.heightSlope * slender, 0.8f, 2.4f);
+    const float slender = std::log2(std::max(height, 1e-6f) / std::max(diameter, 1e-4f));
+    // Jets, of more than sixteen diameters, taper sooner.
+    return look.heightFactor + look.heightSlope * std::clamp(slender - 1.0f, 0.0f, 2.0f) -
+           0.12f * std::clamp(slender - 4.0f, 0.0f, 2.0f);
 }
 
 uint32_t splitFire(float power, float diameter, std::array<Flamelet, kMaxFlamelets>& out) noexcept {

@@ -17,12 +17,13 @@ struct FlameLook {
     float turbulence = 0.65f;  // [0, 2]
     float radial = 0.2f;
     float warp = 0.42f, columns = 1.7f;
-    float ridge = 0.5f;      // [0, 1] round to pointed
-    uint32_t octaves = 3;    // [1, 4]
-    float converge = 1.05f;  // [0, 1.3] tongues lean inward
-    float puff = 0.15f;      // [0, 0.5] amplitude of puffing at 1.5 / sqrt(D)
-    float burn = 1.0f;       // speed of everything that moves
-    float thickness = 5.4f;  // optical depth of soot across the scale length
+    float ridge = 0.5f;        // [0, 1] round to pointed
+    uint32_t octaves = 3;      // [1, 4]
+    float converge = 1.05f;    // [0, 1.3] tongues lean inward
+    float puff = 0.15f;        // [0, 0.5] amplitude of puffing at 1.5 / sqrt(D)
+    float burn = 1.0f;         // speed of everything that moves
+    float dispersion = 0.35f;  // [0, 1] how far hot gas strays, of its speed
+    float thickness = 5.4f;    // optical depth of soot across the scale length
     float blue = 0.15f, blueHeight = 0.10f;
     float erode = 0.28f;
     float filament = 1.0f, filamentWidth = 0.09f, filamentBase = 0.03f, filamentHeight = 0.25f;
@@ -40,9 +41,9 @@ struct FlameLook {
     float coolCore = 0.06f;
     float fill = 0.35f, sheet = 0.6f, sheetWidth = 0.25f;
     float baseSoft = 0.12f, baseRound = 0.06f;
-    // Visible over profile height, see heightFactor(): at height = diameter, and per octave of
-    // that.
-    float heightFactor = 1.75f, heightSlope = 0.0f;
+    // Visible over profile height, see heightFactor(): of a flame up to two diameters high; and
+    // what it is more by for each of the next two doublings.
+    float heightFactor = 1.52f, heightSlope = 0.065f;
 };
 
 enum class FlamePreset : uint32_t {

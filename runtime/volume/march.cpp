@@ -9,7 +9,8 @@ namespace {
 
 float reachOf(const gpu::FlameRecord& flame, const gpu::FlameNode& a,
               const gpu::FlameNode& b) noexcept {
-    return gpu::flameReachAt(flame, a.along.w, b.along.w, std::max(a.centre.w, b.centre.w));
+    return gpu::flameReachAt(flame, a.along.w, b.along.w, std::max(a.centre.w, b.centre.w),
+                             std::max(a.side.w, b.side.w));
 }
 
 }  // namespace

@@ -349,11 +349,11 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     return vec2(f.smoke * density * thin * thin, clamp(0.5f + 0.8f * billow, 0.0f, 1.0f));
 }
 
-// m from the axis that anything shows between two places along, in a tube of that radius.
-FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius) {
+// m from the axis that anything shows between two places along, in a tube of that radius, widened so.
+FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius, float widened) {
     float reach = kFlameReach * (1.0f + f.puff) * radius;
     if (f.smoke <= 0.0f || s1 < 0.6f * f.high.w || s0 > f.smokeTop * f.high.w) return reach;
-    return max(reach, 1.96f * (0.45f * f.low.w + 0.16f * max(s1 - 0.6f * f.high.w, 0.0f)));
+    return max(reach, widened * 1.96f * (0.45f * f.low.w + 0.16f * max(s1 - 0.6f * f.high.w, 0.0f)));
 }
 
 // What smoke scatters towards the eye, of the flame below and of the air around, per unit of density.

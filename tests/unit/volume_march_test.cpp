@@ -41,7 +41,7 @@ TEST(VolumeMarch, T4_1_ClearGas) {
     EXPECT_EQ(ray.through, vec3(1.0f));
 }
 
-double meanRadiance(const Flame& f, uint32_t steps, float detail) {
+double meanRadiance(const Shown& f, uint32_t steps, float detail) {
     MarchRules rules;
     rules.steps = steps, rules.smoke = false, rules.detail = detail, rules.jitter = -1.0f;
     const float tall = 2.0f * f.size.height;
@@ -56,7 +56,7 @@ double meanRadiance(const Flame& f, uint32_t steps, float detail) {
 }
 
 TEST(VolumeMarch, BrightnessDoesNotDependOnTheStepCount) {
-    Flame f = Flame::preset(FlamePreset::CampFire);
+    Shown f = Shown::preset(FlamePreset::CampFire);
     f.run(3.0);
     const double fine = meanRadiance(f, 256, 0.03f);
     for (const uint32_t steps : {32u, 64u, 128u}) {
@@ -69,7 +69,7 @@ TEST(VolumeMarch, NothingShowsOutsideTheBounds) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
-        Flame f = Flame::preset(FlamePreset(k));
+        Shown f = Shown::preset(FlamePreset(k));
         f.run(1.7);
         const Bounds b = flameBounds(f.record, f.nodes);
         const vec3 size = b.high - b.low;
@@ -91,7 +91,7 @@ TEST(VolumeMarch, NothingShowsOutsideTheBounds) {
 }
 
 TEST(VolumeMarch, RaysFindAllThatIsInTheTube) {
-    Flame f = Flame::preset(FlamePreset::Torch);
+    Shown f = Shown::preset(FlamePreset::Torch);
     f.run(0.9);
     std::mt19937 random(9);
     std::normal_distribution<float> normal;
@@ -112,7 +112,7 @@ TEST(VolumeMarch, RaysFindAllThatIsInTheTube) {
 }
 
 TEST(VolumeMarch, FromInsideAndBehindAWall) {
-    Flame f = Flame::preset(FlamePreset::CampFire);
+    Shown f = Shown::preset(FlamePreset::CampFire);
     f.run(1.0);
     MarchRules rules;
     const vec3 eye(0, 0.15f, 0);  // in the middle of the fire
@@ -137,10 +137,10 @@ TEST(VolumeMarch, FromInsideAndBehindAWall) {
 TEST(VolumeMarch, T4_7_NoiseIsInMetres) {
     // The same fire ten times as large is the same picture, seen from ten times as far.
     const FlameLook look = presetDef(FlamePreset::CampFire).look;
-    Flame small(look, 60.0f, 0.6f, 0.6f), large(look, 60.0f, 6.0f, 6.0f);
+    Shown small(look, 60.0f, 0.6f, 0.6f), large(look, 60.0f, 6.0f, 6.0f);
     EXPECT_NEAR(large.record.lambda / small.record.lambda, 10.0f, 1e-3f);
     // A flame twice as high over the same bed has tongues as wide as before, not stretched ones.
-    Flame tall(look, 400.0f, 0.6f, 2.4f), taller(look, 1600.0f, 0.6f, 4.8f);
+    Shown tall(look, 400.0f, 0.6f, 2.4f), taller(look, 1600.0f, 0.6f, 4.8f);
     EXPECT_NEAR(taller.record.lambda / tall.record.lambda, 1.0f, 1e-3f);
 }
 

@@ -41,7 +41,7 @@ struct Night {
     }
 };
 
-Camera cameraFor(const Flame& f, float heights = 2.0f) {
+Camera cameraFor(const Shown& f, float heights = 2.0f) {
     const float tall = std::max(heights * f.size.height, 1.3f * f.size.diameter);
     const float away = 4.0f * tall;
     return {vec3(0, 0.62f * tall, away), vec3(0, 0.46f * tall, 0), 0.56f * tall / away};
@@ -53,7 +53,7 @@ TEST(VolumePictures, EveryPresetIsItself) {
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
         const FlamePreset preset = FlamePreset(k);
         const std::string name = presetName(preset);
-        Flame f = Flame::preset(preset);
+        Shown f = Shown::preset(preset);
         MarchRules rules;
         rules.steps = folder ? 72 : 24, rules.jitter = -1.0f, rules.smoke = folder != nullptr;
         const Camera camera = cameraFor(f);
@@ -96,6 +96,67 @@ TEST(VolumePictures, EveryPresetIsItself) {
         if (!blue && !green) {
             EXPECT_GT(sum.r, 2.0f * sum.g) << name << ": deep orange, white only by exposure";
         }
+    }
+}
+
+// Strips of what moves, only to be looked at: still, in wind, under a ceiling, at a wall, swung,
+// split.
+TEST(VolumePictures, Strips) {
+    const char* folder = std::getenv("FLAMEWRIGHT_FLAME_PICTURES");
+    const int frames = folder ? 5 : 1, width = folder ? 180 : 12, height = folder ? 200 : 14;
+    Collider ceiling, wall;
+    ceiling.kind = wall.kind = ColliderKind::Plane;
+    ceiling.place = vec3(0, 0.5f, 0), ceiling.extent = vec3(0, -1, 0);
+    wall.place = vec3(0.22f, 0, 0), wall.extent = vec3(-1, 0, 0);
+    for (const std::string what : {"still", "wind", "ceiling", "wall", "swung", "embers"}) {
+        FlameDef d;
+        const FlamePreset preset = what == "swung"    ? FlamePreset::Torch
+                                   : what == "embers" ? FlamePreset::DyingEmbers
+                                                      : FlamePreset::CampFire;
+        const FlamePresetDef p = presetDef(preset);
+        std::array<Flamelet, kMaxFlamelets> parts;
+        const uint32_t n = splitFire(p.power, p.diameter, parts);
+        FlameAir air;
+        if (what == "wind") air.wind = vec3(3, 0, 0);
+        if (what == "ceiling") air.colliders = std::span(&ceiling, 1);
+        if (what == "wall") air.colliders = std::span(&wall, 1);
+        std::vector<Flame> flames(n);
+        for (uint32_t k = 0; k < n; ++k) {
+            d.look = p.look, d.power = parts[k].power, d.diameter = parts[k].diameter,
+            d.seed = 1 + k;
+            d.position = vec3(parts[k].x, 0, parts[k].z);
+            startFlame(flames[k], d, air);
+        }
+        std::vector<vec3> strip(size_t(width * frames * height));
+        for (int frame = 0; frame < frames; ++frame) {
+            for (int k = 0; k < (frame == 0 ? 120 : 8); ++k)
+                for (Flame& f : flames) {
+                    if (what == "swung") f.def.position.x = 0.5f * std::sin(float(f.age) * 5.0f);
+                    advanceFlame(f, air, 1.0 / 60.0);
+                }
+            MarchRules rules;
+            rules.steps = folder ? 72 : 16, rules.jitter = -1.0f;
+            const float tall = what == "embers" ? 0.5f : 1.3f;
+            const Camera camera{{0.1f, 0.5f * tall, 4.0f * tall}, {0.1f, 0.38f * tall, 0}, 0.13f};
+            std::vector<vec3> image(size_t(width * height));
+            for (uint32_t k = 0; k < n; ++k) {
+                const Shown shown(flames[k]);
+                const auto one =
+                    picture(shown, camera, width, height, rules, [&](vec3 eye, vec3 dir) {
+                        return k == 0 ? Night{p.diameter}(eye, dir) : std::pair{vec3(0.0f), 1e9f};
+                    });
+                for (size_t i = 0; i < image.size(); ++i) image[i] += one[i];
+            }
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const vec3 c = image[size_t(y * width + x)];
+                    ASSERT_TRUE(std::isfinite(c.r + c.g + c.b)) << what;
+                    strip[size_t(y * width * frames + frame * width + x)] = c;
+                }
+        }
+        if (folder)
+            writePpm(std::string(folder) + "/strip_" + what + ".ppm", strip, width * frames, height,
+                     1.5f, vec3(1.0f, 1.25f, 1.6f));
     }
 }
 

@@ -1,8 +1,7 @@
 // A flame to look at and to measure, without a device: a straight or given curve, a preset, a
 // picture.
 #pragma once
-#include "volume/look.h"
-#include "volume/march.h"
+#include "volume/flame.h"
 
 #include <cmath>
 #include <memory>
@@ -12,7 +11,7 @@ namespace volume_scene {
 
 using namespace fw::volume;
 
-struct Flame {
+struct Shown {
     FlameLook look;
     FlameSize size;
     FlameScroll scroll;
@@ -21,13 +20,13 @@ struct Flame {
     fw::gpu::FlameRecord record{};
     FlameNodes nodes{};
 
-    Flame(const FlameLook& l, float power, float diameter, float height) : look(l) {
+    Shown(const FlameLook& l, float power, float diameter, float height) : look(l) {
         size = {power, diameter, height, 1.0f};
         paintLook(look, *profile);
         describe();
         stand();
     }
-    static Flame preset(FlamePreset preset) {
+    static Shown preset(FlamePreset preset) {
         const FlamePresetDef d = presetDef(preset);
         std::array<Flamelet, kMaxFlamelets> parts;
         splitFire(d.power, d.diameter, parts);
@@ -44,6 +43,12 @@ struct Flame {
         const ControlPoint points[] = {{vec3(0), r}, {vec3(0, size.height, 0), r}};
         curve.set(points, vec3(0, 1, 0));
         layNodes(curve, topOf(record), nodes);
+    }
+    explicit Shown(const Flame& flame) : look(flame.def.look) {  // as it burns now
+        size = flame.size;
+        paintLook(look, *profile);
+        record = flame.record;
+        nodes = flame.nodes;
     }
     void run(double seconds) {
         advanceScroll(scroll, look, record, seconds);
@@ -73,7 +78,7 @@ struct Camera {
 
 // Linear radiance, rows top first.
 template <typename Background>
-std::vector<vec3> picture(const Flame& f, const Camera& camera, int width, int height,
+std::vector<vec3> picture(const Shown& f, const Camera& camera, int width, int height,
                           const MarchRules& rules, const Background& background) {
     const vec3 ahead = glm::normalize(camera.target - camera.eye);
     const vec3 right = glm::normalize(glm::cross(ahead, vec3(0, 1, 0))),

@@ -1,0 +1,165 @@
+// Distances to shapes, and what they do to a tube.
+#include "volume/collide.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::volume {
+namespace {
+
+constexpr float kMostSqueeze = 0.88f;
+constexpr float kMostWiden = 1.7f;
+
+vec3 unitOr(vec3 v, vec3 fallback) noexcept {
+    const float l = glm::length(v);
+    return l > 1e-9f && std::isfinite(l) ? v / l : fallback;
+}
+
+vec3 turned(vec4 q, vec3 v) noexcept {
+    const vec3 u(q);
+    return v + 2.0f * glm::cross(u, glm::cross(u, v) + q.w * v);
+}
+
+Surface ofBox(const Collider& c, vec3 point) noexcept {
+    const vec4 back(-vec3(c.rotation), c.rotation.w);
+    const vec3 p = turned(back, point - c.place);
+    const vec3 q = glm::abs(p) - c.extent;
+    const vec3 sign(p.x < 0 ? -1.0f : 1.0f, p.y < 0 ? -1.0f : 1.0f, p.z < 0 ? -1.0f : 1.0f);
+    const float deepest = std::max({q.x, q.y, q.z});
+    if (deepest > 0.0f) {
+        const vec3 out = glm::max(q, vec3(0.0f));
+        return {glm::length(out), turned(c.rotation, unitOr(out * sign, vec3(0, 1, 0)))};
+    }
+    const int axis = q.x >= q.y && q.x >= q.z ? 0 : q.y >= q.z ? 1 : 2;
+    vec3 normal(0.0f);
+    normal[axis] = sign[axis];
+    return {deepest, turned(c.rotation, normal)};
+}
+
+Surface ofHeights(const Collider& c, vec3 point) noexcept {
+    const float u = (point.x - c.place.x) / c.radius, v = (point.z - c.place.z) / c.radius;
+    if (!c.heights || c.columns < 2 || c.rows < 2 || !(u >= 0.0f) || !(v >= 0.0f) ||
+        u > float(c.columns - 1) || v > float(c.rows - 1))
+        return {};
+    const uint32_t x = std::min(uint32_t(u), c.columns - 2), z = std::min(uint32_t(v), c.rows - 2);
+    const auto at = [&](uint32_t i, uint32_t j) { return c.heights[size_t(j) * c.columns + i]; };
+    const float fu = u - float(x), fv = v - float(z);
+    const float h00 = at(x, z), h10 = at(x + 1, z), h01 = at(x, z + 1), h11 = at(x + 1, z + 1);
+    const float height = glm::mix(glm::mix(h00, h10, fu), glm::mix(h01, h11, fu), fv);
+    const float dx = glm::mix(h10 - h00, h11 - h01, fv) / c.radius;
+    const float dz = glm::mix(h01 - h00, h11 - h10, fu) / c.radius;
+    const vec3 normal = unitOr(vec3(-dx, 1.0f, -dz), vec3(0, 1, 0));
+    const float distance = (point.y - c.place.y - height) * normal.y;
+    if (!std::isfinite(distance)) return {};
+    return {distance, normal};
+}
+
+}  // namespace
+
+Surface surfaceOf(const Collider& c, vec3 point) noexcept {
+    switch (c.kind) {
+        case ColliderKind::Sphere: {
+            const vec3 out = point - c.place;
+            return {glm::length(out) - c.radius, unitOr(out, vec3(0, 1, 0))};
+        }
+        case ColliderKind::Capsule: {
+            const vec3 axis = c.extent - c.place;
+            const float l2 = glm::dot(axis, axis);
+            const float t =
+                l2 > 0.0f ? std::clamp(glm::dot(point - c.place, axis) / l2, 0.0f, 1.0f) : 0.0f;
+            const vec3 out = point - (c.place + t * axis);
+            return {glm::length(out) - c.radius, unitOr(out, vec3(0, 1, 0))};
+        }
+        case ColliderKind::Box:
+            return ofBox(c, point);
+        case ColliderKind::Plane: {
+            const vec3 n = unitOr(c.extent, vec3(0, 1, 0));
+            return {glm::dot(point - c.place, n), n};
+        }
+        case ColliderKind::HeightField:
+            return ofHeights(c, point);
+        case ColliderKind::Callback: {
+            if (!c.distance) return {};
+            const float p[3] = {point.x, point.y, point.z};
+            float n[3] = {0.0f, 1.0f, 0.0f};
+            const float d = c.distance(c.user, p, n);
+            const vec3 normal(n[0], n[1], n[2]);
+            if (!std::isfinite(d) || !std::isfinite(n[0] + n[1] + n[2])) return {};
+            return {d, unitOr(normal, vec3(0, 1, 0))};
+        }
+    }
+    return {};
+}
+
+Surface nearestSurface(std::span<const Collider> colliders, vec3 point) noexcept {
+    Surface best;
+    for (const Collider& c : colliders) {
+        const Surface s = surfaceOf(c, point);
+        if (s.distance < best.distance) best = s;
+    }
+    return best;
+}
+
+void checkCollider(const Collider& c) {
+    const auto finite = [](vec3 v) {
+        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    };
+    if (uint32_t(c.kind) > uint32_t(ColliderKind::Callback))
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "kind of the collider is %u; the last one is %u.",
+                   uint32_t(c.kind), uint32_t(ColliderKind::Callback));
+    if (!finite(c.place) || !finite(c.extent))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "place and extent of the collider are (%g, %g, %g) and (%g, %g, %g); they must "
+                   "be finite.",
+                   double(c.place.x), double(c.place.y), double(c.place.z), double(c.extent.x),
+                   double(c.extent.y), double(c.extent.z));
+    const bool round = c.kind == ColliderKind::Sphere || c.kind == ColliderKind::Capsule ||
+                       c.kind == ColliderKind::HeightField;
+    if (round && !(c.radius > 0.0f && c.radius < 1e6f))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "radius of the collider is %g m; it must lie in (0, 1e6).", double(c.radius));
+    if (c.kind == ColliderKind::Plane && !(glm::length(c.extent) > 1e-6f))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "normal of the plane is (%g, %g, %g); it must not be zero.", double(c.extent.x),
+                   double(c.extent.y), double(c.extent.z));
+    const float turn = glm::dot(c.rotation, c.rotation);
+    if (c.kind == ColliderKind::Box && !(std::abs(turn - 1.0f) < 1e-2f))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "rotation of the box has the squared length %g; a unit quaternion has 1.",
+                   double(turn));
+    if (c.kind == ColliderKind::Box && !(std::min({c.extent.x, c.extent.y, c.extent.z}) > 0.0f))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "half sides of the box are (%g, %g, %g) m; each must be above 0.",
+                   double(c.extent.x), double(c.extent.y), double(c.extent.z));
+    if (c.kind == ColliderKind::HeightField && (!c.heights || c.columns < 2 || c.rows < 2))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "the height field has %u x %u heights%s; it needs at least 2 x 2.", c.columns,
+                   c.rows, c.heights ? "" : " at a null pointer");
+    if (c.kind == ColliderKind::Callback && !c.distance)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "distance of the callback collider is null; it must be a function.");
+}
+
+void squeezeNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode> nodes) noexcept {
+    if (colliders.empty() || nodes.empty()) return;
+    for (gpu::FlameNode& node : nodes) {
+        const float radius = node.centre.w;
+        const Surface s = nearestSurface(colliders, vec3(node.centre));
+        if (!(s.distance < radius) || radius <= 0.0f) continue;
+        const vec3 along(node.along);
+        const vec3 across = s.normal - along * glm::dot(along, s.normal);
+        const float square = glm::dot(across, across);  // 1: the tube runs along the surface
+        const float most = kMostSqueeze * glm::smoothstep(0.1f, 0.8f, square);
+        const float squeeze = std::clamp(1.0f - s.distance / radius, 0.0f, 1.0f) * most;
+        if (squeeze <= 0.0f) continue;
+        const float widen = std::min(1.0f / std::sqrt(1.0f - squeeze), kMostWiden);
+        node.squeeze = vec4(unitOr(across, vec3(0, 1, 0)), squeeze);
+        node.side.w = widen;
+        node.centre.w = radius * widen;
+    }
+    mendNodes(nodes, vec3(nodes[0].along));
+}
+
+}  // namespace fw::volume

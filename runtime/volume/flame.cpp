@@ -1,0 +1,258 @@
+// A flame's frame: power, drivers, curve, walls, record, bounds, light; and answers about it.
+#include "volume/flame.h"
+
+#include "core/error.h"
+#include "core/hash.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::volume {
+namespace {
+
+constexpr float kPowerLag = 0.3f;       // s
+constexpr float kStefan = 5.67e-8f;     // W/(m^2 K^4)
+constexpr float kConvection = 25.0f;    // W/(m^2 K), of flames on small bodies
+constexpr float kLumensPerWatt = 0.4f;  // of what a flame radiates, soot of about 1720 K
+constexpr float kFadePower = 0.02f;     // kW below which a flame grows thin, per m of diameter
+
+MotionRules rulesOf(const Flame& f, const FlameAir& air) noexcept {
+    MotionRules r;
+    r.size = f.size;
+    r.top = topOf(f.record);
+    r.tauStart = f.record.tauStart, r.tauFree = f.record.tauFree;
+    r.wind = air.wind;
+    r.up = f.def.up;
+    r.dispersion = f.def.look.dispersion;
+    r.puff = f.def.look.puff;
+    r.burn = f.def.look.burn;
+    r.pull = air.neighbours.pull * (1.0f + 2.0f * air.neighbours.merged);
+    r.seed = f.def.seed;
+    return r;
+}
+
+float heightOf(const Flame& f, const FlameAir& air) noexcept {
+    float height = f.def.height;
+    if (!(height > 0.0f))
+        height = std::max(flameHeight(f.power, f.def.diameter), 0.5f * f.def.diameter);
+    // A fire that dies down is lower than the law says for its bed.
+    if (f.def.power > 0.0f) height *= std::pow(std::clamp(f.power / f.def.power, 0.0f, 1.0f), 0.2f);
+    return std::max({height, air.neighbours.height, 1e-3f});
+}
+
+void describe(Flame& f, const FlameAir& air) noexcept {
+    f.size.power = f.power;
+    f.size.diameter = f.def.diameter;
+    f.size.height = heightOf(f, air);
+    f.size.pulse = 1.0f;  // the mean; finish() puts the rhythm on
+    f.record = describeFlame(f.def.look, f.size, f.scroll, f.def.seed);
+    f.record.puff *= f.tracked;  // live curves carry it in their radii
+    f.record.profile = f.def.profile;
+    f.record.nodeCount = gpu::kFlameNodes;
+    f.record.air.w = std::clamp(f.power / (kFadePower * f.def.diameter), 0.0f, 1.0f);
+}
+
+void layCurve(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept {
+    std::array<ControlPoint, kMaxControlPoints> live, given, points;
+    uint32_t n = motionPoints(f.motion, rules, live);
+    std::span<const ControlPoint> other;
+    if (f.def.driver == FlameDriver::Track && air.track) {
+        const uint32_t count = sampleTrack(*air.track, f.trackTime, given);
+        for (uint32_t k = 0; k < count; ++k) given[k].position += f.def.position;
+        other = std::span(given).first(count);
+    } else if (f.givenCount > 0) {
+        other = std::span(f.given).first(f.givenCount);
+    }
+    n = blendPoints(std::span(live).first(n), other, f.tracked, f.def.up, points);
+    Curve curve;
+    curve.set(std::span(points).first(n), f.def.up);
+    // As far as the highest puff, so that nodes do not slide with the rhythm.
+    layNodes(curve, rules.top * (1.0f + rules.puff), f.nodes);
+    standNodes(f.nodes, f.def.up, std::min(f.size.diameter, 0.7f * f.size.height),
+               1.0f - f.tracked);
+    squeezeNodes(air.colliders, f.nodes);
+}
+
+// Pink: three slow noises, each of the flame's own.
+float flicker(const Flame& f) noexcept {
+    const float t = float(std::fmod(f.age, 512.0)),
+                own = 61.0f * float(core::hash32(f.def.seed) & 1023u);
+    float sum = 0.0f;
+    for (int o = 0; o < 3; ++o)
+        sum +=
+            gpu::flameNoise(vec3(own, t * (2.0f * float(1 << o)), 9.0f * float(o))) / float(1 << o);
+    return sum;
+}
+
+const gpu::FlameNode& nodeAt(const Flame& f, float s) noexcept {
+    const float step = f.nodes[1].along.w - f.nodes[0].along.w;
+    const float k = step > 0.0f ? s / step + 0.5f : 0.0f;
+    return f.nodes[size_t(std::clamp(k, 0.0f, float(f.nodes.size() - 1)))];
+}
+
+void shine(Flame& f) noexcept {
+    const FlameLook& l = f.def.look;
+    const float pulse = (f.size.pulse - 1.0f) / std::max(l.puff, 1e-3f);  // [-1, 1]
+    const float now = 1.0f + l.flicker * (0.6f * pulse + 2.0f * flicker(f));
+    f.light.position = vec3(nodeAt(f, 0.4f * f.size.height).centre);
+    f.light.radius = std::max(0.3f * f.size.height, 0.5f * f.size.diameter);
+    f.light.flux = std::max(now, 0.0f) * 1000.0f * f.power * l.radiant * kLumensPerWatt;
+    vec3 colour = gpu::flameRadiance(f.record, 0.5f * (l.core + l.tip) + 60.0f);
+    if (l.painter == Painter::Burner) colour = vec3(l.tint[0], l.tint[1], l.tint[2]);
+    f.light.colour = colour / std::max(glm::dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)), 1e-6f);
+    // Smoke is lit from there: radiance m^2 of about the flame's size.
+    f.record.glow = vec4(f.light.position, 0.06f * f.size.diameter * f.size.diameter * now);
+}
+
+void finish(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept {
+    f.size.pulse = glm::mix(motionPulse(f.motion, rules), 1.0f, f.tracked);
+    f.record.high.w *= f.size.pulse;
+    layCurve(f, air, rules);
+    f.bounds = flameBounds(f.record, f.nodes);
+    f.record.low = vec4(f.bounds.low, f.record.low.w);
+    f.record.high = vec4(f.bounds.high, f.record.high.w);
+    shine(f);
+}
+
+float clampPower(float power) noexcept {
+    return std::isfinite(power) ? std::max(power, 0.0f) : 0.0f;
+}
+
+}  // namespace
+
+void checkFlame(const FlameDef& d) {
+    const auto range = [](const char* name, float value, float low, float high) {
+        if (!(value >= low && value <= high))
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%s of the volumetric fire is %g; it must lie in [%g, %g].", name,
+                       double(value), double(low), double(high));
+    };
+    for (int k = 0; k < 3; ++k) {
+        range("position", d.position[k], -1e6f, 1e6f);
+        range("up", d.up[k], -1.01f, 1.01f);
+    }
+    range("length of up", glm::length(d.up), 0.99f, 1.01f);
+    range("power (kW)", d.power, 0.0f, 1e6f);
+    range("diameter (m)", d.diameter, 1e-3f, 100.0f);
+    range("height (m)", d.height, 0.0f, 200.0f);
+    range("blend (s)", d.blend, 0.0f, 60.0f);
+    const FlameLook& l = d.look;
+    range("turbulence", l.turbulence, 0.0f, 2.0f);
+    range("stretch", l.stretch, 0.5f, 8.0f);
+    range("lambda", l.lambda, 0.05f, 4.0f);
+    range("lambdaWarp", l.lambdaWarp, 0.05f, 4.0f);
+    range("lambdaColumn", l.lambdaColumn, 0.05f, 4.0f);
+    range("ridge", l.ridge, 0.0f, 1.0f);
+    range("converge", l.converge, 0.0f, 1.3f);
+    range("puff", l.puff, 0.0f, 0.5f);
+    range("burn", l.burn, 0.01f, 10.0f);
+    range("dispersion", l.dispersion, 0.0f, 1.0f);
+    range("thickness", l.thickness, 0.0f, 100.0f);
+    range("erode", l.erode, 0.0f, 0.9f);
+    range("filament", l.filament, 0.0f, 1.0f);
+    range("filamentWidth", l.filamentWidth, 0.01f, 2.0f);
+    range("filamentHeight", l.filamentHeight, 0.01f, 2.0f);
+    range("blueHeight", l.blueHeight, 0.01f, 10.0f);
+    range("smoke (1/m)", l.smoke, 0.0f, 20.0f);
+    range("smokeTop", l.smokeTop, 0.0f, 8.0f);
+    for (float c : l.tint) range("tint", c, 0.0f, 1.0f);
+    if (l.octaves < 1 || l.octaves > gpu::kFlameOctaves)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "octaves of the volumetric fire is %u; it must lie in [1, %u].", l.octaves,
+                   gpu::kFlameOctaves);
+    if (uint32_t(d.driver) > uint32_t(FlameDriver::Host))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "driver of the volumetric fire is %u; the last one is %u.", uint32_t(d.driver),
+                   uint32_t(FlameDriver::Host));
+}
+
+void startFlame(Flame& f, const FlameDef& def, const FlameAir& air) noexcept {
+    f = {};
+    f.def = def;
+    f.power = clampPower(def.power);
+    f.tracked = def.driver == FlameDriver::Live ? 0.0f : 1.0f;
+    describe(f, air);
+    const MotionRules rules = rulesOf(f, air);
+    startMotion(f.motion, rules, def.position);
+    finish(f, air, rules);
+}
+
+void advanceFlame(Flame& f, const FlameAir& air, double seconds) noexcept {
+    const double dt = std::isfinite(seconds) ? std::clamp(seconds, 0.0, 1.0) : 0.0;
+    f.age += dt;
+    f.power += (clampPower(f.def.power) - f.power) * float(1.0 - std::exp(-dt / double(kPowerLag)));
+    const bool has =
+        (f.def.driver == FlameDriver::Track && air.track && !air.track->times.empty()) ||
+        (f.def.driver == FlameDriver::Host && f.givenCount > 0);
+    const float step = f.def.blend > 0.0f ? float(dt) / f.def.blend : 1.0f;
+    f.tracked = std::clamp(f.tracked + (has ? step : -step), 0.0f, 1.0f);
+    f.trackTime += dt;
+    describe(f, air);
+    advanceScroll(f.scroll, f.def.look, f.record, dt);
+    f.scroll.puff = f.motion.phase;
+    describe(f, air);
+    const MotionRules rules = rulesOf(f, air);
+    advanceMotion(f.motion, rules, f.def.position, air.colliders, dt);
+    finish(f, air, rules);
+}
+
+bool isSeen(const Bounds& b, std::span<const vec4> planes) noexcept {
+    const vec3 middle = 0.5f * (b.low + b.high), half = 0.5f * (b.high - b.low);
+    for (const vec4& plane : planes) {
+        const vec3 n(plane);
+        if (glm::dot(n, middle) + plane.w < -glm::dot(glm::abs(n), half)) return false;
+    }
+    return true;
+}
+
+FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point) noexcept {
+    FlameAnswer a;
+    const float height = f.size.height, diameter = f.size.diameter;
+    if (f.power <= 0.0f) return a;
+    const auto at = locate(f.nodes, point);
+    if (at && at->rho < 3.0f) {
+        a.s = at->place.s, a.rho = at->rho;
+        const float y = at->place.s / height;  // of what is seen
+        const vec2 burns = profile.sample(at->rho, y);
+        a.inside = y <= 1.0f && burns.y > 0.05f;
+        // Plume around and above: the law's centreline, Gaussian across.
+        const float wide = 0.5f * diameter + 0.12f * at->place.s;
+        const float off = at->rho * at->place.radius / wide;
+        const float share = std::exp(-off * off);
+        const float plume = plumeExcess(f.power, std::max(at->place.s, 0.05f * height)) * share;
+        // Gas in the flame is cooler on the mean than the soot that shines.
+        a.kelvin =
+            kAmbientKelvin +
+            (a.inside ? std::max(0.62f * (1000.0f * burns.x - kAmbientKelvin), plume) : plume);
+        a.gas = vec3(nodeAt(f, at->place.s).along) *
+                (plumeSpeed(f.power, std::max(at->place.s, 0.02f)) * share);
+    } else {
+        a.rho = -1.0f;
+    }
+    // Radiation: four points along the axis, never nearer than half the flame's width.
+    const float radiated = 1000.0f * f.power * f.def.look.radiant;
+    float flux = 0.0f;
+    for (int k = 0; k < 4; ++k) {
+        const vec3 to = point - vec3(nodeAt(f, height * (0.1f + 0.2f * float(k))).centre);
+        const float near = 0.5f * diameter;
+        flux += 0.25f * radiated / (12.566f * std::max(glm::dot(to, to), near * near));
+    }
+    const float emissivity = 1.0f - std::exp(-1.0f * diameter);
+    const float hot = a.kelvin * a.kelvin;
+    const float within = kConvection * (a.kelvin - kAmbientKelvin) +
+                         (a.inside ? emissivity * kStefan * hot * hot : 0.0f);
+    a.heatFlux = within + (a.inside ? 0.0f : flux);
+    return a;
+}
+
+FlamePush pushOf(const Flame& f, const Profile& profile, vec3 centre, float radius) noexcept {
+    const FlameAnswer a = askFlame(f, profile, centre);
+    const float r = std::max(radius, 0.0f), area = 3.1415927f * r * r;
+    const float density = 353.0f / a.kelvin;  // kg/m^3
+    FlamePush push;
+    push.force = a.gas * (0.5f * density * 0.47f * area * glm::length(a.gas));
+    push.ignition = a.heatFlux * (a.inside ? 4.0f * area : area);
+    return push;
+}
+
+}  // namespace fw::volume

@@ -1,0 +1,32 @@
+// Flames side by side: they draw in each other's air and lean together, and where they are taller
+// than the gap between them they become one. Smooth in every distance: nothing pops.
+#pragma once
+#include "volume/curve.h"
+
+#include <cstdint>
+#include <span>
+
+namespace fw::volume {
+
+struct NeighbourFlame {
+    vec3 base{0.0f};        // m
+    float power = 0.0f;     // kW
+    float diameter = 0.0f;  // m
+    float height = 0.0f;    // m, alone
+};
+
+struct Neighbourhood {
+    vec3 pull{0.0f};      // m/s, at the height that is seen, across `up`
+    float height = 0.0f;  // m, with the others
+    float merged = 0.0f;  // [0, 1] how much of one flame it is with others
+    uint32_t group = 0;   // index of the group's first flame; flames of a group touch
+};
+
+// The speed of air towards a fire at a distance, m/s. Entrainment: 0.12 of the plume's, falling as
+// 1/d.
+float inflow(float power, float diameter, float distance) noexcept;
+// O(n^2) over at most a few hundred. `out` is as long as `flames`.
+void meetNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
+                    std::span<Neighbourhood> out) noexcept;
+
+}  // namespace fw::volume
