@@ -61,7 +61,7 @@ TEST(VolumeMarch, BrightnessDoesNotDependOnTheStepCount) {
     const double fine = meanRadiance(f, 256, 0.03f);
     for (const uint32_t steps : {32u, 64u, 128u}) {
         const double here = meanRadiance(f, steps, 0.03f);
-        EXPECT_NEAR(here / fine, 1.0, steps == 32 ? 0.02 : 0.01) << steps << " steps";
+        EXPECT_NEAR(here / fine, 1.0, steps == 32 ? 0.01 : 0.005) << steps << " steps";
     }
 }
 
@@ -142,6 +142,82 @@ TEST(VolumeMarch, T4_7_NoiseIsInMetres) {
     // A flame twice as high over the same bed has tongues as wide as before, not stretched ones.
     Shown tall(look, 400.0f, 0.6f, 2.4f), taller(look, 1600.0f, 0.6f, 4.8f);
     EXPECT_NEAR(taller.record.lambda / tall.record.lambda, 1.0f, 1e-3f);
+}
+
+// A wall that stands in the flame: along the line where they meet no edge is harder than the
+// flame's own light is uneven without it.
+TEST(VolumeMarch, T4_6_NoHardEdgeWhereAWallCutsTheFlame) {
+    Shown f = Shown::preset(FlamePreset::CampFire);
+    f.run(1.3);
+    MarchRules rules;
+    rules.steps = 200, rules.detail = 0.04f, rules.smoke = false;
+    const auto row = [&](bool wall) {
+        std::vector<float> out;
+        for (float x = -0.4f; x < 0.4f; x += 0.005f) {
+            const vec3 from(x, 0.2f, 2.0f);
+            rules.farthest =
+                wall ? 2.0f - (0.3f - x) : 1e9f;  // a plane that leans away through the axis
+            out.push_back(
+                marchRay(f.record, f.nodes, *f.profile, from, vec3(0, 0, -1), rules).radiance.r);
+        }
+        return out;
+    };
+    const auto steepest = [](const std::vector<float>& v) {
+        float most = 0.0f;
+        for (size_t k = 1; k < v.size(); ++k) most = std::max(most, std::abs(v[k] - v[k - 1]));
+        return most;
+    };
+    const float open = steepest(row(false)), cut = steepest(row(true));
+    EXPECT_GT(open, 0.01f);
+    EXPECT_LT(cut, 1.5f * open + 0.02f);
+}
+
+// Faults of a known port: a mirror seam at the axis, a hollow core, a base cut straight.
+TEST(VolumeMarch, NoSeamAtTheAxisNoHollowCoreNoStraightBase) {
+    Shown f = Shown::preset(FlamePreset::CampFire);
+    double core = 0, rim = 0, mirrored = 0, plain = 0;
+    double across = 0, beside = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+        f.run(0.21);
+        const auto soot = [&](float x, float z, float s) {
+            return sampleFlame(f.record, *f.profile, {vec2(x, z), s, 0.3f}, 0.005f, false).soot;
+        };
+        for (float s = 0.03f; s < 0.5f; s += 0.02f) {
+            // Steps of 1 mm across the axis, and beside it.
+            across += double(std::abs(soot(0.0005f, 0.0f, s) - soot(-0.0005f, 0.0f, s)));
+            for (const float x : {0.04f, -0.04f})
+                beside +=
+                    0.5 * double(std::abs(soot(x + 0.0005f, 0.0f, s) - soot(x - 0.0005f, 0.0f, s)));
+            core += double(soot(0.0f, 0.0f, s)), rim += double(soot(0.27f, 0.0f, s));
+            for (float x = 0.04f; x < 0.24f; x += 0.04f) {
+                const float right = soot(x, 0.0f, s), left = soot(-x, 0.0f, s);
+                mirrored += double(std::abs(right - left)), plain += double(right + left);
+            }
+        }
+    }
+    EXPECT_LT(across, 1.5 * beside) << "the axis is no seam";
+    EXPECT_GT(core, rim);
+    EXPECT_GT(mirrored / plain, 0.2) << "its halves are no mirror images";
+    // The foot fades in: the lowest lit soot is a small part of what is above it.
+    const auto mean = [&](float s) {
+        double sum = 0;
+        for (float x = -0.25f; x < 0.26f; x += 0.05f)
+            for (float z = -0.25f; z < 0.26f; z += 0.05f)
+                sum += double(
+                    sampleFlame(f.record, *f.profile, {vec2(x, z), s, 0.3f}, 0.01f, false).soot);
+        return sum;
+    };
+    EXPECT_LT(mean(0.002f), 0.2 * mean(0.08f));
+}
+
+TEST(VolumeMarch, NoiseDoesNotRepeatWithinAMinute) {
+    for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
+        Shown f = Shown::preset(FlamePreset(k));
+        FlameScroll s;
+        advanceScroll(s, f.look, f.record, 1.0);
+        for (const double cells : {s.octaves[0], s.warp, s.column})
+            EXPECT_LT(60.0 * cells, double(fw::gpu::kFlameWrap)) << presetName(FlamePreset(k));
+    }
 }
 
 TEST(VolumeMarch, NoiseIsUnbiasedAndWraps) {
