@@ -69,7 +69,7 @@ FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given, uint32_t worldFl
     if (!(def.flags & FW_BURNABLE_NO_DAMAGE)) return def;
     def.flags |= FW_BURNABLE_NO_HOLES;  // and nothing that only shows damage
     def.flags &= ~uint32_t(FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_RECEDE |
-                           FW_BURNABLE_SPRINGS);
+                           FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS);
     return def;
 }
 
@@ -78,7 +78,8 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
                                 FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_REFINE |
                                 FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS |
                                 FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE |
-                                FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE_PUBLISHED;
+                                FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE_PUBLISHED |
+                                FW_BURNABLE_Z_PASS;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
@@ -314,6 +315,7 @@ uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain)
     if (object.flags & (FW_BURNABLE_SKINNED | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS))
         flags |= gpu::kObjectSkinned;
     if (hasHeat(object)) flags |= gpu::kObjectHeat;
+    if (object.flags & FW_BURNABLE_Z_PASS) flags |= gpu::kObjectZPass;
     return flags;
 }
 

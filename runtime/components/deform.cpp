@@ -70,6 +70,11 @@ void checkDeform(const FwBurnableMeshDef& def) {
                    "and SPRINGS one is "
                    "possible.",
                    def.flags);
+    if ((def.flags & FW_BURNABLE_Z_PASS) &&
+        !(def.flags & (FW_BURNABLE_RECEDE | FW_BURNABLE_SPRINGS)))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_Z_PASS needs SPRINGS or RECEDE.",
+                   def.flags);
     checkValue(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
     if (def.pinCount > gpu::kMaxPins)
         core::fail(FW_ERROR_INVALID_ARGUMENT,

@@ -237,7 +237,8 @@ const BurnMapCopy* World::fetchBurnMap(FwBurnableMeshId id) {
 void World::setSwitches(uint32_t switches) {
     constexpr uint32_t kKnown = FW_DEBUG_DENSE | FW_DEBUG_SHUFFLE | FW_DEBUG_NO_SEAM_WAKE |
                                 FW_DEBUG_WRONG_READERS | FW_DEBUG_NO_WIND_WAKE |
-                                FW_DEBUG_NEVER_IDLE | FW_DEBUG_REFINE_FULL;
+                                FW_DEBUG_NEVER_IDLE | FW_DEBUG_REFINE_FULL | FW_DEBUG_CROSSING |
+                                FW_DEBUG_NO_Z_PASS;
     if (switches & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "switches is 0x%x; the known switches are 0x%x.",
                    switches, kKnown);

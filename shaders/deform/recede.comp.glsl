@@ -46,7 +46,7 @@ void main() {
         float burnt = max(before_, sum / max(known, 1.0));
 
         float lead = 0.0;
-        if (facts.w != kNoneTexel)
+        if (facts.w != kNoneTexel && !item.crosses)
             lead = uintBitsToFloat(holes.y) *
                    burntShare(state[bases.y + facts.w], push.now, push.up.w, holes.x);
 
@@ -54,7 +54,7 @@ void main() {
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
         if (!moves) {
             vec4 out_ = uintBitsToFloat(deformNodes[at + 12u]);
-            place += out_.xyz * recession(burnt, depth, out_.w);
+            place += out_.xyz * recession(burnt, depth, item.crosses ? 1e9 : out_.w);
         }
         // Places of others are the solver's: here it learns what burnt, and at first where things rest.
         if (moves) {

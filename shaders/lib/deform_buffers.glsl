@@ -75,6 +75,7 @@ struct DeformItem {
     uint end;     // of the group; there may be fewer
     uint parity;  // of the places that are read
     bool reset;
+    bool crosses;
 };
 DeformItem deformItem() {
     uvec2 group = deformGroups[push.first + gl_WorkGroupID.x];
@@ -84,6 +85,7 @@ DeformItem deformItem() {
     item.end = (group.y & kDeformItem) + kDeformGroup;
     item.parity = ((group.y & kDeformOdd) != 0u ? 1u : 0u) ^ (push.parity & 1u);
     item.reset = (group.y & kDeformReset) != 0u;
+    item.crosses = (group.y & kDeformCrosses) != 0u;
     return item;
 }
 

@@ -117,6 +117,7 @@ FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinate
 FW_SHARED_CONST uint kObjectHeat = 64u;      // has a heat plane
 FW_SHARED_CONST uint kObjectNoDamage = 128u; // flames, and looks as before
 FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire stands on its shown vertices
+FW_SHARED_CONST uint kObjectZPass = 0x2000u;   // see passes/z_pass.cpp
 
 // TileState::flag
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
@@ -153,6 +154,8 @@ FW_SHARED_CONST uint kSwitchNoSeamWake = 4u;
 FW_SHARED_CONST uint kSwitchWrongReaders = 8u;
 FW_SHARED_CONST uint kSwitchNoWindWake = 16u;
 FW_SHARED_CONST uint kSwitchRefineFull = 64u;
+FW_SHARED_CONST uint kSwitchCrossing = 128u;
+FW_SHARED_CONST uint kSwitchNoZPass = 256u;
 FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;  // ours: some object or the world limits its fire
 
 // TexelEvent::kind, as FwIgnitionKind

@@ -25,7 +25,8 @@ FW_SHARED_CONST uint kDeformGroup = 512u;     // nodes or vertices of a workgrou
 // In the second word of a group, above the first node or vertex.
 FW_SHARED_CONST uint kDeformReset = 0x80000000u;  // start from rest
 FW_SHARED_CONST uint kDeformOdd = 0x40000000u;    // its places are the second ones
-FW_SHARED_CONST uint kDeformItem = 0x3FFFFFFFu;
+FW_SHARED_CONST uint kDeformCrosses = 0x20000000u; // walls may cross and open by themselves
+FW_SHARED_CONST uint kDeformItem = 0x1FFFFFFFu;
 FW_SHARED_CONST uint kDeformNode = 0xFFFFFFu; // of a node's ring: its neighbour
 FW_SHARED_CONST uint kSoftQuads = 4u;         // of a vertex of what moves: see lib/deform_buffers.glsl
 FW_SHARED_CONST uint kSoftTicks = 32u;        // of one of its steps: 1/128 s

@@ -37,6 +37,7 @@ layout(location = 6) out vec2 outSootLead;  // soot of flames below; look second
                                             // kDrawCut the last word of a cut vertex, in s
 
 #include "lib/turn.glsl"
+#include "surface/place.glsl"
 
 uint flags;
 
@@ -75,10 +76,7 @@ void main() {
         lead = (flags & kDrawCut) != 0u ? clamp(place.w - draw.now, 0.0, 1000.0) : 0.0;
         placed = false;
     }
-    vec3 offset = vec3(draw.row0.w, draw.row1.w, draw.row2.w) - view.eye.xyz;
-    vec3 position = vec3(dot(draw.row0.xyz, rest), dot(draw.row1.xyz, rest),
-                         dot(draw.row2.xyz, rest)) +
-                    offset;
+    vec3 position = fromEye(rest);
     normal = normalize(turnNormal(draw.row0.xyz, draw.row1.xyz, draw.row2.xyz, normal));
     outSootLead = vec2(0.0, lead);
     vec3 color = vec3(0.0);
@@ -113,6 +111,5 @@ void main() {
     outTexture = vec4(inAtlas, inTexture);
     outDetail = vec4(inDetail * scale, towards.xy);
     outTint = vec4(inTint.rgb * vec3(draw.tintR, draw.tintG, draw.tintB), towards.z);
-    gl_Position =
-        view.clip0 * position.x + view.clip1 * position.y + view.clip2 * position.z + view.clip3;
+    gl_Position = clipPlace(position);
 }

@@ -377,6 +377,10 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     pin = {};
     shell.flags = uint32_t{FW_BURNABLE_SHELL} | uint32_t{FW_BURNABLE_RECEDE};
     refusedDeform(shell, "one is possible");
+    shell.flags = uint32_t{FW_BURNABLE_SHELL} | uint32_t{FW_BURNABLE_Z_PASS};
+    refusedDeform(shell, "FW_BURNABLE_Z_PASS needs");
+    shell.flags = uint32_t{FW_BURNABLE_SPRINGS} | uint32_t{FW_BURNABLE_Z_PASS};
+    EXPECT_EQ(FW_OK, makeBurnable(&shell)) << lastMessage(w.world);
 
     FwIgnitionDef ignition = fwDefaultIgnitionDef();
     ignition.radius = 0.05f;

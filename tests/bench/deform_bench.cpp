@@ -3,81 +3,27 @@
 // threads, less that of a world without deformation. Rows need FLAMEWRIGHT_ASSETS.
 #include <benchmark/benchmark.h>
 
-#include "flamewright/flamewright.h"
+#include "bench/bunny_scene.h"
 #include "flamewright/flamewright_debug.h"
-#include "support/meshes.h"
-
-#include <cstring>
-#include <ctime>
-#include <string>
 
 namespace {
 
-struct Scene {
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
-    FwBurnableMeshId object{};
-    ~Scene() {
-        fwDestroyWorld(world);
-        fwDestroyContext(context);
-    }
-};
-
-// Null text: fine.
-const char* build(Scene& scene, const char* file, uint32_t flags, std::string& error) {
-    fw::test::Mesh mesh;
-    if (!fw::test::loadGlb(file, mesh, error)) return error.c_str();
-    const FwContextDef contextDef = fwDefaultContextDef();
-    FwErrorInfo info{};
-    if (fwCreateContext(&contextDef, &scene.context, &info) != FW_OK) {
-        error = info.message;
-        return error.c_str();
-    }
-    FwWorldDef worldDef = fwDefaultWorldDef();
-    worldDef.paceFactor = 40;
-    worldDef.maxFlames = 0;
-    worldDef.wind[0] = 1;
-    FwMeshDef meshDef = fwDefaultMeshDef();
-    meshDef.positions = mesh.positions.data();
-    meshDef.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
-    meshDef.indices = mesh.indices.data();
-    meshDef.vertexCount = mesh.vertexCount();
-    meshDef.indexCount = uint32_t(mesh.indices.size());
-    FwBurnableMeshDef objectDef = fwDefaultBurnableMeshDef();
-    objectDef.flags = flags;
-    const FwPin pin = {{0, 0.9f, 0}, {0, 0.9f, 0}, 0.1f, 0};
-    objectDef.pins = &pin;
-    objectDef.pinCount = 1;
-    FwMaterialDef pine = fwDefaultMaterialDef();
-    FwIgnitionDef match = fwDefaultIgnitionDef();
-    match.position[0] = -0.3f;
-    match.position[1] = 0.3f;
-    match.position[2] = 0.3f;
-    match.radius = 0.2f;
-    if (fwCreateWorld(scene.context, &worldDef, &scene.world) != FW_OK ||
-        fwWorld_CreateMesh(scene.world, &meshDef, &objectDef.mesh) != FW_OK ||
-        fwWorld_CreateMaterial(scene.world, &pine, &objectDef.materials[0]) != FW_OK ||
-        fwWorld_CreateBurnableMesh(scene.world, &objectDef, &scene.object) != FW_OK)
-        return "the scene cannot be made";
-    fwWorld_Ignite(scene.world, &match, nullptr);
-    return nullptr;
-}
-
-double cpuSeconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
+using fw::test::BunnyScene;
+using fw::test::cpuSeconds;
 
 void deform(benchmark::State& state, const char* file, uint32_t flags) {
-    Scene scene, plain;
-    std::string error;
-    const char* why = build(scene, file, flags, error);
-    if (!why) why = build(plain, file, 0, error);
+    BunnyScene scene, plain;
+    FwWorldDef worldDef = fwDefaultWorldDef();
+    worldDef.paceFactor = 40;
+    worldDef.wind[0] = 1;
+    const char* why = scene.make(file, flags, worldDef);
+    if (!why) why = plain.make(file, 0, worldDef);
     if (why) {
         state.SkipWithError(why);
         return;
     }
+    scene.light();
+    plain.light();
     constexpr float kFrame = 1.0f / 60;
     constexpr const char* kPasses[] = {"recede", "bend", "soft", "springs", "drape"};
     double spent[std::size(kPasses)] = {};  // ms

@@ -65,6 +65,7 @@ class EveryPass : public GpuTest {
         scene.objects.push_back(object);
         object.deform.flags = gpu::kDeformSprings;
         object.deform.springs = 500;
+        object.flags |= gpu::kObjectZPass;
         scene.objects.push_back(object);
         if (!published) scene.addHeat();
         return scene;

@@ -365,6 +365,9 @@ typedef enum FwBurnableFlags {
     FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
     FW_BURNABLE_NO_DAMAGE = 4096, /* its fire takes its course, and nothing is seen of it but flames:
                                      no char, no holes, no recession, no curling, no refinement */
+    FW_BURNABLE_Z_PASS = 8192,  /* with SPRINGS or RECEDE, for comparison: once it has caught, crossed
+                                   walls are hidden as published. Costs a draw of its depth for each
+                                   view, shows no insides, and needs a target of FW_DEPTH_TEST */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
 

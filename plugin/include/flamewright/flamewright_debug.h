@@ -28,6 +28,8 @@ typedef enum FwDebugSwitch {
     FW_DEBUG_NO_WIND_WAKE = 16,
     FW_DEBUG_NEVER_IDLE = 32,       /* record the passes even when nothing burns */
     FW_DEBUG_REFINE_FULL = 64,      /* refined objects at their deepest everywhere, all of them moving */
+    FW_DEBUG_CROSSING = 128,        /* no bounds on what recedes: walls cross, and open each by itself */
+    FW_DEBUG_NO_Z_PASS = 256,       /* of objects with FW_BURNABLE_Z_PASS draw what faces the eye alone */
     FW_DEBUG_SWITCH_FORCE32 = 0x7fffffff
 } FwDebugSwitch;
 FW_API FwResult FW_CALL fwDebug_SetSwitches(FwWorld*, uint32_t switches); /* [world] */

@@ -43,6 +43,7 @@ struct DrawItem {
     bool refined = false;         // its triangles are in the refinement's planes
     bool cut = false;             // and holes are cut out of them
     bool consumed = false;        // those burnt through are left out, whole: nothing is cut
+    bool zPass = false;           // drawn after the others, as z_pass.cpp says
     SurfaceDraw draw{};
 };
 
@@ -70,8 +71,13 @@ uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched);
 // `doused`: something wetted it or put it out, some day.
 SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
                         const HeatMaterial& heat, float edge, uint32_t places, bool doused);
-bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items);
-void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items);
+// Of `items` those after the Z-pass, or the others.
+bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items, bool zPass);
+void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items,
+                   bool zPass);
+extern const DrawPass kZPass;
+bool zPassDraws(std::span<const DrawItem> items);
+void recordZPass(DrawRecorder& recorder, std::span<const DrawItem> items);
 extern const DrawPass kFlamesPass;
 void recordFlames(DrawRecorder& recorder);
 

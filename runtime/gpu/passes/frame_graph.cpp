@@ -3,6 +3,7 @@
 #include "gpu/vk/recorder.h"
 
 #include <algorithm>
+#include <array>
 
 namespace fw::gpu {
 namespace {
@@ -24,14 +25,35 @@ constexpr const ComputePass* kComputePasses[] = {
     &kDrapePass,          &kSkinPass,       &kSootPass,        &kRefineCutPass,
     &kRefinePublishedPass};
 
-constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
-    &kSurfacePasses[4],  &kSurfacePasses[5],  &kSurfacePasses[6],  &kSurfacePasses[7],
-    &kSurfacePasses[8],  &kSurfacePasses[9],  &kSurfacePasses[10], &kSurfacePasses[11],
-    &kSurfacePasses[12], &kSurfacePasses[13], &kSurfacePasses[14], &kSurfacePasses[15],
-    &kSurfacePasses[16], &kSurfacePasses[17], &kSurfacePasses[18], &kSurfacePasses[19],
-    &kSurfacePasses[20], &kSurfacePasses[21], &kSurfacePasses[22], &kSurfacePasses[23],
-    &kSurfacePasses[24], &kFlamesPass};
+constexpr const DrawPass* kDrawPasses[] = {&kSurfacePasses[0],  &kSurfacePasses[1],
+                                           &kSurfacePasses[2],  &kSurfacePasses[3],
+                                           &kSurfacePasses[4],  &kSurfacePasses[5],
+                                           &kSurfacePasses[6],  &kSurfacePasses[7],
+                                           &kSurfacePasses[8],  &kSurfacePasses[9],
+                                           &kSurfacePasses[10], &kSurfacePasses[11],
+                                           &kSurfacePasses[12], &kSurfacePasses[13],
+                                           &kSurfacePasses[14], &kSurfacePasses[15],
+                                           &kSurfacePasses[16], &kSurfacePasses[17],
+                                           &kSurfacePasses[18], &kSurfacePasses[19],
+                                           &kSurfacePasses[20], &kSurfacePasses[21],
+                                           &kSurfacePasses[22], &kSurfacePasses[23],
+                                           &kSurfacePasses[24], &kZPass,
+                                           &kFlamesPass};
+
+constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
+static_assert(std::size(kDrawPasses) == kNumberOfZPass + 2);
+
+// What was hidden by the Z-pass shows what is behind it, so others come first.
+constexpr auto kDrawSteps = [] {
+    std::array<DrawStep, 2 * kSurfaceVariants + 2> steps{};
+    for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
+        steps[i] = {i, false};
+        steps[kSurfaceVariants + 1 + i] = {i, true};
+    }
+    steps[kSurfaceVariants] = {kNumberOfZPass, true};
+    steps.back() = {kNumberOfZPass + 1, false};
+    return steps;
+}();
 
 uint32_t groupsOf(uint32_t items) { return std::min((items + 63) / 64, kMaxGroups); }
 
@@ -43,6 +65,7 @@ void zeroRow(vk::FrameRecorder& recorder, uint32_t row) {
 
 std::span<const ComputePass* const> computePasses() { return kComputePasses; }
 std::span<const DrawPass* const> drawPasses() { return kDrawPasses; }
+std::span<const DrawStep> drawSteps() { return kDrawSteps; }
 
 size_t passNumber(const ComputePass& pass) {
     return size_t(std::find(std::begin(kComputePasses), std::end(kComputePasses), &pass) -
@@ -228,15 +251,18 @@ void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {
     recorder.dispatch(kProbePass, &push, groupsOf(probes.count));
 }
 
-void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawItem> items) {
-    if (pass < kSurfaceVariants)
-        recordSurface(recorder, uint32_t(pass), items);
+void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, std::span<const DrawItem> items) {
+    if (step.pass < kSurfaceVariants)
+        recordSurface(recorder, step.pass, items, step.afterZ);
+    else if (step.pass == kNumberOfZPass)
+        recordZPass(recorder, items);
     else
         recordFlames(recorder);
 }
 
-bool drawPassDraws(size_t pass, std::span<const DrawItem> items) {
-    return pass >= kSurfaceVariants || surfaceDraws(uint32_t(pass), items);
+bool drawStepDraws(const DrawStep& step, std::span<const DrawItem> items) {
+    if (step.pass < kSurfaceVariants) return surfaceDraws(step.pass, items, step.afterZ);
+    return step.pass != kNumberOfZPass || zPassDraws(items);
 }
 
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {

@@ -26,6 +26,11 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
 std::span<const DrawPass* const> drawPasses();
+struct DrawStep {
+    uint32_t pass;  // of drawPasses
+    bool afterZ;    // its items are those after the Z-pass
+};
+std::span<const DrawStep> drawSteps();  // in the order of drawing
 size_t passNumber(const ComputePass& pass);
 
 // Where the lists are that live on between steps and frames.
@@ -85,8 +90,8 @@ void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform);
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes);
 void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles);
 // False: it would draw nothing, do not bind it.
-bool drawPassDraws(size_t pass, std::span<const DrawItem> items);
-void recordDrawPass(size_t pass, DrawRecorder& recorder, std::span<const DrawItem> items);
+bool drawStepDraws(const DrawStep& step, std::span<const DrawItem> items);
+void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, std::span<const DrawItem> items);
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 // For the frame's view, after the lights: flames and their order.
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);

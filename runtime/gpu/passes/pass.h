@@ -47,7 +47,7 @@ enum class VertexInput : uint8_t {
            // mesh's: 0 position vec3, 1 normal uint, 7 lead float
 };
 enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
-enum class Blend : uint8_t { opaque, premultiplied, additive };
+enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone };
 
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
 // 2 DrawPass::variant.
@@ -57,8 +57,8 @@ enum class Blend : uint8_t { opaque, premultiplied, additive };
 struct DrawPass {
     const char* name;
     const char* vertexShader;
-    const char* fragmentShader;
-    std::span<const Use> uses;  // drawRead, uniformView, indirect; set 0
+    const char* fragmentShader;  // null: with Blend::depthAlone
+    std::span<const Use> uses;   // drawRead, uniformView, indirect; set 0
     VertexInput vertexInput;
     Blend blend;
     bool writeDepth;     // only where the target allows it

@@ -132,21 +132,24 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     return draw;
 }
 
-// Whether an item whose variant is `given` is drawn by pass `variant`.
-static bool drawnBy(uint32_t variant, uint32_t given) {
-    return given == variant || (given >= kFresh && given + kBurning == variant);
+// Whether pass `variant` draws an item. After the Z-pass only what faces the eye is drawn.
+static bool drawnBy(uint32_t variant, const DrawItem& item, bool zPass) {
+    if (item.zPass != zPass) return false;
+    const bool inside = item.variant >= kFresh && !zPass;
+    return item.variant == variant || (inside && item.variant + kBurning == variant);
 }
 
-bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items) {
+bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items, bool zPass) {
     for (const DrawItem& item : items) {
-        if (drawnBy(variant, item.variant)) return true;
+        if (drawnBy(variant, item, zPass)) return true;
     }
     return false;
 }
 
-void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items) {
+void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items,
+                   bool zPass) {
     for (const DrawItem& item : items) {
-        if (!drawnBy(variant, item.variant)) continue;
+        if (!drawnBy(variant, item, zPass)) continue;
         SurfaceDraw draw = item.draw;
         if (item.cut || (item.refined && item.consumed)) draw.flags |= kDrawCut;
         if (item.refined) draw.flags |= kDrawPlaced;

@@ -296,6 +296,7 @@ VkRenderPass Pipelines::makePass(const TargetKey& key) const {
 
 VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass renderPass) const {
     const DrawPass& pass = *drawPasses()[number];
+    const bool colors = pass.blend != Blend::depthAlone;  // else places are all it reads
     const struct {
         uint32_t encoding, reversed, variant;
     } constants{uint32_t(key.encoding), key.reversedDepth ? 1u : 0u, pass.variant};
@@ -337,7 +338,7 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     if (pass.vertexInput == VertexInput::mesh) {
         input.vertexBindingDescriptionCount = uint32_t(vertexBindings.size());
         input.pVertexBindingDescriptions = vertexBindings.data();
-        input.vertexAttributeDescriptionCount = uint32_t(attributes.size());
+        input.vertexAttributeDescriptionCount = colors ? uint32_t(attributes.size()) : 1;
         input.pVertexAttributeDescriptions = attributes.data();
     }
     auto assembly = typed<VkPipelineInputAssemblyStateCreateInfo>(
@@ -364,7 +365,7 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     depth.depthCompareOp =
         key.reversedDepth ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_LESS_OR_EQUAL;
     std::array<VkPipelineColorBlendAttachmentState, 8> blends{};
-    blends[0].blendEnable = pass.blend != Blend::opaque;
+    blends[0].blendEnable = colors && pass.blend != Blend::opaque;
     blends[0].srcColorBlendFactor = VK_BLEND_FACTOR_ONE;
     blends[0].dstColorBlendFactor = pass.blend == Blend::premultiplied
                                         ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA
@@ -372,8 +373,9 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     blends[0].srcAlphaBlendFactor =
         pass.blend == Blend::additive ? VK_BLEND_FACTOR_ZERO : VK_BLEND_FACTOR_ONE;
     blends[0].dstAlphaBlendFactor = blends[0].dstColorBlendFactor;
-    blends[0].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                               VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    if (colors)
+        blends[0].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                                   VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     auto blend = typed<VkPipelineColorBlendStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
     blend.attachmentCount = key.colorAttachments;
@@ -387,7 +389,7 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
 
     auto info =
         typed<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
-    info.stageCount = uint32_t(stages.size());
+    info.stageCount = colors ? 2 : 1;
     info.pStages = stages.data();
     info.pVertexInputState = &input;
     info.pInputAssemblyState = &assembly;
@@ -405,9 +407,10 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     VkResult result = VK_SUCCESS;
     stages[0].module = module(pass.vertexShader);
     try {
-        stages[1].module = module(!key.samplesDepth()    ? pass.fragmentShader
-                                  : key.depthSamples > 1 ? pass.softShaderMultisampled
-                                                         : pass.softShader);
+        if (colors)
+            stages[1].module = module(!key.samplesDepth()    ? pass.fragmentShader
+                                      : key.depthSamples > 1 ? pass.softShaderMultisampled
+                                                             : pass.softShader);
         result = vk.CreateGraphicsPipelines(device_.handle, device_.pipelineCache, 1, &info,
                                             device_.allocationCallbacks, &pipeline);
         vk.DestroyShaderModule(device_.handle, stages[1].module, device_.allocationCallbacks);

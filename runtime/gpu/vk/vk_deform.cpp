@@ -125,8 +125,9 @@ void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& wri
 Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer) {
     Staged staged = writer.begin();
     const auto append = [&](const ObjectEntry& object, uint32_t items, bool recede = false) {
-        const uint32_t marks =
-            (object.deformReset ? kDeformReset : 0) | (object.softOdd ? kDeformOdd : 0);
+        const uint32_t marks = (object.deformReset ? kDeformReset : 0) |
+                               (object.softOdd ? kDeformOdd : 0) |
+                               ((s.crossing & kSwitchCrossing) ? kDeformCrosses : 0);
         for (uint32_t first = 0; first < items; first += kDeformGroup) {
             if (recede && !recedes(object, first / kDeformGroup)) continue;
             const WakeGroup group{object.deformer.first, first | marks};

@@ -135,10 +135,12 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     scissor.extent = {uint32_t(std::max(viewport.x + viewport.width - left, 0.0f)),
                       uint32_t(std::max(viewport.y + viewport.height - top, 0.0f))};
     vk.CmdSetScissor(commands, 0, 1, &scissor);
-    for (size_t i = 0; i < drawPasses().size(); ++i) {
+    for (const DrawStep& step : drawSteps()) {
+        const uint32_t i = step.pass;
         const DrawPass& pass = *drawPasses()[i];
         const bool surface = pass.vertexInput == VertexInput::mesh;
-        if (surface && !drawPassDraws(i, drawItems)) continue;
+        if (surface && !drawStepDraws(step, drawItems)) continue;
+        if ((crossing & kSwitchNoZPass) && &pass == &kZPass) continue;
         if (!surface && burnEmpty) continue;  // no flames anywhere
         if (!target.pipelines[i]) continue;
         slot.timers.begin(device, commands, pass.name);
@@ -161,7 +163,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             vk.CmdBindIndexBuffer(commands, drawIndices, 0, VK_INDEX_TYPE_UINT32);
         }
         PassRecorder recorder(*this, commands, i);
-        recordDrawPass(i, recorder, drawItems);
+        recordDrawStep(step, recorder, drawItems);
         slot.timers.end(device, commands);
     }
 }

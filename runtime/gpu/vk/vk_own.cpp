@@ -170,7 +170,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         plan.endTick = shownTick;
         for (int i = 0; i < 3; ++i) plan.wind[i] = wind[i];
         plan.tickFraction = tickFraction;
-        plan.switches = refine.full ? kSwitchRefineFull : 0;
+        plan.switches = (refine.full ? kSwitchRefineFull : 0) | crossing;
         run(plan);
         const uint64_t ringFrame = open.ringFrame;
         closeFrame(&def.view);

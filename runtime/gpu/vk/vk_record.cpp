@@ -65,6 +65,11 @@ bool looksBurnt(const ObjectEntry& object) noexcept {
     return object.touched && (object.record.flags & kObjectNoDamage) == 0;
 }
 
+// Before anything reached it nothing of it can have crossed.
+bool zPassed(const ObjectEntry& object) noexcept {
+    return looksBurnt(object) && (object.record.flags & kObjectZPass) != 0;
+}
+
 SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
     const vec4 row = object.record.worldRow0;
     const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
@@ -125,6 +130,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                      object.shown.units ? object.shown.first : kNoneTexel, object.images[m],
                      surfaceVariant(object.materials[m], object.images[m] != 0, looksBurnt(object)),
                      object.refine.started, object.refine.cut, object.refine.arpPlus1 != 0,
+                     zPassed(object),
                      drawOf(s, object, m)});
             first = end;
         }
@@ -225,6 +231,7 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event) {
         if (item.object != event.object) continue;
         item.variant =
             surfaceVariant(object.materials[item.material], item.image != 0, looksBurnt(object));
+        item.zPass = zPassed(object);
         item.draw = drawOf(s, object, item.material);
     }
 }
@@ -328,6 +335,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     open.readback = needs.readback;
     std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(wind));
     tickFraction = plan.tickFraction;
+    crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
     // Sheets and springs step at a rate of their own; a hitch drops steps and never stretches one.
     const double ticks = double(plan.endTick) + double(plan.tickFraction) * kStepTicks;
     const auto softNow = uint64_t(ticks / kSoftTicks);

@@ -253,6 +253,7 @@ struct VkBackend::State {
     uint32_t links = 0, blockers = 0;      // of the last remote update
     float wind[3] = {};
     float tickFraction = 0;
+    uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoZPass
     uint64_t softStep = 0;  // number of the step that sheets and springs have come to
 
     // The frame that is open.
