@@ -111,7 +111,7 @@ void finishTile(uint worldTile, TileRef tile, uint thread, bool flux) {
         watts += rowWatts[thread + row];
     }
     if (work != 0u) {
-        if ((work & 2u) != 0u) atomicOr(tileState[worldTile].flag, kTileWarm);
+        if ((work & 2u) != 0u) atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
         else atomicAnd(tileState[worldTile].flag, ~kTileWarm);
         hotAppend(push.hotParity ^ 1u, worldTile);
     } else {

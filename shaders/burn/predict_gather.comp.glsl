@@ -60,7 +60,8 @@ vec2 wetAhead(uint at, ivec2 place, uvec4 sizes, uint stride) {
 void gatherRow(uint slot, uint row) {
     uint counterRow = kRowPredict + push.predictParity;
     uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
-    if ((tileState[worldTile].flag & kTileFalling) != 0u) {  // what it shows is `support`'s
+    uint flag = tileState[worldTile].flag;
+    if ((flag & kTileFalling) != 0u) {  // what it shows is `support`'s
         if (row == 0u)
             atomicAnd(tileState[worldTile].flag, ~(kTilePredict << push.predictParity));
         return;
@@ -97,6 +98,7 @@ void gatherRow(uint slot, uint row) {
         wet |= t[i] == kWet ? bit : 0u;
         passed |= !isSource(t[i]) && t[i] != kNever && differs ? bit : 0u;
     }
+    bool marks = (lit | known | passed) != 0u;
     for (; passed != 0u; passed &= passed - 1u) {
         uint i = at + uint(findLSB(passed));
         uint code = state[i];
@@ -151,6 +153,8 @@ void gatherRow(uint slot, uint row) {
         }
         chosen |= fresh & (rim | times | (times >> 1u) | (times >> 2u)) & 0xFFu;
     }
+    if ((marks || (chosen & ~rim) != 0u) && (flag & kTileMarked) == 0u)
+        atomicOr(tileState[worldTile].flag, kTileMarked);
     if (chosen == 0u) return;
     uint item = atomicAdd(counters[counterRow].workCount, 1u);
     if ((item & 63u) == 0u) {

@@ -18,7 +18,7 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 
-const uint kFar = 2047u;      // of distances
+const uint kFar = 1023u;      // of distances
 const uint kLookEvery = 32u;  // frames, about, between looks at a tile's texels
 const float kFallTime = 1.1;  // s from the first flake to the last
 

@@ -137,7 +137,8 @@ FW_SHARED_CONST uint kTileMaterialShift = 14u; // 3 bits
 FW_SHARED_CONST uint kTileFacts = 0x1FF00u;
 FW_SHARED_CONST uint kTileSolid = 0x20000u;
 FW_SHARED_CONST uint kTileFalling = 0x40000u;
-FW_SHARED_CONST uint kTileDistanceShift = 21u; // 11 bits
+FW_SHARED_CONST uint kTileMarked = 0x200000u; // fire, heat, water or soot shows on it, or did: for good
+FW_SHARED_CONST uint kTileDistanceShift = 22u; // 10 bits
 
 // Rows of IterationCounters. The first are lists that live on; list*: indirect groups of 64 tiles
 // (burn) or of 8 (predict, hot).

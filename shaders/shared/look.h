@@ -29,6 +29,7 @@ FW_SHARED_CONST uint kSurfaceHide = 8u;   // leather, plastic
 FW_SHARED_CONST uint kSurfaceBurns = 16u; // some event reached the object
 FW_SHARED_CONST uint kSurfacePaint = 32u; // on wood: film, blisters
 FW_SHARED_CONST uint kSurfaceImage = 64u; // the object's image instead of a pattern
+FW_SHARED_CONST uint kSurfaceCold = 128u; // of what burns, only triangles far from all traces of it
 
 // Layers of the look texture array: 512^2 RGBA8, tiling, with mips.
 FW_SHARED_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
@@ -128,6 +129,11 @@ FW_SHARED_CONST float kWhiteLuminance = 40.0f;
 
 FW_SHARED_CONST uint kLookRows = 16u; // of the looks table
 
+// kSurfaceCold knows triangles by the marks of the tiles within `coldReach` texels of their corners:
+// no point is farther than 0.58 edges from one, or looked up beyond 1.5 texels. At most kColdReach.
+FW_SHARED_CONST float kColdReach = 12.0f;
+FW_SHARED_FN float coldReach(float edge) { return 0.58f * edge + 1.5f; }
+
 // The strongest lights are the ones that light surfaces.
 FW_SHARED_CONST uint kSurfaceLights = 16u;
 
@@ -154,7 +160,7 @@ struct SurfaceDraw {
     uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
     float filmMost;          // g/m^2 of water that stay on it; 0: no heat plane
     float now;               // with kDrawCut: s on the clock of its holes
-    uint reserved0;
+    float coldReach;         // texels, of kSurfaceCold
 };
 FW_SHARED_SIZE(SurfaceDraw, 128)
 // SurfaceDraw::flags, beyond kObject...: triangles are small, flames light their corners.
@@ -163,7 +169,7 @@ FW_SHARED_CONST uint kDrawVertexLight = 0x10000u;
 FW_SHARED_CONST uint kDrawPlaced = 0x20000u;
 // Its heat plane says how hot it is and how deep its char.
 FW_SHARED_CONST uint kDrawHeat = 0x40000u;
-// Water reached it, some day.
+// Water or the heat of others reached it, some day.
 FW_SHARED_CONST uint kDrawWet = 0x80000u;
 // It chars through from the surface.
 FW_SHARED_CONST uint kDrawThick = 0x100000u;

@@ -148,12 +148,14 @@ Skin burningSkin(Site s, MaterialLook m) {
         o.slope += slope * (kCrumpleSlopeRange * 13.0 * 0.5 * m.crumple * c);
     }
 
-    if (kHasHide && m.crumple > 0.0 && x > -2.0 * m.scorchWidth) {  // leather puckers as it shrinks
+    if (kHasHide && m.crumple > 0.0 && x > -1.3 * m.scorchWidth) {  // leather puckers as it shrinks
         vec2 fold = lookLayer(s.d * 3.1, kLayerRelief, noiseLod(s.pixel, 3.1)).rg * 2.0 - 1.0;
-        float drawn = smoothstep(-2.0 * m.scorchWidth, -0.4 * m.scorchWidth, x) * (1.0 - 0.5 * c);
+        // All of it within what is drawn as burning: 1.3 scorchWidth.
+        float drawn = smoothstep(-1.3 * m.scorchWidth, -0.3 * m.scorchWidth, x) * (1.0 - 0.5 * c);
         o.slope += fold * (kCrumpleSlopeRange * 3.1 * 4.0 * m.crumple * drawn);
         float u = (x + 0.6 * m.scorchWidth) / (0.5 * m.scorchWidth);  // and rolls up along the fire
-        o.slope -= s.ahead * (1.6 * u * exp(-u * u) * (0.3 + 1.4 * nB.r));
+        o.slope -= s.ahead * (1.6 * u * exp(-u * u) * (0.3 + 1.4 * nB.r) *
+                              smoothstep(-1.3 * m.scorchWidth, -0.8 * m.scorchWidth, x));
     }
 
     // Heating: through brown first, then absorption; plain absorption turns blue paint green.

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_PUSH
 #define FW_USE_OBJECTS readonly
 #define FW_USE_TEXELS readonly
-#define FW_USE_TILE_STATE readonly
+#define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_PREDICT readonly
 #define FW_USE_GRADIENT FW_READ_WRITE
 #include "lib/buffers.glsl"
@@ -20,6 +20,7 @@ layout(std430, set = 0, binding = FW_BIND_LIGHTS) readonly buffer LightsBuffer {
 };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 
+const uint kUnseen = 3u;  // soot of which nothing is seen
 const float kSootPerSecond = 2.0;  // simulated: slower than a tongue licks, faster than it burns
 
 vec3 inWorld(uint object, vec3 rest) {
@@ -60,6 +61,7 @@ void sootRow(uint worldTile, uint row) {
                     ? 1u << i
                     : 0u;
     uint most = uint(min(255.0 * kSootPerSecond / float(kTicksPerSecond) * float(push.count), 255.0));
+    bool marks = false;
     for (uint x = 0u; near != 0u && x < 8u; ++x) {
         uint t = predict[at + x];
         if (t == kInert || t == kOut || t == kOutWet) continue;  // the word is another thing then
@@ -71,8 +73,10 @@ void sootRow(uint worldTile, uint row) {
         }
         uint word = gradient[at + x];
         uint lies = word & 0xFFu, wants = uint(255.0 * min(soot, 1.0));
+        marks = marks || (wants > lies && wants > kUnseen);
         if (wants > lies) gradient[at + x] = (word & ~0xFFu) | min(wants, lies + max(most, 1u));
     }
+    if (marks) atomicOr(tileState[worldTile].flag, kTileMarked);
 }
 
 void main() {

@@ -17,6 +17,7 @@ const bool kHasPlant = (kVariant & kSurfacePlant) != 0u;
 const bool kHasHide = (kVariant & kSurfaceHide) != 0u;
 const bool kImage = (kVariant & kSurfaceImage) != 0u;
 const bool kBurns = (kVariant & kSurfaceBurns) != 0u;
+const bool kCold = (kVariant & kSurfaceCold) != 0u;
 
 layout(set = 0, binding = FW_BIND_PREDICT, std430) readonly buffer Predict { uint predict[]; };
 layout(set = 0, binding = FW_BIND_GRADIENT, std430) readonly buffer Gradient { uint gradient[]; };
@@ -65,8 +66,9 @@ struct Arrival {
 // Bilinear over the taps that exist; towards chart borders each tap is continued along its own
 // gradient, so that both sides of a seam agree. Where all four miss, at a chart's border, the
 // nearest of the 25 around stand in.
-// `steepest`: s/texel; beyond it, where fronts meet, slopes say nothing.
-Arrival arrivalAt(vec2 uv, float steepest) {
+// `steepest`: s/texel; beyond it, where fronts meet, slopes say nothing. `scorch`: s before a front
+// that show: beside what was put out nothing comes any more, and the rim is as wide as a texel.
+Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     vec2 st = uv - 0.5;
     vec2 corner = floor(st);
     ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
@@ -75,8 +77,8 @@ Arrival arrivalAt(vec2 uv, float steepest) {
     o.gradient = vec2(0.0);
     o.known = o.out_ = o.damp = 0.0;
     float total = 0.0, never = 0.0, ahead = 0.0, soot = 0.0;
-    int taps = 4;
-    for (int i = 0; i < taps; ++i) {
+    int taps = 4, i = 0;
+    do {
         ivec2 o2 = i < 4 ? ivec2(i & 1, i >> 1) : ivec2((i - 4) % 5 - 2, (i - 4) / 5 - 2);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
         uint index = draw.stateBase + uint(texel.y) * draw.width + uint(texel.x);
@@ -102,14 +104,16 @@ Arrival arrivalAt(vec2 uv, float steepest) {
         soot += doused ? 0.0 : w * float(packed & 0xFFu);
         never += t == kNever ? w : 0.0;
         if (i == 3 && total == 0.0) taps = 29;
-    }
+        ++i;
+    } while (i < taps);
     float inverse = 1.0 / max(total, 1e-6), burnt = o.known + o.out_;
-    o.soot = soot * inverse * (1.0 / 255.0);
+    o.soot = soot / max(total - o.out_, 1e-6) * (1.0 / 255.0);
     if (burnt <= 0.0) {
         o.age = -1e6;
     } else {
         // Wet texels say nothing of the time: see dampen().
-        o.age = (o.age - never * draw.horizon) / (burnt + never);
+        float before = o.out_ > 0.0 ? min(scorch, draw.horizon) : draw.horizon;
+        o.age = (o.age - never * before) / (burnt + never);
     }
     o.ahead = o.damp > 0.0 ? ahead / o.damp : 1e3;
     o.age += view.ambientGround.w * (1.0 / 4096.0);
@@ -131,17 +135,19 @@ Warmth warmthAt(vec2 uv) {
     vec2 corner = floor(st);
     ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
     float total = 1e-6, kelvin = 300.0 * total, fuel = total;
-    int taps = (draw.flags & kDrawHeat) != 0u ? 4 : 0;
-    for (int i = 0; i < taps; ++i) {
+    bool plane = (draw.flags & kDrawHeat) != 0u;
+    int taps = plane ? 4 : 1, i = 0;
+    do {
         ivec2 o2 = ivec2(i & 1, i >> 1);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
         uint word = heat[2u * (draw.heatBase + uint(texel.y) * draw.width + uint(texel.x))];
         vec2 share = 1.0 - abs(st - corner - vec2(o2));
-        float w = share.x * share.y;
+        float w = plane ? share.x * share.y : 0.0;
         total += w;
         kelvin += w * float(word >> 16u) * (1.0 / 16.0);
         fuel += w * float(word & 0xFFFFu) * (1.0 / float(kFuelFull));
-    }
+        ++i;
+    } while (i < taps);
     return Warmth(kelvin / total, 1.0 - fuel / total);
 }
 
@@ -223,7 +229,7 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float 
         vec3 d = at.xyz - view.eye.xyz - position;
         float r2 = dot(d, d);
         float wrapped = max(0.0, dot(n, d) * inversesqrt(max(r2, 1e-8)) + 0.25) * 0.64;
-        if (!kBurns) soot += plumeSoot(d, lights[i].power, view.up.xyz);
+        if (!kBurns && !kCold) soot += plumeSoot(d, lights[i].power, view.up.xyz);
         fire += color.rgb * (color.w * wrapped / (r2 + max(at.w * at.w * 0.25, 0.004)));
     }
     s.albedo = sooted(s.albedo, sootable * saturate(soot));
@@ -251,6 +257,7 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float 
 float zigzag(float x) { return abs(fract(x) - 0.5) * 4.0 - 1.0; }
 
 void main() {
+    if (kCold && inSootLead.x > 0.0) discard;
     MaterialLook look = looks[min(draw.look, kLookRows - 1u)];
     if ((draw.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
     // The rim shows the host's thickness within what the look was made for.
@@ -328,7 +335,8 @@ void main() {
     vec2 coat = vec2(0.0);
     if (kBurns) {
         arrival =
-            arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * max(length(gradU), 1.0)));
+            arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * max(length(gradU), 1.0)),
+                      (1.3 * look.scorchWidth / rate + 1.5 * look.jitter) / draw.timeScale);
         arrival.age -= dot(arrival.gradient, shift - near);
         warmth = warmthAt(inAtlas + near);
         vec2 creeps = vec2(coarse.r + 0.4 * fine.b, coarse.g + 0.4 * fine.r) * 3.0 - 2.0;
@@ -466,7 +474,9 @@ void main() {
     tilt *= min(1.0, 1.6 * inversesqrt(max(dot(tilt, tilt), 1e-8)));
     vec3 n = normalize(facingNormal + (deep >= 0.0 ? vec3(0.0) : (back ? -tilt : tilt)));
 
-    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, arrival.soot,
+    // Hollows are black with smoke.
+    float soot = inside && deep < 0.0 && (kBurns || kCold) ? 0.85 : arrival.soot;
+    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, soot,
                         (1.0 - charred) * (0.6 + 0.5 * coarse.r));
     outColor = vec4(encodeOutput(min(linear, vec3(60000.0)) * view.sunDirection.w, kEncoding), 1.0);
 }

@@ -15,6 +15,9 @@ layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; 
 layout(set = 0, binding = FW_BIND_REFINE_VERTICES, std430) readonly buffer Places {
     vec4 places[];
 };
+layout(set = 0, binding = FW_BIND_TILE_STATE, std430) readonly buffer TileStates {
+    uvec4 tileStates[];
+};
 layout(push_constant) uniform Push { SurfaceDraw draw; };
 
 layout(location = 0) in vec3 inPosition;  // m, object space, as it is shown
@@ -34,7 +37,8 @@ layout(location = 3) out vec4 outTexture;   // xy: texels of the atlas; zw: UV
 layout(location = 4) out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) out vec4 outTint;      // w: ... mean direction to the flames
 layout(location = 6) out vec2 outSootLead;  // soot of flames below; look seconds, see inLead; with
-                                            // kDrawCut the last word of a cut vertex, in s
+                                            // kDrawCut the last word of a cut vertex, in s; with
+                                            // kSurfaceCold x: 1 by what fire left
 
 #include "lib/turn.glsl"
 #include "surface/place.glsl"
@@ -54,8 +58,21 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
     color += light.colorIntensity.rgb * e;
     towards += vec4(to, 1.0) * e;
     // Where something has burnt, texels know their soot.
-    if ((kVariant & kSurfaceBurns) == 0u)
+    if ((kVariant & (kSurfaceBurns | kSurfaceCold)) == 0u)
         outSootLead.x += plumeSoot(d, light.power, view.up.xyz);
+}
+
+// Whether fire, heat, water or soot left a mark within reach.
+bool markedNear(vec2 texel) {
+    ivec2 last = ivec2(int(draw.width) - 1, int(draw.height) - 1) >> 3;
+    ivec2 low = ivec2(max(texel - draw.coldReach, 0.0)) >> 3;
+    ivec2 high = min(ivec2(texel + draw.coldReach) >> 3, last);
+    uint flags = 0u;
+    for (int i = 0; i < 16; ++i) {
+        ivec2 tile = min(low + ivec2(i & 3, i >> 2), high);
+        flags |= tileStates[(draw.stateBase >> 6u) + uint(tile.y * (last.x + 1) + tile.x)].y;
+    }
+    return (flags & kTileMarked) != 0u;
 }
 
 void main() {
@@ -112,4 +129,10 @@ void main() {
     outDetail = vec4(inDetail * scale, towards.xy);
     outTint = vec4(inTint.rgb * vec3(draw.tintR, draw.tintG, draw.tintB), towards.z);
     gl_Position = clipPlace(position);
+    // Beyond the far plane, near or reversed: triangles with three such corners are clipped away,
+    // fragments of those with one or two are discarded.
+    if ((kVariant & kSurfaceCold) != 0u && (lead >= 1e-3 || markedNear(inAtlas))) {
+        outSootLead.x = 1.0;
+        gl_Position.z = 2.0 * gl_Position.w;
+    }
 }

@@ -40,6 +40,7 @@ struct DrawItem {
     uint32_t shown = kNoneTexel;  // first of its own shown vertices; kNoneTexel: the mesh's
     uint32_t image = 0;           // base-colour image slot + 1, 0: none
     uint32_t variant = 0;         // of the surface pass, from surfaceVariant
+    uint32_t coldVariant = ~0u;   // of its triangles where nothing shows; ~0: drawn as the others
     bool refined = false;         // its triangles are in the refinement's planes
     bool cut = false;             // and holes are cut out of them
     bool consumed = false;        // those burnt through are left out, whole: nothing is cut
@@ -61,16 +62,17 @@ class DrawRecorder {
     ~DrawRecorder() = default;
 };
 
-constexpr uint32_t kSurfaceVariants = 25;
+constexpr uint32_t kSurfaceVariants = 35;
 extern const DrawPass kSurfacePasses[kSurfaceVariants];
 // The variant for a material of an object with an image there or not; `touched`: some event
 // reached the object.
 uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched);
 // `edge`: m, mean edge of the object's triangles.
 // `places`: of the object's vertices among the refined ones.
-// `doused`: something wetted it or put it out, some day.
+// `doused`: something wetted it or put it out, some day. `warmed`: others' fires sent heat to it.
 SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
-                        const HeatMaterial& heat, float edge, uint32_t places, bool doused);
+                        const HeatMaterial& heat, float edge, uint32_t places, bool doused,
+                        bool warmed);
 // Of `items` those after the Z-pass, or the others.
 bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items, bool zPass);
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items,

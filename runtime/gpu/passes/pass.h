@@ -65,6 +65,8 @@ struct DrawPass {
     uint32_t pushBytes;  // vertex and fragment, <= 128
     uint32_t variant = 0;
     Cull cull = Cull::none;
+    bool strict = false;  // nothing where something stands as near
+    bool behind = false;  // its depth is a hair farther, so that what is strict passes it
     // Instead of fragmentShader where the target samples depth; null: not drawn there.
     const char* softShader = nullptr;
     const char* softShaderMultisampled = nullptr;

@@ -6,7 +6,7 @@ namespace {
 
 constexpr Use kUses[] = {
     {FW_BIND_OBJECTS, Access::read},     {FW_BIND_TEXELS, Access::read},
-    {FW_BIND_TILE_STATE, Access::read},  {FW_BIND_PREDICT, Access::read},
+    {FW_BIND_TILE_STATE, Access::write}, {FW_BIND_PREDICT, Access::read},
     {FW_BIND_GRADIENT, Access::write},   {FW_BIND_SKIN_TEXELS, Access::read},
     {FW_BIND_SHOWN, Access::read},       {FW_BIND_LIGHTS, Access::read},
     {FW_BIND_VIEW, Access::uniformView},

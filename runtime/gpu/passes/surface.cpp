@@ -17,16 +17,29 @@ constexpr Use kUses[] = {
     {FW_BIND_HEAT, Access::drawRead},
     {FW_BIND_REFINE_CUTS, Access::vertexInput},
     {FW_BIND_REFINE_CUT_DRAWS, Access::indirect},
+    {FW_BIND_TILE_STATE, Access::drawRead},
 };
 
-constexpr DrawPass variant(uint32_t features, Cull cull = Cull::none) {
-    return {"surface",     "surface.vert", "surface.frag",      kUses,    VertexInput::mesh,
-            Blend::opaque, true,           sizeof(SurfaceDraw), features, cull};
+constexpr DrawPass variant(uint32_t features, Cull cull) {
+    return {"surface",
+            "surface.vert",
+            "surface.frag",
+            kUses,
+            VertexInput::mesh,
+            Blend::opaque,
+            true,
+            sizeof(SurfaceDraw),
+            features,
+            cull,
+            (features & kSurfaceBurns) != 0};
 }
-// Objects that burn are drawn in two goes, so that the depth test drops the inside, which only
-// holes show. Where the host's faces turn the other way the goes swap, and the picture is the same.
+// All is drawn in two goes, so that the depth test drops the inside, which only holes show. Where
+// the host's faces turn the other way the goes swap, and the picture is the same. Of what burns,
+// the triangles without a trace of it come before, by cheaper variants; what burns is strict, and
+// so not drawn over those.
 constexpr uint32_t kFresh = 5, kBurning = 10;
-static_assert(kFresh + 2 * kBurning == kSurfaceVariants);
+constexpr uint32_t kFirstCold = 2 * kFresh, kFirstBurning = 3 * kFresh;
+static_assert(kFirstBurning + 2 * kBurning == kSurfaceVariants);
 
 constexpr uint32_t kPaint = kSurfaceWood | kSurfacePaint;
 constexpr uint32_t kHide = kSurfaceSheet | kSurfaceHide;
@@ -65,11 +78,21 @@ uint32_t familyOf(uint32_t look) {
 
 // Cheapest first: an object is drawn by the first that has all it needs.
 const DrawPass kSurfacePasses[kSurfaceVariants] = {
-    variant(kSurfaceWood),
-    variant(kSurfacePlant),
-    variant(kPaint),
-    variant(kHide),
-    variant(kSurfaceImage),
+    variant(kSurfaceWood, Cull::back),
+    variant(kSurfacePlant, Cull::back),
+    variant(kPaint, Cull::back),
+    variant(kHide, Cull::back),
+    variant(kSurfaceImage, Cull::back),
+    variant(kSurfaceWood, Cull::front),
+    variant(kSurfacePlant, Cull::front),
+    variant(kPaint, Cull::front),
+    variant(kHide, Cull::front),
+    variant(kSurfaceImage, Cull::front),
+    variant(kSurfaceWood | kSurfaceCold, Cull::back),
+    variant(kSurfacePlant | kSurfaceCold, Cull::back),
+    variant(kPaint | kSurfaceCold, Cull::back),
+    variant(kHide | kSurfaceCold, Cull::back),
+    variant(kSurfaceImage | kSurfaceCold, Cull::back),
     variant(kSurfaceWood | kSurfaceBurns, Cull::back),
     variant(kPaint | kSurfaceBurns, Cull::back),
     variant(kSurfaceSheet | kSurfaceBurns, Cull::back),
@@ -97,13 +120,14 @@ uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched) 
     uint32_t needs = touched ? kSurfaceBurns : 0;
     if (touched || !image) needs |= familyOf(material.look);
     if (image) needs |= kSurfaceImage;
-    uint32_t i = 0;
+    uint32_t i = touched ? kFirstBurning : 0;
     while ((needs & ~kSurfacePasses[i].variant) != 0) ++i;
     return i;
 }
 
 SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
-                        const HeatMaterial& heat, float edge, uint32_t places, bool doused) {
+                        const HeatMaterial& heat, float edge, uint32_t places, bool doused,
+                        bool warmed) {
     SurfaceDraw draw{};
     draw.row0 = object.worldRow0;
     draw.row1 = object.worldRow1;
@@ -128,15 +152,17 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     // What is thin and never doused is as hot as its age says.
     if (heated && (doused || (heat.flags & kHeatThick))) draw.flags |= kDrawHeat;
     if (heated && (heat.flags & kHeatThick)) draw.flags |= kDrawThick;
-    if (doused) draw.flags |= kDrawWet;
+    if (doused || (heated && warmed)) draw.flags |= kDrawWet;
     return draw;
 }
 
 // Whether pass `variant` draws an item. After the Z-pass only what faces the eye is drawn.
 static bool drawnBy(uint32_t variant, const DrawItem& item, bool zPass) {
     if (item.zPass != zPass) return false;
-    const bool inside = item.variant >= kFresh && !zPass;
-    return item.variant == variant || (inside && item.variant + kBurning == variant);
+    if (variant < kFirstCold) return item.variant == variant % kFresh;
+    if (variant >= kFirstBurning)
+        return item.variant == variant || (item.variant + kBurning == variant && !zPass);
+    return item.variant >= kFirstBurning && item.coldVariant == variant - kFirstCold;
 }
 
 bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items, bool zPass) {
@@ -151,10 +177,11 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
     for (const DrawItem& item : items) {
         if (!drawnBy(variant, item, zPass)) continue;
         SurfaceDraw draw = item.draw;
-        if (item.cut || (item.refined && item.consumed)) draw.flags |= kDrawCut;
+        const bool burning = variant >= kFirstBurning;
+        if (burning && (item.cut || (item.refined && item.consumed))) draw.flags |= kDrawCut;
         if (item.refined) draw.flags |= kDrawPlaced;
         recorder.drawItem(item, &draw);
-        if (!item.cut) continue;
+        if (!item.cut || !burning) continue;
         draw.flags &= ~kDrawPlaced;
         recorder.drawCut(item, &draw);
     }

@@ -17,7 +17,8 @@ const DrawPass kZPass{.name = "z pass",
                       .vertexInput = VertexInput::mesh,
                       .blend = Blend::depthAlone,
                       .writeDepth = true,
-                      .pushBytes = sizeof(SurfaceDraw)};
+                      .pushBytes = sizeof(SurfaceDraw),
+                      .behind = true};
 
 bool zPassDraws(std::span<const DrawItem> items) {
     for (const DrawItem& item : items)

@@ -355,6 +355,8 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
                                                 : VkCullModeFlags(VK_CULL_MODE_FRONT_BIT);
     raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     raster.lineWidth = 1;
+    raster.depthBiasEnable = pass.behind;
+    raster.depthBiasConstantFactor = key.reversedDepth ? -2.0f : 2.0f;
     auto multisample = typed<VkPipelineMultisampleStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
     multisample.rasterizationSamples = VkSampleCountFlagBits(key.samples);
@@ -363,7 +365,8 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     depth.depthTestEnable = key.attachesDepth();
     depth.depthWriteEnable = key.depthMode == FW_DEPTH_TEST && pass.writeDepth;
     depth.depthCompareOp =
-        key.reversedDepth ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_LESS_OR_EQUAL;
+        key.reversedDepth ? (pass.strict ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_GREATER_OR_EQUAL)
+                          : (pass.strict ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_LESS_OR_EQUAL);
     std::array<VkPipelineColorBlendAttachmentState, 8> blends{};
     blends[0].blendEnable = colors && pass.blend != Blend::opaque;
     blends[0].srcColorBlendFactor = VK_BLEND_FACTOR_ONE;

@@ -22,6 +22,12 @@ void measureDrawn(const mesh::BurnDomain& domain, MeshEntry& entry) {
             p[k] = {at[0], at[1], at[2]};
         }
         area += glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));  // of two
+        for (size_t k = 0; k < 3; ++k) {
+            const auto& from = domain.vertices[domain.indices[i + k]].atlasUv;
+            const auto& to = domain.vertices[domain.indices[i + (k + 1) % 3]].atlasUv;
+            entry.texelEdge =
+                std::max(entry.texelEdge, std::hypot(from[0] - to[0], from[1] - to[1]));
+        }
         entry.materialEnd[materialOf(domain, i)] += 3;
     }
     for (uint32_t m = 1; m < kMaterialsPerObject; ++m)

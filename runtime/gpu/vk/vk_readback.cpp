@@ -57,6 +57,19 @@ const Readback* VkBackend::State::nextReadback() {
                 objects[i].touched = true;
                 recordsDirty = true;
             }
+            // What others warm may turn brown before it burns; of what burns little is left cold.
+            for (size_t i = 0; i < objects.size() && i < givenObjects.size(); ++i) {
+                ObjectEntry& object = objects[i];
+                const uint32_t texels = object.record.width * object.record.height;
+                const bool charred = object.live && givenObjects[i].ignited > texels / 4;
+                recordsDirty |= charred != object.charred;
+                object.charred = charred;
+                if (object.warmed || !object.live || object.resetDue ||
+                    givenObjects[i].until == 0 || (object.record.flags & kObjectHeat) == 0)
+                    continue;
+                object.warmed = true;
+                recordsDirty = true;
+            }
             uint64_t at = 0, heatAt = 0;
             for (uint32_t i = 0; i < layout.mapCount; ++i) {
                 const ReadbackLayout::MapAt& map = layout.maps[i];

@@ -62,7 +62,7 @@ void recordUploads(VkBackend::State& s) {
 }
 
 bool looksBurnt(const ObjectEntry& object) noexcept {
-    return object.touched && (object.record.flags & kObjectNoDamage) == 0;
+    return (object.touched || object.warmed) && (object.record.flags & kObjectNoDamage) == 0;
 }
 
 // Before anything reached it nothing of it can have crossed.
@@ -70,12 +70,27 @@ bool zPassed(const ObjectEntry& object) noexcept {
     return looksBurnt(object) && (object.record.flags & kObjectZPass) != 0;
 }
 
+// How `item`'s material is drawn, burnt and where no fire was.
+void chooseVariants(const VkBackend::State& s, const ObjectEntry& object, DrawItem& item) {
+    const BurnMaterial& material = object.materials[item.material];
+    const bool burnt = looksBurnt(object), image = item.image != 0;
+    item.variant = surfaceVariant(material, image, burnt);
+    const float reach = coldReach(s.meshes[object.mesh].texelEdge);
+    const bool tells = (object.record.flags & kObjectPublished) == 0 && reach <= kColdReach;
+    item.coldVariant = burnt && tells && !object.charred && !zPassed(object)
+                           ? surfaceVariant(material, image, false)
+                           : ~0u;
+}
+
 SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
     const vec4 row = object.record.worldRow0;
     const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
-    return surfaceDraw(object.record, object.materials[material], object.heat[material],
-                       s.meshes[object.mesh].edge * scale, object.refine.slots.first,
-                       object.doused);
+    const MeshEntry& mesh = s.meshes[object.mesh];
+    SurfaceDraw draw =
+        surfaceDraw(object.record, object.materials[material], object.heat[material],
+                    mesh.edge * scale, object.refine.slots.first, object.doused, object.warmed);
+    draw.coldReach = coldReach(mesh.texelEdge);
+    return draw;
 }
 
 // Records of objects that are new, moved or gone, and the list of what draws show.
@@ -123,15 +138,23 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
         uint32_t first = 0;
         for (uint32_t m = 0; m < kMaterialsPerObject; ++m) {
             const uint32_t end = mesh.materialEnd[m];
-            if (end != first)
-                s.drawItems.push_back(
-                    {i, m, mesh.indexRange.first + first, end - first,
-                     int32_t(mesh.vertexRange.first),
-                     object.shown.units ? object.shown.first : kNoneTexel, object.images[m],
-                     surfaceVariant(object.materials[m], object.images[m] != 0, looksBurnt(object)),
-                     object.refine.started, object.refine.cut, object.refine.arpPlus1 != 0,
-                     zPassed(object),
-                     drawOf(s, object, m)});
+            if (end != first) {
+                DrawItem item{};
+                item.object = i;
+                item.material = m;
+                item.firstIndex = mesh.indexRange.first + first;
+                item.indexCount = end - first;
+                item.vertexOffset = int32_t(mesh.vertexRange.first);
+                item.shown = object.shown.units ? object.shown.first : kNoneTexel;
+                item.image = object.images[m];
+                chooseVariants(s, object, item);
+                item.refined = object.refine.started;
+                item.cut = object.refine.cut;
+                item.consumed = object.refine.arpPlus1 != 0;
+                item.zPass = zPassed(object);
+                item.draw = drawOf(s, object, m);
+                s.drawItems.push_back(item);
+            }
             first = end;
         }
     }
@@ -229,8 +252,7 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event) {
     object.doused = object.doused || douses;
     for (DrawItem& item : s.drawItems) {
         if (item.object != event.object) continue;
-        item.variant =
-            surfaceVariant(object.materials[item.material], item.image != 0, looksBurnt(object));
+        chooseVariants(s, object, item);
         item.zPass = zPassed(object);
         item.draw = drawOf(s, object, item.material);
     }

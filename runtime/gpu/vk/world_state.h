@@ -78,7 +78,8 @@ struct MeshEntry {
     uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
     RefineMesh refine[2 * (kRefineDepth + 1)];       // by refineKey
     uint32_t sourceCells = 1;                        // see mesh/remote_tiles.h
-    float edge = 0;  // m at scale 1: side of a square as large as two mean triangles
+    float edge = 0;       // m at scale 1: side of a square as large as two mean triangles
+    float texelEdge = 0;  // texels, longest edge in the map
     const mesh::BurnDomain* domain = nullptr;
     RangeOf nodes, coats;       // once an object deforms
     RangeOf skin, skinSources;  // once one is skinned
@@ -91,6 +92,8 @@ struct ObjectEntry {
     bool drawable = false;   // a recorded frame holds it
     bool touched = false;    // some event reached it: it may burn, or be wet
     bool doused = false;     // one of them was not fire
+    bool warmed = false;     // others' fires sent heat to it
+    bool charred = false;    // most of it burns or has burnt: its cold rest is not worth a draw
     uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
     uint32_t douseEnds = 0;  // tick by which that has had its effect
     bool forget = false;     // scratch of run
