@@ -98,28 +98,10 @@ void main() {
     outSootLead = vec2(0.0, lead);
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
-    bool lit = (flags & kDrawVertexLight) != 0u;
-    uint count = view.lightCount | zero;
-    while (lit) {
-        // Constant indices: software devices read the block once for all vertices then.
-        if (count > 0u) addFlame(lights[0], position, normal, color, towards);
-        if (count > 1u) addFlame(lights[1], position, normal, color, towards);
-        if (count > 2u) addFlame(lights[2], position, normal, color, towards);
-        if (count > 3u) addFlame(lights[3], position, normal, color, towards);
-        if (count > 4u) addFlame(lights[4], position, normal, color, towards);
-        if (count > 5u) addFlame(lights[5], position, normal, color, towards);
-        if (count > 6u) addFlame(lights[6], position, normal, color, towards);
-        if (count > 7u) addFlame(lights[7], position, normal, color, towards);
-        if (count > 8u) addFlame(lights[8], position, normal, color, towards);
-        if (count > 9u) addFlame(lights[9], position, normal, color, towards);
-        if (count > 10u) addFlame(lights[10], position, normal, color, towards);
-        if (count > 11u) addFlame(lights[11], position, normal, color, towards);
-        if (count > 12u) addFlame(lights[12], position, normal, color, towards);
-        if (count > 13u) addFlame(lights[13], position, normal, color, towards);
-        if (count > 14u) addFlame(lights[14], position, normal, color, towards);
-        if (count > 15u) addFlame(lights[15], position, normal, color, towards);
-        lit = false;
-    }
+    // No branch around it: a software device would take the branch and do the work masked. A loop
+    // that ends at once costs one turn.
+    uint count = (flags & kDrawVertexLight) != 0u ? view.lightCount | zero : 0u;
+    for (uint i = 0u; i < count; ++i) addFlame(lights[i], position, normal, color, towards);
     towards.xyz /= towards.w;
 
     outPosition = vec4(position, color.r);
