@@ -209,8 +209,10 @@ void World::stats(FwWorldStats& stats) noexcept {
     stats.flames = flames_;
     stats.lateClamps = lateClamps_;
     stats.droppedSteps = uint32_t(droppedSteps_);
-    for (const Object* object : touched_)
+    for (const Object* object : touched_) {
         stats.burningObjects += object->counters.burning > 0 ? 1u : 0u;
+        stats.refinedTriangles += object->counters.refined;
+    }
     stats.texels = texels_;
 }
 

@@ -52,6 +52,10 @@ FW_BUFFER(FW_BIND_VERTICES, FW_USE_MESH_VERTICES, MeshVerticesBuffer, uvec4, mes
 FW_BUFFER(FW_BIND_REFINE_CUTS, FW_USE_CUTS, RefineCutsBuffer, uvec4, cuts);
 FW_BUFFER(FW_BIND_REFINE_CUT_DRAWS, FW_USE_CUTS, RefineCutDrawsBuffer, uint, cutDraws);
 #endif
+#ifdef FW_USE_OBJECT_COUNTERS
+FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters,
+          objectCounters);
+#endif
 #ifdef FW_USE_PREDICT
 FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);
 FW_BUFFER(FW_BIND_GRADIENT, FW_USE_PREDICT, GradientBuffer, uint, gradient);

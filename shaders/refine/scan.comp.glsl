@@ -1,11 +1,13 @@
 // Where each triangle's output begins: an exclusive sum of its count, by one workgroup per object. Of
 // objects whose levels changed; they get new draw arguments, and their output is listed to be emitted.
+// Readbacks tell how much that is.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
 #define FW_USE_WORK coherent
 #define FW_USE_LEVELS coherent
 #define FW_USE_DRAWS writeonly
+#define FW_USE_OBJECT_COUNTERS writeonly
 #include "lib/refine_buffers.glsl"
 
 shared uint part[128];
@@ -39,6 +41,7 @@ void scan(uint object, uint ordinal) {
     uint jobs = (total + 63u) / 64u;
     if (lane == 0u) {
         work[objectList() + 2u * ordinal + 1u] = total;
+        objectCounters[object].refined = total;
         firstJob = atomicAdd(work[kRefineWorkEmit + 3u], jobs);
         atomicMax(work[kRefineWorkEmit], min(firstJob + jobs, kMostGroups));
     }

@@ -263,7 +263,7 @@ struct ObjectCounters {
     uint held;        // kHeld bits of the last exchange
     uint spots;       // embers that lit it, since ever
     uint spotTexel;   // one of those texels
-    uint reserved0;
+    uint refined;     // triangles that its refined surface has
 };
 FW_SHARED_SIZE(ObjectCounters, 64)
 FW_SHARED_CONST uint kHeldFull = 1u;     // as many tiles burn as may: no other one catches

@@ -160,7 +160,8 @@ struct SurfaceDraw {
     uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
     float filmMost;          // g/m^2 of water that stay on it; 0: no heat plane
     float now;               // with kDrawCut: s on the clock of its holes
-    float coldReach;         // texels, of kSurfaceCold
+    float nearness;          // with kDrawCut: 0 where cut and discarded rims must look the same, to 1;
+                             // of kSurfaceCold: texels, coldReach
 };
 FW_SHARED_SIZE(SurfaceDraw, 128)
 // SurfaceDraw::flags, beyond kObject...: triangles are small, flames light their corners.

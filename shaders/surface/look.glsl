@@ -12,6 +12,7 @@ struct Site {     // what is known of one point of the surface
     float slow;   // s/m, slope of the ignition time
     float lead;   // s that holes come earlier
     float left;   // s to the hole, where the mesh is cut; negative: as the noise says
+    float nearness;  // as SurfaceDraw's
     float steep;  // m/m, at least 1: how fast the way to the hole shrinks along the surface
     vec2 ahead;   // unit, towards fresh material, in detail space
     float out_;   // [0, 1] extinguished and cold
@@ -67,9 +68,10 @@ float holeDelay(vec4 grown, vec4 fine, float delay, MaterialLook m) {
 // m from here to the rim of the hole; negative: gone.
 float holeEdge(float a, Site s, MaterialLook m) {
     if (m.holeTime <= 0.0) return 1.0;
-    // A cut is smooth: its glow has patches.
+    // A cut is smooth: its glow has patches. Far away it is as wide as noise makes that of others.
     if (s.left >= 0.0)
-        return s.left / s.slow + 0.5 * m.rimWidth * smoothstep(0.42, 0.62, s.fine.r);
+        return s.left / s.slow * mix(0.6, 1.0, s.nearness) +
+               0.5 * m.rimWidth * s.nearness * smoothstep(0.42, 0.62, s.fine.r);
     return (m.holeTime + holeDelay(s.grown, s.fine, s.delay, m) - s.lead - a) / s.slow;
 }
 
@@ -239,7 +241,8 @@ Skin burningSkin(Site s, MaterialLook m) {
             float least = m.rimWidth < kThinRim ? 1.5 * s.pixel : 0.5 * s.pixel;
             float wide = 0.35 * m.rimWidth / (0.35 * m.rimWidth + least);
             // The rim of a hole that grows no more dies down.
-            float old = s.left < 0.0 ? 0.0 : max(0.0, a - 1.1 * m.holeTime) / (3.0 * m.faceDecay);
+            float old = max(0.0, a - 1.1 * m.holeTime) / (3.0 * m.faceDecay);
+            old *= s.left < 0.0 ? 0.0 : s.nearness;
             float rim = 300.0 + (m.rimKelvin - 300.0) * exp(-e * wide / m.rimWidth - old) +
                         (kHasSheet ? 0.3 : 0.8) * dT;
             emission += emberRadiance(limitGlow(rim, s)) * (0.9 * (1.0 - 0.6 * ash) * wide);

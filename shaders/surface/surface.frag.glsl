@@ -414,6 +414,7 @@ void main() {
     // What the wall behind has burnt is missing here too, even before this side catches.
     site.lead = cut ? 0.0 : inSootLead.y;
     site.left = cut ? max(inSootLead.y, 0.0) * draw.timeScale : -1.0;
+    site.nearness = draw.nearness;
     if (wall) {
         // As char that has burnt through; what glows at its rim fades inwards.
         site.age = max(site.age, look.holeTime);

@@ -65,8 +65,8 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
 // Whether fire, heat, water or soot left a mark within reach.
 bool markedNear(vec2 texel) {
     ivec2 last = ivec2(int(draw.width) - 1, int(draw.height) - 1) >> 3;
-    ivec2 low = ivec2(max(texel - draw.coldReach, 0.0)) >> 3;
-    ivec2 high = min(ivec2(texel + draw.coldReach) >> 3, last);
+    ivec2 low = ivec2(max(texel - draw.nearness, 0.0)) >> 3;
+    ivec2 high = min(ivec2(texel + draw.nearness) >> 3, last);
     uint flags = 0u;
     for (int i = 0; i < 16; ++i) {
         ivec2 tile = min(low + ivec2(i & 3, i >> 2), high);

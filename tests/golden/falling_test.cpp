@@ -1,9 +1,6 @@
 // Burnt pieces that nothing holds fall to ash: a tall strip of wood burns through in the middle,
 // and what is above must go long before it is consumed; with something unburnt above, it must stay.
-#include "flamewright/flamewright.h"
-#include "support/meshes.h"
-
-#include <gtest/gtest.h>
+#include "support/own_world.h"
 
 #include <algorithm>
 #include <cstring>
@@ -13,53 +10,24 @@ namespace {
 
 constexpr uint32_t kWidth = 64, kHeight = 256;  // px: a strip of 0.15 x 1.2 m fills the height
 
-class Falling : public testing::Test {
+class Falling : public OwnWorld {
  protected:
-    void SetUp() override {
-        const FwContextDef def = fwDefaultContextDef();
-        FwErrorInfo info{};
-        if (fwCreateContext(&def, &context_, &info) != FW_OK) GTEST_SKIP() << info.message;
-    }
-    void TearDown() override { fwDestroyContext(context_); }
-
-    void touch(uint32_t kind, float y, float radius) {
-        FwIgnitionDef def = fwDefaultIgnitionDef();
-        def.kind = kind;
-        def.position[0] = 0.075f;
-        def.position[1] = y;
-        def.radius = radius;
-        ASSERT_EQ(fwWorld_Ignite(world_, &def, nullptr), FW_OK);
-    }
-
     // Burns from the middle for `seconds`; the foot is wet. Share of the upper part that is seen.
     double upperPart(bool wetTop, float seconds) {
-        FwWorldDef worldDef = fwDefaultWorldDef();
-        worldDef.maxStepsPerFrame = 8;
-        worldDef.maxFlames = 0;
-        EXPECT_EQ(fwCreateWorld(context_, &worldDef, &world_), FW_OK);
+        makeWorld(1, 8);
         const Mesh mesh = makePlane(0.15, 1.2, 0, 1, 0, 4);
-        FwMeshDef def = fwDefaultMeshDef();
-        def.positions = mesh.positions.data();
-        def.uvs = mesh.uvs.data();
-        def.indices = mesh.indices.data();
-        def.vertexCount = mesh.vertexCount();
-        def.indexCount = uint32_t(mesh.indices.size());
+        FwMeshDef def = meshDefOf(mesh);
         def.texelsPerMetre = 128;
         def.noiseAmplitude = 0;
-        FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
-        object.flags = FW_BURNABLE_TWO_SIDED;
-        EXPECT_EQ(fwWorld_CreateMesh(world_, &def, &object.mesh), FW_OK);
         FwMaterialDef pine = fwDefaultMaterialDef();
         pine.upGain = 0;
         pine.spreadRate = 0.06f;  // a look second is 10 ms: holes come after 6.2 s
-        EXPECT_EQ(fwWorld_CreateMaterial(world_, &pine, &object.materials[0]), FW_OK);
-        FwBurnableMeshId id{};
-        EXPECT_EQ(fwWorld_CreateBurnableMesh(world_, &object, &id), FW_OK);
-        touch(FW_WET, 0.0f, 0.25f);
-        if (wetTop) touch(FW_WET, 1.2f, 0.12f);
-        touch(FW_IGNITE, 0.45f, 0.08f);
+        add(def, pine, FW_BURNABLE_TWO_SIDED);
+        touch(FW_WET, 0.075f, 0.0f, 0, 0.25f);
+        if (wetTop) touch(FW_WET, 0.075f, 1.2f, 0, 0.12f);
+        touch(FW_IGNITE, 0.075f, 0.45f, 0, 0.08f);
         fwWorld_Step(world_, 0);
-        for (float t = 0; t < seconds; t += 1.0f / 32) fwWorld_Step(world_, 1.0f / 32);
+        run(seconds, 1.0f / 32);
         std::vector<uint8_t> pixels(size_t{kWidth} * kHeight * 4);
         FwOffscreenDef shot = fwDefaultOffscreenDef();
         shot.width = kWidth;
@@ -88,9 +56,6 @@ class Falling : public testing::Test {
         fwDestroyWorld(world_);
         return double(seen) / double(all);
     }
-
-    FwContext* context_ = nullptr;
-    FwWorld* world_ = nullptr;
 };
 
 TEST_F(Falling, WhatNothingHoldsFallsToAsh) {

@@ -1,5 +1,7 @@
 #include "golden/golden_image.h"
 
+#include "support/bless.h"
+
 #include <zlib.h>
 
 #include <algorithm>
@@ -141,7 +143,7 @@ testing::AssertionResult picturesMatch(const Picture& actual, const Picture& exp
 testing::AssertionResult matchesGolden(const std::string& name, const Picture& actual,
                                        const PictureTolerance& tolerance) {
     const std::string path = std::string(FW_TEST_SOURCE_DIR) + "/golden/" + name + ".png";
-    if (std::getenv("FLAMEWRIGHT_BLESS")) {
+    if (blessing()) {
         if (!writePng(path, actual)) return testing::AssertionFailure() << path << " not written";
         return testing::AssertionSuccess() << path << " written anew";
     }

@@ -1,9 +1,8 @@
 // What burns must not shimmer: true consecutive frames, 1/30 s apart, against the same moments
 // drawn with sixteen samples per pixel. What a frame is off by may not change from frame to frame.
 // FLAMEWRIGHT_MOTION=<folder> keeps the frames. Not about flames, and not about speed.
-#include "flamewright/flamewright.h"
 #include "golden/golden_image.h"
-#include "support/meshes.h"
+#include "support/own_world.h"
 
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -89,50 +88,21 @@ Shimmer shimmerOf(const char* name, const std::vector<Frame>& frames) {
     return s;
 }
 
-class Motion : public testing::Test {
+class Motion : public OwnWorld {
  protected:
-    void SetUp() override {
-        const FwContextDef def = fwDefaultContextDef();
-        FwErrorInfo info{};
-        if (fwCreateContext(&def, &context_, &info) != FW_OK) GTEST_SKIP() << info.message;
-    }
-    void TearDown() override { fwDestroyContext(context_); }
-
-    void makeWorld(float pace) {
-        FwWorldDef def = fwDefaultWorldDef();
-        def.paceFactor = pace;
-        def.maxStepsPerFrame = 32;
-        def.maxFlames = 0;
-        ASSERT_EQ(fwCreateWorld(context_, &def, &world_), FW_OK);
-    }
+    void makeWorld(float pace) { OwnWorld::makeWorld(pace, 32); }
 
     void burn(const Mesh& mesh, const std::vector<float>& details, uint32_t preset, float density,
               bool twoSided, glm::vec3 at, float radius, float seconds) {
-        FwMeshDef def = fwDefaultMeshDef();
-        def.positions = mesh.positions.data();
-        def.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
-        def.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
+        FwMeshDef def = meshDefOf(mesh);
         def.details = details.empty() ? nullptr : details.data();
-        def.indices = mesh.indices.data();
-        def.vertexCount = mesh.vertexCount();
-        def.indexCount = uint32_t(mesh.indices.size());
         def.mapSize = 1024;
         def.texelsPerMetre = density;
-        FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
-        object.flags = twoSided ? uint32_t{FW_BURNABLE_TWO_SIDED} : 0u;
-        ASSERT_EQ(fwWorld_CreateMesh(world_, &def, &object.mesh), FW_OK);
         FwMaterialDef material = fwDefaultMaterialDef();
         ASSERT_EQ(fwInitMaterialPreset(&material, preset), FW_OK);
-        ASSERT_EQ(fwWorld_CreateMaterial(world_, &material, &object.materials[0]), FW_OK);
-        FwBurnableMeshId id{};
-        ASSERT_EQ(fwWorld_CreateBurnableMesh(world_, &object, &id), FW_OK);
-        FwIgnitionDef match = fwDefaultIgnitionDef();
-        std::copy_n(glm::value_ptr(at), 3, match.position);
-        match.radius = radius;
-        uint32_t texels = 0;
-        ASSERT_EQ(fwWorld_Ignite(world_, &match, &texels), FW_OK);
-        ASSERT_GT(texels, 0u);
-        for (float t = 0; t < seconds; t += 0.25f) fwWorld_Step(world_, 0.25f);
+        add(def, material, twoSided ? uint32_t{FW_BURNABLE_TWO_SIDED} : 0u);
+        touch(FW_IGNITE, at.x, at.y, at.z, radius);
+        run(seconds, 0.25f);
         for (int i = 0; i < 24; ++i) fwWorld_Step(world_, 0);  // a ring of prediction a frame
     }
 
@@ -198,9 +168,6 @@ class Motion : public testing::Test {
         }
         return shimmerOf(name, frames);
     }
-
-    FwContext* context_ = nullptr;
-    FwWorld* world_ = nullptr;
 };
 
 // No shimmer: in the mean less than a shade or two, and next to no pixel jumps.

@@ -3,7 +3,8 @@
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "replay/replay_log.h"
-#include "support/meshes.h"
+#include "support/bless.h"
+#include "support/mesh_def.h"
 #include "support/vulkan_device.h"
 
 #include <algorithm>
@@ -113,12 +114,8 @@ class Player {
         ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_));
         for (const ReplayMesh& wish : log.meshes) {
             const Mesh mesh = generate(wish);
-            FwMeshDef meshDef = fwDefaultMeshDef();
-            meshDef.positions = mesh.positions.data();
-            meshDef.uvs = mesh.uvs.data();
-            meshDef.vertexCount = mesh.vertexCount();
-            meshDef.indices = mesh.indices.data();
-            meshDef.indexCount = uint32_t(mesh.indices.size());
+            FwMeshDef meshDef = meshDefOf(mesh);
+            meshDef.normals = nullptr;
             meshDef.texelsPerMetre = float(wish.density);
             meshDef.noiseAmplitude = float(wish.noise);
             ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world_, &meshDef, &meshes_[wish.name])) << said();
@@ -273,7 +270,7 @@ class Replay : public ::testing::TestWithParam<const char*> {
 TEST_P(Replay, CpuAfterEveryStep) {
     const std::vector<ReplayHash> got = CpuPlayer().play(log_, 1);
     ASSERT_EQ(log_.steps, got.size());
-    if (std::getenv("FLAMEWRIGHT_BLESS")) {
+    if (blessing()) {
         ASSERT_TRUE(writeReplayHashes(pathOf(GetParam(), ".hashes"), got));
         std::printf("           recorded %zu hashes\n", got.size());
     }

@@ -573,7 +573,9 @@ typedef struct FwWorldStats {
     uint32_t burningTiles, flames;
     uint32_t lateClamps, droppedSteps;
     uint64_t texels;               /* of all objects' burn maps */
-    uint32_t hotTiles, reserved2;  /* whose temperature or water changes */
+    uint32_t hotTiles;             /* whose temperature or water changes */
+    uint32_t refinedTriangles;     /* of refined objects that caught fire, as last drawn; pieces along cut holes
+                                      not counted. See FwWorldDef::maxRefinedTriangles */
 } FwWorldStats;
 FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [world] */
 

@@ -41,6 +41,7 @@ struct DrawItem {
     uint32_t image = 0;           // base-colour image slot + 1, 0: none
     uint32_t variant = 0;         // of the surface pass, from surfaceVariant
     uint32_t coldVariant = ~0u;   // of its triangles where nothing shows; ~0: drawn as the others
+    float coldReach = 0;          // texels, of that variant
     bool refined = false;         // its triangles are in the refinement's planes
     bool cut = false;             // and holes are cut out of them
     bool consumed = false;        // those burnt through are left out, whole: nothing is cut

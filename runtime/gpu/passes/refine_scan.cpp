@@ -6,10 +6,9 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {
-    {FW_BIND_REFINE_WORK, Access::write},
-    {FW_BIND_REFINE_OBJECTS, Access::read},
-    {FW_BIND_REFINE_LEVELS, Access::write},
-    {FW_BIND_REFINE_DRAWS, Access::write},
+    {FW_BIND_REFINE_WORK, Access::write},     {FW_BIND_REFINE_OBJECTS, Access::read},
+    {FW_BIND_REFINE_LEVELS, Access::write},   {FW_BIND_REFINE_DRAWS, Access::write},
+    {FW_BIND_OBJECT_COUNTERS, Access::write},
 };
 
 }  // namespace

@@ -178,6 +178,7 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
         if (!drawnBy(variant, item, zPass)) continue;
         SurfaceDraw draw = item.draw;
         const bool burning = variant >= kFirstBurning;
+        if (!burning) draw.nearness = item.coldReach;
         if (burning && (item.cut || (item.refined && item.consumed))) draw.flags |= kDrawCut;
         if (item.refined) draw.flags |= kDrawPlaced;
         recorder.drawItem(item, &draw);

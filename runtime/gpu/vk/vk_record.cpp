@@ -75,8 +75,8 @@ void chooseVariants(const VkBackend::State& s, const ObjectEntry& object, DrawIt
     const BurnMaterial& material = object.materials[item.material];
     const bool burnt = looksBurnt(object), image = item.image != 0;
     item.variant = surfaceVariant(material, image, burnt);
-    const float reach = coldReach(s.meshes[object.mesh].texelEdge);
-    const bool tells = (object.record.flags & kObjectPublished) == 0 && reach <= kColdReach;
+    item.coldReach = coldReach(s.meshes[object.mesh].texelEdge);
+    const bool tells = (object.record.flags & kObjectPublished) == 0 && item.coldReach <= kColdReach;
     item.coldVariant = burnt && tells && !object.charred && !zPassed(object)
                            ? surfaceVariant(material, image, false)
                            : ~0u;
@@ -89,7 +89,6 @@ SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_
     SurfaceDraw draw =
         surfaceDraw(object.record, object.materials[material], object.heat[material],
                     mesh.edge * scale, object.refine.slots.first, object.doused, object.warmed);
-    draw.coldReach = coldReach(mesh.texelEdge);
     return draw;
 }
 

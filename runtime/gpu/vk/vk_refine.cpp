@@ -21,6 +21,7 @@ constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
 // Holes are cut where a mean edge is longer than this, in segments of the finest; what was is until
 // it is shorter than the second.
 constexpr float kCutFrom = 4, kCutTo = 3;
+constexpr float kCutNear = 10;          // where rims show what only cut ones can
 constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
 
 uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
@@ -266,10 +267,13 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
         if (refines(object)) {
             record = refineRecord(object, refine.full);
             record.ordinal = ordinal++;
-            const bool cut = isNear(object, record);
+            const float segments = cutSegments(object, record);
+            const bool cut = segments > (object.refine.cut ? kCutTo : kCutFrom);
             if (object.refine.cut && !cut) record.flags |= kRefineIsWhole;
             if (cut) record.flags |= kRefineIsCut;
             object.refine.cut = cut;
+            object.refine.nearness =
+                std::clamp((segments - kCutFrom) / (kCutNear - kCutFrom), 0.0f, 1.0f);
             object.refine.now = record.now;
             cuts |= cut;
             if (!object.refine.started) {
@@ -307,14 +311,16 @@ void VkBackend::State::showRefined() noexcept {
         item.cut = use.cut;
         item.consumed = use.arpPlus1 != 0;
         item.draw.now = use.now;
+        item.draw.nearness = use.nearness;
     }
 }
 
-// Near enough for its holes to be cut: far ones are small, and discarded.
-bool VkBackend::State::isNear(const ObjectEntry& object,
-                              const RefineObject& record) const noexcept {
-    if ((object.record.flags & kObjectNoHoles) != 0) return false;
-    if (record.eye.w == 0) return true;
+// How many of the finest segments its mean edge would be where it is nearest to the eye: holes of
+// far objects are small, and discarded.
+float VkBackend::State::cutSegments(const ObjectEntry& object,
+                                    const RefineObject& record) const noexcept {
+    if ((object.record.flags & kObjectNoHoles) != 0) return 0;
+    if (record.eye.w == 0) return kCutNear;
     const MeshEntry& entry = meshes[object.mesh];
     float square = 0;
     const float eye[3] = {record.eye.x, record.eye.y, record.eye.z};
@@ -324,8 +330,7 @@ bool VkBackend::State::isNear(const ObjectEntry& object,
         square += out * out;
     }
     const float pixels = entry.refine[object.refine.key].edgeLength * record.eye.w;
-    const float least = record.pixelsPerEdge * (object.refine.cut ? kCutTo : kCutFrom);
-    return pixels > least * std::sqrt(square);
+    return pixels / std::max(record.pixelsPerEdge * std::sqrt(square), 1e-6f);
 }
 
 RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full) const noexcept {

@@ -50,6 +50,7 @@ struct RefineUse {  // an object's own
     uint32_t epochTick = 0;
     uint32_t quietTick = 0;  // it is refined before this; 0: no fire yet
     bool cut = false;        // near: its holes are cut
+    float nearness = 0;      // as SurfaceDraw
     float now = 0;           // s since its epoch, of the frame that last placed it
     RangeOf items, triangles, slots, indices, cuts;
     uint32_t arpPlus1 = 0;  // by the published scheme: its ArpUse
@@ -323,7 +324,7 @@ struct VkBackend::State {
     uint64_t planRefine(const FramePlan& plan);
     void recordRefinement(FrameInFlight& slot, const FwView& view);
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
-    bool isNear(const ObjectEntry& object, const RefineObject& record) const noexcept;
+    float cutSegments(const ObjectEntry& object, const RefineObject& record) const noexcept;
     void showRefined() noexcept;
     void lookFrom(const FwView& view) noexcept;
     // vk_published.cpp

@@ -1,0 +1,130 @@
+// A hundred low-poly houses burn at once and a camera goes down their street, so that levels change
+// by distance and the budget of triangles is short: it is kept in every frame, and nothing pops.
+// Popping is measured against the same frames with everything at its deepest: what a frame is off
+// by may change little from one to the next. FLAMEWRIGHT_MOTION=<folder> keeps the frames.
+#include "support/houses.h"
+#include "golden/golden_image.h"
+#include "support/own_world.h"
+#include "support/sanitized.h"
+
+#include <cstdlib>
+#include <ctime>
+
+namespace fw::test {
+namespace {
+
+constexpr uint32_t kWidth = 320, kHeight = 180, kBlock = 12;  // px
+constexpr uint32_t kHouses = rounds(100, 12), kFrames = rounds(24, 5);
+constexpr uint32_t kBudget = rounds(13500, 1500);
+constexpr float kFrameTime = 1.0f / 30;
+constexpr float kWarmUp = 6;  // s
+constexpr float kSpeed = 6;   // m/s, of the camera
+
+struct Popping {       // of 1/255
+    double mean = 0;   // of covered pixels' changes, over all frames
+    double worst = 0;  // the frame that changes most
+    double block = 0;  // the block of kBlock^2 px that does
+    double share = 0;  // of covered pixels that change by more than 48, of the worst frame
+};
+
+class Houses : public OwnDevice {
+ protected:
+    static Picture draw(const Village& village, const FwView& view) {
+        std::vector<uint8_t> pixels(size_t{kWidth} * kHeight * 4);
+        FwOffscreenDef shot = fwDefaultOffscreenDef();
+        shot.width = kWidth;
+        shot.height = kHeight;
+        shot.pixels = pixels.data();
+        shot.view = view;
+        std::copy_n(kSky, 4, shot.background);
+        EXPECT_EQ(fwWorld_RenderOffscreen(village.world, &shot), FW_OK);
+        Picture picture{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 3)};
+        for (size_t i = 0; i < size_t{kWidth} * kHeight; ++i)
+            for (size_t c = 0; c < 3; ++c) picture.rgb[i * 3 + c] = pixels[i * 4 + c];
+        return picture;
+    }
+    static constexpr float kSky[4] = {0.10f, 0.0f, 0.30f, 1};  // no surface has this colour
+};
+
+// Of the same view, before and after a frame's time.
+void addChange(const Picture& before, const Picture& after, Popping& p) {
+    constexpr uint32_t kAcross = kWidth / kBlock;
+    std::vector<double> blocks(size_t{kAcross + 1} * (kHeight / kBlock + 1));
+    uint64_t covered = 1, sum = 0, far = 0;
+    for (uint32_t y = 0; y < kHeight; ++y)
+        for (uint32_t x = 0; x < kWidth; ++x) {
+            const size_t at = (size_t{y} * kWidth + x) * 3;
+            int change = 0;
+            for (size_t c = 0; c < 3; ++c)
+                change =
+                    std::max(change, std::abs(int(after.rgb[at + c]) - int(before.rgb[at + c])));
+            covered += std::memcmp(&after.rgb[at], after.rgb.data(), 3) != 0;
+            sum += uint64_t(change);
+            far += change > 48;
+            blocks[size_t{y / kBlock} * kAcross + x / kBlock] += change / double(kBlock * kBlock);
+        }
+    const double mean = double(sum) / double(covered);
+    p.mean += mean / double(kFrames);
+    p.worst = std::max(p.worst, mean);
+    p.block = std::max(p.block, *std::max_element(blocks.begin(), blocks.end()));
+    p.share = std::max(p.share, double(far) / double(covered));
+}
+
+TEST_F(Houses, AHundredBurnWithinTheBudgetAndNothingPops) {
+    const float aspect = float(kWidth) / float(kHeight);
+    const auto viewAt = [&](float way) {
+        return streetView({0, 2.5f, 8 - way}, {2.0f, 1.2f, -4 - way}, aspect);
+    };
+    const auto warmUp = [&](const Village& village) {
+        for (float t = kWarmUp; t > 0; t -= 0.25f) {
+            ASSERT_EQ(fwWorld_Step(village.world, 0.25f), FW_OK);
+            if (t < 2) draw(village, viewAt(0));
+        }
+        ASSERT_EQ(fwWorld_Step(village.world, 0), FW_OK);  // brings the readback of what was drawn
+    };
+    uint32_t wished = 0;
+    {
+        Village free;
+        ASSERT_TRUE(free.make(context_, kHouses, 16000000, 4));
+        warmUp(free);
+        wished = free.stats().refinedTriangles;
+    }
+    Village village;
+    ASSERT_TRUE(village.make(context_, kHouses, kBudget, 4));
+    warmUp(village);
+    Popping p;
+    uint32_t most = 0, least = ~0u, moves = 0, last = 0, burning = ~0u;
+    for (uint32_t f = 0; f < kFrames; ++f) {
+        const FwView view = viewAt(kSpeed * kFrameTime * float(f));
+        const Picture before = draw(village, view);  // no time has passed: nothing has moved
+        ASSERT_EQ(fwWorld_Step(village.world, kFrameTime), FW_OK);
+        const Picture after = draw(village, view);
+        addChange(before, after, p);
+        if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION"))
+            writePng(std::string(folder) + "/houses" + std::to_string(f) + ".png", after);
+        ASSERT_EQ(fwWorld_Step(village.world, 0), FW_OK);
+        const FwWorldStats stats = village.stats();
+        most = std::max(most, stats.refinedTriangles);
+        least = std::min(least, stats.refinedTriangles);
+        burning = std::min(burning, stats.burningObjects);
+        moves += f > 0 && stats.refinedTriangles != last ? 1 : 0;
+        last = stats.refinedTriangles;
+    }
+    std::printf(
+        "\n%u houses: %u to %u triangles (budget %u, wished %u), moved in %u of %u frames; a "
+        "frame changes the picture by %.2f, at most %.2f, a block by %.1f; %.2f %% beyond 48\n",
+        burning, least, most, kBudget, wished, moves, kFrames, p.mean, p.worst, p.block,
+        100 * p.share);
+    EXPECT_EQ(burning, kHouses);
+    EXPECT_LE(most, kBudget);
+    EXPECT_GT(least, kBudget / 4);
+    EXPECT_GT(wished, kBudget * 3 / 2);
+    EXPECT_GT(moves, kFrames / 2);
+    EXPECT_LT(p.mean, 2.5);
+    EXPECT_LT(p.worst, 6);
+    EXPECT_LT(p.block, 90);
+    EXPECT_LT(p.share, 0.07);
+}
+
+}  // namespace
+}  // namespace fw::test

@@ -1,0 +1,117 @@
+// A host with state of its own: layouts, pipelines and render passes in which everything dynamic is
+// its own, and a world that burns in the middle of its picture. Fixture of host_clobber_test.cpp.
+#pragma once
+#include "support/burn_scene.h"
+
+#include <array>
+#include <cstring>
+
+namespace fw::test {
+
+constexpr uint32_t kWidth = 96, kHeight = 64;
+constexpr uint32_t kPixels = kWidth * kHeight;
+constexpr float kHostDepth = 0.5f;  // nearer than the fire, reversed or not
+
+inline void must(VkResult result, const char* what) { ASSERT_EQ(result, VK_SUCCESS) << what; }
+#define FW_MUST(call) must(call, #call)
+
+struct Case {
+    uint32_t samples;
+    bool reversed, srgb;
+    [[nodiscard]] VkFormat format() const {
+        return srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+    }
+};
+
+// One rectangle of the host's, in pixels.
+struct Rect {
+    int32_t x0, y0, x1, y1;
+};
+// Drawn before us, then after us. The first of each stands aside, the second before the fire, the
+// third reaches over the host's scissor.
+constexpr Rect kBefore[] = {{8, 8, 24, 56}, {40, 44, 56, 50}, {0, 0, 24, 6}};
+constexpr Rect kAfter[] = {{72, 8, 88, 56}, {40, 28, 56, 36}, {16, 20, 84, 26}, {72, 58, 96, 64}};
+constexpr VkRect2D kScissorRect{{6, 5}, {84, 54}};
+constexpr VkViewport kHostViewport{4, 2, 88, 60, 0, 1};
+
+class HostWithState : public GpuTest {
+ protected:
+    void SetUp() override {
+        GpuTest::SetUp();
+        if (!device_) return;
+        const FwVulkanHost host = device_->host();
+        FwContextDef def = fwDefaultContextDef();
+        def.vulkan = &host;
+        FwErrorInfo error{};
+        ASSERT_EQ(fwCreateContext(&def, &context_, &error), FW_OK) << error.message;
+        ASSERT_EQ(fwContext_Prepare(context_), FW_OK);
+        frames_ = std::make_unique<HostFrames>(*device_, 2);
+        makeWorld();
+        makeLayouts();
+    }
+
+    void TearDown() override {
+        if (device_) vkDeviceWaitIdle(device_->device);
+        fwDestroyContext(context_);
+        frames_.reset();
+        for (auto drop = cleanup_.rbegin(); drop != cleanup_.rend(); ++drop) (*drop)();
+        GpuTest::TearDown();
+    }
+
+    // What a case draws with and into; for several shots, since software devices compile for long.
+    struct Stage {
+        VkRenderPass pass = VK_NULL_HANDLE;
+        VkPipeline pipeline = VK_NULL_HANDLE;
+        VkFramebuffer framebuffer = VK_NULL_HANDLE;
+        VkImage resolved = VK_NULL_HANDLE;
+        FwTargetId target{};
+        bool reversed = false;
+    };
+
+    void makeWorld();
+    void makeLayouts();
+    VkPipelineLayout makeLayout(VkDescriptorType type, VkShaderStageFlags stages, uint32_t push,
+                                const TestBuffer (&buffers)[2], VkDescriptorSet (&sets)[2]);
+    // Everything dynamic: blending by constants, a stencil test that a reference of 0 fails, and a
+    // strict depth test that only a biased depth passes where kHostDepth is there already.
+    VkPipeline makePipeline(const Case& one, VkRenderPass pass);
+    // Colour, depth with stencil, and a resolve with several samples; one pass after another.
+    VkRenderPass makePass(const Case& one);
+    Stage makeStage(const Case& one);
+    VkShaderModule makeModule(const uint32_t* words, size_t bytes);
+
+    // Made once, of one kind: `make` fills the handle, `drop` is the vkDestroy of it.
+    template <class Handle, class Info>
+    Handle made(VkResult(VKAPI_PTR* make)(VkDevice, const Info*, const VkAllocationCallbacks*,
+                                          Handle*),
+                void(VKAPI_PTR* drop)(VkDevice, Handle, const VkAllocationCallbacks*),
+                const Info& info) {
+        Handle handle = VK_NULL_HANDLE;
+        FW_MUST(make(device_->device, &info, nullptr, &handle));
+        cleanup_.emplace_back(
+            [device = device_->device, drop, handle] { drop(device, handle, nullptr); });
+        return handle;
+    }
+
+    template <class T>
+    TestBuffer makeBuffer(VkBufferUsageFlags usage, const std::vector<T>& content) {
+        const TestBuffer out = device_->makeBuffer(content.size() * sizeof(T), usage);
+        std::memcpy(out.mapped, content.data(), content.size() * sizeof(T));
+        return out;
+    }
+
+    FwContext* context_ = nullptr;
+    FwWorld* world_ = nullptr;
+    std::unique_ptr<HostFrames> frames_;
+    std::array<FwView, 2> views_{};  // normal, reversed depth
+    VkFormat depthFormat_ = VK_FORMAT_D32_SFLOAT_S8_UINT;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkDescriptorSet sets_[2]{};
+    VkBuffer vertices_[4]{}, indices_ = VK_NULL_HANDLE;
+    VkQueryPool queries_ = VK_NULL_HANDLE;
+    TestBuffer pixels_;
+    std::vector<std::function<void()>> cleanup_;
+};
+
+}  // namespace fw::test
