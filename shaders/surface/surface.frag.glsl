@@ -425,7 +425,14 @@ void main() {
                 (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;
     vec3 position = inPosition;
-    vec3 facingNormal = back ? -normal : normal;
+    // Refined faces recede as they burn, at a wall's thickness in its time (until kRefineRecede of it
+    // is gone): they lean towards what caught first.
+    float burnt = look.holeTime > 0.0 ? site.age / look.holeTime : 0.0;
+    bool recedes = kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall;
+    float fall = recedes ? draw.thickness / look.holeTime : 0.0;
+    fall *= 1.0 - smoothstep(0.9 * kRefineRecede, 1.1 * kRefineRecede, burnt);
+    vec3 leaned = normal - slope * min(fall, 1.5 * inversesqrt(max(dot(slope, slope), 1e-8)));
+    vec3 facingNormal = back ? -leaned : leaned;
     float deep = -1.0;
     skin = freshSkin(site, look);
     if (inside) skin.occlusion = 0.5;

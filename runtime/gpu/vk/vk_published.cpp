@@ -9,8 +9,6 @@
 namespace fw::gpu::vk {
 namespace {
 
-constexpr float kRecede = 0.6f;  // as the product's
-
 uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
 
 // Groups of its list, at most.
@@ -133,7 +131,7 @@ void VkBackend::State::recordArp(FrameInFlight& slot, const FwView& view) {
     writer.end();
     recorder.copyIn(groups.at, FW_BIND_ARP_GROUPS, 0, groups.count * sizeof(WakeGroup));
     arp.lastTick = now;
-    recordRefinePublished(recorder, {0, shownTick, 0, kRecede}, places, groups.count - places);
+    recordRefinePublished(recorder, {0, shownTick, 0, kRefineRecede}, places, groups.count - places);
 }
 
 }  // namespace fw::gpu::vk

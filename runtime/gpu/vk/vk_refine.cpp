@@ -16,7 +16,6 @@ constexpr uint32_t kTableWords = kRefineTableSize / 2;
 // Ticks that an object is refined beyond the last sign of fire: levels outlive their heat by a
 // second, take five quarters more to fall, and readbacks come late.
 constexpr uint32_t kQuietTicks = 4 * kTicksPerSecond;
-constexpr float kRecede = 0.6f;  // what is left is char, and shows at rims
 constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
 // Holes are cut where a mean edge is longer than this, in segments of the finest; what was is until
 // it is shorter than the second.
@@ -235,7 +234,7 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
     }
     push.budget = full > limits.maxRefinedTriangles ? limits.maxRefinedTriangles : 0;
     push.full = refine.full ? 1 : 0;
-    push.recede = kRecede;
+    push.recede = kRefineRecede;
     push.emitJobs = uint32_t(refine.lists.size());
     push.placeJobs = push.emitJobs + uint32_t(2 * emitJobs);
     push.cutJobs = push.placeJobs + uint32_t(4 * placeJobs);
