@@ -60,8 +60,8 @@ const Readback* VkBackend::State::nextReadback() {
             // What others warm may turn brown before it burns; of what burns little is left cold.
             for (size_t i = 0; i < objects.size() && i < givenObjects.size(); ++i) {
                 ObjectEntry& object = objects[i];
-                const uint32_t texels = object.record.width * object.record.height;
-                const bool charred = object.live && givenObjects[i].ignited > texels / 4;
+                const uint32_t all = object.record.width * object.record.height;
+                const bool charred = object.live && givenObjects[i].ignited > all / 4;
                 recordsDirty |= charred != object.charred;
                 object.charred = charred;
                 if (object.warmed || !object.live || object.resetDue ||
