@@ -93,6 +93,7 @@ TEST_F(Rims, NearAndFarAgreeWhereTheySwitch) {
         touch(FW_IGNITE, 0, 0.45f, 0.45f, 0.03f);
         run(12, 0.25f);
         for (int i = 0; i < 24; ++i) fwWorld_Step(world_, 0);
+        draw(6.0f);  // from here on the world knows how many pixels a picture has
     }
     for (uint32_t i = 0; i < kPlaces; ++i) {
         // Both switches are outside of these: who comes from afar is still discarded, who comes

@@ -12,11 +12,12 @@ namespace {
 
 // What the passes bind.
 constexpr uint32_t kBindings[] = {
-    FW_BIND_PREDICT,          FW_BIND_GRADIENT,     FW_BIND_REFINE_WORK,   FW_BIND_REFINE_OBJECTS,
-    FW_BIND_REFINE_TRIANGLES, FW_BIND_REFINE_EDGES, FW_BIND_REFINE_SLOTS,  FW_BIND_REFINE_WORDS,
-    FW_BIND_REFINE_ITEMS,     FW_BIND_REFINE_HEAT,  FW_BIND_REFINE_LEVELS, FW_BIND_REFINE_VERTICES,
-    FW_BIND_REFINE_INDICES,   FW_BIND_REFINE_DRAWS, FW_BIND_VERTICES,      FW_BIND_REFINE_CUTS,
-    FW_BIND_REFINE_CUT_DRAWS};
+    FW_BIND_PREDICT,        FW_BIND_GRADIENT,         FW_BIND_REFINE_WORK,
+    FW_BIND_REFINE_OBJECTS, FW_BIND_REFINE_TRIANGLES, FW_BIND_REFINE_EDGES,
+    FW_BIND_REFINE_SLOTS,   FW_BIND_REFINE_WORDS,     FW_BIND_REFINE_ITEMS,
+    FW_BIND_REFINE_HEAT,    FW_BIND_REFINE_LEVELS,    FW_BIND_REFINE_VERTICES,
+    FW_BIND_REFINE_INDICES, FW_BIND_REFINE_DRAWS,     FW_BIND_VERTICES,
+    FW_BIND_REFINE_CUTS,    FW_BIND_REFINE_CUT_DRAWS, FW_BIND_OBJECT_COUNTERS};
 
 class RefineRig {
  public:
@@ -41,6 +42,7 @@ class RefineRig {
         rig_.make(FW_BIND_REFINE_VERTICES, m.slots.size() * sizeof(gpu::RefineVertex));
         rig_.make(FW_BIND_REFINE_OBJECTS, sizeof(gpu::RefineObject));
         rig_.make(FW_BIND_REFINE_DRAWS, 8 * 20);
+        rig_.make(FW_BIND_OBJECT_COUNTERS, sizeof(gpu::ObjectCounters));
         std::vector<mesh::RenderVertex> vertices(m.draws.size());
         for (uint32_t d = 0; d < m.draws.size(); ++d) {
             if (m.draws[d].triangle != mesh::kNone)
