@@ -131,7 +131,8 @@ void VkBackend::State::recordArp(FrameInFlight& slot, const FwView& view) {
     writer.end();
     recorder.copyIn(groups.at, FW_BIND_ARP_GROUPS, 0, groups.count * sizeof(WakeGroup));
     arp.lastTick = now;
-    recordRefinePublished(recorder, {0, shownTick, 0, kRefineRecede}, places, groups.count - places);
+    recordRefinePublished(recorder, {0, shownTick, 0, kRefineRecede}, places,
+                          groups.count - places);
 }
 
 }  // namespace fw::gpu::vk
