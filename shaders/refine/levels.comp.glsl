@@ -91,7 +91,7 @@ void move(uint object, uint item) {
     RefineLevel s = items[at];
     float before = s.level;
     float now = refined[object].now;
-    refineMove(s, wanted(object, item, leastBias()), now, push.dt, kRefineRate, kRefineGrace);
+    refineMove(s, wanted(object, item, leastBias()), now, refined[object].dt, kRefineRate, kRefineGrace);
     items[at] = s;
     if (s.level == before && now - s.lastHot >= kRefineCool) return;
     heat[at] |= kRefineMoving;

@@ -98,7 +98,7 @@ struct RefineCorner {    // of a triangle of the cut shell
     uint high;           // the same, or a cut point of the small edge low < high; kRefineInside
 };
 
-// An object in the frame's passes, rewritten in each frame that refines it. Bases are in records of
+// An object in the frame's passes, rewritten in each frame that refines it: see isDue. Bases are in records of
 // the planes; mesh...: what objects share.
 struct RefineObject {
     uint items;          // edges, then interiors
@@ -128,7 +128,8 @@ struct RefineObject {
     uvec4 materialEnd1;
     uint cuts;           // first of its cut vertices
     uint cutTriangles;   // room for; shared out to materials by their triangles
-    uint reserved0; uint reserved1;
+    float dt;            // s since it was last refined
+    uint reserved1;
     uint reserved2; uint reserved3; uint reserved4; uint reserved5;
 };
 FW_SHARED_SIZE(RefineObject, 192)
@@ -158,7 +159,7 @@ struct RefinePush {
     uint row;         // heat: counters row of the list
     uint parity;      // heat: of the list; + 2: it is the burn list
     uint full;        // 1: everything at its deepest and moving, for comparison
-    float dt;         // s since the last frame
+    uint reserved;
     float recede;     // share of a slot's reach, below 1
     uint edgeGroups;  // 64 edges each; lists follow each other in this order
     uint triangleGroups;

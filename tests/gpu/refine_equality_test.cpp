@@ -95,7 +95,7 @@ class RefineRig {
         of<gpu::RefineObject>(FW_BIND_REFINE_OBJECTS)[0] = object;
         std::copy(lists_.begin(), lists_.end(), of<uint32_t>(FW_BIND_REFINE_WORK).begin());
         push_.nowTick = nowTick;
-        push_.dt = dt;
+        of<gpu::RefineObject>(FW_BIND_REFINE_OBJECTS)[0].dt = dt;
         push_.budget = budget;
         device_.run([&](VkCommandBuffer commands) {
             rig_.begin(commands);

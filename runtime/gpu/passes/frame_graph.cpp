@@ -277,8 +277,10 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
     recorder.dispatch(kFlameSortPass, nullptr, 1);
 }
 
-void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with,
-                  bool cuts) {
+namespace {
+
+// Heat to levels, levels to triangles; what moves is listed to be placed.
+void recordTurn(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with) {
     RefinePush push = with;
     push.row = lists.row;
     push.parity = lists.parity;
@@ -294,6 +296,14 @@ void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const Re
     }
     recorder.dispatch(kRefineScanPass, &push, std::min(push.objects, kMaxGroups));
     recorder.dispatchIndirect(kRefineEmitPass, &push, FW_BIND_REFINE_WORK, kRefineWorkEmit * 4);
+}
+
+}  // namespace
+
+void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with,
+                  bool turn, bool cuts) {
+    if (turn) recordTurn(recorder, lists, with);
+    RefinePush push = with;
     push.phase = 0;
     recorder.dispatch(kRefinePlacePass, &push, std::min(push.cornerGroups, kMaxGroups));
     push.phase = 1;
@@ -302,7 +312,7 @@ void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const Re
     recorder.dispatchIndirect(kRefinePlacePass, &push, FW_BIND_REFINE_WORK, kRefineWorkPlace * 4);
     push.phase = 3;
     recorder.dispatchIndirect(kRefinePlacePass, &push, FW_BIND_REFINE_WORK, kRefineWorkMorph * 4);
-    if (!cuts) return;
+    if (!turn || !cuts) return;
     push.phase = 0;
     recorder.dispatch(kRefineCutPass, &push, std::min(push.triangleGroups, kMaxGroups));
     push.phase = 1;

@@ -97,9 +97,9 @@ void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 
 // After the steps. The work plane holds its lists, and zero before them. `lists`: see FrameLists.
-// `cuts`: some object is kRefineIsCut.
+// `cuts`: some object is kRefineIsCut. Without `turn` what was listed last time is placed again.
 void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& push,
-                  bool cuts);
+                  bool turn, bool cuts);
 
 // The published scheme's, after the steps: groups of vertices, then of listed triangles.
 void recordRefinePublished(vk::FrameRecorder& recorder, const ArpPush& push, uint32_t placeGroups,

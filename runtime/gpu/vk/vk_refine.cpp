@@ -22,6 +22,10 @@ constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
 constexpr float kCutFrom = 4, kCutTo = 3;
 constexpr float kCutNear = 10;          // where rims show what only cut ones can
 constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
+// An object is refined anew when a front may have run this far on the screen, or the eye moved by
+// this share of its distance; at the latest after so many ticks, as levels are on their way.
+constexpr float kTurnPixels = 0.5f, kTurnEye = 0.02f;
+constexpr double kTurnTicks = kTicksPerSecond / 15.0;
 
 uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
 
@@ -178,7 +182,9 @@ void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
     RefineUse& use = objects[object].refine;
     if (!use.on) return;
     uint32_t opens = 0;  // what burns may open later than it goes out
-    for (const BurnMaterial& m : objects[object].materials) opens = std::max(opens, m.holeTicks);
+    if ((objects[object].record.flags & kObjectNoHoles) == 0)
+        for (const BurnMaterial& m : objects[object].materials)
+            opens = std::max(opens, m.holeTicks);
     const uint64_t quiet = uint64_t(tick) + kQuietTicks + opens;
     use.quietTick = std::max(use.quietTick, uint32_t(std::min<uint64_t>(quiet, kLiveEnd)));
 }
@@ -186,20 +192,33 @@ void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
 // Once more after it is quiet: pictures may be seconds apart.
 bool VkBackend::State::refines(const ObjectEntry& object) const noexcept {
     return object.live && object.refine.on && !object.refine.arpPlus1 &&
-           double(object.refine.quietTick) > refine.lastTick;
+           double(object.refine.quietTick) > object.refine.turnTick;
 }
 
-// Which objects the frame refines, and the bytes that it uploads for it. May throw.
+// Which objects the frame may refine, and the bytes that it uploads for all of them. May throw.
 uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
-    refine.lists.clear();
     refine.push = {};
     refine.full = (plan.switches & kSwitchRefineFull) != 0;
     if (refine.users == 0 || open.unseen) return 0;
-    uint64_t emitJobs = 0, placeJobs = 0, edgeJobs = 0, full = 0;
+    listRefined(true);
+    const RefinePush& push = refine.push;
+    if (push.objects == 0) return 0;
+    const uint32_t jobs = (push.cutJobs - push.placeJobs) / 2;
+    planes.atLeast(kSpaceRefineWork, push.cutJobs + jobs + 2 * 64 * push.edgeGroups, ring.newest());
+    return refine.lists.size() * 4 + uint64_t(push.objectEnd) * sizeof(RefineObject) + 64;
+}
+
+// The work plane of the objects that are due, or of all that refine. Throws only where it has more
+// to list than ever.
+void VkBackend::State::listRefined(bool all) {
+    refine.lists.clear();
+    refine.push = {};
+    uint64_t emitJobs = 0, placeJobs = 0, full = 0;
     const auto each = [&](auto&& use) {
         for (uint32_t i = 0; i < objects.size(); ++i) {
             const ObjectEntry& object = objects[i];
-            if (refines(object)) use(i, meshes[object.mesh].refine[object.refine.key]);
+            if (all ? refines(object) : object.refine.due)
+                use(i, meshes[object.mesh].refine[object.refine.key]);
         }
     };
     const auto list = [&](uint32_t object, uint32_t count) {
@@ -223,11 +242,9 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
         ++push.objects;
         emitJobs += groupsOf(m.fullCount);
         placeJobs += m.triangleCount;
-        edgeJobs += m.edgeCount;
         full += m.fullCount;
         push.objectEnd = i + 1;
     });
-    if (push.objects == 0) return 0;
     for (uint32_t o = 0; o < push.objects; ++o) {  // counts, ends
         refine.lists.insert(refine.lists.end(), kMaterialsPerObject, 0);
         refine.lists.insert(refine.lists.end(), kMaterialsPerObject, kNoneTexel);
@@ -238,9 +255,22 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
     push.emitJobs = uint32_t(refine.lists.size());
     push.placeJobs = push.emitJobs + uint32_t(2 * emitJobs);
     push.cutJobs = push.placeJobs + uint32_t(4 * placeJobs);
-    planes.atLeast(kSpaceRefineWork, push.cutJobs + uint32_t(2 * (placeJobs + edgeJobs)),
-                   ring.newest());
-    return refine.lists.size() * 4 + uint64_t(push.objectEnd) * sizeof(RefineObject) + 64;
+}
+
+// Marks the objects that the frame refines; whether there are any.
+bool VkBackend::State::chooseDue(double now) noexcept {
+    // One budget is shared among them; and full ones are compared with what has no turns.
+    const bool together = refine.push.budget != 0 || refine.full;
+    bool any = false;
+    const auto due = [&](const ObjectEntry& object) {
+        return refines(object) ? isDue(object, refineRecord(object, refine.full), now)
+                               : refine.full && object.refine.due;
+    };
+    for (const ObjectEntry& object : objects) any |= due(object);
+    if (!any) return false;
+    for (ObjectEntry& object : objects)
+        object.refine.due = refines(object) && (together || due(object));
+    return true;
 }
 
 // `view`: its eye and the last picture's height limit levels.
@@ -249,23 +279,34 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
     if (push.objects == 0) return;
     lookFrom(view);
     const double now = double(shownTick) + double(tickFraction);
-    push.nowTick = shownTick;
-    push.dt = float(std::clamp((now - refine.lastTick) / kTicksPerSecond, 0.0, 2.0));
-
+    const bool turn = chooseDue(now);
+    if (!turn && !refine.full) return;
     FrameRecorder recorder(recordTarget(slot, open.commands));
     uint64_t at = (slot.uploadUsed + 15) / 16 * 16;
-    std::memcpy(slot.upload.mapped + at, refine.lists.data(), refine.lists.size() * 4);
-    recorder.copyIn(at, FW_BIND_REFINE_WORK, 0, refine.lists.size() * 4);
-    at += (refine.lists.size() * 4 + 15) / 16 * 16;
+    if (turn) {
+        listRefined(false);
+        refine.last = push;
+        std::memcpy(slot.upload.mapped + at, refine.lists.data(), refine.lists.size() * 4);
+        recorder.copyIn(at, FW_BIND_REFINE_WORK, 0, refine.lists.size() * 4);
+        at += (refine.lists.size() * 4 + 15) / 16 * 16;
+    }
+    push = refine.last;
+    push.nowTick = shownTick;
     const uint64_t recordsAt = at;
     uint32_t ordinal = 0;
     bool cuts = false;
     for (uint32_t i = 0; i < push.objectEnd; ++i, at += sizeof(RefineObject)) {
         RefineObject record{};
         ObjectEntry& object = objects[i];
-        if (refines(object)) {
+        if (object.refine.due) {
             record = refineRecord(object, refine.full);
             record.ordinal = ordinal++;
+            record.dt =
+                float(std::clamp((now - object.refine.turnTick) / kTicksPerSecond, 0.0, 2.0));
+        }
+        if (object.refine.due && turn) {
+            object.refine.turnTick = now;
+            object.refine.turnEye = record.eye;
             const float segments = cutSegments(object, record);
             const bool cut = segments > (object.refine.cut ? kCutTo : kCutFrom);
             if (object.refine.cut && !cut) record.flags |= kRefineIsWhole;
@@ -288,8 +329,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
     slot.uploadUsed = at;
     recorder.copyIn(recordsAt, FW_BIND_REFINE_OBJECTS, 0,
                     uint64_t(push.objectEnd) * sizeof(RefineObject));
-    refine.lastTick = now;
-    recordRefine(recorder, lists, push, cuts);
+    recordRefine(recorder, lists, push, turn, cuts);
 }
 
 void VkBackend::State::lookFrom(const FwView& view) noexcept {
@@ -300,7 +340,8 @@ void VkBackend::State::lookFrom(const FwView& view) noexcept {
     ViewParams params{};
     limits.looks.viewParams(input, params);
     refine.eye = params.eye;
-    refine.eye.w = params.forward.w > 0.5f ? 1 / params.eye.w : 0;
+    refine.pixels = 1 / params.eye.w;
+    refine.eye.w = params.forward.w > 0.5f ? refine.pixels : 0;
 }
 
 void VkBackend::State::showRefined() noexcept {
@@ -320,6 +361,13 @@ float VkBackend::State::cutSegments(const ObjectEntry& object,
                                     const RefineObject& record) const noexcept {
     if ((object.record.flags & kObjectNoHoles) != 0) return 0;
     if (record.eye.w == 0) return kCutNear;
+    const float pixels = meshes[object.mesh].refine[object.refine.key].edgeLength * record.eye.w;
+    return pixels / std::max(record.pixelsPerEdge * eyeDistance(object, record), 1e-6f);
+}
+
+// m, object space, from the eye to the mesh's bounds.
+float VkBackend::State::eyeDistance(const ObjectEntry& object,
+                                    const RefineObject& record) const noexcept {
     const MeshEntry& entry = meshes[object.mesh];
     float square = 0;
     const float eye[3] = {record.eye.x, record.eye.y, record.eye.z};
@@ -328,8 +376,27 @@ float VkBackend::State::cutSegments(const ObjectEntry& object,
             {entry.domain->boundsLow[k] - eye[k], eye[k] - entry.domain->boundsHigh[k], 0.0f});
         square += out * out;
     }
-    const float pixels = entry.refine[object.refine.key].edgeLength * record.eye.w;
-    return pixels / std::max(record.pixelsPerEdge * std::sqrt(square), 1e-6f);
+    return std::sqrt(square);
+}
+
+// Whether what it shows may have changed by so much that it shows, since it was last refined.
+bool VkBackend::State::isDue(const ObjectEntry& object, const RefineObject& record,
+                             double now) const noexcept {
+    const RefineUse& use = object.refine;
+    if (!use.started || record.eye.w != use.turnEye.w) return true;
+    const float away = std::max(eyeDistance(object, record), 0.01f);
+    const float moved = std::hypot(record.eye.x - use.turnEye.x, record.eye.y - use.turnEye.y,
+                                   record.eye.z - use.turnEye.z);
+    if (record.eye.w > 0 && moved > kTurnEye * away) return true;
+    // How fast fire runs in still air: ticks are 2^-22 of sigma0 for 1/8 of a quantum.
+    uint32_t least = ~0u;
+    for (const BurnMaterial& m : object.materials)
+        if ((m.flags & 1) != 0) least = std::min(least, m.sigma0);
+    const double speed =
+        double(object.record.originQuantum.w) / 8 * 4194304.0 / double(least);  // m per tick
+    const double pixels = double(refine.pixels) / double(record.eye.w > 0 ? away : 1.0f);
+    const double ticks = std::min(kTurnTicks, double(kTurnPixels) / std::max(speed * pixels, 1e-9));
+    return std::abs(now - use.turnTick) >= ticks;
 }
 
 RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full) const noexcept {

@@ -52,6 +52,9 @@ struct RefineUse {  // an object's own
     bool cut = false;        // near: its holes are cut
     float nearness = 0;      // as SurfaceDraw
     float now = 0;           // s since its epoch, of the frame that last placed it
+    double turnTick = 0;     // of that frame
+    vec4 turnEye{};          // in it: m, object space; w: as refine.eye
+    bool due = false;        // it was among the last frame's that refined
     RangeOf items, triangles, slots, indices, cuts;
     uint32_t arpPlus1 = 0;  // by the published scheme: its ArpUse
     RangeOf arpList;
@@ -273,14 +276,15 @@ struct VkBackend::State {
     std::pmr::vector<DrawItem> drawItems;       // objects that draws show
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
-        std::pmr::vector<uint32_t> lists;  // of the frame's work plane
+        std::pmr::vector<uint32_t> lists;  // of the frame's work plane, as it begins
         std::pmr::vector<uint8_t> noise;   // of holes, tiling
         RefinePush push{};                 // of the frame; no objects: nothing is refined
+        RefinePush last{};                 // of the last frame that refined
         uint32_t users = 0;                // objects that refine
         vec4 eye{};                        // m, world; w: pixels of 1 m at 1 m, 0: no limit by size
         float height = 0;                  // px, of what was last drawn; 0: nothing was
-        double lastTick = 0;               // of the last frame that refined
-        bool full = false;                 // everything at its deepest
+        float pixels = 0;                  // of 1 m at clip w = 1
+        bool full = false;                 // everything at its deepest, and placed in every frame
     } refine;
     struct Arp {             // of the frame, refined by the published scheme
         uint32_t users = 0;  // objects
@@ -322,7 +326,13 @@ struct VkBackend::State {
     void noteFire(uint32_t object, uint32_t tick) noexcept;
     [[nodiscard]] bool refines(const ObjectEntry& object) const noexcept;
     uint64_t planRefine(const FramePlan& plan);
+    void listRefined(bool all);
     void recordRefinement(FrameInFlight& slot, const FwView& view);
+    bool chooseDue(double now) noexcept;
+    [[nodiscard]] bool isDue(const ObjectEntry& object, const RefineObject& record,
+                             double now) const noexcept;
+    [[nodiscard]] float eyeDistance(const ObjectEntry& object,
+                                    const RefineObject& record) const noexcept;
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
     float cutSegments(const ObjectEntry& object, const RefineObject& record) const noexcept;
     void showRefined() noexcept;
