@@ -35,7 +35,9 @@ case $name in
     subdirectory)
         launcher=()
         command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-        build_project "-DFLAMEWRIGHT_SOURCE=$here/../.." "${launcher[@]}"
+        # Without precompiled headers, so that a source that forgot an include of its own fails here.
+        build_project "-DFLAMEWRIGHT_SOURCE=$here/../.." \
+            -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "${launcher[@]}"
         "$work/build/consumer"
         ;;
     pkg_config)
