@@ -85,6 +85,7 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
     state.ignited = object.mostIgnited;
     state.burning = object.counters.burning;
     state.frontTiles = object.counters.frontTiles;
+    state.refinedTriangles = object.counters.refined;
     state.burntFraction =
         object.texels ? std::min(1.0f, float(object.mostIgnited) / float(object.texels)) : 0.0f;
     const MeshEntry& mesh = *meshes_.at(object.data.meshSlot);

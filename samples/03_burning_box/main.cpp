@@ -1,6 +1,7 @@
 // A box of twelve triangles burns: refined just ahead of the fire, it recedes, chars and opens;
 // what has burnt out is coarse again. --plain draws the twelve triangles as they are, --published
 // puts a second box beside it, refined by the published scheme.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -123,6 +124,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
         sample::FilmRequest film;
         film.name = "burning_box";
         sample::Filming filming(stage, options, film);
+        uint32_t most[2] = {}, last[2] = {};  // triangles: ours, as published
         sample::StageFrame frame;
         while (stage.next(frame)) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
@@ -134,6 +136,10 @@ int run(const sample::Options& options, const Wishes& wishes) {
                 if (wishes.published) light(fire, other, aside);
             }
             sample::showStudio(frame, stage, studio, fire, view);
+            for (int i = 0; i < (wishes.published ? 2 : 1); ++i) {
+                last[i] = fire.objectState(i ? other : object).refinedTriangles;
+                most[i] = std::max(most[i], last[i]);
+            }
         }
         if (options.headless) {
             const FwObjectState state = fire.objectState(object);
@@ -144,6 +150,11 @@ int run(const sample::Options& options, const Wishes& wishes) {
             std::snprintf(line, sizeof line, "%.0f times as fast as real; %.0f %% caught fire",
                           wishes.pace, 100.0f * state.burntFraction);
             summary.rows.emplace_back("fire", line);
+            for (int i = 0; i < (wishes.published ? 2 : 1); ++i) {
+                std::snprintf(line, sizeof line, "%u triangles at most, %u at the end", most[i],
+                              last[i]);
+                summary.rows.emplace_back(i ? "as published" : "refined", line);
+            }
             filming.finish(summary, fire);
         }
     }

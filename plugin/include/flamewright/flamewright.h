@@ -525,6 +525,8 @@ typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU
     float power;               /* W, at pace 1 */
     float reserved1;
     double energy;             /* J that its fuel gave off; 0 with FW_BURNABLE_LITE */
+    uint32_t refinedTriangles; /* as last drawn, if it refines and caught fire; see FwWorldStats */
+    uint32_t reserved2;
 } FwObjectState;
 FW_API FwResult FW_CALL fwWorld_GetObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state); /* [world] */
 
