@@ -41,7 +41,13 @@ gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noe
     p.ambientSky = rgb(view.ambientSky, std::fmod(view.time, 4096.0f));
     p.ambientGround = rgb(view.ambientGround, inputs.tickFraction);
     p.up = rgb(inputs.up, inputs.paceFactor);
-    p.wind = rgb(inputs.wind, 0.0f);
+    // Depth at 1 and at 2 m from the eye: reversed, it falls.
+    const auto depthAt = [&](float metres) {
+        const float z = side * metres;
+        return (projection[2][2] * z + projection[3][2]) /
+               (projection[2][3] * z + projection[3][3]);
+    };
+    p.wind = rgb(inputs.wind, depthAt(2) < depthAt(1) ? -1.0f : 2.0f);
     p.now = inputs.now;
     p.lightCount = inputs.lightCount;
     p.flameCapacity = std::min(inputs.flameCapacity, gpu::kFlameCapacity);

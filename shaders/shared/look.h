@@ -115,7 +115,7 @@ struct ViewParams {          // uniform block, one per view
     vec4 ambientSky;         // w: s, cosmetic time, wrapped at 4096
     vec4 ambientGround;      // w: ticks into the running tick, [0, 1)
     vec4 up;                 // world up; w: pace factor of the world
-    vec4 wind;               // m/s; w: 0
+    vec4 wind;               // m/s; w: clip z over w of what is clipped away beyond the far plane
     uint now;                // tick
     uint lightCount;         // most lights, also the size of the list
     uint flameCapacity;      // most flame quads

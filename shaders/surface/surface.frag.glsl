@@ -77,8 +77,9 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     o.gradient = vec2(0.0);
     o.known = o.out_ = o.damp = 0.0;
     float total = 0.0, never = 0.0, ahead = 0.0, soot = 0.0;
-    int taps = 4, i = 0;
-    do {
+    // Tested first: of lanes that leave a loop before others do, lavapipe keeps what it had at a test.
+    int taps = 4;
+    for (int i = 0; i < taps; ++i) {
         ivec2 o2 = i < 4 ? ivec2(i & 1, i >> 1) : ivec2((i - 4) % 5 - 2, (i - 4) / 5 - 2);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
         uint index = draw.stateBase + uint(texel.y) * draw.width + uint(texel.x);
@@ -104,8 +105,7 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
         soot += doused ? 0.0 : w * float(packed & 0xFFu);
         never += t == kNever ? w : 0.0;
         if (i == 3 && total == 0.0) taps = 29;
-        ++i;
-    } while (i < taps);
+    }
     float inverse = 1.0 / max(total, 1e-6), burnt = o.known + o.out_;
     o.soot = soot / max(total - o.out_, 1e-6) * (1.0 / 255.0);
     if (burnt <= 0.0) {
@@ -140,7 +140,8 @@ Warmth warmthAt(vec2 uv) {
     do {
         ivec2 o2 = ivec2(i & 1, i >> 1);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
-        uint word = heat[2u * (draw.heatBase + uint(texel.y) * draw.width + uint(texel.x))];
+        uint at = 2u * (draw.heatBase + uint(texel.y) * draw.width + uint(texel.x));
+        uint word = heat[plane ? at : 0u];
         vec2 share = 1.0 - abs(st - corner - vec2(o2));
         float w = plane ? share.x * share.y : 0.0;
         total += w;

@@ -111,10 +111,10 @@ void main() {
     outDetail = vec4(inDetail * scale, towards.xy);
     outTint = vec4(inTint.rgb * vec3(draw.tintR, draw.tintG, draw.tintB), towards.z);
     gl_Position = clipPlace(position);
-    // Beyond the far plane, near or reversed: triangles with three such corners are clipped away,
-    // fragments of those with one or two are discarded.
+    // Beyond the far plane: triangles with three such corners are clipped away, fragments of those
+    // with one or two are discarded, and what is left of them at a sample lies behind what burns.
     if ((kVariant & kSurfaceCold) != 0u && (lead >= 1e-3 || markedNear(inAtlas))) {
         outSootLead.x = 1.0;
-        gl_Position.z = 2.0 * gl_Position.w;
+        gl_Position.z = view.wind.w * gl_Position.w;
     }
 }
