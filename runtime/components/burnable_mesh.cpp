@@ -74,12 +74,11 @@ FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given, uint32_t worldFl
 }
 
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
-    constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED |
-                                FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE | FW_BURNABLE_REFINE |
-                                FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS |
-                                FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE |
-                                FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE_PUBLISHED |
-                                FW_BURNABLE_Z_PASS;
+    constexpr uint32_t kKnown =
+        FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED | FW_BURNABLE_NO_HOLES |
+        FW_BURNABLE_LITE | FW_BURNABLE_REFINE | FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL |
+        FW_BURNABLE_SPRINGS | FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED |
+        FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_Z_PASS;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,

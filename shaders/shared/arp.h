@@ -1,5 +1,5 @@
-// The published refinement scheme per lane, one text for C++ and GLSL: a triangle of its template as
-// a word, the vertices it names, and which of its children are consumed. It loads nothing. Which
+// The published refinement scheme per lane, one text for C++ and GLSL: a triangle of its template
+// as a word, the vertices it names, and which of its children are consumed. It loads nothing. Which
 // triangles are drawn is decided in runtime/mesh/refine; the product's scheme is refine.h.
 // GLSL too, and laid out by hand.
 // clang-format off

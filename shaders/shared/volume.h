@@ -1,5 +1,5 @@
-// Volumetric flames: records, coordinates along a curve, noise, and what a point in a flame emits and
-// absorbs. The march's loop and the profile's fetch are the caller's: between flameLookup and
+// Volumetric flames: records, coordinates along a curve, noise, and what a point in a flame emits
+// and absorbs. The march's loop and the profile's fetch are the caller's: between flameLookup and
 // flameMedium it reads the profile. Lengths m, times s, temperatures K.
 // GLSL too, and laid out by hand.
 // clang-format off

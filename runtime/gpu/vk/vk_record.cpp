@@ -76,7 +76,8 @@ void chooseVariants(const VkBackend::State& s, const ObjectEntry& object, DrawIt
     const bool burnt = looksBurnt(object), image = item.image != 0;
     item.variant = surfaceVariant(material, image, burnt);
     item.coldReach = coldReach(s.meshes[object.mesh].texelEdge);
-    const bool tells = (object.record.flags & kObjectPublished) == 0 && item.coldReach <= kColdReach;
+    const bool tells =
+        (object.record.flags & kObjectPublished) == 0 && item.coldReach <= kColdReach;
     item.coldVariant = burnt && tells && !object.charred && !zPassed(object)
                            ? surfaceVariant(material, image, false)
                            : ~0u;
