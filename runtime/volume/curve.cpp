@@ -49,11 +49,11 @@ void Curve::set(std::span<const ControlPoint> points, vec3 up) noexcept {
     float extent = 0.0f;
     for (uint32_t k = 2; k <= n; ++k)
         extent = std::max(extent, glm::length(vec3(points_[k]) - vec3(points_[1])));
-    if (n < 2 || extent < 1e-4f) {  // one place: a stub to have a direction
-        const float stub = std::max(points_[1].w, 1e-3f);
+    if (n < 2 || extent < 1e-4f) {  // one place: a short piece, to have a direction
+        const float piece = std::max(points_[1].w, 1e-3f);
         const float last = points_[n].w;
         n = 2;
-        points_[2] = vec4(vec3(points_[1]) + up_ * stub, last);
+        points_[2] = vec4(vec3(points_[1]) + up_ * piece, last);
     }
     const auto phantom = [](vec4 end, vec4 next) {
         const vec4 p = 2.0f * end - next;

@@ -32,7 +32,8 @@ struct CurveSample {
 // The spline itself, by parameter and by arc length.
 class Curve {
  public:
-    // Takes the first kMaxControlPoints. Points that are all one become a straight stub along `up`.
+    // Takes the first kMaxControlPoints. Points that are all one become a short straight piece
+    // along `up`.
     void set(std::span<const ControlPoint> points, vec3 up) noexcept;
     [[nodiscard]] float length() const noexcept { return arc_[kArcEntries]; }  // m, > 0
     // At s metres from the base; straight on beyond either end.
