@@ -35,8 +35,9 @@ case $name in
     subdirectory)
         launcher=()
         command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-        # Without precompiled headers, so that a source that forgot an include of its own fails here.
-        build_project "-DFLAMEWRIGHT_SOURCE=$here/../.." \
+        # Without precompiled headers, so that a source that forgot an include of its own fails here;
+        # Debug, as all of the library is compiled for it.
+        build_project "-DFLAMEWRIGHT_SOURCE=$here/../.." -DCMAKE_BUILD_TYPE=Debug \
             -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "${launcher[@]}"
         "$work/build/consumer"
         ;;

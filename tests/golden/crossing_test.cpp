@@ -2,11 +2,8 @@
 // crossing; without bounds the published Z-pass hides where they have, and says so with holes.
 #include "flamewright/flamewright.h"
 #include "flamewright/flamewright_debug.h"
-#include "support/meshes.h"
+#include "support/own_world.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cstring>
 
 namespace fw::test {
@@ -14,15 +11,8 @@ namespace {
 
 constexpr uint32_t kSide = 96;  // px, of 0.3 m
 
-class Crossing : public testing::Test {
+class Crossing : public OwnDevice {
  protected:
-    void SetUp() override {
-        const FwContextDef def = fwDefaultContextDef();
-        FwErrorInfo info{};
-        if (fwCreateContext(&def, &context_, &info) != FW_OK) GTEST_SKIP() << info.message;
-    }
-    void TearDown() override { fwDestroyContext(context_); }
-
     // A board of 0.2 x 0.2 x 0.02 m that is about to be consumed: 0.03 m from either side.
     FwWorld* board(uint32_t flags) {
         FwWorldDef worldDef = fwDefaultWorldDef();
@@ -32,11 +22,9 @@ class Crossing : public testing::Test {
         EXPECT_EQ(fwCreateWorld(context_, &worldDef, &world), FW_OK);
         Mesh mesh = makeCube(0.2, 10);
         for (size_t i = 2; i < mesh.positions.size(); i += 3) mesh.positions[i] *= 0.1f;
-        FwMeshDef def = fwDefaultMeshDef();
-        def.positions = mesh.positions.data();
-        def.indices = mesh.indices.data();
-        def.vertexCount = mesh.vertexCount();
-        def.indexCount = uint32_t(mesh.indices.size());
+        FwMeshDef def = meshDefOf(mesh);
+        def.normals = nullptr;
+        def.uvs = nullptr;
         def.mapSize = 64;
         def.noiseAmplitude = 0;
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
@@ -85,8 +73,6 @@ class Crossing : public testing::Test {
         for (size_t i = 0; i < a.size(); i += 4) sum += std::memcmp(&a[i], &b[i], 4) != 0;
         return sum;
     }
-
-    FwContext* context_ = nullptr;
 };
 
 TEST_F(Crossing, BoundedWallsNeverCrossAndTheZPassHidesOthers) {

@@ -2,6 +2,7 @@
 // calls, one of them some frames late, end in the same texels.
 #include "gpu/cpu/cpu_backend.h"
 #include "support/burn_scene.h"
+#include "support/sanitized.h"
 #include "support/world_defs.h"
 #include "world/world.h"
 
@@ -168,7 +169,7 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
     both.cpu.setSwitches(FW_DEBUG_SHUFFLE);
     ignite(0, FW_IGNITE, 0);
     uint32_t steps = 0, mostCaught = 0;
-    for (uint32_t frame = 0; frame < 700; ++frame) {
+    for (uint32_t frame = 0; frame < rounds(700u, 200u); ++frame) {
         const uint32_t count = 1 + random() % 8;
         if (random() % 12 == 0) {
             const size_t i = random() % both.ids.size();

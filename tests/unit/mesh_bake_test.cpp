@@ -142,6 +142,7 @@ TEST(MeshBake, FoldedUvsHaveNoLinksThroughSpace) {
 
 TEST(MeshBake, ConfettiAtlas) {  // every triangle its own chart, legs down to half a texel
     for (double leg : {16.0, 8.0, 4.0, 2.0, 1.0, 0.5}) {
+        if (kSanitized && leg < 2) continue;
         const int cells = int(std::min(100.0, 120 / leg));
         const Mesh mesh = makeConfetti(cells * leg / 128, cells, 3.0 / 128);
         mesh::BakeInput input = mesh.input(128, 4096);
@@ -242,7 +243,7 @@ TEST(MeshBake, TenRandomUnwrapsOfOneRealMesh) {
 
 TEST(MeshBake, ThreeHundredTriangleSoups) {
     uint32_t baked = 0, refused = 0;
-    const uint32_t soups = rounds(300u, 150u);
+    const uint32_t soups = rounds(300u, 60u);
     for (uint32_t seed = 0; seed < soups; ++seed) {
         Mesh mesh = makeSoup(seed);
         for (int way = 0; way < 3; ++way) {  // own UVs if they will do; trusted; none
@@ -436,7 +437,7 @@ TEST(MeshBake, AwkwardShapesStayFast) {
     for (const auto& [name, mesh] : meshes) {
         SCOPED_TRACE(name);
         const std::clock_t start = std::clock();
-        const BurnDomain d = bakeOf(mesh.input(128, rounds(1024u, 512u)));
+        const BurnDomain d = bakeOf(mesh.input(128, rounds(1024u, 256u)));
         const double milliseconds = 1000.0 * double(std::clock() - start) / CLOCKS_PER_SEC;
         expectSound(d);
         std::printf("[   FIGURE ] %s: %u triangles, %u charts, %u x %u, %.0f ms\n", name,

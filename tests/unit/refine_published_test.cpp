@@ -130,7 +130,7 @@ std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& arp,
     return drawn;
 }
 
-// The seed's rules, run serially on one triangle while a fire grows over it, and what we draw: the
+// The published rules, run serially on one triangle while a fire grows over it, and what we draw: the
 // same finest triangles at every radius, and at the end the same picture, of finest triangles
 // alone.
 TEST(RefinePublished, StatusMachineEndsWhereTheSeedsSerialRulesDo) {

@@ -2,6 +2,7 @@
 // neighbours, light, bounds while all that happens.
 #include "core/error.h"
 #include "volume/flame.h"
+#include "volume_scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,12 +15,7 @@ namespace {
 
 using namespace fw::volume;
 using testing::HasSubstr;
-
-FlameDef campFire() {
-    FlameDef d;
-    d.look = presetDef(FlamePreset::CampFire).look;
-    return d;
-}
+using volume_scene::campFire;
 
 Collider plane(vec3 point, vec3 normal) {
     Collider c;

@@ -2,6 +2,7 @@
 // by seed, and that nothing a host does gives a bad number.
 #include "core/error.h"
 #include "volume/flame.h"
+#include "volume_scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,12 +15,8 @@ namespace {
 
 using namespace fw::volume;
 using testing::HasSubstr;
-
-FlameDef campFire() {
-    FlameDef d;
-    d.look = presetDef(FlamePreset::CampFire).look;
-    return d;
-}
+using volume_scene::campFire;
+using volume_scene::failure;
 
 void expectSound(const Flame& f) {
     for (const auto& n : f.nodes)
@@ -221,16 +218,6 @@ TEST(VolumeMotion, HostsPointsAreTaken) {
     f.givenCount = 0;
     for (int k = 0; k < 60; ++k) advanceFlame(f, {}, 1.0 / 60.0);
     EXPECT_NEAR(vec3(f.nodes[0].centre).x, 0.0f, 1e-4f) << "without points it lives by itself";
-}
-
-template <typename Do>
-std::string failure(const Do& act) {
-    try {
-        act();
-    } catch (const fw::core::Error& e) {
-        return e.message;
-    }
-    return "nothing failed";
 }
 
 TEST(VolumeMotion, BadInputIsNamed) {

@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "volume/look.h"
 #include "volume/profile.h"
+#include "volume_scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,16 +15,7 @@ namespace {
 
 using namespace fw::volume;
 using testing::HasSubstr;
-
-template <typename Do>
-std::string failure(const Do& act) {
-    try {
-        act();
-    } catch (const fw::core::Error& e) {
-        return e.message;
-    }
-    return "nothing failed";
-}
+using volume_scene::failure;
 
 Profile painted() {
     Profile p;

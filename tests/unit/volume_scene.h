@@ -1,15 +1,34 @@
 // A flame to look at and to measure, without a device: a straight or given curve, a preset, a
 // picture.
 #pragma once
+#include "core/error.h"
 #include "volume/flame.h"
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace volume_scene {
 
 using namespace fw::volume;
+
+inline FlameDef campFire() {
+    FlameDef d;
+    d.look = presetDef(FlamePreset::CampFire).look;
+    return d;
+}
+
+// What `act` says as it fails.
+template <typename Do>
+std::string failure(const Do& act) {
+    try {
+        act();
+    } catch (const fw::core::Error& e) {
+        return e.message;
+    }
+    return "nothing failed";
+}
 
 struct Shown {
     FlameLook look;
