@@ -1,4 +1,5 @@
 // Defaults of every def, and the two functions that need no context at all.
+#include "components/volumetric_fire.h"
 #include "edge.h"
 #include "flamewright/flamewright.h"
 #include "vulkan_defs.h"
@@ -62,6 +63,13 @@ void defaults(FwBlockerDef& def) noexcept {
     set(def.halfSize, 0.5f, 0.5f, 0.5f);
 }
 
+void defaults(FwVolumetricFireDef& def) noexcept {
+    def.diameter = 0.6f;
+    def.power = 60;
+    def.windResponse = def.turbulence = def.speed = def.density = def.smoke = def.blue = 1;
+    set(def.tint, 1, 1, 1);
+}
+
 void defaults(FwIgnitionDef& def) noexcept { def.kind = FW_IGNITE; }
 
 void defaults(FwView& def) noexcept {
@@ -116,6 +124,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwOffscreenDef);
         case FW_DEF_BLOCKER:
             return sizeof(FwBlockerDef);
+        case FW_DEF_VOLUMETRIC_FIRE:
+            return sizeof(FwVolumetricFireDef);
         default:
             return vulkanDefSize(type);
     }
@@ -153,6 +163,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
         case FW_DEF_BLOCKER:
             write<FwBlockerDef>(def);
             return true;
+        case FW_DEF_VOLUMETRIC_FIRE:
+            write<FwVolumetricFireDef>(def);
+            return true;
         default:
             return writeVulkanDefaults(type, def);
     }
@@ -186,6 +199,23 @@ FwResult FW_CALL fwInitMaterialPreset(FwMaterialDef* def, uint32_t preset) {
         return FW_OK;
     });
 }
+
+FwResult FW_CALL fwInitFirePreset(FwVolumetricFireDef* def, uint32_t preset) {
+    const auto nobody = [](FwResult, const char*) {};
+    return edge::guard("fwInitFirePreset", nobody, [&] {
+        if (preset >= FW_FIRE_PRESET_COUNT)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "preset is %u; the limit is %u.", preset,
+                       uint32_t(FW_FIRE_PRESET_COUNT) - 1);
+        const uint32_t size = edge::checkInfo(def, "FwVolumetricFireDef");
+        FwVolumetricFireDef filled =
+            edge::readDef(def, FW_DEF_VOLUMETRIC_FIRE, "FwVolumetricFireDef");
+        components::setFirePreset(filled, preset);
+        edge::writeInfo(def, size, filled);
+        return FW_OK;
+    });
+}
+
+const char* FW_CALL fwFirePresetName(uint32_t preset) { return components::firePresetName(preset); }
 
 const char* FW_CALL fwMaterialPresetName(uint32_t preset) { return world::presetName(preset); }
 

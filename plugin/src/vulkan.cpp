@@ -4,6 +4,7 @@
 #include "components/look_table.h"
 #include "components/look_textures.h"
 #include "components/view_params.h"
+#include "components/volumetric_fire.h"
 #include "gpu/vk/vk_backend.h"
 #include "objects.h"
 #include "vulkan_defs.h"
@@ -64,7 +65,8 @@ class VulkanDevice final : public Device {
           log_(log),
           context_(host, budget, &memory, log),
           lookTable_(&memory),
-          lookTextures_(components::bakeLookTextures(&memory)) {
+          lookTextures_(components::bakeLookTextures(&memory)),
+          fireProfiles_(components::bakeFireProfiles(&memory)) {
         for (uint32_t i = 0; i < components::kLookCount; ++i)
             lookTable_.push_back(components::materialLook(i));
     }
@@ -79,6 +81,7 @@ class VulkanDevice final : public Device {
         limits.paceFactor = def.paceFactor;
         limits.looks.table = lookTable_;
         limits.looks.textures = lookTextures_;
+        limits.looks.profiles = fireProfiles_;
         limits.looks.viewParams = &fillViewParams;
         return std::pmr::polymorphic_allocator<>(&memory_).new_object<gpu::vk::VkBackend>(
             context_, limits, &memory_, log_);
@@ -128,7 +131,7 @@ class VulkanDevice final : public Device {
     gpu::vk::Context context_;
     // Kept for the worlds to come: a backend copies them when it is made.
     std::pmr::vector<gpu::MaterialLook> lookTable_;
-    std::pmr::vector<std::byte> lookTextures_;
+    std::pmr::vector<std::byte> lookTextures_, fireProfiles_;
 };
 
 VulkanDevice& vulkanOf(FwContext& context) {

@@ -195,6 +195,63 @@ FwResult FW_CALL fwWorld_SetHidden(FwWorld* world, FwBurnableMeshId id, uint32_t
     });
 }
 
+// ---- volumetric fires -------------------------------------------------------------------------
+
+FwResult FW_CALL fwWorld_CreateVolumetricFire(FwWorld* world, const FwVolumetricFireDef* given,
+                                              FwVolumetricFireId* id) {
+    return createOf("fwWorld_CreateVolumetricFire", world, &world::World::createVolumetricFire,
+                    given, FW_DEF_VOLUMETRIC_FIRE, "FwVolumetricFireDef", id);
+}
+
+FwResult FW_CALL fwWorld_DestroyVolumetricFire(FwWorld* world, FwVolumetricFireId id) {
+    return destroyOf("fwWorld_DestroyVolumetricFire", world, &world::World::destroyVolumetricFire,
+                     id);
+}
+
+FwResult FW_CALL fwWorld_MoveVolumetricFire(FwWorld* world, FwVolumetricFireId id,
+                                            const float position[3]) {
+    return onWorld("fwWorld_MoveVolumetricFire", world, [&](world::World& w) {
+        checkPointer(position, "position");
+        w.moveVolumetricFire(id, position);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetVolumetricFirePower(FwWorld* world, FwVolumetricFireId id,
+                                                float power) {
+    return onWorld("fwWorld_SetVolumetricFirePower", world, [&](world::World& w) {
+        w.setVolumetricFirePower(id, power);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld* world, FwVolumetricFireId id,
+                                                 const FwFirePoint* points, uint32_t pointCount) {
+    return onWorld("fwWorld_SetVolumetricFirePoints", world, [&](world::World& w) {
+        w.setVolumetricFirePoints(id, points, pointCount);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld* world, FwVolumetricFireId id,
+                                                 uint32_t hidden) {
+    return onWorld("fwWorld_SetVolumetricFireHidden", world, [&](world::World& w) {
+        w.setVolumetricFireHidden(id, hidden != 0);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld* world, FwVolumetricFireId id,
+                                                FwVolumetricFireState* state) {
+    return onWorld("fwWorld_GetVolumetricFireState", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(state, "FwVolumetricFireState");
+        FwVolumetricFireState filled{};
+        w.volumetricFireState(id, filled);
+        edge::writeInfo(state, size, filled);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
     return onWorld("fwWorld_Ignite", world, [&](world::World& w) {
         const FwIgnitionDef def = edge::readDef(given, FW_DEF_IGNITION, "FwIgnitionDef");

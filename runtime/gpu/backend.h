@@ -72,15 +72,22 @@ struct Probe {
     uint32_t object = 0, texel = 0;
 };
 
+struct VolumeFlame;    // shared/volume_flame.h
+struct VolumeUpdate {  // the volumetric flames that draws show from this frame on; looks only
+    const VolumeFlame* flames = nullptr;  // their bounds are in the records
+    uint32_t count = 0;                   // at most kMaxVolumeFlames
+};
+
 struct FramePlan {
     uint64_t frameIndex = 0;
     std::span<const StepPlan> steps;
-    std::span<const Probe> probes;       // answered in this frame's readback, in order
-    std::span<const uint32_t> burnMaps;  // object slots whose whole state is read back
-    uint32_t switches = 0;               // FwDebugSwitch
-    uint32_t endTick = 0;                // tick after the last step
-    float wind[3] = {};                  // m/s, world; for looks only
-    float tickFraction = 0;              // into the running step, [0, 1); for looks only
+    std::span<const Probe> probes;          // answered in this frame's readback, in order
+    std::span<const uint32_t> burnMaps;     // object slots whose whole state is read back
+    uint32_t switches = 0;                  // FwDebugSwitch
+    uint32_t endTick = 0;                   // tick after the last step
+    float wind[3] = {};                     // m/s, world; for looks only
+    float tickFraction = 0;                 // into the running step, [0, 1); for looks only
+    const VolumeUpdate* volumes = nullptr;  // null: as before
 };
 
 struct BurnMap {

@@ -190,12 +190,6 @@ bool World::fetchPoint(FwQueryId id, FwPointState& state) {
     return true;
 }
 
-uint32_t World::lights(std::span<FwLight> out) const noexcept {
-    const size_t count = std::min(out.size(), lights_.size());
-    std::copy_n(lights_.begin(), count, out.begin());
-    return uint32_t(count);
-}
-
 void World::stats(FwWorldStats& stats) noexcept {
     stats.steps = steps_;
     stats.tick = clock_.tick;

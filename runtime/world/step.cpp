@@ -33,6 +33,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     const ClockAdvance time = fw::world::advance(clock_, deltaTime, def_.maxStepsPerFrame);
     planSteps(time);
     planProbes();
+    planFires(deltaTime);
 
     // Nothing listed, nothing new: time passes without the device.
     const bool skip = idle_ && frame_.events.empty() && frame_.updates.empty() &&
@@ -45,6 +46,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     plan.switches = switches_;
     plan.endTick = uint32_t(time.after.tick);
     std::copy_n(wind_, 3, plan.wind);
+    if (frame_.volumesDue) plan.volumes = &frame_.volumes;
     plan.tickFraction = float(double(time.after.fraction) / double(Clock::kStepUnits));
     backend_.run(plan);
 
@@ -200,6 +202,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     if (clock_.tick < Clock::kWarnTick && time.after.tick >= Clock::kWarnTick)
         log_.write(FW_LOG_WARNING, "A world has a day left: it simulates at most %llu s.",
                    static_cast<unsigned long long>(Clock::kLastTick / 4096));
+    commitFires();
     clock_ = time.after;
     if (ran) steps_ += time.steps;
     lastFrame_ = frameIndex;

@@ -3,6 +3,7 @@
 // or std::bad_alloc and then have changed nothing. One thread at a time.
 #pragma once
 #include "components/remote.h"
+#include "components/volumetric_fire.h"
 #include "core/handle_pool.h"
 #include "core/log.h"
 #include "core/owned.h"
@@ -219,6 +220,14 @@ class World {
     void setHidden(FwBurnableMeshId id, bool hidden);
     uint32_t ignite(const FwIgnitionDef& def);  // texels addressed
 
+    FwVolumetricFireId createVolumetricFire(const FwVolumetricFireDef& def);
+    void destroyVolumetricFire(FwVolumetricFireId id);
+    void moveVolumetricFire(FwVolumetricFireId id, const float position[3]);
+    void setVolumetricFirePower(FwVolumetricFireId id, float power);
+    void setVolumetricFirePoints(FwVolumetricFireId id, const FwFirePoint* points, uint32_t count);
+    void setVolumetricFireHidden(FwVolumetricFireId id, bool hidden);
+    void volumetricFireState(FwVolumetricFireId id, FwVolumetricFireState& state);
+
     // Throws unless advance would take these.
     void checkFrame(uint64_t frameIndex, float deltaTime) const;
     // One frame: collects readbacks, plans, runs the backend, collects again.
@@ -293,12 +302,17 @@ class World {
         std::pmr::vector<core::Owned<RemoteTables>> remote;  // the first `remoteUsed` of them
         size_t remoteUsed = 0;
         bool remoteLatched = false, remoteFlushed = false;
+        gpu::VolumeUpdate volumes;  // of fireFlames_
+        bool volumesDue = false;    // the backend is told
     };
 
     // step.cpp
     void planSteps(const ClockAdvance& time);
     void planProbes();
     void commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept;
+    // fires.cpp
+    void planFires(float seconds) noexcept;
+    void commitFires() noexcept;
     // latch.cpp
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
     [[nodiscard]] components::DriveInput driveInput() const noexcept;
@@ -366,6 +380,10 @@ class World {
     core::HandlePool<FwBurnableMeshId, core::Owned<Object>> objects_;
     core::HandlePool<FwQueryId, Query> queries_;
     core::HandlePool<FwBlockerId, BlockerEntry> blockers_;
+    core::HandlePool<FwVolumetricFireId, components::VolumetricFire> fires_;
+    std::pmr::vector<gpu::VolumeFlame> fireFlames_;  // room for a frame's flames
+    uint32_t flamesShown_ = 0;                       // that the backend draws
+    uint32_t firesMade_ = 0;                         // since ever
     RemoteBook remote_;
     std::pmr::vector<uint32_t> imageUsers_;  // by backend slot: objects + 1 for a live id; 0: free
     std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing

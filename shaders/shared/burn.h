@@ -85,7 +85,8 @@
 #define FW_BIND_REFINE_CUT_DRAWS 76 // uint[]: indirect draws, 8 per object slot
 #define FW_BIND_ARP_GROUPS 77       // uvec2[]: object slot, first of 64 slots or listed triangles
 #define FW_BIND_ARP_LIST 78         // uint[]: drawn triangles of the published scheme, see arp.h
-#define FW_BIND_COUNT 79
+#define FW_BIND_VOLUMES 90          // VolumeFlame[]: volumetric flames of the frame, see volume_draw.h
+#define FW_BIND_COUNT 91
 
 FW_SHARED_BEGIN
 

@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(54, calls);  // every function of the three headers
+    EXPECT_EQ(63, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -47,6 +47,7 @@ const DefCase kDefs[] = {
     {"view", FW_DEF_VIEW, sizeof(FwView)},
     {"offscreen", FW_DEF_OFFSCREEN, sizeof(FwOffscreenDef)},
     {"blocker", FW_DEF_BLOCKER, sizeof(FwBlockerDef)},
+    {"fire", FW_DEF_VOLUMETRIC_FIRE, sizeof(FwVolumetricFireDef)},
     {"host", FW_DEF_VULKAN_HOST, sizeof(FwVulkanHost)},
     {"target", FW_DEF_VULKAN_TARGET, sizeof(FwVulkanTargetDef)},
     {"frame", FW_DEF_VULKAN_FRAME, sizeof(FwVulkanFrame)},
@@ -186,6 +187,13 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
             return fwWorld_CreateBurnableMesh(w.world, def, &id);
         },
         worldMessage);
+    checkSizes<FwVolumetricFireDef>(
+        "FwVolumetricFireDef", fwDefaultVolumetricFireDef(),
+        [&](const FwVolumetricFireDef* def) {
+            FwVolumetricFireId id{};
+            return fwWorld_CreateVolumetricFire(w.world, def, &id);
+        },
+        worldMessage);
     FwIgnitionDef ignition = fwDefaultIgnitionDef();
     ignition.radius = 0.05f;
     checkSizes<FwIgnitionDef>(
@@ -307,6 +315,35 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
                            worldMessage, {-0.1f, 0.6f});
     refuseFloat<FwMeshDef>(sheet.def(32), &FwMeshDef::noiseFeature, "noiseFeature", makeMesh,
                            worldMessage, {0.0f, -1.0f});
+
+    const std::function<FwResult(const FwVolumetricFireDef*)> makeFire =
+        [&](const FwVolumetricFireDef* def) {
+            FwVolumetricFireId id{};
+            const FwResult result = fwWorld_CreateVolumetricFire(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_DestroyVolumetricFire(w.world, id);
+            return result;
+        };
+    const FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
+    using F = FwVolumetricFireDef;
+    refuseFloat<F>(fire, &F::diameter, "diameter", makeFire, worldMessage, {0.0f, 0.001f, 21.0f});
+    refuseFloat<F>(fire, &F::power, "power", makeFire, worldMessage, {-1.0f, 2e5f});
+    refuseFloat<F>(fire, &F::windResponse, "windResponse", makeFire, worldMessage, {-0.1f, 5.0f});
+    refuseFloat<F>(fire, &F::turbulence, "turbulence", makeFire, worldMessage, {-0.1f, 4.0f});
+    refuseFloat<F>(fire, &F::speed, "speed", makeFire, worldMessage, {-0.1f, 5.0f});
+    refuseFloat<F>(fire, &F::density, "density", makeFire, worldMessage, {-0.1f, 11.0f});
+    refuseFloat<F>(fire, &F::smoke, "smoke", makeFire, worldMessage, {-0.1f, 11.0f});
+    refuseFloat<F>(fire, &F::blue, "blue", makeFire, worldMessage, {-0.1f, 11.0f});
+    refuseFloat<F>(fire, &F::tintWeight, "tintWeight", makeFire, worldMessage, {-0.1f, 1.1f});
+    for (int i = 0; i < 3; ++i) {
+        F def = fire;
+        def.position[i] = kInfinity;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeFire(&def));
+        EXPECT_NE(std::string::npos, worldMessage().find("position[" + std::to_string(i) + "]"));
+        def = fire;
+        def.tint[i] = 1.5f;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeFire(&def));
+        EXPECT_NE(std::string::npos, worldMessage().find("tint[" + std::to_string(i) + "] is 1.5"));
+    }
 
     FwBurnableMeshDef burnable = fwDefaultBurnableMeshDef();
     burnable.mesh = w.mesh;

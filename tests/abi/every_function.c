@@ -20,6 +20,7 @@ int fwTestCallEverything(int* calls) {
     const FwTargetId target = {0, 0};
     const FwQueryId query = {0, 0};
     const FwBlockerId blocker = {0, 0};
+    const FwVolumetricFireId fire = {0, 0};
 
     RUNS(fwResultName(FW_OK));
     RUNS(fwGetVersion());
@@ -52,6 +53,15 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_DestroyBurnableMesh(NULL, object));
     REFUSES(fwWorld_SetTransform(NULL, object, NULL));
     REFUSES(fwWorld_SetHidden(NULL, object, 1));
+    REFUSES(fwInitFirePreset(NULL, 0));
+    RUNS(fwFirePresetName(0));
+    REFUSES(fwWorld_CreateVolumetricFire(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyVolumetricFire(NULL, fire));
+    REFUSES(fwWorld_MoveVolumetricFire(NULL, fire, NULL));
+    REFUSES(fwWorld_SetVolumetricFirePower(NULL, fire, 0.0f));
+    REFUSES(fwWorld_SetVolumetricFirePoints(NULL, fire, NULL, 0));
+    REFUSES(fwWorld_SetVolumetricFireHidden(NULL, fire, 1));
+    REFUSES(fwWorld_GetVolumetricFireState(NULL, fire, NULL));
     REFUSES(fwWorld_Ignite(NULL, NULL, NULL));
     REFUSES(fwWorld_Step(NULL, 0.0f));
     REFUSES(fwWorld_RenderOffscreen(NULL, NULL));
@@ -88,6 +98,7 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultIgnitionDef().structSize == sizeof(FwIgnitionDef) ? 0 : 1;
     wrong += fwDefaultView().structSize == sizeof(FwView) ? 0 : 1;
     wrong += fwDefaultBlockerDef().structSize == sizeof(FwBlockerDef) ? 0 : 1;
+    wrong += fwDefaultVolumetricFireDef().structSize == sizeof(FwVolumetricFireDef) ? 0 : 1;
     wrong += fwDefaultOffscreenDef().structSize == sizeof(FwOffscreenDef) ? 0 : 1;
     wrong += fwDefaultVulkanHost().structSize == sizeof(FwVulkanHost) ? 0 : 1;
     wrong += fwDefaultVulkanTargetDef().structSize == sizeof(FwVulkanTargetDef) ? 0 : 1;

@@ -3,6 +3,7 @@
 #include "abi/abi_support.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace {
@@ -79,7 +80,7 @@ class Fuzz {
     void run(int calls) {
         for (int i = 0; i < calls && !::testing::Test::HasFailure(); ++i) call();
     }
-    uint64_t accepted = 0, refused = 0, meshes = 0, objects = 0, fires = 0;
+    uint64_t accepted = 0, refused = 0, meshes = 0, objects = 0, fires = 0, flames = 0;
 
  private:
     void makeWorld() {
@@ -206,6 +207,66 @@ class Fuzz {
         }
     }
 
+    void createFlame() {
+        FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+        (void)fwInitFirePreset(&def, random_.below(10));
+        for (float& x : def.position) x = random_.unit();
+        FwFirePoint points[32];
+        for (FwFirePoint& point : points) {
+            for (float& x : point.position) x = random_.once(9) ? 0.5f : random_.number();
+            point.radius = random_.once(5) ? 0.0f : random_.unit();
+        }
+        garble(def);
+        def.pointCount = random_.once(2) ? 0 : random_.below(35);
+        def.points = random_.once(20) ? nullptr : points;
+        if (def.pointCount > 32 && def.points) def.pointCount = 32;  // honest array sizes
+        def.structSize = sizeof def;
+        FwVolumetricFireId id{};
+        const FwResult result = fwWorld_CreateVolumetricFire(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) {
+            flames_.known.push_back(id);
+            ++flames;
+        }
+    }
+
+    void changeFlame() {
+        const FwVolumetricFireId id = flames_.any(random_);
+        float place[3];
+        for (float& x : place) x = random_.number();
+        FwFirePoint points[4];
+        for (FwFirePoint& point : points) {
+            for (float& x : point.position) x = random_.number();
+            point.radius = random_.number();
+        }
+        switch (random_.below(5)) {
+            case 0:
+                check(fwWorld_MoveVolumetricFire(world_, id, place));
+                break;
+            case 1:
+                check(fwWorld_SetVolumetricFirePower(world_, id, 100 * random_.number()));
+                break;
+            case 2:
+                check(fwWorld_SetVolumetricFirePoints(world_, id, points, random_.below(5)));
+                break;
+            case 3:
+                check(fwWorld_SetVolumetricFireHidden(world_, id, random_.below(2)));
+                break;
+            default: {
+                FwVolumetricFireState state{};
+                state.structSize = sizeof state;
+                const FwResult result = fwWorld_GetVolumetricFireState(world_, id, &state);
+                check(result);
+                if (result != FW_OK) break;
+                for (int i = 0; i < 3; ++i) {
+                    EXPECT_TRUE(std::isfinite(state.tip[i] + state.lightPosition[i]));
+                    EXPECT_LE(state.boundsLow[i], state.boundsHigh[i]);
+                }
+                EXPECT_TRUE(std::isfinite(state.height + state.lightIntensity));
+            }
+        }
+    }
+
     template <class Id>
     void destroy(Ids<Id>& ids, FwResult(FW_CALL* function)(FwWorld*, Id)) {
         const Id id = ids.any(random_);
@@ -218,7 +279,7 @@ class Fuzz {
         float values[16];
         for (float& value : values) value = random_.number();
         const FwBurnableMeshId object = objects_.any(random_);
-        switch (random_.below(26)) {
+        switch (random_.below(29)) {
             case 0: {
                 FwMaterialDef def = fwDefaultMaterialDef();
                 (void)fwInitMaterialPreset(&def, random_.below(16));
@@ -352,6 +413,15 @@ class Fuzz {
                     fwDebug_PushTexels(world_, object, random_.below(5), texels, random_.below(5)));
                 break;
             }
+            case 24:
+                if (flames_.known.size() < 24 || random_.once(8)) createFlame();
+                break;
+            case 25:
+                changeFlame();
+                break;
+            case 26:
+                if (random_.once(3)) destroy(flames_, fwWorld_DestroyVolumetricFire);
+                break;
             default:
                 check(fwWorld_Step(world_, random_.once(30) ? values[0] : random_.unit() * 0.2f));
                 break;
@@ -363,6 +433,7 @@ class Fuzz {
             images_.known.clear();
             meshes_.known.clear();
             objects_.known.clear();
+            flames_.known.clear();
             queries_.known.clear();
         }
     }
@@ -375,6 +446,7 @@ class Fuzz {
     Ids<FwImageId> images_;
     Ids<FwMeshId> meshes_;
     Ids<FwBurnableMeshId> objects_;
+    Ids<FwVolumetricFireId> flames_;
     Ids<FwQueryId> queries_;
     std::vector<unsigned char> cooked_;
 };
@@ -389,6 +461,7 @@ TEST_P(AbiFuzz, RandomHosts) {
     // It must have got somewhere.
     EXPECT_LT(10u, fuzz.meshes);
     EXPECT_LT(20u, fuzz.objects);
+    EXPECT_LT(20u, fuzz.flames);
     EXPECT_LT(3u, fuzz.fires);
     std::printf(
         "           %llu accepted, %llu refused, %llu meshes, %llu objects, %llu fires\n",

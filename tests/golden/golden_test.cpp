@@ -418,6 +418,18 @@ TEST_F(Golden, SoftFlames) {
     EXPECT_TRUE(matchesGolden("soft_flames", burnAndDraw(world, 6, view, true, true), kTolerance));
 }
 
+// A camp fire that no mesh feeds; a slab of its smoke is as thin as it is.
+TEST_F(Golden, CampFireByNight) {
+    FwWorld* world = makeWorld(1);
+    FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
+    fire.position[1] = -0.35f;
+    fire.seed = 3;
+    FwVolumetricFireId id{};
+    ASSERT_EQ(fwWorld_CreateVolumetricFire(world, &fire, &id), FW_OK);
+    const FwView view = makeView({0.4f, 0.3f, 2.4f}, false, true);
+    EXPECT_TRUE(matchesGolden("camp_fire_night", burnAndDraw(world, 3, view, false), kTolerance));
+}
+
 TEST_F(Golden, ReversedDepthIsTheSamePicture) {
     Picture pictures[2];
     for (int reversed = 0; reversed < 2; ++reversed) {

@@ -2,6 +2,7 @@
 // GPU-assisted validation (tests/run --gpu-assisted) each access past an end is reported, and the
 // second test proves that; without it the software device would never notice.
 #include "components/remote.h"
+#include "components/volumetric_fire.h"
 #include "gpu/passes/frame_graph.h"
 #include "support/burn_scene.h"
 
@@ -98,6 +99,9 @@ class EveryPass : public GpuTest {
         const float eye[3] = {0.9f, 0.7f, 1.1f}, at[3] = {0, 0, 0};
         rig_->view = testView(eye, at, 40, 1, false);
         if (published) makeVertices();
+        FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
+        components::VolumetricFire flame = components::makeVolumetricFire(fire, 1);
+        (void)components::advanceFire(flame, {}, 1, {&flame_, 1});
         now_ = 4096;
         index_ = 0;
         passes_.clear();
@@ -203,6 +207,8 @@ class EveryPass : public GpuTest {
         plan.steps = steps;
         plan.probes = probes;
         if (what.probes) plan.burnMaps = {&map, 1};
+        const gpu::VolumeUpdate volumes{&flame_, 1};
+        plan.volumes = &volumes;
         plan.switches = what.switches;
         plan.endTick = now_;
         moveVertices();
@@ -317,6 +323,7 @@ class EveryPass : public GpuTest {
     gpu::RemoteUpdate remote_;
     std::vector<gpu::ContactLink> links_;
     gpu::Blocker blocker_{};
+    gpu::VolumeFlame flame_{};
     const uint32_t self_ = 0xFF000000u;
     uint32_t now_ = 0;
     uint64_t index_ = 0;

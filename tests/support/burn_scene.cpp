@@ -3,6 +3,7 @@
 #include "components/look_table.h"
 #include "components/look_textures.h"
 #include "components/view_params.h"
+#include "components/volumetric_fire.h"
 #include "fire/heat.h"
 #include "fire/presets.h"
 
@@ -291,6 +292,9 @@ gpu::LookSources testLooks() {
     gpu::LookSources looks;
     looks.table = table;
     looks.textures = textures;
+    static const std::pmr::vector<std::byte> profiles =
+        components::bakeFireProfiles(std::pmr::get_default_resource());
+    looks.profiles = profiles;
     looks.viewParams = [](const gpu::ViewInput& input, gpu::ViewParams& out) {
         components::ViewInputs inputs;
         std::copy_n(input.viewport, 4, inputs.viewport);

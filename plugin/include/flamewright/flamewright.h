@@ -46,6 +46,7 @@ typedef struct FwBurnableMeshId { uint32_t index1, generation; } FwBurnableMeshI
 typedef struct FwTargetId { uint32_t index1, generation; } FwTargetId;
 typedef struct FwQueryId { uint32_t index1, generation; } FwQueryId;
 typedef struct FwBlockerId { uint32_t index1, generation; } FwBlockerId;
+typedef struct FwVolumetricFireId { uint32_t index1, generation; } FwVolumetricFireId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -93,7 +94,7 @@ FW_API uint32_t FW_CALL fwGetVersion(void);
 typedef enum FwDefType {
     FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
-    FW_DEF_BLOCKER = 10,
+    FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -450,6 +451,79 @@ static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
  * gets how many texels it addresses; zero is fine and not an error. [world] */
 FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint32_t* texels);
 
+/* ---- volumetric fires: flames without fuel, for the eye and for the lights -------------------------------- */
+
+typedef enum FwFirePreset {
+    FW_FIRE_CAMP = 0, FW_FIRE_CANDLE = 1, FW_FIRE_TORCH = 2, FW_FIRE_BONFIRE = 3, FW_FIRE_HOUSE = 4,
+    FW_FIRE_GAS_BURNER = 5, FW_FIRE_MAGIC_BLUE = 6, FW_FIRE_MAGIC_GREEN = 7, FW_FIRE_DYING_EMBERS = 8,
+    FW_FIRE_PRESET_COUNT = 9, FW_FIRE_PRESET_FORCE32 = 0x7fffffff
+} FwFirePreset;
+typedef enum FwVolumetricFireFlags {
+    FW_FIRE_HIDDEN = 1,   /* not drawn, and no light; time passes for it */
+    FW_FIRE_NO_SMOKE = 2,
+    FW_FIRE_NO_LIGHT = 4, /* fwWorld_GetLights does not name it */
+    FW_FIRE_FLAGS_FORCE32 = 0x7fffffff
+} FwVolumetricFireFlags;
+typedef struct FwFirePoint { /* of the line that a flame follows, its base first */
+    float position[3];       /* m, world, within +-1e6 */
+    float radius;            /* m, [0, 100], of the tube that burns there */
+} FwFirePoint;
+/* A flame as high as its power and width make it (Heskestad), pulsing at its own rate, leaning in the wind
+ * and behind its own motion; too little power for its width burns as many small flames. It is cosmetic: it
+ * lights no burnable mesh. Factors multiply what the preset says. */
+typedef struct FwVolumetricFireDef {
+    uint32_t structSize, flags; /* FwVolumetricFireFlags */
+    uint32_t preset;            /* FwFirePreset: its look; size and power are below */
+    uint32_t seed;              /* of its shapes; 0: another one for each fire of a world */
+    float position[3];          /* m, world: the middle of its base */
+    float diameter;             /* m, of its base, [0.002, 20]; default 0.6 */
+    float power;                /* kW, [0, 100000]; 0: out. Default 60 */
+    float windResponse;         /* [0, 4], default 1 */
+    float turbulence;           /* factor, [0, 3]: how torn it is; default 1 */
+    float speed;                /* factor, [0, 4]: of everything that moves in it; default 1 */
+    float density;              /* factor, [0, 10]: how hard it is to see through; default 1 */
+    float smoke;                /* factor, [0, 10]; default 1 */
+    float blue;                 /* factor, [0, 10]: of the blue at its foot; default 1 */
+    float tint[3];              /* linear colour it takes instead of a hot body's, [0, 1] */
+    float tintWeight;           /* [0, 1]; default 0: as the preset has it */
+    uint32_t pointCount;        /* 0: it rises by itself; [2, 32]: it follows the points, as high as their
+                                   line is long and as wide as the first of them; in no wind */
+    const FwFirePoint* points;
+    uint64_t userData;          /* comes back in its state */
+} FwVolumetricFireDef;
+static inline FwVolumetricFireDef fwDefaultVolumetricFireDef(void) {
+    FwVolumetricFireDef d; fwInitDef(FW_DEF_VOLUMETRIC_FIRE, &d, (uint32_t)sizeof d); return d;
+}
+/* Sets preset, diameter and power of a whole def, whose structSize is set; the rest stays. [any] */
+FW_API FwResult FW_CALL fwInitFirePreset(FwVolumetricFireDef* def, uint32_t preset);
+FW_API const char* FW_CALL fwFirePresetName(uint32_t preset); /* static, never null [any] */
+/* At most 256 at a time in a world, as at most 256 flames. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateVolumetricFire(FwWorld*, const FwVolumetricFireDef* def, FwVolumetricFireId* id);
+FW_API FwResult FW_CALL fwWorld_DestroyVolumetricFire(FwWorld*, FwVolumetricFireId id); /* [world] */
+/* Where its base is from the next frame on; it trails behind a motion. [world] */
+FW_API FwResult FW_CALL fwWorld_MoveVolumetricFire(FwWorld*, FwVolumetricFireId id, const float position[3]);
+/* kW; the flame follows within a second. [world] */
+FW_API FwResult FW_CALL fwWorld_SetVolumetricFirePower(FwWorld*, FwVolumetricFireId id, float power);
+/* As FwVolumetricFireDef::points; 0: it rises by itself again. [world] */
+FW_API FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld*, FwVolumetricFireId id, const FwFirePoint* points,
+                                                        uint32_t pointCount);
+FW_API FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld*, FwVolumetricFireId id, uint32_t hidden); /* [world] */
+
+typedef struct FwVolumetricFireState { /* as of the last frame */
+    uint32_t structSize, flames; /* flames it burns as; 0: out */
+    uint64_t userData;
+    float power;                /* kW, now */
+    float height;               /* m, mean of what is seen of it */
+    float pulseRate;            /* Hz */
+    float reserved;
+    float boundsLow[3], boundsHigh[3]; /* m, world: of all that shows, smoke too; empty while it is out */
+    float tip[3];               /* m, world: where its mean height ends */
+    float lightPosition[3];     /* m, world */
+    float lightIntensity;       /* W/sr of the visible part, flickering */
+    float reserved1[3];
+} FwVolumetricFireState;
+FW_API FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld*, FwVolumetricFireId id, FwVolumetricFireState* state); /* [world] */
+
 /* ---- running ---------------------------------------------------------------------------------------------- */
 
 /* Advances the simulation by deltaTime s, [0, 10]. cpu backend: at once. Own device: submits and
@@ -563,7 +637,8 @@ typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host'
     uint32_t id, reserved1;    /* stable while the same fire burns */
     uint64_t frameIndex;
 } FwLight;
-/* The strongest fires, as of the last readback. Returns how many were written. [world] */
+/* The strongest fires: of burning meshes as of the last readback, and volumetric ones as of the last
+ * frame (their ids have the highest bit set). Returns how many were written. [world] */
 FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t capacity);
 
 typedef struct FwWorldStats {

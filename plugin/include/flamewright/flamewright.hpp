@@ -53,6 +53,10 @@ template <>
     return fwDefaultBurnableMeshDef();
 }
 template <>
+[[nodiscard]] inline FwVolumetricFireDef def<FwVolumetricFireDef>() noexcept {
+    return fwDefaultVolumetricFireDef();
+}
+template <>
 [[nodiscard]] inline FwIgnitionDef def<FwIgnitionDef>() noexcept {
     return fwDefaultIgnitionDef();
 }
@@ -76,6 +80,12 @@ template <class Info>
 [[nodiscard]] inline FwMaterialDef preset(FwMaterialPreset which) noexcept {
     FwMaterialDef made = fwDefaultMaterialDef();
     (void)fwInitMaterialPreset(&made, uint32_t(which));
+    return made;
+}
+
+[[nodiscard]] inline FwVolumetricFireDef preset(FwFirePreset which) noexcept {
+    FwVolumetricFireDef made = fwDefaultVolumetricFireDef();
+    (void)fwInitFirePreset(&made, uint32_t(which));
     return made;
 }
 
@@ -159,6 +169,7 @@ using Material = Owned<FwMaterialId, fwWorld_DestroyMaterial>;
 using Image = Owned<FwImageId, fwWorld_DestroyImage>;
 using Mesh = Owned<FwMeshId, fwWorld_DestroyMesh>;
 using BurnableMesh = Owned<FwBurnableMeshId, fwWorld_DestroyBurnableMesh>;
+using VolumetricFire = Owned<FwVolumetricFireId, fwWorld_DestroyVolumetricFire>;
 
 [[nodiscard]] inline Material createMaterial(const World& world, const FwMaterialDef& made) {
     FwMaterialId id{};
@@ -184,6 +195,13 @@ using BurnableMesh = Owned<FwBurnableMeshId, fwWorld_DestroyBurnableMesh>;
                                                      const FwBurnableMeshDef& made) {
     FwBurnableMeshId id{};
     (void)fwWorld_CreateBurnableMesh(world.get(), &made, &id);
+    return {world.get(), id};
+}
+
+[[nodiscard]] inline VolumetricFire createVolumetricFire(const World& world,
+                                                         const FwVolumetricFireDef& made) {
+    FwVolumetricFireId id{};
+    (void)fwWorld_CreateVolumetricFire(world.get(), &made, &id);
     return {world.get(), id};
 }
 

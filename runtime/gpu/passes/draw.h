@@ -4,6 +4,7 @@
 #include "gpu/passes/pass.h"
 #include "shared/heat.h"
 #include "shared/look.h"
+#include "shared/volume_draw.h"
 
 #include <cstddef>
 #include <span>
@@ -27,6 +28,8 @@ struct LookSources {
     std::span<const MaterialLook> table;  // by FwMaterialPreset
     // RGBA8, 512^2, layer by layer, each with its 10 mips, largest first. Copied.
     std::span<const std::byte> textures;
+    // R16G16_SFLOAT, kProfileWidth x kProfileHeight, kFirePresets layers. Copied.
+    std::span<const std::byte> profiles;
     void (*viewParams)(const ViewInput& input, ViewParams& out) = nullptr;
 };
 
@@ -58,6 +61,8 @@ class DrawRecorder {
     virtual void drawCut(const DrawItem& item, const void* push) = 0;
     // A VkDrawIndirectCommand at `offset` bytes of the resource.
     virtual void drawIndirect(uint32_t resource, uint64_t offset) = 0;
+    // The slabs of volumetric flame `flame`.
+    virtual void drawVolume(uint32_t flame, const VolumeDraw& push) = 0;
 
  protected:
     ~DrawRecorder() = default;
@@ -83,5 +88,16 @@ bool zPassDraws(std::span<const DrawItem> items);
 void recordZPass(DrawRecorder& recorder, std::span<const DrawItem> items);
 extern const DrawPass kFlamesPass;
 void recordFlames(DrawRecorder& recorder);
+
+struct VolumeItem {  // a volumetric flame that a view may show
+    uint32_t flame = 0;
+    VolumeDraw draw{};
+};
+extern const DrawPass kVolumePass;
+// Where the view shows it, in so many slabs; false: nowhere.
+bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
+                VolumeDraw& out);
+// Farthest first.
+void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items);
 
 }  // namespace fw::gpu

@@ -35,20 +35,21 @@ constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[24], &kSurfacePasses[25], &kSurfacePasses[26], &kSurfacePasses[27],
     &kSurfacePasses[28], &kSurfacePasses[29], &kSurfacePasses[30], &kSurfacePasses[31],
     &kSurfacePasses[32], &kSurfacePasses[33], &kSurfacePasses[34], &kZPass,
-    &kFlamesPass};
+    &kFlamesPass,        &kVolumePass};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
-static_assert(std::size(kDrawPasses) == kNumberOfZPass + 2);
+static_assert(std::size(kDrawPasses) == kNumberOfZPass + 3);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 2> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 3> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
     }
     steps[kSurfaceVariants] = {kNumberOfZPass, true};
-    steps.back() = {kNumberOfZPass + 1, false};
+    steps[2 * kSurfaceVariants + 1] = {kNumberOfZPass + 1, false};
+    steps[2 * kSurfaceVariants + 2] = {kNumberOfZPass + 2, false};
     return steps;
 }();
 
@@ -248,18 +249,21 @@ void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {
     recorder.dispatch(kProbePass, &push, groupsOf(probes.count));
 }
 
-void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, std::span<const DrawItem> items) {
+void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList& list) {
     if (step.pass < kSurfaceVariants)
-        recordSurface(recorder, step.pass, items, step.afterZ);
+        recordSurface(recorder, step.pass, list.surfaces, step.afterZ);
     else if (step.pass == kNumberOfZPass)
-        recordZPass(recorder, items);
-    else
+        recordZPass(recorder, list.surfaces);
+    else if (kDrawPasses[step.pass] == &kFlamesPass)
         recordFlames(recorder);
+    else
+        recordVolume(recorder, list.volumes);
 }
 
-bool drawStepDraws(const DrawStep& step, std::span<const DrawItem> items) {
-    if (step.pass < kSurfaceVariants) return surfaceDraws(step.pass, items, step.afterZ);
-    return step.pass != kNumberOfZPass || zPassDraws(items);
+bool drawStepDraws(const DrawStep& step, const DrawList& list) {
+    if (step.pass < kSurfaceVariants) return surfaceDraws(step.pass, list.surfaces, step.afterZ);
+    if (step.pass == kNumberOfZPass) return zPassDraws(list.surfaces);
+    return kDrawPasses[step.pass] == &kFlamesPass ? list.flames : !list.volumes.empty();
 }
 
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {

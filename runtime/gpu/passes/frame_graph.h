@@ -89,9 +89,14 @@ void recordSkin(vk::FrameRecorder& recorder, const SkinPush& push);
 void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform);
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes);
 void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles);
+struct DrawList {  // what a view may show
+    std::span<const DrawItem> surfaces;
+    bool flames = false;  // something burns
+    std::span<const VolumeItem> volumes;
+};
 // False: it would draw nothing, do not bind it.
-bool drawStepDraws(const DrawStep& step, std::span<const DrawItem> items);
-void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, std::span<const DrawItem> items);
+bool drawStepDraws(const DrawStep& step, const DrawList& list);
+void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList& list);
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 // For the frame's view, after the lights: flames and their order.
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);

@@ -22,6 +22,7 @@ enum class Access : uint8_t {
     indirect,     // arguments of a dispatch or draw
     drawRead,     // storage buffer, vertex and fragment shaders
     drawUniform,  // uniform buffer, vertex and fragment shaders; at most 16 KiB
+    drawEach,     // the same, of which a draw sees one record: FW_BIND_VOLUMES only
     vertexInput,  // vertex or index data
     uniformView,  // the view's uniform block, dynamic offset: FW_BIND_VIEW only
     copyRead,
@@ -52,8 +53,8 @@ enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone };
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
 // 2 DrawPass::variant.
 // Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none); 2
-// binding 0 the look textures (sampler2DArray); 3, with softShader alone, binding 0 the depth that
-// the host lends (sampler2D or sampler2DMS).
+// binding 0 the look textures, of `volume` the fire profiles (sampler2DArray); 3, with softShader
+// alone, binding 0 the depth that the host lends (sampler2D or sampler2DMS).
 struct DrawPass {
     const char* name;
     const char* vertexShader;

@@ -23,6 +23,7 @@ Scope scopeOf(Access access) noexcept {
             return {VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                     VK_ACCESS_SHADER_READ_BIT, false};
         case Access::drawUniform:
+        case Access::drawEach:
             return {VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                     VK_ACCESS_UNIFORM_READ_BIT, false};
         case Access::vertexInput:

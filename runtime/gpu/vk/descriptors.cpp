@@ -1,6 +1,7 @@
 #include "gpu/vk/descriptors.h"
 
 #include "gpu/passes/frame_graph.h"
+#include "shared/volume_draw.h"
 
 #include <array>
 
@@ -23,15 +24,16 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
             continue;
         seen[use.resource] = true;
         const bool view = use.resource == FW_BIND_VIEW;
-        infos[count] =
-            view ? VkDescriptorBufferInfo{views, 0, viewBytes}
-                 : VkDescriptorBufferInfo{planes.buffer(use.resource).handle, 0, VK_WHOLE_SIZE};
+        const bool each = use.access == Access::drawEach;
+        infos[count] = view ? VkDescriptorBufferInfo{views, 0, viewBytes}
+                            : VkDescriptorBufferInfo{planes.buffer(use.resource).handle, 0,
+                                                     each ? kVolumeFlameBytes : VK_WHOLE_SIZE};
         VkWriteDescriptorSet& one = writes[count];
         one.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
         one.dstSet = set;
         one.dstBinding = use.resource;
         one.descriptorCount = 1;
-        one.descriptorType = view ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
+        one.descriptorType = view || each ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
                              : use.access == Access::drawUniform
                                  ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
                                  : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -51,9 +53,9 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     uint32_t storage = 0, uniform = 0, view = 0;
     const auto add = [&](std::span<const Use> uses) {
         for (const Use& use : uses)
-            ++(use.resource == FW_BIND_VIEW        ? view
-               : use.access == Access::drawUniform ? uniform
-                                                   : storage);
+            ++(use.resource == FW_BIND_VIEW || use.access == Access::drawEach ? view
+               : use.access == Access::drawUniform                            ? uniform
+                                                                              : storage);
     };
     for (const ComputePass* pass : computePasses()) add(pass->uses);
     for (const DrawPass* pass : drawPasses()) add(pass->uses);

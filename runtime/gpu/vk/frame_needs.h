@@ -90,4 +90,9 @@ void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& wri
 // What deforms in this frame, in the order of DeformRecord; `steps`: that it moves by.
 [[nodiscard]] Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer);
 
+// vk_volume.cpp
+// The flames of the frame, as they are drawn until the next ones come.
+void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorder& recorder,
+                   UploadWriter& writer);
+
 }  // namespace fw::gpu::vk

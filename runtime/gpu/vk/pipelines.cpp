@@ -176,13 +176,14 @@ void Pipelines::makeLayouts() {
             const bool bound = use.access == Access::read || use.access == Access::write ||
                                use.access == Access::drawRead ||
                                use.access == Access::drawUniform ||
-                               use.access == Access::uniformView;
+                               use.access == Access::drawEach || use.access == Access::uniformView;
             if (!bound || seen[use.resource]) continue;
             seen[use.resource] = true;
             VkDescriptorSetLayoutBinding& binding = bindings[count++];
             binding.binding = use.resource;
             binding.descriptorType =
-                use.access == Access::uniformView   ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
+                use.access == Access::uniformView || use.access == Access::drawEach
+                    ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
                 : use.access == Access::drawUniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
                                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
             binding.descriptorCount = 1;

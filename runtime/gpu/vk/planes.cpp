@@ -5,6 +5,7 @@
 #include "shared/exchange.h"
 #include "shared/look.h"
 #include "shared/refine.h"
+#include "shared/volume_draw.h"
 
 #include <algorithm>
 
@@ -118,6 +119,8 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_ARP_GROUPS, kSpaceArpGroups, 8, false, kComponentRefine, "template groups", 0},
     {FW_BIND_REFINE_WORK, kSpaceRefineWork, 4, false, kComponentRefine, "refinement work",
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_VOLUMES, kSpaceVolumes, kVolumeFlameBytes, false, kComponentFlames, "volumes",
+     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
 };
@@ -127,7 +130,7 @@ constexpr uint32_t kInitialUnits[kSpaceCount] = {
     4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
     1024, 4096, 256,  256, 1,    1,    1,    1,     1,
     1,    1,    1,    1,   1,    1,    1,    1,     1024,
-    1,    1,    1};
+    1,    1,    1,    1};
 
 }  // namespace
 

@@ -51,6 +51,7 @@ enum Space : uint32_t {
     kSpaceSources,          // fire sources of objects
     kSpaceNeighbours,       // words, and
     kSpaceContacts,         // links between objects, as of the last update
+    kSpaceVolumes,          // volumetric flames, per frame
     kSpaceFixed,            // one unit
     kSpaceCount,
 };

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "gpu/vk/world_state.h"
+#include "shared/volume.h"
 
 #include <algorithm>
 #include <cstring>
@@ -34,6 +35,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       arps(pmr),
       published(pmr),
       drawItems(pmr),
+      volumes(pmr),
       refine(pmr),
       givenObjects(pmr),
       givenAnswers(pmr),
@@ -55,6 +57,9 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
         if (!limits.looks.textures.empty())
             addImage(lookTextures, 512, 512, kLookTextureLayers, 10, VK_FORMAT_R8G8B8A8_UNORM,
                      limits.looks.textures, "look textures");
+        if (!limits.looks.profiles.empty())
+            addImage(profiles, kProfileWidth, kProfileHeight, kFirePresets, 1,
+                     VK_FORMAT_R16G16_SFLOAT, limits.looks.profiles, "fire profiles");
         uploadRefineTable();
         if (!limits.looks.table.empty()) {
             PendingUpload& upload = stage(limits.looks.table.size_bytes(), "looks");
@@ -67,7 +72,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
         }
     } catch (...) {
         for (PendingUpload& upload : uploads) deviceMemory.destroy(upload.staging);
-        for (ImageEntry* entry : {&white, &lookTextures}) {
+        for (ImageEntry* entry : {&white, &lookTextures, &profiles}) {
             deviceMemory.destroy(entry->image);
             device.table.DestroyDescriptorPool(device.handle, entry->set.pool,
                                                device.allocationCallbacks);
@@ -77,6 +82,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
     }
     limits.looks.table = {};
     limits.looks.textures = {};
+    limits.looks.profiles = {};
 }
 
 VkBackend::State::~State() {
@@ -90,6 +96,7 @@ VkBackend::State::~State() {
     for (ImageEntry& entry : images) drop(entry);
     drop(white);
     drop(lookTextures);
+    drop(profiles);
     for (FrameInFlight& slot : ring.slots()) {
         deviceMemory.destroy(slot.upload);
         deviceMemory.destroy(slot.readback);

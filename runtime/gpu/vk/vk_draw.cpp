@@ -14,9 +14,12 @@ namespace {
 // One pass bound, then its draws.
 class PassRecorder : public DrawRecorder {
  public:
-    PassRecorder(VkBackend::State& state, VkCommandBuffer commands, size_t pass)
+    PassRecorder(VkBackend::State& state, VkCommandBuffer commands, size_t pass,
+                 uint32_t viewOffset)
         : s_(state),
           commands_(commands),
+          number_(pass),
+          viewOffset_(viewOffset),
           pass_(*drawPasses()[pass]),
           layout_(state.context.pipelines.draw(pass).layout) {}
 
@@ -85,10 +88,24 @@ class PassRecorder : public DrawRecorder {
     void drawIndirect(uint32_t resource, uint64_t offset) override {
         s_.device.table.CmdDrawIndirect(commands_, s_.planes.buffer(resource).handle, offset, 1, 0);
     }
+    void drawVolume(uint32_t flame, const VolumeDraw& push) override {
+        const Table& vk = s_.device.table;
+        // In the order of their bindings: the view, the flame.
+        const std::array<uint32_t, 2> offsets{viewOffset_, flame * kVolumeFlameBytes};
+        const VkDescriptorSet set = s_.sets.draw(number_);
+        vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set,
+                                 uint32_t(offsets.size()), offsets.data());
+        vk.CmdPushConstants(commands_, layout_,
+                            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                            sizeof push, &push);
+        vk.CmdDraw(commands_, 6, push.slabs, 0, 0);
+    }
 
  private:
     VkBackend::State& s_;
     VkCommandBuffer commands_;
+    size_t number_;
+    uint32_t viewOffset_;
     const DrawPass& pass_;
     VkPipelineLayout layout_;
     VkDescriptorSet bound_ = VK_NULL_HANDLE;
@@ -135,24 +152,27 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     scissor.extent = {uint32_t(std::max(viewport.x + viewport.width - left, 0.0f)),
                       uint32_t(std::max(viewport.y + viewport.height - top, 0.0f))};
     vk.CmdSetScissor(commands, 0, 1, &scissor);
+    std::array<VolumeItem, kMaxVolumeFlames> items;
+    const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
+    const DrawList list{drawItems, !burnEmpty, {items.data(), orderVolumes(slabs, items)}};
     for (const DrawStep& step : drawSteps()) {
         const uint32_t i = step.pass;
         const DrawPass& pass = *drawPasses()[i];
         const bool surface = pass.vertexInput == VertexInput::mesh;
-        if (surface && !drawStepDraws(step, drawItems)) continue;
+        if (!target.pipelines[i] || !drawStepDraws(step, list)) continue;
         if ((crossing & kSwitchNoZPass) && &pass == &kZPass) continue;
-        if (!surface && burnEmpty) continue;  // no flames anywhere
-        if (!target.pipelines[i]) continue;
         slot.timers.begin(device, commands, pass.name);
         const VkPipelineLayout layout = context.pipelines.draw(i).layout;
         vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[i]);
         bool usesView = false;
         for (const Use& use : pass.uses) usesView |= use.access == Access::uniformView;
+        const bool volume = &pass == &kVolumePass;  // binds its set 0 for each flame
         const VkDescriptorSet set = sets.draw(i);
-        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
-                                 usesView ? 1 : 0, &viewOffset);
+        if (!volume)
+            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
+                                     usesView ? 1 : 0, &viewOffset);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
-                                 &lookTextures.set.set, 0, nullptr);
+                                 volume ? &profiles.set.set : &lookTextures.set.set, 0, nullptr);
         if (depth)
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
                                      &depth, 0, nullptr);
@@ -162,8 +182,8 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             vk.CmdBindVertexBuffers(commands, 0, 2, vertices, zeros);
             vk.CmdBindIndexBuffer(commands, drawIndices, 0, VK_INDEX_TYPE_UINT32);
         }
-        PassRecorder recorder(*this, commands, i);
-        recordDrawStep(step, recorder, drawItems);
+        PassRecorder recorder(*this, commands, i, viewOffset);
+        recordDrawStep(step, recorder, list);
         slot.timers.end(device, commands);
     }
 }

@@ -154,10 +154,17 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
                      needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
+    if (plan.volumes) {
+        if (plan.volumes->count > kMaxVolumeFlames)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%u volumetric flames are in a frame; the limit is %u.", plan.volumes->count,
+                       kMaxVolumeFlames);
+        needs.uploadBytes += uploaded(uint64_t(plan.volumes->count) * kVolumeFlameBytes);
+    }
     const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
-                 refineBytes > 0 || forgets || needs.placing || s.recordsDirty ||
+                 refineBytes > 0 || forgets || plan.volumes || needs.placing || s.recordsDirty ||
                  !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
@@ -170,6 +177,10 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     s.planes.atLeast(kSpaceDeformGroups, needs.deformGroups(), last);
     s.planes.atLeast(kSpaceNeighbours, needs.neighbours, last);
     s.planes.atLeast(kSpaceContacts, needs.links, last);
+    if (plan.volumes) {
+        s.planes.atLeast(kSpaceVolumes, plan.volumes->count, last);
+        s.volumes.reserve(plan.volumes->count);
+    }
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);

@@ -342,6 +342,7 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
     input.seed = limits.seed;
     ViewParams params{};
     if (limits.looks.viewParams) limits.looks.viewParams(input, params);
+    seen = params;
     const uint32_t offset = (ring.indexOf(slot) * FrameRing::kMaxViews + slot.views) * viewStride;
     std::memcpy(views.mapped + offset, &params, sizeof params);
     ++slot.views;
@@ -401,6 +402,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     drawVertices = planes.buffer(kResourceVertices).handle;
     drawIndices = planes.buffer(kResourceIndices).handle;
     drawShown = planes.buffer(FW_BIND_SHOWN).handle;
+    if (plan.volumes) recordVolumes(*this, *plan.volumes, recorder, writer);
     if (needs.skins) recordSkins(*this, recorder, writer);
 
     if (needs.iterations) recordCounters(recorder, lists, uint32_t(needs.iterations));

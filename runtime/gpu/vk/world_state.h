@@ -235,7 +235,7 @@ struct VkBackend::State {
     std::pmr::vector<MeshEntry> meshes;
     std::pmr::vector<ObjectEntry> objects;
     std::pmr::vector<ImageEntry> images;
-    ImageEntry white, lookTextures;
+    ImageEntry white, lookTextures, profiles;
     std::pmr::vector<PendingUpload> uploads;
     std::pmr::vector<Quarantined> quarantine;
     std::pmr::vector<Skin> skins;
@@ -274,6 +274,11 @@ struct VkBackend::State {
     } open;
     std::pmr::vector<PublishedStep> published;  // scratch of run
     std::pmr::vector<DrawItem> drawItems;       // objects that draws show
+    struct VolumeBox {                          // as in FlameRecord
+        vec4 low{}, high{};
+    };
+    std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
+    ViewParams seen{};                    // of the last pushView
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
         std::pmr::vector<uint32_t> lists;  // of the frame's work plane, as it begins
@@ -346,6 +351,10 @@ struct VkBackend::State {
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
     const Readback* nextReadback();
+    // vk_volume.cpp
+    // What the view that was last pushed shows of them, farthest first; how many.
+    uint32_t orderVolumes(uint32_t slabs,
+                          std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
     // vk_draw.cpp
     // `depth`: a set with the depth that the target samples, or null.
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,

@@ -1,0 +1,105 @@
+// Volumetric flames of one view: a draw each, farthest first. Where the host's depth can be sampled
+// a ray ends there; where it can only be tested a flame is drawn in slabs, each tested at its
+// place, so that a log in a flame hides what is behind it and no more.
+#include "gpu/passes/frame_graph.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_VIEW, Access::uniformView},
+    {FW_BIND_VOLUMES, Access::drawEach},
+};
+
+constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
+constexpr uint32_t kMostSteps = 32;
+// Samples this far apart, in diameters: closer shows no more but for less grain.
+constexpr float kSpacing = 0.06f;
+
+// Column i of the matrix, as the shaders have it: what a world metre along axis i adds to x, y, z,
+// w.
+float along(const vec3& direction, const ViewParams& view, int component) {
+    return view.clip0[component] * direction.x + view.clip1[component] * direction.y +
+           view.clip2[component] * direction.z;
+}
+
+}  // namespace
+
+const DrawPass kVolumePass{.name = "volume",
+                           .vertexShader = "volume.vert",
+                           .fragmentShader = "volume.frag",
+                           .uses = kUses,
+                           .vertexInput = VertexInput::none,
+                           .blend = Blend::premultiplied,
+                           .writeDepth = false,
+                           .pushBytes = sizeof(VolumeDraw),
+                           .softShader = "volume_soft.frag",
+                           .softShaderMultisampled = "volume_soft_ms.frag"};
+
+bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
+                VolumeDraw& out) {
+    const bool perspective = view.forward.w > 0.5f;
+    const vec3 forward(view.forward), eye(view.eye);
+    const vec3 rows[4] = {vec3(view.clip0.x, view.clip1.x, view.clip2.x),
+                          vec3(view.clip0.y, view.clip1.y, view.clip2.y),
+                          vec3(view.clip0.z, view.clip1.z, view.clip2.z),
+                          vec3(view.clip0.w, view.clip1.w, view.clip2.w)};
+    float near = 1e30f, far = -1e30f;
+    vec4 rect(1e30f, 1e30f, -1e30f, -1e30f);
+    bool around = false;  // some corner is beside or behind the eye
+    for (int i = 0; i < 8; ++i) {
+        const vec3 corner =
+            vec3((i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z) -
+            eye;
+        const float depth = glm::dot(corner, forward);
+        near = std::min(near, depth);
+        far = std::max(far, depth);
+        const float w = glm::dot(rows[3], corner) + view.clip3.w;
+        if (perspective && !(w > 1e-4f)) {
+            around = true;
+            continue;
+        }
+        const float x = (glm::dot(rows[0], corner) + view.clip3.x) / w;
+        const float y = (glm::dot(rows[1], corner) + view.clip3.y) / w;
+        rect = vec4(std::min(rect.x, x), std::min(rect.y, y), std::max(rect.z, x),
+                    std::max(rect.w, y));
+    }
+    if (perspective) near = std::max(near, kFirstSlab);
+    if (!(far > near)) return false;
+    if (around) rect = vec4(-1.0f, -1.0f, 1.0f, 1.0f);
+    out.rect = vec4(std::max(rect.x, -1.0f), std::max(rect.y, -1.0f), std::min(rect.z, 1.0f),
+                    std::min(rect.w, 1.0f));
+    if (!(out.rect.x < out.rect.z && out.rect.y < out.rect.w)) return false;
+
+    // Rays, from x and y of the view and a depth of 1 (perspective) or 0.
+    const glm::mat3 toClip = glm::transpose(glm::mat3(rows[0], rows[1], forward));
+    const glm::mat3 fromClip = glm::inverse(toClip);
+    const float perDepth = along(forward, view, 3);
+    if (perspective) {
+        out.rayX = vec4(fromClip[0] * perDepth, 0.0f);
+        out.rayY = vec4(fromClip[1] * perDepth, 0.0f);
+        out.rayO = vec4(fromClip[2], 0.0f);
+        const float a = glm::dot(rows[2], rows[3]) / glm::dot(rows[3], rows[3]);
+        out.clip = vec4(a * perDepth, view.clip3.z - a * view.clip3.w, perDepth, 0.0f);
+    } else {
+        out.rayX = vec4(fromClip[0] * view.clip3.w, 0.0f);
+        out.rayY = vec4(fromClip[1] * view.clip3.w, 0.0f);
+        out.rayO = vec4(-fromClip[0] * view.clip3.x - fromClip[1] * view.clip3.y, 0.0f);
+        out.clip = vec4(along(forward, view, 2), view.clip3.z, 0.0f, view.clip3.w);
+    }
+    out.front = near;
+    out.deep = (far - near) / float(slabs);
+    out.slabs = slabs;
+    out.mostSteps = kMostSteps;
+    out.spacing = std::max(kSpacing * low.w, 1e-4f);
+    return true;
+}
+
+void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items) {
+    for (const VolumeItem& item : items) recorder.drawVolume(item.flame, item.draw);
+}
+
+}  // namespace fw::gpu

@@ -1,0 +1,39 @@
+// Volumetric flames on their way to the device, and the order in which a view draws them.
+#include "gpu/vk/frame_needs.h"
+#include "shared/volume_flame.h"
+
+#include <algorithm>
+
+namespace fw::gpu::vk {
+
+void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorder& recorder,
+                   UploadWriter& writer) {
+    s.volumes.clear();  // room was made for all of them
+    const std::span<const VolumeFlame> flames(update.flames, update.count);
+    for (const VolumeFlame& flame : flames)
+        s.volumes.push_back({flame.record.low, flame.record.high});
+    if (flames.empty()) return;
+    const Staged staged = writer.write(flames);
+    recorder.copyIn(staged.at, FW_BIND_VOLUMES, 0, flames.size_bytes());
+}
+
+uint32_t VkBackend::State::orderVolumes(
+    uint32_t slabs, std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept {
+    if (!profiles.live) return 0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < volumes.size(); ++i) {
+        VolumeItem& item = out[count];
+        item.flame = i;
+        if (volumeDraw(seen, volumes[i].low, volumes[i].high, slabs, item.draw)) ++count;
+    }
+    // By their middles: what overlaps in depth has no right order as a whole.
+    const auto middle = [](const VolumeItem& item) {
+        return item.draw.front + 0.5f * item.draw.deep * float(item.draw.slabs);
+    };
+    std::sort(out.begin(), out.begin() + count, [&](const VolumeItem& a, const VolumeItem& b) {
+        return middle(a) != middle(b) ? middle(a) > middle(b) : a.flame < b.flame;
+    });
+    return count;
+}
+
+}  // namespace fw::gpu::vk

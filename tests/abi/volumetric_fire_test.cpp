@@ -1,0 +1,201 @@
+// Volumetric fires through the C ABI on the cpu backend: what they are asked for, what they say of
+// themselves, and what they may not be.
+#include "abi/abi_support.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <set>
+
+namespace {
+
+using host::lastMessage;
+using ::testing::HasSubstr;
+
+struct FireWorld {
+    host::Host host;
+    FwContext* context = host::createCpuContext(host);
+    FwWorld* world = nullptr;
+    explicit FireWorld(float windX = 0) {
+        FwWorldDef def = fwDefaultWorldDef();
+        def.wind[0] = windX;
+        EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world));
+    }
+    FireWorld(const FireWorld&) = delete;
+    FireWorld& operator=(const FireWorld&) = delete;
+    ~FireWorld() { fwDestroyContext(context); }
+    FwVolumetricFireId make(const FwVolumetricFireDef& def) {
+        FwVolumetricFireId id{};
+        EXPECT_EQ(FW_OK, fwWorld_CreateVolumetricFire(world, &def, &id)) << lastMessage(world);
+        return id;
+    }
+    void run(float seconds) {
+        for (float t = 0; t < seconds; t += 1.0f / 32)
+            ASSERT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32)) << lastMessage(world);
+    }
+    FwVolumetricFireState state(FwVolumetricFireId id) {
+        FwVolumetricFireState state{};
+        state.structSize = sizeof state;
+        EXPECT_EQ(FW_OK, fwWorld_GetVolumetricFireState(world, id, &state)) << lastMessage(world);
+        return state;
+    }
+};
+
+FwVolumetricFireDef presetDef(uint32_t preset) {
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    EXPECT_EQ(FW_OK, fwInitFirePreset(&def, preset));
+    return def;
+}
+
+TEST(AbiVolumetricFire, PresetsAreNamedAndBurn) {
+    FireWorld w;
+    std::set<std::string> names;
+    for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i) {
+        names.insert(fwFirePresetName(i));
+        FwVolumetricFireDef def = presetDef(i);
+        EXPECT_EQ(i, def.preset);
+        def.userData = i + 40;
+        const FwVolumetricFireId id = w.make(def);
+        w.run(0.1f);
+        const FwVolumetricFireState state = w.state(id);
+        EXPECT_LE(1u, state.flames) << fwFirePresetName(i);
+        EXPECT_EQ(i + 40, state.userData);
+        EXPECT_GT(state.height, 0.0f);
+        EXPECT_GT(state.lightIntensity, 0.0f);
+        EXPECT_GT(state.boundsHigh[1], state.height);
+        EXPECT_LE(state.boundsLow[1], 0.001f);
+    }
+    EXPECT_EQ(size_t(FW_FIRE_PRESET_COUNT), names.size());
+    EXPECT_NE(nullptr, fwFirePresetName(99));
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwInitFirePreset(&def, FW_FIRE_PRESET_COUNT));
+}
+
+// Heskestad: 0.235 Q^0.4 - 1.02 D; Cetegen and Ahmed: 1.5 / sqrt(D).
+TEST(AbiVolumetricFire, IsAsHighAndPulsesAsPublished) {
+    FireWorld w;
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    def.power = 1690;
+    def.diameter = 1.6f;
+    const FwVolumetricFireId id = w.make(def);
+    w.run(0.1f);
+    const FwVolumetricFireState state = w.state(id);
+    EXPECT_NEAR(state.height, 2.96f, 0.03f);
+    EXPECT_NEAR(state.pulseRate, 1.186f, 0.01f);
+    EXPECT_EQ(1u, state.flames);
+    def.power = 3;  // wide and weak: many small ones
+    EXPECT_LT(4u, [&] {
+        const FwVolumetricFireId weak = w.make(def);
+        w.run(0.1f);
+        return w.state(weak).flames;
+    }());
+}
+
+TEST(AbiVolumetricFire, FollowsItsPowerItsPlaceAndTheWind) {
+    FireWorld still, windy(4);
+    const FwVolumetricFireId a = still.make(fwDefaultVolumetricFireDef());
+    const FwVolumetricFireId b = windy.make(fwDefaultVolumetricFireDef());
+    still.run(1);
+    windy.run(1);
+    EXPECT_NEAR(still.state(a).tip[0], 0.0f, 0.01f);
+    EXPECT_GT(windy.state(b).tip[0], 0.2f);
+    EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePower(still.world, a, 0));
+    still.run(0.1f);
+    EXPECT_GT(still.state(a).power, 20.0f) << "it follows, it does not jump";
+    still.run(6);
+    EXPECT_EQ(0u, still.state(a).flames);
+    EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePower(still.world, a, 60));
+    // A torch that is carried along trails behind.
+    float place[3] = {};
+    for (int i = 0; i < 32; ++i) {
+        place[0] += 2.0f / 32;
+        EXPECT_EQ(FW_OK, fwWorld_MoveVolumetricFire(still.world, a, place));
+        still.run(1.0f / 64);
+    }
+    EXPECT_LT(still.state(a).tip[0], place[0] - 0.1f);
+}
+
+TEST(AbiVolumetricFire, FollowsTheHostsPoints) {
+    FireWorld w(3);
+    FwFirePoint points[3] = {{{1, 0, 0}, 0.2f}, {{1.5f, 0.5f, 0}, 0.2f}, {{2.5f, 0.6f, 0}, 0.1f}};
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    def.points = points;
+    def.pointCount = 3;
+    const FwVolumetricFireId id = w.make(def);
+    points[0].position[0] = -50;  // copied
+    w.run(0.1f);
+    EXPECT_NEAR(w.state(id).tip[0], 2.5f, 0.1f);
+    EXPECT_NEAR(w.state(id).height, 1.7f, 0.15f);
+    EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePoints(w.world, id, nullptr, 0));
+    w.run(0.1f);
+    EXPECT_LT(w.state(id).tip[0], 1.5f);
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFirePoints(w.world, id, points, 1));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("pointCount is 1; it is 0 or in [2, 32]"));
+    points[2].radius = -1;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFirePoints(w.world, id, points, 3));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("points[2].radius is -1"));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFirePoints(w.world, id, nullptr, 3));
+    // One place, a loop, a leap: whatever is finite is drawn.
+    const FwFirePoint odd[4] = {{{0, 0, 0}, 0}, {{0, 0, 0}, 1}, {{9, 0, 0}, 0}, {{0, 0, 0}, 3}};
+    EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePoints(w.world, id, odd, 4));
+    w.run(0.1f);
+    EXPECT_TRUE(std::isfinite(w.state(id).tip[0] + w.state(id).boundsHigh[1]));
+}
+
+TEST(AbiVolumetricFire, IsALight) {
+    FireWorld w;
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    const FwVolumetricFireId large = w.make(def);
+    def.power = 5;
+    def.diameter = 0.13f;
+    def.position[0] = 3;
+    (void)w.make(def);
+    def.flags = FW_FIRE_NO_LIGHT;
+    (void)w.make(def);
+    w.run(0.1f);
+    FwLight lights[8];
+    ASSERT_EQ(2u, fwWorld_GetLights(w.world, lights, 8));
+    EXPECT_GT(lights[0].intensity, lights[1].intensity);
+    EXPECT_NEAR(lights[0].power, 60000.0f, 1.0f);
+    EXPECT_NEAR(lights[1].position[0], 3.0f, 0.05f);
+    EXPECT_NE(lights[0].id, lights[1].id);
+    EXPECT_TRUE(lights[0].id >> 31);
+    ASSERT_EQ(1u, fwWorld_GetLights(w.world, lights + 4, 1));
+    EXPECT_EQ(lights[0].id, lights[4].id);
+    EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFireHidden(w.world, large, 1));
+    w.run(0.1f);
+    EXPECT_EQ(1u, fwWorld_GetLights(w.world, lights, 8));
+}
+
+TEST(AbiVolumetricFire, LimitsAreNamed) {
+    FireWorld w;
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    FwVolumetricFireId id{};
+    def.flags = 64;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateVolumetricFire(w.world, &def, &id));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("FwVolumetricFireDef::flags is 0x40"));
+    def = fwDefaultVolumetricFireDef();
+    def.preset = 9;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateVolumetricFire(w.world, &def, &id));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("preset is 9; the limits are [0, 8]"));
+    def.preset = 0;
+    def.pointCount = 2;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateVolumetricFire(w.world, &def, &id));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("FwVolumetricFireDef::points is null"));
+    def.pointCount = 0;
+    for (int i = 0; i < 256; ++i) id = w.make(def);
+    w.run(0.1f);
+    FwVolumetricFireId more{};
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateVolumetricFire(w.world, &def, &more));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("256 volumetric fires"));
+    EXPECT_EQ(FW_OK, fwWorld_DestroyVolumetricFire(w.world, id));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyVolumetricFire(w.world, id));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("Volumetric fire 256 (generation 1)"));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetVolumetricFirePower(w.world, id, 1));
+    const FwVolumetricFireId last = w.make(def);
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFirePower(w.world, last, -1));
+    const float nowhere[3] = {0, NAN, 0};
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_MoveVolumetricFire(w.world, last, nowhere));
+}
+
+}  // namespace

@@ -1,0 +1,331 @@
+// Volumetric flames on a device against the same maths marched on the CPU, ray by ray; and what a
+// world with fires asks of the device and the heap.
+#include "components/volumetric_fire.h"
+#include "support/burn_scene.h"
+#include "support/world_defs.h"
+#include "volume/march.h"
+#include "world/world.h"
+
+#include <cmath>
+
+namespace fw::test {
+namespace {
+
+constexpr uint32_t kSide = 64;  // px
+constexpr VkFormat kColor = VK_FORMAT_R32G32B32A32_SFLOAT, kDepth = VK_FORMAT_D32_SFLOAT;
+
+using gpu::vec2;
+using gpu::vec3;
+using gpu::vec4;
+
+// One flame of a fire that stands at the origin, `seconds` after it was lit.
+gpu::VolumeFlame flameOf(uint32_t preset, float seconds, uint32_t flags = 0) {
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    components::setFirePreset(def, preset);
+    def.flags = flags;
+    def.seed = 7;
+    components::VolumetricFire fire = components::makeVolumetricFire(def, 1);
+    gpu::VolumeFlame flame{};
+    for (float t = 0; t < seconds; t += 0.1f) {
+        EXPECT_EQ(1u, components::advanceFire(fire, {}, 0.1f, {&flame, 1}));
+        components::commitFire(fire);
+    }
+    return flame;
+}
+
+// Nothing in it varies but with the place: what sampling may get wrong shows alone.
+gpu::VolumeFlame smoothFlame() {
+    gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1, FW_FIRE_NO_SMOKE);
+    gpu::FlameRecord& r = flame.record;
+    r.turbulence = r.radial = r.warp = r.columns = r.filament = r.erode = r.puff = r.blue = 0;
+    return flame;
+}
+
+class Volume : public GpuTest {
+ protected:
+    void makeRig() {
+        gpu::vk::WorldLimits limits;
+        limits.looks = testLooks();
+        rig_ = std::make_unique<VkRig>(*device_, 2, 0, limits);
+        color_ = device_->makeImage(kColor, {kSide, kSide}, 1,
+                                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                        VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                        VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        depth_ =
+            device_->makeImage(kDepth, {kSide, kSide}, 1,
+                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        read_ = device_->makeBuffer(kSide * kSide * sizeof(vec4), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+        const float eye[3] = {0.7f, 0.9f, 2.6f}, at[3] = {0, 0.45f, 0};
+        look(eye, at, 30);
+    }
+    void look(const float eye[3], const float at[3], float degrees) {
+        FwView& view = rig_->view;
+        view = testView(eye, at, degrees, 1, false);
+        for (int i = 0; i < 3; ++i)
+            view.sunColor[i] = view.ambientSky[i] = view.ambientGround[i] = 0;
+        view.time = 2;
+    }
+    void TearDown() override {
+        rig_.reset();
+        GpuTest::TearDown();
+    }
+
+    // Over black, behind it at `far` m along the view something flat; linear, rows top first.
+    std::vector<vec4> draw(std::span<const gpu::VolumeFlame> flames, FwDepthMode mode,
+                           float far = 0) {
+        FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
+        def.flags = FW_TARGET_COMPOSITE;
+        def.colorFormat = kColor;
+        def.depthMode = mode;
+        if (mode != FW_DEPTH_NONE) def.depthFormat = kDepth;
+        const FwTargetId target = rig_->context.registerTarget(def);
+        gpu::VolumeUpdate update{flames.data(), uint32_t(flames.size())};
+        gpu::FramePlan plan;
+        plan.frameIndex = ++index_;
+        plan.endTick = uint32_t(index_ * gpu::kStepTicks);
+        plan.volumes = &update;
+        const float behind =
+            far > 0 ? -rig_->view.projection[10] + rig_->view.projection[14] / far : 1.0f;
+        rig_->alsoRecord = [&](const FwVulkanFrame& frame) { record(frame, target, mode, behind); };
+        rig_->run(plan);
+        rig_->alsoRecord = nullptr;
+        rig_->frames.waitAll();
+        rig_->context.unregisterTarget(target);
+        const auto* pixels = static_cast<const vec4*>(read_.mapped);
+        return {pixels, pixels + kSide * kSide};
+    }
+    void record(const FwVulkanFrame& frame, FwTargetId target, FwDepthMode mode, float behind) {
+        const VkCommandBuffer commands = frame.commandBuffer;
+        VkImageMemoryBarrier barriers[2]{};
+        for (uint32_t i = 0; i < 2; ++i) {
+            barriers[i].sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+            barriers[i].dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+            barriers[i].newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+            barriers[i].srcQueueFamilyIndex = barriers[i].dstQueueFamilyIndex =
+                VK_QUEUE_FAMILY_IGNORED;
+            barriers[i].image = i ? depth_.image : color_.image;
+            barriers[i].subresourceRange = {
+                VkImageAspectFlags(i ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1,
+                0, 1};
+        }
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 2,
+                             barriers);
+        const VkClearColorValue black{};
+        const VkClearDepthStencilValue cleared{behind, 0};
+        vkCmdClearColorImage(commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &black,
+                             1, &barriers[0].subresourceRange);
+        vkCmdClearDepthStencilImage(commands, depth_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                    &cleared, 1, &barriers[1].subresourceRange);
+        FwVulkanComposite images = fwDefaultVulkanComposite();
+        images.width = images.height = kSide;
+        for (FwVulkanImage* image : {&images.color, &images.depth}) {
+            image->layoutBefore = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+            image->layoutAfter = image == &images.color ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+                                                        : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+            image->stageBefore = image->stageAfter = VK_PIPELINE_STAGE_TRANSFER_BIT;
+            image->accessBefore = VK_ACCESS_TRANSFER_WRITE_BIT;
+            image->accessAfter = VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+        }
+        images.color.image = color_.image;
+        images.color.view = color_.view;
+        if (mode != FW_DEPTH_NONE) {
+            images.depth.image = depth_.image;
+            images.depth.view = depth_.view;
+        } else {
+            images.depth = {};
+        }
+        EXPECT_TRUE(rig_->backend.recordComposite(frame, target, rig_->view, images));
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageExtent = {kSide, kSide, 1};
+        vkCmdCopyImageToBuffer(commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                               read_.buffer, 1, &region);
+        VkMemoryBarrier toHost{};
+        toHost.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+        toHost.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        toHost.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+                             0, 1, &toHost, 0, nullptr, 0, nullptr);
+    }
+
+    // The same picture by the library's march. `steps` 0: as many as the device takes.
+    std::vector<vec4> march(const gpu::VolumeFlame& flame, uint32_t preset, uint32_t steps = 0,
+                            float far = 0) {
+        gpu::ViewInput input;
+        input.view = &rig_->view;
+        input.viewport[2] = input.viewport[3] = kSide;
+        gpu::ViewParams view{};
+        testLooks().viewParams(input, view);
+        gpu::VolumeDraw draw{};
+        std::vector<vec4> picture(kSide * kSide, vec4(0.0f));
+        if (!gpu::volumeDraw(view, flame.record.low, flame.record.high, 1, draw)) return picture;
+        volume::Profile profile;
+        volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).look, profile);
+        const vec3 white =
+            glm::mix(vec3(1.0f, 1.25f, 1.6f), vec3(1.0f), flame.record.tint.w) * gpu::kVolumeWhite;
+        for (uint32_t y = 0; y < kSide; ++y)
+            for (uint32_t x = 0; x < kSide; ++x) {
+                const vec2 at(float(x) + 0.5f, float(y) + 0.5f);
+                const vec2 ndc = at * (2.0f / float(kSide)) - 1.0f;
+                const vec3 along =
+                    vec3(draw.rayO) + ndc.x * vec3(draw.rayX) + ndc.y * vec3(draw.rayY);
+                const float perDepth = glm::length(along);
+                const vec3 eye(view.eye), direction = along / perDepth;
+                const vec2 span = volume::flameSpan(flame.record, flame.nodes, eye, direction);
+                volume::MarchRules rules;
+                if (far > 0) rules.farthest = far * perDepth;
+                const float metres = std::min(span.y, rules.farthest) - span.x;
+                if (!(metres > 0)) continue;
+                rules.steps =
+                    steps ? steps
+                          : uint32_t(gpu::volumeSteps(metres, draw.spacing, draw.mostSteps));
+                rules.jitter = steps ? 0.5f : gpu::volumeJitter(at.x, at.y, 2.0f);
+                rules.pixel = view.eye.w / perDepth;
+                const gpu::FlameRay ray =
+                    volume::marchRay(flame.record, flame.nodes, profile, eye, direction, rules);
+                picture[y * kSide + x] =
+                    vec4(ray.radiance * white,
+                         1.0f - glm::dot(ray.through, vec3(0.2126f, 0.7152f, 0.0722f)));
+            }
+        return picture;
+    }
+
+    static vec4 meanOf(const std::vector<vec4>& picture) {
+        vec4 sum(0.0f);
+        for (const vec4& pixel : picture) sum += pixel;
+        return sum / float(picture.size());
+    }
+    // Mean difference per pixel over the mean of the second.
+    static float differenceOf(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+        double different = 0, all = 0;
+        for (size_t i = 0; i < a.size(); ++i)
+            for (int c = 0; c < 4; ++c) {
+                different += double(std::abs(a[i][c] - b[i][c]));
+                all += double(std::abs(b[i][c]));
+            }
+        return all > 0 ? float(different / all) : 0.0f;
+    }
+
+    std::unique_ptr<VkRig> rig_;
+    TestImage color_, depth_;
+    TestBuffer read_;
+    uint64_t index_ = 0;
+};
+
+// Each preset's flame, smoke and all: the device draws what the library marches.
+TEST_F(Volume, DrawsWhatTheLibraryMarches) {
+    if (!device_) return;
+    makeRig();
+    for (const uint32_t preset : {FW_FIRE_CAMP, FW_FIRE_TORCH, FW_FIRE_MAGIC_BLUE}) {
+        const gpu::VolumeFlame flame = flameOf(preset, 1.3f);
+        const std::vector<vec4> wanted = march(flame, preset);
+        const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);
+        const float difference = differenceOf(drawn, wanted);
+        std::printf("           %s: mean %.4f of %.4f, difference %.4f\n",
+                    components::firePresetName(preset), double(meanOf(drawn).x),
+                    double(meanOf(wanted).x), double(difference));
+        EXPECT_LT(difference, 0.01f) << components::firePresetName(preset);
+        EXPECT_GT(meanOf(wanted).x, 0.001f);
+    }
+    const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f);
+    EXPECT_GT(differenceOf(draw({&flame, 1}, FW_DEPTH_NONE), march(flame, FW_FIRE_TORCH)), 0.1f)
+        << "another profile would not have been noticed";
+}
+
+// T4.1: neither the number of samples nor that of slabs decides how bright it is.
+TEST_F(Volume, BrightnessIsThatOfTheMedium) {
+    if (!device_) return;
+    makeRig();
+    const gpu::VolumeFlame flame = smoothFlame();
+    const vec4 exact = meanOf(march(flame, FW_FIRE_CAMP, 400));
+    const vec4 one = meanOf(draw({&flame, 1}, FW_DEPTH_NONE));
+    const vec4 slabs = meanOf(draw({&flame, 1}, FW_DEPTH_TEST));
+    std::printf("           red %.5f exact, %.5f in one slab, %.5f in %u; alpha %.5f %.5f %.5f\n",
+                double(exact.x), double(one.x), double(slabs.x), gpu::kVolumeSlabs, double(exact.w),
+                double(one.w), double(slabs.w));
+    for (int c = 0; c < 4; ++c) {
+        EXPECT_NEAR(one[c] / exact[c], 1.0f, 0.01f) << "channel " << c;
+        EXPECT_NEAR(slabs[c] / one[c], 1.0f, 0.02f) << "channel " << c;
+    }
+}
+
+// What stands in a flame hides what is behind it, and no more.
+TEST_F(Volume, EndsAtTheScene) {
+    if (!device_) return;
+    makeRig();
+    const gpu::VolumeFlame flame = smoothFlame();
+    const float far = 2.75f;  // m along the view: through its middle
+    const std::vector<vec4> wanted = march(flame, FW_FIRE_CAMP, 0, far);
+    const float difference = differenceOf(draw({&flame, 1}, FW_DEPTH_SAMPLED, far), wanted);
+    EXPECT_LT(difference, 0.01f);
+    const float whole = meanOf(draw({&flame, 1}, FW_DEPTH_TEST)).x;
+    const float cut = meanOf(draw({&flame, 1}, FW_DEPTH_TEST, far)).x;
+    std::printf("           difference %.4f; %.4f whole, %.4f cut, %.4f in slabs\n",
+                double(difference), double(whole), double(meanOf(wanted).x), double(cut));
+    EXPECT_LT(cut, 0.9f * whole);
+    EXPECT_NEAR(cut / meanOf(wanted).x, 1.0f, 0.2f);  // to half a slab
+}
+
+TEST_F(Volume, TheEyeMayBeInside) {
+    if (!device_) return;
+    makeRig();
+    const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
+    const float eye[3] = {0.02f, 0.15f, 0.05f}, at[3] = {0, 0.2f, -1};
+    look(eye, at, 70);
+    const std::vector<vec4> wanted = march(flame, FW_FIRE_CAMP);
+    EXPECT_LT(differenceOf(draw({&flame, 1}, FW_DEPTH_NONE), wanted), 0.01f);
+    EXPECT_NEAR(meanOf(draw({&flame, 1}, FW_DEPTH_TEST)).x / meanOf(wanted).x, 1.0f, 0.03f);
+    const float away[3] = {0, 0.2f, 30};
+    const float beyond[3] = {0, 0.2f, 60};
+    look(away, beyond, 40);
+    EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).w, 0.0f) << "behind the eye";
+}
+
+// Fires that burn, move and change: nothing is asked of the device or of the heap.
+TEST_F(Volume, SteadyFramesAskNothing) {
+    if (!device_) return;
+    core::Log log{FwCallbacks{}};
+    VkRig rig(*device_, 2, 0, {}, countingEntry());
+    world::World world(plainWorldDef(0), rig.backend, log, &rig.memory);
+    std::vector<FwVolumetricFireId> ids;
+    for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i) {
+        FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+        components::setFirePreset(def, i);
+        ids.push_back(world.createVolumetricFire(def));
+    }
+    const auto frame = [&](int f) {
+        const float place[3] = {0.01f * float(f % 50), 0, 0};
+        world.moveVolumetricFire(ids[0], place);
+        world.setVolumetricFirePower(ids[1], float(f % 3));
+        world.setVolumetricFireHidden(ids[2], f % 4 == 0);
+        const FwVulkanFrame begun = rig.frames.begin();
+        ASSERT_TRUE(rig.backend.beginOutside(begun));
+        world.advance(begun.frameIndex, 1.0f / 32);
+        rig.backend.endOutside(rig.view);
+        rig.frames.submit();
+    };
+    for (int f = 0; f < 32; ++f) frame(f);  // warm-up
+    (void)takeCounts();
+    const uint64_t allocations = rig.memory.allocations();
+    for (int f = 32; f < 160; ++f) frame(f);
+    const VulkanCounts counts = takeCounts();
+    EXPECT_EQ(counts.total(), 0u);
+    EXPECT_EQ(rig.memory.allocations(), allocations);
+    EXPECT_GT(counts.work, 100u);
+    for (const FwVolumetricFireId id : ids) world.destroyVolumetricFire(id);
+    for (int f = 0; f < 2; ++f) {
+        const FwVulkanFrame begun = rig.frames.begin();
+        ASSERT_TRUE(rig.backend.beginOutside(begun));
+        world.advance(begun.frameIndex, 1.0f / 32);
+        rig.backend.endOutside(rig.view);
+        rig.frames.submit();
+        if (f == 0) (void)takeCounts();
+    }
+    const VulkanCounts after = takeCounts();
+    EXPECT_EQ(after.work + after.barriers, 0u) << "no fire is left";
+}
+
+}  // namespace
+}  // namespace fw::test
