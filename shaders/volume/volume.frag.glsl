@@ -104,7 +104,6 @@ void main() {
     // Each sample is in one slab.
     vec2 ends = (inSlab * perDepth - span.x) / max(stride, 1e-9) - jitter;
     float k = clamp(ceil(ends.x), 0.0, steps), last = clamp(ceil(ends.y), 0.0, steps);
-    float d = k < last ? stride : 0.0;
     last = metres > 0.0 ? last : 0.0;
     float pixel = view.eye.w * (perspective ? 1.0 / perDepth : 0.0);
 
@@ -132,6 +131,8 @@ void main() {
             vec3 to = f.glow.xyz - x;
             incoming = flameSmokeLight(f, dot(to, to), m.smokeShade);
         }
+        // lavapipe goes on with lanes that have left a loop where others stay: they add nothing.
+        float d = k < last ? stride : 0.0;
         vec3 before = ray.radiance;
         vec3 share = m.smoke * incoming / (m.emission + m.smoke * incoming + vec3(1e-20));
         ray = flameStep(ray, m, incoming, d);
