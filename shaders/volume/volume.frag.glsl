@@ -109,7 +109,7 @@ void main() {
 
     FlameRay ray = FlameRay(vec3(0.0), vec3(1.0));
     vec3 scattered = vec3(0.0);
-    do {
+    while (k < last && ray.through.g > 0.003) {
         float t = span.x + stride * (k + jitter);
         vec3 x = from + direction * t;
         vec3 found = segmentOf(x);
@@ -138,7 +138,7 @@ void main() {
         ray = flameStep(ray, m, incoming, d);
         scattered += (ray.radiance - before) * share;
         k += 1.0;
-    } while (k < last && ray.through.g > 0.003);
+    }
 
     float alpha = 1.0 - dot(ray.through, vec3(0.2126, 0.7152, 0.0722));
     vec3 color = ray.radiance * white * view.sunDirection.w;
