@@ -1,4 +1,6 @@
 // fwCreateContext and everything that takes a context.
+#include "components/volumetric_fire.h"
+#include "core/owned.h"
 #include "objects.h"
 #include "world/mesh_input.h"
 
@@ -184,6 +186,25 @@ FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* given, void* bu
                 FW_ERROR_INVALID_ARGUMENT, "*size is %llu and the cooked mesh has %llu bytes.",
                 static_cast<unsigned long long>(*size), static_cast<unsigned long long>(needed));
         *size = needed;
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwCookFireProfile(FwContext* context, const FwFireProfileDef* given, void* buffer,
+                                   uint64_t* size) {
+    return onContext("fwCookFireProfile", context, [&](FwContext& c) {
+        const FwFireProfileDef def = edge::readDef(given, FW_DEF_FIRE_PROFILE, "FwFireProfileDef");
+        checkPointer(size, "size");
+        const auto profile = core::Owned<volume::Profile>::make(&c.memory);
+        components::readFireProfile(def, &c.memory, *profile);
+        const std::pmr::vector<std::byte> bytes = volume::cookProfile(*profile, &c.memory);
+        const bool fits = buffer && *size >= bytes.size();
+        if (buffer && !fits)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "*size is %llu and the cooked fire profile has %zu bytes.",
+                       static_cast<unsigned long long>(*size), bytes.size());
+        if (fits) std::memcpy(buffer, bytes.data(), bytes.size());
+        *size = bytes.size();
         return FW_OK;
     });
 }

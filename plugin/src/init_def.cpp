@@ -68,6 +68,19 @@ void defaults(FwVolumetricFireDef& def) noexcept {
     def.power = 60;
     def.windResponse = def.turbulence = def.speed = def.density = def.smoke = def.blue = 1;
     set(def.tint, 1, 1, 1);
+    def.blend = 0.3f;
+}
+
+void defaults(FwFireProfileDef&) noexcept {}
+
+void defaults(FwFireTrackDef& def) noexcept { def.weight = 1; }
+
+void defaults(FwFireColliderDef& def) noexcept {
+    def.normal[1] = 1;
+    set(def.halfSize, 0.5f, 0.5f, 0.5f);
+    def.rotation[3] = 1;
+    def.radius = 0.5f;
+    def.cellSize = 1;
 }
 
 void defaults(FwIgnitionDef& def) noexcept { def.kind = FW_IGNITE; }
@@ -126,6 +139,12 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwBlockerDef);
         case FW_DEF_VOLUMETRIC_FIRE:
             return sizeof(FwVolumetricFireDef);
+        case FW_DEF_FIRE_PROFILE:
+            return sizeof(FwFireProfileDef);
+        case FW_DEF_FIRE_COLLIDER:
+            return sizeof(FwFireColliderDef);
+        case FW_DEF_FIRE_TRACK:
+            return sizeof(FwFireTrackDef);
         default:
             return vulkanDefSize(type);
     }
@@ -165,6 +184,15 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_VOLUMETRIC_FIRE:
             write<FwVolumetricFireDef>(def);
+            return true;
+        case FW_DEF_FIRE_PROFILE:
+            write<FwFireProfileDef>(def);
+            return true;
+        case FW_DEF_FIRE_COLLIDER:
+            write<FwFireColliderDef>(def);
+            return true;
+        case FW_DEF_FIRE_TRACK:
+            write<FwFireTrackDef>(def);
             return true;
         default:
             return writeVulkanDefaults(type, def);

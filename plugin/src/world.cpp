@@ -252,6 +252,71 @@ FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld* world, FwVolumetricFire
     });
 }
 
+FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFireId id,
+                                                const FwFireTrackDef* given) {
+    return onWorld("fwWorld_SetVolumetricFireTrack", world, [&](world::World& w) {
+        if (given) {
+            const FwFireTrackDef def = edge::readDef(given, FW_DEF_FIRE_TRACK, "FwFireTrackDef");
+            w.setVolumetricFireTrack(id, &def);
+        } else {
+            w.setVolumetricFireTrack(id, nullptr);
+        }
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_CreateFireProfile(FwWorld* world, const FwFireProfileDef* given,
+                                           FwFireProfileId* id) {
+    return createOf("fwWorld_CreateFireProfile", world, &world::World::createFireProfile, given,
+                    FW_DEF_FIRE_PROFILE, "FwFireProfileDef", id);
+}
+
+FwResult FW_CALL fwWorld_DestroyFireProfile(FwWorld* world, FwFireProfileId id) {
+    return destroyOf("fwWorld_DestroyFireProfile", world, &world::World::destroyFireProfile, id);
+}
+
+FwResult FW_CALL fwWorld_AddFireCollider(FwWorld* world, const FwFireColliderDef* given,
+                                         FwFireColliderId* id) {
+    return createOf("fwWorld_AddFireCollider", world, &world::World::addFireCollider, given,
+                    FW_DEF_FIRE_COLLIDER, "FwFireColliderDef", id);
+}
+
+FwResult FW_CALL fwWorld_SetFireCollider(FwWorld* world, FwFireColliderId id,
+                                         const FwFireColliderDef* given) {
+    return onWorld("fwWorld_SetFireCollider", world, [&](world::World& w) {
+        w.setFireCollider(id, edge::readDef(given, FW_DEF_FIRE_COLLIDER, "FwFireColliderDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_RemoveFireCollider(FwWorld* world, FwFireColliderId id) {
+    return destroyOf("fwWorld_RemoveFireCollider", world, &world::World::removeFireCollider, id);
+}
+
+FwResult FW_CALL fwWorld_AskVolumetricFires(FwWorld* world, const float point[3],
+                                            FwFireAnswer* answer) {
+    return onWorld("fwWorld_AskVolumetricFires", world, [&](world::World& w) {
+        checkPointer(point, "point");
+        const uint32_t size = edge::checkInfo(answer, "FwFireAnswer");
+        FwFireAnswer filled{};
+        w.askVolumetricFires(point, filled);
+        edge::writeInfo(answer, size, filled);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld* world, const float centre[3], float radius,
+                                               FwFirePush* push) {
+    return onWorld("fwWorld_GetVolumetricFirePush", world, [&](world::World& w) {
+        checkPointer(centre, "centre");
+        const uint32_t size = edge::checkInfo(push, "FwFirePush");
+        FwFirePush filled{};
+        w.volumetricFirePush(centre, radius, filled);
+        edge::writeInfo(push, size, filled);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
     return onWorld("fwWorld_Ignite", world, [&](world::World& w) {
         const FwIgnitionDef def = edge::readDef(given, FW_DEF_IGNITION, "FwIgnitionDef");

@@ -3,98 +3,64 @@
 #include "components/pose.h"
 #include "core/error.h"
 #include "core/hash.h"
-#include "volume/march.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 namespace fw::components {
 namespace {
 
 using gpu::vec3;
-using gpu::vec4;
 
-constexpr float kOut = 1e-4f;        // kW below which nothing is left to see
-constexpr float kPowerTime = 0.3f;   // s in which a flame follows its power
-constexpr float kDriftTime = 0.15f;  // s in which it follows wind and motion
-constexpr float kFastest = 30.0f;    // m/s of air against it that still bends it more
-constexpr uint32_t kColumn = 8;      // control points of a flame that rises by itself
+constexpr float kMostPower = 1e5f;  // kW
+
+void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
+    if (value < low || value > most)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", name, value,
+                   low, most);
+}
 
 vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
 
-float hashUnit(uint32_t x) noexcept { return float(core::hash32(x) >> 8) / 16777216.0f; }
-
-void checkWhole(uint32_t value, const char* name, uint32_t most) {
-    if (value > most)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [0, %u].", name, value,
-                   most);
+void checkPoint(const FwFirePoint& point, const char* name, uint32_t index) {
+    char field[96];
+    std::snprintf(field, sizeof field, "%s[%u].position", name, index);
+    checkValues(point.position, 3, field, -1e6f, 1e6f);
+    std::snprintf(field, sizeof field, "%s[%u].radius", name, index);
+    checkValue(point.radius, field, 0.0f, 100.0f);
 }
 
-// Two directions across `up`.
-void across(vec3 up, vec3& x, vec3& z) noexcept {
-    const vec3 other = std::abs(up.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 0, 1);
-    z = glm::normalize(glm::cross(other, up));
-    x = glm::cross(up, z);
-}
-
-// Gas rises at McCaffrey's speed and is carried along by the air: the flame is the way it takes.
-void riseOf(vec3 base, vec3 up, vec3 drift, float power, float length, float radius,
-            std::array<volume::ControlPoint, kColumn>& out) noexcept {
-    const float step = length / float(kColumn - 1);
-    vec3 at = base;
-    float s = 0.0f;
-    for (volume::ControlPoint& point : out) {
-        point = {at, radius};
-        const float rise = std::max(volume::plumeSpeed(power, s + 0.5f * step), 0.05f);
-        at += glm::normalize(up * rise + drift) * step;
-        s += step;
+// Into one flame or many, but seldom anew: what burns keeps its place while power wavers.
+void splitAgain(VolumetricFire& fire) noexcept {
+    std::array<volume::Flamelet, volume::kMaxFlamelets> parts;
+    uint32_t count = 1;
+    const bool led = fire.pointCount > 0 || fire.tracked();
+    if (led)
+        parts[0] = {0, 0, fire.power, fire.diameter, 0};
+    else
+        count = volume::splitFire(fire.power, fire.diameter, parts);
+    const uint32_t before = fire.partCount;
+    const float tall = volume::flameHeight(fire.power, fire.diameter) / fire.diameter;
+    bool keep = before > 0 && !led;
+    if (fire.power > 0 && keep) {
+        if (before == 1)
+            keep = count == 1 || tall > 0.4f;
+        else if (count == 1)
+            keep = tall < 0.6f;
+        else
+            keep = 3 * count < 4 * before && 4 * count > 3 * before;
     }
-}
-
-// No two sines of it meet again, and no two fires share them.
-float flickerOf(const VolumetricFire& fire, const FireMotion& motion) noexcept {
-    const auto t = float(std::fmod(motion.time, 4096.0));
-    const float p = 6.2832f * hashUnit(fire.seed);
-    return 1.0f + fire.look.flicker * (0.6f * std::sin(6.2832f * float(motion.scroll.puff)) +
-                                       0.25f * std::sin(17.9f * t + 2.3f * p) +
-                                       0.15f * std::sin(29.1f * t + 4.1f * p));
-}
-
-struct Place {
-    vec3 base, up, drift;
-};
-
-void writeFlame(const VolumetricFire& fire, const FireMotion& motion, const Place& place,
-                const volume::FlameSize& size, const volume::Curve* given, uint32_t seed,
-                gpu::VolumeFlame& out) noexcept {
-    volume::FlameScroll scroll = motion.scroll;
-    scroll.puff += double(hashUnit(seed ^ 0x9E3779B9u));  // small flames do not pulse together
-    scroll.puff -= std::floor(scroll.puff);
-    gpu::FlameRecord& record = out.record;
-    record = volume::describeFlame(fire.look, size, scroll, seed);
-    if (fire.flags & FW_FIRE_NO_SMOKE) record.smoke = 0.0f;
-    record.profile = fire.preset;
-    record.nodeCount = gpu::kFlameNodes;
-    const float length = volume::topOf(record);
-    volume::FlameNodes nodes;
-    if (given) {
-        volume::layNodes(*given, length, nodes);
-    } else {
-        std::array<volume::ControlPoint, kColumn> points;
-        riseOf(place.base, place.up, place.drift, size.power, length, 0.5f * size.diameter, points);
-        volume::Curve curve;
-        curve.set(points, place.up);
-        volume::layNodes(curve, length, nodes);
+    if (led && before == 1) keep = true;
+    if (!keep) {
+        fire.parts = parts;
+        fire.partCount = count;
+        ++fire.split;
+        return;
     }
-    std::copy(nodes.begin(), nodes.end(), std::begin(out.nodes));
-    const volume::Bounds bounds = volume::flameBounds(record, nodes);
-    record.low = vec4(bounds.low, record.low.w);
-    record.high = vec4(bounds.high, record.high.w);
-    // Smoke is lit from where the flame is brightest.
-    const size_t at = std::min<size_t>(
-        size_t(0.4f * size.height / length * float(gpu::kFlameNodes)), gpu::kFlameNodes - 1);
-    record.glow = vec4(vec3(nodes[at].centre), 0.06f * size.diameter * size.diameter);
+    for (uint32_t i = 0; i < before; ++i) fire.parts[i].power = fire.power / float(before);
+    if (before == 1) fire.parts[0].diameter = fire.diameter;
 }
 
 }  // namespace
@@ -122,13 +88,43 @@ std::pmr::vector<std::byte> bakeFireProfiles(std::pmr::memory_resource* memory) 
     return all;
 }
 
-VolumetricFire makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed) {
-    constexpr uint32_t kKnown = FW_FIRE_HIDDEN | FW_FIRE_NO_SMOKE | FW_FIRE_NO_LIGHT;
+void readFireProfile(const FwFireProfileDef& def, std::pmr::memory_resource* memory,
+                     volume::Profile& profile) {
+    checkWhole(def.flags, "FwFireProfileDef::flags", 0, 0);
+    if (def.cooked) {
+        if (def.cookedSize > SIZE_MAX)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireProfileDef::cookedSize is %llu.",
+                       static_cast<unsigned long long>(def.cookedSize));
+        volume::readProfile({static_cast<const std::byte*>(def.cooked), size_t(def.cookedSize)},
+                            profile);
+        return;
+    }
+    checkWhole(def.width, "FwFireProfileDef::width", volume::kMinProfileSide,
+               volume::kMaxProfileSide);
+    checkWhole(def.height, "FwFireProfileDef::height", volume::kMinProfileSide,
+               volume::kMaxProfileSide);
+    if (!def.texels)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwFireProfileDef::texels is null, and so is FwFireProfileDef::cooked.");
+    const size_t count = size_t(def.width) * def.height;
+    std::pmr::vector<float> planes(2 * count, memory);
+    for (size_t i = 0; i < count; ++i) {
+        planes[i] = def.texels[2 * i];
+        planes[count + i] = def.texels[2 * i + 1];
+    }
+    const std::span<const float> both(planes);
+    volume::paintProfile(both.first(count), both.subspan(count), def.width, def.height, profile);
+}
+
+void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, VolumetricFire& fire) {
+    constexpr uint32_t kKnown = FW_FIRE_HIDDEN | FW_FIRE_NO_SMOKE | FW_FIRE_NO_LIGHT |
+                                FW_FIRE_NO_COLLISION | FW_FIRE_IGNITES;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVolumetricFireDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
                    kKnown);
-    checkWhole(def.preset, "FwVolumetricFireDef::preset", FW_FIRE_PRESET_COUNT - 1);
+    checkWhole(def.preset, "FwVolumetricFireDef::preset", 0, FW_FIRE_PRESET_COUNT - 1);
+    checkWhole(def.reserved, "FwVolumetricFireDef::reserved", 0, 0);
     checkValue(def.diameter, "FwVolumetricFireDef::diameter", 0.002f, 20.0f);
     checkValue(def.windResponse, "FwVolumetricFireDef::windResponse", 0.0f, 4.0f);
     checkValue(def.turbulence, "FwVolumetricFireDef::turbulence", 0.0f, 3.0f);
@@ -138,15 +134,17 @@ VolumetricFire makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSe
     checkValue(def.blue, "FwVolumetricFireDef::blue", 0.0f, 10.0f);
     checkValues(def.tint, 3, "FwVolumetricFireDef::tint", 0.0f, 1.0f);
     checkValue(def.tintWeight, "FwVolumetricFireDef::tintWeight", 0.0f, 1.0f);
-    VolumetricFire fire;
+    checkValue(def.blend, "FwVolumetricFireDef::blend", 0.0f, 60.0f);
+    fire.diameter = def.diameter;
     setFirePosition(fire, def.position);
     setFirePower(fire, def.power);
     setFirePoints(fire, def.points, def.pointCount, "FwVolumetricFireDef::points");
     fire.flags = def.flags;
-    fire.preset = def.preset;
+    fire.preset = fire.profile = def.preset;
+    fire.ownProfile = def.profile;
     fire.seed = def.seed ? def.seed : ownSeed;
-    fire.diameter = def.diameter;
     fire.windResponse = def.windResponse;
+    fire.blend = def.blend;
     fire.userData = def.userData;
     volume::FlameLook& look = fire.look;
     look = volume::presetDef(volume::FlamePreset(def.preset)).look;
@@ -157,21 +155,23 @@ VolumetricFire makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSe
     look.thickness *= def.density;
     look.smoke *= def.smoke;
     look.blue *= def.blue;
+    if (def.flags & FW_FIRE_NO_SMOKE) look.smoke = 0;
+    if (look.smoke <= 0) look.smokeTop = 1;
     if (def.tintWeight > 0) {
         std::copy_n(def.tint, 3, look.tint);
         look.tint[3] = def.tintWeight;
     }
-    // Fires that begin together do not pulse together.
-    FireMotion& motion = fire.motion;
-    motion.base = vecOf(def.position);
-    motion.scroll.puff = double(hashUnit(fire.seed));
-    fire.next = motion;
-    return fire;
+}
+
+uint32_t mostParts(float power, float diameter) noexcept {
+    std::array<volume::Flamelet, volume::kMaxFlamelets> parts;
+    return power > 0 && power <= kMostPower ? volume::splitFire(power, diameter, parts) : 1;
 }
 
 void setFirePower(VolumetricFire& fire, float power) {
-    checkValue(power, "power", 0.0f, 1e5f);
+    checkValue(power, "power", 0.0f, kMostPower);
     fire.power = power;
+    splitAgain(fire);
 }
 
 void setFirePosition(VolumetricFire& fire, const float position[3]) {
@@ -185,105 +185,49 @@ void setFirePoints(VolumetricFire& fire, const FwFirePoint* points, uint32_t cou
         core::fail(FW_ERROR_INVALID_ARGUMENT, "pointCount is %u; it is 0 or in [2, %u].", count,
                    volume::kMaxControlPoints);
     if (count > 0 && !points) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
-    for (uint32_t i = 0; i < count; ++i) {
-        char field[96];
-        std::snprintf(field, sizeof field, "%s[%u].position", name, i);
-        checkValues(points[i].position, 3, field, -1e6f, 1e6f);
-        std::snprintf(field, sizeof field, "%s[%u].radius", name, i);
-        checkValue(points[i].radius, field, 0.0f, 100.0f);
-    }
+    for (uint32_t i = 0; i < count; ++i) checkPoint(points[i], name, i);
     for (uint32_t i = 0; i < count; ++i)
         fire.points[i] = {vecOf(points[i].position), points[i].radius};
     fire.pointCount = count;
+    splitAgain(fire);
 }
 
-uint32_t advanceFire(VolumetricFire& fire, const FireAir& air, float seconds,
-                     std::span<gpu::VolumeFlame> out) noexcept {
-    FireMotion& next = fire.next;
-    next = fire.motion;
-    FireState& state = fire.nextState;
-    state = {};
-    const vec3 up = vecOf(air.up);
-    const vec3 before = next.base;
-    next.base = vecOf(fire.position);
-    next.time += double(seconds);
-    const bool first = next.power < 0;
-    const float follow = 1.0f - std::exp(-seconds / kPowerTime);
-    next.power = first ? fire.power : next.power + (fire.power - next.power) * follow;
-    vec3 against = vecOf(air.wind) * fire.windResponse;
-    if (seconds > 0 && !first) against -= (next.base - before) / seconds;
-    const float speed = glm::length(against);
-    if (speed > kFastest) against *= kFastest / speed;
-    if (!std::isfinite(speed)) against = vec3(0.0f);
-    next.drift =
-        first ? against
-              : next.drift + (against - next.drift) * (1.0f - std::exp(-seconds / kDriftTime));
-    if (next.power < kOut && fire.power < kOut) return 0;
-
-    const float power = std::max(next.power, kOut);
-    volume::Curve curve;
-    const volume::Curve* given = nullptr;
-    std::array<volume::Flamelet, volume::kMaxFlamelets> parts;
-    uint32_t count = 1;
-    if (fire.pointCount) {
-        curve.set({fire.points.data(), fire.pointCount}, up);
-        given = &curve;
-        parts[0] = {0, 0, power, std::max(2 * fire.points[0].radius, 0.002f),
-                    std::max(curve.length(), 0.002f)};
-        next.base = fire.points[0].position;
-    } else {
-        count = volume::splitFire(power, fire.diameter, parts);
-    }
-    volume::FlameSize size{parts[0].power, parts[0].diameter, parts[0].height, 1.0f};
-    volume::advanceScroll(next.scroll, fire.look,
-                          volume::describeFlame(fire.look, size, next.scroll, fire.seed),
-                          double(seconds));
-
-    state.power = next.power;
-    state.pulseRate = volume::puffFrequency(parts[0].diameter);
-    state.intensity = 1000.0f * power * fire.look.radiant / 12.566f * flickerOf(fire, next);
-    vec3 x, z;
-    across(up, x, z);
-    uint32_t written = 0;
-    for (uint32_t i = 0; i < count && written < out.size(); ++i) {
-        const volume::Flamelet& part = parts[i];
-        size = {part.power, part.diameter, part.height, 1.0f};
-        const Place place{next.base + x * part.x + z * part.z, up, next.drift};
-        gpu::VolumeFlame& flame = out[written];
-        writeFlame(fire, next, place, size, given, fire.seed + 0x632BE5ABu * i, flame);
-        const vec3 low(flame.record.low), high(flame.record.high);
-        state.bounds.low = written ? glm::min(state.bounds.low, low) : low;
-        state.bounds.high = written ? glm::max(state.bounds.high, high) : high;
-        state.height = std::max(state.height, part.height);
-        const auto nodeAt = [&](float s) {
-            const float step = std::max(flame.nodes[1].along.w, 1e-6f);
-            return vec3(flame.nodes[size_t(std::clamp(s / step, 0.0f, float(gpu::kFlameNodes - 1)))]
-                            .centre);
-        };
-        if (written == 0) {
-            state.tip = nodeAt(part.height);
-            state.light = nodeAt(0.4f * part.height);
+void setFireTrack(VolumetricFire& fire, const FwFireTrackDef* def) {
+    volume::Track track(fire.track.times.get_allocator().resource());
+    if (def) {
+        checkWhole(def->flags, "FwFireTrackDef::flags", 0, FW_FIRE_TRACK_LOOP);
+        checkWhole(def->reserved, "FwFireTrackDef::reserved", 0, 0);
+        checkWhole(def->keyCount, "FwFireTrackDef::keyCount", 1, 4096);
+        checkWhole(def->pointsPerKey, "FwFireTrackDef::pointsPerKey", 2, volume::kMaxControlPoints);
+        checkValue(def->weight, "FwFireTrackDef::weight", 0.0f, 1.0f);
+        if (!def->times) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireTrackDef::times is null.");
+        if (!def->points) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireTrackDef::points is null.");
+        const uint32_t count = def->keyCount * def->pointsPerKey;
+        std::pmr::vector<volume::ControlPoint> points(track.points.get_allocator());
+        points.reserve(count);
+        for (uint32_t i = 0; i < count; ++i) {
+            checkPoint(def->points[i], "FwFireTrackDef::points", i);
+            points.push_back({vecOf(def->points[i].position), def->points[i].radius});
         }
-        ++written;
+        volume::setTrack(track, {def->times, def->keyCount}, points, def->pointsPerKey,
+                         (def->flags & FW_FIRE_TRACK_LOOP) != 0);
     }
-    state.flames = written;
-    return (fire.flags & FW_FIRE_HIDDEN) ? 0 : written;
-}
-
-void commitFire(VolumetricFire& fire) noexcept {
-    fire.motion = fire.next;
-    fire.state = fire.nextState;
+    fire.track.times.swap(track.times);
+    fire.track.points.swap(track.points);
+    fire.track.pointsPerKey = track.pointsPerKey;
+    fire.track.loops = track.loops;
+    fire.trackWeight = def ? def->weight : 1.0f;
+    ++fire.trackVersion;
+    splitAgain(fire);
 }
 
 FwLight fireLight(const VolumetricFire& fire, uint32_t id, uint64_t frameIndex) noexcept {
     FwLight light{};
-    for (int i = 0; i < 3; ++i) light.position[i] = fire.state.light[i];
+    for (int i = 0; i < 3; ++i) {
+        light.position[i] = fire.state.light[i];
+        light.color[i] = fire.state.colour[i];
+    }
     light.radius = std::max(0.3f * fire.diameter, 0.01f);
-    const volume::FlameLook& look = fire.look;
-    vec3 color = gpu::sootRadiance(0.5f * (look.core + look.tip));
-    color = glm::mix(color, vec3(look.tint[0], look.tint[1], look.tint[2]), look.tint[3]);
-    const float luminance = glm::dot(color, vec3(0.2126f, 0.7152f, 0.0722f));
-    for (int i = 0; i < 3; ++i) light.color[i] = color[i] / std::max(luminance, 1e-6f);
     light.intensity = fire.state.intensity;
     light.power = 1000.0f * fire.state.power;
     light.id = id;
@@ -298,11 +242,13 @@ void fillFireState(const VolumetricFire& fire, FwVolumetricFireState& out) noexc
     out.power = state.power;
     out.height = state.height;
     out.pulseRate = state.pulseRate;
+    out.contactPower = state.contactPower;
     for (int i = 0; i < 3; ++i) {
         out.boundsLow[i] = state.bounds.low[i];
         out.boundsHigh[i] = state.bounds.high[i];
         out.tip[i] = state.tip[i];
         out.lightPosition[i] = state.light[i];
+        out.contact[i] = state.contact[i];
     }
     out.lightIntensity = state.intensity;
 }

@@ -1,10 +1,9 @@
-// A volumetric fire as plain data: what the host asked for, what of it moves, and the functions
-// that make a frame's flames of it. Looks alone: floats, and nothing decides by them.
+// A volumetric fire as plain data: what the host asked for, checked, and what is told of it. The
+// flames that it burns as are in fire_flames.h. Looks alone: floats, and nothing decides by them.
 #pragma once
 #include "flamewright/flamewright.h"
-#include "shared/volume_flame.h"
-#include "volume/curve.h"
-#include "volume/look.h"
+#include "shared/volume_draw.h"
+#include "volume/flame.h"
 
 #include <array>
 #include <cstddef>
@@ -16,60 +15,61 @@ namespace fw::components {
 
 static_assert(gpu::kFirePresets == FW_FIRE_PRESET_COUNT);
 
-struct FireAir {         // of the world
-    float wind[3] = {};  // m/s
-    float up[3] = {0, 1, 0};
-};
-
-// What time changes. A frame computes the next one from the last and takes it when it is recorded.
-struct FireMotion {
-    volume::FlameScroll scroll;
-    double time = 0;        // s of its own
-    float power = -1;       // kW, smoothed; < 0: it takes the def's at once
-    gpu::vec3 base{0.0f};   // m, world
-    gpu::vec3 drift{0.0f};  // m/s, air against its base, smoothed
-};
-
-struct FireState {  // what is told of it, see FwVolumetricFireState
+struct FireState {      // what is told of it, see FwVolumetricFireState
+    bool lit = false;   // it has been through a frame
+    bool mean = false;  // sums have become means
     uint32_t flames = 0;
-    float power = 0, height = 0, pulseRate = 0;
+    float power = 0, height = 0, pulseRate = 0, contactPower = 0;
     volume::Bounds bounds;
-    gpu::vec3 tip{0.0f}, light{0.0f};
+    gpu::vec3 tip{0.0f}, light{0.0f}, colour{1.0f}, contact{0.0f};
     float intensity = 0;  // W/sr
 };
 
 struct VolumetricFire {
+    explicit VolumetricFire(std::pmr::memory_resource* memory) : track(memory) {}
+
     volume::FlameLook look;
     uint32_t flags = 0;  // FwVolumetricFireFlags
     uint32_t preset = 0, seed = 0;
+    uint32_t profile = 0;           // layer
+    FwFireProfileId ownProfile{};   // the host's, or null
     float position[3] = {};         // m, world
     float diameter = 0, power = 0;  // m; kW
-    float windResponse = 1;
+    float windResponse = 1, blend = 0.3f;
     std::array<volume::ControlPoint, volume::kMaxControlPoints> points{};
     uint32_t pointCount = 0;
+    volume::Track track;  // no keys: none
+    float trackWeight = 1;
+    uint32_t trackVersion = 0;
     uint64_t userData = 0;
-    FireMotion motion, next;
+    // As what it burns: one flame, or many small ones. Another division is another `split`; its
+    // flames grow while those of the last die down.
+    std::array<volume::Flamelet, volume::kMaxFlamelets> parts{};
+    uint32_t partCount = 0, split = 0;
     FireState state, nextState;
+
+    [[nodiscard]] bool tracked() const noexcept { return !track.times.empty(); }
 };
 
 void setFirePreset(FwVolumetricFireDef& def, uint32_t preset);
 const char* firePresetName(uint32_t preset) noexcept;
 // As LookSources::profiles wants them.
 std::pmr::vector<std::byte> bakeFireProfiles(std::pmr::memory_resource* memory);
+// Of a host's texels or cooked bytes. Throws core::Error; `profile` is then unchanged.
+void readFireProfile(const FwFireProfileDef& def, std::pmr::memory_resource* memory,
+                     volume::Profile& profile);
 
-// Throw where a value is out of its limits, and then changed nothing.
-VolumetricFire makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed);
+// Throw where a value is out of its limits, and then changed nothing. The profile's layer is the
+// caller's to set.
+void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, VolumetricFire& fire);
+uint32_t mostParts(float power, float diameter) noexcept;  // that it would be divided into
 void setFirePower(VolumetricFire& fire, float power);
 void setFirePosition(VolumetricFire& fire, const float position[3]);
 void setFirePoints(VolumetricFire& fire, const FwFirePoint* points, uint32_t count,
                    const char* name);
+void setFireTrack(VolumetricFire& fire, const FwFireTrackDef* def);
 
-// `seconds` later: fills fire.next and fire.nextState, and writes its flames; how many. Those that
-// do not fit are left out.
-uint32_t advanceFire(VolumetricFire& fire, const FireAir& air, float seconds,
-                     std::span<gpu::VolumeFlame> out) noexcept;
-void commitFire(VolumetricFire& fire) noexcept;
-
+// One light for all of it.
 FwLight fireLight(const VolumetricFire& fire, uint32_t id, uint64_t frameIndex) noexcept;
 void fillFireState(const VolumetricFire& fire, FwVolumetricFireState& state) noexcept;
 

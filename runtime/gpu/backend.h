@@ -152,6 +152,8 @@ class Backend {
     virtual void createImage(uint32_t slot, uint32_t width, uint32_t height,
                              std::span<const std::byte> pixels) = 0;
     virtual void destroyImage(uint32_t slot) noexcept = 0;
+    // A fire profile of the host's, kProfileWidth x kProfileHeight pairs of halfs. Looks alone.
+    virtual void setFireProfile(uint32_t /*slot*/, std::span<const uint32_t> /*texels*/) {}
 
     // Runs (cpu) or records (vk, between its begin and end of the outside part) a frame's steps.
     virtual void run(const FramePlan& plan) = 0;

@@ -53,16 +53,13 @@ void describe(Flame& f, const FlameAir& air) noexcept {
 }
 
 void layCurve(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept {
-    std::array<ControlPoint, kMaxControlPoints> live, given, points;
+    std::array<ControlPoint, kMaxControlPoints> live, points;
     uint32_t n = motionPoints(f.motion, rules, live);
-    std::span<const ControlPoint> other;
     if (f.def.driver == FlameDriver::Track && air.track) {
-        const uint32_t count = sampleTrack(*air.track, f.trackTime, given);
-        for (uint32_t k = 0; k < count; ++k) given[k].position += f.def.position;
-        other = std::span(given).first(count);
-    } else if (f.givenCount > 0) {
-        other = std::span(f.given).first(f.givenCount);
+        f.givenCount = sampleTrack(*air.track, f.trackTime, f.given);
+        for (uint32_t k = 0; k < f.givenCount; ++k) f.given[k].position += f.def.position;
     }
+    const std::span<const ControlPoint> other = std::span(f.given).first(f.givenCount);
     n = blendPoints(std::span(live).first(n), other, f.tracked, f.def.up, points);
     Curve curve;
     curve.set(std::span(points).first(n), f.def.up);
@@ -136,6 +133,7 @@ void checkFlame(const FlameDef& d) {
     range("diameter (m)", d.diameter, 1e-3f, 100.0f);
     range("height (m)", d.height, 0.0f, 200.0f);
     range("blend (s)", d.blend, 0.0f, 60.0f);
+    range("weight", d.weight, 0.0f, 1.0f);
     const FlameLook& l = d.look;
     range("turbulence", l.turbulence, 0.0f, 2.0f);
     range("stretch", l.stretch, 0.5f, 8.0f);
@@ -170,7 +168,7 @@ void startFlame(Flame& f, const FlameDef& def, const FlameAir& air) noexcept {
     f = {};
     f.def = def;
     f.power = clampPower(def.power);
-    f.tracked = def.driver == FlameDriver::Live ? 0.0f : 1.0f;
+    f.tracked = def.driver == FlameDriver::Live ? 0.0f : def.weight;
     describe(f, air);
     const MotionRules rules = rulesOf(f, air);
     startMotion(f.motion, rules, def.position);
@@ -185,7 +183,8 @@ void advanceFlame(Flame& f, const FlameAir& air, double seconds) noexcept {
         (f.def.driver == FlameDriver::Track && air.track && !air.track->times.empty()) ||
         (f.def.driver == FlameDriver::Host && f.givenCount > 0);
     const float step = f.def.blend > 0.0f ? float(dt) / f.def.blend : 1.0f;
-    f.tracked = std::clamp(f.tracked + (has ? step : -step), 0.0f, 1.0f);
+    const float aim = has ? f.def.weight : 0.0f;
+    f.tracked += std::clamp(aim - f.tracked, -step, step);
     f.trackTime += dt;
     describe(f, air);
     advanceScroll(f.scroll, f.def.look, f.record, dt);

@@ -18,7 +18,8 @@ struct FlameDef {
     float height = 0.0f;        // m that is seen; 0: Heskestad's, of power and diameter
     FlameLook look;
     FlameDriver driver = FlameDriver::Live;
-    float blend = 0.3f;  // s from one driver to another
+    float blend = 0.3f;   // s from one driver to another
+    float weight = 1.0f;  // [0, 1] of the track or the host over what is live
     uint32_t seed = 1;
     uint32_t profile = 0;  // layer of the fire-profile
 };
@@ -38,7 +39,8 @@ struct Flame {
     float power = 0.0f;      // kW, follows def.power in 0.3 s
     float tracked = 0.0f;    // [0, 1] weight of track or host over live
     double trackTime = 0.0;  // s
-    std::array<ControlPoint, kMaxControlPoints> given{};  // by the host, m in the world
+    // By the host, or of the track as it was last; m in the world.
+    std::array<ControlPoint, kMaxControlPoints> given{};
     uint32_t givenCount = 0;
     FlameMotion motion;
     FlameScroll scroll;

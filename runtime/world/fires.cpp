@@ -1,65 +1,184 @@
-// Volumetric fires: ids, what the host changes, and the flames that they are in a frame. Looks
-// alone; the same on every backend.
+// Volumetric fires: ids, what the host changes and asks, and the flames that they are in a frame.
+// Looks alone; the same on every backend. What they light: fire_touch.cpp.
 #include "world/world.h"
 
 #include <algorithm>
 
 namespace fw::world {
+namespace {
+
+using components::VolumetricFire;
+
+constexpr uint32_t kMaxFireShapes = 64 + gpu::kMaxBlockers;
+
+volume::vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+// A warmed-up frame finds its room.
+void World::findFireRoom(uint32_t more) {
+    size_t flames = more;
+    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
+        if (const auto* fire = fires_.at(i)) flames += (*fire)->data.partCount;
+    const size_t room = burning_.findRoom(flames);
+    if (fireFlames_.size() < room) fireFlames_.resize(room);
+    fireShapes_.reserve(kMaxFireShapes);
+}
+
+// The layer of its profile, with its texels on this side.
+uint32_t World::profileLayer(const FwVolumetricFireDef& def) {
+    if (def.profile.index1 != 0) return fireProfiles_.get(def.profile).layer;
+    if (def.preset >= FW_FIRE_PRESET_COUNT) return 0;  // refused further on
+    if (profiles_.size() <= def.preset) profiles_.resize(gpu::kFirePresets);
+    if (!profiles_[def.preset]) {
+        auto profile = core::Owned<volume::Profile>::make(memory_);
+        volume::paintLook(volume::presetDef(volume::FlamePreset(def.preset)).look, *profile);
+        profiles_[def.preset] = std::move(profile);
+    }
+    return def.preset;
+}
 
 FwVolumetricFireId World::createVolumetricFire(const FwVolumetricFireDef& def) {
     if (fires_.live() >= gpu::kMaxVolumeFlames)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u volumetric fires are there; the limit is %u.",
                    fires_.live(), gpu::kMaxVolumeFlames);
-    const uint32_t ownSeed = def_.seed * 0x9E3779B9u + ++firesMade_;
-    const components::VolumetricFire fire = components::makeVolumetricFire(def, ownSeed);
-    // A warmed-up frame finds its room.
-    const size_t most =
-        std::min<size_t>(size_t(fires_.live() + 1) * volume::kMaxFlamelets, gpu::kMaxVolumeFlames);
-    if (fireFlames_.size() < most) fireFlames_.resize(most);
-    return fires_.create(fire);
+    const uint32_t ownSeed = def_.seed * 0x9E3779B9u + firesMade_ + 1;
+    auto fire = core::Owned<Fire>::make(memory_, memory_);
+    const uint32_t layer = profileLayer(def);
+    components::makeVolumetricFire(def, ownSeed, fire->data);
+    fire->data.profile = layer;
+    const FwVolumetricFireId id = fires_.create(std::move(fire));
+    try {
+        findFireRoom(0);
+    } catch (...) {
+        fires_.destroy(id);
+        throw;
+    }
+    if (def.profile.index1 != 0) ++fireProfiles_.get(def.profile).users;
+    ++firesMade_;
+    return id;
 }
 
-void World::destroyVolumetricFire(FwVolumetricFireId id) { fires_.destroy(id); }
+void World::destroyVolumetricFire(FwVolumetricFireId id) {
+    const VolumetricFire& fire = fires_.get(id)->data;
+    if (fire.ownProfile.index1 != 0) --fireProfiles_.get(fire.ownProfile).users;
+    burning_.drop(fire);
+    fires_.destroy(id);
+}
 
 void World::moveVolumetricFire(FwVolumetricFireId id, const float position[3]) {
-    components::setFirePosition(fires_.get(id), position);
+    components::setFirePosition(fires_.get(id)->data, position);
 }
 
 void World::setVolumetricFirePower(FwVolumetricFireId id, float power) {
-    components::setFirePower(fires_.get(id), power);
+    VolumetricFire& fire = fires_.get(id)->data;
+    findFireRoom(components::mostParts(power, fire.diameter));
+    components::setFirePower(fire, power);
 }
 
 void World::setVolumetricFirePoints(FwVolumetricFireId id, const FwFirePoint* points,
                                     uint32_t count) {
-    components::setFirePoints(fires_.get(id), points, count, "points");
+    VolumetricFire& fire = fires_.get(id)->data;
+    findFireRoom(components::mostParts(fire.power, fire.diameter));
+    components::setFirePoints(fire, points, count, "points");
+}
+
+void World::setVolumetricFireTrack(FwVolumetricFireId id, const FwFireTrackDef* def) {
+    VolumetricFire& fire = fires_.get(id)->data;
+    findFireRoom(components::mostParts(fire.power, fire.diameter));
+    components::setFireTrack(fire, def);
 }
 
 void World::setVolumetricFireHidden(FwVolumetricFireId id, bool hidden) {
-    uint32_t& flags = fires_.get(id).flags;
+    uint32_t& flags = fires_.get(id)->data.flags;
     flags = (flags & ~uint32_t(FW_FIRE_HIDDEN)) | (hidden ? uint32_t(FW_FIRE_HIDDEN) : 0u);
 }
 
 void World::volumetricFireState(FwVolumetricFireId id, FwVolumetricFireState& state) {
-    components::fillFireState(fires_.get(id), state);
+    components::fillFireState(fires_.get(id)->data, state);
 }
 
+// ---- profiles ---------------------------------------------------------------------------------
+
+FwFireProfileId World::createFireProfile(const FwFireProfileDef& def) {
+    if (fireProfiles_.live() >= gpu::kMaxFireProfiles)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire profiles are there; the limit is %u.",
+                   fireProfiles_.live(), gpu::kMaxFireProfiles);
+    auto profile = core::Owned<volume::Profile>::make(memory_);
+    components::readFireProfile(def, memory_, *profile);
+    const FwFireProfileId id = fireProfiles_.create();
+    const uint32_t layer = gpu::kFirePresets + id.index1 - 1;
+    try {
+        if (profiles_.size() <= layer) profiles_.resize(layer + 1);
+        backend_.setFireProfile(id.index1 - 1, profile->texels);
+    } catch (...) {
+        fireProfiles_.destroy(id);
+        throw;
+    }
+    profiles_[layer] = std::move(profile);
+    fireProfiles_.get(id).layer = layer;
+    return id;
+}
+
+void World::destroyFireProfile(FwFireProfileId id) {
+    const uint32_t users = fireProfiles_.get(id).users;
+    if (users > 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Fire profile %u (generation %u) is used by %u fire(s); destroy them first.",
+                   id.index1, id.generation, users);
+    fireProfiles_.destroy(id);  // the texels stay until another one takes the layer
+}
+
+// ---- questions --------------------------------------------------------------------------------
+
+void World::askVolumetricFires(const float point[3], FwFireAnswer& answer) const {
+    components::checkValues(point, 3, "point", -1e6f, 1e6f);
+    const components::FireAnswer found =
+        components::askFires(burning_.now(), profiles_, vecOf(point));
+    answer.inside = found.air.inside ? 1 : 0;
+    answer.temperature = found.air.kelvin;
+    answer.heatFlux = found.air.heatFlux;
+    for (int i = 0; i < 3; ++i) answer.gas[i] = found.air.gas[i];
+    for (uint32_t i = 0; found.fire && i < fires_.slotCount(); ++i)
+        if (const auto* fire = fires_.at(i); fire && &(*fire)->data == found.fire)
+            answer.fire = fires_.idOf(i);
+}
+
+void World::volumetricFirePush(const float centre[3], float radius, FwFirePush& push) const {
+    components::checkValues(centre, 3, "centre", -1e6f, 1e6f);
+    components::checkValue(radius, "radius", 0.0f, 100.0f);
+    const volume::FlamePush found =
+        components::pushOfFires(burning_.now(), profiles_, vecOf(centre), radius);
+    for (int i = 0; i < 3; ++i) push.force[i] = found.force[i];
+    push.ignitionPower = found.ignition;
+}
+
+// ---- frames -----------------------------------------------------------------------------------
+
 void World::planFires(float seconds) noexcept {
-    components::FireAir air;
-    std::copy_n(wind_, 3, air.wind);
-    std::copy_n(def_.up, 3, air.up);
     uint32_t count = 0;
-    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
-        if (components::VolumetricFire* fire = fires_.at(i))
-            count +=
-                components::advanceFire(*fire, air, seconds, std::span(fireFlames_).subspan(count));
+    if (fires_.live() > 0) {
+        listFireColliders();
+        components::FireAir air;
+        std::copy_n(wind_, 3, air.wind);
+        std::copy_n(def_.up, 3, air.up);
+        air.colliders = fireShapes_;
+        burning_.begin();
+        for (uint32_t i = 0; i < fires_.slotCount(); ++i)
+            if (auto* fire = fires_.at(i)) burning_.settle((*fire)->data, air);
+        burning_.advance(air, seconds);
+        count = burning_.write(fireFlames_);
+    }
     frame_.volumes = {fireFlames_.data(), count};
     frame_.volumesDue = fires_.live() > 0 || flamesShown_ > 0;
 }
 
 void World::commitFires() noexcept {
-    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
-        if (components::VolumetricFire* fire = fires_.at(i)) components::commitFire(*fire);
     flamesShown_ = frame_.volumes.count;
+    if (fires_.live() == 0) return;
+    burning_.commit();
+    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
+        if (auto* fire = fires_.at(i)) (*fire)->data.state = (*fire)->data.nextState;
 }
 
 uint32_t World::lights(std::span<FwLight> out) const noexcept {
@@ -68,17 +187,18 @@ uint32_t World::lights(std::span<FwLight> out) const noexcept {
     const size_t most = std::min<size_t>(out.size(), def_.maxLights);
     // The strongest of both kinds, strongest first.
     for (uint32_t i = 0; i < fires_.slotCount(); ++i) {
-        const components::VolumetricFire* fire = fires_.at(i);
-        if (!fire || fire->state.flames == 0 || (fire->flags & (FW_FIRE_HIDDEN | FW_FIRE_NO_LIGHT)))
-            continue;
+        const auto* entry = fires_.at(i);
+        if (!entry) continue;
+        const VolumetricFire& fire = (*entry)->data;
+        if (fire.state.flames == 0 || (fire.flags & (FW_FIRE_HIDDEN | FW_FIRE_NO_LIGHT))) continue;
         const auto weaker =
             std::find_if(out.begin(), out.begin() + std::ptrdiff_t(count),
-                         [&](const FwLight& l) { return l.intensity < fire->state.intensity; });
+                         [&](const FwLight& l) { return l.intensity < fire.state.intensity; });
         if (weaker == out.begin() + std::ptrdiff_t(most)) continue;
         const size_t kept = std::min(count + 1, most);
         std::move_backward(weaker, out.begin() + std::ptrdiff_t(kept - 1),
                            out.begin() + std::ptrdiff_t(kept));
-        *weaker = components::fireLight(*fire, 0x80000000u | i, lastFrame_);
+        *weaker = components::fireLight(fire, 0x80000000u | i, lastFrame_);
         count = kept;
     }
     return uint32_t(count);

@@ -31,8 +31,15 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     checkFrame(frameIndex, deltaTime);
     collectReadbacks();
     const ClockAdvance time = fw::world::advance(clock_, deltaTime, def_.maxStepsPerFrame);
-    planSteps(time);
-    planProbes();
+    const size_t waiting = pending_.size();
+    try {
+        touchByFires(time.after.tick);
+        planSteps(time);
+        planProbes();
+    } catch (...) {
+        pending_.resize(waiting);
+        throw;
+    }
     planFires(deltaTime);
 
     // Nothing listed, nothing new: time passes without the device.

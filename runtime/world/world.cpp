@@ -87,6 +87,11 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       queries_("Query", memory),
       blockers_("Blocker", memory),
       fires_("Volumetric fire", memory),
+      fireProfiles_("Fire profile", memory),
+      fireColliders_("Fire collider", memory),
+      profiles_(memory),
+      fireShapes_(memory),
+      burning_(memory),
       fireFlames_(memory),
       remote_(memory),
       imageUsers_(memory),
@@ -498,6 +503,11 @@ void World::addPending(const Object& object, uint32_t kind, uint32_t tick, uint3
         pending_.push_back({object.slot, texel, kind, tick, water, order_++});
 }
 
+uint32_t World::nearTexel(const Object& object, const float point[3], float reach) const noexcept {
+    if (!object.skinMoved && !nearBounds(point, domainOf(object), reach)) return mesh::kNone;
+    return nearestTexel(object, point, reach);
+}
+
 uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick) {
     const mesh::BurnDomain& domain = domainOf(object);
     float point[3];
@@ -509,8 +519,7 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
     if (def.kind != FW_IGNITE && def.radius > 0)
         radius = std::max({radius, 1.5f * domain.texelSide, domain.linkMax});
     const float reach = std::max(radius, domain.texelSide);
-    if (!object.skinMoved && !nearBounds(point, domain, reach)) return 0;
-    const uint32_t nearest = nearestTexel(object, point, reach);
+    const uint32_t nearest = nearTexel(object, point, reach);
     if (nearest == mesh::kNone) return 0;
     found_.clear();
     if (!object.skinMoved)

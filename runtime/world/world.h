@@ -2,8 +2,8 @@
 // CPU code, the same for every backend; it knows no device and no C edge. Calls throw core::Error
 // or std::bad_alloc and then have changed nothing. One thread at a time.
 #pragma once
+#include "components/fire_flames.h"
 #include "components/remote.h"
-#include "components/volumetric_fire.h"
 #include "core/handle_pool.h"
 #include "core/log.h"
 #include "core/owned.h"
@@ -108,6 +108,34 @@ constexpr uint32_t kWorldFlags =
 struct BlockerEntry {
     components::Pose pose;
     float halfSize[3] = {};
+};
+
+// A burnable mesh within a fire's flame, since when and where; of fires that ignite.
+struct FireTouch {
+    FwBurnableMeshId object{};
+    uint64_t since = 0;      // tick
+    float fireAt[3] = {};    // m, the fire's base then
+    float objectAt[3] = {};  // and the object's
+    bool lit = false;        // it caught already
+    bool seen = false;       // in this exchange
+};
+
+struct Fire {
+    explicit Fire(std::pmr::memory_resource* memory) : data(memory) {}
+    components::VolumetricFire data;
+    std::array<FireTouch, 8> touches{};
+};
+
+struct FireProfileEntry {
+    uint32_t layer = 0, users = 0;
+};
+
+struct FireColliderEntry {
+    explicit FireColliderEntry(std::pmr::memory_resource* memory) : heights(memory) {}
+    volume::Collider shape;
+    std::pmr::vector<float> heights;
+    float(FW_CALL* distance)(void*, const float*, float*) = nullptr;
+    void* distanceData = nullptr;
 };
 
 // Contacts of two objects as they were last found.
@@ -226,7 +254,15 @@ class World {
     void setVolumetricFirePower(FwVolumetricFireId id, float power);
     void setVolumetricFirePoints(FwVolumetricFireId id, const FwFirePoint* points, uint32_t count);
     void setVolumetricFireHidden(FwVolumetricFireId id, bool hidden);
+    void setVolumetricFireTrack(FwVolumetricFireId id, const FwFireTrackDef* def);
     void volumetricFireState(FwVolumetricFireId id, FwVolumetricFireState& state);
+    FwFireProfileId createFireProfile(const FwFireProfileDef& def);
+    void destroyFireProfile(FwFireProfileId id);
+    FwFireColliderId addFireCollider(const FwFireColliderDef& def);
+    void setFireCollider(FwFireColliderId id, const FwFireColliderDef& def);
+    void removeFireCollider(FwFireColliderId id);
+    void askVolumetricFires(const float point[3], FwFireAnswer& answer) const;
+    void volumetricFirePush(const float centre[3], float radius, FwFirePush& push) const;
 
     // Throws unless advance would take these.
     void checkFrame(uint64_t frameIndex, float deltaTime) const;
@@ -311,8 +347,15 @@ class World {
     void planProbes();
     void commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept;
     // fires.cpp
+    void findFireRoom(uint32_t more);
+    uint32_t profileLayer(const FwVolumetricFireDef& def);
     void planFires(float seconds) noexcept;
     void commitFires() noexcept;
+    // fire_colliders.cpp
+    void listFireColliders() noexcept;
+    // fire_touch.cpp
+    void touchByFires(uint64_t end);  // events up to a tick
+    void touchByFire(Fire& fire, uint32_t now);
     // latch.cpp
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
     [[nodiscard]] components::DriveInput driveInput() const noexcept;
@@ -347,6 +390,8 @@ class World {
     void texelPlace(const Object& object, uint32_t texel, float (&out)[3]) const noexcept;
     // Nearest texel within `reach` m of a point in object space, or kNone.
     uint32_t nearestTexel(const Object& object, const float point[3], float reach) const noexcept;
+    // The same, at no cost for what is far away.
+    uint32_t nearTexel(const Object& object, const float point[3], float reach) const noexcept;
     uint32_t texelMaterial(const Object& object, uint32_t texel) const noexcept;
     [[nodiscard]] const mesh::BurnDomain& domainOf(const Object& object) const noexcept;
     // world.cpp
@@ -380,7 +425,12 @@ class World {
     core::HandlePool<FwBurnableMeshId, core::Owned<Object>> objects_;
     core::HandlePool<FwQueryId, Query> queries_;
     core::HandlePool<FwBlockerId, BlockerEntry> blockers_;
-    core::HandlePool<FwVolumetricFireId, components::VolumetricFire> fires_;
+    core::HandlePool<FwVolumetricFireId, core::Owned<Fire>> fires_;
+    core::HandlePool<FwFireProfileId, FireProfileEntry> fireProfiles_;
+    core::HandlePool<FwFireColliderId, core::Owned<FireColliderEntry>> fireColliders_;
+    std::pmr::vector<core::Owned<volume::Profile>> profiles_;  // by layer; null: none needed it
+    std::pmr::vector<volume::Collider> fireShapes_;  // of a frame: colliders, then blockers
+    components::FireFlames burning_;
     std::pmr::vector<gpu::VolumeFlame> fireFlames_;  // room for a frame's flames
     uint32_t flamesShown_ = 0;                       // that the backend draws
     uint32_t firesMade_ = 0;                         // since ever

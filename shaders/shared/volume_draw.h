@@ -16,7 +16,9 @@ using std::floor;
 #endif
 
 FW_SHARED_CONST uint kMaxVolumeFlames = 256u;   // of a world, in a frame
-FW_SHARED_CONST uint kFirePresets = 9u;         // layers of the profiles
+FW_SHARED_CONST uint kFirePresets = 9u;         // first layers of the profiles
+FW_SHARED_CONST uint kMaxFireProfiles = 23u;    // the host's, behind them
+FW_SHARED_CONST uint kProfileBytes = 32768u;    // of a layer: 64 x 128 pairs of halfs
 FW_SHARED_CONST uint kVolumeSlabs = 8u;         // of a flame where the host's depth is only tested
 FW_SHARED_CONST float kVolumeWhite = 1.5f;      // of soot of luminance 1, in the host's units
 

@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(63, calls);  // every function of the three headers
+    EXPECT_EQ(72, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -48,6 +48,9 @@ const DefCase kDefs[] = {
     {"offscreen", FW_DEF_OFFSCREEN, sizeof(FwOffscreenDef)},
     {"blocker", FW_DEF_BLOCKER, sizeof(FwBlockerDef)},
     {"fire", FW_DEF_VOLUMETRIC_FIRE, sizeof(FwVolumetricFireDef)},
+    {"profile", FW_DEF_FIRE_PROFILE, sizeof(FwFireProfileDef)},
+    {"collider", FW_DEF_FIRE_COLLIDER, sizeof(FwFireColliderDef)},
+    {"track", FW_DEF_FIRE_TRACK, sizeof(FwFireTrackDef)},
     {"host", FW_DEF_VULKAN_HOST, sizeof(FwVulkanHost)},
     {"target", FW_DEF_VULKAN_TARGET, sizeof(FwVulkanTargetDef)},
     {"frame", FW_DEF_VULKAN_FRAME, sizeof(FwVulkanFrame)},
@@ -194,6 +197,44 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
             return fwWorld_CreateVolumetricFire(w.world, def, &id);
         },
         worldMessage);
+    checkSizes<FwFireColliderDef>(
+        "FwFireColliderDef", fwDefaultFireColliderDef(),
+        [&](const FwFireColliderDef* def) {
+            FwFireColliderId id{};
+            const FwResult result = fwWorld_AddFireCollider(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_RemoveFireCollider(w.world, id);
+            return result;
+        },
+        worldMessage);
+    std::vector<float> texels(2 * 8 * 8, 0.5f);
+    FwFireProfileDef profile = fwDefaultFireProfileDef();
+    profile.width = profile.height = 8;
+    profile.texels = texels.data();
+    checkSizes<FwFireProfileDef>(
+        "FwFireProfileDef", profile,
+        [&](const FwFireProfileDef* def) {
+            FwFireProfileId id{};
+            const FwResult result = fwWorld_CreateFireProfile(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_DestroyFireProfile(w.world, id);
+            return result;
+        },
+        worldMessage);
+    const FwVolumetricFireDef fireDef = fwDefaultVolumetricFireDef();
+    FwVolumetricFireId fireId{};
+    ASSERT_EQ(FW_OK, fwWorld_CreateVolumetricFire(w.world, &fireDef, &fireId));
+    const float time = 0;
+    const FwFirePoint line[2] = {{{0, 0, 0}, 0.1f}, {{0, 1, 0}, 0.1f}};
+    FwFireTrackDef track = fwDefaultFireTrackDef();
+    track.keyCount = 1;
+    track.pointsPerKey = 2;
+    track.times = &time;
+    track.points = line;
+    checkSizes<FwFireTrackDef>(
+        "FwFireTrackDef", track,
+        [&](const FwFireTrackDef* def) {
+            return fwWorld_SetVolumetricFireTrack(w.world, fireId, def);
+        },
+        worldMessage);
     FwIgnitionDef ignition = fwDefaultIgnitionDef();
     ignition.radius = 0.05f;
     checkSizes<FwIgnitionDef>(
@@ -334,6 +375,7 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     refuseFloat<F>(fire, &F::smoke, "smoke", makeFire, worldMessage, {-0.1f, 11.0f});
     refuseFloat<F>(fire, &F::blue, "blue", makeFire, worldMessage, {-0.1f, 11.0f});
     refuseFloat<F>(fire, &F::tintWeight, "tintWeight", makeFire, worldMessage, {-0.1f, 1.1f});
+    refuseFloat<F>(fire, &F::blend, "blend", makeFire, worldMessage, {-0.1f, 61.0f});
     for (int i = 0; i < 3; ++i) {
         F def = fire;
         def.position[i] = kInfinity;

@@ -21,6 +21,8 @@ int fwTestCallEverything(int* calls) {
     const FwQueryId query = {0, 0};
     const FwBlockerId blocker = {0, 0};
     const FwVolumetricFireId fire = {0, 0};
+    const FwFireProfileId profile = {0, 0};
+    const FwFireColliderId collider = {0, 0};
 
     RUNS(fwResultName(FW_OK));
     RUNS(fwGetVersion());
@@ -62,6 +64,15 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_SetVolumetricFirePoints(NULL, fire, NULL, 0));
     REFUSES(fwWorld_SetVolumetricFireHidden(NULL, fire, 1));
     REFUSES(fwWorld_GetVolumetricFireState(NULL, fire, NULL));
+    REFUSES(fwWorld_SetVolumetricFireTrack(NULL, fire, NULL));
+    REFUSES(fwWorld_CreateFireProfile(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyFireProfile(NULL, profile));
+    REFUSES(fwCookFireProfile(NULL, NULL, NULL, NULL));
+    REFUSES(fwWorld_AddFireCollider(NULL, NULL, NULL));
+    REFUSES(fwWorld_SetFireCollider(NULL, collider, NULL));
+    REFUSES(fwWorld_RemoveFireCollider(NULL, collider));
+    REFUSES(fwWorld_AskVolumetricFires(NULL, NULL, NULL));
+    REFUSES(fwWorld_GetVolumetricFirePush(NULL, NULL, 0.0f, NULL));
     REFUSES(fwWorld_Ignite(NULL, NULL, NULL));
     REFUSES(fwWorld_Step(NULL, 0.0f));
     REFUSES(fwWorld_RenderOffscreen(NULL, NULL));
@@ -99,6 +110,9 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultView().structSize == sizeof(FwView) ? 0 : 1;
     wrong += fwDefaultBlockerDef().structSize == sizeof(FwBlockerDef) ? 0 : 1;
     wrong += fwDefaultVolumetricFireDef().structSize == sizeof(FwVolumetricFireDef) ? 0 : 1;
+    wrong += fwDefaultFireProfileDef().structSize == sizeof(FwFireProfileDef) ? 0 : 1;
+    wrong += fwDefaultFireColliderDef().structSize == sizeof(FwFireColliderDef) ? 0 : 1;
+    wrong += fwDefaultFireTrackDef().structSize == sizeof(FwFireTrackDef) ? 0 : 1;
     wrong += fwDefaultOffscreenDef().structSize == sizeof(FwOffscreenDef) ? 0 : 1;
     wrong += fwDefaultVulkanHost().structSize == sizeof(FwVulkanHost) ? 0 : 1;
     wrong += fwDefaultVulkanTargetDef().structSize == sizeof(FwVulkanTargetDef) ? 0 : 1;

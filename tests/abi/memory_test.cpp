@@ -61,6 +61,7 @@ struct Session {
         ignition.position[2] = 0.1f;
         ignition.radius = 0.03f;
         retry([&] { return fwWorld_Ignite(world, &ignition, nullptr); });
+        fires();
         const float point[3] = {0.1f, 0, 0.1f};
         const float far[3] = {0.2f, 0, 0.1f};
         retry([&] { return fwWorld_TagPoint(world, object, far, 1); });
@@ -76,6 +77,39 @@ struct Session {
         retry([&] { return fwWorld_FetchPoint(world, query, &state); });
         retry([&] { return fwDebug_RequestBurnMap(world, object); });
         (void)fwContext_GetMemoryReport(context, nullptr, 0);
+    }
+
+    // Volumetric ones, with a profile, a collider and a script.
+    void fires() {
+        const std::vector<float> texels(2 * 8 * 8, 0.5f);
+        FwFireProfileDef profileDef = fwDefaultFireProfileDef();
+        profileDef.width = profileDef.height = 8;
+        profileDef.texels = texels.data();
+        FwFireProfileId profile{};
+        retry([&] { return fwWorld_CreateFireProfile(world, &profileDef, &profile); });
+        uint64_t size = 0;
+        retry([&] { return fwCookFireProfile(context, &profileDef, nullptr, &size); });
+        const float heights[4] = {};
+        FwFireColliderDef ground = fwDefaultFireColliderDef();
+        ground.kind = FW_COLLIDER_HEIGHT_FIELD;
+        ground.columns = ground.rows = 2;
+        ground.heights = heights;
+        FwFireColliderId collider{};
+        retry([&] { return fwWorld_AddFireCollider(world, &ground, &collider); });
+        FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+        FwVolumetricFireId fire{};
+        retry([&] { return fwWorld_CreateVolumetricFire(world, &def, &fire); });
+        def.profile = profile;
+        retry([&] { return fwWorld_CreateVolumetricFire(world, &def, &fire); });
+        retry([&] { return fwWorld_SetVolumetricFirePower(world, fire, 1); });
+        const float time = 0;
+        const FwFirePoint line[2] = {{{0, 0, 0}, 0.1f}, {{0, 1, 0}, 0.1f}};
+        FwFireTrackDef track = fwDefaultFireTrackDef();
+        track.keyCount = 1;
+        track.pointsPerKey = 2;
+        track.times = &time;
+        track.points = line;
+        retry([&] { return fwWorld_SetVolumetricFireTrack(world, fire, &track); });
     }
 
     // A call that memory failed once works the second time.

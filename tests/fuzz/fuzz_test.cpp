@@ -219,6 +219,7 @@ class Fuzz {
         garble(def);
         def.pointCount = random_.once(2) ? 0 : random_.below(35);
         def.points = random_.once(20) ? nullptr : points;
+        def.profile = random_.once(3) ? profiles_.any(random_) : FwFireProfileId{};
         if (def.pointCount > 32 && def.points) def.pointCount = 32;  // honest array sizes
         def.structSize = sizeof def;
         FwVolumetricFireId id{};
@@ -267,6 +268,111 @@ class Fuzz {
         }
     }
 
+    static float FW_CALL anyDistance(void* user, const float point[3], float normal[3]) {
+        auto& random = *static_cast<Random*>(user);
+        for (int i = 0; i < 3; ++i) normal[i] = random.number();
+        return random.once(3) ? random.number() : point[1];
+    }
+
+    void createProfile() {
+        std::vector<float> texels;
+        FwFireProfileDef def = fwDefaultFireProfileDef();
+        def.width = 6 + random_.below(12);
+        def.height = 6 + random_.below(12);
+        for (uint32_t i = 0; i < def.width * def.height; ++i) {
+            texels.push_back(random_.unit() * 2000);
+            texels.push_back(random_.once(400) ? random_.number() : random_.unit());
+        }
+        def.texels = random_.once(20) ? nullptr : texels.data();
+        std::vector<unsigned char> bytes;
+        if (random_.once(2)) {
+            uint64_t size = 0;
+            if (fwCookFireProfile(context_, &def, nullptr, &size) == FW_OK) {
+                bytes.resize(size);
+                EXPECT_EQ(FW_OK, fwCookFireProfile(context_, &def, bytes.data(), &size));
+                for (uint32_t n = random_.below(3); n > 0; --n)
+                    bytes[random_.below(random_.once(2) ? 32 : uint32_t(size))] ^=
+                        uint8_t(1 + random_.below(255));
+                if (random_.once(4)) bytes.resize(1 + random_.below(uint32_t(size)));
+                def.cooked = bytes.data();
+                def.cookedSize = bytes.size();
+            }
+        }
+        FwFireProfileId id{};
+        const FwResult result = fwWorld_CreateFireProfile(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) profiles_.known.push_back(id);
+    }
+
+    void shapeCollider() {
+        FwFireColliderDef def = fwDefaultFireColliderDef();
+        def.kind = random_.below(7);
+        for (float& x : def.position) x = random_.number();
+        for (float& x : def.end) x = random_.number();
+        for (float& x : def.normal) x = random_.number();
+        def.columns = random_.below(6);
+        def.rows = random_.below(6);
+        garble(def);
+        float heights[36];
+        for (float& height : heights) height = random_.once(99) ? random_.number() : random_.unit();
+        def.columns = std::min(def.columns, 6u);  // honest array sizes
+        def.rows = std::min(def.rows, 6u);
+        def.heights = random_.once(9) ? nullptr : heights;
+        def.distance = random_.once(9) ? nullptr : &anyDistance;
+        def.distanceData = &random_;
+        def.structSize = sizeof def;
+        if (random_.once(3)) {
+            check(fwWorld_SetFireCollider(world_, colliders_.any(random_), &def));
+            return;
+        }
+        FwFireColliderId id{};
+        const FwResult result = fwWorld_AddFireCollider(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) colliders_.known.push_back(id);
+    }
+
+    void scriptFlame() {
+        std::vector<float> times;
+        std::vector<FwFirePoint> points;
+        FwFireTrackDef def = fwDefaultFireTrackDef();
+        def.keyCount = random_.below(5);
+        def.pointsPerKey = 1 + random_.below(5);
+        for (uint32_t i = 0; i < def.keyCount; ++i)
+            times.push_back(random_.once(20) ? random_.number() : float(i));
+        for (uint32_t i = 0; i < def.keyCount * def.pointsPerKey; ++i) {
+            FwFirePoint& point = points.emplace_back();
+            for (float& x : point.position) x = random_.once(9) ? 0.5f : random_.number();
+            point.radius = random_.unit();
+        }
+        def.times = random_.once(20) ? nullptr : times.data();
+        def.points = points.data();
+        def.flags = random_.below(3);
+        def.weight = random_.once(3) ? random_.number() : 1;
+        check(fwWorld_SetVolumetricFireTrack(world_, flames_.any(random_),
+                                             random_.once(4) ? nullptr : &def));
+    }
+
+    void askFlames() {
+        float place[3];
+        for (float& x : place) x = random_.number();
+        FwFireAnswer answer{};
+        answer.structSize = sizeof answer;
+        FwResult result = fwWorld_AskVolumetricFires(world_, place, &answer);
+        check(result);
+        if (result == FW_OK) {
+            EXPECT_TRUE(answer.temperature >= 293.0f && answer.temperature < 4000.0f);
+            EXPECT_TRUE(answer.heatFlux >= 0.0f && answer.heatFlux <= 2e5f);
+            EXPECT_TRUE(std::isfinite(answer.gas[0] + answer.gas[1] + answer.gas[2]));
+        }
+        FwFirePush push{};
+        push.structSize = sizeof push;
+        result = fwWorld_GetVolumetricFirePush(world_, place, random_.number(), &push);
+        check(result);
+        if (result == FW_OK) {
+            EXPECT_TRUE(std::isfinite(push.force[0] + push.force[1] + push.force[2]));
+        }
+    }
+
     template <class Id>
     void destroy(Ids<Id>& ids, FwResult(FW_CALL* function)(FwWorld*, Id)) {
         const Id id = ids.any(random_);
@@ -279,7 +385,7 @@ class Fuzz {
         float values[16];
         for (float& value : values) value = random_.number();
         const FwBurnableMeshId object = objects_.any(random_);
-        switch (random_.below(29)) {
+        switch (random_.below(32)) {
             case 0: {
                 FwMaterialDef def = fwDefaultMaterialDef();
                 (void)fwInitMaterialPreset(&def, random_.below(16));
@@ -414,13 +520,27 @@ class Fuzz {
                 break;
             }
             case 24:
-                if (flames_.known.size() < 24 || random_.once(8)) createFlame();
+                if (flames_.known.size() < 8 || random_.once(30)) createFlame();
                 break;
             case 25:
                 changeFlame();
                 break;
             case 26:
                 if (random_.once(3)) destroy(flames_, fwWorld_DestroyVolumetricFire);
+                break;
+            case 27:
+                if (profiles_.known.size() < 4 || random_.once(8)) createProfile();
+                if (random_.once(3)) destroy(profiles_, fwWorld_DestroyFireProfile);
+                break;
+            case 28:
+                if (colliders_.known.size() < 6 || random_.once(8)) shapeCollider();
+                if (random_.once(3)) destroy(colliders_, fwWorld_RemoveFireCollider);
+                break;
+            case 29:
+                if (random_.once(2))
+                    scriptFlame();
+                else
+                    askFlames();
                 break;
             default:
                 check(fwWorld_Step(world_, random_.once(30) ? values[0] : random_.unit() * 0.2f));
@@ -434,6 +554,8 @@ class Fuzz {
             meshes_.known.clear();
             objects_.known.clear();
             flames_.known.clear();
+            profiles_.known.clear();
+            colliders_.known.clear();
             queries_.known.clear();
         }
     }
@@ -447,6 +569,8 @@ class Fuzz {
     Ids<FwMeshId> meshes_;
     Ids<FwBurnableMeshId> objects_;
     Ids<FwVolumetricFireId> flames_;
+    Ids<FwFireProfileId> profiles_;
+    Ids<FwFireColliderId> colliders_;
     Ids<FwQueryId> queries_;
     std::vector<unsigned char> cooked_;
 };

@@ -2,7 +2,6 @@
 // GPU-assisted validation (tests/run --gpu-assisted) each access past an end is reported, and the
 // second test proves that; without it the software device would never notice.
 #include "components/remote.h"
-#include "components/volumetric_fire.h"
 #include "gpu/passes/frame_graph.h"
 #include "support/burn_scene.h"
 
@@ -100,8 +99,7 @@ class EveryPass : public GpuTest {
         rig_->view = testView(eye, at, 40, 1, false);
         if (published) makeVertices();
         FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
-        components::VolumetricFire flame = components::makeVolumetricFire(fire, 1);
-        (void)components::advanceFire(flame, {}, 1, {&flame_, 1});
+        flame_ = flameAlone(fire, 1);
         now_ = 4096;
         index_ = 0;
         passes_.clear();

@@ -24,13 +24,7 @@ gpu::VolumeFlame flameOf(uint32_t preset, float seconds, uint32_t flags = 0) {
     components::setFirePreset(def, preset);
     def.flags = flags;
     def.seed = 7;
-    components::VolumetricFire fire = components::makeVolumetricFire(def, 1);
-    gpu::VolumeFlame flame{};
-    for (float t = 0; t < seconds; t += 0.1f) {
-        EXPECT_EQ(1u, components::advanceFire(fire, {}, 0.1f, {&flame, 1}));
-        components::commitFire(fire);
-    }
-    return flame;
+    return flameAlone(def, seconds);
 }
 
 // Nothing in it varies but with the place: what sampling may get wrong shows alone.
@@ -164,6 +158,7 @@ class Volume : public GpuTest {
         if (!gpu::volumeDraw(view, flame.record.low, flame.record.high, 1, draw)) return picture;
         volume::Profile profile;
         volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).look, profile);
+        if (own_) profile = *own_;
         const vec3 white =
             glm::mix(vec3(1.0f, 1.25f, 1.6f), vec3(1.0f), flame.record.tint.w) * gpu::kVolumeWhite;
         for (uint32_t y = 0; y < kSide; ++y)
@@ -214,6 +209,7 @@ class Volume : public GpuTest {
     TestBuffer read_;
     uint64_t index_ = 0;
     std::array<FwTargetId, 4> targets_{};
+    const volume::Profile* own_ = nullptr;  // that march() takes instead of the preset's
 };
 
 // Each preset's flame, smoke and all: the device draws what the library marches.
@@ -234,6 +230,30 @@ TEST_F(Volume, DrawsWhatTheLibraryMarches) {
     const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f);
     EXPECT_GT(differenceOf(draw({&flame, 1}, FW_DEPTH_NONE), march(flame, FW_FIRE_TORCH)), 0.1f)
         << "another profile would not have been noticed";
+}
+
+// Profiles of the host's lie behind the presets' and may be others while frames are in flight.
+TEST_F(Volume, DrawsTheHostsProfile) {
+    if (!device_) return;
+    makeRig();
+    gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
+    const std::vector<vec4> preset = draw({&flame, 1}, FW_DEPTH_NONE);
+    const uint32_t slot = gpu::kMaxFireProfiles - 1;
+    flame.record.profile = gpu::kFirePresets + slot;
+    EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).w, 0.0f) << "an empty layer";
+    const auto profile = std::make_unique<volume::Profile>();
+    for (const uint32_t from : {FW_FIRE_TORCH, FW_FIRE_CAMP}) {
+        volume::paintLook(volume::presetDef(volume::FlamePreset(from)).look, *profile);
+        rig_->backend.setFireProfile(slot, profile->texels);
+        own_ = profile.get();
+        const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);
+        EXPECT_LT(differenceOf(drawn, march(flame, FW_FIRE_CAMP)), 0.01f);
+        if (from == FW_FIRE_CAMP) {
+            EXPECT_LT(differenceOf(drawn, preset), 1e-6f);
+        } else {
+            EXPECT_GT(differenceOf(drawn, preset), 0.1f);
+        }
+    }
 }
 
 // T4.1: neither the number of samples nor that of slabs decides how bright it is.

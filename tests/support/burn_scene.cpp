@@ -1,9 +1,9 @@
 #include "support/burn_scene.h"
 
+#include "components/fire_flames.h"
 #include "components/look_table.h"
 #include "components/look_textures.h"
 #include "components/view_params.h"
-#include "components/volumetric_fire.h"
 #include "fire/heat.h"
 #include "fire/presets.h"
 
@@ -324,6 +324,24 @@ FwView testView(const float eye[3], const float target[3], float degrees, float 
     std::copy_n(&view[0][0], 16, out.view);
     std::copy_n(&projection[0][0], 16, out.projection);
     return out;
+}
+
+gpu::VolumeFlame flameAlone(const FwVolumetricFireDef& def, float seconds) {
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+    components::VolumetricFire fire(memory);
+    components::makeVolumetricFire(def, 1, fire);
+    components::FireFlames flames(memory);
+    flames.findRoom(fire.partCount);
+    gpu::VolumeFlame flame{};
+    for (float t = 0; t < seconds; t += 0.1f) {
+        flames.begin();
+        flames.settle(fire, {});
+        flames.advance({}, 0.1f);
+        (void)flames.write({&flame, 1});
+        flames.commit();
+        fire.state = fire.nextState;
+    }
+    return flame;
 }
 
 FrameAnswer copyAnswer(const gpu::Readback& readback) {

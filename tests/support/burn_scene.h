@@ -3,6 +3,7 @@
 #pragma once
 #include "core/memory.h"
 #include "gpu/vk/vk_backend.h"
+#include "shared/volume_flame.h"
 #include "support/meshes.h"
 #include "support/vulkan_device.h"
 
@@ -80,6 +81,9 @@ gpu::LookSources testLooks();
 // Looking from `eye` at `target`, vertical field of view in degrees; Vulkan clip space.
 FwView testView(const float eye[3], const float target[3], float degrees, float aspect,
                 bool reversedDepth);
+
+// The first flame of a volumetric fire that is alone in still air, `seconds` after it was made.
+gpu::VolumeFlame flameAlone(const FwVolumetricFireDef& def, float seconds);
 
 // What a backend answered of one frame, copied.
 struct FrameAnswer {

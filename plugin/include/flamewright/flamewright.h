@@ -47,6 +47,8 @@ typedef struct FwTargetId { uint32_t index1, generation; } FwTargetId;
 typedef struct FwQueryId { uint32_t index1, generation; } FwQueryId;
 typedef struct FwBlockerId { uint32_t index1, generation; } FwBlockerId;
 typedef struct FwVolumetricFireId { uint32_t index1, generation; } FwVolumetricFireId;
+typedef struct FwFireProfileId { uint32_t index1, generation; } FwFireProfileId;
+typedef struct FwFireColliderId { uint32_t index1, generation; } FwFireColliderId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -94,7 +96,8 @@ FW_API uint32_t FW_CALL fwGetVersion(void);
 typedef enum FwDefType {
     FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
-    FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11,
+    FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
+    FW_DEF_FIRE_TRACK = 14,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -451,7 +454,7 @@ static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
  * gets how many texels it addresses; zero is fine and not an error. [world] */
 FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint32_t* texels);
 
-/* ---- volumetric fires: flames without fuel, for the eye and for the lights -------------------------------- */
+/* ---- volumetric fires: flames without fuel ----------------------------------------------------------------- */
 
 typedef enum FwFirePreset {
     FW_FIRE_CAMP = 0, FW_FIRE_CANDLE = 1, FW_FIRE_TORCH = 2, FW_FIRE_BONFIRE = 3, FW_FIRE_HOUSE = 4,
@@ -462,15 +465,21 @@ typedef enum FwVolumetricFireFlags {
     FW_FIRE_HIDDEN = 1,   /* not drawn, and no light; time passes for it */
     FW_FIRE_NO_SMOKE = 2,
     FW_FIRE_NO_LIGHT = 4, /* fwWorld_GetLights does not name it */
+    FW_FIRE_NO_COLLISION = 8, /* goes through colliders and blockers */
+    FW_FIRE_IGNITES = 16, /* lights burnable meshes that it touches for long enough, see below */
     FW_FIRE_FLAGS_FORCE32 = 0x7fffffff
 } FwVolumetricFireFlags;
 typedef struct FwFirePoint { /* of the line that a flame follows, its base first */
     float position[3];       /* m, world, within +-1e6 */
     float radius;            /* m, [0, 100], of the tube that burns there */
 } FwFirePoint;
-/* A flame as high as its power and width make it (Heskestad), pulsing at its own rate, leaning in the wind
- * and behind its own motion; too little power for its width burns as many small flames. It is cosmetic: it
- * lights no burnable mesh. Factors multiply what the preset says. */
+/* A flame as high as its power and width make it (Heskestad), pulsing at its own rate. Its gas rises, leans in
+ * the wind, trails behind a motion, flows around colliders and blockers; fires near each other lean together,
+ * and as one they are taller. Too little power for its width burns as many small flames. Floats, for the eye:
+ * no two machines need agree on them. Only FW_FIRE_IGNITES changes what burns: eight times a second each burnable
+ * mesh within the flame, as position, diameter, power, windResponse and the world's wind make it (or within
+ * radius of the points), counts how long it has been there; after its material's ignition time under 35 kW/m^2,
+ * at the world's pace, what the flame covers catches. Factors multiply what the preset says. */
 typedef struct FwVolumetricFireDef {
     uint32_t structSize, flags; /* FwVolumetricFireFlags */
     uint32_t preset;            /* FwFirePreset: its look; size and power are below */
@@ -490,6 +499,9 @@ typedef struct FwVolumetricFireDef {
                                    line is long and as wide as the first of them; in no wind */
     const FwFirePoint* points;
     uint64_t userData;          /* comes back in its state */
+    FwFireProfileId profile;    /* null: the preset's */
+    float blend;                /* s, [0, 60]: from its own way to points or a track, and back; default 0.3 */
+    uint32_t reserved;          /* 0 */
 } FwVolumetricFireDef;
 static inline FwVolumetricFireDef fwDefaultVolumetricFireDef(void) {
     FwVolumetricFireDef d; fwInitDef(FW_DEF_VOLUMETRIC_FIRE, &d, (uint32_t)sizeof d); return d;
@@ -515,14 +527,106 @@ typedef struct FwVolumetricFireState { /* as of the last frame */
     float power;                /* kW, now */
     float height;               /* m, mean of what is seen of it */
     float pulseRate;            /* Hz */
-    float reserved;
+    float contactPower;         /* kW that go into colliders and blockers in its way */
     float boundsLow[3], boundsHigh[3]; /* m, world: of all that shows, smoke too; empty while it is out */
     float tip[3];               /* m, world: where its mean height ends */
     float lightPosition[3];     /* m, world */
     float lightIntensity;       /* W/sr of the visible part, flickering */
-    float reserved1[3];
+    float contact[3];           /* m, world: the middle of what it touches; of use where contactPower > 0 */
 } FwVolumetricFireState;
 FW_API FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld*, FwVolumetricFireId id, FwVolumetricFireState* state); /* [world] */
+
+/* A script of a fire: keys of its line, smooth between them. */
+typedef struct FwFireTrackDef {
+    uint32_t structSize, flags; /* FwFireTrackFlags */
+    uint32_t keyCount;          /* [1, 4096] */
+    uint32_t pointsPerKey;      /* [2, 32] */
+    const float* times;         /* s, keyCount of them, increasing */
+    const FwFirePoint* points;  /* key after key; from the fire's position, m, world axes. Copied */
+    float weight;               /* [0, 1]: of the script; the rest is the fire's own motion. Default 1 */
+    uint32_t reserved;          /* 0 */
+} FwFireTrackDef;
+typedef enum FwFireTrackFlags {
+    FW_FIRE_TRACK_LOOP = 1, /* the last key is the first again; without it the last stays */
+    FW_FIRE_TRACK_FLAGS_FORCE32 = 0x7fffffff
+} FwFireTrackFlags;
+static inline FwFireTrackDef fwDefaultFireTrackDef(void) {
+    FwFireTrackDef d; fwInitDef(FW_DEF_FIRE_TRACK, &d, (uint32_t)sizeof d); return d;
+}
+/* Plays from the first key on, instead of points; blends in and out within FwVolumetricFireDef::blend. Null:
+ * back to the fire's own motion (or its points). [world] */
+FW_API FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld*, FwVolumetricFireId id, const FwFireTrackDef* def);
+
+/* What burns where in a flame, as an artist paints it: over the radius (x, from the axis to 1.25 radii) and the
+ * height (y, base row first). Either texels or a cooked .fwprofile. */
+typedef struct FwFireProfileDef {
+    uint32_t structSize, flags; /* flags: 0 */
+    uint32_t width, height;     /* of texels, each [8, 512]; resampled to 64 x 128 */
+    const float* texels;        /* 2 each: K, [0, 3000]; soot, [0, 2]. Below 1000 K soot does not glow: K / 1000
+                                   is then how much clean gas burns (blue) */
+    const void* cooked;         /* then texels are not read */
+    uint64_t cookedSize;        /* bytes */
+} FwFireProfileDef;
+static inline FwFireProfileDef fwDefaultFireProfileDef(void) {
+    FwFireProfileDef d; fwInitDef(FW_DEF_FIRE_PROFILE, &d, (uint32_t)sizeof d); return d;
+}
+/* At most 23 at a time. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateFireProfile(FwWorld*, const FwFireProfileDef* def, FwFireProfileId* id);
+FW_API FwResult FW_CALL fwWorld_DestroyFireProfile(FwWorld*, FwFireProfileId id); /* refused while a fire uses it [world] */
+/* To .fwprofile bytes; buffer and size as in fwCookMesh. [any] */
+FW_API FwResult FW_CALL fwCookFireProfile(FwContext* context, const FwFireProfileDef* def, void* buffer, uint64_t* size);
+
+typedef enum FwFireColliderKind {
+    FW_COLLIDER_SPHERE = 0, FW_COLLIDER_CAPSULE = 1, FW_COLLIDER_BOX = 2, FW_COLLIDER_PLANE = 3,
+    FW_COLLIDER_HEIGHT_FIELD = 4, FW_COLLIDER_DISTANCE = 5, FW_COLLIDER_KIND_FORCE32 = 0x7fffffff
+} FwFireColliderKind;
+typedef struct FwFireColliderDef { /* what flames flow around, beside the world's blockers; cosmetic */
+    uint32_t structSize;
+    uint32_t kind;         /* FwFireColliderKind */
+    float position[3];     /* m, world: middle; one end of a capsule; a point of a plane; corner of a height field
+                              where x and z are lowest */
+    float end[3];          /* m, world: the other end of a capsule */
+    float normal[3];       /* of a plane, towards the free side; default 0,1,0 */
+    float halfSize[3];     /* m, of a box, > 0; default 0.5 */
+    float rotation[4];     /* of a box: unit quaternion x, y, z, w; default 0,0,0,1 */
+    float radius;          /* m, > 0: sphere, capsule; default 0.5 */
+    float cellSize;        /* m, > 0: between two heights; default 1 */
+    uint32_t columns, rows;/* heights along x and z, each [2, 4096] */
+    const float* heights;  /* m above position, row after row along x; for worlds whose up is 0,1,0. Copied */
+    /* Signed distance in m, and its unit normal, for FW_COLLIDER_DISTANCE. Called by the thread that steps or
+     * records the world, many times; it calls nothing of the world. What is not finite is far away. */
+    float (FW_CALL* distance)(void* distanceData, const float point[3], float normal[3]);
+    void* distanceData;
+} FwFireColliderDef;
+static inline FwFireColliderDef fwDefaultFireColliderDef(void) {
+    FwFireColliderDef d; fwInitDef(FW_DEF_FIRE_COLLIDER, &d, (uint32_t)sizeof d); return d;
+}
+/* At most 64 at a time. [world] */
+FW_API FwResult FW_CALL fwWorld_AddFireCollider(FwWorld*, const FwFireColliderDef* def, FwFireColliderId* id);
+/* Another shape or place, from the next frame on. A height field whose heights are null, with as many columns and
+ * rows as before, keeps them. [world] */
+FW_API FwResult FW_CALL fwWorld_SetFireCollider(FwWorld*, FwFireColliderId id, const FwFireColliderDef* def);
+FW_API FwResult FW_CALL fwWorld_RemoveFireCollider(FwWorld*, FwFireColliderId id); /* [world] */
+
+typedef struct FwFireAnswer {   /* of all volumetric fires at a point, as of the last frame */
+    uint32_t structSize;
+    uint32_t inside;            /* 1: within a flame, on the mean */
+    float temperature;          /* K of the gas there; 293 where no fire reaches */
+    float heatFlux;             /* W/m^2 on a small cold body there, by gas and radiation; walls do not shade it */
+    float gas[3];               /* m/s: how the fire's gas moves there, without the wind */
+    uint32_t reserved;
+    FwVolumetricFireId fire;    /* that heats it most; null: none does */
+} FwFireAnswer;
+/* At once, on every backend. [world] */
+FW_API FwResult FW_CALL fwWorld_AskVolumetricFires(FwWorld*, const float point[3], FwFireAnswer* answer);
+typedef struct FwFirePush {     /* on a ball that stands still */
+    uint32_t structSize;
+    float ignitionPower;        /* W into it */
+    float force[3];             /* N */
+    uint32_t reserved;
+} FwFirePush;
+/* radius: m, [0, 100]. [world] */
+FW_API FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld*, const float centre[3], float radius, FwFirePush* push);
 
 /* ---- running ---------------------------------------------------------------------------------------------- */
 

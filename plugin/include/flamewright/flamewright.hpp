@@ -57,6 +57,18 @@ template <>
     return fwDefaultVolumetricFireDef();
 }
 template <>
+[[nodiscard]] inline FwFireProfileDef def<FwFireProfileDef>() noexcept {
+    return fwDefaultFireProfileDef();
+}
+template <>
+[[nodiscard]] inline FwFireColliderDef def<FwFireColliderDef>() noexcept {
+    return fwDefaultFireColliderDef();
+}
+template <>
+[[nodiscard]] inline FwFireTrackDef def<FwFireTrackDef>() noexcept {
+    return fwDefaultFireTrackDef();
+}
+template <>
 [[nodiscard]] inline FwIgnitionDef def<FwIgnitionDef>() noexcept {
     return fwDefaultIgnitionDef();
 }
@@ -170,6 +182,8 @@ using Image = Owned<FwImageId, fwWorld_DestroyImage>;
 using Mesh = Owned<FwMeshId, fwWorld_DestroyMesh>;
 using BurnableMesh = Owned<FwBurnableMeshId, fwWorld_DestroyBurnableMesh>;
 using VolumetricFire = Owned<FwVolumetricFireId, fwWorld_DestroyVolumetricFire>;
+using FireProfile = Owned<FwFireProfileId, fwWorld_DestroyFireProfile>;
+using FireCollider = Owned<FwFireColliderId, fwWorld_RemoveFireCollider>;
 
 [[nodiscard]] inline Material createMaterial(const World& world, const FwMaterialDef& made) {
     FwMaterialId id{};
@@ -202,6 +216,20 @@ using VolumetricFire = Owned<FwVolumetricFireId, fwWorld_DestroyVolumetricFire>;
                                                          const FwVolumetricFireDef& made) {
     FwVolumetricFireId id{};
     (void)fwWorld_CreateVolumetricFire(world.get(), &made, &id);
+    return {world.get(), id};
+}
+
+[[nodiscard]] inline FireProfile createFireProfile(const World& world,
+                                                   const FwFireProfileDef& made) {
+    FwFireProfileId id{};
+    (void)fwWorld_CreateFireProfile(world.get(), &made, &id);
+    return {world.get(), id};
+}
+
+[[nodiscard]] inline FireCollider addFireCollider(const World& world,
+                                                  const FwFireColliderDef& made) {
+    FwFireColliderId id{};
+    (void)fwWorld_AddFireCollider(world.get(), &made, &id);
     return {world.get(), id};
 }
 

@@ -97,6 +97,8 @@ extern const DrawPass kVolumePass;
 // Where the view shows it, in so many slabs; false: nowhere.
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
                 VolumeDraw& out);
+// How many samples each of them is worth: the one place where a view decides it.
+void chooseVolumes(std::span<VolumeItem> items);
 // Farthest first.
 void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items);
 

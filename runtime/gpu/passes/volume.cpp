@@ -16,6 +16,9 @@ constexpr Use kUses[] = {
 
 constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
 constexpr uint32_t kMostSteps = 32;
+// So many flames, those that cover most of the view, get all their samples; the others a few,
+// which changes their grain and not their light.
+constexpr uint32_t kMarchedFlames = 32, kFewSteps = 10;
 // Samples this far apart, in diameters: closer shows no more but for less grain.
 constexpr float kSpacing = 0.06f;
 
@@ -96,6 +99,20 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
     out.mostSteps = kMostSteps;
     out.spacing = std::max(kSpacing * low.w, 1e-4f);
     return true;
+}
+
+void chooseVolumes(std::span<VolumeItem> items) {
+    if (items.size() <= kMarchedFlames) return;
+    const auto covers = [](const VolumeItem& item) {
+        const vec4& r = item.draw.rect;
+        return (r.z - r.x) * (r.w - r.y);
+    };
+    std::nth_element(items.begin(), items.begin() + kMarchedFlames, items.end(),
+                     [&](const VolumeItem& a, const VolumeItem& b) {
+                         const float x = covers(a), y = covers(b);
+                         return x != y ? x > y : a.flame < b.flame;
+                     });
+    for (VolumeItem& item : items.subspan(kMarchedFlames)) item.draw.mostSteps = kFewSteps;
 }
 
 void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items) {

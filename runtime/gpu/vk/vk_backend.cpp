@@ -57,9 +57,14 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
         if (!limits.looks.textures.empty())
             addImage(lookTextures, 512, 512, kLookTextureLayers, 10, VK_FORMAT_R8G8B8A8_UNORM,
                      limits.looks.textures, "look textures");
-        if (!limits.looks.profiles.empty())
-            addImage(profiles, kProfileWidth, kProfileHeight, kFirePresets, 1,
-                     VK_FORMAT_R16G16_SFLOAT, limits.looks.profiles, "fire profiles");
+        if (!limits.looks.profiles.empty()) {
+            // The host's come behind the presets; none of them is there yet.
+            std::pmr::vector<std::byte> layers(limits.looks.profiles.begin(),
+                                               limits.looks.profiles.end(), memory);
+            layers.resize(size_t(kFirePresets + kMaxFireProfiles) * kProfileBytes);
+            addImage(profiles, kProfileWidth, kProfileHeight, kFirePresets + kMaxFireProfiles, 1,
+                     VK_FORMAT_R16G16_SFLOAT, layers, "fire profiles");
+        }
         uploadRefineTable();
         if (!limits.looks.table.empty()) {
             PendingUpload& upload = stage(limits.looks.table.size_bytes(), "looks");

@@ -84,6 +84,7 @@ class VkBackend final : public Backend {
     void startBoundary(uint32_t slot, const float point[3], uint32_t tick) noexcept override;
     void setVertices(uint32_t slot, std::span<const float> positions,
                      std::span<const float> normals) noexcept override;
+    void setFireProfile(uint32_t slot, std::span<const uint32_t> texels) override;
     void createImage(uint32_t slot, uint32_t width, uint32_t height,
                      std::span<const std::byte> pixels) override;
     void destroyImage(uint32_t slot) noexcept override;

@@ -12,20 +12,24 @@ namespace {
 
 void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingUpload& upload) {
     auto barrier = typed<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
-    barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    barrier.srcAccessMask = barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
     barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = upload.image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, upload.mips, 0, upload.layers};
-    vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, upload.mips, upload.firstLayer,
+                                upload.layers};
+    // Draws of earlier frames may still look at a layer that gets other texels.
+    vk.CmdPipelineBarrier(commands,
+                          VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                           VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
     uint64_t at = 0;
     for (uint32_t layer = 0; layer < upload.layers; ++layer) {
         for (uint32_t mip = 0; mip < upload.mips; ++mip) {
             VkBufferImageCopy region{};
             region.bufferOffset = at;
-            region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, layer, 1};
+            region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, upload.firstLayer + layer,
+                                       1};
             region.imageExtent = {std::max(upload.width >> mip, 1u),
                                   std::max(upload.height >> mip, 1u), 1};
             vk.CmdCopyBufferToImage(commands, upload.staging.handle, upload.image,

@@ -3,8 +3,23 @@
 #include "shared/volume_flame.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace fw::gpu::vk {
+
+static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
+
+void VkBackend::setFireProfile(uint32_t slot, std::span<const uint32_t> texels) {
+    State& s = *state_;
+    if (!s.profiles.live) return;
+    PendingUpload& upload = s.stage(kProfileBytes, "fire profile");
+    std::memcpy(upload.staging.mapped, texels.data(), kProfileBytes);
+    upload.image = s.profiles.image.handle;
+    upload.width = kProfileWidth;
+    upload.height = kProfileHeight;
+    upload.mips = upload.layers = 1;
+    upload.firstLayer = kFirePresets + slot;
+}
 
 void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorder& recorder,
                    UploadWriter& writer) {
@@ -26,6 +41,7 @@ uint32_t VkBackend::State::orderVolumes(
         item.flame = i;
         if (volumeDraw(seen, volumes[i].low, volumes[i].high, slabs, item.draw)) ++count;
     }
+    chooseVolumes({out.data(), count});
     // By their middles: what overlaps in depth has no right order as a whole.
     const auto middle = [](const VolumeItem& item) {
         return item.draw.front + 0.5f * item.draw.deep * float(item.draw.slabs);

@@ -165,6 +165,7 @@ struct PendingUpload {
     uint32_t regionCount = 0;
     VkImage image = VK_NULL_HANDLE;  // instead of regions
     uint32_t width = 0, height = 0, mips = 0, layers = 0;
+    uint32_t firstLayer = 0;
 };
 
 // Tiles of a destroyed object: list entries may still name them. Free once every list was walked.

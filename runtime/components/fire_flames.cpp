@@ -1,0 +1,261 @@
+#include "components/fire_flames.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::components {
+namespace {
+
+using gpu::vec3;
+using gpu::vec4;
+
+constexpr float kOut = 1e-4f;              // kW below which nothing is left to see
+constexpr size_t kNearColliders = 16;      // that one flame minds
+constexpr float kFluxMost = 200000.0f;     // W/m^2
+constexpr float kLumensPerWatt = 0.4f;     // as FlameLight::flux counts
+constexpr float kFullCircle = 12.566371f;  // sr of a sphere
+
+vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
+
+// Two directions across `up`.
+void across(vec3 up, vec3& x, vec3& z) noexcept {
+    const vec3 other = std::abs(up.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 0, 1);
+    z = glm::normalize(glm::cross(other, up));
+    x = glm::cross(up, z);
+}
+
+float aloneHeight(float power, float diameter) noexcept {
+    return std::max(volume::flameHeight(power, diameter), 0.5f * diameter);
+}
+
+struct Near {
+    std::array<volume::Collider, kNearColliders> list;
+    size_t count = 0;
+};
+
+// Those that may be within the flame's bounds. A height field tells heights, not distances: it is
+// near where the flame is over it.
+void findNear(const FireFlame& f, std::span<const volume::Collider> all, float seconds,
+              Near& near) noexcept {
+    near.count = 0;
+    if (f.fire->flags & FW_FIRE_NO_COLLISION) return;
+    const volume::Bounds& b = f.flame.bounds;
+    const vec3 middle = 0.5f * (b.low + b.high);
+    const float reach = glm::length(0.5f * (b.high - b.low)) + 0.2f + f.flame.size.diameter +
+                        glm::length(f.flame.motion.base - f.flame.def.position) + 10.0f * seconds;
+    for (const volume::Collider& c : all) {
+        if (near.count == near.list.size()) return;
+        if (c.kind != volume::ColliderKind::HeightField &&
+            volume::surfaceOf(c, middle).distance > reach)
+            continue;
+        near.list[near.count++] = c;
+    }
+}
+
+const gpu::FlameNode& nodeAt(const volume::Flame& f, float s) noexcept {
+    const float step = std::max(f.nodes[1].along.w - f.nodes[0].along.w, 1e-6f);
+    return f.nodes[size_t(std::clamp(s / step + 0.5f, 0.0f, float(f.nodes.size() - 1)))];
+}
+
+}  // namespace
+
+size_t FireFlames::findRoom(size_t more) {
+    const size_t wanted = std::min<size_t>(now_.size() + more, gpu::kMaxVolumeFlames);
+    size_t room = now_.capacity();
+    if (room < wanted)
+        room = std::min<size_t>(std::max(wanted, room + room / 2), gpu::kMaxVolumeFlames);
+    now_.reserve(room);
+    next_.reserve(room);
+    others_.reserve(room);
+    met_.reserve(room);
+    return room;
+}
+
+void FireFlames::drop(const VolumetricFire& fire) noexcept {
+    std::erase_if(now_, [&](const FireFlame& f) { return f.fire == &fire; });
+}
+
+// What is asked of a flame by its fire, and the height that a line gives it.
+void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
+    const VolumetricFire& fire = *f.fire;
+    const volume::Flamelet& part = fire.parts[f.part];
+    volume::Flame& flame = f.flame;
+    volume::FlameDef& def = flame.def;
+    vec3 x, z;
+    def.up = vecOf(air.up);
+    across(def.up, x, z);
+    def.position = vecOf(fire.position) + x * part.x + z * part.z;
+    def.power = part.power;
+    def.diameter = part.diameter;
+    def.look = fire.look;
+    def.blend = fire.blend;
+    def.profile = fire.profile;
+    def.weight = 1.0f;
+    def.driver = volume::FlameDriver::Live;
+    if (fire.tracked()) {
+        def.driver = volume::FlameDriver::Track;
+        def.weight = fire.trackWeight;
+        if (f.trackVersion != fire.trackVersion) flame.trackTime = double(fire.track.times[0]);
+    } else if (fire.pointCount > 0) {
+        def.driver = volume::FlameDriver::Host;
+        def.position = fire.points[0].position;
+        def.diameter = std::max(2 * fire.points[0].radius, 0.002f);
+    }
+    f.trackVersion = fire.trackVersion;
+}
+
+void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
+    fire.nextState = {};
+    fire.nextState.lit = true;
+    uint32_t there = 0;  // bit per part
+    for (FireFlame& f : next_) {
+        if (f.fire != &fire) continue;
+        if (f.split != fire.split) {
+            f.leaving = true;
+            f.flame.def.power = 0;
+            continue;
+        }
+        there |= 1u << f.part;
+        place(f, air);
+    }
+    if (fire.power <= 0) return;
+    for (uint32_t i = 0; i < fire.partCount; ++i) {
+        if (((there >> i) & 1u) || next_.size() == next_.capacity() ||
+            next_.size() >= gpu::kMaxVolumeFlames)
+            continue;
+        FireFlame& f = next_.emplace_back();
+        f.fire = &fire;
+        f.part = i;
+        f.split = fire.split;
+        f.flame.def.seed = fire.seed + 0x632BE5ABu * i;
+        place(f, air);
+        const volume::FlameDef wanted = f.flame.def;
+        volume::FlameDef first = wanted;
+        if (fire.state.lit) first.power = 0;  // it catches; a new fire has burnt for long
+        volume::FlameAir still;
+        still.wind = vecOf(air.wind) * fire.windResponse;
+        volume::startFlame(f.flame, first, still);
+        f.flame.def = wanted;
+        if (fire.tracked()) f.flame.trackTime = double(fire.track.times[0]);
+    }
+}
+
+void FireFlames::advance(const FireAir& air, float seconds) noexcept {
+    const vec3 up = vecOf(air.up);
+    others_.clear();
+    for (FireFlame& f : next_) {
+        volume::Flame& flame = f.flame;
+        const bool led = flame.def.driver == volume::FlameDriver::Host;
+        if (led) {
+            flame.given = f.fire->points;
+            flame.givenCount = f.fire->pointCount;
+        }
+        const float alone = aloneHeight(flame.power, flame.def.diameter);
+        flame.def.height = 0;
+        if (flame.givenCount > 0 && flame.tracked > 0) {  // as high as its line is long
+            volume::Curve line;
+            line.set(std::span(flame.given).first(flame.givenCount), up);
+            flame.def.height =
+                std::clamp(glm::mix(alone, line.length(), flame.tracked), 1e-3f, 200.0f);
+        }
+        others_.push_back(
+            {flame.def.position, flame.power * (1.0f - flame.tracked), flame.def.diameter, alone});
+    }
+    met_.resize(others_.size());
+    volume::meetNeighbours(others_, up, met_);
+    for (size_t i = 0; i < next_.size(); ++i) {
+        FireFlame& f = next_[i];
+        Near near;
+        findNear(f, air.colliders, seconds, near);
+        volume::FlameAir around;
+        around.wind = vecOf(air.wind) * f.fire->windResponse;
+        around.neighbours = met_[i];
+        around.neighbours.height *= 1.0f - f.flame.tracked;
+        around.colliders = {near.list.data(), near.count};
+        if (f.fire->tracked()) around.track = &f.fire->track;
+        volume::advanceFlame(f.flame, around, double(seconds));
+    }
+    std::erase_if(
+        next_, [](const FireFlame& f) { return f.flame.power < kOut && f.flame.def.power < kOut; });
+    tell();
+}
+
+void FireFlames::tell() noexcept {
+    for (const FireFlame& f : next_) {
+        FireState& s = f.fire->nextState;
+        const volume::Flame& flame = f.flame;
+        const float weight = std::max(flame.light.flux, 1e-12f);
+        if (s.flames == 0) {
+            s.bounds = flame.bounds;
+            s.light = s.colour = s.contact = vec3(0.0f);
+        } else {
+            s.bounds.low = glm::min(s.bounds.low, flame.bounds.low);
+            s.bounds.high = glm::max(s.bounds.high, flame.bounds.high);
+        }
+        if (flame.size.height > s.height || s.flames == 0) {
+            s.height = flame.size.height;
+            s.tip = vec3(nodeAt(flame, s.height).centre);
+            s.pulseRate = volume::puffFrequency(flame.size.diameter);
+        }
+        ++s.flames;
+        s.power += flame.power;
+        s.light += weight * flame.light.position;
+        s.colour += weight * flame.light.colour;
+        s.intensity += weight;
+        s.contactPower += flame.motion.contactPower;
+        s.contact += flame.motion.contactPower * flame.motion.contact;
+    }
+    for (const FireFlame& f : next_) {
+        FireState& s = f.fire->nextState;
+        if (s.mean) continue;
+        s.mean = true;
+        s.light /= s.intensity;
+        s.colour /= s.intensity;
+        s.intensity /= kLumensPerWatt * kFullCircle;
+        if (s.contactPower > 0) s.contact /= s.contactPower;
+    }
+}
+
+uint32_t FireFlames::write(std::span<gpu::VolumeFlame> out) const noexcept {
+    uint32_t count = 0;
+    for (const FireFlame& f : next_) {
+        if ((f.fire->flags & FW_FIRE_HIDDEN) || count == out.size()) continue;
+        out[count].record = f.flame.record;
+        std::copy(f.flame.nodes.begin(), f.flame.nodes.end(), std::begin(out[count].nodes));
+        ++count;
+    }
+    return count;
+}
+
+FireAnswer askFires(std::span<const FireFlame> flames,
+                    std::span<const core::Owned<volume::Profile>> profiles, vec3 point) noexcept {
+    FireAnswer all;
+    float most = 0;
+    for (const FireFlame& f : flames) {
+        const volume::FlameAnswer a = volume::askFlame(f.flame, *profiles[f.fire->profile], point);
+        all.air.inside |= a.inside;
+        all.air.kelvin = std::max(all.air.kelvin, a.kelvin);
+        all.air.heatFlux = std::min(all.air.heatFlux + a.heatFlux, kFluxMost);
+        all.air.gas += a.gas;
+        if (a.heatFlux > most) {
+            most = a.heatFlux;
+            all.fire = f.fire;
+        }
+    }
+    return all;
+}
+
+volume::FlamePush pushOfFires(std::span<const FireFlame> flames,
+                              std::span<const core::Owned<volume::Profile>> profiles, vec3 centre,
+                              float radius) noexcept {
+    volume::FlamePush all;
+    for (const FireFlame& f : flames) {
+        const volume::FlamePush p =
+            volume::pushOf(f.flame, *profiles[f.fire->profile], centre, radius);
+        all.force += p.force;
+        all.ignition += p.ignition;
+    }
+    return all;
+}
+
+}  // namespace fw::components

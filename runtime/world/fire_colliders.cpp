@@ -1,0 +1,147 @@
+// What flames of volumetric fires flow around: the host's colliders, and the world's blockers as
+// boxes. Looks alone.
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+namespace {
+
+using components::checkValue;
+using components::checkValues;
+
+constexpr uint32_t kMaxFireColliders = 64;
+
+volume::vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
+
+float askHost(void* user, const float point[3], float normal[3]) noexcept {
+    const auto& entry = *static_cast<const FireColliderEntry*>(user);
+    return entry.distance(entry.distanceData, point, normal);
+}
+
+// Rows of a rotation to a quaternion.
+volume::vec4 quaternion(const float r[3][3]) noexcept {
+    const float w = std::sqrt(std::max(1 + r[0][0] + r[1][1] + r[2][2], 0.0f)) * 0.5f;
+    const auto part = [](float sum, float sign) {
+        return std::copysign(std::sqrt(std::max(sum, 0.0f)) * 0.5f, sign);
+    };
+    volume::vec4 q(part(1 + r[0][0] - r[1][1] - r[2][2], r[2][1] - r[1][2]),
+                   part(1 - r[0][0] + r[1][1] - r[2][2], r[0][2] - r[2][0]),
+                   part(1 - r[0][0] - r[1][1] + r[2][2], r[1][0] - r[0][1]), w);
+    if (w < 1e-3f) {  // half a turn: signs from products instead
+        const int most = std::abs(q.x) >= std::abs(q.y) && std::abs(q.x) >= std::abs(q.z) ? 0
+                         : std::abs(q.y) >= std::abs(q.z)                                 ? 1
+                                                                                          : 2;
+        for (int i = 0; i < 3; ++i)
+            q[i] = i == most ? std::abs(q[i]) : std::copysign(q[i], r[i][most] + r[most][i]);
+    }
+    return q / std::max(glm::length(q), 1e-6f);
+}
+
+// Throws, and then `entry` is as it was.
+void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
+    volume::Collider shape;
+    if (def.kind > FW_COLLIDER_DISTANCE)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwFireColliderDef::kind is %u; the limits are [0, %u].", def.kind,
+                   uint32_t(FW_COLLIDER_DISTANCE));
+    checkValues(def.position, 3, "FwFireColliderDef::position", -1e6f, 1e6f);
+    shape.kind = volume::ColliderKind(def.kind);
+    shape.place = vecOf(def.position);
+    bool keep = false;
+    switch (shape.kind) {
+        case volume::ColliderKind::Capsule:
+            checkValues(def.end, 3, "FwFireColliderDef::end", -1e6f, 1e6f);
+            shape.extent = vecOf(def.end);
+            [[fallthrough]];
+        case volume::ColliderKind::Sphere:
+            checkValue(def.radius, "FwFireColliderDef::radius", 1e-4f, 1e5f);
+            shape.radius = def.radius;
+            break;
+        case volume::ColliderKind::Box:
+            checkValues(def.halfSize, 3, "FwFireColliderDef::halfSize", 1e-4f, 1e5f);
+            checkValues(def.rotation, 4, "FwFireColliderDef::rotation", -1.01f, 1.01f);
+            shape.extent = vecOf(def.halfSize);
+            for (int i = 0; i < 4; ++i) shape.rotation[i] = def.rotation[i];
+            break;
+        case volume::ColliderKind::Plane:
+            checkValues(def.normal, 3, "FwFireColliderDef::normal", -1e6f, 1e6f);
+            shape.extent = vecOf(def.normal);
+            break;
+        case volume::ColliderKind::HeightField: {
+            checkValue(def.cellSize, "FwFireColliderDef::cellSize", 1e-3f, 1e5f);
+            for (const uint32_t side : {def.columns, def.rows})
+                if (side < 2 || side > 4096)
+                    core::fail(FW_ERROR_INVALID_ARGUMENT,
+                               "FwFireColliderDef has %u columns and %u rows; the limits are "
+                               "[2, 4096].",
+                               def.columns, def.rows);
+            shape.radius = def.cellSize;
+            shape.columns = def.columns;
+            shape.rows = def.rows;
+            keep = !def.heights && entry.heights.size() == size_t(def.columns) * def.rows &&
+                   entry.shape.columns == def.columns;
+            if (!def.heights && !keep)
+                core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireColliderDef::heights is null.");
+            break;
+        }
+        case volume::ColliderKind::Callback:
+            if (!def.distance)
+                core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireColliderDef::distance is null.");
+            shape.distance = &askHost;
+            shape.user = &entry;
+            break;
+    }
+    if (shape.kind != volume::ColliderKind::HeightField) volume::checkCollider(shape);
+    std::pmr::vector<float> heights(entry.heights.get_allocator());
+    if (shape.kind == volume::ColliderKind::HeightField && !keep) {
+        const size_t count = size_t(def.columns) * def.rows;
+        for (size_t i = 0; i < count; ++i)
+            if (!(std::abs(def.heights[i]) <= 1e6f))
+                core::fail(FW_ERROR_INVALID_ARGUMENT,
+                           "FwFireColliderDef::heights[%zu] is %g; the limits are [-1e6, 1e6].", i,
+                           double(def.heights[i]));
+        heights.assign(def.heights, def.heights + count);
+    }
+    if (!keep) entry.heights.swap(heights);
+    entry.shape = shape;
+    entry.shape.heights = entry.heights.data();
+    entry.distance = def.distance;
+    entry.distanceData = def.distanceData;
+}
+
+}  // namespace
+
+FwFireColliderId World::addFireCollider(const FwFireColliderDef& def) {
+    if (fireColliders_.live() >= kMaxFireColliders)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire colliders are in place; the limit is %u.",
+                   fireColliders_.live(), kMaxFireColliders);
+    auto entry = core::Owned<FireColliderEntry>::make(memory_, memory_);
+    setShape(def, *entry);
+    return fireColliders_.create(std::move(entry));
+}
+
+void World::setFireCollider(FwFireColliderId id, const FwFireColliderDef& def) {
+    setShape(def, *fireColliders_.get(id));
+}
+
+void World::removeFireCollider(FwFireColliderId id) { fireColliders_.destroy(id); }
+
+void World::listFireColliders() noexcept {
+    fireShapes_.clear();  // room was found with the first fire
+    for (uint32_t i = 0; i < fireColliders_.slotCount(); ++i)
+        if (const auto* entry = fireColliders_.at(i)) fireShapes_.push_back((*entry)->shape);
+    for (uint32_t i = 0; i < blockers_.slotCount(); ++i) {
+        const BlockerEntry* entry = blockers_.at(i);
+        if (!entry) continue;
+        volume::Collider box;
+        box.kind = volume::ColliderKind::Box;
+        box.place = vecOf(entry->pose.translation);
+        box.extent = vecOf(entry->halfSize) * entry->pose.scale;
+        box.rotation = quaternion(entry->pose.rotation);
+        fireShapes_.push_back(box);
+    }
+}
+
+}  // namespace fw::world

@@ -1,0 +1,142 @@
+// What volumetric fires light: burnable meshes that are within the flame for as long as their
+// material takes to catch. By the host's numbers alone, not by the flames that are seen: the same
+// on every backend, and no pixel of it can change what burns.
+#include "shared/exchange.h"
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+namespace {
+
+using components::VolumetricFire;
+
+constexpr double kFlux = 35000;        // W/m^2 that a flame gives to what it covers
+constexpr double kAmbient = 293;       // K
+constexpr uint64_t kAgain = 3 * 4096;  // ticks until what it covers is lit once more
+constexpr uint32_t kAxisBalls = 4;     // along a flame
+constexpr float kLeastReach = 0.02f;   // m, of a ball
+
+struct Ball {
+    float place[3], radius;
+};
+
+// Sums, products and roots of single numbers: every machine rounds them alike.
+uint32_t ballsOf(const VolumetricFire& fire, const float up[3], const float wind[3],
+                 std::array<Ball, volume::kMaxControlPoints>& out) noexcept {
+    if (fire.pointCount > 0) {
+        for (uint32_t i = 0; i < fire.pointCount; ++i) {
+            const volume::ControlPoint& p = fire.points[i];
+            out[i] = {{p.position.x, p.position.y, p.position.z}, std::max(p.radius, kLeastReach)};
+        }
+        return fire.pointCount;
+    }
+    const uint32_t scale = gpu::power04(uint32_t(fire.power * 1000.0f));  // of its W, Q8
+    const float height =
+        float(gpu::flameHeight(scale, uint32_t(fire.diameter * 1000.0f))) / 1000.0f;
+    // 1.93 m/s of gas at 1 kW, whose W^0.4 is 15.85.
+    const float rise = 1.93f * std::sqrt(float(scale) / (256.0f * 15.85f));
+    float along[3], length = 0;
+    for (int i = 0; i < 3; ++i) {
+        along[i] = up[i] * std::max(rise, 0.05f) + wind[i] * fire.windResponse;
+        length += along[i] * along[i];
+    }
+    length = std::max(std::sqrt(length), 1e-3f);
+    const float radius = std::max({0.5f * fire.diameter, 0.125f * height, kLeastReach});
+    for (uint32_t k = 0; k < kAxisBalls; ++k) {
+        const float at = height * (float(k) + 0.5f) / float(kAxisBalls);
+        for (int i = 0; i < 3; ++i) out[k].place[i] = fire.position[i] + along[i] / length * at;
+        out[k].radius = radius;
+    }
+    return kAxisBalls;
+}
+
+// Piloted ignition: thick or thin, whichever is sooner.
+uint64_t ticksToCatch(const FwMaterialDef& m, float moisture, float pace) noexcept {
+    const double rise = std::max(double(m.ignitionTemperature) - kAmbient, 1.0) / kFlux;
+    const double store = double(m.density) * double(m.specificHeat);
+    const double thick = 0.785398 * double(m.conductivity) * store * rise * rise;
+    const double thin = store * double(m.thickness) * rise;
+    double seconds = m.thickness > 0 ? std::min(thick, thin) : thick;
+    seconds *= (1.0 + 2.0 * double(moisture)) / double(pace);
+    return uint64_t(std::clamp(seconds, 0.0, 3600.0) * double(gpu::kTicksPerSecond));
+}
+
+bool moved(const float a[3], const float b[3], float far) noexcept {
+    float sum = 0;
+    for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sum > far * far;
+}
+
+}  // namespace
+
+// Before the steps of a frame are planned. A frame that fails leaves times of contact behind that
+// the next one finds, no more.
+void World::touchByFires(uint64_t end) {
+    const uint64_t first =
+        (clock_.tick + gpu::kExchangeTicks - 1) / gpu::kExchangeTicks * gpu::kExchangeTicks;
+    for (uint64_t now = first; now < end; now += gpu::kExchangeTicks)
+        for (uint32_t i = 0; i < fires_.slotCount(); ++i)
+            if (auto* fire = fires_.at(i); fire && ((*fire)->data.flags & FW_FIRE_IGNITES))
+                touchByFire(**fire, uint32_t(now));
+}
+
+void World::touchByFire(Fire& fire, uint32_t now) {
+    for (FireTouch& touch : fire.touches) touch.seen = false;
+    std::array<Ball, volume::kMaxControlPoints> balls;
+    const uint32_t count = fire.data.power > 0 ? ballsOf(fire.data, def_.up, wind_, balls) : 0;
+    for (uint32_t slot = 0; count > 0 && slot < objects_.slotCount(); ++slot) {
+        auto* owned = objects_.at(slot);
+        if (!owned || (*owned)->texels == 0) continue;
+        Object& object = **owned;
+        const components::Pose& pose = object.data.pose;
+        const float shrink =
+            pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+        uint32_t texel = mesh::kNone;
+        float radius = 0;
+        for (uint32_t k = 0; k < count && texel == mesh::kNone; ++k) {
+            float point[3];
+            components::toObject(pose, balls[k].place, point);
+            radius = balls[k].radius;
+            texel = nearTexel(object, point, radius / shrink);
+        }
+        if (texel == mesh::kNone) continue;
+        const uint32_t material = texelMaterial(object, texel);
+        if (!components::burns(object.data, material)) continue;
+        FireTouch* touch = nullptr;
+        for (FireTouch& t : fire.touches)
+            if (t.object.index1 == object.id.index1 && t.object.generation == object.id.generation)
+                touch = &t;
+        for (FireTouch& t : fire.touches)
+            if (!touch && t.object.index1 == 0) touch = &t;
+        if (!touch) continue;  // its flame is among more than it can mind
+        touch->seen = true;
+        const bool same = touch->object.index1 != 0;
+        if (!same || moved(touch->fireAt, balls[0].place, 0.5f * radius) ||
+            moved(touch->objectAt, pose.translation, 0.5f * radius)) {
+            touch->object = object.id;
+            touch->since = now;
+            touch->lit = false;
+            std::copy_n(balls[0].place, 3, touch->fireAt);
+            std::copy_n(pose.translation, 3, touch->objectAt);
+        }
+        const FwMaterialDef& of = object.data.materials[material];
+        uint64_t wait = ticksToCatch(of, of.moisture + object.data.moisture, def_.paceFactor);
+        if (touch->lit) wait = std::max(wait, kAgain);
+        if (now - touch->since < wait) continue;
+        FwIgnitionDef def{};
+        def.kind = FW_IGNITE;
+        for (uint32_t k = 0; k < count; ++k) {
+            std::copy_n(balls[k].place, 3, def.position);
+            def.radius = balls[k].radius;
+            (void)igniteObject(object, def, now);
+        }
+        touch->lit = true;
+        touch->since = now;
+    }
+    for (FireTouch& touch : fire.touches)
+        if (!touch.seen) touch.object = {};
+}
+
+}  // namespace fw::world
