@@ -36,28 +36,32 @@ void main() {
         // Charring stiffens what held its shape only loosely.
         float stiff = mix(bend, max(bend, 0.9), charred);
 
-        vec3 turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0), normal = up;
-        uint charreds = 0u, masks = 0u, links = 0u, share = 0u, nearShare = 0u;
-        uint far = 0u, turns = (facts.y & kNodeFarHeard) != 0u ? 2u : 1u;
-        do {  // the neighbours, then those two steps away
-            uint ringAt = at + 1u + 4u * far;
-            uvec4 ring[2] = uvec4[2](deformNodes[ringAt], deformNodes[ringAt + 1u]);
-            uvec4 lengths = deformNodes[ringAt + 2u];
-            vec3 sum = vec3(0.0);
-            float squares = 0.0, count = 0.0;
-            FW_UNROLL for (uint k = 0u; k < kDeformRing; ++k) {
-                vec2 pair = unpackHalf2x16(lengths[k / 2u]);
-                float rest = (k & 1u) == 0u ? pair.x : pair.y;
-                uint other = ring[k / 4u][k & 3u];
+        vec3 turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0), sum = vec3(0.0), nearSum = vec3(0.0);
+        vec2 squares = vec2(0.0), nearSquares = vec2(0.0);  // of rest lengths, and how many
+        float rise = 0.0, across = 0.0;  // of arms
+        uint charreds = 0u, masks = 0u, links = 0u, way = push.parity >> 1u;
+        uint turn = 0u, turns = nodeTurns(facts.y), all = turns + nodeArms(facts.y);
+        do {  // the neighbours, and arms at last
+            bool arms = turn == turns;
+            uvec4 two = deformNodes[at + (arms ? kNodeArms + way : kNodeNear + turn)];
+            nearSum = arms ? sum : nearSum;
+            nearSquares = arms ? squares : nearSquares;
+            sum = arms ? vec3(0.0) : sum;
+            squares = arms ? vec2(0.0) : squares;
+            rise = uintBitsToFloat(two.w);
+            float ends[2];
+            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
+                uint k = (arms ? 8u : turn * kDeformLinks) + i, other = two[i];
+                float rest = unpackHalf2x16(two.z)[i];
                 uvec4 there = soft[(softBase + (other & kDeformNode)) * kSoftQuads + item.parity];
                 vec3 arm = uintBitsToFloat(there.xyz) - x;
                 bool holds = rest > 0.0 && linkHolds(burnt, burntOf(there.w), other >> 24u) &&
-                             (far == 0u || dot(arm, arm) <= 1.69 * rest * rest);
-                links |= holds ? 1u << (k + 8u * far) : 0u;
+                             (!arms || dot(arm, arm) <= kArmTears * kArmTears * rest * rest);
+                links |= holds ? 1u << k : 0u;
                 sum += holds ? arm : vec3(0.0);
-                squares += holds ? rest * rest : 0.0;
-                count += holds ? 1.0 : 0.0;
-                if (far != 0u) continue;
+                squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
+                ends[i] = float(charredOf(there.w)) / kCharredSteps;
+                if (arms) continue;
                 charreds |= charredOf(there.w) << (4u * k);
                 masks |= pinnedOf(there.w) << (24u + k);
                 reach = holds ? min(reach, reachOf(there.w) + rest) : reach;
@@ -65,30 +69,34 @@ void main() {
                 if (k == 0u) first = arm;
                 before = arm;
             }
-            if (far == 0u) {
-                if ((facts.y & kNodeClosed) != 0u) turned += cross(before, first);
-                float size = length(turned);
-                normal = size > 1e-18 ? turned / size : up;
-                curl *= curlSide(normal, up) * scale * charred;
-            }
-            float mean = 1.0 / max(count, 1.0);
-            float rise = (far == 0u ? 1.0 : 4.0) * uintBitsToFloat(facts.z) +
-                         curlRise(curl, squares * mean);
-            bool even = (facts.y & (far == 0u ? kNodeEven : kNodeFarEven)) != 0u;
-            bool whole = (facts.y & kNodeClosed) != 0u && (even || far == 0u) &&
-                         count == float(facts.y >> kNodeRingShift & 15u);
-            vec3 b = bendOf(sum * mean, normal, rise, count, stiff, even);
-            nearShare = share;
-            share = packShare(whole ? b * (mean * kBendUnit) : vec3(0.0));
-        } while (++far < turns);
-        // What the last turn found is the far one's, if there was one.
-        uint farShare = turns == 2u ? share : 0u;
-        nearShare = turns == 2u ? nearShare : share;
+            across = armCurl(ends[0], ends[1]);
+        } while (++turn < all);
+        bool reaches = all != turns;
+        nearSum = reaches ? nearSum : sum;
+        nearSquares = reaches ? nearSquares : squares;
+
+        if ((facts.y & kNodeClosed) != 0u) turned += cross(before, first);
+        float size = length(turned);
+        vec3 normal = size > 1e-18 ? turned / size : up;
+        curl *= curlSide(normal, up) * scale * charred;
+        float count = nearSquares.y, mean = 1.0 / max(count, 1.0);
+        bool whole = (facts.y & kNodeClosed) != 0u && count == float(facts.y >> kNodeRingShift & 15u);
+        vec3 b = bendOf(nearSum * mean, normal,
+                        uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
+                        stiff * kBendRelax, (facts.y & kNodeEven) != 0u);
+        uint nearShare = packShare(whole ? b * (mean * kBendUnit) : vec3(0.0));
+        b = bendOf(sum * 0.5, normal, rise + kArmCurls * across * curlRise(curl, squares.x * 0.5), 2.0,
+                   armFirm(stiff, charred, across),
+                   (facts.y & kNodeArmsEven << way) != 0u);
+        uint armShare = packShare(reaches && squares.y == 2.0 ? b * (0.5 * kBendUnit) : vec3(0.0));
         soft[own + kSoftSeen] = uvec4(self.xyz, nearShare);
-        if (pinnedOf(self.w) != 0u) reach = 0.0;
-        uint known = packHalf2x16(vec2(min(reach, kReachNone), 0.0)) & 0xFFFFu;
+        float was = reachOf(self.w), found = min(reach, kReachNone);
+        uint knew = self.w & kReachKnown;
+        reach = pinnedOf(self.w) != 0u ? 0.0 : reachNext(found, was, knew != 0u);
+        uint known = (packHalf2x16(vec2(reach, 0.0)) & 0x7FFFu) |
+                     (reachKnown(found, was) ? kReachKnown : knew);
         soft[own + kSoftOwn] = uvec4(packBent(normal, links), charreds,
-                                     known | (self.w & 0xFF0000u) | masks, farShare);
+                                     known | (self.w & 0xFF0000u) | masks, armShare);
         number += 64u;
     } while (number < last);
 }

@@ -22,7 +22,7 @@ void main() {
     if (number >= last) return;
     do {
         uint at = (sizes.x + number) * kDeformNodeQuads;
-        uvec4 facts = deformNodes[at], rest = deformNodes[at + 4u];
+        uvec4 facts = deformNodes[at], rest = deformNodes[at + kNodeRest];
         uvec2 material = material0, holes = holes0;
         if ((facts.y & 7u) != 0u) {
             uint materialAt = item.object + 4u + (facts.y & 7u) * 2u;
@@ -32,7 +32,7 @@ void main() {
 
         float sum = 0.0, known = 0.0;
         FW_UNROLL for (uint q = 0u; q < kDeformTexels / 4u; ++q) {
-            uvec4 texels = deformNodes[at + 8u + q];
+            uvec4 texels = deformNodes[at + kNodeTexels + q];
             FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
                 bool there = texels[k] != kNoneTexel;
                 uint t = state[bases.y + (there ? texels[k] : 0u)];
@@ -53,7 +53,7 @@ void main() {
         vec3 place = uintBitsToFloat(rest.xyz);
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
         if (!moves) {
-            vec4 out_ = uintBitsToFloat(deformNodes[at + 12u]);
+            vec4 out_ = uintBitsToFloat(deformNodes[at + kNodeOut]);
             place += out_.xyz * recession(burnt, depth, item.crosses ? 1e9 : out_.w);
         }
         // Places of others are the solver's: here it learns what burnt, and at first where things rest.
@@ -73,7 +73,7 @@ void main() {
                 }
             }
             if (reach == 0.0 && burntOf(packFacts(reach, burnt)) > kPinBurns) reach = kReachNone;
-            before.w = packFacts(reach, burnt);
+            before.w = packFacts(reach, burnt) | (item.reset ? 0u : before.w & kReachKnown);
             soft[own + item.parity] = before;
             if (!item.reset) place = shown[vertex].xyz;
             // What the springs are told of a frame, in equal parts for its steps.

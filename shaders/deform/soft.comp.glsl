@@ -43,27 +43,25 @@ void main() {
         float shrunk = shrink * 0.5 / kCharredSteps, mine = floor(charred * kCharredSteps + 0.5);
 
         vec3 links = vec3(0.0);
-        // Who bends far has as many neighbours there as here.
-        vec3 bending = (shareOf(seen.w) + shareOf(bent.w)) * nearCount(bent.x);
-        uint far = 0u, turns = (facts.y & kNodeFarHeard) != 0u ? 2u : 1u;
-        do {  // the neighbours, then those two steps away
-            uint ringAt = at + 1u + 4u * far;
-            uvec4 ring[2] = uvec4[2](deformNodes[ringAt], deformNodes[ringAt + 1u]);
-            uvec4 lengths = deformNodes[ringAt + 2u];
-            FW_UNROLL for (uint k = 0u; k < kDeformRing; ++k) {
-                bool holds = (bent.x >> (k + 8u * far) & 1u) != 0u;
-                uint other = ring[k / 4u][k & 3u] & kDeformNode;
-                uvec4 there = soft[(softBase + other) * kSoftQuads + kSoftSeen + far];
+        vec3 bending = shareOf(seen.w) * nearCount(bent.x) + shareOf(bent.w) * 2.0;
+        uint turn = 0u, turns = nodeTurns(facts.y), all = turns + nodeArms(facts.y);
+        do {  // the neighbours, and arms at last
+            bool arms = turn == turns;
+            uvec4 two = deformNodes[at + (arms ? kNodeArms + (push.parity >> 1u) : kNodeNear + turn)];
+            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
+                uint k = (arms ? 8u : turn * kDeformLinks) + i;
+                bool holds = (bent.x >> k & 1u) != 0u;
+                uint from = (softBase + (two[i] & kDeformNode)) * kSoftQuads;
+                uvec4 there = soft[from + (arms ? kSoftOwn : kSoftSeen)];
                 bending -= holds ? shareOf(there.w) : vec3(0.0);
-                if (far != 0u) continue;
-                vec2 pair = unpackHalf2x16(lengths[k / 2u]);
+                if (arms) continue;
                 float theirs = float(bent.y >> (4u * k) & 15u);
-                float wanted = ((k & 1u) == 0u ? pair.x : pair.y) * (1.0 - shrunk * (mine + theirs));
+                float wanted = unpackHalf2x16(two.z)[i] * (1.0 - shrunk * (mine + theirs));
                 vec3 p = linkPush(x, uintBitsToFloat(there.xyz), wanted,
                                   (bent.z >> (24u + k) & 1u) != 0u ? 1.0 : 0.5);
                 links += holds ? p : vec3(0.0);
             }
-        } while (++far < turns);
+        } while (++turn < all);
         uint shownAt = (bases.x + vertex) * kShownQuads;
         vec3 before = shown[shownAt].xyz;
         vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
@@ -99,10 +97,10 @@ void main() {
         velocity -= up * (9.81 / scale * push.step);
 
         vec3 next = moved + velocity * push.step;
-        if (pinned) moved = next = uintBitsToFloat(deformNodes[at + 4u].xyz);
-        shown[shownAt] = vec4(moved, 0.0);
+        if (pinned) moved = next = x;  // where it has been from the first
+        shown[shownAt].xyz = moved;
         soft[own + (item.parity ^ 1u)] =
-            uvec4(floatBitsToUint(next), packFacts(reach, burnt));
+            uvec4(floatBitsToUint(next), packFacts(reach, burnt) | (bent.z & kReachKnown));
         number += 64u;
     } while (number < last);
 }

@@ -23,29 +23,28 @@ void main() {
         uint at = (sizes.x + number) * kDeformNodeQuads;
         uvec2 facts = deformNodes[at].xy;
         uint vertex = facts.x;
-        uvec4 ring[2] = uvec4[2](deformNodes[at + 1u], deformNodes[at + 2u]);
-        uvec4 over[2] = uvec4[2](deformNodes[at + 5u], deformNodes[at + 6u]);
-        uvec4 lengths = deformNodes[at + 3u], overLengths = deformNodes[at + 7u];
         uint own = (softBase + number) * kSoftQuads, shownAt = (shownBase + vertex) * kShownQuads;
         uvec4 self = soft[own + item.parity];
         vec3 x = uintBitsToFloat(self.xyz);
 
         vec3 pull = vec3(0.0), turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0);
-        FW_UNROLL for (uint k = 0u; k < kDeformRing; ++k) {
-            uint other = ring[k / 4u][k & 3u] & kDeformNode;
-            vec2 pair = unpackHalf2x16(lengths[k / 2u]);
-            float rest = (k & 1u) == 0u ? pair.x : pair.y;
-            vec3 y = uintBitsToFloat(soft[(softBase + other) * kSoftQuads + item.parity].xyz);
-            pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
-            turned += cross(before, y - x);
-            if (k == 0u) first = y - x;
-            before = y - x;
-            pair = unpackHalf2x16(overLengths[k / 2u]);
-            rest = (k & 1u) == 0u ? pair.x : pair.y;
-            other = over[k / 4u][k & 3u] & kDeformNode;
-            y = uintBitsToFloat(soft[(softBase + other) * kSoftQuads + item.parity].xyz);
-            pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
-        }
+        uint turn = 0u, turns = nodeTurns(facts.y);
+        do {
+            uvec4 two = deformNodes[at + kNodeNear + turn], over = deformNodes[at + kNodeFar + turn];
+            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
+                uint other = two[i] & kDeformNode;
+                float rest = unpackHalf2x16(two.z)[i];
+                vec3 y = uintBitsToFloat(soft[(softBase + other) * kSoftQuads + item.parity].xyz);
+                pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
+                turned += cross(before, y - x);
+                if (turn + i == 0u) first = y - x;
+                before = y - x;
+                other = over[i] & kDeformNode;
+                rest = unpackHalf2x16(over.z)[i];
+                y = uintBitsToFloat(soft[(softBase + other) * kSoftQuads + item.parity].xyz);
+                pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
+            }
+        } while (++turn < turns);
         if ((facts.y & kNodeClosed) != 0u) turned += cross(before, first);
         float size = length(turned);
         vec3 normal = size > 1e-18 ? turned / size : vec3(0.0);

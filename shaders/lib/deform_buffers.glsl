@@ -9,6 +9,10 @@ FW_BUFFER(FW_BIND_DEFORM_OBJECTS, readonly, DeformObjectsBuffer, uvec4, deformOb
 FW_BUFFER(FW_BIND_DEFORM_GROUPS, readonly, DeformGroupsBuffer, uvec2, deformGroups);
 #ifdef FW_USE_DEFORM_NODES
 FW_BUFFER(FW_BIND_DEFORM_NODES, readonly, DeformNodesBuffer, uvec4, deformNodes);
+// Loops over a node's links ask at their end; every node of a run takes as many turns, so on devices
+// that run several as one none leaves before the others.
+uint nodeTurns(uint flags) { return flags >> kNodeTurnsShift & 7u; }
+uint nodeArms(uint flags) { return (flags & kNodeHasArms) != 0u ? 1u : 0u; }  // so many turns more
 #endif
 #ifdef FW_USE_DEFORM_COATS
 FW_BUFFER(FW_BIND_DEFORM_COATS, readonly, DeformCoatsBuffer, uvec4, deformCoats);
@@ -22,9 +26,8 @@ FW_BUFFER(FW_BIND_SHOWN, FW_USE_SHOWN_WORDS, ShownWordsBuffer, uint, shownWords)
 
 #ifdef FW_USE_SOFT
 // Per node: two places, each with its facts; what neighbours see of bend.comp's result, the
-// place and a share; what is the node's own of it: normal and links that hold (near, far << 8),
-// neighbours' charred shares, way to a pin and which of them are pinned, a share for those two
-// steps away.
+// place and a share; what is the node's own of it: normal and links that hold (near, arms << 8),
+// neighbours' charred shares, way to a pin and which of them are pinned, a share for arms' ends.
 FW_BUFFER(FW_BIND_SOFT, FW_USE_SOFT, SoftBuffer, uvec4, soft);
 const uint kSoftSeen = 2u, kSoftOwn = 3u;
 
@@ -34,7 +37,8 @@ uint packFacts(float reach, float burnt) {
     return (packHalf2x16(vec2(reach, 0.0)) & 0xFFFFu) | uint(burnt * 255.0) << 16u |
            uint(charredShare(burnt) * kCharredSteps + 0.5) << 24u | (reach == 0.0 ? 1u << 28u : 0u);
 }
-float reachOf(uint facts) { return unpackHalf2x16(facts).x; }
+float reachOf(uint facts) { return unpackHalf2x16(facts & 0x7FFFu).x; }
+const uint kReachKnown = 0x8000u;  // beside it: it once was what it had been
 float burntOf(uint facts) { return float(facts >> 16u & 255u) * (1.0 / 255.0); }
 uint charredOf(uint facts) { return facts >> 24u & 15u; }
 uint pinnedOf(uint facts) { return facts >> 28u; }

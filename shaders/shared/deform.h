@@ -16,7 +16,17 @@ FW_SHARED_BEGIN
 
 FW_SHARED_CONST uint kDeformTexels = 16u;     // of a node's ring that it samples, as eq. (9)'s k
 FW_SHARED_CONST uint kDeformRing = 8u;        // neighbours of a node
-FW_SHARED_CONST uint kDeformNodeQuads = 16u;  // of a DeformNode
+FW_SHARED_CONST uint kDeformLinks = 2u;       // of a node that are read at a time
+FW_SHARED_CONST uint kDeformTurns = 4u;       // so often: kDeformRing of them
+FW_SHARED_CONST uint kArmWays = 4u;           // two directions, far and less far; a step minds one
+FW_SHARED_CONST uint kDeformRun = 64u;        // nodes that take as many turns as each other
+FW_SHARED_CONST uint kDeformNodeQuads = 20u;  // of a DeviceNode; in it, from the first:
+FW_SHARED_CONST uint kNodeNear = 1u;          // neighbours, a quad a turn
+FW_SHARED_CONST uint kNodeArms = 5u;          // its arms, a quad for each of kArmWays
+FW_SHARED_CONST uint kNodeRest = 9u;
+FW_SHARED_CONST uint kNodeFar = 10u;          // those two steps straight on, a quad a turn: springs have them
+FW_SHARED_CONST uint kNodeTexels = 14u;
+FW_SHARED_CONST uint kNodeOut = 18u;
 FW_SHARED_CONST uint kDeformCoatQuads = 4u;
 FW_SHARED_CONST uint kDeformObjectQuads = 36u; // of a DeformObject: materials from 4, pins from 20
 FW_SHARED_CONST uint kShownQuads = 3u;        // of a ShownVertex
@@ -27,7 +37,7 @@ FW_SHARED_CONST uint kDeformReset = 0x80000000u;  // start from rest
 FW_SHARED_CONST uint kDeformOdd = 0x40000000u;    // its places are the second ones
 FW_SHARED_CONST uint kDeformCrosses = 0x20000000u; // walls may cross and open by themselves
 FW_SHARED_CONST uint kDeformItem = 0x1FFFFFFFu;
-FW_SHARED_CONST uint kDeformNode = 0xFFFFFFu; // of a node's ring: its neighbour
+FW_SHARED_CONST uint kDeformNode = 0xFFFFFFu; // of a link: which node
 FW_SHARED_CONST uint kSoftQuads = 4u;         // of a vertex of what moves: see lib/deform_buffers.glsl
 FW_SHARED_CONST uint kSoftTicks = 32u;        // of one of its steps: 1/128 s
 FW_SHARED_CONST uint kMostSoftSteps = 6u;     // of a frame; a hitch drops the rest
@@ -40,17 +50,17 @@ FW_SHARED_CONST uint kDeformSprings = 4u;     // tier C: the published mass-spri
 // DeformNode::flags, above the material (bits 0..7)
 FW_SHARED_CONST uint kNodeClosed = 0x100u;    // its ring of neighbours closes
 FW_SHARED_CONST uint kNodeEven = 0x200u;      // it rests in the middle of its neighbours, seen from above
-FW_SHARED_CONST uint kNodeFarEven = 0x400u;   // and of those two steps away, of which none is missing
-FW_SHARED_CONST uint kNodeFarHeard = 0x800u;  // one of those, or itself, is kNodeFarEven
+FW_SHARED_CONST uint kNodeArmsEven = 0x400u;  // and of its first arms; << 1: of its second ...
+FW_SHARED_CONST uint kNodeHasArms = 0x4000u;    // it has arms, or another of its run has
 FW_SHARED_CONST uint kNodeRingShift = 16u;    // how many neighbours: bits 16..19
+FW_SHARED_CONST uint kNodeTurnsShift = 20u;   // how many turns its run takes to read them: bits 20..22
 
-struct DeformNode {       // static, per mesh; 64 bytes each that are read together
+struct DeformNode {       // static, per mesh
     uint vertex;                 // that keeps what is shown of it, from the mesh's first
     uint flags;                  // material, kNode...
     float rise;                  // m that its neighbours' mean lies above it along the rest normal
     uint opposite;               // texel on the wall behind, kNoneTexel: none
-    uint ring[8];                // vertices around it, in order; on devices nodes, with the link's
-                                 // odds (linkOdds) above bit 23
+    uint ring[8];                // vertices around it, in order
     uint ringLength[4];          // m, halfs
     float x; float y; float z;   // m, rest
     float area;                  // m^2, a third of its triangles
@@ -59,9 +69,28 @@ struct DeformNode {       // static, per mesh; 64 bytes each that are read toget
     uint texels[16];             // of its ring, in the burn map; kNoneTexel after the last
     float outX; float outY; float outZ; // which way it recedes: -1 along every face's normal, if it can
     float limit;                 // m, most it may recede
-    uint reserved[12];
+    uint arms[8];                // vertices some way off, behind and ahead in each way; or kNoneTexel
+    float armLength[8];          // m
+    float armRise[4];            // m, as `rise`, of each two
 };
-FW_SHARED_SIZE(DeformNode, 256)
+FW_SHARED_SIZE(DeformNode, 288)
+
+struct DeviceLinks {      // what one turn reads
+    uint first; uint second;     // nodes; the link's odds (linkOdds) above bit 23
+    uint lengths;                // m, halfs; 0: no link
+    float rise;                  // m, of arms
+};
+struct DeviceNode {       // a DeformNode as devices have it
+    uint vertex; uint flags; float rise; uint opposite;
+    DeviceLinks near_[4];
+    DeviceLinks arms[4];
+    float x; float y; float z; float area;
+    DeviceLinks far_[4];
+    uint texels[16];
+    float outX; float outY; float outZ; float limit;
+    uint reserved[4];
+};
+FW_SHARED_SIZE(DeviceNode, 320)
 
 struct DeformCoat {       // static, per drawn vertex: what its normal follows
     uint node;            // vertex that keeps its node's state
@@ -117,7 +146,7 @@ FW_SHARED_SIZE(DeformObject, 576)
 struct DeformPush {       // push constants of the deformation passes
     uint now;             // tick of the state that is shown
     uint first;           // group in the list
-    uint parity;          // of the substep
+    uint parity;          // of the substep; above bit 0 which arms it minds; recede: steps there are
     float step;           // s
     vec4 wind;            // m/s, world; w: s, cosmetic time
     vec4 up;              // world; w: ticks into the running step
@@ -188,6 +217,14 @@ FW_SHARED_FN vec3 turnedNormal(vec3 n, vec3 a, vec3 b) {
 // ---- sheets: position based, every node corrects itself from what its neighbours were --------------
 
 FW_SHARED_CONST float kReachNone = 60000.0f;  // m along unburnt links to a pin: none known
+// A way to a pin that was known and grew: either there is another, which the next steps find, or there
+// is none and neighbours tell each other of it in circles. It grows by more than they make it, so that
+// in the one case nothing is held back that falls, and in the other little is let go for a moment.
+FW_SHARED_CONST float kReachGrows = 1.03f;
+FW_SHARED_FN bool reachKnown(float way, float before) { return way <= before * 1.004f; }
+FW_SHARED_FN float reachNext(float way, float before, bool known) {
+    return leastF(known && !reachKnown(way, before) ? way * kReachGrows : way, kReachNone);
+}
 FW_SHARED_CONST float kReachSlack = 1.001f;   // it is kept as a half
 FW_SHARED_CONST float kBendUnit = 4096.0f;    // of packed bends, per m
 // Neighbours correct at the same time: a pattern of alternating nodes is corrected by up to 4 times
@@ -248,11 +285,30 @@ FW_SHARED_FN float curlSide(vec3 normal, vec3 up) {
     return s < -1.0f ? -1.0f : (s > 1.0f ? 1.0f : s);
 }
 
+// ---- stiffness beyond neighbours
+// What neighbours feel of a wide bend is next to nothing, so a fine mesh that bends by them alone hangs
+// like a rag. A sheet's nodes have arms as well: in each of two directions a node some fixed way behind
+// and one as far ahead, in whose middle it belongs; who is somebody's node ahead has that one behind.
+// Waves as long as an arm would pass unnoticed, so there are shorter ones too. A step minds one kind.
+// Where a node's arms do not hold it has none.
+FW_SHARED_CONST float kArmRelax = 0.15f;
+FW_SHARED_CONST float kArmTears = 1.1f;  // of its length: what lies between has parted
+FW_SHARED_CONST float kArmCurls = 1.4f;  // more than a ring of the same reach does
+// They curl across a burning edge and not along it, as a sheet cannot do both: how much, by the charred
+// shares behind and ahead. What is charred on both sides has no shape of its own to keep.
+FW_SHARED_FN float armCurl(float behind, float ahead) {
+    float d = ahead - behind;
+    return leastF(4.0f * d * d, 1.0f);
+}
+FW_SHARED_FN float armFirm(float stiff, float charred, float across) {
+    return kArmRelax * stiff * (1.0f - charred * (1.0f - across));
+}
+
 // What a node's place must give for its neighbours' mean to lie `rise` above it. Of an even node all
 // of the way there: that is the slope of an energy, which a part of it along a normal is not.
-FW_SHARED_FN vec3 bendOf(vec3 toMean, vec3 normal, float rise, float neighbours, float stiff, bool even) {
+FW_SHARED_FN vec3 bendOf(vec3 toMean, vec3 normal, float rise, float neighbours, float relax, bool even) {
     vec3 off = even ? toMean - normal * rise : normal * (dot(toMean, normal) - rise);
-    off *= stiff * kBendRelax * neighbours / (neighbours + 1.0f);
+    off *= relax * neighbours / (neighbours + 1.0f);
     float square = dot(off, off);
     return square > 1e-4f ? off * (1e-2f * inversesqrt(square)) : off;
 }

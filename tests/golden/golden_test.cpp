@@ -2,6 +2,7 @@
 // pictures against the ones beside this file. Simulation is exact; what is drawn may differ a
 // little between devices, hence the tolerances.
 #include "golden/golden_image.h"
+#include "support/meshes.h"
 #include "support/vulkan_device.h"
 
 #include <glm/glm.hpp>
@@ -211,6 +212,52 @@ class Golden : public GpuTest {
         ASSERT_GT(texels, 0u);
     }
 
+    // A sheet that hangs by its upper edge and moves, lit below; at the origin its middle.
+    void hang(FwWorld* world, uint32_t preset, float side, int cells, float density) {
+        const Mesh sheet = makeSheet(double(side), cells);
+        std::vector<float> details;
+        for (uint32_t i = 0; i < sheet.vertexCount(); ++i)
+            details.insert(details.end(), {sheet.positions[i * 3], sheet.positions[i * 3 + 1]});
+        FwMeshDef mesh = fwDefaultMeshDef();
+        mesh.positions = sheet.positions.data();
+        mesh.details = details.data();
+        mesh.indices = sheet.indices.data();
+        mesh.vertexCount = sheet.vertexCount();
+        mesh.indexCount = uint32_t(sheet.indices.size());
+        mesh.texelsPerMetre = density;
+        FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
+        object.flags = uint32_t{FW_BURNABLE_TWO_SIDED} | uint32_t{FW_BURNABLE_SHELL};
+        FwPin pin{};
+        pin.from[1] = pin.to[1] = pin.to[0] = side;
+        pin.radius = 0.003f;
+        object.pins = &pin;
+        object.pinCount = 1;
+        object.transform[12] = object.transform[13] = -0.5f * side;
+        ASSERT_EQ(fwWorld_CreateMesh(world, &mesh, &object.mesh), FW_OK);
+        FwMaterialDef material = fwDefaultMaterialDef();
+        ASSERT_EQ(fwInitMaterialPreset(&material, preset), FW_OK);
+        ASSERT_EQ(fwWorld_CreateMaterial(world, &material, &object.materials[0]), FW_OK);
+        FwBurnableMeshId id{};
+        ASSERT_EQ(fwWorld_CreateBurnableMesh(world, &object, &id), FW_OK);
+        FwIgnitionDef match = fwDefaultIgnitionDef();
+        match.position[0] = 0.1f * side;
+        match.position[1] = -0.49f * side;
+        match.radius = 0.02f;
+        uint32_t texels = 0;
+        ASSERT_EQ(fwWorld_Ignite(world, &match, &texels), FW_OK);
+        ASSERT_GT(texels, 0u);
+    }
+
+    // What moves does so in steps of its own: a second as 24 frames.
+    Picture playAndDraw(FwWorld* world, float seconds, const FwView& view) {
+        for (int i = 0; i < int(seconds * 24); ++i) {
+            const FwVulkanFrame frame = frames_->begin(1.0f / 24);
+            EXPECT_EQ(fwWorld_RecordOutside(world, &frame, &view), FW_OK);
+            frames_->submit();
+        }
+        return burnAndDraw(world, 0, view, false);
+    }
+
     static FwView makeView(glm::vec3 eye, bool reversed, bool night) {
         FwView view = fwDefaultView();
         const glm::mat4 look = glm::lookAt(eye, glm::vec3(0), glm::vec3(0, 1, 0));
@@ -327,6 +374,8 @@ class Golden : public GpuTest {
 
 // Half of the picture is fire: a mean over it shows a wrong look, outliers a wrong shape.
 constexpr PictureTolerance kTolerance{1.5, 0.02, 40};
+// What moves on floats moves a little otherwise elsewhere.
+constexpr PictureTolerance kMoving{4, 0.06, 40};
 
 TEST_F(Golden, PineSheetByDay) {
     FwWorld* world = makeWorld(40);
@@ -349,11 +398,25 @@ TEST_F(Golden, ThatchByNight) {
     EXPECT_TRUE(matchesGolden("thatch_night", burnAndDraw(world, 7, view, false), kTolerance));
 }
 
-TEST_F(Golden, LeatherCracks) {
+// Where it has charred it is smaller: the sheet's outline gives way.
+TEST_F(Golden, LeatherShrinksAndCracks) {
     FwWorld* world = makeWorld(8);
-    addThing(world, FW_MATERIAL_LEATHER, 0.3f, 320, false);
-    const FwView view = makeView({0.1f, 0.05f, 0.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("leather", burnAndDraw(world, 8, view, false), kTolerance));
+    hang(world, FW_MATERIAL_LEATHER, 0.3f, 36, 320);
+    const FwView view = makeView({0.1f, 0.05f, 0.55f}, false, false);
+    EXPECT_TRUE(matchesGolden("leather", playAndDraw(world, 8, view), kMoving));
+}
+
+// It keeps its shape, curls where it chars, and what is gone is gone.
+TEST_F(Golden, PaperCurls) {
+    FwWorld* world = makeWorld(1);
+    hang(world, FW_MATERIAL_PAPER, 0.24f, 32, 640);
+    const FwView view = makeView({0.16f, 0.02f, 0.44f}, false, false);
+    playAndDraw(world, 3.75f, view);
+    FwIgnitionDef end = fwDefaultIgnitionDef();  // its edges show without flames before them
+    end.kind = FW_EXTINGUISH;
+    end.radius = 1;
+    ASSERT_EQ(fwWorld_Ignite(world, &end, nullptr), FW_OK);
+    EXPECT_TRUE(matchesGolden("paper_curls", playAndDraw(world, 0.5f, view), kMoving));
 }
 
 TEST_F(Golden, CottonBurnsThrough) {

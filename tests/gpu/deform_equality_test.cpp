@@ -34,7 +34,7 @@ struct Pair {
         object.scale = 1;
         mesh::resetDeform(model, state);
         mesh::resetSoft(model, object, state);
-        std::vector<gpu::DeformNode> nodes;
+        std::vector<gpu::DeviceNode> nodes;
         for (uint32_t i = 0; i < model.nodes.size(); ++i)
             nodes.push_back(mesh::deviceNode(model, i));
         groups = (std::max(object.nodeCount, object.vertexCount) + gpu::kDeformGroup - 1) /
@@ -77,7 +77,7 @@ struct Pair {
             push.parity = steps << 1;
             rig.dispatch(commands, 0, &push, groups);
             for (uint32_t i = 0; i < steps && soft; ++i) {
-                push.parity = i & 1;
+                push.parity = (i & 1) | (state.way + i) % gpu::kArmWays << 1;
                 if (!springs) rig.dispatch(commands, 1, &push, groups);
                 rig.dispatch(commands, springs ? 3 : 2, &push, groups);
             }
@@ -122,7 +122,8 @@ struct Pair {
             soft[i * gpu::kSoftQuads + (odd ? 1 : 0)] = {
                 std::bit_cast<uint32_t>(at.x), std::bit_cast<uint32_t>(at.y),
                 std::bit_cast<uint32_t>(at.z),
-                gpu::packHalf2x16({std::min(own.reach[state.parity], gpu::kReachNone), 0})};
+                gpu::packHalf2x16({std::min(own.reach[state.parity], gpu::kReachNone), 0}) |
+                    (own.known ? 0x8000u : 0u)};
             shown[vertex].x = state.shown[vertex].x;
             shown[vertex].y = state.shown[vertex].y;
             shown[vertex].z = state.shown[vertex].z;

@@ -91,6 +91,39 @@ TEST(DeformModel, CornersOfABoxRecedeOnAllThreeFaces) {
     }
 }
 
+// Arms are mutual and about as long as each other; what closes has none; nodes of a run agree.
+TEST(DeformModel, ArmsReachBothWaysAndRunsAgree) {
+    const Mesh sheet = makeSheet(0.3, 20), ball = makeCube(0.3, 10, true);
+    for (const Mesh* mesh : {&sheet, &ball}) {
+        const BurnDomain domain = bakeOf(mesh->input(64));
+        const DeformModel model = modelOf(domain);
+        size_t armed = 0;
+        for (uint32_t i = 0; i < model.nodes.size(); ++i) {
+            const gpu::DeformNode& node = model.nodes[i];
+            ASSERT_EQ(i, model.nodeOf[node.vertex]);
+            const gpu::DeformNode& first = model.nodes[i / gpu::kDeformRun * gpu::kDeformRun];
+            constexpr uint32_t kShared = (7u << gpu::kNodeTurnsShift) | gpu::kNodeHasArms;
+            EXPECT_EQ(first.flags & kShared, node.flags & kShared) << i;
+            EXPECT_GE((node.flags >> gpu::kNodeTurnsShift & 7u) * gpu::kDeformLinks,
+                      node.flags >> gpu::kNodeRingShift & 15u);
+            for (uint32_t arm = 0; arm < 2 * gpu::kArmWays; ++arm) {
+                if (node.arms[arm] == kNone) continue;
+                const gpu::DeformNode& other = model.nodes[model.nodeOf[node.arms[arm]]];
+                EXPECT_EQ(node.vertex, other.arms[arm ^ 1]);
+                EXPECT_EQ(node.armLength[arm], other.armLength[arm ^ 1]);
+                EXPECT_NEAR(arm < 4 ? model.span : 0.6f * model.span, node.armLength[arm],
+                            0.15f * model.span);
+                ++armed;
+            }
+        }
+        if (mesh == &ball) {
+            EXPECT_EQ(0u, armed);
+        } else {
+            EXPECT_GT(armed, model.nodes.size() * 4);
+        }
+    }
+}
+
 TEST(DeformTierA, VerticesSplitBySeamsNeverPart) {
     const Mesh sphere = randomUnwrap(makeCube(0.4, 12, true), 7, 20);
     const BurnDomain domain = bakeOf(sphere.input(128));

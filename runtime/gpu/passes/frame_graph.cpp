@@ -234,8 +234,9 @@ void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform) {
     const uint32_t sheets = deform.nodeGroups, springs = sheets + deform.sheetGroups;
     dispatch(kRecedePass, 0, deform.nodeGroups, deform.steps << 1);
     for (uint32_t i = 0; i < deform.steps; ++i) {
-        dispatch(kBendPass, sheets, deform.sheetGroups, i & 1);
-        dispatch(kSoftPass, sheets, deform.sheetGroups, i & 1);
+        const uint32_t way = (deform.way + i) % kArmWays;
+        dispatch(kBendPass, sheets, deform.sheetGroups, (i & 1) | way << 1);
+        dispatch(kSoftPass, sheets, deform.sheetGroups, (i & 1) | way << 1);
         dispatch(kSpringsPass, springs, deform.springGroups, i & 1);
     }
     dispatch(kDrapePass, springs + deform.springGroups, deform.vertexGroups, 0);

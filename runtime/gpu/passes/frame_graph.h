@@ -54,6 +54,7 @@ struct DeformRecord {
     Staged groups;
     uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;
     uint32_t steps = 0;  // of sheets and springs
+    uint32_t way = 0;    // of the first: which arms it minds
 };
 
 struct PublishedStep {  // one object in as-published mode

@@ -69,7 +69,7 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_SHOWN, kSpaceShown, sizeof(ShownVertex), true, kComponentObjects, "shown vertices",
      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
     {FW_BIND_SOFT, kSpaceSoft, 16 * kSoftQuads, true, kComponentObjects, "soft nodes", 0},
-    {FW_BIND_DEFORM_NODES, kSpaceNodes, sizeof(DeformNode), true, kComponentMeshes, "nodes", 0},
+    {FW_BIND_DEFORM_NODES, kSpaceNodes, sizeof(DeviceNode), true, kComponentMeshes, "nodes", 0},
     {FW_BIND_DEFORM_COATS, kSpaceCoats, sizeof(DeformCoat), true, kComponentMeshes, "coats", 0},
     {FW_BIND_DEFORM_GROUPS, kSpaceDeformGroups, 8, false, kComponentLists, "deform groups", 0},
     {FW_BIND_SKIN_SOURCES, kSpaceSkinSources, 4, true, kComponentMeshes, "skin sources", 0},

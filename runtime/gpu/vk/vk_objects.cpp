@@ -13,7 +13,7 @@ namespace {
 void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
                       const mesh::DeformModel& model, uint32_t firstNode, uint32_t firstCoat) {
     const DrawnOrder order(domain, s.memory);
-    const uint64_t nodeBytes = model.nodes.size() * sizeof(DeformNode);
+    const uint64_t nodeBytes = model.nodes.size() * sizeof(DeviceNode);
     const uint64_t coatBytes = model.coats.size() * sizeof(DeformCoat);
     PendingUpload& upload = s.stage(nodeBytes + coatBytes, "deformation staging");
     const auto number = [&](uint32_t& vertex) {
@@ -21,7 +21,7 @@ void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
     };
     std::byte* to = upload.staging.mapped;
     for (uint32_t i = 0; i < model.nodes.size(); ++i) {
-        DeformNode node = mesh::deviceNode(model, i);
+        DeviceNode node = mesh::deviceNode(model, i);
         number(node.vertex);
         std::memcpy(to, &node, sizeof node);
         to += sizeof node;
@@ -33,7 +33,7 @@ void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
         std::memcpy(to, &coat, sizeof coat);
         to += sizeof coat;
     }
-    upload.regions[0] = {FW_BIND_DEFORM_NODES, 0, uint64_t(firstNode) * sizeof(DeformNode),
+    upload.regions[0] = {FW_BIND_DEFORM_NODES, 0, uint64_t(firstNode) * sizeof(DeviceNode),
                          nodeBytes};
     upload.regions[1] = {FW_BIND_DEFORM_COATS, nodeBytes, uint64_t(firstCoat) * sizeof(DeformCoat),
                          coatBytes};

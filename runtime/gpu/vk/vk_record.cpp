@@ -467,6 +467,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         deform.sheetGroups = needs.sheetGroups;
         deform.springGroups = needs.springGroups;
         deform.steps = softSteps;
+        deform.way = uint32_t((softStep - softSteps) % kArmWays);
         deform.vertexGroups = needs.vertexGroups;
         deform.groups = writeDeformGroups(*this, softSteps, writer);
         deform.push.now = plan.endTick;

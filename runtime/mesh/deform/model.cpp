@@ -1,6 +1,7 @@
 #include "mesh/deform/model.h"
 
 #include "mesh/bake.h"
+#include "mesh/deform/arms.h"
 
 #include <algorithm>
 #include <bit>
@@ -74,7 +75,7 @@ void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resourc
     for (uint32_t i = 0; i < count; ++i)
         keeper[order[i]] =
             i && key(order[i]) == key(order[i - 1]) ? keeper[order[i - 1]] : order[i];
-    // Neighbours are near each other in memory too: that is most of what a step costs.
+    // Neighbours are near each other in memory too.
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         const uint32_t x = alongCurve(domain, a), y = alongCurve(domain, b);
         return x != y ? x < y : a < b;
@@ -174,7 +175,6 @@ class Builder {
         }
         for (uint32_t i = 0; i < model_.nodes.size(); ++i) farther(i);
         lengths();
-        hear();
         for (uint32_t i = 0; i < domain_.vertices.size(); ++i) coat(i);
     }
 
@@ -380,46 +380,13 @@ class Builder {
             mean /= std::max(links, 1.0);
             node.rise = float(glm::dot(mean, normal));
             const bool whole = (node.flags & gpu::kNodeClosed) && links == double(count);
-            const auto even = [&](glm::dvec3 to, float reach) {
-                return whole &&
-                       glm::length(to - normal * glm::dot(to, normal)) < 0.06 * double(reach);
-            };
-            if (even(mean, ring[0])) node.flags |= gpu::kNodeEven;
-            glm::dvec3 farMean(0);
-            uint32_t farLinks = 0;
-            for (uint32_t i = 0; i < count; ++i) {
-                if (!(cross[i] > 0)) continue;
-                farMean += placeOf(domain_.vertices[node.cross_[i]]) -
-                           placeOf(domain_.vertices[node.vertex]);
-                ++farLinks;
-            }
-            if (farLinks == count && even(farMean / double(std::max(count, 1u)), cross[0]))
-                node.flags |= gpu::kNodeFarEven;
+            if (whole &&
+                glm::length(mean - normal * glm::dot(mean, normal)) < 0.06 * double(ring[0]))
+                node.flags |= gpu::kNodeEven;
             for (uint32_t i = 0; i < kDeformRing / 2; ++i) {
                 node.ringLength[i] = glm::packHalf2x16({ring[i * 2], ring[i * 2 + 1]});
                 node.crossLength[i] = glm::packHalf2x16({cross[i * 2], cross[i * 2 + 1]});
             }
-        }
-    }
-
-    // Who must look two steps away: what bends there, and what it bends against. A few such nodes
-    // of an uneven mesh change nothing that shows.
-    void hear() {
-        size_t even = 0, closed = 0;
-        for (const DeformNode& node : model_.nodes) {
-            even += (node.flags & gpu::kNodeFarEven) ? 1 : 0;
-            closed += (node.flags & gpu::kNodeClosed) ? 1 : 0;
-        }
-        if (even * 2 < closed) {
-            for (DeformNode& node : model_.nodes) node.flags &= ~gpu::kNodeFarEven;
-            return;
-        }
-        for (DeformNode& node : model_.nodes) {
-            bool heard = (node.flags & gpu::kNodeFarEven) != 0;
-            for (uint32_t i = 0; i < kDeformRing && !heard; ++i)
-                heard = node.cross_[i] != kNone &&
-                        (model_.nodes[model_.nodeOf[node.cross_[i]]].flags & gpu::kNodeFarEven);
-            if (heard) node.flags |= gpu::kNodeFarHeard;
         }
     }
 
@@ -461,6 +428,40 @@ class Builder {
     std::pmr::vector<uint32_t> walk_, best_, texels_, texelStart_, texelList_;
 };
 
+// Nodes of as many neighbours one after another, within a group, and what a run of them shares: how
+// many turns it takes to read those, and whether any of it has arms. Devices that run several nodes
+// as one then leave a loop over neighbours together.
+void makeRuns(DeformModel& model, std::pmr::memory_resource* memory) {
+    const size_t count = model.nodes.size();
+    const auto turnsOf = [](const DeformNode& node) {
+        return std::max(((node.flags >> gpu::kNodeRingShift & 15u) + 1) / gpu::kDeformLinks, 1u);
+    };
+    std::pmr::vector<uint32_t> moved(count, memory);
+    std::pmr::vector<DeformNode> sorted(memory);
+    sorted.reserve(count);
+    for (size_t first = 0; first < count; first += gpu::kDeformGroup) {
+        const size_t last = std::min<size_t>(first + gpu::kDeformGroup, count);
+        for (uint32_t turns = 0; turns <= gpu::kDeformTurns; ++turns)
+            for (size_t i = first; i < last; ++i) {
+                if (turnsOf(model.nodes[i]) != turns) continue;
+                moved[i] = uint32_t(sorted.size());
+                sorted.push_back(model.nodes[i]);
+            }
+    }
+    model.nodes.swap(sorted);
+    for (uint32_t& node : model.nodeOf) node = moved[node];
+    for (size_t first = 0; first < count; first += gpu::kDeformRun) {
+        const std::span<DeformNode> run(model.nodes.data() + first,
+                                        std::min<size_t>(gpu::kDeformRun, count - first));
+        uint32_t turns = 1, arms = 0;
+        for (const DeformNode& node : run) {
+            turns = std::max(turns, turnsOf(node));
+            for (const uint32_t arm : node.arms) arms |= arm == kNone ? 0 : gpu::kNodeHasArms;
+        }
+        for (DeformNode& node : run) node.flags |= arms | turns << gpu::kNodeTurnsShift;
+    }
+}
+
 }  // namespace
 
 DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory) {
@@ -468,18 +469,43 @@ DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource*
     weld(domain, model, memory);
     model.coats.reserve(domain.vertices.size());
     Builder(domain, model, memory).run();
+    findArms(model, memory);
+    makeRuns(model, memory);
     return model;
 }
 
-gpu::DeformNode deviceNode(const DeformModel& model, uint32_t number) noexcept {
-    DeformNode node = model.nodes[number];
-    const auto linked = [&](uint32_t& vertex) {
+gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept {
+    const DeformNode& node = model.nodes[number];
+    gpu::DeviceNode made{};
+    made.vertex = node.vertex;
+    made.flags = node.flags;
+    made.rise = node.rise;
+    made.opposite = node.opposite;
+    const auto linked = [&](uint32_t vertex) {
         const uint32_t other = vertex == kNone ? number : model.nodeOf[vertex];
-        vertex = other | gpu::linkOdds(number, other) << 24;
+        return other | gpu::linkOdds(number, other) << 24;
     };
-    for (uint32_t& vertex : node.ring) linked(vertex);
-    for (uint32_t& vertex : node.cross_) linked(vertex);
-    return node;
+    for (uint32_t i = 0; i < gpu::kDeformTurns; ++i) {
+        const uint32_t *near = node.ring + 2 * i, *far = node.cross_ + 2 * i;
+        made.near_[i] = {linked(near[0]), linked(near[1]), node.ringLength[i], 0};
+        made.far_[i] = {linked(far[0]), linked(far[1]), node.crossLength[i], 0};
+    }
+    for (uint32_t way = 0; way < gpu::kArmWays; ++way) {
+        const uint32_t* arms = node.arms + 2 * way;
+        const float* lengths = node.armLength + 2 * way;
+        made.arms[way] = {linked(arms[0]), linked(arms[1]),
+                          glm::packHalf2x16({lengths[0], lengths[1]}), node.armRise[way]};
+    }
+    std::copy(std::begin(node.texels), std::end(node.texels), made.texels);
+    made.x = node.x;
+    made.y = node.y;
+    made.z = node.z;
+    made.area = node.area;
+    made.outX = node.outX;
+    made.outY = node.outY;
+    made.outZ = node.outZ;
+    made.limit = node.limit;
+    return made;
 }
 
 }  // namespace fw::mesh

@@ -14,12 +14,13 @@ struct DeformModel {
     std::pmr::vector<gpu::DeformNode> nodes;  // `vertex`, `ring`, `cross_`: of BurnDomain::vertices
     std::pmr::vector<gpu::DeformCoat> coats;  // per vertex of the domain
     std::pmr::vector<uint32_t> nodeOf;        // per vertex of the domain
+    float span = 0;                           // m, about the length of arms
 };
 
 // Vertices at one place are one node, whatever their normals and UVs.
 DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory);
 
-// A node as devices have it: its neighbours by number, with the odds of their links.
-gpu::DeformNode deviceNode(const DeformModel& model, uint32_t number) noexcept;
+// A node as devices have it: other nodes by number, with the odds of their links.
+gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept;
 
 }  // namespace fw::mesh

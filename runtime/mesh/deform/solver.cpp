@@ -1,6 +1,7 @@
 #include "mesh/deform/solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fw::mesh {
 namespace {
@@ -9,6 +10,8 @@ using gpu::DeformMaterial;
 using gpu::DeformNode;
 using gpu::ShownVertex;
 using gpu::vec3;
+
+constexpr float kCharredSteps = 15;  // in which nodes know of others'
 
 vec3 placeOf(const ShownVertex& v) { return {v.x, v.y, v.z}; }
 void place(ShownVertex& v, vec3 p) {
@@ -55,35 +58,55 @@ void bendPass(const DeformModel& model, const gpu::DeformObject& object, const S
         const float stiff = gpu::mixF(material.bend, std::max(material.bend, 0.9f), charred);
         const float curl = gpu::curlSide(self.normal, drive.up) * material.curl * charred;
         self.holds = 0;
-        for (uint32_t far = 0; far < 2; ++far) {
-            const Links links(far ? node.crossLength : node.ringLength);
-            vec3 sum(0);
-            float count = 0, squares = 0;
-            for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
-                const uint32_t other = far ? node.cross_[k] : node.ring[k];
-                const float rest = links.rest[k];
-                if (!(rest > 0)) continue;
-                const vec3 arm = state.soft[other].place[state.parity] - x;
-                if (!gpu::linkHolds(burnt, state.shown[other].burnt,
-                                    gpu::linkOdds(number, model.nodeOf[other])) ||
-                    (far && gpu::length(arm) > 1.3f * rest))
-                    continue;
-                self.holds |= 1u << (k + 8 * far);
-                sum += arm;
-                squares += rest * rest;
-                count += 1;
-            }
+        const auto holds = [&](uint32_t other) {
+            return gpu::linkHolds(burnt, state.shown[other].burnt,
+                                  gpu::linkOdds(number, model.nodeOf[other]));
+        };
+        const auto bend = [&](uint32_t kind, vec3 sum, float count, float rise, float relax,
+                              bool whole, bool even) {
             const float mean = 1 / std::max(count, 1.0f);
-            const float rise =
-                (far ? 4.0f : 1.0f) * node.rise + gpu::curlRise(curl, squares * mean);
-            const uint32_t ring = node.flags >> gpu::kNodeRingShift & 15u;
-            const bool whole = (node.flags & gpu::kNodeClosed) && count == float(ring);
-            const bool even = (node.flags & (far ? gpu::kNodeFarEven : gpu::kNodeEven)) != 0;
-            self.bend[far] = whole && (even || !far)
-                                 ? gpu::bendOf(sum * mean, self.normal, rise, count, stiff, even)
-                                 : vec3(0);
-            self.share[far] = self.bend[far] * mean;
+            self.bend[kind] =
+                whole ? gpu::bendOf(sum * mean, self.normal, rise, count, relax, even) : vec3(0);
+            self.share[kind] = self.bend[kind] * mean;
+        };
+        const Links links(node.ringLength);
+        vec3 sum(0);
+        float count = 0, squares = 0;
+        for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
+            const float rest = links.rest[k];
+            if (!(rest > 0) || !holds(node.ring[k])) continue;
+            self.holds |= 1u << k;
+            sum += state.soft[node.ring[k]].place[state.parity] - x;
+            squares += rest * rest;
+            count += 1;
         }
+        const uint32_t ring = node.flags >> gpu::kNodeRingShift & 15u;
+        bend(0, sum, count, node.rise + gpu::curlRise(curl, squares / std::max(count, 1.0f)),
+             stiff * gpu::kBendRelax, (node.flags & gpu::kNodeClosed) && count == float(ring),
+             (node.flags & gpu::kNodeEven) != 0);
+        sum = vec3(0);
+        count = squares = 0;
+        float ends[2]{};
+        for (uint32_t k = 0; k < 2; ++k) {
+            const uint32_t other = node.arms[2 * state.way + k];
+            if (other == kNone || !holds(other)) continue;
+            const float rest = node.armLength[2 * state.way + k];
+            const vec3 arm = state.soft[other].place[state.parity] - x;
+            if (gpu::length(arm) > gpu::kArmTears * rest) continue;
+            self.holds |= 1u << (k + 8);
+            ends[k] =
+                std::floor(gpu::charredShare(state.shown[other].burnt) * kCharredSteps + 0.5f) /
+                kCharredSteps;
+            sum += arm;
+            squares += rest * rest;
+            count += 1;
+        }
+        const float across = gpu::armCurl(ends[0], ends[1]);
+        bend(
+            1, sum, count,
+            node.armRise[state.way] + gpu::kArmCurls * across * gpu::curlRise(curl, squares * 0.5f),
+            gpu::armFirm(stiff, charred, across), count == 2,
+            (node.flags & gpu::kNodeArmsEven << state.way) != 0);
     }
 }
 
@@ -91,7 +114,7 @@ void bendPass(const DeformModel& model, const gpu::DeformObject& object, const S
 
 void resetSoft(const DeformModel& model, const gpu::DeformObject& object, DeformState& state) {
     state.soft.assign(model.coats.size(), {});
-    state.parity = 0;
+    state.parity = state.way = 0;
     for (const DeformNode& node : model.nodes) {
         DeformState::Soft& soft = state.soft[node.vertex];
         soft.place[0] = soft.place[1] = restOf(node);
@@ -124,10 +147,6 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
         for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
             const uint32_t other = node.ring[k];
             const ShownVertex& facts = state.shown[other];
-            if (self.holds >> (k + 8) & 1u) {
-                const DeformState::Soft& farther = state.soft[node.cross_[k]];
-                bending -= farther.share[1];
-            }
             if ((self.holds >> k & 1u) == 0) continue;
             const DeformState::Soft& there = state.soft[other];
             const float wanted =
@@ -138,6 +157,13 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
             bending -= there.share[0];
             reach = std::min(reach, there.reach[now] + links.rest[k]);
         }
+        reach = std::min(reach, gpu::kReachNone);
+        const float was = self.reach[now], way = reach;
+        reach = gpu::reachNext(way, was, self.known);
+        self.known = self.known || gpu::reachKnown(way, was);
+        for (uint32_t k = 0; k < 2; ++k)
+            if (self.holds >> (k + 8) & 1u)
+                bending -= state.soft[node.arms[2 * state.way + k]].share[1];
         const vec3 last = placeOf(shown);
         vec3 moved = x + pushed * gpu::relaxAt(gpu::kLinkRelax, drive.step) +
                      bending * gpu::relaxAt(1, drive.step);
@@ -174,9 +200,10 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
         }
         place(shown, moved);
         self.place[now ^ 1] = next;
-        self.reach[now ^ 1] = std::min(reach, gpu::kReachNone);
+        self.reach[now ^ 1] = reach;
     }
     state.parity ^= 1;
+    state.way = (state.way + 1) % gpu::kArmWays;
 }
 
 void springStep(const DeformModel& model, const gpu::DeformObject& object, float step,

@@ -14,11 +14,13 @@ struct DeformState {  // of one object; per vertex of the domain
         gpu::vec3 place[2];   // m: where it would be without constraints, now and next
         gpu::vec3 normal;     // unit
         float reach[2] = {};  // m to a pin along links that hold; 0: pinned
-        gpu::vec3 bend[2]{}, share[2]{};  // m: of it, and of each neighbour
-        uint32_t holds = 0;               // bits of the links that count: near, far << 8
+        bool known = false;   // see reachNext
+        gpu::vec3 bend[2]{}, share[2]{};  // m: of it, and of each neighbour or arm
+        uint32_t holds = 0;               // bits of the links that count: near, arms << 8
     };
     std::pmr::vector<Soft> soft;
-    uint32_t parity = 0;
+    uint32_t parity = 0;  // of the next step: which places are now
+    uint32_t way = 0;     // and which arms it minds
 };
 
 struct SheetDrive {  // object axes

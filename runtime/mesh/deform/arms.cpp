@@ -1,0 +1,184 @@
+#include "mesh/deform/arms.h"
+
+#include "mesh/burn_domain.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace fw::mesh {
+namespace {
+
+using gpu::DeformNode;
+using gpu::vec3;
+
+constexpr double kSpanShare = 0.34;  // of the narrower side of the mesh
+constexpr float kShorter = 0.6f;     // of that, every other arm
+constexpr float kAside = 0.15f;      // of that, how far a node may be off the place sought
+constexpr float kFacing = 0.5f;      // cosine between normals at both ends, at least
+constexpr float kEven = 0.02f;       // of the span, that the middle of two arms may be off, aside
+// Squared, of the nodes at edges to all nodes: 16 for a square sheet.
+constexpr double kOpen = 4;
+
+vec3 placeOf(const DeformNode& node) { return {node.x, node.y, node.z}; }
+
+// The two directions in which a mesh is widest, and how wide it is there.
+struct Axes {
+    std::array<vec3, 2> along;
+    std::array<double, 2> wide{};
+};
+Axes axesOf(std::span<const DeformNode> nodes) {
+    double weights = 0;
+    glm::dvec3 middle(0);
+    for (const DeformNode& node : nodes) {
+        middle += glm::dvec3(placeOf(node)) * double(node.area);
+        weights += double(node.area);
+    }
+    middle /= std::max(weights, 1e-30);
+    double m[3][3]{};
+    for (const DeformNode& node : nodes) {
+        const glm::dvec3 d = glm::dvec3(placeOf(node)) - middle;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) m[r][c] += d[r] * d[c] * double(node.area);
+    }
+    // Eigenvectors, by Jacobi's rotations.
+    glm::dvec3 vectors[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double all = m[0][0] + m[1][1] + m[2][2];
+    for (int sweep = 0; sweep < 12; ++sweep)
+        for (int p = 0; p < 2; ++p)
+            for (int q = p + 1; q < 3; ++q) {
+                if (std::fabs(m[p][q]) <= 0.01 * all) continue;
+                const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+                const double t =
+                    (theta < 0 ? -1 : 1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
+                const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+                for (int k = 0; k < 3; ++k) {
+                    const double a = m[k][p], b = m[k][q];
+                    m[k][p] = c * a - s * b;
+                    m[k][q] = s * a + c * b;
+                }
+                for (int k = 0; k < 3; ++k) {
+                    const double a = m[p][k], b = m[q][k];
+                    m[p][k] = c * a - s * b;
+                    m[q][k] = s * a + c * b;
+                }
+                const glm::dvec3 a = vectors[p], b = vectors[q];
+                vectors[p] = a * c - b * s;
+                vectors[q] = a * s + b * c;
+            }
+    std::array<int, 3> order{0, 1, 2};
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return m[a][a] > m[b][b]; });
+    Axes axes;
+    for (size_t i = 0; i < 2; ++i) {
+        axes.along[i] = vec3(vectors[order[i]]);
+        double low = 1e30, high = -1e30;
+        for (const DeformNode& node : nodes) {
+            const auto at = double(gpu::dot(placeOf(node), axes.along[i]));
+            low = std::min(low, at);
+            high = std::max(high, at);
+        }
+        axes.wide[i] = std::max(high - low, 0.0);
+    }
+    return axes;
+}
+
+// Nodes by the cell of a grid that they are in; cells share lists.
+class Cells {
+ public:
+    Cells(std::span<const DeformNode> nodes, float side, std::pmr::memory_resource* memory)
+        : side_(side), start_(memory), list_(memory) {
+        mask_ = std::bit_ceil(uint32_t(nodes.size()) + 1) - 1;
+        start_.assign(size_t(mask_) + 2, 0);
+        for (const DeformNode& node : nodes) ++start_[bucket(cell(placeOf(node))) + 1];
+        for (size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
+        list_.resize(nodes.size());
+        std::pmr::vector<uint32_t> next(start_.begin(), start_.end() - 1, memory);
+        for (uint32_t i = 0; i < nodes.size(); ++i)
+            list_[next[bucket(cell(placeOf(nodes[i])))]++] = i;
+    }
+    // All within `side` of a place, and others.
+    template <class Do>
+    void near(vec3 place, Do what) const {
+        const glm::ivec3 middle = cell(place);
+        for (int i = 0; i < 27; ++i) {
+            const uint32_t at = bucket(middle + glm::ivec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+            for (uint32_t k = start_[at]; k < start_[at + 1]; ++k) what(list_[k]);
+        }
+    }
+
+ private:
+    [[nodiscard]] glm::ivec3 cell(vec3 p) const {
+        const auto one = [&](float x) {
+            return int(std::clamp(std::floor(x / side_), -1.0e9f, 1.0e9f));
+        };
+        return {one(p.x), one(p.y), one(p.z)};
+    }
+    [[nodiscard]] uint32_t bucket(glm::ivec3 c) const {
+        const uint32_t h =
+            uint32_t(c.x) * 73856093u ^ uint32_t(c.y) * 19349663u ^ uint32_t(c.z) * 83492791u;
+        return (h ^ h >> 15) & mask_;
+    }
+    float side_;
+    uint32_t mask_ = 0;
+    std::pmr::vector<uint32_t> start_, list_;
+};
+
+}  // namespace
+
+void findArms(DeformModel& model, std::pmr::memory_resource* memory) {
+    const std::span<DeformNode> nodes = model.nodes;
+    double area = 0, edge = 0;
+    for (DeformNode& node : nodes) {
+        std::fill(std::begin(node.arms), std::end(node.arms), kNone);
+        area += double(node.area);
+        edge += (node.flags & gpu::kNodeClosed) ? 0 : 1;
+    }
+    if (edge * edge < kOpen * double(nodes.size()) || !(area > 0)) return;
+    const Axes axes = axesOf(nodes);
+    const double apart = std::sqrt(area / double(nodes.size()));
+    model.span = float(std::max(kSpanShare * axes.wide[1], 2 * apart));
+    const Cells cells(nodes, kAside * model.span, memory);
+    const auto facing = [&](const DeformNode& node) {
+        const gpu::DeformCoat& coat = model.coats[node.vertex];
+        return vec3(coat.faceX, coat.faceY, coat.faceZ);
+    };
+    for (uint32_t way = 0; way < gpu::kArmWays; ++way) {
+        const vec3 along = axes.along[way & 1] * (way < 2 ? model.span : kShorter * model.span);
+        const uint32_t behind = 2 * way, ahead = behind + 1;
+        for (uint32_t i = 0; i < nodes.size(); ++i) {
+            DeformNode& node = nodes[i];
+            const vec3 sought = placeOf(node) + along;
+            uint32_t best = kNone;
+            float least = kAside * model.span;
+            cells.near(sought, [&](uint32_t other) {
+                const DeformNode& there = nodes[other];
+                const float off = gpu::length(placeOf(there) - sought);
+                // Of several that are as near the first, whatever the order of the cells.
+                if (off > least || (off == least && other >= best) || there.arms[behind] != kNone ||
+                    ((there.flags ^ node.flags) & 7u) ||
+                    gpu::dot(facing(node), facing(there)) < kFacing)
+                    return;
+                least = off;
+                best = other;
+            });
+            if (best == kNone) continue;
+            node.arms[ahead] = nodes[best].vertex;
+            nodes[best].arms[behind] = node.vertex;
+            node.armLength[ahead] = nodes[best].armLength[behind] =
+                gpu::length(placeOf(nodes[best]) - placeOf(node));
+        }
+        for (DeformNode& node : nodes) {
+            if (node.arms[behind] == kNone || node.arms[ahead] == kNone) continue;
+            const vec3 middle = (placeOf(nodes[model.nodeOf[node.arms[behind]]]) +
+                                 placeOf(nodes[model.nodeOf[node.arms[ahead]]])) *
+                                0.5f;
+            const vec3 normal = facing(node), off = middle - placeOf(node);
+            node.armRise[way] = gpu::dot(off, normal);
+            if (gpu::length(off - normal * node.armRise[way]) < kEven * model.span)
+                node.flags |= gpu::kNodeArmsEven << way;
+        }
+    }
+}
+
+}  // namespace fw::mesh
