@@ -9,6 +9,7 @@
 #ifndef FW_SHARED_FRONT_H
 #define FW_SHARED_FRONT_H
 #include "shared/burn.h"
+#include "shared/integer.h"
 
 #ifdef __cplusplus
 #include <cmath>
@@ -57,14 +58,6 @@ FW_SHARED_FN bool flames(uint t, uint now, uint flameTicks) {
     return isSource(t) && t <= now && (flameTicks == kNoneTexel || now - t < flameTicks);
 }
 
-FW_SHARED_FN uint hash32(uint x) {
-    x ^= x >> 16u;
-    x *= 0x7feb352du;
-    x ^= x >> 15u;
-    x *= 0x846ca68bu;
-    return x ^ (x >> 16u);
-}
-
 // Modulo 2^32: exact while the sum fits, and never undefined.
 FW_SHARED_FN uint squareSum(ivec3 a) {
     return uint(a.x) * uint(a.x) + uint(a.y) * uint(a.y) + uint(a.z) * uint(a.z);
@@ -92,26 +85,6 @@ FW_SHARED_FN uint isqrtNear(uint n) {
         r += 1u;
     }
     return rest > r ? r + 1u : r;
-}
-
-// n / d, exactly, d > 0. Devices without integer division (all software ones) are slow at it, so
-// floats guess from below and integers mend: a guess is short by 2 millionths of it and one, at most.
-FW_SHARED_FN uint divide(uint n, uint d) {
-#ifdef __cplusplus
-    return n / d;
-#else
-    float inverse = 0.999999 / float(d);
-    uint q = uint(float(n) * inverse);
-    uint r = n - q * d;
-    uint more = uint(float(r) * inverse);
-    q += more;
-    r -= more * d;
-    if (r >= d) {
-        q += 1u;
-        r -= d;
-    }
-    return r >= d ? q + 1u : q;
-#endif
 }
 
 // (a * b) >> s, 0 < s < 32; saturates.

@@ -1,0 +1,77 @@
+// Particle fields: fire, smoke and water as counts of particles on a small grid, for small devices
+// and for what is far away. The step is integers (shaders/shared/field.h) and conserves every
+// particle; this is its reference and what designers turn. Not the drawing.
+#pragma once
+#include "shared/field.h"
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace fw::field {
+
+using glm::ivec2;
+using glm::vec2;
+using gpu::FieldRules;
+using gpu::FieldSource;
+
+// One set of parameters for fire, smoke and water.
+struct FieldLook {
+    float amount = 1.0f;   // [0, 4]; 1 fills a cell of a source to white (255) in about 12 steps
+    float rise = 0.9f;     // [-4, 4] cells a step, upwards; below 0 it falls
+    float spread = 0.25f;  // [0, 1]; 1 is an eighth of a difference to each neighbour and step
+    float memory = 0.5f;   // [0, 1]; how much motion a particle keeps, and how much that moves it
+    float chaos = 0.35f;   // [0, 4]; weight of a random direction
+    float life = 0.7f;     // s, > 0, mean
+    float detail = 0.7f;   // [0, 1]; of what is drawn: noise that the motion carries
+    float body = 0.0f;     // [0, 2]; 0 emits light, 1 absorbs it, 2 refracts it
+};
+
+enum class FieldPreset : uint32_t { Fire, Smoke, Water };
+constexpr uint32_t kFieldPresets = 3;
+FieldLook fieldPreset(FieldPreset preset) noexcept;
+
+struct FieldDef {
+    uint32_t width = 64, height = 64;  // cells, [4, 256]
+    FieldLook look;
+    uint32_t stepRate = 20;  // Hz, [1, 120]
+    vec2 wind{0.0f};         // cells a step
+    uint32_t open = gpu::kFieldOpenTop;
+    uint32_t seed = 1;
+};
+
+// Throws a message with the field, its value and its limits.
+void checkField(const FieldDef& def);
+// Without sources. The def is one that checkField lets pass.
+FieldRules fieldRules(const FieldDef& def) noexcept;
+
+// Where it emits unless the host says otherwise: a bed along the bottom (fire, smoke), a spout at
+// the top (what falls), a fifth of its width.
+void addDefaultSource(FieldRules& rules, const FieldLook& look) noexcept;
+
+struct FieldCell {
+    uint32_t n = 0;  // particles
+    ivec2 mean{0};   // Q10, mean motion
+};
+
+struct Field {
+    explicit Field(std::pmr::memory_resource* memory)
+        : cells(memory), walls(memory), next(memory), shares(memory) {}
+    uint32_t width = 0, height = 0;
+    uint32_t step = 0;
+    std::pmr::vector<FieldCell> cells;  // rows from the bottom
+    std::pmr::vector<uint8_t> walls;    // 1: nothing is there, nothing goes there
+    // total(field) + died + left == emitted + what was put there, always.
+    uint64_t emitted = 0, died = 0, left = 0;
+    // Of the step under way.
+    std::pmr::vector<FieldCell> next;
+    std::pmr::vector<glm::uvec4> shares;
+};
+
+// Empty, without walls. width and height as in FieldDef.
+void startField(Field& field, uint32_t width, uint32_t height);
+void stepField(Field& field, const FieldRules& rules) noexcept;
+uint64_t total(const Field& field) noexcept;
+
+}  // namespace fw::field

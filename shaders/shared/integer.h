@@ -1,0 +1,39 @@
+// Integer helpers of more than one kernel: a hash and an exact division. One text for C++ and GLSL.
+// GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_INTEGER_H
+#define FW_SHARED_INTEGER_H
+#include "shared/types.h"
+
+FW_SHARED_BEGIN
+
+FW_SHARED_FN uint hash32(uint x) {
+    x ^= x >> 16u;
+    x *= 0x7feb352du;
+    x ^= x >> 15u;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// n / d, exactly, d > 0. Devices without integer division (all software ones) are slow at it, so
+// floats guess from below and integers mend: a guess is short by 2 millionths of it and one, at most.
+FW_SHARED_FN uint divide(uint n, uint d) {
+#ifdef __cplusplus
+    return n / d;
+#else
+    float inverse = 0.999999 / float(d);
+    uint q = uint(float(n) * inverse);
+    uint r = n - q * d;
+    uint more = uint(float(r) * inverse);
+    q += more;
+    r -= more * d;
+    if (r >= d) {
+        q += 1u;
+        r -= d;
+    }
+    return r >= d ? q + 1u : q;
+#endif
+}
+
+FW_SHARED_END
+#endif

@@ -1,0 +1,272 @@
+// Particle fields, by the numbers: nothing is lost or made, forces and spreading move particles as
+// far as they say, nothing prefers a side, a flat field stays flat.
+#include "field/field.h"
+#include "core/error.h"
+#include "support/sanitized.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+
+namespace {
+
+using namespace fw::field;
+using fw::gpu::FieldRules;
+using fw::test::rounds;
+
+Field fieldOf(uint32_t width, uint32_t height) {
+    Field field(std::pmr::new_delete_resource());
+    startField(field, width, height);
+    return field;
+}
+
+FieldRules stillRules(uint32_t width, uint32_t height) {  // nothing moves, dies or is emitted
+    FieldRules rules{};
+    rules.width = width, rules.height = height;
+    rules.seed = 1;
+    return rules;
+}
+
+struct Moments {
+    double x = 0, y = 0, variance = 0;  // of both axes together, cells^2
+};
+Moments momentsOf(const Field& field) {
+    Moments m;
+    const double sum = double(total(field));
+    for (uint32_t y = 0; y < field.height; ++y)
+        for (uint32_t x = 0; x < field.width; ++x) {
+            const double n = field.cells[y * field.width + x].n;
+            m.x += n * x / sum;
+            m.y += n * y / sum;
+        }
+    for (uint32_t y = 0; y < field.height; ++y)
+        for (uint32_t x = 0; x < field.width; ++x) {
+            const double n = field.cells[y * field.width + x].n;
+            m.variance += n * (std::pow(x - m.x, 2) + std::pow(y - m.y, 2)) / sum;
+        }
+    return m;
+}
+
+double deviationOf(const Field& field) {
+    double sum = 0, squares = 0;
+    for (const FieldCell& cell : field.cells) sum += cell.n, squares += double(cell.n) * cell.n;
+    const double count = double(field.cells.size());
+    return std::sqrt(squares / count - sum / count * sum / count);
+}
+
+// All that moves at once, among walls, with two open sides: every particle is somewhere.
+TEST(Field, NoParticleIsLostOrMade) {
+    for (const uint32_t preset : {0u, 1u, 2u}) {
+        FieldDef def;
+        def.width = 12, def.height = 16;
+        def.look = fieldPreset(FieldPreset(preset));
+        def.wind = {0.3f, 0.0f};
+        def.open = fw::gpu::kFieldOpenTop | fw::gpu::kFieldOpenRight;
+        FieldRules rules = fieldRules(def);
+        addDefaultSource(rules, def.look);
+        Field field = fieldOf(def.width, def.height);
+        std::mt19937 random(preset);
+        for (uint8_t& wall : field.walls) wall = random() % 7 == 0;
+        const uint32_t steps = rounds(34000u, 300u);  // 10^5 of all three
+        for (uint32_t s = 0; s < steps; ++s) {
+            if (s % 100 == 0) rules.forceX = int(random() % 800) - 400;
+            stepField(field, rules);
+            ASSERT_EQ(total(field) + field.died + field.left, field.emitted) << s;
+        }
+        for (size_t i = 0; i < field.cells.size(); ++i)
+            if (field.walls[i]) {
+                ASSERT_EQ(field.cells[i].n, 0u);
+            }
+        EXPECT_GT(field.emitted, steps * 5u);
+        EXPECT_GT(field.died, 0u);
+        EXPECT_GT(field.left, 0u);
+    }
+}
+
+TEST(Field, ClosedFieldsKeepWhatTheyHold) {
+    FieldDef def;
+    def.width = def.height = 32;
+    def.open = 0;
+    FieldRules rules = fieldRules(def);
+    rules.death = 0;
+    Field field = fieldOf(32, 32);
+    field.cells[5 * 32 + 5].n = 123457;  // more than may move in one step
+    for (int s = 0; s < 1000; ++s) stepField(field, rules);
+    EXPECT_EQ(total(field), 123457u);
+    EXPECT_EQ(field.left, 0u);
+    // It rises: half of the field holds nearly all of it.
+    EXPECT_GT(momentsOf(field).y, 20);
+}
+
+// A force of one cell a step, in any direction.
+TEST(Field, ForcesMoveAsFarAsTheySay) {
+    const std::pair<double, double> expected[] = {{0, 0.99},  {11.25, 0.94}, {22.5, 0.93},
+                                                  {45, 0.99}, {135, 0.99},   {270, 0.99}};
+    for (const auto& [degrees, speed] : expected) {
+        const double angle = degrees * M_PI / 180;
+        FieldRules rules = stillRules(64, 64);
+        rules.forceX = int(std::lround(std::cos(angle) * 128));
+        rules.forceY = int(std::lround(std::sin(angle) * 128));
+        Field field = fieldOf(64, 64);
+        field.cells[32 * 64 + 32].n = 50000;
+        const Moments before = momentsOf(field);
+        for (int s = 0; s < 20; ++s) stepField(field, rules);
+        const Moments after = momentsOf(field);
+        const double x = (after.x - before.x) / 20, y = (after.y - before.y) / 20;
+        const double turned = std::atan2(y, x) * 180 / M_PI;
+        std::printf("[   FIGURE ] force at %6.2f deg: %.3f cells a step at %.2f deg\n", degrees,
+                    std::hypot(x, y), turned);
+        EXPECT_NEAR(std::hypot(x, y), speed, 0.03 * speed);
+        EXPECT_NEAR(std::remainder(turned - degrees, 360), 0, 0.5);
+    }
+}
+
+// A blob in emptiness: its variance grows by what flows to the eight times their distance squared.
+TEST(Field, SpreadingWidensABlob) {
+    for (const uint32_t spread : {4096u, 8192u}) {  // a 16th, an 8th
+        FieldRules rules = stillRules(64, 64);
+        rules.spread = spread;
+        Field field = fieldOf(64, 64);
+        field.cells[32 * 64 + 32].n = 60000;
+        const double before = momentsOf(field).variance;
+        for (int s = 0; s < 30; ++s) stepField(field, rules);
+        const double growth = (momentsOf(field).variance - before) / 30;
+        EXPECT_NEAR(growth, 12 * spread / 65536.0, 0.03 * 12 * spread / 65536.0);
+    }
+}
+
+// The trap of shares that are normalised to 1: a flat field must not grow peaks.
+TEST(Field, FlatStaysFlat) {
+    for (const uint32_t spread : {2048u, 4096u, 8192u}) {
+        FieldRules rules = stillRules(32, 32);
+        rules.spread = spread;
+        Field field = fieldOf(32, 32);
+        std::mt19937 random(3);
+        for (FieldCell& cell : field.cells) cell.n = uint32_t(97 + random() % 7);
+        const uint64_t all = total(field);
+        for (uint32_t s = 0; s < 1000; ++s) stepField(field, rules);
+        std::printf("[   FIGURE ] flat field, spread %.3f: deviation %.2f after 1000 steps\n",
+                    spread / 65536.0, deviationOf(field));
+        EXPECT_LE(deviationOf(field), 3);
+        EXPECT_EQ(total(field), all);
+    }
+}
+
+// A symmetric start stays where it is, but for what chance does to so many particles; over ten
+// seeds there is no side that it prefers.
+TEST(Field, NoSideIsPreferred) {
+    double meanX = 0, meanY = 0;
+    constexpr int kSteps = 50;
+    constexpr uint32_t kCount = 6250;
+    const double perStep = 8192 / 65536.0;
+    const double bound = 4 * std::sqrt(6 * perStep * kSteps / kCount);
+    for (uint32_t seed = 1; seed <= 10; ++seed) {
+        FieldRules rules = stillRules(33, 33);
+        rules.spread = 8192;
+        rules.inertia = 64;
+        rules.memory = 128;
+        rules.seed = seed;
+        Field field = fieldOf(33, 33);
+        for (int y = -2; y <= 2; ++y)
+            for (int x = -2; x <= 2; ++x)
+                field.cells[size_t((16 + y) * 33 + 16 + x)].n = kCount / 25;
+        for (int s = 0; s < kSteps; ++s) stepField(field, rules);
+        const Moments m = momentsOf(field);
+        EXPECT_LT(std::hypot(m.x - 16, m.y - 16), bound) << seed;
+        meanX += (m.x - 16) / 10;
+        meanY += (m.y - 16) / 10;
+    }
+    EXPECT_LT(std::hypot(meanX, meanY), bound / std::sqrt(10.0));
+}
+
+TEST(Field, ChanceHasNoDirection) {
+    double x = 0, y = 0, shortest = 1e9, longest = 0;
+    uint32_t count = 0, octants[8] = {};
+    for (uint32_t step = 0; step < 400; step += 4)
+        for (uint32_t i = 0; i < 64; ++i)
+            for (uint32_t j = 0; j < 64; j += 4) {
+                const ivec2 d = fw::gpu::fieldChaos(i * 4, j * 4, step, 7);
+                const double length = std::hypot(d.x, d.y);
+                shortest = std::min(shortest, length), longest = std::max(longest, length);
+                x += d.x, y += d.y, ++count;
+                const double turn = std::atan2(d.y, d.x) / (2 * M_PI) + 1;
+                ++octants[uint32_t(turn * 8) & 7];
+            }
+    EXPECT_GT(shortest, 126);
+    EXPECT_LT(longest, 130);
+    const double noise = 4 * 128 / std::sqrt(2.0 * count);
+    EXPECT_LT(std::abs(x / count), noise);
+    EXPECT_LT(std::abs(y / count), noise);
+    for (const uint32_t octant : octants) EXPECT_NEAR(octant, count / 8.0, 0.06 * count / 8.0);
+}
+
+// What motion remembers carries a puff on when nothing pushes it any longer.
+TEST(Field, MotionIsRemembered) {
+    double way[2] = {};
+    for (const uint32_t memory : {0u, 1u}) {
+        FieldRules rules = stillRules(64, 16);
+        rules.memory = memory * 240, rules.inertia = memory * 200;
+        rules.forceX = 128;
+        Field field = fieldOf(64, 16);
+        field.cells[8 * 64 + 8].n = 20000;
+        for (int s = 0; s < 5; ++s) stepField(field, rules);
+        rules.forceX = 0;
+        const double at = momentsOf(field).x;
+        for (int s = 0; s < 20; ++s) stepField(field, rules);
+        way[memory] = momentsOf(field).x - at;
+    }
+    EXPECT_EQ(way[0], 0);
+    EXPECT_GT(way[1], 2);
+    EXPECT_LT(way[1], 19);
+}
+
+// Where each preset's particles are after a while: fire and smoke above their source, water below.
+TEST(Field, PresetsRiseAndFall) {
+    double height[kFieldPresets], lit[kFieldPresets];
+    for (uint32_t p = 0; p < kFieldPresets; ++p) {
+        FieldDef def;
+        def.look = fieldPreset(FieldPreset(p));
+        FieldRules rules = fieldRules(def);
+        addDefaultSource(rules, def.look);
+        Field field = fieldOf(64, 64);
+        for (int s = 0; s < 400; ++s) stepField(field, rules);
+        height[p] = momentsOf(field).y;
+        lit[p] = double(total(field));
+    }
+    std::printf("[   FIGURE ] mean height of fire, smoke, water: %.1f, %.1f, %.1f of 64 cells\n",
+                height[0], height[1], height[2]);
+    EXPECT_GT(height[0], 3);
+    EXPECT_LT(height[0], 25);
+    EXPECT_GT(height[1], height[0] + 5);
+    EXPECT_LT(height[2], 32);
+    for (const double sum : lit) EXPECT_GT(sum, 1000);
+}
+
+TEST(Field, BadDefsAreNamed) {
+    const auto said = [](FieldDef def) {
+        try {
+            checkField(def);
+        } catch (const fw::core::Error& error) {
+            return std::string(error.message);
+        }
+        return std::string();
+    };
+    FieldDef def;
+    EXPECT_EQ(said(def), "");
+    def.width = 3;
+    EXPECT_EQ(said(def), "width is 3; it must lie in [4, 256].");
+    def = {};
+    def.look.life = 0;
+    EXPECT_EQ(said(def), "look.life is 0; it must lie in [0.01, 1e+06].");
+    def = {};
+    def.look.chaos = std::nanf("");
+    EXPECT_NE(said(def).find("look.chaos is"), std::string::npos);
+    def = {};
+    def.open = 16;
+    EXPECT_EQ(said(def), "open is 16; it holds four bits, up to 15.");
+}
+
+}  // namespace
