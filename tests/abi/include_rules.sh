@@ -10,6 +10,7 @@ runtime/core|core/|flamewright/flamewright.h
 runtime/fire|fire/|core/|shared/|flamewright/flamewright.h
 runtime/mesh|mesh/|core/|shared/|flamewright/flamewright.h
 runtime/volume|volume/|core/|shared/|flamewright/flamewright.h
+runtime/field|field/|core/|shared/|flamewright/flamewright.h
 runtime/components|components/|core/|fire/|mesh/|volume/|shared/|flamewright/flamewright.h
 runtime/world|world/|components/|core/|fire/|mesh/|volume/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
 runtime/gpu|gpu/|core/|fire/|mesh/|volume/|shared/|flamewright/
@@ -52,7 +53,7 @@ check_tree() {
         done
     done <<<"$rules"
 
-    local rooms=("$tree"/runtime/{core,fire,mesh,volume,components,world} "$tree/runtime/gpu/cpu"
+    local rooms=("$tree"/runtime/{core,fire,mesh,volume,field,components,world} "$tree/runtime/gpu/cpu"
         "$tree/runtime/gpu/backend.h" "$tree/plugin/include/flamewright/flamewright.h"
         "$tree/plugin/include/flamewright/flamewright_debug.h")
     for room in "${rooms[@]}"; do
@@ -75,12 +76,13 @@ check_tree() {
 
 broken=$(mktemp -d)
 trap 'rm -rf "$broken"' EXIT
-mkdir -p "$broken"/runtime/{core,fire,mesh,volume,components,world,gpu/cpu} "$broken"/plugin/{src,include/flamewright} \
+mkdir -p "$broken"/runtime/{core,fire,mesh,volume,field,components,world,gpu/cpu} "$broken"/plugin/{src,include/flamewright} \
     "$broken"/{shaders/shared,samples/a,editor/import}
 echo '#include "fire/law.h"' >"$broken/runtime/core/a.h"
 echo '#include "mesh/bake.h"' >"$broken/runtime/fire/a.h"
 echo '#include "world/world.h"' >"$broken/runtime/mesh/a.h"
 echo '#include "fire/law.h"' >"$broken/runtime/volume/a.h"
+echo '#include "volume/curve.h"' >"$broken/runtime/field/a.h"
 echo '#include "gpu/vk/device.h"' >"$broken/runtime/components/a.cpp"
 echo '#include "gpu/vk/device.h"' >"$broken/runtime/world/a.cpp"
 echo 'int f(VkDevice device);' >"$broken/runtime/world/b.h"
@@ -92,7 +94,7 @@ echo '#include "core/hash.h"' >"$broken/shaders/shared/a.h"
 echo '#include "core/hash.h"' >"$broken/samples/a/main.cpp"
 echo '#include "../../runtime/core/hash.h"' >"$broken/editor/import/a.cpp"
 echo 'thread_local int x;' >"$broken/runtime/world/c.cpp"
-expected=15
+expected=16
 noticed=$(check_tree "$broken" | wc -l)
 if [[ $noticed -ne $expected ]]; then
     check_tree "$broken"
