@@ -190,9 +190,9 @@ float plumeExcess(float power, float z) noexcept {
 
 float heightFactor(const FlameLook& look, float height, float diameter) noexcept {
     const float slender = std::log2(std::max(height, 1e-6f) / std::max(diameter, 1e-4f));
-    // Jets, of more than sixteen diameters, taper sooner.
-    return look.heightFactor + look.heightSlope * std::clamp(slender - 1.0f, 0.0f, 2.0f) -
-           0.12f * std::clamp(slender - 4.0f, 0.0f, 2.0f);
+    // Jets, of more than sixteen diameters, taper later.
+    return look.heightFactor + look.heightSlope * std::clamp(slender - 1.0f, 0.0f, 2.0f) +
+           0.10f * std::clamp(slender - 4.0f, 0.0f, 2.0f);
 }
 
 uint32_t splitFire(float power, float diameter, std::array<Flamelet, kMaxFlamelets>& out) noexcept {

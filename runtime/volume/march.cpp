@@ -1,6 +1,8 @@
 // One ray through one flame, by the shader's own text.
 #include "volume/march.h"
 
+#include "shared/volume_march.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -53,27 +55,62 @@ vec2 flameSpan(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> no
     return span;
 }
 
+vec2 flameChord(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes, vec3 from,
+                vec3 direction, float farthest, uint32_t intervals, RayKnots& out) noexcept {
+    const vec4 spans = gpu::flameSpans(nodes.data(), flame, from, direction);
+    const float end = std::min(spans.y, farthest);
+    out = {};
+    if (!(spans.x < end)) return vec2(0.0f);
+    const uint32_t turns = std::clamp(intervals, 1u, gpu::kFlameIntervals);
+    gpu::FlameChord chord{spans.x, (end - spans.x) / float(turns), 1e9f, -1e9f};
+    const gpu::FlamePieces pieces = gpu::flamePieces(nodes.data());
+    out.from = chord.from, out.gap = chord.gap;
+    out.first = gpu::flameKnot(nodes.data(), pieces, from + direction * chord.from);
+    vec4 knot = out.first;
+    for (uint32_t i = 0; i < turns; ++i) {
+        const vec3 x = from + direction * (chord.from + chord.gap * float(i + 1));
+        const vec4 next = gpu::flameKnot(nodes.data(), pieces, x);
+        out.delta[i] = next - knot;
+        chord = gpu::flameInterval(flame, chord, float(i), knot, next - knot);
+        knot = next;
+    }
+    if (!(chord.first < chord.last)) return vec2(0.0f);
+    return chord.from + chord.gap * vec2(chord.first, chord.last);
+}
+
 gpu::FlameRay marchRay(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes,
                        const Profile& profile, vec3 from, vec3 direction,
                        const MarchRules& rules) noexcept {
     gpu::FlameRay ray{vec3(0.0f), vec3(1.0f)};
-    vec2 span = flameSpan(flame, nodes, from, direction);
-    span.y = std::min(span.y, rules.farthest);
-    if (!(span.x < span.y)) return ray;
-    const float step = (span.y - span.x) / float(std::max(rules.steps, 1u));
-    for (uint32_t k = 0; k < rules.steps && ray.through.g > 0.003f; ++k) {
-        const float t = span.x + step * (float(k) + rules.jitter);
-        const vec3 x = from + direction * t;
-        const auto at = locate(nodes, x);
-        if (!at) continue;
+    if (nodes.size() != gpu::kFlameNodes) return ray;
+    RayKnots knots;
+    const vec2 chord =
+        flameChord(flame, nodes, from, direction, rules.farthest, rules.intervals, knots);
+    const float step = (chord.y - chord.x) / float(std::max(rules.steps, 1u));
+    const bool burns = chord.x < chord.y;
+    for (uint32_t k = 0; burns && k < rules.steps && ray.through.g > 0.003f; ++k) {
+        const float t = chord.x + step * (float(k) + rules.jitter);
+        const gpu::FlamePlace at =
+            gpu::flameAlong(knots.first, knots.delta, (t - knots.from) / knots.gap);
         const float size =
             rules.detail > 0.0f ? rules.detail : std::max(0.35f * step, rules.pixel * t);
-        const gpu::FlameMedium m = sampleFlame(flame, profile, at->place, size, rules.smoke);
-        const vec3 to = vec3(flame.glow) - x;
-        const vec3 incoming = gpu::flameSmokeLight(flame, dot(to, to), m.smokeShade);
-        ray = gpu::flameStep(ray, m, incoming, step);
+        const gpu::FlameMedium m = sampleFlame(flame, profile, at, size, false);
+        ray = gpu::flameStep(ray, m, vec3(0.0f), step);
     }
-    return ray;
+    if (!rules.smoke) return ray;
+    const vec4 spans = gpu::flameSpans(nodes.data(), flame, from, direction);
+    const float metres = std::min(spans.w, rules.farthest) - spans.z;
+    gpu::FlameSmokeRay smoke{{vec3(0.0f), vec3(1.0f)}, {vec3(0.0f), vec3(1.0f)}};
+    const gpu::FlamePieces pieces = gpu::flamePieces(nodes.data());
+    const float stride = metres / float(gpu::kFlameSmokeSteps);
+    for (uint32_t k = 0; metres > 0.0f && k < gpu::kFlameSmokeSteps; ++k) {
+        const float t = spans.z + stride * (float(k) + rules.jitter);
+        const vec3 x = from + direction * t;
+        const bool behind = burns && t > 0.5f * (chord.x + chord.y);
+        smoke = gpu::flameSmokeStep(flame, smoke, gpu::flamePlaceNear(nodes.data(), pieces, x), x,
+                                    behind, stride);
+    }
+    return gpu::flameBetween(ray, smoke);
 }
 
 }  // namespace fw::volume

@@ -4,12 +4,15 @@
 #include "volume/curve.h"
 #include "volume/profile.h"
 
+#include "shared/volume_march.h"
+
 namespace fw::volume {
 
 struct MarchRules {
-    uint32_t steps = 64;    // >= 1, over what the ray sees of the flame
-    float jitter = 0.5f;    // [0, 1) of a step, where in it the sample lies
-    float pixel = 0.0f;     // m per m away, width of a pixel
+    uint32_t steps = 64;                        // >= 1, over what the ray sees of the tube
+    uint32_t intervals = gpu::kFlameIntervals;  // between knots, see volume_march.h
+    float jitter = 0.5f;                        // [0, 1) of a step, where in it the sample lies
+    float pixel = 0.0f;                         // m per m away, width of a pixel
     float detail = 0.0f;    // m: noise finer than this fades; 0: by step and pixel
     float farthest = 1e9f;  // m, the scene behind
     bool smoke = true;
@@ -26,6 +29,16 @@ Bounds flameBounds(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode
 // From where to where a ray is in the tube, m; empty where x >= y. Conservative.
 vec2 flameSpan(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes, vec3 from,
                vec3 direction) noexcept;
+
+// Where the curve is looked up along a ray.
+struct RayKnots {
+    float from = 0.0f, gap = 0.0f;  // m along the ray
+    vec4 first{0.0f};
+    vec4 delta[gpu::kFlameIntervals]{};
+};
+// From where to where something may burn, m along the ray; empty where x >= y.
+vec2 flameChord(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes, vec3 from,
+                vec3 direction, float farthest, uint32_t intervals, RayKnots& out) noexcept;
 
 // `direction` is unit. What is behind the flame shows by ray.through.
 gpu::FlameRay marchRay(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes,

@@ -6,6 +6,15 @@
 #ifndef FW_SHARED_VOLUME_H
 #define FW_SHARED_VOLUME_H
 #include "shared/black_body.h"
+#ifdef __cplusplus
+#include <bit>
+#endif
+
+#ifdef __cplusplus
+#define FW_INOUT(T) T&
+#else
+#define FW_INOUT(T) inout T
+#endif
 
 FW_SHARED_BEGIN
 #ifdef __cplusplus
@@ -22,6 +31,7 @@ using std::floor;
 using std::pow;
 using std::sin;
 using std::sqrt;
+inline float intBitsToFloat(int x) { return std::bit_cast<float>(x); }
 #endif
 
 FW_SHARED_CONST uint kFlameNodes = 24u;          // of a curve
@@ -119,69 +129,92 @@ struct FlameRay {
     vec3 through;         // transmittance
 };
 
+// 2^x within 1e-4 for x in [-60, 60], clamped there: devices' own is four times as long.
+FW_SHARED_FN float flameExp2(float x) {
+    float whole = floor(clamp(x, -60.0f, 60.0f));
+    float f = clamp(x, -60.0f, 60.0f) - whole;
+    float part = 1.0f + f * (0.6955568f + f * (0.2261735f + f * 0.0782697f));
+    return part * intBitsToFloat((int(whole) + 127) << 23);
+}
+
 // ---- noise: gradient noise, mean 0, rms 0.220, |n| < 1; repeats along y after kFlameWrap cells
 
-FW_SHARED_FN vec3 flameGradient(int x, int y, int z) {
-    uint a = uint(x) * 1664525u + 1013904223u;
-    uint b = uint(y & 4095) * 1664525u + 1013904223u;
-    uint c = uint(z) * 1664525u + 1013904223u;
-    a += b * c; b += c * a; c += a * b;
-    a ^= a >> 16; b ^= b >> 16; c ^= c >> 16;
-    a += b * c; b += c * a; c += a * b;
-    return vec3(float(a >> 8), float(b >> 8), float(c >> 8)) * (2.0f / 16777215.0f) - vec3(1.0f);
+// One multiplication a corner: noise is most of what a flame costs.
+FW_SHARED_FN uint flameCorner(uint h) {
+    h = (h ^ (h >> 15)) * 0x2C1B3C6Du;
+    return h ^ (h >> 13);
+}
+
+// What a corner adds at f from it; its gradient is uniform in a cube of half side 2^31.
+FW_SHARED_FN float flameCornerDot(uint key, vec3 f) {
+    uint h = flameCorner(key);
+    return float(int(h)) * f.x + float(int(h << 11)) * f.y + float(int(h << 21)) * f.z;
 }
 
 FW_SHARED_FN float flameNoise(vec3 x) {
     vec3 cell = floor(x);
     vec3 f = x - cell;
+    vec3 g = f - vec3(1.0f);
     vec3 u = f * f * f * (f * (f * 6.0f - vec3(15.0f)) + vec3(10.0f));
-    int i = int(cell.x); int j = int(cell.y); int k = int(cell.z);
-    float a = dot(flameGradient(i, j, k), f);
-    float b = dot(flameGradient(i + 1, j, k), f - vec3(1.0f, 0.0f, 0.0f));
-    float c = dot(flameGradient(i, j + 1, k), f - vec3(0.0f, 1.0f, 0.0f));
-    float d = dot(flameGradient(i + 1, j + 1, k), f - vec3(1.0f, 1.0f, 0.0f));
-    float e = dot(flameGradient(i, j, k + 1), f - vec3(0.0f, 0.0f, 1.0f));
-    float g = dot(flameGradient(i + 1, j, k + 1), f - vec3(1.0f, 0.0f, 1.0f));
-    float h = dot(flameGradient(i, j + 1, k + 1), f - vec3(0.0f, 1.0f, 1.0f));
-    float l = dot(flameGradient(i + 1, j + 1, k + 1), f - vec3(1.0f, 1.0f, 1.0f));
-    return 1.15f * mix(mix(mix(a, b, u.x), mix(c, d, u.x), u.y),
-                       mix(mix(e, g, u.x), mix(h, l, u.x), u.y), u.z);
+    uint i = uint(int(cell.x)) * 0x9E3779B1u; uint i1 = i + 0x9E3779B1u;
+    int yy = int(cell.y);
+    uint j = uint(yy & 4095) * 0x85EBCA77u; uint j1 = uint((yy + 1) & 4095) * 0x85EBCA77u;
+    uint k = uint(int(cell.z)) * 0xC2B2AE3Du; uint k1 = k + 0xC2B2AE3Du;
+    uint ij = i ^ j; uint i1j = i1 ^ j; uint ij1 = i ^ j1; uint i1j1 = i1 ^ j1;
+    float a = flameCornerDot(ij ^ k, f);
+    float b = flameCornerDot(i1j ^ k, vec3(g.x, f.y, f.z));
+    float c = flameCornerDot(ij1 ^ k, vec3(f.x, g.y, f.z));
+    float d = flameCornerDot(i1j1 ^ k, vec3(g.x, g.y, f.z));
+    float e = flameCornerDot(ij ^ k1, vec3(f.x, f.y, g.z));
+    float m = flameCornerDot(i1j ^ k1, vec3(g.x, f.y, g.z));
+    float n = flameCornerDot(ij1 ^ k1, vec3(f.x, g.y, g.z));
+    float o = flameCornerDot(i1j1 ^ k1, g);
+    a += u.x * (b - a); c += u.x * (d - c); e += u.x * (m - e); n += u.x * (o - n);
+    a += u.y * (c - a); e += u.y * (n - e);
+    return (1.15f / 2147483648.0f) * (a + u.z * (e - a));
 }
 
-FW_SHARED_FN vec3 flameNoiseSlope(vec3 x) {
+FW_SHARED_FN vec3 flameCornerSlope(uint h) {
+    return vec3(float(int(h)), float(int(h << 11)), float(int(h << 21)));
+}
+
+// Slopes of two noises on one lattice, grown by 2^31 / 1.15: what each corner adds. `w`: its weight,
+// `dw`: the weight's slope.
+FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(vec3) first, FW_INOUT(vec3) second) {
+    uint h = flameCorner(key);
+    vec3 g = flameCornerSlope(h);
+    first += w * g + dot(g, f) * dw;
+    g = flameCornerSlope(h * 0x297A2D39u);
+    second += w * g + dot(g, f) * dw;
+}
+
+// Eddies: divergence-free, and limited so that none throws fire far from the flame.
+FW_SHARED_FN vec3 flameCurl(vec3 x) {
     vec3 cell = floor(x);
     vec3 f = x - cell;
+    vec3 g = f - vec3(1.0f);
     vec3 u = f * f * f * (f * (f * 6.0f - vec3(15.0f)) + vec3(10.0f));
-    vec3 du = 30.0f * f * f * (f * (f - vec3(2.0f)) + vec3(1.0f));
-    int i = int(cell.x); int j = int(cell.y); int k = int(cell.z);
-    vec3 ga = flameGradient(i, j, k);
-    vec3 gb = flameGradient(i + 1, j, k);
-    vec3 gc = flameGradient(i, j + 1, k);
-    vec3 gd = flameGradient(i + 1, j + 1, k);
-    vec3 ge = flameGradient(i, j, k + 1);
-    vec3 gf = flameGradient(i + 1, j, k + 1);
-    vec3 gg = flameGradient(i, j + 1, k + 1);
-    vec3 gh = flameGradient(i + 1, j + 1, k + 1);
-    float va = dot(ga, f);
-    float vb = dot(gb, f - vec3(1.0f, 0.0f, 0.0f));
-    float vc = dot(gc, f - vec3(0.0f, 1.0f, 0.0f));
-    float vd = dot(gd, f - vec3(1.0f, 1.0f, 0.0f));
-    float ve = dot(ge, f - vec3(0.0f, 0.0f, 1.0f));
-    float vf = dot(gf, f - vec3(1.0f, 0.0f, 1.0f));
-    float vg = dot(gg, f - vec3(0.0f, 1.0f, 1.0f));
-    float vh = dot(gh, f - vec3(1.0f, 1.0f, 1.0f));
-    vec3 slope = mix(mix(mix(ga, gb, u.x), mix(gc, gd, u.x), u.y),
-                     mix(mix(ge, gf, u.x), mix(gg, gh, u.x), u.y), u.z);
-    slope.x += du.x * mix(mix(vb - va, vd - vc, u.y), mix(vf - ve, vh - vg, u.y), u.z);
-    slope.y += du.y * mix(mix(vc - va, vd - vb, u.x), mix(vg - ve, vh - vf, u.x), u.z);
-    slope.z += du.z * mix(mix(ve - va, vf - vb, u.x), mix(vg - vc, vh - vd, u.x), u.y);
-    return 1.15f * slope;
-}
-
-// Divergence-free, and limited so that no eddy throws fire far from the flame.
-FW_SHARED_FN vec3 flameCurl(vec3 x) {
-    vec3 other = vec3(1.03f * x.x + 31.4f, x.y + 17.7f, 1.03f * x.z + 53.1f);
-    vec3 w = cross(flameNoiseSlope(x), flameNoiseSlope(other));
+    vec3 v = vec3(1.0f) - u;
+    vec3 d = 30.0f * f * f * (f * (f - vec3(2.0f)) + vec3(1.0f));
+    uint i = uint(int(cell.x)) * 0x9E3779B1u; uint i1 = i + 0x9E3779B1u;
+    int yy = int(cell.y);
+    uint j = uint(yy & 4095) * 0x85EBCA77u; uint j1 = uint((yy + 1) & 4095) * 0x85EBCA77u;
+    uint k = uint(int(cell.z)) * 0xC2B2AE3Du; uint k1 = k + 0xC2B2AE3Du;
+    // Products of two weights, by the axis that is left out.
+    vec4 byX = vec4(v.y * v.z, u.y * v.z, v.y * u.z, u.y * u.z);
+    vec4 byY = vec4(v.x * v.z, u.x * v.z, v.x * u.z, u.x * u.z);
+    vec4 byZ = vec4(v.x * v.y, u.x * v.y, v.x * u.y, u.x * u.y);
+    vec4 dx = d.x * byX; vec4 dy = d.y * byY; vec4 dz = d.z * byZ;
+    vec3 a = vec3(0.0f); vec3 b = vec3(0.0f);
+    flameCornerCurl(i ^ j ^ k, f, v.x * byX.x, vec3(-dx.x, -dy.x, -dz.x), a, b);
+    flameCornerCurl(i1 ^ j ^ k, vec3(g.x, f.y, f.z), u.x * byX.x, vec3(dx.x, -dy.y, -dz.y), a, b);
+    flameCornerCurl(i ^ j1 ^ k, vec3(f.x, g.y, f.z), v.x * byX.y, vec3(-dx.y, dy.x, -dz.z), a, b);
+    flameCornerCurl(i1 ^ j1 ^ k, vec3(g.x, g.y, f.z), u.x * byX.y, vec3(dx.y, dy.y, -dz.w), a, b);
+    flameCornerCurl(i ^ j ^ k1, vec3(f.x, f.y, g.z), v.x * byX.z, vec3(-dx.z, -dy.z, dz.x), a, b);
+    flameCornerCurl(i1 ^ j ^ k1, vec3(g.x, f.y, g.z), u.x * byX.z, vec3(dx.z, -dy.w, dz.y), a, b);
+    flameCornerCurl(i ^ j1 ^ k1, vec3(f.x, g.y, g.z), v.x * byX.w, vec3(-dx.w, dy.z, dz.z), a, b);
+    flameCornerCurl(i1 ^ j1 ^ k1, g, u.x * byX.w, vec3(dx.w, dy.w, dz.w), a, b);
+    vec3 w = cross((1.15f / 2147483648.0f) * a, (1.15f / 2147483648.0f) * b);
     return w / (1.0f + 0.6f * length(w));
 }
 
@@ -241,7 +274,9 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     float diameter = f.low.w;
     float y = at.s / f.high.w;
     float tau = flameTau(at.s, f.tauStart, f.tauFree);
-    float swell = sin(6.2831853f * (f.place.w - kFlamePuffLag * tau / sqrt(diameter) * 1.5f));
+    float turn = f.place.w - kFlamePuffLag * 1.5f * tau / sqrt(diameter);
+    turn -= floor(turn) + 0.5f;
+    float swell = 8.0f * turn * (2.0f * abs(turn) - 1.0f);  // a sine, nearly
     float radius = at.radius * (1.0f + f.puff * smoothstep(0.0f, 0.5f, y) * swell);
     float rim = length(at.p) / max(radius, 1e-6f);
     if (y < 0.0f || y > kFlameTop || rim > kFlameReach || radius < 1e-5f) return look;
@@ -264,18 +299,21 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     yw /= max(0.25f, 1.0f + f.columns * (column + 0.10f));
     // Turbulence without bias: half signed, half ridged; smaller eddies move at their own speeds.
     vec3 x = vec3(p.x / f.lambda + f.place.z, z / f.lambda + f.place.x, p.y / f.lambda + f.place.y);
-    float rough = 0.0f; float sheet = 0.0f; float weight = 1.0f; float size2 = 2.0f * size;
-    float lambda = f.lambda * narrow;
-    FW_UNROLL
-    for (uint o = 0u; o < kFlameOctaves; ++o) {
-        float fade = o == 0u ? 1.0f : clamp(lambda / size2 - 0.5f, 0.0f, 1.0f);
-        if (o >= f.octaves || fade <= 0.0f) break;
-        float n = flameNoise(x - vec3(0.0f, f.scroll[int(o)], 0.0f));
-        rough += weight * fade * mix(1.3f * n, 2.2f * (kFlameMeanAbs - abs(n)), f.ridge);
+    float rough = 0.0f; float sheet = 0.0f; float weight = 1.0f;
+    float lambda = f.lambda * narrow / (2.0f * size);
+    vec4 scroll = f.scroll;
+    uint o = 0u;
+    do {  // the same number of turns for all: not one too many
+        float fade = o == 0u ? 1.0f : clamp(lambda - 0.5f, 0.0f, 1.0f);
+        float n = flameNoise(x - vec3(0.0f, scroll.x, 0.0f));
+        rough += weight * fade * (f.ridge * (2.2f * kFlameMeanAbs) +
+                                  (1.3f - 1.3f * f.ridge) * n - (2.2f * f.ridge) * abs(n));
         sheet += weight * fade * n * (o == 0u ? 1.0f : 0.6f);
         weight *= 0.5f; lambda *= 0.5f;
         x = vec3(2.03f * x.x + 11.3f, 2.0f * x.y + 7.7f, 2.03f * x.z + 5.1f);
-    }
+        scroll = vec4(scroll.y, scroll.z, scroll.w, 0.0f);
+        o += 1u;
+    } while (o < f.octaves);
     // The foot stays lit whatever the noise says.
     look.y = max(yw - f.turbulence * sqrt(y) * rough, 0.5f * y * (1.0f - grow));
     look.rho = length(p) * narrow / radius *
@@ -284,7 +322,7 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     // Soot lies in sheets where the carried noise is 0, the crests of the displacement.
     float thin = 0.7f * size / (f.lambda * narrow);
     float width = sqrt(f.filamentWidth * f.filamentWidth + thin * thin);
-    float filament = f.filamentWidth / width * exp(-sheet * sheet / (width * width));
+    float filament = f.filamentWidth / width * flameExp2(-1.442695f * sheet * sheet / (width * width));
     if (sheet > 0.0f) filament = max(filament, f.tipFill * smoothstep(0.3f, 0.9f, y));
     look.sheet = mix(1.0f, f.filamentBase + (1.6f - f.filamentBase) * filament,
                      f.filament * smoothstep(0.0f, f.filamentHeight, y));
@@ -296,7 +334,11 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
 }
 
 FW_SHARED_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
-    vec3 radiance = sootRadiance(kelvin);
+    // As sootRadiance.
+    float light = flameExp2(34981.0f * (1.0f / 1600.0f) - 34981.0f / max(kelvin, 400.0f));
+    float green = max(0.0f, 2.85e-4f * (kelvin - 940.0f));
+    float blue = max(0.0f, 1.35e-4f * (kelvin - 1815.0f));
+    vec3 radiance = vec3(1.0f, green, blue) * (light / (0.2126f + 0.7152f * green + 0.0722f * blue));
     if (f.tint.w > 0.0f) {  // coloured fire keeps the luminance
         float luminance = dot(radiance, vec3(0.2126f, 0.7152f, 0.0722f));
         float hot = smoothstep(f.tintLow, f.tintHigh, kelvin);
@@ -334,14 +376,15 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
                   f.speed * flameTau(at.s, f.tauStart, f.tauFree) / (0.75f * diameter) - f.smokeScroll +
                       f.place.y,
                   at.p.y / scale + f.place.z);
-    x += 0.22f * flameCurl(vec3(0.6f * x.x, x.y, 0.6f * x.z));
-    float billow = 0.0f; float weight = 1.0f;
-    FW_UNROLL
-    for (uint o = 0u; o < 4u; ++o) {
-        billow += weight * (2.0f * abs(flameNoise(x)) - 0.5f);
+    float billow = -0.5f * 1.875f; float weight = 2.0f;
+    uint o = 0u;
+    do {
+        billow += weight * abs(flameNoise(x));
         weight *= 0.5f;
         x = vec3(2.1f * x.x + 3.1f, 2.0f * x.y, 2.1f * x.z + 9.2f);
-    }
+        o += 1u;
+    } while (o < max(f.octaves, 3u));
+    billow += weight * kFlameMeanAbs;  // the octave that is left out, on the mean
     float density = smoothstep(0.05f, 1.0f, 1.15f * body + 0.55f * billow - 0.25f * (1.0f - body) - 0.12f);
     density *= smoothstep(0.6f, 1.7f, y) * (1.0f - smoothstep(0.7f * f.smokeTop, f.smokeTop, y));
     density *= smoothstep(0.01f, 0.06f, body);
@@ -364,19 +407,24 @@ FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade) {
 
 // ---- light along a ray
 
-// (1 - exp(-k d)) / k, exact where k d is small too.
-FW_SHARED_FN float flameThickness(float k, float d) {
-    float x = k * d;
-    return x < 0.02f ? d * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : (1.0f - exp(-x)) / k;
-}
+FW_SHARED_CONST vec3 kFlameAbsorb = vec3(0.9f, 1.125f, 1.35f);  // soot takes more of the blue
 
-// One step of emission and absorption, exact for a medium that is constant over it. Soot takes more
-// of the blue: thick flame reddens. `incoming`: what smoke scatters towards the eye.
+// One step of emission and absorption, exact for a medium that is constant over it: thick flame
+// reddens. `incoming`: what smoke scatters towards the eye.
 FW_SHARED_FN FlameRay flameStep(FlameRay ray, FlameMedium m, vec3 incoming, float d) {
-    vec3 k = m.soot * vec3(0.9f, 1.1f, 1.35f) + vec3(m.smoke);
-    vec3 thickness = vec3(flameThickness(k.x, d), flameThickness(k.y, d), flameThickness(k.z, d));
+    // One exponential for all: the three are its powers.
+    float e = flameExp2(-1.442695f * 0.225f * m.soot * d);
+    float e2 = e * e;
+    vec3 pass = vec3(e2 * e2, e2 * e2 * e, e2 * e2 * e2) * flameExp2(-1.442695f * m.smoke * d);
+    vec3 k = m.soot * kFlameAbsorb + vec3(m.smoke);
+    vec3 x = k * d;
+    // (1 - exp(-x)) / k, exact where x is small too.
+    vec3 thickness = d * (vec3(1.0f) - x * (vec3(0.5f) - x * (1.0f / 6.0f)));
+    vec3 thick = (vec3(1.0f) - pass) / max(k, vec3(1e-6f));
+    thickness = vec3(x.x < 0.05f ? thickness.x : thick.x, x.y < 0.05f ? thickness.y : thick.y,
+                     x.z < 0.05f ? thickness.z : thick.z);
     ray.radiance += ray.through * (m.emission + m.smoke * incoming) * thickness;
-    ray.through *= vec3(1.0f) - k * thickness;
+    ray.through *= pass;
     return ray;
 }
 FW_SHARED_END

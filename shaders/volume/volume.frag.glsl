@@ -19,6 +19,9 @@ layout(location = 2) flat in uint inZero;
 
 layout(location = 0) out vec4 outColor;
 
+#define FW_FLAME_NODE(i) flame.nodes[i]
+#include "shared/volume_march.h"
+
 #include "lib/colour.glsl"
 
 #ifdef FW_SOFT
@@ -38,42 +41,6 @@ float depthOfScene() {
 }
 #endif
 
-// Where along which pair of planes; x < 0: before the base or beyond the end.
-vec3 segmentOf(vec3 x) {
-    vec3 found = vec3(-1.0, 0.0, -1.0);
-    float best = 1e30;
-    float da = flamePlane(x, flame.nodes[0]);
-    // Constant indices: software devices read the block once for all lanes then.
-    FW_UNROLL
-    for (uint k = 0u; k + 1u < kFlameNodes; ++k) {
-        float db = flamePlane(x, flame.nodes[k + 1u]);
-        vec4 axis = mix(flame.nodes[k].centre, flame.nodes[k + 1u].centre, da / max(da - db, 1e-9));
-        vec3 off = x - axis.xyz;
-        float cost = dot(off, off) / max(axis.w * axis.w, 1e-12);
-        bool nearer = da >= 0.0 && db < 0.0 && cost < best;
-        best = nearer ? cost : best;
-        found = nearer ? vec3(float(k), da, db) : found;
-        da = db;
-    }
-    return found;
-}
-
-// Where the ray is in the tube, conservatively.
-vec2 spanOf(FlameRecord f, vec3 from, vec3 direction) {
-    vec2 span = vec2(1e30, -1e30);
-    FW_UNROLL
-    for (uint k = 0u; k + 1u < kFlameNodes; ++k) {
-        FlameNode a = flame.nodes[k], b = flame.nodes[k + 1u];
-        float reach = flameReachAt(f, a.along.w, b.along.w, max(a.centre.w, b.centre.w),
-                                   max(a.side.w, b.side.w));
-        vec2 s = flameSegmentSpan(from, direction, a, b, reach);
-        bool seen = s.x < s.y;
-        span.x = seen ? min(span.x, s.x) : span.x;
-        span.y = seen ? max(span.y, s.y) : span.y;
-    }
-    return span;
-}
-
 void main() {
     FlameRecord f = flame.record;
     // Zero. A software device compiles a shader anew, in milliseconds a draw, for each set of
@@ -81,6 +48,7 @@ void main() {
     f.octaves |= inZero;
     f.tint.w += float(inZero);
     f.smoke += float(inZero);
+    f.puff += float(inZero);
     bool perspective = view.forward.w > 0.5;
     vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : inRay);
     vec3 along = perspective ? inRay : view.forward.xyz;
@@ -92,63 +60,83 @@ void main() {
     f.air.rgb = (0.5 * (view.ambientSky.rgb + view.ambientGround.rgb) +
                  0.15 * view.sunColor.rgb) / white;
 
-    vec2 span = spanOf(f, from, direction);
+    float farthest = 1e9;
 #ifdef FW_SOFT
-    span.y = min(span.y, depthOfScene() * perDepth);
+    farthest = depthOfScene() * perDepth;
 #endif
-    float metres = max(span.y - span.x, 0.0);
-    span.x = metres > 0.0 ? span.x : 0.0;
+    vec4 spans = flameSpans(f, from, direction);
+    spans.yw = min(spans.yw, vec2(farthest));
+    float jitter = volumeJitter(gl_FragCoord.x, gl_FragCoord.y, view.ambientSky.w);
+    float pixel = view.eye.w * (perspective ? 1.0 / perDepth : 0.0);
+    vec2 slab = inSlab * perDepth;
+
+    // Loops that end for all at once test last: a software device runs one turn more of others.
+    uint turns = draw.intervals | inZero;
+    vec4 delta[kFlameIntervals];
+    FW_UNROLL
+    for (uint k = 0u; k < kFlameIntervals; ++k) delta[k] = vec4(0.0);
+    FlameChord chord = FlameChord(spans.x, max(spans.y - spans.x, 0.0) / float(turns), 1e9, -1e9);
+    FlamePieces pieces = flamePieces();
+    vec4 first = flameKnot(pieces, from + direction * chord.from);
+    vec4 knot = first;
+    uint i = 0u;
+    do {
+        vec4 next = flameKnot(pieces, from + direction * (chord.from + chord.gap * float(i + 1u)));
+        FW_UNROLL
+        for (uint k = 0u; k < kFlameIntervals; ++k) delta[k] = i == k ? next - knot : delta[k];
+        chord = flameInterval(f, chord, float(i), knot, next - knot);
+        knot = next;
+        i += 1u;
+    } while (i < turns);
+    float metres = spans.x < spans.y ? chord.gap * max(chord.last - chord.first, 0.0) : 0.0;
     float steps = volumeSteps(metres, draw.spacing, draw.mostSteps);
     float stride = metres / steps;
-    float jitter = volumeJitter(gl_FragCoord.x, gl_FragCoord.y, view.ambientSky.w);
+    float begin = metres > 0.0 ? chord.from + chord.gap * chord.first : 0.0;
     // Each sample is in one slab.
-    vec2 ends = (inSlab * perDepth - span.x) / max(stride, 1e-9) - jitter;
-    float k = clamp(ceil(ends.x), 0.0, steps), last = clamp(ceil(ends.y), 0.0, steps);
-    last = metres > 0.0 ? last : 0.0;
-    float pixel = view.eye.w * (perspective ? 1.0 / perDepth : 0.0);
-
+    vec2 ends = clamp(ceil((slab - begin) / max(stride, 1e-9) - jitter), 0.0, steps);
+    float k = ends.x, last = metres > 0.0 ? ends.y : 0.0;
     FlameRay ray = FlameRay(vec3(0.0), vec3(1.0));
-    vec3 scattered = vec3(0.0);
     while (k < last && ray.through.g > 0.003) {
-        float t = span.x + stride * (k + jitter);
-        vec3 x = from + direction * t;
-        vec3 found = segmentOf(x);
+        float t = begin + stride * (k + jitter);
+        FlamePlace at = flameAlong(first, delta, (t - chord.from) / max(chord.gap, 1e-9));
+        FlameLookup look = flameLookup(f, at, max(0.35 * stride, pixel * t));
+        vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach),
+                          look.y * float(kProfileHeight));
+        vec2 size = vec2(float(kProfileWidth), float(kProfileHeight));
+        vec2 uv = clamp(texel, vec2(0.5), size - 0.5) / size;
         FlameMedium m = FlameMedium(0.0, 0.0, 0.5, vec3(0.0));
-        vec3 incoming = vec3(0.0);
-        if (found.x >= 0.0) {
-            uint a = uint(found.x);
-            FlamePlace at = flamePlaceAt(x, flame.nodes[a], flame.nodes[a + 1u], found.y, found.z);
-            FlameLookup look = flameLookup(f, at, max(0.35 * stride, pixel * t));
-            vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach),
-                              look.y * float(kProfileHeight));
-            vec2 size = vec2(float(kProfileWidth), float(kProfileHeight));
-            vec2 uv = clamp(texel, vec2(0.5), size - 0.5) / size;
-            if (look.lit > 0.0)
-                m = flameMedium(f, look, textureLod(profiles, vec3(uv, float(f.profile)), 0.0).xy);
-            vec2 smoke = flameSmoke(f, at);
-            m.smoke = f.air.w * smoke.x;
-            m.smokeShade = smoke.y;
-            vec3 to = f.glow.xyz - x;
-            incoming = flameSmokeLight(f, dot(to, to), m.smokeShade);
-        }
+        if (look.lit > 0.0)
+            m = flameMedium(f, look, textureLod(profiles, vec3(uv, float(f.profile)), 0.0).xy);
         // lavapipe goes on with lanes that have left a loop where others stay: they add nothing.
-        float d = k < last ? stride : 0.0;
-        vec3 before = ray.radiance;
-        vec3 share = m.smoke * incoming / (m.emission + m.smoke * incoming + vec3(1e-20));
-        ray = flameStep(ray, m, incoming, d);
-        scattered += (ray.radiance - before) * share;
+        ray = flameStep(ray, m, vec3(0.0), k < last ? stride : 0.0);
         k += 1.0;
     }
+
+    float middle = begin + 0.5 * metres;
+    stride = max(spans.w - spans.z, 0.0) / float(kFlameSmokeSteps);
+    ends = clamp(ceil((slab - spans.z) / max(stride, 1e-9) - jitter), 0.0, float(kFlameSmokeSteps));
+    k = ends.x;
+    last = spans.z < spans.w ? ends.y : 0.0;
+    FlameSmokeRay smoke = FlameSmokeRay(FlameRay(vec3(0.0), vec3(1.0)), FlameRay(vec3(0.0), vec3(1.0)));
+    while (k < last) {
+        float t = spans.z + stride * (k + jitter);
+        vec3 x = from + direction * t;
+        smoke = flameSmokeStep(f, smoke, flamePlaceNear(pieces, x), x, metres > 0.0 && t > middle,
+                               k < last ? stride : 0.0);
+        k += 1.0;
+    }
+    vec3 scattered = smoke.front.radiance + smoke.front.through * ray.through * smoke.back.radiance;
+    ray = flameBetween(ray, smoke);
 
     float alpha = 1.0 - dot(ray.through, vec3(0.2126, 0.7152, 0.0722));
     vec3 color = ray.radiance * white * view.sunDirection.w;
     if (kEncoding != 0u) {
         // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
         // a thin one must turn red, not grey.
-        vec3 smoke = scattered * white * view.sunDirection.w;
+        vec3 grey = scattered * white * view.sunDirection.w;
         float cover = max(alpha, 1e-4);
-        color = encodeOutput(max(color - smoke, vec3(0.0)), kEncoding) +
-                encodeOutput(smoke / cover, kEncoding) * cover;
+        color = encodeOutput(max(color - grey, vec3(0.0)), kEncoding) +
+                encodeOutput(grey / cover, kEncoding) * cover;
     }
     outColor = vec4(min(color, vec3(60000.0)), alpha);
 }

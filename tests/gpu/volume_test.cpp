@@ -169,14 +169,15 @@ class Volume : public GpuTest {
                     vec3(draw.rayO) + ndc.x * vec3(draw.rayX) + ndc.y * vec3(draw.rayY);
                 const float perDepth = glm::length(along);
                 const vec3 eye(view.eye), direction = along / perDepth;
-                const vec2 span = volume::flameSpan(flame.record, flame.nodes, eye, direction);
                 volume::MarchRules rules;
                 if (far > 0) rules.farthest = far * perDepth;
-                const float metres = std::min(span.y, rules.farthest) - span.x;
-                if (!(metres > 0)) continue;
-                rules.steps =
-                    steps ? steps
-                          : uint32_t(gpu::volumeSteps(metres, draw.spacing, draw.mostSteps));
+                rules.intervals = gpu::volumeIntervals(flame.nodes, gpu::kFlameNodes);
+                volume::RayKnots knots;
+                const vec2 chord = volume::flameChord(flame.record, flame.nodes, eye, direction,
+                                                      rules.farthest, rules.intervals, knots);
+                rules.steps = steps ? steps
+                                    : uint32_t(gpu::volumeSteps(chord.y - chord.x, draw.spacing,
+                                                                draw.mostSteps));
                 rules.jitter = steps ? 0.5f : gpu::volumeJitter(at.x, at.y, 2.0f);
                 rules.pixel = view.eye.w / perDepth;
                 const gpu::FlameRay ray =

@@ -23,7 +23,7 @@ TEST(VolumeMarch, T4_1_ConstantMediumForAnyNumberOfSteps) {
                 FlameRay ray{vec3(0.0f), vec3(1.0f)};
                 for (uint32_t s = 0; s < n; ++s)
                     ray = fw::gpu::flameStep(ray, m, vec3(0), chord / float(n));
-                const vec3 absorb(0.9f, 1.1f, 1.35f);
+                const vec3 absorb = fw::gpu::kFlameAbsorb;
                 for (int c = 0; c < 3; ++c) {
                     const double exact = double(source[c]) / double(absorb[c]) *
                                          -std::expm1(-double(k * absorb[c] * chord));
@@ -112,6 +112,48 @@ TEST(VolumeMarch, RaysFindAllThatIsInTheTube) {
             ASSERT_EQ(m.soot + m.smoke + m.emission.r + m.emission.b, 0.0f) << "at " << t;
         }
     }
+}
+
+// The knots of a ray take the place of its samples: no flame is left out, and none is elsewhere.
+TEST(VolumeMarch, KnotsShowTheFlameWhereItIs) {
+    Shown f = Shown::preset(FlamePreset::CampFire);
+    Curve bent;
+    const float r = 0.5f * f.size.diameter, tall = f.size.height;
+    const ControlPoint points[] = {{vec3(0), r},
+                                   {vec3(0.1f, 0.4f * tall, 0), r},
+                                   {vec3(0.5f, 0.8f * tall, 0.1f), r},
+                                   {vec3(1.2f, tall, 0.2f), r}};
+    bent.set(points, vec3(0, 1, 0));
+    layNodes(bent, topOf(f.record), f.nodes);
+    f.run(0.9);
+    std::mt19937 random(9);
+    std::normal_distribution<float> normal;
+    double off = 0;
+    int lit = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        const vec3 d = glm::normalize(vec3(normal(random), normal(random), normal(random)));
+        const vec3 through = bent.at(0.8f * std::abs(normal(random)) * tall).position;
+        const vec3 from = through - 4.0f * d;
+        RayKnots knots;
+        const vec2 chord =
+            flameChord(f.record, f.nodes, from, d, 1e9f, fw::gpu::kFlameIntervals, knots);
+        for (float t = 3.0f; t < 5.0f; t += 0.02f) {
+            const auto at = locate(f.nodes, from + t * d);
+            if (!at || sampleFlame(f.record, *f.profile, at->place, 0.01f, false).soot <= 0.0f)
+                continue;
+            ++lit;
+            if (!(t > chord.x && t < chord.y)) {
+                off += 1.0;
+                continue;
+            }
+            const auto place =
+                fw::gpu::flameAlong(knots.first, knots.delta, (t - knots.from) / knots.gap);
+            off += std::abs(place.s - at->place.s) > 0.2f * f.size.diameter ? 1.0 : 0.0;
+        }
+    }
+    ASSERT_GT(lit, 1000);
+    std::printf("           %d lit, %.0f astray\n", lit, off);
+    EXPECT_LT(off, 0.02 * lit);
 }
 
 TEST(VolumeMarch, FromInsideAndBehindAWall) {
@@ -243,19 +285,22 @@ TEST(VolumeMarch, NoiseIsUnbiasedAndWraps) {
                         fw::gpu::flameNoise(vec3(3.3f, y + fw::gpu::kFlameWrap, 7.1f)));
 }
 
-TEST(VolumeMarch, SlopeIsTheDerivativeOfTheNoise) {
+// Eddies move fire no farther than they may, on no side more than on another, and smoothly.
+TEST(VolumeMarch, EddiesAreUnbiasedAndLimited) {
     std::mt19937 random(6);
-    std::uniform_real_distribution<float> unit(0.0f, 50.0f);
-    for (int k = 0; k < 200; ++k) {
+    std::uniform_real_distribution<float> unit(0.0f, 400.0f);
+    vec3 sum(0.0f);
+    double square = 0;
+    constexpr int kSamples = 100000;
+    for (int k = 0; k < kSamples; ++k) {
         const vec3 x(unit(random), unit(random), unit(random));
-        const vec3 slope = fw::gpu::flameNoiseSlope(x);
-        for (int c = 0; c < 3; ++c) {
-            vec3 h(0);
-            h[c] = 0.01f;
-            const float finite = (fw::gpu::flameNoise(x + h) - fw::gpu::flameNoise(x - h)) / 0.02f;
-            EXPECT_NEAR(slope[c], finite, 0.02f);
-        }
+        const vec3 eddy = fw::gpu::flameCurl(x);
+        sum += eddy, square += double(glm::dot(eddy, eddy)) / kSamples;
+        ASSERT_LT(glm::length(eddy), 1.0f / 0.6f);
+        ASSERT_LT(glm::length(fw::gpu::flameCurl(x + vec3(1e-3f)) - eddy), 0.05f);
     }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / kSamples, 0.0f, 0.01f);
+    EXPECT_NEAR(std::sqrt(square), 0.48, 0.05);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 
 namespace fw::gpu {
 
+struct FlameNode;  // shared/volume.h
+
 struct ViewInput {
     const FwView* view = nullptr;
     float viewport[4] = {};  // px: x, y, width, height
@@ -99,6 +101,11 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
                 VolumeDraw& out);
 // How many samples each of them is worth: the one place where a view decides it.
 void chooseVolumes(std::span<VolumeItem> items);
+// VolumeDraw::intervals for a curve.
+uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count);
+// Slabs are for the flame: smoke before and behind it is in the outermost. Bounds of the flame
+// alone.
+void volumeSlabs(const ViewParams& view, const vec4& low, const vec4& high, VolumeDraw& out);
 // Farthest first.
 void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items);
 

@@ -2,6 +2,7 @@
 // a ray ends there; where it can only be tested a flame is drawn in slabs, each tested at its
 // place, so that a log in a flame hides what is behind it and no more.
 #include "gpu/passes/frame_graph.h"
+#include "shared/volume_march.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,6 +98,7 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
     out.deep = (far - near) / float(slabs);
     out.slabs = slabs;
     out.mostSteps = kMostSteps;
+    out.intervals = kFlameIntervals;
     out.spacing = std::max(kSpacing * low.w, 1e-4f);
     return true;
 }
@@ -113,6 +115,28 @@ void chooseVolumes(std::span<VolumeItem> items) {
                          return x != y ? x > y : a.flame < b.flame;
                      });
     for (VolumeItem& item : items.subspan(kMarchedFlames)) item.draw.mostSteps = kFewSteps;
+}
+
+void volumeSlabs(const ViewParams& view, const vec4& low, const vec4& high, VolumeDraw& out) {
+    const vec3 forward(view.forward), eye(view.eye);
+    const vec3 middle = 0.5f * (vec3(low) + vec3(high)) - eye, half = 0.5f * vec3(high - low);
+    const float reach = glm::dot(glm::abs(forward), half), depth = glm::dot(forward, middle);
+    const float least = view.forward.w > 0.5f ? kFirstSlab : -1e9f;
+    const float near = std::max(depth - reach, least), far = depth + reach;
+    if (!(far > near)) return;  // beside or behind the eye: its smoke alone is seen
+    out.front = near;
+    out.deep = (far - near) / float(out.slabs);
+}
+
+uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count) {
+    float bent = 0.0f;  // of neighbours' ways and radii, all together
+    for (uint32_t k = 1; k < count; ++k) {
+        const float radius = std::max(std::max(nodes[k].centre.w, nodes[k - 1].centre.w), 1e-6f);
+        bent += glm::length(vec3(nodes[k].along) - vec3(nodes[k - 1].along)) +
+                std::abs(nodes[k].centre.w - nodes[k - 1].centre.w) / radius;
+        if (nodes[k].squeeze.w > 0.0f) bent += 1.0f;
+    }
+    return std::clamp(2u + uint32_t(4.0f * std::min(bent, 100.0f)), 2u, kFlameIntervals);
 }
 
 void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items) {

@@ -25,8 +25,18 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
                    UploadWriter& writer) {
     s.volumes.clear();  // room was made for all of them
     const std::span<const VolumeFlame> flames(update.flames, update.count);
-    for (const VolumeFlame& flame : flames)
-        s.volumes.push_back({flame.record.low, flame.record.high});
+    for (const VolumeFlame& flame : flames) {
+        const FlameRecord& record = flame.record;
+        vec3 low(1e30f), high(-1e30f);
+        for (const FlameNode& node : flame.nodes) {
+            if (node.along.w > kFlameTop * record.high.w) break;
+            const vec3 reach(kFlameReach * (1.0f + record.puff) * node.centre.w);
+            low = glm::min(low, vec3(node.centre) - reach);
+            high = glm::max(high, vec3(node.centre) + reach);
+        }
+        s.volumes.push_back({record.low, record.high, vec4(low, 0.0f), vec4(high, 0.0f),
+                             volumeIntervals(flame.nodes, kFlameNodes)});
+    }
     if (flames.empty()) return;
     const Staged staged = writer.write(flames);
     recorder.copyIn(staged.at, FW_BIND_VOLUMES, 0, flames.size_bytes());
@@ -39,7 +49,10 @@ uint32_t VkBackend::State::orderVolumes(
     for (uint32_t i = 0; i < volumes.size(); ++i) {
         VolumeItem& item = out[count];
         item.flame = i;
-        if (volumeDraw(seen, volumes[i].low, volumes[i].high, slabs, item.draw)) ++count;
+        if (!volumeDraw(seen, volumes[i].low, volumes[i].high, slabs, item.draw)) continue;
+        volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);
+        item.draw.intervals = volumes[i].intervals;
+        ++count;
     }
     chooseVolumes({out.data(), count});
     // By their middles: what overlaps in depth has no right order as a whole.

@@ -277,6 +277,8 @@ struct VkBackend::State {
     std::pmr::vector<DrawItem> drawItems;       // objects that draws show
     struct VolumeBox {                          // as in FlameRecord
         vec4 low{}, high{};
+        vec4 flameLow{}, flameHigh{};  // without its smoke
+        uint32_t intervals = 1;        // see VolumeDraw
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     ViewParams seen{};                    // of the last pushView

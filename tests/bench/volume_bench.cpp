@@ -1,0 +1,154 @@
+// What volumetric flames cost: the time of an offscreen picture with them, submitted and waited
+// for, less that of one where they are hidden, taken in turns. cpu_ms: the same of all this
+// process's threads. boxed: part of the picture in their bounds, as seen; lit: that they change.
+#include <benchmark/benchmark.h>
+
+#include "bench/bench_device.h"
+#include "flamewright/flamewright.h"
+
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace {
+
+struct Case {
+    uint32_t width, height, fires;
+    uint32_t flags;  // FwVolumetricFireFlags
+    float boxed;     // part of the picture that one fire's bounds take
+};
+
+class Fires {
+ public:
+    explicit Fires(const Case& what) : case_(what), pixels_(size_t{what.width} * what.height * 4) {}
+    Fires(const Fires&) = delete;
+    Fires& operator=(const Fires&) = delete;
+    ~Fires() {
+        fwDestroyWorld(world_);
+        fwDestroyContext(context_);
+    }
+
+    const char* make() {
+        const FwContextDef contextDef = fwDefaultContextDef();
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.maxFlames = 0;
+        FwErrorInfo info{};
+        if (fwCreateContext(&contextDef, &context_, &info) != FW_OK ||
+            fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
+            return "no device";
+        for (uint32_t i = 0; i < case_.fires; ++i) {
+            FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+            fwInitFirePreset(&def, FW_FIRE_CAMP);
+            def.flags = case_.flags;
+            def.seed = 7 + i;
+            def.position[0] = 1.1f * (float(i % 8) - 0.5f * float(std::min(case_.fires, 8u) - 1));
+            def.position[1] = 2.4f * float(i / 8);
+            FwVolumetricFireId id{};
+            if (fwWorld_CreateVolumetricFire(world_, &def, &id) != FW_OK) return "no fire";
+            fires_.push_back(id);
+        }
+        for (int i = 0; i < 10; ++i) fwWorld_Step(world_, 0.1f);
+        look();
+        return nullptr;
+    }
+
+    struct Cost {
+        double wall = 0, cpu = 0;  // s
+    };
+    Cost take(bool hidden) {
+        for (const FwVolumetricFireId id : fires_)
+            fwWorld_SetVolumetricFireHidden(world_, id, hidden ? 1 : 0);
+        fwWorld_Step(world_, 0.01f);
+        const fw::test::Clock::time_point start = fw::test::Clock::now();
+        const double cpu = fw::test::cpuSeconds();
+        fwWorld_RenderOffscreen(world_, &shot_);
+        return {fw::test::secondsSince(start), fw::test::cpuSeconds() - cpu};
+    }
+    [[nodiscard]] double lit() const {
+        size_t sum = 0;
+        for (size_t i = 0; i < pixels_.size(); i += 4) sum += pixels_[i] > 2;
+        return 4.0 * double(sum) / double(pixels_.size());
+    }
+    [[nodiscard]] double boxed() const { return boxed_; }
+
+ private:
+    // Far enough that the bounds of all take what the case says, seen from the side.
+    void look() {
+        glm::vec3 low(1e9f), high(-1e9f);
+        for (const FwVolumetricFireId id : fires_) {
+            FwVolumetricFireState state{};
+            state.structSize = sizeof state;
+            fwWorld_GetVolumetricFireState(world_, id, &state);
+            low = glm::min(low, glm::make_vec3(state.boundsLow));
+            high = glm::max(high, glm::make_vec3(state.boundsHigh));
+        }
+        const glm::vec3 size = high - low, middle = 0.5f * (low + high);
+        const float aspect = float(case_.width) / float(case_.height);
+        float tall = std::sqrt(size.x * size.y / (case_.boxed * aspect));  // m over the picture
+        tall = std::max({tall, size.y, size.x / aspect});
+        boxed_ = size.x * size.y / (tall * tall * aspect);
+        const float away = 6.0f * tall;
+        const glm::mat4 view =
+            glm::lookAt(middle + glm::vec3(0, 0, away), middle, glm::vec3(0, 1, 0));
+        glm::mat4 projection(0.0f);
+        projection[0][0] = 12.0f / aspect;
+        projection[1][1] = -12.0f;
+        projection[2][2] = projection[2][3] = -1.0f;
+        projection[3][2] = -0.05f;
+        shot_.width = case_.width;
+        shot_.height = case_.height;
+        shot_.pixels = pixels_.data();
+        shot_.view = fwDefaultView();
+        std::memcpy(shot_.view.view, glm::value_ptr(view), sizeof shot_.view.view);
+        std::memcpy(shot_.view.projection, glm::value_ptr(projection),
+                    sizeof shot_.view.projection);
+    }
+
+    Case case_;
+    std::vector<uint8_t> pixels_;
+    FwContext* context_ = nullptr;
+    FwWorld* world_ = nullptr;
+    std::vector<FwVolumetricFireId> fires_;
+    FwOffscreenDef shot_ = fwDefaultOffscreenDef();
+    double boxed_ = 0;
+};
+
+void drawFires(benchmark::State& state, const Case& what) {
+    Fires fires(what);
+    if (const char* why = fires.make()) {
+        state.SkipWithError(why);
+        return;
+    }
+    double cpu = 0, least = 1e9;
+    const auto both = [&] {
+        const Fires::Cost without = fires.take(true), with = fires.take(false);
+        cpu += with.cpu - without.cpu;
+        least = std::min(least, with.cpu - without.cpu);
+        return std::max(with.wall - without.wall, 1e-6);
+    };
+    for (int i = 0; i < 3; ++i) both();  // pipelines are compiled at first use
+    cpu = 0, least = 1e9;
+    for (auto _ : state) state.SetIterationTime(both());
+    state.counters["cpu_least_ms"] = 1e3 * least;
+    state.counters["cpu_ms"] = 1e3 * cpu / double(state.iterations());
+    state.counters["boxed"] = fires.boxed();
+    state.counters["lit"] = fires.lit();
+}
+
+#define FW_VOLUME_ROW(name, row, ...)                     \
+    BENCHMARK_CAPTURE(drawFires, name, Case{__VA_ARGS__}) \
+        ->Name(row)                                       \
+        ->Unit(benchmark::kMillisecond)                   \
+        ->UseManualTime()                                 \
+        ->Iterations(9)
+FW_VOLUME_ROW(samework, "volume/samework/360p", 640, 360, 1, FW_FIRE_NO_SMOKE, 0.30f);
+FW_VOLUME_ROW(delivered, "volume/delivered/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f);
+FW_VOLUME_ROW(quarter, "volume/onequarter_screen/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.25f);
+FW_VOLUME_ROW(flames32, "volume/flames32/720p", 1280, 720, 32, FW_FIRE_NO_SMOKE, 1.0f);
+
+}  // namespace
