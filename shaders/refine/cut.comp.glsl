@@ -1,13 +1,15 @@
 // Holes of the objects near the eye, cut out of their small triangles, in phases with a barrier
-// between: 0 lists the coarse triangles with a hole, a lane each; 1 a workgroup each: small triangles
-// that a hole crosses leave the index list, and what is left of them is written as vertices, with a
-// wall along the hole; without room they stay whole; 2 draw arguments.
+// between: 0 lists the coarse triangles with a hole, and of what has an inside those along open edges,
+// a lane each; 1 a workgroup each: small triangles that a hole crosses leave the index list, and what
+// is left of them is written as vertices, with their inner skin and walls along the hole and along
+// open edges; without room they stay whole; 2 draw arguments.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_WORK FW_READ_WRITE
 #define FW_USE_WORDS readonly
 #define FW_USE_TRIANGLES readonly
+#define FW_USE_EDGES readonly
 #define FW_USE_SLOTS readonly
 #define FW_USE_HEAT readonly
 #define FW_USE_LEVELS readonly
@@ -21,15 +23,23 @@ uint slotOf(uint object, uint vertex) {
     return meshVertices[(refined[object].meshDraws + vertex) * 3u + 2u].w;
 }
 
+// Sides on open edges of what has an inside, a bit each.
+uint openSides(uint object, RefineTriangle t) {
+    uint open = 0u;
+    for (uint e = 0u; e < 3u; ++e)
+        open |= ((edges[refined[object].meshEdges + t.edge[e]].flags >> 4u) & 1u) << e;
+    return refined[object].inner != 0u ? open : 0u;
+}
+
 void find(uint object, uint triangle) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
     uint base = refined[object].items;
     uint seen = heat[base + refined[object].edgeCount + triangle] | heat[base + t.edge[0]] |
                 heat[base + t.edge[1]] | heat[base + t.edge[2]];
-    if ((seen & kRefineGone) == 0u) return;
+    if ((seen & kRefineGone) == 0u && openSides(object, t) == 0u) return;
     // Most of what is burnt is gone, and coarse again: no workgroup for that.
     uvec2 packed = levels[refined[object].triangles + triangle];
-    uint gone = 0u, coarse = packed.x == 0u ? 1u : 0u;
+    uint gone = 0u, coarse = packed.x == 0u && (seen & kRefineGone) != 0u ? 1u : 0u;
     while (coarse != 0u) {
         for (uint v = 0u; v < 3u; ++v) {
             uint at = refined[object].vertices + slotOf(object, t.corner[v]);
@@ -111,18 +121,23 @@ void writeVertex(uint at, Point p, bool inner, float left) {
     cuts[at * 3u + 2u] = uvec4(p.detail.xyz, floatBitsToUint(left));
 }
 
-void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, uint first) {
+void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole,
+                 uint first) {
     Point points[4];
     for (uint i = 0u; i < 4u; ++i)
         points[i] = pointOf(object, drawn, slots_, fields, cut.corner[min(i, cut.points - 1u)]);
-    uint count = refineCutDrawnCount(cut);
+    bool skin = refined[object].inner != 0u;
+    uint count = refineCutDrawnCount(cut, skin, whole);
     for (uint k = 0u; k < count; ++k) {
-        uvec3 corners = refineCutTriangle(cut, refineCutDrawn(cut, k));
-        bool wall = k + 2u >= cut.points;
+        uint piece = refineCutDrawn(cut, k, skin, whole);
+        uvec3 corners = refineCutTriangle(cut, piece);
+        bool wall = piece + 4u >= 2u * cut.points;
+        bool rim = wall && refineCutWallSide(cut, piece) == cut.rim;
+        float outer = rim ? kRefineCutRim : kRefineBorder;
         for (uint v = 0u; v < 3u; ++v) {
             uint p = corners[v];
             bool inner = p >= 4u;
-            float left = inner ? kRefineCutDeep : wall ? kRefineCutRim : points[p & 3u].left;
+            float left = wall ? (inner ? outer - 1.0 : outer) : points[p & 3u].left;
             writeVertex(first + 3u * k + v, points[p & 3u], inner, left);
         }
     }
@@ -138,6 +153,7 @@ void cutGroup(uint object, uint triangle) {
     uint counts = cutCounts(refined[object].ordinal) + material;
     uint before = roomBefore(object, material);
     uint room = roomBefore(object, material + 1u) - before;
+    uint open = openSides(object, t);
     uint count = refineCount(packed.x);
     for (uint k = gl_LocalInvocationID.x; k < count; k += 64u) {
         RefinePlace place = refineLocate(packed.x, k);
@@ -151,18 +167,25 @@ void cutGroup(uint object, uint triangle) {
             fields[v] = refineField(vertices[refined[object].vertices + slots_[v]].hole, now);
             solid |= fields[v] > 0.0 ? 1u << v : 0u;
         }
+        uint border = 0u;
+        for (uint v = 0u; v < 3u; ++v) {
+            uint sides = refineSidesOf(packed.x, codes[v]) &
+                         refineSidesOf(packed.x, codes[refineNext(v)]);
+            border |= (sides & open) != 0u ? 1u << v : 0u;
+        }
         bool whole = solid == 7u;
-        uint crossed = solid != 7u && solid != 0u ? 1u : 0u;
+        uint crossed = solid != 0u && (!whole || border != 0u) ? 1u : 0u;
         while (crossed != 0u) {
-            RefineCut cut = refineCut(solid, 0u);
-            uint pieces = refineCutDrawnCount(cut);
+            RefineCut cut = refineCut(solid, border);
+            uint pieces = refineCutDrawnCount(cut, refined[object].inner != 0u, whole);
             uint at = atomicAdd(work[counts], pieces);
-            whole = at + pieces > room;
-            if (whole)
+            if (at + pieces > room) {
                 atomicMin(work[counts + 8u], at);
-            else
-                cutTriangle(object, drawn, slots_, fields, cut,
+                whole = true;
+            } else {
+                cutTriangle(object, drawn, slots_, fields, cut, whole,
                             refined[object].cuts + 3u * (before + at));
+            }
             crossed = 0u;
         }
         uint to = refined[object].indices + (packed.y + k) * 3u;

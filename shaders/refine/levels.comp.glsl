@@ -1,6 +1,7 @@
 // Levels of edges and interiors, in phases with a barrier between: 0 aim (items), 1 what each bias
-// would come to (triangles; only where not all fit), 2 move (items), 3 pack (triangles): what changed
-// makes its object emit, what moves is listed to be placed.
+// would come to (triangles; only where not all fit), 2 the least that fits (one group, over all that
+// share the budget), 3 move (items), 4 pack (triangles): what changed makes its object emit, what
+// moves is listed to be placed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -37,19 +38,60 @@ float wanted(uint object, uint item, float bias) {
 }
 
 float leastBias() {
-    if (push.budget == 0u) return 0.0;
-    for (uint k = 0u; k + 1u < kRefineBiases; ++k)
-        if (work[kRefineWorkSums + k] <= push.budget) return float(k) * kRefineBiasStep;
-    return float(kRefineBiases - 1u) * kRefineBiasStep;
+    return push.budget == 0u ? 0.0 : float(work[kRefineWorkBias]) * kRefineBiasStep;
 }
 
-uint aimedLevels(uint object, uint triangle, float bias) {
+uint sumsOf(uint object) { return refined[object].triangles + refined[object].triangleCount; }
+
+// Adds what the triangle comes to with each bias, but for the one that it always is.
+void count(uint object, uint triangle) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
-    uint a = refineTop(wanted(object, t.edge[0], bias));
-    uint b = refineTop(wanted(object, t.edge[1], bias));
-    uint c = refineTop(wanted(object, t.edge[2], bias));
-    uint m = refineTop(wanted(object, refined[object].edgeCount + triangle, bias));
-    return refinePack(a, b, c, refineFit(a, b, c, m));
+    uint edgeCount = refined[object].edgeCount;
+    uvec4 own = uvec4(t.edge[0], t.edge[1], t.edge[2], edgeCount + triangle);
+    vec4 target, spread;
+    for (int k = 0; k < 4; ++k) {
+        uint at = refined[object].items + own[k];
+        target[k] = items[at].target;
+        spread[k] = refineSpread(spreadId(own[k], edgeCount), heat[at] >> kRefineHeatShift);
+    }
+    uint sums = sumsOf(object), k = 0u;
+    bool more = target != vec4(0.0);
+    while (more) {  // until a bias leaves nothing of it
+        float bias = float(k) * kRefineBiasStep;
+        uvec4 top;
+        for (int i = 0; i < 4; ++i) top[i] = refineTop(refineBiased(target[i], bias, spread[i]));
+        uint sum = refineCount(
+            refinePack(top.x, top.y, top.z, refineFit(top.x, top.y, top.z, top.w))) - 1u;
+        if ((k & 1u) == 0u)
+            atomicAdd(levels[sums + (k >> 1u)].x, sum);
+        else
+            atomicAdd(levels[sums + (k >> 1u)].y, sum);
+        ++k;
+        more = sum != 0u && k < kRefineBiases;
+    }
+}
+
+shared uint sumOf[kRefineBiases];
+
+// A lane's share: one bias, every fourth object.
+void choose() {
+    uint lane = gl_LocalInvocationID.x, bias = lane & 15u;
+    if (lane < kRefineBiases) sumOf[lane] = 0u;
+    barrier();
+    uint sum = 0u;
+    for (uint object = lane >> 4u; object < push.objectEnd; object += 4u) {
+        bool counted = (refined[object].flags & kRefineIsCounted) != 0u;
+        uvec2 both = levels[counted ? sumsOf(object) + (bias >> 1u) : 0u];
+        uint one = (bias & 1u) == 0u ? both.x : both.y;
+        sum += counted ? one : 0u;
+    }
+    atomicAdd(sumOf[bias], sum);
+    barrier();
+    if (lane != 0u) return;
+    uint least = kRefineBiases - 1u;
+    for (uint k = kRefineBiases - 1u; k > 0u; --k)
+        least = sumOf[k - 1u] <= push.budget ? k - 1u : least;
+    work[kRefineWorkBias] = least;
 }
 
 void aim(uint object, uint item) {
@@ -132,23 +174,26 @@ void pack(uint object, uint triangle) {
 }
 
 void main() {
-    bool perItem = (push.phase & 1u) == 0u;
+    if (push.phase == 2u) {
+        choose();
+        return;
+    }
+    bool perItem = push.phase == 0u || push.phase == 3u;
     uint first = perItem ? 0u : push.edgeGroups;
     uint last = push.edgeGroups + push.triangleGroups;
     for (uint g = first + gl_WorkGroupID.x; g < last; g += gl_NumWorkGroups.x) {
         uint object = work[edgeList() + 2u * g];
         uint i = work[edgeList() + 2u * g + 1u] + gl_LocalInvocationID.x;
         bool edge = g < push.edgeGroups;
-        uint count = edge ? refined[object].edgeCount : refined[object].triangleCount;
-        bool here = i < count;
+        uint total = edge ? refined[object].edgeCount : refined[object].triangleCount;
+        bool here = i < total;
         uint item = edge ? i : refined[object].edgeCount + i;
         if (push.phase == 0u) {
+            if (!edge && i < kRefineSums) levels[sumsOf(object) + i] = uvec2(total);
             if (here) aim(object, item);
         } else if (push.phase == 1u) {
-            for (uint k = 0u; here && k < kRefineBiases; ++k)
-                atomicAdd(work[kRefineWorkSums + k],
-                          refineCount(aimedLevels(object, i, float(k) * kRefineBiasStep)));
-        } else if (push.phase == 2u) {
+            if (here) count(object, i);
+        } else if (push.phase == 3u) {
             if (here) move(object, item);
         } else if (here) {
             pack(object, i);

@@ -26,6 +26,12 @@ uint evaluate(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
     RefineVertex v = refineNow(object, slot, push.nowTick, push.recede);
     vertices[refined[object].vertices + s] = v;
+    uint inner = refined[object].inner;
+    while (inner != 0u) {
+        vec3 p = refineInnerSkin(slot);
+        vertices[refined[object].vertices + inner + s] = RefineVertex(p.x, p.y, p.z, v.hole);
+        inner = 0u;
+    }
     return fateOf(object, v.hole);
 }
 

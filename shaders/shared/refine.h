@@ -129,7 +129,7 @@ struct RefineObject {
     uint cuts;           // first of its cut vertices
     uint cutTriangles;   // room for; shared out to materials by their triangles
     float dt;            // s since it was last refined
-    uint reserved1;
+    uint inner;          // from a vertex to its place on the inner skin; 0: a sheet, it has none
     uint reserved2; uint reserved3; uint reserved4; uint reserved5;
 };
 FW_SHARED_SIZE(RefineObject, 192)
@@ -137,20 +137,24 @@ FW_SHARED_CONST uint kRefineIsActive = 1u;
 FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing of it is initialised yet
 FW_SHARED_CONST uint kRefineIsCut = 4u;    // near: holes are cut; else fragments are discarded
 FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all its triangles are emitted again
+FW_SHARED_CONST uint kRefineIsCounted = 16u;  // shares the budget, whether it is its turn or not
 
 // A word of the heat plane: what the lists of tiles say for the next frame; the same for this one; and
 // whether this frame places the item anew.
 FW_SHARED_CONST uint kRefineHeatShift = 8u;
 FW_SHARED_CONST uint kRefineMoving = 0x10000u;
 
-// The work plane: five indirect dispatches, sums, then lists of two words (object slot, number).
+// The work plane: five indirect dispatches, the bias, then lists of two words (object slot, number).
 FW_SHARED_CONST uint kRefineWorkEmit = 0u;    // x, y, z, jobs: 64 output triangles each
 FW_SHARED_CONST uint kRefineWorkPlace = 4u;   // x, y, z, jobs: interiors, two a group
-FW_SHARED_CONST uint kRefineWorkSums = 8u;    // triangles with each bias
-FW_SHARED_CONST uint kRefineWorkCut = 24u;    // x, y, z, jobs: a triangle with a hole each
-FW_SHARED_CONST uint kRefineWorkEdges = 28u;  // x, y, z, jobs: edges that move, 64 a group
-FW_SHARED_CONST uint kRefineWorkMorph = 32u;  // as place: those with points on their way
-FW_SHARED_CONST uint kRefineWorkLists = 36u;
+FW_SHARED_CONST uint kRefineWorkCut = 8u;     // x, y, z, jobs: a triangle with a hole each
+FW_SHARED_CONST uint kRefineWorkEdges = 12u;  // x, y, z, jobs: edges that move, 64 a group
+FW_SHARED_CONST uint kRefineWorkMorph = 16u;  // as place: those with points on their way
+FW_SHARED_CONST uint kRefineWorkBias = 20u;   // the least, in steps, with which all fits the budget
+FW_SHARED_CONST uint kRefineWorkLists = 24u;
+// After an object's triangles in the plane of levels: what each bias comes to, two a record, as of its
+// last turn.
+FW_SHARED_CONST uint kRefineSums = 8u;
 
 struct RefinePush {
     uint phase;
@@ -204,167 +208,10 @@ FW_SHARED_FN uint refineCount(uint levels) {
     return s * s + 3u * s + (1u << l0) + (1u << l1) + (1u << l2);
 }
 
-// ---- patterns. A code is a pattern's vertex: 0x8000 | side << 8 | i, i in 0..2^l from the side's
-// first corner; or c1 << 6 | c2 of the lattice, both >= 1, c1 + c2 < 2^m.
-
-FW_SHARED_CONST uint kRefineOnSide = 0x8000u;
-FW_SHARED_FN uint refineOnSide(uint e, uint i) { return kRefineOnSide | (e << 8u) | i; }
-FW_SHARED_FN uint refineInside(uint c1, uint c2) { return (c1 << 6u) | c2; }
-FW_SHARED_FN uint refineCodeSide(uint code) { return (code >> 8u) & 3u; }
-FW_SHARED_FN uint refineCodeStep(uint code) { return code & 255u; }
-
-FW_SHARED_FN uint refineStripStart(uint l, uint m) {
-    uint n = 1u << m;
-    return 63u * (m - 2u) + 6u * (n - 4u - 3u * (m - 2u)) + (1u << l) - 1u + l * (n - 3u);
-}
-FW_SHARED_FN uint refineInnerStart(uint m) {
-    return kRefineInner + (m < 4u ? m - 2u : m == 4u ? 26u : 195u);
-}
-
-// Token j of a strip: bit 0 set: (edge i, row j + 1, row j), else (edge i, edge i + 1, row j).
-FW_CONSTANT_FN uint refineStripToken(uint row, uint i, uint j) { return row | (i << 1u) | (j << 7u); }
-// Token of the lattice: bit 10: the triangle that points down.
-FW_CONSTANT_FN uint refineInnerToken(uint down, uint a, uint b) { return a | (b << 5u) | (down << 10u); }
-// Token for m < 2: three vertices of three bits, 0..2 corners, 3..5 middles of the sides.
-FW_SHARED_FN uint refineHandCode(uint v) {
-    return v < 3u ? refineOnSide(v, 0u) : refineOnSide(v - 3u, 1u);
-}
-
-// j-th point of the lattice's row beside side e, in the direction of the side.
-FW_SHARED_FN uint refineRowPoint(uint e, uint j, uint n) {
-    uint near = n - 1u - j;  // c[e]; c[e + 1] = j, c[e + 2] = 1
-    return e == 0u ? refineInside(j, 1u) : e == 1u ? refineInside(near, j) : refineInside(1u, near);
-}
-
-struct RefinePlace {  // where to look the k-th triangle up
-    uint entry;       // of the table
-    uint part;        // 0..2: strip of that side; 3: lattice; 4: m < 2
-    uint k;           // number in that part
-};
-
-FW_SHARED_FN RefinePlace refineLocate(uint levels, uint k) {
-    RefinePlace place;
-    uint m = refineInterior(levels);
-    if (m < 2u) {
-        uint mask = refineSide(levels, 0u) | (refineSide(levels, 1u) << 1u) |
-                    (refineSide(levels, 2u) << 2u);
-        place.entry = kRefineHand + mask * 4u + k;
-        place.part = 4u;
-        place.k = k;
-        return place;
-    }
-    uint s = (1u << m) - 3u;
-    if (k < s * s) {
-        place.entry = refineInnerStart(m) + k;
-        place.part = 3u;
-        place.k = k;
-        return place;
-    }
-    k -= s * s;
-    uint e = 0u;
-    uint length = (1u << refineSide(levels, 0u)) + s;
-    if (k >= length) {
-        k -= length;
-        e = 1u;
-        length = (1u << refineSide(levels, 1u)) + s;
-        if (k >= length) {
-            k -= length;
-            e = 2u;
-        }
-    }
-    place.entry = refineStripStart(refineSide(levels, e), m) + k;
-    place.part = e;
-    place.k = k;
-    return place;
-}
-
-// The triangle's codes, counter-clockwise. token: table[place.entry].
-FW_SHARED_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token) {
-    if (place.part == 4u)
-        return uvec3(refineHandCode(token & 7u), refineHandCode((token >> 3u) & 7u),
-                     refineHandCode((token >> 6u) & 7u));
-    if (place.part == 3u) {
-        uint a = token & 31u;
-        uint b = (token >> 5u) & 31u;
-        if ((token & 1024u) != 0u)
-            return uvec3(refineInside(a + 2u, b + 1u), refineInside(a + 2u, b + 2u),
-                         refineInside(a + 1u, b + 2u));
-        return uvec3(refineInside(a + 1u, b + 1u), refineInside(a + 2u, b + 1u),
-                     refineInside(a + 1u, b + 2u));
-    }
-    uint e = place.part, f = refineNext(e), p = refineBefore(e);
-    uint m = refineInterior(levels), n = 1u << m;
-    uint l = refineSide(levels, e), steps = 1u << l;
-    uint i = (token >> 1u) & 63u, j = token >> 7u;
-    uint row = refineRowPoint(e, j, n);
-    // Corners take the other diagonal where both sides have the lattice's level: with l = m all
-    // around the result is the regular lattice, and levels nest.
-    if (place.k == 0u && l == m && refineSide(levels, p) == m)
-        return uvec3(refineOnSide(e, 1u), row, refineOnSide(p, (1u << refineSide(levels, p)) - 1u));
-    if (place.k == steps + n - 4u && l == m && refineSide(levels, f) == m)
-        return uvec3(refineOnSide(e, steps - 1u), refineOnSide(f, 0u), refineOnSide(f, 1u));
-    if ((token & 1u) != 0u) return uvec3(refineOnSide(e, i), refineRowPoint(e, j + 1u, n), row);
-    return uvec3(refineOnSide(e, i), refineOnSide(e, i + 1u), row);
-}
-
-// Weights of the three corners in 1/32.
-FW_SHARED_FN uvec3 refineWeights(uint levels, uint code) {
-    if ((code & kRefineOnSide) != 0u) {
-        uint e = refineCodeSide(code);
-        uint i = refineCodeStep(code) << (kRefineDepth - refineSide(levels, e));
-        uint k = 32u - i;
-        return e == 0u ? uvec3(k, i, 0u) : e == 1u ? uvec3(0u, k, i) : uvec3(i, 0u, k);
-    }
-    uint shift = kRefineDepth - refineInterior(levels);
-    uint c1 = (code >> 6u) << shift, c2 = (code & 63u) << shift;
-    return uvec3(32u - c1 - c2, c1, c2);
-}
-
-// Sides of the coarse triangle that a code lies on, one bit each.
-FW_SHARED_FN uint refineSidesOf(uint levels, uint code) {
-    if ((code & kRefineOnSide) == 0u) return 0u;
-    uint e = refineCodeSide(code), i = refineCodeStep(code);
-    uint bits = 1u << e;
-    if (i == 0u) bits |= 1u << refineBefore(e);
-    if (i == (1u << refineSide(levels, e))) bits |= 1u << refineNext(e);
-    return bits;
-}
-
-// ---- identity: a vertex keeps its number through all levels
-
-// Inner point i (1 .. 2^l - 1, from the low end) of an edge, counted from the edge's first.
-FW_SHARED_FN uint refineEdgePoint(uint i, uint l, uint depth) { return (i << (depth - l)) - 1u; }
-// Lattice point of n = 2^depth steps, counted from the interior's first.
-FW_SHARED_FN uint refineInnerPoint(uint c1, uint c2, uint n) {
-    uint r = c2 - 1u;
-    return r * (n - 2u) - ((r * (r - 1u)) >> 1u) + c1 - 1u;
-}
-FW_SHARED_FN uint refineInnerCount(uint m) {
-    uint n = 1u << m;
-    return m < 2u ? 0u : ((n - 1u) * (n - 2u)) >> 1u;
-}
-// i in 0..2^l from the low end.
-FW_SHARED_FN uint refineEdgeSlot(FW_IN(RefineEdge) edge, uint i, uint l) {
-    if (i == 0u) return edge.low;
-    if (i == (1u << l)) return edge.high;
-    return edge.slot + refineEdgePoint(i, l, edge.flags & 15u);
-}
-// m: the interior's level.
-FW_SHARED_FN uint refineInnerSlot(FW_IN(RefineTriangle) t, uint c1, uint c2, uint m) {
-    uint depth = refineInteriorDepth(t.flags);
-    uint shift = depth - m;
-    return t.slot + refineInnerPoint(c1 << shift, c2 << shift, 1u << depth);
-}
-FW_SHARED_FN uint refineDrawVertex(FW_IN(RefineTriangle) t, uint levels, uint code) {
-    if ((code & kRefineOnSide) == 0u)
-        return refineInnerSlot(t, code >> 6u, code & 63u, refineInterior(levels));
-    uint e = refineCodeSide(code), i = refineCodeStep(code);
-    uint l = refineSide(levels, e), steps = 1u << l;
-    if (i == 0u) return t.corner[e];
-    if (i == steps) return t.corner[refineNext(e)];
-    i = refineFlipped(t.flags, e) ? steps - i : i;
-    return t.side[e] + refineEdgePoint(i, l, refineSideDepth(t.flags, e));
-}
+FW_SHARED_END
+#include "shared/refine_pattern.h"
+#include "shared/refine_cut.h"
+FW_SHARED_BEGIN
 
 // ---- levels
 
@@ -538,115 +385,6 @@ FW_SHARED_FN RefineSpot refineSpot(FW_IN(RefineTriangle) t, uint levels, uint c1
     spot.i = uint(x) < steps - 1u ? uint(x) : steps - 1u;
     spot.f = x - float(spot.i);
     return spot;
-}
-
-// ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon in front of
-// the line between.
-
-// s to the hole.
-FW_SHARED_FN float refineField(float hole, float now) {
-    float f = hole - now;
-    return f < kRefineUnlit ? f : kRefineUnlit;
-}
-// Share of the way from the low slot (fa) to the high one (fb), one of them gone: a function of the
-// small edge, the same for all who cut it, and never on a vertex.
-FW_SHARED_FN float refineCutAt(float fa, float fb) {
-    float t = fa / (fa - fb);
-    t = t > 1.0f / 64.0f ? t : 1.0f / 64.0f;
-    return t < 63.0f / 64.0f ? t : 63.0f / 64.0f;
-}
-FW_SHARED_FN vec3 refineCutPoint(vec3 low, vec3 high, float fa, float fb) {
-    FW_PRECISE vec3 p = low + (high - low) * refineCutAt(fa, fb);
-    return p;
-}
-
-struct RefineCut {   // a small triangle's kept polygon
-    uint points;     // 0, 3 or 4
-    uint corner[4];  // k: corner k; 4 + k: cut of the side from k
-    uint rim;        // polygon side that runs along the hole; 4: none
-    uint open;       // bit per polygon side: on an open edge of the mesh
-};
-// solid, open: bit per corner, bit per side.
-FW_SHARED_FN RefineCut refineCut(uint solid, uint open) {
-    RefineCut cut;
-    cut.points = 0u;
-    cut.rim = 4u;
-    cut.open = 0u;
-    for (uint k = 0u; k < 3u; ++k) {
-        bool here = ((solid >> k) & 1u) != 0u;
-        bool there = ((solid >> refineNext(k)) & 1u) != 0u;
-        uint side = (open >> k) & 1u;
-        if (here) {
-            cut.open |= side << cut.points;
-            cut.corner[cut.points] = k;
-            cut.points += 1u;
-        }
-        if (here != there) {
-            if (here) cut.rim = cut.points;
-            else cut.open |= side << cut.points;
-            cut.corner[cut.points] = 4u + k;
-            cut.points += 1u;
-        }
-    }
-    return cut;
-}
-FW_SHARED_FN uint refineCutWalls(FW_IN(RefineCut) cut) {
-    uint o = cut.open;
-    return (cut.rim < 4u ? 1u : 0u) + (o & 1u) + ((o >> 1u) & 1u) + ((o >> 2u) & 1u) + (o >> 3u);
-}
-// Triangles: outer skin, inner skin, two for every wall.
-FW_SHARED_FN uint refineCutCount(FW_IN(RefineCut) cut, bool inner) {
-    if (cut.points == 0u) return 0u;
-    uint fan = cut.points - 2u;
-    return inner ? 2u * fan + 2u * refineCutWalls(cut) : fan;
-}
-// Outer skin and the wall along the hole: what is drawn of a cut small triangle. The k-th of them is
-// refineCutTriangle's of refineCutDrawn.
-FW_SHARED_FN uint refineCutDrawnCount(FW_IN(RefineCut) cut) {
-    if (cut.points == 0u) return 0u;
-    return cut.points - 2u + (cut.rim < 4u ? 2u : 0u);
-}
-FW_SHARED_FN uint refineCutDrawn(FW_IN(RefineCut) cut, uint k) {
-    return k < cut.points - 2u ? k : k + cut.points - 2u;
-}
-// Room for cut triangles before those of a material whose first triangle of `triangles` is `first`.
-FW_SHARED_FN uint refineCutShare(uint room, uint first, uint triangles) {
-    return room * (first < triangles ? first : triangles) / triangles;
-}
-FW_SHARED_CONST uint kRefineCutMost = 1u << 14u;  // cut triangles of an object
-// Last word of a cut vertex, a float: s to the hole, 0 at it; of walls instead:
-FW_SHARED_CONST float kRefineCutRim = -1.0f;   // at the outer skin
-FW_SHARED_CONST float kRefineCutDeep = -2.0f;  // at the inner skin
-// Polygon points of its k-th triangle; + 4: on the inner skin.
-FW_SHARED_FN uvec3 refineCutTriangle(FW_IN(RefineCut) cut, uint k) {
-    uint fan = cut.points - 2u;
-    if (k < fan) return uvec3(0u, k + 1u, k + 2u);
-    k -= fan;
-    if (k < fan) return uvec3(4u, k + 6u, k + 5u);
-    k -= fan;
-    uint wanted = k >> 1u;
-    uint x = 0u;
-    for (uint i = 0u; i < cut.points; ++i) {
-        bool wall = i == cut.rim || ((cut.open >> i) & 1u) != 0u;
-        if (!wall) continue;
-        if (wanted == 0u) {
-            x = i;
-            break;
-        }
-        wanted -= 1u;
-    }
-    uint y = x + 1u < cut.points ? x + 1u : 0u;
-    return (k & 1u) == 0u ? uvec3(y, x, x + 4u) : uvec3(y, x + 4u, y + 4u);
-}
-// A polygon point of a small triangle with these slots.
-FW_SHARED_FN RefineCorner refineCutCorner(FW_IN(RefineCut) cut, uint point, uvec3 slots) {
-    RefineCorner c;
-    uint at = cut.corner[point & 3u];
-    uint a = slots[at & 3u];
-    uint b = at < 4u ? a : slots[refineNext(at & 3u)];
-    c.low = a < b ? a : b;
-    c.high = (a < b ? b : a) | (point >= 4u ? kRefineInside : 0u);
-    return c;
 }
 
 FW_SHARED_END

@@ -273,9 +273,10 @@ void main() {
     vec3 toEye = view.forward.w > 0.5 ? normalize(-inPosition) : -view.forward.xyz;
     vec3 face = cross(px, py);
     face *= dot(face, toEye) < 0.0 ? -1.0 : 1.0;
-    // Walls of holes that were cut have no normals of their own.
+    // Walls of holes that were cut and of open borders have no normals of their own.
     bool cut = kBurns && (draw.flags & kDrawCut) != 0u;
-    bool wall = cut && inSootLead.y < -0.5;
+    bool wall = (draw.flags & kDrawCut) != 0u && inSootLead.y < -0.5;
+    bool rim = cut && wall && inSootLead.y > -2.5;
     if (wall) normal = normalize(face);
     bool back = dot(face, normal) < 0.0;
     vec3 r1 = cross(py, normal), r2 = cross(normal, px);
@@ -416,7 +417,8 @@ void main() {
     site.lead = cut ? 0.0 : inSootLead.y;
     site.left = cut ? max(inSootLead.y, 0.0) * draw.timeScale : -1.0;
     site.nearness = draw.nearness;
-    if (wall) {
+    if (wall && !rim) site.left = 1000.0;  // no rim
+    if (rim) {
         // As char that has burnt through; what glows at its rim fades inwards.
         site.age = max(site.age, look.holeTime);
         site.left = saturate(-1.0 - inSootLead.y) * look.thickness * site.slow;
@@ -429,7 +431,8 @@ void main() {
     // Refined faces recede as they burn, at a wall's thickness in its time (until kRefineRecede of it
     // is gone): they lean towards what caught first.
     float burnt = look.holeTime > 0.0 ? site.age / look.holeTime : 0.0;
-    bool recedes = kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall;
+    bool recedes = kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall &&
+                   !inside;
     float fall = recedes ? draw.thickness / look.holeTime : 0.0;
     fall *= 1.0 - smoothstep(0.9 * kRefineRecede, 1.1 * kRefineRecede, burnt);
     vec3 leaned = normal - slope * min(fall, 1.5 * inversesqrt(max(dot(slope, slope), 1e-8)));
@@ -442,7 +445,7 @@ void main() {
         if (look.rimWidth < kThinRim && !cut)
             site.steep = clamp(length(site.ahead + uneven), 1.0, 4.0);
         float edge = holeEdge(max(site.age, -ahead) - look.jitter * delay, site, look);
-        if (wall) {
+        if (rim) {
             deep = 0.0;
             vec2 bump = fine.rb - 0.5;
             facingNormal = normalize(normal + 0.8 * (axisX * bump.x + axisY * bump.y));

@@ -2,14 +2,17 @@
 // software device draws on them: the step, the passes and the draws of an offscreen picture down
 // the street.
 //
-// Counters, a frame: step_ms: fire, lists, predictions. refine_ms: a picture that looks past all of
-// them (refinement's passes, and draws up to their pixels). draw_ms: what the street's picture
-// costs beyond that. triangles: refined ones, in the mean. one_ms: of one house in the same street,
-// in turns; ratio: to that.
+// Counters, a frame: step_ms: fire, lists, predictions. draw_ms: every second picture drawn once
+// more, when nothing has moved. refine_ms: what the first one costs beyond that. triangles: refined
+// ones, in the mean. plain_...: the same street without refinement, in turns; ratio: to that.
+// wall_ms: by the clock. refine_...: of the device's timers.
 #include "bench/bench_device.h"
 #include "support/houses.h"
 
 #include <benchmark/benchmark.h>
+
+#include <map>
+#include <string>
 
 namespace fw::test {
 namespace {
@@ -19,53 +22,64 @@ constexpr float kFrameTime = 1.0f / 60, kWarmUp = 6;  // s
 constexpr int kFrames = 60;
 
 struct Costs {
-    double step = 0, refine = 0, draw = 0, triangles = 0;
-    [[nodiscard]] double all() const { return step + refine + draw; }
+    double all = 0, step = 0, draw = 0, triangles = 0, wall = 0;
 };
 
 struct Street {
     FwContext* context = nullptr;
     Village village;
     std::vector<uint8_t> pixels = std::vector<uint8_t>(size_t{kWidth} * kHeight * 4);
-    float way = 0;  // m
+    std::map<std::string, double> passes;  // ms, of every second frame
+    float way = 0;                         // m
+    bool again = false;                    // the last frame was drawn twice
 
     ~Street() {
         fwDestroyWorld(std::exchange(village.world, nullptr));
         fwDestroyContext(context);
     }
-    void draw(bool aside) {
+    void draw() {
         FwOffscreenDef shot = fwDefaultOffscreenDef();
         shot.width = kWidth;
         shot.height = kHeight;
         shot.pixels = pixels.data();
-        shot.view = streetView({0, 2.5f, 8 - way}, {2.0f, 1.2f, -4 - way},
-                               float(kWidth) / float(kHeight), aside);
+        shot.view =
+            streetView({0, 2.5f, 8 - way}, {2.0f, 1.2f, -4 - way}, float(kWidth) / float(kHeight));
         fwWorld_RenderOffscreen(village.world, &shot);
     }
     // Null: fine.
-    const char* make(uint32_t houses) {
+    const char* make(bool refined) {
+        constexpr uint32_t houses = 100;
         const FwContextDef def = fwDefaultContextDef();
         FwErrorInfo info{};
         if (fwCreateContext(&def, &context, &info) != FW_OK) return "there is no device";
-        if (!village.make(context, houses, kBudget, 8)) return "the houses cannot be made";
+        if (!village.make(context, houses, kBudget, 8, refined)) return "the houses cannot be made";
         for (float t = 0; t < kWarmUp; t += 0.25f) {
             fwWorld_Step(village.world, 0.25f);
-            draw(true);
+            if (t < 2) draw();
         }
-        draw(false);
         return village.stats().burningObjects == houses ? nullptr : "not all of them burn";
+    }
+    // Of the frame before, if that was drawn once.
+    void notePasses() {
+        FwPassTime times[64];
+        const uint32_t count = std::min(fwDebug_GetPassTimes(village.world, times, 64), 64u);
+        for (uint32_t i = 0; i < count; ++i) passes[times[i].name] += 2 * times[i].milliseconds;
     }
     Costs frame() {
         Costs c;
+        const Clock::time_point from = Clock::now();
         const double start = cpuSeconds();
         fwWorld_Step(village.world, kFrameTime);
         const double stepped = cpuSeconds();
-        draw(true);
-        const double passed = cpuSeconds();
-        draw(false);
+        if (!again) notePasses();
+        draw();
+        const double drawn = cpuSeconds();
+        c.wall = secondsSince(from);
+        again = !again;
+        if (again) draw();
         c.step = stepped - start;
-        c.refine = passed - stepped;
-        c.draw = cpuSeconds() - passed - c.refine;
+        c.draw = again ? 2 * (cpuSeconds() - drawn) : 0;  // of every second frame
+        c.all = drawn - start;
         c.triangles = village.stats().refinedTriangles;
         way += 4 * kFrameTime;
         return c;
@@ -73,30 +87,34 @@ struct Street {
 };
 
 void houses(benchmark::State& state) {
-    Street many, one;
-    for (Street* street : {&one, &many})
-        if (const char* why = street->make(street == &one ? 1 : 100))
-            return state.SkipWithError(why);
-    Costs sum, lone;
+    Street refined, plain;
+    for (Street* street : {&plain, &refined})
+        if (const char* why = street->make(street == &refined)) return state.SkipWithError(why);
+    Costs sum, bare;
     const auto add = [](Costs& to, const Costs& c) {
         to.step += c.step;
-        to.refine += c.refine;
+        to.all += c.all;
         to.draw += c.draw;
         to.triangles += c.triangles;
+        to.wall += c.wall;
     };
     for (auto _ : state) {
-        add(lone, one.frame());
-        const Costs c = many.frame();
+        add(bare, plain.frame());
+        const Costs c = refined.frame();
         add(sum, c);
-        state.SetIterationTime(std::max(c.all(), 1e-9));
+        state.SetIterationTime(c.all);
     }
     const double frames = double(state.iterations());
     state.counters["step_ms"] = 1e3 * sum.step / frames;
-    state.counters["refine_ms"] = 1e3 * sum.refine / frames;
+    state.counters["refine_ms"] = 1e3 * (sum.all - sum.step - sum.draw) / frames;
     state.counters["draw_ms"] = 1e3 * sum.draw / frames;
     state.counters["triangles"] = sum.triangles / frames;
-    state.counters["one_ms"] = 1e3 * lone.all() / frames;
-    state.counters["ratio"] = sum.all() / lone.all();
+    state.counters["wall_ms"] = 1e3 * sum.wall / frames;
+    state.counters["plain_ms"] = 1e3 * bare.all / frames;
+    state.counters["plain_draw_ms"] = 1e3 * bare.draw / frames;
+    state.counters["ratio"] = sum.all / bare.all;
+    for (const auto& [name, ms] : refined.passes)
+        if (name.starts_with("refine")) state.counters[name] = ms / frames;
 }
 
 BENCHMARK(houses)

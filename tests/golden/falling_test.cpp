@@ -2,9 +2,6 @@
 // and what is above must go long before it is consumed; with something unburnt above, it must stay.
 #include "support/own_world.h"
 
-#include <algorithm>
-#include <cstring>
-
 namespace fw::test {
 namespace {
 
@@ -28,26 +25,9 @@ class Falling : public OwnWorld {
         touch(FW_IGNITE, 0.075f, 0.45f, 0, 0.08f);
         fwWorld_Step(world_, 0);
         run(seconds, 1.0f / 32);
-        std::vector<uint8_t> pixels(size_t{kWidth} * kHeight * 4);
-        FwOffscreenDef shot = fwDefaultOffscreenDef();
-        shot.width = kWidth;
-        shot.height = kHeight;
-        shot.pixels = pixels.data();
-        shot.view = fwDefaultView();
         const float blue[4] = {0, 0, 1, 1};
-        std::copy_n(blue, 4, shot.background);
-        // Orthographic: 0.3 x 1.2 m, y up.
-        std::memset(shot.view.view, 0, sizeof shot.view.view);
-        std::memset(shot.view.projection, 0, sizeof shot.view.projection);
-        for (int i = 0; i < 4; ++i) shot.view.view[i * 5] = 1;
-        shot.view.view[12] = -0.075f;
-        shot.view.view[13] = -0.6f;
-        shot.view.view[14] = -1;
-        shot.view.projection[0] = 1 / 0.15f;
-        shot.view.projection[5] = -1 / 0.6f;
-        shot.view.projection[10] = -0.25f;
-        shot.view.projection[15] = 1;
-        EXPECT_EQ(fwWorld_RenderOffscreen(world_, &shot), FW_OK);
+        const std::vector<uint8_t> pixels =
+            shoot(world_, frontView({0.075f, 0.6f}, 0.3f, 1.2f), kWidth, kHeight, blue);
         uint32_t seen = 0, all = 0;
         for (uint32_t y = 0; y < kHeight * 2 / 5; ++y) {  // above 0.72 m
             for (uint32_t x = kWidth / 4 + 1; x < kWidth * 3 / 4 - 1; ++x, ++all)

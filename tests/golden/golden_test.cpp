@@ -162,7 +162,8 @@ class Golden : public GpuTest {
     }
 
     // A standing sheet of `side` m, or a box of it, with detail coordinates; lit near a corner.
-    void addThing(FwWorld* world, uint32_t preset, float side, float density, bool box) {
+    void addThing(FwWorld* world, uint32_t preset, float side, float density, bool box,
+                  uint32_t flags = 0, bool lid = true) {
         std::vector<float> positions, normals, details;
         std::vector<uint32_t> indices;
         const float h = 0.5f * side;
@@ -183,7 +184,7 @@ class Golden : public GpuTest {
             face(-z, -x, y);
             face(x, -z, y);
             face(-x, z, y);
-            face(y, x, -z);
+            if (lid) face(y, x, -z);
             face(-y, x, z);
         }
         FwMeshDef mesh = fwDefaultMeshDef();
@@ -195,7 +196,7 @@ class Golden : public GpuTest {
         mesh.indexCount = uint32_t(indices.size());
         mesh.texelsPerMetre = density;
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
-        object.flags = box ? 0 : FW_BURNABLE_TWO_SIDED;
+        object.flags = flags | (box ? 0 : FW_BURNABLE_TWO_SIDED);
         ASSERT_EQ(fwWorld_CreateMesh(world, &mesh, &object.mesh), FW_OK);
         FwMaterialDef material = fwDefaultMaterialDef();
         ASSERT_EQ(fwInitMaterialPreset(&material, preset), FW_OK);
@@ -471,6 +472,14 @@ TEST_F(Golden, BurntOpenBox) {
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true);
     const FwView view = makeView({-0.8f, 0.55f, 1.5f}, false, false);
     EXPECT_TRUE(matchesGolden("open_box", burnAndDraw(world, 16, view, false), kTolerance));
+}
+
+// Refined, walls have their thickness: an inner skin behind holes and along the open border.
+TEST_F(Golden, InsideOfARefinedBox) {
+    FwWorld* world = makeWorld(60);
+    addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true, FW_BURNABLE_REFINE, false);
+    const FwView view = makeView({-0.5f, 0.8f, 1.0f}, false, false);
+    EXPECT_TRUE(matchesGolden("refined_box", burnAndDraw(world, 17, view, false), kTolerance));
 }
 
 // Flames against the sampled depth of the surfaces that they stand on.

@@ -1,9 +1,9 @@
 // A hundred low-poly houses burn at once and a camera goes down their street, so that levels change
-// by distance and the budget of triangles is short: it is kept in every frame, and nothing pops.
-// Popping is measured against the same frames with everything at its deepest: what a frame is off
-// by may change little from one to the next. FLAMEWRIGHT_MOTION=<folder> keeps the frames.
+// by distance and the budget of triangles is short: it is kept in every frame, nothing pops, and a
+// frame costs little more than its draws. Popping is measured against the same frames with
+// everything at its deepest: what a frame is off by may change little from one to the next.
+// FLAMEWRIGHT_MOTION=<folder> keeps the frames.
 #include "support/houses.h"
-#include "golden/golden_image.h"
 #include "support/own_world.h"
 #include "support/sanitized.h"
 
@@ -30,21 +30,16 @@ struct Popping {       // of 1/255
 class Houses : public OwnDevice {
  protected:
     static Picture draw(const Village& village, const FwView& view) {
-        std::vector<uint8_t> pixels(size_t{kWidth} * kHeight * 4);
-        FwOffscreenDef shot = fwDefaultOffscreenDef();
-        shot.width = kWidth;
-        shot.height = kHeight;
-        shot.pixels = pixels.data();
-        shot.view = view;
-        std::copy_n(kSky, 4, shot.background);
-        EXPECT_EQ(fwWorld_RenderOffscreen(village.world, &shot), FW_OK);
-        Picture picture{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 3)};
-        for (size_t i = 0; i < size_t{kWidth} * kHeight; ++i)
-            for (size_t c = 0; c < 3; ++c) picture.rgb[i * 3 + c] = pixels[i * 4 + c];
-        return picture;
+        return pictureOf(village.world, view, kWidth, kHeight);
     }
-    static constexpr float kSky[4] = {0.10f, 0.0f, 0.30f, 1};  // no surface has this colour
 };
+
+// Of this process: a software device's work is in it.
+double cpuSeconds() {
+    std::timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
+}
 
 // Of the same view, before and after a frame's time.
 void addChange(const Picture& before, const Picture& after, Popping& p) {
@@ -93,13 +88,19 @@ TEST_F(Houses, AHundredBurnWithinTheBudgetAndNothingPops) {
     ASSERT_TRUE(village.make(context_, kHouses, kBudget, 4));
     warmUp(village);
     Popping p;
+    double refining = 0, drawing = 0;  // s of CPU, of the same pictures
     uint32_t most = 0, least = ~0u, moves = 0, last = 0, burning = ~0u;
     for (uint32_t f = 0; f < kFrames; ++f) {
         const FwView view = viewAt(kSpeed * kFrameTime * float(f));
         const Picture before = draw(village, view);  // no time has passed: nothing has moved
         ASSERT_EQ(fwWorld_Step(village.world, kFrameTime), FW_OK);
+        const double start = cpuSeconds();
         const Picture after = draw(village, view);
+        refining += cpuSeconds() - start;
         addChange(before, after, p);
+        const double from = cpuSeconds();
+        draw(village, view);  // nothing is refined for it
+        drawing += cpuSeconds() - from;
         if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION"))
             writePng(std::string(folder) + "/houses" + std::to_string(f) + ".png", after);
         ASSERT_EQ(fwWorld_Step(village.world, 0), FW_OK);
@@ -115,15 +116,19 @@ TEST_F(Houses, AHundredBurnWithinTheBudgetAndNothingPops) {
         "frame changes the picture by %.2f, at most %.2f, a block by %.1f; %.2f %% beyond 48\n",
         burning, least, most, kBudget, wished, moves, kFrames, p.mean, p.worst, p.block,
         100 * p.share);
+    std::printf("a picture costs %.2f of one for which nothing is refined\n", refining / drawing);
     EXPECT_EQ(burning, kHouses);
     EXPECT_LE(most, kBudget);
     EXPECT_GT(least, kBudget / 4);
     EXPECT_GT(wished, kBudget * 3 / 2);
     EXPECT_GE(moves, kFrames / 3);  // objects are refined in every second frame at least
-    EXPECT_LT(p.mean, 2.5);
-    EXPECT_LT(p.worst, 6);
-    EXPECT_LT(p.block, 90);
-    EXPECT_LT(p.share, 0.07);
+    EXPECT_LT(p.mean, rounds(2.0, 2.5));
+    EXPECT_LT(p.worst, rounds(4.5, 6.0));
+    EXPECT_LT(p.block, rounds(45.0, 90.0));
+    EXPECT_LT(p.share, rounds(0.02, 0.07));
+    // With all of them refined whenever one of them is due it is 1.49, as measured; in turns 1.30.
+    // Instrumented, the host's share of it is another one.
+    EXPECT_LT(refining / drawing, rounds(1.42, 3.0));
 }
 
 }  // namespace

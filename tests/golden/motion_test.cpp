@@ -1,12 +1,7 @@
 // What burns must not shimmer: true consecutive frames, 1/30 s apart, against the same moments
 // drawn with sixteen samples per pixel. What a frame is off by may not change from frame to frame.
 // FLAMEWRIGHT_MOTION=<folder> keeps the frames. Not about flames, and not about speed.
-#include "golden/golden_image.h"
 #include "support/own_world.h"
-
-#include <glm/glm.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <array>
@@ -109,25 +104,9 @@ class Motion : public OwnWorld {
     Picture draw(glm::vec3 eye, glm::vec3 target, uint32_t scale, float time,
                  std::vector<uint8_t>* hit) {
         const uint32_t width = kWidth * scale, height = kHeight * scale;
-        std::vector<uint8_t> pixels(size_t{width} * height * 4);
-        FwOffscreenDef shot = fwDefaultOffscreenDef();
-        shot.width = width;
-        shot.height = height;
-        shot.pixels = pixels.data();
-        shot.view = fwDefaultView();
-        shot.view.time = time;
-        // No surface has this colour.
-        const float background[4] = {0.10f, 0.0f, 0.30f, 1};
-        std::copy_n(background, 4, shot.background);
-        const glm::mat4 look = glm::lookAt(eye, target, glm::vec3(0, 1, 0));
-        glm::mat4 projection(0.0f);
-        projection[0][0] = 3.4f * float(kHeight) / float(kWidth);
-        projection[1][1] = -3.4f;
-        projection[2][2] = projection[2][3] = -1.0f;
-        projection[3][2] = -0.05f;
-        std::memcpy(shot.view.view, glm::value_ptr(look), sizeof shot.view.view);
-        std::memcpy(shot.view.projection, glm::value_ptr(projection), sizeof shot.view.projection);
-        EXPECT_EQ(fwWorld_RenderOffscreen(world_, &shot), FW_OK);
+        FwView view = viewAt(eye, target, float(kWidth) / float(kHeight));
+        view.time = time;
+        const std::vector<uint8_t> pixels = shoot(world_, view, width, height);
         Picture picture{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 3)};
         if (hit) hit->assign(size_t{kWidth} * kHeight, 0);
         const uint8_t* corner = pixels.data();

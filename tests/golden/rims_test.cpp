@@ -1,14 +1,9 @@
 // Rims of holes are cut as geometry near the eye and found by each fragment far from it. A camera
 // goes through the switch, both ways, before a half-burnt box: no frame may differ from the one
 // before by much more than its neighbours do. FLAMEWRIGHT_MOTION=<folder> keeps the frames.
-#include "golden/golden_image.h"
 #include "support/own_world.h"
 #include "support/refine_scene.h"
 #include "support/sanitized.h"
-
-#include <glm/glm.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
 
 #include <cstdlib>
 
@@ -21,30 +16,10 @@ constexpr uint32_t kPlaces = rounds(6, 2);
 class Rims : public OwnWorld {
  protected:
     Picture draw(float distance) {
-        std::vector<uint8_t> pixels(size_t{kWidth} * kHeight * 4);
-        FwOffscreenDef shot = fwDefaultOffscreenDef();
-        shot.width = kWidth;
-        shot.height = kHeight;
-        shot.pixels = pixels.data();
-        shot.view = fwDefaultView();
-        const float background[4] = {0.10f, 0.0f, 0.30f, 1};
-        std::copy_n(background, 4, shot.background);
         const glm::vec3 target(0.4f, 0.4f, 0.4f);
-        const glm::mat4 look =
-            glm::lookAt(target + distance * glm::normalize(glm::vec3(-1.2f, 0.7f, 1)), target,
-                        glm::vec3(0, 1, 0));
-        glm::mat4 projection(0.0f);
-        projection[0][0] = 3.4f * float(kHeight) / float(kWidth);
-        projection[1][1] = -3.4f;
-        projection[2][2] = projection[2][3] = -1.0f;
-        projection[3][2] = -0.05f;
-        std::memcpy(shot.view.view, glm::value_ptr(look), sizeof shot.view.view);
-        std::memcpy(shot.view.projection, glm::value_ptr(projection), sizeof shot.view.projection);
-        EXPECT_EQ(fwWorld_RenderOffscreen(world_, &shot), FW_OK);
-        Picture picture{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 3)};
-        for (size_t i = 0; i < size_t{kWidth} * kHeight; ++i)
-            for (size_t c = 0; c < 3; ++c) picture.rgb[i * 3 + c] = pixels[i * 4 + c];
-        return picture;
+        const glm::vec3 eye = target + distance * glm::normalize(glm::vec3(-1.2f, 0.7f, 1));
+        return pictureOf(world_, viewAt(eye, target, float(kWidth) / float(kHeight)), kWidth,
+                         kHeight);
     }
 };
 
@@ -117,7 +92,7 @@ TEST_F(Rims, NearAndFarAgreeWhereTheySwitch) {
             double(distance), switched.sum, switched.glow, moved.sum, moved.glow);
         EXPECT_GT(switched.sum, 0.5) << "nothing has switched here";
         EXPECT_LT(switched.sum, 1.5 * moved.sum);
-        EXPECT_LT(switched.glow, 5.5);
+        EXPECT_LT(switched.glow, 6.5);  // cut, the inner skin glows along its rim too
     }
 }
 

@@ -1,142 +1,13 @@
-// The refinement passes on a device against the library: integers equal, floats near. A rig of its
-// own: one object, buffers the host can see, a barrier after every phase.
-#include "mesh/refine/table.h"
-#include "support/pass_rig.h"
-#include "support/refine_scene.h"
+// The refinement passes on a device against the library: integers equal, floats near.
+#include "support/refine_probes.h"
+#include "support/refine_rig.h"
+#include "support/sanitized.h"
 
 #include <array>
 #include <map>
 
 namespace fw::test {
 namespace {
-
-// What the passes bind.
-constexpr uint32_t kBindings[] = {
-    FW_BIND_PREDICT,        FW_BIND_GRADIENT,         FW_BIND_REFINE_WORK,
-    FW_BIND_REFINE_OBJECTS, FW_BIND_REFINE_TRIANGLES, FW_BIND_REFINE_EDGES,
-    FW_BIND_REFINE_SLOTS,   FW_BIND_REFINE_WORDS,     FW_BIND_REFINE_ITEMS,
-    FW_BIND_REFINE_HEAT,    FW_BIND_REFINE_LEVELS,    FW_BIND_REFINE_VERTICES,
-    FW_BIND_REFINE_INDICES, FW_BIND_REFINE_DRAWS,     FW_BIND_VERTICES,
-    FW_BIND_REFINE_CUTS,    FW_BIND_REFINE_CUT_DRAWS, FW_BIND_OBJECT_COUNTERS};
-
-class RefineRig {
- public:
-    // cutTriangles: room for; 0: nothing is cut.
-    RefineRig(TestDevice& device, const RefineScene& scene, uint32_t cutTriangles = 0)
-        : device_(device),
-          scene_(scene),
-          rig_(device, kBindings, sizeof push_),
-          cutTriangles_(cutTriangles) {
-        const mesh::RefineModel& m = scene.model;
-        const size_t items = m.edges.size() + m.triangles.size();
-        const size_t full = size_t(m.fullCount());
-        rig_.make(FW_BIND_REFINE_WORDS, sizeof mesh::kRefineTable, mesh::kRefineTable.data());
-        rig_.make(FW_BIND_REFINE_TRIANGLES, m.triangles.size() * sizeof m.triangles[0],
-                  m.triangles.data());
-        rig_.make(FW_BIND_REFINE_EDGES, m.edges.size() * sizeof m.edges[0], m.edges.data());
-        rig_.make(FW_BIND_REFINE_SLOTS, m.slots.size() * sizeof m.slots[0], m.slots.data());
-        rig_.make(FW_BIND_REFINE_HEAT, items * 4);
-        rig_.make(FW_BIND_REFINE_ITEMS, items * sizeof(gpu::RefineLevel));
-        rig_.make(FW_BIND_REFINE_LEVELS, m.triangles.size() * 8);
-        rig_.make(FW_BIND_REFINE_INDICES, full * 12);
-        rig_.make(FW_BIND_REFINE_VERTICES, m.slots.size() * sizeof(gpu::RefineVertex));
-        rig_.make(FW_BIND_REFINE_OBJECTS, sizeof(gpu::RefineObject));
-        rig_.make(FW_BIND_REFINE_DRAWS, 8 * 20);
-        rig_.make(FW_BIND_OBJECT_COUNTERS, sizeof(gpu::ObjectCounters));
-        std::vector<mesh::RenderVertex> vertices(m.draws.size());
-        for (uint32_t d = 0; d < m.draws.size(); ++d) {
-            if (m.draws[d].triangle != mesh::kNone)
-                vertices[d] = mesh::refineRenderVertex(scene.domain, m, d);
-            vertices[d].material = m.draws[d].slot;
-        }
-        rig_.make(FW_BIND_VERTICES, vertices.size() * sizeof vertices[0], vertices.data());
-        rig_.make(FW_BIND_REFINE_CUTS, std::max(cutTriangles, 1u) * 3 * sizeof(mesh::RenderVertex));
-        rig_.make(FW_BIND_REFINE_CUT_DRAWS, 8 * 16);
-        rig_.make(FW_BIND_PREDICT, scene.ticks.size() * 4, scene.ticks.data());
-        rig_.make(FW_BIND_GRADIENT, scene.ticks.size() * 4);
-        push_.objects = push_.objectEnd = 1;
-        push_.recede = mesh::RefineSettings{}.recede;
-        lists_.assign(gpu::kRefineWorkLists, 0);
-        for (const uint32_t at : {gpu::kRefineWorkEmit, gpu::kRefineWorkPlace, gpu::kRefineWorkCut})
-            lists_[at + 1] = lists_[at + 2] = 1;
-        push_.edgeGroups = list(uint32_t(m.edges.size()));
-        push_.triangleGroups = list(uint32_t(m.triangles.size()));
-        push_.cornerGroups = list(m.cornerCount);
-        lists_.push_back(0);
-        lists_.push_back(0);
-        lists_.insert(lists_.end(), gpu::kMaterialsPerObject, 0);
-        lists_.insert(lists_.end(), gpu::kMaterialsPerObject, gpu::kNoneTexel);
-        push_.emitJobs = uint32_t(lists_.size());
-        push_.placeJobs = push_.emitJobs + uint32_t(2 * (full / 64 + 1));
-        push_.cutJobs = push_.placeJobs + uint32_t(4 * m.triangles.size());
-        rig_.make(FW_BIND_REFINE_WORK,
-                  (push_.cutJobs + 2 * (m.triangles.size() + m.edges.size())) * 4);
-        const char* names[5] = {"refine_levels.comp", "refine_scan.comp", "refine_emit.comp",
-                                "refine_place.comp", "refine_cut.comp"};
-        for (int k = 0; k < 5; ++k) pipelines_[k] = rig_.add(names[k]);
-    }
-    template <typename T>
-    [[nodiscard]] std::span<T> of(uint32_t binding) const {
-        return rig_.of<T>(binding);
-    }
-
-    void frame(gpu::RefineObject object, uint32_t nowTick, float dt, uint32_t budget) {
-        const mesh::RefineModel& m = scene_.model;
-        object.edgeCount = uint32_t(m.edges.size());
-        object.triangleCount = uint32_t(m.triangles.size());
-        object.cornerCount = m.cornerCount;
-        object.textureWidth = m.textureWidth;
-        object.flags = gpu::kRefineIsActive | (fresh_ ? gpu::kRefineIsFresh : 0);
-        object.materialEnd0 = object.materialEnd1 = gpu::uvec4(
-            object.triangleCount, object.triangleCount, object.triangleCount, object.triangleCount);
-        if (cutTriangles_ > 0) object.flags |= gpu::kRefineIsCut;
-        object.cutTriangles = cutTriangles_;
-        fresh_ = false;
-        of<gpu::RefineObject>(FW_BIND_REFINE_OBJECTS)[0] = object;
-        std::copy(lists_.begin(), lists_.end(), of<uint32_t>(FW_BIND_REFINE_WORK).begin());
-        push_.nowTick = nowTick;
-        of<gpu::RefineObject>(FW_BIND_REFINE_OBJECTS)[0].dt = dt;
-        push_.budget = budget;
-        device_.run([&](VkCommandBuffer commands) {
-            rig_.begin(commands);
-            for (uint32_t phase = 0; phase < 4; ++phase)
-                dispatch(commands, 0, phase, push_.edgeGroups + push_.triangleGroups);
-            dispatch(commands, 1, 0, 1);
-            dispatch(commands, 2, 0, 32);
-            dispatch(commands, 3, 0, push_.cornerGroups);
-            dispatch(commands, 3, 1, 4);
-            dispatch(commands, 3, 2, 32);
-            dispatch(commands, 3, 3, 32);
-            if (cutTriangles_ == 0) return;
-            dispatch(commands, 4, 0, push_.triangleGroups);
-            dispatch(commands, 4, 1, 32);
-            dispatch(commands, 4, 2, 1);
-        });
-    }
-
- private:
-    uint32_t list(uint32_t count) {
-        for (uint32_t k = 0; k < count; k += 64) {
-            lists_.push_back(0);
-            lists_.push_back(k);
-        }
-        return (count + 63) / 64;
-    }
-
-    void dispatch(VkCommandBuffer commands, int pipeline, uint32_t phase, uint32_t groups) {
-        push_.phase = phase;
-        rig_.dispatch(commands, pipelines_[pipeline], &push_, groups);
-    }
-
-    TestDevice& device_;
-    const RefineScene& scene_;
-    PassRig rig_;
-    std::vector<uint32_t> lists_;  // of the work plane, as a frame begins
-    gpu::RefinePush push_{};
-    uint32_t cutTriangles_ = 0;
-    bool fresh_ = true;
-    uint32_t pipelines_[5] = {};
-};
 
 class RefineEquality : public GpuTest {
  protected:
@@ -156,7 +27,7 @@ class RefineEquality : public GpuTest {
     }
 
     struct Difference {
-        uint32_t levels = 0, starts = 0, indices = 0, holes = 0;
+        uint32_t heat = 0, levels = 0, starts = 0, indices = 0, holes = 0;
         double level = 0, place = 0;
     };
     // One frame on both. A level that lies on a whole number to the last bit may be told apart by
@@ -167,15 +38,20 @@ class RefineEquality : public GpuTest {
         mesh::RefineState& s = player.state;
         const mesh::RefineFrame at = player.frameAt(now, dt);
         mesh::refineLevels(scene.model, player.settings, at, s);
+        // What the device's own passes add of the lists, which the rig has none of.
         const auto heat = rig.of<uint32_t>(FW_BIND_REFINE_HEAT);
-        // The library's heat, and which items have holes; that rims stay refined is the device's
-        // own.
-        for (size_t i = 0; i < heat.size(); ++i)
-            heat[i] =
-                (heat[i] & gpu::kRefineGone) |
-                (i < s.edgeHeat.size() ? s.edgeHeat[i] : s.interiorHeat[i - s.edgeHeat.size()]);
+        for (uint32_t& word : heat)
+            word &= gpu::kRefineGone | gpu::kRefineStays | gpu::kRefineGoing;
+        for (uint32_t t = 0; t < scene.model.tileCount; ++t)
+            for (uint32_t k = scene.model.tileStart[t]; k < scene.model.tileStart[t + 1]; ++k)
+                heat[scene.model.tileItems[k]] |= at.tiles[t];
         rig.frame(objectOf(player, now, dt), at.nowTick, dt, player.settings.budget);
         const auto items = rig.of<gpu::RefineLevel>(FW_BIND_REFINE_ITEMS);
+        for (size_t i = 0; i < items.size(); ++i) {
+            const uint32_t own =
+                i < s.edges.size() ? s.edgeHeat[i] : s.interiorHeat[i - s.edges.size()];
+            d.heat += own != (heat[i] >> gpu::kRefineHeatShift & 3u);
+        }
         for (size_t i = 0; i < items.size(); ++i) {
             gpu::RefineLevel& own =
                 i < s.edges.size() ? s.edges[i] : s.interiors[i - s.edges.size()];
@@ -200,7 +76,7 @@ class RefineEquality : public GpuTest {
             return count;
         };
         const auto levels = rig.of<gpu::uvec2>(FW_BIND_REFINE_LEVELS);
-        for (size_t i = 0; i < levels.size(); ++i) {
+        for (size_t i = 0; i < s.levels.size(); ++i) {
             d.levels += levels[i].x != s.levels[i];
             d.starts += levels[i].y != s.starts[i];
         }
@@ -240,6 +116,7 @@ TEST_F(RefineEquality, LevelsTrianglesAndPlacesAreTheLibrarys) {
         scene.heat(now, player.tiles);
         const Difference d = frame(player, rig, now, 0.21f);
         ASSERT_LT(d.level, 1e-4) << "frame " << frames;
+        ASSERT_EQ(0u, d.heat) << "frame " << frames;
         ASSERT_EQ(0u, d.levels + d.starts + d.indices) << "frame " << frames;
         ASSERT_LT(d.place, 1e-5) << "m, frame " << frames;
         ASSERT_EQ(0u, d.holes) << "frame " << frames;
@@ -315,12 +192,13 @@ std::vector<uint32_t> plainSlots(const RefineRig& rig, const RefineScene& scene)
     return slots;
 }
 
-// The library's shell from the device's vertices: what crosses a hole, and what does not.
+// The library's shell from the device's vertices: what crosses a hole, with its inner skin if it is
+// thick, walls, and what does not.
 struct WantedCut {
     std::vector<CutPiece> pieces;
     std::vector<uint32_t> plain;
 };
-WantedCut wantedCut(RefinePlayer& player, const RefineRig& rig, float now) {
+WantedCut wantedCut(RefinePlayer& player, const RefineRig& rig, float now, bool thick = false) {
     const RefineScene& scene = player.scene;
     const auto vertices = rig.of<gpu::RefineVertex>(FW_BIND_REFINE_VERTICES);
     for (const uint32_t draw : player.state.indices) {
@@ -337,8 +215,9 @@ WantedCut wantedCut(RefinePlayer& player, const RefineRig& rig, float now) {
             inner += (c.high & gpu::kRefineInside) != 0 ? 1 : 0;
             cut += (c.high & ~gpu::kRefineInside) != c.low ? 1 : 0;
         }
-        if (inner == 3) continue;
-        if (cut == 0) {
+        const bool wall = inner == 1 || inner == 2;
+        if (inner == 3 && (cut == 0 || !thick)) continue;
+        if (cut == 0 && !wall) {
             for (size_t v = 0; v < 3; ++v) wanted.plain.push_back(shell.corners[i + v].low);
             continue;
         }
@@ -347,9 +226,10 @@ WantedCut wantedCut(RefinePlayer& player, const RefineRig& rig, float now) {
             const gpu::RefineCorner& c = shell.corners[i + v];
             const glm::vec3 p = mesh::refineCornerPlace(scene.model, player.state, now, c);
             piece.corners[v] = {p.x, p.y, p.z};
-            piece.left[v] = inner == 0                           ? 0
-                            : (c.high & gpu::kRefineInside) != 0 ? gpu::kRefineCutDeep
-                                                                 : gpu::kRefineCutRim;
+            // A rim stands between two cut points.
+            const float outer = cut == 3 ? gpu::kRefineCutRim : gpu::kRefineBorder;
+            const bool deep = (c.high & gpu::kRefineInside) != 0;
+            piece.left[v] = !wall ? 0 : deep ? outer - 1 : outer;
         }
         wanted.pieces.push_back(piece);
     }
@@ -489,6 +369,97 @@ TEST_F(RefineEquality, WithoutRoomWhatACutWouldNeedStaysWhole) {
         EXPECT_GT(plainSlots(rig, scene).size(), wanted.plain.size());
     }
     EXPECT_GT(full, 5u);
+}
+
+// A box without a lid: inside there is a skin a wall away, and walls stand along the border.
+TEST_F(RefineEquality, InnerSkinAndBordersAreTheLibrarys) {
+    if (!device_) return;
+    SideBuilder box;
+    box.side({0, 0, 0.3}, {0.6, 0, 0}, {0, 0.4, 0}, 1, 1);
+    box.side({0.6, 0, 0}, {-0.6, 0, 0}, {0, 0.4, 0}, 1, 1);
+    box.side({0.6, 0, 0.3}, {0, 0, -0.3}, {0, 0.4, 0}, 1, 1);
+    box.side({0, 0, 0}, {0, 0, 0.3}, {0, 0.4, 0}, 1, 1);
+    box.side({0, 0, 0}, {0.6, 0, 0}, {0, 0, 0.3}, 1, 1);
+    mesh::RefineOptions options;
+    options.depth = 4;
+    RefineScene scene(box.mesh, options, 96);
+    ASSERT_GT(scene.model.openEdges, 0u);
+    scene.light({0.2, 0.35, 0.3}, 0.05, 0.15);
+    RefinePlayer player(scene);
+    player.settings.skipStill = false;
+    RefineRig rig(*device_, scene, 8000, true);
+    size_t borders = 0, skins = 0;
+    const float step = gpuAssisted() ? 5 : 0.9f;
+    for (float now = 0.1f; now < scene.end + kBurnSeconds + 1; now += step) {
+        scene.heat(now, player.tiles);
+        (void)frame(player, rig, now, step);
+        const std::vector<CutPiece> pieces = cutPieces(rig);
+        const WantedCut wanted = wantedCut(player, rig, now, true);
+        ASSERT_EQ(wanted.pieces.size(), pieces.size()) << now << " s";
+        ASSERT_EQ(0u, unmatched(wanted.pieces, pieces)) << now << " s";
+        ASSERT_EQ(wanted.plain, plainSlots(rig, scene)) << now << " s";
+        size_t border = 0, skin = 0;
+        for (const CutPiece& piece : pieces) {
+            border += piece.left[0] < -2.5f ? 1 : 0;
+            skin += piece.wall() ? 0 : 1;
+        }
+        borders = std::max(borders, border);
+        skins = std::max(skins, skin);
+        // Inside of what is whole, vertices stand at their inner places.
+        const auto vertices = rig.of<gpu::RefineVertex>(FW_BIND_REFINE_VERTICES);
+        for (const uint32_t slot : wanted.plain) {
+            const gpu::RefineVertex& v = vertices[scene.model.slots.size() + slot];
+            const glm::vec3 skin3 = gpu::refineInnerSkin(scene.model.slots[slot]);
+            ASSERT_LT(glm::distance(skin3, glm::vec3(v.x, v.y, v.z)), 1e-6f);
+            ASSERT_EQ(vertices[slot].hole, v.hole);
+        }
+    }
+    std::printf("inside: at most %zu triangles of cut skins, %zu of borders\n", skins, borders);
+    EXPECT_GT(borders, 30u);
+    EXPECT_TRUE(gpuAssisted() || skins > 100);
+}
+
+// Levels come with the distance: points fixed on a burnt surface move no more than by a fraction of
+// a pixel between frames. Without the way from between their parents they would.
+TEST_F(RefineEquality, NothingPopsAsTheEyeComesNearer) {
+    if (!device_ || gpuAssisted()) return;
+    RefineScene scene(gridBox(1, 1, 1, 1, 1, 1), unsplit(5), 64);
+    scene.light({0.02, 0.45, 0.37}, 0.02);
+    const float now = scene.timeAt(0.4);
+    const std::vector<Probe> probes = probesOn(scene.model, 15);
+    constexpr int kDolly = rounds(90, 45);  // the later part passes from level 4 to 5
+    double worst[2] = {};
+    for (const bool morph : {true, false}) {
+        RefinePlayer player(scene);
+        player.settings.skipStill = false;
+        RefineRig rig(*device_, scene);
+        rig.morph = morph;
+        std::vector<glm::vec3> before;
+        scene.heat(now, player.tiles, true);
+        for (int k = -8; k < kDolly; ++k) {  // levels rise to the first view before it counts
+            const float u = float(kDolly - std::max(k, 0)) / 90;
+            player.views = {{{-1 - 11 * u, 0.6f, 0.5f}, 1000}};
+            (void)frame(player, rig, now, k < 0 ? 0.5f : 1 / 60.0f);
+            const auto vertices = rig.of<gpu::RefineVertex>(FW_BIND_REFINE_VERTICES);
+            for (const uint32_t draw : player.state.indices) {
+                const uint32_t slot = scene.model.draws[draw].slot;
+                player.state.vertices[slot] = vertices[slot];
+            }
+            const std::vector<glm::vec3> places = placesOf(scene.model, player.state, probes);
+            const mesh::RefineView& v = player.views[0];
+            for (size_t i = 0; k > 0 && i < places.size(); ++i) {
+                const float away = glm::distance(places[i], {v.eye[0], v.eye[1], v.eye[2]});
+                worst[morph ? 0 : 1] =
+                    std::max(worst[morph ? 0 : 1], double(glm::distance(places[i], before[i])) *
+                                                       1000 / std::max(0.05, double(away)));
+            }
+            before = places;
+        }
+    }
+    std::printf("a point moves by at most %.2f px between frames, without the morph by %.2f\n",
+                worst[0], worst[1]);
+    EXPECT_LT(worst[0], 0.3);
+    EXPECT_GT(worst[1], 2 * worst[0]);
 }
 
 }  // namespace

@@ -4,12 +4,8 @@
 #include "flamewright/flamewright_debug.h"
 #include "support/mesh_def.h"
 #include "support/refine_scene.h"
+#include "support/views.h"
 
-#include <glm/glm.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
-
-#include <cstring>
 #include <vector>
 
 namespace fw::test {
@@ -33,7 +29,8 @@ struct Village {
     ~Village() { fwDestroyWorld(world); }
 
     // `count` houses in rows of ten; all of them burn from the first step on, for twenty seconds.
-    bool make(FwContext* context, uint32_t count, uint32_t maxTriangles, float pixelsPerEdge) {
+    bool make(FwContext* context, uint32_t count, uint32_t maxTriangles, float pixelsPerEdge,
+              bool refined = true) {
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.maxStepsPerFrame = 64;
         worldDef.maxFlames = 0;
@@ -61,7 +58,7 @@ struct Village {
             fwWorld_CreateMaterial(world, &walls, &def.materials[0]) != FW_OK ||
             fwWorld_CreateMaterial(world, &thatch, &def.materials[1]) != FW_OK)
             return false;
-        def.flags = FW_BURNABLE_LITE | FW_BURNABLE_REFINE;
+        def.flags = FW_BURNABLE_LITE | (refined ? FW_BURNABLE_REFINE : 0);
         def.refineDepth = 3;
         def.refinePixelsPerEdge = pixelsPerEdge;
         std::mt19937 random(1);
@@ -101,19 +98,9 @@ struct Village {
     }
 };
 
-// From `eye` down the street, or with everything aside of the picture.
-inline FwView streetView(glm::vec3 eye, glm::vec3 target, float aspect, bool aside = false) {
-    FwView view = fwDefaultView();
-    const glm::mat4 look = glm::lookAt(eye, target, glm::vec3(0, 1, 0));
-    glm::mat4 projection(0.0f);
-    projection[0][0] = 1.6f / aspect;
-    projection[1][1] = -1.6f;
-    projection[2][2] = projection[2][3] = -1.0f;
-    projection[3][2] = -0.1f;
-    if (aside) projection[2][0] = 100;
-    std::memcpy(view.view, glm::value_ptr(look), sizeof view.view);
-    std::memcpy(view.projection, glm::value_ptr(projection), sizeof view.projection);
-    return view;
+// From `eye` down the street.
+inline FwView streetView(glm::vec3 eye, glm::vec3 target, float aspect) {
+    return viewAt(eye, target, aspect, 1.6f, 0.1f);
 }
 
 }  // namespace fw::test

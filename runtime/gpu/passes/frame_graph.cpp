@@ -252,7 +252,7 @@ void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {
 
 void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList& list) {
     if (step.pass < kSurfaceVariants)
-        recordSurface(recorder, step.pass, list.surfaces, step.afterZ);
+        recordSurface(recorder, step.pass, list.surfaces, step.afterZ, list.turned);
     else if (step.pass == kNumberOfZPass)
         recordZPass(recorder, list.surfaces);
     else if (kDrawPasses[step.pass] == &kFlamesPass)
@@ -293,12 +293,12 @@ void recordTurn(vk::FrameRecorder& recorder, const FrameLists& lists, const Refi
     push.row = kRowBurn + lists.burnParity;
     push.parity = 2 + lists.burnParity;
     recorder.dispatchList(kRefineHeatPass, &push, push.row);
-    const uint32_t items = push.edgeGroups + push.triangleGroups;
-    for (push.phase = 0; push.phase < 4; ++push.phase) {
-        if (push.phase == 1 && push.budget == 0) continue;
-        recorder.dispatch(kRefineLevelsPass, &push,
-                          std::min((push.phase & 1) ? push.triangleGroups : items, kMaxGroups));
-    }
+    const uint32_t items = std::min(push.edgeGroups + push.triangleGroups, kMaxGroups),
+                   triangles = std::min(push.triangleGroups, kMaxGroups);
+    const uint32_t groups[5] = {items, push.budget ? triangles : 0, push.budget ? 1u : 0, items,
+                                triangles};
+    for (push.phase = 0; push.phase < 5; ++push.phase)
+        if (groups[push.phase]) recorder.dispatch(kRefineLevelsPass, &push, groups[push.phase]);
     recorder.dispatch(kRefineScanPass, &push, std::min(push.objects, kMaxGroups));
     recorder.dispatchIndirect(kRefineEmitPass, &push, FW_BIND_REFINE_WORK, kRefineWorkEmit * 4);
 }

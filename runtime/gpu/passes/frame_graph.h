@@ -94,6 +94,7 @@ struct DrawList {  // what a view may show
     std::span<const DrawItem> surfaces;
     bool flames = false;  // something burns
     std::span<const VolumeItem> volumes;
+    bool turned = false;  // counter-clockwise triangles turn their backs to it
 };
 // False: it would draw nothing, do not bind it.
 bool drawStepDraws(const DrawStep& step, const DrawList& list);

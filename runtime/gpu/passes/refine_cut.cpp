@@ -12,7 +12,7 @@ constexpr Use kUses[] = {
     {FW_BIND_REFINE_HEAT, Access::read},       {FW_BIND_REFINE_LEVELS, Access::read},
     {FW_BIND_REFINE_VERTICES, Access::read},   {FW_BIND_VERTICES, Access::read},
     {FW_BIND_REFINE_INDICES, Access::write},   {FW_BIND_REFINE_CUTS, Access::write},
-    {FW_BIND_REFINE_CUT_DRAWS, Access::write},
+    {FW_BIND_REFINE_CUT_DRAWS, Access::write}, {FW_BIND_REFINE_EDGES, Access::read},
 };
 
 }  // namespace

@@ -173,17 +173,22 @@ bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items, bool zPass)
 }
 
 void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items,
-                   bool zPass) {
+                   bool zPass, bool turned) {
+    const bool burning = variant >= kFirstBurning, cold = !burning && variant >= kFirstCold;
+    const bool behind = burning ? variant >= kFirstBurning + kBurning : variant >= kFresh && !cold;
     for (const DrawItem& item : items) {
         if (!drawnBy(variant, item, zPass)) continue;
         SurfaceDraw draw = item.draw;
-        const bool burning = variant >= kFirstBurning;
         if (!burning) draw.nearness = item.coldReach;
         if (burning && (item.cut || (item.refined && item.consumed))) draw.flags |= kDrawCut;
-        if (item.refined) draw.flags |= kDrawPlaced;
+        if (item.refined) {
+            draw.flags |= kDrawPlaced;
+            // What turns its back is seen from inside.
+            if (behind != turned) draw.places += item.inner;
+        }
         recorder.drawItem(item, &draw);
-        if (!item.cut || !burning) continue;
-        draw.flags &= ~kDrawPlaced;
+        if (!item.cut || cold) continue;
+        draw.flags = (draw.flags & ~kDrawPlaced) | kDrawCut;
         recorder.drawCut(item, &draw);
     }
 }

@@ -129,6 +129,8 @@ VkImageMemoryBarrier imageBarrier(const FwVulkanImage& image, bool depth, VkForm
     return barrier;
 }
 
+constexpr float kAnyHeight = 1000;  // px
+
 constexpr VkAccessFlags kColorAccess =
     VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
 constexpr VkAccessFlags kDepthAccess =
@@ -154,7 +156,10 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     vk.CmdSetScissor(commands, 0, 1, &scissor);
     std::array<VolumeItem, kMaxVolumeFlames> items;
     const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
-    const DrawList list{drawItems, !burnEmpty, {items.data(), orderVolumes(slabs, items)}};
+    const DrawList list{drawItems,
+                        !burnEmpty,
+                        {items.data(), orderVolumes(slabs, items)},
+                        turnsFaces(view, viewport)};
     for (const DrawStep& step : drawSteps()) {
         const uint32_t i = step.pass;
         const DrawPass& pass = *drawPasses()[i];
@@ -186,6 +191,19 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         recordDrawStep(step, recorder, list);
         slot.timers.end(device, commands);
     }
+}
+
+// Whether triangles that are counter-clockwise from outside count as backs in a view: hosts' views
+// may be mirrored.
+bool VkBackend::State::turnsFaces(const FwView& view, const VkViewport& viewport) const noexcept {
+    ViewInput input;
+    input.view = &view;
+    input.viewport[2] = input.viewport[3] = kAnyHeight;
+    ViewParams p{};
+    limits.looks.viewParams(input, p);
+    const glm::vec3 x(p.clip0.x, p.clip1.x, p.clip2.x), y(p.clip0.y, p.clip1.y, p.clip2.y);
+    const float handed = glm::dot(glm::cross(x, y), glm::vec3(p.forward));
+    return (handed < 0) != (viewport.height < 0);
 }
 
 // Hosts' views come and go: a set is written for each use, never kept with a view.

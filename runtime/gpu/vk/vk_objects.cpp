@@ -140,7 +140,8 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             if (init.arpModel)
                 s.takeArp(fresh.refine, init, refined, last);
             else
-                fresh.refine.allocate(s.planes, refined, last);
+                fresh.refine.allocate(s.planes, refined, (init.record.flags & kObjectTwoSided) == 0,
+                                      last);
         }
         if (!init.slowness.empty()) {
             fresh.slowness = {s.planes.allocate(kSpaceSlowness, mesh.tiles, last), mesh.tiles};

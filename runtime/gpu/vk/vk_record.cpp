@@ -154,6 +154,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                 chooseVariants(s, object, item);
                 item.refined = object.refine.started;
                 item.cut = object.refine.cut;
+                item.inner = object.refine.inner;
                 item.consumed = object.refine.arpPlus1 != 0;
                 item.zPass = zPassed(object);
                 item.draw = drawOf(s, object, m);

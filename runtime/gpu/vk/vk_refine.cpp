@@ -4,6 +4,7 @@
 #include "gpu/vk/world_state.h"
 #include "mesh/refine/model.h"
 #include "mesh/refine/table.h"
+#include "mesh/refine/turns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,16 +23,31 @@ constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
 constexpr float kCutFrom = 4, kCutTo = 3;
 constexpr float kCutNear = 10;          // where rims show what only cut ones can
 constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
-// An object is refined anew when a front may have run this far on the screen, or the eye moved by
-// this share of its distance; at the latest after so many ticks, as levels are on their way.
-constexpr float kTurnPixels = 0.5f, kTurnEye = 0.02f;
-constexpr double kTurnTicks = kTicksPerSecond / 15.0;
+// Of the budget, what levels aim at: they are on their way for a moment, and some objects wait.
+constexpr uint32_t kAimed = 15, kAimedOf = 16;
 
 uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
 
 uint32_t materialOf(const mesh::BurnDomain& domain, const RefineTriangle& triangle) {
     const uint32_t corner = domain.indices[size_t(triangle.source) * 3];
     return std::min(domain.vertices[corner].material, kMaterialsPerObject - 1);
+}
+
+// Whether the mesh is around something, rather than a sheet: a twentieth of its bounds at least.
+bool hasInside(const mesh::BurnDomain& domain, const mesh::RefineModel& model) {
+    const glm::vec3 low(domain.boundsLow[0], domain.boundsLow[1], domain.boundsLow[2]),
+        high(domain.boundsHigh[0], domain.boundsHigh[1], domain.boundsHigh[2]);
+    const glm::vec3 middle = (low + high) * 0.5f, size = high - low;
+    double volume = 0;
+    for (const RefineTriangle& t : model.triangles) {
+        glm::vec3 p[3];
+        for (int k = 0; k < 3; ++k) {
+            const RefineSlot& s = model.slots[model.draws[t.corner[k]].slot];
+            p[k] = glm::vec3(s.x, s.y, s.z) - middle;
+        }
+        volume += double(glm::dot(p[0], glm::cross(p[1], p[2]))) / 6;
+    }
+    return volume > 0.05 * double(size.x * size.y * size.z) && volume > 0;
 }
 
 template <class T>
@@ -82,6 +98,8 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
         const RefineSlot &a = model.slots[e.low], &b = model.slots[e.high];
         fresh.edgeLength += std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) / float(fresh.edgeCount);
     }
+    fresh.openEdges = model.openEdges;
+    fresh.solid = hasInside(domain, model);
     for (const RefineTriangle& t : model.triangles) ++fresh.materialEnd[materialOf(domain, t)];
     for (uint32_t m = 1; m < kMaterialsPerObject; ++m)
         fresh.materialEnd[m] += fresh.materialEnd[m - 1];
@@ -150,17 +168,21 @@ void RefineMesh::release(Planes& planes) noexcept {
     *this = {};
 }
 
-void RefineUse::allocate(Planes& planes, const RefineMesh& mesh, uint64_t last) {
+void RefineUse::allocate(Planes& planes, const RefineMesh& mesh, bool thick, uint64_t last) {
+    inner = thick && mesh.solid ? mesh.slotCount : 0;
+    border = inner != 0 && mesh.openEdges > 0;
     const auto take = [&](RangeOf& range, Space space, uint32_t units) {
         units = std::max(1u, units);
         range = {planes.allocate(space, units, last), units};
     };
     take(items, kSpaceRefineItems, mesh.edgeCount + mesh.triangleCount);
-    take(triangles, kSpaceRefineTriangles, mesh.triangleCount);
-    take(slots, kSpaceRefineSlots, mesh.slotCount);
+    take(triangles, kSpaceRefineTriangles, mesh.triangleCount + kRefineSums);
+    take(slots, kSpaceRefineSlots, mesh.slotCount + inner);
     take(indices, kSpaceRefineIndices, mesh.fullCount * 3);
-    // Along rims, of up to four for a small triangle.
-    take(cuts, kSpaceRefineCuts, 3 * std::min(mesh.fullCount / 4 + 64, kRefineCutMost));
+    // Along rims, of up to four for a small triangle; with an inner skin and along borders more.
+    const uint32_t rims = mesh.fullCount / (inner ? 3 : 4) + 64;
+    const uint32_t walls = border ? mesh.openEdges << (kRefineDepth + 1) : 0;
+    take(cuts, kSpaceRefineCuts, 3 * std::min(rims + walls, kRefineCutMost));
 }
 
 void RefineUse::allocateArp(Planes& planes, const RefineMesh& mesh, uint64_t last) {
@@ -189,10 +211,11 @@ void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
     use.quietTick = std::max(use.quietTick, uint32_t(std::min<uint64_t>(quiet, kLiveEnd)));
 }
 
-// Once more after it is quiet: pictures may be seconds apart.
+// Once more after it is quiet: pictures may be seconds apart. What has a border is drawn refined
+// from the first picture on.
 bool VkBackend::State::refines(const ObjectEntry& object) const noexcept {
     return object.live && object.refine.on && !object.refine.arpPlus1 &&
-           double(object.refine.quietTick) > object.refine.turnTick;
+           (object.refine.border || double(object.refine.quietTick) > object.refine.turnTick);
 }
 
 // Which objects the frame may refine, and the bytes that it uploads for all of them. May throw.
@@ -213,7 +236,7 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
 void VkBackend::State::listRefined(bool all) {
     refine.lists.clear();
     refine.push = {};
-    uint64_t emitJobs = 0, placeJobs = 0, full = 0;
+    uint64_t emitJobs = 0, placeJobs = 0;
     const auto each = [&](auto&& use) {
         for (uint32_t i = 0; i < objects.size(); ++i) {
             const ObjectEntry& object = objects[i];
@@ -242,14 +265,20 @@ void VkBackend::State::listRefined(bool all) {
         ++push.objects;
         emitJobs += groupsOf(m.fullCount);
         placeJobs += m.triangleCount;
-        full += m.fullCount;
-        push.objectEnd = i + 1;
     });
     for (uint32_t o = 0; o < push.objects; ++o) {  // counts, ends
         refine.lists.insert(refine.lists.end(), kMaterialsPerObject, 0);
         refine.lists.insert(refine.lists.end(), kMaterialsPerObject, kNoneTexel);
     }
-    push.budget = full > limits.maxRefinedTriangles ? limits.maxRefinedTriangles : 0;
+    // The budget is shared with those whose turn it is not.
+    uint64_t full = 0;
+    for (uint32_t i = 0; i < objects.size(); ++i) {
+        if (!refines(objects[i])) continue;
+        full += meshes[objects[i].mesh].refine[objects[i].refine.key].fullCount;
+        push.objectEnd = i + 1;
+    }
+    if (full > limits.maxRefinedTriangles)
+        push.budget = std::max(1u, limits.maxRefinedTriangles / kAimedOf * kAimed);
     push.full = refine.full ? 1 : 0;
     push.recede = kRefineRecede;
     push.emitJobs = uint32_t(refine.lists.size());
@@ -259,17 +288,13 @@ void VkBackend::State::listRefined(bool all) {
 
 // Marks the objects that the frame refines; whether there are any.
 bool VkBackend::State::chooseDue(double now) noexcept {
-    // One budget is shared among them; and full ones are compared with what has no turns.
-    const bool together = refine.push.budget != 0 || refine.full;
-    bool any = false;
     const auto due = [&](const ObjectEntry& object) {
-        return refines(object) ? isDue(object, refineRecord(object, refine.full), now)
-                               : refine.full && object.refine.due;
+        return refines(object) && isDue(object, refineRecord(object, refine.full), now);
     };
-    for (const ObjectEntry& object : objects) any |= due(object);
-    if (!any) return false;
+    if (std::none_of(objects.begin(), objects.end(), due)) return false;
+    // Full ones are compared with what has no turns.
     for (ObjectEntry& object : objects)
-        object.refine.due = refines(object) && (together || due(object));
+        object.refine.due = refines(object) && (refine.full || due(object));
     return true;
 }
 
@@ -300,9 +325,15 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
         ObjectEntry& object = objects[i];
         if (object.refine.due) {
             record = refineRecord(object, refine.full);
+            record.flags |= kRefineIsActive | kRefineIsCounted;
             record.ordinal = ordinal++;
             record.dt =
                 float(std::clamp((now - object.refine.turnTick) / kTicksPerSecond, 0.0, 2.0));
+        }
+        if (!object.refine.due && object.refine.started && refines(object)) {
+            record.flags = kRefineIsCounted;
+            record.triangles = object.refine.triangles.first;
+            record.triangleCount = meshes[object.mesh].refine[object.refine.key].triangleCount;
         }
         if (object.refine.due && turn) {
             object.refine.turnTick = now;
@@ -359,7 +390,7 @@ void VkBackend::State::showRefined() noexcept {
 // far objects are small, and discarded.
 float VkBackend::State::cutSegments(const ObjectEntry& object,
                                     const RefineObject& record) const noexcept {
-    if ((object.record.flags & kObjectNoHoles) != 0) return 0;
+    if ((object.record.flags & kObjectNoHoles) != 0 && !object.refine.border) return 0;
     if (record.eye.w == 0) return kCutNear;
     const float pixels = meshes[object.mesh].refine[object.refine.key].edgeLength * record.eye.w;
     return pixels / std::max(record.pixelsPerEdge * eyeDistance(object, record), 1e-6f);
@@ -384,19 +415,20 @@ bool VkBackend::State::isDue(const ObjectEntry& object, const RefineObject& reco
                              double now) const noexcept {
     const RefineUse& use = object.refine;
     if (!use.started || record.eye.w != use.turnEye.w) return true;
-    const float away = std::max(eyeDistance(object, record), 0.01f);
-    const float moved = std::hypot(record.eye.x - use.turnEye.x, record.eye.y - use.turnEye.y,
-                                   record.eye.z - use.turnEye.z);
-    if (record.eye.w > 0 && moved > kTurnEye * away) return true;
-    // How fast fire runs in still air: ticks are 2^-22 of sigma0 for 1/8 of a quantum.
+    mesh::RefineTurn turn;
+    turn.since = std::abs(now - use.turnTick);
+    turn.away = eyeDistance(object, record);
+    turn.moved = std::hypot(record.eye.x - use.turnEye.x, record.eye.y - use.turnEye.y,
+                            record.eye.z - use.turnEye.z);
+    turn.perspective = record.eye.w > 0;
+    if (double(use.quietTick) <= use.turnTick) turn.since = 0;  // only its border is drawn anew
+    turn.pixels = refine.pixels;
+    // How fast fire runs: ticks are 2^-22 of sigma0 for 1/8 of a quantum.
     uint32_t least = ~0u;
     for (const BurnMaterial& m : object.materials)
         if ((m.flags & 1) != 0) least = std::min(least, m.sigma0);
-    const double speed =
-        double(object.record.originQuantum.w) / 8 * 4194304.0 / double(least);  // m per tick
-    const double pixels = double(refine.pixels) / double(record.eye.w > 0 ? away : 1.0f);
-    const double ticks = std::min(kTurnTicks, double(kTurnPixels) / std::max(speed * pixels, 1e-9));
-    return std::abs(now - use.turnTick) >= ticks;
+    turn.speed = double(object.record.originQuantum.w) / 8 * 4194304.0 / double(least);
+    return mesh::refineDue(turn);
 }
 
 RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full) const noexcept {
@@ -420,7 +452,6 @@ RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full
     r.tileCount = entry.tiles;
     r.stateBase = object.record.stateBase;
     r.epochTick = use.epochTick;
-    r.flags = kRefineIsActive;
     r.pixelsPerEdge = use.pixelsPerEdge;
     r.now =
         float((double(shownTick) - double(use.epochTick) + double(tickFraction)) / kTicksPerSecond);
@@ -432,6 +463,7 @@ RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full
     r.eye = {(x.x * d[0] + y.x * d[1] + z.x * d[2]) / square,
              (x.y * d[0] + y.y * d[1] + z.y * d[2]) / square,
              (x.z * d[0] + y.z * d[1] + z.z * d[2]) / square, full ? 0.0f : refine.eye.w};
+    r.inner = use.inner;
     r.cuts = use.cuts.first;
     r.cutTriangles = use.cuts.units / 3;
     // A wall is gone when it looks gone.

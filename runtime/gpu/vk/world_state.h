@@ -35,7 +35,9 @@ struct SpaceRange {
 struct RefineMesh {
     bool live = false;
     uint32_t edgeCount = 0, triangleCount = 0, cornerCount = 0, slotCount = 0;
-    uint32_t fullCount = 0;                          // triangles with everything at its deepest
+    uint32_t fullCount = 0;  // triangles with everything at its deepest
+    uint32_t openEdges = 0;
+    bool solid = false;                              // it has an inside
     float edgeLength = 0;                            // m, mean of its edges
     uint32_t materialEnd[kMaterialsPerObject] = {};  // of its triangles
     RangeOf triangles, edges, slots, words, draws;
@@ -50,6 +52,8 @@ struct RefineUse {  // an object's own
     uint32_t epochTick = 0;
     uint32_t quietTick = 0;  // it is refined before this; 0: no fire yet
     bool cut = false;        // near: its holes are cut
+    uint32_t inner = 0;      // as RefineObject
+    bool border = false;     // walls stand along its open edges, whether it burns or not
     float nearness = 0;      // as SurfaceDraw
     float now = 0;           // s since its epoch, of the frame that last placed it
     double turnTick = 0;     // of that frame
@@ -58,7 +62,8 @@ struct RefineUse {  // an object's own
     RangeOf items, triangles, slots, indices, cuts;
     uint32_t arpPlus1 = 0;  // by the published scheme: its ArpUse
     RangeOf arpList;
-    void allocate(Planes& planes, const RefineMesh& mesh, uint64_t last);
+    // `thick`: with an inner skin, where the mesh has an inside.
+    void allocate(Planes& planes, const RefineMesh& mesh, bool thick, uint64_t last);
     void allocateArp(Planes& planes, const RefineMesh& mesh, uint64_t last);
     void release(Planes& planes) noexcept;
 };
@@ -363,6 +368,7 @@ struct VkBackend::State {
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
                      const FwView& view, const VkViewport& viewport,
                      VkDescriptorSet depth = VK_NULL_HANDLE);
+    [[nodiscard]] bool turnsFaces(const FwView& view, const VkViewport& viewport) const noexcept;
     VkDescriptorSet depthSetFor(FrameInFlight& slot, VkImageView view, VkImageLayout layout);
     VkFramebuffer framebufferFor(FrameInFlight& slot, const Target& target, FwTargetId targetId,
                                  const FwVulkanComposite& images);

@@ -48,7 +48,11 @@ struct RefineState {
     // What the passes remember.
     float placedAt = -gpu::kRefineNever;  // s, the last frame
     std::pmr::vector<uint8_t> edgeHeat, interiorHeat;
-    std::pmr::vector<uint8_t> edgeTops;                         // integer levels, of the last count
+    // What their vertices said when last placed: kRefineGone, Stays, Going. Where a rim crosses, or
+    // will, they stay hot.
+    std::pmr::vector<uint8_t> edgeFate, interiorFate;
+    std::pmr::vector<uint8_t> edgeMoving, interiorMoving;  // warm a moment ago, or on their way
+    std::pmr::vector<uint8_t> edgeTops;                    // integer levels, of the last count
     std::pmr::vector<uint32_t> emitted, emittedStarts, before;  // of the last emission
     std::pmr::vector<float> edgeShown, interiorShown;  // levels when last placed; < 0: never
     std::pmr::vector<uint8_t> edgeMoved;               // placed in this frame

@@ -8,6 +8,16 @@
 namespace fw::mesh {
 namespace {
 
+// As long as it opens, and where the rim of a hole stays, an item keeps its levels.
+void keepRims(std::span<uint8_t> fates, std::span<uint8_t> heat) {
+    constexpr uint8_t kRim = gpu::kRefineGone | gpu::kRefineStays;
+    for (size_t i = 0; i < fates.size(); ++i) {
+        if ((fates[i] & gpu::kRefineGoing) != 0 || (fates[i] & kRim) == kRim)
+            heat[i] |= gpu::kRefineHot;
+        fates[i] &= gpu::kRefineGone;
+    }
+}
+
 // Heat of edges and interiors from that of the tiles. Its cost follows the fire.
 void warm(const RefineModel& model, const RefineFrame& frame, RefineState& state) {
     std::fill(state.edgeHeat.begin(), state.edgeHeat.end(), uint8_t(0));
@@ -21,6 +31,8 @@ void warm(const RefineModel& model, const RefineFrame& frame, RefineState& state
             (item < edges ? state.edgeHeat[item] : state.interiorHeat[item - edges]) |= heat;
         }
     }
+    keepRims(state.edgeFate, state.edgeHeat);
+    keepRims(state.interiorFate, state.interiorHeat);
 }
 
 glm::vec3 cornerPlace(const RefineModel& model, uint32_t slot) {
@@ -102,11 +114,14 @@ float leastBias(const RefineModel& model, RefineState& state, uint32_t budget) {
     return float(gpu::kRefineBiases - 1) * gpu::kRefineBiasStep;
 }
 
-void move(const RefineSettings& settings, const RefineFrame& frame, float want,
-          gpu::RefineLevel& level) {
+// Whether it is on its way, or was warm a moment ago.
+uint8_t move(const RefineSettings& settings, const RefineFrame& frame, float want,
+             gpu::RefineLevel& level) {
+    const float before = level.level;
     gpu::refineMove(level, want, frame.now, frame.dt, settings.morph ? settings.rate : 1e9f,
                     settings.grace);
     if (!settings.morph) level.level = float(gpu::refineTop(level.level));
+    return level.level != before || frame.now - level.lastHot < settings.cool ? 1 : 0;
 }
 
 // Levels of all triangles from those of edges and interiors; the triangles they make.
@@ -115,8 +130,10 @@ uint64_t packAll(const RefineModel& model, RefineState& state) {
         state.edgeTops[e] = uint8_t(gpu::refineTop(state.edges[e].level));
     uint64_t sum = 0;
     for (uint32_t i = 0; i < model.triangles.size(); ++i) {
+        const uint32_t before = state.levels[i];
         state.levels[i] =
             packed(state, model.triangles[i], gpu::refineTop(state.interiors[i].level));
+        if (state.levels[i] != before) state.interiorMoving[i] = 1;
         sum += gpu::refineCount(state.levels[i]);
     }
     return sum;
@@ -133,6 +150,10 @@ RefineState::RefineState(const RefineModel& model, std::pmr::memory_resource* me
       vertices(model.slots.size(), memory),
       edgeHeat(model.edges.size(), 0, memory),
       interiorHeat(model.triangles.size(), 0, memory),
+      edgeFate(model.edges.size(), 0, memory),
+      interiorFate(model.triangles.size(), 0, memory),
+      edgeMoving(model.edges.size(), 0, memory),
+      interiorMoving(model.triangles.size(), 0, memory),
       edgeTops(model.edges.size(), 0, memory),
       emitted(memory),
       emittedStarts(memory),
@@ -169,10 +190,9 @@ void refineLevels(const RefineModel& model, const RefineSettings& settings,
     aim(model, settings, frame, state);
     state.bias = leastBias(model, state, settings.budget);
     for (uint32_t e = 0; e < state.edges.size(); ++e)
-        if (!asleep(state.edges[e], state.edgeHeat[e]))
-            move(settings, frame, edgeWant(state, e, state.bias), state.edges[e]);
+        state.edgeMoving[e] = move(settings, frame, edgeWant(state, e, state.bias), state.edges[e]);
     for (uint32_t i = 0; i < state.interiors.size(); ++i)
-        if (!asleep(state.interiors[i], state.interiorHeat[i]))
+        state.interiorMoving[i] =
             move(settings, frame, interiorWant(state, i, state.bias), state.interiors[i]);
     state.unmorphed = packAll(model, state) > settings.capacity;
     if (!state.unmorphed) return;

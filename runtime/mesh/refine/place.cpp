@@ -18,6 +18,8 @@ class Placer {
         for (uint32_t s = 0; s < model_.cornerCount; ++s) evaluate(s);
         for (uint32_t e = 0; e < model_.edges.size(); ++e) edge(e);
         for (uint32_t i = 0; i < model_.triangles.size(); ++i) interior(i);
+        for (uint32_t e = 0; e < model_.edges.size(); ++e) edgeFate(e);
+        for (uint32_t i = 0; i < model_.triangles.size(); ++i) interiorFate(i);
         state_.placedAt = frame_.now;
     }
 
@@ -79,6 +81,30 @@ class Placer {
         for (uint32_t i = 1; i < steps; i += 2)
             morph(gpu::refineEdgeSlot(edge, i, l), at(gpu::refineEdgeSlot(edge, i - 1, l)),
                   at(gpu::refineEdgeSlot(edge, i + 1, l)), age);
+    }
+
+    // What a vertex that is burnt through at some time says of its edge or interior.
+    [[nodiscard]] uint8_t fateOf(uint32_t s) const {
+        const float hole = state_.vertices[s].hole;
+        if (hole <= frame_.now) return gpu::kRefineGone;
+        return hole < gpu::kRefineNever ? gpu::kRefineStays | gpu::kRefineGoing : gpu::kRefineStays;
+    }
+    void edgeFate(uint32_t e) {
+        if (state_.edgeMoving[e] == 0) return;
+        const gpu::RefineEdge& edge = model_.edges[e];
+        const uint32_t l = gpu::refineTop(state_.edges[e].level);
+        for (uint32_t i = 0; i <= 1u << l; ++i)
+            state_.edgeFate[e] |= fateOf(gpu::refineEdgeSlot(edge, i, l));
+    }
+    void interiorFate(uint32_t i) {
+        const gpu::RefineTriangle& t = model_.triangles[i];
+        uint8_t moving = state_.interiorMoving[i];
+        for (const uint32_t e : t.edge) moving |= state_.edgeMoving[e];
+        const uint32_t m = gpu::refineInterior(state_.levels[i]), n = 1u << m;
+        if (moving == 0 || m < 2) return;
+        for (uint32_t c2 = 1; c2 + 1 < n; ++c2)
+            for (uint32_t c1 = 1; c1 + c2 < n; ++c1)
+                state_.interiorFate[i] |= fateOf(gpu::refineInnerSlot(t, c1, c2, m));
     }
 
     // A point of a triangle's lattice, or where that place is on the edge's polyline.

@@ -1,0 +1,127 @@
+// Holes and open borders of refined triangles: what is kept of a small triangle, the walls along its
+// rim and along the mesh's open edges, and the inner skin.
+// GLSL too, and laid out by hand. Included by shared/refine.h, after its records.
+// clang-format off
+#ifndef FW_SHARED_REFINE_CUT_H
+#define FW_SHARED_REFINE_CUT_H
+FW_SHARED_BEGIN
+
+// ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon in front of
+// the line between.
+
+// s to the hole.
+FW_SHARED_FN float refineField(float hole, float now) {
+    float f = hole - now;
+    return f < kRefineUnlit ? f : kRefineUnlit;
+}
+// Share of the way from the low slot (fa) to the high one (fb), one of them gone: a function of the
+// small edge, the same for all who cut it, and never on a vertex.
+FW_SHARED_FN float refineCutAt(float fa, float fb) {
+    float t = fa / (fa - fb);
+    t = t > 1.0f / 64.0f ? t : 1.0f / 64.0f;
+    return t < 63.0f / 64.0f ? t : 63.0f / 64.0f;
+}
+FW_SHARED_FN vec3 refineCutPoint(vec3 low, vec3 high, float fa, float fb) {
+    FW_PRECISE vec3 p = low + (high - low) * refineCutAt(fa, fb);
+    return p;
+}
+
+struct RefineCut {   // a small triangle's kept polygon
+    uint points;     // 0, 3 or 4
+    uint corner[4];  // k: corner k; 4 + k: cut of the side from k
+    uint rim;        // polygon side that runs along the hole; 4: none
+    uint open;       // bit per polygon side: on an open edge of the mesh
+};
+// solid, open: bit per corner, bit per side.
+FW_SHARED_FN RefineCut refineCut(uint solid, uint open) {
+    RefineCut cut;
+    cut.points = 0u;
+    cut.rim = 4u;
+    cut.open = 0u;
+    for (uint k = 0u; k < 3u; ++k) {
+        bool here = ((solid >> k) & 1u) != 0u;
+        bool there = ((solid >> refineNext(k)) & 1u) != 0u;
+        uint side = (open >> k) & 1u;
+        if (here) {
+            cut.open |= side << cut.points;
+            cut.corner[cut.points] = k;
+            cut.points += 1u;
+        }
+        if (here != there) {
+            if (here) cut.rim = cut.points;
+            else cut.open |= side << cut.points;
+            cut.corner[cut.points] = 4u + k;
+            cut.points += 1u;
+        }
+    }
+    return cut;
+}
+FW_SHARED_FN uint refineCutWalls(FW_IN(RefineCut) cut) {
+    uint o = cut.open;
+    return (cut.rim < 4u ? 1u : 0u) + (o & 1u) + ((o >> 1u) & 1u) + ((o >> 2u) & 1u) + (o >> 3u);
+}
+// Triangles: outer skin, inner skin, two for every wall.
+FW_SHARED_FN uint refineCutCount(FW_IN(RefineCut) cut, bool inner) {
+    if (cut.points == 0u) return 0u;
+    uint fan = cut.points - 2u;
+    return inner ? 2u * fan + 2u * refineCutWalls(cut) : fan;
+}
+// What is drawn of a small triangle beside the list of indices; the k-th is refineCutTriangle's of
+// refineCutDrawn. A whole one is in that list, and has walls only; sheets have no inner skin.
+FW_SHARED_FN uint refineCutDrawnCount(FW_IN(RefineCut) cut, bool inner, bool whole) {
+    if (cut.points == 0u) return 0u;
+    uint fan = cut.points - 2u;
+    return (whole ? 0u : inner ? 2u * fan : fan) + 2u * refineCutWalls(cut);
+}
+FW_SHARED_FN uint refineCutDrawn(FW_IN(RefineCut) cut, uint k, bool inner, bool whole) {
+    uint fan = cut.points - 2u;
+    if (whole) return k + 2u * fan;
+    return inner || k < fan ? k : k + fan;
+}
+// Room for cut triangles before those of a material whose first triangle of `triangles` is `first`.
+FW_SHARED_FN uint refineCutShare(uint room, uint first, uint triangles) {
+    return room * (first < triangles ? first : triangles) / triangles;
+}
+FW_SHARED_CONST uint kRefineCutMost = 1u << 14u;  // cut triangles of an object
+// Last word of a cut vertex, a float: s to the hole, 0 at it; of walls instead:
+FW_SHARED_CONST float kRefineCutRim = -1.0f;   // at the outer skin
+FW_SHARED_CONST float kRefineCutDeep = -2.0f;  // at the inner skin
+FW_SHARED_CONST float kRefineBorder = -3.0f;   // along an open edge, at the outer skin
+FW_SHARED_CONST float kRefineBorderDeep = -4.0f;
+// Polygon side that the k-th triangle, of a wall, stands on.
+FW_SHARED_FN uint refineCutWallSide(FW_IN(RefineCut) cut, uint k) {
+    uint wanted = (k - 2u * (cut.points - 2u)) >> 1u;
+    uint x = 0u;
+    for (uint i = 0u; i < cut.points; ++i) {
+        bool wall = i == cut.rim || ((cut.open >> i) & 1u) != 0u;
+        if (!wall) continue;
+        if (wanted == 0u) {
+            x = i;
+            break;
+        }
+        wanted -= 1u;
+    }
+    return x;
+}
+// Polygon points of its k-th triangle; + 4: on the inner skin.
+FW_SHARED_FN uvec3 refineCutTriangle(FW_IN(RefineCut) cut, uint k) {
+    uint fan = cut.points - 2u;
+    if (k < fan) return uvec3(0u, k + 1u, k + 2u);
+    if (k < 2u * fan) return uvec3(4u, k - fan + 6u, k - fan + 5u);
+    uint x = refineCutWallSide(cut, k);
+    uint y = x + 1u < cut.points ? x + 1u : 0u;
+    return (k & 1u) == 0u ? uvec3(y, x, x + 4u) : uvec3(y, x + 4u, y + 4u);
+}
+// A polygon point of a small triangle with these slots.
+FW_SHARED_FN RefineCorner refineCutCorner(FW_IN(RefineCut) cut, uint point, uvec3 slots) {
+    RefineCorner c;
+    uint at = cut.corner[point & 3u];
+    uint a = slots[at & 3u];
+    uint b = at < 4u ? a : slots[refineNext(at & 3u)];
+    c.low = a < b ? a : b;
+    c.high = (a < b ? b : a) | (point >= 4u ? kRefineInside : 0u);
+    return c;
+}
+
+FW_SHARED_END
+#endif
