@@ -1,5 +1,6 @@
-// A 2D particle field: what one cell gives to its eight neighbours, and what it becomes of what they
-// give. Integers only, so that no particle is lost or made. It loads nothing: callers hand over cells.
+// A 2D particle field: what one cell gives to its eight neighbours, and what it becomes of what
+// they give. Integers only, so that no particle is lost or made. It loads nothing: callers hand
+// over cells.
 //
 // One cell side and one step are the units: a speed of 1 is a cell per step. Directions are a ring
 // as the front's: counter-clockwise from +x, odd ones diagonal; +y is up.

@@ -1,6 +1,6 @@
-// Patterns of refined triangles: which triangle is the k-th of a pattern, and which vertex stands at
-// its corners, whatever the levels around it.
-// GLSL too, and laid out by hand. Included by shared/refine.h, after its records.
+// Patterns of refined triangles: which triangle is the k-th of a pattern, and which vertex stands
+// at its corners, whatever the levels around it. GLSL too, and laid out by hand. Included by
+// shared/refine.h, after its records.
 // clang-format off
 #ifndef FW_SHARED_REFINE_PATTERN_H
 #define FW_SHARED_REFINE_PATTERN_H

@@ -130,10 +130,10 @@ std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& arp,
     return drawn;
 }
 
-// The published rules, run serially on one triangle while a fire grows over it, and what we draw: the
-// same finest triangles at every radius, and at the end the same picture, of finest triangles
+// The published rules, run serially on one triangle while a fire grows over it, and what we draw:
+// the same finest triangles at every radius, and at the end the same picture, of finest triangles
 // alone.
-TEST(RefinePublished, StatusMachineEndsWhereTheSeedsSerialRulesDo) {
+TEST(RefinePublished, StatusMachineEndsWhereTheSerialRulesDo) {
     auto* memory = std::pmr::new_delete_resource();
     const auto arp = makeArpTemplate(4, memory);
     std::pmr::vector<int8_t> seeds(arp.size(), kArpInitial), ours = seeds, parallel = seeds;
