@@ -19,7 +19,7 @@ FW_SHARED_CONST uint kMaxVolumeFlames = 256u;   // of a world, in a frame
 FW_SHARED_CONST uint kFirePresets = 9u;         // first layers of the profiles
 FW_SHARED_CONST uint kMaxFireProfiles = 23u;    // the host's, behind them
 FW_SHARED_CONST uint kProfileBytes = 32768u;    // of a layer: 64 x 128 pairs of halfs
-FW_SHARED_CONST uint kVolumeSlabs = 4u;         // of a flame where the host's depth is only tested
+FW_SHARED_CONST uint kVolumeSlabs = 6u;         // of a flame where the host's depth is only tested
 FW_SHARED_CONST float kVolumeWhite = 1.5f;      // of soot of luminance 1, in the host's units
 
 FW_SHARED_CONST uint kVolumeFlameBytes = 1792u; // a multiple of 256: each is a uniform block of its own

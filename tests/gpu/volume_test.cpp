@@ -290,7 +290,7 @@ TEST_F(Volume, EndsAtTheScene) {
     std::printf("           difference %.4f; %.4f whole, %.4f cut, %.4f in slabs\n",
                 double(difference), double(whole), double(meanOf(wanted).x), double(cut));
     EXPECT_LT(cut, 0.9f * whole);
-    EXPECT_NEAR(cut / meanOf(wanted).x, 1.0f, 0.3f);  // to half a slab of four
+    EXPECT_NEAR(cut / meanOf(wanted).x, 1.0f, 0.3f);  // to half a slab of the flame
 }
 
 TEST_F(Volume, TheEyeMayBeInside) {
