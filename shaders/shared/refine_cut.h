@@ -1,9 +1,10 @@
 // Holes and open borders of refined triangles: what is kept of a small triangle, the walls along
 // its rim and along the mesh's open edges, and the inner skin. GLSL too, and laid out by hand.
-// Included by shared/refine.h, after its records.
 // clang-format off
 #ifndef FW_SHARED_REFINE_CUT_H
 #define FW_SHARED_REFINE_CUT_H
+#include "shared/refine_records.h"
+
 FW_SHARED_BEGIN
 
 // ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon in front of

@@ -1,9 +1,10 @@
 // Patterns of refined triangles: which triangle is the k-th of a pattern, and which vertex stands
-// at its corners, whatever the levels around it. GLSL too, and laid out by hand. Included by
-// shared/refine.h, after its records.
+// at its corners, whatever the levels around it. GLSL too, and laid out by hand.
 // clang-format off
 #ifndef FW_SHARED_REFINE_PATTERN_H
 #define FW_SHARED_REFINE_PATTERN_H
+#include "shared/refine_records.h"
+
 FW_SHARED_BEGIN
 
 // ---- patterns. A code is a pattern's vertex: 0x8000 | side << 8 | i, i in 0..2^l from the side's

@@ -1,0 +1,209 @@
+// Records of adaptive refinement, and the levels of a triangle packed in one word: what the other
+// refine headers are about. A coarse triangle has a level per edge (0..5: 2^l segments) and one of
+// its interior (m). Edge levels are shared by all owners, so no crack can open; the interior is a
+// lattice of 2^m steps, and a strip joins each edge to it. m < 2: no lattice, a small table.
+// GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_REFINE_RECORDS_H
+#define FW_SHARED_REFINE_RECORDS_H
+#include "shared/front.h"
+
+#ifdef __cplusplus
+#define FW_PRECISE
+#define FW_CONSTANT_FN constexpr
+#else
+#define FW_PRECISE precise
+#define FW_CONSTANT_FN
+#endif
+
+FW_SHARED_BEGIN
+
+#ifdef __cplusplus
+using std::log2;
+#endif
+
+FW_SHARED_CONST uint kRefineDepth = 5u;
+// The table of u16 tokens: strips by (m, edge level), lattices by m, then eight rows of four for m < 2.
+FW_SHARED_CONST uint kRefineInner = 540u;
+FW_SHARED_CONST uint kRefineHand = 1576u;
+FW_SHARED_CONST uint kRefineTableSize = 1608u;
+FW_SHARED_CONST float kRefineNever = 1e30f;   // s: not lit, or no hole to come
+FW_SHARED_CONST float kRefineUnlit = 1000.0f; // s to the hole of a vertex that has none
+FW_SHARED_CONST uint kRefineInside = 0x80000000u;  // in RefineCorner::high: of the inner skin
+FW_SHARED_CONST uint kRefineOpposed = 0xFFFFFFFFu; // RefineSlot::opposite: none
+// Heat of a tile, an edge or an interior.
+FW_SHARED_CONST uint kRefineHot = 1u;      // the front is near, or it burns
+FW_SHARED_CONST uint kRefineBurning = 2u;  // something of it burns
+// What its vertices say when they are placed.
+FW_SHARED_CONST uint kRefineGone = 4u;     // some are burnt through; kept
+FW_SHARED_CONST uint kRefineStays = 8u;    // some are not
+FW_SHARED_CONST uint kRefineGoing = 16u;   // some of these are lit
+
+struct RefineTriangle {  // a coarse triangle; corners and sides counter-clockwise, side e = e, e + 1
+    uint edge[3];
+    uint flags;          // bit e: side e runs from the edge's high end; 4 bits each from 4, 8, 12:
+                         // deepest level of the sides; from 16: of the interior
+    uint corner[3];      // draw vertices
+    uint slot;           // first of the interior; its draw vertices have the same numbers
+    uint side[3];        // draw vertex of the first point of each side's edge, low end first
+    uint source;         // triangle of the burn domain
+};
+FW_SHARED_SIZE(RefineTriangle, 48)
+
+struct RefineEdge {
+    uint low;            // slots of the ends, low < high
+    uint high;
+    uint slot;           // first of its 2^depth - 1 inner points, from the low end
+    uint flags;          // deepest level; 16: open (one owner)
+};
+FW_SHARED_SIZE(RefineEdge, 16)
+
+struct RefineSlot {      // a vertex at rest
+    float x, y, z;       // m, object space
+    uint offset;         // signed 11:11:10 of [-2, 2]: moving by d * offset moves every face by d
+    uint reach;          // low: farthest recession, 10 um; high: burn-through time, 1/4096 of a wall's
+    uint texel;          // 24 bits: lower left of four; 8 bits: material
+    uint weights;        // 4 x 8 bits: of texel, + 1, + width, + width + 1
+    uint opposite;       // 24 bits: lower left texel of the wall behind; 4 + 4 bits: place between
+};                       // texels, 1/16; or kRefineOpposed
+FW_SHARED_SIZE(RefineSlot, 32)
+
+struct RefineVertex {    // a vertex now
+    float x, y, z;       // m, object space
+    float hole;          // s since the object's epoch: burnt through; kRefineNever: not known
+};
+FW_SHARED_SIZE(RefineVertex, 16)
+
+struct RefineDraw {      // what an index names: a slot seen from one chart
+    uint slot;
+    uint triangle;       // of the burn domain; all attributes are mixed from its corners
+    float weight1;       // of corner 1; corner 0 has the rest
+    float weight2;
+};
+FW_SHARED_SIZE(RefineDraw, 16)
+
+struct RefineLevel {     // of an edge or an interior; s since the object's epoch
+    float level;         // 2^ceil segments; the fraction is how far the newest points have come
+    float target;        // before the budget
+    float lastHot;
+    float burningSince;
+};
+FW_SHARED_SIZE(RefineLevel, 16)
+
+struct RefineCorner {    // of a triangle of the cut shell
+    uint low;            // slot
+    uint high;           // the same, or a cut point of the small edge low < high; kRefineInside
+};
+
+// An object in the frame's passes, rewritten in each frame that refines it: see isDue. Bases are in records of
+// the planes; mesh...: what objects share.
+struct RefineObject {
+    uint items;          // edges, then interiors
+    uint triangles;
+    uint vertices;
+    uint indices;        // of the output
+    uint meshTriangles;
+    uint meshEdges;
+    uint meshSlots;
+    uint meshWords;      // per tile and one: where its items start; then the items
+    uint edgeCount;
+    uint triangleCount;  // sorted by material
+    uint cornerCount;
+    uint textureWidth;   // texels
+    uint stateBase;      // as BurnObject
+    uint epochTick;      // s count from here
+    uint flags;          // kRefineIs...
+    uint ordinal;        // in the frame's list of objects
+    uint meshDraws;      // first draw vertex
+    uint tileCount;
+    float pixelsPerEdge;
+    float now;           // s since the epoch
+    vec4 eye;            // m, object space; w: pixels of 1 m at 1 m, 0: no limit by size
+    vec4 burnSeconds0;   // per material: a wall burnt through; negative: it never opens
+    vec4 burnSeconds1;
+    uvec4 materialEnd0;  // per material: its last triangle + 1
+    uvec4 materialEnd1;
+    uint cuts;           // first of its cut vertices
+    uint cutTriangles;   // room for; shared out to materials by their triangles
+    float dt;            // s since it was last refined
+    uint inner;          // from a vertex to its place on the inner skin; 0: a sheet, it has none
+    uint reserved2; uint reserved3; uint reserved4; uint reserved5;
+};
+FW_SHARED_SIZE(RefineObject, 192)
+FW_SHARED_CONST uint kRefineIsActive = 1u;
+FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing of it is initialised yet
+FW_SHARED_CONST uint kRefineIsCut = 4u;    // near: holes are cut; else fragments are discarded
+FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all its triangles are emitted again
+FW_SHARED_CONST uint kRefineIsCounted = 16u;  // shares the budget, whether it is its turn or not
+
+// A word of the heat plane: what the lists of tiles say for the next frame; the same for this one; and
+// whether this frame places the item anew.
+FW_SHARED_CONST uint kRefineHeatShift = 8u;
+FW_SHARED_CONST uint kRefineMoving = 0x10000u;
+
+// The work plane: five indirect dispatches, the bias, then lists of two words (object slot, number).
+FW_SHARED_CONST uint kRefineWorkEmit = 0u;    // x, y, z, jobs: 64 output triangles each
+FW_SHARED_CONST uint kRefineWorkPlace = 4u;   // x, y, z, jobs: interiors, two a group
+FW_SHARED_CONST uint kRefineWorkCut = 8u;     // x, y, z, jobs: a triangle with a hole each
+FW_SHARED_CONST uint kRefineWorkEdges = 12u;  // x, y, z, jobs: edges that move, 64 a group
+FW_SHARED_CONST uint kRefineWorkMorph = 16u;  // as place: those with points on their way
+FW_SHARED_CONST uint kRefineWorkBias = 20u;   // the least, in steps, with which all fits the budget
+FW_SHARED_CONST uint kRefineWorkLists = 24u;
+// After an object's triangles in the plane of levels: what each bias comes to, two a record, as of its
+// last turn.
+FW_SHARED_CONST uint kRefineSums = 8u;
+
+struct RefinePush {
+    uint phase;
+    uint nowTick;
+    uint budget;      // triangles; 0: all fit
+    uint row;         // heat: counters row of the list
+    uint parity;      // heat: of the list; + 2: it is the burn list
+    uint full;        // 1: everything at its deepest and moving, for comparison
+    uint reserved;
+    float recede;     // share of a slot's reach, below 1
+    uint edgeGroups;  // 64 edges each; lists follow each other in this order
+    uint triangleGroups;
+    uint cornerGroups;
+    uint objects;     // (object slot, triangles that it emits; 0: none)
+    uint emitJobs;    // first words of the lists that the device writes
+    uint placeJobs;   // half way to cutJobs: of the morph
+    uint objectEnd;   // object slots with a record
+    uint cutJobs;     // as far behind it: edges
+};
+FW_SHARED_SIZE(RefinePush, 64)
+FW_SHARED_CONST float kRefineRate = 4.0f;    // levels per s, once a surface has moved
+FW_SHARED_CONST float kRefineCool = 1.0f;    // s that a level outlives its heat
+FW_SHARED_CONST float kRefineGrace = 0.25f;  // s of burning during which a surface counts as flat
+
+// ---- levels of a triangle in one word: sides at bits 0, 4, 8, interior at 12
+
+FW_SHARED_FN uint refinePack(uint l0, uint l1, uint l2, uint m) {
+    return l0 | (l1 << 4u) | (l2 << 8u) | (m << 12u);
+}
+FW_SHARED_FN uint refineSide(uint levels, uint e) { return (levels >> (4u * e)) & 15u; }
+FW_SHARED_FN uint refineInterior(uint levels) { return (levels >> 12u) & 15u; }
+FW_SHARED_FN uint refineSideDepth(uint flags, uint e) { return (flags >> (4u + 4u * e)) & 15u; }
+FW_SHARED_FN uint refineInteriorDepth(uint flags) { return (flags >> 16u) & 15u; }
+FW_SHARED_FN bool refineFlipped(uint flags, uint e) { return ((flags >> e) & 1u) != 0u; }
+FW_SHARED_FN uint refineNext(uint e) { return e == 2u ? 0u : e + 1u; }
+FW_SHARED_FN uint refineBefore(uint e) { return e == 0u ? 2u : e - 1u; }
+
+// The interior level nearest to m from above that these sides can be joined to.
+FW_SHARED_FN uint refineFit(uint l0, uint l1, uint l2, uint m) {
+    uint most = l0 > l1 ? l0 : l1;
+    most = most > l2 ? most : l2;
+    if (most >= 2u) return m > 2u ? m : 2u;
+    return m >= 2u ? m : most;
+}
+
+FW_SHARED_FN uint refineCount(uint levels) {
+    uint m = refineInterior(levels);
+    uint l0 = refineSide(levels, 0u), l1 = refineSide(levels, 1u), l2 = refineSide(levels, 2u);
+    if (m < 2u) return 1u + l0 + l1 + l2;
+    uint s = (1u << m) - 3u;
+    return s * s + 3u * s + (1u << l0) + (1u << l1) + (1u << l2);
+}
+
+FW_SHARED_END
+#endif
