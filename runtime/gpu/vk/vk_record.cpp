@@ -287,9 +287,10 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     if (count) recordSupport(recorder, plan.endTick, ticks, first, count);
 }
 
-// Soot above this frame's flames: a part of all tiles each frame, in turn.
+// Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
+// than hides where that part ends.
 void recordSooting(VkBackend::State& s, FrameRecorder& recorder) {
-    constexpr uint32_t kMostTiles = 1024;
+    constexpr uint32_t kMostTiles = 4096, kMostTicksOfAPart = kTicksPerSecond / 64;
     const uint32_t tiles = s.planes.capacity(kSpaceObjectTiles);
     const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
     const uint32_t first = s.sootFirst < tiles ? s.sootFirst : 0;
@@ -298,7 +299,8 @@ void recordSooting(VkBackend::State& s, FrameRecorder& recorder) {
     s.sootTick = s.open.endTick;
     if (count == 0 || ticks == 0) return;
     s.sootFirst = first + count;
-    recordSoot(recorder, ticks * parts, first, count);
+    recordSoot(recorder, parts > 1 ? std::min(ticks * parts, kMostTicksOfAPart) : ticks, first,
+               count);
 }
 
 }  // namespace
