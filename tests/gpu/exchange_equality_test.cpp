@@ -169,7 +169,7 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
     both.cpu.setSwitches(FW_DEBUG_SHUFFLE);
     ignite(0, FW_IGNITE, 0);
     uint32_t steps = 0, mostCaught = 0;
-    for (uint32_t frame = 0; frame < rounds(700u, 200u); ++frame) {
+    for (uint32_t frame = 0; frame < rounds(700u, 300u); ++frame) {
         const uint32_t count = 1 + random() % 8;
         if (random() % 12 == 0) {
             const size_t i = random() % both.ids.size();

@@ -427,7 +427,7 @@ TEST_F(RefineEquality, NothingPopsAsTheEyeComesNearer) {
     scene.light({0.02, 0.45, 0.37}, 0.02);
     const float now = scene.timeAt(0.4);
     const std::vector<Probe> probes = probesOn(scene.model, 15);
-    constexpr int kDolly = rounds(90, 45);  // the later part passes from level 4 to 5
+    constexpr int kDolly = 90;
     double worst[2] = {};
     for (const bool morph : {true, false}) {
         RefinePlayer player(scene);
@@ -437,7 +437,7 @@ TEST_F(RefineEquality, NothingPopsAsTheEyeComesNearer) {
         std::vector<glm::vec3> before;
         scene.heat(now, player.tiles, true);
         for (int k = -8; k < kDolly; ++k) {  // levels rise to the first view before it counts
-            const float u = float(kDolly - std::max(k, 0)) / 90;
+            const float u = float(kDolly - std::max(k, 0)) / kDolly;
             player.views = {{{-1 - 11 * u, 0.6f, 0.5f}, 1000}};
             (void)frame(player, rig, now, k < 0 ? 0.5f : 1 / 60.0f);
             const auto vertices = rig.of<gpu::RefineVertex>(FW_BIND_REFINE_VERTICES);
