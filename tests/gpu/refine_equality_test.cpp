@@ -1,7 +1,6 @@
 // The refinement passes on a device against the library: integers equal, floats near.
 #include "support/refine_probes.h"
 #include "support/refine_rig.h"
-#include "support/sanitized.h"
 
 #include <array>
 #include <map>
