@@ -103,9 +103,11 @@ void gatherRow(uint slot, uint row) {
         uint i = at + uint(findLSB(passed));
         uint code = state[i];
         uint time = predict[i];
-        // What was put out keeps the look of the age it had: its gradient is that age.
+        // What was put out keeps the look of the age it had: its gradient is that age. What was
+        // not seen to burn before had none to speak of; 0 would say nothing is known.
         if (code == kWet) gradient[i] = kAheadFar | (gradient[i] & 0xFFu);
-        else if (hasTime(time)) gradient[i] = time <= push.now ? push.now - time : 0u;
+        else if (hasTime(time)) gradient[i] = time < push.now ? push.now - time : 1u;
+        else if (time == kNever || time == kWet) gradient[i] = 1u;
         predict[i] = code;
     }
     // About every fourth frame: water does not hurry.

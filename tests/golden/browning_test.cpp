@@ -85,5 +85,29 @@ TEST_F(Browning, WhatIsHeatedFromAfarTurnsBrown) {
     EXPECT_LT(glm::length(colorOf(farAfter) - colorOf(farFresh)), 2);
 }
 
+// A match that it is held to lights it, but it goes out before it was ever seen to burn: that
+// leaves a brown spot, charred here and there, not the embers of a minute's fire.
+TEST_F(Browning, WhatGoesOutAtOnceIsOnlyScorched) {
+    makeWorld(1, 64);
+    const FwBurnableMeshId lit = board(0);
+    fwWorld_Step(world_, 0);
+    const Picture fresh = look(0);
+    touch(FW_IGNITE, 0, 0.5f, 0.35f, 0.2f);
+    run(8, 0.25f);
+    const Picture scorched = look(0);
+    if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION"))
+        writePng(std::string(folder) + "/browning_match.png", scorched);
+    FwObjectState state{};
+    state.structSize = sizeof state;
+    ASSERT_EQ(fwWorld_GetObjectState(world_, lit, &state), FW_OK);
+    EXPECT_EQ(state.ignited, 0u) << "out again within a step";
+    const glm::dvec3 a = colorOf(fresh), b = colorOf(scorched);
+    std::printf("a board's colour before %.0f %.0f %.0f, after %.0f %.0f %.0f\n", a.r, a.g, a.b,
+                b.r, b.g, b.b);
+    EXPECT_LT(b.r, 0.9 * a.r) << "no bed of embers";
+    EXPECT_GT(b.g, 0.3 * a.g) << "brown, not char all over";
+    EXPECT_GT(b.r / b.b, 1.05 * a.r / a.b) << "warmer in hue";
+}
+
 }  // namespace
 }  // namespace fw::test

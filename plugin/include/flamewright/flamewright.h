@@ -696,7 +696,9 @@ typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU
     uint32_t structSize, reserved;
     uint64_t frameIndex;
     uint32_t texels;           /* that can burn */
-    uint32_t ignited, burning; /* texels that ever caught; that flame now */
+    uint32_t ignited;          /* texels alight or burnt out, the most ever: what goes out again within
+                                  the step that it was lit in does not count */
+    uint32_t burning;          /* texels that flame now */
     uint32_t frontTiles;       /* tiles on which the front can still move */
     float burntFraction;       /* ignited / texels */
     float burningArea;         /* m^2 */
