@@ -23,7 +23,7 @@ uint32_t ticksOf(float seconds) noexcept {
 float softness(uint32_t look) noexcept {
     switch (look) {
         case FW_MATERIAL_COTTON:
-            return 0.03f;
+            return 0.3f;
         case FW_MATERIAL_POLYESTER:
             return 0.05f;
         case FW_MATERIAL_LEATHER:
