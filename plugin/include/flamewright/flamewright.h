@@ -192,8 +192,8 @@ typedef struct FwWorldDef {
                                    a pair and a fire, and of each ember */
     uint32_t maxHops;           /* fire that came over this many jumps goes to no other object; 0: no limit */
     uint32_t maxBurningTiles;   /* while as many tiles of 8 x 8 texels burn, none more catches but by
-                                   fwWorld_Ignite. Checked before each substep: one substep's arrivals
-                                   may exceed it. 0: no limit */
+                                   fwWorld_Ignite. Checked before each substep, and at exchanges: what
+                                   arrives in between may exceed it. 0: no limit */
     float timeToLive;           /* s that the front of an object moves after the object caught; 0: no limit */
     /* How much of `from` a fire of its sees `to`, 0 to 1: asked when one of them moved, kept until then.
        Null: all. Called from the thread that steps the world; it must give the same answer to the same
