@@ -67,13 +67,7 @@ int run(const sample::Options& options, float seconds, bool day, float wind) {
         }
 
         FwView view = fwDefaultView();
-        sample::duskLight(view);
-        const float dim = day ? 2.0f : 0.012f;
-        for (int c = 0; c < 3; ++c) {
-            view.sunColor[c] *= dim;
-            view.ambientSky[c] *= dim;
-            view.ambientGround[c] *= dim;
-        }
+        sample::duskLight(view, day ? 2.0f : 0.012f);
         sample::OrbitCamera orbit;
         orbit.target = {0, 0.47f, 0};
         orbit.distance = 6.4f;

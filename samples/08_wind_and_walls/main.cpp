@@ -96,13 +96,7 @@ int run(const sample::Options& options, float seconds, bool day, float gust) {
         }
 
         FwView view = fwDefaultView();
-        sample::duskLight(view);
-        const float dim = day ? 1.6f : 0.02f;
-        for (int c = 0; c < 3; ++c) {
-            view.sunColor[c] *= dim;
-            view.ambientSky[c] *= dim;
-            view.ambientGround[c] *= dim;
-        }
+        sample::duskLight(view, day ? 1.6f : 0.02f);
         sample::OrbitCamera orbit;
         orbit.target = {0.35f, 0.55f, 0};
         orbit.distance = 6.6f;

@@ -117,14 +117,16 @@ void fillTriangle(std::vector<float>& field, uint32_t side, glm::vec2 a, glm::ve
 
 }  // namespace
 
-void duskLight(FwView& view) {
+void duskLight(FwView& view, float share) {
     const glm::vec3 sun = glm::normalize(glm::vec3(-0.5f, 0.75f, 0.65f));
     const float sunColor[3] = {66.0f, 57.2f, 46.2f};
     const float sky[3] = {13.0f, 16.0f, 22.0f}, ground[3] = {9.0f, 8.0f, 7.0f};
     std::memcpy(view.sunDirection, glm::value_ptr(sun), sizeof view.sunDirection);
-    std::memcpy(view.sunColor, sunColor, sizeof sunColor);
-    std::memcpy(view.ambientSky, sky, sizeof sky);
-    std::memcpy(view.ambientGround, ground, sizeof ground);
+    for (int c = 0; c < 3; ++c) {
+        view.sunColor[c] = share * sunColor[c];
+        view.ambientSky[c] = share * sky[c];
+        view.ambientGround[c] = share * ground[c];
+    }
     view.exposure = 1.0f / 40.0f;
     view.emissionScale = 40.0f;  // the light above is in cd/m^2
 }

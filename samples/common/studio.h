@@ -59,6 +59,6 @@ void showStudio(const StageFrame& frame, Stage& stage, Studio& studio, FireHost&
                 const FwView& view);
 
 // Evening light in a studio, the light in which fire reads best; fills all but the matrices.
-void duskLight(FwView& view);
+void duskLight(FwView& view, float share = 1.0f);  // share: of that light, for night and noon
 
 }  // namespace sample
