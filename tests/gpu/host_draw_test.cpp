@@ -251,7 +251,7 @@ TEST_F(HostDraw, KeptCompositesMakeNothing) {
         return takeCounts().total();
     };
     EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 2u) << "warming up";
-    EXPECT_EQ(made(target, 60, FW_COMPOSITE_KEEP), 0u);
+    EXPECT_EQ(made(target, 12, FW_COMPOSITE_KEEP), 0u);
     EXPECT_EQ(made(target, 4, 0), 4u) << "what was kept is let go";
     EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 2u);
     EXPECT_EQ(made(second, 6, FW_COMPOSITE_KEEP), 2u) << "another target has its own";

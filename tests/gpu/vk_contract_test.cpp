@@ -405,7 +405,7 @@ TEST_F(VkContract, BadHostsAreRefused) {
     EXPECT_EQ(memory.bytes(), 0u);
 }
 
-// Also run under the thread sanitizer: tests/run --tsan.
+// For the thread sanitizer as well: tests/run --tsan --suite gpu --filter VkThreads.
 using VkThreads = VkContract;
 
 TEST_F(VkThreads, NotReadyBeforePrepare) {

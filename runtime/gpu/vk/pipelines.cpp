@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string_view>
 
 namespace fw::gpu::vk {
 namespace {
@@ -231,6 +232,36 @@ VkShaderModule Pipelines::module(const char* shader) const {
     return module;
 }
 
+// A module per shader while a target's pipelines are made: `surface` has a pipeline per variant.
+class Pipelines::Modules {
+ public:
+    explicit Modules(const Pipelines& pipelines)
+        : pipelines_(pipelines), made_(pipelines.memory_) {}
+    ~Modules() {
+        const Device& device = pipelines_.device_;
+        for (const Made& made : made_)
+            device.table.DestroyShaderModule(device.handle, made.module,
+                                             device.allocationCallbacks);
+    }
+    Modules(const Modules&) = delete;
+    Modules& operator=(const Modules&) = delete;
+
+    VkShaderModule get(const char* shader) {
+        for (const Made& made : made_)
+            if (made.shader == shader) return made.module;
+        made_.push_back({shader, VK_NULL_HANDLE});
+        return made_.back().module = pipelines_.module(shader);
+    }
+
+ private:
+    struct Made {
+        std::string_view shader;
+        VkShaderModule module;
+    };
+    const Pipelines& pipelines_;
+    std::pmr::vector<Made> made_;
+};
+
 void Pipelines::prepare() {
     const std::lock_guard lock(mutex_);
     if (ready()) return;
@@ -295,7 +326,8 @@ VkRenderPass Pipelines::makePass(const TargetKey& key) const {
     return pass;
 }
 
-VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass renderPass) const {
+VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass renderPass,
+                               Modules& modules) const {
     const DrawPass& pass = *drawPasses()[number];
     const bool colors = pass.blend != Blend::depthAlone;  // else places are all it reads
     const struct {
@@ -406,24 +438,16 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     info.layout = draw_[number].layout;
     info.renderPass = renderPass;
     info.subpass = key.subpass;
-    const Table& vk = device_.table;
+    stages[0].module = modules.get(pass.vertexShader);
+    if (colors)
+        stages[1].module = modules.get(!key.samplesDepth()    ? pass.fragmentShader
+                                       : key.depthSamples > 1 ? pass.softShaderMultisampled
+                                                              : pass.softShader);
     VkPipeline pipeline = VK_NULL_HANDLE;
-    VkResult result = VK_SUCCESS;
-    stages[0].module = module(pass.vertexShader);
-    try {
-        if (colors)
-            stages[1].module = module(!key.samplesDepth()    ? pass.fragmentShader
-                                      : key.depthSamples > 1 ? pass.softShaderMultisampled
-                                                             : pass.softShader);
-        result = vk.CreateGraphicsPipelines(device_.handle, device_.pipelineCache, 1, &info,
-                                            device_.allocationCallbacks, &pipeline);
-        vk.DestroyShaderModule(device_.handle, stages[1].module, device_.allocationCallbacks);
-    } catch (...) {
-        vk.DestroyShaderModule(device_.handle, stages[0].module, device_.allocationCallbacks);
-        throw;
-    }
-    vk.DestroyShaderModule(device_.handle, stages[0].module, device_.allocationCallbacks);
-    device_.check(result, "vkCreateGraphicsPipelines");
+    device_.check(
+        device_.table.CreateGraphicsPipelines(device_.handle, device_.pipelineCache, 1, &info,
+                                              device_.allocationCallbacks, &pipeline),
+        "vkCreateGraphicsPipelines");
     device_.name(VK_OBJECT_TYPE_PIPELINE, uint64_t(pipeline), pass.name);
     return pipeline;
 }
@@ -436,10 +460,12 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
         if (key.composite) target->ownPass = makePass(key);
         const VkRenderPass renderPass = key.composite ? target->ownPass : def.renderPass;
         target->pipelines.reserve(drawPasses().size());
+        Modules modules(*this);
         for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
             const bool surface = drawPasses()[pass]->vertexInput == VertexInput::mesh;
             const bool drawn = surface ? key.surfaces : key.flames;
-            target->pipelines.push_back(drawn ? makeDraw(pass, key, renderPass) : VK_NULL_HANDLE);
+            target->pipelines.push_back(drawn ? makeDraw(pass, key, renderPass, modules)
+                                              : VK_NULL_HANDLE);
         }
         const std::lock_guard lock(mutex_);
         return targets_.create(std::move(target));

@@ -68,9 +68,11 @@ class Pipelines {
 
  private:
     void makeLayouts();
+    class Modules;  // of the pipelines that are made together
     VkShaderModule module(const char* shader) const;
     VkRenderPass makePass(const TargetKey& key) const;
-    VkPipeline makeDraw(size_t pass, const TargetKey& key, VkRenderPass renderPass) const;
+    VkPipeline makeDraw(size_t pass, const TargetKey& key, VkRenderPass renderPass,
+                        Modules& modules) const;
     void destroyTarget(Target& target) noexcept;
     void destroy() noexcept;
 
