@@ -86,7 +86,8 @@
 #define FW_BIND_ARP_GROUPS 77       // uvec2[]: object slot, first of 64 slots or listed triangles
 #define FW_BIND_ARP_LIST 78         // uint[]: drawn triangles of the published scheme, see arp.h
 #define FW_BIND_VOLUMES 90          // VolumeFlame[]: volumetric flames of the frame, see volume_draw.h
-#define FW_BIND_COUNT 91
+#define FW_BIND_VOLUME_RAYS 91      // uint[]: marched flames of a view, see VolumeMarch in volume_draw.h
+#define FW_BIND_COUNT 92
 
 FW_SHARED_BEGIN
 

@@ -42,6 +42,56 @@ struct VolumeDraw {
 };
 FW_SHARED_SIZE(VolumeDraw, 112)
 
+FW_SHARED_CONST uint kVolumeTile = 8u;          // cells a side; a workgroup marches a tile
+FW_SHARED_CONST uint kVolumeCellWords = 2u;     // of a cell in a slab: red and green, blue and alpha, as halfs
+
+// Push constants of the march. A cell is a few pixels wide; its ray goes through its middle: of cell x, y of the
+// view, as above with rays from these. A flame's cells are tiles from its origin on, row by row of all, slab by
+// slab. Its flags: a word per tile, five times a bit per slab: where it shows anything, and where in the
+// tile's first and last column, first and last row.
+struct VolumeMarch {
+    vec4 rayX;            // w: m, of a cell at a depth of 1 (perspective)
+    vec4 rayY;            // w: m, between samples
+    vec4 rayO;            // w: m along the view, where the nearest slab begins
+    float deep;           // as VolumeDraw's
+    uint slabs;
+    uint mostSteps;
+    uint intervals;
+    uint originX; uint originY; // cells of the view
+    uint tilesX;
+    uint cells;           // of a slab
+    uint flags;           // words of FW_BIND_VOLUME_RAYS: the first of this flame's flags
+    uint samples;         // and of its cells
+    uint encoding;        // FwOutputEncoding of who shows it
+    uint reserved;
+};
+FW_SHARED_SIZE(VolumeMarch, 96)
+
+// Push constants of who shows it.
+struct VolumeComposite {
+    vec4 place;           // x, y of the view: xy + zw * cells from the origin
+    vec4 clip;            // as VolumeDraw's
+    float front; float deep;
+    uint slabs;
+    uint tilesX; uint tilesY;
+    uint flags; uint samples;
+    uint reserved;
+};
+FW_SHARED_SIZE(VolumeComposite, 64)
+
+// [0, 1): where in its steps a cell's samples lie: each of four in a square has its own quarter.
+FW_SHARED_FN float volumePhase(uint x, uint y, float time) {
+    uint quarter = (2u * (x & 1u)) ^ (3u * (y & 1u));
+    float b = 0.125f + 0.25f * float(quarter) + 0.61803399f * floor(60.0f * time);
+    return b - floor(b);
+}
+
+// What the cell `step` (-1, 0, 1) from the nearest weighs, `off` cells [-0.5, 0.5] beyond its middle. However a
+// pixel lies, even and odd cells weigh the same: it sees all four quarters alike, and no grain.
+FW_SHARED_FN float volumeWeight(int step, float off) {
+    return step == 0 ? 0.5f : 0.25f + 0.5f * float(step) * off;
+}
+
 // How many samples a ray takes over so many metres.
 FW_SHARED_FN float volumeSteps(float metres, float spacing, uint most) {
     return clamp(floor(metres / spacing) + 1.0f, 4.0f, float(most));

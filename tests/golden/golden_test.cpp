@@ -284,9 +284,10 @@ class Golden : public GpuTest {
     }
 
     // Lets the world burn for `seconds`, then draws it. `soft`: surfaces in the host's pass, then
-    // flames over its images.
+    // flames over its images. Of several `draws` the last one counts: how the first went decides
+    // what is made ready for others.
     Picture burnAndDraw(FwWorld* world, float seconds, FwView view, bool reversed,
-                        bool soft = false) {
+                        bool soft = false, int draws = 1) {
         const FwTargetId target = makeTarget(reversed, soft ? FW_TARGET_NO_FLAMES : 0);
         const FwTargetId over = soft ? makeTarget(reversed, FW_TARGET_COMPOSITE) : FwTargetId{};
         int left = int(seconds + 0.5f);
@@ -299,7 +300,7 @@ class Golden : public GpuTest {
         for (int i = 0; i < 12; ++i) {  // what is predicted grows by a ring a frame
             const FwVulkanFrame frame = frames_->begin(0);
             EXPECT_EQ(fwWorld_RecordOutside(world, &frame, &view), FW_OK);
-            if (i == 11) drawInto(frame, world, target, over, view, reversed);
+            if (i >= 12 - draws) drawInto(frame, world, target, over, view, reversed);
             frames_->submit();
         }
         frames_->waitAll();
@@ -499,7 +500,8 @@ TEST_F(Golden, CampFireByNight) {
     FwVolumetricFireId id{};
     ASSERT_EQ(fwWorld_CreateVolumetricFire(world, &fire, &id), FW_OK);
     const FwView view = makeView({0.4f, 0.3f, 2.4f}, false, true);
-    EXPECT_TRUE(matchesGolden("camp_fire_night", burnAndDraw(world, 3, view, false), kTolerance));
+    EXPECT_TRUE(
+        matchesGolden("camp_fire_night", burnAndDraw(world, 3, view, false, false, 2), kTolerance));
 }
 
 TEST_F(Golden, ReversedDepthIsTheSamePicture) {

@@ -252,7 +252,9 @@ class EveryPass : public GpuTest {
         images.color.view = color_.view;
         images.depth.image = depth_.image;
         images.depth.view = depth_.view;
-        EXPECT_TRUE(rig_->backend.recordComposite(frame, target_, rig_->view, images));
+        FwView view = rig_->view;
+        if (index_ % 2) view.exposure *= 0.99f;  // another than that of the outside part
+        EXPECT_TRUE(rig_->backend.recordComposite(frame, target_, view, images));
     }
 
     // Unburnt, lit, blown at, soaked, dried, put out, lit all over, looked at tile by tile, and

@@ -66,6 +66,8 @@ class DrawRecorder {
     virtual void drawIndirect(uint32_t resource, uint64_t offset) = 0;
     // The slabs of volumetric flame `flame`.
     virtual void drawVolume(uint32_t flame, const VolumeDraw& push) = 0;
+    // So many vertices that the shader makes.
+    virtual void drawMade(uint32_t vertices, const void* push) = 0;
 
  protected:
     ~DrawRecorder() = default;
@@ -110,5 +112,27 @@ uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count);
 void volumeSlabs(const ViewParams& view, const vec4& low, const vec4& high, VolumeDraw& out);
 // Farthest first.
 void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items);
+
+struct MarchedVolume {  // one whose rays are marched before the drawing, and how it is shown
+    uint32_t flame = 0;
+    VolumeMarch march{};
+    VolumeComposite composite{};
+};
+extern const DrawPass kVolumeCompositePass;
+struct VolumeScreen {    // what the marched view is shown on
+    vec2 size{};         // px
+    uint32_t slabs = 1;  // of a flame
+    uint32_t encoding = 0;
+    bool operator==(const VolumeScreen&) const = default;
+};
+// Words of FW_BIND_VOLUME_RAYS that a screen is worth: flames over all of it and half as much
+// again.
+uint32_t volumeRayWords(const VolumeScreen& screen);
+// Cells of all `items`, as fine as `words` allow, in their order; `perPixel`: m per pixel at a
+// depth of 1. 0: they do not fit; else how many words the flags take.
+uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
+                    uint32_t words, std::span<MarchedVolume> out);
+// Farthest first.
+void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes);
 
 }  // namespace fw::gpu

@@ -13,36 +13,36 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,          &kEventsPass,     &kHeatPass,        &kWakePass,
-    &kSchedulePass,       &kGatherPass,     &kArrivalPass,     &kArrivalRimPass,
-    &kCommitPass,         &kPublishedPass,  &kReduceClearPass, &kReduceFrontPass,
-    &kReducePass,         &kFireCellsPass,  &kFireSourcesPass, &kReceiversPass,
-    &kExchangePass,       &kContactsPass,   &kEmbersPass,      &kPredictGatherPass,
-    &kPredictPass,        &kPredictRimPass, &kSupportPass,     &kProbePass,
-    &kLightsPass,         &kFlameQuadsPass, &kFlameSortPass,   &kRefineHeatPass,
-    &kRefineLevelsPass,   &kRefineScanPass, &kRefineEmitPass,  &kRefinePlacePass,
-    &kRecedePass,         &kBendPass,       &kSoftPass,        &kSpringsPass,
-    &kDrapePass,          &kSkinPass,       &kSootPass,        &kRefineCutPass,
-    &kRefinePublishedPass};
+    &kResetPass,           &kEventsPass,     &kHeatPass,        &kWakePass,
+    &kSchedulePass,        &kGatherPass,     &kArrivalPass,     &kArrivalRimPass,
+    &kCommitPass,          &kPublishedPass,  &kReduceClearPass, &kReduceFrontPass,
+    &kReducePass,          &kFireCellsPass,  &kFireSourcesPass, &kReceiversPass,
+    &kExchangePass,        &kContactsPass,   &kEmbersPass,      &kPredictGatherPass,
+    &kPredictPass,         &kPredictRimPass, &kSupportPass,     &kProbePass,
+    &kLightsPass,          &kFlameQuadsPass, &kFlameSortPass,   &kRefineHeatPass,
+    &kRefineLevelsPass,    &kRefineScanPass, &kRefineEmitPass,  &kRefinePlacePass,
+    &kRecedePass,          &kBendPass,       &kSoftPass,        &kSpringsPass,
+    &kDrapePass,           &kSkinPass,       &kSootPass,        &kRefineCutPass,
+    &kRefinePublishedPass, &kVolumeMarchPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],  &kSurfacePasses[3],
-    &kSurfacePasses[4],  &kSurfacePasses[5],  &kSurfacePasses[6],  &kSurfacePasses[7],
-    &kSurfacePasses[8],  &kSurfacePasses[9],  &kSurfacePasses[10], &kSurfacePasses[11],
-    &kSurfacePasses[12], &kSurfacePasses[13], &kSurfacePasses[14], &kSurfacePasses[15],
-    &kSurfacePasses[16], &kSurfacePasses[17], &kSurfacePasses[18], &kSurfacePasses[19],
-    &kSurfacePasses[20], &kSurfacePasses[21], &kSurfacePasses[22], &kSurfacePasses[23],
-    &kSurfacePasses[24], &kSurfacePasses[25], &kSurfacePasses[26], &kSurfacePasses[27],
-    &kSurfacePasses[28], &kSurfacePasses[29], &kSurfacePasses[30], &kSurfacePasses[31],
-    &kSurfacePasses[32], &kSurfacePasses[33], &kSurfacePasses[34], &kZPass,
-    &kFlamesPass,        &kVolumePass};
+    &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],   &kSurfacePasses[3],
+    &kSurfacePasses[4],  &kSurfacePasses[5],  &kSurfacePasses[6],   &kSurfacePasses[7],
+    &kSurfacePasses[8],  &kSurfacePasses[9],  &kSurfacePasses[10],  &kSurfacePasses[11],
+    &kSurfacePasses[12], &kSurfacePasses[13], &kSurfacePasses[14],  &kSurfacePasses[15],
+    &kSurfacePasses[16], &kSurfacePasses[17], &kSurfacePasses[18],  &kSurfacePasses[19],
+    &kSurfacePasses[20], &kSurfacePasses[21], &kSurfacePasses[22],  &kSurfacePasses[23],
+    &kSurfacePasses[24], &kSurfacePasses[25], &kSurfacePasses[26],  &kSurfacePasses[27],
+    &kSurfacePasses[28], &kSurfacePasses[29], &kSurfacePasses[30],  &kSurfacePasses[31],
+    &kSurfacePasses[32], &kSurfacePasses[33], &kSurfacePasses[34],  &kZPass,
+    &kFlamesPass,        &kVolumePass,        &kVolumeCompositePass};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
-static_assert(std::size(kDrawPasses) == kNumberOfZPass + 3);
+static_assert(std::size(kDrawPasses) == kNumberOfZPass + 4);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 3> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 4> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
@@ -50,6 +50,7 @@ constexpr auto kDrawSteps = [] {
     steps[kSurfaceVariants] = {kNumberOfZPass, true};
     steps[2 * kSurfaceVariants + 1] = {kNumberOfZPass + 1, false};
     steps[2 * kSurfaceVariants + 2] = {kNumberOfZPass + 2, false};
+    steps[2 * kSurfaceVariants + 3] = {kNumberOfZPass + 3, false};
     return steps;
 }();
 
@@ -257,14 +258,17 @@ void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList
         recordZPass(recorder, list.surfaces);
     else if (kDrawPasses[step.pass] == &kFlamesPass)
         recordFlames(recorder);
-    else
+    else if (kDrawPasses[step.pass] == &kVolumePass)
         recordVolume(recorder, list.volumes);
+    else
+        recordVolumeComposite(recorder, list.marched);
 }
 
 bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (step.pass < kSurfaceVariants) return surfaceDraws(step.pass, list.surfaces, step.afterZ);
     if (step.pass == kNumberOfZPass) return zPassDraws(list.surfaces);
-    return kDrawPasses[step.pass] == &kFlamesPass ? list.flames : !list.volumes.empty();
+    if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames;
+    return kDrawPasses[step.pass] == &kVolumePass ? !list.volumes.empty() : !list.marched.empty();
 }
 
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {
@@ -280,6 +284,12 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
     push.burnParity = lists.burnParity;
     recorder.dispatch(kFlameQuadsPass, &push, 16);
     recorder.dispatch(kFlameSortPass, nullptr, 1);
+}
+
+void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolume> volumes,
+                       uint32_t flagWords) {
+    recorder.fillZero(FW_BIND_VOLUME_RAYS, 0, uint64_t(flagWords) * 4);
+    recorder.dispatchVolumes(kVolumeMarchPass, volumes);
 }
 
 namespace {

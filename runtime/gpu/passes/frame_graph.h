@@ -21,7 +21,8 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kEmbersPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
-    kRecedePass, kBendPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass;
+    kRecedePass, kBendPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
+    kVolumeMarchPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -94,7 +95,8 @@ struct DrawList {  // what a view may show
     std::span<const DrawItem> surfaces;
     bool flames = false;  // something burns
     std::span<const VolumeItem> volumes;
-    bool turned = false;  // counter-clockwise triangles turn their backs to it
+    std::span<const MarchedVolume> marched;  // instead of them
+    bool turned = false;                     // counter-clockwise triangles turn their backs to it
 };
 // False: it would draw nothing, do not bind it.
 bool drawStepDraws(const DrawStep& step, const DrawList& list);
@@ -102,6 +104,10 @@ void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 // For the frame's view, after the lights: flames and their order.
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
+
+// For the frame's view: `flagWords` of flags, then all of the cells.
+void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolume> volumes,
+                       uint32_t flagWords);
 
 // After the steps. The work plane holds its lists, and zero before them. `lists`: see FrameLists.
 // `cuts`: some object is kRefineIsCut. Without `turn` what was listed last time is placed again.

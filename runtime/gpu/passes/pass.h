@@ -23,6 +23,7 @@ enum class Access : uint8_t {
     drawRead,     // storage buffer, vertex and fragment shaders
     drawUniform,  // uniform buffer, vertex and fragment shaders; at most 16 KiB
     drawEach,     // the same, of which a draw sees one record: FW_BIND_VOLUMES only
+    each,         // the same for a dispatch, uniform buffer, compute
     vertexInput,  // vertex or index data
     uniformView,  // the view's uniform block, dynamic offset: FW_BIND_VIEW only
     copyRead,
@@ -38,7 +39,8 @@ struct ComputePass {
     const char* name;    // label, timer
     const char* shader;  // in the embedded table: "arrival.comp"
     std::span<const Use> uses;
-    uint32_t pushBytes;  // <= 128
+    uint32_t pushBytes;     // <= 128
+    bool profiles = false;  // set 1, binding 0: the fire profiles (sampler2DArray)
 };
 
 enum class VertexInput : uint8_t {

@@ -24,7 +24,7 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
             continue;
         seen[use.resource] = true;
         const bool view = use.resource == FW_BIND_VIEW;
-        const bool each = use.access == Access::drawEach;
+        const bool each = use.access == Access::drawEach || use.access == Access::each;
         infos[count] = view ? VkDescriptorBufferInfo{views, 0, viewBytes}
                             : VkDescriptorBufferInfo{planes.buffer(use.resource).handle, 0,
                                                      each ? kVolumeFlameBytes : VK_WHOLE_SIZE};
@@ -53,9 +53,9 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     uint32_t storage = 0, uniform = 0, view = 0;
     const auto add = [&](std::span<const Use> uses) {
         for (const Use& use : uses)
-            ++(use.resource == FW_BIND_VIEW || use.access == Access::drawEach ? view
-               : use.access == Access::drawUniform                            ? uniform
-                                                                              : storage);
+            ++(use.resource == FW_BIND_VIEW || use.resource == FW_BIND_VOLUMES ? view
+               : use.access == Access::drawUniform                             ? uniform
+                                                                               : storage);
     };
     for (const ComputePass* pass : computePasses()) add(pass->uses);
     for (const DrawPass* pass : drawPasses()) add(pass->uses);

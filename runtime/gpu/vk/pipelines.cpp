@@ -156,7 +156,8 @@ void Pipelines::makeLayouts() {
     VkDescriptorSetLayoutBinding image{};
     image.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     image.descriptorCount = 1;
-    image.stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_VERTEX_BIT;
+    image.stageFlags =
+        VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
     auto info =
         typed<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     info.bindingCount = 1;
@@ -166,7 +167,7 @@ void Pipelines::makeLayouts() {
                   "vkCreateDescriptorSetLayout");
 
     const auto make = [&](PassObjects& objects, std::span<const Use> uses, uint32_t pushBytes,
-                          bool draws, bool soft) {
+                          bool draws, uint32_t setCount) {
         std::array<VkDescriptorSetLayoutBinding, FW_BIND_COUNT> bindings{};
         uint32_t count = 0;
         std::array<bool, FW_BIND_COUNT> seen{};
@@ -177,13 +178,15 @@ void Pipelines::makeLayouts() {
             const bool bound = use.access == Access::read || use.access == Access::write ||
                                use.access == Access::drawRead ||
                                use.access == Access::drawUniform ||
-                               use.access == Access::drawEach || use.access == Access::uniformView;
+                               use.access == Access::drawEach || use.access == Access::each ||
+                               use.access == Access::uniformView;
             if (!bound || seen[use.resource]) continue;
             seen[use.resource] = true;
             VkDescriptorSetLayoutBinding& binding = bindings[count++];
             binding.binding = use.resource;
             binding.descriptorType =
-                use.access == Access::uniformView || use.access == Access::drawEach
+                use.access == Access::uniformView || use.access == Access::drawEach ||
+                        use.access == Access::each
                     ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
                 : use.access == Access::drawUniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
                                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -202,7 +205,7 @@ void Pipelines::makeLayouts() {
                                                imageLayout_};
         auto layout =
             typed<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-        layout.setLayoutCount = soft ? 4 : draws ? 3 : 1;
+        layout.setLayoutCount = setCount;
         layout.pSetLayouts = sets;
         layout.pushConstantRangeCount = pushBytes ? 1 : 0;
         layout.pPushConstantRanges = &range;
@@ -212,11 +215,12 @@ void Pipelines::makeLayouts() {
     };
     compute_.resize(computePasses().size());
     for (size_t i = 0; i < compute_.size(); ++i)
-        make(compute_[i], computePasses()[i]->uses, computePasses()[i]->pushBytes, false, false);
+        make(compute_[i], computePasses()[i]->uses, computePasses()[i]->pushBytes, false,
+             computePasses()[i]->profiles ? 2 : 1);
     draw_.resize(drawPasses().size());
     for (size_t i = 0; i < draw_.size(); ++i)
         make(draw_[i], drawPasses()[i]->uses, drawPasses()[i]->pushBytes, true,
-             drawPasses()[i]->softShader != nullptr);
+             drawPasses()[i]->softShader ? 4 : 3);
 }
 
 VkShaderModule Pipelines::module(const char* shader) const {

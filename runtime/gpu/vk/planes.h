@@ -52,6 +52,7 @@ enum Space : uint32_t {
     kSpaceNeighbours,       // words, and
     kSpaceContacts,         // links between objects, as of the last update
     kSpaceVolumes,          // volumetric flames, per frame
+    kSpaceVolumeRays,       // words, of a view
     kSpaceFixed,            // one unit
     kSpaceCount,
 };

@@ -2,6 +2,7 @@
 
 #include "gpu/passes/frame_graph.h"
 
+#include <array>
 #include <cstddef>
 
 namespace fw::gpu::vk {
@@ -26,6 +27,29 @@ void FrameRecorder::bind(const ComputePass& pass, const void* push) {
 void FrameRecorder::dispatch(const ComputePass& pass, const void* push, uint32_t groups) {
     bind(pass, push);
     t_.device->table.CmdDispatch(t_.commands, groups, 1, 1);
+    t_.slot->timers.end(*t_.device, t_.commands);
+}
+
+void FrameRecorder::dispatchVolumes(const ComputePass& pass,
+                                    std::span<const MarchedVolume> volumes) {
+    const Table& vk = t_.device->table;
+    const size_t number = passNumber(pass);
+    const PassObjects& objects = t_.pipelines->compute(number);
+    t_.barriers->use(vk, t_.commands, pass.uses);
+    t_.slot->timers.begin(*t_.device, t_.commands, pass.name);
+    vk.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
+    vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 1, 1,
+                             &t_.profiles, 0, nullptr);
+    const VkDescriptorSet set = t_.sets->compute(number);
+    for (const MarchedVolume& one : volumes) {
+        // In the order of their bindings: the view, the flame.
+        const std::array<uint32_t, 2> offsets{t_.viewOffset, one.flame * kVolumeFlameBytes};
+        vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,
+                                 &set, uint32_t(offsets.size()), offsets.data());
+        vk.CmdPushConstants(t_.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                            sizeof one.march, &one.march);
+        vk.CmdDispatch(t_.commands, one.composite.tilesX * one.composite.tilesY, 1, 1);
+    }
     t_.slot->timers.end(*t_.device, t_.commands);
 }
 

@@ -1,6 +1,7 @@
 // One command buffer being recorded: dispatches, copies and draws by resource and pass, with their
 // barriers, timers and labels. Knows no order: that is the frame graph's.
 #pragma once
+#include "gpu/passes/draw.h"
 #include "gpu/vk/barriers.h"
 #include "gpu/vk/descriptors.h"
 #include "gpu/vk/frame_ring.h"
@@ -15,7 +16,8 @@ struct RecordTarget {  // what a recorder works on; all of it outlives the recor
     BarrierTracker* barriers = nullptr;
     FrameInFlight* slot = nullptr;
     VkCommandBuffer commands = VK_NULL_HANDLE;
-    uint32_t viewOffset = 0;  // of the passes that use the view
+    uint32_t viewOffset = 0;                    // of the passes that use the view
+    VkDescriptorSet profiles = VK_NULL_HANDLE;  // of those that use the fire profiles
 };
 
 class FrameRecorder {
@@ -32,6 +34,9 @@ class FrameRecorder {
     // Groups from four words of a resource.
     void dispatchIndirect(const ComputePass& pass, const void* push, uint32_t resource,
                           uint64_t at);
+
+    // All of them at once: none sees what another writes.
+    void dispatchVolumes(const ComputePass& pass, std::span<const MarchedVolume> volumes);
 
     void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);
     void copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes);

@@ -100,6 +100,13 @@ class PassRecorder : public DrawRecorder {
                             sizeof push, &push);
         vk.CmdDraw(commands_, 6, push.slabs, 0, 0);
     }
+    void drawMade(uint32_t vertices, const void* push) override {
+        const Table& vk = s_.device.table;
+        vk.CmdPushConstants(commands_, layout_,
+                            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                            pass_.pushBytes, push);
+        vk.CmdDraw(commands_, vertices, 1, 0, 0);
+    }
 
  private:
     VkBackend::State& s_;
@@ -155,11 +162,16 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                       uint32_t(std::max(viewport.y + viewport.height - top, 0.0f))};
     vk.CmdSetScissor(commands, 0, 1, &scissor);
     std::array<VolumeItem, kMaxVolumeFlames> items;
-    const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
-    const DrawList list{drawItems,
-                        !burnEmpty,
-                        {items.data(), orderVolumes(slabs, items)},
-                        turnsFaces(view, viewport)};
+    DrawList list{drawItems, !burnEmpty, {}, {}, turnsFaces(view, viewport)};
+    if (target.key.flames && !volumes.empty()) {
+        const VolumeScreen screen{{viewport.width, std::fabs(viewport.height)},
+                                  target.key.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs,
+                                  uint32_t(target.key.encoding)};
+        noteScreen(view, screen, slot.frameIndex);
+        list.marched = marchedFor(view, screen);
+        const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
+        if (list.marched.empty()) list.volumes = {items.data(), orderVolumes(slabs, items)};
+    }
     for (const DrawStep& step : drawSteps()) {
         const uint32_t i = step.pass;
         const DrawPass& pass = *drawPasses()[i];

@@ -164,7 +164,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
-                 refineBytes > 0 || forgets || plan.volumes || needs.placing || s.recordsDirty ||
+                 refineBytes > 0 || forgets || plan.volumes ||
+                 (!s.volumes.empty() && !s.open.unseen) || needs.placing || s.recordsDirty ||
                  !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
@@ -181,6 +182,8 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
         s.planes.atLeast(kSpaceVolumes, plan.volumes->count, last);
         s.volumes.reserve(plan.volumes->count);
     }
+    if (!s.open.unseen && !(plan.volumes ? plan.volumes->count == 0 : s.volumes.empty()))
+        s.makeMarchRoom(last);
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);

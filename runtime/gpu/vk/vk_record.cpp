@@ -21,7 +21,8 @@ void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingU
                                 upload.layers};
     // Draws of earlier frames may still look at a layer that gets other texels.
     vk.CmdPipelineBarrier(commands,
-                          VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                          VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
+                              VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                           VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
     uint64_t at = 0;
     for (uint32_t layer = 0; layer < upload.layers; ++layer) {
@@ -41,10 +42,11 @@ void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingU
     barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
     barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    vk.CmdPipelineBarrier(
-        commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
-        VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr,
-        0, nullptr, 1, &barrier);
+    vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                          VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
+                              VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
+                              VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                          0, 0, nullptr, 0, nullptr, 1, &barrier);
 }
 
 // Meshes, images, painted maps: what was created since the last frame.
@@ -485,6 +487,7 @@ void VkBackend::State::run(const FramePlan& plan) {
 }
 
 void VkBackend::State::closeFrame(const FwView* view) {
+    if (view) outside = *view;
     if (!open.recording) {
         open = {};
         return;
@@ -492,16 +495,21 @@ void VkBackend::State::closeFrame(const FwView* view) {
     const Table& vk = device.table;
     FrameInFlight& slot = *open.slot;
     RecordTarget target = recordTarget(slot, open.commands);
-    if (!burnEmpty && limits.looks.viewParams) {
+    const bool marches = view && !volumes.empty();
+    if ((!burnEmpty || marches) && limits.looks.viewParams) {
         // A step of an own device has no view: lights alone, which flicker with simulated time.
         FwView none{};
         none.time = float(double(open.endTick) / kTicksPerSecond);
         const VkViewport whole{0, 0, 1, 1, 0, 1};
         target.viewOffset = pushView(slot, view ? *view : none, whole);
+        target.profiles = profiles.set.set;
         FrameRecorder looks(target);
-        recordLights(looks, lists, open.endTick);
-        recordSooting(*this, looks);
-        if (view) recordFlameQuads(looks, lists, open.endTick);
+        if (!burnEmpty) {
+            recordLights(looks, lists, open.endTick);
+            recordSooting(*this, looks);
+            if (view) recordFlameQuads(looks, lists, open.endTick);
+        }
+        if (marches) marchVolumes(looks);
     }
     if (view) {
         recordRefinement(slot, *view);

@@ -1,4 +1,5 @@
 // Volumetric flames on their way to the device, and the order in which a view draws them.
+#include "core/error.h"
 #include "gpu/vk/frame_needs.h"
 #include "shared/volume_flame.h"
 
@@ -63,6 +64,62 @@ uint32_t VkBackend::State::orderVolumes(
         return middle(a) != middle(b) ? middle(a) > middle(b) : a.flame < b.flame;
     });
     return count;
+}
+
+namespace {
+
+// Whether what was marched for one view is what another shows.
+bool sameView(const FwView& a, const FwView& b) noexcept {
+    const auto same = [](const auto& x, const auto& y) {
+        return std::memcmp(&x, &y, sizeof x) == 0;
+    };
+    return same(a.view, b.view) && same(a.projection, b.projection) &&
+           same(a.sunColor, b.sunColor) && same(a.ambientSky, b.ambientSky) &&
+           same(a.ambientGround, b.ambientGround) && same(a.exposure, b.exposure) &&
+           same(a.emissionScale, b.emissionScale);
+}
+
+}  // namespace
+
+void VkBackend::State::noteScreen(const FwView& view, const VolumeScreen& screen,
+                                  uint64_t frame) noexcept {
+    if (!sameView(view, outside)) return;
+    const auto area = [](const VolumeScreen& s) { return s.size.x * s.size.y; };
+    if (march.frame == frame && area(screen) <= area(march.screen)) return;
+    march.screen = screen;
+    march.frame = frame;
+}
+
+void VkBackend::State::makeMarchRoom(uint64_t last) {
+    if (!profiles.live) return;
+    try {
+        planes.atLeast(kSpaceVolumeRays, volumeRayWords(march.screen), last);
+    } catch (const core::Error& error) {
+        if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
+    }
+}
+
+void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
+    march.count = 0;
+    if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return;
+    std::array<VolumeItem, kMaxVolumeFlames> items;
+    const uint32_t count = orderVolumes(march.screen.slabs, items);
+    if (count == 0) return;
+    // `seen` is a view of one pixel.
+    const uint32_t flags =
+        layVolumes({items.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
+                   planes.capacity(kSpaceVolumeRays), march.items);
+    if (flags == 0) return;
+    march.made = march.screen;
+    march.view = outside;
+    march.count = count;
+    recordVolumeMarch(recorder, {march.items.data(), count}, flags);
+}
+
+std::span<const MarchedVolume> VkBackend::State::marchedFor(const FwView& view,
+                                                            const VolumeScreen& screen) noexcept {
+    if (march.count == 0 || !(screen == march.made) || !sameView(view, march.view)) return {};
+    return {march.items.data(), march.count};
 }
 
 }  // namespace fw::gpu::vk

@@ -287,6 +287,17 @@ struct VkBackend::State {
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     ViewParams seen{};                    // of the last pushView
+    FwView outside{};                     // of the last frame's outside part
+    // What is marched before it is drawn: the view of the outside part, on the screen that a draw
+    // with it was last seen to have. Other views, and the first picture, march as they draw.
+    struct March {
+        VolumeScreen screen;  // no size: none was seen
+        uint64_t frame = 0;   // that saw it: of several screens in a frame the largest counts
+        VolumeScreen made;    // of what is in the plane
+        FwView view{};        // and its view; in the plane nothing: count is 0
+        uint32_t count = 0;
+        std::array<MarchedVolume, kMaxVolumeFlames> items;
+    } march;
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
         std::pmr::vector<uint32_t> lists;  // of the frame's work plane, as it begins
@@ -363,6 +374,14 @@ struct VkBackend::State {
     // What the view that was last pushed shows of them, farthest first; how many.
     uint32_t orderVolumes(uint32_t slabs,
                           std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
+    // A draw in `frame` shows `view` so.
+    void noteScreen(const FwView& view, const VolumeScreen& screen, uint64_t frame) noexcept;
+    // Before the first command: room for what is marched; less of it makes it coarser.
+    void makeMarchRoom(uint64_t last);
+    void marchVolumes(FrameRecorder& recorder) noexcept;
+    // What shows them to a view on a screen; nothing: they are to be marched as they are drawn.
+    [[nodiscard]] std::span<const MarchedVolume> marchedFor(const FwView& view,
+                                                            const VolumeScreen& screen) noexcept;
     // vk_draw.cpp
     // `depth`: a set with the depth that the target samples, or null.
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,

@@ -1,0 +1,30 @@
+// Marched volumetric flames in the host's pass: a draw each, farthest first, of the tiles that show
+// anything.
+#include "gpu/passes/draw.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawRead}};
+
+}  // namespace
+
+const DrawPass kVolumeCompositePass{.name = "volume composite",
+                                    .vertexShader = "volume_composite.vert",
+                                    .fragmentShader = "volume_composite.frag",
+                                    .uses = kUses,
+                                    .vertexInput = VertexInput::none,
+                                    .blend = Blend::premultiplied,
+                                    .writeDepth = false,
+                                    .pushBytes = sizeof(VolumeComposite),
+                                    .softShader = "volume_composite_soft.frag",
+                                    .softShaderMultisampled = "volume_composite_soft_ms.frag"};
+
+void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes) {
+    for (const MarchedVolume& one : volumes) {
+        const VolumeComposite& draw = one.composite;
+        recorder.drawMade(6 * draw.tilesX * draw.tilesY * draw.slabs, &draw);
+    }
+}
+
+}  // namespace fw::gpu

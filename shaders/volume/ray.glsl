@@ -1,0 +1,72 @@
+// A ray on its way through a volumetric flame: where its tube is, and what a sample meets. Not the
+// loops over samples, which are their shaders'. Needs `profiles` and FW_FLAME_NODE.
+#include "shared/volume_march.h"
+
+struct RayTube {
+    FlameChord chord;
+    FlamePieces pieces;
+    vec4 first;  // knot
+    vec4 delta[kFlameIntervals];
+};
+
+RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns) {
+    RayTube tube;
+    FW_UNROLL
+    for (uint k = 0u; k < kFlameIntervals; ++k) tube.delta[k] = vec4(0.0);
+    tube.chord = FlameChord(spans.x, max(spans.y - spans.x, 0.0) / float(turns), 1e9, -1e9);
+    tube.pieces = flamePieces();
+    tube.first = flameKnot(tube.pieces, from + direction * tube.chord.from);
+    vec4 knot = tube.first;
+    uint i = 0u;
+    // Loops that end for all at once test last: a software device runs one turn more of others.
+    do {
+        vec4 next = flameKnot(tube.pieces,
+                              from + direction * (tube.chord.from + tube.chord.gap * float(i + 1u)));
+        FW_UNROLL
+        for (uint k = 0u; k < kFlameIntervals; ++k)
+            tube.delta[k] = i == k ? next - knot : tube.delta[k];
+        tube.chord = flameInterval(f, tube.chord, float(i), knot, next - knot);
+        knot = next;
+        i += 1u;
+    } while (i < turns);
+    return tube;
+}
+
+// At t m along the ray; `size`: as flameLookup's.
+FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
+    FlamePlace at =
+        flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
+    FlameLookup look = flameLookup(f, at, size);
+    vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach),
+                      look.y * float(kProfileHeight));
+    vec2 texels = vec2(float(kProfileWidth), float(kProfileHeight));
+    vec2 uv = clamp(texel, vec2(0.5), texels - 0.5) / texels;
+    FlameMedium m = FlameMedium(0.0, 0.0, 0.5, vec3(0.0));
+    if (look.lit > 0.0)
+        m = flameMedium(f, look, textureLod(profiles, vec3(uv, float(f.profile)), 0.0).xy);
+    return m;
+}
+
+// Soot glows as a camera that is set for fire sees it; tints are what they are.
+vec3 flameWhite(FlameRecord f, float emissionScale) {
+    return mix(vec3(1.0, 1.25, 1.6), vec3(1.0), f.tint.w) * (kVolumeWhite * max(emissionScale, 1e-6));
+}
+
+vec3 flameAir(vec3 sky, vec3 ground, vec3 sun, vec3 white) {
+    return (0.5 * (sky + ground) + 0.15 * sun) / white;
+}
+
+// Premultiplied, as it is shown; `scattered`: what of the light is smoke's.
+vec4 flameShown(FlameRay ray, vec3 scattered, vec3 white, uint encoding) {
+    float alpha = 1.0 - dot(ray.through, vec3(0.2126, 0.7152, 0.0722));
+    vec3 color = ray.radiance * white;
+    if (encoding != 0u) {
+        // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
+        // a thin one must turn red, not grey.
+        vec3 grey = scattered * white;
+        float cover = max(alpha, 1e-4);
+        color = encodeOutput(max(color - grey, vec3(0.0)), encoding) +
+                encodeOutput(grey / cover, encoding) * cover;
+    }
+    return vec4(min(color, vec3(60000.0)), alpha);
+}

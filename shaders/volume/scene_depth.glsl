@@ -1,0 +1,14 @@
+// The host's depth at a pixel; of several samples the first, for a choice of one needs a feature.
+#if FW_SOFT == 2
+layout(set = 3, binding = 0) uniform sampler2DMS sceneDepth;
+#else
+layout(set = 3, binding = 0) uniform sampler2D sceneDepth;
+#endif
+
+// m along the view to what the host drew, from depth = clip z / clip w. `clip`: as VolumeDraw's.
+float depthOfScene(vec4 clip) {
+    float depth = texelFetch(sceneDepth, ivec2(gl_FragCoord.xy), 0).r;
+    float per = clip.x - depth * clip.z;
+    float at = (depth * clip.w - clip.y) / (abs(per) > 1e-12 ? per : 1e-12);
+    return at > 0.0 ? at : 1e9;  // at the far end of an infinite view
+}
