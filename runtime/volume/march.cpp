@@ -71,6 +71,7 @@ vec2 flameChord(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> n
         const vec3 x = from + direction * (chord.from + chord.gap * float(i + 1));
         const vec4 next = gpu::flameKnot(nodes.data(), pieces, x);
         out.delta[i] = next - knot;
+        if (!gpu::flameWhole(chord, next - knot)) out.broken |= 1u << i;
         chord = gpu::flameInterval(flame, chord, float(i), knot, next - knot);
         knot = next;
     }
@@ -86,15 +87,21 @@ gpu::FlameRay marchRay(const gpu::FlameRecord& flame, std::span<const gpu::Flame
     RayKnots knots;
     const vec2 chord =
         flameChord(flame, nodes, from, direction, rules.farthest, rules.intervals, knots);
-    const float step = (chord.y - chord.x) / float(std::max(rules.steps, 1u));
+    const bool planes = rules.apart > 0.0f;
+    const float step =
+        planes ? rules.apart : (chord.y - chord.x) / float(std::max(rules.steps, 1u));
+    const float begin = planes ? rules.first : chord.x;
     const bool burns = chord.x < chord.y;
     for (uint32_t k = 0; burns && k < rules.steps && ray.through.g > 0.003f; ++k) {
-        const float t = chord.x + step * (float(k) + rules.jitter);
-        const gpu::FlamePlace at =
-            gpu::flameAlong(knots.first, knots.delta, (t - knots.from) / knots.gap);
-        const float size =
-            rules.detail > 0.0f ? rules.detail : std::max(0.35f * step, rules.pixel * t);
-        const gpu::FlameMedium m = sampleFlame(flame, profile, at, size, false);
+        const float t = begin + step * (float(k) + rules.jitter);
+        const float u = (t - knots.from) / knots.gap;
+        gpu::FlameMedium m{};
+        if (t >= chord.x && t <= chord.y && ((knots.broken >> uint32_t(u)) & 1u) == 0) {
+            const gpu::FlamePlace at = gpu::flameAlong(knots.first, knots.delta, u);
+            const float size =
+                rules.detail > 0.0f ? rules.detail : std::max(0.35f * step, rules.pixel * t);
+            m = sampleFlame(flame, profile, at, size, false);
+        }
         ray = gpu::flameStep(ray, m, vec3(0.0f), step);
     }
     if (!rules.smoke) return ray;
@@ -106,7 +113,7 @@ gpu::FlameRay marchRay(const gpu::FlameRecord& flame, std::span<const gpu::Flame
     for (uint32_t k = 0; metres > 0.0f && k < gpu::kFlameSmokeSteps; ++k) {
         const float t = spans.z + stride * (float(k) + rules.jitter);
         const vec3 x = from + direction * t;
-        const bool behind = burns && t > 0.5f * (chord.x + chord.y);
+        const bool behind = planes ? t > rules.middle : burns && t > 0.5f * (chord.x + chord.y);
         smoke = gpu::flameSmokeStep(flame, smoke, gpu::flamePlaceNear(nodes.data(), pieces, x), x,
                                     behind, stride);
     }

@@ -16,6 +16,9 @@ struct MarchRules {
     float detail = 0.0f;    // m: noise finer than this fades; 0: by step and pixel
     float farthest = 1e9f;  // m, the scene behind
     bool smoke = true;
+    // As the march pass: `steps` samples this far apart, the first cell of them this far away,
+    // and smoke from here on behind the flame. m; apart 0: over what the ray sees of the tube.
+    float apart = 0.0f, first = 0.0f, middle = 0.0f;
 };
 
 gpu::FlameMedium sampleFlame(const gpu::FlameRecord& flame, const Profile& profile,
@@ -35,6 +38,8 @@ struct RayKnots {
     float from = 0.0f, gap = 0.0f;  // m along the ray
     vec4 first{0.0f};
     vec4 delta[gpu::kFlameIntervals]{};
+    uint32_t broken =
+        0;  // a bit per interval in which the nearest place jumps: nothing burns there
 };
 // From where to where something may burn, m along the ray; empty where x >= y.
 vec2 flameChord(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes, vec3 from,

@@ -87,7 +87,8 @@
 #define FW_BIND_ARP_LIST 78         // uint[]: drawn triangles of the published scheme, see arp.h
 #define FW_BIND_VOLUMES 90          // VolumeFlame[]: volumetric flames of the frame, see volume_draw.h
 #define FW_BIND_VOLUME_RAYS 91      // uint[]: marched flames of a view, see VolumeMarch in volume_draw.h
-#define FW_BIND_COUNT 92
+#define FW_BIND_VOLUME_WORK 92      // VolumeWork[]: what the probe found of each flame
+#define FW_BIND_COUNT 93
 
 FW_SHARED_BEGIN
 

@@ -38,34 +38,52 @@ struct VolumeDraw {
     uint mostSteps;       // of a ray
     float spacing;        // m, between samples where mostSteps allows it
     uint intervals;       // [1, kFlameIntervals], of a ray, between knots
-    float reserved0; float reserved1;
+    float wide;           // m, the flame's diameter
+    float reserved;
 };
 FW_SHARED_SIZE(VolumeDraw, 112)
 
 FW_SHARED_CONST uint kVolumeTile = 8u;          // cells a side; a workgroup marches a tile
-FW_SHARED_CONST uint kVolumeCellWords = 2u;     // of a cell in a slab: red and green, blue and alpha, as halfs
+FW_SHARED_CONST uint kVolumeCellWords = 3u;     // of a cell in a slab, as halfs: red and green, blue and alpha; in
+                                                // slabs: from where on its light lies, 1 / over how much
 
-// Push constants of the march. A cell is a few pixels wide; its ray goes through its middle: of cell x, y of the
-// view, as above with rays from these. A flame's cells are tiles from its origin on, row by row of all, slab by
-// slab. Its flags: a word per tile, five times a bit per slab: where it shows anything, and where in the
-// tile's first and last column, first and last row.
+// Arguments of a flame's march and of its draw: a tile each of those that are worth a march. Zero before the probe.
+struct VolumeWork {
+    uint groups; uint groupsY; uint groupsZ; uint reserved;
+    uint vertices; uint instances; uint firstVertex; uint firstInstance;
+};
+FW_SHARED_SIZE(VolumeWork, 32)
+
+// What is known of a flame's tiles, array by array. Zero before the probe. First of each is a word per tile: a bit
+// per slab that shows anything; behind them whether anything is in its first and last column, first and last row.
+FW_SHARED_CONST uint kVolumeBegins = 1u;        // all samples less the first that is worth a march
+FW_SHARED_CONST uint kVolumeEnds = 2u;          // one and the last of them and one; 0: the tile is worth none
+FW_SHARED_CONST uint kVolumeList = 3u;          // of tiles that are
+FW_SHARED_CONST uint kVolumeTileWords = 4u;
+
+// Push constants of probe and march. A cell is a few pixels wide; its ray goes through its middle: of cell x, y
+// of the view, as above with rays from these. A flame's cells are tiles from its origin on, row by row of all,
+// slab by slab. Samples lie in planes across the view, as many to each slab.
 struct VolumeMarch {
     vec4 rayX;            // w: m, of a cell at a depth of 1 (perspective)
-    vec4 rayY;            // w: m, between samples
+    vec4 rayY;            // w: m along the view, between samples
     vec4 rayO;            // w: m along the view, where the nearest slab begins
-    float deep;           // as VolumeDraw's
     uint slabs;
-    uint mostSteps;
+    uint turns;           // samples of a slab
     uint intervals;
     uint originX; uint originY; // cells of the view
     uint tilesX;
     uint cells;           // of a slab
-    uint flags;           // words of FW_BIND_VOLUME_RAYS: the first of this flame's flags
+    uint tiles;           // words of FW_BIND_VOLUME_RAYS: the first of what is known of its tiles
     uint samples;         // and of its cells
     uint encoding;        // FwOutputEncoding of who shows it
-    uint reserved;
+    uint flame;           // of VolumeWork
+    uint apart;           // cells from a ray of the probe to the next: 1, 2, 4
 };
 FW_SHARED_SIZE(VolumeMarch, 96)
+
+// Workgroups of the probe side by side; each sees as many cells as eight rays.
+FW_SHARED_FN uint volumeProbeBlocks(uint tiles, uint apart) { return (tiles + apart - 1u) / apart; }
 
 // Push constants of who shows it.
 struct VolumeComposite {

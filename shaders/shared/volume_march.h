@@ -112,10 +112,12 @@ FW_SHARED_FN vec4 flameKnot(FW_FLAME_OF FlamePieces pieces, vec3 x) {
     return vec4(at.p, at.s, at.radius);
 }
 
-// What an interval says of where something burns. Where the curve's nearest place jumps, as between
-// the sides of a loop, nothing does.
+// Whether the curve's nearest place does not jump in an interval, as between the sides of a loop.
+FW_SHARED_FN bool flameWhole(FlameChord chord, vec4 delta) { return abs(delta.z) <= 3.0f * chord.gap + 1e-6f; }
+
+// What an interval says of where something burns. Where the nearest place jumps nothing does.
 FW_SHARED_FN FlameChord flameInterval(FlameRecord f, FlameChord chord, float i, vec4 knot, vec4 delta) {
-    bool whole = abs(delta.z) <= 3.0f * chord.gap + 1e-6f;
+    bool whole = flameWhole(chord, delta);
     vec4 slack = 0.125f * vec4(abs(delta.x), abs(delta.y), abs(delta.z), abs(delta.w));
     FW_UNROLL
     for (uint j = 0u; j < 4u; ++j) {
@@ -155,6 +157,12 @@ FW_SHARED_FN FlameSmokeRay flameSmokeStep(FlameRecord f, FlameSmokeRay ray, Flam
     FlameRay front = flameStep(ray.front, m, light, behind ? 0.0f : d);
     ray.back = flameStep(ray.back, m, light, behind ? d : 0.0f);
     ray.front = front;
+    return ray;
+}
+
+FW_SHARED_FN FlameRay flameBehind(FlameRay ray, FlameRay behind) {
+    ray.radiance += ray.through * behind.radiance;
+    ray.through *= behind.through;
     return ray;
 }
 

@@ -7,6 +7,7 @@ struct RayTube {
     FlamePieces pieces;
     vec4 first;  // knot
     vec4 delta[kFlameIntervals];
+    uint broken;  // a bit per interval between whose ends the curve's nearest place jumps
 };
 
 RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns) {
@@ -15,6 +16,7 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
     for (uint k = 0u; k < kFlameIntervals; ++k) tube.delta[k] = vec4(0.0);
     tube.chord = FlameChord(spans.x, max(spans.y - spans.x, 0.0) / float(turns), 1e9, -1e9);
     tube.pieces = flamePieces();
+    tube.broken = 0u;
     tube.first = flameKnot(tube.pieces, from + direction * tube.chord.from);
     vec4 knot = tube.first;
     uint i = 0u;
@@ -25,6 +27,7 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
         FW_UNROLL
         for (uint k = 0u; k < kFlameIntervals; ++k)
             tube.delta[k] = i == k ? next - knot : tube.delta[k];
+        tube.broken |= flameWhole(tube.chord, next - knot) ? 0u : 1u << i;
         tube.chord = flameInterval(f, tube.chord, float(i), knot, next - knot);
         knot = next;
         i += 1u;
@@ -34,9 +37,9 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
 
 // At t m along the ray; `size`: as flameLookup's.
 FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
-    FlamePlace at =
-        flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
-    FlameLookup look = flameLookup(f, at, size);
+    float u = (t - tube.chord.from) / max(tube.chord.gap, 1e-9);
+    FlameLookup look = flameLookup(f, flameAlong(tube.first, tube.delta, u), size);
+    if (((tube.broken >> uint(clamp(u, 0.0, float(kFlameIntervals)))) & 1u) != 0u) look.lit = 0.0;
     vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach),
                       look.y * float(kProfileHeight));
     vec2 texels = vec2(float(kProfileWidth), float(kProfileHeight));

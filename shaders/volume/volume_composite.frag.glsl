@@ -1,7 +1,7 @@
 #version 450
 // A slab of a marched flame at a pixel: the nearest nine cells, so weighed that the four places at
-// which neighbours' samples begin count alike. Where the host's depth can be read, of a slab that it
-// lies in the part before it.
+// which neighbours' samples begin count alike. Where the host's depth can be read, of each what of its
+// light lies before it.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -12,6 +12,7 @@ layout(push_constant) uniform Push { VolumeComposite draw; };
 layout(location = 0) in vec2 inCell;
 layout(location = 1) flat in uint inWords;
 layout(location = 2) flat in vec2 inSlab;
+layout(location = 3) flat in ivec4 inCells;
 
 layout(location = 0) out vec4 outColor;
 
@@ -22,21 +23,24 @@ layout(location = 0) out vec4 outColor;
 void main() {
     vec2 whole = floor(inCell + 0.5);
     vec2 off = inCell - whole;
-    ivec2 most = ivec2(draw.tilesX, draw.tilesY) * int(kVolumeTile) - 1;
     uint pitch = kVolumeCellWords * kVolumeTile * draw.tilesX;
     vec4 color = vec4(0.0);
+#ifdef FW_SOFT
+    float cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
+#endif
     FW_UNROLL
     for (int y = -1; y <= 1; ++y) {
-        uint row = inWords + pitch * uint(clamp(int(whole.y) + y, 0, most.y));
+        uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inCells.y, inCells.w));
         FW_UNROLL
         for (int x = -1; x <= 1; ++x) {
-            uint at = row + kVolumeCellWords * uint(clamp(int(whole.x) + x, 0, most.x));
-            color += volumeWeight(x, off.x) * volumeWeight(y, off.y) *
-                     vec4(unpackHalf2x16(rays[at]), unpackHalf2x16(rays[at + 1u]));
+            uint at = row + kVolumeCellWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
+            float weight = volumeWeight(x, off.x) * volumeWeight(y, off.y);
+#ifdef FW_SOFT
+            vec2 lies = unpackHalf2x16(rays[at + 2u]);
+            weight *= clamp((cut - lies.x) * lies.y, 0.0, 1.0);
+#endif
+            color += weight * vec4(unpackHalf2x16(rays[at]), unpackHalf2x16(rays[at + 1u]));
         }
     }
-#ifdef FW_SOFT
-    color *= clamp((depthOfScene(draw.clip) - inSlab.x) * inSlab.y, 0.0, 1.0);
-#endif
     outColor = color;
 }

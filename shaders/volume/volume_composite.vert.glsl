@@ -11,30 +11,42 @@ layout(push_constant) uniform Push { VolumeComposite draw; };
 layout(location = 0) out vec2 outCell;        // of the flame, from the middle of its first
 layout(location = 1) flat out uint outWords;  // the slab's first
 layout(location = 2) flat out vec2 outSlab;   // m along the view: from; 1/m: its depth
+layout(location = 3) flat out ivec4 outCells; // first and last that there are
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
     uint quad = vertex / 6u, corner = vertex % 6u;
     corner = corner < 3u ? corner : 6u - corner;  // 0 1 2, 3 2 1
     uint tiles = draw.tilesX * draw.tilesY;
-    uint tile = quad % tiles;
-    uint slab = draw.slabs - 1u - quad / tiles;
-    uvec2 at = uvec2(tile % draw.tilesX, tile / draw.tilesX);
+    uint tile = rays[draw.flags + kVolumeList * tiles + quad / draw.slabs];
+    uint slab = draw.slabs - 1u - quad % draw.slabs;
+    ivec2 at = ivec2(tile % draw.tilesX, tile / draw.tilesX);
     // Cells around a tile reach a little into it: those of its neighbours' nearest rows and columns.
+    // Neighbours that were not marched have none, and nothing is near them.
     uint lit = 0u;
+    ivec4 reach = ivec4(-1, -1, 1, 1);
     FW_UNROLL
     for (int y = -1; y <= 1; ++y) {
         FW_UNROLL
         for (int x = -1; x <= 1; ++x) {
-            ivec2 near = clamp(ivec2(at) + ivec2(x, y), ivec2(0),
-                               ivec2(draw.tilesX, draw.tilesY) - 1);
-            uint there = rays[draw.flags + uint(near.y) * draw.tilesX + uint(near.x)];
-            uint column = x == 0 ? there : x < 0 ? there >> (2u * kVolumeSlabs) : there >> kVolumeSlabs;
-            uint row = y == 0 ? there : y < 0 ? there >> (4u * kVolumeSlabs) : there >> (3u * kVolumeSlabs);
-            lit |= column & row;
+            ivec2 near = at + ivec2(x, y);
+            bool inside = near.x >= 0 && near.y >= 0 && near.x < int(draw.tilesX) && near.y < int(draw.tilesY);
+            uint of = draw.flags + (inside ? uint(near.y) * draw.tilesX + uint(near.x) : tile);
+            bool is = inside && rays[of + kVolumeEnds * tiles] != 0u;
+            uint there = rays[of], edges = there >> kVolumeSlabs;
+            bool touches = (x == 0 || (edges & (x < 0 ? 2u : 1u)) != 0u) &&
+                           (y == 0 || (edges & (y < 0 ? 8u : 4u)) != 0u);
+            lit |= is && touches ? there : 0u;
+            // Beyond the corner of a flame's cells are none to be read.
+            bool may = is || (x != 0 && y != 0 && !inside);
+            if (x < 0) reach.x = may ? reach.x : 0;
+            if (x > 0) reach.z = may ? reach.z : 0;
+            if (y < 0) reach.y = may ? reach.y : 0;
+            if (y > 0) reach.w = may ? reach.w : 0;
         }
     }
-    vec2 cell = vec2((at + uvec2(corner & 1u, corner >> 1u)) * kVolumeTile);
+    outCells = ivec4(at, at) * int(kVolumeTile) + reach + ivec4(0, 0, ivec2(kVolumeTile - 1u));
+    vec2 cell = vec2((uvec2(at) + uvec2(corner & 1u, corner >> 1u)) * kVolumeTile);
     outCell = cell - 0.5;
     uint cells = tiles * kVolumeTile * kVolumeTile;
     outWords = draw.samples + kVolumeCellWords * cells * slab;

@@ -1,7 +1,7 @@
 #version 450
 // A volumetric flame's rays in cells of a few pixels, each of them once and whole, and kept slab by
 // slab: what a slab adds does not depend on the scene, so the scene's depth, which is known later
-// and for each pixel, chooses among slabs. A workgroup is a tile.
+// and for each pixel, chooses among slabs. A workgroup is a tile that volume_probe listed.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -20,6 +20,30 @@ layout(push_constant) uniform Push { VolumeMarch march; };
 
 FlameRay fresh() { return FlameRay(vec3(0.0), vec3(1.0)); }
 
+// Keeps what slab `s` adds to what is shown without it and those behind it; `where`: light, and
+// its first and second moment over the slab. What is shown of any number of nearest slabs is then
+// exactly what one ray to there would show.
+vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
+    float left = 1.0 / max(1.0 - before.a, 1e-4);
+    vec4 color = max((shown - before) * left, 0.0);
+    float middle = where_.y / max(where_.x, 1e-20);
+    // As wide as something even with that spread.
+    float half_ = sqrt(3.0 * max(where_.z / max(where_.x, 1e-20) - middle * middle, 1e-4));
+    vec2 reach = clamp(vec2(middle - half_, middle + half_), 0.0, 1.0);
+    uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
+    rays[at] = packHalf2x16(color.rg);
+    rays[at + 1u] = packHalf2x16(color.ba);
+    rays[at + 2u] = packHalf2x16(vec2(reach.x, 1.0 / max(reach.y - reach.x, 1e-2)));
+    return color;
+}
+
+void nothing(uint s, uint cell) {
+    uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
+    rays[at] = rays[at + 1u] = rays[at + 2u] = 0u;
+}
+
+bool shows(vec4 color) { return max(max(color.r, color.g), max(color.b, color.a)) > 1e-4; }
+
 void main() {
     FlameRecord f = flame.record;
     // Zero. A software device compiles a shader anew, in milliseconds a dispatch, for each set of
@@ -29,12 +53,23 @@ void main() {
     f.tint.w += float(zero);
     f.smoke += float(zero);
     f.puff += float(zero);
-    uint tile = gl_WorkGroupID.x;
-    // Eight that go together are four by two: they march as long as the longest of them.
+    uint tiles = march.cells / (kVolumeTile * kVolumeTile);
+    uint tile = rays[march.tiles + kVolumeList * tiles + gl_WorkGroupID.x];
+    uint slabs = march.slabs | zero, turns = march.turns | zero;
+    uint all = slabs * turns;
+    // Of all samples along the view those from `begin` to `end`.
+    uint begin = all - rays[march.tiles + kVolumeBegins * tiles + tile];
+    uint end = rays[march.tiles + kVolumeEnds * tiles + tile] - 1u;
+    bool burns = begin < end;
+    begin = burns ? begin : all / 2u;
+    end = burns ? end : begin + 1u;
+
+    // Eight that go together are four by two.
     uint lane = gl_LocalInvocationIndex;
     uvec2 in_ = uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
-    uvec2 cell = uvec2(tile % march.tilesX, tile / march.tilesX) * kVolumeTile + in_;
-    uvec2 place = cell + uvec2(march.originX, march.originY);
+    uvec2 place = uvec2(tile % march.tilesX, tile / march.tilesX) * kVolumeTile + in_;
+    uint cell = place.y * (march.tilesX * kVolumeTile) + place.x;
+    place += uvec2(march.originX, march.originY);
     vec3 ray = march.rayO.xyz + float(place.x) * march.rayX.xyz + float(place.y) * march.rayY.xyz;
     bool perspective = view.forward.w > 0.5;
     vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : ray);
@@ -43,96 +78,74 @@ void main() {
     vec3 direction = along / perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, view.sunColor.rgb, white);
-
-    vec4 spans = flameSpans(f, from, direction);
-    RayTube tube = rayTube(f, spans, from, direction, march.intervals | zero);
-    float metres =
-        spans.x < spans.y ? tube.chord.gap * max(tube.chord.last - tube.chord.first, 0.0) : 0.0;
-    float steps = volumeSteps(metres, march.rayY.w, march.mostSteps | zero);
-    float stride = metres / steps;
-    float begin = metres > 0.0 ? tube.chord.from + tube.chord.gap * tube.chord.first : 0.0;
     float phase = volumePhase(place.x, place.y, view.ambientSky.w);
     float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
-    // What is in front of all slabs, or behind them, belongs to the outermost.
-    float perSlab = 1.0 / (march.deep * perDepth), front = march.rayO.w / march.deep;
-    float farthest = float(march.slabs) - 1.0;
+    float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
+    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,
+                           direction, march.intervals | zero);
 
-    FlameRay fires[kVolumeSlabs];
-    FlameRay fronts[kVolumeSlabs];
-    FlameRay backs[kVolumeSlabs];
-    FW_UNROLL
-    for (uint s = 0u; s < kVolumeSlabs; ++s) fires[s] = fronts[s] = backs[s] = fresh();
-    FlameRay one = fresh();
-    float slab = -1.0, before = 1.0, k = 0.0, last = metres > 0.0 ? steps : 0.0;
-    while (k < last && before * one.through.g > 0.003) {
-        float t = begin + stride * (k + phase);
-        float now = clamp(floor(t * perSlab - front), 0.0, farthest);
-        bool next = now != slab;
-        before *= next ? one.through.g : 1.0;
-        one.radiance = next ? vec3(0.0) : one.radiance;
-        one.through = next ? vec3(1.0) : one.through;
-        slab = now;
-        FlameMedium m = rayMedium(f, tube, t, max(0.35 * stride, pixel * t));
-        // lavapipe goes on with lanes that have left a loop where others stay: they add nothing.
-        one = flameStep(one, m, vec3(0.0), k < last ? stride : 0.0);
-        FW_UNROLL
-        for (uint s = 0u; s < kVolumeSlabs; ++s) {
-            bool here = slab == float(s);
-            fires[s].radiance = here ? one.radiance : fires[s].radiance;
-            fires[s].through = here ? one.through : fires[s].through;
-        }
-        k += 1.0;
-    }
-
-    float middle = begin + 0.5 * metres;
-    stride = max(spans.w - spans.z, 0.0) / float(kFlameSmokeSteps);
-    slab = -1.0;
-    k = 0.0;
-    last = spans.z < spans.w ? float(kFlameSmokeSteps) : 0.0;
     FlameSmokeRay smoke = FlameSmokeRay(fresh(), fresh());
-    while (k < last) {
-        float t = spans.z + stride * (k + phase);
-        float now = clamp(floor(t * perSlab - front), 0.0, farthest);
-        bool next = now != slab;
-        smoke.front.radiance = next ? vec3(0.0) : smoke.front.radiance;
-        smoke.front.through = next ? vec3(1.0) : smoke.front.through;
-        smoke.back.radiance = next ? vec3(0.0) : smoke.back.radiance;
-        smoke.back.through = next ? vec3(1.0) : smoke.back.through;
-        slab = now;
-        vec3 x = from + direction * t;
-        smoke = flameSmokeStep(f, smoke, flamePlaceNear(tube.pieces, x), x,
-                               metres > 0.0 && t > middle, k < last ? stride : 0.0);
-        FW_UNROLL
-        for (uint s = 0u; s < kVolumeSlabs; ++s) {
-            bool here = slab == float(s);
-            fronts[s].radiance = here ? smoke.front.radiance : fronts[s].radiance;
-            fronts[s].through = here ? smoke.front.through : fronts[s].through;
-            backs[s].radiance = here ? smoke.back.radiance : backs[s].radiance;
-            backs[s].through = here ? smoke.back.through : backs[s].through;
-        }
-        k += 1.0;
+    {
+        vec2 span = flameSpans(f, from, direction).zw;
+        float step_ = max(span.y - span.x, 0.0) / float(kFlameSmokeSteps);
+        float middle = first + 0.5 * stride * float(all);
+        uint k = 0u, count = f.smoke > 0.0 ? kFlameSmokeSteps : 1u;
+        do {
+            float t = span.x + step_ * (float(k) + phase);
+            vec3 x = from + direction * t;
+            smoke = flameSmokeStep(f, smoke, flamePlaceNear(tube.pieces, x), x, t > middle,
+                                   span.x < span.y ? step_ : 0.0);
+            k += 1u;
+        } while (k < count);
     }
 
-    vec3 shown = white * view.sunDirection.w;
-    uint at = march.samples + kVolumeCellWords * (cell.y * (march.tilesX * kVolumeTile) + cell.x);
-    uint lit = 0u;
-    uint slabs = march.slabs | zero, encoding = march.encoding | zero;
-    for (uint s = 0u; s < kVolumeSlabs; ++s) {
-        if (s >= slabs) break;
-        FlameSmokeRay around = FlameSmokeRay(fronts[s], backs[s]);
-        vec3 scattered = around.front.radiance +
-                         around.front.through * fires[s].through * around.back.radiance;
-        vec4 color = flameShown(flameBetween(fires[s], around), scattered, shown, encoding);
-        uvec2 words = uvec2(packHalf2x16(color.rg), packHalf2x16(color.ba));
-        rays[at] = words.x;
-        rays[at + 1u] = words.y;
-        at += kVolumeCellWords * march.cells;
-        lit |= max(max(color.r, color.g), max(color.b, color.a)) > 1e-4 ? 1u << s : 0u;
+    vec3 lit = white * view.sunDirection.w;
+    uint encoding = march.encoding | zero, last = (end - 1u) / turns, bits = 0u;
+    FlameRay one = smoke.front;
+    vec3 scattered = one.radiance;
+    vec4 before = vec4(0.0);
+    uint s = begin / turns, k = begin;
+    for (uint i = 0u; i < slabs; ++i)
+        if (i < s || i > last) nothing(i, cell);
+    if (s > 0u) {
+        before = flameShown(one, scattered, lit, encoding);
+        bits = shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
     }
+    float size = 0.35 * stride, length_ = burns ? stride : 0.0;
+    // Every loop turns as often for all of a tile: those that end apart end late on a software device.
+    do {
+        uint to = min((s + 1u) * turns, end);
+        vec3 where_ = vec3(0.0);
+        do {
+            float t = first + stride * (float(k) + phase);
+            FlameMedium m = rayMedium(f, tube, t, max(size, pixel * t));
+            float dark = one.through.g, bright = one.radiance.r;
+            one = flameStep(one, m, vec3(0.0), length_);
+            float w = dark - one.through.g + one.radiance.r - bright;
+            float at = (float(k - s * turns) + phase) / float(turns);
+            where_ += w * vec3(1.0, at, at * at + 1.0 / (12.0 * float(turns * turns)));
+            k += 1u;
+        } while (k < to);
+        FlameRay now = one;
+        vec3 grey = scattered;
+        if (s + 1u == slabs) {
+            grey += now.through * smoke.back.radiance;
+            now = flameBehind(now, smoke.back);
+        }
+        vec4 shown = flameShown(now, grey, lit, encoding);
+        bits |= shows(keep(before, shown, s, cell, where_)) ? 1u << s : 0u;
+        before = shown;
+        s += 1u;
+    } while (s <= last);
+    if (s < slabs) {
+        scattered += one.through * smoke.back.radiance;
+        vec4 shown = flameShown(flameBehind(one, smoke.back), scattered, lit, encoding);
+        bits |= shows(keep(before, shown, slabs - 1u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0)))
+                    ? 1u << (slabs - 1u) : 0u;
+    }
+
     // In the tile; in its first and last column, first and last row.
-    lit |= (in_.x == 0u ? lit << kVolumeSlabs : 0u) |
-           (in_.x == kVolumeTile - 1u ? lit << (2u * kVolumeSlabs) : 0u) |
-           (in_.y == 0u ? lit << (3u * kVolumeSlabs) : 0u) |
-           (in_.y == kVolumeTile - 1u ? lit << (4u * kVolumeSlabs) : 0u);
-    if (lit != 0u) atomicOr(rays[march.flags + tile], lit);
+    uint edges = (in_.x == 0u ? 1u : 0u) | (in_.x == kVolumeTile - 1u ? 2u : 0u) |
+                 (in_.y == 0u ? 4u : 0u) | (in_.y == kVolumeTile - 1u ? 8u : 0u);
+    if (bits != 0u) atomicOr(rays[march.tiles + tile], bits | (edges << kVolumeSlabs));
 }

@@ -12,6 +12,7 @@
 namespace fw::gpu {
 
 struct FlameNode;  // shared/volume.h
+struct FlameRecord;
 
 struct ViewInput {
     const FwView* view = nullptr;
@@ -66,8 +67,8 @@ class DrawRecorder {
     virtual void drawIndirect(uint32_t resource, uint64_t offset) = 0;
     // The slabs of volumetric flame `flame`.
     virtual void drawVolume(uint32_t flame, const VolumeDraw& push) = 0;
-    // So many vertices that the shader makes.
-    virtual void drawMade(uint32_t vertices, const void* push) = 0;
+    // The same, of vertices that the shader makes.
+    virtual void drawListed(uint32_t resource, uint64_t offset, const void* push) = 0;
 
  protected:
     ~DrawRecorder() = default;
@@ -107,6 +108,9 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
 void chooseVolumes(std::span<VolumeItem> items);
 // VolumeDraw::intervals for a curve.
 uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count);
+// Of the flame without its smoke.
+void volumeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
+                  vec4& high);
 // Slabs are for the flame: smoke before and behind it is in the outermost. Bounds of the flame
 // alone.
 void volumeSlabs(const ViewParams& view, const vec4& low, const vec4& high, VolumeDraw& out);
@@ -129,7 +133,7 @@ struct VolumeScreen {    // what the marched view is shown on
 // again.
 uint32_t volumeRayWords(const VolumeScreen& screen);
 // Cells of all `items`, as fine as `words` allow, in their order; `perPixel`: m per pixel at a
-// depth of 1. 0: they do not fit; else how many words the flags take.
+// depth of 1. 0: they do not fit; else how many words are known of tiles.
 uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
                     uint32_t words, std::span<MarchedVolume> out);
 // Farthest first.

@@ -13,17 +13,17 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,           &kEventsPass,     &kHeatPass,        &kWakePass,
-    &kSchedulePass,        &kGatherPass,     &kArrivalPass,     &kArrivalRimPass,
-    &kCommitPass,          &kPublishedPass,  &kReduceClearPass, &kReduceFrontPass,
-    &kReducePass,          &kFireCellsPass,  &kFireSourcesPass, &kReceiversPass,
-    &kExchangePass,        &kContactsPass,   &kEmbersPass,      &kPredictGatherPass,
-    &kPredictPass,         &kPredictRimPass, &kSupportPass,     &kProbePass,
-    &kLightsPass,          &kFlameQuadsPass, &kFlameSortPass,   &kRefineHeatPass,
-    &kRefineLevelsPass,    &kRefineScanPass, &kRefineEmitPass,  &kRefinePlacePass,
-    &kRecedePass,          &kBendPass,       &kSoftPass,        &kSpringsPass,
-    &kDrapePass,           &kSkinPass,       &kSootPass,        &kRefineCutPass,
-    &kRefinePublishedPass, &kVolumeMarchPass};
+    &kResetPass,           &kEventsPass,      &kHeatPass,        &kWakePass,
+    &kSchedulePass,        &kGatherPass,      &kArrivalPass,     &kArrivalRimPass,
+    &kCommitPass,          &kPublishedPass,   &kReduceClearPass, &kReduceFrontPass,
+    &kReducePass,          &kFireCellsPass,   &kFireSourcesPass, &kReceiversPass,
+    &kExchangePass,        &kContactsPass,    &kEmbersPass,      &kPredictGatherPass,
+    &kPredictPass,         &kPredictRimPass,  &kSupportPass,     &kProbePass,
+    &kLightsPass,          &kFlameQuadsPass,  &kFlameSortPass,   &kRefineHeatPass,
+    &kRefineLevelsPass,    &kRefineScanPass,  &kRefineEmitPass,  &kRefinePlacePass,
+    &kRecedePass,          &kBendPass,        &kSoftPass,        &kSpringsPass,
+    &kDrapePass,           &kSkinPass,        &kSootPass,        &kRefineCutPass,
+    &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -287,9 +287,13 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
 }
 
 void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolume> volumes,
-                       uint32_t flagWords) {
-    recorder.fillZero(FW_BIND_VOLUME_RAYS, 0, uint64_t(flagWords) * 4);
-    recorder.dispatchVolumes(kVolumeMarchPass, volumes);
+                       uint32_t words) {
+    recorder.fillZero(FW_BIND_VOLUME_RAYS, 0, uint64_t(words) * 4);
+    uint32_t last = 0;
+    for (const MarchedVolume& one : volumes) last = std::max(last, one.flame);
+    recorder.fillZero(FW_BIND_VOLUME_WORK, 0, (last + 1) * sizeof(VolumeWork));
+    recorder.dispatchVolumes(kVolumeProbePass, volumes, false);
+    recorder.dispatchVolumes(kVolumeMarchPass, volumes, true);
 }
 
 namespace {

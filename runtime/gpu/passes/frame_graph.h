@@ -22,7 +22,7 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
     kRecedePass, kBendPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
-    kVolumeMarchPass;
+    kVolumeProbePass, kVolumeMarchPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -105,9 +105,9 @@ void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t
 // For the frame's view, after the lights: flames and their order.
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 
-// For the frame's view: `flagWords` of flags, then all of the cells.
+// For the frame's view; `words`: what is known of tiles.
 void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolume> volumes,
-                       uint32_t flagWords);
+                       uint32_t words);
 
 // After the steps. The work plane holds its lists, and zero before them. `lists`: see FrameLists.
 // `cuts`: some object is kRefineIsCut. Without `turn` what was listed last time is placed again.

@@ -21,7 +21,7 @@ constexpr uint32_t kMostSteps = 32;
 // which changes their grain and not their light.
 constexpr uint32_t kMarchedFlames = 32, kFewSteps = 10;
 // Samples this far apart, in diameters: closer shows no more but for less grain.
-constexpr float kSpacing = 0.06f;
+constexpr float kSpacing = 0.05f;
 
 // Column i of the matrix, as the shaders have it: what a world metre along axis i adds to x, y, z,
 // w.
@@ -99,6 +99,7 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
     out.slabs = slabs;
     out.mostSteps = kMostSteps;
     out.intervals = kFlameIntervals;
+    out.wide = low.w;
     out.spacing = std::max(kSpacing * low.w, 1e-4f);
     return true;
 }
@@ -115,6 +116,18 @@ void chooseVolumes(std::span<VolumeItem> items) {
                          return x != y ? x > y : a.flame < b.flame;
                      });
     for (VolumeItem& item : items.subspan(kMarchedFlames)) item.draw.mostSteps = kFewSteps;
+}
+
+void volumeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
+                  vec4& high) {
+    vec3 least(1e30f), most(-1e30f);
+    for (uint32_t k = 0; k < count; ++k) {
+        if (nodes[k].along.w > kFlameTop * record.high.w) break;
+        const vec3 reach(kFlameReach * (1.0f + record.puff) * nodes[k].centre.w);
+        least = glm::min(least, vec3(nodes[k].centre) - reach);
+        most = glm::max(most, vec3(nodes[k].centre) + reach);
+    }
+    low = vec4(least, 0.0f), high = vec4(most, 0.0f);
 }
 
 void volumeSlabs(const ViewParams& view, const vec4& low, const vec4& high, VolumeDraw& out) {

@@ -2,10 +2,13 @@
 // anything.
 #include "gpu/passes/draw.h"
 
+#include <cstddef>
+
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawRead}};
+constexpr Use kUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawRead},
+                         {FW_BIND_VOLUME_WORK, Access::indirect}};
 
 }  // namespace
 
@@ -21,10 +24,10 @@ const DrawPass kVolumeCompositePass{.name = "volume composite",
                                     .softShaderMultisampled = "volume_composite_soft_ms.frag"};
 
 void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes) {
-    for (const MarchedVolume& one : volumes) {
-        const VolumeComposite& draw = one.composite;
-        recorder.drawMade(6 * draw.tilesX * draw.tilesY * draw.slabs, &draw);
-    }
+    for (const MarchedVolume& one : volumes)
+        recorder.drawListed(FW_BIND_VOLUME_WORK,
+                            one.flame * sizeof(VolumeWork) + offsetof(VolumeWork, vertices),
+                            &one.composite);
 }
 
 }  // namespace fw::gpu

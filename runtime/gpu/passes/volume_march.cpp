@@ -1,5 +1,6 @@
 // Volumetric flames of the frame's view before it is drawn: each ray once for a cell of a few
-// pixels, kept in slabs. Memory is bounded: what does not fit is marched in larger cells.
+// pixels, kept in slabs, of the tiles that volume_probe finds worth it. Memory is bounded: what
+// does not fit is marched in larger cells.
 #include "gpu/passes/frame_graph.h"
 
 #include <algorithm>
@@ -11,16 +12,17 @@ namespace {
 constexpr Use kUses[] = {
     {FW_BIND_VIEW, Access::uniformView},
     {FW_BIND_VOLUMES, Access::each},
+    {FW_BIND_VOLUME_WORK, Access::indirect},
     {FW_BIND_VOLUME_RAYS, Access::write},
 };
 
 constexpr float kLeastCell = 2.0f, kMostCell = 64.0f;  // px
 constexpr uint64_t kMostWords = 16u << 20;             // 64 MiB
 
-static_assert(5 * kVolumeSlabs <= 32, "flags of a tile are a word");
+static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
 
 uint32_t wordsOfTile(uint32_t slabs) {
-    return 1 + kVolumeTile * kVolumeTile * kVolumeCellWords * slabs;
+    return kVolumeTileWords + kVolumeTile * kVolumeTile * kVolumeCellWords * slabs;
 }
 
 struct Tiles {
@@ -60,7 +62,7 @@ uint32_t volumeRayWords(const VolumeScreen& screen) {
         return uint64_t(std::clamp(std::ceil(pixels / tile), 0.0f, 4096.0f)) + 1;
     };
     return uint32_t(
-        std::min(tiles(screen.size.x) * tiles(screen.size.y) * wordsOfTile(screen.slabs) * 3 / 2,
+        std::min(tiles(screen.size.x) * tiles(screen.size.y) * 3 / 2 * wordsOfTile(screen.slabs),
                  kMostWords));
 }
 
@@ -74,30 +76,38 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         if (all * wordsOfTile(screen.slabs) <= words) break;
     }
     const vec2 perCell = vec2(2.0f * cell) / screen.size;  // of the view's [-1, 1]
-    uint32_t flags = 0, samples = uint32_t(all);
+    const auto first = uint32_t(all * kVolumeTileWords);
+    uint32_t known = 0, samples = first;
     for (size_t i = 0; i < items.size(); ++i) {
         const VolumeDraw& draw = items[i].draw;
+        const bool perspective = draw.clip.z > 0.0f;
         const Tiles tiles = tilesOf(draw.rect, screen.size, cell);
         const uint32_t count = tiles.x * tiles.y;
         MarchedVolume& one = out[i];
         one.flame = items[i].flame;
         VolumeMarch& march = one.march;
         march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell);
-        march.rayY = vec4(perCell.y * vec3(draw.rayY), draw.spacing);
+        march.turns = uint32_t(
+            std::clamp(std::ceil(draw.deep / draw.spacing), 1.0f,
+                       std::max(std::floor(float(2 * draw.mostSteps) / float(draw.slabs)), 1.0f)));
+        march.rayY = vec4(perCell.y * vec3(draw.rayY), draw.deep / float(march.turns));
         march.rayO = vec4(vec3(draw.rayO) + (0.5f * perCell.x - 1.0f) * vec3(draw.rayX) +
                               (0.5f * perCell.y - 1.0f) * vec3(draw.rayY),
                           draw.front);
-        march.deep = draw.deep;
         march.slabs = draw.slabs;
-        march.mostSteps = draw.mostSteps;
         march.intervals = draw.intervals;
         march.originX = tiles.originX;
         march.originY = tiles.originY;
         march.tilesX = tiles.x;
         march.cells = count * kVolumeTile * kVolumeTile;
-        march.flags = flags;
+        march.tiles = known;
         march.samples = samples;
         march.encoding = screen.encoding;
+        march.flame = one.flame;
+        // Flames of few cells are probed more closely, or rays go past them.
+        const float away = perspective ? draw.front + 0.5f * draw.deep * float(draw.slabs) : 1.0f;
+        const float wide = draw.wide / std::max(glm::length(vec3(march.rayX)) * away, 1e-9f);
+        march.apart = wide < 8.0f ? 1 : wide < 20.0f ? 2 : 4;
         VolumeComposite& composite = one.composite;
         composite.place =
             vec4(perCell * vec2(float(tiles.originX), float(tiles.originY)) - vec2(1.0f), perCell);
@@ -107,12 +117,12 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         composite.slabs = draw.slabs;
         composite.tilesX = tiles.x;
         composite.tilesY = tiles.y;
-        composite.flags = flags;
+        composite.flags = known;
         composite.samples = samples;
-        flags += count;
+        known += count * kVolumeTileWords;
         samples += march.cells * kVolumeCellWords * draw.slabs;
     }
-    return flags;
+    return first;
 }
 
 }  // namespace fw::gpu

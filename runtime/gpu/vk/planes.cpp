@@ -122,6 +122,8 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_VOLUMES, kSpaceVolumes, kVolumeFlameBytes, false, kComponentFlames, "volumes",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_VOLUME_RAYS, kSpaceVolumeRays, 4, false, kComponentFlames, "marched volumes", 0},
+    {FW_BIND_VOLUME_WORK, kSpaceVolumes, sizeof(VolumeWork), false, kComponentFlames,
+     "volumes' work", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
 };

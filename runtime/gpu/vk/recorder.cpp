@@ -30,13 +30,14 @@ void FrameRecorder::dispatch(const ComputePass& pass, const void* push, uint32_t
     t_.slot->timers.end(*t_.device, t_.commands);
 }
 
-void FrameRecorder::dispatchVolumes(const ComputePass& pass,
-                                    std::span<const MarchedVolume> volumes) {
+void FrameRecorder::dispatchVolumes(const ComputePass& pass, std::span<const MarchedVolume> volumes,
+                                    bool listed) {
     const Table& vk = t_.device->table;
     const size_t number = passNumber(pass);
     const PassObjects& objects = t_.pipelines->compute(number);
     t_.barriers->use(vk, t_.commands, pass.uses);
     t_.slot->timers.begin(*t_.device, t_.commands, pass.name);
+    const VkBuffer work = t_.planes->buffer(FW_BIND_VOLUME_WORK).handle;
     vk.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
     vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 1, 1,
                              &t_.profiles, 0, nullptr);
@@ -48,7 +49,14 @@ void FrameRecorder::dispatchVolumes(const ComputePass& pass,
                                  &set, uint32_t(offsets.size()), offsets.data());
         vk.CmdPushConstants(t_.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                             sizeof one.march, &one.march);
-        vk.CmdDispatch(t_.commands, one.composite.tilesX * one.composite.tilesY, 1, 1);
+        if (listed)
+            vk.CmdDispatchIndirect(t_.commands, work,
+                                   one.flame * sizeof(VolumeWork) + offsetof(VolumeWork, groups));
+        else
+            vk.CmdDispatch(t_.commands,
+                           volumeProbeBlocks(one.composite.tilesX, one.march.apart) *
+                               volumeProbeBlocks(one.composite.tilesY, one.march.apart),
+                           1, 1);
     }
     t_.slot->timers.end(*t_.device, t_.commands);
 }

@@ -35,8 +35,10 @@ class FrameRecorder {
     void dispatchIndirect(const ComputePass& pass, const void* push, uint32_t resource,
                           uint64_t at);
 
-    // All of them at once: none sees what another writes.
-    void dispatchVolumes(const ComputePass& pass, std::span<const MarchedVolume> volumes);
+    // All of them at once: none sees what another writes. `listed`: groups as the probe listed
+    // them, or those of the probe.
+    void dispatchVolumes(const ComputePass& pass, std::span<const MarchedVolume> volumes,
+                         bool listed);
 
     void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);
     void copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes);

@@ -100,12 +100,12 @@ class PassRecorder : public DrawRecorder {
                             sizeof push, &push);
         vk.CmdDraw(commands_, 6, push.slabs, 0, 0);
     }
-    void drawMade(uint32_t vertices, const void* push) override {
+    void drawListed(uint32_t resource, uint64_t offset, const void* push) override {
         const Table& vk = s_.device.table;
         vk.CmdPushConstants(commands_, layout_,
                             VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                             pass_.pushBytes, push);
-        vk.CmdDraw(commands_, vertices, 1, 0, 0);
+        drawIndirect(resource, offset);
     }
 
  private:

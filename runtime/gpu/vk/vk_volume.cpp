@@ -28,15 +28,10 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
     const std::span<const VolumeFlame> flames(update.flames, update.count);
     for (const VolumeFlame& flame : flames) {
         const FlameRecord& record = flame.record;
-        vec3 low(1e30f), high(-1e30f);
-        for (const FlameNode& node : flame.nodes) {
-            if (node.along.w > kFlameTop * record.high.w) break;
-            const vec3 reach(kFlameReach * (1.0f + record.puff) * node.centre.w);
-            low = glm::min(low, vec3(node.centre) - reach);
-            high = glm::max(high, vec3(node.centre) + reach);
-        }
-        s.volumes.push_back({record.low, record.high, vec4(low, 0.0f), vec4(high, 0.0f),
-                             volumeIntervals(flame.nodes, kFlameNodes)});
+        VkBackend::State::VolumeBox box{
+            record.low, record.high, {}, {}, volumeIntervals(flame.nodes, kFlameNodes)};
+        volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
+        s.volumes.push_back(box);
     }
     if (flames.empty()) return;
     const Staged staged = writer.write(flames);
@@ -106,14 +101,14 @@ void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
     const uint32_t count = orderVolumes(march.screen.slabs, items);
     if (count == 0) return;
     // `seen` is a view of one pixel.
-    const uint32_t flags =
+    const uint32_t words =
         layVolumes({items.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
                    planes.capacity(kSpaceVolumeRays), march.items);
-    if (flags == 0) return;
+    if (words == 0) return;
     march.made = march.screen;
     march.view = outside;
     march.count = count;
-    recordVolumeMarch(recorder, {march.items.data(), count}, flags);
+    recordVolumeMarch(recorder, {march.items.data(), count}, words);
 }
 
 std::span<const MarchedVolume> VkBackend::State::marchedFor(const FwView& view,

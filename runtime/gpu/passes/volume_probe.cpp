@@ -1,0 +1,20 @@
+// Where volumetric flames of the frame's view show anything, in tiles of it: most of a flame's
+// bounds is empty.
+#include "gpu/passes/frame_graph.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_VIEW, Access::uniformView},
+    {FW_BIND_VOLUMES, Access::each},
+    {FW_BIND_VOLUME_RAYS, Access::write},
+    {FW_BIND_VOLUME_WORK, Access::write},
+};
+
+}  // namespace
+
+const ComputePass kVolumeProbePass{"volume probe", "volume_probe.comp", kUses, sizeof(VolumeMarch),
+                                   true};
+
+}  // namespace fw::gpu

@@ -1,0 +1,110 @@
+#version 450
+// Where a volumetric flame shows anything, before it is marched: rays a few cells apart, and what
+// they meet or nearly meet. Lists the tiles that are worth a march, each with the samples
+// that are.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/look.h"
+#include "shared/volume_flame.h"
+
+layout(local_size_x = 64) in;
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
+layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) buffer Rays { uint rays[]; };
+layout(set = 0, binding = FW_BIND_VOLUME_WORK, std430) buffer Work { VolumeWork work[]; };
+layout(set = 1, binding = 0) uniform sampler2DArray profiles;
+layout(push_constant) uniform Push { VolumeMarch march; };
+
+#define FW_FLAME_NODE(i) flame.nodes[i]
+#include "lib/colour.glsl"
+#include "volume/ray.glsl"
+
+// So far beyond what is shown things still count, in rho and in y: between two rays there is more.
+const float kNearly = 0.08;
+
+void main() {
+    FlameRecord f = flame.record;
+    uint zero = gl_GlobalInvocationID.x >> 31u;  // see volume_march
+    f.octaves |= zero;
+    f.smoke += float(zero);
+    f.puff += float(zero);
+    uint tilesY = march.cells / (kVolumeTile * kVolumeTile * march.tilesX);
+    uint blocksX = volumeProbeBlocks(march.tilesX, march.apart);
+    uint lane = gl_LocalInvocationIndex;
+    uvec2 in_ = uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
+    uvec2 probe = uvec2(gl_WorkGroupID.x % blocksX, gl_WorkGroupID.x / blocksX) * 8u + in_;
+    vec2 place = vec2(march.originX, march.originY) + float(march.apart) * (vec2(probe) + 0.5) - 0.5;
+    vec3 ray = march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz;
+    bool perspective = view.forward.w > 0.5;
+    vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : ray);
+    vec3 along = perspective ? ray : view.forward.xyz;
+    float perDepth = length(along);
+    vec3 direction = along / perDepth;
+
+    vec4 spans = flameSpans(f, from, direction);
+    RayTube tube = rayTube(f, spans, from, direction, march.intervals | zero);
+    float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
+    float all = float(march.turns * march.slabs);
+    bool burns = spans.x < spans.y && tube.chord.first < tube.chord.last;
+    vec2 ends = tube.chord.from + tube.chord.gap * vec2(tube.chord.first, tube.chord.last);
+    float k = clamp(floor((ends.x - first) / stride), 0.0, all);
+    float last = burns ? clamp(ceil((ends.y - first) / stride), 0.0, all) : 0.0;
+    float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
+    float nearest = 1e9, farthest = -1.0;
+    while (k < last) {
+        float t = first + stride * (k + 0.5);
+        FlamePlace at =
+            flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
+        FlameLookup look = flameLookup(f, at, max(0.35 * stride, pixel * t));
+        // Here, and a little nearer to the axis and the base.
+        vec2 scale = 1.0 / vec2(kProfileReach, 1.0), here = vec2(look.rho, look.y);
+        vec2 low = 0.5 / vec2(float(kProfileWidth), float(kProfileHeight));
+        vec3 there = vec3(clamp(here * scale, low, 1.0 - low), float(f.profile));
+        vec2 seen = textureLod(profiles, there, 0.0).xy;
+        there.xy = clamp((here - kNearly) * scale, low, 1.0 - low);
+        seen = max(seen, textureLod(profiles, there, 0.0).xy);
+        bool shows = (seen.y > look.erode - 0.02 && seen.y > 0.004) ||
+                     (seen.x > 0.0 && f.blue > 0.0 && look.y < f.blueHeight + kNearly);
+        shows = shows && k < last && look.y < 1.0 + kNearly && look.rho < kProfileReach + kNearly;
+        nearest = shows ? min(nearest, k) : nearest;
+        farthest = shows ? k : farthest;
+        k += 1.0;
+    }
+    // Smoke: its plume, whatever its billows are.
+    bool smokes = false;
+    if (f.smoke > 0.0) {
+        k = 0.0;
+        do {
+            vec3 x = from + direction * mix(spans.z, spans.w, 0.125 * (k + 0.5));
+            FlamePlace at = flamePlaceNear(tube.pieces, x);
+            float y = at.s / f.high.w;
+            float wide = 0.45 * f.low.w + 0.16 * max(at.s - 0.6 * f.high.w, 0.0);
+            smokes = smokes || (spans.z < spans.w && y > 0.6 && y < f.smokeTop && dot(at.p, at.p) < 3.2 * wide * wide);
+            k += 1.0;
+        } while (k < 8.0);
+    }
+
+    uvec2 at = probe * march.apart;
+    uvec2 tile = at / kVolumeTile;
+    bool fire = farthest >= 0.0;
+    uint end = 1u + (fire ? uint(min(farthest + 2.0, all)) : 0u);
+    uint begin = fire ? uint(all - max(nearest - 1.0, 0.0)) : 0u;
+    uint tiles = march.cells / (kVolumeTile * kVolumeTile);
+    if (tile.x < march.tilesX && tile.y < tilesY && (fire || smokes)) {
+        ivec2 aside = ivec2((at / (kVolumeTile / 2u)) & 1u) * 2 - 1;
+        for (uint j = 0u; j < 4u; ++j) {
+            ivec2 it = ivec2(tile) + aside * ivec2(j & 1u, j >> 1u);
+            if (it.x < 0 || it.y < 0 || it.x >= int(march.tilesX) || it.y >= int(tilesY)) continue;
+            uint t = uint(it.y) * march.tilesX + uint(it.x);
+            atomicMax(rays[march.tiles + kVolumeBegins * tiles + t], begin);
+            uint was = atomicMax(rays[march.tiles + kVolumeEnds * tiles + t], end);
+            if (was == 0u) {
+                uint place_ = atomicAdd(work[march.flame].groups, 1u);
+                rays[march.tiles + kVolumeList * tiles + place_] = t;
+                atomicAdd(work[march.flame].vertices, 6u * march.slabs);
+                work[march.flame].groupsY = work[march.flame].groupsZ = 1u;
+                work[march.flame].instances = 1u;
+            }
+        }
+    }
+}
