@@ -34,6 +34,8 @@ void defaults(FwWorldDef& def) noexcept {
     def.maxFlames = 4096;
     def.maxRefinedTriangles = 400000;
     def.spreadChance = 1;
+    def.volumeCell = 2;
+    def.volumeSteps = 64;
 }
 
 void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }

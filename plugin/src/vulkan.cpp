@@ -76,6 +76,8 @@ class VulkanDevice final : public Device {
         limits.maxLights = def.maxLights;
         limits.maxFlames = def.maxFlames;
         limits.maxRefinedTriangles = def.maxRefinedTriangles;
+        limits.volumeCell = def.volumeCell;
+        limits.volumeSteps = def.volumeSteps;
         limits.seed = def.seed;
         std::copy_n(def.up, 3, limits.up);
         limits.paceFactor = def.paceFactor;

@@ -48,6 +48,8 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
     checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, 64);
     checkLimit(def.maxRefinedTriangles, "FwWorldDef::maxRefinedTriangles", 1000, 16000000);
+    checkLimit(def.volumeCell, "FwWorldDef::volumeCell", 1, 16);
+    checkLimit(def.volumeSteps, "FwWorldDef::volumeSteps", 6, 64);
     checkLimit(def.reserved1, "FwWorldDef::reserved1", 0, 0);
     checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
     return def;

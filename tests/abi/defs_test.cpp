@@ -305,6 +305,18 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     later.reserved = 1;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeWorld(&later));
     EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::reserved is 1"));
+    for (const uint32_t cell : {0u, 17u}) {
+        FwWorldDef coarse = fwDefaultWorldDef();
+        coarse.volumeCell = cell;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeWorld(&coarse));
+        EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::volumeCell is"));
+    }
+    for (const uint32_t steps : {5u, 65u}) {
+        FwWorldDef few = fwDefaultWorldDef();
+        few.volumeSteps = steps;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeWorld(&few));
+        EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::volumeSteps is"));
+    }
 
     const std::function<FwResult(const FwMaterialDef*)> makeMaterial =
         [&](const FwMaterialDef* def) {

@@ -19,8 +19,9 @@ namespace {
 
 struct Case {
     uint32_t width, height, fires;
-    uint32_t flags;  // FwVolumetricFireFlags
-    float boxed;     // part of the picture that one fire's bounds take
+    uint32_t flags;                 // FwVolumetricFireFlags
+    float boxed;                    // part of the picture that one fire's bounds take
+    uint32_t cell = 2, steps = 64;  // as FwWorldDef's
 };
 
 class Fires {
@@ -37,6 +38,8 @@ class Fires {
         const FwContextDef contextDef = fwDefaultContextDef();
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.maxFlames = 0;
+        worldDef.volumeCell = case_.cell;
+        worldDef.volumeSteps = case_.steps;
         FwErrorInfo info{};
         if (fwCreateContext(&contextDef, &context_, &info) != FW_OK ||
             fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
@@ -146,9 +149,13 @@ void drawFires(benchmark::State& state, const Case& what) {
         ->Unit(benchmark::kMillisecond)                   \
         ->UseManualTime()                                 \
         ->Iterations(9)
-FW_VOLUME_ROW(samework, "volume/samework/360p", 640, 360, 1, FW_FIRE_NO_SMOKE, 0.30f);
+FW_VOLUME_ROW(samework, "volume/samework/360p", 640, 360, 1, FW_FIRE_NO_SMOKE, 0.30f, 1);
 FW_VOLUME_ROW(delivered, "volume/delivered/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f);
 FW_VOLUME_ROW(quarter, "volume/onequarter_screen/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.25f);
+FW_VOLUME_ROW(small, "volume/15percent_screen/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.15f);
+FW_VOLUME_ROW(steps16, "volume/steps16/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 16);
+FW_VOLUME_ROW(steps24, "volume/steps24/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 24);
+FW_VOLUME_ROW(steps32, "volume/steps32/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 32);
 FW_VOLUME_ROW(flames32, "volume/flames32/720p", 1280, 720, 32, FW_FIRE_NO_SMOKE, 1.0f);
 
 }  // namespace

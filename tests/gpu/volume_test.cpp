@@ -220,7 +220,7 @@ class Volume : public GpuTest {
         gpu::volumeSlabs(view, low, high, draw);
         draw.rect = {-1, -1, 1, 1};
         const gpu::VolumeItem item{0, draw};
-        const gpu::VolumeScreen screen{{kSide, kSide}, 1, 0};
+        const gpu::VolumeScreen screen{{kSide, kSide}, 1};
         gpu::MarchedVolume marched;
         EXPECT_GT(gpu::layVolumes({&item, 1}, screen, view.eye.w, 1u << 20, {&marched, 1}), 0u);
         const gpu::VolumeMarch& m = marched.march;
@@ -451,7 +451,7 @@ TEST_F(Volume, TheEyeMayBeInside) {
 // However many flames there are and however near: cells grow until they fit, each flame has its
 // own.
 TEST(VolumeMarch, FitsWhatThereIs) {
-    const gpu::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs, 0};
+    const gpu::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
     const uint32_t words = gpu::volumeRayWords(screen);
     std::vector<gpu::VolumeItem> items(gpu::kMaxVolumeFlames);
     std::vector<gpu::MarchedVolume> out(items.size());

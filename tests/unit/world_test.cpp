@@ -167,6 +167,8 @@ class PlannedWorld : public ::testing::Test {
         def.maxStepsPerFrame = 8;
         def.maxLights = 16;
         def.maxRefinedTriangles = 400000;
+        def.volumeCell = 2;
+        def.volumeSteps = 64;
         world.emplace(def, backend, log, std::pmr::new_delete_resource());
         FwMeshDef mesh{};
         mesh.structSize = sizeof mesh;

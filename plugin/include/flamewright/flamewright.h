@@ -200,6 +200,10 @@ typedef struct FwWorldDef {
        poses wherever worlds are to be equal. */
     float (FW_CALL* visibility)(void* visibilityData, FwBurnableMeshId from, FwBurnableMeshId to);
     void* visibilityData;
+    /* Volumetric fires where they are marched before they are drawn: the view of the outside part. */
+    uint32_t volumeCell;        /* px, [1, 16], default 2: of the cells that are marched; 1: each pixel */
+    uint32_t volumeSteps;       /* [6, 64], default 64: most samples of a ray through a flame's depth. The few
+                                   that all but the largest 32 flames get are no more than these */
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
     FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;

@@ -123,9 +123,11 @@ struct MarchedVolume {  // one whose rays are marched before the drawing, and ho
     VolumeComposite composite{};
 };
 extern const DrawPass kVolumeCompositePass;
-struct VolumeScreen {    // what the marched view is shown on
-    vec2 size{};         // px
-    uint32_t slabs = 1;  // of a flame
+struct VolumeScreen {     // what the marched view is shown on
+    vec2 size{};          // px
+    uint32_t slabs = 1;   // of a flame
+    uint32_t cell = 2;    // px, at least
+    uint32_t steps = 64;  // of a ray, at most
     uint32_t encoding = 0;
     bool operator==(const VolumeScreen&) const = default;
 };

@@ -16,8 +16,8 @@ constexpr Use kUses[] = {
     {FW_BIND_VOLUME_RAYS, Access::write},
 };
 
-constexpr float kLeastCell = 2.0f, kMostCell = 64.0f;  // px
-constexpr uint64_t kMostWords = 16u << 20;             // 64 MiB
+constexpr float kMostCell = 64.0f;          // px
+constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
 
 static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
 
@@ -57,7 +57,7 @@ const ComputePass kVolumeMarchPass{"volume march", "volume_march.comp", kUses, s
                                    true};
 
 uint32_t volumeRayWords(const VolumeScreen& screen) {
-    const float tile = kLeastCell * float(kVolumeTile);
+    const float tile = float(screen.cell * kVolumeTile);
     const auto tiles = [&](float pixels) {
         return uint64_t(std::clamp(std::ceil(pixels / tile), 0.0f, 4096.0f)) + 1;
     };
@@ -68,7 +68,7 @@ uint32_t volumeRayWords(const VolumeScreen& screen) {
 
 uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
                     uint32_t words, std::span<MarchedVolume> out) {
-    float cell = kLeastCell;
+    auto cell = float(screen.cell);
     uint64_t all = 0;
     for (;; cell += 1.0f) {
         if (cell > kMostCell) return 0;
@@ -87,9 +87,11 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         one.flame = items[i].flame;
         VolumeMarch& march = one.march;
         march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell);
-        march.turns = uint32_t(
-            std::clamp(std::ceil(draw.deep / draw.spacing), 1.0f,
-                       std::max(std::floor(float(2 * draw.mostSteps) / float(draw.slabs)), 1.0f)));
+        march.turns = uint32_t(std::clamp(
+            std::ceil(draw.deep / draw.spacing), 1.0f,
+            std::max(
+                std::floor(float(std::min(2 * draw.mostSteps, screen.steps)) / float(draw.slabs)),
+                1.0f)));
         march.rayY = vec4(perCell.y * vec3(draw.rayY), draw.deep / float(march.turns));
         march.rayO = vec4(vec3(draw.rayO) + (0.5f * perCell.x - 1.0f) * vec3(draw.rayX) +
                               (0.5f * perCell.y - 1.0f) * vec3(draw.rayY),

@@ -43,13 +43,14 @@ class Context {
 };
 
 struct WorldLimits {
-    uint32_t maxLights = 16;                // [0, 64]
-    uint32_t maxFlames = 4096;              // [0, 65536]
-    uint32_t maxRefinedTriangles = 400000;  // aimed at, of all objects
-    uint32_t seed = 1;                      // of everything cosmetic
-    float up[3] = {0, 1, 0};                // world up
-    float paceFactor = 1;                   // as FwWorldDef
-    LookSources looks;                      // empty: recordInside draws nothing
+    uint32_t maxLights = 16;                    // [0, 64]
+    uint32_t maxFlames = 4096;                  // [0, 65536]
+    uint32_t maxRefinedTriangles = 400000;      // aimed at, of all objects
+    uint32_t volumeCell = 2, volumeSteps = 64;  // as FwWorldDef
+    uint32_t seed = 1;                          // of everything cosmetic
+    float up[3] = {0, 1, 0};                    // world up
+    float paceFactor = 1;                       // as FwWorldDef
+    LookSources looks;                          // empty: recordInside draws nothing
     // Buffers end where the last thing in them does, so that a validation layer sees an access past
     // it. For tests: every new object grows them.
     bool exactBuffers = false;

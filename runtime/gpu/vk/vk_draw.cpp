@@ -166,6 +166,8 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     if (target.key.flames && !volumes.empty()) {
         const VolumeScreen screen{{viewport.width, std::fabs(viewport.height)},
                                   target.key.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs,
+                                  limits.volumeCell,
+                                  limits.volumeSteps,
                                   uint32_t(target.key.encoding)};
         noteScreen(view, screen, slot.frameIndex);
         list.marched = marchedFor(view, screen);

@@ -173,6 +173,8 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         plan.switches = (refine.full ? kSwitchRefineFull : 0) | crossing;
         march.screen = {{float(def.width), float(def.height)},
                         target.key.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs,
+                        limits.volumeCell,
+                        limits.volumeSteps,
                         uint32_t(target.key.encoding)};
         run(plan);
         const uint64_t ringFrame = open.ringFrame;
