@@ -37,8 +37,9 @@ gpu::VolumeFlame smoothFlame() {
 
 class Volume : public GpuTest {
  protected:
-    void makeRig(PFN_vkGetInstanceProcAddr entry = nullptr) {
+    void makeRig(PFN_vkGetInstanceProcAddr entry = nullptr, uint32_t steps = 64) {
         gpu::vk::WorldLimits limits;
+        limits.volumeSteps = steps;
         limits.looks = testLooks();
         rig_ = std::make_unique<VkRig>(*device_, 2, 0, limits, entry);
         color_ = device_->makeImage(kColor, {kSide, kSide}, 1,
@@ -446,6 +447,67 @@ TEST_F(Volume, TheEyeMayBeInside) {
     const float beyond[3] = {0, 0.2f, 60};
     look(away, beyond, 40);
     EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).w, 0.0f) << "behind the eye";
+}
+
+// The few samples of flames beyond the largest 32 show as bright a flame, as large.
+TEST_F(Volume, FewSamplesShowTheSameFlame) {
+    if (!device_) return;
+    const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
+    const auto drawn = [&](uint32_t steps) {
+        makeRig(nullptr, steps);
+        std::vector<vec4> picture = draw({&flame, 1}, FW_DEPTH_NONE);
+        rig_.reset();
+        targets_ = {};
+        index_ = 0;
+        return picture;
+    };
+    // px from the left, from the top, to the right, to the bottom that light reaches
+    const auto bounds = [](const std::vector<vec4>& picture) {
+        float brightest = 0;
+        for (const vec4& pixel : picture) brightest = std::max(brightest, pixel.x);
+        glm::ivec4 box(kSide, kSide, 0, 0);
+        for (int i = 0; i < int(picture.size()); ++i)
+            if (picture[size_t(i)].x > 0.02f * brightest) {
+                const int x = i % int(kSide), y = i / int(kSide);
+                box = {std::min(box.x, x), std::min(box.y, y), std::max(box.z, x),
+                       std::max(box.w, y)};
+            }
+        return box;
+    };
+    const std::vector<vec4> many = drawn(64), few = drawn(24);
+    const vec4 a = meanOf(many), b = meanOf(few);
+    const glm::ivec4 wide = bounds(many), narrow = bounds(few);
+    std::printf("           red %.4f of %.4f; %d..%d x %d..%d of %d..%d x %d..%d px\n", double(b.x),
+                double(a.x), narrow.x, narrow.z, narrow.y, narrow.w, wide.x, wide.z, wide.y,
+                wide.w);
+    // Radiance as it is seen; the blue at a foot is thinner than a step, and little of it.
+    const vec4 seen(0.2126f, 0.7152f, 0.0722f, 0.0f);
+    EXPECT_NEAR(glm::dot(b, seen) / glm::dot(a, seen), 1.0f, 0.05f);
+    EXPECT_NEAR(b.w / a.w, 1.0f, 0.05f);
+    std::printf("           luminance %.4f, alpha %.4f, blue %.4f of those of many\n",
+                double(glm::dot(b, seen) / glm::dot(a, seen)), double(b.w / a.w),
+                double(b.z / a.z));
+    EXPECT_LT(a.z * seen.z, 0.03f * glm::dot(a, seen));
+    for (int c = 0; c < 4; ++c) EXPECT_LE(std::abs(wide[c] - narrow[c]), 1);  // 3 % of 40 px
+    EXPECT_GT(differenceOf(many, few), 0.005f) << "they were as many";
+}
+
+// Wherever the eye is the probe finds all of a flame: neither its spacing nor tiles' borders show
+// as the eye comes nearer.
+TEST_F(Volume, NothingPopsAsTheEyeComes) {
+    if (!device_) return;
+    makeRig();
+    const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
+    float worst = 0;
+    for (float away = 12.0f; away > 0.9f; away *= 0.87f) {
+        const float eye[3] = {0.2f * away, 0.45f + 0.1f * away, away}, at[3] = {0, 0.45f, 0};
+        look(eye, at, 30);
+        const float wanted = meanOf(march(flame, FW_FIRE_CAMP)).x;
+        const float drawn = meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).x;
+        worst = std::max(worst, std::abs(drawn / wanted - 1.0f));
+        EXPECT_NEAR(drawn / wanted, 1.0f, 0.005f) << away << " m";
+    }
+    std::printf("           at most %.4f of its light is lost or made\n", double(worst));
 }
 
 // However many flames there are and however near: cells grow until they fit, each flame has its

@@ -19,7 +19,7 @@ constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
 constexpr uint32_t kMostSteps = 32;
 // So many flames, those that cover most of the view, get all their samples; the others a few,
 // which changes their grain and not their light.
-constexpr uint32_t kMarchedFlames = 32, kFewSteps = 10;
+constexpr uint32_t kMarchedFlames = 32, kFewSteps = 12;
 // Samples this far apart, in diameters: closer shows no more but for less grain.
 constexpr float kSpacing = 0.05f;
 
