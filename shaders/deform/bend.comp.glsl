@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 #define FW_USE_OBJECT_QUADS
 #define FW_USE_DEFORM_NODES
-#define FW_USE_SOFT FW_READ_WRITE
+#define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
 
 void main() {
@@ -21,10 +21,10 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = (sizes.x + number) * kDeformNodeQuads;
-        uvec4 facts = deformNodes[at];
-        uint own = (softBase + number) * kSoftQuads;
-        uvec4 self = soft[own + item.parity];
+        uint at = sizes.x * kDeformNodeQuads + number;
+        uvec4 facts = deformNode(at);
+        uint own = softBase * kSoftQuads + number, places = own - number + item.parity * sizes.y;
+        uvec4 self = soft(places + number);
         vec3 x = uintBitsToFloat(self.xyz);
         float burnt = burntOf(self.w), reach = kReachNone, charred = charredShare(burnt);
         float curl = uintBitsToFloat(material0.w), bend = uintBitsToFloat(more0.z);
@@ -43,7 +43,7 @@ void main() {
         uint turn = 0u, turns = nodeTurns(facts.y), all = turns + nodeArms(facts.y);
         do {  // the neighbours, and arms at last
             bool arms = turn == turns;
-            uvec4 two = deformNodes[at + (arms ? kNodeArms + way : kNodeNear + turn)];
+            uvec4 two = deformNode(at + (arms ? kNodeArms + way : kNodeNear + turn) * sizes.y);
             nearSum = arms ? sum : nearSum;
             nearSquares = arms ? squares : nearSquares;
             sum = arms ? vec3(0.0) : sum;
@@ -53,7 +53,7 @@ void main() {
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 uint k = (arms ? 8u : turn * kDeformLinks) + i, other = two[i];
                 float rest = unpackHalf2x16(two.z)[i];
-                uvec4 there = soft[(softBase + (other & kDeformNode)) * kSoftQuads + item.parity];
+                uvec4 there = soft(places + (other & kDeformNode));
                 vec3 arm = uintBitsToFloat(there.xyz) - x;
                 bool holds = rest > 0.0 && linkHolds(burnt, burntOf(there.w), other >> 24u) &&
                              (!arms || dot(arm, arm) <= kArmTears * kArmTears * rest * rest);
@@ -89,14 +89,14 @@ void main() {
                    armFirm(stiff, charred, across),
                    (facts.y & kNodeArmsEven << way) != 0u);
         uint armShare = packShare(reaches && squares.y == 2.0 ? b * (0.5 * kBendUnit) : vec3(0.0));
-        soft[own + kSoftSeen] = uvec4(self.xyz, nearShare);
+        softOut[own + kSoftSeen * sizes.y] = uvec4(self.xyz, nearShare);
         float was = reachOf(self.w), found = min(reach, kReachNone);
         uint knew = self.w & kReachKnown;
         reach = pinnedOf(self.w) != 0u ? 0.0 : reachNext(found, was, knew != 0u);
         uint known = (packHalf2x16(vec2(reach, 0.0)) & 0x7FFFu) |
                      (reachKnown(found, was) ? kReachKnown : knew);
-        soft[own + kSoftOwn] = uvec4(packBent(normal, links), charreds,
-                                     known | (self.w & 0xFF0000u) | masks, armShare);
+        softOut[own + kSoftOwn * sizes.y] = uvec4(packBent(normal, links), charreds,
+                                      known | (self.w & 0xFF0000u) | masks, armShare);
         number += 64u;
     } while (number < last);
 }

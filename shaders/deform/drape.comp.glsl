@@ -4,8 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_DEFORM_COATS
-#define FW_USE_SHOWN FW_READ_WRITE
-#define FW_USE_SHOWN_WORDS writeonly
+#define FW_USE_SHOWN
+#define FW_USE_SHOWN_WORDS
 #include "lib/deform_buffers.glsl"
 
 void main() {
@@ -17,18 +17,18 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = (sizes.z + number) * kDeformCoatQuads;
-        uvec2 coat = deformCoats[at].xy;
-        uvec3 face = deformCoats[at + 3u].xyz;
+        uint at = sizes.z * kDeformCoatQuads + number;
+        uvec2 coat = deformCoat(at).xy;
+        uvec3 face = deformCoat(at + 3u * sizes.w).xyz;
         uint node = shownBase + coat.x;
-        vec3 place = shown[node * kShownQuads].xyz;
-        float lead = shown[node * kShownQuads + 2u].w;
+        vec3 place = shown(node * kShownQuads).xyz;
+        float lead = shown(node * kShownQuads + 2u).w;
 
         vec3 turned = vec3(0.0), before = vec3(0.0);
         FW_UNROLL for (uint q = 0u; q < kDeformRing / 4u; ++q) {
-            uvec4 ring = deformCoats[at + 1u + q];
+            uvec4 ring = deformCoat(at + (1u + q) * sizes.w);
             FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
-                vec3 arm = shown[(shownBase + ring[k]) * kShownQuads].xyz - place;
+                vec3 arm = shown((shownBase + ring[k]) * kShownQuads).xyz - place;
                 turned += cross(before, arm);
                 before = arm;
             }
@@ -43,8 +43,8 @@ void main() {
         if (self == node) {
             shownWords[self * kShownQuads * 4u + 3u] = packed;
         } else {
-            shown[self * kShownQuads] = vec4(place, uintBitsToFloat(packed));
-            shown[self * kShownQuads + 2u] = vec4(0.0, 0.0, 0.0, lead);
+            shownOut[self * kShownQuads] = floatBitsToUint(vec4(place, uintBitsToFloat(packed)));
+            shownOut[self * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, lead));
         }
         number += 64u;
     } while (number < last);

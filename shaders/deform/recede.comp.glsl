@@ -5,8 +5,8 @@
 layout(local_size_x = 64) in;
 #define FW_USE_STATE readonly
 #define FW_USE_DEFORM_NODES
-#define FW_USE_SHOWN FW_READ_WRITE
-#define FW_USE_SOFT FW_READ_WRITE
+#define FW_USE_SHOWN
+#define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
 
 void main() {
@@ -21,8 +21,8 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = (sizes.x + number) * kDeformNodeQuads;
-        uvec4 facts = deformNodes[at], rest = deformNodes[at + kNodeRest];
+        uint at = sizes.x * kDeformNodeQuads + number;
+        uvec4 facts = deformNode(at), rest = deformNode(at + kNodeRest * sizes.y);
         uvec2 material = material0, holes = holes0;
         if ((facts.y & 7u) != 0u) {
             uint materialAt = item.object + 4u + (facts.y & 7u) * 2u;
@@ -32,7 +32,7 @@ void main() {
 
         float sum = 0.0, known = 0.0;
         FW_UNROLL for (uint q = 0u; q < kDeformTexels / 4u; ++q) {
-            uvec4 texels = deformNodes[at + kNodeTexels + q];
+            uvec4 texels = deformNode(at + (kNodeTexels + q) * sizes.y);
             FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
                 bool there = texels[k] != kNoneTexel;
                 uint t = state[bases.y + (there ? texels[k] : 0u)];
@@ -42,7 +42,7 @@ void main() {
         }
         uint vertex = (bases.x + facts.x) * kShownQuads;
         // What was put out stays as it is: the share never falls.
-        float before_ = item.reset ? 0.0 : shown[vertex + 1u].x;
+        float before_ = item.reset ? 0.0 : shown(vertex + 1u).x;
         float burnt = max(before_, sum / max(known, 1.0));
 
         float lead = 0.0;
@@ -53,13 +53,13 @@ void main() {
         vec3 place = uintBitsToFloat(rest.xyz);
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
         if (!moves) {
-            vec4 out_ = uintBitsToFloat(deformNodes[at + kNodeOut]);
+            vec4 out_ = uintBitsToFloat(deformNode(at + kNodeOut * sizes.y));
             place += out_.xyz * recession(burnt, depth, item.crosses ? 1e9 : out_.w);
         }
         // Places of others are the solver's: here it learns what burnt, and at first where things rest.
         if (moves) {
-            uint own = (softBase + number) * kSoftQuads;
-            uvec4 before = soft[own + item.parity];
+            uint own = softBase * kSoftQuads + item.parity * sizes.y + number;
+            uvec4 before = soft(own);
             float reach = reachOf(before.w);
             if (item.reset) {
                 before.xyz = rest.xyz;
@@ -74,20 +74,21 @@ void main() {
             }
             if (reach == 0.0 && burntOf(packFacts(reach, burnt)) > kPinBurns) reach = kReachNone;
             before.w = packFacts(reach, burnt) | (item.reset ? 0u : before.w & kReachKnown);
-            soft[own + item.parity] = before;
-            if (!item.reset) place = shown[vertex].xyz;
+            softOut[own] = before;
+            if (!item.reset) place = shown(vertex).xyz;
             // What the springs are told of a frame, in equal parts for its steps.
             float steps = float(push.parity >> 1u);
-            kept = (item.reset ? 0.0 : shown[vertex + 1u].z) + depth * (burnt - before_);
+            kept = (item.reset ? 0.0 : shown(vertex + 1u).z) + depth * (burnt - before_);
             if (item.reset) kept = 0.0;
             if (steps > 0.5) {
                 lost = kept / steps;
                 kept = 0.0;
             }
         }
-        shown[vertex] = vec4(place, 0.0);
-        shown[vertex + 1u] = vec4(burnt, lost, kept, 0.0);
-        shown[vertex + 2u] = vec4(0.0, 0.0, 0.0, lead);
+        readBeforeWritten();
+        shownOut[vertex] = floatBitsToUint(vec4(place, 0.0));
+        shownOut[vertex + 1u] = floatBitsToUint(vec4(burnt, lost, kept, 0.0));
+        shownOut[vertex + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, lead));
         number += 64u;
     } while (number < last);
 }

@@ -5,8 +5,8 @@
 layout(local_size_x = 64) in;
 #define FW_USE_OBJECT_QUADS
 #define FW_USE_DEFORM_NODES
-#define FW_USE_SHOWN FW_READ_WRITE
-#define FW_USE_SOFT FW_READ_WRITE
+#define FW_USE_SHOWN
+#define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
 
 void main() {
@@ -24,8 +24,8 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = (sizes.x + number) * kDeformNodeQuads;
-        uvec2 facts = deformNodes[at].xy;
+        uint at = sizes.x * kDeformNodeQuads + number;
+        uvec2 facts = deformNode(at).xy;
         uint vertex = facts.x;
         float shrink = uintBitsToFloat(material0.z), drag = uintBitsToFloat(more0.w);
         if ((facts.y & 7u) != 0u) {
@@ -34,8 +34,9 @@ void main() {
             drag = uintBitsToFloat(deformObjects[materialAt + 1u].w);
         }
 
-        uint own = (softBase + number) * kSoftQuads;
-        uvec4 seen = soft[own + kSoftSeen], bent = soft[own + kSoftOwn];
+        uint own = softBase * kSoftQuads + number;
+        uint seenAt = own - number + kSoftSeen * sizes.y, ownAt = seenAt + sizes.y;
+        uvec4 seen = soft(seenAt + number), bent = soft(ownAt + number);
         vec3 x = uintBitsToFloat(seen.xyz), normal = bentNormal(bent.x);
         float burnt = burntOf(bent.z), reach = reachOf(bent.z), charred = charredShare(burnt);
         bool pinned = reach == 0.0;
@@ -47,12 +48,11 @@ void main() {
         uint turn = 0u, turns = nodeTurns(facts.y), all = turns + nodeArms(facts.y);
         do {  // the neighbours, and arms at last
             bool arms = turn == turns;
-            uvec4 two = deformNodes[at + (arms ? kNodeArms + (push.parity >> 1u) : kNodeNear + turn)];
+            uvec4 two = deformNode(at + (arms ? kNodeArms + (push.parity >> 1u) : kNodeNear + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 uint k = (arms ? 8u : turn * kDeformLinks) + i;
                 bool holds = (bent.x >> k & 1u) != 0u;
-                uint from = (softBase + (two[i] & kDeformNode)) * kSoftQuads;
-                uvec4 there = soft[from + (arms ? kSoftOwn : kSoftSeen)];
+                uvec4 there = soft((arms ? ownAt : seenAt) + (two[i] & kDeformNode));
                 bending -= holds ? shareOf(there.w) : vec3(0.0);
                 if (arms) continue;
                 float theirs = float(bent.y >> (4u * k) & 15u);
@@ -63,7 +63,7 @@ void main() {
             }
         } while (++turn < all);
         uint shownAt = (bases.x + vertex) * kShownQuads;
-        vec3 before = shown[shownAt].xyz;
+        vec3 before = shown(shownAt).xyz;
         vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
                      bending * (relaxAt(1.0, push.step) / kBendUnit);
         // No farther from the nearest pin than its way there over links that hold.
@@ -98,8 +98,9 @@ void main() {
 
         vec3 next = moved + velocity * push.step;
         if (pinned) moved = next = x;  // where it has been from the first
-        shown[shownAt].xyz = moved;
-        soft[own + (item.parity ^ 1u)] =
+        readBeforeWritten();
+        shownOut[shownAt] = floatBitsToUint(vec4(moved, 0.0));
+        softOut[own + (item.parity ^ 1u) * sizes.y] =
             uvec4(floatBitsToUint(next), packFacts(reach, burnt) | (bent.z & kReachKnown));
         number += 64u;
     } while (number < last);

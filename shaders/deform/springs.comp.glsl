@@ -5,8 +5,8 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_DEFORM_NODES
-#define FW_USE_SHOWN FW_READ_WRITE
-#define FW_USE_SOFT FW_READ_WRITE
+#define FW_USE_SHOWN
+#define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
 
 void main() {
@@ -20,28 +20,30 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = (sizes.x + number) * kDeformNodeQuads;
-        uvec2 facts = deformNodes[at].xy;
+        uint at = sizes.x * kDeformNodeQuads + number;
+        uvec2 facts = deformNode(at).xy;
         uint vertex = facts.x;
-        uint own = (softBase + number) * kSoftQuads, shownAt = (shownBase + vertex) * kShownQuads;
-        uvec4 self = soft[own + item.parity];
+        uint own = softBase * kSoftQuads + number, shownAt = (shownBase + vertex) * kShownQuads;
+        uint places = own - number + item.parity * sizes.y;
+        uvec4 self = soft(places + number);
         vec3 x = uintBitsToFloat(self.xyz);
 
         vec3 pull = vec3(0.0), turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0);
         uint turn = 0u, turns = nodeTurns(facts.y);
         do {
-            uvec4 two = deformNodes[at + kNodeNear + turn], over = deformNodes[at + kNodeFar + turn];
+            uvec4 two = deformNode(at + (kNodeNear + turn) * sizes.y),
+                  over = deformNode(at + (kNodeFar + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 uint other = two[i] & kDeformNode;
                 float rest = unpackHalf2x16(two.z)[i];
-                vec3 y = uintBitsToFloat(soft[(softBase + other) * kSoftQuads + item.parity].xyz);
+                vec3 y = uintBitsToFloat(soft(places + other).xyz);
                 pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
                 turned += cross(before, y - x);
                 if (turn + i == 0u) first = y - x;
                 before = y - x;
                 other = over[i] & kDeformNode;
                 rest = unpackHalf2x16(over.z)[i];
-                y = uintBitsToFloat(soft[(softBase + other) * kSoftQuads + item.parity].xyz);
+                y = uintBitsToFloat(soft(places + other).xyz);
                 pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
             }
         } while (++turn < turns);
@@ -49,12 +51,13 @@ void main() {
         float size = length(turned);
         vec3 normal = size > 1e-18 ? turned / size : vec3(0.0);
 
-        vec3 from = shown[shownAt].xyz;
-        float lost = shown[shownAt + 1u].y;  // m, in this step
+        vec3 from = shown(shownAt).xyz;
+        float lost = shown(shownAt + 1u).y;  // m, in this step
         vec3 force = pull + decayPull(normal, lost, push.step) * kDecayShare;
         vec3 velocity = (x - from) * ((1.0 - kSpringDamping) / push.step) + force * push.step;
-        shown[shownAt] = vec4(x, 0.0);
-        soft[own + (item.parity ^ 1u)] =
+        readBeforeWritten();
+        shownOut[shownAt] = floatBitsToUint(vec4(x, 0.0));
+        softOut[own + (item.parity ^ 1u) * sizes.y] =
             uvec4(floatBitsToUint(x + velocity * push.step), self.w);
         number += 64u;
     } while (number < last);

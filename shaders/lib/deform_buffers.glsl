@@ -1,34 +1,62 @@
-// Storage buffers of the deformation passes, by words of four. As lib/buffers.glsl: a shader defines
-// FW_USE_<NAME> as the access it needs.
+// Buffers of the deformation passes, by words of four. As lib/buffers.glsl: a shader defines
+// FW_USE_<NAME>. What is read per node is a texel buffer with FW_TEXELS: a software device reads a
+// texel faster than four words of a storage buffer. It writes words faster than texels.
+// Nodes, coats and what moves lie quad by quad, the first of all nodes of the mesh or object, then
+// the second: nodes that are read one after another are near each other, and what a pass does not
+// read costs it nothing.
 #ifndef FW_LIB_DEFORM_BUFFERS_GLSL
 #define FW_LIB_DEFORM_BUFFERS_GLSL
 #include "lib/buffers.glsl"
 #include "shared/deform.h"
 
+#ifdef FW_TEXELS
+#define FW_QUADS(number, block, name) \
+    layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + number) readonly uniform uimageBuffer name
+#define FW_QUAD(name, at) imageLoad(name, int(at))
+// Between a read and a write of the same quad, which are two resources.
+void readBeforeWritten() { memoryBarrier(); }
+#else
+#define FW_QUADS(number, block, name) FW_BUFFER(number, FW_READ_WRITE, block, uvec4, name)
+#define FW_QUAD(name, at) name[at]
+#define shownOut shownQuads
+#define softOut softQuads
+void readBeforeWritten() {}
+#endif
+
 FW_BUFFER(FW_BIND_DEFORM_OBJECTS, readonly, DeformObjectsBuffer, uvec4, deformObjects);
 FW_BUFFER(FW_BIND_DEFORM_GROUPS, readonly, DeformGroupsBuffer, uvec2, deformGroups);
 #ifdef FW_USE_DEFORM_NODES
-FW_BUFFER(FW_BIND_DEFORM_NODES, readonly, DeformNodesBuffer, uvec4, deformNodes);
+FW_QUADS(FW_BIND_DEFORM_NODES, DeformNodesBuffer, nodeQuads);
+uvec4 deformNode(uint quad) { return FW_QUAD(nodeQuads, quad); }
 // Loops over a node's links ask at their end; every node of a run takes as many turns, so on devices
 // that run several as one none leaves before the others.
 uint nodeTurns(uint flags) { return flags >> kNodeTurnsShift & 7u; }
 uint nodeArms(uint flags) { return (flags & kNodeHasArms) != 0u ? 1u : 0u; }  // so many turns more
 #endif
 #ifdef FW_USE_DEFORM_COATS
-FW_BUFFER(FW_BIND_DEFORM_COATS, readonly, DeformCoatsBuffer, uvec4, deformCoats);
+FW_QUADS(FW_BIND_DEFORM_COATS, DeformCoatsBuffer, coatQuads);
+uvec4 deformCoat(uint quad) { return FW_QUAD(coatQuads, quad); }
 #endif
 #ifdef FW_USE_SHOWN
-FW_BUFFER(FW_BIND_SHOWN, FW_USE_SHOWN, ShownBuffer, vec4, shown);
+FW_QUADS(FW_BIND_SHOWN, ShownBuffer, shownQuads);
+#ifdef FW_TEXELS
+FW_BUFFER(FW_BIND_SHOWN, writeonly, ShownOutBuffer, uvec4, shownOut);
+#endif
+vec4 shown(uint quad) { return uintBitsToFloat(FW_QUAD(shownQuads, quad)); }
 #endif
 #ifdef FW_USE_SHOWN_WORDS
-FW_BUFFER(FW_BIND_SHOWN, FW_USE_SHOWN_WORDS, ShownWordsBuffer, uint, shownWords);
+FW_BUFFER(FW_BIND_SHOWN, writeonly, ShownWordsBuffer, uint, shownWords);
 #endif
 
 #ifdef FW_USE_SOFT
 // Per node: two places, each with its facts; what neighbours see of bend.comp's result, the
 // place and a share; what is the node's own of it: normal and links that hold (near, arms << 8),
 // neighbours' charred shares, way to a pin and which of them are pinned, a share for arms' ends.
-FW_BUFFER(FW_BIND_SOFT, FW_USE_SOFT, SoftBuffer, uvec4, soft);
+FW_QUADS(FW_BIND_SOFT, SoftBuffer, softQuads);
+#ifdef FW_TEXELS
+FW_BUFFER(FW_BIND_SOFT, writeonly, SoftOutBuffer, uvec4, softOut);
+#endif
+uvec4 soft(uint quad) { return FW_QUAD(softQuads, quad); }
 const uint kSoftSeen = 2u, kSoftOwn = 3u;
 
 const float kCharredSteps = 15.0;  // in which neighbours know of it

@@ -80,7 +80,7 @@ struct DeviceLinks {      // what one turn reads
     uint lengths;                // m, halfs; 0: no link
     float rise;                  // m, of arms
 };
-struct DeviceNode {       // a DeformNode as devices have it
+struct DeviceNode {       // a DeformNode as devices have it: quad by quad, each of all nodes of the mesh
     uint vertex; uint flags; float rise; uint opposite;
     DeviceLinks near_[4];
     DeviceLinks arms[4];
@@ -92,7 +92,7 @@ struct DeviceNode {       // a DeformNode as devices have it
 };
 FW_SHARED_SIZE(DeviceNode, 320)
 
-struct DeformCoat {       // static, per drawn vertex: what its normal follows
+struct DeformCoat {       // static, per drawn vertex: what its normal follows; devices: quad by quad
     uint node;            // vertex that keeps its node's state
     uint normal;          // at rest, signed 11:11:10
     uint reserved0; uint reserved1;

@@ -6,6 +6,7 @@
 #include "support/pass_rig.h"
 
 #include <bit>
+#include <string>
 
 namespace fw::test {
 namespace {
@@ -15,28 +16,38 @@ using gpu::vec3;
 constexpr uint32_t kBindings[] = {
     FW_BIND_STATE,        FW_BIND_OBJECTS,      FW_BIND_DEFORM_OBJECTS, FW_BIND_DEFORM_GROUPS,
     FW_BIND_DEFORM_NODES, FW_BIND_DEFORM_COATS, FW_BIND_SHOWN,          FW_BIND_SOFT};
+constexpr uint32_t kTexels[] = {FW_BIND_DEFORM_NODES, FW_BIND_DEFORM_COATS, FW_BIND_SHOWN,
+                                FW_BIND_SOFT};
 constexpr float kStep = float(gpu::kSoftTicks) / float(gpu::kTicksPerSecond);
 constexpr float kSide = 0.2f;  // m
 
 // One object on both sides.
 struct Pair {
-    Pair(TestDevice& testDevice, const Mesh& mesh, const gpu::DeformObject& what)
+    // `words`: as devices do it that have few texels.
+    Pair(TestDevice& testDevice, const Mesh& mesh, const gpu::DeformObject& what,
+         bool words = false)
         : device(testDevice),
           domain(mesh::bake(mesh.input(64), std::pmr::new_delete_resource())),
           model(mesh::makeDeformModel(domain, std::pmr::new_delete_resource())),
           state(std::pmr::new_delete_resource()),
           object(what),
           states(domain.texelCount(), gpu::kInert),
-          rig(testDevice, kBindings, sizeof(gpu::DeformPush)) {
+          rig(testDevice, kBindings, sizeof(gpu::DeformPush),
+              words ? std::span<const uint32_t>() : kTexels) {
         object.nodeCount = uint32_t(model.nodes.size());
         object.vertexCount = uint32_t(domain.vertices.size());
         object.ground = -1e9f;
         object.scale = 1;
         mesh::resetDeform(model, state);
         mesh::resetSoft(model, object, state);
-        std::vector<gpu::DeviceNode> nodes;
-        for (uint32_t i = 0; i < model.nodes.size(); ++i)
-            nodes.push_back(mesh::deviceNode(model, i));
+        std::vector<gpu::DeviceNode> nodes(model.nodes.size());
+        for (uint32_t i = 0; i < nodes.size(); ++i)
+            mesh::putQuads(mesh::deviceNode(model, i), i, nodes.size(),
+                           reinterpret_cast<std::byte*>(nodes.data()));
+        std::vector<gpu::DeformCoat> coats(model.coats.size());
+        for (size_t i = 0; i < coats.size(); ++i)
+            mesh::putQuads(model.coats[i], i, coats.size(),
+                           reinterpret_cast<std::byte*>(coats.data()));
         groups = (std::max(object.nodeCount, object.vertexCount) + gpu::kDeformGroup - 1) /
                  gpu::kDeformGroup;
         const gpu::vec4 rows[10] = {{}, {}, {}, {}, {}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
@@ -45,13 +56,11 @@ struct Pair {
         rig.make(FW_BIND_DEFORM_OBJECTS, sizeof object, &object);
         rig.make(FW_BIND_DEFORM_GROUPS, groups * 8);
         rig.make(FW_BIND_DEFORM_NODES, nodes.size() * sizeof nodes[0], nodes.data());
-        rig.make(FW_BIND_DEFORM_COATS, model.coats.size() * sizeof model.coats[0],
-                 model.coats.data());
+        rig.make(FW_BIND_DEFORM_COATS, coats.size() * sizeof coats[0], coats.data());
         rig.make(FW_BIND_SHOWN, domain.vertices.size() * sizeof(gpu::ShownVertex));
         rig.make(FW_BIND_SOFT, nodes.size() * 16 * gpu::kSoftQuads);
-        for (const char* name :
-             {"recede.comp", "bend.comp", "soft.comp", "springs.comp", "drape.comp"})
-            rig.add(name);
+        for (const std::string pass : {"recede", "bend", "soft", "springs", "drape"})
+            rig.add((pass + (words ? ".comp" : "_texels.comp")).c_str());
         push.up = {0, 1, 0, 0};
         push.step = kStep;
     }
@@ -119,7 +128,7 @@ struct Pair {
             const uint32_t vertex = model.nodes[i].vertex;
             const mesh::DeformState::Soft& own = state.soft[vertex];
             const vec3 at = own.place[state.parity];
-            soft[i * gpu::kSoftQuads + (odd ? 1 : 0)] = {
+            soft[i + (odd ? model.nodes.size() : 0)] = {
                 std::bit_cast<uint32_t>(at.x), std::bit_cast<uint32_t>(at.y),
                 std::bit_cast<uint32_t>(at.z),
                 gpu::packHalf2x16({std::min(own.reach[state.parity], gpu::kReachNone), 0}) |
@@ -256,6 +265,24 @@ TEST_F(DeformEquality, Sheets) {
     EXPECT_LT(apart.mean, kApart);
     EXPECT_LT(apart.place, 0.01);
     EXPECT_LT(apart.normal, 1);
+}
+
+// By words, as where there are few texels: the same bits.
+TEST_F(DeformEquality, WordsAreTexels) {
+    gpu::DeformObject springs = object(gpu::kDeformSprings);
+    springs.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
+    for (const gpu::DeformObject& what : {sheet(), object(gpu::kDeformRecede), springs}) {
+        const Mesh mesh = makeSheet(double(kSide), 10);
+        Pair texels(*device_, mesh, what), words(*device_, mesh, what, true);
+        for (Pair* pair : {&texels, &words}) {
+            light(*pair);
+            for (uint32_t frame = 0; frame < 20; ++frame) pair->frame(100 + frame * 1024, 3);
+        }
+        const auto a = texels.rig.of<uint32_t>(FW_BIND_SHOWN);
+        const auto b = words.rig.of<uint32_t>(FW_BIND_SHOWN);
+        EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin())) << what.flags;
+        EXPECT_GT(texels.apart().moved, 1e-4) << what.flags;
+    }
 }
 
 // Whatever one side does differently is seen: curl, weight, a pin, shrinking, drag.

@@ -78,9 +78,10 @@ class EveryPass : public GpuTest {
         limits.maxFlames = 64;  // fewer than the scene wishes for
         limits.maxLights = 4;
         limits.maxRefinedTriangles = 500;  // fewer than it wishes for
-        rig_ = std::make_unique<VkRig>(
-            *device_, 2, 0, limits,
-            shortBinding == kNoBinding ? nullptr : shorteningEntry(shortBinding));
+        rig_ = std::make_unique<VkRig>(*device_, 2, 0, limits,
+                                       shortBinding != kNoBinding ? shorteningEntry(shortBinding)
+                                       : published ? fewTexelsEntry()  // passes by words, then
+                                                   : nullptr);
         scene_ = &scene(published);
         scene_->create(rig_->backend);
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();

@@ -366,13 +366,18 @@ TEST(VkContractFloor, NoPassBindsMoreStorageBuffersThanDevicesAreAskedFor) {
         std::set<uint32_t> all;
         for (const gpu::Use& use : uses)
             if (use.access == gpu::Access::read || use.access == gpu::Access::write ||
-                use.access == gpu::Access::drawRead)
+                use.access == gpu::Access::readTexels || use.access == gpu::Access::drawRead)
                 all.insert(use.resource);
         return all.size();
     };
     size_t most = 0;
     for (const gpu::ComputePass* pass : gpu::computePasses()) {
         EXPECT_LE(bound(pass->uses), 20u) << pass->name;
+        const auto texels = std::count_if(
+            pass->uses.begin(), pass->uses.end(),
+            [](const gpu::Use& use) { return use.access == gpu::Access::readTexels; });
+        EXPECT_LE(texels, 4) << pass->name << ": maxPerStageDescriptorStorageImages";
+        EXPECT_EQ(texels != 0, pass->texelShader != nullptr) << pass->name;
         most = std::max(most, bound(pass->uses));
     }
     for (const gpu::DrawPass* pass : gpu::drawPasses())

@@ -3,9 +3,11 @@
 #pragma once
 #include "support/vulkan_device.h"
 
+#include "gpu/passes/pass.h"
 #include "shaders_embedded.h"
 #include "shared/burn.h"
 
+#include <algorithm>
 #include <cstring>
 #include <span>
 
@@ -14,11 +16,14 @@ namespace fw::test {
 class PassRig {
  public:
     // `bindings`: what the passes bind; each gets a buffer from `make` before the first dispatch.
-    PassRig(TestDevice& device, std::span<const uint32_t> bindings, uint32_t pushBytes)
-        : device_(device), pushBytes_(pushBytes) {
+    // `texels`: those of them that the passes read by texels.
+    PassRig(TestDevice& device, std::span<const uint32_t> bindings, uint32_t pushBytes,
+            std::span<const uint32_t> texels = {})
+        : device_(device), pushBytes_(pushBytes), texels_(texels.begin(), texels.end()) {
         makeLayouts(bindings);
     }
     ~PassRig() {
+        for (VkBufferView v : views_) vkDestroyBufferView(device_.device, v, nullptr);
         for (VkPipeline p : pipelines_) vkDestroyPipeline(device_.device, p, nullptr);
         vkDestroyDescriptorPool(device_.device, pool_, nullptr);
         vkDestroyPipelineLayout(device_.device, layout_, nullptr);
@@ -33,7 +38,8 @@ class PassRig {
     }
 
     void make(uint32_t binding, size_t bytes, const void* content = nullptr) {
-        const TestBuffer made = device_.makeBuffer(bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        const TestBuffer made = device_.makeBuffer(
+            bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
         data_[binding] = made.mapped;
         sizes_[binding] = bytes;
         std::memset(data_[binding], 0, bytes);
@@ -46,6 +52,18 @@ class PassRig {
         write.descriptorCount = 1;
         write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         write.pBufferInfo = &buffer;
+        vkUpdateDescriptorSets(device_.device, 1, &write, 0, nullptr);
+        if (std::find(texels_.begin(), texels_.end(), binding) == texels_.end()) return;
+        VkBufferViewCreateInfo view{};
+        view.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+        view.buffer = made.buffer;
+        view.format = VK_FORMAT_R32G32B32A32_UINT;
+        view.range = VK_WHOLE_SIZE;
+        views_.push_back(VK_NULL_HANDLE);
+        must(vkCreateBufferView(device_.device, &view, nullptr, &views_.back()));
+        write.dstBinding = gpu::texelBinding(binding);
+        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+        write.pTexelBufferView = &views_.back();
         vkUpdateDescriptorSets(device_.device, 1, &write, 0, nullptr);
     }
 
@@ -83,9 +101,12 @@ class PassRig {
         for (const uint32_t binding : used)
             bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
                                 VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+        for (const uint32_t binding : texels_)
+            bindings.push_back({gpu::texelBinding(binding), VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER,
+                                1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
         VkDescriptorSetLayoutCreateInfo set{};
         set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-        set.bindingCount = count;
+        set.bindingCount = uint32_t(bindings.size());
         set.pBindings = bindings.data();
         must(vkCreateDescriptorSetLayout(device_.device, &set, nullptr, &setLayout_));
         const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, pushBytes_};
@@ -96,12 +117,13 @@ class PassRig {
         layout.pushConstantRangeCount = 1;
         layout.pPushConstantRanges = &push;
         must(vkCreatePipelineLayout(device_.device, &layout, nullptr, &layout_));
-        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count};
+        const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count},
+                                              {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, count}};
         VkDescriptorPoolCreateInfo pool{};
         pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
         pool.maxSets = 1;
-        pool.poolSizeCount = 1;
-        pool.pPoolSizes = &size;
+        pool.poolSizeCount = 2;
+        pool.pPoolSizes = sizes;
         must(vkCreateDescriptorPool(device_.device, &pool, nullptr, &pool_));
         VkDescriptorSetAllocateInfo allocate{};
         allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
@@ -142,6 +164,8 @@ class PassRig {
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     std::vector<VkPipeline> pipelines_;
+    std::vector<uint32_t> texels_;
+    std::vector<VkBufferView> views_;
     void* data_[FW_BIND_COUNT] = {};
     size_t sizes_[FW_BIND_COUNT] = {};
 };

@@ -28,6 +28,7 @@ std::atomic<uint64_t> submits, waits, memory, maps, pipelines, descriptorPools, 
     X(CreateComputePipelines, pipelines) X(CreateGraphicsPipelines, pipelines)        \
     X(CreateDescriptorPool, descriptorPools) X(AllocateDescriptorSets, descriptorPools) \
     X(CreateBuffer, objects) X(CreateImage, objects) X(CreateImageView, objects)      \
+    X(CreateBufferView, objects)                                                      \
     X(CreatePipelineLayout, objects) X(CreateDescriptorSetLayout, objects)            \
     X(CreateShaderModule, objects) X(CreateRenderPass, objects)                       \
     X(CreateFramebuffer, objects) X(CreateQueryPool, objects)                         \

@@ -139,5 +139,7 @@ VulkanCounts takeCounts();  // since the last take
 // Another entry to put between: storage buffers at this binding end one word early. One at a time.
 constexpr uint32_t kNoBinding = 0xFFFFFFFFu;
 PFN_vkGetInstanceProcAddr shorteningEntry(uint32_t binding);
+// And one with which the device has as few texels in a buffer as Vulkan allows.
+PFN_vkGetInstanceProcAddr fewTexelsEntry();
 
 }  // namespace fw::test

@@ -1,5 +1,5 @@
-// A shim between the library and the loader that makes one storage buffer end too early, so that a
-// test can prove that an access past the end of a buffer is seen.
+// Shims between the library and the loader: one makes one storage buffer end too early, so that a
+// test can prove that an access past the end of a buffer is seen; one is a device with few texels.
 #include "support/vulkan_device.h"
 
 #include <cstring>
@@ -95,7 +95,20 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceEntry(VkInstance instance, cons
     return vkGetInstanceProcAddr(instance, name);
 }
 
+VKAPI_ATTR void VKAPI_CALL fewTexels(VkPhysicalDevice device, VkPhysicalDeviceProperties* out) {
+    vkGetPhysicalDeviceProperties(device, out);
+    out->limits.maxTexelBufferElements = 65536;  // the least there is
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL fewTexelsEntryOf(VkInstance instance, const char* name) {
+    if (!std::strcmp(name, "vkGetPhysicalDeviceProperties"))
+        return reinterpret_cast<PFN_vkVoidFunction>(&fewTexels);
+    return vkGetInstanceProcAddr(instance, name);
+}
+
 }  // namespace
+
+PFN_vkGetInstanceProcAddr fewTexelsEntry() { return &fewTexelsEntryOf; }
 
 PFN_vkGetInstanceProcAddr shorteningEntry(uint32_t binding) {
     const std::lock_guard lock(mutex);

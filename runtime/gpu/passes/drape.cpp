@@ -7,12 +7,13 @@ namespace {
 constexpr Use kUses[] = {
     {FW_BIND_DEFORM_OBJECTS, Access::read},
     {FW_BIND_DEFORM_GROUPS, Access::read},
-    {FW_BIND_DEFORM_COATS, Access::read},
+    {FW_BIND_DEFORM_COATS, Access::readTexels},
+    {FW_BIND_SHOWN, Access::readTexels},
     {FW_BIND_SHOWN, Access::write},
 };
 
 }  // namespace
 
-const ComputePass kDrapePass{"drape", "drape.comp", kUses, sizeof(DeformPush)};
+const ComputePass kDrapePass{"drape", "drape.comp", kUses, sizeof(DeformPush), "drape_texels.comp"};
 
 }  // namespace fw::gpu

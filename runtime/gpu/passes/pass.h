@@ -19,6 +19,8 @@ enum Resource : uint32_t {
 enum class Access : uint8_t {
     read,         // storage buffer, compute
     write,        // storage buffer, compute; also read-modify-write and atomics
+    readTexels,   // as read, at texelBinding by texels of four words where the device has so many
+                  // of them: a software device reads those faster. At most 4, before any `write`
     indirect,     // arguments of a dispatch or draw
     drawRead,     // storage buffer, vertex and fragment shaders
     drawUniform,  // uniform buffer, vertex and fragment shaders; at most 16 KiB
@@ -39,9 +41,13 @@ struct ComputePass {
     const char* name;    // label, timer
     const char* shader;  // in the embedded table: "arrival.comp"
     std::span<const Use> uses;
-    uint32_t pushBytes;     // <= 128
-    bool profiles = false;  // set 1, binding 0: the fire profiles (sampler2DArray)
+    uint32_t pushBytes;                 // <= 128
+    const char* texelShader = nullptr;  // where `uses` has texels: instead, if the device has them
+    bool profiles = false;              // set 1, binding 0: the fire profiles (sampler2DArray)
 };
+
+// So that a pass may read by texels what it writes by words.
+constexpr uint32_t texelBinding(uint32_t resource) noexcept { return FW_BIND_COUNT + resource; }
 
 enum class VertexInput : uint8_t {
     none,  // the vertex shader makes its own from gl_VertexIndex and storage buffers

@@ -6,12 +6,13 @@ namespace {
 
 constexpr Use kUses[] = {
     {FW_BIND_DEFORM_OBJECTS, Access::read}, {FW_BIND_DEFORM_GROUPS, Access::read},
-    {FW_BIND_OBJECTS, Access::read},        {FW_BIND_DEFORM_NODES, Access::read},
-    {FW_BIND_SHOWN, Access::write},         {FW_BIND_SOFT, Access::write},
+    {FW_BIND_OBJECTS, Access::read},        {FW_BIND_DEFORM_NODES, Access::readTexels},
+    {FW_BIND_SHOWN, Access::readTexels},    {FW_BIND_SHOWN, Access::write},
+    {FW_BIND_SOFT, Access::readTexels},     {FW_BIND_SOFT, Access::write},
 };
 
 }  // namespace
 
-const ComputePass kSoftPass{"soft", "soft.comp", kUses, sizeof(DeformPush)};
+const ComputePass kSoftPass{"soft", "soft.comp", kUses, sizeof(DeformPush), "soft_texels.comp"};
 
 }  // namespace fw::gpu

@@ -53,8 +53,8 @@ uint64_t tilesOfAll(std::span<const VolumeItem> items, vec2 size, float cell) {
 
 }  // namespace
 
-const ComputePass kVolumeMarchPass{"volume march", "volume_march.comp", kUses, sizeof(VolumeMarch),
-                                   true};
+const ComputePass kVolumeMarchPass{
+    "volume march", "volume_march.comp", kUses, sizeof(VolumeMarch), nullptr, true};
 
 uint32_t volumeRayWords(const VolumeScreen& screen) {
     const float tile = float(screen.cell * kVolumeTile);

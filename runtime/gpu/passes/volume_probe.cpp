@@ -14,7 +14,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kVolumeProbePass{"volume probe", "volume_probe.comp", kUses, sizeof(VolumeMarch),
-                                   true};
+const ComputePass kVolumeProbePass{
+    "volume probe", "volume_probe.comp", kUses, sizeof(VolumeMarch), nullptr, true};
 
 }  // namespace fw::gpu

@@ -12,6 +12,7 @@ struct Scope {
 Scope scopeOf(Access access) noexcept {
     switch (access) {
         case Access::read:
+        case Access::readTexels:
             return {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT, false};
         case Access::write:
             return {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,

@@ -13,16 +13,18 @@ PassSets::~PassSets() {
 
 void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Planes& planes,
                      VkBuffer views, VkDeviceSize viewBytes) const {
-    std::array<VkDescriptorBufferInfo, FW_BIND_COUNT> infos{};
-    std::array<VkWriteDescriptorSet, FW_BIND_COUNT> writes{};
+    std::array<VkDescriptorBufferInfo, 2 * FW_BIND_COUNT> infos{};
+    std::array<VkWriteDescriptorSet, 2 * FW_BIND_COUNT> writes{};
     uint32_t count = 0;
-    std::array<bool, FW_BIND_COUNT> seen{};
+    std::array<bool, 2 * FW_BIND_COUNT> seen{};
     for (const Use& use : uses) {
-        if (use.resource >= FW_BIND_COUNT || seen[use.resource]) continue;
+        const bool texels = device_.texels && use.access == Access::readTexels;
+        const uint32_t number = texels ? texelBinding(use.resource) : use.resource;
+        if (use.resource >= FW_BIND_COUNT || seen[number]) continue;
         if (use.access == Access::indirect || use.access == Access::copyRead ||
             use.access == Access::copyWrite || use.access == Access::vertexInput)
             continue;
-        seen[use.resource] = true;
+        seen[number] = true;
         const bool view = use.resource == FW_BIND_VIEW;
         const bool each = use.access == Access::drawEach || use.access == Access::each;
         infos[count] = view ? VkDescriptorBufferInfo{views, 0, viewBytes}
@@ -31,13 +33,16 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
         VkWriteDescriptorSet& one = writes[count];
         one.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
         one.dstSet = set;
-        one.dstBinding = use.resource;
+        one.dstBinding = number;
         one.descriptorCount = 1;
         one.descriptorType = view || each ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
-                             : use.access == Access::drawUniform
-                                 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                 : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        one.pBufferInfo = &infos[count];
+                             : use.access == Access::drawUniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                             : texels ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
+                                      : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        if (texels)
+            one.pTexelBufferView = &planes.buffer(use.resource).texels;
+        else
+            one.pBufferInfo = &infos[count];
         ++count;
     }
     device_.table.UpdateDescriptorSets(device_.handle, count, writes.data(), 0, nullptr);
@@ -50,18 +55,20 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     compute_.resize(computeCount);
     draw_.resize(drawCount);
     retired_.promise(1);
-    uint32_t storage = 0, uniform = 0, view = 0;
+    uint32_t storage = 0, uniform = 0, view = 0, texels = 0;
     const auto add = [&](std::span<const Use> uses) {
         for (const Use& use : uses)
             ++(use.resource == FW_BIND_VIEW || use.resource == FW_BIND_VOLUMES ? view
                : use.access == Access::drawUniform                             ? uniform
+               : device_.texels && use.access == Access::readTexels            ? texels
                                                                                : storage);
     };
     for (const ComputePass* pass : computePasses()) add(pass->uses);
     for (const DrawPass* pass : drawPasses()) add(pass->uses);
     const auto sets = uint32_t(computeCount + drawCount);
-    const std::array<VkDescriptorPoolSize, 3> sizes{
+    const std::array<VkDescriptorPoolSize, 4> sizes{
         {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, storage + 1},
+         {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, texels + 1},
          {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniform + 1},
          {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, view + 1}}};
     auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);

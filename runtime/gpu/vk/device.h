@@ -29,6 +29,7 @@ class Device {
     bool debugUtils = false;  // labels and names
     bool timestamps = false;
     bool independentBlend = false;  // declared
+    bool texels = false;            // buffers of any size may be read by texels
     VkPhysicalDeviceProperties properties{};
     VkPhysicalDeviceMemoryProperties memoryProperties{};
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;              // the host's

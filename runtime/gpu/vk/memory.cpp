@@ -193,6 +193,15 @@ Buffer DeviceMemory::createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, M
             vk.BindBufferMemory(device_.handle, buffer.handle, block.memory, buffer.memory.offset),
             "vkBindBufferMemory");
         if (kind != MemoryKind::device) buffer.mapped = block.mapped + buffer.memory.offset;
+        if (usage & VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT) {
+            auto view = typed<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
+            view.buffer = buffer.handle;
+            view.format = VK_FORMAT_R32G32B32A32_UINT;
+            view.range = size & ~VkDeviceSize{15};
+            device_.check(vk.CreateBufferView(device_.handle, &view, device_.allocationCallbacks,
+                                              &buffer.texels),
+                          "vkCreateBufferView");
+        }
     } catch (...) {
         vk.DestroyBuffer(device_.handle, buffer.handle, device_.allocationCallbacks);
         release(buffer.memory);
@@ -240,6 +249,8 @@ void DeviceMemory::destroy(Buffer& buffer) noexcept {
     if (!buffer.handle) return;
     const std::lock_guard lock(mutex_);
     components_[buffer.component] -= buffer.memory.size;
+    if (buffer.texels)
+        device_.table.DestroyBufferView(device_.handle, buffer.texels, device_.allocationCallbacks);
     device_.table.DestroyBuffer(device_.handle, buffer.handle, device_.allocationCallbacks);
     release(buffer.memory);
     buffer = {};

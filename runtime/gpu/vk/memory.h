@@ -21,6 +21,7 @@ struct Piece {  // of a block
 
 struct Buffer {
     VkBuffer handle = VK_NULL_HANDLE;
+    VkBufferView texels = VK_NULL_HANDLE;  // all of it by four words, if its usage has them
     Piece memory;
     VkDeviceSize size = 0;
     std::byte* mapped = nullptr;  // upload and readback: for as long as it lives

@@ -168,27 +168,30 @@ void Pipelines::makeLayouts() {
 
     const auto make = [&](PassObjects& objects, std::span<const Use> uses, uint32_t pushBytes,
                           bool draws, uint32_t setCount) {
-        std::array<VkDescriptorSetLayoutBinding, FW_BIND_COUNT> bindings{};
+        std::array<VkDescriptorSetLayoutBinding, 2 * FW_BIND_COUNT> bindings{};
         uint32_t count = 0;
-        std::array<bool, FW_BIND_COUNT> seen{};
+        std::array<bool, 2 * FW_BIND_COUNT> seen{};
         const VkShaderStageFlags stages =
             draws ? VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT
                   : VK_SHADER_STAGE_COMPUTE_BIT;
         for (const Use& use : uses) {
             const bool bound = use.access == Access::read || use.access == Access::write ||
-                               use.access == Access::drawRead ||
+                               use.access == Access::readTexels || use.access == Access::drawRead ||
                                use.access == Access::drawUniform ||
                                use.access == Access::drawEach || use.access == Access::each ||
                                use.access == Access::uniformView;
-            if (!bound || seen[use.resource]) continue;
-            seen[use.resource] = true;
+            const bool texels = device_.texels && use.access == Access::readTexels;
+            const uint32_t number = texels ? texelBinding(use.resource) : use.resource;
+            if (!bound || seen[number]) continue;
+            seen[number] = true;
             VkDescriptorSetLayoutBinding& binding = bindings[count++];
-            binding.binding = use.resource;
+            binding.binding = number;
             binding.descriptorType =
                 use.access == Access::uniformView || use.access == Access::drawEach ||
                         use.access == Access::each
                     ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
                 : use.access == Access::drawUniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                : texels                            ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
                                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
             binding.descriptorCount = 1;
             binding.stageFlags = stages;
@@ -278,7 +281,8 @@ void Pipelines::prepare() {
             typed<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
         info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
         info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.module = module(pass.shader);
+        info.stage.module =
+            module(device_.texels && pass.texelShader ? pass.texelShader : pass.shader);
         info.stage.pName = "main";
         info.layout = objects.layout;
         const VkResult result =

@@ -14,6 +14,9 @@ namespace {
 
 constexpr uint32_t kCounterRows = kRowIteration + 64 * kMaxSubsteps + 1;  // one more to carry over
 
+// Beside words: dropped where a device has too few texels.
+constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
+
 constexpr Plane kPlanes[] = {
     // resource, space, bytes of a unit, keep, component, name, usage
     {FW_BIND_OBJECTS, kSpaceObjects, sizeof(BurnObject), true, kComponentObjects, "objects", 0},
@@ -67,10 +70,12 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_DEFORM_OBJECTS, kSpaceDeformers, sizeof(DeformObject), true, kComponentObjects,
      "deforming objects", 0},
     {FW_BIND_SHOWN, kSpaceShown, sizeof(ShownVertex), true, kComponentObjects, "shown vertices",
-     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
-    {FW_BIND_SOFT, kSpaceSoft, 16 * kSoftQuads, true, kComponentObjects, "soft nodes", 0},
-    {FW_BIND_DEFORM_NODES, kSpaceNodes, sizeof(DeviceNode), true, kComponentMeshes, "nodes", 0},
-    {FW_BIND_DEFORM_COATS, kSpaceCoats, sizeof(DeformCoat), true, kComponentMeshes, "coats", 0},
+     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kTexels},
+    {FW_BIND_SOFT, kSpaceSoft, 16 * kSoftQuads, true, kComponentObjects, "soft nodes", kTexels},
+    {FW_BIND_DEFORM_NODES, kSpaceNodes, sizeof(DeviceNode), true, kComponentMeshes, "nodes",
+     kTexels},
+    {FW_BIND_DEFORM_COATS, kSpaceCoats, sizeof(DeformCoat), true, kComponentMeshes, "coats",
+     kTexels},
     {FW_BIND_DEFORM_GROUPS, kSpaceDeformGroups, 8, false, kComponentLists, "deform groups", 0},
     {FW_BIND_SKIN_SOURCES, kSpaceSkinSources, 4, true, kComponentMeshes, "skin sources", 0},
     {FW_BIND_SKIN_GIVEN, kSpaceSkinGiven, 4, false, kComponentObjects, "skin vertices", 0},
@@ -242,6 +247,7 @@ Planes::Planes(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
     for (const Plane& plane : kPlanes) {
         Slot& slot = slots_[plane.resource];
         slot.plane = plane;
+        if (!device.texels) slot.plane.usage &= ~kTexels;
         if (plane.resource == FW_BIND_LIGHTS) slot.plane.unitBytes *= std::max(1u, sizes.lights);
         if (plane.resource == FW_BIND_LIGHT_CELLS)
             slot.plane.unitBytes *= kLightCellHeader + kLightCells * kLightCellWords;
@@ -269,9 +275,12 @@ Planes::~Planes() {
 uint32_t Planes::limit(Space space) const noexcept {
     uint64_t units = 0xFFFFFFFEu;
     for (const Slot& slot : slots_) {
-        if (slot.plane.unitBytes && slot.plane.space == space)
-            units = std::min(units, uint64_t(device_.properties.limits.maxStorageBufferRange) /
-                                        slot.plane.unitBytes);
+        if (!slot.plane.unitBytes || slot.plane.space != space) continue;
+        const VkPhysicalDeviceLimits& limits = device_.properties.limits;
+        uint64_t bytes = limits.maxStorageBufferRange;
+        if (slot.plane.usage & kTexels)
+            bytes = std::min(bytes, uint64_t(limits.maxTexelBufferElements) * 16);
+        units = std::min(units, bytes / slot.plane.unitBytes);
     }
     return uint32_t(units);
 }

@@ -18,6 +18,7 @@ namespace fw::gpu::vk {
     X(DestroyDevice) X(GetDeviceQueue) X(QueueSubmit) X(QueueWaitIdle) X(DeviceWaitIdle) \
     X(AllocateMemory) X(FreeMemory) X(MapMemory) X(UnmapMemory) \
     X(CreateBuffer) X(DestroyBuffer) X(GetBufferMemoryRequirements) X(BindBufferMemory) \
+    X(CreateBufferView) X(DestroyBufferView) \
     X(CreateImage) X(DestroyImage) X(GetImageMemoryRequirements) X(BindImageMemory) \
     X(CreateImageView) X(DestroyImageView) X(CreateSampler) X(DestroySampler) \
     X(CreateShaderModule) X(DestroyShaderModule) \

@@ -19,19 +19,16 @@ void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
     const auto number = [&](uint32_t& vertex) {
         if (vertex != kNoneTexel) vertex = order.numbers[vertex];
     };
-    std::byte* to = upload.staging.mapped;
     for (uint32_t i = 0; i < model.nodes.size(); ++i) {
         DeviceNode node = mesh::deviceNode(model, i);
         number(node.vertex);
-        std::memcpy(to, &node, sizeof node);
-        to += sizeof node;
+        mesh::putQuads(node, i, model.nodes.size(), upload.staging.mapped);
     }
-    for (const uint32_t old : order.vertices) {
-        DeformCoat coat = model.coats[old];
+    for (size_t i = 0; i < order.vertices.size(); ++i) {
+        DeformCoat coat = model.coats[order.vertices[i]];
         number(coat.node);
         for (uint32_t& vertex : coat.ring) number(vertex);
-        std::memcpy(to, &coat, sizeof coat);
-        to += sizeof coat;
+        mesh::putQuads(coat, i, order.vertices.size(), upload.staging.mapped + nodeBytes);
     }
     upload.regions[0] = {FW_BIND_DEFORM_NODES, 0, uint64_t(firstNode) * sizeof(DeviceNode),
                          nodeBytes};

@@ -5,6 +5,8 @@
 #include "mesh/burn_domain.h"
 #include "shared/deform.h"
 
+#include <cstring>
+
 namespace fw::mesh {
 
 struct DeformModel {
@@ -22,5 +24,12 @@ DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource*
 
 // A node as devices have it: other nodes by number, with the odds of their links.
 gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept;
+// Record `number` of `count`, nodes or coats, as devices have them: quad by quad.
+template <class Record>
+void putQuads(const Record& record, size_t number, size_t count, std::byte* to) noexcept {
+    for (size_t quad = 0; quad < sizeof record / 16; ++quad)
+        std::memcpy(to + (quad * count + number) * 16,
+                    reinterpret_cast<const std::byte*>(&record) + quad * 16, 16);
+}
 
 }  // namespace fw::mesh
