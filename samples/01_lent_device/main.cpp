@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/camera.h"
 #include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
+#include "common/turntable.h"
 #include "crate.h"
 
 namespace {
@@ -81,26 +81,19 @@ int run(const sample::Options& options, const Switches& switches) {
         const CrateMesh crate = makeCrate(0.6f);
         loadCrate(fire, crate);
 
-        FwView view = fwDefaultView();
-        sample::duskLight(view);
+        sample::Turntable table(stage, {.target = {0.0f, 0.27f, 0.0f},
+                                        .distance = 2.4f,
+                                        .yaw = -0.45f,
+                                        .pitch = 0.28f,
+                                        .fieldOfView = 0.5f});
+        const FwView& view = table.view;
         studio.castShadow(crate.positions, crate.indices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
 
-        sample::FilmRequest film;
-        film.name = "lent_device";
-        sample::Filming filming(stage, options, film);
+        sample::Filming filming(stage, options, {.name = "lent_device"});
 
-        sample::OrbitCamera orbit;
-        orbit.target = {0.0f, 0.27f, 0.0f};
-        orbit.distance = 2.4f;
-        orbit.yaw = -0.45f;
-        orbit.pitch = 0.28f;
-        orbit.fieldOfView = 0.5f;
         sample::StageFrame frame;
-        while (stage.next(frame)) {
-            orbit.turn(frame.input.dragX, frame.input.dragY);
-            orbit.zoom(frame.input.wheel);
-            sample::setCamera(view, orbit.camera(), frame, switches.reversed);
+        while (table.next(frame)) {
             FwLight lights[8];
             const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
 

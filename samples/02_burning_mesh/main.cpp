@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "common/camera.h"
 #include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
 #include "common/subject.h"
+#include "common/turntable.h"
 
 namespace {
 
@@ -102,7 +102,9 @@ int run(const sample::Options& options, const Wishes& wishes) {
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
 
-        sample::OrbitCamera orbit = orbitAround(subject, wishes.yaw, wishes.pitch, stage.extent());
+        sample::Turntable table(
+            stage, orbitAround(subject, wishes.yaw, wishes.pitch, stage.extent()), wishes.turn);
+        const FwView& view = table.view;
 
         // Faster than wood burns: so that the fire is through the subject before the run is over.
         FwMaterialDef material = fwDefaultMaterialDef();
@@ -131,27 +133,18 @@ int run(const sample::Options& options, const Wishes& wishes) {
         const FwMeshId mesh = createMesh(fire, subject, mapRequest, bakeNote);
         const FwBurnableMeshId object = placeSubject(fire, subject, mesh, preset);
 
-        FwView view = fwDefaultView();
-        sample::duskLight(view);
         studio.castShadow(subject.model.positions, subject.model.indices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
         const float matchRadius = 0.03f * subject.size();
         glm::vec3 match(wishes.ignite[0], wishes.ignite[1], wishes.ignite[2]);
-        if (!wishes.igniteGiven) match = matchPlace(subject, orbit.camera().eye).position;
+        if (!wishes.igniteGiven) match = matchPlace(subject, table.orbit.camera().eye).position;
 
-        sample::FilmRequest film;
-        film.name = "burning_mesh";
-        sample::Filming filming(stage, options, film);
+        sample::Filming filming(stage, options, {.name = "burning_mesh"});
 
         FwIgnitionKind hand = FW_IGNITE;
         float dropped = 0;  // s that the simulation could not follow
         sample::StageFrame frame;
-        while (stage.next(frame)) {
-            orbit.turn(frame.input.dragX, frame.input.dragY);
-            orbit.zoom(frame.input.wheel);
-            orbit.yaw += glm::radians(wishes.turn) * frame.deltaTime;
-            const sample::Camera camera = orbit.camera();
-            sample::setCamera(view, camera, frame, wishes.reversed);
+        while (table.next(frame)) {
             // One frame of the untouched thing first.
             if (frame.number == 1) touch(fire, match, matchRadius, FW_IGNITE);
             for (int key : frame.input.keys) {
@@ -162,8 +155,9 @@ int run(const sample::Options& options, const Wishes& wishes) {
                 const glm::vec4 far =
                     glm::inverse(glm::make_mat4(view.projection) * glm::make_mat4(view.view)) *
                     glm::vec4(2 * frame.input.clickX - 1, 2 * frame.input.clickY - 1, 0.5f, 1);
-                const glm::vec3 way = glm::normalize(glm::vec3(far) / far.w - camera.eye);
-                const SurfacePoint point = castRay(subject, camera.eye, way);
+                const glm::vec3 eye = table.orbit.camera().eye;
+                const glm::vec3 way = glm::normalize(glm::vec3(far) / far.w - eye);
+                const SurfacePoint point = castRay(subject, eye, way);
                 if (point.hit) touch(fire, point.position, matchRadius, hand);
             }
             FwEvent events[32];

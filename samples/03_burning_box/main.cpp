@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/camera.h"
 #include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
+#include "common/turntable.h"
 
 namespace {
 
@@ -85,12 +85,14 @@ int run(const sample::Options& options, const Wishes& wishes) {
         const uint32_t frames = sample::framesOf(options, wishes.seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 0.8f);
-        sample::OrbitCamera orbit;
-        orbit.target = {0, 0.29f, 0};
-        orbit.yaw = glm::radians(32.0f);
-        orbit.pitch = glm::radians(20.0f);
-        orbit.fieldOfView = 0.5f;
-        orbit.distance = wishes.distance * (wishes.published ? 1.5f : 1.0f);
+        sample::Turntable table(stage,
+                                {.target = {0, 0.29f, 0},
+                                 .distance = wishes.distance * (wishes.published ? 1.5f : 1.0f),
+                                 .yaw = glm::radians(32.0f),
+                                 .pitch = glm::radians(20.0f),
+                                 .fieldOfView = 0.5f},
+                                wishes.turn);
+        const FwView& view = table.view;
 
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.paceFactor = wishes.pace;
@@ -101,14 +103,12 @@ int run(const sample::Options& options, const Wishes& wishes) {
         fire.registerTarget(stage);
         const FwBurnableMeshDef def = describeBox(fire, box, wishes);
         // To the right, as the camera first stands.
-        const glm::vec3 right(std::cos(orbit.yaw), 0, -std::sin(orbit.yaw));
+        const glm::vec3 right(std::cos(table.orbit.yaw), 0, -std::sin(table.orbit.yaw));
         const glm::vec3 aside = right * (wishes.published ? kApart : 0.0f);
         const FwBurnableMeshId object =
             placeBox(fire, def, wishes.plain ? 0u : uint32_t(FW_BURNABLE_REFINE), -aside);
         FwBurnableMeshId other{};
         if (wishes.published) other = placeBox(fire, def, FW_BURNABLE_REFINE_PUBLISHED, aside);
-        FwView view = fwDefaultView();
-        sample::duskLight(view);
         std::vector<float> positions = box.positions;
         std::vector<uint32_t> indices = box.indices;
         if (wishes.published) {
@@ -121,16 +121,10 @@ int run(const sample::Options& options, const Wishes& wishes) {
         studio.castShadow(positions, indices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
 
-        sample::FilmRequest film;
-        film.name = "burning_box";
-        sample::Filming filming(stage, options, film);
+        sample::Filming filming(stage, options, {.name = "burning_box"});
         uint32_t most[2] = {}, last[2] = {};  // triangles: ours, as published
         sample::StageFrame frame;
-        while (stage.next(frame)) {
-            orbit.turn(frame.input.dragX, frame.input.dragY);
-            orbit.zoom(frame.input.wheel);
-            orbit.yaw += glm::radians(wishes.turn) * frame.deltaTime;
-            sample::setCamera(view, orbit.camera(), frame);
+        while (table.next(frame)) {
             if (frame.number == 1) {  // one frame of the untouched thing first
                 light(fire, object, -aside);
                 if (wishes.published) light(fire, other, aside);

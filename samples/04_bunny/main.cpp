@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "common/camera.h"
 #include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
 #include "common/subject.h"
+#include "common/turntable.h"
 
 namespace {
 
@@ -55,6 +55,8 @@ int run(const sample::Options& options, float seconds, float turn, bool compare)
         const float aside = compare ? 0.62f * subject.size() : 0.0f;
         if (compare) orbit.yaw = 0;
         if (compare) orbit.distance *= 1.15f;
+        sample::Turntable table(stage, orbit, turn);
+        const FwView& view = table.view;
 
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.paceFactor = 150.0f * kFillingSeconds / std::max(1.0f, seconds);
@@ -81,8 +83,6 @@ int run(const sample::Options& options, float seconds, float turn, bool compare)
         fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object),
                    "fwWorld_CreateBurnableMesh");
 
-        FwView view = fwDefaultView();
-        sample::duskLight(view);
         std::vector<float> shadows = subject.model.positions;
         std::vector<uint32_t> shadowIndices = subject.model.indices;
         if (compare) {
@@ -97,17 +97,11 @@ int run(const sample::Options& options, float seconds, float turn, bool compare)
         studio.castShadow(shadows, shadowIndices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
 
-        sample::FilmRequest film;
-        film.name = compare ? "compared" : "bunny";
-        if (compare) film.columns = 2;
-        sample::Filming filming(stage, options, film);
+        sample::Filming filming(
+            stage, options, {.name = compare ? "compared" : "bunny", .columns = compare ? 2u : 3u});
 
         sample::StageFrame frame;
-        while (stage.next(frame)) {
-            orbit.turn(frame.input.dragX, frame.input.dragY);
-            orbit.zoom(frame.input.wheel);
-            orbit.yaw += glm::radians(turn) * frame.deltaTime;
-            sample::setCamera(view, orbit.camera(), frame);
+        while (table.next(frame)) {
             if (frame.number == 1) {
                 FwIgnitionDef ignition = fwDefaultIgnitionDef();
                 for (int c = 0; c < 3; ++c) ignition.position[c] = match.position[c];

@@ -1,14 +1,16 @@
-// A sheet of paper and a cloth that hang from rods, in a breath of wind; both are lit below. In a
-// window: drag to turn, wheel to zoom.
+// A sheet of paper and a cloth that hang from rods, in a breath of wind; both are lit below.
+// --compare: two cloths, to the left one that the published springs deform. In a window: drag to
+// turn, wheel to zoom.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "common/camera.h"
 #include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
+#include "common/turntable.h"
 
 namespace {
 
@@ -49,6 +51,7 @@ struct Exhibit {
     float turn;                        // degrees about up
     float haste;                       // how much faster than real, in a run of ten seconds
     glm::vec3 match;                   // m, from its lower left corner
+    uint32_t tier = FW_BURNABLE_SHELL;
 };
 constexpr Exhibit kExhibits[] = {
     {"paper",
@@ -73,6 +76,8 @@ constexpr Exhibit kExhibits[] = {
      {0.30f, 0.0f, 0}},
 };
 
+constexpr float kApart = 0.58f;  // m, of two cloths
+
 glm::mat4 poseOf(const Exhibit& exhibit) {
     return glm::rotate(glm::translate(glm::mat4(1.0f), exhibit.place), glm::radians(exhibit.turn),
                        glm::vec3(0, 1, 0));
@@ -89,7 +94,7 @@ FwBurnableMeshId placeExhibit(sample::FireHost& fire, const Exhibit& exhibit, fl
     mesh.mapSize = 512;
     mesh.texelsPerMetre = 512;
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-    def.flags = uint32_t{FW_BURNABLE_TWO_SIDED} | uint32_t{FW_BURNABLE_SHELL};
+    def.flags = uint32_t{FW_BURNABLE_TWO_SIDED} | exhibit.tier;
     fire.check(fwWorld_CreateMesh(fire.world, &mesh, &def.mesh), "fwWorld_CreateMesh");
     FwMaterialDef material = fwDefaultMaterialDef();
     fire.check(fwInitMaterialPreset(&material, exhibit.preset), "fwInitMaterialPreset");
@@ -104,8 +109,10 @@ FwBurnableMeshId placeExhibit(sample::FireHost& fire, const Exhibit& exhibit, fl
     pin.to[0] = exhibit.width;
     pin.from[2] = pin.to[2] = 0.3f * exhibit.waves;
     pin.radius = 0.004f + 1.2f * exhibit.waves;
-    def.pins = &pin;
-    def.pinCount = 1;
+    if (exhibit.tier == FW_BURNABLE_SHELL) {
+        def.pins = &pin;
+        def.pinCount = 1;
+    }
     def.ground = 0.004f;
     std::copy_n(glm::value_ptr(poseOf(exhibit)), 16, def.transform);
     FwBurnableMeshId object{};
@@ -122,7 +129,25 @@ void light(sample::FireHost& fire, FwBurnableMeshId object, const Exhibit& exhib
     fire.check(fwWorld_Ignite(fire.world, &def, nullptr), "fwWorld_Ignite");
 }
 
-int run(const sample::Options& options, float seconds) {
+// What is shown: paper and cloth, or the published springs' cloth and ours.
+std::array<Exhibit, 2> exhibitsOf(bool compare) {
+    std::array<Exhibit, 2> shown = {kExhibits[0], kExhibits[1]};
+    if (compare) {
+        shown[0] = kExhibits[1];
+        shown[0].name = "cotton, as published";
+        shown[0].tier = FW_BURNABLE_SPRINGS;
+        shown[0].place.x -= kApart;
+    }
+    return shown;
+}
+
+void addCottonRod(sample::Studio& studio, float x) {
+    studio.addBlock({x + 0.245f, 0.684f, -0.03f}, {0.27f, 0.005f, 0.005f});
+    studio.addBlock({x + 0.52f, 0.34f, -0.07f}, {0.008f, 0.35f, 0.008f});
+}
+
+int run(const sample::Options& options, float seconds, bool compare) {
+    const std::array<Exhibit, 2> exhibits = exhibitsOf(compare);
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
@@ -132,10 +157,13 @@ int run(const sample::Options& options, float seconds) {
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 1.1f);
         // Two rods and their stands.
-        studio.addBlock({0.245f, 0.684f, -0.03f}, {0.27f, 0.005f, 0.005f});
-        studio.addBlock({0.52f, 0.34f, -0.07f}, {0.008f, 0.35f, 0.008f});
-        studio.addBlock({-0.32f, 0.662f, 0.02f}, {0.124f, 0.005f, 0.005f});
-        studio.addBlock({-0.44f, 0.33f, 0.02f}, {0.006f, 0.33f, 0.006f});
+        addCottonRod(studio, 0);
+        if (compare) {
+            addCottonRod(studio, -kApart);
+        } else {
+            studio.addBlock({-0.32f, 0.662f, 0.02f}, {0.124f, 0.005f, 0.005f});
+            studio.addBlock({-0.44f, 0.33f, 0.02f}, {0.006f, 0.33f, 0.006f});
+        }
 
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.wind[0] = 0.25f;
@@ -144,32 +172,22 @@ int run(const sample::Options& options, float seconds) {
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
         FwBurnableMeshId objects[2]{};
-        for (size_t i = 0; i < 2; ++i) objects[i] = placeExhibit(fire, kExhibits[i], seconds);
+        for (size_t i = 0; i < 2; ++i) objects[i] = placeExhibit(fire, exhibits[i], seconds);
 
-        FwView view = fwDefaultView();
-        sample::duskLight(view);
-        sample::OrbitCamera orbit;
-        orbit.target = {0.05f, 0.37f, 0};
-        orbit.distance = 1.95f;
-        orbit.yaw = glm::radians(18.0f);
-        orbit.pitch = glm::radians(8.0f);
-        orbit.fieldOfView = 0.46f;
-
-        sample::FilmRequest film;
-        film.name = "paper_and_cloth";
-        film.moments = 9;
-        film.columns = 3;
-        sample::Filming filming(stage, options, film);
+        sample::Turntable table(stage, {.target = {compare ? -0.02f : 0.05f, 0.37f, 0},
+                                        .distance = 1.95f,
+                                        .yaw = glm::radians(18.0f),
+                                        .pitch = glm::radians(8.0f),
+                                        .fieldOfView = 0.46f});
+        sample::Filming filming(stage, options,
+                                {.name = compare ? "compared" : "paper_and_cloth", .moments = 9});
 
         sample::StageFrame frame;
-        while (stage.next(frame)) {
-            orbit.turn(frame.input.dragX, frame.input.dragY);
-            orbit.zoom(frame.input.wheel);
-            sample::setCamera(view, orbit.camera(), frame);
+        while (table.next(frame)) {
             // Once both hang still.
             if (frame.number == static_cast<uint32_t>(1 + frames / 12))
-                for (size_t i = 0; i < 2; ++i) light(fire, objects[i], kExhibits[i]);
-            sample::showStudio(frame, stage, studio, fire, view);
+                for (size_t i = 0; i < 2; ++i) light(fire, objects[i], exhibits[i]);
+            sample::showStudio(frame, stage, studio, fire, table.view);
         }
 
         if (options.headless) {
@@ -181,7 +199,7 @@ int run(const sample::Options& options, float seconds) {
                 char line[96];
                 std::snprintf(line, sizeof line, "%.0f %% caught fire",
                               static_cast<double>(100.0f * state.burntFraction));
-                summary.rows.emplace_back(kExhibits[i].name, line);
+                summary.rows.emplace_back(exhibits[i].name, line);
             }
             filming.finish(summary, fire);
         }
@@ -198,13 +216,15 @@ int main(int argc, char** argv) {
         options.width = 640;
         options.height = 400;
         float seconds = 10;
+        bool compare = false;
         sample::OptionParser parser("05_paper_and_cloth", "sheets that curl, shrink and fall");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
+        parser.addFlag("--compare", "two cloths, to the left one of published springs", compare);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             for (const Exhibit& exhibit : kExhibits) std::printf("%s\n", exhibit.name);
             return 0;
         }
-        return run(options, seconds);
+        return run(options, seconds, compare);
     });
 }

@@ -10,8 +10,8 @@
 namespace sample {
 
 struct FilmRequest {
-    std::filesystem::path folder;
-    std::string name;  // of the sample: begins the names of the joined pictures
+    std::filesystem::path folder{};
+    std::string name{};  // of the sample: begins the names of the joined pictures
     double framesPerSecond = 30.0;
     uint32_t frames = 1;            // how many will come
     uint32_t animationWidth = 480;  // pixels; the frames are scaled down to it
