@@ -1,14 +1,15 @@
-// Eight materials burn side by side, each at a haste that lets all end together, each with a wet
-// patch that stays. In a window: drag to turn, wheel to zoom.
+// Eight materials burn side by side, boards and sheets that hang from rods, each at a haste that
+// lets all end together, each with a wet patch that stays. In a window: drag to turn, wheel to
+// zoom.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "common/camera.h"
 #include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
+#include "common/turntable.h"
 #include "panel.h"
 
 namespace {
@@ -24,20 +25,33 @@ struct Exhibit {
 constexpr Exhibit kExhibits[] = {
     {FW_MATERIAL_PINE, 0.030f, 0, 135, 192},      {FW_MATERIAL_PAINTED_WOOD, 0.024f, 0, 115, 192},
     {FW_MATERIAL_PAPER, 0, 0.020f, 4.0f, 384},    {FW_MATERIAL_COTTON, 0, 0.016f, 4.2f, 320},
-    {FW_MATERIAL_LEATHER, 0, 0.010f, 30, 256},    {FW_MATERIAL_THATCH, 0.060f, 0, 8, 192},
+    {FW_MATERIAL_LEATHER, 0, 0.004f, 30, 256},    {FW_MATERIAL_THATCH, 0.060f, 0, 8, 192},
     {FW_MATERIAL_DRY_LEAF, 0, 0.014f, 2.6f, 320}, {FW_MATERIAL_PLASTIC, 0.012f, 0, 16, 192},
 };
 constexpr uint32_t kExhibitCount = sizeof kExhibits / sizeof kExhibits[0];
 constexpr float kSide = 0.50f, kPitch = 0.60f, kShelf = 0.66f;  // m
+constexpr float kLift = 0.04f, kRod = 0.006f;                   // m, of what hangs
+constexpr uint32_t kBoardCells = 22, kSheetCells = 34;          // of a front, along a side
+
+bool hangs(const Exhibit& exhibit) { return !(exhibit.thickness > 0); }
 
 glm::vec3 placeOf(uint32_t exhibit) {
     const float x = (static_cast<float>(exhibit % 4) - 1.5f) * kPitch;
-    return exhibit < 4 ? glm::vec3(x, kShelf, -0.24f) : glm::vec3(x, 0, 0.24f);
+    const float y = hangs(kExhibits[exhibit]) ? kLift : 0;
+    return exhibit < 4 ? glm::vec3(x, kShelf + y, -0.24f) : glm::vec3(x, y, 0.24f);
+}
+
+void addRod(sample::Studio& studio, glm::vec3 place) {
+    const float half = 0.5f * kSide + 2 * kRod, post = 0.5f * (kSide + kLift);
+    studio.addBlock(place + glm::vec3(0, kSide, 0), {half, kRod, kRod});
+    for (const float side : {-half, half})
+        studio.addBlock(place + glm::vec3(side, post - kLift, 0), {kRod, post, kRod});
 }
 
 FwBurnableMeshId placeExhibit(sample::FireHost& fire, uint32_t number, float seconds) {
     const Exhibit& exhibit = kExhibits[number];
-    const Panel panel = makePanel(kSide, kSide, exhibit.thickness, exhibit.bend);
+    const Panel panel = makePanel(kSide, kSide, exhibit.thickness, exhibit.bend,
+                                  hangs(exhibit) ? kSheetCells : kBoardCells);
     FwMeshDef mesh = fwDefaultMeshDef();
     mesh.positions = panel.positions.data();
     mesh.normals = panel.normals.data();
@@ -49,7 +63,17 @@ FwBurnableMeshId placeExhibit(sample::FireHost& fire, uint32_t number, float sec
     mesh.texelsPerMetre = exhibit.density;
     mesh.noiseSeed = number;
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-    def.flags = exhibit.thickness > 0 ? 0u : uint32_t{FW_BURNABLE_TWO_SIDED};
+    FwPin pin{};  // all along its top
+    if (hangs(exhibit)) {
+        def.flags = uint32_t{FW_BURNABLE_TWO_SIDED} | uint32_t{FW_BURNABLE_SHELL};
+        pin.from[0] = -0.5f * kSide;
+        pin.to[0] = 0.5f * kSide;
+        pin.from[1] = pin.to[1] = kSide;
+        pin.radius = 0.004f + 1.1f * exhibit.bend;
+        def.pins = &pin;
+        def.pinCount = 1;
+        def.ground = placeOf(number).y - kLift + 0.004f;
+    }
     fire.check(fwWorld_CreateMesh(fire.world, &mesh, &def.mesh), "fwWorld_CreateMesh");
     FwMaterialDef material = fwDefaultMaterialDef();
     fire.check(fwInitMaterialPreset(&material, exhibit.preset), "fwInitMaterialPreset");
@@ -87,6 +111,10 @@ int run(const sample::Options& options, float seconds, int only) {
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 2.4f);
         studio.addBlock({0, 0.5f * kShelf, -0.24f}, {2.1f * kPitch, 0.5f * kShelf, 0.10f});
+        for (uint32_t i = 0; i < kExhibitCount; ++i) {
+            const bool shown = only < 0 || only == static_cast<int>(i);
+            if (shown && hangs(kExhibits[i])) addRod(studio, placeOf(i));
+        }
 
         sample::FireHost fire(host, fwDefaultWorldDef());
         fire.registerTarget(stage);
@@ -96,9 +124,18 @@ int run(const sample::Options& options, float seconds, int only) {
                 objects[i] = placeExhibit(fire, i, seconds);
         }
 
-        FwView view = fwDefaultView();
-        sample::duskLight(view);
-        const Panel panel = makePanel(kSide, kSide, 0.03f, 0);
+        sample::OrbitCamera orbit{.target = {0, 0.66f, 0},
+                                  .distance = 4.05f,
+                                  .yaw = glm::radians(12.0f),
+                                  .pitch = glm::radians(7.0f),
+                                  .fieldOfView = 0.42f};
+        if (only >= 0) {
+            orbit.target = placeOf(static_cast<uint32_t>(only)) + glm::vec3(0, 0.27f, 0);
+            orbit.distance = 1.35f;
+        }
+        sample::Turntable table(stage, orbit);
+        const FwView& view = table.view;
+        const Panel panel = makePanel(kSide, kSide, 0.03f, 0, 1);
         std::vector<float> shadows;
         std::vector<uint32_t> shadowIndices;
         for (uint32_t i = 4; i < kExhibitCount; ++i) {
@@ -111,28 +148,11 @@ int run(const sample::Options& options, float seconds, int only) {
         studio.castShadow(shadows, shadowIndices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
 
-        sample::OrbitCamera orbit;
-        orbit.target = {0, 0.66f, 0};
-        orbit.distance = 4.05f;
-        if (only >= 0) {
-            orbit.target = placeOf(static_cast<uint32_t>(only)) + glm::vec3(0, 0.27f, 0);
-            orbit.distance = 1.35f;
-        }
-        orbit.yaw = glm::radians(12.0f);
-        orbit.pitch = glm::radians(7.0f);
-        orbit.fieldOfView = 0.42f;
-
-        sample::FilmRequest film;
-        film.name = "materials";
-        film.columns = 2;
-        film.animationWidth = 640;
-        sample::Filming filming(stage, options, film);
+        sample::Filming filming(stage, options,
+                                {.name = "materials", .animationWidth = 640, .columns = 2});
 
         sample::StageFrame frame;
-        while (stage.next(frame)) {
-            orbit.turn(frame.input.dragX, frame.input.dragY);
-            orbit.zoom(frame.input.wheel);
-            sample::setCamera(view, orbit.camera(), frame);
+        while (table.next(frame)) {
             for (uint32_t i = 0; frame.number <= 1 && i < kExhibitCount; ++i) {
                 if (objects[i].index1 == 0) continue;
                 const glm::vec3 face = placeOf(i) + glm::vec3(0, 0, 0.5f * kExhibits[i].thickness);
@@ -171,10 +191,10 @@ int run(const sample::Options& options, float seconds, int only) {
 int main(int argc, char** argv) {
     return sample::guardedMain("06_materials", [&] {
         sample::Options options;
-        options.fps = 8.0;
+        options.fps = 12.0;  // sheets need it to fall no slower than they do
         options.width = 960;
         options.height = 540;
-        float seconds = 12, only = 0;
+        float seconds = 8, only = 0;
         sample::OptionParser parser("06_materials", "eight materials side by side");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--only", "1 to 8: that one alone, from near", only, 0.0f, 8.0f);

@@ -6,8 +6,6 @@
 
 namespace {
 
-constexpr uint32_t kCells = 22;  // along a side of the front
-
 void addFace(Panel& panel, glm::vec3 corner, glm::vec3 x, glm::vec3 y, glm::uvec2 cells,
              glm::vec2 detail, float bend) {
     const auto first = static_cast<uint32_t>(panel.positions.size() / 3);
@@ -37,16 +35,16 @@ void addFace(Panel& panel, glm::vec3 corner, glm::vec3 x, glm::vec3 y, glm::uvec
 
 }  // namespace
 
-Panel makePanel(float width, float height, float thickness, float bend) {
+Panel makePanel(float width, float height, float thickness, float bend, uint32_t cells) {
     Panel panel;
     const float w = 0.5f * width, t = 0.5f * thickness;
     const glm::vec3 x(width, 0, 0), y(0, height, 0), z(0, 0, thickness);
-    addFace(panel, {-w, 0, t}, x, y, {kCells, kCells}, {0, 0}, bend);
+    addFace(panel, {-w, 0, t}, x, y, {cells, cells}, {0, 0}, bend);
     if (!(thickness > 0)) return panel;
-    addFace(panel, {w, 0, -t}, -x, y, {kCells, kCells}, {width + thickness, 0}, 0);
-    addFace(panel, {w, 0, t}, -z, y, {1, kCells}, {width, 0}, 0);
-    addFace(panel, {-w, 0, -t}, z, y, {1, kCells}, {-thickness, 0}, 0);
-    addFace(panel, {-w, height, t}, x, -z, {kCells, 1}, {0, height}, 0);
-    addFace(panel, {-w, 0, -t}, x, z, {kCells, 1}, {0, -thickness}, 0);
+    addFace(panel, {w, 0, -t}, -x, y, {cells, cells}, {width + thickness, 0}, 0);
+    addFace(panel, {w, 0, t}, -z, y, {1, cells}, {width, 0}, 0);
+    addFace(panel, {-w, 0, -t}, z, y, {1, cells}, {-thickness, 0}, 0);
+    addFace(panel, {-w, height, t}, x, -z, {cells, 1}, {0, height}, 0);
+    addFace(panel, {-w, 0, -t}, x, z, {cells, 1}, {0, -thickness}, 0);
     return panel;
 }

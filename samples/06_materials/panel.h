@@ -1,4 +1,4 @@
-// Panels to burn: slabs with all six sides, and thin sheets that stand because they are bent.
+// Panels to burn: slabs with all six sides, and thin sheets, bent, of one layer.
 #pragma once
 
 #include <cstdint>
@@ -9,5 +9,6 @@ struct Panel {
     std::vector<uint32_t> indices;
 };
 
-// Stands on y = 0, faces +z. `thickness` m; 0: a sheet of one layer, bent by `bend` m.
-Panel makePanel(float width, float height, float thickness, float bend);
+// Stands on y = 0, faces +z. `thickness` m; 0: a sheet of one layer, bent by `bend` m. `cells`
+// along each side of the front.
+Panel makePanel(float width, float height, float thickness, float bend, uint32_t cells);
