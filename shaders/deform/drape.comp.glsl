@@ -11,7 +11,9 @@ layout(local_size_x = 64) in;
 void main() {
     DeformItem item = deformItem();
     uvec4 sizes = deformObjects[item.object];
-    uint shownBase = deformObjects[item.object + 1u].x;
+    uvec4 bases = deformObjects[item.object + 1u];
+    uint shownBase = bases.x;
+    bool tears = (bases.z & kDeformShell) != 0u;
 
     uint last = min(item.end, sizes.w);
     uint number = item.number;
@@ -19,29 +21,34 @@ void main() {
     do {
         uint at = sizes.z * kDeformCoatQuads + number;
         uvec2 coat = deformCoat(at).xy;
-        uvec3 face = deformCoat(at + 3u * sizes.w).xyz;
+        uvec4 face = deformCoat(at + 3u * sizes.w);
         uint node = shownBase + coat.x;
         vec3 place = shown(node * kShownQuads).xyz;
-        float lead = shown(node * kShownQuads + 2u).w;
+        vec4 facts = shown(node * kShownQuads + 1u);
 
         vec3 turned = vec3(0.0), before = vec3(0.0);
+        float square = 0.0;
         FW_UNROLL for (uint q = 0u; q < kDeformRing / 4u; ++q) {
             uvec4 ring = deformCoat(at + (1u + q) * sizes.w);
             FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
                 vec3 arm = shown((shownBase + ring[k]) * kShownQuads).xyz - place;
                 turned += cross(before, arm);
+                square = max(square, dot(arm, arm));
                 before = arm;
             }
         }
         float size = length(turned);
         vec3 rest = unpackDirection(coat.y);
         vec3 normal = rest;
-        if (size > 1e-18) normal = turnedNormal(rest, uintBitsToFloat(face), turned / size);
+        if (size > 1e-18) normal = turnedNormal(rest, uintBitsToFloat(face.xyz), turned / size);
+        float lead = facts.w;
+        if (tears) lead = max(lead, tornLead(square, uintBitsToFloat(face.w), facts.x));
         // At rest exactly what the mesh has.
         uint packed = all(equal(normal, rest)) ? coat.y : packDirection(normal);
         uint self = shownBase + number;
         if (self == node) {
             shownWords[self * kShownQuads * 4u + 3u] = packed;
+            shownWords[self * kShownQuads * 4u + 11u] = floatBitsToUint(lead);
         } else {
             shownOut[self * kShownQuads] = floatBitsToUint(vec4(place, uintBitsToFloat(packed)));
             shownOut[self * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, lead));

@@ -45,9 +45,9 @@ void main() {
         float before_ = item.reset ? 0.0 : shown(vertex + 1u).x;
         float burnt = max(before_, sum / max(known, 1.0));
 
-        float lead = 0.0;
+        float behind = 0.0;
         if (facts.w != kNoneTexel && !item.crosses)
-            lead = uintBitsToFloat(holes.y) *
+            behind = uintBitsToFloat(holes.y) *
                    burntShare(state[bases.y + facts.w], push.now, push.up.w, holes.x);
 
         vec3 place = uintBitsToFloat(rest.xyz);
@@ -87,8 +87,7 @@ void main() {
         }
         readBeforeWritten();
         shownOut[vertex] = floatBitsToUint(vec4(place, 0.0));
-        shownOut[vertex + 1u] = floatBitsToUint(vec4(burnt, lost, kept, 0.0));
-        shownOut[vertex + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, lead));
+        shownOut[vertex + 1u] = floatBitsToUint(vec4(burnt, lost, kept, behind));
         number += 64u;
     } while (number < last);
 }

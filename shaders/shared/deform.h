@@ -98,7 +98,7 @@ struct DeformCoat {       // static, per drawn vertex: what its normal follows; 
     uint reserved0; uint reserved1;
     uint ring[8];         // chain of vertices around it, the last repeated: of triangles that share the normal
     float faceX; float faceY; float faceZ;  // unit, their area-weighted normal at rest
-    float reserved2;
+    float longest;        // m^2, at rest, of the way to one of the ring
 };
 FW_SHARED_SIZE(DeformCoat, 64)
 
@@ -106,7 +106,9 @@ struct ShownVertex {      // what is drawn instead of a mesh::RenderVertex's pos
     float x; float y; float z;   // m, object space
     uint normal;                 // signed 11:11:10
     float burnt;                 // [0, 1] mean over the node's texels; never falls
-    float reserved[6];
+    float lost; float kept;      // m, of a spring node: in each step, and for later ones
+    float behind;                // s of look time that the wall behind has burnt for
+    float reserved[3];
     float lead;                  // s of look time that holes come earlier here
 };
 FW_SHARED_SIZE(ShownVertex, 48)
@@ -253,6 +255,13 @@ FW_SHARED_FN float relaxAt(float relax, float dt) {
 // Of a velocity, after one step; charred sheets move as through honey.
 FW_SHARED_FN float sheetDamping(float charred, float dt) {
     return 1.0f - kSheetDamping * (1.0f + 5.0f * charred) * (dt * 128.0f);
+}
+
+// What has burnt and been drawn out to several lengths has torn: no skin is left between its ends.
+FW_SHARED_CONST float kTornSquare = 2.6f;  // of rest lengths' squares
+FW_SHARED_CONST float kTornLead = 1000.0f; // s of look time
+FW_SHARED_FN float tornLead(float square, float longest, float burnt) {
+    return burnt > 0.5f && square > kTornSquare * longest ? kTornLead : 0.0f;
 }
 
 // How far shrinking and curling have come: all of it before links part.

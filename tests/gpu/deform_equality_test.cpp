@@ -116,7 +116,7 @@ struct Pair {
             else
                 mesh::sheetStep(model, object, drive, state);
         }
-        mesh::drape(model, state);
+        mesh::drape(model, state, soft && !springs);
         fresh = false;
     }
 

@@ -239,7 +239,7 @@ TEST(DeformTierA, SlabOpensFromBothSidesAtOnce) {
             const gpu::DeformNode& node = model.nodes[i];
             const uint32_t t = states[node.texels[0]];
             const float age = now > t ? seconds(now - t) : 0;
-            if (openAt[i] == 0 && age + state.shown[node.vertex].lead >= whole)
+            if (openAt[i] == 0 && age + state.shown[node.vertex].behind >= whole)
                 openAt[i] = seconds(now);
         }
     }
@@ -260,9 +260,9 @@ TEST(DeformTierA, SlabOpensFromBothSidesAtOnce) {
     for (const gpu::DeformNode& node : model.nodes) {
         state = restOf(model);
         mesh::recede(model, object, together, 1 + uint32_t(439 * kTicksPerSecond), state);
-        EXPECT_LT(439 + state.shown[node.vertex].lead, whole);
+        EXPECT_LT(439 + state.shown[node.vertex].behind, whole);
         mesh::recede(model, object, together, 1 + uint32_t(485 * kTicksPerSecond), state);
-        EXPECT_GE(485 + state.shown[node.vertex].lead, whole);
+        EXPECT_GE(485 + state.shown[node.vertex].behind, whole);
         if (&node - model.nodes.data() > 4) break;
     }
 }

@@ -411,6 +411,10 @@ class Builder {
         for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
             made.ring[i] = closes ? made.ring[0] : made.ring[kept - 1];
         const glm::dvec3 at = placeOf(v);
+        for (const uint32_t other : made.ring) {
+            const glm::dvec3 way = placeOf(domain_.vertices[other]) - at;
+            made.longest = std::max(made.longest, float(glm::dot(way, way)));
+        }
         for (size_t i = 0; i + 1 < kDeformRing; ++i)
             face += glm::cross(placeOf(domain_.vertices[made.ring[i]]) - at,
                                placeOf(domain_.vertices[made.ring[i + 1]]) - at);

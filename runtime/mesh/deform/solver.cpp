@@ -252,25 +252,27 @@ void recede(const DeformModel& model, const gpu::DeformObject& object,
             known += 1;
         }
         shown.burnt = std::max(shown.burnt, sum / std::max(known, 1.0f));
-        shown.lead = 0;
+        shown.behind = 0;
         if (node.opposite != kNone)
-            shown.lead = material.holeSeconds *
-                         gpu::burntShare(states[node.opposite], now, 0, material.holeTicks);
+            shown.behind = material.holeSeconds *
+                           gpu::burntShare(states[node.opposite], now, 0, material.holeTicks);
         place(shown, restOf(node) + vec3(node.outX, node.outY, node.outZ) *
                                         gpu::recession(shown.burnt, material.depth, node.limit));
     }
 }
 
-void drape(const DeformModel& model, DeformState& state) {
+void drape(const DeformModel& model, DeformState& state, bool tears) {
     for (size_t i = 0; i < model.coats.size(); ++i) {
         const gpu::DeformCoat& coat = model.coats[i];
         const ShownVertex& node = state.shown[coat.node];
         const vec3 at = placeOf(node);
         vec3 turned(0), before(0);
+        float square = 0;
         for (const uint32_t neighbour : coat.ring) {
             const vec3 arm = placeOf(state.shown[neighbour]) - at;
             turned += gpu::cross(before, arm);
             before = arm;
+            square = std::max(square, gpu::dot(arm, arm));
         }
         const float size = gpu::length(turned);
         const vec3 rest = gpu::unpackDirection(coat.normal);
@@ -280,7 +282,9 @@ void drape(const DeformModel& model, DeformState& state) {
                 gpu::turnedNormal(rest, vec3(coat.faceX, coat.faceY, coat.faceZ), turned / size);
         ShownVertex& shown = state.shown[i];
         shown.normal = normal == rest ? coat.normal : gpu::packDirection(normal);
-        shown.lead = node.lead;
+        shown.lead = node.behind;
+        if (tears)
+            shown.lead = std::max(shown.lead, gpu::tornLead(square, coat.longest, node.burnt));
         shown.burnt = node.burnt;
         place(shown, at);
     }

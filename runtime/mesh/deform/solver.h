@@ -39,7 +39,8 @@ void resetSoft(const DeformModel& model, const gpu::DeformObject& object, Deform
 // `states`: the object's burn map (ticks or codes).
 void recede(const DeformModel& model, const gpu::DeformObject& object,
             std::span<const uint32_t> states, uint32_t now, DeformState& state);
-void drape(const DeformModel& model, DeformState& state);
+// `tears`: a sheet, which has holes where it was torn.
+void drape(const DeformModel& model, DeformState& state, bool tears = false);
 // One step of a sheet: passes bend and soft.
 void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
                DeformState& state);
