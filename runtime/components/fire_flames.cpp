@@ -104,6 +104,48 @@ void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
     f.trackVersion = fire.trackVersion;
 }
 
+FireState FireFlames::foresee(VolumetricFire& fire, const FireAir& air) const noexcept {
+    FireState s;
+    FireFlame f;
+    f.fire = &fire;
+    for (; f.part < fire.partCount && fire.power > 0; ++f.part) {
+        place(f, air);
+        volume::FlameDef& def = f.flame.def;
+        std::array<volume::ControlPoint, volume::kMaxControlPoints> points = fire.points;
+        uint32_t count = fire.pointCount;
+        if (fire.tracked()) {
+            count = volume::sampleTrack(fire.track, double(fire.track.times[0]), points);
+            for (uint32_t k = 0; k < count; ++k) points[k].position += def.position;
+        }
+        volume::Curve line;
+        if (count > 0) {
+            line.set(std::span(points).first(count), def.up);
+            def.height = std::clamp(line.length(), 1e-3f, 200.0f);
+        }
+        volume::FlameLight light = volume::meanLight(def);
+        const float height = count > 0 ? def.height : aloneHeight(def.power, def.diameter);
+        if (count > 0) light.position = line.at(0.4f * height).position;
+        if (height > s.height) {
+            s.height = height;
+            s.tip = count > 0 ? line.at(height).position : def.position + def.up * height;
+            s.pulseRate = volume::puffFrequency(def.diameter);
+        }
+        ++s.flames;
+        s.power += def.power;
+        if (s.flames == 1) s.colour = vec3(0.0f);
+        s.light += light.flux * light.position;
+        s.colour += light.flux * light.colour;
+        s.intensity += light.flux;
+    }
+    if (s.flames == 0) return s;
+    const float sum = std::max(s.intensity, 1e-12f);
+    s.light /= sum;
+    s.colour /= sum;
+    s.intensity /= kLumensPerWatt * kFullCircle;
+    s.bounds = {s.light, s.light};
+    return s;
+}
+
 void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
     fire.nextState = {};
     fire.nextState.lit = true;
@@ -228,11 +270,13 @@ uint32_t FireFlames::write(std::span<gpu::VolumeFlame> out) const noexcept {
 }
 
 FireAnswer askFires(std::span<const FireFlame> flames,
-                    std::span<const core::Owned<volume::Profile>> profiles, vec3 point) noexcept {
+                    std::span<const core::Owned<volume::Profile>> profiles,
+                    std::span<const volume::Collider> walls, vec3 point) noexcept {
     FireAnswer all;
     float most = 0;
     for (const FireFlame& f : flames) {
-        const volume::FlameAnswer a = volume::askFlame(f.flame, *profiles[f.fire->profile], point);
+        const volume::FlameAnswer a =
+            volume::askFlame(f.flame, *profiles[f.fire->profile], point, walls);
         all.air.inside |= a.inside;
         all.air.kelvin = std::max(all.air.kelvin, a.kelvin);
         all.air.heatFlux = std::min(all.air.heatFlux + a.heatFlux, kFluxMost);
@@ -246,12 +290,13 @@ FireAnswer askFires(std::span<const FireFlame> flames,
 }
 
 volume::FlamePush pushOfFires(std::span<const FireFlame> flames,
-                              std::span<const core::Owned<volume::Profile>> profiles, vec3 centre,
+                              std::span<const core::Owned<volume::Profile>> profiles,
+                              std::span<const volume::Collider> walls, vec3 centre,
                               float radius) noexcept {
     volume::FlamePush all;
     for (const FireFlame& f : flames) {
         const volume::FlamePush p =
-            volume::pushOf(f.flame, *profiles[f.fire->profile], centre, radius);
+            volume::pushOf(f.flame, *profiles[f.fire->profile], centre, radius, walls);
         all.force += p.force;
         all.ignition += p.ignition;
     }

@@ -31,6 +31,9 @@ class FireFlames {
     size_t findRoom(size_t more);
     void drop(const VolumetricFire& fire) noexcept;  // of a fire that goes
 
+    // What its first frame will nearly say of a fire that has not been through one.
+    FireState foresee(VolumetricFire& fire, const FireAir& air) const noexcept;
+
     void begin() noexcept { next_ = now_; }  // room was found
     // Which flames the fire has from now on; those without room are left out.
     void settle(VolumetricFire& fire, const FireAir& air) noexcept;
@@ -51,16 +54,17 @@ class FireFlames {
     std::pmr::vector<volume::Neighbourhood> met_;
 };
 
-// Together, at a point; `profileOf` gives the profile of a layer. fire: who heats it most, or null.
+// Together, at a point; `walls` shade what radiates. fire: who heats it most, or null.
 struct FireAnswer {
     volume::FlameAnswer air;
     const VolumetricFire* fire = nullptr;
 };
 FireAnswer askFires(std::span<const FireFlame> flames,
                     std::span<const core::Owned<volume::Profile>> profiles,
-                    gpu::vec3 point) noexcept;
+                    std::span<const volume::Collider> walls, gpu::vec3 point) noexcept;
 volume::FlamePush pushOfFires(std::span<const FireFlame> flames,
                               std::span<const core::Owned<volume::Profile>> profiles,
-                              gpu::vec3 centre, float radius) noexcept;
+                              std::span<const volume::Collider> walls, gpu::vec3 centre,
+                              float radius) noexcept;
 
 }  // namespace fw::components

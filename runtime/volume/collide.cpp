@@ -11,6 +11,9 @@ namespace {
 
 constexpr float kMostSqueeze = 0.88f;
 constexpr float kMostWiden = 1.7f;
+constexpr float kBelow = 0.1f;         // m below ground that is still counted as on it
+constexpr float kSkin = 1e-3f;         // m, of what a ray may touch
+constexpr uint32_t kMostFeeler = 48u;  // steps along a ray that has to be felt
 
 vec3 unitOr(vec3 v, vec3 fallback) noexcept {
     const float l = glm::length(v);
@@ -56,7 +59,86 @@ Surface ofHeights(const Collider& c, vec3 point) noexcept {
     return {distance, normal};
 }
 
+// Squared distance from a point to a piece of a line.
+float awayFrom(vec3 a, vec3 b, vec3 point) noexcept {
+    const vec3 along = b - a, to = point - a;
+    const float l2 = glm::dot(along, along);
+    const vec3 off =
+        to - (l2 > 0.0f ? std::clamp(glm::dot(to, along) / l2, 0.0f, 1.0f) : 0.0f) * along;
+    return glm::dot(off, off);
+}
+
+// Of two pieces of lines; where they are skew in between, that is where they are nearest.
+float awayFrom(vec3 a, vec3 b, vec3 c, vec3 d) noexcept {
+    const vec3 u = b - a, v = d - c, w = a - c;
+    const float uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v);
+    const float uw = glm::dot(u, w), vw = glm::dot(v, w), skew = uu * vv - uv * uv;
+    float least = std::min(std::min(awayFrom(c, d, a), awayFrom(c, d, b)),
+                           std::min(awayFrom(a, b, c), awayFrom(a, b, d)));
+    if (skew > 1e-12f) {
+        const float s = (uv * vw - vv * uw) / skew, t = (uu * vw - uv * uw) / skew;
+        if (s > 0.0f && s < 1.0f && t > 0.0f && t < 1.0f) {
+            const vec3 off = w + s * u - t * v;
+            least = std::min(least, glm::dot(off, off));
+        }
+    }
+    return least;
+}
+
+bool crossesBox(const Collider& c, vec3 from, vec3 to) noexcept {
+    const vec4 back(-vec3(c.rotation), c.rotation.w);
+    const vec3 a = turned(back, from - c.place), way = turned(back, to - c.place) - a;
+    float in = 0.0f, out = 1.0f;
+    for (int k = 0; k < 3; ++k) {
+        const float half = c.extent[k] - kSkin;
+        if (std::abs(way[k]) < 1e-9f) {
+            if (std::abs(a[k]) >= half) return false;
+            continue;
+        }
+        const float first = (-half - a[k]) / way[k], last = (half - a[k]) / way[k];
+        in = std::max(in, std::min(first, last)), out = std::min(out, std::max(first, last));
+    }
+    return in < out;
+}
+
+bool feels(const Collider& c, vec3 from, vec3 to) noexcept {
+    const float length = glm::length(to - from);
+    const float least = length / float(kMostFeeler);
+    for (float t = 0.0f; t < length;) {
+        const float d = surfaceOf(c, from + (to - from) * (t / length)).distance;
+        if (d < -kSkin) return true;
+        // Heights are no distances, and beside their field there are none.
+        t += c.kind == ColliderKind::HeightField ? least : std::max(0.9f * d, least);
+    }
+    return false;
+}
+
 }  // namespace
+
+bool shades(const Collider& c, vec3 source, vec3 point) noexcept {
+    const float here = surfaceOf(c, point).distance;
+    if (surfaceOf(c, source).distance < 0.0f) return false;
+    const bool ground = c.kind == ColliderKind::Plane || c.kind == ColliderKind::HeightField;
+    if (ground && here < -kBelow) return true;
+    if (here < -kSkin && c.kind != ColliderKind::HeightField) return false;
+    const float radius = std::max(c.radius - kSkin, 0.0f);
+    switch (c.kind) {
+        case ColliderKind::Sphere:
+            return awayFrom(source, point, c.place) < radius * radius;
+        case ColliderKind::Capsule:
+            return awayFrom(source, point, c.place, c.extent) < radius * radius;
+        case ColliderKind::Box:
+            return crossesBox(c, source, point);
+        case ColliderKind::Plane:
+            return false;
+        case ColliderKind::HeightField:
+            return feels(c, source,
+                         point + surfaceOf(c, point).normal * std::max(kSkin - here, 0.0f));
+        case ColliderKind::Callback:
+            return feels(c, source, point);
+    }
+    return false;
+}
 
 Surface surfaceOf(const Collider& c, vec3 point) noexcept {
     switch (c.kind) {

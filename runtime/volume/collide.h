@@ -29,6 +29,11 @@ Surface surfaceOf(const Collider& collider, vec3 point) noexcept;
 // Of all of them the nearest; far away if there are none.
 Surface nearestSurface(std::span<const Collider> colliders, vec3 point) noexcept;
 
+// Whether it stands between a source of radiation and a point. What the source is in hides nothing,
+// nor does a body that the point is in, but ground and planes hide what is more than a hand's
+// breadth below them. Height fields and callbacks are felt along the way: thin ones may be missed.
+bool shades(const Collider& collider, vec3 source, vec3 point) noexcept;
+
 // Throws core::Error that names the field, the value and the limit.
 void checkCollider(const Collider& collider);
 

@@ -14,6 +14,7 @@ constexpr float kPowerLag = 0.3f;       // s
 constexpr float kStefan = 5.67e-8f;     // W/(m^2 K^4)
 constexpr float kConvection = 25.0f;    // W/(m^2 K), of flames on small bodies
 constexpr float kLumensPerWatt = 0.4f;  // of what a flame radiates, soot of about 1720 K
+constexpr float kLeastFlux = 1.0f;      // W/m^2 that is worth a look for walls
 constexpr float kFadePower = 0.02f;     // kW below which a flame grows thin, per m of diameter
 
 MotionRules rulesOf(const Flame& f, const FlameAir& air) noexcept {
@@ -87,16 +88,24 @@ const gpu::FlameNode& nodeAt(const Flame& f, float s) noexcept {
     return f.nodes[size_t(std::clamp(k, 0.0f, float(f.nodes.size() - 1)))];
 }
 
+FlameLight lightOf(const Flame& f, vec3 position) noexcept {
+    const FlameLook& l = f.def.look;
+    FlameLight light;
+    light.position = position;
+    light.radius = std::max(0.3f * f.size.height, 0.5f * f.size.diameter);
+    light.flux = 1000.0f * f.power * l.radiant * kLumensPerWatt;
+    vec3 colour = gpu::flameRadiance(f.record, 0.5f * (l.core + l.tip) + 60.0f);
+    if (l.painter == Painter::Burner) colour = vec3(l.tint[0], l.tint[1], l.tint[2]);
+    light.colour = colour / std::max(glm::dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)), 1e-6f);
+    return light;
+}
+
 void shine(Flame& f) noexcept {
     const FlameLook& l = f.def.look;
     const float pulse = (f.size.pulse - 1.0f) / std::max(l.puff, 1e-3f);  // [-1, 1]
     const float now = 1.0f + l.flicker * (0.6f * pulse + 2.0f * flicker(f));
-    f.light.position = vec3(nodeAt(f, 0.4f * f.size.height).centre);
-    f.light.radius = std::max(0.3f * f.size.height, 0.5f * f.size.diameter);
-    f.light.flux = std::max(now, 0.0f) * 1000.0f * f.power * l.radiant * kLumensPerWatt;
-    vec3 colour = gpu::flameRadiance(f.record, 0.5f * (l.core + l.tip) + 60.0f);
-    if (l.painter == Painter::Burner) colour = vec3(l.tint[0], l.tint[1], l.tint[2]);
-    f.light.colour = colour / std::max(glm::dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)), 1e-6f);
+    f.light = lightOf(f, vec3(nodeAt(f, 0.4f * f.size.height).centre));
+    f.light.flux *= std::max(now, 0.0f);
     // Smoke is lit from there: radiance m^2 of about the flame's size.
     f.record.glow = vec4(f.light.position, 0.06f * f.size.diameter * f.size.diameter * now);
 }
@@ -164,6 +173,14 @@ void checkFlame(const FlameDef& d) {
                    uint32_t(FlameDriver::Host));
 }
 
+FlameLight meanLight(const FlameDef& def) noexcept {
+    Flame f;
+    f.def = def;
+    f.power = clampPower(def.power);
+    describe(f, {});
+    return lightOf(f, def.position + def.up * (0.4f * f.size.height));
+}
+
 void startFlame(Flame& f, const FlameDef& def, const FlameAir& air) noexcept {
     f = {};
     f.def = def;
@@ -204,7 +221,8 @@ bool isSeen(const Bounds& b, std::span<const vec4> planes) noexcept {
     return true;
 }
 
-FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point) noexcept {
+FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point,
+                     std::span<const Collider> walls) noexcept {
     FlameAnswer a;
     const float height = f.size.height, diameter = f.size.diameter;
     if (f.power <= 0.0f) return a;
@@ -231,21 +249,27 @@ FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point) noexcep
     // Radiation: four points along the axis, never nearer than half the flame's width.
     const float radiated = 1000.0f * f.power * f.def.look.radiant;
     float flux = 0.0f;
-    for (int k = 0; k < 4; ++k) {
-        const vec3 to = point - vec3(nodeAt(f, height * (0.1f + 0.2f * float(k))).centre);
+    for (int k = 0; k < 4 && !a.inside; ++k) {
+        const vec3 from(nodeAt(f, height * (0.1f + 0.2f * float(k))).centre), to = point - from;
         const float near = 0.5f * diameter;
-        flux += 0.25f * radiated / (12.566f * std::max(glm::dot(to, to), near * near));
+        const float part = 0.25f * radiated / (12.566f * std::max(glm::dot(to, to), near * near));
+        const bool hidden =
+            part > kLeastFlux && std::any_of(walls.begin(), walls.end(), [&](const Collider& wall) {
+                return shades(wall, from, point);
+            });
+        flux += hidden ? 0.0f : part;
     }
     const float emissivity = 1.0f - std::exp(-1.0f * diameter);
     const float hot = a.kelvin * a.kelvin;
     const float within = kConvection * (a.kelvin - kAmbientKelvin) +
                          (a.inside ? emissivity * kStefan * hot * hot : 0.0f);
-    a.heatFlux = within + (a.inside ? 0.0f : flux);
+    a.heatFlux = within + flux;
     return a;
 }
 
-FlamePush pushOf(const Flame& f, const Profile& profile, vec3 centre, float radius) noexcept {
-    const FlameAnswer a = askFlame(f, profile, centre);
+FlamePush pushOf(const Flame& f, const Profile& profile, vec3 centre, float radius,
+                 std::span<const Collider> walls) noexcept {
+    const FlameAnswer a = askFlame(f, profile, centre, walls);
     const float r = std::max(radius, 0.0f), area = 3.1415927f * r * r;
     const float density = 353.0f / a.kelvin;  // kg/m^3
     FlamePush push;

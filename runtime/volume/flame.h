@@ -33,6 +33,9 @@ struct FlameLight {       // one per flame
     float flux = 0.0f;    // lm
 };
 
+// Of a flame that has not been advanced yet, without flicker.
+FlameLight meanLight(const FlameDef& def) noexcept;
+
 struct Flame {
     FlameDef def;
     double age = 0.0;        // s
@@ -73,12 +76,15 @@ struct FlameAnswer {
     float heatFlux = 0.0f;  // W/m^2 on a small cold body there, from gas and by radiation
     vec3 gas{0.0f};         // m/s of the gas there
 };
-FlameAnswer askFlame(const Flame& flame, const Profile& profile, vec3 point) noexcept;
+// `walls` shade radiation; gas is where the flame is.
+FlameAnswer askFlame(const Flame& flame, const Profile& profile, vec3 point,
+                     std::span<const Collider> walls = {}) noexcept;
 
 struct FlamePush {
     vec3 force{0.0f};       // N on a sphere that stands still
     float ignition = 0.0f;  // W into it
 };
-FlamePush pushOf(const Flame& flame, const Profile& profile, vec3 centre, float radius) noexcept;
+FlamePush pushOf(const Flame& flame, const Profile& profile, vec3 centre, float radius,
+                 std::span<const Collider> walls = {}) noexcept;
 
 }  // namespace fw::volume

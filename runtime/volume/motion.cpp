@@ -105,6 +105,18 @@ void step(FlameMotion& m, const MotionRules& r, std::span<const Collider> collid
     }
 }
 
+// Gas comes to a wall in puffs: what it gives is told as the mean of one, and is 0 a pulse after
+// the last touch. `passed`: pulses since the last time.
+void meanContact(FlameMotion& m, float power, float passed) noexcept {
+    const int end = int(m.phase * double(kPulseParts));
+    const int parts = std::min(int(passed * float(kPulseParts)) + 1, int(kPulseParts));
+    for (int k = 0; k < parts; ++k)
+        m.contacts[size_t(end - k + int(kPulseParts)) % kPulseParts] = power;
+    float sum = 0.0f;
+    for (const float part : m.contacts) sum += part;
+    m.contactPower = sum / float(kPulseParts);
+}
+
 void spawn(FlameMotion& m, const MotionRules& r, float age) noexcept {
     const uint32_t room = kMotionParticles - 1;
     m.count = std::min(m.count, room);
@@ -165,12 +177,15 @@ void advanceMotion(FlameMotion& m, const MotionRules& r, vec3 base,
             place += p.position;
             normal += nearestSurface(colliders, p.position).normal;
         }
-        m.contactPower = below > 0 ? r.size.power * float(touching) / float(below) : 0.0f;
+        const float now = below > 0 ? r.size.power * float(touching) / float(below) : 0.0f;
+        const float passed = puffFrequency(r.size.diameter) * kMotionStep / r.burn * float(steps);
         if (touching > 0) {
-            m.contact = place / float(touching);
             const float l = glm::length(normal);
+            const float fresh = m.contactPower > 0.0f ? std::min(3.0f * passed, 1.0f) : 1.0f;
+            m.contact = glm::mix(m.contact, place / float(touching), fresh);
             m.contactNormal = l > 1e-6f ? normal / l : r.up;
         }
+        meanContact(m, now, passed);
     }
     m.base = base;
     m.radius = 0.5f * r.size.diameter;

@@ -13,6 +13,7 @@ constexpr float kMotionStep = 1.0f / 128.0f;  // s
 constexpr uint32_t kMostMotionSteps = 32;     // of a frame; a hitch drops the rest
 constexpr uint32_t kMotionPieces = 14;        // control points above the base
 constexpr uint32_t kMotionParticles = 24;
+constexpr uint32_t kPulseParts = 16;  // of a puff, that contact is averaged over
 constexpr float kAmbientKelvin = 293.0f, kFlameKelvin = 1300.0f;
 
 struct MotionRules {
@@ -44,7 +45,9 @@ struct FlameMotion {
     vec3 base{0.0f}, baseVelocity{0.0f};
     float radius = 0.0f;                                   // m, of the base
     double sinceSpawn = 0.0, leftover = 0.0, phase = 0.0;  // s, s, [0, 1) of the puff
-    // What it touched in the last step: kW that go into it, where, and the surface's normal.
+    // What it touched in the last pulse, on the mean: kW that go into it, where, and the surface's
+    // normal. By parts of the pulse, each as it was last.
+    std::array<float, kPulseParts> contacts{};
     float contactPower = 0.0f;
     vec3 contact{0.0f}, contactNormal{0.0f, 1.0f, 0.0f};
 };

@@ -25,6 +25,14 @@ void World::findFireRoom(uint32_t more) {
     fireShapes_.reserve(kMaxFireShapes);
 }
 
+// What is told of it before its first frame: a host lights its scene with it in that frame, too.
+void World::foresee(VolumetricFire& fire) noexcept {
+    if (fire.state.lit) return;
+    components::FireAir air;
+    std::copy_n(def_.up, 3, air.up);
+    fire.state = burning_.foresee(fire, air);
+}
+
 // The layer of its profile, with its texels on this side.
 uint32_t World::profileLayer(const FwVolumetricFireDef& def) {
     if (def.profile.index1 != 0) return fireProfiles_.get(def.profile).layer;
@@ -47,6 +55,7 @@ FwVolumetricFireId World::createVolumetricFire(const FwVolumetricFireDef& def) {
     const uint32_t layer = profileLayer(def);
     components::makeVolumetricFire(def, ownSeed, fire->data);
     fire->data.profile = layer;
+    foresee(fire->data);
     const FwVolumetricFireId id = fires_.create(std::move(fire));
     try {
         findFireRoom(0);
@@ -67,13 +76,16 @@ void World::destroyVolumetricFire(FwVolumetricFireId id) {
 }
 
 void World::moveVolumetricFire(FwVolumetricFireId id, const float position[3]) {
-    components::setFirePosition(fires_.get(id)->data, position);
+    VolumetricFire& fire = fires_.get(id)->data;
+    components::setFirePosition(fire, position);
+    foresee(fire);
 }
 
 void World::setVolumetricFirePower(FwVolumetricFireId id, float power) {
     VolumetricFire& fire = fires_.get(id)->data;
     findFireRoom(components::mostParts(power, fire.diameter));
     components::setFirePower(fire, power);
+    foresee(fire);
 }
 
 void World::setVolumetricFirePoints(FwVolumetricFireId id, const FwFirePoint* points,
@@ -81,12 +93,14 @@ void World::setVolumetricFirePoints(FwVolumetricFireId id, const FwFirePoint* po
     VolumetricFire& fire = fires_.get(id)->data;
     findFireRoom(components::mostParts(fire.power, fire.diameter));
     components::setFirePoints(fire, points, count, "points");
+    foresee(fire);
 }
 
 void World::setVolumetricFireTrack(FwVolumetricFireId id, const FwFireTrackDef* def) {
     VolumetricFire& fire = fires_.get(id)->data;
     findFireRoom(components::mostParts(fire.power, fire.diameter));
     components::setFireTrack(fire, def);
+    foresee(fire);
 }
 
 void World::setVolumetricFireHidden(FwVolumetricFireId id, bool hidden) {
@@ -131,10 +145,11 @@ void World::destroyFireProfile(FwFireProfileId id) {
 
 // ---- questions --------------------------------------------------------------------------------
 
-void World::askVolumetricFires(const float point[3], FwFireAnswer& answer) const {
+void World::askVolumetricFires(const float point[3], FwFireAnswer& answer) {
     components::checkValues(point, 3, "point", -1e6f, 1e6f);
+    if (!burning_.now().empty()) listFireColliders();  // as they stand now
     const components::FireAnswer found =
-        components::askFires(burning_.now(), profiles_, vecOf(point));
+        components::askFires(burning_.now(), profiles_, fireShapes_, vecOf(point));
     answer.inside = found.air.inside ? 1 : 0;
     answer.temperature = found.air.kelvin;
     answer.heatFlux = found.air.heatFlux;
@@ -144,11 +159,12 @@ void World::askVolumetricFires(const float point[3], FwFireAnswer& answer) const
             answer.fire = fires_.idOf(i);
 }
 
-void World::volumetricFirePush(const float centre[3], float radius, FwFirePush& push) const {
+void World::volumetricFirePush(const float centre[3], float radius, FwFirePush& push) {
     components::checkValues(centre, 3, "centre", -1e6f, 1e6f);
     components::checkValue(radius, "radius", 0.0f, 100.0f);
+    if (!burning_.now().empty()) listFireColliders();
     const volume::FlamePush found =
-        components::pushOfFires(burning_.now(), profiles_, vecOf(centre), radius);
+        components::pushOfFires(burning_.now(), profiles_, fireShapes_, vecOf(centre), radius);
     for (int i = 0; i < 3; ++i) push.force[i] = found.force[i];
     push.ignitionPower = found.ignition;
 }

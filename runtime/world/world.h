@@ -261,8 +261,8 @@ class World {
     FwFireColliderId addFireCollider(const FwFireColliderDef& def);
     void setFireCollider(FwFireColliderId id, const FwFireColliderDef& def);
     void removeFireCollider(FwFireColliderId id);
-    void askVolumetricFires(const float point[3], FwFireAnswer& answer) const;
-    void volumetricFirePush(const float centre[3], float radius, FwFirePush& push) const;
+    void askVolumetricFires(const float point[3], FwFireAnswer& answer);
+    void volumetricFirePush(const float centre[3], float radius, FwFirePush& push);
 
     // Throws unless advance would take these.
     void checkFrame(uint64_t frameIndex, float deltaTime) const;
@@ -348,6 +348,7 @@ class World {
     void commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept;
     // fires.cpp
     void findFireRoom(uint32_t more);
+    void foresee(components::VolumetricFire& fire) noexcept;
     uint32_t profileLayer(const FwVolumetricFireDef& def);
     void planFires(float seconds) noexcept;
     void commitFires() noexcept;

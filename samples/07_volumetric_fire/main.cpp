@@ -1,5 +1,5 @@
-// The nine presets of volumetric fires in a row, each as large as the row allows: by night, or by
-// day with --day. In a window: drag to turn, wheel to zoom.
+// The nine presets of volumetric fires in a row, each as large as the row allows: by night, by
+// day, against the sky, from above, from inside. In a window: drag to turn, wheel to zoom.
 #include <cmath>
 #include <cstdio>
 
@@ -34,7 +34,7 @@ float powerFor(float height, float diameter) {
     return std::pow((height + 1.02f * diameter) / 0.235f, 2.5f);
 }
 
-int run(const sample::Options& options, float seconds, bool day, float wind) {
+int run(const sample::Options& options, float seconds, const sample::FireLook& look, float wind) {
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
@@ -67,7 +67,7 @@ int run(const sample::Options& options, float seconds, bool day, float wind) {
         }
 
         FwView view = fwDefaultView();
-        sample::duskLight(view, day ? 2.0f : 0.012f);
+        look.lightUp(view, 0.012f, 2.0f);
         sample::OrbitCamera orbit;
         orbit.target = {0, 0.47f, 0};
         orbit.distance = 6.4f;
@@ -87,7 +87,7 @@ int run(const sample::Options& options, float seconds, bool day, float wind) {
         while (stage.next(frame)) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
             orbit.zoom(frame.input.wheel);
-            sample::setCamera(view, orbit.camera(), frame);
+            sample::setCamera(view, look.camera(orbit, {placeOf(4), kStone + 0.16f, 0}), frame);
             sample::showStudio(frame, stage, studio, fire, view);
         }
 
@@ -121,17 +121,17 @@ int main(int argc, char** argv) {
         options.width = 1280;
         options.height = 300;
         float seconds = 2, wind = 0;
-        bool day = false;
+        sample::FireLook look;
         sample::OptionParser parser("07_volumetric_fire", "volumetric fires of nine kinds");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--wind", "m/s, to the right", wind, -20.0f, 20.0f);
-        parser.addFlag("--day", "by day instead of by night", day);
+        look.addTo(parser);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             for (const Exhibit& exhibit : kExhibits)
                 std::printf("%s\n", fwFirePresetName(exhibit.preset));
             return 0;
         }
-        return run(options, seconds, day, wind);
+        return run(options, seconds, look, wind);
     });
 }

@@ -44,7 +44,7 @@ glm::vec3 torchAt(double seconds) {
             0.10f + 0.16f * static_cast<float>(std::cos(a))};
 }
 
-int run(const sample::Options& options, float seconds, bool day, float gust) {
+int run(const sample::Options& options, float seconds, const sample::FireLook& look, float gust) {
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
@@ -96,7 +96,7 @@ int run(const sample::Options& options, float seconds, bool day, float gust) {
         }
 
         FwView view = fwDefaultView();
-        sample::duskLight(view, day ? 1.6f : 0.02f);
+        look.lightUp(view, 0.02f, 1.6f);
         sample::OrbitCamera orbit;
         orbit.target = {0.35f, 0.55f, 0};
         orbit.distance = 6.6f;
@@ -117,7 +117,8 @@ int run(const sample::Options& options, float seconds, bool day, float gust) {
         while (stage.next(frame)) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
             orbit.zoom(frame.input.wheel);
-            sample::setCamera(view, orbit.camera(), frame);
+            sample::setCamera(view, look.camera(orbit, {kStones[0].center.x, kStone + 0.16f, 0}),
+                              frame);
             const float wind[3] = {gustAt(frame.time, gust), 0, 0};
             fire.check(fwWorld_SetWind(fire.world, wind), "fwWorld_SetWind");
             const glm::vec3 at = torchAt(frame.time);
@@ -166,17 +167,17 @@ int main(int argc, char** argv) {
         options.width = 1280;
         options.height = 400;
         float seconds = 4, gust = 4;
-        bool day = false;
+        sample::FireLook look;
         sample::OptionParser parser(
             "08_wind_and_walls", "fires in a gust, under a ceiling, at a wall, and carried along");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--gust", "m/s, to the right", gust, -20.0f, 20.0f);
-        parser.addFlag("--day", "by day instead of by night", day);
+        look.addTo(parser);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("open\nceiling\nwall\ntorch\n");
             return 0;
         }
-        return run(options, seconds, day, gust);
+        return run(options, seconds, look, gust);
     });
 }

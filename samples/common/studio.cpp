@@ -131,6 +131,39 @@ void duskLight(FwView& view, float share) {
     view.emissionScale = 40.0f;  // the light above is in cd/m^2
 }
 
+void FireLook::addTo(OptionParser& parser) {
+    parser.addText("--view", "NAME", "side, above, below or inside one of them", view);
+    parser.addText("--light", "NAME", "night, day or sky, a bright one", light);
+}
+
+Camera FireLook::camera(const OrbitCamera& orbit, glm::vec3 within) const {
+    OrbitCamera turned = orbit;
+    if (view == "above") {
+        turned.pitch = glm::radians(58.0f);
+        turned.fieldOfView *= 1.35f;
+    } else if (view == "below") {
+        turned.target.y += 0.1f;
+        turned.pitch = -std::asin((turned.target.y - 0.08f) / turned.distance);  // the eye is low
+    } else if (view == "inside") {
+        Camera camera;
+        camera.eye = within;
+        camera.target = within + glm::vec3(1.0f, 0.08f, -0.15f);
+        camera.fieldOfView = 0.75f;
+        camera.nearPlane = 0.01f;
+        return camera;
+    } else if (view != "side") {
+        throw Failure("--view is \"" + view + "\"; it is side, above, below or inside.");
+    }
+    return turned.camera();
+}
+
+void FireLook::lightUp(FwView& lit, float night, float day) const {
+    if (light != "night" && light != "day" && light != "sky")
+        throw Failure("--light is \"" + light + "\"; it is night, day or sky.");
+    duskLight(lit, light == "night" ? night : light == "day" ? day : 4.0f * day);
+    if (light == "sky") lit.exposure *= 0.5f;  // as a camera would be set
+}
+
 Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, float size)
     : host_(host), center_(center), size_(size) {
     // A profile turned around the vertical: flat floor, a quarter circle, wall.

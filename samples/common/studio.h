@@ -4,9 +4,12 @@
 
 #include <glm/glm.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "common/camera.h"
 #include "common/fire_host.h"
+#include "common/options.h"
 #include "common/stage.h"
 #include "flamewright/flamewright.h"
 
@@ -60,5 +63,16 @@ void showStudio(const StageFrame& frame, Stage& stage, Studio& studio, FireHost&
 
 // Evening light in a studio, the light in which fire reads best; fills all but the matrices.
 void duskLight(FwView& view, float share = 1.0f);  // share: of that light, for night and noon
+
+// From where and in what light fires are looked at, as options name it: view is "side", "above",
+// "below" or "inside", light is "night", "day" or "sky", a bright one behind the fires.
+struct FireLook {
+    std::string view = "side", light = "night";
+    void addTo(OptionParser& parser);
+    // Turns a camera that looks from the side. `within`: a place in one of the fires. Throws
+    // Failure.
+    Camera camera(const OrbitCamera& orbit, glm::vec3 within) const;
+    void lightUp(FwView& lit, float night, float day) const;  // shares, as duskLight takes them
+};
 
 }  // namespace sample

@@ -366,6 +366,118 @@ TEST(AbiFireInteraction, AnswersWhatItDoesToAPoint) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AskVolumetricFires(w.world, nowhere, &answer));
 }
 
+float ridgeDistance(void*, const float point[3], float normal[3]) {  // a slab at x = 0.7
+    normal[0] = point[0] < 0.7f ? -1.0f : 1.0f;
+    normal[1] = normal[2] = 0;
+    return std::abs(point[0] - 0.7f) - 0.06f;
+}
+
+// What radiates does not pass what stands between.
+TEST(AbiFireInteraction, WallsShadeHeat) {
+    FireWorld w;
+    (void)w.make(fwDefaultVolumetricFireDef());
+    w.run(1);
+    const float open = ask(w, 1.2f, 0.3f, 0).heatFlux;
+    EXPECT_GT(open, 500.0f);
+    std::vector<float> ridge;
+    for (int z = 0; z < 9; ++z)
+        for (int x = 0; x < 9; ++x) ridge.push_back(x == 4 ? 2.0f : 0.0f);
+    const auto shaded = [&](const FwFireColliderDef& def, float height = 0.3f) {
+        const FwFireColliderId id = add(w, def);
+        const float flux = ask(w, 1.2f, height, 0).heatFlux / open;
+        EXPECT_EQ(FW_OK, fwWorld_RemoveFireCollider(w.world, id));
+        EXPECT_FLOAT_EQ(ask(w, 1.2f, 0.3f, 0).heatFlux, open) << "at once";
+        return flux;
+    };
+    FwFireColliderDef def = fwDefaultFireColliderDef();
+    def.position[0] = 0.7f;
+    def.radius = 0.02f;
+    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "it lies on the ground";
+    def.position[1] = 0.3f;
+    def.radius = 0.28f;
+    EXPECT_LT(shaded(def), 0.3f) << "sphere";
+    def.position[0] = 1.2f;
+    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "a body does not shade itself";
+    def.position[0] = 0.0f;
+    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "nor does what stands in the fire";
+    def.kind = FW_COLLIDER_CAPSULE;
+    def.radius = 0.1f;
+    def.position[0] = def.end[0] = 0.7f;
+    def.position[1] = 0;
+    def.end[1] = 2;
+    EXPECT_LT(shaded(def), 0.01f) << "capsule";
+    def.end[1] = 0.12f;
+    EXPECT_GT(shaded(def), 0.2f) << "a low one";
+    EXPECT_LT(shaded(def), 0.99f);
+    def = fwDefaultFireColliderDef();
+    def.kind = FW_COLLIDER_BOX;
+    def.position[0] = 0.7f;
+    def.halfSize[0] = 0.01f;
+    def.halfSize[1] = def.halfSize[2] = 2;
+    EXPECT_LT(shaded(def), 0.01f) << "a thin box";
+    def.rotation[1] = std::sqrt(0.5f);  // a quarter about y: now it lies along x
+    def.rotation[3] = std::sqrt(0.5f);
+    def.position[2] = 0.3f;
+    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "beside it";
+    def = fwDefaultFireColliderDef();
+    def.kind = FW_COLLIDER_PLANE;
+    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "the ground";
+    EXPECT_LT(shaded(def, -0.5f), 0.01f) << "below the ground";
+    def.kind = FW_COLLIDER_DISTANCE;
+    def.distance = &ridgeDistance;
+    EXPECT_LT(shaded(def), 0.01f) << "distance";
+    def = fwDefaultFireColliderDef();
+    def.kind = FW_COLLIDER_HEIGHT_FIELD;
+    def.position[0] = -1.3f;
+    def.position[2] = -2;
+    def.cellSize = 0.5f;
+    def.columns = def.rows = 9;
+    def.heights = ridge.data();
+    EXPECT_LT(shaded(def), 0.01f) << "a ridge";
+    std::fill(ridge.begin(), ridge.end(), 0.0f);
+    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "flat";
+
+    FwBlockerDef blocker = fwDefaultBlockerDef();
+    blocker.transform[12] = 0.7f;
+    blocker.halfSize[0] = 0.05f;
+    blocker.halfSize[1] = blocker.halfSize[2] = 2;
+    FwBlockerId wall{};
+    ASSERT_EQ(FW_OK, fwWorld_AddBlocker(w.world, &blocker, &wall));
+    EXPECT_LT(ask(w, 1.2f, 0.3f, 0).heatFlux, 0.01f * open);
+    const float centre[3] = {1.2f, 0.3f, 0};
+    FwFirePush push{};
+    push.structSize = sizeof push;
+    ASSERT_EQ(FW_OK, fwWorld_GetVolumetricFirePush(w.world, centre, 0.1f, &push));
+    EXPECT_LT(push.ignitionPower, 0.01f * open * 0.0314f);
+    ASSERT_EQ(FW_OK, fwWorld_RemoveBlocker(w.world, wall));
+    EXPECT_FLOAT_EQ(ask(w, 1.2f, 0.3f, 0).heatFlux, open);
+}
+
+// Gas comes to a ceiling in puffs; what it gives there is told without them.
+TEST(AbiFireInteraction, ContactPowerIsSteady) {
+    FireWorld w;
+    FwFireColliderDef def = fwDefaultFireColliderDef();
+    def.kind = FW_COLLIDER_PLANE;
+    def.position[1] = 0.45f;
+    def.normal[1] = -1;
+    (void)add(w, def);
+    const FwVolumetricFireId id = w.make(fwDefaultVolumetricFireDef());
+    w.run(2);
+    double sum = 0, square = 0, leap = 0, before = double(w.state(id).contactPower);
+    constexpr int kFrames = 128;
+    for (int k = 0; k < kFrames; ++k) {
+        w.run(1.0f / 32);
+        const double now = double(w.state(id).contactPower);
+        sum += now, square += now * now, leap = std::max(leap, std::abs(now - before));
+        before = now;
+    }
+    const double mean = sum / kFrames, spread = std::sqrt(square / kFrames - mean * mean);
+    std::printf("           %.2f kW, spread %.3f, leap %.3f\n", mean, spread / mean, leap / mean);
+    EXPECT_GT(mean, 5.0);
+    EXPECT_LT(spread, 0.12 * mean);
+    EXPECT_LT(leap, 0.08 * mean);
+}
+
 TEST(AbiFireInteraction, NeighboursLeanTogetherAndGrowTaller) {
     FireWorld apart, close;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <set>
+#include <vector>
 
 namespace {
 
@@ -132,6 +133,119 @@ TEST(AbiVolumetricFire, IsALight) {
     EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFireHidden(w.world, large, 1));
     w.run(0.1f);
     EXPECT_EQ(1u, fwWorld_GetLights(w.world, lights, 8));
+}
+
+// A host lights its first picture, too: what it is told then is what the first frame makes of it.
+TEST(AbiVolumetricFire, LightsTheSceneBeforeItsFirstFrame) {
+    FwFirePoint line[2] = {{{3, 0, 0}, 0.1f}, {{4, 1, 0}, 0.1f}};
+    for (int kind = 0; kind < 5; ++kind) {
+        FireWorld w;
+        FwVolumetricFireDef def = presetDef(kind == 1   ? FW_FIRE_CANDLE
+                                            : kind == 2 ? FW_FIRE_MAGIC_BLUE
+                                            : kind == 3 ? FW_FIRE_DYING_EMBERS
+                                                        : FW_FIRE_CAMP);
+        if (kind == 4) {
+            def.points = line;
+            def.pointCount = 2;
+        }
+        const FwVolumetricFireId id = w.make(def);
+        const float place[3] = {2, 0.5f, 0};
+        EXPECT_EQ(FW_OK, fwWorld_MoveVolumetricFire(w.world, id, place));
+        FwLight before{}, after{};
+        ASSERT_EQ(1u, fwWorld_GetLights(w.world, &before, 1)) << kind;
+        const FwVolumetricFireState expected = w.state(id);
+        w.run(1.0f / 32);
+        ASSERT_EQ(1u, fwWorld_GetLights(w.world, &after, 1));
+        const FwVolumetricFireState state = w.state(id);
+        EXPECT_NEAR(before.intensity / after.intensity, 1.0f, 0.4f) << "it flickers, " << kind;
+        EXPECT_NEAR(before.power / after.power, 1.0f, 0.02f) << kind;
+        EXPECT_EQ(before.id, after.id);
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_NEAR(before.color[i], after.color[i], 0.02f) << kind;
+            EXPECT_NEAR(before.position[i], after.position[i], 0.2f * state.height + 0.02f)
+                << kind << ", axis " << i;
+        }
+        EXPECT_EQ(expected.flames, state.flames) << kind;
+        // Small flames side by side rise higher together.
+        EXPECT_NEAR(expected.height / state.height, 1.0f, kind == 3 ? 0.35f : 0.05f) << kind;
+        EXPECT_FLOAT_EQ(expected.pulseRate, state.pulseRate);
+    }
+    FireWorld w;
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    const FwVolumetricFireId id = w.make(def);
+    def.flags = FW_FIRE_NO_LIGHT;
+    (void)w.make(def);
+    FwLight lights[4];
+    EXPECT_EQ(1u, fwWorld_GetLights(w.world, lights, 4));
+    EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePower(w.world, id, 0));
+    EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 4)) << "it was never lit";
+}
+
+// One light each, and no two of them flicker alike.
+TEST(AbiVolumetricFire, LightsFlickerEachByItself) {
+    constexpr int kFires = 6, kFrames = 96;
+    FireWorld w;
+    FwVolumetricFireId ids[kFires];
+    std::vector<double> light[kFires];
+    for (int i = 0; i < kFires; ++i) {
+        FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+        def.position[0] = 30.0f * float(i);
+        ids[i] = w.make(def);
+    }
+    for (int k = 0; k < kFrames; ++k) {
+        w.run(1.0f / 32);
+        for (int i = 0; i < kFires; ++i) light[i].push_back(double(w.state(ids[i]).lightIntensity));
+    }
+    for (std::vector<double>& l : light) {
+        double mean = 0, square = 0;
+        for (const double v : l) mean += v / kFrames;
+        for (double& v : l) {
+            v -= mean;
+            square += v * v;
+        }
+        EXPECT_GT(std::sqrt(square / kFrames) / mean, 0.03) << "it flickers";
+        EXPECT_LT(std::sqrt(square / kFrames) / mean, 0.4);
+        for (double& v : l) v /= std::sqrt(square);
+    }
+    double together = 0;
+    for (int i = 0; i < kFires; ++i)
+        for (int j = 0; j < i; ++j)
+            for (int k = 0; k < kFrames; ++k) together += light[i][size_t(k)] * light[j][size_t(k)];
+    EXPECT_LT(together / (0.5 * kFires * (kFires - 1)), 0.3);
+}
+
+// As many as a world takes, with walls, wind and questions: the heap is left alone.
+TEST(AbiVolumetricFire, ManyFiresAllocateNothing) {
+    FireWorld w;
+    FwVolumetricFireDef def = presetDef(FW_FIRE_TORCH);
+    std::vector<FwVolumetricFireId> ids;
+    for (int i = 0; i < 256; ++i) {
+        def.position[0] = 0.3f * float(i % 16);
+        def.position[2] = 0.3f * float(i / 16);
+        ids.push_back(w.make(def));
+    }
+    FwFireColliderDef ceiling = fwDefaultFireColliderDef();
+    ceiling.kind = FW_COLLIDER_PLANE;
+    ceiling.position[1] = 0.4f;
+    ceiling.normal[1] = -1;
+    FwFireColliderId collider{};
+    ASSERT_EQ(FW_OK, fwWorld_AddFireCollider(w.world, &ceiling, &collider));
+    w.run(4.0f / 32);
+    const int64_t before = w.host.allocations;
+    for (int k = 0; k < 16; ++k) {
+        const float wind[3] = {0.1f * float(k), 0, 0}, place[3] = {0.02f * float(k), 0, 0};
+        ASSERT_EQ(FW_OK, fwWorld_SetWind(w.world, wind));
+        ASSERT_EQ(FW_OK, fwWorld_MoveVolumetricFire(w.world, ids[size_t(k)], place));
+        ASSERT_EQ(FW_OK, fwWorld_SetVolumetricFirePower(w.world, ids[100], 4 + 0.1f * float(k)));
+        w.run(1.0f / 32);
+        FwLight lights[64];
+        EXPECT_LE(1u, fwWorld_GetLights(w.world, lights, 64));
+        FwFireAnswer answer{};
+        answer.structSize = sizeof answer;
+        ASSERT_EQ(FW_OK, fwWorld_AskVolumetricFires(w.world, place, &answer));
+    }
+    EXPECT_EQ(before, w.host.allocations);
+    for (const FwVolumetricFireId id : ids) EXPECT_EQ(1u, w.state(id).flames);
 }
 
 TEST(AbiVolumetricFire, LimitsAreNamed) {

@@ -525,13 +525,13 @@ FW_API FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld*, FwVolumetricFi
                                                         uint32_t pointCount);
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld*, FwVolumetricFireId id, uint32_t hidden); /* [world] */
 
-typedef struct FwVolumetricFireState { /* as of the last frame */
+typedef struct FwVolumetricFireState { /* as of the last frame; before its first one as it is about to be */
     uint32_t structSize, flames; /* flames it burns as; 0: out */
     uint64_t userData;
     float power;                /* kW, now */
     float height;               /* m, mean of what is seen of it */
     float pulseRate;            /* Hz */
-    float contactPower;         /* kW that go into colliders and blockers in its way */
+    float contactPower;         /* kW that go into colliders and blockers in its way, the mean of a pulse */
     float boundsLow[3], boundsHigh[3]; /* m, world: of all that shows, smoke too; empty while it is out */
     float tip[3];               /* m, world: where its mean height ends */
     float lightPosition[3];     /* m, world */
@@ -616,7 +616,7 @@ typedef struct FwFireAnswer {   /* of all volumetric fires at a point, as of the
     uint32_t structSize;
     uint32_t inside;            /* 1: within a flame, on the mean */
     float temperature;          /* K of the gas there; 293 where no fire reaches */
-    float heatFlux;             /* W/m^2 on a small cold body there, by gas and radiation; walls do not shade it */
+    float heatFlux;             /* W/m^2 on a small cold body there, by gas and radiation; walls around it shade it */
     float gas[3];               /* m/s: how the fire's gas moves there, without the wind */
     uint32_t reserved;
     FwVolumetricFireId fire;    /* that heats it most; null: none does */
@@ -747,8 +747,8 @@ typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host'
     uint32_t id, reserved1;    /* stable while the same fire burns */
     uint64_t frameIndex;
 } FwLight;
-/* The strongest fires: of burning meshes as of the last readback, and volumetric ones as of the last
- * frame (their ids have the highest bit set). Returns how many were written. [world] */
+/* The strongest fires: of burning meshes as of the last readback, volumetric ones as of the last frame, or as
+ * they are about to be (their ids have the highest bit set). Returns how many were written. [world] */
 FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t capacity);
 
 typedef struct FwWorldStats {
