@@ -13,7 +13,6 @@ namespace {
 constexpr uint32_t kMaxFamilies = 32;
 // The largest number of storage buffers that one of our passes binds.
 constexpr uint32_t kStorageBuffersNeeded = 20;
-constexpr uint32_t kTexelsWanted = 1u << 23;  // as many as the least maxStorageBufferRange holds
 
 bool declared(const char* const* names, uint32_t count, const char* wanted) noexcept {
     for (uint32_t i = 0; i < count; ++i) {
@@ -189,7 +188,7 @@ void Device::checkDevice() {
         {"maxComputeSharedMemorySize", limits.maxComputeSharedMemorySize, 16384},
         {"maxStorageBufferRange", limits.maxStorageBufferRange, 1u << 27},
     };
-    texels = limits.maxTexelBufferElements >= kTexelsWanted;
+    texels = limits.maxTexelBufferElements >= limits.maxStorageBufferRange / 16;
     for (const auto& need : needs) {
         if (need.value < need.needed)
             core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
