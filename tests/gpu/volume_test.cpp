@@ -54,6 +54,10 @@ class Volume : public GpuTest {
         const float eye[3] = {0.7f, 0.9f, 2.6f}, at[3] = {0, 0.45f, 0};
         look(eye, at, 30);
     }
+    void lookAtSmoothFlame() {
+        const float eye[3] = {0.7f, 0.9f, 2.6f}, at[3] = {0, 0.22f, 0};
+        look(eye, at, 10);  // its rim takes few pixels
+    }
     void look(const float eye[3], const float at[3], float degrees) {
         FwView& view = rig_->view;
         view = testView(eye, at, degrees, 1, false);
@@ -342,8 +346,7 @@ TEST_F(Volume, DrawsWhatTheLibraryMarches) {
 TEST_F(Volume, HasNoGrain) {
     if (!device_) return;
     makeRig();
-    const float eye[3] = {0.7f, 0.9f, 2.6f}, at[3] = {0, 0.22f, 0};
-    look(eye, at, 10);  // its rim takes few pixels
+    lookAtSmoothFlame();
     const gpu::VolumeFlame flame = smoothFlame();
     const float exact = grainOf(march(flame, FW_FIRE_CAMP, false, 200));
     const float marched = grainOf(draw({&flame, 1}, FW_DEPTH_NONE));
@@ -382,8 +385,7 @@ TEST_F(Volume, DrawsTheHostsProfile) {
 TEST_F(Volume, BrightnessIsThatOfTheMedium) {
     if (!device_) return;
     makeRig();
-    const float eye[3] = {0.7f, 0.9f, 2.6f}, at[3] = {0, 0.22f, 0};
-    look(eye, at, 10);  // its rim takes few pixels
+    lookAtSmoothFlame();
     const gpu::VolumeFlame flame = smoothFlame();
     const vec4 exact = meanOf(march(flame, FW_FIRE_CAMP, true, 200));
     const vec4 one = meanOf(draw({&flame, 1}, FW_DEPTH_NONE));

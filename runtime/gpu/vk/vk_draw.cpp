@@ -164,11 +164,8 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     std::array<VolumeItem, kMaxVolumeFlames> items;
     DrawList list{drawItems, !burnEmpty, {}, {}, turnsFaces(view, viewport)};
     if (target.key.flames && !volumes.empty()) {
-        const VolumeScreen screen{{viewport.width, std::fabs(viewport.height)},
-                                  target.key.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs,
-                                  limits.volumeCell,
-                                  limits.volumeSteps,
-                                  uint32_t(target.key.encoding)};
+        const VolumeScreen screen =
+            screenOf(target.key, {viewport.width, std::fabs(viewport.height)});
         noteScreen(view, screen, slot.frameIndex);
         list.marched = marchedFor(view, screen);
         const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;

@@ -171,11 +171,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         for (int i = 0; i < 3; ++i) plan.wind[i] = wind[i];
         plan.tickFraction = tickFraction;
         plan.switches = (refine.full ? kSwitchRefineFull : 0) | crossing;
-        march.screen = {{float(def.width), float(def.height)},
-                        target.key.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs,
-                        limits.volumeCell,
-                        limits.volumeSteps,
-                        uint32_t(target.key.encoding)};
+        march.screen = screenOf(target.key, {float(def.width), float(def.height)});
         run(plan);
         const uint64_t ringFrame = open.ringFrame;
         closeFrame(&def.view);

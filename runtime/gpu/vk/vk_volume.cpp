@@ -76,6 +76,11 @@ bool sameView(const FwView& a, const FwView& b) noexcept {
 
 }  // namespace
 
+VolumeScreen VkBackend::State::screenOf(const TargetKey& target, vec2 size) const noexcept {
+    return {size, target.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs, limits.volumeCell,
+            limits.volumeSteps, uint32_t(target.encoding)};
+}
+
 void VkBackend::State::noteScreen(const FwView& view, const VolumeScreen& screen,
                                   uint64_t frame) noexcept {
     if (!sameView(view, outside)) return;

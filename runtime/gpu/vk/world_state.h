@@ -374,6 +374,8 @@ struct VkBackend::State {
     // What the view that was last pushed shows of them, farthest first; how many.
     uint32_t orderVolumes(uint32_t slabs,
                           std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
+    // How a target of `size` px shows what is marched for it.
+    [[nodiscard]] VolumeScreen screenOf(const TargetKey& target, vec2 size) const noexcept;
     // A draw in `frame` shows `view` so.
     void noteScreen(const FwView& view, const VolumeScreen& screen, uint64_t frame) noexcept;
     // Before the first command: room for what is marched; less of it makes it coarser.
