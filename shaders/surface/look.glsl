@@ -70,7 +70,7 @@ float holeEdge(float a, Site s, MaterialLook m) {
     if (m.holeTime <= 0.0) return 1.0;
     // A cut is smooth: its glow has patches. Far away it is as wide as noise makes that of others.
     if (s.left >= 0.0)
-        return s.left / s.slow * mix(0.6, 1.0, s.nearness) +
+        return s.left / s.slow * mix(0.5, 1.0, s.nearness) +
                0.5 * m.rimWidth * s.nearness * smoothstep(0.42, 0.62, s.fine.r);
     return (m.holeTime + holeDelay(s.grown, s.fine, s.delay, m) - s.lead - a) / s.slow;
 }
