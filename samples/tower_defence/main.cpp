@@ -14,7 +14,7 @@
 namespace {
 
 struct Choices {
-    std::string light = "golden";
+    std::string light = "golden", ground = "parallax";
     float wind[3] = {-2.4f, 0.0f, -2.0f};  // m/s, from the sea behind the tower
     float pace = 14.0f;                    // how much faster than real thatch the fire runs
     bool antialias = false;
@@ -25,6 +25,12 @@ tower::Daylight daylightOf(const std::string& name) {
     if (name == "noon") return tower::noon();
     if (name == "night") return tower::moonlight();
     throw sample::Failure("--light is \"" + name + "\"; it takes golden, noon or night");
+}
+
+tower::Ground groundOf(const std::string& name) {
+    if (name == "bump") return tower::Ground::kBump;
+    if (name == "parallax") return tower::Ground::kParallax;
+    throw sample::Failure("--ground is \"" + name + "\"; it takes bump or parallax");
 }
 
 constexpr const char* kLights[] = {"golden", "noon", "night"};  // keys 1 to 3
@@ -132,7 +138,7 @@ int run(const sample::Options& options, const Choices& choices) {
         sample::FireHost fire(host, worldDef);
         sample::Stage stage(host, options, stageRequest, frames);
         fire.registerTarget(stage);
-        tower::Renderer renderer(host, stage, scene, painted);
+        tower::Renderer renderer(host, stage, scene, painted, groundOf(choices.ground));
         tower::FireVillage fires(fire, scene, painted, options.seed);
         tower::Game game(scene, fires, options.seed,
                          {choices.wind[0], choices.wind[1], choices.wind[2]});
@@ -211,6 +217,8 @@ int main(int argc, char** argv) {
         Choices choices;
         sample::OptionParser parser("tower_defence", "a village under attack, and on fire");
         parser.addText("--light", "NAME", "golden, noon or night", choices.light);
+        parser.addText("--ground", "NAME", "bump or parallax: how stones and grass stand out",
+                       choices.ground);
         parser.addVector("--wind", "m/s, x east, z towards the camera", choices.wind);
         parser.addNumber("--pace", "how much faster than real thatch it burns", choices.pace, 0.1f,
                          1000.0f);

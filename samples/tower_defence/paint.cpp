@@ -335,7 +335,7 @@ Painting paintGroundChart(const Model& terrain, const SkyGrid& sky, Vec2* low, V
             const Surface s = village::paintGround(place, 0.035f, splat);
             const size_t i = size_t(y) * kSide + size_t(x);
             heights[i] = s.height;
-            setTexel(p, i, s, sky.at(place), 1);
+            setTexel(p, i, s, sky.at(place), heights[i] / kGroundRelief);
         }
     });
     addRelief(p, heights, chart.owners, {0.035f, 0.035f});
@@ -365,7 +365,8 @@ Painting paintRoadChart(const Model& model, const SkyGrid& sky, Vec2* low, Vec2*
             s.albedo = village::mix(s.albedo, Vec3{0.150f, 0.115f, 0.075f}, 0.55f * dust);
             const size_t i = size_t(y) * kWide + size_t(x);
             heights[i] = s.height * (1 - 0.5f * dust);
-            setTexel(p, i, s, sky.at(place) * groove, edge < 1 ? 1.0f : 0.0f);
+            setTexel(p, i, s, sky.at(place) * groove,
+                     edge < 1 ? 0.25f + 0.75f * heights[i] / kRoadRelief : 0.0f);
         }
     });
     addRelief(p, heights, chart.owners, texel);

@@ -23,13 +23,17 @@ struct PaintedModel {
 
 struct PaintedVillage {
     std::vector<PaintedModel> models;  // as Scene::models
-    Painting ground, road;             // color.a: open sky; relief.a: 1 where the surface is
+    // color.a: open sky; relief.a: height; of the road 0 where it is not, from 0.25 on where it is
+    Painting ground, road;
     // uv to picture: (uv - low) / (high - low), because a lone chart need not fill its atlas
     village::Vec2 groundLow, groundHigh, roadLow, roadHigh;
 };
 
 // relief's slopes are within +-kReliefRange, 0.5 is level.
 constexpr float kReliefRange = 1.5f;
+
+// m from the lowest of their relief to the highest. As in shaders/village_surface.glsl.
+constexpr float kRoadRelief = 0.045f, kGroundRelief = 0.16f;
 
 PaintedVillage paintVillage(const village::Scene& scene);
 

@@ -15,6 +15,7 @@ namespace {
 
 #include "jet.frag.h"
 #include "jet.vert.h"
+#include "land.frag.h"
 #include "village.frag.h"
 #include "village.vert.h"
 
@@ -104,7 +105,7 @@ glm::mat4 clipToPicture() {
 }  // namespace
 
 Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
-                   const village::Scene& scene, const PaintedVillage& painted)
+                   const village::Scene& scene, const PaintedVillage& painted, Ground ground)
     : host_(host), shadows_(host, kBindings, kCasterAttributes) {
     // One mip at a time: a software device pays for every texel it reads.
     sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -112,7 +113,7 @@ Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
     makeLayouts();
     makeGeometry(scene, painted);
     makeSlots(stage.made.framesInFlight, scene.instances.size());
-    makePipelines(stage);
+    makePipelines(stage, ground);
 }
 
 Renderer::~Renderer() {
@@ -216,7 +217,7 @@ void Renderer::makeSlots(uint32_t count, size_t instances) {
     }
 }
 
-void Renderer::makePipelines(const sample::Stage& stage) {
+void Renderer::makePipelines(const sample::Stage& stage, Ground ground) {
     sample::PipelineRequest request;
     request.pass = stage.scenePass;
     request.layout = layout_;
@@ -225,16 +226,20 @@ void Renderer::makePipelines(const sample::Stage& stage) {
     request.attributes = kAttributes;
     request.depthCompare = stage.depthCompare();
     request.vertex = host_.createShader(kVillageVert, sizeof kVillageVert);
-    request.fragment = host_.createShader(kVillageFrag, sizeof kVillageFrag);
+    // Whoever writes depth is tested late: models are shaded by a shader that does not.
+    const VkShaderModule plain = host_.createShader(kVillageFrag, sizeof kVillageFrag);
+    const VkShaderModule hollow = host_.createShader(kLandFrag, sizeof kLandFrag);
     VkPipeline* const pipelines[] = {&model_, &groundPipeline_, &roadPipeline_, &waterPipeline_};
     for (int32_t kind = 0; kind < 4; ++kind) {
         const VkSpecializationMapEntry entry{0, 0, sizeof kind};
         const VkSpecializationInfo special{1, &entry, sizeof kind, &kind};
         request.specialization = &special;
+        const bool land = kind == 1 || kind == 2;
+        request.fragment = land && ground == Ground::kParallax ? hollow : plain;
         *pipelines[kind] = sample::makePipeline(host_, request);
     }
-    vkDestroyShaderModule(host_.device, request.vertex, nullptr);
-    vkDestroyShaderModule(host_.device, request.fragment, nullptr);
+    for (VkShaderModule shader : {request.vertex, plain, hollow})
+        vkDestroyShaderModule(host_.device, shader, nullptr);
 
     request.specialization = nullptr;
     request.vertex = host_.createShader(kJetVert, sizeof kJetVert);

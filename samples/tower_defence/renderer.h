@@ -32,6 +32,9 @@ struct Placed {
     bool moves = false;  // casts its shadow anew in every frame
 };
 
+// How the land's relief is drawn.
+enum class Ground { kBump, kParallax };
+
 struct SceneFrame {
     sample::Camera camera;
     Daylight daylight;
@@ -43,7 +46,7 @@ struct SceneFrame {
 class Renderer {
  public:
     Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
-             const village::Scene& scene, const PaintedVillage& painted);
+             const village::Scene& scene, const PaintedVillage& painted, Ground ground);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
@@ -88,7 +91,7 @@ class Renderer {
     void makeSurface(const village::Model& model, const Painting& painting, village::Vec2 low,
                      village::Vec2 high, glm::vec2 metres);
     void makeSlots(uint32_t count, size_t instances);
-    void makePipelines(const sample::Stage& stage);
+    void makePipelines(const sample::Stage& stage, Ground ground);
     void gather(Slot& slot, const SceneFrame& scene);
     void upload(Slot& slot, const sample::StageFrame& frame, const SceneFrame& scene);
     void drawRun(VkCommandBuffer commands, const Run& run) const;

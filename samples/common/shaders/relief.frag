@@ -1,0 +1,124 @@
+// Stone, or char, with a relief below the drawn surface: bumps that only the light sees, or
+// parallax occlusion with depth, shadows and a silhouette.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "relief_block.glsl"
+layout(constant_id = 0) const bool kParallax = true;
+layout(constant_id = 1) const bool kLinear = true;  // else display values are written
+
+layout(set = 1, binding = 0) uniform sampler2D colorMap;  // a: roughness
+layout(set = 1, binding = 1) uniform sampler2D shapeMap;  // slopes, open sky, height
+
+layout(push_constant) uniform Push {
+    vec4 picture;  // m: width, height, depth; how steep the steepest slope is
+    vec4 texels;   // its width, its height; 1: the picture ends at its border; m along v, 0: for ever
+} push;
+
+layout(location = 0) in vec3 inPosition;
+layout(location = 1) in vec3 inNormal;
+layout(location = 2) in vec3 inAcross;
+layout(location = 3) in vec4 inRelief;
+layout(location = 0) out vec4 outColor;
+// What is hit lies behind the surface: tests before shading stay possible.
+layout(depth_greater) out float gl_FragDepth;
+
+const float kPi = 3.14159265;
+float reliefLod;
+
+float reliefDepth(vec2 at) {
+    return 1.0 - textureLod(shapeMap, at / push.picture.xy, reliefLod).a;
+}
+#include "parallax.h"
+
+// m of way to where the picture ends.
+float toBorder(vec2 at, vec2 along, vec2 size) {
+    vec2 side = mix(vec2(0.0), size, greaterThan(along, vec2(0.0)));
+    vec2 way = (side - at) / mix(along, vec2(1e-9), lessThan(abs(along), vec2(1e-9)));
+    return max(min(way.x, way.y), 0.0);
+}
+
+vec3 display(vec3 c) {
+    c = c * (c + 0.0245786) / (c * (0.983729 * c + 0.4329510) + 0.238081);
+    return pow(clamp(c, 0.0, 1.0), vec3(1.0 / 2.2));
+}
+
+void main() {
+    float scale = push.picture.z;
+    vec3 n = normalize(inNormal), u = normalize(inAcross - n * dot(inAcross, n)), v = cross(u, n);
+    vec3 toEye = block.eye.xyz - inPosition;
+    float distance_ = length(toEye);
+    toEye /= distance_;
+    vec2 at = inRelief.xy;
+    vec2 pixel = max(abs(dFdx(at)), abs(dFdy(at))) / push.picture.xy * push.texels.xy;
+    reliefLod = max(0.0, log2(max(pixel.x, pixel.y)) - 0.5);
+
+    float way = 0.0, depth = 0.0;
+    if (kParallax) {
+        ReliefRay ray;
+        ray.at = at;
+        ray.along = -vec2(dot(toEye, u), dot(toEye, v));
+        ray.depth = inRelief.z;
+        ray.down = dot(toEye, n);
+        ray.sag = 0.5 * inRelief.w * ray.along.x * ray.along.x;
+        ray.most = 1e3;
+        if (push.texels.z > 0.5) ray.most = toBorder(at, ray.along, push.picture.xy);
+        if (push.texels.w > 0.0 && inRelief.w > 0.0)
+            ray.most = toBorder(at, ray.along, vec2(1e3, push.texels.w));
+        bool bottom;
+        float crossed = length(ray.along / push.picture.xy * push.texels.xy) *
+                        reliefEnd(ray, scale, bottom) * exp2(-reliefLod);
+        way = reliefHit(ray, scale, reliefLayers(ray.down, crossed, 6.0, 28.0));
+        if (way < 0.0) discard;
+        at += ray.along * way;
+        depth = reliefBelow(ray, way);
+        // On a curved surface the way turns with it.
+        float turned = inRelief.w * ray.along.x * way;
+        n = normalize(n + u * turned);
+        u = normalize(u - n * dot(u, n));
+        v = cross(u, n);
+    }
+    vec3 position = inPosition - toEye * way;
+    vec4 clip = block.viewProjection * vec4(position, 1.0);
+    gl_FragDepth = max(clip.z / clip.w, gl_FragCoord.z);
+
+    vec4 color = textureLod(colorMap, at / push.picture.xy, reliefLod);
+    vec4 shape = textureLod(shapeMap, at / push.picture.xy, reliefLod);
+    vec3 albedo = color.rgb * color.rgb;
+    vec2 slope = (shape.rg * 2.0 - 1.0) * push.picture.w;
+    vec3 bent = normalize(n - u * slope.x - v * slope.y);
+
+    vec3 light = mix(block.ambientGround.rgb, block.ambientSky.rgb, 0.5 + 0.5 * bent.y) * shape.b;
+    vec3 gloss = vec3(0.0);
+    int fires = int(block.sunDirection.w);
+    for (int i = -1; i < fires; ++i) {
+        bool sun = i < 0;
+        int k = max(i, 0);
+        vec3 to = sun ? block.sunDirection.xyz : block.firePlace[k].xyz - position;
+        float far2 = dot(to, to), size = sun ? 0.0 : block.firePlace[k].w;
+        vec3 toLight = to * inversesqrt(far2);
+        vec3 strong = sun ? block.sunColor.rgb : block.fireColor[k].rgb / (far2 + size * size);
+        float facing = dot(bent, toLight);
+        facing = sun ? max(facing, 0.0) : max(facing + 0.15, 0.0) / 1.15;
+        if (facing <= 0.0) continue;
+        float lit = 1.0;
+        if (kParallax) {
+            float softness = sun ? 8.0 : clamp(1.5 * sqrt(far2) / max(size, 0.01), 1.5, 8.0);
+            float up = max(dot(toLight, n), 0.05);
+            vec2 along = vec2(dot(toLight, u), dot(toLight, v));
+            float crossed = length(along / push.picture.xy * push.texels.xy) * depth / up;
+            int layers = reliefLayers(up, crossed * exp2(-reliefLod), 4.0, 8.0);
+            // Nothing stands above what is on top.
+            lit = reliefLit(at, along, up, depth, scale, softness, depth > 0.06 * scale ? layers : 0);
+        }
+        strong *= facing * lit;
+        light += strong;
+        vec3 h = normalize(toLight + toEye);
+        float rough = color.a * color.a, nh = max(dot(bent, h), 0.0);
+        float d = nh * nh * (rough * rough - 1.0) + 1.0;
+        gloss += strong * (0.04 * min(rough * rough / (d * d), 40.0) * 0.25);
+    }
+    // The night swallows what is far.
+    float fade = 1.0 / (1.0 + 0.02 * distance_ * distance_);
+    vec3 c = (albedo / kPi * light + gloss) * (block.eye.w * fade * kPi);
+    outColor = vec4(kLinear ? c : display(c), 1.0);
+}

@@ -1,0 +1,5 @@
+// Ground and road with their relief as parallax.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#define FW_LAND
+#include "village_surface.glsl"

@@ -1,0 +1,155 @@
+// Parallax occlusion by the shader's own text, against meshes that the reliefs stand for.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
+#include <vector>
+
+namespace fw::test {
+namespace {
+
+namespace parallax {
+using namespace glm;
+float (*relief)(vec2 at) = nullptr;
+float reliefDepth(vec2 at) { return relief(at); }
+#include "common/shaders/parallax.h"
+}  // namespace parallax
+
+using glm::vec2;
+using glm::vec3;
+using parallax::ReliefRay;
+
+constexpr float kDeep = 0.5f;  // m
+
+// A ray into a level relief: from `from`, on or below z = 0, along unit `way`.
+ReliefRay rayOf(vec3 from, vec3 way) { return {vec2(from), vec2(way), -from.z, -way.z, 0, 1e3f}; }
+
+vec3 unitWay(float angle, float down) {
+    const float flat = std::sqrt(1 - down * down);
+    return {flat * std::cos(angle), flat * std::sin(angle), -down};
+}
+
+// Half a ball of radius kDeep, on the floor of a relief of that depth.
+float dome(vec2 at) {
+    const float square = kDeep * kDeep - glm::dot(at, at);
+    return square > 0 ? 1 - std::sqrt(square) / kDeep : 1;
+}
+// m of way from z = 0 to the ball; negative: past it.
+float domeHit(vec3 from, vec3 way) {
+    const vec3 middle = from + vec3(0, 0, kDeep);
+    const float b = glm::dot(middle, way), c = glm::dot(middle, middle) - kDeep * kDeep;
+    return b * b >= c ? -b - std::sqrt(b * b - c) : -1;
+}
+
+TEST(Parallax, ADomeIsSeenAsTheBallItStandsFor) {
+    parallax::relief = dome;
+    double squares = 0, hits = 0, both = 0, either = 0;
+    for (float down : {0.35f, 0.5f, 0.7f, 0.95f})
+        for (int j = -60; j <= 60; ++j)
+            for (int i = -60; i <= 60; ++i) {
+                // Across a picture: rays side by side that pass around the ball's middle.
+                const vec3 way = unitWay(0.4f, down), side(-std::sin(0.4f), std::cos(0.4f), 0);
+                const vec3 up = glm::cross(way, side);
+                const vec3 at = vec3(0, 0, -kDeep) + 0.011f * (float(i) * side + float(j) * up);
+                const vec3 from = at + way * (at.z / down);  // back to z = 0
+                const float mesh = domeHit(from, way);
+                const bool there = mesh >= 0 && (from + way * mesh).z > -kDeep;
+                const ReliefRay ray = rayOf(from, way);
+                const float hit = parallax::reliefHit(ray, kDeep, 48);
+                ASSERT_GE(hit, 0);  // there is always the floor
+                const bool found = parallax::reliefBelow(ray, hit) < 0.999f * kDeep;
+                both += there && found;
+                either += there || found;
+                if (there && found) {
+                    const double off = parallax::reliefBelow(ray, hit) + (from + way * mesh).z;
+                    squares += off * off;
+                    ++hits;
+                }
+            }
+    const double rms = std::sqrt(squares / hits) / double(kDeep);
+    std::printf("depth off by %.3f %% of the relief (RMS), silhouettes agree by %.4f\n", 100 * rms,
+                both / either);
+    EXPECT_GT(hits, 10000);
+    EXPECT_LT(rms, 0.005);
+    EXPECT_GT(both / either, 0.97);
+}
+
+TEST(Parallax, FewLayersAreEnoughFromAboveAndAreAllThatIsTaken) {
+    EXPECT_EQ(8, parallax::reliefLayers(1, 1000, 8, 48));
+    EXPECT_EQ(48, parallax::reliefLayers(0, 1000, 8, 48));
+    EXPECT_EQ(7, parallax::reliefLayers(0.1f, 3, 8, 48));  // three texels hold no more
+    EXPECT_EQ(4, parallax::reliefLayers(1, 0, 8, 48));
+    parallax::relief = dome;
+    for (int i = 0; i < 50; ++i) {
+        const vec3 from(0.01f * float(i), 0.1f, 0), way = unitWay(float(i), 0.97f);
+        const float mesh = domeHit(from, way);
+        if (mesh < 0) continue;
+        EXPECT_NEAR(mesh, parallax::reliefHit(rayOf(from, way), kDeep, 8), 0.01f * kDeep) << i;
+    }
+}
+
+// A round log whose relief is at its bottom everywhere looks like a thinner log.
+TEST(Parallax, OnACurvedSurfaceTheSilhouetteShrinks) {
+    parallax::relief = [](vec2) { return 1.0f; };
+    constexpr float kRound = 0.3f, kBark = 0.02f;
+    for (float offset = 0.005f; offset < kRound; offset += 0.005f) {
+        // Along x, past the axis (y) at a height: enters where the surface has this height.
+        const float rise = offset / kRound, flat = std::sqrt(1 - rise * rise);
+        ReliefRay ray{vec2(0), vec2(rise, 0), 0, flat, 0, 1e3f};
+        ray.sag = 0.5f / kRound * rise * rise;
+        const float hit = parallax::reliefHit(ray, kBark, 32);
+        const bool expected = offset < kRound - kBark;
+        // The parabola stands for the circle: a tenth of the bark may be wrong.
+        if (std::abs(offset - (kRound - kBark)) > 0.1f * kBark) {
+            EXPECT_EQ(expected, hit >= 0) << offset;
+        }
+        if (expected && hit >= 0 && offset < 0.8f * (kRound - kBark)) {
+            const float inner = kRound - kBark;
+            const float way = std::sqrt(kRound * kRound - offset * offset) -
+                              std::sqrt(inner * inner - offset * offset);
+            EXPECT_NEAR(way, hit, 0.08f * way) << offset;
+        }
+    }
+}
+
+TEST(Parallax, TheBorderEndsIt) {
+    parallax::relief = dome;
+    ReliefRay ray = rayOf({-2, 0, 0}, unitWay(0, 0.1f));
+    ray.most = 0.5f;  // before it is anywhere
+    EXPECT_LT(parallax::reliefHit(ray, kDeep, 48), 0);
+    // From a side, inside the stone: what is cut is there at once. Upwards out of it: nothing.
+    EXPECT_EQ(0, parallax::reliefHit(rayOf({0, 0, -0.3f}, unitWay(0, 0.5f)), kDeep, 48));
+    EXPECT_LT(parallax::reliefHit(rayOf({-0.9f, 0, -0.3f}, unitWay(3.1f, -0.5f)), kDeep, 48), 0);
+}
+
+TEST(Parallax, ShadowsGrowWithWhatCastsThem) {
+    // A wall at x = 0 as high as it says; the light comes over it from the left, 45 degrees high.
+    static float wall;
+    parallax::relief = [](vec2 at) { return std::abs(at.x) < 0.05f ? 1 - wall : 1.0f; };
+    const vec3 light = glm::normalize(vec3(-1, 0, 1));
+    double before = -1;
+    for (wall = 0.2f; wall <= 1; wall += 0.2f) {
+        double dark = 0;
+        float last = 0;
+        for (float x = 0.06f; x < 1.2f; x += 0.01f) {
+            const float lit =
+                parallax::reliefLit({x, 0}, vec2(light), light.z, kDeep, kDeep, 2, 64);
+            EXPECT_GE(lit, 0);
+            EXPECT_LE(lit, 1);
+            if (x > 0.1f) {
+                EXPECT_GE(lit, last - 0.12f) << "darker again at " << x;  // one step's width
+            }
+            last = lit;
+            dark += 1 - double(lit);
+        }
+        EXPECT_EQ(1, last) << "far from it";
+        EXPECT_GT(dark, before) << "a wall of " << wall;
+        before = dark;
+    }
+    EXPECT_EQ(1, parallax::reliefLit({0, 0}, vec2(light), light.z, 0, kDeep, 2, 64));
+    EXPECT_EQ(0, parallax::reliefLit({0, 0}, vec2(-1, 0), -0.1f, 0.1f, kDeep, 2, 64));
+}
+
+}  // namespace
+}  // namespace fw::test
