@@ -36,6 +36,7 @@ void defaults(FwWorldDef& def) noexcept {
     def.spreadChance = 1;
     def.volumeCell = 2;
     def.volumeSteps = 64;
+    def.maxParticles = 16384;
 }
 
 void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }
@@ -83,6 +84,17 @@ void defaults(FwFireColliderDef& def) noexcept {
     def.rotation[3] = 1;
     def.radius = 0.5f;
     def.cellSize = 1;
+}
+
+void defaults(FwFireEmitterDef& def) noexcept {
+    set(def.direction, 0, 1, 0);
+    def.power = 60;
+    def.lifeVariance = 0.33f;
+    def.buoyancy = def.windResponse = def.turbulence = def.smokeDensity = 1;
+    def.inherit = 0.5f;
+    def.smoke = 0.32f;
+    def.smokeLife = 2.2f;
+    def.sparks = 0.04f;
 }
 
 void defaults(FwIgnitionDef& def) noexcept { def.kind = FW_IGNITE; }
@@ -147,6 +159,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwFireColliderDef);
         case FW_DEF_FIRE_TRACK:
             return sizeof(FwFireTrackDef);
+        case FW_DEF_FIRE_EMITTER:
+            return sizeof(FwFireEmitterDef);
         default:
             return vulkanDefSize(type);
     }
@@ -195,6 +209,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_FIRE_TRACK:
             write<FwFireTrackDef>(def);
+            return true;
+        case FW_DEF_FIRE_EMITTER:
+            write<FwFireEmitterDef>(def);
             return true;
         default:
             return writeVulkanDefaults(type, def);

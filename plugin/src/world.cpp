@@ -265,6 +265,50 @@ FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFire
     });
 }
 
+FwResult FW_CALL fwWorld_CreateFireEmitter(FwWorld* world, const FwFireEmitterDef* given,
+                                           FwFireEmitterId* id) {
+    return createOf("fwWorld_CreateFireEmitter", world, &world::World::createFireEmitter, given,
+                    FW_DEF_FIRE_EMITTER, "FwFireEmitterDef", id);
+}
+
+FwResult FW_CALL fwWorld_DestroyFireEmitter(FwWorld* world, FwFireEmitterId id) {
+    return destroyOf("fwWorld_DestroyFireEmitter", world, &world::World::destroyFireEmitter, id);
+}
+
+FwResult FW_CALL fwWorld_MoveFireEmitter(FwWorld* world, FwFireEmitterId id,
+                                         const float position[3], const float* direction) {
+    return onWorld("fwWorld_MoveFireEmitter", world, [&](world::World& w) {
+        checkPointer(position, "position");
+        w.moveFireEmitter(id, position, direction);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetFireEmitterPower(FwWorld* world, FwFireEmitterId id, float power) {
+    return onWorld("fwWorld_SetFireEmitterPower", world, [&](world::World& w) {
+        w.setFireEmitterPower(id, power);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetFireEmitterHidden(FwWorld* world, FwFireEmitterId id, uint32_t hidden) {
+    return onWorld("fwWorld_SetFireEmitterHidden", world, [&](world::World& w) {
+        w.setFireEmitterHidden(id, hidden != 0);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld* world, FwFireEmitterId id,
+                                             FwFireEmitterState* state) {
+    return onWorld("fwWorld_GetFireEmitterState", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(state, "FwFireEmitterState");
+        FwFireEmitterState filled{};
+        w.fireEmitterState(id, filled);
+        edge::writeInfo(state, size, filled);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_CreateFireProfile(FwWorld* world, const FwFireProfileDef* given,
                                            FwFireProfileId* id) {
     return createOf("fwWorld_CreateFireProfile", world, &world::World::createFireProfile, given,

@@ -78,16 +78,26 @@ struct VolumeUpdate {  // the volumetric flames that draws show from this frame 
     uint32_t count = 0;                   // at most kMaxVolumeFlames
 };
 
+struct ParticleEmitter;  // shared/particle.h
+struct EmitterUpdate {   // fire emitters in this frame; looks only
+    const ParticleEmitter* records = nullptr;
+    uint32_t count = 0;
+    std::span<const uvec2> groups;  // record, first of kParticleGroup slots of its ring
+    uint32_t particleEnd = 0;       // behind the last particle of any of them
+    uint32_t particles = 0;         // of all rings
+};
+
 struct FramePlan {
     uint64_t frameIndex = 0;
     std::span<const StepPlan> steps;
-    std::span<const Probe> probes;          // answered in this frame's readback, in order
-    std::span<const uint32_t> burnMaps;     // object slots whose whole state is read back
-    uint32_t switches = 0;                  // FwDebugSwitch
-    uint32_t endTick = 0;                   // tick after the last step
-    float wind[3] = {};                     // m/s, world; for looks only
-    float tickFraction = 0;                 // into the running step, [0, 1); for looks only
-    const VolumeUpdate* volumes = nullptr;  // null: as before
+    std::span<const Probe> probes;            // answered in this frame's readback, in order
+    std::span<const uint32_t> burnMaps;       // object slots whose whole state is read back
+    uint32_t switches = 0;                    // FwDebugSwitch
+    uint32_t endTick = 0;                     // tick after the last step
+    float wind[3] = {};                       // m/s, world; for looks only
+    float tickFraction = 0;                   // into the running step, [0, 1); for looks only
+    const VolumeUpdate* volumes = nullptr;    // null: as before
+    const EmitterUpdate* emitters = nullptr;  // null: none, or no time passes for them
 };
 
 struct BurnMap {

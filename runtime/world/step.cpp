@@ -41,6 +41,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
         throw;
     }
     planFires(deltaTime);
+    planEmitters(deltaTime);
 
     // Nothing listed, nothing new: time passes without the device.
     const bool skip = idle_ && frame_.events.empty() && frame_.updates.empty() &&
@@ -54,10 +55,12 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     plan.endTick = uint32_t(time.after.tick);
     std::copy_n(wind_, 3, plan.wind);
     if (frame_.volumesDue) plan.volumes = &frame_.volumes;
+    if (frame_.emittersDue) plan.emitters = &frame_.emitters;
     plan.tickFraction = float(double(time.after.fraction) / double(Clock::kStepUnits));
     backend_.run(plan);
 
     commitFrame(frameIndex, time, !skip);
+    commitEmitters(deltaTime);
     collect();
 }
 

@@ -5,6 +5,7 @@
 #include "components/look_table.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
+#include "shared/particle.h"
 #include "world/mesh_input.h"
 
 #include <algorithm>
@@ -52,6 +53,8 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     checkLimit(def.volumeSteps, "FwWorldDef::volumeSteps", 6, 64);
     checkLimit(def.reserved1, "FwWorldDef::reserved1", 0, 0);
     checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
+    checkLimit(def.maxParticles, "FwWorldDef::maxParticles", 0, 1u << 20);
+    checkLimit(def.reserved2, "FwWorldDef::reserved2", 0, 0);
     return def;
 }
 
@@ -95,6 +98,10 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       fireShapes_(memory),
       burning_(memory),
       fireFlames_(memory),
+      emitters_("Fire emitter", memory),
+      emitterRecords_(memory),
+      emitterGroups_(memory),
+      emitterRings_(memory),
       remote_(memory),
       imageUsers_(memory),
       touched_(memory),

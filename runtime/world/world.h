@@ -2,6 +2,7 @@
 // CPU code, the same for every backend; it knows no device and no C edge. Calls throw core::Error
 // or std::bad_alloc and then have changed nothing. One thread at a time.
 #pragma once
+#include "components/fire_emitter.h"
 #include "components/fire_flames.h"
 #include "components/remote.h"
 #include "core/handle_pool.h"
@@ -256,6 +257,12 @@ class World {
     void setVolumetricFireHidden(FwVolumetricFireId id, bool hidden);
     void setVolumetricFireTrack(FwVolumetricFireId id, const FwFireTrackDef* def);
     void volumetricFireState(FwVolumetricFireId id, FwVolumetricFireState& state);
+    FwFireEmitterId createFireEmitter(const FwFireEmitterDef& def);
+    void destroyFireEmitter(FwFireEmitterId id);
+    void moveFireEmitter(FwFireEmitterId id, const float position[3], const float* direction);
+    void setFireEmitterPower(FwFireEmitterId id, float power);
+    void setFireEmitterHidden(FwFireEmitterId id, bool hidden);
+    void fireEmitterState(FwFireEmitterId id, FwFireEmitterState& state);
     FwFireProfileId createFireProfile(const FwFireProfileDef& def);
     void destroyFireProfile(FwFireProfileId id);
     FwFireColliderId addFireCollider(const FwFireColliderDef& def);
@@ -340,6 +347,8 @@ class World {
         bool remoteLatched = false, remoteFlushed = false;
         gpu::VolumeUpdate volumes;  // of fireFlames_
         bool volumesDue = false;    // the backend is told
+        gpu::EmitterUpdate emitters;
+        bool emittersDue = false;
     };
 
     // step.cpp
@@ -352,6 +361,11 @@ class World {
     uint32_t profileLayer(const FwVolumetricFireDef& def);
     void planFires(float seconds) noexcept;
     void commitFires() noexcept;
+    // emitters.cpp
+    [[nodiscard]] components::EmitterAir emitterAir(float ahead) const noexcept;
+    uint32_t emitterRoom(uint32_t particles);
+    void planEmitters(float seconds) noexcept;
+    void commitEmitters(float seconds) noexcept;
     // fire_colliders.cpp
     void listFireColliders() noexcept;
     // fire_touch.cpp
@@ -435,6 +449,14 @@ class World {
     std::pmr::vector<gpu::VolumeFlame> fireFlames_;  // room for a frame's flames
     uint32_t flamesShown_ = 0;                       // that the backend draws
     uint32_t firesMade_ = 0;                         // since ever
+    core::HandlePool<FwFireEmitterId, components::FireEmitter> emitters_;
+    // Of a frame; room for all of it is found with each emitter.
+    std::pmr::vector<gpu::ParticleEmitter> emitterRecords_;
+    std::pmr::vector<gpu::uvec2> emitterGroups_;
+    std::pmr::vector<std::pair<uint32_t, uint32_t>> emitterRings_;  // scratch: first, ring
+    uint32_t emittersMade_ = 0;                                     // since ever
+    double emitterTime_ = 0;                                        // s
+    bool emittersShown_ = false;                                    // the backend has some
     RemoteBook remote_;
     std::pmr::vector<uint32_t> imageUsers_;  // by backend slot: objects + 1 for a live id; 0: free
     std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing

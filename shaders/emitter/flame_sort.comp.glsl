@@ -1,4 +1,6 @@
-// Orders the flame quads of a view, farthest first. One group, a bitonic sort in shared memory.
+// Orders the quads of a view, farthest first: burning tiles' and particles' together, or one would
+// show through the other. One group: a bitonic sort in shared memory of up to kFlameCapacity of
+// them, of more a radix sort, which is stable.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
@@ -9,29 +11,37 @@ layout(std430, set = 0, binding = FW_BIND_FLAMES) readonly buffer FlamesBuffer {
 };
 layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(push_constant) uniform Push { SortPush push; };
+
+const uint kThreads = 128u, kDigits = 16u;
+const float kNearest = 1.0 / 64.0;  // m: no quad is sorted as nearer
 
 shared uint keys[kFlameCapacity];
 
-void main() {
-    uint me = gl_LocalInvocationID.x;
-    uint count = min(drawArgs[1], min(view.flameCapacity, kFlameCapacity));
+// Of the i-th quad.
+uint placeOf(uint i, uint tiles) { return i < tiles ? i : push.tiles + (i - tiles); }
+float depthOf(uint place) {
+    vec3 d = flameQuad[place].baseHeight.xyz +
+             flameQuad[place].axisWidth.xyz * (0.5 * flameQuad[place].baseHeight.w) - view.eye.xyz;
+    return clamp(dot(d, view.forward.xyz), 0.0, 1e6);
+}
+
+void sortFew(uint me, uint count, uint tiles) {
     uint size = 2u;
     while (size < count) size <<= 1u;
-    for (uint i = me; i < size; i += 128u) {
+    for (uint i = me; i < size; i += kThreads) {
         uint key = 0xFFFFFFFFu;
         if (i < count) {
-            vec3 d = flameQuad[i].baseHeight.xyz +
-                     flameQuad[i].axisWidth.xyz * (0.5 * flameQuad[i].baseHeight.w) - view.eye.xyz;
-            float depth = clamp(dot(d, view.forward.xyz), 0.0, 1e6);
             // 12 mantissa bits are 1 part in 4000; positive floats sort as their bits do.
-            key = (0xFFFFFu - (floatBitsToUint(depth) >> 11u & 0xFFFFFu)) << 12u | i;
+            uint depth = floatBitsToUint(depthOf(placeOf(i, tiles)));
+            key = (0xFFFFFu - (depth >> 11u & 0xFFFFFu)) << 12u | i;
         }
         keys[i] = key;
     }
     barrier();
     for (uint block = 2u; block <= size; block <<= 1u) {
         for (uint step = block >> 1u; step > 0u; step >>= 1u) {
-            for (uint k = me; k < size / 2u; k += 128u) {
+            for (uint k = me; k < size / 2u; k += kThreads) {
                 uint i = 2u * k - (k & (step - 1u)), j = i + step;
                 uint low = keys[i], high = keys[j];
                 bool ascending = (i & block) == 0u;
@@ -43,7 +53,75 @@ void main() {
             barrier();
         }
     }
-    for (uint i = me; i < count; i += 128u) drawArgs[kFlameOrder + i] = keys[i] & 0xFFFu;
+    for (uint i = me; i < count; i += kThreads)
+        drawArgs[kFlameOrder + i] = placeOf(keys[i] & 0xFFFu, tiles);
+}
+
+// 16 bits of depth, four of them a turn; each thread keeps a run of them in order.
+void sortMany(uint me, uint count, uint tiles) {
+    uint other = push.tiles + push.particles, each = (count + kThreads - 1u) / kThreads;
+    uint begin = me * each;
+    for (uint j = 0u; j < each; ++j) {
+        uint i = begin + j;
+        if (i >= count) continue;
+        // 11 mantissa bits.
+        uint depth = floatBitsToUint(max(depthOf(placeOf(i, tiles)), kNearest));
+        uint near = min((depth - floatBitsToUint(kNearest)) >> 12u, 0xFFFFu);
+        drawArgs[kFlameOrder + i] = (0xFFFFu - near) << 16u | i;
+    }
+    for (uint turn = 0u; turn < 4u; ++turn) {
+        uint from = kFlameOrder + (turn & 1u) * other, to = kFlameOrder + (~turn & 1u) * other;
+        uint shift = 16u + 4u * turn;
+        for (uint d = 0u; d < kDigits; ++d) keys[d * kThreads + me] = 0u;
+        memoryBarrierBuffer();
+        barrier();
+        for (uint j = 0u; j < each; ++j) {
+            uint i = begin + j;
+            uint digit = drawArgs[from + min(i, count - 1u)] >> shift & 15u;
+            if (i < count) ++keys[digit * kThreads + me];
+        }
+        barrier();
+        // How many come before each: of smaller digits all, of its own those of threads before.
+        uint sum = 0u;
+        for (uint d = 0u; d < kDigits; ++d) {
+            uint here = me * kDigits + d;
+            uint found = keys[here];
+            keys[here] = sum;
+            sum += found;
+        }
+        uint sums = kDigits * kThreads;
+        keys[sums + me] = sum;
+        barrier();
+        uint before = 0u;
+        for (uint i = 0u; i < kThreads; ++i) before += i < me ? keys[sums + i] : 0u;
+        for (uint d = 0u; d < kDigits; ++d) keys[me * kDigits + d] += before;
+        barrier();
+        for (uint j = 0u; j < each; ++j) {
+            uint i = begin + j;
+            if (i >= count) continue;
+            uint key = drawArgs[from + i];
+            uint at = (key >> shift & 15u) * kThreads + me;
+            uint place = keys[at];
+            keys[at] = place + 1u;
+            drawArgs[to + place] = turn == 3u ? placeOf(key & 0xFFFFu, tiles) : key;
+        }
+    }
+}
+
+void main() {
+    uint me = gl_LocalInvocationID.x;
+    uint tiles = min(drawArgs[kFlameTiles], min(push.tiles, view.flameCapacity));
+    uint count = tiles + min(drawArgs[kFlameParticles], push.particles);
+    bool few = count <= kFlameCapacity;  // the one place that decides how
+    if (few)
+        sortFew(me, count, tiles);
+    else
+        sortMany(me, count, tiles);
+    memoryBarrierBuffer();
     barrier();
-    if (me == 0u) drawArgs[1] = count;
+    if (me == 0u) {
+        drawArgs[0] = 6u * count;  // vertices
+        drawArgs[1] = 1u;
+        drawArgs[2] = drawArgs[3] = 0u;
+    }
 }

@@ -35,7 +35,7 @@ vec3 perpendicular(vec3 n) {
 }
 
 void emit(FlameQuad quad) {
-    uint slot = atomicAdd(drawArgs[1], 1u);
+    uint slot = atomicAdd(drawArgs[kFlameTiles], 1u);
     if (slot < min(view.flameCapacity, kFlameCapacity)) flameQuad[slot] = quad;
 }
 
@@ -182,7 +182,7 @@ void main() {
                 // The fire below lights it from its first moments.
                 quad.kelvin = 1.0 - a;
             }
-            quad.kind = (g & 0xFFFFu) << 1u | (smoke ? 1u : 0u);
+            quad.kind = (g & 0xFFFFu) << 2u | (smoke ? kQuadSmoke : kQuadTongue);
             if (quad.opacity > 0.004) emit(quad);
         }
     }

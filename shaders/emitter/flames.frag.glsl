@@ -1,7 +1,8 @@
 #version 450
-// One tongue of flame, or one puff of smoke. The tongue is a profile looked up at a displaced
-// height: zero-mean noise that scrolls upwards, squeezed towards the axis as it rises; soot glows
-// in thin sheets where the noise is zero. Premultiplied: colour, and what it hides.
+// One tongue of flame, puff of smoke, ball of fire or spark. The tongue is a profile looked up at a
+// displaced height: zero-mean noise that scrolls upwards, squeezed towards the axis as it rises;
+// soot glows in thin sheets where the noise is zero. The ball is noise at places that two vortices
+// have carried along, eaten away as it ages. Premultiplied: colour, and what it hides.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -49,28 +50,57 @@ float gapToScene() {
 }
 #endif
 
+// Turns `p` about `c` by twice atan(h).
+vec2 rolled(vec2 p, vec2 c, float h) {
+    vec2 d = p - c;
+    float k = 2.0 / (1.0 + h * h);
+    return c + d + k * h * (vec2(d.y, -d.x) - h * d);
+}
+
 void main() {
+    uint what = inKind & 3u, named = inKind >> 2u << 1u | (inKind & 1u);
+    bool tongue = what == kQuadTongue, smoke = what == kQuadSmoke, spark = what == kQuadSpark;
     float opacity = inState.x, phase = inState.y, aspect = inState.w;
     float x = inPlace.x, y = inPlace.y;
-    vec2 seed = vec2(hash(uvec3(inKind, 1u, 5u)), hash(uvec3(inKind, 2u, 5u)));
+    vec2 seed = vec2(hash(uvec3(named, 1u, 5u)), hash(uvec3(named, 2u, 5u)));
+    vec2 c = vec2(x, 2.0 * y - 1.0);
+    float r = length(c);
+
+    // Software devices run every branch: what they all need is fetched once, from where each wants
+    // it. A ball of fire rolls up about two vortices that rise in it.
+    vec2 m = vec2(seed.x < 0.5 ? -c.x : c.x, c.y);
+    float strong = 0.25 + 1.0 * phase;
+    vec2 left = vec2(-0.30 - 0.20 * seed.y, 0.05 + 0.4 * phase - 0.5 * seed.y);
+    vec2 right = vec2(0.45 - 0.20 * seed.y, -0.25 + 0.4 * phase + 0.4 * seed.y);
+    vec2 fromLeft = m - left, fromRight = m - right;
+    m = rolled(m, left, strong * exp2(-6.0 * dot(fromLeft, fromLeft)));
+    m = rolled(m, right, -strong * (1.2 - seed.y) * exp2(-6.0 * dot(fromRight, fromRight)));
+    float squeeze = 1.0 - 0.5 * y;
+    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45)
+             : smoke ? inPlace * vec2(0.11, 0.22)
+                     : m * vec2(0.115, 0.085);
+    p += seed;
+    float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
+    float lod = smoke ? 1.5 : tongue ? 1.0 : 2.0;
+    vec4 n1 = textureLod(lookTextures, vec3(p - vec2(0.0, slow * phase), kLayerNoise), lod);
+    float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
+    vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
+    vec2 q = p * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
+    vec4 n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
+
     vec3 color;
     float alpha;
-    if ((inKind & 1u) == 0u) {
-        // Two octaves; the finer one is faster, so that shapes change and do not just travel.
-        float squeeze = 1.0 - 0.5 * y;
-        vec2 p = vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45) + seed;
-        vec4 n1 = textureLod(lookTextures, vec3(p - vec2(0.0, 0.16 * phase), kLayerNoise), 1.0);
-        vec2 curl = (n1.rb - 0.5) * 0.06 * y;
-        vec4 n2 = textureLod(lookTextures,
-                             vec3(p * vec2(1.7, 1.5) + curl - vec2(0.0, 0.30 * phase), kLayerNoise),
-                             1.0);
-        float turbulence = (n1.r - 0.5) * 1.9 + (n2.r - 0.5) * 1.0 + (n2.g - 0.45) * 0.55;
+    // Of a tongue: two octaves; the finer one is faster, so that shapes change and do not just
+    // travel.
+    float turbulence = (n1.r - 0.5) * 1.9 + (n2.r - 0.5) * 1.0 + (n2.g - 0.45) * 0.55;
+    float kelvin, soot, hides;
+    if (tongue) {
         float yy = max(y - 0.62 * sqrt(y) * turbulence, 0.45 * y);
         float xx = abs(x + 0.5 * y * (n1.b - 0.5)) * (1.0 + 0.15 * turbulence * y);
         float halfWidth = 0.78 * pow(max(1.0 - yy, 0.0), 0.75) *
                           (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
         float inside = halfWidth - xx;
-        float soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
+        soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
         soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) *
                 (1.0 - smoothstep(0.90, 1.0, y)) *
                 (1.0 - smoothstep(0.60, 0.98, abs(x)));
@@ -78,19 +108,25 @@ void main() {
         float fold = exp(-sheet * sheet / 0.012);
         soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));
         float core = saturate(inside / 0.6);
-        float kelvin = inState.z - 330.0 * smoothstep(0.05, 1.0, yy) + 90.0 * (core - 0.4) -
-                       110.0 * (n2.g - 0.45) - 60.0 * (1.0 - smoothstep(0.0, 0.2, y));
-        color = sootRadiance(kelvin) * (kFlameWhite * view.sunColor.w);
-        alpha = saturate(soot * 0.75) * opacity;
-        color *= soot * opacity;
+        kelvin = inState.z - 330.0 * smoothstep(0.05, 1.0, yy) + 90.0 * (core - 0.4) -
+                 110.0 * (n2.g - 0.45) - 60.0 * (1.0 - smoothstep(0.0, 0.2, y));
+        hides = 0.75;
     } else {
-        vec2 p = inPlace * vec2(0.11, 0.22) + seed;
-        vec4 n1 = textureLod(lookTextures, vec3(p + vec2(0.0, -0.2 * phase), kLayerNoise), 1.5);
-        vec4 n2 = textureLod(lookTextures,
-                             vec3(p * 2.1 + (n1.rb - 0.5) * 0.15 - vec2(0.0, 0.3 * phase),
-                                  kLayerNoise), 1.5);
-        vec2 c = vec2(x, 2.0 * y - 1.0);
-        float r = length(c);
+        // Torn from a ball to rags as it ages, hot inside, dark in its folds.
+        float torn = 2.1 * (n1.r - 0.5) + 1.1 * (n2.r - 0.5) + 0.5 * (n2.g - 0.45);
+        float deep = 0.92 - r * 1.05 + torn, least = mix(0.0, 0.72, phase);
+        float sheet = (n2.r - 0.5) + 0.7 * (n2.b - 0.5) + 0.25 * (n1.b - 0.5);
+        float fold = exp(-sheet * sheet / 0.014);
+        soot = smoothstep(0.0, 0.24, deep - least) * (1.0 - smoothstep(0.62, 0.97, r)) *
+               mix(1.0, 0.28 + 1.0 * fold, smoothstep(0.05, 0.40, phase));
+        kelvin = inState.z + 260.0 * (saturate((deep - least) * 0.9) - 0.35) + 90.0 * fold -
+                 260.0 * (n2.g - 0.45) - 150.0 * (phase - 0.35);
+        // What is cool hides little: what is shown would turn grey, not red.
+        hides = 0.85 * smoothstep(1050.0, 1480.0, kelvin);
+    }
+    color = sootRadiance(kelvin) * (kFlameWhite * view.sunColor.w * soot * opacity);
+    alpha = saturate(soot * hides) * opacity;
+    if (smoke) {
         float billow = (n1.r - 0.5) * 1.3 + (n2.g - 0.45) * 0.7;
         float body = smoothstep(0.0, 0.75, 1.0 - r + 0.7 * billow) *
                      (1.0 - smoothstep(0.7, 1.0, r));
@@ -103,21 +139,28 @@ void main() {
                     (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
         color = (lit * 0.17 + fire) * alpha;
     }
+    if (spark) {
+        float body = saturate(1.6 * (1.0 - r * r)) * opacity;
+        // Its true light falls a thousandfold while it flies: nobody would see the end of it.
+        vec3 glow = sootRadiance(inState.z);
+        color = glow * (pow(max(glow.g * 2.5, 1e-4), -0.5) * kFlameWhite * view.sunColor.w * body);
+        alpha = 0.0;
+    }
 #ifdef FW_SOFT
     // A tongue is as deep as it is wide, a puff twice so.
     float gap = gapToScene();
-    float depthOf = (inKind & 1u) == 0u ? 0.35 * inWidth : 0.9 * inWidth;
+    float depthOf = (smoke ? 0.9 : 0.35) * inWidth;
     float soft = smoothstep(0.0, 1.0, gap / depthOf);
     color *= soft;
     alpha *= soft;
 #endif
-    if (alpha < 0.002) discard;
+    if (alpha < 0.002 && !spark) discard;
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {
         // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
         // a thin one must turn red, not grey.
-        color = (inKind & 1u) == 0u ? encodeOutput(color, kEncoding)
-                                    : encodeOutput(color / alpha, kEncoding) * alpha;
+        color = smoke ? encodeOutput(color / alpha, kEncoding) * alpha
+                      : encodeOutput(color, kEncoding);
     }
     outColor = vec4(min(color, vec3(60000.0)), alpha);
 }

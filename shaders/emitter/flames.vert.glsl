@@ -1,6 +1,7 @@
 #version 450
-// A flame or smoke quad: stands along its axis and turns about it towards the eye. Seen along its
-// axis it leans on the screen instead, or it would vanish from above.
+// A quad of a flame, smoke, fire or a spark: stands along its axis and turns about it towards the
+// eye. Seen along its axis it leans on the screen instead, or it would vanish from above. All quads
+// are one draw of six vertices each: a device that draws instance by instance pays for each.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -19,12 +20,13 @@ layout(location = 2) flat out uint outKind;
 layout(location = 3) flat out float outWidth;  // m, half of it
 
 void main() {
-    FlameQuad quad = flameQuad[drawArgs[kFlameOrder + gl_InstanceIndex]];
-    uint corner = gl_VertexIndex < 3 ? gl_VertexIndex : gl_VertexIndex - 2;
+    uint number = uint(gl_VertexIndex) / 6u, vertex = uint(gl_VertexIndex) % 6u;
+    FlameQuad quad = flameQuad[drawArgs[kFlameOrder + number]];
+    uint corner = vertex < 3u ? vertex : vertex - 2u;
     vec2 place = vec2((corner & 1u) == 0u ? -1.0 : 1.0, (corner & 2u) == 0u ? 0.0 : 1.0);
-    if (gl_VertexIndex == 3) place = vec2(-1.0, 1.0);
-    if (gl_VertexIndex == 4) place = vec2(1.0, 0.0);
-    if (gl_VertexIndex == 5) place = vec2(1.0, 1.0);
+    if (vertex == 3u) place = vec2(-1.0, 1.0);
+    if (vertex == 4u) place = vec2(1.0, 0.0);
+    if (vertex == 5u) place = vec2(1.0, 1.0);
     vec3 foot = quad.baseHeight.xyz - view.eye.xyz;
     vec3 middle = foot + quad.axisWidth.xyz * (0.5 * quad.baseHeight.w);
     vec3 toEye = view.forward.w > 0.5 ? -normalize(middle) : -view.forward.xyz;
@@ -32,7 +34,7 @@ void main() {
     float along = abs(dot(axis, toEye));
     vec3 screenUp = view.up.xyz - toEye * dot(view.up.xyz, toEye);
     screenUp = dot(screenUp, screenUp) > 1e-4 ? normalize(screenUp) : vec3(0.0, 0.0, 1.0);
-    bool smoke = (quad.kind & 1u) != 0u;
+    bool smoke = (quad.kind & 3u) == kQuadSmoke;
     vec3 flat_ = axis - toEye * dot(axis, toEye);
     // At least half of its length stays visible.
     axis = smoke ? screenUp

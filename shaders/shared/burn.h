@@ -41,7 +41,7 @@
 #define FW_BIND_LIGHTS 29     // BurnLight[]
 #define FW_BIND_LIGHT_CELLS 30  // uint[]: hash grid of burning cells
 #define FW_BIND_FLAMES 31     // FlameQuad[]
-#define FW_BIND_DRAW_ARGS 32  // indirect draw of the flames
+#define FW_BIND_DRAW_ARGS 32  // uint[]: indirect draw of the flames, their order; see kFlameOrder
 #define FW_BIND_VIEW 33       // uniform ViewParams
 #define FW_BIND_LOOKS 34      // MaterialLook[]
 #define FW_BIND_HEAT 35       // uvec2[]: packed HeatTexel, of objects with kObjectHeat
@@ -88,7 +88,10 @@
 #define FW_BIND_VOLUMES 90          // VolumeFlame[]: volumetric flames of the frame, see volume_draw.h
 #define FW_BIND_VOLUME_RAYS 91      // uint[]: marched flames of a view, see VolumeMarch in volume_draw.h
 #define FW_BIND_VOLUME_WORK 92      // VolumeWork[]: what the probe found of each flame
-#define FW_BIND_COUNT 93
+#define FW_BIND_EMITTERS 120         // ParticleEmitter[]: fire emitters of the frame, see particle.h
+#define FW_BIND_EMITTER_GROUPS 121   // uvec2[]: emitter, first slot of its ring that a group works on
+#define FW_BIND_PARTICLES 122        // Particle[]: rings of emitters
+#define FW_BIND_COUNT 123
 
 FW_SHARED_BEGIN
 

@@ -183,15 +183,31 @@ struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m
     vec4 axisWidth;          // unit, foot to tip; w: half width m
     float opacity;           // [0, 1]
-    float phase;             // s of scroll, already offset by its seed
-    float kelvin;            // K of the hottest part
-    uint kind;               // seed << 1 | smoke
+    float phase;             // s of scroll, already offset by its seed; of kQuadFire: its life, [0, 1]
+    float kelvin;            // K of the hottest part; of kQuadSmoke: how lit by fire, [0, 1]
+    uint kind;               // seed << 2 | kQuad...
 };
 FW_SHARED_SIZE(FlameQuad, 48)
 
-// Draw arguments of the flames, then the order they are drawn in: farthest first.
+FW_SHARED_CONST uint kQuadTongue = 0u;  // of a burning tile
+FW_SHARED_CONST uint kQuadSmoke = 1u;
+FW_SHARED_CONST uint kQuadFire = 2u;    // of a particle
+FW_SHARED_CONST uint kQuadSpark = 3u;
+
+// Draw arguments of the flames, then the order they are drawn in: farthest first, then as many words
+// that the sort works in. Quads are burning tiles', at most kFlameCapacity, then particles'.
+FW_SHARED_CONST uint kFlameTiles = 4u;       // word: quads of tiles that were wished for
+FW_SHARED_CONST uint kFlameParticles = 5u;   // word: of particles
 FW_SHARED_CONST uint kFlameOrder = 8u;       // first word of the order
-FW_SHARED_CONST uint kFlameCapacity = 4096u; // hard limit of quads drawn
+FW_SHARED_CONST uint kFlameCapacity = 4096u; // hard limit of tiles' quads drawn
+FW_SHARED_CONST uint kMostQuads = 65536u;    // of both
+
+struct SortPush {
+    uint tiles;      // quads of tiles, at most
+    uint particles;  // of particles, at most
+    uint reserved0; uint reserved1;
+};
+FW_SHARED_SIZE(SortPush, 16)
 
 // Hash grid of burning cells: kLightCellHeader words, then cells of kLightCellWords.
 FW_SHARED_CONST uint kLightCells = 4096u;

@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(72, calls);  // every function of the three headers
+    EXPECT_EQ(78, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -51,6 +51,7 @@ const DefCase kDefs[] = {
     {"profile", FW_DEF_FIRE_PROFILE, sizeof(FwFireProfileDef)},
     {"collider", FW_DEF_FIRE_COLLIDER, sizeof(FwFireColliderDef)},
     {"track", FW_DEF_FIRE_TRACK, sizeof(FwFireTrackDef)},
+    {"emitter", FW_DEF_FIRE_EMITTER, sizeof(FwFireEmitterDef)},
     {"host", FW_DEF_VULKAN_HOST, sizeof(FwVulkanHost)},
     {"target", FW_DEF_VULKAN_TARGET, sizeof(FwVulkanTargetDef)},
     {"frame", FW_DEF_VULKAN_FRAME, sizeof(FwVulkanFrame)},
@@ -235,6 +236,15 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
             return fwWorld_SetVolumetricFireTrack(w.world, fireId, def);
         },
         worldMessage);
+    checkSizes<FwFireEmitterDef>(
+        "FwFireEmitterDef", fwDefaultFireEmitterDef(),
+        [&](const FwFireEmitterDef* def) {
+            FwFireEmitterId id{};
+            const FwResult result = fwWorld_CreateFireEmitter(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_DestroyFireEmitter(w.world, id);
+            return result;
+        },
+        worldMessage);
     FwIgnitionDef ignition = fwDefaultIgnitionDef();
     ignition.radius = 0.05f;
     checkSizes<FwIgnitionDef>(
@@ -398,6 +408,39 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeFire(&def));
         EXPECT_NE(std::string::npos, worldMessage().find("tint[" + std::to_string(i) + "] is 1.5"));
     }
+
+    const std::function<FwResult(const FwFireEmitterDef*)> makeEmitter =
+        [&](const FwFireEmitterDef* def) {
+            FwFireEmitterId id{};
+            const FwResult result = fwWorld_CreateFireEmitter(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_DestroyFireEmitter(w.world, id);
+            return result;
+        };
+    const FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
+    using E = FwFireEmitterDef;
+    const auto refuse = [&](float E::*field, const char* name, std::initializer_list<float> bad) {
+        refuseFloat<E>(emitter, field, name, makeEmitter, worldMessage, bad);
+    };
+    refuse(&E::radius, "radius", {-0.1f, 51.0f});
+    refuse(&E::power, "power", {-1.0f, 2e5f});
+    refuse(&E::rate, "rate", {-1.0f, 3e5f});
+    refuse(&E::speed, "speed", {-1.0f, 201.0f});
+    refuse(&E::cone, "cone", {-0.1f, 2.1f});
+    refuse(&E::size0, "size0", {-0.1f, 51.0f});
+    refuse(&E::size1, "size1", {-0.1f, 51.0f});
+    refuse(&E::life, "life", {-0.1f, 61.0f});
+    refuse(&E::lifeVariance, "lifeVariance", {-0.1f, 1.1f});
+    refuse(&E::drag, "drag", {-0.1f, 61.0f});
+    refuse(&E::buoyancy, "buoyancy", {-4.1f, 4.1f});
+    refuse(&E::windResponse, "windResponse", {-0.1f, 4.1f});
+    refuse(&E::turbulence, "turbulence", {-0.1f, 4.1f});
+    refuse(&E::inherit, "inherit", {-0.1f, 1.1f});
+    refuse(&E::smoke, "smoke", {-0.1f, 1.1f});
+    refuse(&E::smokeLife, "smokeLife", {-0.1f, 20.1f});
+    refuse(&E::smokeDensity, "smokeDensity", {-0.1f, 4.1f});
+    refuse(&E::sparks, "sparks", {-0.1f, 1.1f});
+    refuse(&E::temperature, "temperature", {-1.0f, 2501.0f});
+    refuse(&E::ground, "ground", {-2e6f, 2e6f});
 
     FwBurnableMeshDef burnable = fwDefaultBurnableMeshDef();
     burnable.mesh = w.mesh;

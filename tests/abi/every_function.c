@@ -21,6 +21,7 @@ int fwTestCallEverything(int* calls) {
     const FwQueryId query = {0, 0};
     const FwBlockerId blocker = {0, 0};
     const FwVolumetricFireId fire = {0, 0};
+    const FwFireEmitterId emitter = {0, 0};
     const FwFireProfileId profile = {0, 0};
     const FwFireColliderId collider = {0, 0};
 
@@ -65,6 +66,12 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_SetVolumetricFireHidden(NULL, fire, 1));
     REFUSES(fwWorld_GetVolumetricFireState(NULL, fire, NULL));
     REFUSES(fwWorld_SetVolumetricFireTrack(NULL, fire, NULL));
+    REFUSES(fwWorld_CreateFireEmitter(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyFireEmitter(NULL, emitter));
+    REFUSES(fwWorld_MoveFireEmitter(NULL, emitter, NULL, NULL));
+    REFUSES(fwWorld_SetFireEmitterPower(NULL, emitter, 0.0f));
+    REFUSES(fwWorld_SetFireEmitterHidden(NULL, emitter, 1));
+    REFUSES(fwWorld_GetFireEmitterState(NULL, emitter, NULL));
     REFUSES(fwWorld_CreateFireProfile(NULL, NULL, NULL));
     REFUSES(fwWorld_DestroyFireProfile(NULL, profile));
     REFUSES(fwCookFireProfile(NULL, NULL, NULL, NULL));
@@ -110,6 +117,7 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultView().structSize == sizeof(FwView) ? 0 : 1;
     wrong += fwDefaultBlockerDef().structSize == sizeof(FwBlockerDef) ? 0 : 1;
     wrong += fwDefaultVolumetricFireDef().structSize == sizeof(FwVolumetricFireDef) ? 0 : 1;
+    wrong += fwDefaultFireEmitterDef().structSize == sizeof(FwFireEmitterDef) ? 0 : 1;
     wrong += fwDefaultFireProfileDef().structSize == sizeof(FwFireProfileDef) ? 0 : 1;
     wrong += fwDefaultFireColliderDef().structSize == sizeof(FwFireColliderDef) ? 0 : 1;
     wrong += fwDefaultFireTrackDef().structSize == sizeof(FwFireTrackDef) ? 0 : 1;

@@ -102,6 +102,9 @@ struct Session {
         def.profile = profile;
         retry([&] { return fwWorld_CreateVolumetricFire(world, &def, &fire); });
         retry([&] { return fwWorld_SetVolumetricFirePower(world, fire, 1); });
+        const FwFireEmitterDef emitterDef = fwDefaultFireEmitterDef();
+        FwFireEmitterId emitter{};
+        retry([&] { return fwWorld_CreateFireEmitter(world, &emitterDef, &emitter); });
         const float time = 0;
         const FwFirePoint line[2] = {{{0, 0, 0}, 0.1f}, {{0, 1, 0}, 0.1f}};
         FwFireTrackDef track = fwDefaultFireTrackDef();

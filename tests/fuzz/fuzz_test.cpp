@@ -231,6 +231,42 @@ class Fuzz {
         }
     }
 
+    void createEmitter() {
+        FwFireEmitterDef def = fwDefaultFireEmitterDef();
+        def.flags = random_.below(64);
+        def.shape = random_.below(4);
+        for (float& x : def.position) x = random_.unit();
+        for (float& x : def.extent) x = random_.number();
+        garble(def);
+        def.structSize = sizeof def;
+        FwFireEmitterId id{};
+        const FwResult result = fwWorld_CreateFireEmitter(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) emitters_.known.push_back(id);
+    }
+    void changeEmitter() {
+        const FwFireEmitterId id = emitters_.any(random_);
+        float place[3], way[3];
+        for (float& x : place) x = random_.number();
+        for (float& x : way) x = random_.number();
+        FwFireEmitterState state{};
+        state.structSize = sizeof state;
+        switch (random_.below(4)) {
+            case 0:
+                check(fwWorld_MoveFireEmitter(world_, id, place, random_.once(2) ? way : nullptr));
+                break;
+            case 1:
+                check(fwWorld_SetFireEmitterPower(world_, id, 1000 * random_.number()));
+                break;
+            case 2:
+                check(fwWorld_SetFireEmitterHidden(world_, id, random_.below(2)));
+                break;
+            default:
+                check(fwWorld_GetFireEmitterState(world_, id, &state));
+                break;
+        }
+    }
+
     void changeFlame() {
         const FwVolumetricFireId id = flames_.any(random_);
         float place[3];
@@ -523,6 +559,9 @@ class Fuzz {
                 if (flames_.known.size() < 8 || random_.once(30)) createFlame();
                 break;
             case 25:
+                if (emitters_.known.size() < 8 || random_.once(30)) createEmitter();
+                changeEmitter();
+                if (random_.once(6)) destroy(emitters_, fwWorld_DestroyFireEmitter);
                 changeFlame();
                 break;
             case 26:
@@ -554,6 +593,7 @@ class Fuzz {
             meshes_.known.clear();
             objects_.known.clear();
             flames_.known.clear();
+            emitters_.known.clear();
             profiles_.known.clear();
             colliders_.known.clear();
             queries_.known.clear();
@@ -569,6 +609,7 @@ class Fuzz {
     Ids<FwMeshId> meshes_;
     Ids<FwBurnableMeshId> objects_;
     Ids<FwVolumetricFireId> flames_;
+    Ids<FwFireEmitterId> emitters_;
     Ids<FwFireProfileId> profiles_;
     Ids<FwFireColliderId> colliders_;
     Ids<FwQueryId> queries_;

@@ -4,6 +4,7 @@
 #include "components/remote.h"
 #include "gpu/passes/frame_graph.h"
 #include "support/burn_scene.h"
+#include "support/particle_reference.h"
 
 #include <algorithm>
 #include <set>
@@ -101,6 +102,12 @@ class EveryPass : public GpuTest {
         if (published) makeVertices();
         FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
         flame_ = flameAlone(fire, 1);
+        FwFireEmitterDef jet = fwDefaultFireEmitterDef();
+        jet.flags = FW_EMITTER_JET | FW_EMITTER_GROUND;
+        jet.power = 20;
+        jet.ground = -0.3f;
+        jet.sparks = 0.2f;
+        emitter_ = std::make_unique<ParticleReference>(jet);
         now_ = 4096;
         index_ = 0;
         passes_.clear();
@@ -208,6 +215,15 @@ class EveryPass : public GpuTest {
         if (what.probes) plan.burnMaps = {&map, 1};
         const gpu::VolumeUpdate volumes{&flame_, 1};
         plan.volumes = &volumes;
+        const gpu::uvec2 group(0, 0);
+        gpu::EmitterUpdate emitters;
+        if (emitter_->step(0.2f)) {
+            emitters.records = &emitter_->record;
+            emitters.count = 1;
+            emitters.groups = {&group, 1};
+            emitters.particleEnd = emitters.particles = emitter_->record.ring;
+        }
+        plan.emitters = &emitters;
         plan.switches = what.switches;
         plan.endTick = now_;
         moveVertices();
@@ -325,6 +341,7 @@ class EveryPass : public GpuTest {
     std::vector<gpu::ContactLink> links_;
     gpu::Blocker blocker_{};
     gpu::VolumeFlame flame_{};
+    std::unique_ptr<ParticleReference> emitter_;
     const uint32_t self_ = 0xFF000000u;
     uint32_t now_ = 0;
     uint64_t index_ = 0;

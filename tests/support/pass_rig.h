@@ -16,10 +16,13 @@ namespace fw::test {
 class PassRig {
  public:
     // `bindings`: what the passes bind; each gets a buffer from `make` before the first dispatch.
-    // `texels`: those of them that the passes read by texels.
+    // `texels`: those of them that the passes read by texels; `uniforms`: those that are blocks.
     PassRig(TestDevice& device, std::span<const uint32_t> bindings, uint32_t pushBytes,
-            std::span<const uint32_t> texels = {})
-        : device_(device), pushBytes_(pushBytes), texels_(texels.begin(), texels.end()) {
+            std::span<const uint32_t> texels = {}, std::span<const uint32_t> uniforms = {})
+        : device_(device),
+          pushBytes_(pushBytes),
+          texels_(texels.begin(), texels.end()),
+          uniforms_(uniforms.begin(), uniforms.end()) {
         makeLayouts(bindings);
     }
     ~PassRig() {
@@ -39,7 +42,8 @@ class PassRig {
 
     void make(uint32_t binding, size_t bytes, const void* content = nullptr) {
         const TestBuffer made = device_.makeBuffer(
-            bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+            bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT |
+                       VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
         data_[binding] = made.mapped;
         sizes_[binding] = bytes;
         std::memset(data_[binding], 0, bytes);
@@ -50,7 +54,7 @@ class PassRig {
         write.dstSet = set_;
         write.dstBinding = binding;
         write.descriptorCount = 1;
-        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        write.descriptorType = typeOf(binding);
         write.pBufferInfo = &buffer;
         vkUpdateDescriptorSets(device_.device, 1, &write, 0, nullptr);
         if (std::find(texels_.begin(), texels_.end(), binding) == texels_.end()) return;
@@ -93,14 +97,18 @@ class PassRig {
     }
 
  private:
+    [[nodiscard]] VkDescriptorType typeOf(uint32_t binding) const {
+        const bool uniform =
+            std::find(uniforms_.begin(), uniforms_.end(), binding) != uniforms_.end();
+        return uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    }
     void must(VkResult result) { ASSERT_EQ(VK_SUCCESS, result); }
 
     void makeLayouts(std::span<const uint32_t> used) {
         const auto count = uint32_t(used.size());
         std::vector<VkDescriptorSetLayoutBinding> bindings;
         for (const uint32_t binding : used)
-            bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                                VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+            bindings.push_back({binding, typeOf(binding), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
         for (const uint32_t binding : texels_)
             bindings.push_back({gpu::texelBinding(binding), VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER,
                                 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
@@ -118,11 +126,12 @@ class PassRig {
         layout.pPushConstantRanges = &push;
         must(vkCreatePipelineLayout(device_.device, &layout, nullptr, &layout_));
         const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count},
-                                              {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, count}};
+                                              {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, count},
+                                              {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count}};
         VkDescriptorPoolCreateInfo pool{};
         pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
         pool.maxSets = 1;
-        pool.poolSizeCount = 2;
+        pool.poolSizeCount = 3;
         pool.pPoolSizes = sizes;
         must(vkCreateDescriptorPool(device_.device, &pool, nullptr, &pool_));
         VkDescriptorSetAllocateInfo allocate{};
@@ -164,7 +173,7 @@ class PassRig {
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     std::vector<VkPipeline> pipelines_;
-    std::vector<uint32_t> texels_;
+    std::vector<uint32_t> texels_, uniforms_;
     std::vector<VkBufferView> views_;
     void* data_[FW_BIND_COUNT] = {};
     size_t sizes_[FW_BIND_COUNT] = {};

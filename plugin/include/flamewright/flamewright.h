@@ -49,6 +49,7 @@ typedef struct FwBlockerId { uint32_t index1, generation; } FwBlockerId;
 typedef struct FwVolumetricFireId { uint32_t index1, generation; } FwVolumetricFireId;
 typedef struct FwFireProfileId { uint32_t index1, generation; } FwFireProfileId;
 typedef struct FwFireColliderId { uint32_t index1, generation; } FwFireColliderId;
+typedef struct FwFireEmitterId { uint32_t index1, generation; } FwFireEmitterId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -97,7 +98,7 @@ typedef enum FwDefType {
     FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
-    FW_DEF_FIRE_TRACK = 14,
+    FW_DEF_FIRE_TRACK = 14, FW_DEF_FIRE_EMITTER = 20,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -204,6 +205,8 @@ typedef struct FwWorldDef {
     uint32_t volumeCell;        /* px, [1, 16], default 2: of the cells that are marched; 1: each pixel */
     uint32_t volumeSteps;       /* [6, 64], default 64: most samples of a ray through a flame's depth. The few
                                    that all but the largest 32 flames get are no more than these */
+    uint32_t maxParticles;      /* [0, 1048576], default 16384: of all fire emitters; 48 bytes each, once there */
+    uint32_t reserved2;         /* 0 */
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
     FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;
@@ -632,6 +635,83 @@ typedef struct FwFirePush {     /* on a ball that stands still */
 /* radius: m, [0, 100]. [world] */
 FW_API FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld*, const float centre[3], float radius, FwFirePush* push);
 
+/* ---- fire emitters: particles ------------------------------------------------------------------------------- */
+
+typedef enum FwEmitterShape {
+    FW_EMITTER_POINT = 0,
+    FW_EMITTER_DISC = 1,  /* across direction, of radius */
+    FW_EMITTER_LINE = 2,  /* from position - extent to position + extent */
+    FW_EMITTER_SHAPE_FORCE32 = 0x7fffffff
+} FwEmitterShape;
+typedef enum FwEmitterFlags {
+    FW_EMITTER_HIDDEN = 1,   /* not drawn, and no light; time passes for it */
+    FW_EMITTER_NO_SMOKE = 2,
+    FW_EMITTER_NO_LIGHT = 4, /* fwWorld_GetLights does not name it */
+    FW_EMITTER_GROUND = 8,   /* nothing of it goes below ground: it spreads out there */
+    FW_EMITTER_JET = 16,     /* a pressurised stream along direction that tears into flame, instead of a fire
+                                that rises: a flamethrower */
+    FW_EMITTER_FLAGS_FORCE32 = 0x7fffffff
+} FwEmitterFlags;
+/* Fire, the smoke it becomes and sparks, of particles that live in the world: large soft quads, simulated and
+ * drawn on the device. The CPU's work is that of an emitter, however many particles it has. Floats, for the eye.
+ * Power drives it: what is 0 below is as a fire of that power has it. */
+typedef struct FwFireEmitterDef {
+    uint32_t structSize, flags; /* FwEmitterFlags */
+    uint32_t shape;             /* FwEmitterShape, default FW_EMITTER_POINT */
+    uint32_t seed;              /* 0: another one for each emitter of a world */
+    float position[3];          /* m, world */
+    float direction[3];         /* of its particles at birth; any length but 0. Default 0,1,0 */
+    float extent[3];            /* m, within +-100; of FW_EMITTER_LINE */
+    float radius;               /* m, [0, 50], of FW_EMITTER_DISC */
+    float power;                /* kW, [0, 100000]; 0: nothing is born. Default 60 */
+    float rate;                 /* births a second, [0, 200000] */
+    float speed;                /* m/s, [0, 200] */
+    float cone;                 /* rad, [0, 2]: how far they stray from direction, two thirds of them */
+    float size0, size1;         /* m, [0, 50]: width at birth, and when the fire ends */
+    float life;                 /* s, [0, 60]: of the fire; smoke comes after it */
+    float lifeVariance;         /* share, [0, 1], default 0.33 */
+    float drag;                 /* s, [0, 60]: in which a particle takes on the speed of the air */
+    float buoyancy;             /* factor, [-4, 4], default 1 */
+    float windResponse;         /* factor, [0, 4], default 1 */
+    float turbulence;           /* factor, [0, 4], default 1 */
+    float inherit;              /* share of the emitter's own motion that particles get, [0, 1], default 0.5 */
+    float smoke;                /* share of the particles that turn to smoke, [0, 1], default 0.32 */
+    float smokeLife;            /* in lives of the fire, [0, 20], default 2.2 */
+    float smokeDensity;         /* factor, [0, 4], default 1 */
+    float sparks;               /* share of the particles that are sparks, [0, 1], default 0.04 */
+    float temperature;          /* K at birth, [0, 2500] */
+    float ground;               /* m along up, with FW_EMITTER_GROUND; default 0 */
+    uint32_t maxParticles;      /* [0, 1048576], 0: as many as it needs at this power. The oldest make room */
+    uint32_t reserved;          /* 0 */
+    uint64_t userData;          /* comes back in its state */
+} FwFireEmitterDef;
+static inline FwFireEmitterDef fwDefaultFireEmitterDef(void) {
+    FwFireEmitterDef d; fwInitDef(FW_DEF_FIRE_EMITTER, &d, (uint32_t)sizeof d); return d;
+}
+/* At most 256 at a time in a world, and FwWorldDef::maxParticles. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateFireEmitter(FwWorld*, const FwFireEmitterDef* def, FwFireEmitterId* id);
+/* Its particles go with it; to let them burn out set its power to 0 and wait. [world] */
+FW_API FwResult FW_CALL fwWorld_DestroyFireEmitter(FwWorld*, FwFireEmitterId id);
+/* Where it is from the next frame on, having come there straight: births lie along the way, unless that is farther
+ * than 100 m/s allow. direction null: as before. [world] */
+FW_API FwResult FW_CALL fwWorld_MoveFireEmitter(FwWorld*, FwFireEmitterId id, const float position[3],
+                                                const float* direction);
+/* kW. No more particles than it was created with; create it with the most power it will have. [world] */
+FW_API FwResult FW_CALL fwWorld_SetFireEmitterPower(FwWorld*, FwFireEmitterId id, float power);
+FW_API FwResult FW_CALL fwWorld_SetFireEmitterHidden(FwWorld*, FwFireEmitterId id, uint32_t hidden); /* [world] */
+typedef struct FwFireEmitterState { /* as of the last frame */
+    uint32_t structSize, particles; /* that may still show; 0: nothing is left of it */
+    uint32_t capacity, reserved;    /* the most it may have */
+    uint64_t userData;
+    float power;                /* kW */
+    float rate, life, speed;    /* 1/s, s, m/s: as it has them now */
+    float reach;                /* m that its fire comes, about */
+    float lightIntensity;       /* W/sr of the visible part, flickering */
+    float lightPosition[3];     /* m, world */
+    float reserved1;
+} FwFireEmitterState;
+FW_API FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld*, FwFireEmitterId id, FwFireEmitterState* state); /* [world] */
+
 /* ---- running ---------------------------------------------------------------------------------------------- */
 
 /* Advances the simulation by deltaTime s, [0, 10]. cpu backend: at once. Own device: submits and
@@ -748,7 +828,7 @@ typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host'
     uint64_t frameIndex;
 } FwLight;
 /* The strongest fires: of burning meshes as of the last readback, volumetric ones as of the last frame, or as
- * they are about to be (their ids have the highest bit set). Returns how many were written. [world] */
+ * they are about to be (their ids have the highest bit set), fire emitters (the bit below it). Returns how many were written. [world] */
 FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t capacity);
 
 typedef struct FwWorldStats {

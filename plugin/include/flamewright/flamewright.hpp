@@ -69,6 +69,10 @@ template <>
     return fwDefaultFireTrackDef();
 }
 template <>
+[[nodiscard]] inline FwFireEmitterDef def<FwFireEmitterDef>() noexcept {
+    return fwDefaultFireEmitterDef();
+}
+template <>
 [[nodiscard]] inline FwIgnitionDef def<FwIgnitionDef>() noexcept {
     return fwDefaultIgnitionDef();
 }
@@ -184,6 +188,7 @@ using BurnableMesh = Owned<FwBurnableMeshId, fwWorld_DestroyBurnableMesh>;
 using VolumetricFire = Owned<FwVolumetricFireId, fwWorld_DestroyVolumetricFire>;
 using FireProfile = Owned<FwFireProfileId, fwWorld_DestroyFireProfile>;
 using FireCollider = Owned<FwFireColliderId, fwWorld_RemoveFireCollider>;
+using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
 
 [[nodiscard]] inline Material createMaterial(const World& world, const FwMaterialDef& made) {
     FwMaterialId id{};
@@ -216,6 +221,13 @@ using FireCollider = Owned<FwFireColliderId, fwWorld_RemoveFireCollider>;
                                                          const FwVolumetricFireDef& made) {
     FwVolumetricFireId id{};
     (void)fwWorld_CreateVolumetricFire(world.get(), &made, &id);
+    return {world.get(), id};
+}
+
+[[nodiscard]] inline FireEmitter createFireEmitter(const World& world,
+                                                   const FwFireEmitterDef& made) {
+    FwFireEmitterId id{};
+    (void)fwWorld_CreateFireEmitter(world.get(), &made, &id);
     return {world.get(), id};
 }
 

@@ -29,7 +29,7 @@ constexpr Use kDrawUses[] = {
 }  // namespace
 
 const ComputePass kFlameQuadsPass{"flame quads", "flames.comp", kMakeUses, sizeof(StepPush)};
-const ComputePass kFlameSortPass{"flame sort", "flame_sort.comp", kSortUses, 0};
+const ComputePass kFlameSortPass{"flame sort", "flame_sort.comp", kSortUses, sizeof(SortPush)};
 const DrawPass kFlamesPass{.name = "flames",
                            .vertexShader = "flames.vert",
                            .fragmentShader = "flames.frag",

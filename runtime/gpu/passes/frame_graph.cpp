@@ -1,6 +1,7 @@
 #include "gpu/passes/frame_graph.h"
 
 #include "gpu/vk/recorder.h"
+#include "shared/particle.h"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +24,7 @@ constexpr const ComputePass* kComputePasses[] = {
     &kRefineLevelsPass,    &kRefineScanPass,  &kRefineEmitPass,  &kRefinePlacePass,
     &kRecedePass,          &kBendPass,        &kSoftPass,        &kSpringsPass,
     &kDrapePass,           &kSkinPass,        &kSootPass,        &kRefineCutPass,
-    &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass};
+    &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass, &kParticlesPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -283,7 +284,16 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
     push.now = endTick;
     push.burnParity = lists.burnParity;
     recorder.dispatch(kFlameQuadsPass, &push, 16);
-    recorder.dispatch(kFlameSortPass, nullptr, 1);
+}
+
+void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,
+                     bool alone) {
+    if (alone) recorder.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
+    recorder.dispatch(kParticlesPass, &push, std::min(groups, kMaxGroups));
+}
+
+void recordFlameSort(vk::FrameRecorder& recorder, const SortPush& push) {
+    recorder.dispatch(kFlameSortPass, &push, 1);
 }
 
 void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolume> volumes,

@@ -15,6 +15,8 @@ namespace vk {
 class FrameRecorder;
 }
 
+struct ParticlePush;  // shared/particle.h
+
 extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedulePass, kGatherPass,
     kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
     kReducePass, kFireCellsPass, kFireSourcesPass, kReceiversPass, kExchangePass, kContactsPass,
@@ -22,7 +24,7 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
     kRecedePass, kBendPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
-    kVolumeProbePass, kVolumeMarchPass;
+    kVolumeProbePass, kVolumeMarchPass, kParticlesPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -102,8 +104,14 @@ struct DrawList {  // what a view may show
 bool drawStepDraws(const DrawStep& step, const DrawList& list);
 void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList& list);
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
-// For the frame's view, after the lights: flames and their order.
+// For the frame's view, after the lights: quads of burning meshes' flames.
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
+
+// And of emitters' particles, which move here; `alone`: there are no others.
+void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,
+                     bool alone);
+// The order of all quads.
+void recordFlameSort(vk::FrameRecorder& recorder, const SortPush& push);
 
 // For the frame's view; `words`: what is known of tiles.
 void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolume> volumes,

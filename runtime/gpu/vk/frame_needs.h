@@ -95,4 +95,8 @@ void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& wri
 void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorder& recorder,
                    UploadWriter& writer);
 
+// vk_emitters.cpp
+void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecorder& recorder,
+                    UploadWriter& writer);
+
 }  // namespace fw::gpu::vk

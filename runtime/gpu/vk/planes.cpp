@@ -4,6 +4,7 @@
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/look.h"
+#include "shared/particle.h"
 #include "shared/refine.h"
 #include "shared/volume_draw.h"
 
@@ -94,9 +95,13 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},
-    {FW_BIND_FLAMES, kSpaceFixed, sizeof(FlameQuad), true, kComponentFlames, "flames", 0},
-    {FW_BIND_DRAW_ARGS, kSpaceFixed, 4, true, kComponentFlames, "draw arguments",
+    {FW_BIND_FLAMES, kSpaceFlames, sizeof(FlameQuad), true, kComponentFlames, "flames", 0},
+    {FW_BIND_DRAW_ARGS, kSpaceFlames, 8, true, kComponentFlames, "draw arguments",
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_EMITTERS, kSpaceEmitters, sizeof(ParticleEmitter), false, kComponentFlames, "emitters",
+     0},
+    {FW_BIND_EMITTER_GROUPS, kSpaceEmitterGroups, 8, false, kComponentFlames, "emitter groups", 0},
+    {FW_BIND_PARTICLES, kSpaceParticles, sizeof(Particle), true, kComponentFlames, "particles", 0},
     {FW_BIND_REFINE_OBJECTS, kSpaceObjects, sizeof(RefineObject), true, kComponentRefine,
      "refined objects", 0},
     {FW_BIND_REFINE_DRAWS, kSpaceObjects, 20 * kMaterialsPerObject, true, kComponentRefine,
@@ -138,7 +143,7 @@ constexpr uint32_t kInitialUnits[kSpaceCount] = {
     4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
     1024, 4096, 256,  256, 1,    1,    1,    1,     1,
     1,    1,    1,    1,   1,    1,    1,    1,     1024,
-    1,    1,    1,    1,   1};
+    1,    1,    1,    1,   1,    1,    1,    1,     1};
 
 }  // namespace
 
@@ -251,14 +256,15 @@ Planes::Planes(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
         if (plane.resource == FW_BIND_LIGHTS) slot.plane.unitBytes *= std::max(1u, sizes.lights);
         if (plane.resource == FW_BIND_LIGHT_CELLS)
             slot.plane.unitBytes *= kLightCellHeader + kLightCells * kLightCellWords;
-        if (plane.resource == FW_BIND_FLAMES) slot.plane.unitBytes *= std::max(1u, sizes.flames);
-        if (plane.resource == FW_BIND_DRAW_ARGS)
-            slot.plane.unitBytes *= kFlameOrder + std::max(1u, sizes.flames);
         if (plane.resource == FW_BIND_LOOKS) slot.plane.unitBytes *= kLookRows;
     }
     try {
         for (uint32_t space = 0; space < kSpaceCount; ++space)
-            grow(Space(space), exact_ && space != kSpaceIterations ? 1 : kInitialUnits[space], 0);
+            grow(Space(space),
+                 space == kSpaceFlames                 ? quadUnits(sizes.flames)
+                 : exact_ && space != kSpaceIterations ? 1
+                                                       : kInitialUnits[space],
+                 0);
     } catch (...) {
         for (Slot& slot : slots_) deviceMemory_.destroy(slot.now);
         throw;

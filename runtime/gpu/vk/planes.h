@@ -4,6 +4,7 @@
 #pragma once
 #include "gpu/passes/pass.h"
 #include "gpu/vk/memory.h"
+#include "shared/look.h"
 
 #include <array>
 
@@ -53,9 +54,17 @@ enum Space : uint32_t {
     kSpaceContacts,         // links between objects, as of the last update
     kSpaceVolumes,          // volumetric flames, per frame
     kSpaceVolumeRays,       // words, of a view
+    kSpaceEmitters,         // fire emitters, per frame
+    kSpaceEmitterGroups,    // per frame
+    kSpaceParticles,        // of all emitters
+    kSpaceFlames,           // quads of flames and particles, per frame
     kSpaceFixed,            // one unit
     kSpaceCount,
 };
+
+// Units of kSpaceFlames that hold so many quads: draw arguments begin with eight words, a unit of
+// theirs has two.
+constexpr uint32_t quadUnits(uint32_t quads) noexcept { return quads + kFlameOrder / 2; }
 
 // First-fit ranges of whole units.
 class RangeAllocator {

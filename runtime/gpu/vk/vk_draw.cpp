@@ -150,7 +150,8 @@ constexpr VkPipelineStageFlags kDepthStages =
 void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
                                    const Target& target, const FwView& view,
                                    const VkViewport& viewport, VkDescriptorSet depth) {
-    if (!drawVertices || !lookTextures.live || !limits.looks.viewParams) return;
+    if ((!drawVertices && emitterGroups == 0) || !lookTextures.live || !limits.looks.viewParams)
+        return;
     const Table& vk = device.table;
     const uint32_t viewOffset = pushView(slot, view, viewport);
     refine.height = std::fabs(viewport.height);
@@ -162,7 +163,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                       uint32_t(std::max(viewport.y + viewport.height - top, 0.0f))};
     vk.CmdSetScissor(commands, 0, 1, &scissor);
     std::array<VolumeItem, kMaxVolumeFlames> items;
-    DrawList list{drawItems, !burnEmpty, {}, {}, turnsFaces(view, viewport)};
+    DrawList list{drawItems, !burnEmpty || emitterGroups > 0, {}, {}, turnsFaces(view, viewport)};
     if (target.key.flames && !volumes.empty()) {
         const VolumeScreen screen =
             screenOf(target.key, {viewport.width, std::fabs(viewport.height)});

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/vk/frame_needs.h"
+#include "shared/particle.h"
 
 #include <algorithm>
 
@@ -161,10 +162,14 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
                        kMaxVolumeFlames);
         needs.uploadBytes += uploaded(uint64_t(plan.volumes->count) * kVolumeFlameBytes);
     }
+    if (plan.emitters)
+        needs.uploadBytes += uploaded(plan.emitters->count * sizeof(ParticleEmitter)) +
+                             uploaded(plan.emitters->groups.size_bytes());
     const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
-                 refineBytes > 0 || forgets || plan.volumes ||
+                 refineBytes > 0 || forgets || plan.volumes || plan.emitters ||
+                 (s.emitterGroups > 0 && !s.open.unseen) ||
                  (!s.volumes.empty() && !s.open.unseen) || needs.placing || s.recordsDirty ||
                  !s.uploads.empty() || s.planes.movesPending();
     return needs;
@@ -182,6 +187,7 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
         s.planes.atLeast(kSpaceVolumes, plan.volumes->count, last);
         s.volumes.reserve(plan.volumes->count);
     }
+    if (plan.emitters) s.makeEmitterRoom(*plan.emitters, last);
     if (!s.open.unseen && !(plan.volumes ? plan.volumes->count == 0 : s.volumes.empty()))
         s.makeMarchRoom(last);
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);

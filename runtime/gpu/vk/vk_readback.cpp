@@ -108,7 +108,7 @@ const Readback* VkBackend::State::nextReadback() {
             }
             uint32_t arguments[4];
             std::memcpy(arguments, from + layout.flamesAt, sizeof arguments);
-            given.flames = arguments[1];  // instances of VkDrawIndirectCommand
+            given.flames = arguments[0] / 6 * arguments[1];  // of VkDrawIndirectCommand
             const bool spreading =
                 std::any_of(objects.begin(), objects.end(),
                             [](const ObjectEntry& object) { return object.publishedTouched; });

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/vk/frame_needs.h"
+#include "shared/particle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -412,6 +413,8 @@ void VkBackend::State::run(const FramePlan& plan) {
     drawIndices = planes.buffer(kResourceIndices).handle;
     drawShown = planes.buffer(FW_BIND_SHOWN).handle;
     if (plan.volumes) recordVolumes(*this, *plan.volumes, recorder, writer);
+    emittersMove = plan.emitters != nullptr;
+    if (plan.emitters) recordEmitters(*this, *plan.emitters, recorder, writer);
     if (needs.skins) recordSkins(*this, recorder, writer);
 
     if (needs.iterations) recordCounters(recorder, lists, uint32_t(needs.iterations));
@@ -496,7 +499,8 @@ void VkBackend::State::closeFrame(const FwView* view) {
     FrameInFlight& slot = *open.slot;
     RecordTarget target = recordTarget(slot, open.commands);
     const bool marches = view && !volumes.empty();
-    if ((!burnEmpty || marches) && limits.looks.viewParams) {
+    const bool particles = emitterGroups > 0;
+    if ((!burnEmpty || marches || particles) && limits.looks.viewParams) {
         // A step of an own device has no view: lights alone, which flicker with simulated time.
         FwView none{};
         none.time = float(double(open.endTick) / kTicksPerSecond);
@@ -509,6 +513,15 @@ void VkBackend::State::closeFrame(const FwView* view) {
             recordSooting(*this, looks);
             if (view) recordFlameQuads(looks, lists, open.endTick);
         }
+        const SortPush room = quadRoom();
+        if (particles) {
+            ParticlePush push{};
+            push.quads = view ? room.particles : 0;
+            push.firstQuad = room.tiles;
+            push.still = emittersMove ? 0 : 1;
+            recordParticles(looks, push, emitterGroups, burnEmpty);
+        }
+        if (view && (!burnEmpty || particles)) recordFlameSort(looks, room);
         if (marches) marchVolumes(looks);
     }
     if (view) {

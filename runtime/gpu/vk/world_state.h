@@ -286,6 +286,8 @@ struct VkBackend::State {
         uint32_t intervals = 1;        // see VolumeDraw
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
+    uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
+    bool emittersMove = false;            // in the open frame
     ViewParams seen{};                    // of the last pushView
     FwView outside{};                     // of the last frame's outside part
     // What is marched before it is drawn: the view of the outside part, on the screen that a draw
@@ -384,6 +386,10 @@ struct VkBackend::State {
     // What shows them to a view on a screen; nothing: they are to be marched as they are drawn.
     [[nodiscard]] std::span<const MarchedVolume> marchedFor(const FwView& view,
                                                             const VolumeScreen& screen) noexcept;
+    // vk_emitters.cpp
+    [[nodiscard]] uint32_t tileQuads() const noexcept;
+    void makeEmitterRoom(const EmitterUpdate& update, uint64_t last);
+    [[nodiscard]] SortPush quadRoom() const noexcept;
     // vk_draw.cpp
     // `depth`: a set with the depth that the target samples, or null.
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,

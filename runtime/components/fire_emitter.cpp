@@ -1,0 +1,290 @@
+#include "components/fire_emitter.h"
+
+#include "components/pose.h"
+#include "core/error.h"
+#include "shared/particle.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::components {
+namespace {
+
+using gpu::vec3;
+using gpu::vec4;
+
+constexpr float kMostPower = 1e5f;  // kW
+constexpr float kTeleport = 100;    // m/s: what is faster was put there, it did not fly
+constexpr float kLight = 0.3f;      // of the power that leaves as light and heat
+
+float length3(const float v[3]) noexcept {
+    return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
+    if (value < low || value > most)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", name, value,
+                   low, most);
+}
+
+void readDirection(const float given[3], const char* name, float (&out)[3]) {
+    checkValues(given, 3, name, -1e6f, 1e6f);
+    const float length = length3(given);
+    if (!(length > 1e-6f))
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has length %g; it is at least 1e-6.", name,
+                   double(length));
+    for (int i = 0; i < 3; ++i) out[i] = given[i] / length;
+}
+
+float orElse(float given, float own) noexcept { return given > 0 ? given : own; }
+
+vec4 with(const float v[3], float w) noexcept { return {v[0], v[1], v[2], w}; }
+
+}  // namespace
+
+EmitterLook emitterLook(const FwFireEmitterDef& def) {
+    EmitterLook look;
+    const float power = std::max(def.power, 0.01f);
+    const bool jet = (def.flags & FW_EMITTER_JET) != 0;
+    if (jet) {
+        // As tuned for 2 MW; others are like it in the large and in the small.
+        const float scale = std::pow(power / 2000.0f, 0.25f);
+        look.diameter = 0.2f * scale;
+        look.rate = orElse(def.rate, 160);
+        look.speed = orElse(def.speed, 12 * std::sqrt(scale));
+        look.cone = orElse(def.cone, 0.055f);
+        look.life = orElse(def.life, 1.05f * std::sqrt(scale));
+        look.dragStream = orElse(def.drag, 1.5f);
+        look.dragTorn = 0.3f * look.dragStream;
+        look.liftTorn = 11 * def.buoyancy;
+        look.liftStream = -2.5f;
+        look.reach = 0.62f * look.speed * look.life;
+        look.size0 = orElse(def.size0, 0.14f * scale);
+        const float size1 = std::max(orElse(def.size1, 1.75f * scale), look.size0);
+        look.swell = 0.17f * (size1 - look.size0) / look.life;
+        look.grow = 0.83f * (size1 - look.size0) / std::max(look.reach, 0.1f);
+        look.eddies = 1.9f * std::sqrt(scale) * def.turbulence;
+        look.eddyScale = 1.5f / scale;
+        look.eddyDrift = 0.55f * look.speed;
+        look.wander = 0.05f * def.turbulence;
+        look.pulse = 0.12f * def.turbulence;
+        look.stretch = 5;
+    } else {
+        // A pool fire: its width from its power, or as the host has it (Heskestad, McCaffrey).
+        const float own = std::pow(power / 1110.0f, 0.4f);
+        look.diameter = std::max(def.shape == FW_EMITTER_DISC ? 2 * def.radius : 0.6f * own, 0.02f);
+        const float tall = 0.235f * std::pow(power, 0.4f);
+        const float height = std::max(tall - 1.02f * look.diameter, 0.35f * tall);
+        const float rise = 1.93f * std::pow(power, 0.2f);
+        look.liftTorn = look.liftStream = 11 * def.buoyancy;
+        look.dragStream = look.dragTorn = orElse(def.drag, 0.75f * rise / 11);
+        look.speed = orElse(def.speed, 0.22f * rise);
+        look.cone = orElse(def.cone, 0.30f);
+        look.life = orElse(def.life, std::clamp(2.1f * height / (0.6f * rise), 0.35f, 3.0f));
+        look.rate = orElse(def.rate, 40 + 25 * std::sqrt(power / 100));
+        look.size0 = orElse(def.size0, 0.42f * look.diameter + 0.09f * tall);
+        const float size1 = orElse(def.size1, 0.42f * look.diameter + 0.38f * tall);
+        look.swell = std::max(size1 - look.size0, 0.0f) / look.life;
+        look.eddies = 0.16f * rise * def.turbulence;
+        look.eddyScale = 1.6f / std::max(0.45f * tall, 0.03f);
+        look.eddyDrift = 0.5f * rise;
+        look.stretch = 2.2f;
+        look.kelvin0 = 1570;
+        look.kelvin1 = 1350;
+        look.reach = height;
+    }
+    if (def.temperature > 0) {
+        look.kelvin1 += def.temperature - look.kelvin0;
+        look.kelvin0 = def.temperature;
+    }
+    return look;
+}
+
+void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter& emitter) {
+    constexpr uint32_t kKnown = FW_EMITTER_HIDDEN | FW_EMITTER_NO_SMOKE | FW_EMITTER_NO_LIGHT |
+                                FW_EMITTER_GROUND | FW_EMITTER_JET;
+    if (def.flags & ~kKnown)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwFireEmitterDef::flags is 0x%x; the known flags are 0x%x.", def.flags, kKnown);
+    checkWhole(def.shape, "FwFireEmitterDef::shape", 0, FW_EMITTER_LINE);
+    checkWhole(def.reserved, "FwFireEmitterDef::reserved", 0, 0);
+    checkWhole(def.maxParticles, "FwFireEmitterDef::maxParticles", 0, 1u << 20);
+    checkValues(def.position, 3, "FwFireEmitterDef::position", -1e6f, 1e6f);
+    float direction[3];
+    readDirection(def.direction, "FwFireEmitterDef::direction", direction);
+    checkValues(def.extent, 3, "FwFireEmitterDef::extent", -100.0f, 100.0f);
+    checkValue(def.radius, "FwFireEmitterDef::radius", 0.0f, 50.0f);
+    checkValue(def.power, "FwFireEmitterDef::power", 0.0f, kMostPower);
+    checkValue(def.rate, "FwFireEmitterDef::rate", 0.0f, 200000.0f);
+    checkValue(def.speed, "FwFireEmitterDef::speed", 0.0f, 200.0f);
+    checkValue(def.cone, "FwFireEmitterDef::cone", 0.0f, 2.0f);
+    checkValue(def.size0, "FwFireEmitterDef::size0", 0.0f, 50.0f);
+    checkValue(def.size1, "FwFireEmitterDef::size1", 0.0f, 50.0f);
+    checkValue(def.life, "FwFireEmitterDef::life", 0.0f, 60.0f);
+    checkValue(def.lifeVariance, "FwFireEmitterDef::lifeVariance", 0.0f, 1.0f);
+    checkValue(def.drag, "FwFireEmitterDef::drag", 0.0f, 60.0f);
+    checkValue(def.buoyancy, "FwFireEmitterDef::buoyancy", -4.0f, 4.0f);
+    checkValue(def.windResponse, "FwFireEmitterDef::windResponse", 0.0f, 4.0f);
+    checkValue(def.turbulence, "FwFireEmitterDef::turbulence", 0.0f, 4.0f);
+    checkValue(def.inherit, "FwFireEmitterDef::inherit", 0.0f, 1.0f);
+    checkValue(def.smoke, "FwFireEmitterDef::smoke", 0.0f, 1.0f);
+    checkValue(def.smokeLife, "FwFireEmitterDef::smokeLife", 0.0f, 20.0f);
+    checkValue(def.smokeDensity, "FwFireEmitterDef::smokeDensity", 0.0f, 4.0f);
+    checkValue(def.sparks, "FwFireEmitterDef::sparks", 0.0f, 1.0f);
+    checkValue(def.temperature, "FwFireEmitterDef::temperature", 0.0f, 2500.0f);
+    checkValue(def.ground, "FwFireEmitterDef::ground", -1e6f, 1e6f);
+    emitter.def = def;
+    emitter.seed = def.seed ? def.seed : ownSeed;
+    std::copy_n(def.position, 3, emitter.position);
+    std::copy_n(direction, 3, emitter.direction);
+    emitter.look = emitterLook(def);
+}
+
+void moveFireEmitter(FireEmitter& emitter, const float position[3], const float* direction) {
+    checkValues(position, 3, "position", -1e6f, 1e6f);
+    float way[3];
+    std::copy_n(emitter.direction, 3, way);
+    if (direction) readDirection(direction, "direction", way);
+    std::copy_n(position, 3, emitter.position);
+    std::copy_n(way, 3, emitter.direction);
+}
+
+void setEmitterPower(FireEmitter& emitter, float power) {
+    checkValue(power, "power", 0.0f, kMostPower);
+    emitter.def.power = power;
+    if (power > 0) emitter.look = emitterLook(emitter.def);  // what still flies keeps its looks
+}
+
+float emitterLasts(const FireEmitter& emitter) {
+    const FwFireEmitterDef& def = emitter.def;
+    const float fire = emitter.look.life * (1 + 1.55f * def.lifeVariance);
+    const bool smokes = def.smoke > 0 && !(def.flags & FW_EMITTER_NO_SMOKE);
+    return fire * std::max(smokes ? 1 + def.smokeLife : 1.0f, def.sparks > 0 ? 1.3f : 1.0f);
+}
+
+uint32_t emitterNeeds(const FireEmitter& emitter) {
+    if (emitter.def.maxParticles) return emitter.def.maxParticles;
+    const double needed = double(emitter.look.rate) * double(emitterLasts(emitter)) + 4;
+    return uint32_t(std::min(needed, 4e9));
+}
+
+bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
+                    gpu::ParticleEmitter& record) noexcept {
+    const FwFireEmitterDef& def = emitter.def;
+    const EmitterLook& look = emitter.look;
+    FireEmitter::Births& births = emitter.next;
+    births = emitter.births;
+    if (!births.placed) std::copy_n(emitter.position, 3, births.position);
+    float from[3], moved[3];
+    for (int i = 0; i < 3; ++i) {
+        from[i] = births.position[i];
+        moved[i] = emitter.position[i] - from[i];
+    }
+    const bool flew = seconds > 0 && length3(moved) <= kTeleport * seconds;
+    const float carry = flew && seconds > 0 ? def.inherit / seconds : 0;
+    if (!flew) std::copy_n(emitter.position, 3, from);
+    std::copy_n(emitter.position, 3, births.position);
+    births.placed = true;
+
+    const bool burns = def.power > 0;
+    uint32_t fresh = 0;
+    double part = births.part;
+    const double rate = std::max(double(look.rate), 1e-3);
+    if (burns) {
+        part += rate * double(seconds);
+        const double whole = std::floor(part);
+        part -= whole;
+        fresh = uint32_t(std::min(whole, double(emitter.ring)));
+    }
+    births.part = part;
+    births.head = (births.head + fresh) % emitter.ring;
+    births.filled = std::min(births.filled + fresh, emitter.ring);
+    births.serial += fresh;
+    if (fresh > 0) births.last = air.now;
+    if (births.filled > 0 && air.now - births.last > double(emitterLasts(emitter)) + 0.1)
+        births.filled = 0;
+    if (births.filled == 0) return false;
+
+    const bool smokes = !(def.flags & FW_EMITTER_NO_SMOKE);
+    const float wind[3] = {air.wind[0] * def.windResponse, air.wind[1] * def.windResponse,
+                           air.wind[2] * def.windResponse};
+    const float carried[3] = {moved[0] * carry, moved[1] * carry, moved[2] * carry};
+    const float none[3] = {};
+    record = {};
+    record.from = with(from, seconds);
+    record.place = with(emitter.position, def.shape == FW_EMITTER_DISC   ? def.radius
+                                          : (def.flags & FW_EMITTER_JET) ? 0.1f * look.size0
+                                                                         : 0.2f * look.diameter);
+    record.direction = with(emitter.direction, look.cone);
+    record.half_ = with(def.shape == FW_EMITTER_LINE ? def.extent : none, look.speed);
+    record.carried = with(carried, def.ground);
+    // Waves that the sum of many ages would not show wrap around unseen.
+    record.wind = with(wind, float(std::fmod(air.now, 1024.0)));
+    record.up = with(air.up, look.pulse);
+    record.motion = {look.dragStream, look.dragTorn, look.liftTorn, look.liftStream};
+    record.turbulence = {look.eddies, look.eddyScale, look.eddyDrift, look.wander};
+    record.size = {look.size0, look.grow, look.swell, look.stretch};
+    record.life = {look.life, def.lifeVariance, def.smokeLife, smokes ? def.smoke : 0.0f};
+    record.heat = {look.kelvin0, look.kelvin1, def.smokeDensity, def.sparks};
+    record.first = emitter.first;
+    record.ring = emitter.ring;
+    record.head = births.head;
+    record.filled = births.filled;
+    record.fresh = fresh;
+    record.serial = births.serial;
+    record.apart = float(1.0 / rate);
+    record.age = burns ? float(part / rate) : 0.0f;
+    record.seed = emitter.seed;
+    record.flags = ((def.flags & FW_EMITTER_HIDDEN) ? gpu::kEmitterHidden : 0u) |
+                   ((def.flags & FW_EMITTER_GROUND) ? gpu::kEmitterGround : 0u) |
+                   ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u);
+    record.steps =
+        std::min(uint32_t(std::ceil(seconds / gpu::kMostParticleStep)), gpu::kMostParticleSteps);
+    return true;
+}
+
+FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t id,
+                     uint64_t frameIndex) noexcept {
+    const EmitterLook& look = emitter.look;
+    FwLight light{};
+    const bool jet = (emitter.def.flags & FW_EMITTER_JET) != 0;
+    // Where most of it burns: half way, and a stream's later part.
+    const float along = jet ? 0.6f * look.reach : 0.15f * look.reach;
+    for (int i = 0; i < 3; ++i)
+        light.position[i] = emitter.position[i] + emitter.direction[i] * along +
+                            (jet ? 0.0f : air.up[i] * 0.35f * look.reach);
+    light.color[0] = 1.717f;
+    light.color[1] = 0.858f;
+    light.color[2] = 0.292f;
+    light.radius = std::max(0.5f * look.diameter, 0.25f * look.reach);
+    const double phase = double(emitter.seed & 1023u) * 0.137;
+    const auto flicker = float(1.0 + 0.10 * std::sin(11.3 * air.now + phase) +
+                               0.07 * std::sin(17.9 * air.now + 2.3 * phase) +
+                               0.05 * std::sin(29.1 * air.now + 4.1 * phase));
+    // It fades with its last particles.
+    const double since = air.now - emitter.births.last - 0.1;
+    const auto left = float(std::clamp(1.0 - since / double(look.life), 0.0, 1.0));
+    light.power = 1000.0f * emitter.def.power;
+    light.intensity = light.power * (kLight / 12.566f) * flicker * left;
+    light.id = id;
+    light.frameIndex = frameIndex;
+    return light;
+}
+
+void fillEmitterState(const FireEmitter& emitter, const EmitterAir& air,
+                      FwFireEmitterState& out) noexcept {
+    const EmitterLook& look = emitter.look;
+    const FwLight light = emitterLight(emitter, air, 0, 0);
+    out.particles = emitter.births.filled;
+    out.capacity = emitter.ring;
+    out.userData = emitter.def.userData;
+    out.power = emitter.def.power;
+    out.rate = look.rate;
+    out.life = look.life;
+    out.speed = look.speed;
+    out.reach = look.reach;
+    out.lightIntensity = emitter.births.filled > 0 ? light.intensity : 0.0f;
+    for (int i = 0; i < 3; ++i) out.lightPosition[i] = light.position[i];
+}
+
+}  // namespace fw::components

@@ -1,0 +1,63 @@
+// A fire emitter as plain data: what the host asked for, checked; what its power makes of the rest;
+// and its frames as the device gets them. Counts births, never touches a particle. Looks alone.
+#pragma once
+#include "flamewright/flamewright.h"
+
+namespace fw::gpu {
+struct ParticleEmitter;  // shared/particle.h
+}
+
+namespace fw::components {
+
+// What particles are like, all of it known: of the def, or of its power.
+struct EmitterLook {
+    float diameter = 0.3f;                                  // m, of the fire
+    float rate = 30, speed = 1, cone = 0.3f;                // 1/s, m/s, rad
+    float size0 = 0.1f, grow = 0, swell = 0;                // m; per m of path; m/s
+    float life = 0.7f, dragStream = 0.5f, dragTorn = 0.5f;  // s
+    float liftTorn = 11, liftStream = 11;                   // m/s^2
+    float eddies = 1, eddyScale = 1, eddyDrift = 1;         // m/s, 1/m, m/s
+    float wander = 0, pulse = 0, stretch = 1;               // rad; shares
+    float kelvin0 = 1560, kelvin1 = 1330;
+    float reach = 1;  // m that particles come, about
+};
+
+struct EmitterAir {
+    float wind[3] = {}, up[3] = {0, 1, 0};
+    double now = 0;  // s
+};
+
+struct FireEmitter {
+    FwFireEmitterDef def{};
+    EmitterLook look;
+    uint32_t seed = 0;
+    uint32_t first = 0, ring = 0;  // particles of the world's
+    float position[3] = {}, direction[3] = {0, 1, 0};
+    // As of the last frame.
+    struct Births {
+        float position[3] = {};
+        double part = 0;  // of the next birth, [0, 1)
+        uint32_t head = 0, filled = 0, serial = 0;
+        double last = -1e9;  // s of the last birth
+        bool placed = false;
+    } births, next;
+};
+
+// Throw where a value is out of its limits, and then changed nothing.
+void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter& emitter);
+void moveFireEmitter(FireEmitter& emitter, const float position[3], const float* direction);
+void setEmitterPower(FireEmitter& emitter, float power);
+EmitterLook emitterLook(const FwFireEmitterDef& def);
+// Particles that it needs at its power, and s that one of them lasts at most.
+uint32_t emitterNeeds(const FireEmitter& emitter);
+float emitterLasts(const FireEmitter& emitter);
+// Its next frame, of `seconds`, into `next` and the record. False: nothing of it is left to show.
+bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
+                    gpu::ParticleEmitter& record) noexcept;
+inline void commitEmitter(FireEmitter& emitter) noexcept { emitter.births = emitter.next; }
+FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t id,
+                     uint64_t frameIndex) noexcept;
+void fillEmitterState(const FireEmitter& emitter, const EmitterAir& air,
+                      FwFireEmitterState& out) noexcept;
+
+}  // namespace fw::components

@@ -1,0 +1,19 @@
+// Particles of all fire emitters: births and motion, and the quads that show them to the frame's
+// view. They are drawn with the flames of burning meshes: one order, one draw.
+#include "gpu/passes/frame_graph.h"
+#include "shared/particle.h"
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_EMITTERS, Access::read},   {FW_BIND_EMITTER_GROUPS, Access::read},
+    {FW_BIND_PARTICLES, Access::write}, {FW_BIND_FLAMES, Access::write},
+    {FW_BIND_DRAW_ARGS, Access::write}, {FW_BIND_VIEW, Access::uniformView},
+};
+
+}  // namespace
+
+const ComputePass kParticlesPass{"particles", "particles.comp", kUses, sizeof(ParticlePush)};
+
+}  // namespace fw::gpu

@@ -1,0 +1,43 @@
+// Fire emitters on their way to the device, and room for their particles and quads.
+#include "core/error.h"
+#include "gpu/vk/frame_needs.h"
+#include "shared/particle.h"
+
+#include <algorithm>
+
+namespace fw::gpu::vk {
+
+uint32_t VkBackend::State::tileQuads() const noexcept {
+    return std::clamp(limits.maxFlames, 1u, kFlameCapacity);
+}
+
+// Some particles show twice while fire turns to smoke; who finds no quad is not seen.
+void VkBackend::State::makeEmitterRoom(const EmitterUpdate& update, uint64_t last) {
+    if (update.count == 0) return;
+    planes.atLeast(kSpaceParticles, update.particleEnd, last);
+    planes.atLeast(kSpaceEmitters, update.count, last);
+    planes.atLeast(kSpaceEmitterGroups, uint32_t(update.groups.size()), last);
+    const uint32_t tiles = tileQuads(), wished = update.particles + update.particles / 4 + 16;
+    planes.atLeast(kSpaceFlames, quadUnits(std::min(tiles + wished, kMostQuads)), last);
+}
+
+void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecorder& recorder,
+                    UploadWriter& writer) {
+    s.emitterGroups = uint32_t(update.groups.size());
+    if (update.count == 0) return;
+    const std::span<const ParticleEmitter> emitters(update.records, update.count);
+    const Staged records = writer.write(emitters);
+    recorder.copyIn(records.at, FW_BIND_EMITTERS, 0, emitters.size_bytes());
+    const Staged groups = writer.write(update.groups);
+    recorder.copyIn(groups.at, FW_BIND_EMITTER_GROUPS, 0, update.groups.size_bytes());
+}
+
+SortPush VkBackend::State::quadRoom() const noexcept {
+    SortPush room{};
+    room.tiles = tileQuads();
+    const uint32_t all = std::min(planes.capacity(kSpaceFlames) - quadUnits(0), kMostQuads);
+    room.particles = all - std::min(all, room.tiles);
+    return room;
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,115 @@
+// Fire emitters: ids, where their particles are among the world's, and their frames. Looks alone;
+// nothing here is done for each particle.
+#include "world/world.h"
+
+#include "shared/particle.h"
+
+#include <algorithm>
+
+namespace fw::world {
+
+using components::FireEmitter;
+
+components::EmitterAir World::emitterAir(float ahead) const noexcept {
+    components::EmitterAir air;
+    std::copy_n(wind_, 3, air.wind);
+    std::copy_n(def_.up, 3, air.up);
+    air.now = emitterTime_ + double(ahead);
+    return air;
+}
+
+// First room of so many particles between those of the others.
+uint32_t World::emitterRoom(uint32_t particles) {
+    emitterRings_.clear();
+    emitterRings_.reserve(emitters_.live() + 1);
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
+        if (const FireEmitter* one = emitters_.at(i))
+            emitterRings_.push_back({one->first, one->ring});
+    std::sort(emitterRings_.begin(), emitterRings_.end());
+    uint32_t first = 0;
+    for (const auto& ring : emitterRings_) {
+        if (ring.first - first >= particles) break;
+        first = ring.first + ring.second;
+    }
+    if (first > def_.maxParticles || particles > def_.maxParticles - first)
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "The emitter needs %u particles in a row; FwWorldDef::maxParticles is %u, and %u "
+            "of them are not free.",
+            particles, def_.maxParticles, std::min(first, def_.maxParticles));
+    return first;
+}
+
+FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
+    if (emitters_.live() >= gpu::kMaxEmitters)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire emitters are there; the limit is %u.",
+                   emitters_.live(), gpu::kMaxEmitters);
+    FireEmitter emitter;
+    components::makeFireEmitter(def, def_.seed * 0x9E3779B9u + 77u * (emittersMade_ + 1), emitter);
+    emitter.ring = std::max(components::emitterNeeds(emitter), 1u);
+    emitter.first = emitterRoom(emitter.ring);
+    const size_t groups = emitterGroups_.capacity();
+    size_t needed = (emitter.ring + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
+    for (const auto& ring : emitterRings_)
+        needed += (ring.second + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
+    if (groups < needed) emitterGroups_.reserve(std::max(needed, 2 * groups));
+    const size_t records = emitterRecords_.capacity(), live = emitters_.live() + 1;
+    if (records < live) emitterRecords_.reserve(std::max(live, 2 * records));
+    const FwFireEmitterId id = emitters_.create(emitter);
+    ++emittersMade_;
+    return id;
+}
+
+void World::destroyFireEmitter(FwFireEmitterId id) { emitters_.destroy(id); }
+
+void World::moveFireEmitter(FwFireEmitterId id, const float position[3], const float* direction) {
+    components::moveFireEmitter(emitters_.get(id), position, direction);
+}
+
+void World::setFireEmitterPower(FwFireEmitterId id, float power) {
+    components::setEmitterPower(emitters_.get(id), power);
+}
+
+void World::setFireEmitterHidden(FwFireEmitterId id, bool hidden) {
+    uint32_t& flags = emitters_.get(id).def.flags;
+    flags = (flags & ~uint32_t(FW_EMITTER_HIDDEN)) | (hidden ? uint32_t(FW_EMITTER_HIDDEN) : 0u);
+}
+
+void World::fireEmitterState(FwFireEmitterId id, FwFireEmitterState& state) {
+    components::fillEmitterState(emitters_.get(id), emitterAir(0), state);
+}
+
+// ---- frames -----------------------------------------------------------------------------------
+
+void World::planEmitters(float seconds) noexcept {
+    emitterRecords_.clear();
+    emitterGroups_.clear();
+    uint32_t end = 0, particles = 0;
+    const components::EmitterAir air = emitterAir(seconds);
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
+        FireEmitter* emitter = emitters_.at(i);
+        gpu::ParticleEmitter record;
+        if (!emitter || !components::advanceEmitter(*emitter, air, seconds, record)) continue;
+        for (uint32_t first = 0; first < record.ring; first += gpu::kParticleGroup)
+            emitterGroups_.push_back({uint32_t(emitterRecords_.size()), first});
+        emitterRecords_.push_back(record);
+        end = std::max(end, record.first + record.ring);
+        particles += record.ring;
+    }
+    gpu::EmitterUpdate& update = frame_.emitters;
+    update.records = emitterRecords_.data();
+    update.count = uint32_t(emitterRecords_.size());
+    update.groups = emitterGroups_;
+    update.particleEnd = end;
+    update.particles = particles;
+    frame_.emittersDue = !emitterRecords_.empty() || emittersShown_;
+}
+
+void World::commitEmitters(float seconds) noexcept {
+    emittersShown_ = !emitterRecords_.empty();
+    emitterTime_ += double(seconds);
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
+        if (FireEmitter* emitter = emitters_.at(i)) components::commitEmitter(*emitter);
+}
+
+}  // namespace fw::world

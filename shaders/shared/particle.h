@@ -1,0 +1,302 @@
+// Particles of fire emitters: what an emitter tells of a frame, how one of its particles is born,
+// moves, ages from fire to smoke and is shown. Looks alone. SI units, kelvin.
+// GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_PARTICLE_H
+#define FW_SHARED_PARTICLE_H
+#include "shared/types.h"
+
+#ifdef __cplusplus
+#include <cmath>
+#endif
+
+FW_SHARED_BEGIN
+#ifdef __cplusplus
+using glm::clamp;
+using glm::cross;
+using glm::dot;
+using glm::length;
+using glm::max;
+using glm::min;
+using glm::mix;
+using glm::normalize;
+using glm::smoothstep;
+using std::cos;
+using std::exp;
+using std::pow;
+using std::sin;
+using std::sqrt;
+#endif
+
+// An emitter's particles are a ring: the k-th that it ever spawns lies k mod `ring` after `first`,
+// so nothing is allotted, listed or given back, and every device makes the same ones.
+FW_SHARED_CONST uint kParticleGroup = 256u;  // slots of a ring that a group of 64 threads works on
+FW_SHARED_CONST uint kMaxEmitters = 256u;
+FW_SHARED_CONST float kMostParticleStep = 0.0334f;  // s; longer frames take several
+FW_SHARED_CONST uint kMostParticleSteps = 32u;
+
+// ParticleEmitter::flags
+FW_SHARED_CONST uint kEmitterHidden = 1u;
+FW_SHARED_CONST uint kEmitterGround = 2u;  // they come to rest on `carried.w`
+FW_SHARED_CONST uint kEmitterJet = 4u;     // a stream of liquid that tears into flame
+
+struct ParticleEmitter {  // one frame of one emitter
+    vec4 from;       // m, world: where it was at the last frame's end; w: s, of this frame
+    vec4 place;      // m: where it is now; w: m, radius of its disc
+    vec4 direction;  // unit; w: rad, sigma of its cone
+    vec4 half_;      // m: from the middle of its line to an end; w: m/s, speed
+    vec4 carried;    // m/s that particles get from its motion; w: m along up, the ground
+    vec4 wind;       // m/s; w: s, cosmetic time
+    vec4 up;         // unit; w: 1/s, how far birth speeds waver (pulses)
+    vec4 motion;     // s drag as a stream, s drag when torn, m/s^2 up when torn, m/s^2 as a stream
+    vec4 turbulence; // m/s, 1/m, m/s that eddies travel along `direction`, rad wander of a stream
+    vec4 size;       // m width at birth, m per m of path, m per s, length over width at birth
+    vec4 life;       // s, its variance, smoke's life in fire's, share that leave smoke
+    vec4 heat;       // K at birth, K at the end, how thick smoke is, share that are sparks
+    uint first;      // particle
+    uint ring;       // of them, at most
+    uint head;       // of the next one that will be born, in the ring
+    uint filled;     // born so far, at most `ring`
+    uint fresh;      // of those, born in this frame, the newest ones
+    uint serial;     // of the next one
+    float age;       // s, of the newest at the frame's end
+    float apart;     // s from one birth to the next
+    uint seed;
+    uint flags;
+    uint steps;      // of this frame
+    uint reserved0;
+};
+FW_SHARED_SIZE(ParticleEmitter, 240)
+
+struct Particle {
+    vec4 placeAge;   // m, world; s, < 0: rests no more
+    vec4 speedPath;  // m/s; m it has come
+    vec4 hit;        // unit normal of what it struck; s since then, < 0: nothing yet
+};
+FW_SHARED_SIZE(Particle, 48)
+
+struct ParticlePush {
+    uint quads;      // that may be shown; 0: none are made
+    uint firstQuad;  // of them
+    uint still;      // 1: no time passes, the frame's births were made before
+    uint reserved0;
+};
+FW_SHARED_SIZE(ParticlePush, 16)
+
+FW_SHARED_FN float particleUnit(float x) { return clamp(x, 0.0f, 1.0f); }
+FW_SHARED_FN uint particleBits(uint x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+FW_SHARED_FN float particleHash(uint x) {
+    return float(particleBits(x) >> 8) * (1.0f / 16777216.0f);
+}
+// Sigma 1, at most 3.
+FW_SHARED_FN float particleGauss(uint x) {
+    uint a = particleBits(x), b = particleBits(x + 0x9e3779b9u);
+    return (float(a & 0xFFFFu) + float(a >> 16) + float(b & 0xFFFFu) - 98302.5f) *
+           (2.0f / 65535.0f);
+}
+
+// How many births ago slot `i` of the ring got its particle: 0 the newest. None: >= filled.
+FW_SHARED_FN uint particleBirths(uint head, uint ring, uint i) {
+    return i < head ? head - 1u - i : head + ring - 1u - i;
+}
+FW_SHARED_FN uint particleSeed(uint seed, uint serial) {
+    return particleBits(serial * 747796405u + seed * 2891336453u);
+}
+
+// What a particle is by its seed alone.
+struct ParticleTraits {
+    float life;     // s of fire
+    float all;      // s, with its smoke
+    float spark;    // 1: a spark
+    float smoke;    // how thick its smoke is; 0: it leaves none
+    float own;      // [0, 1)
+    float other;    // [0, 1)
+};
+FW_SHARED_FN ParticleTraits particleTraits(ParticleEmitter e, uint seed) {
+    ParticleTraits t;
+    float f = particleHash(seed + 4u), f2 = f * f;
+    t.spark = particleHash(seed + 11u) < e.heat.w ? 1.0f : 0.0f;
+    // A few live long.
+    t.life = e.life.x * (1.0f + e.life.y * (1.2f * f + 1.2f * f2 * f2 - 0.85f)) *
+             mix(1.0f, 1.3f, t.spark);
+    t.own = particleHash(seed + 5u);
+    t.other = particleHash(seed + 8u);
+    float keep = e.life.w;
+    t.smoke = t.spark > 0.5f ? 0.0f : particleUnit((keep - t.other) * 20.0f) * e.heat.z;
+    t.all = t.smoke > 0.0f ? t.life * (1.0f + e.life.z) : t.life;
+    return t;
+}
+
+FW_SHARED_FN vec3 particleAcross(vec3 d) {
+    return normalize(cross(d, (d.y < 0.9f && d.y > -0.9f) ? vec3(0.0f, 1.0f, 0.0f)
+                                                          : vec3(1.0f, 0.0f, 0.0f)));
+}
+// Slow waves that never meet again, in [-1, 1].
+FW_SHARED_FN float particleWave(float t, float phase) {
+    return 0.5f * sin(t + phase) + 0.3f * sin(2.27f * t + 2.1f * phase) +
+           0.2f * sin(4.13f * t + 5.3f * phase);
+}
+
+// As it is at its birth, `age` s before the frame's end.
+FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
+    float back = e.from.w > 0.0f ? particleUnit(age / e.from.w) : 0.0f;
+    vec3 d = vec3(e.direction.x, e.direction.y, e.direction.z);
+    vec3 r = particleAcross(d), u = cross(r, d);
+    float t = e.wind.w - age, phase = float(e.seed & 1023u) * 0.137f;
+    float wander = e.turbulence.w;
+    float a = particleGauss(seed + 1u) * e.direction.w + wander * particleWave(t * 9.0f, phase);
+    float b = particleGauss(seed + 2u) * e.direction.w +
+              wander * particleWave(t * 9.0f, phase + 3.3f);
+    float disc = e.place.w * sqrt(particleHash(seed + 6u));
+    float turn = 6.2831853f * particleHash(seed + 7u);
+    float along = 2.0f * particleHash(seed + 9u) - 1.0f;
+    vec3 at = mix(vec3(e.place.x, e.place.y, e.place.z), vec3(e.from.x, e.from.y, e.from.z), back);
+    at += (r * cos(turn) + u * sin(turn)) * disc + vec3(e.half_.x, e.half_.y, e.half_.z) * along;
+    float pulse = 1.0f + e.up.w * particleWave(t * 23.0f, phase + 1.7f) +
+                  0.08f * particleGauss(seed + 3u);
+    float spark = particleHash(seed + 11u) < e.heat.w ? 1.0f : 0.0f;
+    vec3 v = normalize(d + r * a + u * b) * (e.half_.w * pulse);
+    // Sparks are thrown about.
+    vec3 thrown = vec3(particleGauss(seed + 12u), particleGauss(seed + 13u),
+                       particleGauss(seed + 14u));
+    v += (thrown * (0.22f * e.half_.w + 0.5f)) * spark;
+    Particle p;
+    p.placeAge = vec4(at, 0.0f);
+    p.speedPath = vec4(v + vec3(e.carried.x, e.carried.y, e.carried.z), 0.0f);
+    p.hit = vec4(0.0f, 0.0f, 0.0f, -1.0f);
+    return p;
+}
+
+// A field without divergence: waves along which nothing flows. About 1 in the mean square.
+FW_SHARED_FN vec3 particleEddies(vec3 x) {
+    vec3 v = vec3(-0.62f, 0.0f, 0.78f) * sin(1.31f * x.x + 2.4f * x.y + 1.04f * x.z);
+    v += vec3(0.51f, 0.86f, 0.0f) * sin(-2.2f * x.x + 1.305f * x.y + 0.9f * x.z + 1.3f);
+    v += vec3(0.0f, -0.55f, 0.835f) * sin(1.7f * x.x + 2.05f * x.y + 1.35f * x.z + 4.1f);
+    v += vec3(0.8f, 0.0f, -0.6f) * sin(2.52f * x.x - 1.6f * x.y + 3.36f * x.z + 2.2f);
+    v += vec3(-0.707f, 0.707f, 0.0f) * sin(3.1f * x.x + 3.1f * x.y - 2.7f * x.z + 5.0f);
+    return v * 0.63f;
+}
+
+FW_SHARED_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, float path,
+                                float own) {
+    float a = age / t.life;
+    float s = e.size.x + (e.size.y * path + e.size.z * age) *
+                             mix(1.0f, 0.8f + 0.45f * own, particleUnit(a * 3.0f));
+    return s * (1.0f + 0.5f * particleUnit((a - 1.0f) / 2.0f));
+}
+
+// `dt` later, at most kMostParticleStep; `now`: s, cosmetic.
+FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle p, float now,
+                                   float dt) {
+    float a = p.placeAge.w / t.life, torn = smoothstep(0.15f, 0.6f, a);
+    vec3 up = vec3(e.up.x, e.up.y, e.up.z), v = vec3(p.speedPath.x, p.speedPath.y, p.speedPath.z);
+    vec3 at = vec3(p.placeAge.x, p.placeAge.y, p.placeAge.z);
+    vec3 wind = vec3(e.wind.x, e.wind.y, e.wind.z), n = vec3(p.hit.x, p.hit.y, p.hit.z);
+    float tau = mix(e.motion.x, e.motion.y, torn) * (0.7f + 0.6f * t.own);
+    tau = a > 1.0f ? 0.5f : tau;
+    float lift = mix(e.motion.w, e.motion.z, torn) * (a > 1.0f ? 0.4f : 1.0f);
+    tau = mix(tau, 0.35f + 0.6f * t.own, t.spark);
+    lift = mix(lift, 1.5f - 5.0f * t.other, t.spark);
+    vec3 push = up * lift;
+    float struck = p.hit.w >= 0.0f ? 1.0f - t.spark : 0.0f;
+    // Along what it struck: pressed flat, drawn out, and rising as a wall lets it.
+    float flat_ = dot(up, n) > 0.5f ? smoothstep(0.1f, 0.5f, p.hit.w) * 1.2f : 0.0f;
+    vec3 along = (up - n * dot(up, n)) * (e.motion.z * 0.8f) + n * (e.motion.z * flat_);
+    push = mix(push, along, struck);
+    tau = mix(tau, 0.30f + 0.25f * t.own, struck);
+    float keep = exp(-dt / max(tau, 0.02f));
+    vec3 settled = wind + push * tau;
+    vec3 next = settled + (v - settled) * keep;
+    float amp = e.turbulence.x * mix(smoothstep(0.08f, 0.7f, a) * (a > 1.0f ? 0.55f : 1.0f), 0.8f,
+                                     t.spark);
+    vec3 d = vec3(e.direction.x, e.direction.y, e.direction.z);
+    vec3 c = particleEddies((at - d * (e.turbulence.z * now)) * e.turbulence.y);
+    c -= n * (min(0.0f, dot(c, n)) * struck);
+    vec3 moved = ((v + next) * 0.5f + c * amp) * dt;
+    p.placeAge = vec4(at + moved, p.placeAge.w + dt);
+    p.speedPath = vec4(next, p.speedPath.w + length(moved));
+    p.hit.w = p.hit.w >= 0.0f ? p.hit.w + dt : p.hit.w;
+    return p;
+}
+
+// It met a surface at `c` with unit normal `n`: what went along it goes on, the rest turns into a
+// sheet that prefers the way it came and up.
+FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
+                                     vec3 c, vec3 n, float size) {
+    vec3 v = vec3(p.speedPath.x, p.speedPath.y, p.speedPath.z);
+    vec3 up = vec3(e.up.x, e.up.y, e.up.z);
+    float into = max(-dot(v, n), 0.0f);
+    vec3 along = v + n * into;
+    vec3 r = particleAcross(n), s = cross(r, n);
+    float turn = 6.2831853f * particleHash(seed + 71u);
+    vec3 side = r * cos(turn) + s * sin(turn) + (up - n * dot(up, n)) * 0.35f + along * 0.06f;
+    side = side / max(length(side), 1e-4f);
+    bool first = p.hit.w < 0.0f;
+    float out_ = min(into * (0.25f + 0.65f * sqrt(t.other)) +
+                     0.28f * length(along) * (0.3f + t.other), 4.5f);
+    vec3 sheet = along * 0.75f + side * out_ + n * (into * (0.03f + 0.10f * t.own));
+    vec3 bounce = along * 0.7f + n * (into * 0.3f);
+    v = t.spark > 0.5f ? bounce : (first ? sheet : along + n * 0.2f);
+    float off = t.spark > 0.5f ? 0.01f : min(0.30f * size, 0.35f);
+    float age = (first && t.spark < 0.5f)
+                    ? clamp(p.placeAge.w, 0.22f * t.life, max(0.38f * t.life, 0.0f))
+                    : p.placeAge.w;
+    p.placeAge = vec4(c + n * off, p.placeAge.w > t.life ? p.placeAge.w : age);
+    p.speedPath = vec4(v, p.speedPath.w + (first ? 0.5f : 0.0f));
+    p.hit = vec4(n, first ? 0.0f : p.hit.w);
+    return p;
+}
+
+// The ground, after a step.
+FW_SHARED_FN Particle particleGround(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
+    vec3 up = vec3(e.up.x, e.up.y, e.up.z), at = vec3(p.placeAge.x, p.placeAge.y, p.placeAge.z);
+    vec3 v = vec3(p.speedPath.x, p.speedPath.y, p.speedPath.z);
+    float size = particleSize(e, t, p.placeAge.w, p.speedPath.w, t.own);
+    float above = dot(at, up) - e.carried.w;
+    bool meets = (e.flags & kEmitterGround) != 0u && above < min(0.12f * size, 0.12f) &&
+                 dot(v, up) < 0.0f;
+    Particle q = particleSplash(e, t, p, seed, at - up * above, up, size);
+    float deep = (e.flags & kEmitterGround) != 0u ? max(-above, 0.0f) : 0.0f;
+    p.placeAge = meets ? q.placeAge : p.placeAge + vec4(up * deep, 0.0f);
+    p.speedPath = meets ? q.speedPath : p.speedPath;
+    p.hit = meets ? q.hit : p.hit;
+    return p;
+}
+
+// ---- how it is shown, over a = age in lives -------------------------------------------------------
+
+FW_SHARED_FN float particleKelvin(ParticleEmitter e, float a, float own) {
+    float root = 1.0f - smoothstep(0.0f, 0.30f, a);  // white hot, well mixed near the nozzle
+    return mix(e.heat.x, e.heat.y, smoothstep(0.30f, 1.0f, a)) + 60.0f * root -
+           120.0f * own * smoothstep(0.15f, 0.7f, a);
+}
+FW_SHARED_FN float particleFire(float a, float own) {
+    return mix(0.45f, 1.0f, smoothstep(0.0f, 0.10f, a)) *
+           (1.0f - smoothstep(0.62f + 0.18f * own, 0.98f, a));
+}
+FW_SHARED_FN float particleSmoke(ParticleEmitter e, float a) {
+    return smoothstep(0.65f, 1.05f, a) *
+           pow(particleUnit((1.0f + e.life.z - a) / max(e.life.z, 0.01f)), 1.3f);
+}
+// Length over width, and how far the quad follows the way it flies (1) or its own turn (0).
+// `across`: m/s on the screen.
+FW_SHARED_FN float particleStretch(ParticleEmitter e, float a, float across, float hit) {
+    float k = particleUnit(across / max(e.half_.w, 0.1f));
+    return hit >= 0.0f ? 1.0f + 0.7f * particleUnit(across / 5.0f) * exp(-hit * 3.0f)
+                       : 1.0f + (e.size.w - 1.0f) * k * exp(-a * 5.5f);
+}
+FW_SHARED_FN float particleFollows(ParticleEmitter e, float a, float across, float hit) {
+    float k = particleUnit(across / max(e.half_.w, 0.1f));
+    return (hit >= 0.0f ? 1.0f - smoothstep(0.2f, 0.6f, hit)
+                        : 1.0f - 0.85f * smoothstep(0.25f, 0.65f, a)) *
+           smoothstep(0.02f, 0.12f, k);
+}
+
+FW_SHARED_END
+#endif

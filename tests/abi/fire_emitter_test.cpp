@@ -1,0 +1,139 @@
+// Fire emitters through the C ABI on the cpu backend: what they say of themselves, what they may
+// not be, and that a frame of theirs asks for no memory.
+#include "abi/fire_world.h"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <vector>
+
+namespace {
+
+using host::FireWorld;
+using host::lastMessage;
+using ::testing::HasSubstr;
+
+FwFireEmitterId makeEmitter(FireWorld& w, const FwFireEmitterDef& def) {
+    FwFireEmitterId id{};
+    EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(w.world, &def, &id)) << lastMessage(w.world);
+    return id;
+}
+
+FwFireEmitterState stateOf(FireWorld& w, FwFireEmitterId id) {
+    FwFireEmitterState state{};
+    state.structSize = sizeof state;
+    EXPECT_EQ(FW_OK, fwWorld_GetFireEmitterState(w.world, id, &state)) << lastMessage(w.world);
+    return state;
+}
+
+TEST(AbiFireEmitter, BurnsLightsAndBurnsOut) {
+    FireWorld w;
+    FwFireEmitterDef def = fwDefaultFireEmitterDef();
+    def.userData = 77;
+    def.position[1] = 1;
+    const FwFireEmitterId id = makeEmitter(w, def);
+    EXPECT_EQ(0u, stateOf(w, id).particles);
+    w.run(4);
+    const FwFireEmitterState state = stateOf(w, id);
+    EXPECT_EQ(77u, state.userData);
+    EXPECT_EQ(60, state.power);
+    EXPECT_NEAR(float(state.particles), float(state.capacity), 8.0f);
+    EXPECT_GT(state.lightPosition[1], 1.1f);
+    FwLight lights[4];
+    ASSERT_EQ(1u, fwWorld_GetLights(w.world, lights, 4));
+    EXPECT_EQ(0x40000000u, lights[0].id & 0xC0000000u);
+    EXPECT_EQ(60000, lights[0].power);
+    // 30 % of it leaves as light and heat.
+    EXPECT_NEAR(lights[0].intensity, 60000 * 0.3f / 12.566f, 400);
+    ASSERT_EQ(FW_OK, fwWorld_SetFireEmitterHidden(w.world, id, 1));
+    EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 4));
+    ASSERT_EQ(FW_OK, fwWorld_SetFireEmitterHidden(w.world, id, 0));
+    ASSERT_EQ(FW_OK, fwWorld_SetFireEmitterPower(w.world, id, 0));
+    w.run(2 * state.life);
+    EXPECT_EQ(0, stateOf(w, id).lightIntensity);
+    w.run(8 * state.life);
+    EXPECT_EQ(0u, stateOf(w, id).particles);
+    EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 4));
+}
+
+TEST(AbiFireEmitter, RefusesWhatItCannotBe) {
+    FireWorld w;
+    FwFireEmitterId id{};
+    FwFireEmitterDef def = fwDefaultFireEmitterDef();
+    const auto refuses = [&](const char* text) {
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateFireEmitter(w.world, &def, &id));
+        EXPECT_THAT(lastMessage(w.world), HasSubstr(text));
+        def = fwDefaultFireEmitterDef();
+    };
+    def.flags = 1u << 20;
+    refuses("FwFireEmitterDef::flags is 0x100000");
+    def.shape = 3;
+    refuses("FwFireEmitterDef::shape is 3");
+    def.direction[1] = 0;
+    refuses("FwFireEmitterDef::direction has length 0");
+    def.extent[2] = 200;
+    refuses("FwFireEmitterDef::extent[2] is 200");
+    def.reserved = 1;
+    refuses("FwFireEmitterDef::reserved is 1");
+    def.maxParticles = 20000;
+    refuses("needs 20000 particles in a row; FwWorldDef::maxParticles is 16384");
+    const FwFireEmitterId live = makeEmitter(w, def);
+    const float nowhere[3] = {0, 0, 0}, far[3] = {1e9f, 0, 0};
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_MoveFireEmitter(w.world, live, nowhere, nowhere));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("direction has length 0"));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_MoveFireEmitter(w.world, live, far, nullptr));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("position[0] is 1e+09"));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetFireEmitterPower(w.world, live, -1));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("power is -1"));
+    ASSERT_EQ(FW_OK, fwWorld_DestroyFireEmitter(w.world, live));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetFireEmitterPower(w.world, live, 1));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("Fire emitter 1"));
+}
+
+TEST(AbiFireEmitter, RoomOfOneThatIsGoneIsGivenAgain) {
+    FireWorld w;
+    FwFireEmitterDef def = fwDefaultFireEmitterDef();
+    def.maxParticles = 4096;
+    std::array<FwFireEmitterId, 4> ids{};
+    for (FwFireEmitterId& id : ids) id = makeEmitter(w, def);
+    FwFireEmitterId more{};
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateFireEmitter(w.world, &def, &more));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("16384 of them are not free"));
+    ASSERT_EQ(FW_OK, fwWorld_DestroyFireEmitter(w.world, ids[1]));
+    w.run(0.1f);
+    (void)makeEmitter(w, def);
+    def.maxParticles = 1;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateFireEmitter(w.world, &def, &more));
+    // As many emitters as there may be, and not one more.
+    for (const FwFireEmitterId id : {ids[0], ids[2], ids[3]})
+        ASSERT_EQ(FW_OK, fwWorld_DestroyFireEmitter(w.world, id));
+    for (int i = 0; i < 255; ++i) (void)makeEmitter(w, def);
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateFireEmitter(w.world, &def, &more));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("256 fire emitters are there; the limit is 256."));
+}
+
+TEST(AbiFireEmitter, AFrameAsksForNoMemory) {
+    FireWorld w;
+    std::vector<FwFireEmitterId> ids;
+    FwFireEmitterDef def = fwDefaultFireEmitterDef();
+    for (int i = 0; i < 20; ++i) {
+        def.flags = i % 2 ? uint32_t(FW_EMITTER_JET) : 0u;
+        def.power = 10.0f + 20.0f * float(i);
+        ids.push_back(makeEmitter(w, def));
+    }
+    w.run(4.0f / 32);
+    const int64_t before = w.host.allocations;
+    for (int k = 0; k < 20; ++k) {
+        const float place[3] = {0.1f * float(k), 0, 0}, way[3] = {1, 0.1f * float(k), 0};
+        ASSERT_EQ(FW_OK, fwWorld_MoveFireEmitter(w.world, ids[size_t(k)], place, way));
+        ASSERT_EQ(FW_OK,
+                  fwWorld_SetFireEmitterPower(w.world, ids[size_t(k)], 100.0f * float(k % 3)));
+        w.run(1.0f / 32);
+        FwLight lights[64];
+        (void)fwWorld_GetLights(w.world, lights, 64);
+        (void)stateOf(w, ids[size_t(k)]);
+    }
+    EXPECT_EQ(before, w.host.allocations);
+}
+
+}  // namespace

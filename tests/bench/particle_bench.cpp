@@ -1,0 +1,162 @@
+// What particles of fire emitters cost on the own device: moving them (the `particles` pass of a
+// frame without a picture), a picture of them less one where they are hidden, and their order.
+// cpu_ms: of all this process's threads, per frame. per_ns: of one particle.
+#include <benchmark/benchmark.h>
+
+#include "bench/bench_device.h"
+#include "flamewright/flamewright.h"
+#include "flamewright/flamewright_debug.h"
+
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace {
+
+using fw::test::Clock;
+using fw::test::cpuSeconds;
+using fw::test::secondsSince;
+
+class Sparks {
+ public:
+    Sparks(const Sparks&) = delete;
+    Sparks& operator=(const Sparks&) = delete;
+    explicit Sparks(uint32_t particles, float away)
+        : particles_(particles), pixels_(1280 * 720 * 4) {
+        const FwContextDef contextDef = fwDefaultContextDef();
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.maxParticles = 1u << 20;
+        worldDef.maxFlames = 0;
+        FwErrorInfo info{};
+        if (fwCreateContext(&contextDef, &context_, &info) != FW_OK ||
+            fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
+            return;
+        FwFireEmitterDef def = fwDefaultFireEmitterDef();
+        def.flags = FW_EMITTER_GROUND;
+        def.shape = FW_EMITTER_DISC;
+        def.radius = 3;
+        def.life = 1;
+        def.size0 = 0.3f;
+        def.size1 = 0.5f;
+        def.speed = 2;
+        def.maxParticles = particles;
+        def.rate = float(particles) * 1.2f;  // all of them live, always
+        def.lifeVariance = 0;
+        def.smoke = 0.3f;
+        if (fwWorld_CreateFireEmitter(world_, &def, &emitter_) != FW_OK) return;
+        for (int i = 0; i < 100; ++i) fwWorld_Step(world_, 1.0f / 60);
+        glm::mat4 projection(0.0f);
+        projection[0][0] = 2.0f * 9 / 16;
+        projection[1][1] = -2.0f;
+        projection[2][2] = projection[2][3] = -1.0f;
+        projection[3][2] = -0.05f;
+        const glm::mat4 view =
+            glm::lookAt(glm::vec3(0, 2, away), glm::vec3(0, 2, 0), glm::vec3(0, 1, 0));
+        shot_.pixels = pixels_.data();
+        std::memcpy(shot_.view.view, glm::value_ptr(view), sizeof shot_.view.view);
+        std::memcpy(shot_.view.projection, glm::value_ptr(projection),
+                    sizeof shot_.view.projection);
+        works_ = true;
+    }
+    ~Sparks() {
+        fwDestroyWorld(world_);
+        fwDestroyContext(context_);
+    }
+    [[nodiscard]] bool works() const { return works_; }
+    void step() { fwWorld_Step(world_, 1.0f / 60); }
+    // s, of wall and of all threads.
+    void draw(bool hidden, double& wall, double& cpu) {
+        fwWorld_SetFireEmitterHidden(world_, emitter_, hidden ? 1 : 0);
+        step();
+        const Clock::time_point start = Clock::now();
+        const double before = cpuSeconds();
+        fwWorld_RenderOffscreen(world_, &shot_);
+        wall = secondsSince(start);
+        cpu = cpuSeconds() - before;
+    }
+    // s, as last measured.
+    [[nodiscard]] double pass(const char* name) {
+        FwPassTime times[64];
+        const uint32_t count = std::min(fwDebug_GetPassTimes(world_, times, 64), 64u);
+        for (uint32_t i = 0; i < count; ++i)
+            if (std::string(times[i].name) == name) return times[i].milliseconds * 1e-3;
+        return 0;
+    }
+    [[nodiscard]] uint32_t particles() const { return particles_; }
+
+ private:
+    uint32_t particles_;
+    std::vector<uint8_t> pixels_;
+    FwContext* context_ = nullptr;
+    FwWorld* world_ = nullptr;
+    FwFireEmitterId emitter_{};
+    FwOffscreenDef shot_ = fwDefaultOffscreenDef();
+    bool works_ = false;
+};
+
+void simulate(benchmark::State& state, uint32_t particles) {
+    Sparks sparks(particles, 20);
+    if (!sparks.works()) return state.SkipWithError("no device");
+    double cpu = 0, least = 1e9;
+    for (auto _ : state) {
+        const double before = cpuSeconds();
+        sparks.step();
+        cpu += cpuSeconds() - before;
+        const double took = std::max(sparks.pass("particles"), 1e-9);
+        least = std::min(least, took);
+        state.SetIterationTime(took);
+    }
+    state.counters["least_ms"] = 1e3 * least;
+    state.counters["cpu_ms"] = 1e3 * cpu / double(state.iterations());
+    state.counters["per_ns"] = 1e9 * least / double(particles);
+}
+
+void drawQuads(benchmark::State& state, uint32_t particles, float away) {
+    Sparks sparks(particles, away);
+    if (!sparks.works()) return state.SkipWithError("no device");
+    double cpu = 0, least = 1e9;
+    const auto both = [&] {
+        double wall[2], busy[2];
+        for (const int hidden : {1, 0}) sparks.draw(hidden != 0, wall[hidden], busy[hidden]);
+        cpu += busy[0] - busy[1];
+        least = std::min(least, wall[0] - wall[1]);
+        return std::max(wall[0] - wall[1], 1e-6);
+    };
+    for (int i = 0; i < 3; ++i) both();  // pipelines are compiled at first use
+    cpu = 0, least = 1e9;
+    for (auto _ : state) state.SetIterationTime(both());
+    state.counters["least_ms"] = 1e3 * least;
+    state.counters["cpu_ms"] = 1e3 * cpu / double(state.iterations());
+}
+
+void sortQuads(benchmark::State& state, uint32_t particles) {
+    Sparks sparks(particles, 400);
+    if (!sparks.works()) return state.SkipWithError("no device");
+    double least = 1e9;
+    for (auto _ : state) {
+        double wall = 0, cpu = 0;
+        sparks.draw(false, wall, cpu);
+        const double took = std::max(sparks.pass("flame sort"), 1e-9);
+        least = std::min(least, took);
+        state.SetIterationTime(took);
+    }
+    state.counters["least_ms"] = 1e3 * least;
+}
+
+#define FW_PARTICLE_ROW(function, name, row, ...)  \
+    BENCHMARK_CAPTURE(function, name, __VA_ARGS__) \
+        ->Name(row)                                \
+        ->Unit(benchmark::kMillisecond)            \
+        ->UseManualTime()                          \
+        ->Iterations(15)
+FW_PARTICLE_ROW(simulate, sim10k, "particles/sim/10k", 10000);
+FW_PARTICLE_ROW(simulate, sim100k, "particles/sim/100k", 100000);
+FW_PARTICLE_ROW(drawQuads, draw2k, "particles/draw/2k", 2000, 60.0f);
+FW_PARTICLE_ROW(sortQuads, sort10k, "particles/sort/10k", 10000);
+
+}  // namespace

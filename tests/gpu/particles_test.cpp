@@ -1,0 +1,222 @@
+// Particles on a device: they move as the library's text says, and their quads are drawn in order.
+#include "components/view_params.h"
+#include "gpu/passes/draw.h"
+#include "shared/particle.h"
+#include "support/burn_scene.h"
+#include "support/particle_reference.h"
+#include "support/pass_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace fw::test {
+namespace {
+
+using gpu::vec3;
+
+constexpr uint32_t kTiles = 64;  // quads that burning meshes might have
+
+class ParticlePass : public GpuTest {
+ protected:
+    void makeRig(uint32_t quads) {
+        static constexpr uint32_t kBindings[] = {FW_BIND_EMITTERS,  FW_BIND_EMITTER_GROUPS,
+                                                 FW_BIND_PARTICLES, FW_BIND_FLAMES,
+                                                 FW_BIND_DRAW_ARGS, FW_BIND_VIEW};
+        static constexpr uint32_t kUniforms[] = {FW_BIND_VIEW};
+        rig_ = std::make_unique<PassRig>(*device_, kBindings, uint32_t(sizeof(gpu::ParticlePush)),
+                                         std::span<const uint32_t>{}, kUniforms);
+        room_ = {kTiles, quads, 0, 0};
+        rig_->make(FW_BIND_EMITTERS, 4 * sizeof(gpu::ParticleEmitter));
+        rig_->make(FW_BIND_EMITTER_GROUPS, 8192 * sizeof(gpu::uvec2));
+        rig_->make(FW_BIND_PARTICLES, std::max(end_, 1u) * sizeof(gpu::Particle));
+        rig_->make(FW_BIND_FLAMES, (kTiles + quads) * sizeof(gpu::FlameQuad));
+        rig_->make(FW_BIND_DRAW_ARGS, (gpu::kFlameOrder + 2 * (kTiles + quads)) * 4);
+        gpu::ViewInput input;
+        input.view = &view_;
+        input.viewport[2] = input.viewport[3] = 512;
+        input.flameCapacity = kTiles;
+        gpu::ViewParams params{};
+        testLooks().viewParams(input, params);
+        rig_->make(FW_BIND_VIEW, sizeof params, &params);
+        particles_ = rig_->add("particles.comp");
+        sort_ = rig_->add("flame_sort.comp");
+    }
+    void SetUp() override {
+        GpuTest::SetUp();
+        const float eye[3] = {4, 2, 9}, at[3] = {4, 1, 0};
+        view_ = testView(eye, at, 50, 1, false);
+    }
+    void TearDown() override {
+        rig_.reset();
+        GpuTest::TearDown();
+    }
+    ParticleReference& add(const FwFireEmitterDef& def) {
+        references_.push_back(
+            std::make_unique<ParticleReference>(def, uint32_t(5 + references_.size())));
+        ParticleReference& one = *references_.back();
+        one.emitter.first = end_;
+        end_ += one.emitter.ring;
+        return one;
+    }
+    // All of them, on both sides.
+    void frame(float seconds) {
+        uint32_t records = 0;
+        groups_ = 0;
+        for (auto& one : references_) {
+            if (!one->step(seconds)) continue;
+            for (uint32_t at = 0; at < one->record.ring; at += gpu::kParticleGroup)
+                rig_->of<gpu::uvec2>(FW_BIND_EMITTER_GROUPS)[groups_++] = {records, at};
+            rig_->of<gpu::ParticleEmitter>(FW_BIND_EMITTERS)[records++] = one->record;
+        }
+        dispatch(false);
+    }
+    void dispatch(bool still) {
+        std::fill_n(rig_->of<uint32_t>(FW_BIND_DRAW_ARGS).begin(), gpu::kFlameOrder, 0u);
+        gpu::ParticlePush push{};
+        push.quads = room_.particles;
+        push.firstQuad = room_.tiles;
+        push.still = still ? 1 : 0;
+        device_->run([&](VkCommandBuffer commands) {
+            rig_->begin(commands);
+            if (groups_) rig_->dispatch(commands, particles_, &push, groups_);
+            rig_->dispatch(commands, sort_, &room_, 1);
+        });
+    }
+    template <class T>
+    std::span<const T> of(uint32_t binding) const {
+        return rig_->of<T>(binding);
+    }
+    [[nodiscard]] std::span<const uint32_t> arguments() const {
+        return of<uint32_t>(FW_BIND_DRAW_ARGS);
+    }
+    [[nodiscard]] uint32_t quads() const { return arguments()[0] / 6; }
+    // Of the quads in their order.
+    [[nodiscard]] std::vector<float> depths() const {
+        const auto view = [&](const gpu::FlameQuad& q) {
+            const vec3 at = vec3(q.baseHeight) + vec3(q.axisWidth) * (0.5f * q.baseHeight.w);
+            const float* m = view_.view;
+            return -(m[2] * at.x + m[6] * at.y + m[10] * at.z + m[14]);
+        };
+        std::vector<float> out;
+        for (uint32_t i = 0; i < quads(); ++i)
+            out.push_back(
+                view(of<gpu::FlameQuad>(FW_BIND_FLAMES)[arguments()[gpu::kFlameOrder + i]]));
+        return out;
+    }
+    // Each quad once, from the first of the particles' on.
+    void expectAll(uint32_t first) const {
+        std::vector<uint32_t> order;
+        for (uint32_t i = 0; i < quads(); ++i) order.push_back(arguments()[gpu::kFlameOrder + i]);
+        std::sort(order.begin(), order.end());
+        for (uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(first + i, order[i]);
+    }
+
+    std::unique_ptr<PassRig> rig_;
+    std::vector<std::unique_ptr<ParticleReference>> references_;
+    uint32_t end_ = 0;
+    FwView view_{};
+
+ private:
+    gpu::SortPush room_{};
+    uint32_t particles_ = 0, sort_ = 0, groups_ = 0;
+};
+
+FwFireEmitterDef emitterDef(uint32_t flags, float power) {
+    FwFireEmitterDef def = fwDefaultFireEmitterDef();
+    def.flags = flags;
+    def.power = power;
+    def.position[1] = 1;
+    if (flags & FW_EMITTER_JET) def.direction[0] = 1;
+    return def;
+}
+
+TEST_F(ParticlePass, MovesThemAsTheLibrarySays) {
+    ParticleReference& jet = add(emitterDef(FW_EMITTER_JET | FW_EMITTER_GROUND, 500));
+    ParticleReference& fire = add(emitterDef(0, 80));
+    fire.air.wind[2] = 2;
+    makeRig(512);
+    for (int i = 0; i < 40; ++i) {
+        const float place[3] = {0.02f * float(i), 1, 0};
+        components::moveFireEmitter(jet.emitter, place, nullptr);
+        if (i == 30) components::setEmitterPower(fire.emitter, 20);
+        frame(i % 9 == 8 ? 0.09f : 0.02f);
+    }
+    uint32_t alive = 0;
+    for (const auto& one : references_) {
+        for (uint32_t i = 0; i < one->record.ring; ++i) {
+            if (!one->alive(i)) continue;
+            ++alive;
+            const gpu::Particle& p = of<gpu::Particle>(FW_BIND_PARTICLES)[one->emitter.first + i];
+            ASSERT_NEAR(one->particles[i].placeAge.w, p.placeAge.w, 1e-4f) << i;
+            // Their sines and roots differ in the last bits.
+            ASSERT_LT(glm::length(one->place(i) - vec3(p.placeAge)), 5e-3f) << i;
+        }
+    }
+    EXPECT_LT(60u, alive);
+    EXPECT_LT(40u, quads());
+    // Another picture of the same moment moves nothing.
+    std::vector<gpu::Particle> before(of<gpu::Particle>(FW_BIND_PARTICLES).begin(),
+                                      of<gpu::Particle>(FW_BIND_PARTICLES).begin() + end_);
+    dispatch(true);
+    EXPECT_EQ(0, std::memcmp(before.data(), of<gpu::Particle>(FW_BIND_PARTICLES).data(),
+                             before.size() * sizeof(gpu::Particle)));
+    EXPECT_LT(40u, quads());
+}
+
+TEST_F(ParticlePass, QuadsAreDrawnFarthestFirstFewOrMany) {
+    for (const float rate : {2000.0f, 9000.0f}) {
+        references_.clear();
+        end_ = 0;
+        FwFireEmitterDef def = emitterDef(0, 100);
+        def.rate = rate;
+        def.life = 1;
+        def.cone = 1.2f;
+        def.speed = 3;
+        add(def);
+        makeRig(20000);
+        for (int i = 0; i < 20; ++i) frame(0.05f);
+        if (rate < 5000)
+            EXPECT_LT(quads(), gpu::kFlameCapacity);
+        else
+            EXPECT_GT(quads(), gpu::kFlameCapacity);
+        EXPECT_LT(1500u, quads());
+        expectAll(kTiles);
+        const std::vector<float> d = depths();
+        for (size_t i = 1; i < d.size(); ++i)
+            ASSERT_GE(d[i - 1], d[i] * (1 - 1.0f / 2000)) << i << " of " << d.size();
+    }
+}
+
+TEST_F(ParticlePass, TheRadixSortIsStable) {
+    FwFireEmitterDef def = emitterDef(0, 100);
+    def.rate = 9000;
+    def.life = 5;
+    def.smoke = def.sparks = def.turbulence = 0;
+    def.buoyancy = 0;
+    def.shape = FW_EMITTER_DISC;
+    def.radius = 0;
+    def.speed = 1e-5f;
+    def.size0 = def.size1 = 1e-4f;  // all in one place
+    add(def);
+    makeRig(10000);
+    for (int i = 0; i < 15; ++i) frame(0.05f);
+    ASSERT_GT(quads(), gpu::kFlameCapacity);
+    for (uint32_t i = 0; i < quads(); ++i) ASSERT_EQ(kTiles + i, arguments()[gpu::kFlameOrder + i]);
+}
+
+TEST_F(ParticlePass, MoreThanThereIsRoomForAreNotDrawnAndNothingBreaks) {
+    FwFireEmitterDef def = emitterDef(0, 100);
+    def.rate = 20000;
+    add(def);
+    makeRig(5000);
+    for (int i = 0; i < 3; ++i) frame(0.3f);
+    EXPECT_EQ(5000u, quads());
+    expectAll(kTiles);
+    const std::vector<float> d = depths();
+    for (size_t i = 1; i < d.size(); ++i) ASSERT_GE(d[i - 1], d[i] * (1 - 1.0f / 2000)) << i;
+}
+
+}  // namespace
+}  // namespace fw::test

@@ -1,0 +1,67 @@
+// Particles of one emitter on the CPU, by the shader's own text: what the `particles` pass must do.
+#pragma once
+#include "components/fire_emitter.h"
+#include "shared/particle.h"
+
+#include <vector>
+
+namespace fw::test {
+
+class ParticleReference {
+ public:
+    explicit ParticleReference(const FwFireEmitterDef& def, uint32_t ownSeed = 1) {
+        components::makeFireEmitter(def, ownSeed, emitter);
+        emitter.ring = std::max(components::emitterNeeds(emitter), 1u);
+        particles.resize(emitter.ring);
+    }
+    // False: nothing is left.
+    bool step(float seconds) {
+        air.now += double(seconds);
+        const bool any = components::advanceEmitter(emitter, air, seconds, record);
+        components::commitEmitter(emitter);
+        if (any) move();
+        return any;
+    }
+    [[nodiscard]] uint32_t births(uint32_t slot) const {
+        return gpu::particleBirths(record.head, record.ring, slot);
+    }
+    [[nodiscard]] gpu::ParticleTraits traits(uint32_t slot) const {
+        return gpu::particleTraits(
+            record, gpu::particleSeed(record.seed, record.serial - 1 - births(slot)));
+    }
+    [[nodiscard]] bool alive(uint32_t slot) const {
+        return births(slot) < record.filled && particles[slot].placeAge.w < traits(slot).all;
+    }
+    [[nodiscard]] gpu::vec3 place(uint32_t slot) const {
+        return gpu::vec3(particles[slot].placeAge);
+    }
+
+    components::FireEmitter emitter;
+    components::EmitterAir air;
+    gpu::ParticleEmitter record{};
+    std::vector<gpu::Particle> particles;
+
+ private:
+    void move() {
+        const gpu::ParticleEmitter& e = record;
+        for (uint32_t slot = 0; slot < e.ring; ++slot) {
+            const uint32_t ago = births(slot);
+            if (ago >= e.filled) continue;
+            const uint32_t seed = gpu::particleSeed(e.seed, e.serial - 1 - ago);
+            const gpu::ParticleTraits t = gpu::particleTraits(e, seed);
+            gpu::Particle& p = particles[slot];
+            const bool fresh = ago < e.fresh;
+            const float lived = fresh ? e.age + e.apart * float(ago) : e.from.w;
+            if (fresh) p = gpu::particleBorn(e, seed, lived);
+            const float dt = lived / float(std::max(e.steps, 1u));
+            float now = e.wind.w - lived;
+            for (uint32_t i = 0; i < e.steps; ++i) {
+                p = gpu::particleStep(e, t, p, now, dt);
+                p = gpu::particleGround(e, t, p, seed);
+                now += dt;
+            }
+        }
+    }
+};
+
+}  // namespace fw::test
