@@ -110,12 +110,13 @@ gpu::FlameRay marchRay(const gpu::FlameRecord& flame, std::span<const gpu::Flame
     gpu::FlameSmokeRay smoke{{vec3(0.0f), vec3(1.0f)}, {vec3(0.0f), vec3(1.0f)}};
     const gpu::FlamePieces pieces = gpu::flamePieces(nodes.data());
     const float stride = metres / float(gpu::kFlameSmokeSteps);
+    const gpu::FlameSun sun = gpu::flameSun(nodes.back(), rules.toSun, direction, rules.sun);
     for (uint32_t k = 0; metres > 0.0f && k < gpu::kFlameSmokeSteps; ++k) {
         const float t = spans.z + stride * (float(k) + rules.jitter);
         const vec3 x = from + direction * t;
         const bool behind = planes ? t > rules.middle : burns && t > 0.5f * (chord.x + chord.y);
         smoke = gpu::flameSmokeStep(flame, smoke, gpu::flamePlaceNear(nodes.data(), pieces, x), x,
-                                    behind, stride);
+                                    sun, behind, stride);
     }
     return gpu::flameBetween(ray, smoke);
 }

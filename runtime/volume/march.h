@@ -19,6 +19,8 @@ struct MarchRules {
     // As the march pass: `steps` samples this far apart, the first cell of them this far away,
     // and smoke from here on behind the flame. m; apart 0: over what the ray sees of the tube.
     float apart = 0.0f, first = 0.0f, middle = 0.0f;
+    vec3 sun{0.0f};  // that smoke takes, see FlameSun::light, before its phase function
+    vec3 toSun{0.0f, 1.0f, 0.0f};  // unit
 };
 
 gpu::FlameMedium sampleFlame(const gpu::FlameRecord& flame, const Profile& profile,

@@ -399,10 +399,54 @@ FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius,
     return max(reach, widened * 1.96f * (0.45f * f.low.w + 0.16f * max(s1 - 0.6f * f.high.w, 0.0f)));
 }
 
-// What smoke scatters towards the eye, of the flame below and of the air around, per unit of density.
-FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade) {
+struct FlameSun {         // as a ray's smoke takes it
+    vec3 light;           // what smoke in the open scatters of it towards the eye
+    vec3 to;              // unit, towards it, in the frame of the curve's end: along side, across it, along
+};
+
+// Smoke throws light forwards: Henyey and Greenstein's phase function, against one that is even.
+FW_SHARED_CONST float kSmokeForward = 0.4f;
+FW_SHARED_FN FlameSun flameSun(FlameNode end, vec3 toSun, vec3 direction, vec3 light) {
+    float g = kSmokeForward, q = 1.0f + g * g - 2.0f * g * dot(direction, toSun);
+    vec3 side = vec3(end.side), along = vec3(end.along);
+    FlameSun sun;
+    sun.light = light * ((1.0f - g * g) / (q * sqrt(q)));
+    sun.to = vec3(dot(toSun, side), dot(toSun, cross(along, side)), dot(toSun, along));
+    return sun;
+}
+
+// erfc(x), x >= 0, within 2.5e-5: Abramowitz and Stegun, 7.1.25.
+FW_SHARED_FN float flameErfc(float x) {
+    float t = 1.0f / (1.0f + 0.47047f * x);
+    return t * (0.3480242f - t * (0.0958798f - t * 0.7478556f)) * exp(-x * x);
+}
+
+// Optical depth of smoke from a place to the sun. What shades a plume is its body, not its billows:
+// a bell across, whose integral along a ray to without is known. As wide and dense as it is here.
+FW_SHARED_CONST float kSmokeBell = 2.4f;  // of its density: the body's own with what billows gnaw off
+FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
+    float y = at.s / f.high.w;
+    if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return 0.0f;
+    float wide = 0.45f * f.low.w + 0.16f * max(at.s - 0.6f * f.high.w, 0.0f);
+    float thin = 0.45f * f.low.w / wide;
+    float most = 0.85f * f.smoke * f.air.w * thin * thin * smoothstep(0.6f, 1.7f, y) *
+                 (1.0f - smoothstep(0.7f * f.smokeTop, f.smokeTop, y));
+    // Straight up the way is not endless: smoke thins out.
+    float flat2 = max(to.x * to.x + to.y * to.y, 0.08f);
+    float towards = at.p.x * to.x + at.p.y * to.y;
+    float a = kSmokeBell / (wide * wide);
+    float beside = exp(-a * max(dot(at.p, at.p) - towards * towards / flat2, 0.0f));
+    float x = sqrt(a / flat2) * towards;
+    float ahead = x < 0.0f ? 2.0f - flameErfc(-x) : flameErfc(x);
+    return most * beside * 0.8862269f * ahead / sqrt(a * flat2);
+}
+
+// What smoke scatters towards the eye, of the flame below, of the air around and of the sun, per unit of
+// density. What is scattered again and again gets deeper than the sun itself does.
+FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, vec3 sun, float depth) {
     vec3 fire = flameRadiance(f, 0.5f * (f.tintLow + f.tintHigh)) * (f.glow.w / (distance2 + 0.3f * f.low.w * f.low.w));
-    return f.smokeAlbedo * (fire * mix(1.25f, 0.5f, shade) + vec3(f.air) * mix(0.7f, 1.1f, shade));
+    vec3 day = sun * (0.8f * exp(-depth) + 0.2f * exp(-0.2f * depth));
+    return f.smokeAlbedo * (fire * mix(1.25f, 0.5f, shade) + (vec3(f.air) + day) * mix(0.7f, 1.1f, shade));
 }
 
 // ---- light along a ray

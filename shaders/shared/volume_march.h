@@ -147,13 +147,13 @@ struct FlameSmokeRay {
     FlameRay front; FlameRay back;
 };
 
-FW_SHARED_FN FlameSmokeRay flameSmokeStep(FlameRecord f, FlameSmokeRay ray, FlamePlace at, vec3 x, bool behind,
-                                          float d) {
+FW_SHARED_FN FlameSmokeRay flameSmokeStep(FlameRecord f, FlameSmokeRay ray, FlamePlace at, vec3 x, FlameSun sun,
+                                          bool behind, float d) {
     vec2 smoke = flameSmoke(f, at);
     FlameMedium m;
     m.soot = 0.0f; m.smoke = f.air.w * smoke.x; m.smokeShade = smoke.y; m.emission = vec3(0.0f);
     vec3 to = vec3(f.glow) - x;
-    vec3 light = flameSmokeLight(f, dot(to, to), smoke.y);
+    vec3 light = flameSmokeLight(f, dot(to, to), smoke.y, sun.light, flameSmokeDepth(f, at, sun.to));
     FlameRay front = flameStep(ray.front, m, light, behind ? 0.0f : d);
     ray.back = flameStep(ray.back, m, light, behind ? d : 0.0f);
     ray.front = front;

@@ -55,8 +55,11 @@ vec3 flameWhite(FlameRecord f, float emissionScale) {
     return mix(vec3(1.0, 1.25, 1.6), vec3(1.0), f.tint.w) * (kVolumeWhite * max(emissionScale, 1e-6));
 }
 
-vec3 flameAir(vec3 sky, vec3 ground, vec3 sun, vec3 white) {
-    return (0.5 * (sky + ground) + 0.15 * sun) / white;
+vec3 flameAir(vec3 sky, vec3 ground, vec3 white) { return 0.5 * (sky + ground) / white; }
+
+// Needs `view`.
+FlameSun raySun(vec3 direction, vec3 white) {
+    return flameSun(FW_FLAME_NODE(kFlameNodes - 1u), view.sunDirection.xyz, direction, 0.3 * view.sunColor.rgb / white);
 }
 
 // Premultiplied, as it is shown; `scattered`: what of the light is smoke's.

@@ -41,7 +41,8 @@ void main() {
     float perDepth = length(along);  // m along the ray per m along the view
     vec3 direction = along / perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
-    f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, view.sunColor.rgb, white);
+    f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
+    FlameSun sun = raySun(direction, white);
 
     float farthest = 1e9;
 #ifdef FW_SOFT
@@ -80,7 +81,7 @@ void main() {
     while (k < last) {
         float t = spans.z + stride * (k + jitter);
         vec3 x = from + direction * t;
-        smoke = flameSmokeStep(f, smoke, flamePlaceNear(tube.pieces, x), x, metres > 0.0 && t > middle,
+        smoke = flameSmokeStep(f, smoke, flamePlaceNear(tube.pieces, x), x, sun, metres > 0.0 && t > middle,
                                k < last ? stride : 0.0);
         k += 1.0;
     }

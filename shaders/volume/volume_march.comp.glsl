@@ -77,7 +77,8 @@ void main() {
     float perDepth = length(along);  // m along the ray per m along the view
     vec3 direction = along / perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
-    f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, view.sunColor.rgb, white);
+    f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
+    FlameSun sun = raySun(direction, white);
     float phase = volumePhase(place.x, place.y, view.ambientSky.w);
     float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
@@ -93,7 +94,7 @@ void main() {
         do {
             float t = span.x + step_ * (float(k) + phase);
             vec3 x = from + direction * t;
-            smoke = flameSmokeStep(f, smoke, flamePlaceNear(tube.pieces, x), x, t > middle,
+            smoke = flameSmokeStep(f, smoke, flamePlaceNear(tube.pieces, x), x, sun, t > middle,
                                    span.x < span.y ? step_ : 0.0);
             k += 1u;
         } while (k < count);

@@ -1,0 +1,108 @@
+// Smoke in the sun: how much of it stands between a place and the sun is the integral of the
+// plume's body, and of what is seen of a plume by day one side is bright and the other is not.
+#include "volume_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace {
+
+using namespace volume_scene;
+namespace gpu = fw::gpu;
+
+Shown houseFire() { return Shown::preset(FlamePreset::HouseFire); }
+
+// The same by two thousand samples of a way to without, along which the plume is as it is at its
+// beginning.
+double depthByHand(const gpu::FlameRecord& f, gpu::FlamePlace at, vec3 to) {
+    double sum = 0;
+    const double flat =
+        std::sqrt(std::max(double(to.x) * double(to.x) + double(to.y) * double(to.y), 0.08));
+    const double scale = flat / std::max(double(glm::length(vec2(to))), 1e-9);
+    const float wide = 0.45f * f.low.w + 0.16f * std::max(at.s - 0.6f * f.high.w, 0.0f);
+    const double step = 8.0 * double(wide) / flat / 2000;
+    gpu::FlamePlace axis = at;
+    axis.p = vec2(0.0f);
+    // Its density on the axis, from a ray that passes the whole of it across.
+    for (int i = 0; i < 2000; ++i) {
+        const double t = step * (i + 0.5);
+        const double x = double(at.p.x) + scale * double(to.x) * t,
+                     y = double(at.p.y) + scale * double(to.y) * t;
+        sum += std::exp(-double(gpu::kSmokeBell) * (x * x + y * y) / double(wide * wide)) * step;
+    }
+    const double across = double(gpu::flameSmokeDepth(f, axis, vec3(1, 0, 0))) /
+                          (0.8862269 * double(wide) / std::sqrt(double(gpu::kSmokeBell)));
+    return across * sum;
+}
+
+TEST(VolumeSmoke, WhatStandsBeforeTheSunIsTheIntegral) {
+    const Shown f = houseFire();
+    ASSERT_GT(f.record.smoke, 0.0f);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(0, 1);
+    for (int i = 0; i < 200; ++i) {
+        gpu::FlamePlace at;
+        at.s = f.record.high.w * (0.8f + (0.65f * f.record.smokeTop - 0.8f) * unit(random));
+        const float wide = 0.45f * f.record.low.w + 0.16f * (at.s - 0.6f * f.record.high.w);
+        at.p = wide * (2.0f * vec2(unit(random), unit(random)) - 1.0f);
+        at.radius = wide;
+        const float up = 0.9f * unit(random), turn = 6.2832f * unit(random);
+        const vec3 to(std::sqrt(1 - up * up) * vec2(std::cos(turn), std::sin(turn)), up);
+        const double hand = depthByHand(f.record, at, to);
+        EXPECT_NEAR(hand, double(gpu::flameSmokeDepth(f.record, at, to)), 0.01 * hand + 1e-4);
+    }
+    // Nothing below where smoke begins and above where it ends; finite with the sun on the axis.
+    gpu::FlamePlace at{vec2(0.0f), 0.5f * f.record.high.w, 1.0f};
+    EXPECT_EQ(0.0f, gpu::flameSmokeDepth(f.record, at, vec3(1, 0, 0)));
+    at.s = 1.01f * f.record.smokeTop * f.record.high.w;
+    EXPECT_EQ(0.0f, gpu::flameSmokeDepth(f.record, at, vec3(1, 0, 0)));
+    at.s = 1.5f * f.record.high.w;
+    const float axis = gpu::flameSmokeDepth(f.record, at, vec3(0, 0, 1));
+    EXPECT_TRUE(std::isfinite(axis) && axis > 0.0f);
+}
+
+TEST(VolumeSmoke, ErfcIsAsGoodAsItSays) {
+    for (float x = 0; x < 5; x += 0.01f) EXPECT_NEAR(std::erfc(x), gpu::flameErfc(x), 3e-5f);
+}
+
+// Light of the two halves of a plume above its flame, from the side.
+void halves(const Shown& f, vec3 toSun, double& left, double& right) {
+    MarchRules rules;
+    rules.steps = 8;
+    rules.sun = vec3(1.0f);
+    rules.toSun = toSun;
+    left = right = 0;
+    const float wide = f.size.diameter, away = 20.0f * f.size.height;
+    for (int y = 0; y < 16; ++y)
+        for (int x = -16; x < 16; ++x) {
+            const vec3 from(wide * (float(x) + 0.5f) / 16.0f,
+                            f.size.height * (2.2f + 0.05f * float(y)), away);
+            const double light = double(
+                marchRay(f.record, f.nodes, *f.profile, from, vec3(0, 0, -1), rules).radiance.g);
+            (x < 0 ? left : right) += light;
+        }
+}
+
+TEST(VolumeSmoke, OneSideIsInTheSun) {
+    Shown f = houseFire();
+    const vec3 low = glm::normalize(vec3(1, 0.3f, 0));
+    double sunny = 0, shady = 0, against = 0, along = 0;
+    for (int i = 0; i < 6; ++i, f.run(1.7)) {  // whose billows are thicker to a side
+        double left, right;
+        halves(f, low, left, right);
+        sunny += right, shady += left;
+        halves(f, low * vec3(-1, 1, 1), left, right);
+        sunny += left, shady += right;
+        halves(f, vec3(0, 0, -1), left, right);
+        against += left + right;
+        halves(f, vec3(0, 0, 1), left, right);
+        along += left + right;
+    }
+    std::printf("the sunny side: %.2f of the other's light; against the sun: %.2f\n", sunny / shady,
+                against / along);
+    EXPECT_GT(sunny, 1.15 * shady);
+    EXPECT_GT(against, along);  // smoke throws light forwards
+}
+
+}  // namespace
