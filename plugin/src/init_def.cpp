@@ -1,4 +1,5 @@
 // Defaults of every def, and the two functions that need no context at all.
+#include "components/particle_field.h"
 #include "components/volumetric_fire.h"
 #include "edge.h"
 #include "flamewright/flamewright.h"
@@ -72,6 +73,20 @@ void defaults(FwVolumetricFireDef& def) noexcept {
     def.windResponse = def.turbulence = def.speed = def.density = def.smoke = def.blue = 1;
     set(def.tint, 1, 1, 1);
     def.blend = 0.3f;
+}
+
+void defaults(FwParticleFieldDef& def) noexcept {
+    set(def.size, 1, 1, 1);
+    def.rotation[3] = 1;
+    def.width = def.height = 64;
+    def.stepRate = 24;
+    def.open = FW_FIELD_OPEN_LEFT | FW_FIELD_OPEN_RIGHT | FW_FIELD_OPEN_TOP;
+    components::setFieldPreset(def, FW_FIELD_FIRE);
+    def.windResponse = 0.12f;
+    def.sourceAt[0] = 0.5f;
+    def.sourceAt[1] = 0.2f;
+    set(def.tint, 1, 1, 1);
+    def.opacity = 1;
 }
 
 void defaults(FwFireProfileDef&) noexcept {}
@@ -161,6 +176,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwFireTrackDef);
         case FW_DEF_FIRE_EMITTER:
             return sizeof(FwFireEmitterDef);
+        case FW_DEF_PARTICLE_FIELD:
+            return sizeof(FwParticleFieldDef);
         default:
             return vulkanDefSize(type);
     }
@@ -213,6 +230,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
         case FW_DEF_FIRE_EMITTER:
             write<FwFireEmitterDef>(def);
             return true;
+        case FW_DEF_PARTICLE_FIELD:
+            write<FwParticleFieldDef>(def);
+            return true;
         default:
             return writeVulkanDefaults(type, def);
     }
@@ -260,6 +280,24 @@ FwResult FW_CALL fwInitFirePreset(FwVolumetricFireDef* def, uint32_t preset) {
         edge::writeInfo(def, size, filled);
         return FW_OK;
     });
+}
+
+FwResult FW_CALL fwInitFieldPreset(FwParticleFieldDef* def, uint32_t preset) {
+    const auto nobody = [](FwResult, const char*) {};
+    return edge::guard("fwInitFieldPreset", nobody, [&] {
+        if (preset >= FW_FIELD_PRESET_COUNT)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "preset is %u; the limit is %u.", preset,
+                       uint32_t(FW_FIELD_PRESET_COUNT) - 1);
+        const uint32_t size = edge::checkInfo(def, "FwParticleFieldDef");
+        FwParticleFieldDef filled = edge::readDef(def, FW_DEF_PARTICLE_FIELD, "FwParticleFieldDef");
+        components::setFieldPreset(filled, preset);
+        edge::writeInfo(def, size, filled);
+        return FW_OK;
+    });
+}
+
+const char* FW_CALL fwFieldPresetName(uint32_t preset) {
+    return components::fieldPresetName(preset);
 }
 
 const char* FW_CALL fwFirePresetName(uint32_t preset) { return components::firePresetName(preset); }

@@ -361,6 +361,61 @@ FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld* world, const float centr
     });
 }
 
+FwResult FW_CALL fwWorld_CreateParticleField(FwWorld* world, const FwParticleFieldDef* given,
+                                             FwParticleFieldId* id) {
+    return createOf("fwWorld_CreateParticleField", world, &world::World::createParticleField, given,
+                    FW_DEF_PARTICLE_FIELD, "FwParticleFieldDef", id);
+}
+
+FwResult FW_CALL fwWorld_DestroyParticleField(FwWorld* world, FwParticleFieldId id) {
+    return destroyOf("fwWorld_DestroyParticleField", world, &world::World::destroyParticleField,
+                     id);
+}
+
+FwResult FW_CALL fwWorld_MoveParticleField(FwWorld* world, FwParticleFieldId id,
+                                           const float position[3], const float rotation[4]) {
+    return onWorld("fwWorld_MoveParticleField", world, [&](world::World& w) {
+        checkPointer(position, "position");
+        w.moveParticleField(id, position, rotation);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetParticleFieldAmount(FwWorld* world, FwParticleFieldId id,
+                                                float amount) {
+    return onWorld("fwWorld_SetParticleFieldAmount", world, [&](world::World& w) {
+        w.setParticleFieldAmount(id, amount);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetParticleFieldHidden(FwWorld* world, FwParticleFieldId id,
+                                                uint32_t hidden) {
+    return onWorld("fwWorld_SetParticleFieldHidden", world, [&](world::World& w) {
+        w.setParticleFieldHidden(id, hidden != 0);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_PaintParticleField(FwWorld* world, FwParticleFieldId id,
+                                            const uint8_t* paint, const uint8_t* walls) {
+    return onWorld("fwWorld_PaintParticleField", world, [&](world::World& w) {
+        w.paintParticleField(id, paint, walls);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetParticleFieldState(FwWorld* world, FwParticleFieldId id,
+                                               FwParticleFieldState* state) {
+    return onWorld("fwWorld_GetParticleFieldState", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(state, "FwParticleFieldState");
+        FwParticleFieldState filled{};
+        w.particleFieldState(id, filled);
+        edge::writeInfo(state, size, filled);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
     return onWorld("fwWorld_Ignite", world, [&](world::World& w) {
         const FwIgnitionDef def = edge::readDef(given, FW_DEF_IGNITION, "FwIgnitionDef");

@@ -11,21 +11,10 @@ namespace {
 
 using namespace gpu;
 
-// Bit k: no way from cell (x, y) in direction k.
-uint32_t closedWays(const Field& field, const FieldRules& rules, int x, int y) noexcept {
-    const int w = int(field.width), h = int(field.height);
-    uint32_t closed = 0;
-    for (uint32_t k = 0; k < 8; ++k) {
-        const ivec2 d = fieldNeighbour(k);
-        const int i = x + d.x, j = y + d.y;
-        const bool out = (i < 0 && !(rules.open & kFieldOpenLeft)) ||
-                         (i >= w && !(rules.open & kFieldOpenRight)) ||
-                         (j < 0 && !(rules.open & kFieldOpenBottom)) ||
-                         (j >= h && !(rules.open & kFieldOpenTop));
-        const bool inside = i >= 0 && i < w && j >= 0 && j < h;
-        if (out || (inside && field.walls[size_t(j * w + i)])) closed |= 1u << k;
-    }
-    return closed;
+// Of a ring, the column that is meant.
+int column(const Field& field, const FieldRules& rules, int x) noexcept {
+    const int w = int(field.width);
+    return (rules.open & kFieldRing) == 0 ? x : x < 0 ? x + w : x >= w ? x - w : x;
 }
 
 void check(const char* name, float value, float low, float high) {
@@ -66,8 +55,8 @@ void checkField(const FieldDef& def) {
     check("look.life", def.look.life, 0.01f, 1e6f);
     check("look.detail", def.look.detail, 0, 1);
     check("look.body", def.look.body, 0, 2);
-    if (def.open > 15)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "open is %u; it holds four bits, up to 15.",
+    if (def.open > 31)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "open is %u; it holds five bits, up to 31.",
                    def.open);
 }
 
@@ -80,7 +69,7 @@ FieldRules fieldRules(const FieldDef& def) noexcept {
     rules.inertia = fixed(0.5f * look.memory, 256, 256);
     rules.chaos = fixed(look.chaos, 256, 1024);
     rules.spread = fixed(look.spread, float(kFieldSpreadMost), float(kFieldSpreadMost));
-    rules.memory = fixed(look.memory, 256, 256);
+    rules.memory = fixed(look.memory, 128, 128);
     rules.death = fixed(1 - std::exp(-1 / (look.life * float(def.stepRate))), 65536, 65535);
     rules.seed = def.seed;
     rules.width = def.width;
@@ -96,68 +85,125 @@ void addDefaultSource(FieldRules& rules, const FieldLook& look) noexcept {
     const bool falls = look.rise < 0;
     FieldSource& source = rules.sources[rules.sourceCount++];
     source.cells = {w / 2 - half, falls ? h - rows : 0, w / 2 + half, falls ? h : rows};
-    source.rate = fixed(look.amount * 255 / 12, 256, 1u << 20);
+    source.rate = emissionRate(look.amount);
 }
+
+uint32_t emissionRate(float amount) noexcept { return fixed(amount * 255 / 12, 256, 1u << 16); }
 
 void startField(Field& field, uint32_t width, uint32_t height) {
     const size_t count = size_t(width) * height;
     std::pmr::memory_resource* memory = field.cells.get_allocator().resource();
     Field fresh(memory);
-    fresh.cells.resize(count);
+    fresh.cells.resize(count, fieldCell(0, uvec2(kFieldStill)));
     fresh.next.resize(count);
-    fresh.walls.resize(count);
-    fresh.shares.resize(count);
+    fresh.masks.resize(count);
+    fresh.given.resize(count);
     fresh.width = width, fresh.height = height;
     field = std::move(fresh);
 }
 
+void maskField(Field& field, std::span<const uint8_t> masks) noexcept {
+    for (size_t i = 0; i < field.cells.size(); ++i) {
+        const bool wall = masks[i] == kFieldWall;
+        if (wall) field.died += fieldNumber(field.cells[i]);
+        if (wall)
+            field.cells[i] = kFieldWallCell;
+        else if (field.cells[i] == kFieldWallCell)
+            field.cells[i] = fieldCell(0, uvec2(kFieldStill));
+        field.masks[i] = masks[i];
+    }
+}
+
+void fillCell(Field& field, uint32_t x, uint32_t y, uint32_t n) noexcept {
+    field.cells[size_t(y) * field.width + x] =
+        fieldCell(std::min(n, kFieldCellMost), uvec2(kFieldStill));
+}
+
 void stepField(Field& field, const FieldRules& rules) noexcept {
     const int w = int(field.width), h = int(field.height);
-    const auto at = [&](int x, int y) { return size_t(y * w + x); };
-    const auto inside = [&](int x, int y) { return x >= 0 && y >= 0 && x < w && y < h; };
+    const FieldWeights weights = fieldWeights(rules);
+    const uint giving = fieldKey(field.step, rules.seed, 0);
+    const uint chance = fieldKey(field.step >> 2, rules.seed, 1);
+    const uint dying = fieldKey(field.step, rules.seed, 2);
+    const uint emitting = fieldKey(field.step, rules.seed, 3);
+    const auto at = [&](int x, int y) { return size_t(y * w + column(field, rules, x)); };
+    const auto inside = [&](int x, int y) {
+        const int i = column(field, rules, x);
+        return i >= 0 && y >= 0 && i < w && y < h;
+    };
+    const auto open = [&](int x, int y) {  // of what lies outside
+        return (x >= 0 || (rules.open & kFieldOpenLeft)) &&
+               (x < w || (rules.open & kFieldOpenRight)) &&
+               (y >= 0 || (rules.open & kFieldOpenBottom)) &&
+               (y < h || (rules.open & kFieldOpenTop));
+    };
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
-            const FieldCell& cell = field.cells[at(x, y)];
-            glm::uvec4& shares = field.shares[at(x, y)];
-            shares = glm::uvec4(0);
-            if (cell.n == 0) continue;
-            uint around[8];
+            const uint cell = field.cells[at(x, y)], n = fieldNumber(cell);
+            std::array<uint16_t, 8>& given = field.given[at(x, y)];
+            given = {};
+            if (n == 0) continue;
+            FieldEight around, rooms;
             for (uint k = 0; k < 8; ++k) {
                 const ivec2 d = fieldNeighbour(k);
-                // Nothing spreads over a border: beyond it is as much as here.
-                around[k] = inside(x + d.x, y + d.y) ? field.cells[at(x + d.x, y + d.y)].n : cell.n;
+                const int i = (rules.open & kFieldRing) ? column(field, rules, x + d.x) : x + d.x;
+                const bool is = inside(x + d.x, y + d.y);
+                // Walls are full, and nothing spreads over a border.
+                const uint there =
+                    is ? field.cells[at(x + d.x, y + d.y)] & kFieldCellMost : kFieldCellMost;
+                around.k[k] = there * rules.spread;
+                rooms.k[k] = is ? fieldRoom(there) : open(i, y + d.y) ? fieldRoom(0) : 0;
             }
-            const uint random = fieldRandom(uint(x), uint(y), field.step, rules.seed, 0);
-            shares =
-                fieldShares(cell.n, cell.mean, around, closedWays(field, rules, x, y), rules,
-                            fieldChaos(uint(x), uint(y), field.step, rules.seed), random & 255);
+            const uint random = fieldRandom(giving, uint(x) >> 2, uint(y));
+            const ivec2 push = fieldChaos(fieldRandom(chance, uint(x) >> 2, uint(y + 1) >> 2));
+            const FieldPushes pushes = fieldPushes(weights, push);
+            const FieldGiver giver =
+                fieldGiver(cell, pushes.sum, rules.spread, weights.inertia, weights.inertiaDiagonal,
+                           fieldDither(random, uint(x)));
+            FieldEight to;
+            for (const uint first : {7u, 3u}) {
+                uint sum = first == 7 ? giver.ahead : giver.behind;
+                for (uint i = 0; i < 4; ++i) {
+                    const uint k = (first + i) & 7, before = sum;
+                    sum += fieldFlow(giver, k, pushes.to.k[k], around.k[k], rooms.k[k]);
+                    to.k[k] = fieldGiven(before, sum);
+                }
+            }
             for (uint k = 0; k < 8; ++k) {
                 const ivec2 d = fieldNeighbour(k);
-                if (!inside(x + d.x, y + d.y)) field.left += fieldShare(shares, k);
+                given[k] = uint16_t(to.k[k]);
+                if (!inside(x + d.x, y + d.y)) field.left += to.k[k];
             }
         }
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
-            const FieldCell& cell = field.cells[at(x, y)];
-            FieldCell& next = field.next[at(x, y)];
-            next = {};
-            if (field.walls[at(x, y)]) continue;
-            const uint stayed = cell.n - fieldShareSum(field.shares[at(x, y)]);
-            uint came[8];
-            ivec2 means[8];
-            uint n = stayed;
+            const uint cell = field.cells[at(x, y)];
+            uint32_t& next = field.next[at(x, y)];
+            next = kFieldWallCell;
+            if (cell == kFieldWallCell) continue;
+            uint n = fieldNumber(cell);
+            for (const uint16_t to : field.given[at(x, y)]) n -= to;
+            const uvec2 motion = fieldMotionOf(cell);
+            uint sumX = n * fieldCarried(motion.x, 0, rules.memory);
+            uint sumY = n * fieldCarried(motion.y, 0, rules.memory);
             for (uint k = 0; k < 8; ++k) {
                 const ivec2 d = fieldNeighbour(k);
-                const bool is = inside(x + d.x, y + d.y);
-                came[k] = is ? fieldShare(field.shares[at(x + d.x, y + d.y)], k ^ 4u) : 0;
-                means[k] = is ? field.cells[at(x + d.x, y + d.y)].mean : ivec2(0);
-                n += came[k];
+                if (!inside(x + d.x, y + d.y)) continue;
+                const size_t from = at(x + d.x, y + d.y);
+                const uint came = field.given[from][k ^ 4u];
+                const uvec2 theirs = fieldMotionOf(field.cells[from]);
+                const ivec2 u = fieldDirection(k ^ 4u);
+                n += came;
+                sumX += came * fieldCarried(theirs.x, fieldSpeed(u.x), rules.memory);
+                sumY += came * fieldCarried(theirs.y, fieldSpeed(u.y), rules.memory);
             }
-            next.mean = fieldMotion(stayed, cell.mean, came, means, rules.memory);
-            const uint random = fieldRandom(uint(x), uint(y), field.step, rules.seed, 2);
-            const uint dead = fieldDeaths(n, rules.death, random);
-            const uint fresh = fieldEmission(uint(x), uint(y), n - dead, rules, random);
-            next.n = n - dead + fresh;
+            const uvec2 now{fieldMean(sumX, n), fieldMean(sumY, n)};
+            const uint dead = fieldDeaths(
+                n, rules.death, fieldWindow(fieldRandom(dying, uint(x) >> 2, uint(y)), uint(x)));
+            n -= dead;
+            const uint fresh = fieldEmission(uint(x), uint(y), n, field.masks[at(x, y)], rules,
+                                             fieldRandom(emitting, uint(x), uint(y)));
+            next = fieldCell(n + fresh, now);
             field.died += dead;
             field.emitted += fresh;
         }
@@ -165,9 +211,13 @@ void stepField(Field& field, const FieldRules& rules) noexcept {
     ++field.step;
 }
 
+uint32_t cellAt(const Field& field, uint32_t x, uint32_t y) noexcept {
+    return fieldNumber(field.cells[size_t(y) * field.width + x]);
+}
+
 uint64_t total(const Field& field) noexcept {
     uint64_t sum = 0;
-    for (const FieldCell& cell : field.cells) sum += cell.n;
+    for (const uint32_t cell : field.cells) sum += fieldNumber(cell);
     return sum;
 }
 

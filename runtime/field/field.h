@@ -4,6 +4,7 @@
 #pragma once
 #include "shared/field.h"
 
+#include <array>
 #include <cstdint>
 #include <memory_resource>
 #include <span>
@@ -33,11 +34,11 @@ constexpr uint32_t kFieldPresets = 3;
 FieldLook fieldPreset(FieldPreset preset) noexcept;
 
 struct FieldDef {
-    uint32_t width = 64, height = 64;  // cells, [4, 256]
+    uint32_t width = 64, height = 64;  // cells, [4, 256]; on a device the width in fours
     FieldLook look;
-    uint32_t stepRate = 20;  // Hz, [1, 120]
-    vec2 wind{0.0f};         // cells a step
-    uint32_t open = gpu::kFieldOpenTop;
+    uint32_t stepRate = 20;              // Hz, [1, 120]
+    vec2 wind{0.0f};                     // cells a step
+    uint32_t open = gpu::kFieldOpenTop;  // kFieldOpen bits, or kFieldRing
     uint32_t seed = 1;
 };
 
@@ -49,29 +50,31 @@ FieldRules fieldRules(const FieldDef& def) noexcept;
 // Where it emits unless the host says otherwise: a bed along the bottom (fire, smoke), a spout at
 // the top (what falls), a fifth of its width.
 void addDefaultSource(FieldRules& rules, const FieldLook& look) noexcept;
-
-struct FieldCell {
-    uint32_t n = 0;  // particles
-    ivec2 mean{0};   // Q10, mean motion
-};
+// Of a source: an amount of 1 fills a cell to white in about 12 steps.
+uint32_t emissionRate(float amount) noexcept;
 
 struct Field {
     explicit Field(std::pmr::memory_resource* memory)
-        : cells(memory), walls(memory), next(memory), shares(memory) {}
+        : cells(memory), masks(memory), next(memory), given(memory) {}
     uint32_t width = 0, height = 0;
     uint32_t step = 0;
-    std::pmr::vector<FieldCell> cells;  // rows from the bottom
-    std::pmr::vector<uint8_t> walls;    // 1: nothing is there, nothing goes there
+    std::pmr::vector<uint32_t> cells;  // gpu::fieldCell, rows from the bottom
+    std::pmr::vector<uint8_t> masks;   // kFieldWall: nothing is there, nothing goes there
     // total(field) + died + left == emitted + what was put there, always.
     uint64_t emitted = 0, died = 0, left = 0;
     // Of the step under way.
-    std::pmr::vector<FieldCell> next;
-    std::pmr::vector<glm::uvec4> shares;
+    std::pmr::vector<uint32_t> next;
+    std::pmr::vector<std::array<uint16_t, 8>> given;
 };
 
 // Empty, without walls. width and height as in FieldDef.
 void startField(Field& field, uint32_t width, uint32_t height);
+// Other masks; what is where a wall comes dies, where one goes nothing is.
+void maskField(Field& field, std::span<const uint8_t> masks) noexcept;
+// Particles of a cell become `n`, at most gpu::kFieldCellMost; they stand still.
+void fillCell(Field& field, uint32_t x, uint32_t y, uint32_t n) noexcept;
 void stepField(Field& field, const FieldRules& rules) noexcept;
+uint32_t cellAt(const Field& field, uint32_t x, uint32_t y) noexcept;  // particles
 uint64_t total(const Field& field) noexcept;
 
 }  // namespace fw::field

@@ -7,6 +7,7 @@
 #include "mesh/refine/roughen.h"
 #include "shared/burn.h"
 #include "shared/exchange.h"
+#include "shared/field.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -86,6 +87,17 @@ struct EmitterUpdate {   // fire emitters in this frame; looks only
     uint32_t particleEnd = 0;       // behind the last particle of any of them
     uint32_t particles = 0;         // of all rings
 };
+struct FieldRun {                  // a step of a particle field
+    uint32_t field = 0, step = 0;  // slot; its number, from 0
+};
+struct FieldDraw;  // shared/field_draw.h
+struct FieldUpdate {
+    std::span<const FieldRun> runs;    // round by round; in one a field is once at most
+    std::span<const uint32_t> rounds;  // where each ends
+    // That are shown, by slot; where their cells are is the backend's to fill. Looks only.
+    const FieldDraw* draws = nullptr;
+    std::span<const uint32_t> drawn;  // slots of those
+};
 
 struct FramePlan {
     uint64_t frameIndex = 0;
@@ -98,6 +110,7 @@ struct FramePlan {
     float tickFraction = 0;                   // into the running step, [0, 1); for looks only
     const VolumeUpdate* volumes = nullptr;    // null: as before
     const EmitterUpdate* emitters = nullptr;  // null: none, or no time passes for them
+    const FieldUpdate* fields = nullptr;      // null: none steps
 };
 
 struct BurnMap {
@@ -113,8 +126,9 @@ struct Readback {  // valid until the next call of nextReadback
     std::span<const ProbeAnswer> answers;     // of the probes of that frame
     std::span<const BurnMap> burnMaps;
     std::span<const BurnLight> lights;
-    uint32_t frontTiles = 0;  // length of the front list: 0 and no events = idle
-    uint32_t runTiles = 0;    // tiles run in the frame
+    std::span<const FieldCounters> fields;  // by slot; those of its rows are the backend's
+    uint32_t frontTiles = 0;                // length of the front list: 0 and no events = idle
+    uint32_t runTiles = 0;                  // tiles run in the frame
     uint32_t burningTiles = 0;
     uint32_t flames = 0;
     uint32_t hotTiles = 0;   // length of the hot list
@@ -164,6 +178,15 @@ class Backend {
     virtual void destroyImage(uint32_t slot) noexcept = 0;
     // A fire profile of the host's, kProfileWidth x kProfileHeight pairs of halfs. Looks alone.
     virtual void setFireProfile(uint32_t /*slot*/, std::span<const uint32_t> /*texels*/) {}
+
+    // Particle fields. Masks: a byte per cell, see kFieldWall. It begins empty; a wall that comes
+    // kills what is there. Creation and masking: unchanged when they throw.
+    virtual void createField(uint32_t /*slot*/, const FieldRules&,
+                             std::span<const uint8_t> /*masks*/) {}
+    virtual void destroyField(uint32_t /*slot*/) noexcept {}
+    virtual void setFieldRules(uint32_t /*slot*/, const FieldRules&) noexcept {}
+    virtual void setFieldMasks(uint32_t /*slot*/, std::span<const uint8_t> /*masks*/) {}
+    [[nodiscard]] virtual uint64_t fieldBytes(uint32_t /*slot*/) const noexcept { return 0; }
 
     // Runs (cpu) or records (vk, between its begin and end of the outside part) a frame's steps.
     virtual void run(const FramePlan& plan) = 0;

@@ -54,6 +54,7 @@ void World::collectReadbacks() {
         takeCounters(*readback);
         takeAnswers(*readback);
         takeLights(*readback);
+        takeFields(*readback);
         for (const gpu::BurnMap& map : readback->burnMaps) {
             if (map.object >= objects_.slotCount()) continue;
             auto* owned = objects_.at(map.object);

@@ -42,6 +42,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     }
     planFires(deltaTime);
     planEmitters(deltaTime);
+    planFields(time);
 
     // Nothing listed, nothing new: time passes without the device.
     const bool skip = idle_ && frame_.events.empty() && frame_.updates.empty() &&
@@ -56,6 +57,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     std::copy_n(wind_, 3, plan.wind);
     if (frame_.volumesDue) plan.volumes = &frame_.volumes;
     if (frame_.emittersDue) plan.emitters = &frame_.emitters;
+    if (frame_.fieldsDue) plan.fields = &frame_.fields;
     plan.tickFraction = float(double(time.after.fraction) / double(Clock::kStepUnits));
     backend_.run(plan);
 
@@ -213,6 +215,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
         log_.write(FW_LOG_WARNING, "A world has a day left: it simulates at most %llu s.",
                    static_cast<unsigned long long>(Clock::kLastTick / 4096));
     commitFires();
+    commitFields(time.after.tick);
     clock_ = time.after;
     if (ran) steps_ += time.steps;
     lastFrame_ = frameIndex;

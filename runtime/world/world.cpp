@@ -92,6 +92,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       queries_("Query", memory),
       blockers_("Blocker", memory),
       fires_("Volumetric fire", memory),
+      fields_("Particle field", memory),
       fireProfiles_("Fire profile", memory),
       fireColliders_("Fire collider", memory),
       profiles_(memory),
@@ -137,6 +138,7 @@ World::~World() {
 void World::setWind(const float wind[3]) {
     checkValues(wind, 3, "wind", -120.0f, 120.0f);
     std::copy_n(wind, 3, wind_);
+    sendFieldRules();
 }
 
 // ---- materials and images ---------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #pragma once
 #include "components/fire_emitter.h"
 #include "components/fire_flames.h"
+#include "components/particle_field.h"
 #include "components/remote.h"
 #include "core/handle_pool.h"
 #include "core/log.h"
@@ -125,6 +126,16 @@ struct Fire {
     explicit Fire(std::pmr::memory_resource* memory) : data(memory) {}
     components::VolumetricFire data;
     std::array<FireTouch, 8> touches{};
+};
+
+struct Field {
+    explicit Field(std::pmr::memory_resource* memory) : data(memory) {}
+    components::ParticleField data;
+    uint64_t began = 0;       // tick
+    uint32_t steps = 0;       // that the backend has been told
+    uint64_t firstFrame = 0;  // readbacks of older frames speak of another field
+    gpu::FieldCounters counters{};
+    uint64_t countersFrame = 0;
 };
 
 struct FireProfileEntry {
@@ -268,6 +279,14 @@ class World {
     FwFireColliderId addFireCollider(const FwFireColliderDef& def);
     void setFireCollider(FwFireColliderId id, const FwFireColliderDef& def);
     void removeFireCollider(FwFireColliderId id);
+    FwParticleFieldId createParticleField(const FwParticleFieldDef& def);
+    void destroyParticleField(FwParticleFieldId id);
+    void moveParticleField(FwParticleFieldId id, const float position[3], const float rotation[4]);
+    void setParticleFieldAmount(FwParticleFieldId id, float amount);
+    void setParticleFieldHidden(FwParticleFieldId id, bool hidden);
+    void paintParticleField(FwParticleFieldId id, const uint8_t* paint, const uint8_t* walls);
+    void particleFieldState(FwParticleFieldId id, FwParticleFieldState& state);
+
     void askVolumetricFires(const float point[3], FwFireAnswer& answer);
     void volumetricFirePush(const float centre[3], float radius, FwFirePush& push);
 
@@ -300,6 +319,7 @@ class World {
 
  private:
     static constexpr uint32_t kMaxSteps = 64;
+    static_assert(kMaxSteps == gpu::kMaxFieldRounds);
     static constexpr uint32_t kMaxTags = 4096;
     static constexpr uint32_t kMaxQueries = 1024;
     static constexpr size_t kMaxPending = size_t(1) << 22;  // texel events that wait
@@ -325,7 +345,11 @@ class World {
               latches(memory),
               probes(memory),
               burnMaps(memory),
-              remote(memory) {}
+              remote(memory),
+              fieldRuns(memory),
+              fieldRounds(memory),
+              fieldDraws(memory),
+              fieldsDrawn(memory) {}
         struct Due {
             PendingTexel event;
             uint32_t step = 0;
@@ -345,6 +369,12 @@ class World {
         std::pmr::vector<core::Owned<RemoteTables>> remote;  // the first `remoteUsed` of them
         size_t remoteUsed = 0;
         bool remoteLatched = false, remoteFlushed = false;
+        std::pmr::vector<gpu::FieldRun> fieldRuns;  // there is room for all of a frame
+        std::pmr::vector<uint32_t> fieldRounds;
+        std::pmr::vector<gpu::FieldDraw> fieldDraws;
+        std::pmr::vector<uint32_t> fieldsDrawn;
+        gpu::FieldUpdate fields;
+        bool fieldsDue = false;     // the backend is told
         gpu::VolumeUpdate volumes;  // of fireFlames_
         bool volumesDue = false;    // the backend is told
         gpu::EmitterUpdate emitters;
@@ -366,6 +396,12 @@ class World {
     uint32_t emitterRoom(uint32_t particles);
     void planEmitters(float seconds) noexcept;
     void commitEmitters(float seconds) noexcept;
+    // fields.cpp
+    void planFields(const ClockAdvance& time) noexcept;
+    void planFieldDraws(const Clock& now) noexcept;
+    void commitFields(uint64_t end) noexcept;
+    void takeFields(const gpu::Readback& readback) noexcept;
+    void sendFieldRules() noexcept;
     // fire_colliders.cpp
     void listFireColliders() noexcept;
     // fire_touch.cpp
@@ -441,6 +477,7 @@ class World {
     core::HandlePool<FwQueryId, Query> queries_;
     core::HandlePool<FwBlockerId, BlockerEntry> blockers_;
     core::HandlePool<FwVolumetricFireId, core::Owned<Fire>> fires_;
+    core::HandlePool<FwParticleFieldId, core::Owned<Field>> fields_;
     core::HandlePool<FwFireProfileId, FireProfileEntry> fireProfiles_;
     core::HandlePool<FwFireColliderId, core::Owned<FireColliderEntry>> fireColliders_;
     std::pmr::vector<core::Owned<volume::Profile>> profiles_;  // by layer; null: none needed it
@@ -457,6 +494,8 @@ class World {
     uint32_t emittersMade_ = 0;                                     // since ever
     double emitterTime_ = 0;                                        // s
     bool emittersShown_ = false;                                    // the backend has some
+    uint32_t fieldsMade_ = 0;                                       // since ever
+    uint32_t fieldsShown_ = 0;                                      // that the backend draws
     RemoteBook remote_;
     std::pmr::vector<uint32_t> imageUsers_;  // by backend slot: objects + 1 for a live id; 0: free
     std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing

@@ -88,6 +88,13 @@
 #define FW_BIND_VOLUMES 90          // VolumeFlame[]: volumetric flames of the frame, see volume_draw.h
 #define FW_BIND_VOLUME_RAYS 91      // uint[]: marched flames of a view, see VolumeMarch in volume_draw.h
 #define FW_BIND_VOLUME_WORK 92      // VolumeWork[]: what the probe found of each flame
+#define FW_BIND_FIELDS 110          // FieldRecord[], by field slot: see field.h
+#define FW_BIND_FIELD_CELLS 111     // uint[]: fieldCell, twice (per field)
+#define FW_BIND_FIELD_MASKS 113     // uint[]: a byte per cell (per field)
+#define FW_BIND_FIELD_COUNTERS 114  // FieldCounters[], by field slot
+#define FW_BIND_FIELD_RUNS 115      // uvec2[]: field slot, number of the step; of steps also the unit << 16
+#define FW_BIND_FIELD_SHOWN 116     // uint[]: what a cell shows in this frame (per field), see field_draw.h
+#define FW_BIND_FIELD_DRAWS 117     // FieldDraw[]: fields that are shown
 #define FW_BIND_EMITTERS 120         // ParticleEmitter[]: fire emitters of the frame, see particle.h
 #define FW_BIND_EMITTER_GROUPS 121   // uvec2[]: emitter, first slot of its ring that a group works on
 #define FW_BIND_PARTICLES 122        // Particle[]: rings of emitters

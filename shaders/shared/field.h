@@ -14,20 +14,30 @@ FW_SHARED_BEGIN
 
 FW_SHARED_CONST uint kFieldSources = 4u;         // of a field
 FW_SHARED_CONST uint kFieldSideMost = 256u;      // cells
-FW_SHARED_CONST uint kFieldMovesMost = 65535u;   // particles that leave a cell in one step
-FW_SHARED_CONST uint kFieldCellFull = 1u << 20u; // particles from which nothing is emitted into a cell
-FW_SHARED_CONST uint kFieldSpreadMost = 8192u;   // Q16: an eighth; twice this is unstable
+FW_SHARED_CONST uint kFieldCellMost = 32767u;    // particles of a cell
+FW_SHARED_CONST uint kFieldCellFull = 16384u;    // from which nothing is emitted into it
+FW_SHARED_CONST uint kFieldAll = 32768u;         // Q15, a share: all of a cell's particles
+FW_SHARED_CONST int kFieldStill = 128;           // a mean motion's byte: none
+FW_SHARED_CONST int kFieldSpeed = 120;           // beside it: a cell a step
+FW_SHARED_CONST uint kFieldWallCell = 0x8080FFFFu;  // a cell's word where a wall is
+FW_SHARED_CONST uint kFieldSpreadMost = 4096u;   // Q15: an eighth; twice this is unstable
 
-FW_SHARED_CONST uint kFieldWall = 1u;            // bits of FieldCell::kind
+FW_SHARED_CONST uint kMaxFields = 256u;          // of a world
+FW_SHARED_CONST uint kMaxFieldRounds = 64u;      // of a frame: so often a field steps in it at most
+FW_SHARED_CONST uint kFieldUnits = 8u;          // of eight strips, each four columns, that a group steps
+FW_SHARED_CONST uint kFieldWall = 255u;          // of a cell's mask; below: how much of the paint is there
 FW_SHARED_CONST uint kFieldOpenLeft = 1u;        // bits of FieldRules::open: particles leave the field there
 FW_SHARED_CONST uint kFieldOpenRight = 2u;
 FW_SHARED_CONST uint kFieldOpenBottom = 4u;
 FW_SHARED_CONST uint kFieldOpenTop = 8u;
+FW_SHARED_CONST uint kFieldFresh = 0x80000000u;  // of a run's step, when masked: the field becomes empty
+FW_SHARED_CONST uint kFieldRing = 16u;           // instead, its left and right border are one
 
 struct FieldSource {     // a rectangle of cells that emits
     ivec4 cells;         // first x, first y, end x, end y
     uint rate;           // Q8 particles of a cell and step
-    uint pad0; uint pad1; uint pad2;
+    uint disc;           // 1: the disc as wide as the rectangle, about its middle
+    uint pad0; uint pad1;
 };
 FW_SHARED_SIZE(FieldSource, 32)
 
@@ -37,8 +47,8 @@ struct FieldRules {      // of one field
     uint inertia;        // Q8, weight of the cell's mean motion
     uint chaos;          // Q8, weight of a random direction, the same over 4 x 4 cells and 4 steps
 
-    uint spread;         // Q16, [0, kFieldSpreadMost]: share of a difference that flows to each neighbour
-    uint memory;         // Q8, how much of its motion a particle keeps in a step
+    uint spread;         // Q15, [0, kFieldSpreadMost]: share of a difference that flows to each neighbour
+    uint memory;         // Q7, how much of its motion a particle keeps in a step
     uint death;          // Q16, share that dies in a step
     uint seed;
 
@@ -47,9 +57,24 @@ struct FieldRules {      // of one field
     uint open;           // kFieldOpen bits; elsewhere borders are walls
     uint sourceCount;
 
+    uint paint;          // Q8 particles of a step, of a cell whose mask is 254
+    uint pad0; uint pad1; uint pad2;
+
     FieldSource sources[kFieldSources];
 };
-FW_SHARED_SIZE(FieldRules, 176)
+FW_SHARED_SIZE(FieldRules, 192)
+
+struct FieldPush {       // push constants of the fields' passes
+    uint first;          // of the runs
+    uint pad0; uint pad1; uint pad2;
+};
+FW_SHARED_SIZE(FieldPush, 16)
+
+// A cell: particles (15 bits; none and the 16th bit: a wall), mean motion, a byte each way.
+FW_SHARED_FN uint fieldCell(uint n, uvec2 motion) { return n | (motion.x << 16u) | (motion.y << 24u); }
+FW_SHARED_FN uvec2 fieldMotionOf(uint cell) { return uvec2((cell >> 16u) & 255u, cell >> 24u); }
+FW_SHARED_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }  // all ones of a wall
+FW_SHARED_FN uint fieldNumber(uint cell) { return cell & ~fieldWalled(cell) & kFieldCellMost; }
 
 // Unit vector of direction k, Q7.
 FW_SHARED_FN ivec2 fieldDirection(uint k) {
@@ -63,15 +88,15 @@ FW_SHARED_FN ivec2 fieldNeighbour(uint k) {  // the same in cells
     return ivec2(d.x == 0 ? 0 : (d.x > 0 ? 1 : -1), d.y == 0 ? 0 : (d.y > 0 ? 1 : -1));
 }
 
-// A random number of a cell in a step. Each use has its own salt.
-FW_SHARED_FN uint fieldRandom(uint x, uint y, uint step, uint seed, uint salt) {
-    return hash32(hash32((x | (y << 16u)) ^ (seed * 0x9E3779B9u)) ^ (step * 0x85EBCA6Bu + salt));
+// Random numbers of a step: one key for each use of them, one number of a pair of coordinates.
+FW_SHARED_FN uint fieldKey(uint step, uint seed, uint salt) {
+    return hash32((seed * 0x9E3779B9u) ^ (step * 0x85EBCA6Bu + salt));
 }
+FW_SHARED_FN uint fieldRandom(uint key, uint x, uint y) { return hash32((x | (y << 16u)) ^ key); }
 
 // A random unit vector, Q7 (within 1 of it), all angles alike: an eighth of a turn to both sides of
 // an axis by the first terms of sine and cosine.
-FW_SHARED_FN ivec2 fieldChaos(uint x, uint y, uint step, uint seed) {
-    uint h = fieldRandom(x >> 2u, y >> 2u, step >> 2u, seed, 1u);
+FW_SHARED_FN ivec2 fieldChaos(uint h) {
     int a = int(h & 255u) - 128;
     a += a >= 0 ? 1 : 0;  // -128..-1, 1..128: no side is favoured
     int c = 128 - ((a * a * 75) >> 15u);
@@ -81,93 +106,163 @@ FW_SHARED_FN ivec2 fieldChaos(uint x, uint y, uint step, uint seed) {
     return (h & 512u) != 0u ? d : ivec2(-d.x, -d.y);
 }
 
+// Four cells of a row, x = 4 i ..., share a number: each one's dither of shares, Q15; and of deaths, Q16.
+FW_SHARED_FN uint fieldDither(uint random, uint x) { return (((random >> (8u * (x & 3u))) & 255u) << 7u) + 64u; }
+FW_SHARED_FN uint fieldWindow(uint random, uint x) {
+    return ((x & 3u) == 3u ? (random >> 24u) | (random << 8u) : random >> (8u * (x & 3u))) & 0xFFFFu;
+}
+
+struct FieldEight { uint k[8]; };  // of each direction
+
 FW_SHARED_FN int fieldLobe(int along) { return along > 0 ? along : 0; }
 
-// What leaves a cell in each direction, two 16-bit counts to a word: direction 0 is the low half of
-// .x. `n`: its particles; mean: Q10, their mean motion; around: particles of its neighbours;
-// closed: bit k, no way there (a wall, a closed border); random: fieldChaos; dither: [0, 255].
-// Flows are kept in 1/256 particles and rounded along the ring: what is cut off one direction is
-// carried to the next, the first begins at the dither. The sum is theirs, within one, and every
-// direction gets its flow on average.
-FW_SHARED_FN uvec4 fieldShares(uint n, ivec2 mean, uint around[8], uint closed, FieldRules rules,
-                               ivec2 random, uint dither) {
-    uint moves = n < kFieldMovesMost ? n : kFieldMovesMost;
-    uint flow[8];
+// What moves particles, as shares (Q15) that are kFieldAll at most together: blended, if they were more.
+struct FieldWeights {
+    FieldEight force;      // of each direction
+    uint chance;           // of a cosine lobe
+    uint inertia;          // of a cosine lobe, of motion kFieldSpeed: Q7 more
+    uint inertiaDiagonal;  // beside it, of the sum of both parts
+};
+FW_SHARED_FN FieldWeights fieldWeights(FieldRules rules) {
+    FieldWeights w;
     uint sum = 0u;
     FW_UNROLL for (uint k = 0u; k < 8u; ++k) {
         ivec2 u = fieldDirection(k);
-        // Q22: cosine lobes of motion, force and chance.
-        int lobes = (fieldLobe(mean.x * u.x + mean.y * u.y) >> 3u) * int(rules.inertia) +
-                    (fieldLobe(rules.forceX * u.x + rules.forceY * u.y) << 8u) +
-                    fieldLobe(random.x * u.x + random.y * u.y) * int(rules.chaos);
-        // The eight cosines of a unit vector sum up to 2.41..2.61: 0.41 of it is a share. Q16.
-        uint share = ((uint(lobes) >> 6u) * 105u) >> 8u;
-        share = share < 65535u ? share : 65535u;
-        uint less = n > around[k] ? n - around[k] : 0u;
-        less = less < kFieldMovesMost ? less : kFieldMovesMost;
-        uint f = ((moves * share) >> 8u) + ((less * rules.spread) >> 8u);
-        f = f < 0xFFFFFFu ? f : 0xFFFFFFu;
-        flow[k] = (closed & (1u << k)) != 0u ? 0u : f;
-        sum += flow[k];
+        // The eight cosines of a unit vector sum up to 2.41..2.61: 0.41 of one is its share.
+        w.force.k[k] = (uint(fieldLobe(rules.forceX * u.x + rules.forceY * u.y)) * 210u) >> 8u;
+        sum += w.force.k[k];
     }
-    // More than it has: all of them in the same proportion. Q16, below 1.
-    uint scale = sum > (moves << 8u) ? divide(moves << 16u, (sum >> 8u) + 1u) : 65536u;
-    uvec4 shares = uvec4(0u);
-    uint carry = dither;
-    FW_UNROLL for (uint k = 0u; k < 8u; ++k) {
-        uint f = scale == 65536u ? flow[k]
-                                 : (((flow[k] >> 8u) * scale) >> 8u) + (((flow[k] & 255u) * scale) >> 16u);
-        carry += f;
-        shares[int(k >> 1u)] |= (carry >> 8u) << ((k & 1u) * 16u);
-        carry &= 255u;
-    }
-    return shares;
+    uint chance = rules.chaos << 7u, inertia = rules.inertia << 7u;
+    // 0.41 of eight cosines is 1.0714 at most, and rounding makes motion longer by one part of 80.
+    sum += ((chance + inertia) * 35u) >> 5u;
+    uint most = kFieldAll - 64u;
+    uint scale = sum > most ? divide(most << 16u, sum) : 65535u;
+    FW_UNROLL for (uint k = 0u; k < 8u; ++k) w.force.k[k] = (w.force.k[k] * scale) >> 16u;
+    w.chance = (((chance * scale) >> 16u) * 105u) >> 8u;
+    w.inertia = (((inertia * scale) >> 16u) * 112u) >> 8u;
+    w.inertiaDiagonal = (w.inertia * 181u) >> 8u;
+    return w;
 }
 
-FW_SHARED_FN uint fieldShare(uvec4 shares, uint k) { return (shares[int(k >> 1u)] >> ((k & 1u) * 16u)) & 0xFFFFu; }
+struct FieldRecord {     // of one field on a device
+    FieldRules rules;
+    FieldWeights weights;  // of the rules
+    uint pad0;
+    uint cellBase;       // into the cells' planes
+    uint cellRoom;       // from its first cells to its second: even steps read the first
+    uint pad1; uint pad2;
+};
+FW_SHARED_SIZE(FieldRecord, 256)
 
-FW_SHARED_FN uint fieldShareSum(uvec4 s) {
-    uvec4 both = uvec4(s.x & 0xFFFFu, s.y & 0xFFFFu, s.z & 0xFFFFu, s.w & 0xFFFFu);
-    return both.x + both.y + both.z + both.w + (s.x >> 16u) + (s.y >> 16u) + (s.z >> 16u) + (s.w >> 16u);
+struct FieldCounters {   // since it began
+    uint inside;         // particles, now
+    uint pad0;
+    uint emittedLow; uint emittedHigh;  // low + 2^32 high
+    uint diedLow; uint diedHigh;
+    uint leftLow; uint leftHigh;
+    uint bands0; uint bands1;           // of the first and second cells: bit k, rows 8k.. hold particles
+    uint steps;
+    uint pad1;
+};
+FW_SHARED_SIZE(FieldCounters, 48)
+
+// Shares by force and by a random vector, which both are those of many cells; and all of them.
+struct FieldPushes {
+    FieldEight to;
+    uint sum;
+};
+FW_SHARED_FN FieldPushes fieldPushes(FieldWeights w, ivec2 random) {
+    FieldPushes p;
+    int x = random.x * 128, y = random.y * 128, a = (random.x + random.y) * 91, b = (random.x - random.y) * 91;
+    p.to.k[0] = w.force.k[0] + ((uint(fieldLobe(x)) * w.chance) >> 14u);
+    p.to.k[1] = w.force.k[1] + ((uint(fieldLobe(a)) * w.chance) >> 14u);
+    p.to.k[2] = w.force.k[2] + ((uint(fieldLobe(y)) * w.chance) >> 14u);
+    p.to.k[3] = w.force.k[3] + ((uint(fieldLobe(-b)) * w.chance) >> 14u);
+    p.to.k[4] = w.force.k[4] + ((uint(fieldLobe(-x)) * w.chance) >> 14u);
+    p.to.k[5] = w.force.k[5] + ((uint(fieldLobe(-a)) * w.chance) >> 14u);
+    p.to.k[6] = w.force.k[6] + ((uint(fieldLobe(-y)) * w.chance) >> 14u);
+    p.to.k[7] = w.force.k[7] + ((uint(fieldLobe(b)) * w.chance) >> 14u);
+    p.sum = p.to.k[0] + p.to.k[1] + p.to.k[2] + p.to.k[3] + p.to.k[4] + p.to.k[5] + p.to.k[6] + p.to.k[7];
+    return p;
 }
 
-FW_SHARED_FN int fieldMean(int sum, uint count) {
-    if (count == 0u) return 0;
-    return sum >= 0 ? int(divide(uint(sum), count)) : -int(divide(uint(-sum), count));
+// A cell that gives: what is the same for all directions. The masks say what is known of a value:
+// devices that multiply 16 bits faster than 32 then do.
+struct FieldGiver {
+    uint n;
+    uint own;        // particles times spread
+    uint most;       // that spread to each neighbour at most, Q15: an eighth of those that no force moves
+    int v0; int v1; int v2; int v3;  // shares by its motion, of directions 0 to 3; below 0 of the opposite
+    uint ahead;      // first dithers, Q15: of directions 7 0 1 2 and 3 4 5 6
+    uint behind;
+};
+FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint inertia, uint inertiaDiagonal,
+                                   uint dither) {
+    FieldGiver g;
+    uint mx = (cell >> 16u) & 255u, my = cell >> 24u;
+    uint straight = inertia & 0x3FFFu, slant = inertiaDiagonal & 0x3FFFu;
+    g.n = fieldNumber(cell);
+    g.v0 = int(mx * straight - 128u * straight) >> 7u;
+    g.v1 = int((mx + my) * slant - 256u * slant) >> 7u;
+    g.v2 = int(my * straight - 128u * straight) >> 7u;
+    g.v3 = int((256u - mx + my) * slant - 256u * slant) >> 7u;
+    uint moves = pushed + uint(abs(g.v0) + abs(g.v1) + abs(g.v2) + abs(g.v3));
+    g.own = g.n * (spread & 0x1FFFu);
+    g.most = ((g.n * ((kFieldAll - 1u - moves) & 0x7FFFu)) >> 15u) * (spread & 0x1FFFu);
+    g.ahead = dither;
+    g.behind = 32767u - dither;
+    return g;
+}
+// What it gives in direction k, Q15. push: of the direction; around: particles of the neighbour times
+// spread (a wall is full, as is what lies beyond a border); room: what that takes.
+FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint room) {
+    int v = (k & 3u) == 0u ? g.v0 : ((k & 3u) == 1u ? g.v1 : ((k & 3u) == 2u ? g.v2 : g.v3));
+    uint share = push + uint(k < 4u ? fieldLobe(v) : fieldLobe(v) - v);
+    int less = fieldLobe(int(g.own - around));
+    uint spreads = uint(less) < g.most ? uint(less) : g.most;
+    uint flow = g.n * (share & 0x7FFFu) + spreads;
+    return flow < room ? flow : room;
+}
+// Flows are rounded along two arcs of the ring, 7 0 1 2 and 3 4 5 6: what is cut off one is carried to
+// the next, and the first dithers are one together, so that no more are given than there are, and every
+// direction gets its flow on average. sum: of the arc so far, its dither at first.
+FW_SHARED_FN uint fieldGiven(uint before, uint sum) { return ((sum >> 15u) - (before >> 15u)) & 4095u; }
+
+// What a cell of n particles takes from each direction, Q15: an eighth of its room.
+FW_SHARED_FN uint fieldRoom(uint n) { return ((kFieldCellMost - n) << 12u) & ~32767u; }
+
+// What a particle carries that moves along u (a direction's part in cells: 0, 1 and the diagonals' 0.7)
+// out of a cell of this motion: what it remembers, and what it did. Q7.
+FW_SHARED_FN uint fieldCarried(uint motion, int u, uint memory) {
+    return motion * memory + uint(kFieldStill + u) * (128u - memory);
+}
+FW_SHARED_FN int fieldSpeed(int direction) { return direction == 0 ? 0 : (direction == 128 ? kFieldSpeed : (direction == -128 ? -kFieldSpeed : (direction > 0 ? 85 : -85))); }
+
+// The motion's byte of n particles that carry `sum` together: rounded.
+FW_SHARED_FN uint fieldMean(uint sum, uint n) {
+    uint t = (sum >> 7u) + (n >> 1u);  // below 2^23
+#ifdef __cplusplus
+    return n == 0u ? uint(kFieldStill) : t / n;
+#else
+    uint d = max(n, 1u);
+    uint q = uint(float(t) * (1.0 / float(d)));  // within one of it
+    int r = int(t) - int(q * d);
+    q = r < 0 ? q - 1u : (r >= int(d) ? q + 1u : q);
+    return n == 0u ? uint(kFieldStill) : q;
+#endif
 }
 
-// What motion a particle has that comes from direction k of a cell, where the mean was `mean`. Q10.
-FW_SHARED_FN ivec2 fieldCarried(ivec2 mean, uint k, uint memory) {
-    ivec2 u = fieldDirection(k);
-    int kept = int(memory), fresh = 256 - kept;
-    return ivec2((mean.x * kept - u.x * 8 * fresh + 128) >> 8u, (mean.y * kept - u.y * 8 * fresh + 128) >> 8u);
-}
+// How many of n die. random: 16 bits.
+FW_SHARED_FN uint fieldDeaths(uint n, uint death, uint random) { return (n * death + random) >> 16u; }
 
-// The mean motion after a step: of those that stayed, and of those that came from each direction.
-FW_SHARED_FN ivec2 fieldMotion(uint stayed, ivec2 mean, uint came[8], ivec2 means[8], uint memory) {
-    uint count = stayed < kFieldCellFull ? stayed : kFieldCellFull;
-    int kept = int(memory);
-    ivec2 sum = ivec2(((mean.x * kept + 128) >> 8u) * int(count), ((mean.y * kept + 128) >> 8u) * int(count));
-    FW_UNROLL for (uint k = 0u; k < 8u; ++k) {
-        ivec2 carried = fieldCarried(means[k], k, memory);
-        sum = ivec2(sum.x + int(came[k]) * carried.x, sum.y + int(came[k]) * carried.y);
-        count += came[k];
-    }
-    return ivec2(fieldMean(sum.x, count), fieldMean(sum.y, count));
-}
-
-// How many of n die. random: 32 bits.
-FW_SHARED_FN uint fieldDeaths(uint n, uint death, uint random) {
-    uint most = n < 65535u ? n : 65535u;
-    return (most * death + (random & 0xFFFFu)) >> 16u;
-}
-
-// How many are emitted into a cell of n particles.
-FW_SHARED_FN uint fieldEmission(uint x, uint y, uint n, FieldRules rules, uint random) {
-    uint rate = 0u;
+// How many are emitted into a cell of n particles with this mask. random: 32 bits.
+FW_SHARED_FN uint fieldEmission(uint x, uint y, uint n, uint mask, FieldRules rules, uint random) {
+    uint rate = (rules.paint * mask * 258u) >> 16u;
     FW_UNROLL for (uint k = 0u; k < kFieldSources; ++k) {
         ivec4 c = rules.sources[k].cells;
         bool within = k < rules.sourceCount && int(x) >= c.x && int(y) >= c.y && int(x) < c.z && int(y) < c.w;
+        int a = 2 * int(x) + 1 - c.x - c.z, b = 2 * int(y) + 1 - c.y - c.w, wide = c.z - c.x;
+        within = within && (rules.sources[k].disc == 0u || a * a + b * b <= wide * wide);
         rate += within ? rules.sources[k].rate : 0u;
     }
     return n < kFieldCellFull ? (rate + (random >> 24u)) >> 8u : 0u;

@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(78, calls);  // every function of the three headers
+    EXPECT_EQ(87, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -52,6 +52,7 @@ const DefCase kDefs[] = {
     {"collider", FW_DEF_FIRE_COLLIDER, sizeof(FwFireColliderDef)},
     {"track", FW_DEF_FIRE_TRACK, sizeof(FwFireTrackDef)},
     {"emitter", FW_DEF_FIRE_EMITTER, sizeof(FwFireEmitterDef)},
+    {"field", FW_DEF_PARTICLE_FIELD, sizeof(FwParticleFieldDef)},
     {"host", FW_DEF_VULKAN_HOST, sizeof(FwVulkanHost)},
     {"target", FW_DEF_VULKAN_TARGET, sizeof(FwVulkanTargetDef)},
     {"frame", FW_DEF_VULKAN_FRAME, sizeof(FwVulkanFrame)},
@@ -196,6 +197,13 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
         [&](const FwVolumetricFireDef* def) {
             FwVolumetricFireId id{};
             return fwWorld_CreateVolumetricFire(w.world, def, &id);
+        },
+        worldMessage);
+    checkSizes<FwParticleFieldDef>(
+        "FwParticleFieldDef", fwDefaultParticleFieldDef(),
+        [&](const FwParticleFieldDef* def) {
+            FwParticleFieldId id{};
+            return fwWorld_CreateParticleField(w.world, def, &id);
         },
         worldMessage);
     checkSizes<FwFireColliderDef>(
@@ -441,6 +449,32 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     refuse(&E::sparks, "sparks", {-0.1f, 1.1f});
     refuse(&E::temperature, "temperature", {-1.0f, 2501.0f});
     refuse(&E::ground, "ground", {-2e6f, 2e6f});
+    const std::function<FwResult(const FwParticleFieldDef*)> makeField =
+        [&](const FwParticleFieldDef* def) {
+            FwParticleFieldId id{};
+            const FwResult result = fwWorld_CreateParticleField(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_DestroyParticleField(w.world, id);
+            return result;
+        };
+    const FwParticleFieldDef field = fwDefaultParticleFieldDef();
+    using P = FwParticleFieldDef;
+    refuseFloat<P>(field, &P::amount, "amount", makeField, worldMessage, {-0.1f, 4.1f});
+    refuseFloat<P>(field, &P::rise, "rise", makeField, worldMessage, {-4.1f, 4.1f});
+    refuseFloat<P>(field, &P::spread, "spread", makeField, worldMessage, {-0.1f, 1.1f});
+    refuseFloat<P>(field, &P::memory, "memory", makeField, worldMessage, {-0.1f, 1.1f});
+    refuseFloat<P>(field, &P::chaos, "chaos", makeField, worldMessage, {-0.1f, 4.1f});
+    refuseFloat<P>(field, &P::life, "life", makeField, worldMessage, {0.0f, 2000.0f});
+    refuseFloat<P>(field, &P::detail, "detail", makeField, worldMessage, {-0.1f, 1.1f});
+    refuseFloat<P>(field, &P::body, "body", makeField, worldMessage, {-0.1f, 2.1f});
+    refuseFloat<P>(field, &P::windResponse, "windResponse", makeField, worldMessage, {-1.0f, 5.0f});
+    refuseFloat<P>(field, &P::sourceSize, "sourceSize", makeField, worldMessage, {0.0f, 1.1f});
+    refuseFloat<P>(field, &P::opacity, "opacity", makeField, worldMessage, {-0.1f, 11.0f});
+    for (int i = 0; i < 3; ++i) {
+        P def = field;
+        def.size[i] = 0;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeField(&def));
+        EXPECT_NE(std::string::npos, worldMessage().find("size[" + std::to_string(i) + "] is 0"));
+    }
 
     FwBurnableMeshDef burnable = fwDefaultBurnableMeshDef();
     burnable.mesh = w.mesh;

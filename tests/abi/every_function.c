@@ -24,6 +24,7 @@ int fwTestCallEverything(int* calls) {
     const FwFireEmitterId emitter = {0, 0};
     const FwFireProfileId profile = {0, 0};
     const FwFireColliderId collider = {0, 0};
+    const FwParticleFieldId field = {0, 0};
 
     RUNS(fwResultName(FW_OK));
     RUNS(fwGetVersion());
@@ -80,6 +81,15 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RemoveFireCollider(NULL, collider));
     REFUSES(fwWorld_AskVolumetricFires(NULL, NULL, NULL));
     REFUSES(fwWorld_GetVolumetricFirePush(NULL, NULL, 0.0f, NULL));
+    REFUSES(fwInitFieldPreset(NULL, 0));
+    RUNS(fwFieldPresetName(0));
+    REFUSES(fwWorld_CreateParticleField(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyParticleField(NULL, field));
+    REFUSES(fwWorld_MoveParticleField(NULL, field, NULL, NULL));
+    REFUSES(fwWorld_SetParticleFieldAmount(NULL, field, 0.0f));
+    REFUSES(fwWorld_SetParticleFieldHidden(NULL, field, 1));
+    REFUSES(fwWorld_PaintParticleField(NULL, field, NULL, NULL));
+    REFUSES(fwWorld_GetParticleFieldState(NULL, field, NULL));
     REFUSES(fwWorld_Ignite(NULL, NULL, NULL));
     REFUSES(fwWorld_Step(NULL, 0.0f));
     REFUSES(fwWorld_RenderOffscreen(NULL, NULL));
@@ -121,6 +131,7 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultFireProfileDef().structSize == sizeof(FwFireProfileDef) ? 0 : 1;
     wrong += fwDefaultFireColliderDef().structSize == sizeof(FwFireColliderDef) ? 0 : 1;
     wrong += fwDefaultFireTrackDef().structSize == sizeof(FwFireTrackDef) ? 0 : 1;
+    wrong += fwDefaultParticleFieldDef().structSize == sizeof(FwParticleFieldDef) ? 0 : 1;
     wrong += fwDefaultOffscreenDef().structSize == sizeof(FwOffscreenDef) ? 0 : 1;
     wrong += fwDefaultVulkanHost().structSize == sizeof(FwVulkanHost) ? 0 : 1;
     wrong += fwDefaultVulkanTargetDef().structSize == sizeof(FwVulkanTargetDef) ? 0 : 1;

@@ -62,6 +62,7 @@ struct Session {
         ignition.radius = 0.03f;
         retry([&] { return fwWorld_Ignite(world, &ignition, nullptr); });
         fires();
+        fields();
         const float point[3] = {0.1f, 0, 0.1f};
         const float far[3] = {0.2f, 0, 0.1f};
         retry([&] { return fwWorld_TagPoint(world, object, far, 1); });
@@ -113,6 +114,17 @@ struct Session {
         track.times = &time;
         track.points = line;
         retry([&] { return fwWorld_SetVolumetricFireTrack(world, fire, &track); });
+    }
+
+    void fields() {
+        FwParticleFieldDef def = fwDefaultParticleFieldDef();
+        def.width = def.height = 32;
+        FwParticleFieldId field{};
+        retry([&] { return fwWorld_CreateParticleField(world, &def, &field); });
+        def.shape = FW_FIELD_SPHEROID;
+        retry([&] { return fwWorld_CreateParticleField(world, &def, &field); });
+        const std::vector<uint8_t> walls(32 * 32, 1);
+        retry([&] { return fwWorld_PaintParticleField(world, field, nullptr, walls.data()); });
     }
 
     // A call that memory failed once works the second time.

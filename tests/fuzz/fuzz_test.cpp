@@ -267,6 +267,47 @@ class Fuzz {
         }
     }
 
+    void useField() {
+        if (fields_.known.size() < 6 || random_.once(20)) {
+            FwParticleFieldDef def = fwDefaultParticleFieldDef();
+            (void)fwInitFieldPreset(&def, random_.below(4));
+            def.shape = random_.below(3);
+            def.source = random_.below(3);
+            garble(def);
+            def.paint = def.walls = nullptr;
+            def.width = std::min(def.width, 64u);
+            def.structSize = sizeof def;
+            FwParticleFieldId id{};
+            const FwResult result = fwWorld_CreateParticleField(world_, &def, &id);
+            check(result);
+            if (result == FW_OK) fields_.known.push_back(id);
+        }
+        const FwParticleFieldId id = fields_.any(random_);
+        float place[4];
+        for (float& x : place) x = random_.number();
+        switch (random_.below(4)) {
+            case 0:
+                check(fwWorld_MoveParticleField(world_, id, place,
+                                                random_.once(2) ? place : nullptr));
+                break;
+            case 1:
+                check(fwWorld_SetParticleFieldAmount(world_, id, 5 * random_.unit()));
+                break;
+            case 2:
+                check(fwWorld_SetParticleFieldHidden(world_, id, random_.below(2)));
+                break;
+            default: {
+                FwParticleFieldState state{};
+                state.structSize = sizeof state;
+                const FwResult result = fwWorld_GetParticleFieldState(world_, id, &state);
+                check(result);
+                if (result != FW_OK) break;
+                EXPECT_EQ(state.emitted, state.inside + state.dead + state.out);
+            }
+        }
+        if (random_.once(6)) destroy(fields_, fwWorld_DestroyParticleField);
+    }
+
     void changeFlame() {
         const FwVolumetricFireId id = flames_.any(random_);
         float place[3];
@@ -575,6 +616,9 @@ class Fuzz {
                 if (colliders_.known.size() < 6 || random_.once(8)) shapeCollider();
                 if (random_.once(3)) destroy(colliders_, fwWorld_RemoveFireCollider);
                 break;
+            case 30:
+                useField();
+                break;
             case 29:
                 if (random_.once(2))
                     scriptFlame();
@@ -596,6 +640,7 @@ class Fuzz {
             emitters_.known.clear();
             profiles_.known.clear();
             colliders_.known.clear();
+            fields_.known.clear();
             queries_.known.clear();
         }
     }
@@ -612,6 +657,7 @@ class Fuzz {
     Ids<FwFireEmitterId> emitters_;
     Ids<FwFireProfileId> profiles_;
     Ids<FwFireColliderId> colliders_;
+    Ids<FwParticleFieldId> fields_;
     Ids<FwQueryId> queries_;
     std::vector<unsigned char> cooked_;
 };

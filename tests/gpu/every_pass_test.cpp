@@ -1,6 +1,7 @@
 // Every pass and shader once, on buffers that end where the last thing in them does. Under
 // GPU-assisted validation (tests/run --gpu-assisted) each access past an end is reported, and the
 // second test proves that; without it the software device would never notice.
+#include "components/particle_field.h"
 #include "components/remote.h"
 #include "gpu/passes/frame_graph.h"
 #include "support/burn_scene.h"
@@ -108,9 +109,31 @@ class EveryPass : public GpuTest {
         jet.ground = -0.3f;
         jet.sparks = 0.2f;
         emitter_ = std::make_unique<ParticleReference>(jet);
+        if (!published) {
+            makeField(0, field::FieldPreset::Fire, 0);
+            makeField(1, field::FieldPreset::Smoke, 0);
+            makeField(2, field::FieldPreset::Water, gpu::kFieldDisplaced);
+        }
+        fieldStep_ = 0;
         now_ = 4096;
         index_ = 0;
         passes_.clear();
+    }
+
+    // The last of them is deep in the view, the others beside each other.
+    void makeField(uint32_t slot, field::FieldPreset preset, uint32_t shape) {
+        FwParticleFieldDef def = fwDefaultParticleFieldDef();
+        components::setFieldPreset(def, uint32_t(preset));
+        def.shape = shape;
+        def.width = 36;
+        def.height = 47;
+        def.position[0] = 0.2f * float(slot);
+        components::ParticleField field(std::pmr::get_default_resource());
+        components::makeParticleField(def, 1, field);
+        field.masks[40] = gpu::kFieldWall;
+        const float wind[3] = {1, 0, 0};
+        rig_->backend.createField(slot, components::rulesOf(field, wind), field.masks);
+        fieldDraws_[slot] = components::fieldDraw(field, 0, 0, 0);
     }
 
     // The box's corners where a host has them: a little larger, in a buffer without a word to
@@ -224,6 +247,15 @@ class EveryPass : public GpuTest {
             emitters.particleEnd = emitters.particles = emitter_->record.ring;
         }
         plan.emitters = &emitters;
+        std::vector<gpu::FieldRun> runs;
+        for (uint32_t i = 0; scene_->arp == nullptr && i < 3; ++i) runs.push_back({i, fieldStep_});
+        const uint32_t rounds[] = {uint32_t(runs.size())}, drawn[] = {0, 1, 2};
+        ++fieldStep_;
+        gpu::FieldUpdate fields;
+        fields.runs = runs;
+        fields.rounds = rounds;
+        if (!runs.empty()) fields.draws = fieldDraws_, fields.drawn = drawn;
+        plan.fields = &fields;
         plan.switches = what.switches;
         plan.endTick = now_;
         moveVertices();
@@ -342,6 +374,8 @@ class EveryPass : public GpuTest {
     gpu::Blocker blocker_{};
     gpu::VolumeFlame flame_{};
     std::unique_ptr<ParticleReference> emitter_;
+    gpu::FieldDraw fieldDraws_[3]{};
+    uint32_t fieldStep_ = 0;
     const uint32_t self_ = 0xFF000000u;
     uint32_t now_ = 0;
     uint64_t index_ = 0;

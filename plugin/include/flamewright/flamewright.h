@@ -50,6 +50,7 @@ typedef struct FwVolumetricFireId { uint32_t index1, generation; } FwVolumetricF
 typedef struct FwFireProfileId { uint32_t index1, generation; } FwFireProfileId;
 typedef struct FwFireColliderId { uint32_t index1, generation; } FwFireColliderId;
 typedef struct FwFireEmitterId { uint32_t index1, generation; } FwFireEmitterId;
+typedef struct FwParticleFieldId { uint32_t index1, generation; } FwParticleFieldId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -98,7 +99,7 @@ typedef enum FwDefType {
     FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
-    FW_DEF_FIRE_TRACK = 14, FW_DEF_FIRE_EMITTER = 20,
+    FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -711,6 +712,95 @@ typedef struct FwFireEmitterState { /* as of the last frame */
     float reserved1;
 } FwFireEmitterState;
 FW_API FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld*, FwFireEmitterId id, FwFireEmitterState* state); /* [world] */
+
+/* ---- particle fields: fire, smoke and water by the cell, for small devices and for what is far away ---------- */
+
+typedef enum FwFieldPreset {
+    FW_FIELD_FIRE = 0, FW_FIELD_SMOKE = 1, FW_FIELD_WATER = 2, FW_FIELD_PRESET_COUNT = 3,
+    FW_FIELD_PRESET_FORCE32 = 0x7fffffff
+} FwFieldPreset;
+typedef enum FwFieldShape {       /* what it is drawn on */
+    FW_FIELD_CARD = 0,            /* turns about its up axis to face the eye */
+    FW_FIELD_SPHEROID = 1,        /* its left and right border meet */
+    FW_FIELD_DISPLACED = 2,       /* the same, bulging where it is dense */
+    FW_FIELD_SHAPE_FORCE32 = 0x7fffffff
+} FwFieldShape;
+typedef enum FwFieldSource {
+    FW_FIELD_SOURCE_BASE = 0,     /* the lowest rows, of what falls the highest */
+    FW_FIELD_SOURCE_DISC = 1,
+    FW_FIELD_SOURCE_PAINTED = 2,  /* paint */
+    FW_FIELD_SOURCE_FORCE32 = 0x7fffffff
+} FwFieldSource;
+typedef enum FwFieldOpen {        /* borders over which particles leave; the others are walls */
+    FW_FIELD_OPEN_LEFT = 1, FW_FIELD_OPEN_RIGHT = 2, FW_FIELD_OPEN_BOTTOM = 4, FW_FIELD_OPEN_TOP = 8,
+    FW_FIELD_OPEN_FORCE32 = 0x7fffffff
+} FwFieldOpen;
+typedef enum FwParticleFieldFlags {
+    FW_FIELD_HIDDEN = 1,          /* not drawn; time passes for it */
+    FW_FIELD_AS_PUBLISHED = 2,    /* ten steps a second, and shown as they are */
+    FW_FIELD_FLAGS_FORCE32 = 0x7fffffff
+} FwParticleFieldFlags;
+/* Particles counted in cells, in integers: none is lost or made but by a source, by the end of its life and over
+ * open borders, and every backend counts the same. Steps are at fixed times of the world. */
+typedef struct FwParticleFieldDef {
+    uint32_t structSize, flags; /* FwParticleFieldFlags */
+    uint32_t shape;             /* FwFieldShape */
+    uint32_t seed;              /* 0: another one for each field of a world */
+    float position[3];          /* m, world: the middle of its lower edge; of a spheroid its lowest point */
+    float size[3];              /* m: width, height, and of a spheroid depth, (0, 1000]; default 1 */
+    float rotation[4];          /* unit quaternion x, y, z, w; default 0,0,0,1 */
+    uint32_t width, height;     /* cells, each [32, 256], the width in fours; default 64 */
+    uint32_t stepRate;          /* steps a second, [20, 30]; default 24 */
+    uint32_t open;              /* FwFieldOpen; default all but the bottom. Spheroids: top and bottom count */
+    /* What it is: eight numbers, the same for fire, smoke and water; see fwInitFieldPreset. */
+    float amount;               /* of its source, [0, 4]; at 1 a cell there is full after 12 steps */
+    float rise;                 /* cells a step, [-4, 4], upwards; below 0 it falls */
+    float spread;               /* [0, 1]: how fast differences even out */
+    float memory;               /* [0, 1]: how much of its motion a particle keeps */
+    float chaos;                /* [0, 4]: of eddies */
+    float life;                 /* s, mean, [0.05, 1000] */
+    float detail;               /* [0, 1]: fine structure that it is drawn with */
+    float body;                 /* 0 emits light, 1 absorbs it, 2 refracts it; [0, 2] */
+    float windResponse;         /* cells a step for each m/s of wind along its width, [0, 4]; default 0.12; rings: none */
+    uint32_t source;            /* FwFieldSource */
+    float sourceSize;           /* of a base: share of the width; of a disc its diameter, share of the smaller side;
+                                   (0, 1] */
+    float sourceAt[2];          /* of a disc: its middle, shares of width and height, [0, 1]; default 0.5, 0.2 */
+    uint32_t reserved;          /* 0 */
+    /* Bytes of width x height cells, rows from the bottom; null: none. Copied. */
+    const uint8_t* paint;       /* how much of the source's rate each cell has, 255: all */
+    const uint8_t* walls;       /* not 0: nothing is there, nothing goes there */
+    float tint[3];              /* linear, [0, 10]; default 1 */
+    float opacity;              /* factor, [0, 10]; default 1 */
+    uint64_t userData;          /* comes back in its state */
+} FwParticleFieldDef;
+static inline FwParticleFieldDef fwDefaultParticleFieldDef(void) { /* a fire on a card */
+    FwParticleFieldDef d; fwInitDef(FW_DEF_PARTICLE_FIELD, &d, (uint32_t)sizeof d); return d;
+}
+/* Sets the eight numbers and sourceSize of a whole def, whose structSize is set; the rest stays. [any] */
+FW_API FwResult FW_CALL fwInitFieldPreset(FwParticleFieldDef* def, uint32_t preset);
+FW_API const char* FW_CALL fwFieldPresetName(uint32_t preset); /* static, never null [any] */
+/* Empty at first. At most 256 at a time in a world. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateParticleField(FwWorld*, const FwParticleFieldDef* def, FwParticleFieldId* id);
+FW_API FwResult FW_CALL fwWorld_DestroyParticleField(FwWorld*, FwParticleFieldId id); /* [world] */
+/* Rotation: null: as before. [world] */
+FW_API FwResult FW_CALL fwWorld_MoveParticleField(FwWorld*, FwParticleFieldId id, const float position[3],
+                                                  const float rotation[4]);
+FW_API FwResult FW_CALL fwWorld_SetParticleFieldAmount(FwWorld*, FwParticleFieldId id, float amount); /* [world] */
+FW_API FwResult FW_CALL fwWorld_SetParticleFieldHidden(FwWorld*, FwParticleFieldId id, uint32_t hidden); /* [world] */
+/* Other bytes as in the def; null: as before. What is where a wall comes dies. [world] */
+FW_API FwResult FW_CALL fwWorld_PaintParticleField(FwWorld*, FwParticleFieldId id, const uint8_t* paint,
+                                                   const uint8_t* walls);
+typedef struct FwParticleFieldState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU, now on the cpu */
+    uint32_t structSize, reserved;
+    uint64_t userData;
+    uint64_t frameIndex;
+    uint64_t inside;            /* particles; inside + dead + out = emitted, always */
+    uint64_t emitted, dead, out;/* since it was created */
+    uint64_t steps;
+    uint64_t bytes;             /* of the backend's memory for it */
+} FwParticleFieldState;
+FW_API FwResult FW_CALL fwWorld_GetParticleFieldState(FwWorld*, FwParticleFieldId id, FwParticleFieldState* state); /* [world] */
 
 /* ---- running ---------------------------------------------------------------------------------------------- */
 

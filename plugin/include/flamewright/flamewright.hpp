@@ -57,6 +57,10 @@ template <>
     return fwDefaultVolumetricFireDef();
 }
 template <>
+[[nodiscard]] inline FwParticleFieldDef def<FwParticleFieldDef>() noexcept {
+    return fwDefaultParticleFieldDef();
+}
+template <>
 [[nodiscard]] inline FwFireProfileDef def<FwFireProfileDef>() noexcept {
     return fwDefaultFireProfileDef();
 }
@@ -102,6 +106,12 @@ template <class Info>
 [[nodiscard]] inline FwVolumetricFireDef preset(FwFirePreset which) noexcept {
     FwVolumetricFireDef made = fwDefaultVolumetricFireDef();
     (void)fwInitFirePreset(&made, uint32_t(which));
+    return made;
+}
+
+[[nodiscard]] inline FwParticleFieldDef preset(FwFieldPreset which) noexcept {
+    FwParticleFieldDef made = fwDefaultParticleFieldDef();
+    (void)fwInitFieldPreset(&made, uint32_t(which));
     return made;
 }
 
@@ -186,6 +196,7 @@ using Image = Owned<FwImageId, fwWorld_DestroyImage>;
 using Mesh = Owned<FwMeshId, fwWorld_DestroyMesh>;
 using BurnableMesh = Owned<FwBurnableMeshId, fwWorld_DestroyBurnableMesh>;
 using VolumetricFire = Owned<FwVolumetricFireId, fwWorld_DestroyVolumetricFire>;
+using ParticleField = Owned<FwParticleFieldId, fwWorld_DestroyParticleField>;
 using FireProfile = Owned<FwFireProfileId, fwWorld_DestroyFireProfile>;
 using FireCollider = Owned<FwFireColliderId, fwWorld_RemoveFireCollider>;
 using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
@@ -228,6 +239,13 @@ using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
                                                    const FwFireEmitterDef& made) {
     FwFireEmitterId id{};
     (void)fwWorld_CreateFireEmitter(world.get(), &made, &id);
+    return {world.get(), id};
+}
+
+[[nodiscard]] inline ParticleField createParticleField(const World& world,
+                                                       const FwParticleFieldDef& made) {
+    FwParticleFieldId id{};
+    (void)fwWorld_CreateParticleField(world.get(), &made, &id);
     return {world.get(), id};
 }
 

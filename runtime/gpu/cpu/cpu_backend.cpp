@@ -23,8 +23,9 @@ static_assert(kSwitchDense == FW_DEBUG_DENSE && kSwitchShuffle == FW_DEBUG_SHUFF
 
 namespace {
 
-constexpr const char* kTimerNames[kTimerCount] = {
-    "wake", "events", "heat", "schedule", "arrival", "commit", "published", "reduce", "exchange"};
+constexpr const char* kTimerNames[kTimerCount] = {"wake",     "events", "heat",      "schedule",
+                                                  "arrival",  "commit", "published", "reduce",
+                                                  "exchange", "field"};
 
 class Stopwatch {
  public:
@@ -456,6 +457,7 @@ void CpuBackend::run(const FramePlan& plan) {
     store.maps.reserve(plan.burnMaps.size());
     store.lights.clear();
     store.lights.reserve(s.maxLights);
+    store.fields.resize(s.fields.size());
 
     for (const StepPlan& step : plan.steps)
         if (step.remote) s.reserveRemote(*step.remote);
@@ -494,6 +496,11 @@ void CpuBackend::run(const FramePlan& plan) {
         }
     }
 
+    if (plan.fields && !plan.fields->runs.empty()) {
+        Stopwatch watch(s, kTimerField);
+        s.stepFields(*plan.fields);
+    }
+    s.countFields(store.fields);
     for (size_t i = 0; i < s.objects.size(); ++i)
         store.objects[i] = s.objects[i] ? s.objects[i]->counters : ObjectCounters{};
     for (size_t i = 0; i < plan.probes.size(); ++i) {
@@ -530,6 +537,7 @@ void CpuBackend::run(const FramePlan& plan) {
     store.readback.answers = store.answers;
     store.readback.burnMaps = store.maps;
     store.readback.lights = store.lights;
+    store.readback.fields = store.fields;
     store.readback.frontTiles = uint32_t(s.list.size());
     store.readback.runTiles = uint32_t(std::min<uint64_t>(s.runTiles, 0xFFFFFFFFu));
     store.readback.burningTiles = uint32_t(s.burnTiles.size());

@@ -4,6 +4,10 @@
 #include "core/owned.h"
 #include "gpu/backend.h"
 
+namespace fw::field {
+struct Field;
+}
+
 namespace fw::gpu::cpu {
 
 class CpuBackend final : public Backend {
@@ -23,6 +27,13 @@ class CpuBackend final : public Backend {
     void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>) override {}
     void destroyImage(uint32_t) noexcept override {}
 
+    void createField(uint32_t slot, const FieldRules& rules,
+                     std::span<const uint8_t> masks) override;
+    void destroyField(uint32_t slot) noexcept override;
+    void setFieldRules(uint32_t slot, const FieldRules& rules) noexcept override;
+    void setFieldMasks(uint32_t slot, std::span<const uint8_t> masks) override;
+    [[nodiscard]] uint64_t fieldBytes(uint32_t slot) const noexcept override;
+
     void run(const FramePlan& plan) override;
     const Readback* nextReadback() override;
     std::span<const PassTime> passTimes() override;
@@ -32,6 +43,7 @@ class CpuBackend final : public Backend {
     [[nodiscard]] std::span<const uint32_t> state(uint32_t slot) const;
     [[nodiscard]] const ObjectCounters& counters(uint32_t slot) const;
     [[nodiscard]] std::span<const uvec2> heat(uint32_t slot) const;  // packed HeatTexel
+    [[nodiscard]] const field::Field& field(uint32_t slot) const;
     // What comes to a tile (local number) from elsewhere, until it is set again.
     void setTileHeat(uint32_t slot, uint32_t tile, const TileHeat& heat);
 

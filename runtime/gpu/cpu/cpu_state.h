@@ -1,5 +1,6 @@
 // What the cpu backend keeps, shared by its two sources. Not for anyone else.
 #pragma once
+#include "field/field.h"
 #include "gpu/cpu/cpu_backend.h"
 #include "gpu/cpu/front_tile.h"
 
@@ -33,6 +34,12 @@ void createHeat(CpuObject& object);
 void createPublished(CpuObject& object);
 void publishedEvent(CpuObject& object, uint32_t texel, bool burns) noexcept;
 
+struct CpuField {
+    explicit CpuField(std::pmr::memory_resource* memory) : field(memory) {}
+    field::Field field;
+    FieldRules rules{};
+};
+
 struct ReadbackStore {
     explicit ReadbackStore(std::pmr::memory_resource* memory)
         : objects(memory),
@@ -40,7 +47,8 @@ struct ReadbackStore {
           mapTicks(memory),
           mapHeat(memory),
           maps(memory),
-          lights(memory) {}
+          lights(memory),
+          fields(memory) {}
     Readback readback;
     std::pmr::vector<ObjectCounters> objects;
     std::pmr::vector<ProbeAnswer> answers;
@@ -48,6 +56,7 @@ struct ReadbackStore {
     std::pmr::vector<uvec2> mapHeat;
     std::pmr::vector<BurnMap> maps;
     std::pmr::vector<BurnLight> lights;
+    std::pmr::vector<FieldCounters> fields;
 };
 
 enum Timer : uint32_t {
@@ -60,6 +69,7 @@ enum Timer : uint32_t {
     kTimerPublished,
     kTimerReduce,
     kTimerExchange,
+    kTimerField,
     kTimerCount
 };
 
@@ -106,11 +116,15 @@ struct CpuBackend::State {
     void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
     uint32_t allocateTiles(uint32_t count);
     void releaseTiles(uint32_t first, uint32_t count) noexcept;
+    // cpu_field.cpp
+    void stepFields(const FieldUpdate& update) noexcept;
+    void countFields(std::span<FieldCounters> out) const noexcept;
 
     std::pmr::memory_resource* memory;
     uint32_t maxLights;
     std::pmr::vector<const mesh::BurnDomain*> meshes;
     std::pmr::vector<core::Owned<CpuObject>> objects;
+    std::pmr::vector<core::Owned<CpuField>> fields{memory};
     // By world tile. A tile is in a list at most once, so all lists have room for all tiles.
     std::pmr::vector<TileState> tiles;
     std::pmr::vector<uint32_t> list, listOut, runList, burnList, hotList, hotOut;

@@ -1,5 +1,6 @@
 #include "gpu/passes/frame_graph.h"
 
+#include "gpu/backend.h"
 #include "gpu/vk/recorder.h"
 #include "shared/particle.h"
 
@@ -24,34 +25,39 @@ constexpr const ComputePass* kComputePasses[] = {
     &kRefineLevelsPass,    &kRefineScanPass,  &kRefineEmitPass,  &kRefinePlacePass,
     &kRecedePass,          &kBendPass,        &kSoftPass,        &kSpringsPass,
     &kDrapePass,           &kSkinPass,        &kSootPass,        &kRefineCutPass,
-    &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass, &kParticlesPass};
+    &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass, &kParticlesPass,
+    &kFieldPass,           &kFieldMaskPass,   &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0],  &kSurfacePasses[1],  &kSurfacePasses[2],   &kSurfacePasses[3],
-    &kSurfacePasses[4],  &kSurfacePasses[5],  &kSurfacePasses[6],   &kSurfacePasses[7],
-    &kSurfacePasses[8],  &kSurfacePasses[9],  &kSurfacePasses[10],  &kSurfacePasses[11],
-    &kSurfacePasses[12], &kSurfacePasses[13], &kSurfacePasses[14],  &kSurfacePasses[15],
-    &kSurfacePasses[16], &kSurfacePasses[17], &kSurfacePasses[18],  &kSurfacePasses[19],
-    &kSurfacePasses[20], &kSurfacePasses[21], &kSurfacePasses[22],  &kSurfacePasses[23],
-    &kSurfacePasses[24], &kSurfacePasses[25], &kSurfacePasses[26],  &kSurfacePasses[27],
-    &kSurfacePasses[28], &kSurfacePasses[29], &kSurfacePasses[30],  &kSurfacePasses[31],
-    &kSurfacePasses[32], &kSurfacePasses[33], &kSurfacePasses[34],  &kZPass,
-    &kFlamesPass,        &kVolumePass,        &kVolumeCompositePass};
+    &kSurfacePasses[0],   &kSurfacePasses[1],  &kSurfacePasses[2],    &kSurfacePasses[3],
+    &kSurfacePasses[4],   &kSurfacePasses[5],  &kSurfacePasses[6],    &kSurfacePasses[7],
+    &kSurfacePasses[8],   &kSurfacePasses[9],  &kSurfacePasses[10],   &kSurfacePasses[11],
+    &kSurfacePasses[12],  &kSurfacePasses[13], &kSurfacePasses[14],   &kSurfacePasses[15],
+    &kSurfacePasses[16],  &kSurfacePasses[17], &kSurfacePasses[18],   &kSurfacePasses[19],
+    &kSurfacePasses[20],  &kSurfacePasses[21], &kSurfacePasses[22],   &kSurfacePasses[23],
+    &kSurfacePasses[24],  &kSurfacePasses[25], &kSurfacePasses[26],   &kSurfacePasses[27],
+    &kSurfacePasses[28],  &kSurfacePasses[29], &kSurfacePasses[30],   &kSurfacePasses[31],
+    &kSurfacePasses[32],  &kSurfacePasses[33], &kSurfacePasses[34],   &kZPass,
+    &kFlamesPass,         &kVolumePass,        &kVolumeCompositePass, &kFieldDrawPasses[0],
+    &kFieldDrawPasses[1], &kFieldDrawPasses[2]};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
-static_assert(std::size(kDrawPasses) == kNumberOfZPass + 4);
+constexpr uint32_t kNumberOfFields = kNumberOfZPass + 4;
+static_assert(std::size(kDrawPasses) == kNumberOfFields + kFieldVariants);
 
-// What was hidden by the Z-pass shows what is behind it, so others come first.
+// What was hidden by the Z-pass shows what is behind it, so others come first. The variants of
+// fields are one step, in which they are drawn as they lie behind each other.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 4> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 5> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
     }
     steps[kSurfaceVariants] = {kNumberOfZPass, true};
-    steps[2 * kSurfaceVariants + 1] = {kNumberOfZPass + 1, false};
-    steps[2 * kSurfaceVariants + 2] = {kNumberOfZPass + 2, false};
-    steps[2 * kSurfaceVariants + 3] = {kNumberOfZPass + 3, false};
+    steps[2 * kSurfaceVariants + 1] = {kNumberOfFields, false};
+    steps[2 * kSurfaceVariants + 2] = {kNumberOfZPass + 1, false};
+    steps[2 * kSurfaceVariants + 3] = {kNumberOfZPass + 2, false};
+    steps[2 * kSurfaceVariants + 4] = {kNumberOfZPass + 3, false};
     return steps;
 }();
 
@@ -244,6 +250,23 @@ void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform) {
     dispatch(kDrapePass, springs + deform.springGroups, deform.vertexGroups, 0);
 }
 
+void recordFields(vk::FrameRecorder& recorder, const FieldsRecord& fields) {
+    if (fields.runs.count == 0) return;
+    recorder.copyIn(fields.runs.at, FW_BIND_FIELD_RUNS, 0,
+                    uint64_t(fields.runs.count) * sizeof(FieldRun));
+    FieldPush push{};
+    if (fields.masked) recorder.dispatch(kFieldMaskPass, &push, fields.masked);
+    push.first = fields.masked;
+    for (uint32_t i = 0; i < fields.rounds; ++i) {
+        if (fields.groups[i] > 0) recorder.dispatch(kFieldPass, &push, fields.groups[i]);
+        push.first += fields.groups[i] * kFieldUnits;
+    }
+}
+
+void recordFieldShow(vk::FrameRecorder& recorder, uint32_t fields) {
+    recorder.dispatch(kFieldShowPass, nullptr, fields * kFieldShowGroups);
+}
+
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes) {
     if (probes.count == 0) return;
     StepPush push{};
@@ -261,13 +284,14 @@ void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList
         recordFlames(recorder);
     else if (kDrawPasses[step.pass] == &kVolumePass)
         recordVolume(recorder, list.volumes);
-    else
+    else if (step.pass != kNumberOfFields)  // fields bind by themselves
         recordVolumeComposite(recorder, list.marched);
 }
 
 bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (step.pass < kSurfaceVariants) return surfaceDraws(step.pass, list.surfaces, step.afterZ);
     if (step.pass == kNumberOfZPass) return zPassDraws(list.surfaces);
+    if (step.pass == kNumberOfFields) return !list.fields.empty();
     if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames;
     return kDrawPasses[step.pass] == &kVolumePass ? !list.volumes.empty() : !list.marched.empty();
 }

@@ -5,7 +5,10 @@
 #include "shared/arp.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
+#include "shared/field.h"
+#include "shared/field_draw.h"
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -24,7 +27,7 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
     kRecedePass, kBendPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
-    kVolumeProbePass, kVolumeMarchPass, kParticlesPass;
+    kVolumeProbePass, kVolumeMarchPass, kParticlesPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -93,12 +96,33 @@ void recordSkin(vk::FrameRecorder& recorder, const SkinPush& push);
 void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform);
 void recordProbes(vk::FrameRecorder& recorder, const Staged& probes);
 void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles);
-struct DrawList {  // what a view may show
+// Runs in their plane: `masked` fields, then the groups of each round of steps.
+struct FieldsRecord {
+    Staged runs;
+    uint32_t masked = 0, rounds = 0;
+    std::array<uint32_t, kMaxFieldRounds> groups{};
+};
+void recordFields(vk::FrameRecorder& recorder, const FieldsRecord& fields);
+// Of the first `fields` records that are drawn.
+void recordFieldShow(vk::FrameRecorder& recorder, uint32_t fields);
+
+constexpr uint32_t kFieldVariants = 3;
+extern const DrawPass kFieldDrawPasses[kFieldVariants];
+struct FieldItem {      // a particle field that a view may show
+    uint32_t draw = 0;  // its record
+    uint32_t variant = 0, vertices = 0;
+    float depth = 0;  // m
+};
+// False: the view does not show it.
+bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out);
+void sortFields(std::span<FieldItem> items) noexcept;  // farthest first
+struct DrawList {                                      // what a view may show
     std::span<const DrawItem> surfaces;
     bool flames = false;  // something burns
     std::span<const VolumeItem> volumes;
     std::span<const MarchedVolume> marched;  // instead of them
-    bool turned = false;                     // counter-clockwise triangles turn their backs to it
+    std::span<const FieldItem> fields;
+    bool turned = false;  // counter-clockwise triangles turn their backs to it
 };
 // False: it would draw nothing, do not bind it.
 bool drawStepDraws(const DrawStep& step, const DrawList& list);

@@ -68,6 +68,8 @@ struct FrameNeeds {
     bool burning = false, predicting = false, publishedRuns = false, heating = false;
     bool falling = false;  // burnt pieces may lose their hold
     uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;  // what deforms
+    uint32_t fieldRuns = 0;               // steps and new masks
+    bool fieldsShow = false;              // or showed until now
     bool skins = false;                   // a host moved vertices
     bool readback = false, work = false;  // no work: nothing is recorded
     [[nodiscard]] uint32_t deformGroups() const noexcept {
@@ -89,6 +91,11 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
 void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer);
 // What deforms in this frame, in the order of DeformRecord; `steps`: that it moves by.
 [[nodiscard]] Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer);
+
+// vk_field.cpp
+void addFieldNeeds(const VkBackend::State& s, const FramePlan& plan, FrameNeeds& needs);
+void recordFieldSteps(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,
+                      UploadWriter& writer);
 
 // vk_volume.cpp
 // The flames of the frame, as they are drawn until the next ones come.

@@ -12,11 +12,11 @@ namespace fw::gpu::vk {
 struct ReadbackLayout {  // where the pieces of a frame's readback lie, bytes
     uint64_t frameIndex = 0;
     uint32_t endTick = 0;
-    uint32_t objects = 0, answers = 0, lights = 0;  // counts
+    uint32_t objects = 0, answers = 0, lights = 0, fields = 0;  // counts
     uint32_t firstRow = 0,
              rows = 0;  // counters rows: the first iteration's, and the list's at the end
     uint32_t burnParity = 0, predictParity = 0, hotParity = 0;  // as the frame leaves them
-    uint64_t objectsAt = 0, answersAt = 0, lightsAt = 0, flamesAt = 0, countersAt = 0;
+    uint64_t objectsAt = 0, answersAt = 0, lightsAt = 0, flamesAt = 0, countersAt = 0, fieldsAt = 0;
     struct MapAt {
         uint32_t object = 0, texels = 0;
         uint64_t at = 0, heatAt = 0;

@@ -3,6 +3,8 @@
 #include "core/error.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
+#include "shared/field.h"
+#include "shared/field_draw.h"
 #include "shared/look.h"
 #include "shared/particle.h"
 #include "shared/refine.h"
@@ -134,6 +136,17 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_VOLUME_RAYS, kSpaceVolumeRays, 4, false, kComponentFlames, "marched volumes", 0},
     {FW_BIND_VOLUME_WORK, kSpaceVolumes, sizeof(VolumeWork), false, kComponentFlames,
      "volumes' work", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_FIELDS, kSpaceFields, sizeof(FieldRecord), true, kComponentFlames, "fields", 0},
+    {FW_BIND_FIELD_COUNTERS, kSpaceFields, sizeof(FieldCounters), true, kComponentFlames,
+     "field counters", 0},
+    {FW_BIND_FIELD_CELLS, kSpaceFieldCells, 2 * 4 * kFieldUnit, true, kComponentFlames,
+     "field cells", kTexels},
+    {FW_BIND_FIELD_MASKS, kSpaceFieldCells, kFieldUnit, true, kComponentFlames, "field masks", 0},
+    {FW_BIND_FIELD_SHOWN, kSpaceFieldCells, 4 * kFieldUnit, false, kComponentFlames, "field shown",
+     0},
+    {FW_BIND_FIELD_DRAWS, kSpaceFieldDraws, sizeof(FieldDraw), true, kComponentFlames,
+     "field draws", 0},
+    {FW_BIND_FIELD_RUNS, kSpaceFieldRuns, 8, false, kComponentFlames, "field runs", 0},
     {FW_BIND_LOOKS, kSpaceFixed, sizeof(MaterialLook), true, kComponentFlames, "looks",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
 };
@@ -143,7 +156,8 @@ constexpr uint32_t kInitialUnits[kSpaceCount] = {
     4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
     1024, 4096, 256,  256, 1,    1,    1,    1,     1,
     1,    1,    1,    1,   1,    1,    1,    1,     1024,
-    1,    1,    1,    1,   1,    1,    1,    1,     1};
+    1,    1,    1,    1,   1,    1,    1,    1,     1,
+    1,    1,    1,    1};
 
 }  // namespace
 

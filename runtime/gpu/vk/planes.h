@@ -11,6 +11,7 @@
 namespace fw::gpu::vk {
 
 constexpr uint32_t kTileTexels = 64;
+constexpr uint32_t kFieldUnit = 64;  // cells of a particle field
 
 // What ranges are allocated of, and the unit.
 enum Space : uint32_t {
@@ -58,6 +59,10 @@ enum Space : uint32_t {
     kSpaceEmitterGroups,    // per frame
     kSpaceParticles,        // of all emitters
     kSpaceFlames,           // quads of flames and particles, per frame
+    kSpaceFields,           // field slots
+    kSpaceFieldCells,       // 64 cells of particle fields
+    kSpaceFieldRuns,        // per frame
+    kSpaceFieldDraws,       // per frame
     kSpaceFixed,            // one unit
     kSpaceCount,
 };

@@ -36,6 +36,8 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       published(pmr),
       drawItems(pmr),
       volumes(pmr),
+      fields(pmr),
+      fieldDraws(pmr),
       refine(pmr),
       givenObjects(pmr),
       givenAnswers(pmr),
@@ -43,6 +45,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       givenHeat(pmr),
       givenMaps(pmr),
       givenLights(pmr),
+      givenFields(pmr),
       times(pmr) {
     times.reserve(computePasses().size() + drawPasses().size());
     const auto alignment = uint32_t(device.properties.limits.minUniformBufferOffsetAlignment);

@@ -86,6 +86,12 @@ class VkBackend final : public Backend {
     void setVertices(uint32_t slot, std::span<const float> positions,
                      std::span<const float> normals) noexcept override;
     void setFireProfile(uint32_t slot, std::span<const uint32_t> texels) override;
+    void createField(uint32_t slot, const FieldRules& rules,
+                     std::span<const uint8_t> masks) override;
+    void destroyField(uint32_t slot) noexcept override;
+    void setFieldRules(uint32_t slot, const FieldRules& rules) noexcept override;
+    void setFieldMasks(uint32_t slot, std::span<const uint8_t> masks) override;
+    [[nodiscard]] uint64_t fieldBytes(uint32_t slot) const noexcept override;
     void createImage(uint32_t slot, uint32_t width, uint32_t height,
                      std::span<const std::byte> pixels) override;
     void destroyImage(uint32_t slot) noexcept override;

@@ -163,7 +163,13 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                       uint32_t(std::max(viewport.y + viewport.height - top, 0.0f))};
     vk.CmdSetScissor(commands, 0, 1, &scissor);
     std::array<VolumeItem, kMaxVolumeFlames> items;
-    DrawList list{drawItems, !burnEmpty || emitterGroups > 0, {}, {}, turnsFaces(view, viewport)};
+    std::array<FieldItem, kMaxFields> fieldItems;
+    DrawList list{drawItems,
+                  !burnEmpty || emitterGroups > 0,
+                  {},
+                  {},
+                  {fieldItems.data(), orderFields(fieldItems)},
+                  turnsFaces(view, viewport)};
     if (target.key.flames && !volumes.empty()) {
         const VolumeScreen screen =
             screenOf(target.key, {viewport.width, std::fabs(viewport.height)});
@@ -179,6 +185,11 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         if (!target.pipelines[i] || !drawStepDraws(step, list)) continue;
         if ((crossing & kSwitchNoZPass) && &pass == &kZPass) continue;
         slot.timers.begin(device, commands, pass.name);
+        if (&pass == &kFieldDrawPasses[0]) {
+            recordFieldDraws(commands, target, i, list.fields, viewOffset, depth);
+            slot.timers.end(device, commands);
+            continue;
+        }
         const VkPipelineLayout layout = context.pipelines.draw(i).layout;
         vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[i]);
         bool usesView = false;

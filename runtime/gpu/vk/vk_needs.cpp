@@ -43,6 +43,8 @@ ReadbackLayout layoutOf(const VkBackend::State& s, const FramePlan& plan, const 
     layout.answersAt = place(uint64_t(layout.answers) * sizeof(ProbeAnswer));
     layout.lightsAt = place(uint64_t(layout.lights) * sizeof(BurnLight));
     layout.flamesAt = place(16);
+    layout.fields = uint32_t(s.fields.size());
+    layout.fieldsAt = place(layout.fields * sizeof(FieldCounters));
     for (const uint32_t object : plan.burnMaps) {
         ReadbackLayout::MapAt& map = layout.maps[layout.mapCount++];
         map.object = object;
@@ -165,13 +167,14 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     if (plan.emitters)
         needs.uploadBytes += uploaded(plan.emitters->count * sizeof(ParticleEmitter)) +
                              uploaded(plan.emitters->groups.size_bytes());
+    addFieldNeeds(s, plan, needs);
     const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
                  refineBytes > 0 || forgets || plan.volumes || plan.emitters ||
                  (s.emitterGroups > 0 && !s.open.unseen) ||
                  (!s.volumes.empty() && !s.open.unseen) || needs.placing || s.recordsDirty ||
-                 !s.uploads.empty() || s.planes.movesPending();
+                 s.fieldsDirty || needs.fieldsShow || !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
 
@@ -183,6 +186,11 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     s.planes.atLeast(kSpaceDeformGroups, needs.deformGroups(), last);
     s.planes.atLeast(kSpaceNeighbours, needs.neighbours, last);
     s.planes.atLeast(kSpaceContacts, needs.links, last);
+    s.planes.atLeast(kSpaceFieldRuns, needs.fieldRuns, last);
+    if (plan.fields) {
+        s.planes.atLeast(kSpaceFieldDraws, uint32_t(plan.fields->drawn.size()), last);
+        s.fieldDraws.reserve(plan.fields->drawn.size());
+    }
     if (plan.volumes) {
         s.planes.atLeast(kSpaceVolumes, plan.volumes->count, last);
         s.volumes.reserve(plan.volumes->count);

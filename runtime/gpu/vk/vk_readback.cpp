@@ -33,6 +33,7 @@ const Readback* VkBackend::State::nextReadback() {
                 heatTexels += layout.maps[i].heat ? layout.maps[i].texels : 0;
             }
             givenObjects.resize(layout.objects);
+            givenFields.resize(layout.fields);
             givenAnswers.resize(layout.answers);
             givenTexels.resize(texels);
             givenHeat.resize(heatTexels);
@@ -43,6 +44,9 @@ const Readback* VkBackend::State::nextReadback() {
             if (layout.objects > 0)
                 std::memcpy(givenObjects.data(), from + layout.objectsAt,
                             layout.objects * sizeof(ObjectCounters));
+            if (layout.fields > 0)
+                std::memcpy(givenFields.data(), from + layout.fieldsAt,
+                            layout.fields * sizeof(FieldCounters));
             if (layout.answers > 0)
                 std::memcpy(givenAnswers.data(), from + layout.answersAt,
                             uint64_t(layout.answers) * sizeof(ProbeAnswer));
@@ -133,6 +137,7 @@ const Readback* VkBackend::State::nextReadback() {
         given.endTick = one.endTick;
         given.objects = givenObjects;
         given.lights = givenLights;
+        given.fields = givenFields;
         freeQuarantine();
         return &given;
     }

@@ -412,6 +412,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     drawVertices = planes.buffer(kResourceVertices).handle;
     drawIndices = planes.buffer(kResourceIndices).handle;
     drawShown = planes.buffer(FW_BIND_SHOWN).handle;
+    recordFieldSteps(*this, plan, recorder, writer);
     if (plan.volumes) recordVolumes(*this, *plan.volumes, recorder, writer);
     emittersMove = plan.emitters != nullptr;
     if (plan.emitters) recordEmitters(*this, *plan.emitters, recorder, writer);
@@ -500,7 +501,8 @@ void VkBackend::State::closeFrame(const FwView* view) {
     RecordTarget target = recordTarget(slot, open.commands);
     const bool marches = view && !volumes.empty();
     const bool particles = emitterGroups > 0;
-    if ((!burnEmpty || marches || particles) && limits.looks.viewParams) {
+    const bool fieldsShow = view && !fieldDraws.empty();
+    if ((!burnEmpty || marches || particles || fieldsShow) && limits.looks.viewParams) {
         // A step of an own device has no view: lights alone, which flicker with simulated time.
         FwView none{};
         none.time = float(double(open.endTick) / kTicksPerSecond);
@@ -523,6 +525,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
         }
         if (view && (!burnEmpty || particles)) recordFlameSort(looks, room);
         if (marches) marchVolumes(looks);
+        if (fieldsShow) recordFieldShow(looks, uint32_t(fieldDraws.size()));
     }
     if (view) {
         recordRefinement(slot, *view);
@@ -545,6 +548,9 @@ void VkBackend::State::closeFrame(const FwView* view) {
             recorder.copyOut(FW_BIND_LIGHTS, 0, layout.lightsAt,
                              uint64_t(layout.lights) * sizeof(BurnLight));
         recorder.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
+        if (layout.fields)
+            recorder.copyOut(FW_BIND_FIELD_COUNTERS, 0, layout.fieldsAt,
+                             layout.fields * sizeof(FieldCounters));
         for (uint32_t i = 0; i < layout.mapCount; ++i) {
             const ReadbackLayout::MapAt& map = layout.maps[i];
             const BurnObject& object = objects[map.object].record;

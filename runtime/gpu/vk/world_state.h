@@ -152,6 +152,14 @@ struct Skin {
     Skin& operator=(Skin&&) = default;
 };
 
+struct FieldEntry {
+    bool live = false;
+    bool recordDirty = false, masksDue = false, fresh = false;  // for the next frame
+    FieldRules rules{};
+    uint32_t steps = 0;  // that it has run
+    RangeOf cells;
+};
+
 struct ImageEntry {
     Image image;
     ImageSet set;
@@ -288,8 +296,11 @@ struct VkBackend::State {
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
     bool emittersMove = false;            // in the open frame
-    ViewParams seen{};                    // of the last pushView
-    FwView outside{};                     // of the last frame's outside part
+    std::pmr::vector<FieldEntry> fields;
+    std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their plane has them
+    bool fieldsDirty = false;                // one of them has something for the next frame
+    ViewParams seen{};                       // of the last pushView
+    FwView outside{};                        // of the last frame's outside part
     // What is marched before it is drawn: the view of the outside part, on the screen that a draw
     // with it was last seen to have. Other views, and the first picture, march as they draw.
     struct March {
@@ -328,6 +339,7 @@ struct VkBackend::State {
     std::pmr::vector<uvec2> givenHeat;
     std::pmr::vector<BurnMap> givenMaps;
     std::pmr::vector<BurnLight> givenLights;
+    std::pmr::vector<FieldCounters> givenFields;
     std::pmr::vector<PassTime> times;
     std::array<KeptFramebuffer, 16> framebuffers{};
     OwnDevice own;
@@ -390,6 +402,11 @@ struct VkBackend::State {
     [[nodiscard]] uint32_t tileQuads() const noexcept;
     void makeEmitterRoom(const EmitterUpdate& update, uint64_t last);
     [[nodiscard]] SortPush quadRoom() const noexcept;
+    // vk_field.cpp
+    uint32_t orderFields(std::array<FieldItem, kMaxFields>& out) const noexcept;  // how many
+    void recordFieldDraws(VkCommandBuffer commands, const Target& target, uint32_t firstPass,
+                          std::span<const FieldItem> items, uint32_t viewOffset,
+                          VkDescriptorSet depth) noexcept;
     // vk_draw.cpp
     // `depth`: a set with the depth that the target samples, or null.
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,

@@ -1,0 +1,205 @@
+#include "components/particle_field.h"
+
+#include "components/pose.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::components {
+namespace {
+
+constexpr uint32_t kPublishedRate = 10;  // Hz
+constexpr uint32_t kTicksPerSecond = 4096;
+constexpr float kMostWind = 1.5f;  // cells a step
+constexpr uint32_t kFlags = FW_FIELD_HIDDEN | FW_FIELD_AS_PUBLISHED;
+constexpr uint32_t kOpen =
+    FW_FIELD_OPEN_LEFT | FW_FIELD_OPEN_RIGHT | FW_FIELD_OPEN_BOTTOM | FW_FIELD_OPEN_TOP;
+static_assert(FW_FIELD_OPEN_LEFT == gpu::kFieldOpenLeft &&
+              FW_FIELD_OPEN_RIGHT == gpu::kFieldOpenRight &&
+              FW_FIELD_OPEN_BOTTOM == gpu::kFieldOpenBottom &&
+              FW_FIELD_OPEN_TOP == gpu::kFieldOpenTop);
+
+void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
+    if (value < low || value > most)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwParticleFieldDef::%s is %u; the limits are [%u, %u].", name, value, low,
+                   most);
+}
+
+void checkRotation(const float q[4], const char* name) {
+    checkValues(q, 4, name, -1.001f, 1.001f);
+    const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (std::fabs(length - 1) > 1e-3f)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s has length %g; it is a unit quaternion within 0.001.", name, double(length));
+}
+
+}  // namespace
+
+void setFieldPreset(FwParticleFieldDef& def, uint32_t preset) noexcept {
+    const field::FieldLook look = field::fieldPreset(field::FieldPreset(preset));
+    def.amount = look.amount;
+    def.rise = look.rise;
+    def.spread = look.spread;
+    def.memory = look.memory;
+    def.chaos = look.chaos;
+    def.life = look.life;
+    def.detail = look.detail;
+    def.body = look.body;
+    def.sourceSize = preset == FW_FIELD_FIRE ? 0.5f : 0.2f;
+}
+
+const char* fieldPresetName(uint32_t preset) noexcept {
+    constexpr const char* kNames[] = {"fire", "smoke", "water"};
+    return preset < FW_FIELD_PRESET_COUNT ? kNames[preset] : "an unknown field preset";
+}
+
+void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, ParticleField& field) {
+    if (def.flags & ~kFlags)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwParticleFieldDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
+                   kFlags);
+    checkWhole(def.shape, "shape", 0, FW_FIELD_DISPLACED);
+    checkValues(def.position, 3, "FwParticleFieldDef::position", -1e6f, 1e6f);
+    checkValues(def.size, 3, "FwParticleFieldDef::size", 1e-3f, 1000.0f);
+    checkRotation(def.rotation, "FwParticleFieldDef::rotation");
+    checkWhole(def.width, "width", 32, gpu::kFieldSideMost);
+    if (def.width % 4 != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwParticleFieldDef::width is %u; it is a multiple of 4.", def.width);
+    checkWhole(def.height, "height", 32, gpu::kFieldSideMost);
+    checkWhole(def.stepRate, "stepRate", 20, 30);
+    checkWhole(def.open, "open", 0, kOpen);
+    checkValue(def.amount, "FwParticleFieldDef::amount", 0.0f, 4.0f);
+    checkValue(def.rise, "FwParticleFieldDef::rise", -4.0f, 4.0f);
+    checkValue(def.spread, "FwParticleFieldDef::spread", 0.0f, 1.0f);
+    checkValue(def.memory, "FwParticleFieldDef::memory", 0.0f, 1.0f);
+    checkValue(def.chaos, "FwParticleFieldDef::chaos", 0.0f, 4.0f);
+    checkValue(def.life, "FwParticleFieldDef::life", 0.05f, 1000.0f);
+    checkValue(def.detail, "FwParticleFieldDef::detail", 0.0f, 1.0f);
+    checkValue(def.body, "FwParticleFieldDef::body", 0.0f, 2.0f);
+    checkValue(def.windResponse, "FwParticleFieldDef::windResponse", 0.0f, 4.0f);
+    checkWhole(def.source, "source", 0, FW_FIELD_SOURCE_PAINTED);
+    checkValue(def.sourceSize, "FwParticleFieldDef::sourceSize", 1e-3f, 1.0f);
+    checkValues(def.sourceAt, 2, "FwParticleFieldDef::sourceAt", 0.0f, 1.0f);
+    checkWhole(def.reserved, "reserved", 0, 0);
+    checkValues(def.tint, 3, "FwParticleFieldDef::tint", 0.0f, 10.0f);
+    checkValue(def.opacity, "FwParticleFieldDef::opacity", 0.0f, 10.0f);
+
+    const bool ring = def.shape != FW_FIELD_CARD;
+    field.def.width = def.width;
+    field.def.height = def.height;
+    field.def.look = {def.amount, def.rise, def.spread, def.memory,
+                      def.chaos,  def.life, def.detail, def.body};
+    field.def.stepRate = def.flags & FW_FIELD_AS_PUBLISHED ? kPublishedRate : def.stepRate;
+    field.def.open =
+        ring ? (def.open & (gpu::kFieldOpenTop | gpu::kFieldOpenBottom)) | gpu::kFieldRing
+             : def.open;
+    field.def.seed = def.seed ? def.seed : ownSeed;
+    field.flags = def.flags;
+    field.shape = def.shape;
+    std::copy_n(def.position, 3, field.position);
+    std::copy_n(def.size, 3, field.size);
+    std::copy_n(def.rotation, 4, field.rotation);
+    field.windResponse = ring ? 0 : def.windResponse;
+    field.source = def.source;
+    field.sourceSize = def.sourceSize;
+    std::copy_n(def.sourceAt, 2, field.sourceAt);
+    std::copy_n(def.tint, 3, field.tint);
+    field.opacity = def.opacity;
+    field.userData = def.userData;
+    const size_t cells = size_t(def.width) * def.height;
+    field.paint.resize(cells);
+    field.walls.resize(cells);
+    field.masks.resize(cells);
+    paintField(field, def.paint, def.walls);
+}
+
+void setFieldPlace(ParticleField& field, const float position[3], const float rotation[4]) {
+    checkValues(position, 3, "position", -1e6f, 1e6f);
+    if (rotation) checkRotation(rotation, "rotation");
+    std::copy_n(position, 3, field.position);
+    if (rotation) std::copy_n(rotation, 4, field.rotation);
+}
+
+void setFieldAmount(ParticleField& field, float amount) {
+    checkValue(amount, "amount", 0.0f, 4.0f);
+    field.def.look.amount = amount;
+}
+
+void paintField(ParticleField& field, const uint8_t* paint, const uint8_t* walls) noexcept {
+    if (paint) std::copy_n(paint, field.paint.size(), field.paint.begin());
+    if (walls) std::copy_n(walls, field.walls.size(), field.walls.begin());
+    for (size_t i = 0; i < field.masks.size(); ++i)
+        field.masks[i] = field.walls[i] ? uint8_t(gpu::kFieldWall)
+                                        : std::min<uint8_t>(field.paint[i], gpu::kFieldWall - 1);
+}
+
+field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexcept {
+    field::FieldDef def = field.def;
+    // Along its own x axis, turned into the world.
+    const float* q = field.rotation;
+    const float x[3] = {1 - 2 * (q[1] * q[1] + q[2] * q[2]), 2 * (q[0] * q[1] + q[2] * q[3]),
+                        2 * (q[0] * q[2] - q[1] * q[3])};
+    const float along = wind[0] * x[0] + wind[1] * x[1] + wind[2] * x[2];
+    def.wind.x = std::clamp(along * field.windResponse, -kMostWind, kMostWind);
+    field::FieldRules rules = field::fieldRules(def);
+    const int w = int(def.width), h = int(def.height);
+    const uint32_t rate = field::emissionRate(def.look.amount);
+    if (field.source == FW_FIELD_SOURCE_PAINTED) {
+        rules.paint = rate;
+        return rules;
+    }
+    gpu::FieldSource& source = rules.sources[0];
+    rules.sourceCount = 1;
+    source.rate = rate;
+    if (field.source == FW_FIELD_SOURCE_DISC) {
+        const int wide = std::max(int(field.sourceSize * float(std::min(w, h)) + 0.5f), 1);
+        const int left = int(std::lround(field.sourceAt[0] * float(w) - 0.5f * float(wide)));
+        const int low = int(std::lround(field.sourceAt[1] * float(h) - 0.5f * float(wide)));
+        source.cells = {left, low, left + wide, low + wide};
+        source.disc = 1;
+        return rules;
+    }
+    const int wide = std::clamp(int(field.sourceSize * float(w) + 0.5f), 1, w);
+    // As many at any resolution: what is in a cell then is the same.
+    const int rows = 2, left = (w - wide) / 2;
+    const bool falls = def.look.rise < 0;
+    source.cells = {left, falls ? h - rows : 0, left + wide, falls ? h : rows};
+    return rules;
+}
+
+uint32_t fieldSteps(const ParticleField& field, uint64_t ticks) noexcept {
+    return uint32_t(ticks * field.def.stepRate / kTicksPerSecond);
+}
+
+gpu::FieldDraw fieldDraw(const ParticleField& field, double ticks, uint32_t steps,
+                         double clock) noexcept {
+    constexpr double kWrap = 819.2;  // s, whole periods of the noise
+    const bool still = (field.flags & FW_FIELD_AS_PUBLISHED) != 0;
+    const double into = ticks * field.def.stepRate / kTicksPerSecond - double(steps);
+    const float* q = field.rotation;
+    const auto axis = [&](float x, float y, float z, float w) {
+        const gpu::vec3 v(x, y, z), u(q[0], q[1], q[2]);
+        return gpu::vec4(v + 2.0f * glm::cross(u, glm::cross(u, v) + q[3] * v), w);
+    };
+    gpu::FieldDraw draw{};
+    draw.place = {field.position[0], field.position[1], field.position[2],
+                  still ? 1.0f : float(std::clamp(into, 0.0, 1.0))};
+    draw.size = {field.size[0], field.size[1], field.size[2], field.opacity};
+    draw.right = axis(1, 0, 0, field.def.look.detail);
+    draw.up = axis(0, 1, 0, field.def.look.body);
+    draw.forward = axis(0, 0, 1, float(std::fmod(clock / kTicksPerSecond, kWrap)));
+    draw.tint = {field.tint[0], field.tint[1], field.tint[2], float(field.def.stepRate)};
+    draw.width = field.def.width;
+    draw.height = field.def.height;
+    draw.shape = field.shape;
+    const field::FieldLook& look = field.def.look;
+    const float life = look.life * float(field.def.stepRate);
+    draw.tall = std::clamp(std::fabs(look.rise) * life, 4.0f, float(field.def.height));
+    draw.seed = field.def.seed;
+    return draw;
+}
+
+}  // namespace fw::components

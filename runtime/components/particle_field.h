@@ -1,0 +1,49 @@
+// A particle field as plain data: what the host asked for, checked, as rules and masks of its cells
+// and as what it is drawn with. The step is in field/field.h.
+#pragma once
+#include "field/field.h"
+#include "flamewright/flamewright.h"
+#include "shared/field_draw.h"
+
+namespace fw::components {
+
+static_assert(field::kFieldPresets == FW_FIELD_PRESET_COUNT);
+
+struct ParticleField {
+    explicit ParticleField(std::pmr::memory_resource* memory)
+        : paint(memory), walls(memory), masks(memory) {}
+
+    field::FieldDef def;  // without wind
+    uint32_t flags = 0;   // FwParticleFieldFlags
+    uint32_t shape = 0;   // FwFieldShape
+    float position[3] = {}, size[3] = {1, 1, 1}, rotation[4] = {0, 0, 0, 1};
+    float windResponse = 0;
+    uint32_t source = 0;  // FwFieldSource
+    float sourceSize = 0.2f, sourceAt[2] = {};
+    float tint[3] = {1, 1, 1}, opacity = 1;
+    uint64_t userData = 0;
+    std::pmr::vector<uint8_t> paint, walls;  // the host's, as many as cells
+    std::pmr::vector<uint8_t> masks;         // what the backend gets of them
+};
+
+void setFieldPreset(FwParticleFieldDef& def, uint32_t preset) noexcept;
+const char* fieldPresetName(uint32_t preset) noexcept;
+
+// Throws where a value is out of its limits. `field` is new.
+void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, ParticleField& field);
+// Throw likewise, and then changed nothing.
+void setFieldPlace(ParticleField& field, const float position[3], const float rotation[4]);
+void setFieldAmount(ParticleField& field, float amount);
+// Null: as before. Masks follow.
+void paintField(ParticleField& field, const uint8_t* paint, const uint8_t* walls) noexcept;
+// In this wind, m/s.
+[[nodiscard]] field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexcept;
+// How many steps it has made `ticks` after it began.
+[[nodiscard]] uint32_t fieldSteps(const ParticleField& field, uint64_t ticks) noexcept;
+
+// As it is shown `ticks` after it began, when it has made so many steps; `clock`: the world's
+// ticks.
+[[nodiscard]] gpu::FieldDraw fieldDraw(const ParticleField& field, double ticks, uint32_t steps,
+                                       double clock) noexcept;
+
+}  // namespace fw::components

@@ -1,0 +1,212 @@
+// A particle field: density between its cells by cubic splines, fine structure by tiled noise that
+// the motion carries in two phases. What emits is looked up in the volumetric fires' profile, what
+// absorbs takes sun and sky, what refracts has a surface that gleams. Premultiplied: colour, and what
+// it hides.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/black_body.h"
+#include "shared/burn.h"
+#include "shared/field_draw.h"
+#include "shared/look.h"
+#include "shared/volume.h"
+#include "shared/volume_draw.h"
+
+layout(constant_id = 0) const uint kEncoding = 0u;
+layout(constant_id = 2) const uint kVariant = 0u;  // 0: it only emits, 1: absorbs, 2: refracts too
+layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) readonly buffer FieldShownBuffer {
+    uint shown[];
+};
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(set = 1, binding = 0) uniform sampler2DArray profiles;
+layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
+
+layout(location = 0) in vec2 inPlace;
+layout(location = 1) in vec3 inNormal;
+layout(location = 2) in vec3 inToEye;
+layout(location = 3) in vec3 inAlong;
+layout(location = 4) flat in vec4 inLook;
+layout(location = 5) flat in vec4 inTint;
+layout(location = 6) flat in uvec4 inField;
+layout(location = 7) flat in vec4 inSize;
+
+layout(location = 0) out vec4 outColor;
+
+#ifdef FW_SOFT
+// The host's depth at this pixel; of several samples the first, for a choice of one needs a feature.
+#if FW_SOFT == 2
+layout(set = 3, binding = 0) uniform sampler2DMS sceneDepth;
+#else
+layout(set = 3, binding = 0) uniform sampler2D sceneDepth;
+#endif
+#endif
+
+#include "lib/colour.glsl"
+#include "lib/look_noise.glsl"
+#ifdef FW_SOFT
+#include "lib/soft_depth.glsl"
+#endif
+
+const float kPeriod = 0.8;      // s, of the noise's two phases
+const float kTile = 44.0;       // cells that a tile of noise covers
+const float kFieldWhite = 1.25;  // of thin soot at 1600 K, in the host's units
+const vec2 kStretch = kVariant == 0u ? vec2(1.15, 0.62) : (kVariant == 1u ? vec2(0.8) : vec2(2.4, 0.42));
+
+struct Shown {
+    float density;
+    vec2 motion;     // cells a step
+    float sun;
+    vec2 slope;      // of density, a cell
+};
+
+// Cubic B-splines: 16 cells, weights and their slopes.
+Shown shownAt(vec2 place) {
+    int w = int(inField.y), h = int(inField.z);
+    vec2 at = place * vec2(float(w), float(h)) - 0.5;
+    vec2 low = floor(at), t = at - low, s = 1.0 - t;
+    vec2 wt[4] = vec2[4](s * s * s / 6.0, (t * t * (3.0 * t - 6.0) + 4.0) / 6.0,
+                         (s * s * (3.0 * s - 6.0) + 4.0) / 6.0, t * t * t / 6.0);
+    vec2 ds[4] = vec2[4](-0.5 * s * s, t * (1.5 * t - 2.0), -s * (1.5 * s - 2.0), 0.5 * t * t);
+    bool ring = inField.w != 0u;
+    uint columns[4];
+    float inside[4];
+    FW_UNROLL for (int i = 0; i < 4; ++i) {
+        int x = int(low.x) + i - 1;
+        inside[i] = ring || (x >= 0 && x < w) ? 1.0 : 0.0;
+        x = ring ? (x < 0 ? x + w : (x >= w ? x - w : x)) : clamp(x, 0, w - 1);
+        columns[i] = inField.x + uint(clamp(x, 0, w - 1));
+    }
+    vec4 sum = vec4(0.0);
+    vec2 slope = vec2(0.0);
+    FW_UNROLL for (int j = 0; j < 4; ++j) {
+        int y = int(low.y) + j - 1;
+        float rows = y < h ? 1.0 : 0.0;
+        uint row = uint(clamp(y, 0, h - 1)) * inField.y;
+        vec4 across = vec4(0.0);
+        float steep = 0.0;
+        FW_UNROLL for (int i = 0; i < 4; ++i) {
+            vec4 c = fieldShown(shown[columns[i] + row]);
+            c.x *= inside[i] * rows;
+            across += wt[i].x * c;
+            steep += ds[i].x * c.x;
+        }
+        sum += wt[j].y * across;
+        slope += vec2(wt[j].y * steep, ds[j].y * across.x);
+    }
+    return Shown(sum.x, sum.yz, sum.w, slope);
+}
+
+vec4 carried(vec2 cell, vec2 motion, float phase, float number, float lod) {
+    vec2 way = clamp(motion * ((phase - 0.5) * kPeriod), vec2(-0.25 * kTile), vec2(0.25 * kTile));
+    uvec3 of = uvec3(uint(number), uint(inSize.w), 3u);
+    vec2 jump = vec2(hash(of), hash(of + 4u));
+    return textureLod(lookTextures, vec3((cell - way) * kStretch * (1.0 / kTile) + jump, kLayerNoise), lod);
+}
+
+void main() {
+    Shown f = shownAt(inPlace);
+    vec2 cell = inPlace * vec2(float(inField.y), float(inField.z));
+    bool round_ = inField.w != 0u;
+    vec3 toEye = normalize(inToEye), normal = normalize(inNormal);
+    float facing = dot(normal, toEye);
+    float detail = inLook.x;
+
+    // Two phases half a period apart: each is only seen while its way is short.
+    float turns = inLook.z / kPeriod + hash(uvec3(uint(inSize.w), 1u, 1u));
+    float phase = turns - floor(turns), other = fract(turns + 0.5);
+    float share = abs(2.0 * phase - 1.0);
+    vec2 speed = f.motion * inTint.w;  // cells a second
+    float pixel = view.eye.w * (view.forward.w > 0.5 ? dot(inToEye, -view.forward.xyz) : 1.0);
+    float lod = min(noiseLod(pixel, 1.0 / (kTile * inSize.x)), 5.0);
+    vec4 noise = mix(carried(cell, speed, phase, floor(turns), lod),
+                     carried(cell, speed, other, floor(turns + 0.5), lod), share);
+    float rough = (noise.r - 0.5) * 1.5 + (noise.b - 0.5) * 0.9;
+    float ridge = noise.g - 0.45;
+
+    // Silhouettes and borders of the field fade.
+    float edge = 1.0;
+    if (round_) {
+        edge = smoothstep(0.0, 0.75, abs(facing));
+    } else {
+        vec2 b = min(inPlace.x, 1.0 - inPlace.x) * vec2(1.0);
+        edge = smoothstep(0.0, 0.08, b.x) * smoothstep(0.0, 0.10, 1.0 - inPlace.y);
+    }
+    float body = inLook.y, strength = inLook.w;
+    vec3 color = vec3(0.0), lit = vec3(0.0);
+    float alpha = 0.0;
+
+    if (kVariant <= 1u) {  // emits
+        // Tongues: the higher the more of it the noise takes away.
+        float y = inPlace.y * float(inField.z) / (2.6 * inSize.y);
+        float d = f.density * (1.0 + detail * (1.5 * rough + 0.6 * ridge)) -
+                  detail * (0.05 + 0.30 * min(y, 1.0));
+        d = max(d, 0.0);
+        // Dense is the flame's axis, thin its rim.
+        float rho = clamp(1.10 - 1.25 * d, 0.02, 1.2);
+        vec2 uv = vec2(rho * (1.0 / kProfileReach), y * 0.8 + 0.12);
+        vec2 profile = textureLod(profiles, vec3(clamp(uv, 0.01, 0.99), 0.0), 0.0).xy;
+        float kelvin = 1000.0 * profile.x + 260.0 * (min(d, 1.0) - 0.72) - 170.0 * y + 90.0 * detail * rough;
+        float soot = smoothstep(0.03, 0.62, d) * (0.25 + profile.y);
+        float thick = 1.0 - exp(-1.5 * soot * (0.25 + d));
+        float share1 = clamp(1.0 - body, 0.0, 1.0) * strength * edge;
+        color += sootRadiance(kelvin) * inTint.rgb * (kFieldWhite * view.sunColor.w * thick * share1);
+        alpha += 0.55 * thick * min(share1, 1.0);
+    }
+    if (kVariant >= 1u) {  // absorbs
+        float d = max(f.density * (1.0 + 1.3 * detail * rough) - 0.05 * detail, 0.0);
+        float tau = 3.4 * d * d * (round_ ? max(facing, 0.0) * 1.6 : 1.0);
+        float share1 = clamp(1.0 - abs(body - 1.0), 0.0, 1.0);
+        float cover = (1.0 - exp(-tau * strength)) * edge * share1;
+        if (round_) cover *= step(0.0, facing);
+        // Billows: towards where it is thinner they turn to the side.
+        vec3 up = normalize(cross(normal, inAlong));
+        vec2 lean = -f.slope * 2.2 - detail * vec2(noise.r - noise.b, noise.g - noise.r) * 0.9;
+        vec3 n = normalize(normal + inAlong * lean.x + up * lean.y);
+        float sky = 0.5 + 0.5 * dot(n, view.up.xyz);
+        float through = 0.25 + 0.75 * smoothstep(-0.6, 0.9, dot(n, view.sunDirection.xyz));
+        vec3 light = mix(view.ambientGround.rgb, view.ambientSky.rgb, sky) * (0.55 + 0.45 * f.sun) +
+                     view.sunColor.rgb * (0.42 * f.sun * through);
+        vec3 grey = inTint.rgb * light * 0.42;
+        lit += grey * cover;
+        alpha += cover;
+    }
+    if (kVariant == 2u) {  // refracts
+        float d = max(f.density * (1.0 + 1.6 * detail * rough), 0.0);
+        vec3 up = normalize(cross(normal, inAlong));
+        vec2 wave = -f.slope * 2.4 - detail * vec2(rough, 0.6 * ridge) * 1.8;
+        vec3 n = normalize(normal + inAlong * wave.x + up * wave.y);
+        float film = smoothstep(0.10, 0.42, d) * edge;
+        if (round_) film = smoothstep(0.10, 0.42, d) * step(0.0, facing) * smoothstep(0.0, 0.25, facing);
+        float facingN = clamp(dot(n, toEye), 0.0, 1.0);
+        float fresnel = 0.03 + 0.97 * pow(1.0 - facingN, 5.0);
+        vec3 back = reflect(-toEye, n);
+        vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb,
+                       smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
+        vec3 half_ = normalize(view.sunDirection.xyz + toEye);
+        float gleam = pow(max(dot(n, half_), 0.0), 60.0);
+        // Where it breaks it is white.
+        float foam = smoothstep(0.55, 1.25, 0.55 * d + 1.6 * detail * ridge + 0.25 * length(f.motion));
+        vec3 light = view.ambientSky.rgb * 0.8 + view.sunColor.rgb * 0.35;
+        vec3 deep = inTint.rgb * vec3(0.10, 0.26, 0.31) * light;
+        float share1 = clamp(body - 1.0, 0.0, 1.0) * strength * film;
+        float cover = min(share1 * mix(0.42 + 0.2 * d, 0.85, foam), 0.97);
+        lit += cover * mix(deep, 0.75 * light, foam * 0.8) +
+               share1 * (sky * fresnel + view.sunColor.rgb * (1.6 * gleam));
+        alpha += cover;
+    }
+    alpha = min(alpha, 1.0);
+#ifdef FW_SOFT
+    float soft = smoothstep(0.0, 1.0, gapToScene() / (0.2 * inSize.z));
+    color *= soft;
+    lit *= soft;
+    alpha *= soft;
+#endif
+    if (alpha < 0.002) discard;
+    color *= view.sunDirection.w;
+    lit *= view.sunDirection.w;
+    if (kEncoding != 0u) {
+        // Blending happens on what is shown: see flames.frag.
+        color = encodeOutput(color, kEncoding);
+        lit = encodeOutput(lit / alpha, kEncoding) * alpha;
+    }
+    outColor = vec4(min(color + lit, vec3(60000.0)), alpha);
+}

@@ -1,0 +1,90 @@
+// A particle field's body, made from the vertex number: a card that turns about its up axis towards
+// the eye, or a spheroid around which the field is wound, bulging where it is dense if it is displaced.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/field_draw.h"
+#include "shared/look.h"
+
+layout(std430, set = 0, binding = FW_BIND_FIELD_DRAWS) readonly buffer FieldDrawsBuffer {
+    FieldDraw draws[];
+};
+layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) readonly buffer FieldShownBuffer {
+    uint shown[];
+};
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+
+layout(location = 0) out vec2 outPlace;          // over the field, [0, 1]
+layout(location = 1) out vec3 outNormal;         // of the body
+layout(location = 2) out vec3 outToEye;          // m
+layout(location = 3) out vec3 outAlong;          // where x of the field goes
+layout(location = 4) flat out vec4 outLook;      // detail, body, time s, opacity
+layout(location = 5) flat out vec4 outTint;      // w: steps a second
+layout(location = 6) flat out uvec4 outField;    // first cell, width, height, 1: round
+layout(location = 7) flat out vec4 outSize;      // m a cell; cells it comes; depth m; seed
+
+const float kPi = 3.14159265;
+const float kBulge = 0.22;
+
+float densityAt(FieldDraw d, vec2 place) {
+    vec2 at = place * vec2(float(d.width), float(d.height)) - 0.5;
+    vec2 low = floor(at), part = at - low;
+    int x = int(low.x), y = int(low.y), w = int(d.width), h = int(d.height);
+    int x0 = x < 0 ? x + w : x, x1 = x + 1 >= w ? x + 1 - w : x + 1;
+    int y0 = clamp(y, 0, h - 1), y1 = clamp(y + 1, 0, h - 1);
+    vec4 n = vec4(shown[d.shown + uint(y0 * w + x0)] & 1023u, shown[d.shown + uint(y0 * w + x1)] & 1023u,
+                  shown[d.shown + uint(y1 * w + x0)] & 1023u, shown[d.shown + uint(y1 * w + x1)] & 1023u);
+    vec2 rows = mix(n.xz, n.yw, part.x);
+    return mix(rows.x, rows.y, part.y) * (1.0 / 511.5);
+}
+
+void main() {
+    FieldDraw d = draws[gl_InstanceIndex];
+    uint quad = uint(gl_VertexIndex) / 6u, corner = uint(gl_VertexIndex) % 6u;
+    corner = corner < 3u ? corner : 6u - corner;  // 0 1 2, 3 2 1
+    vec2 turn = vec2((corner & 1u) != 0u ? 1.0 : 0.0, corner >= 2u ? 1.0 : 0.0);
+    bool card = d.shape == kFieldCard;
+
+    vec3 foot = d.place.xyz - view.eye.xyz;
+    vec3 middle = foot + d.up.xyz * (0.5 * d.size.y);
+    bool perspective = view.forward.w > 0.5;
+    vec3 toEye = perspective ? -normalize(middle) : -view.forward.xyz;
+    // A card: at least half of its height stays visible from above.
+    vec3 axis = d.up.xyz;
+    float along = abs(dot(axis, toEye));
+    vec3 screenUp = view.up.xyz - toEye * dot(view.up.xyz, toEye);
+    screenUp = dot(screenUp, screenUp) > 1e-4 ? normalize(screenUp) : vec3(0.0, 0.0, 1.0);
+    vec3 flat_ = axis - toEye * dot(axis, toEye);
+    axis = mix(axis, normalize(flat_ + screenUp * 1e-3), smoothstep(0.6, 0.95, along));
+    vec3 side = normalize(cross(axis, toEye) + vec3(1e-6, 0.0, 0.0));
+    float way = dot(side, d.right.xyz) < 0.0 ? -1.0 : 1.0;  // wind blows the way it does
+    vec3 onCard = foot + side * ((turn.x - 0.5) * d.size.x) + axis * (turn.y * d.size.y);
+    vec2 cardPlace = vec2(way * (turn.x - 0.5) + 0.5, turn.y);
+
+    vec2 ballPlace = vec2((float(quad % kFieldAround) + turn.x) / float(kFieldAround),
+                          (float(quad / kFieldAround) + turn.y) / float(kFieldUp));
+    // Around by the angle, up by the height along the axis and the angle, half of each: cells keep
+    // their shape in the middle and the poles are not all of it.
+    float lon = 2.0 * kPi * ballPlace.x, lat = kPi * (ballPlace.y - 0.5);
+    vec3 ball = vec3(cos(lat) * cos(lon), sin(lat), -cos(lat) * sin(lon));
+    vec3 normal = normalize(d.right.xyz * (ball.x / d.size.x) + d.up.xyz * (ball.y / d.size.y) +
+                            d.forward.xyz * (ball.z / d.size.z));
+    vec3 onBall = middle + 0.5 * (d.right.xyz * (ball.x * d.size.x) + d.up.xyz * (ball.y * d.size.y) +
+                                  d.forward.xyz * (ball.z * d.size.z));
+    float bulge = d.shape == kFieldDisplaced
+                      ? kBulge * min(min(d.size.x, d.size.y), d.size.z) * cos(lat) : 0.0;
+    onBall += normal * (bulge * (densityAt(d, ballPlace) - 0.35));
+
+    vec3 at = card ? onCard : onBall;
+    outPlace = card ? cardPlace : ballPlace;
+    outNormal = card ? normalize(cross(side, axis)) : normal;
+    outToEye = perspective ? -at : -view.forward.xyz;
+    outAlong = card ? side * way
+                    : normalize(-d.right.xyz * (sin(lon) * d.size.x) - d.forward.xyz * (cos(lon) * d.size.z));
+    outLook = vec4(d.right.w, d.up.w, d.forward.w, d.size.w);
+    outTint = d.tint;
+    outField = uvec4(d.shown, d.width, d.height, card ? 0u : 1u);
+    outSize = vec4(d.size.x / float(d.width) * (card ? 1.0 : kPi), d.tall,
+                   card ? 0.5 * d.size.x : d.size.z, float(d.seed & 1023u));
+    gl_Position = view.clip0 * at.x + view.clip1 * at.y + view.clip2 * at.z + view.clip3;
+}
