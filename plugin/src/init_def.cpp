@@ -110,6 +110,8 @@ void defaults(FwFireEmitterDef& def) noexcept {
     def.smoke = 0.32f;
     def.smokeLife = 2.2f;
     def.sparks = 0.04f;
+    def.behind = 0.5f;
+    def.heat = 0.35f;
 }
 
 void defaults(FwIgnitionDef& def) noexcept { def.kind = FW_IGNITE; }

@@ -38,6 +38,12 @@ void readDirection(const float given[3], const char* name, float (&out)[3]) {
 
 float orElse(float given, float own) noexcept { return given > 0 ? given : own; }
 
+// Slow waves that never meet again, in [-1, 1].
+float wave(double t, double phase) noexcept {
+    return float(0.5 * std::sin(t + phase) + 0.3 * std::sin(2.27 * t + 2.1 * phase) +
+                 0.2 * std::sin(4.13 * t + 5.3 * phase));
+}
+
 vec4 with(const float v[3], float w) noexcept { return {v[0], v[1], v[2], w}; }
 
 }  // namespace
@@ -102,7 +108,8 @@ EmitterLook emitterLook(const FwFireEmitterDef& def) {
 
 void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter& emitter) {
     constexpr uint32_t kKnown = FW_EMITTER_HIDDEN | FW_EMITTER_NO_SMOKE | FW_EMITTER_NO_LIGHT |
-                                FW_EMITTER_GROUND | FW_EMITTER_JET;
+                                FW_EMITTER_GROUND | FW_EMITTER_JET | FW_EMITTER_IGNITES |
+                                FW_EMITTER_NO_COLLISION;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwFireEmitterDef::flags is 0x%x; the known flags are 0x%x.", def.flags, kKnown);
@@ -133,6 +140,14 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     checkValue(def.sparks, "FwFireEmitterDef::sparks", 0.0f, 1.0f);
     checkValue(def.temperature, "FwFireEmitterDef::temperature", 0.0f, 2500.0f);
     checkValue(def.ground, "FwFireEmitterDef::ground", -1e6f, 1e6f);
+    checkValue(def.behind, "FwFireEmitterDef::behind", 0.0f, 10.0f);
+    checkValue(def.heat, "FwFireEmitterDef::heat", 0.0f, 1.0f);
+    if ((def.flags & FW_EMITTER_IGNITES) && !isSwept(def))
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "FwFireEmitterDef::flags is 0x%x; FW_EMITTER_IGNITES goes with FW_EMITTER_JET and "
+            "without FW_EMITTER_NO_COLLISION.",
+            def.flags);
     emitter.def = def;
     emitter.seed = def.seed ? def.seed : ownSeed;
     std::copy_n(def.position, 3, emitter.position);
@@ -153,6 +168,19 @@ void setEmitterPower(FireEmitter& emitter, float power) {
     checkValue(power, "power", 0.0f, kMostPower);
     emitter.def.power = power;
     if (power > 0) emitter.look = emitterLook(emitter.def);  // what still flies keeps its looks
+}
+
+void takeShield(FireEmitter& emitter, uint32_t i, const JetShield& shield, double now) noexcept {
+    JetShield& has = emitter.shields[i];
+    float apart = 0;
+    for (int k = 0; k < 3; ++k)
+        apart += (has.place[k] - shield.place[k]) * (has.place[k] - shield.place[k]);
+    if (has.met && (!shield.met || apart > 0.16f)) {
+        JetShield& last = emitter.lastShields[emitter.nextLast++ % kJetRays];
+        last = has;
+        last.until = now + 0.8;
+    }
+    has = shield;
 }
 
 float emitterLasts(const FireEmitter& emitter) {
@@ -238,6 +266,25 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     record.flags = ((def.flags & FW_EMITTER_HIDDEN) ? gpu::kEmitterHidden : 0u) |
                    ((def.flags & FW_EMITTER_GROUND) ? gpu::kEmitterGround : 0u) |
                    ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u);
+    if (isSwept(def)) {
+        const auto add = [&](const JetShield& shield) {
+            record.shields[2 * record.shieldCount] = with(shield.place, shield.radius);
+            record.shields[2 * record.shieldCount + 1] = with(shield.normal, 0);
+            ++record.shieldCount;
+        };
+        for (const JetShield& shield : emitter.shields)
+            if (shield.met) add(shield);
+        for (const JetShield& shield : emitter.lastShields)
+            if (shield.met && shield.until > air.now) add(shield);
+    }
+    // Waves of the stream, now and at the frame's start: births lie between.
+    const double phase = double(emitter.seed & 1023u) * 0.137;
+    const auto waves = [&](double t) {
+        return vec4(look.wander * wave(9 * t, phase), look.wander * wave(9 * t, phase + 3.3),
+                    look.pulse * wave(23 * t, phase + 1.7), 0);
+    };
+    record.waves0 = waves(air.now - double(seconds));
+    record.waves1 = waves(air.now);
     record.steps =
         std::min(uint32_t(std::ceil(seconds / gpu::kMostParticleStep)), gpu::kMostParticleSteps);
     return true;
@@ -283,6 +330,9 @@ void fillEmitterState(const FireEmitter& emitter, const EmitterAir& air,
     out.life = look.life;
     out.speed = look.speed;
     out.reach = look.reach;
+    out.struck = isSwept(emitter.def) ? emitter.struck : 0;
+    out.freeWay = isSwept(emitter.def) && emitter.struck > 0 ? emitter.freeWay : look.reach;
+    out.heated = emitter.heated;
     out.lightIntensity = emitter.births.filled > 0 ? light.intensity : 0.0f;
     for (int i = 0; i < 3; ++i) out.lightPosition[i] = light.position[i];
 }

@@ -3,6 +3,9 @@
 #pragma once
 #include "flamewright/flamewright.h"
 
+#include <array>
+#include <cstdint>
+
 namespace fw::gpu {
 struct ParticleEmitter;  // shared/particle.h
 }
@@ -22,6 +25,21 @@ struct EmitterLook {
     float reach = 1;  // m that particles come, about
 };
 
+// Where a jet is stopped: a disc that particles do not pass.
+struct JetShield {
+    bool met = false;
+    float place[3] = {}, normal[3] = {}, radius = 0;  // m
+    double until = 0;                                 // s; of one that a ray no longer strikes
+};
+constexpr uint32_t kJetRays = 16;
+
+// An object without heat of its own under a jet.
+struct JetTouch {
+    FwBurnableMeshId object{};
+    uint64_t since = 0;  // tick
+    bool seen = false;   // in this exchange
+};
+
 struct EmitterAir {
     float wind[3] = {}, up[3] = {0, 1, 0};
     double now = 0;  // s
@@ -33,6 +51,13 @@ struct FireEmitter {
     uint32_t seed = 0;
     uint32_t first = 0, ring = 0;  // particles of the world's
     float position[3] = {}, direction[3] = {0, 1, 0};
+    // Of a jet, as it was last swept.
+    std::array<JetShield, kJetRays> shields{}, lastShields{};
+    uint32_t nextLast = 0;
+    uint32_t struck = 0;  // rays that something stopped
+    float freeWay = 0;    // m to the nearest of it
+    float heated = 0;     // W that went into burnable meshes at the last exchange
+    std::array<JetTouch, 8> touches{};
     // As of the last frame.
     struct Births {
         float position[3] = {};
@@ -47,6 +72,12 @@ struct FireEmitter {
 void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter& emitter);
 void moveFireEmitter(FireEmitter& emitter, const float position[3], const float* direction);
 void setEmitterPower(FireEmitter& emitter, float power);
+// Whether something may stop it.
+inline bool isSwept(const FwFireEmitterDef& def) noexcept {
+    return (def.flags & FW_EMITTER_JET) && !(def.flags & FW_EMITTER_NO_COLLISION);
+}
+// What ray `i` strikes now; what it struck before still stops what is on its way there.
+void takeShield(FireEmitter& emitter, uint32_t i, const JetShield& shield, double now) noexcept;
 EmitterLook emitterLook(const FwFireEmitterDef& def);
 // Particles that it needs at its power, and s that one of them lasts at most.
 uint32_t emitterNeeds(const FireEmitter& emitter);

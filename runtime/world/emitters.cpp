@@ -55,6 +55,7 @@ FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
     if (groups < needed) emitterGroups_.reserve(std::max(needed, 2 * groups));
     const size_t records = emitterRecords_.capacity(), live = emitters_.live() + 1;
     if (records < live) emitterRecords_.reserve(std::max(live, 2 * records));
+    findFireRoom(0);  // of shapes that jets are swept through
     const FwFireEmitterId id = emitters_.create(emitter);
     ++emittersMade_;
     return id;
@@ -86,9 +87,15 @@ void World::planEmitters(float seconds) noexcept {
     emitterGroups_.clear();
     uint32_t end = 0, particles = 0;
     const components::EmitterAir air = emitterAir(seconds);
+    bool listed = false;
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
         FireEmitter* emitter = emitters_.at(i);
         gpu::ParticleEmitter record;
+        if (emitter && components::isSwept(emitter->def)) {
+            if (!listed) listFireColliders();
+            listed = true;
+            shieldJet(*emitter, air.now);
+        }
         if (!emitter || !components::advanceEmitter(*emitter, air, seconds, record)) continue;
         for (uint32_t first = 0; first < record.ring; first += gpu::kParticleGroup)
             emitterGroups_.push_back({uint32_t(emitterRecords_.size()), first});

@@ -52,17 +52,6 @@ uint32_t ballsOf(const VolumetricFire& fire, const float up[3], const float wind
     return kAxisBalls;
 }
 
-// Piloted ignition: thick or thin, whichever is sooner.
-uint64_t ticksToCatch(const FwMaterialDef& m, float moisture, float pace) noexcept {
-    const double rise = std::max(double(m.ignitionTemperature) - kAmbient, 1.0) / kFlux;
-    const double store = double(m.density) * double(m.specificHeat);
-    const double thick = 0.785398 * double(m.conductivity) * store * rise * rise;
-    const double thin = store * double(m.thickness) * rise;
-    double seconds = m.thickness > 0 ? std::min(thick, thin) : thick;
-    seconds *= (1.0 + 2.0 * double(moisture)) / double(pace);
-    return uint64_t(std::clamp(seconds, 0.0, 3600.0) * double(gpu::kTicksPerSecond));
-}
-
 bool moved(const float a[3], const float b[3], float far) noexcept {
     float sum = 0;
     for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -71,15 +60,31 @@ bool moved(const float a[3], const float b[3], float far) noexcept {
 
 }  // namespace
 
+uint64_t ticksToCatch(const FwMaterialDef& m, float moisture, float pace, double flux) noexcept {
+    const double rise = std::max(double(m.ignitionTemperature) - kAmbient, 1.0) / flux;
+    const double store = double(m.density) * double(m.specificHeat);
+    const double thick = 0.785398 * double(m.conductivity) * store * rise * rise;
+    const double thin = store * double(m.thickness) * rise;
+    double seconds = m.thickness > 0 ? std::min(thick, thin) : thick;
+    seconds *= (1.0 + 2.0 * double(moisture)) / double(pace);
+    return uint64_t(std::clamp(seconds, 0.0, 3600.0) * double(gpu::kTicksPerSecond));
+}
+
 // Before the steps of a frame are planned. A frame that fails leaves times of contact behind that
 // the next one finds, no more.
 void World::touchByFires(uint64_t end) {
     const uint64_t first =
         (clock_.tick + gpu::kExchangeTicks - 1) / gpu::kExchangeTicks * gpu::kExchangeTicks;
-    for (uint64_t now = first; now < end; now += gpu::kExchangeTicks)
+    if (emitters_.live() > 0 && first < end) listFireColliders();
+    for (uint64_t now = first; now < end; now += gpu::kExchangeTicks) {
         for (uint32_t i = 0; i < fires_.slotCount(); ++i)
             if (auto* fire = fires_.at(i); fire && ((*fire)->data.flags & FW_FIRE_IGNITES))
                 touchByFire(**fire, uint32_t(now));
+        for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
+            if (auto* emitter = emitters_.at(i);
+                emitter && (emitter->def.flags & FW_EMITTER_IGNITES))
+                touchByJet(*emitter, uint32_t(now));
+    }
 }
 
 void World::touchByFire(Fire& fire, uint32_t now) {
@@ -122,7 +127,8 @@ void World::touchByFire(Fire& fire, uint32_t now) {
             std::copy_n(pose.translation, 3, touch->objectAt);
         }
         const FwMaterialDef& of = object.data.materials[material];
-        uint64_t wait = ticksToCatch(of, of.moisture + object.data.moisture, def_.paceFactor);
+        uint64_t wait =
+            ticksToCatch(of, of.moisture + object.data.moisture, def_.paceFactor, kFlux);
         if (touch->lit) wait = std::max(wait, kAgain);
         if (now - touch->since < wait) continue;
         FwIgnitionDef def{};

@@ -110,8 +110,9 @@ void World::planSteps(const ClockAdvance& time) {
         const size_t firstEvent = frame_.events.size();
         for (; nextDue < frame_.due.size() && frame_.due[nextDue].step == step; ++nextDue) {
             const PendingTexel& event = frame_.due[nextDue].event;
-            frame_.events.push_back({event.object, event.texel, event.kind,
-                                     event.kind == FW_WET ? event.water : event.tick});
+            frame_.events.push_back(
+                {event.object, event.texel, event.kind,
+                 event.kind == FW_WET || event.kind == gpu::kEventHeat ? event.water : event.tick});
         }
         plan.events = std::span<const gpu::TexelEvent>(frame_.events).subspan(firstEvent);
         firstUpdate[step] = frame_.updates.size();

@@ -138,6 +138,18 @@ struct Field {
     uint64_t countersFrame = 0;
 };
 
+struct JetHit {  // of one ray of a jet
+    bool met = false;
+    float distance = 0;  // m from where the ray began
+    float place[3] = {}, normal[3] = {};
+    FwBurnableMeshId object{};  // null: a collider or blocker
+    uint32_t texel = 0;
+};
+
+// Piloted ignition under `flux` W/m^2: thick or thin, whichever is sooner.
+uint64_t ticksToCatch(const FwMaterialDef& material, float moisture, float pace,
+                      double flux) noexcept;
+
 struct FireProfileEntry {
     uint32_t layer = 0, users = 0;
 };
@@ -402,6 +414,14 @@ class World {
     void commitFields(uint64_t end) noexcept;
     void takeFields(const gpu::Readback& readback) noexcept;
     void sendFieldRules() noexcept;
+    // jets.cpp
+    float sweepJet(const float start[3], const float way[3], float most, JetHit& hit) noexcept;
+    void sweepJets(const components::FireEmitter& emitter,
+                   std::array<JetHit, components::kJetRays>& hits) noexcept;
+    void shieldJet(components::FireEmitter& emitter, double now) noexcept;
+    void touchByJet(components::FireEmitter& emitter, uint32_t now);
+    void heatLite(components::FireEmitter& emitter, Object& object, const JetHit& hit, float radius,
+                  float flux, uint32_t now);
     // fire_colliders.cpp
     void listFireColliders() noexcept;
     // fire_touch.cpp

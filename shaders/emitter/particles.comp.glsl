@@ -45,8 +45,22 @@ void main() {
         p.hit = fresh ? born.hit : p.hit;
         float dt = lived / float(max(steps, 1u)), now = e.wind.w - lived;
         for (uint i = 0u; i < steps; ++i) {
+            vec3 from = p.placeAge.xyz;
             p = particleStep(e, t, p, now, dt);
-            p = particleGround(e, t, p, seed);
+            float size = particleSize(e, t, p.placeAge.w, p.speedPath.w, t.own), least = 2.0;
+            float reach = p.hit.w < 0.0 ? min(0.12 * size, 0.12) : 0.0;
+            vec4 disc = vec4(0.0);
+            vec3 normal = e.up.xyz;
+            for (uint k = 0u; k < e.shieldCount; ++k) {
+                vec4 middle = emitters[group.x].shields[2u * k];
+                vec3 n = emitters[group.x].shields[2u * k + 1u].xyz;
+                float f = particleMeets(from, p.placeAge.xyz, middle, n, reach);
+                bool first = f < least;
+                least = first ? f : least;
+                disc = first ? middle : disc;
+                normal = first ? n : normal;
+            }
+            p = particleStops(e, t, p, seed, from, least, disc, normal);
             now += dt;
         }
         if (there) particles[at] = p;
@@ -83,7 +97,8 @@ void main() {
         bool jet = (e.flags & kEmitterJet) != 0u;
         place += e.up.xyz * (jet || spark ? 0.0 : 0.35 * size * (1.0 - smoothstep(0.0, 0.5, a)));
         float height = dot(place, e.up.xyz) - e.carried.w;
-        float tall = size * pow(stretch, 0.75), wide = 0.5 * size * pow(stretch, -0.25);
+        float root = sqrt(sqrt(stretch));
+        float tall = size * root * root * root, wide = 0.5 * size / root;
         float upright = abs(dot(along, e.up.xyz));
         float low = mix(0.7 * wide, 0.42 * tall, upright);
         place += e.up.xyz * ((e.flags & kEmitterGround) != 0u && !spark ? max(0.0, low - height)
@@ -96,7 +111,7 @@ void main() {
             along = speed > 1e-3 ? v / max(length(v), 1e-3) : above;
             wide = max(thick, 0.7 * pixel);
             tall = length(v) * 0.02 + 2.0 * wide;
-            opacity = pow(thick / wide, 1.2) * (1.0 - smoothstep(0.6, 1.0, a)) * near;
+            opacity = thick / wide * (1.0 - smoothstep(0.6, 1.0, a)) * near;
         }
         quad.axisWidth = vec4(along, wide);
         quad.baseHeight = vec4(place - along * (0.5 * tall), tall);
@@ -112,7 +127,7 @@ void main() {
         smoke.baseHeight = vec4(place - view.up.xyz * (0.62 * size), 1.24 * size);
         smoke.opacity = particleSmoke(e, a) * t.smoke * near;
         smoke.phase = 0.10 * age + 5.0 * t.other;
-        smoke.kelvin = lit * lit;
+        smoke.kelvin = lit;
         smoke.kind = (seed & 0xFFFFu) << 2u | kQuadSmoke;
         bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 

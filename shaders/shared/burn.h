@@ -177,6 +177,7 @@ FW_SHARED_CONST uint kEventIgnite = 0u;
 FW_SHARED_CONST uint kEventWet = 1u;
 FW_SHARED_CONST uint kEventDry = 2u;
 FW_SHARED_CONST uint kEventExtinguish = 3u;
+FW_SHARED_CONST uint kEventHeat = 4u;  // ours: a flame blows on it for a heat step
 
 struct BurnObject {   // everything a pass needs to find an object's planes
     uint texelBase;   // into texels, normals (per mesh)
@@ -255,7 +256,7 @@ struct TexelEvent {   // sorted by (object, texel, order); one batch per step
     uint object;      // slot
     uint texel;       // index in the object's map
     uint kind;
-    uint tick;        // of an ignition; of a wetting: g/m^2 of water
+    uint tick;        // of an ignition; of a wetting: g/m^2 of water; of heat: 100 W/m^2
 };
 FW_SHARED_SIZE(TexelEvent, 16)
 
@@ -341,6 +342,7 @@ FW_SHARED_FN uint applyEvent(uint t, uint kind, uint tick, uint now) {
         return (isSource(t) || t == kOut) ? kOutWet : t;
     }
     if (kind == kEventDry) return t == kWet ? kNever : (t == kOutWet ? kOut : t);
+    if (kind == kEventHeat) return t;
     return isSource(t) ? kOut : t;  // extinguish
 }
 

@@ -302,6 +302,32 @@ FW_SHARED_FN HeatTexel heatRests(FW_IN(HeatMaterial) m, bool burns) {
     return x;
 }
 
+// A flame that blows on it gives `flux` W/m^2 for a step, beside what the step itself does: its
+// water first, then its skin.
+FW_SHARED_FN void heatBlows(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint chance) {
+    uint size = (leastOf(flux, kFluxMost) * m.absorbs) >> 8u;
+    uint capacity = m.capacityLeast >> (x.phase == kPhaseBurnt ? 2u : 0u);
+    if (m.inertia != 0u && x.phase != kPhaseBurnt && (x.film == 0u || x.heat <= kBoiling)) {
+        uint rise = x.heat > m.ambient ? x.heat - m.ambient : 0u;
+        uint reach = divide(rise << 12u, mostOf(size, 1u));
+        capacity = leastOf(mostOf(mulShift(m.inertia, reach, 8u), m.capacityLeast), m.capacityMost);
+    }
+    uint slope = mulShift(radiationSlope(x.heat), m.radiates, 8u);
+    uint resists = mostOf(capacity + m.convects + slope, 1u);
+    uint heat = leastOf(x.heat + divideByChance(size << 12u, resists, chance), 65535u);
+    if (heat > kBoiling && (x.film | x.moist) != 0u) {
+        uint spare = leastOf(mulShift(heat - kBoiling, resists, 12u), 0x7FFFFFFu);  // W/m^2
+        uint gone = leastOf(divideByChance(spare, m.filmFlux, hash32(chance)), x.film);
+        x.film -= gone;
+        uint spent = gone * m.filmFlux;
+        if (x.moist != 0u && spent < spare)
+            x.moist -= leastOf(divideByChance(spare - spent, m.moistFlux, hash32(chance + 1u)),
+                               x.moist);
+        heat = mostOf(leastOf(heat, kBoiling), x.heat);
+    }
+    x.heat = heat;
+}
+
 // What one event makes of texel and state. Water does not put out by itself: heat steps do, when it
 // takes more than the fire gives. tick: as TexelEvent; now: start of the step.
 FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind,
@@ -309,6 +335,13 @@ FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
     if (kind == kEventIgnite) return applyEvent(t, kind, tick, now);
     if (kind == kEventWet) heatWets(x, tick, m);
     if (kind == kEventDry) x.film = 0u;
+    if (kind == kEventHeat) {
+        heatBlows(x, m, tick * 100u, hash32(x.heat * 0x9E3779B9u + now));
+        t = wetState(t, heatClosed(x, m));
+        bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u &&
+                     !heatClosed(x, m);
+        return ready && x.heat >= m.ignitesAt ? applyEvent(t, kEventIgnite, now, now) : t;
+    }
     if (kind == kEventExtinguish && isSource(t) && x.phase != kPhaseBurnt) {
         if (x.phase == kPhaseBurning) x.phase = kPhaseOut;
         x.heat = leastOf(x.heat, m.diesAt);

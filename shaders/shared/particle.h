@@ -23,7 +23,6 @@ using glm::normalize;
 using glm::smoothstep;
 using std::cos;
 using std::exp;
-using std::pow;
 using std::sin;
 using std::sqrt;
 #endif
@@ -64,9 +63,12 @@ struct ParticleEmitter {  // one frame of one emitter
     uint seed;
     uint flags;
     uint steps;      // of this frame
-    uint reserved0;
+    uint shieldCount;
+    vec4 waves0;     // rad, rad, share: how a stream swings and pulses, at the frame's start
+    vec4 waves1;     // and at its end
+    vec4 shields[64]; // m, world, and radius; unit normal: what stops a jet
 };
-FW_SHARED_SIZE(ParticleEmitter, 240)
+FW_SHARED_SIZE(ParticleEmitter, 1296)
 
 struct Particle {
     vec4 placeAge;   // m, world; s, < 0: rests no more
@@ -137,29 +139,20 @@ FW_SHARED_FN vec3 particleAcross(vec3 d) {
     return normalize(cross(d, (d.y < 0.9f && d.y > -0.9f) ? vec3(0.0f, 1.0f, 0.0f)
                                                           : vec3(1.0f, 0.0f, 0.0f)));
 }
-// Slow waves that never meet again, in [-1, 1].
-FW_SHARED_FN float particleWave(float t, float phase) {
-    return 0.5f * sin(t + phase) + 0.3f * sin(2.27f * t + 2.1f * phase) +
-           0.2f * sin(4.13f * t + 5.3f * phase);
-}
-
 // As it is at its birth, `age` s before the frame's end.
 FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
     float back = e.from.w > 0.0f ? particleUnit(age / e.from.w) : 0.0f;
     vec3 d = vec3(e.direction.x, e.direction.y, e.direction.z);
     vec3 r = particleAcross(d), u = cross(r, d);
-    float t = e.wind.w - age, phase = float(e.seed & 1023u) * 0.137f;
-    float wander = e.turbulence.w;
-    float a = particleGauss(seed + 1u) * e.direction.w + wander * particleWave(t * 9.0f, phase);
-    float b = particleGauss(seed + 2u) * e.direction.w +
-              wander * particleWave(t * 9.0f, phase + 3.3f);
+    vec4 waves = mix(e.waves1, e.waves0, back);
+    float a = particleGauss(seed + 1u) * e.direction.w + waves.x;
+    float b = particleGauss(seed + 2u) * e.direction.w + waves.y;
     float disc = e.place.w * sqrt(particleHash(seed + 6u));
     float turn = 6.2831853f * particleHash(seed + 7u);
     float along = 2.0f * particleHash(seed + 9u) - 1.0f;
     vec3 at = mix(vec3(e.place.x, e.place.y, e.place.z), vec3(e.from.x, e.from.y, e.from.z), back);
     at += (r * cos(turn) + u * sin(turn)) * disc + vec3(e.half_.x, e.half_.y, e.half_.z) * along;
-    float pulse = 1.0f + e.up.w * particleWave(t * 23.0f, phase + 1.7f) +
-                  0.08f * particleGauss(seed + 3u);
+    float pulse = 1.0f + waves.z + 0.08f * particleGauss(seed + 3u);
     float spark = particleHash(seed + 11u) < e.heat.w ? 1.0f : 0.0f;
     vec3 v = normalize(d + r * a + u * b) * (e.half_.w * pulse);
     // Sparks are thrown about.
@@ -218,6 +211,7 @@ FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle
     vec3 d = vec3(e.direction.x, e.direction.y, e.direction.z);
     vec3 c = particleEddies((at - d * (e.turbulence.z * now)) * e.turbulence.y);
     c -= n * (min(0.0f, dot(c, n)) * struck);
+    next -= n * (min(0.0f, dot(next, n)) * struck);
     vec3 moved = ((v + next) * 0.5f + c * amp) * dt;
     p.placeAge = vec4(at + moved, p.placeAge.w + dt);
     p.speedPath = vec4(next, p.speedPath.w + length(moved));
@@ -253,15 +247,34 @@ FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Partic
     return p;
 }
 
-// The ground, after a step.
-FW_SHARED_FN Particle particleGround(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
+// Where on its way of a step it meets a disc, [0, 1]; 2: nowhere.
+FW_SHARED_FN float particleMeets(vec3 from, vec3 to, vec4 disc, vec3 n, float reach) {
+    vec3 c = vec3(disc.x, disc.y, disc.z);
+    float a = dot(from - c, n) - reach, b = dot(to - c, n) - reach;
+    float f = a > 0.0f ? a / max(a - b, 1e-6f) : 0.0f;
+    vec3 d = from + (to - from) * f - c;
+    d -= n * dot(d, n);
+    return b < 0.0f && a > b && a > -0.4f && dot(d, d) < disc.w * disc.w ? f : 2.0f;
+}
+
+// After a step from `from`: what it met first, of its jet's shields (`share` of the step, at `disc`
+// with normal `n`; 2: none) and the ground.
+FW_SHARED_FN Particle particleStops(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
+                                    vec3 from, float share, vec4 disc, vec3 n) {
     vec3 up = vec3(e.up.x, e.up.y, e.up.z), at = vec3(p.placeAge.x, p.placeAge.y, p.placeAge.z);
     vec3 v = vec3(p.speedPath.x, p.speedPath.y, p.speedPath.z);
     float size = particleSize(e, t, p.placeAge.w, p.speedPath.w, t.own);
     float above = dot(at, up) - e.carried.w;
-    bool meets = (e.flags & kEmitterGround) != 0u && above < min(0.12f * size, 0.12f) &&
-                 dot(v, up) < 0.0f;
-    Particle q = particleSplash(e, t, p, seed, at - up * above, up, size);
+    bool shield = share <= 1.0f;
+    bool meets = shield || ((e.flags & kEmitterGround) != 0u && above < min(0.12f * size, 0.12f) &&
+                            dot(v, up) < 0.0f);
+    vec3 c = at - up * above, normal = up;
+    if (shield) {
+        vec3 d = from + (at - from) * share, middle = vec3(disc.x, disc.y, disc.z);
+        c = d - n * dot(d - middle, n);
+        normal = n;
+    }
+    Particle q = particleSplash(e, t, p, seed, c, normal, size);
     float deep = (e.flags & kEmitterGround) != 0u ? max(-above, 0.0f) : 0.0f;
     p.placeAge = meets ? q.placeAge : p.placeAge + vec4(up * deep, 0.0f);
     p.speedPath = meets ? q.speedPath : p.speedPath;
@@ -280,9 +293,10 @@ FW_SHARED_FN float particleFire(float a, float own) {
     return mix(0.45f, 1.0f, smoothstep(0.0f, 0.10f, a)) *
            (1.0f - smoothstep(0.62f + 0.18f * own, 0.98f, a));
 }
+FW_SHARED_FN float particleQuarter(float x) { return x * sqrt(sqrt(x)); }  // x^1.25
 FW_SHARED_FN float particleSmoke(ParticleEmitter e, float a) {
     return smoothstep(0.65f, 1.05f, a) *
-           pow(particleUnit((1.0f + e.life.z - a) / max(e.life.z, 0.01f)), 1.3f);
+           particleQuarter(particleUnit((1.0f + e.life.z - a) / max(e.life.z, 0.01f)));
 }
 // Length over width, and how far the quad follows the way it flies (1) or its own turn (0).
 // `across`: m/s on the screen.

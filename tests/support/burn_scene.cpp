@@ -202,7 +202,9 @@ void PlanMaker::ball(std::vector<gpu::TexelEvent>& out, uint32_t object, uint32_
     mesh::texelsNear(domain, point, radius * domain.texelSide, texels);
     for (const uint32_t texel : texels)
         out.push_back({object, texel, kind,
-                       kind == gpu::kEventWet ? 1 + pick(300) : now_ + 1 + pick(gpu::kStepTicks)});
+                       kind == gpu::kEventWet    ? 1 + pick(300)
+                       : kind == gpu::kEventHeat ? 1 + pick(5000)
+                                                 : now_ + 1 + pick(gpu::kStepTicks)});
 }
 
 OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
@@ -225,7 +227,7 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
             const uint32_t object = pick(objects);
             const uint32_t kinds[] = {
                 gpu::kEventIgnite, gpu::kEventIgnite,     gpu::kEventIgnite, gpu::kEventWet,
-                gpu::kEventDry,    gpu::kEventExtinguish, gpu::kEventDry,    gpu::kEventExtinguish};
+                gpu::kEventDry,    gpu::kEventExtinguish, gpu::kEventHeat,   gpu::kEventExtinguish};
             const uint32_t kind = kinds[pick(8)];
             const float reach = kind == gpu::kEventIgnite ? 3.0f : 12.0f;
             ball(texels, object, kind, 0.5f + reach * float(pick(1000)) / 1000.0f);

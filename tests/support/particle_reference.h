@@ -56,8 +56,22 @@ class ParticleReference {
             const float dt = lived / float(std::max(e.steps, 1u));
             float now = e.wind.w - lived;
             for (uint32_t i = 0; i < e.steps; ++i) {
+                const gpu::vec3 from(p.placeAge);
                 p = gpu::particleStep(e, t, p, now, dt);
-                p = gpu::particleGround(e, t, p, seed);
+                const float size = gpu::particleSize(e, t, p.placeAge.w, p.speedPath.w, t.own);
+                const float reach = p.hit.w < 0 ? std::min(0.12f * size, 0.12f) : 0.0f;
+                float least = 2;
+                gpu::vec4 disc(0.0f), normal(e.up);
+                for (uint32_t k = 0; k < e.shieldCount; ++k) {
+                    const float f =
+                        gpu::particleMeets(from, gpu::vec3(p.placeAge), e.shields[2 * k],
+                                           gpu::vec3(e.shields[2 * k + 1]), reach);
+                    if (f >= least) continue;
+                    least = f;
+                    disc = e.shields[2 * k];
+                    normal = e.shields[2 * k + 1];
+                }
+                p = gpu::particleStops(e, t, p, seed, from, least, disc, gpu::vec3(normal));
                 now += dt;
             }
         }

@@ -223,6 +223,39 @@ TEST(Particles, NothingGoesBelowTheGround) {
     }
 }
 
+// Walls as a jet's rays find them, at any rate of frames: fire spreads there, none of it comes
+// through.
+TEST(Particles, AShieldStopsAStreamAtAnyFrameRate) {
+    FwFireEmitterDef def = jetDef();
+    def.sparks = 0;
+    for (const float dt : {1 / 90.0f, 1 / 15.0f}) {
+        ParticleReference jet(def);
+        components::JetShield wall;
+        wall.met = true;
+        wall.place[0] = 3;
+        wall.normal[0] = -1;
+        wall.radius = 6;
+        int spread = 0;
+        for (float t = 0; t < 2; t += dt) {
+            components::takeShield(jet.emitter, 0, wall, jet.air.now);
+            jet.step(dt);
+            for (uint32_t i = 0; i < jet.record.ring; ++i) {
+                if (!jet.alive(i)) continue;
+                EXPECT_LT(jet.place(i).x, 3.0f) << dt;
+                spread += jet.particles[i].hit.w > 0.2f && std::abs(jet.place(i).z) > 0.5f;
+            }
+        }
+        EXPECT_LT(20, spread);
+        // What is on its way still meets a wall that no ray strikes any more.
+        wall.met = false;
+        components::takeShield(jet.emitter, 0, wall, jet.air.now);
+        jet.step(dt);
+        EXPECT_EQ(1u, jet.record.shieldCount);
+        for (int i = 0; i < 2; ++i) jet.step(0.5f);
+        EXPECT_EQ(0u, jet.record.shieldCount);
+    }
+}
+
 TEST(Particles, AFrameOfAnyLengthKeepsThemFinite) {
     ParticleReference jet(jetDef());
     for (const float dt : {0.0f, 1e-4f, 10.0f, 0.0f, 0.5f, 3.0f, 0.016f})

@@ -650,7 +650,10 @@ typedef enum FwEmitterFlags {
     FW_EMITTER_NO_LIGHT = 4, /* fwWorld_GetLights does not name it */
     FW_EMITTER_GROUND = 8,   /* nothing of it goes below ground: it spreads out there */
     FW_EMITTER_JET = 16,     /* a pressurised stream along direction that tears into flame, instead of a fire
-                                that rises: a flamethrower */
+                                that rises: a flamethrower. Colliders (fwWorld_AddFireCollider), blockers and
+                                burnable meshes stop it: it splashes there, and nothing behind is reached */
+    FW_EMITTER_IGNITES = 32, /* of a jet: heats the burnable meshes that it strikes, until they catch */
+    FW_EMITTER_NO_COLLISION = 64, /* of a jet: nothing stops it */
     FW_EMITTER_FLAGS_FORCE32 = 0x7fffffff
 } FwEmitterFlags;
 /* Fire, the smoke it becomes and sparks, of particles that live in the world: large soft quads, simulated and
@@ -685,6 +688,12 @@ typedef struct FwFireEmitterDef {
     uint32_t maxParticles;      /* [0, 1048576], 0: as many as it needs at this power. The oldest make room */
     uint32_t reserved;          /* 0 */
     uint64_t userData;          /* comes back in its state */
+    /* Of a jet: it is swept, by 16 rays over its cone, from `behind` its nozzle on, where its holder stands: a
+     * nozzle that is pushed into a wall or through it burns that wall, not the room beyond. Of its power the
+     * share `heat` goes into what it strikes, spread over where: eight times a second, by the host's numbers
+     * alone, the same on every backend. Burnt-through holes of a mesh still stop it; those of its shape do not. */
+    float behind;               /* m, [0, 10], default 0.5 */
+    float heat;                 /* [0, 1], default 0.35 */
 } FwFireEmitterDef;
 static inline FwFireEmitterDef fwDefaultFireEmitterDef(void) {
     FwFireEmitterDef d; fwInitDef(FW_DEF_FIRE_EMITTER, &d, (uint32_t)sizeof d); return d;
@@ -709,7 +718,9 @@ typedef struct FwFireEmitterState { /* as of the last frame */
     float reach;                /* m that its fire comes, about */
     float lightIntensity;       /* W/sr of the visible part, flickering */
     float lightPosition[3];     /* m, world */
-    float reserved1;
+    uint32_t struck;            /* of a jet: rays of 16 that something stopped */
+    float freeWay;              /* m from its nozzle to the nearest of it, 0: right there; else reach */
+    float heated;               /* W that go into burnable meshes */
 } FwFireEmitterState;
 FW_API FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld*, FwFireEmitterId id, FwFireEmitterState* state); /* [world] */
 

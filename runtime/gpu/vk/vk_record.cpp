@@ -254,7 +254,7 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event) {
     ObjectEntry& object = s.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
     object.lastEvent = std::max<uint64_t>(object.lastEvent, event.tick);
-    const bool douses = event.kind != kEventIgnite && !object.doused;
+    const bool douses = event.kind != kEventIgnite && event.kind != kEventHeat && !object.doused;
     if (object.touched && !douses) return;
     object.touched = true;
     object.doused = object.doused || douses;
