@@ -24,9 +24,41 @@ layout(push_constant) uniform Push { ParticlePush push; };
 
 const float kNearFade = 0.3;  // m before the eye
 
+// All but its shields: those are looked at one by one.
+ParticleEmitter emitterOf(uint i) {
+    ParticleEmitter e;
+    e.from = emitters[i].from;
+    e.place = emitters[i].place;
+    e.direction = emitters[i].direction;
+    e.half_ = emitters[i].half_;
+    e.carried = emitters[i].carried;
+    e.wind = emitters[i].wind;
+    e.up = emitters[i].up;
+    e.motion = emitters[i].motion;
+    e.turbulence = emitters[i].turbulence;
+    e.size = emitters[i].size;
+    e.life = emitters[i].life;
+    e.heat = emitters[i].heat;
+    e.first = emitters[i].first;
+    e.ring = emitters[i].ring;
+    e.head = emitters[i].head;
+    e.filled = emitters[i].filled;
+    e.fresh = emitters[i].fresh;
+    e.serial = emitters[i].serial;
+    e.age = emitters[i].age;
+    e.apart = emitters[i].apart;
+    e.seed = emitters[i].seed;
+    e.flags = emitters[i].flags;
+    e.steps = emitters[i].steps;
+    e.shieldCount = emitters[i].shieldCount;
+    e.waves0 = emitters[i].waves0;
+    e.waves1 = emitters[i].waves1;
+    return e;
+}
+
 void main() {
     uvec2 group = groups[gl_WorkGroupID.x];
-    ParticleEmitter e = emitters[group.x];
+    ParticleEmitter e = emitterOf(group.x);
     uint steps = push.still == 0u ? e.steps : 0u;
     bool perspective = view.forward.w > 0.5;
     for (uint turn = 0u; turn < kParticleGroup / 64u; ++turn) {
