@@ -90,8 +90,11 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
             pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
         const float most_ =
             pose.scale * std::max({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
-        // Closer than a texel's half diagonal and it is struck.
-        const float close = std::max(0.75f * domain.texelSide * most_, kLeastStep);
+        // Closer than half a link between texels and it is struck; a stretched mesh's are longer
+        // one way than the other.
+        const float gap =
+            std::clamp(0.55f * domain.linkMax, 0.75f * domain.texelSide, 4.0f * domain.texelSide);
+        const float close = std::max(gap * most_, kLeastStep);
         float enter = 0, leave = nearest;
         if (!object.skinMoved) {
             float a[3], b[3], end[3], local[3];
