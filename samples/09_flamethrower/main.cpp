@@ -60,7 +60,7 @@ const std::vector<Case>& cases() {
          nozzle,
          ahead,
          still,
-         {{{0.6f, 0.9f, 0.62f}, {0.7f, 0.9f, 0.05f}}, behind},
+         {{{0.6f, 0.9f, 0.62f}, {0.7f, 0.9f, 0.06f}}, behind},
          true},
         {"thin wall",
          nozzle,
