@@ -10,6 +10,7 @@ runtime/core|core/|flamewright/flamewright.h
 runtime/fire|fire/|core/|shared/|flamewright/flamewright.h
 runtime/mesh|mesh/|core/|shared/|flamewright/flamewright.h
 runtime/volume|volume/|core/|shared/|flamewright/flamewright.h
+runtime/book|book/|core/|shared/|flamewright/flamewright.h
 runtime/field|field/|core/|shared/|flamewright/flamewright.h
 runtime/components|components/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/flamewright.h
 runtime/world|world/|components/|core/|fire/|mesh/|volume/|field/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
@@ -18,7 +19,8 @@ plugin/src|flamewright/|world/|components/|core/|gpu/backend.h|gpu/cpu/cpu_backe
 plugin/include|flamewright/
 shaders/shared|shared/
 samples|flamewright/|common/|import/
-editor|flamewright/|import/|tools/
+editor/import|flamewright/|import/
+editor/tools|flamewright/|import/|tools/|book/|core/|volume/|shared/
 '
 
 sources() {

@@ -1,0 +1,141 @@
+// Books of a volumetric flame: it burns for a turn and a bit, each frame keeps where its curve is,
+// and rays from the side go through it.
+#include "scene.h"
+
+#include "volume/flame.h"
+#include "volume/march.h"
+
+#include "shared/black_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace fwtools {
+namespace {
+
+using namespace fw;
+
+struct Named {
+    const char* name;
+    volume::FlamePreset preset;
+    float width, height;  // of the frame, of the flame's height
+};
+constexpr Named kFlames[] = {
+    {"campfire", volume::FlamePreset::CampFire, 1.6f, 1.6f},
+    {"torch", volume::FlamePreset::Torch, 1.6f, 1.6f},
+    {"bonfire", volume::FlamePreset::Bonfire, 1.6f, 1.6f},
+};
+
+struct Moment {
+    gpu::FlameRecord record;
+    volume::FlameNodes nodes;
+};
+
+class FlameScene final : public Scene {
+ public:
+    FlameScene(const BakeDef& def, const Named& named) : def_(def) {
+        const volume::FlamePresetDef preset = volume::presetDef(named.preset);
+        volume::FlameDef flame;
+        flame.look = preset.look;
+        flame.look.smoke = 0;  // smoke is a book of its own
+        flame.power = preset.power;
+        flame.diameter = preset.diameter;
+        flame.seed = def.seed;
+        volume::paintLook(flame.look, profile_);
+        const book::Facts& f = def.facts;
+        faded_ = f.frames / 4;
+        volume::Flame now;
+        const volume::FlameAir air;
+        volume::startFlame(now, flame, air);
+        size_ = vec2(named.width, named.height) * now.size.height;
+        for (uint32_t i = 0; i < f.frames + faded_; ++i) {
+            moments_.push_back({now.record, now.nodes});
+            volume::advanceFlame(now, air, double(f.seconds) / f.frames);
+        }
+    }
+
+    [[nodiscard]] uint32_t frames() const override { return uint32_t(moments_.size()); }
+
+    void render(uint32_t frame, Frame& out) const override {
+        const book::Facts& f = def_.facts;
+        const Moment& moment = moments_[frame];
+        out.texels.assign(size_t(f.width) * f.height, vec4(0.0f));
+        out.motion.clear();
+        const auto count = float(def_.samples);
+        for (uint32_t y = 0; y < f.height; ++y)
+            for (uint32_t x = 0; x < f.width; ++x) {
+                Seen sum;
+                for (uint32_t k = 0; k < def_.samples; ++k) {
+                    // Additive recurrence of the plastic number: even, for any count.
+                    const float a = std::fmod(0.5f + 0.7548777f * float(k), 1.0f);
+                    const float b = std::fmod(0.5f + 0.5698403f * float(k), 1.0f);
+                    const vec2 uv((float(x) + a) / float(f.width),
+                                  (float(y) + b) / float(f.height));
+                    const Seen one = look(moment, vec3((uv.x - 0.5f) * size_.x,
+                                                       (uv.y - 0.05f) * size_.y, 10 * size_.y));
+                    sum.light += one.light, sum.soot += one.soot;
+                    sum.hidden += one.hidden, sum.thin += one.thin;
+                }
+                const float soot = sum.soot / count;
+                out.texels[size_t(y) * f.width + x] =
+                    vec4(soot > 0 ? red(sum.light / sum.soot) : 0.0f, soot, sum.hidden / count,
+                         sum.thin / count);
+            }
+    }
+
+ private:
+    struct Seen {
+        float light = 0, soot = 0, hidden = 0, thin = 0;
+    };
+    // The temperature of soot that shines so much for what it hides.
+    static float red(float light) {
+        const float kelvin = 1 / (1 / 1600.0f - std::log2(std::max(light, 1e-9f)) / 34981.0f);
+        return std::clamp((kelvin - gpu::kBookCold) / (gpu::kBookHot - gpu::kBookCold), 0.0f, 1.0f);
+    }
+    [[nodiscard]] Seen look(const Moment& moment, vec3 from) const {
+        constexpr uint32_t kSteps = 56;
+        const vec3 along(0, 0, -1);
+        volume::RayKnots knots;
+        const vec2 chord = volume::flameChord(moment.record, moment.nodes, from, along, 1e9f,
+                                              gpu::kFlameIntervals, knots);
+        Seen seen;
+        if (!(chord.x < chord.y)) return seen;
+        const float step = (chord.y - chord.x) / float(kSteps);
+        float through = 1, tau = 0;
+        for (uint32_t k = 0; k < kSteps && through > 0.002f; ++k) {
+            const float u = (chord.x + step * (float(k) + 0.5f) - knots.from) / knots.gap;
+            if ((knots.broken >> uint32_t(u)) & 1u) continue;
+            const gpu::FlamePlace at = gpu::flameAlong(knots.first, knots.delta, u);
+            const gpu::FlameLookup place = gpu::flameLookup(moment.record, at, 0.5f * step);
+            if (!(place.lit > 0)) continue;
+            const vec2 texel = profile_.sample(place.rho, place.y);
+            const gpu::FlameMedium medium = gpu::flameMedium(moment.record, place, texel);
+            const float depth = medium.soot * step, share = through * (1 - std::exp(-depth));
+            const vec3 glow = gpu::sootRadiance(1000 * texel.x);
+            seen.soot += share;
+            seen.light += share * (0.2126f * glow.x + 0.7152f * glow.y + 0.0722f * glow.z);
+            tau += depth;
+            through *= std::exp(-depth);
+        }
+        seen.hidden = 1 - through;
+        seen.thin = 1 - std::exp(-0.25f * tau);
+        return seen;
+    }
+
+    BakeDef def_;
+    volume::Profile profile_;
+    std::vector<Moment> moments_;
+    uint32_t faded_ = 0;
+    vec2 size_{1.0f};
+};
+
+}  // namespace
+
+std::unique_ptr<Scene> makeFlame(const BakeDef& def) {
+    for (const Named& named : kFlames)
+        if (def.scene == named.name) return std::make_unique<FlameScene>(def, named);
+    return nullptr;
+}
+
+}  // namespace fwtools

@@ -1,0 +1,243 @@
+// flamewright_flipbook: bakes .fwbook files, and shows them. See --help.
+#include "finish.h"
+#include "store.h"
+
+#include "core/error.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace {
+
+using namespace fw;
+using namespace fwtools;
+
+constexpr const char* kHelp =
+    "flamewright_flipbook SCENE OUT.fwbook [options]   bakes a book\n"
+    "flamewright_flipbook --sheet OUT.png BOOK...      a picture of eight moments of each\n"
+    "  --frames N      [2, 256], default 64\n"
+    "  --size N        texels a side, [8, 512], default 128\n"
+    "  --seconds S     a turn, (0, 600], default: 2 of what loops, 1 of what happens once\n"
+    "  --samples N     rays per texel, [1, 16], default 2\n"
+    "  --seed N        default 1\n"
+    "  --threads N     frames at a time, default: as many as there are processors\n"
+    "  --quiet         no progress\n"
+    "A bake that is cut off leaves OUT.fwbook.part and goes on from it the next time.\n";
+
+struct Options {
+    std::string scene, out, sheet;
+    std::vector<std::string> books;
+    BakeDef bake;
+    float seconds = 0;
+    uint32_t threads = std::max(std::thread::hardware_concurrency(), 1u);
+    bool quiet = false;
+};
+
+int refuse(const std::string& what) {
+    std::fprintf(stderr, "flamewright_flipbook: %s\n", what.c_str());
+    return 2;
+}
+
+// A whole number of an option; false: it is none, or beyond the limits.
+bool number(const char* name, const char* text, uint32_t low, uint32_t high, uint32_t& value) {
+    char* end = nullptr;
+    const unsigned long read = std::strtoul(text, &end, 10);
+    if (*text >= '0' && *text <= '9' && *end == 0 && read >= low && read <= high) {
+        value = uint32_t(read);
+        return true;
+    }
+    (void)refuse(std::string(name) + " is " + text + "; it must lie in [" + std::to_string(low) +
+                 ", " + std::to_string(high) + "]");
+    return false;
+}
+
+// 0: go on; else the exit status.
+int parse(int count, char** words, Options& options) {
+    book::Facts& facts = options.bake.facts;
+    uint32_t side = 128;
+    std::vector<std::string> plain;
+    for (int i = 1; i < count; ++i) {
+        const std::string word = words[i];
+        const auto is = [&](const char* name) { return word == name && i + 1 < count; };
+        const struct {
+            const char* name;
+            uint32_t low, high;
+            uint32_t& value;
+        } numbers[] = {{"--frames", 2, book::kMaxFrames, facts.frames},
+                       {"--size", book::kMinSide, book::kMaxSide, side},
+                       {"--samples", 1, 16, options.bake.samples},
+                       {"--seed", 1, 1000000, options.bake.seed},
+                       {"--threads", 1, 256, options.threads}};
+        bool known = false;
+        for (const auto& one : numbers)
+            if (is(one.name)) {
+                known = true;
+                if (!number(one.name, words[++i], one.low, one.high, one.value)) return 2;
+                break;
+            }
+        if (known) continue;
+        if (word == "--seconds" && i + 1 < count) {
+            options.seconds = float(std::atof(words[++i]));
+            if (!(options.seconds > 0 && options.seconds <= 600))
+                return refuse("--seconds is " + std::string(words[i]) +
+                              "; it must lie in (0, 600]");
+        } else if (word == "--sheet" && i + 1 < count) {
+            options.sheet = words[++i];
+        } else if (word == "--quiet") {
+            options.quiet = true;
+        } else if (word == "--help") {
+            std::fputs(kHelp, stdout);
+            std::fputs("Scenes:", stdout);
+            for (const std::string_view name : sceneNames())
+                std::printf(" %s", std::string(name).c_str());
+            std::fputs("\n", stdout);
+            std::exit(0);
+        } else if (word.rfind("--", 0) == 0) {
+            return refuse("there is no option " + word + "; see --help");
+        } else {
+            plain.push_back(word);
+        }
+    }
+    facts.width = facts.height = side;
+    facts.motionWidth = facts.motionHeight = std::max(side / 2, 4u);
+    if (!options.sheet.empty()) {
+        options.books = plain;
+        return plain.empty() ? refuse("--sheet needs books; see --help") : 0;
+    }
+    if (plain.size() != 2) return refuse("a scene and a file are needed; see --help");
+    options.scene = plain[0];
+    options.out = plain[1];
+    return 0;
+}
+
+uint64_t settingsOf(const Options& o) {
+    const book::Facts& f = o.bake.facts;
+    uint64_t hash = 1469598103934665603ull;
+    const auto add = [&](const void* data, size_t bytes) {
+        for (size_t i = 0; i < bytes; ++i)
+            hash = (hash ^ static_cast<const uint8_t*>(data)[i]) * 1099511628211ull;
+    };
+    constexpr uint32_t kBake = 1;  // another one for each change of what is baked
+    add(o.scene.data(), o.scene.size());
+    for (const uint32_t word : {kBake, f.frames, f.width, f.height, o.bake.seed, o.bake.samples})
+        add(&word, sizeof word);
+    add(&f.seconds, sizeof f.seconds);
+    return hash;
+}
+
+class Progress {
+ public:
+    Progress(uint32_t count, uint32_t there, bool quiet)
+        : count_(count), there_(there), done_(there), quiet_(quiet) {}
+    void step() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        ++done_;
+        if (quiet_) return;
+        const double spent =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const double left = spent / (done_ - there_) * (count_ - done_);
+        const uint32_t marks = 32 * done_ / count_;
+        std::fprintf(stderr, "\r[%.*s%.*s] %u of %u frames, %.0f s left ", int(marks),
+                     "################################", int(32 - marks),
+                     "................................", done_, count_, left);
+        if (done_ == count_) std::fputs("\n", stderr);
+    }
+
+ private:
+    std::mutex mutex_;
+    uint32_t count_, there_, done_;
+    bool quiet_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+int bake(Options& options) {
+    book::Facts& facts = options.bake.facts;
+    if (!sceneKind(options.scene, facts))
+        return refuse("there is no scene " + options.scene + "; see --help");
+    if (options.seconds > 0) facts.seconds = options.seconds;
+    options.bake.scene = options.scene;
+    const std::unique_ptr<Scene> scene = makeScene(options.bake);
+    std::string error;
+    FrameStore store(options.out + ".part", settingsOf(options), scene->frames(),
+                     facts.width * facts.height, facts.loops == 0, error);
+    if (!error.empty()) return refuse(error);
+    uint32_t there = 0;
+    for (uint32_t i = 0; i < scene->frames(); ++i) there += store.has(i);
+    if (there > 0 && !options.quiet) std::fprintf(stderr, "%u frames are there already\n", there);
+    Progress progress(scene->frames(), there, options.quiet);
+    std::atomic<bool> whole{true};
+    inParallel(scene->frames(), options.threads, [&](uint32_t i) {
+        if (store.has(i)) return;
+        Frame frame;
+        scene->render(i, frame);
+        if (!store.put(i, frame)) whole = false;
+        progress.step();
+    });
+    std::vector<Frame> frames(scene->frames());
+    for (uint32_t i = 0; i < scene->frames(); ++i) whole = whole && store.get(i, frames[i]);
+    if (!whole) return refuse(options.out + ".part cannot be written or read");
+    const book::Book made =
+        finishBook(facts, frames, options.threads, std::pmr::get_default_resource());
+    const auto bytes = book::cookBook(made, std::pmr::get_default_resource());
+    // All of it or nothing.
+    const std::string fresh = options.out + ".new";
+    {
+        std::ofstream file(fresh, std::ios::binary);
+        file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+        if (!file.flush()) return refuse(fresh + " cannot be written");
+    }
+    if (std::rename(fresh.c_str(), options.out.c_str()) != 0)
+        return refuse(options.out + " cannot be written");
+    store.forget();
+    std::printf("%s: %u frames of %u x %u, %s, motion up to %.3f of the frame, %.1f MiB\n",
+                options.out.c_str(), facts.frames, facts.width, facts.height,
+                facts.loops ? "a loop" : "once", double(made.facts.motionMost),
+                double(bytes.size()) / (1 << 20));
+    return 0;
+}
+
+int sheet(const Options& options) {
+    std::vector<book::Book> books;
+    for (const std::string& path : options.books) {
+        std::ifstream file(path, std::ios::binary);
+        if (!file) return refuse(path + " cannot be read");
+        const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
+        books.emplace_back(std::pmr::get_default_resource());
+        try {
+            book::readBook(std::as_bytes(std::span(bytes)), books.back());
+        } catch (const core::Error& e) {
+            return refuse(path + ": " + e.message);
+        }
+    }
+    const Picture picture = makeSheet(books);
+    const auto out = OIIO::ImageOutput::create(options.sheet);
+    const OIIO::ImageSpec spec(int(picture.width), int(picture.height), 3, OIIO::TypeDesc::UINT8);
+    if (!out || !out->open(options.sheet, spec) ||
+        !out->write_image(OIIO::TypeDesc::UINT8, picture.rgb.data()) || !out->close())
+        return refuse(options.sheet + " cannot be written");
+    std::printf("%s: %zu books\n", options.sheet.c_str(), books.size());
+    return 0;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    Options options;
+    const int status = parse(count, words, options);
+    if (status != 0) return status;
+    try {
+        return options.sheet.empty() ? bake(options) : sheet(options);
+    } catch (const core::Error& e) {
+        return refuse(e.message);
+    }
+}

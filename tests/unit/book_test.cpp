@@ -1,0 +1,218 @@
+// Flipbooks: what lies between two frames is seen once, a loop has no seam, files that are not what
+// they say are refused by name, a bake that is cut off goes on.
+#include "book/book.h"
+#include "core/error.h"
+#include "finish.h"
+#include "store.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+namespace {
+
+using namespace fw;
+using fwtools::BakeDef;
+using fwtools::Frame;
+using gpu::vec2;
+using gpu::vec4;
+
+std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
+
+// A soft spot at (x, y), texels.
+Frame spotAt(uint32_t side, float x, float y) {
+    Frame frame;
+    for (uint32_t j = 0; j < side; ++j)
+        for (uint32_t i = 0; i < side; ++i) {
+            const float dx = float(i) + 0.5f - x, dy = float(j) + 0.5f - y;
+            const float v = std::exp(-(dx * dx + dy * dy) / 60.0f);
+            frame.texels.emplace_back(0.7f, v, v, 0.3f * v);
+        }
+    return frame;
+}
+
+book::Book spots(uint32_t side, vec2 first, vec2 by) {
+    book::Facts facts;
+    facts.width = facts.height = side;
+    facts.motionWidth = facts.motionHeight = side / 2;
+    facts.frames = 4;
+    facts.loops = 0;
+    std::vector<Frame> frames;
+    for (uint32_t i = 0; i < facts.frames; ++i)
+        frames.push_back(spotAt(side, first.x + by.x * float(i), first.y + by.y * float(i)));
+    return fwtools::finishBook(facts, frames, 1, memory());
+}
+
+TEST(Flipbook, FlipbookBlob) {
+    for (const vec2 by : {vec2(8, 0), vec2(0, 8), vec2(-5, 6)}) {
+        const book::Book made = spots(64, vec2(by.x < 0 ? 44 : 20, 20), by);
+        constexpr int kSide = 64;
+        const float time = 1.5f / 3;  // halfway from frame 1 to 2
+        double sum = 0, x = 0, y = 0;
+        std::vector<float> seen;
+        for (int j = 0; j < kSide; ++j)
+            for (int i = 0; i < kSide; ++i) {
+                const vec2 uv((float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide);
+                seen.push_back(book::showBook(made, time, uv).y);
+                sum += double(seen.back());
+                x += double(seen.back()) * (i + 0.5), y += double(seen.back()) * (j + 0.5);
+            }
+        const double wantX = (by.x < 0 ? 44 : 20) + 1.5 * double(by.x),
+                     wantY = 20 + 1.5 * double(by.y);
+        int peaks = 0;
+        for (int j = 1; j + 1 < kSide; ++j)
+            for (int i = 1; i + 1 < kSide; ++i) {
+                const float v = seen[size_t(j * kSide + i)];
+                bool peak = v > 0.25f;
+                for (int k = 0; peak && k < 9; ++k) {  // of equal ones the last
+                    const float other = seen[size_t((j + k / 3 - 1) * kSide + i + k % 3 - 1)];
+                    peak = k <= 4 ? v >= other : v > other;
+                }
+                peaks += peak;
+            }
+        std::printf("[   FIGURE ] spot by (%g, %g): %.3f texels off, %d peak\n", double(by.x),
+                    double(by.y), std::hypot(x / sum - wantX, y / sum - wantY), peaks);
+        EXPECT_LT(std::hypot(x / sum - wantX, y / sum - wantY), 0.25);
+        EXPECT_EQ(peaks, 1);
+        // Its height too: a mere cross-fade has 0.77 of it.
+        EXPECT_GT(*std::max_element(seen.begin(), seen.end()), 0.93f);
+    }
+}
+
+book::Book smallBook(std::string_view scene, uint32_t side, uint32_t frames) {
+    BakeDef def;
+    def.scene = scene;
+    EXPECT_TRUE(fwtools::sceneKind(scene, def.facts));
+    def.facts.width = def.facts.height = side;
+    def.facts.motionWidth = def.facts.motionHeight = side / 2;
+    def.facts.frames = frames;
+    def.facts.seconds *= float(frames) / 64;
+    def.samples = 1;
+    const auto made = fwtools::makeScene(def);
+    std::vector<Frame> rendered(made->frames());
+    for (uint32_t i = 0; i < made->frames(); ++i) made->render(i, rendered[i]);
+    return fwtools::finishBook(def.facts, rendered, 1, memory());
+}
+
+TEST(Flipbook, LoopSeam) {
+    constexpr uint32_t kFrames = 20;
+    const book::Book made = smallBook("campfire", 24, kFrames);
+    const size_t layer = size_t(4) * 24 * 24;
+    const auto difference = [&](uint32_t a, uint32_t b) {
+        double sum = 0;
+        for (size_t i = 0; i < layer; ++i)
+            if (i % 4 != 0)
+                sum += std::pow(double(made.texels[a * layer + i]) - made.texels[b * layer + i], 2);
+        return std::sqrt(sum / double(layer));
+    };
+    double others = 0, most = 0;
+    for (uint32_t i = 0; i + 1 < kFrames; ++i) {
+        others += difference(i, i + 1) / (kFrames - 1);
+        most = std::max(most, difference(i, i + 1));
+    }
+    const double seam = difference(kFrames - 1, 0);
+    std::printf("[   FIGURE ] last frame to first: %.2f; others %.2f, at most %.2f of 255\n", seam,
+                others, most);
+    EXPECT_LE(seam, 1.1 * others);
+    EXPECT_LE(most, 1.7 * others);  // nor where it was closed
+    EXPECT_GT(others, 1);
+}
+
+// Fire is in the frame, bright at its root, and nothing touches the border.
+TEST(Flipbook, BooksShowWhatTheySay) {
+    const book::Book fire = smallBook("campfire", 24, 4);
+    EXPECT_GT(book::frameAt(fire, 0, vec2(0.5f, 0.12f)).y, 0.5f);
+    EXPECT_GT(gpu::bookKelvin(book::frameAt(fire, 0, vec2(0.5f, 0.12f)).x), 1200);
+    for (const char* scene : {"roll", "smoke"}) {
+        const book::Book puff = smallBook(scene, 16, 3);
+        const bool smoke = puff.facts.kind == book::Kind::Smoke;
+        for (uint32_t i = 0; i < 3; ++i) {
+            EXPECT_GT(book::frameAt(puff, i, vec2(0.5f)).z, 0.2f) << scene << i;
+            if (smoke) {
+                EXPECT_EQ(book::frameAt(puff, i, vec2(0.5f)).y, 0) << i;
+            }
+            for (const float s : {0.03f, 0.97f}) {
+                EXPECT_LT(book::frameAt(puff, i, vec2(s, 0.5f)).z, 0.02f) << scene << i;
+                EXPECT_LT(book::frameAt(puff, i, vec2(0.5f, s)).z, 0.02f) << scene << i;
+            }
+            EXPECT_LE(puff.rects[i].right, 16);
+            EXPECT_LT(puff.rects[i].left, puff.rects[i].right);
+        }
+    }
+}
+
+std::string saidOf(std::span<const std::byte> bytes) {
+    book::Book book(memory());
+    book.facts.frames = 77;
+    try {
+        book::readBook(bytes, book);
+    } catch (const core::Error& error) {
+        EXPECT_EQ(book.facts.frames, 77u);
+        return error.message;
+    }
+    return {};
+}
+
+TEST(Flipbook, BadFilesAreNamed) {
+    const book::Book made = spots(16, vec2(5, 5), vec2(1, 1));
+    const auto whole = book::cookBook(made, memory());
+    EXPECT_EQ(saidOf(whole), "");
+    book::Book again(memory());
+    book::readBook(whole, again);
+    EXPECT_EQ(again.texels, made.texels);
+    EXPECT_EQ(again.motion, made.motion);
+    EXPECT_EQ(again.facts.motionMost, made.facts.motionMost);
+    for (size_t cut = 0; cut < whole.size(); cut += 1 + cut / 3)
+        EXPECT_NE(saidOf(std::span(whole).first(cut)), "") << cut;
+    const auto changed = [&](size_t at, uint8_t to) {
+        auto bytes = whole;
+        bytes[at] = std::byte(to);
+        return saidOf(bytes);
+    };
+    EXPECT_NE(changed(0, 0).find("begins with 0x"), std::string::npos);
+    EXPECT_NE(changed(4, 9).find("has version 9"), std::string::npos);
+    EXPECT_NE(changed(16, 7).find("kind is 7; it must lie in [0, 2]"), std::string::npos);
+    EXPECT_NE(changed(24, 3).find("width is 3; it must lie in [8, 512]"), std::string::npos);
+    EXPECT_NE(changed(32, 9).find("9 frames of 16 x 16 need"), std::string::npos);
+    EXPECT_NE(changed(47, 0x7F).find("motionMost is"), std::string::npos);
+    EXPECT_NE(changed(52, 1).find("reserved word is 1"), std::string::npos);
+    EXPECT_NE(changed(whole.size() - 1, uint8_t(whole.back()) ^ 1).find("checksum"),
+              std::string::npos);
+    EXPECT_NE(changed(60, 200).find("checksum"), std::string::npos);
+}
+
+TEST(Flipbook, ABakeThatIsCutOffGoesOn) {
+    const std::string path =
+        (std::filesystem::temp_directory_path() / "flamewright_book_test.part").string();
+    std::filesystem::remove(path);
+    const Frame frame = spotAt(16, 5, 6);
+    std::string error;
+    {
+        fwtools::FrameStore store(path, 7, 3, 256, false, error);
+        ASSERT_EQ(error, "");
+        EXPECT_TRUE(store.put(1, frame));
+    }
+    {
+        fwtools::FrameStore store(path, 7, 3, 256, false, error);
+        EXPECT_FALSE(store.has(0));
+        ASSERT_TRUE(store.has(1));
+        Frame read;
+        ASSERT_TRUE(store.get(1, read));
+        for (size_t i = 0; i < 256; ++i) EXPECT_NEAR(read.texels[i].y, frame.texels[i].y, 1e-3f);
+        EXPECT_FALSE(store.get(2, read));
+    }
+    {
+        fwtools::FrameStore other(path, 8, 3, 256, false, error);  // other settings
+        EXPECT_FALSE(other.has(1));
+        other.forget();
+    }
+    EXPECT_FALSE(std::filesystem::exists(path));
+    fwtools::FrameStore nowhere("/nowhere/book.part", 7, 3, 256, false, error);
+    EXPECT_EQ(error, "/nowhere/book.part cannot be written");
+}
+
+}  // namespace
