@@ -18,15 +18,6 @@ layout(location = 3) flat in float inWidth;
 
 layout(location = 0) out vec4 outColor;
 
-#ifdef FW_SOFT
-// The host's depth at this pixel; of several samples the first, for a choice of one needs a feature.
-#if FW_SOFT == 2
-layout(set = 3, binding = 0) uniform sampler2DMS sceneDepth;
-#else
-layout(set = 3, binding = 0) uniform sampler2D sceneDepth;
-#endif
-#endif
-
 #include "lib/colour.glsl"
 #include "lib/look_noise.glsl"
 

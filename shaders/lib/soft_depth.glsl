@@ -1,6 +1,7 @@
-// How far behind a fragment the host's scene is. The includer declares `sceneDepth` and `view`.
+// How far behind a fragment the host's scene is. The includer declares `view`.
 #ifndef FW_LIB_SOFT_DEPTH_GLSL
 #define FW_LIB_SOFT_DEPTH_GLSL
+#include "lib/scene_depth.glsl"
 
 // m along the view from here to what the host drew; below 0: we are behind it. Works for any
 // projection matrix, reversed or infinite: depth is A + B / w with A and B from its rows.

@@ -1,9 +1,5 @@
-// The host's depth at a pixel; of several samples the first, for a choice of one needs a feature.
-#if FW_SOFT == 2
-layout(set = 3, binding = 0) uniform sampler2DMS sceneDepth;
-#else
-layout(set = 3, binding = 0) uniform sampler2D sceneDepth;
-#endif
+// How far the host's scene is, for volumetric flames.
+#include "lib/scene_depth.glsl"
 
 // m along the view to what the host drew, from depth = clip z / clip w. `clip`: as VolumeDraw's.
 float depthOfScene(vec4 clip) {
