@@ -21,12 +21,6 @@ float length3(const float v[3]) noexcept {
     return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
-    if (value < low || value > most)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", name, value,
-                   low, most);
-}
-
 void readDirection(const float given[3], const char* name, float (&out)[3]) {
     checkValues(given, 3, name, -1e6f, 1e6f);
     const float length = length3(given);

@@ -20,13 +20,6 @@ static_assert(FW_FIELD_OPEN_LEFT == gpu::kFieldOpenLeft &&
               FW_FIELD_OPEN_BOTTOM == gpu::kFieldOpenBottom &&
               FW_FIELD_OPEN_TOP == gpu::kFieldOpenTop);
 
-void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
-    if (value < low || value > most)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwParticleFieldDef::%s is %u; the limits are [%u, %u].", name, value, low,
-                   most);
-}
-
 void checkRotation(const float q[4], const char* name) {
     checkValues(q, 4, name, -1.001f, 1.001f);
     const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -60,17 +53,17 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwParticleFieldDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
                    kFlags);
-    checkWhole(def.shape, "shape", 0, FW_FIELD_DISPLACED);
+    checkWhole(def.shape, "FwParticleFieldDef::shape", 0, FW_FIELD_DISPLACED);
     checkValues(def.position, 3, "FwParticleFieldDef::position", -1e6f, 1e6f);
     checkValues(def.size, 3, "FwParticleFieldDef::size", 1e-3f, 1000.0f);
     checkRotation(def.rotation, "FwParticleFieldDef::rotation");
-    checkWhole(def.width, "width", 32, gpu::kFieldSideMost);
+    checkWhole(def.width, "FwParticleFieldDef::width", 32, gpu::kFieldSideMost);
     if (def.width % 4 != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwParticleFieldDef::width is %u; it is a multiple of 4.", def.width);
-    checkWhole(def.height, "height", 32, gpu::kFieldSideMost);
-    checkWhole(def.stepRate, "stepRate", 20, 30);
-    checkWhole(def.open, "open", 0, kOpen);
+    checkWhole(def.height, "FwParticleFieldDef::height", 32, gpu::kFieldSideMost);
+    checkWhole(def.stepRate, "FwParticleFieldDef::stepRate", 20, 30);
+    checkWhole(def.open, "FwParticleFieldDef::open", 0, kOpen);
     checkValue(def.amount, "FwParticleFieldDef::amount", 0.0f, 4.0f);
     checkValue(def.rise, "FwParticleFieldDef::rise", -4.0f, 4.0f);
     checkValue(def.spread, "FwParticleFieldDef::spread", 0.0f, 1.0f);
@@ -80,10 +73,10 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
     checkValue(def.detail, "FwParticleFieldDef::detail", 0.0f, 1.0f);
     checkValue(def.body, "FwParticleFieldDef::body", 0.0f, 2.0f);
     checkValue(def.windResponse, "FwParticleFieldDef::windResponse", 0.0f, 4.0f);
-    checkWhole(def.source, "source", 0, FW_FIELD_SOURCE_PAINTED);
+    checkWhole(def.source, "FwParticleFieldDef::source", 0, FW_FIELD_SOURCE_PAINTED);
     checkValue(def.sourceSize, "FwParticleFieldDef::sourceSize", 1e-3f, 1.0f);
     checkValues(def.sourceAt, 2, "FwParticleFieldDef::sourceAt", 0.0f, 1.0f);
-    checkWhole(def.reserved, "reserved", 0, 0);
+    checkWhole(def.reserved, "FwParticleFieldDef::reserved", 0, 0);
     checkValues(def.tint, 3, "FwParticleFieldDef::tint", 0.0f, 10.0f);
     checkValue(def.opacity, "FwParticleFieldDef::opacity", 0.0f, 10.0f);
 

@@ -7,6 +7,12 @@
 
 namespace fw::components {
 
+void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
+    if (value < low || value > most)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", name, value,
+                   low, most);
+}
+
 void checkValue(float value, const char* field, float low, float high) {
     if (!(value >= low && value <= high))  // also catches NaN
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %g; the limits are [%g, %g].", field,

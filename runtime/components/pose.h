@@ -28,5 +28,7 @@ void directionToObject(const Pose& pose, const float vector[3], float (&out)[3])
 // Throws unless all `count` values are finite and within [low, high]: "field[i] is v; ...".
 void checkValues(const float* values, unsigned count, const char* field, float low, float high);
 void checkValue(float value, const char* field, float low, float high);
+// The same of a whole number: "field is v; ...".
+void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most);
 
 }  // namespace fw::components

@@ -16,12 +16,6 @@ using gpu::vec3;
 
 constexpr float kMostPower = 1e5f;  // kW
 
-void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
-    if (value < low || value > most)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", name, value,
-                   low, most);
-}
-
 vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
 
 void checkPoint(const FwFirePoint& point, const char* name, uint32_t index) {
