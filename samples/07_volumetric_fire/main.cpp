@@ -1,7 +1,12 @@
 // The nine presets of volumetric fires in a row, each as large as the row allows: by night, by
-// day, against the sky, from above, from inside. In a window: drag to turn, wheel to zoom.
+// day, against the sky, from above, from inside; or with a profile that an artist painted. In a
+// window: drag to turn, wheel to zoom.
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include "common/camera.h"
 #include "common/filming.h"
@@ -34,7 +39,22 @@ float powerFor(float height, float diameter) {
     return std::pow((height + 1.02f * diameter) / 0.235f, 2.5f);
 }
 
-int run(const sample::Options& options, float seconds, const sample::FireLook& look, float wind) {
+// Of a .fwprofile; none where no file is named.
+FwFireProfileId loadProfile(sample::FireHost& fire, const std::string& path) {
+    if (path.empty()) return {};
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw sample::Failure(path + " cannot be read.");
+    const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
+    FwFireProfileDef def = fwDefaultFireProfileDef();
+    def.cooked = bytes.data();
+    def.cookedSize = bytes.size();
+    FwFireProfileId id{};
+    fire.check(fwWorld_CreateFireProfile(fire.world, &def, &id), path.c_str());
+    return id;
+}
+
+int run(const sample::Options& options, float seconds, const sample::FireLook& look, float wind,
+        const std::string& profilePath) {
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
@@ -52,10 +72,12 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         worldDef.wind[0] = wind;
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
+        const FwFireProfileId profile = loadProfile(fire, profilePath);
         FwVolumetricFireId fires[std::size(kExhibits)]{};
         for (size_t i = 0; i < std::size(kExhibits); ++i) {
             FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
             fire.check(fwInitFirePreset(&def, kExhibits[i].preset), "fwInitFirePreset");
+            def.profile = profile;
             def.position[0] = placeOf(i);
             def.position[1] = kStone;
             def.diameter = kExhibits[i].diameter;
@@ -121,10 +143,12 @@ int main(int argc, char** argv) {
         options.width = 1280;
         options.height = 300;
         float seconds = 2, wind = 0;
+        std::string profile;
         sample::FireLook look;
         sample::OptionParser parser("07_volumetric_fire", "volumetric fires of nine kinds");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--wind", "m/s, to the right", wind, -20.0f, 20.0f);
+        parser.addText("--profile", "FILE", "what burns where, a .fwprofile for all nine", profile);
         look.addTo(parser);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
@@ -132,6 +156,6 @@ int main(int argc, char** argv) {
                 std::printf("%s\n", fwFirePresetName(exhibit.preset));
             return 0;
         }
-        return run(options, seconds, look, wind);
+        return run(options, seconds, look, wind, profile);
     });
 }

@@ -1,6 +1,8 @@
 // flamewright_flipbook: bakes .fwbook files, and shows them. See --help.
 #include "finish.h"
+#include "sheet.h"
 #include "store.h"
+#include "whole_file.h"
 
 #include "core/error.h"
 
@@ -11,8 +13,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -24,6 +24,7 @@ using namespace fwtools;
 
 constexpr const char* kHelp =
     "flamewright_flipbook SCENE OUT.fwbook [options]   bakes a book\n"
+    "flamewright_flipbook --import SHEET OUT.fwbook [options]   of an artist's sheet\n"
     "flamewright_flipbook --sheet OUT.png BOOK...      a picture of eight moments of each\n"
     "  --frames N      [2, 256], default 64\n"
     "  --size N        texels a side, [8, 512], default 128\n"
@@ -32,12 +33,21 @@ constexpr const char* kHelp =
     "  --seed N        default 1\n"
     "  --threads N     frames at a time, default: as many as there are processors\n"
     "  --quiet         no progress\n"
-    "A bake that is cut off leaves OUT.fwbook.part and goes on from it the next time.\n";
+    "A bake that is cut off leaves OUT.fwbook.part and goes on from it the next time.\n"
+    "A sheet (PNG, EXR, TIFF, ...) has its frames in a grid, to the right, then down:\n"
+    "  --grid CxR      columns and rows, [1, 256] each, default 8x8\n"
+    "  --kind KIND     fire, smoke or spark, default fire\n"
+    "  --once          it does not loop\n"
+    "  --frames N      default: all of the grid;  --size N  default: as the sheet has it\n"
+    "Whole numbers are sRGB with alpha beside, floats linear and premultiplied; without alpha "
+    "black\n"
+    "is nothing. A fire's hue becomes its temperature: red 1370 K, yellow 1780 K.\n";
 
 struct Options {
-    std::string scene, out, sheet;
+    std::string scene, out, sheet, picture;
     std::vector<std::string> books;
     BakeDef bake;
+    SheetDef grid;  // of `picture`
     float seconds = 0;
     uint32_t threads = std::max(std::thread::hardware_concurrency(), 1u);
     bool quiet = false;
@@ -61,10 +71,33 @@ bool number(const char* name, const char* text, uint32_t low, uint32_t high, uin
     return false;
 }
 
+// "8x4". False: it is none.
+bool grid(const std::string& text, SheetDef& def) {
+    const size_t by = text.find('x');
+    if (by == std::string::npos) {
+        (void)refuse("--grid is " + text + "; it must be columns and rows, as in 8x4");
+        return false;
+    }
+    return number("--grid's columns", text.substr(0, by).c_str(), 1, 256, def.columns) &&
+           number("--grid's rows", text.substr(by + 1).c_str(), 1, 256, def.rows);
+}
+
+bool kindOf(const std::string& text, book::Kind& kind) {
+    constexpr const char* kNames[book::kKinds] = {"fire", "smoke", "spark"};
+    for (uint32_t i = 0; i < book::kKinds; ++i)
+        if (text == kNames[i]) {
+            kind = book::Kind(i);
+            return true;
+        }
+    (void)refuse("--kind is " + text + "; it must be fire, smoke or spark");
+    return false;
+}
+
 // 0: go on; else the exit status.
 int parse(int count, char** words, Options& options) {
     book::Facts& facts = options.bake.facts;
-    uint32_t side = 128;
+    uint32_t side = 0;
+    facts.frames = 0;
     std::vector<std::string> plain;
     for (int i = 1; i < count; ++i) {
         const std::string word = words[i];
@@ -93,6 +126,14 @@ int parse(int count, char** words, Options& options) {
                               "; it must lie in (0, 600]");
         } else if (word == "--sheet" && i + 1 < count) {
             options.sheet = words[++i];
+        } else if (word == "--import" && i + 1 < count) {
+            options.picture = words[++i];
+        } else if (word == "--grid" && i + 1 < count) {
+            if (!grid(words[++i], options.grid)) return 2;
+        } else if (word == "--kind" && i + 1 < count) {
+            if (!kindOf(words[++i], options.grid.facts.kind)) return 2;
+        } else if (word == "--once") {
+            options.grid.facts.loops = 0;
         } else if (word == "--quiet") {
             options.quiet = true;
         } else if (word == "--help") {
@@ -108,12 +149,21 @@ int parse(int count, char** words, Options& options) {
             plain.push_back(word);
         }
     }
-    facts.width = facts.height = side;
-    facts.motionWidth = facts.motionHeight = std::max(side / 2, 4u);
     if (!options.sheet.empty()) {
         options.books = plain;
         return plain.empty() ? refuse("--sheet needs books; see --help") : 0;
     }
+    if (!options.picture.empty()) {
+        options.grid.side = side;
+        options.grid.facts.frames = facts.frames;
+        if (plain.size() != 1) return refuse("--import needs a sheet and a book; see --help");
+        options.out = plain[0];
+        return 0;
+    }
+    if (facts.frames == 0) facts.frames = book::Facts().frames;
+    if (side == 0) side = book::Facts().width;
+    facts.width = facts.height = side;
+    facts.motionWidth = facts.motionHeight = std::max(side / 2, 4u);
     if (plain.size() != 2) return refuse("a scene and a file are needed; see --help");
     options.scene = plain[0];
     options.out = plain[1];
@@ -160,6 +210,20 @@ class Progress {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// From frames to the file; the exit status.
+int finish(const Options& options, const book::Facts& facts, std::vector<Frame>& frames) {
+    const book::Book made =
+        finishBook(facts, frames, options.threads, std::pmr::get_default_resource());
+    const auto bytes = book::cookBook(made, std::pmr::get_default_resource());
+    const std::string error = writeWhole(options.out, bytes);
+    if (!error.empty()) return refuse(error);
+    std::printf("%s: %u frames of %u x %u, %s, motion up to %.3f of the frame, %.1f MiB\n",
+                options.out.c_str(), facts.frames, facts.width, facts.height,
+                facts.loops ? "a loop" : "once", double(made.facts.motionMost),
+                double(bytes.size()) / (1 << 20));
+    return 0;
+}
+
 int bake(Options& options) {
     book::Facts& facts = options.bake.facts;
     if (!sceneKind(options.scene, facts))
@@ -186,35 +250,34 @@ int bake(Options& options) {
     std::vector<Frame> frames(scene->frames());
     for (uint32_t i = 0; i < scene->frames(); ++i) whole = whole && store.get(i, frames[i]);
     if (!whole) return refuse(options.out + ".part cannot be written or read");
-    const book::Book made =
-        finishBook(facts, frames, options.threads, std::pmr::get_default_resource());
-    const auto bytes = book::cookBook(made, std::pmr::get_default_resource());
-    // All of it or nothing.
-    const std::string fresh = options.out + ".new";
-    {
-        std::ofstream file(fresh, std::ios::binary);
-        file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-        if (!file.flush()) return refuse(fresh + " cannot be written");
-    }
-    if (std::rename(fresh.c_str(), options.out.c_str()) != 0)
-        return refuse(options.out + " cannot be written");
-    store.forget();
-    std::printf("%s: %u frames of %u x %u, %s, motion up to %.3f of the frame, %.1f MiB\n",
-                options.out.c_str(), facts.frames, facts.width, facts.height,
-                facts.loops ? "a loop" : "once", double(made.facts.motionMost),
-                double(bytes.size()) / (1 << 20));
-    return 0;
+    const int status = finish(options, facts, frames);
+    if (status == 0) store.forget();
+    return status;
+}
+
+int import(const Options& options) {
+    fwimport::FloatPicture picture;
+    std::string error;
+    if (!fwimport::readPicture(options.picture, picture, error)) return refuse(error);
+    SheetDef def = options.grid;
+    if (options.seconds > 0)
+        def.facts.seconds = options.seconds;
+    else
+        def.facts.seconds = def.facts.loops ? 2.0f : 1.0f;
+    std::vector<Frame> frames;
+    if (!framesOfSheet(picture, def, frames, error)) return refuse(options.picture + ": " + error);
+    return finish(options, def.facts, frames);
 }
 
 int sheet(const Options& options) {
     std::vector<book::Book> books;
     for (const std::string& path : options.books) {
-        std::ifstream file(path, std::ios::binary);
-        if (!file) return refuse(path + " cannot be read");
-        const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
+        std::vector<std::byte> bytes;
+        const std::string error = readWhole(path, bytes);
+        if (!error.empty()) return refuse(error);
         books.emplace_back(std::pmr::get_default_resource());
         try {
-            book::readBook(std::as_bytes(std::span(bytes)), books.back());
+            book::readBook(bytes, books.back());
         } catch (const core::Error& e) {
             return refuse(path + ": " + e.message);
         }
@@ -236,7 +299,8 @@ int main(int count, char** words) {
     const int status = parse(count, words, options);
     if (status != 0) return status;
     try {
-        return options.sheet.empty() ? bake(options) : sheet(options);
+        if (!options.sheet.empty()) return sheet(options);
+        return options.picture.empty() ? bake(options) : import(options);
     } catch (const core::Error& e) {
         return refuse(e.message);
     }
