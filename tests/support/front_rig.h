@@ -4,6 +4,7 @@
 #include "fire/spread_law.h"
 #include "gpu/cpu/cpu_backend.h"
 #include "mesh/burn_domain.h"
+#include "mesh/front/arrivals.h"
 #include "support/meshes.h"
 
 #include <algorithm>
@@ -141,6 +142,17 @@ class FrontRig {
     void runAll(double most = 1e5) { runUntil(most); }
 
     [[nodiscard]] std::span<const uint32_t> ticks() const { return backend_->state(0); }
+    // What the front has now, to run it ahead of itself. Lives as long as the rig.
+    [[nodiscard]] mesh::ArrivalInput arrivalInput() {
+        makeRecords(drive_, records_);
+        mesh::ArrivalInput input;
+        input.domain = &domain_;
+        input.materials = records_;
+        input.window = window_;
+        input.state = ticks();
+        input.now = now;
+        return input;
+    }
     [[nodiscard]] const gpu::ObjectCounters& counters() const { return backend_->counters(0); }
     [[nodiscard]] gpu::cpu::CpuBackend& backend() { return *backend_; }
     // Arrival, s after the start tick; < 0: none.

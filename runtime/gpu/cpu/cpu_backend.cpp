@@ -46,8 +46,6 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_;
 };
 
-uint64_t bitsOf(uint32_t low, uint32_t high) { return uint64_t(high) << 32 | low; }
-
 }  // namespace
 
 CpuBackend::State::State(std::pmr::memory_resource* memory_, uint32_t maxLights_)
@@ -105,28 +103,11 @@ void CpuBackend::State::touchReaders(const CpuObject& object, uint32_t local,
     const uint32_t base = object.record.worldTileBase;
     const mesh::BurnDomain& domain = *object.domain;
     touch(base + local, kTileTouched);
-    const uint32_t beside = neighboursOf(uint32_t(mask), uint32_t(mask >> 32));
-    if (beside != 0) {
-        const int x = int(local % domain.tilesX);
-        const int y = int(local / domain.tilesX);
-        for (uint32_t k = 0; k < 8; ++k) {
-            if ((beside >> k & 1) == 0) continue;
-            const int otherX = x + kFrontRingX[k];
-            const int otherY = y + kFrontRingY[k];
-            if (otherX < 0 || otherY < 0 || otherX >= int(domain.tilesX) ||
-                otherY >= int(domain.tilesY))
-                continue;
-            touch(base + uint32_t(otherY) * domain.tilesX + uint32_t(otherX), kTileTouched);
-        }
-    }
-    const mesh::TileStatic& statics = domain.tiles[local];
-    if ((bitsOf(statics.seamMaskLow, statics.seamMaskHigh) & mask) == 0 ||
-        (switches & kSwitchNoSeamWake) != 0)
-        return;
-    for (uint32_t r = 0; r < statics.readerCount; ++r) {
-        const uint32_t reader = domain.readers[statics.readerStart + r];
+    mesh::forEachTileBeside(domain, local, mask,
+                            [&](uint32_t tile) { touch(base + tile, kTileTouched); });
+    if ((switches & kSwitchNoSeamWake) != 0) return;
+    for (const uint32_t reader : mesh::seamReaders(domain, local, mask))
         touch(base + ((switches & kSwitchWrongReaders) != 0 ? 0 : reader), kTileTouched);
-    }
 }
 
 void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
@@ -266,7 +247,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
                     frontFloor(end - windowTicks(step.substepShift, shift), object.record.window);
                 base = object.record.worldTileBase;
             }
-            results[i] = runFrontTile(at, worldTile - base, end, floorTick, &scratch[i * 64]);
+            results[i] = mesh::runFrontTile(at, worldTile - base, end, floorTick, &scratch[i * 64]);
         }
     }
     Stopwatch watch(*this, kTimerCommit);

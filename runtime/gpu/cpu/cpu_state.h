@@ -2,11 +2,14 @@
 #pragma once
 #include "field/field.h"
 #include "gpu/cpu/cpu_backend.h"
-#include "gpu/cpu/front_tile.h"
+#include "mesh/front/tile.h"
 
 #include <array>
 
 namespace fw::gpu::cpu {
+
+using mesh::FrontPlanes;
+using mesh::FrontTile;
 
 struct CpuObject {
     explicit CpuObject(std::pmr::memory_resource* memory)

@@ -1,12 +1,14 @@
-// See front_tile.h. The maths is shared/front.h; here are only the loads, in the shader's order.
-#include "gpu/cpu/front_tile.h"
+// See tile.h. The maths is shared/front.h; here are only the loads, in the shader's order.
+#include "mesh/front/tile.h"
 
 #include <algorithm>
 #include <bit>
 
-namespace fw::gpu::cpu {
+namespace fw::mesh {
 
-static_assert(kTexelReal == mesh::kTexelReal && kTexelRim == mesh::kTexelRim);
+using namespace gpu;
+
+static_assert(gpu::kTexelReal == mesh::kTexelReal && gpu::kTexelRim == mesh::kTexelRim);
 
 namespace {
 
@@ -43,7 +45,7 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
     const int width = int(planes.width);
     int offsets[8];
     for (int k = 0; k < 8; ++k) offsets[k] = kFrontRingX[k] + kFrontRingY[k] * width;
-    const mesh::TileStatic& statics = planes.tiles[tile];
+    const TileStatic& statics = planes.tiles[tile];
     const uint64_t rimMask = uint64_t(statics.rimMaskHigh) << 32 | statics.rimMaskLow;
     const uint32_t corner =
         (tile / planes.tilesX) * 8u * planes.width + (tile % planes.tilesX) * 8u;
@@ -86,10 +88,10 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
         uint32_t decided = t;
         uint32_t late = 0;
         if (counts != 0) {
-            const mesh::TexelPosition& me = planes.texels[texel];
+            const TexelPosition& me = planes.texels[texel];
             for (uint32_t k = 0; k < 8; ++k) {
                 if ((counts >> k & 1) == 0) continue;
-                const mesh::TexelPosition& they = planes.texels[other[k]];
+                const TexelPosition& they = planes.texels[other[k]];
                 ring.link[k] = ivec3(int(me.x) - int(they.x), int(me.y) - int(they.y),
                                      int(me.z) - int(they.z));
                 ring.burn[k] = planes.materials[they.materialFlags & 7u].burnTicks;
@@ -120,4 +122,4 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
     return out;
 }
 
-}  // namespace fw::gpu::cpu
+}  // namespace fw::mesh

@@ -1,0 +1,122 @@
+// See arrivals.h. Rounds of time as the simulation has steps, but longer ones: within a round tiles
+// run until none has news, each on what those before it have just written.
+#include "mesh/front/arrivals.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace fw::mesh {
+namespace {
+
+using gpu::kNever;
+
+constexpr uint8_t kListed = 1, kTouched = 2;
+
+void touch(Arrivals& a, uint32_t tile, uint8_t bits) noexcept {
+    if (!(a.flags[tile] & kListed)) a.list.push_back(tile);
+    a.flags[tile] |= uint8_t(kListed | bits);
+}
+
+// The tiles that the round has to run: those with news, and those whose next arrival falls into it.
+void findDue(Arrivals& a) noexcept {
+    a.due.clear();
+    a.next = 0;
+    size_t kept = 0;
+    for (const uint32_t tile : a.list) {
+        const bool runs = (a.flags[tile] & kTouched) || a.wake[tile] <= a.end;
+        if (runs) {
+            a.due.push_back(tile);
+            a.wake[tile] = kNever;
+        }
+        if (runs || a.wake[tile] == kNever)
+            a.flags[tile] = 0;
+        else
+            a.list[kept++] = tile;
+    }
+    a.list.resize(kept);
+}
+
+// Past times in which nothing happens.
+void nextRound(Arrivals& a) noexcept {
+    uint32_t soonest = kNever;
+    for (const uint32_t tile : a.list) soonest = std::min(soonest, a.wake[tile]);
+    a.whole = soonest == kNever || soonest >= gpu::kLiveEnd - a.stride;
+    if (!a.whole) a.end = std::max(a.end + a.stride, soonest);
+}
+
+void runTile(Arrivals& a, uint32_t tile) noexcept {
+    FrontPlanes planes;
+    planes.state = a.ticks.data();
+    planes.texels = a.domain->texels.data();
+    planes.normals = a.domain->normals.data();
+    planes.slowness = a.slowness.empty() ? a.domain->slowness.data() : a.slowness.data();
+    planes.links = a.domain->links.data();
+    planes.tiles = a.domain->tiles.data();
+    planes.materials = a.materials.data();
+    planes.width = a.domain->width;
+    planes.tilesX = a.domain->tilesX;
+    uint32_t scratch[64];
+    const uint32_t floorTick = gpu::frontFloor(a.end - a.stride, a.window);
+    const FrontTile result = runFrontTile(planes, tile, a.end, floorTick, scratch);
+    a.wake[tile] = result.wake;
+    if (result.changed == 0) {
+        if (result.wake != kNever) touch(a, tile, 0);
+        return;
+    }
+    const uint32_t corner = (tile / planes.tilesX) * 8 * planes.width + (tile % planes.tilesX) * 8;
+    for (uint64_t rest = result.changed; rest != 0; rest &= rest - 1) {
+        const auto lane = uint32_t(std::countr_zero(rest));
+        a.ticks[corner + (lane >> 3) * planes.width + (lane & 7)] = scratch[lane];
+    }
+    const auto news = [&](uint32_t reader) { touch(a, reader, kTouched); };
+    news(tile);
+    forEachTileBeside(*a.domain, tile, result.changed, news);
+    for (const uint32_t reader : seamReaders(*a.domain, tile, result.changed)) news(reader);
+}
+
+}  // namespace
+
+uint32_t Arrivals::settled() const noexcept {
+    if (whole) return gpu::kLiveEnd;
+    // Of a round that is not through some tiles have not run.
+    const uint32_t through = end - stride;
+    return gpu::frontFloor(through, window);
+}
+
+void beginArrivals(Arrivals& a, const ArrivalInput& input) {
+    const uint32_t tiles = input.domain->tileCount();
+    a.whole = true;
+    a.ticks.assign(input.state.begin(), input.state.end());
+    a.wake.assign(tiles, kNever);
+    a.flags.assign(tiles, 0);
+    a.list.clear();
+    a.due.clear();
+    a.list.reserve(tiles);
+    a.due.reserve(tiles);
+    a.domain = input.domain;
+    a.slowness = input.slowness;
+    std::copy_n(input.materials.begin(), a.materials.size(), a.materials.begin());
+    a.window = input.window;
+    // Rounds that a front crosses few texels in: longer ones correct more than they save.
+    a.stride = std::max(input.window / 4, gpu::kStepTicks);
+    a.end = input.now + a.stride;
+    a.whole = false;
+    for (uint32_t tile = 0; tile < tiles; ++tile) touch(a, tile, kTouched);
+    findDue(a);
+}
+
+uint32_t runArrivals(Arrivals& a, uint32_t tiles) noexcept {
+    while (tiles > 0 && !a.whole) {
+        if (a.next == a.due.size()) {
+            findDue(a);
+            if (a.due.empty()) {
+                nextRound(a);
+                continue;
+            }
+        }
+        for (; a.next < a.due.size() && tiles > 0; --tiles) runTile(a, a.due[a.next++]);
+    }
+    return tiles;
+}
+
+}  // namespace fw::mesh

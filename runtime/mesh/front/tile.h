@@ -1,0 +1,56 @@
+// The front kernel over one tile, as the arrival pass does it on a device. Plain pointers; drivers
+// of lists are the cpu backend and arrivals.h.
+#pragma once
+#include "mesh/burn_domain.h"
+#include "shared/front.h"
+
+namespace fw::mesh {
+
+struct FrontPlanes {  // of one object
+    const uint32_t* state = nullptr;
+    const TexelPosition* texels = nullptr;
+    const uint32_t* normals = nullptr;
+    const uint16_t* slowness = nullptr;
+    const uint32_t* links = nullptr;
+    const TileStatic* tiles = nullptr;
+    const gpu::BurnMaterial* materials = nullptr;
+    uint32_t width = 0, tilesX = 0;  // texels, tiles
+};
+
+struct FrontTile {         // what a tile's run says
+    uint64_t changed = 0;  // lanes with a new tick in the scratch words
+    uint64_t lit = 0;      // of these, lanes that were receptive
+    uint32_t wake = gpu::kNever;
+    uint32_t late = 0;  // candidates that came below the floor
+};
+
+// `scratch`: 64 words, written where `changed` says.
+FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t windowEnd,
+                       uint32_t floorTick, uint32_t* scratch) noexcept;
+
+// Of what changed in a tile (`mask`, a bit per lane): calls `tell` for each tile beside it on the
+// grid that reads that.
+template <typename Tell>
+void forEachTileBeside(const BurnDomain& domain, uint32_t tile, uint64_t mask, const Tell& tell) {
+    const uint32_t beside = gpu::neighboursOf(uint32_t(mask), uint32_t(mask >> 32));
+    if (beside == 0) return;
+    const int x = int(tile % domain.tilesX), y = int(tile / domain.tilesX);
+    for (uint32_t k = 0; k < 8; ++k) {
+        if ((beside >> k & 1) == 0) continue;
+        const int otherX = x + gpu::kFrontRingX[k], otherY = y + gpu::kFrontRingY[k];
+        if (otherX < 0 || otherY < 0 || otherX >= int(domain.tilesX) ||
+            otherY >= int(domain.tilesY))
+            continue;
+        tell(uint32_t(otherY) * domain.tilesX + uint32_t(otherX));
+    }
+}
+// And those that read it through links.
+inline std::span<const uint32_t> seamReaders(const BurnDomain& domain, uint32_t tile,
+                                             uint64_t mask) noexcept {
+    const TileStatic& statics = domain.tiles[tile];
+    const uint64_t seam = uint64_t(statics.seamMaskHigh) << 32 | statics.seamMaskLow;
+    if ((seam & mask) == 0) return {};
+    return {domain.readers.data() + statics.readerStart, statics.readerCount};
+}
+
+}  // namespace fw::mesh
