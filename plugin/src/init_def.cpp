@@ -38,6 +38,7 @@ void defaults(FwWorldDef& def) noexcept {
     def.volumeCell = 2;
     def.volumeSteps = 64;
     def.maxParticles = 16384;
+    def.arrivalTiles = 1024;
 }
 
 void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }

@@ -16,6 +16,38 @@ void answerAtOnce(FwWorld* handle) {
     if (device.answersAtOnce()) device.step(*handle->backend, *handle->world, 0.0f);
 }
 
+FwResult ask(const char* function, FwWorld* world,
+             FwQueryId (world::World::*request)(FwBurnableMeshId, const float*),
+             FwBurnableMeshId id, const float* position, FwQueryId* query) {
+    return onWorld(function, world, [&](world::World& w) {
+        checkPointer(position, "position");
+        checkPointer(query, "query");
+        *query = {};
+        const FwQueryId made = (w.*request)(id, position);
+        try {
+            answerAtOnce(world);
+        } catch (...) {
+            w.dropQuery(made);
+            throw;
+        }
+        *query = made;
+        return FW_OK;
+    });
+}
+
+template <class State>
+FwResult answer(const char* function, FwWorld* world,
+                bool (world::World::*fetch)(FwQueryId, State&), FwQueryId query, State* state,
+                const char* name) {
+    return onWorld(function, world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(state, name);
+        State filled{};
+        if (!(w.*fetch)(query, filled)) return FW_NOT_READY;
+        edge::writeInfo(state, size, filled);
+        return FW_OK;
+    });
+}
+
 void freeWorld(FwWorld* world) noexcept {
     FwContext* context = world->context;
     world->world.reset();
@@ -483,30 +515,22 @@ FwResult FW_CALL fwWorld_GetObjectState(FwWorld* world, FwBurnableMeshId id, FwO
 
 FwResult FW_CALL fwWorld_RequestPoint(FwWorld* world, FwBurnableMeshId id, const float position[3],
                                       FwQueryId* query) {
-    return onWorld("fwWorld_RequestPoint", world, [&](world::World& w) {
-        checkPointer(position, "position");
-        checkPointer(query, "query");
-        *query = {};
-        const FwQueryId made = w.requestPoint(id, position);
-        try {
-            answerAtOnce(world);
-        } catch (...) {
-            w.dropQuery(made);
-            throw;
-        }
-        *query = made;
-        return FW_OK;
-    });
+    return ask("fwWorld_RequestPoint", world, &world::World::requestPoint, id, position, query);
 }
 
 FwResult FW_CALL fwWorld_FetchPoint(FwWorld* world, FwQueryId query, FwPointState* state) {
-    return onWorld("fwWorld_FetchPoint", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(state, "FwPointState");
-        FwPointState filled{};
-        if (!w.fetchPoint(query, filled)) return FW_NOT_READY;
-        edge::writeInfo(state, size, filled);
-        return FW_OK;
-    });
+    return answer("fwWorld_FetchPoint", world, &world::World::fetchPoint, query, state,
+                  "FwPointState");
+}
+
+FwResult FW_CALL fwWorld_RequestArrival(FwWorld* world, FwBurnableMeshId id,
+                                        const float position[3], FwQueryId* query) {
+    return ask("fwWorld_RequestArrival", world, &world::World::requestArrival, id, position, query);
+}
+
+FwResult FW_CALL fwWorld_FetchArrival(FwWorld* world, FwQueryId query, FwArrivalState* state) {
+    return answer("fwWorld_FetchArrival", world, &world::World::fetchArrival, query, state,
+                  "FwArrivalState");
 }
 
 uint32_t FW_CALL fwWorld_GetLights(FwWorld* world, FwLight* lights, uint32_t capacity) {

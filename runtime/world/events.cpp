@@ -59,6 +59,8 @@ void World::collectReadbacks() {
             if (map.object >= objects_.slotCount()) continue;
             auto* owned = objects_.at(map.object);
             if (!owned || (*owned)->firstFrame > readback->frameIndex) continue;
+            if ((*owned)->forecast && (*owned)->forecast->pending)
+                takeForecast(**owned, map, *readback);
             BurnMapCopy& copy = (*owned)->map;
             if (!copy.pending || copy.ticks.size() != map.ticks.size()) continue;
             std::copy(map.ticks.begin(), map.ticks.end(), copy.ticks.begin());

@@ -103,11 +103,11 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
     }
 }
 
-FwQueryId World::requestPoint(FwBurnableMeshId id, const float position[3]) {
+Query World::makeQuery(FwBurnableMeshId id, const float position[3]) {
     components::checkValues(position, 3, "position", -1e6f, 1e6f);
     const Object& object = *objects_.get(id);
     if (queries_.live() >= kMaxQueries)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u point queries are open; the limit is %u.",
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u queries are open; the limit is %u.",
                    queries_.live(), kMaxQueries);
     float point[3];
     components::toObject(object.data.pose, position, point);
@@ -121,7 +121,11 @@ FwQueryId World::requestPoint(FwBurnableMeshId id, const float position[3]) {
     float sum = 0;
     for (int i = 0; i < 3; ++i) sum += (place[i] - position[i]) * (place[i] - position[i]);
     query.distance = std::sqrt(sum);
-    return queries_.create(query);
+    return query;
+}
+
+FwQueryId World::requestPoint(FwBurnableMeshId id, const float position[3]) {
+    return queries_.create(makeQuery(id, position));
 }
 
 FwPointState World::pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,
@@ -176,14 +180,23 @@ FwPointState World::pointState(const Object& object, uint32_t texel, const gpu::
     return state;
 }
 
-bool World::fetchPoint(FwQueryId id, FwPointState& state) {
+Query& World::openQuery(FwQueryId id, bool isArrival) {
     Query& query = queries_.get(id);
+    if (query.isArrival != isArrival)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "Query %u asks for %s.", id.index1,
+                   query.isArrival ? "an arrival; fwWorld_FetchArrival answers it"
+                                   : "a point's state; fwWorld_FetchPoint answers it");
     if (query.orphaned) {
         queries_.destroy(id);
         core::fail(FW_ERROR_STALE_ID,
                    "Query %u asks about a burnable mesh that is already destroyed; it is closed.",
                    id.index1);
     }
+    return query;
+}
+
+bool World::fetchPoint(FwQueryId id, FwPointState& state) {
+    const Query& query = openQuery(id, false);
     if (!query.ready) return false;
     state = query.answer;
     queries_.destroy(id);

@@ -371,6 +371,7 @@ void World::tellSpread(Object& object, const gpu::Readback& readback) noexcept {
     const gpu::ObjectCounters& now = object.counters;
     if (now.litTick != object.litTold) {
         object.litTold = now.litTick;
+        ++object.changes;
         const uint32_t giver = gpu::giverOf(now.litBy);
         if (now.litTick != 0 && giver < objects_.slotCount() && objects_.at(giver)) {
             const gpu::RemoteObject& box = object.remote;
@@ -388,6 +389,7 @@ void World::tellSpread(Object& object, const gpu::Readback& readback) noexcept {
         raise(FW_EVENT_SPOT_FIRE, &object, 0, readback.frameIndex, place,
               float(now.spots - object.spotsTold));
         object.spotsTold = now.spots;
+        ++object.changes;
     }
 }
 

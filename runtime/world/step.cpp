@@ -11,6 +11,12 @@ namespace {
 constexpr uint32_t kReduceEvery = 4;  // steps
 constexpr size_t kMaxBurnMapsPerFrame = 64;
 
+// Does it want the state of this frame? One that runs still answers what was asked before.
+bool startsForecast(const Object& object) noexcept {
+    return object.forecast && object.forecast->wished && !object.forecast->pending &&
+           object.forecast->arrivals.whole;
+}
+
 }  // namespace
 
 void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
@@ -64,6 +70,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     commitFrame(frameIndex, time, !skip);
     commitEmitters(deltaTime);
     collect();
+    runForecasts();
 }
 
 void World::planSteps(const ClockAdvance& time) {
@@ -152,14 +159,16 @@ void World::planProbes() {
     }
     for (uint32_t i = 0; i < queries_.slotCount(); ++i) {
         const Query* query = queries_.at(i);
-        if (!query || query->asked || query->orphaned) continue;
+        if (!query || query->asked || query->orphaned || query->isArrival) continue;
         frame_.probes.push_back({query->object.index1 - 1, query->texel});
         known.refs.push_back({false, query->object, query->texel, 0, queries_.idOf(i)});
     }
+    wishForecasts();
     frame_.burnMaps.clear();
     for (uint32_t i = 0; mapsWished_ > 0 && i < objects_.slotCount(); ++i)
-        if (auto* object = objects_.at(i);
-            object && (*object)->map.wished && frame_.burnMaps.size() < kMaxBurnMapsPerFrame)
+        if (auto* object = objects_.at(i); object &&
+                                           frame_.burnMaps.size() < kMaxBurnMapsPerFrame &&
+                                           ((*object)->map.wished || startsForecast(**object)))
             frame_.burnMaps.push_back(i);  // the others wait for the next frame
 }
 
@@ -169,12 +178,6 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     for (const ProbeRef& ref : known.refs)
         if (!ref.isTag)
             if (Query* query = queries_.find(ref.query)) query->asked = true;
-    for (uint32_t slot : frame_.burnMaps) {
-        BurnMapCopy& map = (*objects_.at(slot))->map;
-        map.wished = false;
-        map.pending = true;
-        --mapsWished_;
-    }
     for (const Frame::LatchOf& entry : frame_.latches) entry.object->latch = entry.latch;
     const auto touch = [&](Object& object) {
         if (object.touched) return;  // room for every object was found at its creation
@@ -190,6 +193,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     for (const Frame::Due& due : frame_.due) {
         Object& object = **objects_.at(due.event.object);
         touch(object);
+        ++object.changes;
         object.active = true;
         object.lastStimulus = std::max<uint64_t>(object.lastStimulus, due.event.tick);
         if (due.event.kind == FW_IGNITE) {
@@ -203,6 +207,19 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
             object.lastDouse = due.event.tick;
             object.doused = true;
         }
+    }
+    for (uint32_t slot : frame_.burnMaps) {
+        Object& object = **objects_.at(slot);
+        const auto send = [&](bool& wished, bool& pending) {
+            if (!wished) return;
+            wished = false;
+            pending = true;
+            --mapsWished_;
+        };
+        send(object.map.wished, object.map.pending);
+        if (!startsForecast(object)) continue;
+        object.forecast->pendingChanges = changesOf(object);
+        send(object.forecast->wished, object.forecast->pending);
     }
     const uint64_t end = time.after.tick;
     std::erase_if(pending_, [&](const PendingTexel& p) { return p.tick < end; });

@@ -54,7 +54,7 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     checkLimit(def.reserved1, "FwWorldDef::reserved1", 0, 0);
     checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
     checkLimit(def.maxParticles, "FwWorldDef::maxParticles", 0, 1u << 20);
-    checkLimit(def.reserved2, "FwWorldDef::reserved2", 0, 0);
+    checkLimit(def.arrivalTiles, "FwWorldDef::arrivalTiles", 1, 1u << 20);
     return def;
 }
 
@@ -137,6 +137,7 @@ World::~World() {
 
 void World::setWind(const float wind[3]) {
     checkValues(wind, 3, "wind", -120.0f, 120.0f);
+    if (!std::equal(wind_, wind_ + 3, wind)) ++driveChanges_;
     std::copy_n(wind, 3, wind_);
     sendFieldRules();
 }
@@ -300,7 +301,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     MeshEntry& mesh = *meshes_.at(meshSlot);
     object.data.meshSlot = meshSlot;
     const mesh::BurnDomain& domain = *mesh.domain;
-    const std::pmr::vector<uint16_t> slowness = components::makeSlowness(def, domain, memory_);
+    std::pmr::vector<uint16_t> slowness = components::makeSlowness(def, domain, memory_);
     for (uint32_t i = 0; i < domain.texelCount(); ++i)
         if (domain.real(i) && (slowness.empty() ? domain.slowness[i] : slowness[i]) != 0 &&
             components::burns(object.data, domain.texels[i].materialFlags & 0xFF))
@@ -349,6 +350,8 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     object.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
     object.remoteDue = true;
     object.firstFrame = lastFrame_ + 1;
+    object.slowness = std::move(slowness);
+    init.slowness = object.slowness;
     const uint32_t burnable = object.texels;
     const FwBurnableMeshId id = objects_.create(std::move(owned));
     object.id = id;
@@ -430,6 +433,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     std::erase(remote_.due, slot);
     texels_ -= object.texels;
     if (object.map.wished) --mapsWished_;
+    if (object.forecast && object.forecast->wished) --mapsWished_;
     backend_.destroyObject(slot);
     objects_.destroy(id);
     releaseShape(meshSlot);
@@ -445,6 +449,7 @@ void World::sendPose(const Object& object) noexcept {
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
     Object& object = *objects_.get(id);
     components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
+    ++object.changes;
     if (!object.remoteDue) {  // at most once each: room was found at its creation
         object.remoteDue = true;
         remote_.due.push_back(object.slot);

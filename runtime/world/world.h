@@ -12,6 +12,7 @@
 #include "flamewright/flamewright_debug.h"
 #include "gpu/backend.h"
 #include "mesh/burn_domain.h"
+#include "mesh/front/arrivals.h"
 #include "mesh/remote_tiles.h"
 #include "world/clock.h"
 #include "world/event_queue.h"
@@ -45,16 +46,27 @@ struct BurnMapCopy {  // of fwDebug_RequestBurnMap
     explicit BurnMapCopy(std::pmr::memory_resource* memory) : ticks(memory), heat(memory) {}
 };
 
+struct Forecast {  // of an object that was asked when fire arrives
+    explicit Forecast(std::pmr::memory_resource* memory) : arrivals(memory) {}
+    mesh::Arrivals arrivals;
+    uint64_t tick = 0, frameIndex = 0;         // whose state it began with
+    uint64_t changes = 0, pendingChanges = 0;  // World::changesOf then, and of the one on its way
+    bool told = false;                         // it began
+    bool wished = false;                       // with the state of the next frame
+    bool pending = false;                      // that is on its way
+};
+
 struct Object {
     explicit Object(std::pmr::memory_resource* memory)
-        : map(memory), skin(memory), skinNormals(memory) {}
+        : slowness(memory), map(memory), skin(memory), skinNormals(memory) {}
 
     components::BurnableMesh data;
     components::Latch latch;  // the drive that its front sees
     uint32_t slot = 0;        // the backend's: its index in the pool
     FwBurnableMeshId id{};
-    uint32_t texels = 0;      // that can burn
-    uint64_t firstFrame = 0;  // readbacks of older frames speak of another object
+    uint32_t texels = 0;                  // that can burn
+    uint64_t firstFrame = 0;              // readbacks of older frames speak of another object
+    std::pmr::vector<uint16_t> slowness;  // per texel, Q7; empty: the mesh's own
     // What happened, in ticks.
     bool touched = false;        // an event ever addressed it: it filters wind and latches
     bool active = false;         // its front or flames may still move
@@ -83,6 +95,8 @@ struct Object {
     uint64_t energy = 0, heatSteps = 0;  // 2^-20 J after so many heat steps
     float power = 0;                     // W, at pace 1; of objects with heat
     BurnMapCopy map;
+    core::Owned<Forecast> forecast;  // null: never asked for
+    uint64_t changes = 0;            // of what its fire will do, that we know of
     // Of a skinned object: the host's vertices, m, in its mesh's shape; 3 each. Normals are
     // scratch.
     std::pmr::vector<float> skin, skinNormals;
@@ -100,6 +114,8 @@ struct Query {
     float distance = 0;  // m
     FwPointState answer{};
     bool asked = false, ready = false, orphaned = false;
+    bool isArrival = false;
+    uint64_t since = 0, sinceTick = 0;  // of an arrival: a forecast from there on answers it
 };
 
 constexpr uint32_t kWaysOfFire =
@@ -315,6 +331,8 @@ class World {
     void objectState(FwBurnableMeshId id, FwObjectState& state);
     FwQueryId requestPoint(FwBurnableMeshId id, const float position[3]);
     bool fetchPoint(FwQueryId id, FwPointState& state);  // false: not ready
+    FwQueryId requestArrival(FwBurnableMeshId id, const float position[3]);
+    bool fetchArrival(FwQueryId id, FwArrivalState& state);  // false: not ready
     void dropQuery(FwQueryId id) { queries_.destroy(id); }
     uint32_t lights(std::span<FwLight> out) const noexcept;
     void stats(FwWorldStats& stats) noexcept;
@@ -453,7 +471,17 @@ class World {
     void takeLights(const gpu::Readback& readback) noexcept;
     void raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
                const float position[3], float value, FwBurnableMeshId other = {}) noexcept;
+    // arrivals.cpp
+    [[nodiscard]] uint64_t changesOf(const Object& object) const noexcept {
+        return object.changes + driveChanges_;
+    }
+    void wishForecasts() noexcept;
+    void takeForecast(Object& object, const gpu::BurnMap& map,
+                      const gpu::Readback& readback) noexcept;
+    void runForecasts() noexcept;
     // queries.cpp
+    Query makeQuery(FwBurnableMeshId id, const float position[3]);
+    Query& openQuery(FwQueryId id, bool isArrival);  // throws and closes it where it is orphaned
     FwPointState pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,
                             const gpu::Readback& readback) const noexcept;
     void texelPosition(const Object& object, uint32_t texel, float (&out)[3]) const noexcept;
@@ -521,7 +549,9 @@ class World {
     std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing
     uint32_t shapes_ = 0;                    // entries of meshes_ that are shapes
     uint64_t texels_ = 0;                    // of all objects, that can burn
-    uint32_t mapsWished_ = 0;                // objects whose burn map is still to be asked for
+    uint32_t mapsWished_ = 0;                // wishes for objects' states that are still to be sent
+    uint64_t driveChanges_ = 0;              // of the wind
+    uint32_t nextForecast_ = 0;              // object slot whose turn it is
     std::pmr::vector<Tag> tags_;
     std::pmr::vector<PendingTexel> pending_;
     std::pmr::vector<uint32_t> found_;  // scratch of ball queries

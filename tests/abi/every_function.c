@@ -98,6 +98,8 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_GetObjectState(NULL, object, NULL));
     REFUSES(fwWorld_RequestPoint(NULL, object, NULL, NULL));
     REFUSES(fwWorld_FetchPoint(NULL, query, NULL));
+    REFUSES(fwWorld_RequestArrival(NULL, object, NULL, NULL));
+    REFUSES(fwWorld_FetchArrival(NULL, query, NULL));
     IS_ZERO(fwWorld_GetLights(NULL, NULL, 0));
     REFUSES(fwWorld_GetStats(NULL, NULL));
 

@@ -76,6 +76,10 @@ struct Session {
         FwPointState state{};
         state.structSize = sizeof state;
         retry([&] { return fwWorld_FetchPoint(world, query, &state); });
+        retry([&] { return fwWorld_RequestArrival(world, object, far, &query); });
+        FwArrivalState arrival{};
+        arrival.structSize = sizeof arrival;
+        retry([&] { return fwWorld_FetchArrival(world, query, &arrival); });
         retry([&] { return fwDebug_RequestBurnMap(world, object); });
         (void)fwContext_GetMemoryReport(context, nullptr, 0);
     }

@@ -1,5 +1,7 @@
 // The front on the cpu backend, one thread. Rows: front/wide_cpu/1024 (a front 1024 texels wide,
-// about 150 due tiles) and front/mapsize_smallfire_cpu/N (one small fire on maps of growing size).
+// about 150 due tiles), front/mapsize_smallfire_cpu/N (one small fire on maps of growing size) and
+// query/eta (a fire in the corner of a 1024 map is run ahead until all of it has burnt; us_tile: a
+// tile of a slice).
 #include "support/front_rig.h"
 
 #include <benchmark/benchmark.h>
@@ -62,6 +64,27 @@ void smallFire(benchmark::State& state, double side) {
         [](Vec3 p) { return std::hypot(p.x - 0.45, p.y - 0.45) < 0.025; }, 320, 640);
 }
 
+void arrivals(benchmark::State& state) {
+    const mesh::BurnDomain& d = planeDomain(8 - 0.04, 8 - 0.04);
+    FrontRig rig(d, {.rate = 0.02});
+    rig.ignite([&](uint32_t i) {
+        const Vec3 p = texelPosition(d, i);
+        return std::hypot(p.x - 0.45, p.y - 0.45) < 0.025 ? 0.0 : -1.0;
+    });
+    for (int i = 0; i < 320; ++i) rig.step();
+    const mesh::ArrivalInput input = rig.arrivalInput();
+    mesh::Arrivals ahead(std::pmr::get_default_resource());
+    uint64_t tiles = 0;
+    for (auto _ : state) {
+        mesh::beginArrivals(ahead, input);
+        while (!ahead.whole) tiles += 1024 - mesh::runArrivals(ahead, 1024);
+    }
+    state.counters["tiles"] = double(tiles) / double(state.iterations());
+    state.counters["us_tile"] = benchmark::Counter(
+        double(tiles) * 1e-6, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK(arrivals)->Name("query/eta")->Unit(benchmark::kMillisecond)->Iterations(5);
 BENCHMARK_CAPTURE(wide, still, 0.0)->Name("front/wide_cpu/1024")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(wide, wind, 2.732)
     ->Name("front/wide_cpu_wind/1024")

@@ -541,12 +541,20 @@ class Fuzz {
                 break;
             case 17: {
                 FwQueryId id{};
-                const FwResult result = fwWorld_RequestPoint(world_, object, values, &id);
+                const auto request =
+                    random_.once(2) ? fwWorld_RequestPoint : fwWorld_RequestArrival;
+                const FwResult result = request(world_, object, values, &id);
                 check(result);
                 if (result == FW_OK) queries_.known.push_back(id);
                 break;
             }
             case 18: {
+                if (random_.once(2)) {
+                    FwArrivalState arrival{};
+                    arrival.structSize = sizeof arrival;
+                    check(fwWorld_FetchArrival(world_, queries_.any(random_), &arrival));
+                    break;
+                }
                 FwPointState state{};
                 state.structSize = random_.once(9) ? random_.below(100) : uint32_t(sizeof state);
                 if (state.structSize > sizeof state) state.structSize = sizeof state;

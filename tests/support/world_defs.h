@@ -19,6 +19,7 @@ inline FwWorldDef plainWorldDef(uint32_t flags) {
     def.spreadChance = 1;
     def.volumeCell = 2;
     def.volumeSteps = 64;
+    def.arrivalTiles = 1024;
     return def;
 }
 

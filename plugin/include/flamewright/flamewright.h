@@ -207,7 +207,9 @@ typedef struct FwWorldDef {
     uint32_t volumeSteps;       /* [6, 64], default 64: most samples of a ray through a flame's depth. The few
                                    that all but the largest 32 flames get are no more than these */
     uint32_t maxParticles;      /* [0, 1048576], default 16384: of all fire emitters; 48 bytes each, once there */
-    uint32_t reserved2;         /* 0 */
+    uint32_t arrivalTiles;      /* [1, 1048576], default 1024: tiles of 8 x 8 texels that questions for arrivals
+                                   look at in a frame, together; some 2 us each, and some 25 looks at each
+                                   tile of a map. See fwWorld_RequestArrival */
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
     FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;
@@ -917,6 +919,32 @@ typedef struct FwPointState {
 FW_API FwResult FW_CALL fwWorld_RequestPoint(FwWorld*, FwBurnableMeshId id, const float position[3], FwQueryId* query);
 /* FW_NOT_READY until the answer is here; FW_OK writes it and frees the query. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchPoint(FwWorld*, FwQueryId query, FwPointState* state);
+
+typedef enum FwArrivalKind {
+    FW_ARRIVAL_AHEAD = 0,      /* fire will be there */
+    FW_ARRIVAL_PAST = 1,       /* it burns or has burnt */
+    FW_ARRIVAL_NEVER = 2,      /* it will not, as things are */
+    FW_ARRIVAL_KIND_FORCE32 = 0x7fffffff
+} FwArrivalKind;
+typedef struct FwArrivalState {
+    uint32_t structSize;
+    uint32_t kind;             /* FwArrivalKind */
+    uint64_t frameIndex;       /* the fire was as after this frame */
+    float seconds;             /* s from the world's present until it catches; PAST: since then, <= 0; NEVER: FLT_MAX */
+    float distance;            /* m from the asked point to the texel */
+    float position[3];         /* m, world, of the texel */
+    float reserved;
+} FwArrivalState;
+/* When will the object's own fire be at the texel nearest to `position` (m, world)? As things are at the time
+ * of the call: where it burns, what is wet, under the wind and pose of now as if they stayed. Not what other
+ * objects, water that dries or limits on burning tiles will make of it. The front is run ahead of itself, at
+ * most FwWorldDef::arrivalTiles a frame, for all questions about an object at once; what is near is known
+ * first, and the first frames tell it where the state is read back later. Exact for a fire left alone.
+ * After a change (fire, water, wind, pose) ask anew. Counts to the 1024 queries that may be open. Allocates
+ * some 5 bytes a texel at an object's first question. Not for FW_BURNABLE_PUBLISHED. [world] */
+FW_API FwResult FW_CALL fwWorld_RequestArrival(FwWorld*, FwBurnableMeshId id, const float position[3], FwQueryId* query);
+/* FW_NOT_READY until the answer is here; FW_OK writes it and frees the query. [world] */
+FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArrivalState* state);
 
 typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host's own lighting */
     float position[3];         /* m, world */

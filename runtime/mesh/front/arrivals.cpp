@@ -17,6 +17,16 @@ void touch(Arrivals& a, uint32_t tile, uint8_t bits) noexcept {
     a.flags[tile] |= uint8_t(kListed | bits);
 }
 
+// Ticks of a round: those of two links in still air. Shorter ones run each tile more often, longer
+// ones run more for nothing, as what came later is corrected.
+uint32_t strideOf(const Arrivals& a) noexcept {
+    double slowness = 1e9;  // Q22 ticks per 1/8 position unit
+    for (const gpu::BurnMaterial& material : a.materials)
+        if (material.flags & 1) slowness = std::min(slowness, double(material.sigma0));
+    const double link = double(a.domain->texelSide / a.domain->quantum) * 8 * slowness / 4194304;
+    return uint32_t(std::clamp(2 * link, double(gpu::kStepTicks), 1e7));
+}
+
 // The tiles that the round has to run: those with news, and those whose next arrival falls into it.
 void findDue(Arrivals& a) noexcept {
     a.due.clear();
@@ -40,7 +50,8 @@ void findDue(Arrivals& a) noexcept {
 void nextRound(Arrivals& a) noexcept {
     uint32_t soonest = kNever;
     for (const uint32_t tile : a.list) soonest = std::min(soonest, a.wake[tile]);
-    a.whole = soonest == kNever || soonest >= gpu::kLiveEnd - a.stride;
+    // Ticks end; so does what can be told.
+    a.whole = std::max(soonest, a.end) >= gpu::kLiveEnd - a.stride;
     if (!a.whole) a.end = std::max(a.end + a.stride, soonest);
 }
 
@@ -83,22 +94,28 @@ uint32_t Arrivals::settled() const noexcept {
     return gpu::frontFloor(through, window);
 }
 
+void reserveArrivals(Arrivals& a, const BurnDomain& domain) {
+    a.ticks.reserve(domain.texelCount());
+    a.wake.reserve(domain.tileCount());
+    a.flags.reserve(domain.tileCount());
+    a.list.reserve(domain.tileCount());
+    a.due.reserve(domain.tileCount());
+}
+
 void beginArrivals(Arrivals& a, const ArrivalInput& input) {
     const uint32_t tiles = input.domain->tileCount();
-    a.whole = true;
+    reserveArrivals(a, *input.domain);
     a.ticks.assign(input.state.begin(), input.state.end());
     a.wake.assign(tiles, kNever);
     a.flags.assign(tiles, 0);
     a.list.clear();
     a.due.clear();
-    a.list.reserve(tiles);
-    a.due.reserve(tiles);
+    a.next = 0;
     a.domain = input.domain;
     a.slowness = input.slowness;
     std::copy_n(input.materials.begin(), a.materials.size(), a.materials.begin());
     a.window = input.window;
-    // Rounds that a front crosses few texels in: longer ones correct more than they save.
-    a.stride = std::max(input.window / 4, gpu::kStepTicks);
+    a.stride = strideOf(a);
     a.end = input.now + a.stride;
     a.whole = false;
     for (uint32_t tile = 0; tile < tiles; ++tile) touch(a, tile, kTouched);

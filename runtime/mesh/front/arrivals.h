@@ -39,7 +39,9 @@ struct Arrivals {
     [[nodiscard]] uint32_t settled() const noexcept;
 };
 
-// Finds the memory that all slices need. Throws std::bad_alloc; `arrivals` is then as good as new.
+// The memory that beginArrivals and all slices need for this mesh. Throws std::bad_alloc.
+void reserveArrivals(Arrivals& arrivals, const BurnDomain& domain);
+// Anew, from the state that it is given. Needs no memory after reserveArrivals.
 void beginArrivals(Arrivals& arrivals, const ArrivalInput& input);
 // Runs at most so many tiles, [1, ...); returns how many it did not use: 0 but when it is whole.
 uint32_t runArrivals(Arrivals& arrivals, uint32_t tiles) noexcept;
