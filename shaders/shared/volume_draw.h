@@ -45,7 +45,7 @@ FW_SHARED_SIZE(VolumeDraw, 112)
 
 FW_SHARED_CONST uint kVolumeTile = 8u;          // cells a side; a workgroup marches a tile
 FW_SHARED_CONST uint kVolumeCellWords = 3u;     // of a cell in a slab, as halfs: red and green, blue and alpha; in
-                                                // slabs: from where on its light lies, 1 / over how much
+                                                // slabs: see volumeLies
 
 // Arguments of a flame's march and of its draw: a tile each of those that are worth a march. Zero before the probe.
 struct VolumeWork {
@@ -61,8 +61,9 @@ FW_SHARED_CONST uint kVolumeEnds = 2u;          // one and the last of them and 
 FW_SHARED_CONST uint kVolumeList = 3u;          // of tiles that are
 FW_SHARED_CONST uint kVolumeTileWords = 4u;
 
-// Push constants of probe and march. A cell is a few pixels wide; its ray goes through its middle: of cell x, y
-// of the view, as above with rays from these. A flame's cells are tiles from its origin on, row by row of all,
+// Push constants of probe and march. A cell is a few pixels wide, or of a small flame a part of one; its ray goes
+// through its middle (but see volumeShift): of cell x, y of the view, as above with rays from these. A flame's
+// cells are tiles from its origin on, row by row of all,
 // slab by slab. Samples lie in planes across the view, as many to each slab.
 struct VolumeMarch {
     vec4 rayX;            // w: m, of a cell at a depth of 1 (perspective)
@@ -79,8 +80,10 @@ struct VolumeMarch {
     uint encoding;        // FwOutputEncoding of who shows it
     uint flame;           // of VolumeWork
     uint apart;           // cells from a ray of the probe to the next: 1, 2, 4
+    uint perPixel;        // as VolumeComposite's
+    uint reserved0; uint reserved1; uint reserved2;
 };
-FW_SHARED_SIZE(VolumeMarch, 96)
+FW_SHARED_SIZE(VolumeMarch, 112)
 
 // Workgroups of the probe side by side; each sees as many cells as eight rays.
 FW_SHARED_FN uint volumeProbeBlocks(uint tiles, uint apart) { return (tiles + apart - 1u) / apart; }
@@ -93,7 +96,7 @@ struct VolumeComposite {
     uint slabs;
     uint tilesX; uint tilesY;
     uint flags; uint samples;
-    uint reserved;
+    uint perPixel;        // cells a side: 2, 4, 8, all of them in one tile; 0: a cell is a pixel or more
 };
 FW_SHARED_SIZE(VolumeComposite, 64)
 
@@ -104,11 +107,33 @@ FW_SHARED_FN float volumePhase(uint x, uint y, float time) {
     return b - floor(b);
 }
 
+// Cells [-0.5, 0.5] off its middle that a cell's ray goes where many cells are a pixel: a flame of few
+// columns is seen at as many places as it has cells.
+FW_SHARED_FN vec2 volumeShift(uint x, uint y) {
+    float across = 0.61803399f * float(y);
+    float along = 0.61803399f * float(x);
+    return vec2(across - floor(across) - 0.5f, along - floor(along) - 0.5f);
+}
+
 // What the cell `step` (-1, 0, 1) from the nearest weighs, `off` cells [-0.5, 0.5] beyond its middle. However a
 // pixel lies, even and odd cells weigh the same: it sees all four quarters alike, and no grain.
 FW_SHARED_FN float volumeWeight(int step, float off) {
     return step == 0 ? 0.5f : 0.25f + 0.5f * float(step) * off;
 }
+
+// From where to where in a slab a cell's light lies, and how much of it the slabs before let through.
+#ifndef __cplusplus
+uint volumeLies(vec2 reach, float through) {
+    uvec2 ends = uvec2(clamp(reach, 0.0, 1.0) * 255.0 + 0.5);
+    return ends.x | (ends.y << 8u) | (uint(clamp(through, 0.0, 1.0) * 65535.0 + 0.5) << 16u);
+}
+float volumeThrough(uint lies) { return float(lies >> 16u) * (1.0 / 65535.0); }
+// How much of it is nearer than `cut` slabs beyond this one's front.
+float volumeNearer(uint lies, float cut) {
+    vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
+    return clamp((cut - ends.x) / max(ends.y - ends.x, 1e-2), 0.0, 1.0);
+}
+#endif
 
 // How many samples a ray takes over so many metres.
 FW_SHARED_FN float volumeSteps(float metres, float spacing, uint most) {

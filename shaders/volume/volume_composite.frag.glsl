@@ -1,7 +1,7 @@
 #version 450
 // A slab of a marched flame at a pixel: the nearest nine cells, so weighed that the four places at
-// which neighbours' samples begin count alike. Where the host's depth can be read, of each what of its
-// light lies before it.
+// which neighbours' samples begin count alike; of a small flame all that lie in it. Where the host's
+// depth can be read, of each what of its light lies before it.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -13,6 +13,7 @@ layout(location = 0) in vec2 inCell;
 layout(location = 1) flat in uint inWords;
 layout(location = 2) flat in vec2 inSlab;
 layout(location = 3) flat in ivec4 inCells;
+layout(location = 4) flat in uint inPerPixel;
 
 layout(location = 0) out vec4 outColor;
 
@@ -20,27 +21,46 @@ layout(location = 0) out vec4 outColor;
 #include "volume/scene_depth.glsl"
 #endif
 
+float cut = 1e9;  // slabs from this one's front to the scene
+
+// A cell counts as much as the slabs before this one let through of it: the mean of that is what they
+// let through of a pixel as they are drawn, so slabs neither lose nor make light.
+void add(uint at, float weight, inout vec4 color, inout float through) {
+    uint lies = rays[at + 2u];
+    weight *= volumeThrough(lies);
+    through += weight;
+#ifdef FW_SOFT
+    weight *= volumeNearer(lies, cut);
+#endif
+    color += weight * vec4(unpackHalf2x16(rays[at]), unpackHalf2x16(rays[at + 1u]));
+}
+
 void main() {
-    vec2 whole = floor(inCell + 0.5);
-    vec2 off = inCell - whole;
     uint pitch = kVolumeCellWords * kVolumeTile * draw.tilesX;
     vec4 color = vec4(0.0);
+    float through = 0.0;
 #ifdef FW_SOFT
-    float cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
+    cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
 #endif
-    FW_UNROLL
-    for (int y = -1; y <= 1; ++y) {
-        uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inCells.y, inCells.w));
+    if (inPerPixel > 1u) {
+        uvec2 first = uvec2(floor((inCell + 0.5) / float(inPerPixel))) * inPerPixel;
+        uint row = inWords + pitch * first.y + kVolumeCellWords * first.x;
+        for (uint y = 0u; y < inPerPixel; ++y) {
+            for (uint x = 0u; x < inPerPixel; ++x) add(row + kVolumeCellWords * x, 1.0, color, through);
+            row += pitch;
+        }
+    } else {
+        vec2 whole = floor(inCell + 0.5);
+        vec2 off = inCell - whole;
         FW_UNROLL
-        for (int x = -1; x <= 1; ++x) {
-            uint at = row + kVolumeCellWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
-            float weight = volumeWeight(x, off.x) * volumeWeight(y, off.y);
-#ifdef FW_SOFT
-            vec2 lies = unpackHalf2x16(rays[at + 2u]);
-            weight *= clamp((cut - lies.x) * lies.y, 0.0, 1.0);
-#endif
-            color += weight * vec4(unpackHalf2x16(rays[at]), unpackHalf2x16(rays[at + 1u]));
+        for (int y = -1; y <= 1; ++y) {
+            uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inCells.y, inCells.w));
+            FW_UNROLL
+            for (int x = -1; x <= 1; ++x) {
+                uint column = kVolumeCellWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
+                add(row + column, volumeWeight(x, off.x) * volumeWeight(y, off.y), color, through);
+            }
         }
     }
-    outColor = color;
+    outColor = color / max(through, 1e-6);
 }

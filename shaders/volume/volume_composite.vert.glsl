@@ -12,6 +12,7 @@ layout(location = 0) out vec2 outCell;        // of the flame, from the middle o
 layout(location = 1) flat out uint outWords;  // the slab's first
 layout(location = 2) flat out vec2 outSlab;   // m along the view: from; 1/m: its depth
 layout(location = 3) flat out ivec4 outCells; // first and last that there are
+layout(location = 4) flat out uint outPerPixel;
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
@@ -22,6 +23,7 @@ void main() {
     uint slab = draw.slabs - 1u - quad % draw.slabs;
     ivec2 at = ivec2(tile % draw.tilesX, tile / draw.tilesX);
     // Cells around a tile reach a little into it: those of its neighbours' nearest rows and columns.
+    // Of small flames each pixel has its own.
     // Neighbours that were not marched have none, and nothing is near them.
     uint lit = 0u;
     ivec4 reach = ivec4(-1, -1, 1, 1);
@@ -36,7 +38,7 @@ void main() {
             uint there = rays[of], edges = there >> kVolumeSlabs;
             bool touches = (x == 0 || (edges & (x < 0 ? 2u : 1u)) != 0u) &&
                            (y == 0 || (edges & (y < 0 ? 8u : 4u)) != 0u);
-            lit |= is && touches ? there : 0u;
+            lit |= is && touches && (draw.perPixel == 0u || (x == 0 && y == 0)) ? there : 0u;
             // Beyond the corner of a flame's cells are none to be read.
             bool may = is || (x != 0 && y != 0 && !inside);
             if (x < 0) reach.x = may ? reach.x : 0;
@@ -51,6 +53,7 @@ void main() {
     uint cells = tiles * kVolumeTile * kVolumeTile;
     outWords = draw.samples + kVolumeCellWords * cells * slab;
     float front = draw.front + draw.deep * float(slab);
+    outPerPixel = draw.perPixel | (vertex >> 31u);  // not a constant, see volume.frag
     outSlab = vec2(front, 1.0 / draw.deep);
     vec2 place = draw.place.xy + draw.place.zw * cell;
     float middle = front + 0.5 * draw.deep;

@@ -22,24 +22,27 @@ FlameRay fresh() { return FlameRay(vec3(0.0), vec3(1.0)); }
 
 // Keeps what slab `s` adds to what is shown without it and those behind it; `where`: light, and
 // its first and second moment over the slab. What is shown of any number of nearest slabs is then
-// exactly what one ray to there would show.
+// exactly what one ray to there would show; and how much of them those before it let through, which
+// is what a cell weighs beside its neighbours.
 vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
     float left = 1.0 / max(1.0 - before.a, 1e-4);
     vec4 color = max((shown - before) * left, 0.0);
     float middle = where_.y / max(where_.x, 1e-20);
     // As wide as something even with that spread.
     float half_ = sqrt(3.0 * max(where_.z / max(where_.x, 1e-20) - middle * middle, 1e-4));
-    vec2 reach = clamp(vec2(middle - half_, middle + half_), 0.0, 1.0);
+    half_ = min(half_, min(middle, 1.0 - middle));  // in the slab, about the same middle
+    vec2 reach = vec2(middle - half_, middle + half_);
     uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
     rays[at] = packHalf2x16(color.rg);
     rays[at + 1u] = packHalf2x16(color.ba);
-    rays[at + 2u] = packHalf2x16(vec2(reach.x, 1.0 / max(reach.y - reach.x, 1e-2)));
+    rays[at + 2u] = volumeLies(reach, 1.0 - before.a);
     return color;
 }
 
-void nothing(uint s, uint cell) {
+void nothing(uint s, uint cell, float through) {
     uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
-    rays[at] = rays[at + 1u] = rays[at + 2u] = 0u;
+    rays[at] = rays[at + 1u] = 0u;
+    rays[at + 2u] = volumeLies(vec2(0.0, 1.0), through);
 }
 
 bool shows(vec4 color) { return max(max(color.r, color.g), max(color.b, color.a)) > 1e-4; }
@@ -70,7 +73,8 @@ void main() {
     uvec2 place = uvec2(tile % march.tilesX, tile / march.tilesX) * kVolumeTile + in_;
     uint cell = place.y * (march.tilesX * kVolumeTile) + place.x;
     place += uvec2(march.originX, march.originY);
-    vec3 ray = march.rayO.xyz + float(place.x) * march.rayX.xyz + float(place.y) * march.rayY.xyz;
+    vec2 at_ = vec2(place) + (march.perPixel > 1u ? volumeShift(place.x, place.y) : vec2(0.0));
+    vec3 ray = march.rayO.xyz + at_.x * march.rayX.xyz + at_.y * march.rayY.xyz;
     bool perspective = view.forward.w > 0.5;
     vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : ray);
     vec3 along = perspective ? ray : view.forward.xyz;
@@ -106,10 +110,9 @@ void main() {
     vec3 scattered = one.radiance;
     vec4 before = vec4(0.0);
     uint s = begin / turns, k = begin;
-    for (uint i = 0u; i < slabs; ++i)
-        if (i < s || i > last) nothing(i, cell);
     if (s > 0u) {
         before = flameShown(one, scattered, lit, encoding);
+        for (uint i = 1u; i < s; ++i) nothing(i, cell, 1.0 - before.a);
         bits = shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
     }
     float size = 0.35 * stride, length_ = burns ? stride : 0.0;
@@ -139,6 +142,7 @@ void main() {
         s += 1u;
     } while (s <= last);
     if (s < slabs) {
+        for (uint i = s; i + 1u < slabs; ++i) nothing(i, cell, 1.0 - before.a);
         scattered += one.through * smoke.back.radiance;
         vec4 shown = flameShown(flameBehind(one, smoke.back), scattered, lit, encoding);
         bits |= shows(keep(before, shown, slabs - 1u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0)))

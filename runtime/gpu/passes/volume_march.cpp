@@ -1,6 +1,6 @@
 // Volumetric flames of the frame's view before it is drawn: each ray once for a cell of a few
-// pixels, kept in slabs, of the tiles that volume_probe finds worth it. Memory is bounded: what
-// does not fit is marched in larger cells.
+// pixels, or of a part of one where the flame is small, kept in slabs, of the tiles that
+// volume_probe finds worth it. Memory is bounded: what does not fit is marched in larger cells.
 #include "gpu/passes/frame_graph.h"
 
 #include <algorithm>
@@ -16,8 +16,17 @@ constexpr Use kUses[] = {
     {FW_BIND_VOLUME_RAYS, Access::write},
 };
 
-constexpr float kMostCell = 64.0f;          // px
+constexpr float kMostCell = 64.0f;     // px
+constexpr uint32_t kMostPerPixel = 8;  // cells a side: a tile
+// A flame is as wide as so many cells, or sheets and tongues fall between rays: its light would
+// depend on where cells lie.
+constexpr float kCellsAcross = 16.0f;
+// Detail as fine as this part of a cell is still sampled: what a pixel averages is many cells, and
+// to leave sheets out costs light where to sample them costs none.
+constexpr float kFinest = 0.25f;
+constexpr float kAllDetail = 96.0f;  // px across a flame from which its samples are as it says
 constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
+constexpr uint64_t kLeastTiles = 512;       // of small flames, however small the screen
 
 static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
 
@@ -29,23 +38,55 @@ struct Tiles {
     uint32_t originX, originY, x, y;
 };
 
-// That cover a part of the view.
+// That cover a part of the view, from a whole pixel on.
 Tiles tilesOf(const vec4& rect, vec2 size, float cell) {
+    const float whole = std::max(cell, 1.0f);  // px
     const auto first = [&](float ndc, float pixels) {
-        return uint32_t(std::max(std::floor((0.5f * ndc + 0.5f) * pixels / cell), 0.0f));
+        const float at = std::max(std::floor((0.5f * ndc + 0.5f) * pixels / whole), 0.0f);
+        return uint32_t(at * (whole / cell));
     };
     const auto tiles = [&](float ndc, float pixels, uint32_t from) {
-        const float end = std::ceil((0.5f * ndc + 0.5f) * pixels / cell);
+        const float end = std::ceil((0.5f * ndc + 0.5f) * pixels / whole) * (whole / cell);
         return uint32_t(std::max(std::ceil((end - float(from)) / float(kVolumeTile)), 1.0f));
     };
     const uint32_t x = first(rect.x, size.x), y = first(rect.y, size.y);
     return {x, y, tiles(rect.z, size.x, x), tiles(rect.w, size.y, y)};
 }
 
-uint64_t tilesOfAll(std::span<const VolumeItem> items, vec2 size, float cell) {
+// m along the view to where a pixel of it is as wide as VolumeDraw::rayX says.
+float awayOf(const VolumeDraw& draw) {
+    const bool perspective = draw.clip.z > 0.0f;
+    return perspective ? draw.front + 0.5f * draw.deep * float(draw.slabs) : 1.0f;
+}
+
+// px, across a flame.
+float wideOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+    const float pixel = 2.0f / screen.size.x * glm::length(vec3(draw.rayX)) * awayOf(draw);
+    return draw.wide / std::max(pixel, 1e-9f);
+}
+
+// px, of a flame's cells; none is less than `least`.
+float cellOf(const VolumeDraw& draw, const VolumeScreen& screen, float least) {
+    const float wanted = wideOf(draw, screen) / kCellsAcross;
+    const auto most = float(screen.cell);
+    if (wanted >= most) return std::max(most, least);
+    float cell = 1.0f;
+    while (cell > wanted && cell * float(kMostPerPixel) > 1.0f) cell *= 0.5f;
+    return std::max(cell, least);
+}
+
+// Of a slab. Where sheets are closer than samples thick flame is too dark; a small one, which costs
+// little, gets up to twice as many.
+uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+    const float spacing = draw.spacing * std::clamp(wideOf(draw, screen) / kAllDetail, 0.5f, 1.0f);
+    const uint32_t most = std::min(2 * draw.mostSteps, screen.steps) / draw.slabs;
+    return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
+}
+
+uint64_t tilesOfAll(std::span<const VolumeItem> items, const VolumeScreen& screen, float least) {
     uint64_t sum = 0;
     for (const VolumeItem& item : items) {
-        const Tiles tiles = tilesOf(item.draw.rect, size, cell);
+        const Tiles tiles = tilesOf(item.draw.rect, screen.size, cellOf(item.draw, screen, least));
         sum += uint64_t(tiles.x) * tiles.y;
     }
     return sum;
@@ -61,37 +102,33 @@ uint32_t volumeRayWords(const VolumeScreen& screen) {
     const auto tiles = [&](float pixels) {
         return uint64_t(std::clamp(std::ceil(pixels / tile), 0.0f, 4096.0f)) + 1;
     };
-    return uint32_t(
-        std::min(tiles(screen.size.x) * tiles(screen.size.y) * 3 / 2 * wordsOfTile(screen.slabs),
-                 kMostWords));
+    const uint64_t all =
+        std::max<uint64_t>(tiles(screen.size.x) * tiles(screen.size.y) * 3 / 2, kLeastTiles);
+    return uint32_t(std::min(all * wordsOfTile(screen.slabs), kMostWords));
 }
 
 uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
                     uint32_t words, std::span<MarchedVolume> out) {
-    auto cell = float(screen.cell);
+    float least = 1.0f / float(kMostPerPixel);
     uint64_t all = 0;
-    for (;; cell += 1.0f) {
-        if (cell > kMostCell) return 0;
-        all = tilesOfAll(items, screen.size, cell);
+    for (;; least = least < 1.0f ? 2.0f * least : least + 1.0f) {
+        if (least > kMostCell) return 0;
+        all = tilesOfAll(items, screen, least);
         if (all * wordsOfTile(screen.slabs) <= words) break;
     }
-    const vec2 perCell = vec2(2.0f * cell) / screen.size;  // of the view's [-1, 1]
     const auto first = uint32_t(all * kVolumeTileWords);
     uint32_t known = 0, samples = first;
     for (size_t i = 0; i < items.size(); ++i) {
         const VolumeDraw& draw = items[i].draw;
-        const bool perspective = draw.clip.z > 0.0f;
+        const float cell = cellOf(draw, screen, least);
+        const vec2 perCell = vec2(2.0f * cell) / screen.size;  // of the view's [-1, 1]
         const Tiles tiles = tilesOf(draw.rect, screen.size, cell);
         const uint32_t count = tiles.x * tiles.y;
         MarchedVolume& one = out[i];
         one.flame = items[i].flame;
         VolumeMarch& march = one.march;
-        march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell);
-        march.turns = uint32_t(std::clamp(
-            std::ceil(draw.deep / draw.spacing), 1.0f,
-            std::max(
-                std::floor(float(std::min(2 * draw.mostSteps, screen.steps)) / float(draw.slabs)),
-                1.0f)));
+        march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell * kFinest);
+        march.turns = turnsOf(draw, screen);
         march.rayY = vec4(perCell.y * vec3(draw.rayY), draw.deep / float(march.turns));
         march.rayO = vec4(vec3(draw.rayO) + (0.5f * perCell.x - 1.0f) * vec3(draw.rayX) +
                               (0.5f * perCell.y - 1.0f) * vec3(draw.rayY),
@@ -107,9 +144,9 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         march.encoding = screen.encoding;
         march.flame = one.flame;
         // Flames of few cells are probed more closely, or rays go past them.
-        const float away = perspective ? draw.front + 0.5f * draw.deep * float(draw.slabs) : 1.0f;
-        const float wide = draw.wide / std::max(glm::length(vec3(march.rayX)) * away, 1e-9f);
+        const float wide = wideOf(draw, screen) / cell;
         march.apart = wide < 8.0f ? 1 : wide < 20.0f ? 2 : 4;
+        march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
         VolumeComposite& composite = one.composite;
         composite.place =
             vec4(perCell * vec2(float(tiles.originX), float(tiles.originY)) - vec2(1.0f), perCell);
@@ -121,6 +158,7 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         composite.tilesY = tiles.y;
         composite.flags = known;
         composite.samples = samples;
+        composite.perPixel = march.perPixel;
         known += count * kVolumeTileWords;
         samples += march.cells * kVolumeCellWords * draw.slabs;
     }
