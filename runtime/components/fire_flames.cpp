@@ -167,6 +167,7 @@ void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
             continue;
         FireFlame& f = next_.emplace_back();
         f.fire = &fire;
+        f.key = ++lastKey_;
         f.part = i;
         f.split = fire.split;
         f.flame.def.seed = fire.seed + 0x632BE5ABu * i;
@@ -263,6 +264,8 @@ uint32_t FireFlames::write(std::span<gpu::VolumeFlame> out) const noexcept {
     for (const FireFlame& f : next_) {
         if ((f.fire->flags & FW_FIRE_HIDDEN) || count == out.size()) continue;
         out[count].record = f.flame.record;
+        out[count].record.key = f.key;
+        out[count].record.tier = f.fire->tier;
         std::copy(f.flame.nodes.begin(), f.flame.nodes.end(), std::begin(out[count].nodes));
         ++count;
     }

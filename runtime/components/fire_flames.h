@@ -18,6 +18,7 @@ struct FireFlame {
     VolumetricFire* fire = nullptr;
     uint32_t part = 0, split = 0;  // of its fire
     uint32_t trackVersion = 0;
+    uint32_t key = 0;      // no other flame's
     bool leaving = false;  // its fire burns as others now
 };
 
@@ -49,6 +50,7 @@ class FireFlames {
     void place(FireFlame& flame, const FireAir& air) const noexcept;
     void tell() noexcept;
 
+    uint32_t lastKey_ = 0;
     std::pmr::vector<FireFlame> now_, next_;
     std::pmr::vector<volume::NeighbourFlame> others_;
     std::pmr::vector<volume::Neighbourhood> met_;

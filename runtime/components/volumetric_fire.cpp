@@ -118,7 +118,7 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
                    "FwVolumetricFireDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
                    kKnown);
     checkWhole(def.preset, "FwVolumetricFireDef::preset", 0, FW_FIRE_PRESET_COUNT - 1);
-    checkWhole(def.reserved, "FwVolumetricFireDef::reserved", 0, 0);
+    checkWhole(def.tier, "FwVolumetricFireDef::tier", 0, FW_FIRE_TIER_IMPOSTOR);
     checkValue(def.diameter, "FwVolumetricFireDef::diameter", 0.002f, 20.0f);
     checkValue(def.windResponse, "FwVolumetricFireDef::windResponse", 0.0f, 4.0f);
     checkValue(def.turbulence, "FwVolumetricFireDef::turbulence", 0.0f, 3.0f);
@@ -134,6 +134,7 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
     setFirePower(fire, def.power);
     setFirePoints(fire, def.points, def.pointCount, "FwVolumetricFireDef::points");
     fire.flags = def.flags;
+    fire.tier = def.tier;
     fire.preset = fire.profile = def.preset;
     fire.ownProfile = def.profile;
     fire.seed = def.seed ? def.seed : ownSeed;

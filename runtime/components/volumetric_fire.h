@@ -30,6 +30,7 @@ struct VolumetricFire {
 
     volume::FlameLook look;
     uint32_t flags = 0;  // FwVolumetricFireFlags
+    uint32_t tier = 0;   // FwFireTier
     uint32_t preset = 0, seed = 0;
     uint32_t profile = 0;           // layer
     FwFireProfileId ownProfile{};   // the host's, or null

@@ -49,7 +49,6 @@ void describe(Flame& f, const FlameAir& air) noexcept {
     f.record = describeFlame(f.def.look, f.size, f.scroll, f.def.seed);
     f.record.puff *= f.tracked;  // live curves carry it in their radii
     f.record.profile = f.def.profile;
-    f.record.nodeCount = gpu::kFlameNodes;
     f.record.air.w = std::clamp(f.power / (kFadePower * f.def.diameter), 0.0f, 1.0f);
 }
 

@@ -99,7 +99,8 @@ struct FlameRecord {      // one flame of a frame
     float tintWhite;      // [0, 1] whiteness of the hottest under a tint
     float tintLow; float tintHigh; // K
 
-    uint nodeBase; uint nodeCount; // into the nodes
+    uint key;             // of the flame, from frame to frame
+    uint tier;            // FwFireTier
     uint profile;         // layer
     uint octaves;         // [1, 4]
 };

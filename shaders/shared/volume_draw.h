@@ -97,8 +97,38 @@ struct VolumeComposite {
     uint tilesX; uint tilesY;
     uint flags; uint samples;
     uint perPixel;        // cells a side: 2, 4, 8, all of them in one tile; 0: a cell is a pixel or more
+    float from; float to; // see volumeTurned
+    uint reserved0; uint reserved1;
 };
-FW_SHARED_SIZE(VolumeComposite, 64)
+FW_SHARED_SIZE(VolumeComposite, 80)
+
+// A flame that was marched once and is shown for some frames: tiles of one slab, whose cells are
+// kept as wide as they are in the world. Its words are what is known of its tiles, then its cells.
+FW_SHARED_CONST uint kCardTiles = 128u;         // most
+FW_SHARED_CONST uint kCardWords = kCardTiles * (kVolumeTileWords + kVolumeTile * kVolumeTile * kVolumeCellWords);
+
+// Push constants of who shows it.
+struct VolumeCard {
+    vec4 place;           // x, y of the view: xy + zw * cells
+    vec4 clip;            // as VolumeDraw's
+    float front; float deep;
+    float perX; float perY; // cells a pixel
+    uint tilesX; uint tilesY;
+    uint samples;         // first word of its cells
+    float from; float to; // see volumeTurned
+    uint reserved0; uint reserved1; uint reserved2;
+};
+FW_SHARED_SIZE(VolumeCard, 80)
+
+// Whether a pixel shows what has the thresholds in [from, to) of [0, 1): two that share them lie in a
+// fine pattern side by side, where laid over each other both would be too faint. Bayer's order.
+FW_SHARED_FN bool volumeTurned(uint x, uint y, float from, float to) {
+    uint a = (x ^ y) & 3u;
+    uint b = y & 3u;
+    uint order = ((a & 1u) << 3) | ((b & 1u) << 2) | (a & 2u) | ((b & 2u) >> 1);
+    float threshold = (float(order) + 0.5f) * (1.0f / 16.0f);
+    return threshold >= from && threshold < to;
+}
 
 // [0, 1): where in its steps a cell's samples lie: each of four in a square has its own quarter.
 FW_SHARED_FN float volumePhase(uint x, uint y, float time) {

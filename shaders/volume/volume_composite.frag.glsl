@@ -14,6 +14,7 @@ layout(location = 1) flat in uint inWords;
 layout(location = 2) flat in vec2 inSlab;
 layout(location = 3) flat in ivec4 inCells;
 layout(location = 4) flat in uint inPerPixel;
+layout(location = 5) flat in vec2 inShows;
 
 layout(location = 0) out vec4 outColor;
 
@@ -36,6 +37,8 @@ void add(uint at, float weight, inout vec4 color, inout float through) {
 }
 
 void main() {
+    outColor = vec4(0.0);
+    if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
     uint pitch = kVolumeCellWords * kVolumeTile * draw.tilesX;
     vec4 color = vec4(0.0);
     float through = 0.0;

@@ -13,6 +13,7 @@ layout(location = 1) flat out uint outWords;  // the slab's first
 layout(location = 2) flat out vec2 outSlab;   // m along the view: from; 1/m: its depth
 layout(location = 3) flat out ivec4 outCells; // first and last that there are
 layout(location = 4) flat out uint outPerPixel;
+layout(location = 5) flat out vec2 outShows;
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
@@ -54,6 +55,7 @@ void main() {
     outWords = draw.samples + kVolumeCellWords * cells * slab;
     float front = draw.front + draw.deep * float(slab);
     outPerPixel = draw.perPixel | (vertex >> 31u);  // not a constant, see volume.frag
+    outShows = vec2(draw.from, draw.to) + float(vertex >> 31u);
     outSlab = vec2(front, 1.0 / draw.deep);
     vec2 place = draw.place.xy + draw.place.zw * cell;
     float middle = front + 0.5 * draw.deep;

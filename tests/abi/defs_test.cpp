@@ -406,6 +406,12 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     refuseFloat<F>(fire, &F::blue, "blue", makeFire, worldMessage, {-0.1f, 11.0f});
     refuseFloat<F>(fire, &F::tintWeight, "tintWeight", makeFire, worldMessage, {-0.1f, 1.1f});
     refuseFloat<F>(fire, &F::blend, "blend", makeFire, worldMessage, {-0.1f, 61.0f});
+    F tiered = fire;
+    tiered.tier = 4;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeFire(&tiered));
+    EXPECT_NE(std::string::npos, worldMessage().find("FwVolumetricFireDef::tier is 4"));
+    tiered.tier = FW_FIRE_TIER_IMPOSTOR;
+    EXPECT_EQ(FW_OK, makeFire(&tiered));
     for (int i = 0; i < 3; ++i) {
         F def = fire;
         def.position[i] = kInfinity;

@@ -3,6 +3,7 @@
 // second test proves that; without it the software device would never notice.
 #include "components/particle_field.h"
 #include "components/remote.h"
+#include "components/volumetric_fire.h"
 #include "gpu/passes/frame_graph.h"
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
@@ -102,7 +103,12 @@ class EveryPass : public GpuTest {
         rig_->view = testView(eye, at, 40, 1, false);
         if (published) makeVertices();
         FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
-        flame_ = flameAlone(fire, 1);
+        flames_[0] = flameAlone(fire, 1);
+        components::setFirePreset(fire, FW_FIRE_CANDLE);  // the eye is not in it
+        flames_[1] = flameAlone(fire, 1);
+        flames_[0].record.tier = FW_FIRE_TIER_MARCH_HIGH;
+        flames_[1].record.tier = FW_FIRE_TIER_IMPOSTOR;
+        flames_[1].record.key = 1;
         FwFireEmitterDef jet = fwDefaultFireEmitterDef();
         jet.flags = FW_EMITTER_JET | FW_EMITTER_GROUND;
         jet.power = 20;
@@ -236,7 +242,7 @@ class EveryPass : public GpuTest {
         plan.steps = steps;
         plan.probes = probes;
         if (what.probes) plan.burnMaps = {&map, 1};
-        const gpu::VolumeUpdate volumes{&flame_, 1};
+        const gpu::VolumeUpdate volumes{flames_, 2};
         plan.volumes = &volumes;
         const gpu::uvec2 group(0, 0);
         gpu::EmitterUpdate emitters;
@@ -372,7 +378,7 @@ class EveryPass : public GpuTest {
     gpu::RemoteUpdate remote_;
     std::vector<gpu::ContactLink> links_;
     gpu::Blocker blocker_{};
-    gpu::VolumeFlame flame_{};
+    gpu::VolumeFlame flames_[2]{};
     std::unique_ptr<ParticleReference> emitter_;
     gpu::FieldDraw fieldDraws_[3]{};
     uint32_t fieldStep_ = 0;

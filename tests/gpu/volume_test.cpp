@@ -24,6 +24,7 @@ gpu::VolumeFlame flameOf(uint32_t preset, float seconds, uint32_t flags = 0) {
     components::setFirePreset(def, preset);
     def.flags = flags;
     def.seed = 7;
+    def.tier = FW_FIRE_TIER_MARCH_HIGH;
     return flameAlone(def, seconds);
 }
 
@@ -50,6 +51,8 @@ class Volume : public GpuTest {
             device_->makeImage(kDepth, {kSide, kSide}, 1,
                                VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        scenes_ =
+            device_->makeBuffer(kSide * kSide * sizeof(float), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
         read_ = device_->makeBuffer(kSide * kSide * sizeof(vec4), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
         const float eye[3] = {0.7f, 0.9f, 2.6f}, at[3] = {0, 0.45f, 0};
         look(eye, at, 30);
@@ -135,8 +138,20 @@ class Volume : public GpuTest {
         const VkClearDepthStencilValue cleared{behind, 0};
         vkCmdClearColorImage(commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &black,
                              1, &barriers[0].subresourceRange);
-        vkCmdClearDepthStencilImage(commands, depth_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                    &cleared, 1, &barriers[1].subresourceRange);
+        if (scene_.empty()) {
+            vkCmdClearDepthStencilImage(commands, depth_.image,
+                                        VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &cleared, 1,
+                                        &barriers[1].subresourceRange);
+        } else {
+            auto* depths = static_cast<float*>(scenes_.mapped);
+            for (size_t i = 0; i < scene_.size(); ++i)
+                depths[i] = -rig_->view.projection[10] + rig_->view.projection[14] / scene_[i];
+            VkBufferImageCopy whole{};
+            whole.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1};
+            whole.imageExtent = {kSide, kSide, 1};
+            vkCmdCopyBufferToImage(commands, scenes_.buffer, depth_.image,
+                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole);
+        }
         FwVulkanComposite images = fwDefaultVulkanComposite();
         images.flags = FW_COMPOSITE_KEEP;
         images.width = images.height = kSide;
@@ -207,6 +222,7 @@ class Volume : public GpuTest {
                 picture[i] = shownOf(
                     vec3(draw.rayO) + ndc.x * vec3(draw.rayX) + ndc.y * vec3(draw.rayY),
                     [&](volume::MarchRules& rules, float perDepth, vec3 direction) {
+                        if (!scene_.empty()) rules.farthest = scene_[i] * perDepth;
                         volume::RayKnots knots;
                         const vec2 chord =
                             volume::flameChord(flame.record, flame.nodes, vec3(view.eye), direction,
@@ -361,8 +377,10 @@ class Volume : public GpuTest {
     std::unique_ptr<VkRig> rig_;
     bool other_ = false;  // the view that is drawn is not that of the outside part
     TestImage color_, depth_;
-    TestBuffer read_;
+    TestBuffer read_, scenes_;
+    std::vector<float> scene_;  // m along the view, of each pixel; empty: flat
     uint64_t index_ = 0;
+    uint32_t key_ = 0;  // of the last flame
     std::array<FwTargetId, 4> targets_{};
     const volume::Profile* own_ = nullptr;  // that march() takes instead of the preset's
 };
@@ -485,6 +503,46 @@ TEST_F(Volume, EndsAtTheScene) {
     EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_SAMPLED, 0.5f)).w, 0.0f) << "a wall before it";
 }
 
+// T4.6, at half resolution: where a plane goes aslant through a flame the picture has no edge that
+// the flame itself has not. A step from pixel to pixel is at most 1/255 of the brightest beyond
+// that of the flame, cut ray by ray, and all along the cut it is as bright.
+TEST_F(Volume, APlaneThroughItCutsNoEdge) {
+    if (!device_) return;
+    makeRig();
+    lookAtSmoothFlame();
+    const gpu::VolumeFlame flame = smoothFlame();
+    for (const bool aside : {true, false}) {
+        for (uint32_t i = 0; i < kSide * kSide; ++i) {
+            const auto along = float(aside ? i % kSide : i / kSide) / float(kSide) - 0.5f;
+            scene_.push_back(2.75f + 0.9f * along);
+        }
+        const std::vector<vec4> exact = march(flame, FW_FIRE_CAMP, false, 200);
+        const std::vector<vec4> soft = draw({&flame, 1}, FW_DEPTH_SAMPLED);
+        scene_.clear();
+        const std::vector<vec4> whole = march(flame, FW_FIRE_CAMP, false, 200);
+        const auto steepest = [&](const std::vector<vec4>& picture) {
+            float most = 0;
+            for (uint32_t i = 0; i < kSide * kSide; ++i) {
+                if (i % kSide + 1 < kSide)
+                    most = std::max(most, std::abs(picture[i + 1].x - picture[i].x));
+                if (i / kSide + 1 < kSide)
+                    most = std::max(most, std::abs(picture[i + kSide].x - picture[i].x));
+            }
+            return most;
+        };
+        float brightest = 0;
+        for (const vec4& pixel : whole) brightest = std::max(brightest, pixel.x);
+        std::printf(
+            "           steps: %.4f cut, %.4f exactly, %.4f whole; brightest %.4f; %.3f of "
+            "its light\n",
+            double(steepest(soft)), double(steepest(exact)), double(steepest(whole)),
+            double(brightest), double(meanOf(soft).x / meanOf(exact).x));
+        EXPECT_LT(meanOf(exact).x, 0.95f * meanOf(whole).x) << "it is not cut";
+        EXPECT_LT(steepest(soft), std::max(steepest(exact), steepest(whole)) + brightest / 255);
+        EXPECT_NEAR(meanOf(soft).x / meanOf(exact).x, 1.0f, 0.05f);
+    }
+}
+
 TEST_F(Volume, TheEyeMayBeInside) {
     if (!device_) return;
     makeRig();
@@ -572,7 +630,7 @@ TEST_F(Volume, ASmallFlameKeepsItsLight) {
     const vec4 seen(0.2126f, 0.7152f, 0.0722f, 0.0f);
     for (const uint32_t preset : {FW_FIRE_CANDLE, FW_FIRE_TORCH, FW_FIRE_CAMP, FW_FIRE_BONFIRE,
                                   FW_FIRE_HOUSE, FW_FIRE_GAS_BURNER}) {
-        const gpu::VolumeFlame flame = flameOf(preset, 1.3f, FW_FIRE_NO_SMOKE);
+        gpu::VolumeFlame flame = flameOf(preset, 1.3f, FW_FIRE_NO_SMOKE);
         const float tall = 1.5f * flame.record.high.w;  // about what is seen of it
         float least = 9, most = 0, worstCover = 0;
         for (float px = 36; px > 4.5f; px *= 0.79f) {
@@ -580,6 +638,7 @@ TEST_F(Volume, ASmallFlameKeepsItsLight) {
             const float at[3] = {0, 0.5f * tall, 0};
             const float eye[3] = {0.3f * away, 0.5f * tall + 0.1f * away, 0.95f * away};
             look(eye, at, 30);
+            flame.record.key = ++key_;
             const vec4 wanted = lightOf(flame, preset);
             const vec4 drawn = meanOf(draw({&flame, 1}, FW_DEPTH_TEST)) * float(kSide * kSide);
             const float light = glm::dot(drawn, seen) / glm::dot(wanted, seen);
@@ -594,6 +653,109 @@ TEST_F(Volume, ASmallFlameKeepsItsLight) {
                     double(worstCover));
         // A house's flame is so thick that its few samples see a little more through it.
         EXPECT_LT(worstCover, 0.07f) << components::firePresetName(preset);
+    }
+}
+
+// A card shows as bright a flame, as wide and as high, as the march that it takes turns with.
+TEST_F(Volume, ACardIsTheSameFlame) {
+    if (!device_) return;
+    makeRig();
+    const vec4 seen(0.2126f, 0.7152f, 0.0722f, 0.0f);
+    // px, to fractions: where 3 % of the light is left of, above, right of and below it.
+    const auto bounds = [&](const std::vector<vec4>& picture) {
+        std::array<double, kSide> column{}, row{};
+        for (uint32_t i = 0; i < picture.size(); ++i) {
+            const auto light = double(glm::dot(picture[i], seen));
+            column[i % kSide] += light, row[i / kSide] += light;
+        }
+        const auto at = [](const std::array<double, kSide>& along, double part) {
+            double all = 0, sum = 0;
+            for (const double one : along) all += one;
+            for (uint32_t i = 0; i < kSide; ++i) {
+                if (sum + along[i] >= part * all)
+                    return float(double(i) + (part * all - sum) / std::max(along[i], 1e-30));
+                sum += along[i];
+            }
+            return float(kSide);
+        };
+        return vec4(at(column, 0.03), at(row, 0.03), at(column, 0.97), at(row, 0.97));
+    };
+    for (const uint32_t preset : {FW_FIRE_CANDLE, FW_FIRE_TORCH, FW_FIRE_CAMP, FW_FIRE_BONFIRE,
+                                  FW_FIRE_HOUSE, FW_FIRE_MAGIC_BLUE}) {
+        gpu::VolumeFlame flame = flameOf(preset, 1.3f, FW_FIRE_NO_SMOKE);
+        const float tall = 1.5f * flame.record.high.w;
+        float worst = 0, worstSize = 0, worstCover = 0;
+        // px across it, or as many as a whole flame leaves
+        for (const float wide : {13.0f, 10.0f, 7.0f, 4.0f}) {
+            const float px = std::min(wide * tall / flame.record.low.w, 34.0f);
+            const float away = tall * float(kSide) / (px * 2.0f * std::tan(0.2618f));
+            const float at[3] = {0, 0.5f * tall, 0};
+            const float eye[3] = {0.3f * away, 0.5f * tall + 0.1f * away, 0.95f * away};
+            look(eye, at, 30);
+            flame.record.key = ++key_;
+            flame.record.tier = FW_FIRE_TIER_MARCH_HIGH;
+            const std::vector<vec4> marched = draw({&flame, 1}, FW_DEPTH_TEST);
+            flame.record.key = ++key_;
+            flame.record.tier = FW_FIRE_TIER_IMPOSTOR;
+            const std::vector<vec4> card = draw({&flame, 1}, FW_DEPTH_TEST);
+            const vec4 a = meanOf(card), b = meanOf(marched);
+            worst = std::max(worst, std::abs(glm::dot(a, seen) / glm::dot(b, seen) - 1));
+            worstCover = std::max(worstCover, std::abs(a.w / b.w - 1));
+            const vec4 ours = bounds(card), theirs = bounds(marched);
+            const vec4 off = glm::abs(ours - theirs);
+            // Parts of its size; less than a third of a pixel is nothing.
+            const vec2 size(theirs.z - theirs.x, theirs.w - theirs.y);
+            const auto part = [](float pixels, float of) {
+                return pixels < 0.33f ? 0.0f : pixels / of;
+            };
+            worstSize =
+                std::max({worstSize, part(std::abs(ours.w - ours.y - size.y), size.y),
+                          part(std::abs(ours.z - ours.x - size.x), size.x), part(off.y, size.y)});
+            EXPECT_GT(differenceOf(card, marched), 1e-3f) << "it is no card";
+        }
+        std::printf("           %s: light within %.4f, cover %.4f, size and tip %.4f\n",
+                    components::firePresetName(preset), double(worst), double(worstCover),
+                    double(worstSize));
+        EXPECT_LT(worst, 0.05f) << components::firePresetName(preset);
+        EXPECT_LT(worstCover, 0.05f) << components::firePresetName(preset);
+        EXPECT_LT(worstSize, 0.03f) << components::firePresetName(preset);
+    }
+}
+
+// As the eye goes away a flame becomes a card, and on its way back it is marched again: from frame
+// to frame its light, for its distance, changes by 0.015 at most beyond what it does where it stays
+// what it is (which is most where its cells become larger or smaller).
+TEST_F(Volume, NoSwitchOfTiersPops) {
+    if (!device_) return;
+    makeRig();
+    const vec4 seen(0.2126f, 0.7152f, 0.0722f, 0.0f);
+    for (const uint32_t preset : {FW_FIRE_TORCH, FW_FIRE_CAMP, FW_FIRE_BONFIRE, FW_FIRE_HOUSE}) {
+        gpu::VolumeFlame flame = flameOf(preset, 1.3f, FW_FIRE_NO_SMOKE);
+        const float tall = 1.5f * flame.record.high.w;
+        const auto worstOf = [&](bool turns) {
+            flame.record.key = ++key_;
+            float last = 0, worst = 0;
+            for (int frame = 0; frame < 84; ++frame) {
+                const float way = frame < 42 ? float(frame) : float(83 - frame);
+                const float away = 4.0f * tall * std::pow(1.01f, way);
+                const float at[3] = {0, 0.5f * tall, 0};
+                const float eye[3] = {0.2f * away, 0.5f * tall + 0.1f * away, away};
+                look(eye, at, 40);
+                const bool card = turns && frame >= 20 && frame < 60;
+                flame.record.tier = card ? FW_FIRE_TIER_IMPOSTOR : FW_FIRE_TIER_MARCH_HIGH;
+                const float light =
+                    glm::dot(meanOf(drawOnce({&flame, 1}, FW_DEPTH_TEST, 0)), seen) * away * away;
+                // The first picture is marched as it is drawn.
+                if (frame > 1) worst = std::max(worst, std::abs(light / last - 1));
+                last = light;
+            }
+            return worst;
+        };
+        const float stays = worstOf(false), turns = worstOf(true);
+        std::printf("           %s: at most %.4f a frame, %.4f where it turns\n",
+                    components::firePresetName(preset), double(stays), double(turns));
+        EXPECT_LT(turns, stays + 0.015f) << components::firePresetName(preset);
+        EXPECT_LT(turns, 0.04f) << components::firePresetName(preset);
     }
 }
 

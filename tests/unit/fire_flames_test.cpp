@@ -1,7 +1,8 @@
 // The flames that volumetric fires burn as, below the world: room, divisions, frames that fail, and
-// which of them a view gives all its samples to.
+// as what a view shows each of them.
 #include "components/fire_flames.h"
 #include "gpu/passes/draw.h"
+#include "gpu/passes/volume_tiers.h"
 
 #include <gtest/gtest.h>
 
@@ -81,6 +82,64 @@ TEST(FireFlames, ADivisionIsNoLeap) {
     EXPECT_EQ(b.fire.partCount + 1, most);
     EXPECT_EQ(b.fire.partCount, b.flames.now().size());
     EXPECT_NEAR(before, 8, 0.1f);
+}
+
+// A view marches 32 flames at most and shows small ones as cards; what a flame is it stays while
+// its size wavers about a border, and it goes over in steps.
+TEST(VolumeTiers, AFlameKeepsItsTier) {
+    gpu::TierLives lives{};
+    std::vector<gpu::TierItem> items(256);
+    std::vector<uint32_t> places(items.size());
+    for (uint32_t i = 0; i < items.size(); ++i)
+        items[i] = {i + 1, FW_FIRE_TIER_AUTO, 40.0f, 1.0f + 0.001f * float(i)};
+    const auto count = [&](uint32_t tier) {
+        uint32_t sum = 0;
+        for (const uint32_t place : places) sum += lives[place].tier == tier;
+        return sum;
+    };
+    const auto frame = [&] { gpu::chooseTiers(items, gpu::kMaxVolumeFlames, lives, places); };
+    frame();
+    EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_HIGH));
+    EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_LOW));
+    EXPECT_EQ(224u, count(FW_FIRE_TIER_IMPOSTOR));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[255]].tier);
+    // Others become a little larger: none changes.
+    for (uint32_t i = 0; i < items.size(); ++i) items[i].covers = 1.0f - 0.0005f * float(i);
+    frame();
+    for (uint32_t i = 224; i < 256; ++i)
+        EXPECT_NE(FW_FIRE_TIER_IMPOSTOR, lives[places[i]].tier) << i;
+    EXPECT_EQ(224u, count(FW_FIRE_TIER_IMPOSTOR));
+
+    items.resize(1);
+    for (int k = 0; k < 40; ++k) frame();
+    uint32_t turns = 0, tier = lives[places[0]].tier;
+    for (int k = 0; k < 200; ++k) {
+        items[0].wide = k % 2 ? gpu::kCardInside + 0.1f : gpu::kCardOutside - 0.1f;
+        frame();
+        turns += lives[places[0]].tier != tier;
+        tier = lives[places[0]].tier;
+    }
+    EXPECT_EQ(0u, turns);
+    items[0].wide = 100;
+    for (int k = 0; k < 40; ++k) frame();
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[0]].tier);
+    items[0].wide = 5;
+    float part = 0;
+    for (uint32_t k = 0; k < gpu::kTierFrames; ++k) {
+        frame();
+        const gpu::TierLife& life = lives[places[0]];
+        EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, life.tier);
+        EXPECT_EQ(k + 1 < gpu::kTierFrames, life.marched()) << k;
+        EXPECT_NEAR(part, life.part(), 1.01f / float(gpu::kTierFrames));
+        part = life.part();
+    }
+    // What is asked for it is; without room for its card it is marched.
+    items[0].asked = FW_FIRE_TIER_MARCH_LOW;
+    for (int k = 0; k < 40; ++k) frame();
+    EXPECT_EQ(gpu::kLowSteps, lives[places[0]].steps);
+    items[0].asked = FW_FIRE_TIER_IMPOSTOR;
+    for (int k = 0; k < 40; ++k) gpu::chooseTiers(items, 0, lives, places);
+    EXPECT_TRUE(lives[places[0]].marched());
 }
 
 TEST(FireFlames, AViewGivesItsSamplesToWhatCoversMost) {

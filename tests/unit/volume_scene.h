@@ -53,7 +53,6 @@ struct Shown {
     }
     void describe() {
         record = describeFlame(look, size, scroll, seed);
-        record.nodeCount = fw::gpu::kFlameNodes;
         record.glow = vec4(0.0f, 0.4f * size.height, 0.0f, 0.06f * size.diameter * size.diameter);
     }
     void stand() {  // straight up

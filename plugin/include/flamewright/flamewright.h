@@ -479,6 +479,15 @@ typedef enum FwVolumetricFireFlags {
     FW_FIRE_IGNITES = 16, /* lights burnable meshes that it touches for long enough, see below */
     FW_FIRE_FLAGS_FORCE32 = 0x7fffffff
 } FwVolumetricFireFlags;
+typedef enum FwFireTier { /* how a view shows it: the view that RecordOutside gets; others march what they show */
+    FW_FIRE_TIER_AUTO = 0,       /* by its size on the screen; 32 flames are marched at most, the 16 largest high */
+    FW_FIRE_TIER_MARCH_HIGH = 1, /* each frame, up to 64 samples a ray */
+    FW_FIRE_TIER_MARCH_LOW = 2,  /* each frame, half of them */
+    FW_FIRE_TIER_IMPOSTOR = 3,   /* a card that faces the camera, up to 24 cells across the flame: marched as those
+                                    are, but twelve in a frame, in turn, however many there are. Meant for flames
+                                    of less than 13 px across */
+    FW_FIRE_TIER_FORCE32 = 0x7fffffff
+} FwFireTier;
 typedef struct FwFirePoint { /* of the line that a flame follows, its base first */
     float position[3];       /* m, world, within +-1e6 */
     float radius;            /* m, [0, 100], of the tube that burns there */
@@ -511,7 +520,7 @@ typedef struct FwVolumetricFireDef {
     uint64_t userData;          /* comes back in its state */
     FwFireProfileId profile;    /* null: the preset's */
     float blend;                /* s, [0, 60]: from its own way to points or a track, and back; default 0.3 */
-    uint32_t reserved;          /* 0 */
+    uint32_t tier;              /* FwFireTier; default FW_FIRE_TIER_AUTO */
 } FwVolumetricFireDef;
 static inline FwVolumetricFireDef fwDefaultVolumetricFireDef(void) {
     FwVolumetricFireDef d; fwInitDef(FW_DEF_VOLUMETRIC_FIRE, &d, (uint32_t)sizeof d); return d;

@@ -69,6 +69,8 @@ class DrawRecorder {
     virtual void drawVolume(uint32_t flame, const VolumeDraw& push) = 0;
     // The same, of vertices that the shader makes.
     virtual void drawListed(uint32_t resource, uint64_t offset, const void* push) = 0;
+    // Six vertices, which the shader makes.
+    virtual void drawQuad(const void* push) = 0;
 
  protected:
     ~DrawRecorder() = default;
@@ -99,12 +101,14 @@ void recordFlames(DrawRecorder& recorder);
 struct VolumeItem {  // a volumetric flame that a view may show
     uint32_t flame = 0;
     VolumeDraw draw{};
+    vec4 whole{};  // VolumeDraw::rect as if the view had no edge; empty: it is around the eye
+    vec3 middle{}, base{};  // m, world: of its bounds; where it stands
 };
 extern const DrawPass kVolumePass;
 // Where the view shows it, in so many slabs; false: nowhere.
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
-                VolumeDraw& out);
-// How many samples each of them is worth: the one place where a view decides it.
+                VolumeDraw& out, vec4* whole = nullptr);
+// How many samples each of them is worth where all are marched as they are drawn.
 void chooseVolumes(std::span<VolumeItem> items);
 // VolumeDraw::intervals for a curve.
 uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count);
@@ -134,11 +138,35 @@ struct VolumeScreen {     // what the marched view is shown on
 // Words of FW_BIND_VOLUME_RAYS that a screen is worth: flames over all of it and half as much
 // again.
 uint32_t volumeRayWords(const VolumeScreen& screen);
-// Cells of all `items`, as fine as `words` allow, in their order; `perPixel`: m per pixel at a
-// depth of 1. 0: they do not fit; else how many words are known of tiles.
+// px, across a flame.
+float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept;
+// Cells of all `items`, as fine as `words` allow, in their order, behind the `first` words, which
+// are others'; `perPixel`: m per pixel at a depth of 1. 0: they do not fit; else the end of the
+// words that are known of tiles.
 uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
-                    uint32_t words, std::span<MarchedVolume> out);
+                    uint32_t words, std::span<MarchedVolume> out, uint32_t first = 0);
 // Farthest first.
 void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes);
+
+extern const DrawPass kVolumeCardPass;
+struct VolumeCardShape {  // what is in a card's words
+    bool there = false;
+    uint32_t key = 0;    // whose
+    uint64_t frame = 0;  // that marched it
+    vec3 middle{};       // m, from where the flame stands
+    vec3 direction{};    // unit, from the eye
+    vec2 low{};          // m across the view, from the middle: of its first cell
+    float cell = 0;      // m
+    uint32_t tilesX = 0, tilesY = 0, encoding = 0;
+};
+bool cardFits(const VolumeItem& item) noexcept;
+// How the card in `slot` is marched, from where it is seen now.
+void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+             uint32_t slot, VolumeCardShape& card, MarchedVolume& out) noexcept;
+// False: it is behind the eye.
+bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+              uint32_t slot, const VolumeCardShape& card, VolumeCard& out) noexcept;
+// Farthest first.
+void recordVolumeCards(DrawRecorder& recorder, std::span<const VolumeCard> cards);
 
 }  // namespace fw::gpu

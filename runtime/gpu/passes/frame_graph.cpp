@@ -29,26 +29,26 @@ constexpr const ComputePass* kComputePasses[] = {
     &kFieldPass,           &kFieldMaskPass,   &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0],   &kSurfacePasses[1],  &kSurfacePasses[2],    &kSurfacePasses[3],
-    &kSurfacePasses[4],   &kSurfacePasses[5],  &kSurfacePasses[6],    &kSurfacePasses[7],
-    &kSurfacePasses[8],   &kSurfacePasses[9],  &kSurfacePasses[10],   &kSurfacePasses[11],
-    &kSurfacePasses[12],  &kSurfacePasses[13], &kSurfacePasses[14],   &kSurfacePasses[15],
-    &kSurfacePasses[16],  &kSurfacePasses[17], &kSurfacePasses[18],   &kSurfacePasses[19],
-    &kSurfacePasses[20],  &kSurfacePasses[21], &kSurfacePasses[22],   &kSurfacePasses[23],
-    &kSurfacePasses[24],  &kSurfacePasses[25], &kSurfacePasses[26],   &kSurfacePasses[27],
-    &kSurfacePasses[28],  &kSurfacePasses[29], &kSurfacePasses[30],   &kSurfacePasses[31],
-    &kSurfacePasses[32],  &kSurfacePasses[33], &kSurfacePasses[34],   &kZPass,
-    &kFlamesPass,         &kVolumePass,        &kVolumeCompositePass, &kFieldDrawPasses[0],
-    &kFieldDrawPasses[1], &kFieldDrawPasses[2]};
+    &kSurfacePasses[0],   &kSurfacePasses[1],   &kSurfacePasses[2],  &kSurfacePasses[3],
+    &kSurfacePasses[4],   &kSurfacePasses[5],   &kSurfacePasses[6],  &kSurfacePasses[7],
+    &kSurfacePasses[8],   &kSurfacePasses[9],   &kSurfacePasses[10], &kSurfacePasses[11],
+    &kSurfacePasses[12],  &kSurfacePasses[13],  &kSurfacePasses[14], &kSurfacePasses[15],
+    &kSurfacePasses[16],  &kSurfacePasses[17],  &kSurfacePasses[18], &kSurfacePasses[19],
+    &kSurfacePasses[20],  &kSurfacePasses[21],  &kSurfacePasses[22], &kSurfacePasses[23],
+    &kSurfacePasses[24],  &kSurfacePasses[25],  &kSurfacePasses[26], &kSurfacePasses[27],
+    &kSurfacePasses[28],  &kSurfacePasses[29],  &kSurfacePasses[30], &kSurfacePasses[31],
+    &kSurfacePasses[32],  &kSurfacePasses[33],  &kSurfacePasses[34], &kZPass,
+    &kFlamesPass,         &kVolumePass,         &kVolumeCardPass,    &kVolumeCompositePass,
+    &kFieldDrawPasses[0], &kFieldDrawPasses[1], &kFieldDrawPasses[2]};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
-constexpr uint32_t kNumberOfFields = kNumberOfZPass + 4;
+constexpr uint32_t kNumberOfFields = kNumberOfZPass + 5;
 static_assert(std::size(kDrawPasses) == kNumberOfFields + kFieldVariants);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first. The variants of
 // fields are one step, in which they are drawn as they lie behind each other.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 5> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 6> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
@@ -57,7 +57,8 @@ constexpr auto kDrawSteps = [] {
     steps[2 * kSurfaceVariants + 1] = {kNumberOfFields, false};
     steps[2 * kSurfaceVariants + 2] = {kNumberOfZPass + 1, false};
     steps[2 * kSurfaceVariants + 3] = {kNumberOfZPass + 2, false};
-    steps[2 * kSurfaceVariants + 4] = {kNumberOfZPass + 3, false};
+    steps[2 * kSurfaceVariants + 4] = {kNumberOfZPass + 3, false};  // cards: small, mostly far
+    steps[2 * kSurfaceVariants + 5] = {kNumberOfZPass + 4, false};
     return steps;
 }();
 
@@ -284,6 +285,8 @@ void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList
         recordFlames(recorder);
     else if (kDrawPasses[step.pass] == &kVolumePass)
         recordVolume(recorder, list.volumes);
+    else if (kDrawPasses[step.pass] == &kVolumeCardPass)
+        recordVolumeCards(recorder, list.cards);
     else if (step.pass != kNumberOfFields)  // fields bind by themselves
         recordVolumeComposite(recorder, list.marched);
 }
@@ -293,6 +296,7 @@ bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (step.pass == kNumberOfZPass) return zPassDraws(list.surfaces);
     if (step.pass == kNumberOfFields) return !list.fields.empty();
     if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames;
+    if (kDrawPasses[step.pass] == &kVolumeCardPass) return !list.cards.empty();
     return kDrawPasses[step.pass] == &kVolumePass ? !list.volumes.empty() : !list.marched.empty();
 }
 
@@ -321,10 +325,16 @@ void recordFlameSort(vk::FrameRecorder& recorder, const SortPush& push) {
 }
 
 void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolume> volumes,
-                       uint32_t words) {
-    recorder.fillZero(FW_BIND_VOLUME_RAYS, 0, uint64_t(words) * 4);
+                       uint32_t first, uint32_t end, uint32_t cards) {
+    if (volumes.empty()) return;
+    if (end > first)
+        recorder.fillZero(FW_BIND_VOLUME_RAYS, uint64_t(first) * 4, uint64_t(end - first) * 4);
+    // Cells of cards that no tile has are read too.
+    for (const MarchedVolume& one : volumes.last(cards))
+        recorder.fillZero(FW_BIND_VOLUME_RAYS, uint64_t(one.march.tiles) * 4,
+                          uint64_t(kCardWords) * 4);
     uint32_t last = 0;
-    for (const MarchedVolume& one : volumes) last = std::max(last, one.flame);
+    for (const MarchedVolume& one : volumes) last = std::max(last, one.march.flame);
     recorder.fillZero(FW_BIND_VOLUME_WORK, 0, (last + 1) * sizeof(VolumeWork));
     recorder.dispatchVolumes(kVolumeProbePass, volumes, false);
     recorder.dispatchVolumes(kVolumeMarchPass, volumes, true);

@@ -120,9 +120,10 @@ struct DrawList {                                      // what a view may show
     std::span<const DrawItem> surfaces;
     bool flames = false;  // something burns
     std::span<const VolumeItem> volumes;
-    std::span<const MarchedVolume> marched;  // instead of them
+    std::span<const MarchedVolume> marched;  // instead of them, and `cards`
     std::span<const FieldItem> fields;
     bool turned = false;  // counter-clockwise triangles turn their backs to it
+    std::span<const VolumeCard> cards{};
 };
 // False: it would draw nothing, do not bind it.
 bool drawStepDraws(const DrawStep& step, const DrawList& list);
@@ -137,9 +138,10 @@ void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint
 // The order of all quads.
 void recordFlameSort(vk::FrameRecorder& recorder, const SortPush& push);
 
-// For the frame's view; `words`: what is known of tiles.
+// For the frame's view: what is known of tiles are words from `first` to `end`. The last `cards` of
+// `volumes` are cards'.
 void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolume> volumes,
-                       uint32_t words);
+                       uint32_t first, uint32_t end, uint32_t cards);
 
 // After the steps. The work plane holds its lists, and zero before them. `lists`: see FrameLists.
 // `cuts`: some object is kRefineIsCut. Without `turn` what was listed last time is placed again.

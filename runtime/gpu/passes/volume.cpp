@@ -2,6 +2,7 @@
 // a ray ends there; where it can only be tested a flame is drawn in slabs, each tested at its
 // place, so that a log in a flame hides what is behind it and no more.
 #include "gpu/passes/frame_graph.h"
+#include "gpu/passes/volume_tiers.h"
 #include "shared/volume_march.h"
 
 #include <algorithm>
@@ -16,10 +17,6 @@ constexpr Use kUses[] = {
 };
 
 constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
-constexpr uint32_t kMostSteps = 32;
-// So many flames, those that cover most of the view, get all their samples; the others a few,
-// which changes their grain and not their light.
-constexpr uint32_t kMarchedFlames = 32, kFewSteps = 12;
 // Samples this far apart, in diameters: closer shows no more but for less grain.
 constexpr float kSpacing = 0.05f;
 
@@ -44,7 +41,7 @@ const DrawPass kVolumePass{.name = "volume",
                            .softShaderMultisampled = "volume_soft_ms.frag"};
 
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
-                VolumeDraw& out) {
+                VolumeDraw& out, vec4* whole) {
     const bool perspective = view.forward.w > 0.5f;
     const vec3 forward(view.forward), eye(view.eye);
     const vec3 rows[4] = {vec3(view.clip0.x, view.clip1.x, view.clip2.x),
@@ -73,6 +70,7 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
     }
     if (perspective) near = std::max(near, kFirstSlab);
     if (!(far > near)) return false;
+    if (whole) *whole = around ? vec4(0.0f) : rect;
     if (around) rect = vec4(-1.0f, -1.0f, 1.0f, 1.0f);
     out.rect = vec4(std::max(rect.x, -1.0f), std::max(rect.y, -1.0f), std::min(rect.z, 1.0f),
                     std::min(rect.w, 1.0f));
@@ -97,13 +95,15 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
     out.front = near;
     out.deep = (far - near) / float(slabs);
     out.slabs = slabs;
-    out.mostSteps = kMostSteps;
+    out.mostSteps = kHighSteps;
     out.intervals = kFlameIntervals;
     out.wide = low.w;
     out.spacing = std::max(kSpacing * low.w, 1e-4f);
     return true;
 }
 
+// So many flames, those that cover most of the view, get all their samples; the others a few,
+// which changes their grain and not their light.
 void chooseVolumes(std::span<VolumeItem> items) {
     if (items.size() <= kMarchedFlames) return;
     const auto covers = [](const VolumeItem& item) {

@@ -26,7 +26,7 @@ const DrawPass kVolumeCompositePass{.name = "volume composite",
 void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes) {
     for (const MarchedVolume& one : volumes)
         recorder.drawListed(FW_BIND_VOLUME_WORK,
-                            one.flame * sizeof(VolumeWork) + offsetof(VolumeWork, vertices),
+                            one.march.flame * sizeof(VolumeWork) + offsetof(VolumeWork, vertices),
                             &one.composite);
 }
 

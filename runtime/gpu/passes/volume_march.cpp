@@ -59,15 +59,9 @@ float awayOf(const VolumeDraw& draw) {
     return perspective ? draw.front + 0.5f * draw.deep * float(draw.slabs) : 1.0f;
 }
 
-// px, across a flame.
-float wideOf(const VolumeDraw& draw, const VolumeScreen& screen) {
-    const float pixel = 2.0f / screen.size.x * glm::length(vec3(draw.rayX)) * awayOf(draw);
-    return draw.wide / std::max(pixel, 1e-9f);
-}
-
 // px, of a flame's cells; none is less than `least`.
 float cellOf(const VolumeDraw& draw, const VolumeScreen& screen, float least) {
-    const float wanted = wideOf(draw, screen) / kCellsAcross;
+    const float wanted = volumeWide(draw, screen) / kCellsAcross;
     const auto most = float(screen.cell);
     if (wanted >= most) return std::max(most, least);
     float cell = 1.0f;
@@ -78,7 +72,8 @@ float cellOf(const VolumeDraw& draw, const VolumeScreen& screen, float least) {
 // Of a slab. Where sheets are closer than samples thick flame is too dark; a small one, which costs
 // little, gets up to twice as many.
 uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
-    const float spacing = draw.spacing * std::clamp(wideOf(draw, screen) / kAllDetail, 0.5f, 1.0f);
+    const float spacing =
+        draw.spacing * std::clamp(volumeWide(draw, screen) / kAllDetail, 0.5f, 1.0f);
     const uint32_t most = std::min(2 * draw.mostSteps, screen.steps) / draw.slabs;
     return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
 }
@@ -97,6 +92,11 @@ uint64_t tilesOfAll(std::span<const VolumeItem> items, const VolumeScreen& scree
 const ComputePass kVolumeMarchPass{
     "volume march", "volume_march.comp", kUses, sizeof(VolumeMarch), nullptr, true};
 
+float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept {
+    const float pixel = 2.0f / screen.size.x * glm::length(vec3(draw.rayX)) * awayOf(draw);
+    return draw.wide / std::max(pixel, 1e-9f);
+}
+
 uint32_t volumeRayWords(const VolumeScreen& screen) {
     const float tile = float(screen.cell * kVolumeTile);
     const auto tiles = [&](float pixels) {
@@ -108,16 +108,16 @@ uint32_t volumeRayWords(const VolumeScreen& screen) {
 }
 
 uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
-                    uint32_t words, std::span<MarchedVolume> out) {
+                    uint32_t words, std::span<MarchedVolume> out, uint32_t first) {
     float least = 1.0f / float(kMostPerPixel);
     uint64_t all = 0;
     for (;; least = least < 1.0f ? 2.0f * least : least + 1.0f) {
         if (least > kMostCell) return 0;
         all = tilesOfAll(items, screen, least);
-        if (all * wordsOfTile(screen.slabs) <= words) break;
+        if (first + all * wordsOfTile(screen.slabs) <= words) break;
     }
-    const auto first = uint32_t(all * kVolumeTileWords);
-    uint32_t known = 0, samples = first;
+    const auto end = first + uint32_t(all * kVolumeTileWords);
+    uint32_t known = first, samples = end;
     for (size_t i = 0; i < items.size(); ++i) {
         const VolumeDraw& draw = items[i].draw;
         const float cell = cellOf(draw, screen, least);
@@ -144,7 +144,7 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         march.encoding = screen.encoding;
         march.flame = one.flame;
         // Flames of few cells are probed more closely, or rays go past them.
-        const float wide = wideOf(draw, screen) / cell;
+        const float wide = volumeWide(draw, screen) / cell;
         march.apart = wide < 8.0f ? 1 : wide < 20.0f ? 2 : 4;
         march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
         VolumeComposite& composite = one.composite;
@@ -159,10 +159,12 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         composite.flags = known;
         composite.samples = samples;
         composite.perPixel = march.perPixel;
+        composite.from = 0.0f;
+        composite.to = 1.0f;
         known += count * kVolumeTileWords;
         samples += march.cells * kVolumeCellWords * draw.slabs;
     }
-    return first;
+    return end;
 }
 
 }  // namespace fw::gpu

@@ -50,8 +50,9 @@ void FrameRecorder::dispatchVolumes(const ComputePass& pass, std::span<const Mar
         vk.CmdPushConstants(t_.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                             sizeof one.march, &one.march);
         if (listed)
-            vk.CmdDispatchIndirect(t_.commands, work,
-                                   one.flame * sizeof(VolumeWork) + offsetof(VolumeWork, groups));
+            vk.CmdDispatchIndirect(
+                t_.commands, work,
+                one.march.flame * sizeof(VolumeWork) + offsetof(VolumeWork, groups));
         else
             vk.CmdDispatch(t_.commands,
                            volumeProbeBlocks(one.composite.tilesX, one.march.apart) *

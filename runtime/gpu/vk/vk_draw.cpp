@@ -107,6 +107,13 @@ class PassRecorder : public DrawRecorder {
                             pass_.pushBytes, push);
         drawIndirect(resource, offset);
     }
+    void drawQuad(const void* push) override {
+        const Table& vk = s_.device.table;
+        vk.CmdPushConstants(commands_, layout_,
+                            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                            pass_.pushBytes, push);
+        vk.CmdDraw(commands_, 6, 1, 0, 0);
+    }
 
  private:
     VkBackend::State& s_;
@@ -174,9 +181,13 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         const VolumeScreen screen =
             screenOf(target.key, {viewport.width, std::fabs(viewport.height)});
         noteScreen(view, screen, slot.frameIndex);
-        list.marched = marchedFor(view, screen);
+        const bool made = marchedFor(view, screen);
+        if (made) {
+            list.marched = {march.items.data(), march.count};
+            list.cards = {march.cards.data(), march.cardCount};
+        }
         const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
-        if (list.marched.empty()) list.volumes = {items.data(), orderVolumes(slabs, items)};
+        if (!made) list.volumes = {items.data(), orderVolumes(slabs, items)};
     }
     for (const DrawStep& step : drawSteps()) {
         const uint32_t i = step.pass;

@@ -192,12 +192,12 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
         s.fieldDraws.reserve(plan.fields->drawn.size());
     }
     if (plan.volumes) {
-        s.planes.atLeast(kSpaceVolumes, plan.volumes->count, last);
+        s.planes.atLeast(kSpaceVolumes, 2 * plan.volumes->count, last);  // and their cards' work
         s.volumes.reserve(plan.volumes->count);
     }
     if (plan.emitters) s.makeEmitterRoom(*plan.emitters, last);
     if (!s.open.unseen && !(plan.volumes ? plan.volumes->count == 0 : s.volumes.empty()))
-        s.makeMarchRoom(last);
+        s.makeMarchRoom(plan.volumes ? plan.volumes->count : uint32_t(s.volumes.size()), last);
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);

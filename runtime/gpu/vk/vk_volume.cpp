@@ -8,6 +8,10 @@
 
 namespace fw::gpu::vk {
 
+constexpr uint32_t kLeastCards = 32;     // that there is room for
+constexpr uint32_t kCardsPerFrame = 12;  // are marched anew, or all that must be
+constexpr float kCardTurn = 0.985f;      // cosine of what a card is seen from aside: 10 degrees
+
 static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
 
 void VkBackend::setFireProfile(uint32_t slot, std::span<const uint32_t> texels) {
@@ -28,8 +32,14 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
     const std::span<const VolumeFlame> flames(update.flames, update.count);
     for (const VolumeFlame& flame : flames) {
         const FlameRecord& record = flame.record;
-        VkBackend::State::VolumeBox box{
-            record.low, record.high, {}, {}, volumeIntervals(flame.nodes, kFlameNodes)};
+        VkBackend::State::VolumeBox box{record.low,
+                                        record.high,
+                                        {},
+                                        {},
+                                        volumeIntervals(flame.nodes, kFlameNodes),
+                                        vec3(flame.nodes[0].centre),
+                                        record.key,
+                                        record.tier};
         volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
         s.volumes.push_back(box);
     }
@@ -45,7 +55,10 @@ uint32_t VkBackend::State::orderVolumes(
     for (uint32_t i = 0; i < volumes.size(); ++i) {
         VolumeItem& item = out[count];
         item.flame = i;
-        if (!volumeDraw(seen, volumes[i].low, volumes[i].high, slabs, item.draw)) continue;
+        if (!volumeDraw(seen, volumes[i].low, volumes[i].high, slabs, item.draw, &item.whole))
+            continue;
+        item.middle = 0.5f * (vec3(volumes[i].flameLow) + vec3(volumes[i].flameHigh));
+        item.base = volumes[i].base;
         volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);
         item.draw.intervals = volumes[i].intervals;
         ++count;
@@ -90,36 +103,138 @@ void VkBackend::State::noteScreen(const FwView& view, const VolumeScreen& screen
     march.frame = frame;
 }
 
-void VkBackend::State::makeMarchRoom(uint64_t last) {
+void VkBackend::State::makeMarchRoom(uint32_t flames, uint64_t last) {
     if (!profiles.live) return;
+    while (march.slots < flames) march.slots = std::max(2 * march.slots, kLeastCards);
     try {
-        planes.atLeast(kSpaceVolumeRays, volumeRayWords(march.screen), last);
+        planes.atLeast(kSpaceVolumeRays, march.slots * kCardWords + volumeRayWords(march.screen),
+                       last);
     } catch (const core::Error& error) {
         if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
     }
 }
 
+namespace {
+
+// Samples of a flame, and as which pixels it shows them.
+void setFade(const TierLife& life, bool now, float& from, float& to) noexcept {
+    const float part = life.turned < kTierFrames ? life.part() : 1.0f;
+    from = now ? 0.0f : part;
+    to = now ? part : 1.0f;
+}
+
+}  // namespace
+
 void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
-    march.count = 0;
+    march.count = march.cardCount = 0;
+    march.there = false;
     if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return;
     std::array<VolumeItem, kMaxVolumeFlames> items;
     const uint32_t count = orderVolumes(march.screen.slabs, items);
     if (count == 0) return;
+    layMarch({items.data(), count}, recorder);
+}
+
+void VkBackend::State::layMarch(std::span<const VolumeItem> items,
+                                FrameRecorder& recorder) noexcept {
+    const uint32_t capacity = planes.capacity(kSpaceVolumeRays);
+    if (capacity != march.capacity)
+        for (VolumeCardShape& shape : march.shapes) shape.there = false;
+    march.capacity = capacity;
+    ++march.passed;
+    // Where memory is short there are none.
+    const uint32_t rays = volumeRayWords(march.screen);
+    const uint32_t slots =
+        uint64_t{march.slots} * kCardWords + rays / 4 <= capacity ? march.slots : 0;
+    std::array<TierItem, kMaxVolumeFlames> asked;
+    std::array<uint32_t, kMaxVolumeFlames> places{};
+    for (size_t i = 0; i < items.size(); ++i) {
+        const VolumeBox& box = volumes[items[i].flame];
+        const vec4& r = items[i].draw.rect;
+        asked[i] = {box.key, box.tier, volumeWide(items[i].draw, march.screen),
+                    (r.z - r.x) * (r.w - r.y)};
+        if (!cardFits(items[i])) asked[i].asked = FW_FIRE_TIER_MARCH_HIGH;  // around the eye
+    }
+    chooseTiers({asked.data(), items.size()}, slots, march.lives, places);
+    // A place may have gone to another flame.
+    for (size_t i = 0; i < march.shapes.size(); ++i) {
+        const TierLife& life = march.lives[i];
+        VolumeCardShape& shape = march.shapes[i];
+        shape.there =
+            shape.there && life.used && shape.key == life.key && life.shows(FW_FIRE_TIER_IMPOSTOR);
+    }
+
+    std::array<VolumeItem, kMaxVolumeFlames> marched;
+    std::array<uint32_t, kMaxVolumeFlames> lives;
+    uint32_t count = 0;
+    for (size_t i = 0; i < items.size(); ++i) {
+        if (places[i] == kMaxVolumeFlames || !march.lives[places[i]].marched()) continue;
+        marched[count] = items[i];
+        marched[count].draw.mostSteps = march.lives[places[i]].steps;
+        lives[count++] = places[i];
+    }
     // `seen` is a view of one pixel.
-    const uint32_t words =
-        layVolumes({items.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
-                   planes.capacity(kSpaceVolumeRays), march.items);
-    if (words == 0) return;
+    const uint32_t first = slots * kCardWords;
+    const uint32_t end =
+        count == 0
+            ? first
+            : layVolumes({marched.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
+                         std::min(capacity, first + rays), march.items, first);
+    if (count > 0 && end == 0) return;
+    for (uint32_t i = 0; i < count; ++i) {
+        const TierLife& life = march.lives[lives[i]];
+        const bool now = life.tier != FW_FIRE_TIER_IMPOSTOR;
+        VolumeComposite& composite = march.items[i].composite;
+        setFade(life, now, composite.from, composite.to);
+    }
+
+    // Those that have none, and of the others the oldest.
+    std::array<uint32_t, kMaxVolumeFlames> due;
+    uint32_t dues = 0;
+    for (uint32_t i = 0; i < items.size(); ++i)
+        if (places[i] != kMaxVolumeFlames && march.lives[places[i]].shows(FW_FIRE_TIER_IMPOSTOR))
+            due[dues++] = i;
+    const auto age = [&](uint32_t i) {
+        const VolumeCardShape& shape = march.shapes[places[i]];
+        const vec3 direction = glm::normalize(items[i].middle - vec3(seen.eye));
+        const bool good = shape.there && shape.encoding == march.screen.encoding &&
+                          glm::dot(direction, shape.direction) > kCardTurn;
+        return good ? march.passed - shape.frame : ~uint64_t{0};
+    };
+    std::sort(due.begin(), due.begin() + dues, [&](uint32_t a, uint32_t b) {
+        const uint64_t x = age(a), y = age(b);
+        return x != y ? x > y : a < b;
+    });
+    uint32_t cards = 0;
+    for (uint32_t k = 0; k < dues; ++k) {
+        const uint32_t i = due[k];
+        if (k >= kCardsPerFrame && age(i) != ~uint64_t{0}) break;
+        MarchedVolume& one = march.items[count + cards];
+        layCard(seen, items[i], march.screen, places[i], march.shapes[places[i]], one);
+        march.shapes[places[i]].key = march.lives[places[i]].key;
+        march.shapes[places[i]].frame = march.passed;
+        one.march.flame = uint32_t(volumes.size()) + one.flame;
+        ++cards;
+    }
+    for (size_t i = 0; i < items.size(); ++i) {
+        if (places[i] == kMaxVolumeFlames) continue;
+        const TierLife& life = march.lives[places[i]];
+        VolumeCard& card = march.cards[march.cardCount];
+        if (!life.shows(FW_FIRE_TIER_IMPOSTOR) ||
+            !showCard(seen, items[i], march.screen, places[i], march.shapes[places[i]], card))
+            continue;
+        setFade(life, life.tier == FW_FIRE_TIER_IMPOSTOR, card.from, card.to);
+        ++march.cardCount;
+    }
     march.made = march.screen;
     march.view = outside;
     march.count = count;
-    recordVolumeMarch(recorder, {march.items.data(), count}, words);
+    march.there = true;
+    recordVolumeMarch(recorder, {march.items.data(), count + cards}, first, end, cards);
 }
 
-std::span<const MarchedVolume> VkBackend::State::marchedFor(const FwView& view,
-                                                            const VolumeScreen& screen) noexcept {
-    if (march.count == 0 || !(screen == march.made) || !sameView(view, march.view)) return {};
-    return {march.items.data(), march.count};
+bool VkBackend::State::marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept {
+    return march.there && screen == march.made && sameView(view, march.view);
 }
 
 }  // namespace fw::gpu::vk

@@ -3,6 +3,7 @@
 #pragma once
 #include "gpu/passes/draw.h"
 #include "gpu/passes/frame_graph.h"
+#include "gpu/passes/volume_tiers.h"
 #include "gpu/vk/recorder.h"
 #include "gpu/vk/vk_backend.h"
 
@@ -292,6 +293,8 @@ struct VkBackend::State {
         vec4 low{}, high{};
         vec4 flameLow{}, flameHigh{};  // without its smoke
         uint32_t intervals = 1;        // see VolumeDraw
+        vec3 base{};                   // where it stands
+        uint32_t key = 0, tier = 0;
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
@@ -308,8 +311,17 @@ struct VkBackend::State {
         uint64_t frame = 0;   // that saw it: of several screens in a frame the largest counts
         VolumeScreen made;    // of what is in the plane
         FwView view{};        // and its view; in the plane nothing: count is 0
+        bool there = false;
         uint32_t count = 0;
-        std::array<MarchedVolume, kMaxVolumeFlames> items;
+        std::array<MarchedVolume, 2 * kMaxVolumeFlames>
+            items;  // cards that are marched behind them
+        uint32_t cardCount = 0;
+        std::array<VolumeCard, kMaxVolumeFlames> cards;
+        TierLives lives;
+        std::array<VolumeCardShape, kMaxVolumeFlames> shapes;  // by life
+        uint32_t slots = 0;     // cards that there is room for, before all else
+        uint32_t capacity = 0;  // of the plane when they were made
+        uint64_t passed = 0;    // frames
     } march;
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
@@ -393,11 +405,12 @@ struct VkBackend::State {
     // A draw in `frame` shows `view` so.
     void noteScreen(const FwView& view, const VolumeScreen& screen, uint64_t frame) noexcept;
     // Before the first command: room for what is marched; less of it makes it coarser.
-    void makeMarchRoom(uint64_t last);
+    void makeMarchRoom(uint32_t flames, uint64_t last);
     void marchVolumes(FrameRecorder& recorder) noexcept;
-    // What shows them to a view on a screen; nothing: they are to be marched as they are drawn.
-    [[nodiscard]] std::span<const MarchedVolume> marchedFor(const FwView& view,
-                                                            const VolumeScreen& screen) noexcept;
+    void layMarch(std::span<const VolumeItem> items, FrameRecorder& recorder) noexcept;
+    // Whether what is marched is for a view on a screen; else they are to be marched as they are
+    // drawn.
+    [[nodiscard]] bool marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept;
     // vk_emitters.cpp
     [[nodiscard]] uint32_t tileQuads() const noexcept;
     void makeEmitterRoom(const EmitterUpdate& update, uint64_t last);

@@ -1,0 +1,100 @@
+#include "gpu/passes/volume_tiers.h"
+
+#include <algorithm>
+
+namespace fw::gpu {
+namespace {
+
+constexpr float kKeeps = 1.25f;     // as much larger counts what is marched already
+constexpr uint32_t kStepsTurn = 2;  // a frame, from many samples to few
+
+bool marches(uint32_t tier) noexcept {
+    return tier == FW_FIRE_TIER_MARCH_HIGH || tier == FW_FIRE_TIER_MARCH_LOW;
+}
+
+uint32_t lifeOf(uint32_t key, TierLives& lives) noexcept {
+    uint32_t free = kMaxVolumeFlames;
+    for (uint32_t i = 0; i < kMaxVolumeFlames; ++i) {
+        if (lives[i].used && lives[i].key == key && !lives[i].seen) return i;
+        if (!lives[i].used && free == kMaxVolumeFlames) free = i;
+    }
+    if (free < kMaxVolumeFlames) {
+        lives[free] = {};
+        lives[free].key = key;
+    }
+    return free;
+}
+
+}  // namespace
+
+void chooseTiers(std::span<const TierItem> items, uint32_t cards, TierLives& lives,
+                 std::span<uint32_t> places) noexcept {
+    for (TierLife& life : lives) life.seen = false;
+    // Those that stay first: a new one takes no place from them.
+    for (const bool stays : {true, false}) {
+        for (size_t i = 0; i < items.size(); ++i) {
+            if (!stays && places[i] < kMaxVolumeFlames) continue;
+            const uint32_t at = lifeOf(items[i].key, lives);
+            places[i] = kMaxVolumeFlames;
+            if (at == kMaxVolumeFlames || lives[at].used != stays) continue;
+            places[i] = at;
+            lives[at].seen = true;
+            if (!stays) lives[at].used = true;
+        }
+        if (stays)
+            for (TierLife& life : lives) life.used = life.used && life.seen;
+    }
+
+    std::array<uint32_t, kMaxVolumeFlames> order;
+    std::array<float, kMaxVolumeFlames> weight;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < items.size(); ++i) {
+        if (places[i] == kMaxVolumeFlames) continue;
+        const TierLife& life = lives[places[i]];
+        weight[i] = items[i].covers * (marches(life.tier) ? kKeeps : 1.0f);
+        order[count++] = i;
+    }
+    std::sort(order.begin(), order.begin() + count, [&](uint32_t a, uint32_t b) {
+        return weight[a] != weight[b] ? weight[a] > weight[b] : items[a].key < items[b].key;
+    });
+    uint32_t rank = 0;  // among those that are too large for a card
+    for (uint32_t k = 0; k < count; ++k) {
+        const TierItem& item = items[order[k]];
+        const uint32_t place = places[order[k]];
+        TierLife& life = lives[place];
+        const float border = life.tier == FW_FIRE_TIER_IMPOSTOR ? kCardOutside : kCardInside;
+        uint32_t tier = item.asked;
+        uint32_t steps = kHighSteps;
+        if (tier == FW_FIRE_TIER_AUTO) {
+            if (item.wide < border || rank >= kMarchedFlames) {
+                tier = FW_FIRE_TIER_IMPOSTOR;
+            } else {
+                tier = rank < kMarchedHigh ? FW_FIRE_TIER_MARCH_HIGH : FW_FIRE_TIER_MARCH_LOW;
+                ++rank;
+            }
+        }
+        if (tier == FW_FIRE_TIER_IMPOSTOR && place >= cards) tier = FW_FIRE_TIER_MARCH_LOW;
+        if (tier == FW_FIRE_TIER_MARCH_LOW) steps = kLowSteps;
+        if (life.tier == 0) {
+            life.tier = life.before = tier;
+            life.steps = steps;
+            continue;
+        }
+        if (life.turned < kTierFrames) {
+            ++life.turned;
+        } else if (marches(tier) && marches(life.tier)) {
+            life.tier = tier;  // its samples become more or fewer
+        } else if (tier != life.tier) {
+            life.before = life.tier;
+            life.tier = tier;
+            life.turned = 1;
+        }
+        if (marches(life.tier)) {
+            const uint32_t wanted = life.tier == FW_FIRE_TIER_MARCH_LOW ? kLowSteps : kHighSteps;
+            life.steps = wanted > life.steps ? std::min(life.steps + kStepsTurn, wanted)
+                                             : std::max(life.steps - kStepsTurn, wanted);
+        }
+    }
+}
+
+}  // namespace fw::gpu

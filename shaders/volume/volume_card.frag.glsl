@@ -1,0 +1,51 @@
+#version 450
+// A volumetric flame's card at a pixel: the mean of what it has of the pixel's square, so that its
+// light is the flame's however small it is. Where the host's depth can be read, what lies before it.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/volume_draw.h"
+
+layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) readonly buffer Rays { uint rays[]; };
+layout(push_constant) uniform Push { VolumeCard draw; };
+
+layout(location = 0) in vec2 inCell;
+layout(location = 1) flat in vec2 inSlab;
+layout(location = 2) flat in ivec4 inTaps;
+layout(location = 3) flat in vec2 inHalf;
+layout(location = 4) flat in vec2 inShows;
+
+layout(location = 0) out vec4 outColor;
+
+#ifdef FW_SOFT
+#include "volume/scene_depth.glsl"
+#endif
+
+void main() {
+    outColor = vec4(0.0);
+    if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    float cut = 1e9;
+#ifdef FW_SOFT
+    cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
+#endif
+    vec2 low = inCell - inHalf, high = inCell + inHalf;
+    ivec2 first = ivec2(floor(low));
+    vec4 color = vec4(0.0);
+    // As many turns for all pixels: cells beyond have no part in them.
+    for (int j = 0; j < inTaps.y; ++j) {
+        int y = first.y + j;
+        float tall = clamp(min(high.y, float(y + 1)) - max(low.y, float(y)), 0.0, 1.0);
+        if (y < 0 || y >= inTaps.w) tall = 0.0;
+        uint row = uint(clamp(y, 0, inTaps.w - 1) * inTaps.z);
+        for (int i = 0; i < inTaps.x; ++i) {
+            int x = first.x + i;
+            float weight = tall * clamp(min(high.x, float(x + 1)) - max(low.x, float(x)), 0.0, 1.0);
+            if (x < 0 || x >= inTaps.z) weight = 0.0;
+            uint at = draw.samples + kVolumeCellWords * (row + uint(clamp(x, 0, inTaps.z - 1)));
+#ifdef FW_SOFT
+            weight *= volumeNearer(rays[at + 2u], cut);
+#endif
+            color += weight * vec4(unpackHalf2x16(rays[at]), unpackHalf2x16(rays[at + 1u]));
+        }
+    }
+    outColor = color / (4.0 * inHalf.x * inHalf.y);
+}
