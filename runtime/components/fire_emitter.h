@@ -1,6 +1,8 @@
 // A fire emitter as plain data: what the host asked for, checked; what its power makes of the rest;
 // and its frames as the device gets them. Counts births, never touches a particle. Looks alone.
 #pragma once
+#include "components/jet.h"
+#include "core/owned.h"
 #include "flamewright/flamewright.h"
 
 #include <array>
@@ -31,7 +33,6 @@ struct JetShield {
     float place[3] = {}, normal[3] = {}, radius = 0;  // m
     double until = 0;                                 // s; of one that a ray no longer strikes
 };
-constexpr uint32_t kJetRays = 16;
 
 // An object without heat of its own under a jet.
 struct JetTouch {
@@ -51,13 +52,16 @@ struct FireEmitter {
     uint32_t seed = 0;
     uint32_t first = 0, ring = 0;  // particles of the world's
     float position[3] = {}, direction[3] = {0, 1, 0};
-    // Of a jet, as it was last swept.
+    // Of a jet, as it was last swept: in frame `swept` of the world's.
+    JetHits hits{};
+    uint64_t swept = 0;
     std::array<JetShield, kJetRays> shields{}, lastShields{};
     uint32_t nextLast = 0;
     uint32_t struck = 0;  // rays that something stopped
     float freeWay = 0;    // m to the nearest of it
-    float heated = 0;     // W that went into burnable meshes at the last exchange
+    float heated = 0;     // W that reached burnable meshes at the last exchange
     std::array<JetTouch, 8> touches{};
+    core::Owned<JetStream> stream;  // of what ignites
     // As of the last frame.
     struct Births {
         float position[3] = {};

@@ -10,6 +10,7 @@ struct Pose {
     float scale = 1;               // mean of the three axes, [1e-3, 1e3]
     float stretch[3] = {1, 1, 1};  // of each object axis, beyond scale; x < 0: mirrored
     float translation[3] = {};     // m, within +-1e6
+    bool operator==(const Pose&) const = default;
 };
 
 constexpr float kMostStretch = 16;  // longest axis over shortest

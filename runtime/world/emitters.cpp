@@ -56,7 +56,9 @@ FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
     const size_t records = emitterRecords_.capacity(), live = emitters_.live() + 1;
     if (records < live) emitterRecords_.reserve(std::max(live, 2 * records));
     findFireRoom(0);  // of shapes that jets are swept through
-    const FwFireEmitterId id = emitters_.create(emitter);
+    if (def.flags & FW_EMITTER_IGNITES)
+        emitter.stream = core::Owned<components::JetStream>::make(memory_);
+    const FwFireEmitterId id = emitters_.create(std::move(emitter));
     ++emittersMade_;
     return id;
 }

@@ -114,6 +114,7 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
 }  // namespace
 
 FwFireColliderId World::addFireCollider(const FwFireColliderDef& def) {
+    ++geometry_;
     if (fireColliders_.live() >= kMaxFireColliders)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire colliders are in place; the limit is %u.",
                    fireColliders_.live(), kMaxFireColliders);
@@ -123,15 +124,23 @@ FwFireColliderId World::addFireCollider(const FwFireColliderDef& def) {
 }
 
 void World::setFireCollider(FwFireColliderId id, const FwFireColliderDef& def) {
+    ++geometry_;
     setShape(def, *fireColliders_.get(id));
 }
 
-void World::removeFireCollider(FwFireColliderId id) { fireColliders_.destroy(id); }
+void World::removeFireCollider(FwFireColliderId id) {
+    ++geometry_;
+    fireColliders_.destroy(id);
+}
 
 void World::listFireColliders() noexcept {
     fireShapes_.clear();  // room was found with the first fire
     for (uint32_t i = 0; i < fireColliders_.slotCount(); ++i)
-        if (const auto* entry = fireColliders_.at(i)) fireShapes_.push_back((*entry)->shape);
+        if (const auto* entry = fireColliders_.at(i)) {
+            fireShapes_.push_back((*entry)->shape);
+            // What the host's function says may change at any time.
+            if ((*entry)->shape.kind == volume::ColliderKind::Callback) ++geometry_;
+        }
     for (uint32_t i = 0; i < blockers_.slotCount(); ++i) {
         const BlockerEntry* entry = blockers_.at(i);
         if (!entry) continue;

@@ -1,6 +1,7 @@
 // What the jets of fire emitters strike: rays swept from the holder's side of the nozzle through
-// colliders, blockers and burnable meshes. What they strike first is heated and nothing behind it.
-// By the host's numbers alone: events, the same on every backend. Particles see the same hits.
+// colliders, blockers and burnable meshes. What they strike first is heated and nothing behind it,
+// when the stream has flown there. By the host's numbers alone: events, the same on every backend.
+// Particles see the same hits.
 #include "mesh/bake.h"
 #include "shared/exchange.h"
 #include "world/world.h"
@@ -12,6 +13,9 @@ namespace fw::world {
 namespace {
 
 using components::FireEmitter;
+using components::JetHit;
+using components::JetParcel;
+using components::JetRay;
 using volume::vec3;
 
 constexpr uint32_t kRays = components::kJetRays;
@@ -34,10 +38,19 @@ constexpr float kPattern[kRays][2] = {{0, 0},
                                       {0.8090f, -0.5878f}};
 constexpr float kClose = 0.01f, kLeastStep = 0.02f, kFarStep = 1.0f;  // m
 constexpr uint32_t kMostSteps = 96;                                   // of a ray
-constexpr size_t kMostPoints = 48;                                    // that a ray heats
-constexpr float kFluxUnit = 100;                                      // W/m^2 of a kEventHeat
+constexpr size_t kMostPoints = 64;    // that a ray heats at once, unless it would be too hot
+constexpr uint32_t kMostGrowths = 6;  // of where a ray's power goes, until all of it does
+constexpr float kOverlap = 0.1f;      // m that a parcel looks back: what moves into it is met
+constexpr float kNano = 1e9f;         // of W and m^2
+constexpr float kPastReach = 1.15f;   // a few particles come farther than most
 
 vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
+
+uint32_t millimetres(float m) noexcept { return uint32_t(std::lround(std::max(m, 0.0f) * 1000)); }
+
+float leastScale(const components::Pose& pose) noexcept {
+    return pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+}
 
 // Through shapes: m to the first, or `most`.
 float sweepShapes(std::span<const volume::Collider> shapes, vec3 from, vec3 way, float most,
@@ -71,6 +84,32 @@ bool within(const float from[3], const float way[3], const float low[3], const f
     return enter <= leave;
 }
 
+// Half the angle that a jet takes, rad.
+float halfAngle(const FireEmitter& emitter) noexcept { return emitter.look.cone * 1.8f + 0.02f; }
+
+void jetWays(const FireEmitter& emitter, float (&ways)[kRays][3]) noexcept {
+    const vec3 along = vecOf(emitter.direction);
+    const vec3 across = std::abs(along.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
+    vec3 r(along.y * across.z - along.z * across.y, along.z * across.x - along.x * across.z,
+           along.x * across.y - along.y * across.x);
+    r /= std::sqrt(r.x * r.x + r.y * r.y + r.z * r.z);
+    const vec3 u(r.y * along.z - r.z * along.y, r.z * along.x - r.x * along.z,
+                 r.x * along.y - r.y * along.x);
+    const float wide = halfAngle(emitter);
+    for (uint32_t i = 0; i < kRays; ++i) {
+        vec3 way = along + r * (kPattern[i][0] * wide) + u * (kPattern[i][1] * wide);
+        way /= std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+        for (int k = 0; k < 3; ++k) ways[i][k] = way[k];
+    }
+}
+
+// m, object space.
+void restPlace(const mesh::BurnDomain& domain, uint32_t texel, float (&out)[3]) noexcept {
+    const mesh::TexelPosition& p = domain.texels[texel];
+    const uint16_t units[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) out[i] = domain.origin[i] + domain.quantum * float(units[i]);
+}
+
 }  // namespace
 
 // m to the nearest thing in the way of a ray, or `most`.
@@ -86,8 +125,7 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
         const Object& object = **owned;
         const components::Pose& pose = object.data.pose;
         const mesh::BurnDomain& domain = domainOf(object);
-        const float least =
-            pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+        const float least = leastScale(pose);
         const float most_ =
             pose.scale * std::max({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
         // Closer than half a link between texels and it is struck; a stretched mesh's are longer
@@ -150,95 +188,180 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
 }
 
 // All rays of a jet, the holder's side first: what stands between the two stops all of them.
-void World::sweepJets(const FireEmitter& emitter, std::array<JetHit, kRays>& hits) noexcept {
+// Once a frame: what a jet heats and what its particles meet are the same hits.
+void World::sweepJets(FireEmitter& emitter) noexcept {
+    if (emitter.swept == sweeps_) return;
+    emitter.swept = sweeps_;
     const float behind = emitter.def.behind;
     float holder[3];
     for (int i = 0; i < 3; ++i) holder[i] = emitter.position[i] - emitter.direction[i] * behind;
     JetHit first;
     if (behind > 0 && sweepJet(holder, emitter.direction, behind, first) < behind) {
-        hits.fill(first);
-        for (JetHit& hit : hits) hit.distance = 0;
+        emitter.hits.fill(first);
+        for (JetHit& hit : emitter.hits) hit.distance = 0;
         return;
     }
-    const float* d = emitter.direction;
-    const vec3 across = std::abs(d[1]) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
-    const vec3 along = vecOf(d);
-    vec3 r(along.y * across.z - along.z * across.y, along.z * across.x - along.x * across.z,
-           along.x * across.y - along.y * across.x);
-    r /= std::sqrt(r.x * r.x + r.y * r.y + r.z * r.z);
-    const vec3 u(r.y * along.z - r.z * along.y, r.z * along.x - r.x * along.z,
-                 r.x * along.y - r.y * along.x);
-    const float wide = emitter.look.cone * 1.8f + 0.02f;
-    for (uint32_t i = 0; i < kRays; ++i) {
-        vec3 way = along + r * (kPattern[i][0] * wide) + u * (kPattern[i][1] * wide);
-        way /= std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
-        const float given[3] = {way.x, way.y, way.z};
-        (void)sweepJet(emitter.position, given, 1.15f * emitter.look.reach, hits[i]);
-    }
+    float ways[kRays][3];
+    jetWays(emitter, ways);
+    for (uint32_t i = 0; i < kRays; ++i)
+        (void)sweepJet(emitter.position, ways[i], kPastReach * emitter.look.reach, emitter.hits[i]);
 }
 
 // For the particles of a frame, and for what is told of it.
 void World::shieldJet(FireEmitter& emitter, double now) noexcept {
-    std::array<JetHit, kRays> hits;
-    sweepJets(emitter, hits);
+    sweepJets(emitter);
     emitter.struck = 0;
-    emitter.freeWay = 1.15f * emitter.look.reach;
+    emitter.freeWay = kPastReach * emitter.look.reach;
     for (uint32_t i = 0; i < kRays; ++i) {
+        const JetHit& hit = emitter.hits[i];
         components::JetShield shield;
-        shield.met = hits[i].met;
-        std::copy_n(hits[i].place, 3, shield.place);
-        std::copy_n(hits[i].normal, 3, shield.normal);
-        shield.radius = 0.10f + 0.6f * hits[i].distance * (emitter.look.cone * 1.8f + 0.02f);
+        shield.met = hit.met;
+        std::copy_n(hit.place, 3, shield.place);
+        std::copy_n(hit.normal, 3, shield.normal);
+        shield.radius = 0.10f + 0.6f * hit.distance * halfAngle(emitter);
         components::takeShield(emitter, i, shield, now);
-        emitter.struck += hits[i].met ? 1u : 0u;
-        if (hits[i].met) emitter.freeWay = std::min(emitter.freeWay, hits[i].distance);
+        emitter.struck += hit.met ? 1u : 0u;
+        if (hit.met) emitter.freeWay = std::min(emitter.freeWay, hit.distance);
     }
 }
 
-// At an exchange, before the steps of a frame are planned.
+// At an exchange, before the steps of a frame are planned: what left the nozzle at earlier ones
+// flies on, and another parcel leaves. A frame that failed may come again: then so does all of it.
 void World::touchByJet(FireEmitter& emitter, uint32_t now) {
     emitter.heated = 0;
-    if (!(emitter.def.power > 0)) return;
-    std::array<JetHit, kRays> hits;
-    sweepJets(emitter, hits);
     for (components::JetTouch& touch : emitter.touches) touch.seen = false;
-    const float watts = 1000.0f * emitter.def.power * emitter.def.heat / float(kRays);
-    for (const JetHit& hit : hits) {
-        if (!hit.met || hit.object.index1 == 0) continue;
-        Object& object = **objects_.find(hit.object);
-        const components::Pose& pose = object.data.pose;
-        const mesh::BurnDomain& domain = domainOf(object);
-        if (object.texels == 0) continue;
-        // What a ray's share of the stream covers.
-        const float radius = 0.10f + 0.35f * hit.distance * (emitter.look.cone * 1.8f + 0.02f);
-        const float flux = watts / (3.14159265f * radius * radius);
-        emitter.heated += watts;
-        if (!components::hasHeat(object.data)) {
-            heatLite(emitter, object, hit, radius, flux, now);
-            continue;
-        }
-        const float least =
-            pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
-        float point[3];
-        components::toObject(pose, hit.place, point);
-        found_.clear();
-        if (object.skinMoved)
-            found_.push_back(hit.texel);
-        else
-            mesh::texelsNear(domain, point, radius / least, found_);
-        std::sort(found_.begin(), found_.end());
-        if (found_.empty()) found_.push_back(hit.texel);
-        if (found_.size() > kMostPoints) {
-            const size_t every = (found_.size() + kMostPoints - 1) / kMostPoints;
-            size_t kept = 0;
-            for (size_t i = 0; i < found_.size(); i += every) found_[kept++] = found_[i];
-            found_.resize(kept);
-        }
-        const auto units = uint32_t(std::clamp(flux / kFluxUnit, 1.0f, 5000.0f));
-        addPending(object, gpu::kEventHeat, now, units, found_);
+    if (emitter.def.power > 0) {
+        sweepJets(emitter);
+        auto& parcels = emitter.stream->parcels;
+        launchJet(emitter, parcels[now / gpu::kExchangeTicks % parcels.size()], now);
     }
+    for (JetParcel& parcel : emitter.stream->parcels)
+        if (parcel.launched <= now &&
+            now - parcel.launched < components::kJetParcels * gpu::kExchangeTicks)
+            flyJet(emitter, parcel, now);
     for (components::JetTouch& touch : emitter.touches)
         if (!touch.seen) touch.object = {};
+}
+
+void World::launchJet(const FireEmitter& emitter, JetParcel& parcel, uint32_t now) const noexcept {
+    parcel.launched = now;
+    const double watts = 1000.0 * double(emitter.def.power) * double(emitter.def.heat);
+    parcel.power = uint64_t(watts / kRays * double(kNano));
+    std::copy_n(emitter.position, 3, parcel.from);
+    parcel.wide = halfAngle(emitter);
+    parcel.most = millimetres(kPastReach * emitter.look.reach);
+    parcel.flight = components::jetFlight(emitter.look);
+    float ways[kRays][3];
+    jetWays(emitter, ways);
+    for (uint32_t i = 0; i < kRays; ++i) {
+        JetRay& ray = parcel.rays[i];
+        std::copy_n(ways[i], 3, ray.way);
+        ray.hit = emitter.hits[i];
+        ray.version = geometry_;
+        ray.spent = components::kJetNever;
+    }
+}
+
+// On by one exchange. What was in the way as it left is, unless something moved since.
+void World::flyJet(FireEmitter& emitter, JetParcel& parcel, uint32_t now) {
+    const uint32_t exchange = (now - parcel.launched) / gpu::kExchangeTicks;
+    const uint32_t from = parcel.flight[exchange];
+    const uint32_t to = std::min(parcel.flight[exchange + 1], parcel.most);
+    if (from >= to) return;
+    for (JetRay& ray : parcel.rays) {
+        if (ray.spent < now) continue;
+        ray.spent = components::kJetNever;
+        JetHit hit = ray.hit;
+        if (ray.version != geometry_) {
+            const float back = std::max(float(from) / 1000 - kOverlap, 0.0f);
+            float start[3];
+            for (int i = 0; i < 3; ++i) start[i] = parcel.from[i] + ray.way[i] * back;
+            hit.distance = back + sweepJet(start, ray.way, float(to) / 1000 - back, hit);
+        }
+        if (!hit.met || millimetres(hit.distance) > to) continue;
+        ray.spent = now;
+        const uint32_t tick = parcel.launched + components::jetArrival(parcel.flight, exchange,
+                                                                       millimetres(hit.distance));
+        if (hit.object.index1 != 0) heatByJet(emitter, parcel, hit, tick);
+    }
+}
+
+// Texels around a hit that face what came, or both ways where the one that was struck does.
+void World::findFootprint(const Object& object, const JetHit& hit, float radius) {
+    const components::Pose& pose = object.data.pose;
+    const mesh::BurnDomain& domain = domainOf(object);
+    float point[3];
+    if (object.skinMoved)  // what was near at rest still is
+        restPlace(domain, hit.texel, point);
+    else
+        components::toObject(pose, hit.place, point);
+    const float least = leastScale(pose);
+    found_.clear();
+    mesh::texelsNear(domain, point, radius / least, found_);
+    const gpu::ivec3 struck = gpu::decodeNormal(domain.normals[hit.texel]);
+    std::erase_if(found_, [&](uint32_t texel) {
+        const gpu::ivec3 n = gpu::decodeNormal(domain.normals[texel]);
+        if (int64_t(n.x) * struck.x + int64_t(n.y) * struck.y + int64_t(n.z) * struck.z <= 0)
+            return true;
+        float place[3], sum = 0;
+        restPlace(domain, texel, place);
+        for (int i = 0; i < 3; ++i) {
+            const float d = (place[i] - point[i]) * pose.stretch[i] * pose.scale;
+            sum += d * d;
+        }
+        return sum > radius * radius;
+    });
+    if (found_.empty()) found_.push_back(hit.texel);
+}
+
+// All that a ray brings goes into the texels that it covers: where it is more than any fire gives,
+// it spreads over more of them.
+void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetHit& hit,
+                      uint32_t tick) {
+    Object& object = **objects_.find(hit.object);
+    if (object.texels == 0) return;
+    const mesh::BurnDomain& domain = domainOf(object);
+    const float watts = float(parcel.power) / kNano;
+    const float shared = 0.10f + 0.35f * hit.distance * parcel.wide;
+    const float needed = std::sqrt(watts / (3.14159265f * float(gpu::kFluxMost)));
+    float radius = std::max(shared, needed);
+    if (!components::hasHeat(object.data)) {
+        emitter.heated += watts;
+        heatLite(emitter, object, hit, radius, watts / (3.14159265f * radius * radius), tick);
+        return;
+    }
+    const float square = object.data.pose.scale * object.data.pose.scale;
+    const auto areaOf = [&](uint32_t texel) {
+        return std::max<uint64_t>(uint64_t(std::llround(domain.areas[texel] * square * kNano)), 1);
+    };
+    const uint64_t power = parcel.power + emitter.stream->kept;
+    uint64_t covered = 0;
+    for (uint32_t i = 0; i < kMostGrowths && covered * gpu::kFluxMost < power; ++i) {
+        findFootprint(object, hit, radius);
+        covered = 0;
+        for (const uint32_t texel : found_) covered += areaOf(texel);
+        radius *= 1.4f;
+    }
+    // Of very many a part at each exchange, in turn; as few as can take all of it.
+    const size_t parts =
+        std::min((found_.size() + kMostPoints - 1) / kMostPoints,
+                 size_t(covered * gpu::kFluxMost / std::max(power * 5 / 4, uint64_t(1))));
+    if (parts > 1) {
+        size_t kept = 0;
+        for (size_t i = tick / gpu::kExchangeTicks % parts; i < found_.size(); i += parts)
+            found_[kept++] = found_[i];
+        found_.resize(kept);
+    }
+    jetAreas_.clear();
+    for (const uint32_t texel : found_) jetAreas_.push_back(areaOf(texel));
+    jetFlux_.resize(found_.size());
+    findPendingRoom(found_.size());
+    const uint64_t left = components::shareJet(power, jetAreas_, jetFlux_);
+    // What even all of them cannot take goes past.
+    emitter.stream->kept = jetFlux_[0] < gpu::kFluxMost ? left : 0;
+    emitter.heated += float(power - left) / kNano;
+    for (size_t i = 0; i < found_.size(); ++i)
+        pending_.push_back({object.slot, found_[i], gpu::kEventHeat, tick, jetFlux_[i], order_++});
 }
 
 // What has no heat of its own catches after as long as its material takes.

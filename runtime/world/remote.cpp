@@ -56,6 +56,7 @@ void World::setFlags(uint32_t given) {
 }
 
 FwBlockerId World::addBlocker(const FwBlockerDef& def) {
+    ++geometry_;
     if (def.flags != 0 || def.reserved != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBlockerDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
@@ -73,12 +74,14 @@ FwBlockerId World::addBlocker(const FwBlockerDef& def) {
 }
 
 void World::moveBlocker(FwBlockerId id, const float transform[16]) {
+    ++geometry_;
     BlockerEntry& entry = blockers_.get(id);
     entry.pose = components::makePose(transform, "transform");
     remote_.blockersDue = true;
 }
 
 void World::removeBlocker(FwBlockerId id) {
+    ++geometry_;
     blockers_.destroy(id);
     remote_.blockersDue = true;
 }

@@ -38,6 +38,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     collectReadbacks();
     const ClockAdvance time = fw::world::advance(clock_, deltaTime, def_.maxStepsPerFrame);
     const size_t waiting = pending_.size();
+    ++sweeps_;
     try {
         touchByFires(time.after.tick);
         planSteps(time);

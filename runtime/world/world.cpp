@@ -109,6 +109,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       tags_(memory),
       pending_(memory),
       found_(memory),
+      jetAreas_(memory),
+      jetFlux_(memory),
       events_(memory),
       probeFrames_(memory),
       frame_(memory),
@@ -297,6 +299,7 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
 
 FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
                                  core::Owned<Object> owned) {
+    ++geometry_;
     Object& object = *owned;
     MeshEntry& mesh = *meshes_.at(meshSlot);
     object.data.meshSlot = meshSlot;
@@ -419,6 +422,7 @@ mesh::ArpSettings World::arpSettings(const FwBurnableMeshDef& def, const mesh::A
 }
 
 void World::destroyBurnableMesh(FwBurnableMeshId id) {
+    ++geometry_;
     Object& object = *objects_.get(id);
     const uint32_t slot = object.slot;
     countImages(object.data, false);
@@ -448,8 +452,12 @@ void World::sendPose(const Object& object) noexcept {
 
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
     Object& object = *objects_.get(id);
+    const components::Pose before = object.data.pose;
     components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
-    ++object.changes;
+    if (object.data.pose != before) {
+        ++geometry_;
+        ++object.changes;
+    }
     if (!object.remoteDue) {  // at most once each: room was found at its creation
         object.remoteDue = true;
         remote_.due.push_back(object.slot);
@@ -471,6 +479,7 @@ uint32_t World::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {
 
 void World::setVertexPositions(FwBurnableMeshId id, const float* positions, const float* normals,
                                uint32_t count) {
+    ++geometry_;
     Object& object = **objects_.at(skinnedSlot(id, count));
     const unsigned values = count * 3;
     checkValues(positions, values, "positions", -1e6f, 1e6f);
@@ -507,14 +516,18 @@ uint32_t World::eventTick(float delay) const {
     return uint32_t(std::min<uint64_t>(tick, Clock::kLastTick));
 }
 
-void World::addPending(const Object& object, uint32_t kind, uint32_t tick, uint32_t water,
-                       std::span<const uint32_t> texels) {
-    if (pending_.size() + texels.size() > kMaxPending)
+void World::findPendingRoom(size_t more) {
+    if (pending_.size() + more > kMaxPending)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "%zu texel events wait and %zu more come; the limit is %zu.", pending_.size(),
-                   texels.size(), kMaxPending);
-    pending_.reserve(std::max(pending_.size() + texels.size(),
-                              std::min(pending_.capacity() * 2, size_t(65536))));
+                   more, kMaxPending);
+    pending_.reserve(
+        std::max(pending_.size() + more, std::min(pending_.capacity() * 2, size_t(65536))));
+}
+
+void World::addPending(const Object& object, uint32_t kind, uint32_t tick, uint32_t water,
+                       std::span<const uint32_t> texels) {
+    findPendingRoom(texels.size());
     for (uint32_t texel : texels)
         pending_.push_back({object.slot, texel, kind, tick, water, order_++});
 }

@@ -154,14 +154,6 @@ struct Field {
     uint64_t countersFrame = 0;
 };
 
-struct JetHit {  // of one ray of a jet
-    bool met = false;
-    float distance = 0;  // m from where the ray began
-    float place[3] = {}, normal[3] = {};
-    FwBurnableMeshId object{};  // null: a collider or blocker
-    uint32_t texel = 0;
-};
-
 // Piloted ignition under `flux` W/m^2: thick or thin, whichever is sooner.
 uint64_t ticksToCatch(const FwMaterialDef& material, float moisture, float pace,
                       double flux) noexcept;
@@ -433,13 +425,19 @@ class World {
     void takeFields(const gpu::Readback& readback) noexcept;
     void sendFieldRules() noexcept;
     // jets.cpp
-    float sweepJet(const float start[3], const float way[3], float most, JetHit& hit) noexcept;
-    void sweepJets(const components::FireEmitter& emitter,
-                   std::array<JetHit, components::kJetRays>& hits) noexcept;
+    float sweepJet(const float start[3], const float way[3], float most,
+                   components::JetHit& hit) noexcept;
+    void sweepJets(components::FireEmitter& emitter) noexcept;
     void shieldJet(components::FireEmitter& emitter, double now) noexcept;
     void touchByJet(components::FireEmitter& emitter, uint32_t now);
-    void heatLite(components::FireEmitter& emitter, Object& object, const JetHit& hit, float radius,
-                  float flux, uint32_t now);
+    void launchJet(const components::FireEmitter& emitter, components::JetParcel& parcel,
+                   uint32_t now) const noexcept;
+    void flyJet(components::FireEmitter& emitter, components::JetParcel& parcel, uint32_t now);
+    void heatByJet(components::FireEmitter& emitter, const components::JetParcel& parcel,
+                   const components::JetHit& hit, uint32_t tick);
+    void heatLite(components::FireEmitter& emitter, Object& object, const components::JetHit& hit,
+                  float radius, float flux, uint32_t now);
+    void findFootprint(const Object& object, const components::JetHit& hit, float radius);
     // fire_colliders.cpp
     void listFireColliders() noexcept;
     // fire_touch.cpp
@@ -497,6 +495,7 @@ class World {
     FwBurnableMeshId createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
                               core::Owned<Object> owned);
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
+    void findPendingRoom(size_t more);  // throws
     void addPending(const Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                     std::span<const uint32_t> texels);
     uint32_t eventTick(float delay) const;
@@ -555,6 +554,11 @@ class World {
     std::pmr::vector<Tag> tags_;
     std::pmr::vector<PendingTexel> pending_;
     std::pmr::vector<uint32_t> found_;  // scratch of ball queries
+    // Scratch of a jet's ray: of the texels found, 1e-9 m^2 and W/m^2.
+    std::pmr::vector<uint64_t> jetAreas_;
+    std::pmr::vector<uint32_t> jetFlux_;
+    uint64_t geometry_ = 1;  // grows whenever what may stop a jet moves
+    uint64_t sweeps_ = 0;    // frames begun: what was swept in one is not swept again in it
     EventQueue events_;
     std::pmr::vector<ProbeFrame> probeFrames_;
     Frame frame_;

@@ -256,7 +256,7 @@ struct TexelEvent {   // sorted by (object, texel, order); one batch per step
     uint object;      // slot
     uint texel;       // index in the object's map
     uint kind;
-    uint tick;        // of an ignition; of a wetting: g/m^2 of water; of heat: 100 W/m^2
+    uint tick;        // of an ignition; of a wetting: g/m^2 of water; of heat: W/m^2
 };
 FW_SHARED_SIZE(TexelEvent, 16)
 

@@ -329,14 +329,14 @@ FW_SHARED_FN void heatBlows(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint f
 }
 
 // What one event makes of texel and state. Water does not put out by itself: heat steps do, when it
-// takes more than the fire gives. tick: as TexelEvent; now: start of the step.
+// takes more than the fire gives. tick: as TexelEvent, W/m^2 of kEventHeat; now: start of the step.
 FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind,
                             uint tick, uint now) {
     if (kind == kEventIgnite) return applyEvent(t, kind, tick, now);
     if (kind == kEventWet) heatWets(x, tick, m);
     if (kind == kEventDry) x.film = 0u;
     if (kind == kEventHeat) {
-        heatBlows(x, m, tick * 100u, hash32(x.heat * 0x9E3779B9u + now));
+        heatBlows(x, m, tick, hash32(x.heat * 0x9E3779B9u + now));
         t = wetState(t, heatClosed(x, m));
         bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u &&
                      !heatClosed(x, m);

@@ -235,9 +235,9 @@ TEST(Jet, WhatItHeatsIsTheSameEveryTimeAndWaterHoldsItOff) {
             EXPECT_EQ(FW_OK, fwWorld_Ignite(r.world, &wet, nullptr));
         }
         r.fire();
-        for (int i = 0; i < 80; ++i) {
-            r.run(0.125);
-            if (r.lit(0) > 0) return 0.125f * float(i + 1);
+        for (int i = 0; i < 320; ++i) {
+            r.run(1.0 / 32);
+            if (r.lit(0) > 0) return float(i + 1) / 32;
         }
         return 99.0f;
     };

@@ -203,7 +203,7 @@ void PlanMaker::ball(std::vector<gpu::TexelEvent>& out, uint32_t object, uint32_
     for (const uint32_t texel : texels)
         out.push_back({object, texel, kind,
                        kind == gpu::kEventWet    ? 1 + pick(300)
-                       : kind == gpu::kEventHeat ? 1 + pick(5000)
+                       : kind == gpu::kEventHeat ? 1 + pick(500000)
                                                  : now_ + 1 + pick(gpu::kStepTicks)});
 }
 

@@ -701,8 +701,9 @@ typedef struct FwFireEmitterDef {
     uint64_t userData;          /* comes back in its state */
     /* Of a jet: it is swept, by 16 rays over its cone, from `behind` its nozzle on, where its holder stands: a
      * nozzle that is pushed into a wall or through it burns that wall, not the room beyond. Of its power the
-     * share `heat` goes into what it strikes, spread over where: eight times a second, by the host's numbers
-     * alone, the same on every backend. Burnt-through holes of a mesh still stop it; those of its shape do not. */
+     * share `heat` goes into what it strikes, all of it, spread over where: eight times a second, when the stream
+     * has flown there (a wall that comes between is met), by the host's numbers alone, the same on every backend.
+     * Burnt-through holes of a mesh still stop it; those of its shape do not. */
     float behind;               /* m, [0, 10], default 0.5 */
     float heat;                 /* [0, 1], default 0.35 */
 } FwFireEmitterDef;
@@ -731,7 +732,7 @@ typedef struct FwFireEmitterState { /* as of the last frame */
     float lightPosition[3];     /* m, world */
     uint32_t struck;            /* of a jet: rays of 16 that something stopped */
     float freeWay;              /* m from its nozzle to the nearest of it, 0: right there; else reach */
-    float heated;               /* W that go into burnable meshes */
+    float heated;               /* W that reached burnable meshes in the last eighth of a second */
 } FwFireEmitterState;
 FW_API FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld*, FwFireEmitterId id, FwFireEmitterState* state); /* [world] */
 

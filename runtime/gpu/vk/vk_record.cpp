@@ -250,10 +250,10 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
 }
 
 // An object that an event reaches is drawn as one that may burn from now on.
-void noteEvent(VkBackend::State& s, const TexelEvent& event) {
+void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     ObjectEntry& object = s.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
-    object.lastEvent = std::max<uint64_t>(object.lastEvent, event.tick);
+    object.lastEvent = std::max<uint64_t>(object.lastEvent, now + kStepTicks);
     const bool douses = event.kind != kEventIgnite && event.kind != kEventHeat && !object.doused;
     if (object.touched && !douses) return;
     object.touched = true;
@@ -441,7 +441,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
         step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);
         step.events = writer.write(planned.events);
-        for (const TexelEvent& event : planned.events) noteEvent(*this, event);
+        for (const TexelEvent& event : planned.events) noteEvent(*this, event, planned.now);
         if (needs.publishedRuns) {
             for (PublishedStep& one : published) {
                 one.parity = objects[one.object].publishedParity;
