@@ -59,6 +59,12 @@ float meanTexelArea(const mesh::BurnDomain& domain) noexcept {
                : domain.texelSide * domain.texelSide;
 }
 
+// A look was tuned at a rate of its own: one twice as fast ages twice as fast. 0: of no account.
+float timeScale(const FwMaterialDef& def, float pace) noexcept {
+    const float tuned = lookSpreadRate(def.look);
+    return tuned > 0 && def.spreadRate > 0 ? pace * def.spreadRate / tuned : 0.0f;
+}
+
 }  // namespace
 
 FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given, uint32_t worldFlags) noexcept {
@@ -211,6 +217,14 @@ bool atRest(const BurnableMesh& object, const mesh::BurnDomain& domain, const Dr
     return true;
 }
 
+uint32_t holeTicks(const BurnableMesh& object, uint32_t material, float pace) noexcept {
+    const FwMaterialDef& def = object.materials[material];
+    const float holeTime = materialLook(def.look).holeTime;
+    const float scale = timeScale(def, pace);
+    if ((object.flags & FW_BURNABLE_NO_HOLES) || !(scale > 0) || !(holeTime > 0)) return 0;
+    return uint32_t(std::min(holeTime * (float(gpu::kTicksPerSecond) / scale), 4.0e9f));
+}
+
 Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
                     const DriveInput& drive, Latch& latch) noexcept {
     const fire::SpreadFacts f = facts(object, domain, drive, latch.pose);
@@ -225,9 +239,7 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
         winds[i] = latch.filters[i].latched;
         gpu::BurnMaterial& record = records.materials[i];
         record = fire::burnMaterial(def, f, winds[i]);
-        // A look was tuned at a rate of its own: one twice as fast ages twice as fast.
-        const float tuned = lookSpreadRate(def.look);
-        if (tuned > 0 && def.spreadRate > 0) record.timeScale = drive.pace * def.spreadRate / tuned;
+        if (const float scale = timeScale(def, drive.pace); scale > 0) record.timeScale = scale;
         const gpu::MaterialLook look = materialLook(def.look);
         if (record.timeScale > 0 && look.holeTime > 0) {
             const float ticks = float(gpu::kTicksPerSecond) / record.timeScale;

@@ -57,6 +57,10 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def);
 // the metric of its creation, times the pose's mean scale. Throws when it mirrors otherwise.
 void poseOnShape(BurnableMesh& object, const Pose& pose, const char* field);
 void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def) noexcept;
+// Ticks from a texel's ignition until it gives way there, in a world of this pace; 0: it never
+// does.
+[[nodiscard]] uint32_t holeTicks(const BurnableMesh& object, uint32_t material,
+                                 float pace) noexcept;
 // Can it burn, be it after drying?
 [[nodiscard]] bool burns(const BurnableMesh& object, uint32_t material) noexcept;
 // Has it temperature, fuel and water per texel?

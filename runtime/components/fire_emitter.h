@@ -34,6 +34,11 @@ struct JetShield {
     double until = 0;                                 // s; of one that a ray no longer strikes
 };
 
+struct JetHole {
+    FwBurnableMeshId object{};  // null: none
+    uint32_t texel = 0;
+};
+
 // An object without heat of its own under a jet.
 struct JetTouch {
     FwBurnableMeshId object{};
@@ -55,6 +60,7 @@ struct FireEmitter {
     // Of a jet, as it was last swept: in frame `swept` of the world's.
     JetHits hits{};
     uint64_t swept = 0;
+    std::array<JetHole, kJetRays> holes{};  // as of the last readback: for what is seen alone
     std::array<JetShield, kJetRays> shields{}, lastShields{};
     uint32_t nextLast = 0;
     uint32_t struck = 0;  // rays that something stopped

@@ -4,6 +4,7 @@
 // seen.
 #pragma once
 #include "flamewright/flamewright.h"
+#include "shared/burn.h"
 
 #include <array>
 #include <cstdint>
@@ -34,11 +35,24 @@ using JetFlight = std::array<uint32_t, kJetParcels + 1>;
 [[nodiscard]] uint32_t jetArrival(const JetFlight& flight, uint32_t exchange,
                                   uint32_t way) noexcept;
 
+// A texel that may have burnt away when a ray comes to it: the backend knows, we do not. So what
+// stands there is heated if it still does, and what lies behind if it does not.
+struct JetGate {
+    uint32_t object = 0, texel = 0;  // slot
+    uint32_t holeTicks = 0;          // from its ignition until it gives way
+    float distance = 0;              // m from where the ray began
+    bool operator==(const JetGate&) const = default;
+};
+constexpr uint32_t kJetGates = gpu::kGates;  // that a ray passes; then it is spent
+
 struct JetRay {
     float way[3] = {};  // of length 1
     JetHit hit;         // in what the world was at `version` of its geometry
     uint64_t version = 0;
     uint32_t spent = kJetNever;  // exchange at which it struck something, a tick
+    std::array<JetGate, kJetGates> gates{};
+    std::array<uint32_t, kJetGates> passed{};  // exchanges, ticks
+    uint32_t gateCount = 0;
 };
 
 struct JetParcel {

@@ -56,6 +56,11 @@ FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
     const size_t records = emitterRecords_.capacity(), live = emitters_.live() + 1;
     if (records < live) emitterRecords_.reserve(std::max(live, 2 * records));
     findFireRoom(0);  // of shapes that jets are swept through
+    if (components::isSwept(def)) {
+        const size_t rays = (emitters_.live() + 1) * components::kJetRays;
+        for (ProbeFrame& frame : probeFrames_) frame.refs.reserve(rays);
+        frame_.probes.reserve(rays);
+    }
     if (def.flags & FW_EMITTER_IGNITES)
         emitter.stream = core::Owned<components::JetStream>::make(memory_);
     const FwFireEmitterId id = emitters_.create(std::move(emitter));

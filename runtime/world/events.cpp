@@ -158,7 +158,14 @@ void World::takeAnswers(const gpu::Readback& readback) noexcept {
         if (!owned) continue;
         const Object& object = **owned;
         const uint32_t code = readback.answers[i].state;
-        if (ref.isTag) {
+        if (ref.jet > 0) {
+            const gpu::ProbeAnswer& answer = readback.answers[i];
+            const gpu::HeatTexel x = gpu::unpackHeat({answer.heatX, answer.heatY});
+            const bool gone = answer.heat != 0 && gpu::gateLets(gpu::kEventGate, ref.holeTicks, x,
+                                                                code, readback.endTick);
+            if (components::FireEmitter* emitter = emitters_.at(ref.jet - 1))
+                emitter->holes[ref.ray] = {gone ? ref.object : FwBurnableMeshId{}, ref.texel};
+        } else if (ref.isTag) {
             if (!gpu::isSource(code) || code > readback.endTick) continue;
             const auto tag = std::find_if(tags_.begin(), tags_.end(), [&](const Tag& t) {
                 return t.object.index1 == ref.object.index1 &&

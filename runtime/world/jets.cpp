@@ -13,6 +13,7 @@ namespace fw::world {
 namespace {
 
 using components::FireEmitter;
+using components::JetGate;
 using components::JetHit;
 using components::JetParcel;
 using components::JetRay;
@@ -110,10 +111,31 @@ void restPlace(const mesh::BurnDomain& domain, uint32_t texel, float (&out)[3]) 
     for (int i = 0; i < 3; ++i) out[i] = domain.origin[i] + domain.quantum * float(units[i]);
 }
 
+bool alike(const mesh::BurnDomain& domain, uint32_t a, uint32_t b) noexcept {  // face one way
+    const gpu::ivec3 n = gpu::decodeNormal(domain.normals[a]);
+    const gpu::ivec3 m = gpu::decodeNormal(domain.normals[b]);
+    return int64_t(n.x) * m.x + int64_t(n.y) * m.y + int64_t(n.z) * m.z > 0;
+}
+
+// Is a texel on the gate's side of its mesh, and within `far` m of it?
+bool aroundGate(const mesh::BurnDomain& domain, const components::Pose& pose, uint32_t gate,
+                uint32_t texel, float far) noexcept {
+    float a[3], b[3], sum = 0;
+    restPlace(domain, gate, a);
+    restPlace(domain, texel, b);
+    for (int i = 0; i < 3; ++i) {
+        const float d = (a[i] - b[i]) * pose.stretch[i] * pose.scale;
+        sum += d * d;
+    }
+    return sum < far * far && alike(domain, gate, texel);
+}
+
 }  // namespace
 
-// m to the nearest thing in the way of a ray, or `most`.
-float World::sweepJet(const float start[3], const float way[3], float most, JetHit& hit) noexcept {
+// m to the nearest thing in the way of a ray, or `most`. passed: a texel that it went through, with
+// what lies around it on the same side.
+float World::sweepJet(const float start[3], const float way[3], float most, JetHit& hit,
+                      const JetGate* passed) noexcept {
     const vec3 from = vecOf(start), along = vecOf(way);
     vec3 normal(-along);
     float nearest = sweepShapes(fireShapes_, from, along, most, normal);
@@ -159,6 +181,11 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
             const float distance = std::sqrt(sum);
             if (distance < close) {
                 if (at >= nearest) break;
+                if (passed && passed->object == object.slot &&
+                    aroundGate(domain, pose, passed->texel, found, 3 * close)) {
+                    at += 0.4f * close;
+                    continue;
+                }
                 nearest = at;
                 hit.met = true;
                 hit.object = object.id;
@@ -213,7 +240,11 @@ void World::shieldJet(FireEmitter& emitter, double now) noexcept {
     emitter.struck = 0;
     emitter.freeWay = kPastReach * emitter.look.reach;
     for (uint32_t i = 0; i < kRays; ++i) {
-        const JetHit& hit = emitter.hits[i];
+        JetHit hit = emitter.hits[i];
+        if (const components::JetHole& hole = emitter.holes[i];
+            hit.met && hole.object.index1 != 0 && hole.object.index1 == hit.object.index1 &&
+            hole.object.generation == hit.object.generation && hole.texel == hit.texel)
+            passHole(emitter, hit);
         components::JetShield shield;
         shield.met = hit.met;
         std::copy_n(hit.place, 3, shield.place);
@@ -222,6 +253,42 @@ void World::shieldJet(FireEmitter& emitter, double now) noexcept {
         components::takeShield(emitter, i, shield, now);
         emitter.struck += hit.met ? 1u : 0u;
         if (hit.met) emitter.freeWay = std::min(emitter.freeWay, hit.distance);
+    }
+}
+
+// What a ray comes to beyond a hole: for what is seen. (Its heat asks the backend.)
+void World::passHole(const FireEmitter& emitter, JetHit& hit) noexcept {
+    JetGate gate;
+    gate.object = (*objects_.find(hit.object))->slot;
+    gate.texel = hit.texel;
+    const float passed = hit.distance;
+    float start[3], way[3];
+    std::copy_n(hit.place, 3, start);
+    for (int i = 0; i < 3; ++i)
+        way[i] = passed > 0 ? (hit.place[i] - emitter.position[i]) / passed : emitter.direction[i];
+    const float left = std::max(kPastReach * emitter.look.reach - passed, 0.0f);
+    hit.distance = passed + sweepJet(start, way, left, hit, &gate);
+}
+
+// Asks what stands where jets strike: 2 to 3 frames later their particles may pass.
+void World::probeJets(ProbeFrame& known) {
+    for (uint32_t slot = 0; slot < emitters_.slotCount(); ++slot) {
+        FireEmitter* emitter = emitters_.at(slot);
+        if (!emitter || !components::isSwept(emitter->def) || !(emitter->def.power > 0)) continue;
+        for (uint32_t i = 0; i < kRays; ++i) {
+            const JetHit& hit = emitter->hits[i];
+            if (!hit.met || !objects_.find(hit.object)) continue;
+            const uint32_t holeTicks = gateTicks(hit, uint32_t(clock_.tick) + 1);
+            if (holeTicks == 0) continue;
+            frame_.probes.push_back({hit.object.index1 - 1, hit.texel});
+            ProbeRef ref;
+            ref.object = hit.object;
+            ref.texel = hit.texel;
+            ref.jet = slot + 1;
+            ref.ray = i;
+            ref.holeTicks = holeTicks;
+            known.refs.push_back(ref);
+        }
     }
 }
 
@@ -259,7 +326,16 @@ void World::launchJet(const FireEmitter& emitter, JetParcel& parcel, uint32_t no
         ray.hit = emitter.hits[i];
         ray.version = geometry_;
         ray.spent = components::kJetNever;
+        ray.gateCount = 0;
     }
+}
+
+// Ticks until a texel that was struck gives way; 0: it never does, or no fire can have been there.
+uint32_t World::gateTicks(const JetHit& hit, uint32_t tick) noexcept {
+    if (hit.object.index1 == 0) return 0;
+    const Object& object = **objects_.find(hit.object);
+    if (!components::hasHeat(object.data) || (object.firstEvent >= tick && !remoteOn())) return 0;
+    return components::holeTicks(object.data, texelMaterial(object, hit.texel), def_.paceFactor);
 }
 
 // On by one exchange. What was in the way as it left is, unless something moved since.
@@ -271,19 +347,43 @@ void World::flyJet(FireEmitter& emitter, JetParcel& parcel, uint32_t now) {
     for (JetRay& ray : parcel.rays) {
         if (ray.spent < now) continue;
         ray.spent = components::kJetNever;
-        JetHit hit = ray.hit;
-        if (ray.version != geometry_) {
-            const float back = std::max(float(from) / 1000 - kOverlap, 0.0f);
-            float start[3];
-            for (int i = 0; i < 3; ++i) start[i] = parcel.from[i] + ray.way[i] * back;
-            hit.distance = back + sweepJet(start, ray.way, float(to) / 1000 - back, hit);
+        while (ray.gateCount > 0 && ray.passed[ray.gateCount - 1] >= now) --ray.gateCount;
+        while (flyRay(emitter, parcel, ray, from, to, now)) {
         }
-        if (!hit.met || millimetres(hit.distance) > to) continue;
-        ray.spent = now;
-        const uint32_t tick = parcel.launched + components::jetArrival(parcel.flight, exchange,
-                                                                       millimetres(hit.distance));
-        if (hit.object.index1 != 0) heatByJet(emitter, parcel, hit, tick);
     }
+}
+
+// To what it meets before `to`, mm. True: it may pass there, and flies on.
+bool World::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay& ray, uint32_t from,
+                   uint32_t to, uint32_t now) {
+    JetHit hit = ray.hit;
+    if (ray.version != geometry_ || ray.gateCount > 0) {
+        const JetGate* passed = ray.gateCount > 0 ? &ray.gates[ray.gateCount - 1] : nullptr;
+        const float back =
+            std::max(float(from) / 1000 - kOverlap, passed ? passed->distance : 0.0f);
+        float start[3];
+        for (int i = 0; i < 3; ++i) start[i] = parcel.from[i] + ray.way[i] * back;
+        hit.distance = back + sweepJet(start, ray.way, float(to) / 1000 - back, hit, passed);
+    }
+    if (!hit.met || millimetres(hit.distance) > to) return false;
+    const uint32_t exchange = (now - parcel.launched) / gpu::kExchangeTicks;
+    const uint32_t tick = parcel.launched + components::jetArrival(parcel.flight, exchange,
+                                                                   millimetres(hit.distance));
+    JetGate gate;
+    gate.distance = hit.distance;
+    gate.texel = hit.texel;
+    if (ray.gateCount < components::kJetGates) gate.holeTicks = gateTicks(hit, tick);
+    if (hit.object.index1 != 0) {
+        gate.object = (*objects_.find(hit.object))->slot;
+        heatByJet(emitter, parcel, ray, hit, gate, tick);
+    }
+    if (gate.holeTicks == 0) {
+        ray.spent = now;
+        return false;
+    }
+    ray.passed[ray.gateCount] = now;
+    ray.gates[ray.gateCount++] = gate;
+    return true;
 }
 
 // Texels around a hit that face what came, or both ways where the one that was struck does.
@@ -298,11 +398,8 @@ void World::findFootprint(const Object& object, const JetHit& hit, float radius)
     const float least = leastScale(pose);
     found_.clear();
     mesh::texelsNear(domain, point, radius / least, found_);
-    const gpu::ivec3 struck = gpu::decodeNormal(domain.normals[hit.texel]);
     std::erase_if(found_, [&](uint32_t texel) {
-        const gpu::ivec3 n = gpu::decodeNormal(domain.normals[texel]);
-        if (int64_t(n.x) * struck.x + int64_t(n.y) * struck.y + int64_t(n.z) * struck.z <= 0)
-            return true;
+        if (!alike(domain, texel, hit.texel)) return true;
         float place[3], sum = 0;
         restPlace(domain, texel, place);
         for (int i = 0; i < 3; ++i) {
@@ -316,8 +413,8 @@ void World::findFootprint(const Object& object, const JetHit& hit, float radius)
 
 // All that a ray brings goes into the texels that it covers: where it is more than any fire gives,
 // it spreads over more of them.
-void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetHit& hit,
-                      uint32_t tick) {
+void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetRay& ray,
+                      const JetHit& hit, const JetGate& gate, uint32_t tick) {
     Object& object = **objects_.find(hit.object);
     if (object.texels == 0) return;
     const mesh::BurnDomain& domain = domainOf(object);
@@ -325,7 +422,9 @@ void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetHi
     const float shared = 0.10f + 0.35f * hit.distance * parcel.wide;
     const float needed = std::sqrt(watts / (3.14159265f * float(gpu::kFluxMost)));
     float radius = std::max(shared, needed);
+    const bool sure = ray.gateCount == 0;  // to get here
     if (!components::hasHeat(object.data)) {
+        if (!sure) return;  // it catches by our count alone, and we know of no hole
         emitter.heated += watts;
         heatLite(emitter, object, hit, radius, watts / (3.14159265f * radius * radius), tick);
         return;
@@ -334,7 +433,8 @@ void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetHi
     const auto areaOf = [&](uint32_t texel) {
         return std::max<uint64_t>(uint64_t(std::llround(domain.areas[texel] * square * kNano)), 1);
     };
-    const uint64_t power = parcel.power + emitter.stream->kept;
+    const uint64_t power = parcel.power + (sure ? emitter.stream->kept : 0);
+    const size_t most = kMostPoints >> ray.gateCount;
     uint64_t covered = 0;
     for (uint32_t i = 0; i < kMostGrowths && covered * gpu::kFluxMost < power; ++i) {
         findFootprint(object, hit, radius);
@@ -344,7 +444,7 @@ void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetHi
     }
     // Of very many a part at each exchange, in turn; as few as can take all of it.
     const size_t parts =
-        std::min((found_.size() + kMostPoints - 1) / kMostPoints,
+        std::min((found_.size() + most - 1) / most,
                  size_t(covered * gpu::kFluxMost / std::max(power * 5 / 4, uint64_t(1))));
     if (parts > 1) {
         size_t kept = 0;
@@ -357,11 +457,25 @@ void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetHi
     jetFlux_.resize(found_.size());
     findPendingRoom(found_.size());
     const uint64_t left = components::shareJet(power, jetAreas_, jetFlux_);
-    // What even all of them cannot take goes past.
-    emitter.stream->kept = jetFlux_[0] < gpu::kFluxMost ? left : 0;
-    emitter.heated += float(power - left) / kNano;
-    for (size_t i = 0; i < found_.size(); ++i)
-        pending_.push_back({object.slot, found_[i], gpu::kEventHeat, tick, jetFlux_[i], order_++});
+    if (sure) {  // what even all of them cannot take goes past
+        emitter.stream->kept = jetFlux_[0] < gpu::kFluxMost ? left : 0;
+        emitter.heated += float(power - left) / kNano;
+    }
+    object.firstEvent = std::min(object.firstEvent, tick);
+    PendingTexel event;
+    event.object = object.slot;
+    event.kind = gpu::kEventHeat;
+    event.tick = tick;
+    event.gates = ray.gates;
+    event.gateCount = ray.gateCount;
+    event.shut = gate.holeTicks > 0;
+    if (event.shut) event.gates[event.gateCount++] = gate;
+    for (size_t i = 0; i < found_.size(); ++i) {
+        event.texel = found_[i];
+        event.water = jetFlux_[i];
+        event.order = order_++;
+        pending_.push_back(event);
+    }
 }
 
 // What has no heat of its own catches after as long as its material takes.

@@ -91,7 +91,9 @@ void World::planSteps(const ClockAdvance& time) {
         return std::tie(a.step, a.event.object, a.event.texel, a.event.order) <
                std::tie(b.step, b.event.object, b.event.texel, b.event.order);
     });
-    frame_.events.reserve(frame_.due.size());  // spans into it must hold
+    size_t gates = 0;
+    for (const Frame::Due& due : frame_.due) gates += due.event.gateCount;
+    frame_.events.reserve(frame_.due.size() + gates);  // spans into it must hold
     frame_.remoteUsed = 0;
     frame_.remoteLatched = frame_.remoteFlushed = false;
     ++planStamp_;
@@ -115,13 +117,14 @@ void World::planSteps(const ClockAdvance& time) {
         plan.now = now;
         plan.reduce = (now / gpu::kStepTicks) % kReduceEvery == kReduceEvery - 1;
         plan.heat = (now / gpu::kStepTicks) % gpu::kHeatSteps == gpu::kHeatSteps - 1;
-        const size_t firstEvent = frame_.events.size();
+        const size_t firstEvent = frame_.events.size(), firstDue = nextDue;
         for (; nextDue < frame_.due.size() && frame_.due[nextDue].step == step; ++nextDue) {
             const PendingTexel& event = frame_.due[nextDue].event;
             frame_.events.push_back(
                 {event.object, event.texel, event.kind,
                  event.kind == FW_WET || event.kind == gpu::kEventHeat ? event.water : event.tick});
         }
+        planGates(std::span(frame_.due).subspan(firstDue, nextDue - firstDue), firstEvent);
         plan.events = std::span<const gpu::TexelEvent>(frame_.events).subspan(firstEvent);
         firstUpdate[step] = frame_.updates.size();
         planRemote(plan, now, awake);
@@ -146,25 +149,58 @@ void World::planSteps(const ClockAdvance& time) {
     }
 }
 
+// What a batch's heat came through, after its events: once for those that came the same way.
+void World::planGates(std::span<const Frame::Due> due, size_t firstEvent) {
+    constexpr size_t kRecent = 64;  // ways that are looked for
+    std::array<std::pair<const PendingTexel*, uint32_t>, kRecent> known;
+    size_t count = 0;
+    const auto same = [](const PendingTexel& a, const PendingTexel& b) {
+        if (a.gateCount != b.gateCount || a.shut != b.shut) return false;
+        for (uint32_t k = 0; k < a.gateCount; ++k)
+            if (a.gates[k] != b.gates[k]) return false;
+        return true;
+    };
+    for (size_t i = 0; i < due.size(); ++i) {
+        const PendingTexel& event = due[i].event;
+        if (event.gateCount == 0) continue;
+        uint32_t at = 0;
+        for (size_t k = 0; k < std::min(count, kRecent) && at == 0; ++k)
+            if (same(*known[k].first, event)) at = known[k].second;
+        if (at == 0) {
+            at = uint32_t(frame_.events.size() - firstEvent) + 1;
+            known[count++ % kRecent] = {&event, at};
+            for (uint32_t k = 0; k < event.gateCount; ++k) {
+                const bool last = k + 1 == event.gateCount;
+                const uint32_t kind = gpu::kEventGate | (last && event.shut ? gpu::kGateShut : 0u) |
+                                      (last ? 0u : gpu::kGateMore);
+                const components::JetGate& gate = event.gates[k];
+                frame_.events.push_back({gate.object, gate.texel, kind, gate.holeTicks});
+            }
+        }
+        frame_.events[firstEvent + i].kind |= at << gpu::kEventKindBits;
+    }
+}
+
 void World::planProbes() {
     ProbeFrame& known = probeFrames_[frames_ % kFramesInFlight];
     frame_.probes.clear();
     known.frameIndex = 0;
     known.refs.clear();
-    const size_t most = tags_.size() + queries_.live();
+    const size_t most = tags_.size() + queries_.live();  // those of jets have room
     frame_.probes.reserve(most);
     known.refs.reserve(most);
     for (const Tag& tag : tags_) {
         frame_.probes.push_back({tag.object.index1 - 1, tag.texel});
-        known.refs.push_back({true, tag.object, tag.texel, tag.tag, {}});
+        known.refs.push_back({true, tag.object, tag.texel, tag.tag, {}, 0, 0, 0});
     }
     for (uint32_t i = 0; i < queries_.slotCount(); ++i) {
         const Query* query = queries_.at(i);
         if (!query || query->asked || query->orphaned || query->isArrival) continue;
         frame_.probes.push_back({query->object.index1 - 1, query->texel});
-        known.refs.push_back({false, query->object, query->texel, 0, queries_.idOf(i)});
+        known.refs.push_back({false, query->object, query->texel, 0, queries_.idOf(i), 0, 0, 0});
     }
     wishForecasts();
+    probeJets(known);
     frame_.burnMaps.clear();
     for (uint32_t i = 0; mapsWished_ > 0 && i < objects_.slotCount(); ++i)
         if (auto* object = objects_.at(i); object &&

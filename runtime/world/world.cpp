@@ -454,7 +454,7 @@ void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
     Object& object = *objects_.get(id);
     const components::Pose before = object.data.pose;
     components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
-    if (object.data.pose != before) {
+    if (!(object.data.pose == before)) {
         ++geometry_;
         ++object.changes;
     }
@@ -525,9 +525,10 @@ void World::findPendingRoom(size_t more) {
         std::max(pending_.size() + more, std::min(pending_.capacity() * 2, size_t(65536))));
 }
 
-void World::addPending(const Object& object, uint32_t kind, uint32_t tick, uint32_t water,
+void World::addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                        std::span<const uint32_t> texels) {
     findPendingRoom(texels.size());
+    object.firstEvent = std::min(object.firstEvent, tick);
     for (uint32_t texel : texels)
         pending_.push_back({object.slot, texel, kind, tick, water, order_++});
 }
@@ -596,7 +597,7 @@ uint32_t World::ignite(const FwIgnitionDef& def) {
 }
 
 void World::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels) {
-    const Object& object = *objects_.get(id);
+    Object& object = *objects_.get(id);
     checkLimit(kind, "kind", 0, FW_EXTINGUISH);
     const uint32_t count = domainOf(object).texelCount();
     for (size_t i = 0; i < texels.size(); ++i)

@@ -68,13 +68,14 @@ struct Object {
     uint64_t firstFrame = 0;              // readbacks of older frames speak of another object
     std::pmr::vector<uint16_t> slowness;  // per texel, Q7; empty: the mesh's own
     // What happened, in ticks.
-    bool touched = false;        // an event ever addressed it: it filters wind and latches
-    bool active = false;         // its front or flames may still move
-    bool sawFire = false;        // since the last IGNITED
-    uint64_t lastStimulus = 0;   // tick of the last event or latch sent
-    uint64_t lastDouse = 0;      // tick, 0: never
-    uint64_t lastBurning = 0;    // tick of the last readback with burning texels
-    uint64_t firstIgnition = 0;  // tick of the ignition that started this fire
+    bool touched = false;               // an event ever addressed it: it filters wind and latches
+    bool active = false;                // its front or flames may still move
+    bool sawFire = false;               // since the last IGNITED
+    uint64_t lastStimulus = 0;          // tick of the last event or latch sent
+    uint32_t firstEvent = 0xFFFFFFFFu;  // tick of the first event ever
+    uint64_t lastDouse = 0;             // tick, 0: never
+    uint64_t lastBurning = 0;           // tick of the last readback with burning texels
+    uint64_t firstIgnition = 0;         // tick of the ignition that started this fire
     bool doused = false, ignitionKnown = false;
     float ignitionPoint[3] = {};  // m, object space
     // Fire at a distance: as others see it, latched every kRemoteLatchTicks.
@@ -241,8 +242,12 @@ struct RemoteTables {  // what a RemoteUpdate of a frame points to
 };
 
 struct PendingTexel {  // an event that waits for its step
-    uint32_t object = 0, texel = 0, kind = 0, tick = 0, water = 0;  // g/m^2
+    uint32_t object = 0, texel = 0, kind = 0, tick = 0, water = 0;  // g/m^2; of heat: W/m^2
     uint64_t order = 0;
+    // Of heat that came through holes, if they are there: the last gate may have to be shut.
+    std::array<components::JetGate, components::kJetGates> gates{};
+    uint32_t gateCount = 0;
+    bool shut = false;
 };
 
 void checkWorldDef(const FwWorldDef& def);  // throws
@@ -352,6 +357,8 @@ class World {
         FwBurnableMeshId object{};
         uint32_t texel = 0, tag = 0;
         FwQueryId query{};
+        uint32_t jet = 0, ray = 0;  // slot + 1 of an emitter
+        uint32_t holeTicks = 0;     // of a jet's: see gateTicks
     };
     struct ProbeFrame {
         explicit ProbeFrame(std::pmr::memory_resource* memory) : refs(memory) {}
@@ -425,18 +432,25 @@ class World {
     void takeFields(const gpu::Readback& readback) noexcept;
     void sendFieldRules() noexcept;
     // jets.cpp
-    float sweepJet(const float start[3], const float way[3], float most,
-                   components::JetHit& hit) noexcept;
+    float sweepJet(const float start[3], const float way[3], float most, components::JetHit& hit,
+                   const components::JetGate* passed = nullptr) noexcept;
+    uint32_t gateTicks(const components::JetHit& hit, uint32_t tick) noexcept;
     void sweepJets(components::FireEmitter& emitter) noexcept;
     void shieldJet(components::FireEmitter& emitter, double now) noexcept;
     void touchByJet(components::FireEmitter& emitter, uint32_t now);
+    void passHole(const components::FireEmitter& emitter, components::JetHit& hit) noexcept;
     void launchJet(const components::FireEmitter& emitter, components::JetParcel& parcel,
                    uint32_t now) const noexcept;
     void flyJet(components::FireEmitter& emitter, components::JetParcel& parcel, uint32_t now);
+    bool flyRay(components::FireEmitter& emitter, const components::JetParcel& parcel,
+                components::JetRay& ray, uint32_t from, uint32_t to, uint32_t now);
     void heatByJet(components::FireEmitter& emitter, const components::JetParcel& parcel,
-                   const components::JetHit& hit, uint32_t tick);
+                   const components::JetRay& ray, const components::JetHit& hit,
+                   const components::JetGate& gate, uint32_t tick);
     void heatLite(components::FireEmitter& emitter, Object& object, const components::JetHit& hit,
                   float radius, float flux, uint32_t now);
+    void probeJets(ProbeFrame& known);
+    void planGates(std::span<const Frame::Due> due, size_t firstEvent);
     void findFootprint(const Object& object, const components::JetHit& hit, float radius);
     // fire_colliders.cpp
     void listFireColliders() noexcept;
@@ -496,7 +510,7 @@ class World {
                               core::Owned<Object> owned);
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
     void findPendingRoom(size_t more);  // throws
-    void addPending(const Object& object, uint32_t kind, uint32_t tick, uint32_t water,
+    void addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                     std::span<const uint32_t> texels);
     uint32_t eventTick(float delay) const;
     MeshEntry makeEntry(core::Owned<mesh::BurnDomain> domain) const;

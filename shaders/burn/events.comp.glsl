@@ -25,6 +25,22 @@ layout(local_size_x = 64) in;
 #include "lib/lists.glsl"
 #include "lib/change.glsl"
 
+// Of a flame that came through holes: whether they are there.
+bool gatesLet(uint kind) {
+    uint gate = kind >> kEventKindBits;
+    bool lets = true, more = gate != 0u;
+    for (uint k = 0u; k < kGates; ++k) {
+        uint i = more ? gate - 1u + k : 0u;
+        TexelEvent at = events[i];
+        bool heats = more && (objects[at.object].flags & kObjectHeat) != 0u;
+        HeatTexel x = unpackHeat(heat[objects[at.object].heatBase + (heats ? at.texel : 0u)]);
+        uint t = state[objects[at.object].stateBase + at.texel];
+        lets = lets && (!more || (heats && gateLets(at.kind, at.tick, x, t, push.now)));
+        more = more && (at.kind & kGateMore) != 0u;
+    }
+    return lets;
+}
+
 void applyRun(uint first) {
     uint object = events[first].object;
     uint texel = events[first].texel;
@@ -41,7 +57,9 @@ void applyRun(uint first) {
         uvec2 had = heat[heatAt];
         HeatTexel x = unpackHeat(had);
         do {
-            now = heatEvent(x, m, now, events[last].kind, events[last].tick, push.now);
+            uint kind_ = events[last].kind;
+            bool lets = kind_ <= kEventGate || gatesLet(kind_);
+            if (lets) now = heatEvent(x, m, now, eventKind(events[last].kind), events[last].tick, push.now);
             ++last;
         } while (last < push.count && events[last].object == object &&
                  events[last].texel == texel);
@@ -50,7 +68,7 @@ void applyRun(uint first) {
         warms = has != had || now != before;
     } else {
         do {
-            now = applyEvent(now, events[last].kind, events[last].tick, push.now);
+            now = applyEvent(now, eventKind(events[last].kind), events[last].tick, push.now);
             ++last;
         } while (last < push.count && events[last].object == object &&
                  events[last].texel == texel);
@@ -76,6 +94,7 @@ void main() {
     if (i >= push.count) return;
     uint object = events[i].object;
     uint texel = events[i].texel;
+    if (eventKind(events[i].kind) == kEventGate) return;
     if (i > 0u && events[i - 1u].object == object && events[i - 1u].texel == texel) return;
     applyRun(i);
 }

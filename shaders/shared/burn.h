@@ -177,7 +177,15 @@ FW_SHARED_CONST uint kEventIgnite = 0u;
 FW_SHARED_CONST uint kEventWet = 1u;
 FW_SHARED_CONST uint kEventDry = 2u;
 FW_SHARED_CONST uint kEventExtinguish = 3u;
-FW_SHARED_CONST uint kEventHeat = 4u;  // ours: a flame blows on it for a heat step
+FW_SHARED_CONST uint kEventHeat = 4u;  // ours: a flame blows on it for a heat step, if its gates let
+                                       // it: the index of the first, plus 1, above kEventKindBits
+// A texel that a flame came to on its way, after the batch's other events, in no order; changes
+// nothing. tick: from ignition until it gives way.
+FW_SHARED_CONST uint kEventGate = 5u;
+FW_SHARED_CONST uint kEventKindBits = 8u;
+FW_SHARED_CONST uint kGateShut = 0x100u;  // of a gate's kind: it must still stand, else be gone
+FW_SHARED_CONST uint kGateMore = 0x200u;  // of a gate's kind: the next must let it too
+FW_SHARED_CONST uint kGates = 2u;         // of an event at most
 
 struct BurnObject {   // everything a pass needs to find an object's planes
     uint texelBase;   // into texels, normals (per mesh)
@@ -333,6 +341,8 @@ FW_SHARED_FN bool isSource(uint t) { return t < kLiveEnd; }
 FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }
 FW_SHARED_FN bool isBarrier(uint t) { return t == kInert || t == kWet || t == kOutWet; }
 
+FW_SHARED_FN uint eventKind(uint kind) { return kind & ((1u << kEventKindBits) - 1u); }
+
 // What one event makes of one texel. `now`: start tick of the step that applies it.
 FW_SHARED_FN uint applyEvent(uint t, uint kind, uint tick, uint now) {
     if (kind == kEventIgnite)
@@ -342,7 +352,7 @@ FW_SHARED_FN uint applyEvent(uint t, uint kind, uint tick, uint now) {
         return (isSource(t) || t == kOut) ? kOutWet : t;
     }
     if (kind == kEventDry) return t == kWet ? kNever : (t == kOutWet ? kOut : t);
-    if (kind == kEventHeat) return t;
+    if (kind == kEventHeat || kind == kEventGate) return t;
     return isSource(t) ? kOut : t;  // extinguish
 }
 

@@ -328,6 +328,14 @@ FW_SHARED_FN void heatBlows(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint f
     x.heat = heat;
 }
 
+// Does a texel let pass what came to it as `gate` (TexelEvent)? No event of the step can change
+// that: of what has burnt out neither phase nor ignition does.
+FW_SHARED_FN bool gateLets(uint gateKind, uint holeTicks, FW_IN(HeatTexel) x, uint t, uint now) {
+    bool gone = x.phase == kPhaseBurnt && x.fuel == 0u && isSource(t) && t <= now &&
+                now - t >= holeTicks;
+    return gone == ((gateKind & kGateShut) == 0u);
+}
+
 // What one event makes of texel and state. Water does not put out by itself: heat steps do, when it
 // takes more than the fire gives. tick: as TexelEvent, W/m^2 of kEventHeat; now: start of the step.
 FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind,

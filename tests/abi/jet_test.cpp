@@ -94,6 +94,43 @@ TEST(Jet, AHoleLetsItThrough) {
     EXPECT_LT(r.jetState().struck, 17u);
 }
 
+// A hole that burns: what stands behind is safe as long as the sheet stands, and no longer. Sheets
+// that no hole may burn through stop it for ever.
+TEST(Jet, AHoleThatBurnsLetsItThrough) {
+    for (const bool holes : {true, false}) {
+        Range r(true);
+        FwMaterialDef paper = fwDefaultMaterialDef();
+        ASSERT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(r.world, &paper, &r.material));
+        FwBurnableMeshDef sheet = r.panel(3, 0);
+        if (!holes) sheet.flags |= FW_BURNABLE_NO_HOLES;
+        r.add(sheet);
+        r.wall(4.5f);
+        r.fire();
+        double came = 0;
+        for (double t = 0; t < 12 && came == 0; t += 0.125) {
+            r.run(0.125);
+            if (r.lit(1) > 0) came = t;
+        }
+        if (!holes) {
+            EXPECT_EQ(0, came);
+            continue;
+        }
+        // It needs as long as its look says, after the stream has lit it.
+        FwPointState point{};
+        point.structSize = sizeof point;
+        FwQueryId query{};
+        const float there[3] = {3, 1, 0};
+        ASSERT_EQ(FW_OK, fwWorld_RequestPoint(r.world, r.ids[0], there, &query));
+        ASSERT_EQ(FW_OK, fwWorld_FetchPoint(r.world, query, &point));
+        EXPECT_LT(1, came);
+        EXPECT_GT(8, came);
+        EXPECT_EQ(0, point.fuel);
+        r.run(0.25);
+        EXPECT_GT(r.jetState().freeWay, 4) << "its particles pass too";
+    }
+}
+
 // Where two walls meet nothing leaks (RMC-14#8951).
 TEST(Jet, ACornerDoesNotLeak) {
     Range r;

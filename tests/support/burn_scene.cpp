@@ -243,6 +243,21 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
                          [](const gpu::TexelEvent& a, const gpu::TexelEvent& b) {
                              return a.object != b.object ? a.object < b.object : a.texel < b.texel;
                          });
+        // Some heat comes through holes, if there are any.
+        const size_t sorted = texels.size();
+        for (size_t i = 0; i < sorted; ++i) {
+            if (texels[i].kind != gpu::kEventHeat || chance(0.3)) continue;
+            texels[i].kind |= uint32_t(texels.size() + 1) << gpu::kEventKindBits;
+            const uint32_t gates = 1 + pick(gpu::kGates);
+            for (uint32_t k = 0; k < gates; ++k) {
+                const uint32_t object = pick(objects);
+                const uint32_t shut = chance(0.5) ? gpu::kGateShut : 0;
+                const uint32_t more = k + 1 < gates ? gpu::kGateMore : 0;
+                texels.push_back({object,
+                                  pick(scene_.domains[scene_.objects[object].mesh].texelCount()),
+                                  gpu::kEventGate | shut | more, pick(2 * gpu::kTicksPerSecond)});
+            }
+        }
         std::vector<gpu::MaterialUpdate> updates;
         if (chance(latches)) {
             const uint32_t object = pick(objects);

@@ -106,7 +106,7 @@ TEST(JetStream, SharesAllOfItsPowerExactly) {
     }
 }
 
-// Sums the heat that a world sends to its backend, per exchange, as nW.
+// Sums the heat that a world sends to its backend, as nW, while nothing has burnt through.
 class HeatBook final : public gpu::Backend {
  public:
     void createMesh(uint32_t, const mesh::BurnDomain&) override {}
@@ -120,7 +120,7 @@ class HeatBook final : public gpu::Backend {
     void run(const gpu::FramePlan& plan) override {
         for (const gpu::StepPlan& step : plan.steps)
             for (const gpu::TexelEvent& event : step.events)
-                if (event.kind == gpu::kEventHeat) {
+                if (gpu::eventKind(event.kind) == gpu::kEventHeat && stands(step.events, event)) {
                     heat[event.object] += areas.at(event.object).at(event.texel) * event.tick;
                     list.push_back({step.now, event.object, event.texel, event.tick});
                 }
@@ -128,6 +128,12 @@ class HeatBook final : public gpu::Backend {
     const gpu::Readback* nextReadback() override { return nullptr; }
     std::span<const gpu::PassTime> passTimes() override { return {}; }
     void memoryRows(std::pmr::vector<gpu::MemoryRow>&) override {}
+
+    // Every gate that it came through would have to be gone.
+    static bool stands(std::span<const gpu::TexelEvent> batch, const gpu::TexelEvent& event) {
+        const uint32_t gate = event.kind >> gpu::kEventKindBits;
+        return gate == 0 || (batch[gate - 1].kind & gpu::kGateShut) != 0;
+    }
 
     std::map<uint32_t, std::vector<uint64_t>> areas;  // 1e-9 m^2, by object and texel
     std::map<uint32_t, uint64_t> heat;

@@ -703,7 +703,8 @@ typedef struct FwFireEmitterDef {
      * nozzle that is pushed into a wall or through it burns that wall, not the room beyond. Of its power the
      * share `heat` goes into what it strikes, all of it, spread over where: eight times a second, when the stream
      * has flown there (a wall that comes between is met), by the host's numbers alone, the same on every backend.
-     * Burnt-through holes of a mesh still stop it; those of its shape do not. */
+     * It comes through holes: those of a mesh's shape, and those that have burnt, as long as FwBurnableMeshDef lets
+     * holes burn and no two walls more are in the way; not those of FW_BURNABLE_LITE, nor to what is that. */
     float behind;               /* m, [0, 10], default 0.5 */
     float heat;                 /* [0, 1], default 0.35 */
 } FwFireEmitterDef;

@@ -113,20 +113,21 @@ void CpuBackend::State::touchReaders(const CpuObject& object, uint32_t local,
 void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
     for (size_t i = 0; i < step.events.size();) {
         const TexelEvent& first = step.events[i];
+        if (eventKind(first.kind) == kEventGate) break;  // the rest are
         CpuObject& object = *objects[first.object];
         uint32_t& texel = object.state[first.texel];
         const uint32_t before = texel;
         const size_t begin = i;
         while (i < step.events.size() && step.events[i].object == first.object &&
-               step.events[i].texel == first.texel)
+               step.events[i].texel == first.texel && eventKind(step.events[i].kind) != kEventGate)
             ++i;
         const auto events = step.events.subspan(begin, i - begin);
         uint32_t now = before;
         if (!object.heat.empty())
-            now = heatEvents(object, events, step.now);
+            now = heatEvents(object, step.events, events, step.now);
         else
             for (const TexelEvent& event : events)
-                now = applyEvent(now, event.kind, event.tick, step.now);
+                now = applyEvent(now, eventKind(event.kind), event.tick, step.now);
         if (now == before) continue;
         texel = now;
         const uint32_t x = first.texel % object.domain->width;

@@ -23,8 +23,21 @@ void CpuBackend::State::hot(uint32_t worldTile) noexcept {
     flag |= kTileHot | kTileWarm;
 }
 
-uint32_t CpuBackend::State::heatEvents(CpuObject& object, std::span<const TexelEvent> events,
-                                       uint32_t now) noexcept {
+bool CpuBackend::State::gatesLet(std::span<const TexelEvent> batch, uint32_t kind,
+                                 uint32_t now) const noexcept {
+    const TexelEvent* gate = batch.data() + (kind >> kEventKindBits) - 1;
+    for (;; ++gate) {
+        const CpuObject& object = *objects[gate->object];
+        if (object.heat.empty() ||
+            !gateLets(gate->kind, gate->tick, unpackHeat(object.heat[gate->texel]),
+                      object.state[gate->texel], now))
+            return false;
+        if ((gate->kind & kGateMore) == 0) return true;
+    }
+}
+
+uint32_t CpuBackend::State::heatEvents(CpuObject& object, std::span<const TexelEvent> batch,
+                                       std::span<const TexelEvent> events, uint32_t now) noexcept {
     const uint32_t texel = events[0].texel;
     const mesh::BurnDomain& domain = *object.domain;
     const HeatMaterial& m = object.heatMaterials[domain.texels[texel].materialFlags & 7];
@@ -33,7 +46,8 @@ uint32_t CpuBackend::State::heatEvents(CpuObject& object, std::span<const TexelE
     HeatTexel x = unpackHeat(had);
     uint32_t after = before;
     for (const TexelEvent& event : events)
-        after = heatEvent(x, m, after, event.kind, event.tick, now);
+        if (event.kind <= kEventGate || gatesLet(batch, event.kind, now))
+            after = heatEvent(x, m, after, eventKind(event.kind), event.tick, now);
     object.heat[texel] = packHeat(x);
     if (after != before || object.heat[texel] != had) {
         const uint32_t tile =

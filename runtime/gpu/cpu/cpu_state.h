@@ -92,7 +92,9 @@ struct CpuBackend::State {
     void scheduleTile(const StepPlan& step, uint32_t iteration, uint32_t worldTile,
                       bool dense) noexcept;
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
-    uint32_t heatEvents(CpuObject& object, std::span<const TexelEvent> events,
+    bool gatesLet(std::span<const TexelEvent> batch, uint32_t kind, uint32_t now) const noexcept;
+    uint32_t heatEvents(CpuObject& object, std::span<const TexelEvent> batch,
+                        std::span<const TexelEvent> events,
                         uint32_t now) noexcept;  // cpu_heat.cpp: the texel's state after them
     void heatStep(uint32_t now) noexcept;
     void heatTile(uint32_t worldTile, bool doze, uint32_t now) noexcept;

@@ -254,7 +254,9 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     ObjectEntry& object = s.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
     object.lastEvent = std::max<uint64_t>(object.lastEvent, now + kStepTicks);
-    const bool douses = event.kind != kEventIgnite && event.kind != kEventHeat && !object.doused;
+    const uint32_t kind = eventKind(event.kind);
+    const bool douses =
+        kind != kEventIgnite && kind != kEventHeat && kind != kEventGate && !object.doused;
     if (object.touched && !douses) return;
     object.touched = true;
     object.doused = object.doused || douses;
