@@ -12,7 +12,7 @@ namespace {
 constexpr uint32_t kPublishedRate = 10;  // Hz
 constexpr uint32_t kTicksPerSecond = 4096;
 constexpr float kMostWind = 1.5f;  // cells a step
-constexpr uint32_t kFlags = FW_FIELD_HIDDEN | FW_FIELD_AS_PUBLISHED;
+constexpr uint32_t kFlags = FW_FIELD_HIDDEN | FW_FIELD_AS_PUBLISHED | FW_FIELD_WETS;
 constexpr uint32_t kOpen =
     FW_FIELD_OPEN_LEFT | FW_FIELD_OPEN_RIGHT | FW_FIELD_OPEN_BOTTOM | FW_FIELD_OPEN_TOP;
 static_assert(FW_FIELD_OPEN_LEFT == gpu::kFieldOpenLeft &&
@@ -114,6 +114,21 @@ void setFieldPlace(ParticleField& field, const float position[3], const float ro
     if (rotation) checkRotation(rotation, "rotation");
     std::copy_n(position, 3, field.position);
     if (rotation) std::copy_n(rotation, 4, field.rotation);
+}
+
+void cellPlace(const ParticleField& field, float u, float v, float (&out)[3]) noexcept {
+    const float* q = field.rotation;
+    gpu::vec3 p((u - 0.5f) * field.size[0], v * field.size[1], 0);
+    if (field.shape != FW_FIELD_CARD) {  // as field_draw.vert has it
+        const float lon = 6.2831853f * u, lat = 3.1415927f * (v - 0.5f);
+        p = gpu::vec3(std::cos(lat) * std::cos(lon) * field.size[0],
+                      (std::sin(lat) + 1) * field.size[1],
+                      -std::cos(lat) * std::sin(lon) * field.size[2]) *
+            0.5f;
+    }
+    const gpu::vec3 axis(q[0], q[1], q[2]);
+    p += 2.0f * glm::cross(axis, glm::cross(axis, p) + q[3] * p);
+    for (int i = 0; i < 3; ++i) out[i] = field.position[i] + p[i];
 }
 
 void setFieldAmount(ParticleField& field, float amount) {

@@ -38,6 +38,8 @@ void setFieldAmount(ParticleField& field, float amount);
 void paintField(ParticleField& field, const uint8_t* paint, const uint8_t* walls) noexcept;
 // In this wind, m/s.
 [[nodiscard]] field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexcept;
+// Where a part of it is, m, world; u, v: over the field, [0, 1]. Of a card: as it was placed.
+void cellPlace(const ParticleField& field, float u, float v, float (&out)[3]) noexcept;
 // How many steps it has made `ticks` after it began.
 [[nodiscard]] uint32_t fieldSteps(const ParticleField& field, uint64_t ticks) noexcept;
 

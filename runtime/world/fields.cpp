@@ -18,6 +18,11 @@ FwParticleFieldId World::createParticleField(const FwParticleFieldDef& def) {
     frame_.fieldRounds.reserve(kMaxSteps);
     frame_.fieldDraws.reserve(gpu::kMaxFields);
     frame_.fieldsDrawn.reserve(gpu::kMaxFields);
+    if (def.flags & FW_FIELD_WETS) {
+        field->cells = core::Owned<field::Field>::make(memory_, memory_);
+        field::startField(*field->cells, def.width, def.height);
+        field::maskField(*field->cells, field->data.masks);
+    }
     const Field& made = *field;
     const FwParticleFieldId id = fields_.create(std::move(field));
     try {
@@ -61,6 +66,7 @@ void World::paintParticleField(FwParticleFieldId id, const uint8_t* paint, const
     components::paintField(field, paint, walls);
     try {
         backend_.setFieldMasks(id.index1 - 1, field.masks);
+        if (auto& cells = fields_.get(id)->cells) field::maskField(*cells, field.masks);
     } catch (...) {
         field.paint.swap(before.paint);
         field.walls.swap(before.walls);
@@ -132,8 +138,10 @@ void World::planFieldDraws(const Clock& now) noexcept {
 void World::commitFields(uint64_t end) noexcept {
     fieldsShown_ = uint32_t(frame_.fieldDraws.size());
     for (uint32_t i = 0; i < fields_.slotCount(); ++i)
-        if (auto* field = fields_.at(i))
+        if (auto* field = fields_.at(i)) {
             (*field)->steps = components::fieldSteps((*field)->data, end - (*field)->began);
+            stepCells(**field, end);  // before the host changes its rules
+        }
 }
 
 void World::takeFields(const gpu::Readback& readback) noexcept {

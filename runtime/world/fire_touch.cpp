@@ -84,6 +84,8 @@ void World::touchByFires(uint64_t end) {
             if (auto* emitter = emitters_.at(i);
                 emitter && (emitter->def.flags & FW_EMITTER_IGNITES))
                 touchByJet(*emitter, uint32_t(now));
+        for (uint32_t i = 0; i < fields_.slotCount(); ++i)
+            if (auto* field = fields_.at(i)) touchByField(**field, uint32_t(now));
     }
 }
 

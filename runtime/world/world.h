@@ -153,6 +153,8 @@ struct Field {
     uint64_t firstFrame = 0;  // readbacks of older frames speak of another field
     gpu::FieldCounters counters{};
     uint64_t countersFrame = 0;
+    // The same cells as the backend's, of one that wets: what it touches is ours to know.
+    core::Owned<field::Field> cells;
 };
 
 // Piloted ignition under `flux` W/m^2: thick or thin, whichever is sooner.
@@ -457,6 +459,9 @@ class World {
     // fire_touch.cpp
     void touchByFires(uint64_t end);  // events up to a tick
     void touchByFire(Fire& fire, uint32_t now);
+    // field_touch.cpp
+    void stepCells(Field& field, uint64_t tick) noexcept;
+    void touchByField(Field& field, uint32_t now);
     // latch.cpp
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
     [[nodiscard]] components::DriveInput driveInput() const noexcept;

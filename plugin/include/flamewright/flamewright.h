@@ -762,6 +762,11 @@ typedef enum FwFieldOpen {        /* borders over which particles leave; the oth
 typedef enum FwParticleFieldFlags {
     FW_FIELD_HIDDEN = 1,          /* not drawn; time passes for it */
     FW_FIELD_AS_PUBLISHED = 2,    /* ten steps a second, and shown as they are */
+    FW_FIELD_WETS = 4,            /* of water: wets the burnable meshes that it touches, and so puts them out: eight
+                                     times a second, by what is in its cells, the same on every backend. Where cells
+                                     are full that is 320 g/m^2 in a second. A card counts as a sheet across its own
+                                     x axis, however it turns to the eye. It costs a step of the CPU's for each of
+                                     the field's */
     FW_FIELD_FLAGS_FORCE32 = 0x7fffffff
 } FwParticleFieldFlags;
 /* Particles counted in cells, in integers: none is lost or made but by a source, by the end of its life and over
