@@ -60,9 +60,9 @@ Game::Game(const village::Scene& scene, FireVillage& fires, uint32_t seed, glm::
         placed.frame = instance.frame;
         placed.tint = instance.tint;
         placed.moves = instance.roadMetres >= 0;
-        if (Kit(instance.model) == Kit::kFlamethrower) {
+        placed.moves |= Kit(instance.model) == Kit::kFlamethrower;
+        if (placed.moves && instance.roadMetres < 0 && turret_ == ~size_t{0}) {
             turret_ = i;
-            placed.moves = true;
             yaw_ = std::atan2(instance.frame.z.x, instance.frame.z.z);
         }
         placed_.push_back(placed);

@@ -28,6 +28,7 @@ class Game {
     void advance(float deltaTime);
 
     std::span<const Placed> placed() const { return placed_; }
+    std::span<Placed> placed() { return placed_; }
     const std::vector<JetParticle>& flames(glm::vec3 forward) { return jet_.billboards(forward); }
     glm::vec3 wind() const { return wind_; }
     // The jet as lights for the renderer; empty while it is shut.
@@ -46,9 +47,9 @@ class Game {
     std::vector<Placed> placed_;
     std::vector<Marcher> marchers_;
     Jet jet_;
-    size_t turret_ = 0;          // into placed_
-    float yaw_ = 0, pitch_ = 0;  // rad
-    float hold_ = 0;             // s the valve stays open
+    size_t turret_ = ~size_t{0};  // into placed_: the first one
+    float yaw_ = 0, pitch_ = 0;   // rad
+    float hold_ = 0;              // s the valve stays open
     bool open_ = false;
     float time_ = 0;
     glm::vec3 steadyWind_, wind_;

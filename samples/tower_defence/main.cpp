@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <string>
 
 #include "common/filming.h"
@@ -10,6 +11,7 @@
 #include "common/progress.h"
 #include "common/stage.h"
 #include "game.h"
+#include "throwers.h"
 
 namespace {
 
@@ -18,6 +20,8 @@ struct Choices {
     float wind[3] = {-2.4f, 0.0f, -2.0f};  // m/s, from the sea behind the tower
     float pace = 14.0f;                    // how much faster than real thatch the fire runs
     bool antialias = false;
+    float throwers = 0;     // flamethrower towers more
+    bool holdFire = false;  // they stand there alone
 };
 
 tower::Daylight daylightOf(const std::string& name) {
@@ -95,6 +99,7 @@ std::vector<tower::PointLight> lampLights(const village::Scene& scene) {
 }
 
 std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tower::Game& game,
+                                            const tower::Throwers& throwers,
                                             const std::vector<tower::PointLight>& lamps,
                                             const tower::Daylight& light) {
     constexpr size_t kMost = 10;
@@ -103,6 +108,7 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
     constexpr float kJetIntensity = 7.0f;
     const float firePerWatt = dark ? 4.5e-5f : 2e-5f;
     std::vector<tower::PointLight> all = game.jetLights(kJetIntensity);
+    throwers.addLights(kJetIntensity, all);
     const auto burning = fires.lights(firePerWatt);
     all.insert(all.end(), burning.begin(), burning.end());
     if (dark) all.insert(all.end(), lamps.begin(), lamps.end());
@@ -118,7 +124,9 @@ int run(const sample::Options& options, const Choices& choices) {
     constexpr double kStory = 10;  // s
     const uint32_t frames = sample::framesOf(options, kStory);
     sample::Progress startUp("painting the village", 2);
-    const village::Scene scene = village::makeVillage(options.seed);
+    village::Scene scene = village::makeVillage(options.seed);
+    const auto turrets =
+        tower::placeThrowers(scene, static_cast<uint32_t>(std::lround(choices.throwers)));
     const tower::PaintedVillage painted = tower::paintVillage(scene);
     startUp.update(1);
 
@@ -142,6 +150,8 @@ int run(const sample::Options& options, const Choices& choices) {
         tower::FireVillage fires(fire, scene, painted, options.seed);
         tower::Game game(scene, fires, options.seed,
                          {choices.wind[0], choices.wind[1], choices.wind[2]});
+        constexpr float kThrowerPower = 700;  // kW
+        tower::Throwers throwers(fire, scene, turrets, choices.holdFire ? 0 : kThrowerPower);
         const std::vector<tower::PointLight> lamps = lampLights(scene);
         startUp.update(2);
         startUp.finish();
@@ -155,6 +165,7 @@ int run(const sample::Options& options, const Choices& choices) {
         sample::Filming filming(stage, options, film);
 
         Overview overview;
+        const clock_t began = std::clock();
         sample::StageFrame frame;
         while (stage.next(frame)) {
             if (options.headless)
@@ -167,12 +178,13 @@ int run(const sample::Options& options, const Choices& choices) {
                 stage.made.exposure = light.exposure;
             }
             game.advance(frame.deltaTime);
+            throwers.advance(frame.deltaTime, game.placed());
             const glm::vec3 wind = game.wind();
             fire.check(fwWorld_SetWind(fire.world, &wind[0]), "fwWorld_SetWind");
 
             const sample::Camera camera = overview.camera();
             const FwView view = fireView(camera, light, frame);
-            const auto lights = gatherLights(fires, game, lamps, light);
+            const auto lights = gatherLights(fires, game, throwers, lamps, light);
             const auto& jet = game.flames(glm::normalize(camera.target - camera.eye));
             renderer.prepare(frame, {camera, light, game.placed(), lights, jet});
             fire.recordOutside(frame, view);
@@ -199,7 +211,12 @@ int run(const sample::Options& options, const Choices& choices) {
                              std::to_string(fires.burning()) + " still burn, " +
                              std::to_string(game.felled()) + " enemies down"},
                 {"triangles", "at most " + std::to_string(renderer.mostTriangles()) + " in a view"},
-                {"time", perFrame}};
+                {"throwers", std::to_string(turrets.size()) +
+                                 (choices.holdFire ? " that hold their fire" : "")},
+                {"time", perFrame},
+                {"processor",
+                 std::to_string(int(1e3 * double(std::clock() - began) / CLOCKS_PER_SEC / frames)) +
+                     " ms a frame, of all threads"}};
             filming.finish(summary, fire);
         }
     }
@@ -222,6 +239,9 @@ int main(int argc, char** argv) {
         parser.addVector("--wind", "m/s, x east, z towards the camera", choices.wind);
         parser.addNumber("--pace", "how much faster than real thatch it burns", choices.pace, 0.1f,
                          1000.0f);
+        parser.addNumber("--throwers", "flamethrower towers more, along the road", choices.throwers,
+                         0.0f, 200.0f);
+        parser.addFlag("--hold-fire", "those do not fire", choices.holdFire);
         parser.addFlag("--msaa", "four samples a pixel", choices.antialias);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.fps == 0) options.fps = options.headless ? 10.0 : 30.0;
