@@ -130,10 +130,37 @@ bool aroundGate(const mesh::BurnDomain& domain, const components::Pose& pose, ui
     return sum < far * far && alike(domain, gate, texel);
 }
 
+float mostScale(const components::Pose& pose) noexcept {
+    return pose.scale * std::max({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+}
+
 }  // namespace
 
-// m to the nearest thing in the way of a ray, or `most`. passed: a texel that it went through, with
-// what lies around it on the same side.
+// The objects that rays from there may meet, for the sweeps that follow.
+void World::listJetTargets(const float from[3], float reach) noexcept {
+    jetSlots_.clear();  // room was found with each object
+    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
+        const auto* owned = objects_.at(slot);
+        if (!owned) continue;
+        const Object& object = **owned;
+        const components::Pose& pose = object.data.pose;
+        const mesh::BurnDomain& domain = domainOf(object);
+        float middle[3], at[3], away = 0, wide = 0;
+        for (int i = 0; i < 3; ++i) {
+            middle[i] = 0.5f * (domain.boundsLow[i] + domain.boundsHigh[i]);
+            const float half = (domain.boundsHigh[i] - middle[i]) * pose.stretch[i] * pose.scale;
+            wide += half * half;
+        }
+        components::toWorld(pose, middle, at);
+        for (int i = 0; i < 3; ++i) away += (at[i] - from[i]) * (at[i] - from[i]);
+        const float far =
+            reach + std::sqrt(wide) + kFarStep + 4 * domain.texelSide * mostScale(pose);
+        if (object.skinMoved || away < far * far) jetSlots_.push_back(slot);
+    }
+}
+
+// m to the nearest of jetSlots_ and colliders in the way of a ray, or `most`. passed: a texel that
+// it went through, with what lies around it on the same side.
 float World::sweepJet(const float start[3], const float way[3], float most, JetHit& hit,
                       const JetGate* passed) noexcept {
     const vec3 from = vecOf(start), along = vecOf(way);
@@ -141,15 +168,12 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
     float nearest = sweepShapes(fireShapes_, from, along, most, normal);
     hit = {};
     hit.met = nearest < most;
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
-        const auto* owned = objects_.at(slot);
-        if (!owned) continue;
-        const Object& object = **owned;
+    for (const uint32_t slot : jetSlots_) {
+        const Object& object = **objects_.at(slot);
         const components::Pose& pose = object.data.pose;
         const mesh::BurnDomain& domain = domainOf(object);
         const float least = leastScale(pose);
-        const float most_ =
-            pose.scale * std::max({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+        const float most_ = mostScale(pose);
         // Closer than half a link between texels and it is struck; a stretched mesh's are longer
         // one way than the other.
         const float gap =
@@ -219,6 +243,7 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
 void World::sweepJets(FireEmitter& emitter) noexcept {
     if (emitter.swept == sweeps_) return;
     emitter.swept = sweeps_;
+    listJetTargets(emitter.position, std::max(emitter.def.behind, kPastReach * emitter.look.reach));
     const float behind = emitter.def.behind;
     float holder[3];
     for (int i = 0; i < 3; ++i) holder[i] = emitter.position[i] - emitter.direction[i] * behind;
@@ -267,6 +292,7 @@ void World::passHole(const FireEmitter& emitter, JetHit& hit) noexcept {
     for (int i = 0; i < 3; ++i)
         way[i] = passed > 0 ? (hit.place[i] - emitter.position[i]) / passed : emitter.direction[i];
     const float left = std::max(kPastReach * emitter.look.reach - passed, 0.0f);
+    listJetTargets(start, left);
     hit.distance = passed + sweepJet(start, way, left, hit, &gate);
 }
 
@@ -344,20 +370,23 @@ void World::flyJet(FireEmitter& emitter, JetParcel& parcel, uint32_t now) {
     const uint32_t from = parcel.flight[exchange];
     const uint32_t to = std::min(parcel.flight[exchange + 1], parcel.most);
     if (from >= to) return;
+    bool listed = false;
     for (JetRay& ray : parcel.rays) {
         if (ray.spent < now) continue;
         ray.spent = components::kJetNever;
         while (ray.gateCount > 0 && ray.passed[ray.gateCount - 1] >= now) --ray.gateCount;
-        while (flyRay(emitter, parcel, ray, from, to, now)) {
+        while (flyRay(emitter, parcel, ray, from, to, now, listed)) {
         }
     }
 }
 
 // To what it meets before `to`, mm. True: it may pass there, and flies on.
 bool World::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay& ray, uint32_t from,
-                   uint32_t to, uint32_t now) {
+                   uint32_t to, uint32_t now, bool& listed) {
     JetHit hit = ray.hit;
     if (ray.version != geometry_ || ray.gateCount > 0) {
+        if (!listed) listJetTargets(parcel.from, float(to) / 1000);
+        listed = true;
         const JetGate* passed = ray.gateCount > 0 ? &ray.gates[ray.gateCount - 1] : nullptr;
         const float back =
             std::max(float(from) / 1000 - kOverlap, passed ? passed->distance : 0.0f);

@@ -111,6 +111,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       found_(memory),
       jetAreas_(memory),
       jetFlux_(memory),
+      jetSlots_(memory),
       events_(memory),
       probeFrames_(memory),
       frame_(memory),
@@ -365,6 +366,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
         findRoom(frame_.updates, objects_.slotCount());
         findRoom(frame_.burnMaps, objects_.slotCount());
         findRoom(touched_, objects_.slotCount());
+        findRoom(jetSlots_, objects_.slotCount());
         findRoom(remote_.due, objects_.slotCount());
         backend_.createObject(object.slot, init);
     } catch (...) {

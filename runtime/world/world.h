@@ -437,6 +437,7 @@ class World {
     float sweepJet(const float start[3], const float way[3], float most, components::JetHit& hit,
                    const components::JetGate* passed = nullptr) noexcept;
     uint32_t gateTicks(const components::JetHit& hit, uint32_t tick) noexcept;
+    void listJetTargets(const float from[3], float reach) noexcept;
     void sweepJets(components::FireEmitter& emitter) noexcept;
     void shieldJet(components::FireEmitter& emitter, double now) noexcept;
     void touchByJet(components::FireEmitter& emitter, uint32_t now);
@@ -445,7 +446,7 @@ class World {
                    uint32_t now) const noexcept;
     void flyJet(components::FireEmitter& emitter, components::JetParcel& parcel, uint32_t now);
     bool flyRay(components::FireEmitter& emitter, const components::JetParcel& parcel,
-                components::JetRay& ray, uint32_t from, uint32_t to, uint32_t now);
+                components::JetRay& ray, uint32_t from, uint32_t to, uint32_t now, bool& listed);
     void heatByJet(components::FireEmitter& emitter, const components::JetParcel& parcel,
                    const components::JetRay& ray, const components::JetHit& hit,
                    const components::JetGate& gate, uint32_t tick);
@@ -576,8 +577,9 @@ class World {
     // Scratch of a jet's ray: of the texels found, 1e-9 m^2 and W/m^2.
     std::pmr::vector<uint64_t> jetAreas_;
     std::pmr::vector<uint32_t> jetFlux_;
-    uint64_t geometry_ = 1;  // grows whenever what may stop a jet moves
-    uint64_t sweeps_ = 0;    // frames begun: what was swept in one is not swept again in it
+    std::pmr::vector<uint32_t> jetSlots_;  // objects that a jet may meet
+    uint64_t geometry_ = 1;                // grows whenever what may stop a jet moves
+    uint64_t sweeps_ = 0;  // frames begun: what was swept in one is not swept again in it
     EventQueue events_;
     std::pmr::vector<ProbeFrame> probeFrames_;
     Frame frame_;
