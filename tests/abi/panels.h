@@ -9,9 +9,11 @@ namespace host {
 
 // Sheets of 0.4 x 0.2 m that lie flat, where they are put.
 struct Panels {
-    explicit Panels(const FwWorldDef& def, float burnTime = 20, float texelsPerMetre = 64)
+    // given: a context, which becomes ours; null: of the cpu backend.
+    explicit Panels(const FwWorldDef& def, float burnTime = 20, float texelsPerMetre = 64,
+                    FwContext* given = nullptr)
         : sheet(0.4f, 0.2f) {
-        context = createCpuContext(host);
+        context = given ? given : createCpuContext(host);
         EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world)) << lastMessage(context);
         const FwMeshDef meshDef = sheet.def(texelsPerMetre);
         EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh)) << lastMessage(world);
