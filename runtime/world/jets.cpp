@@ -281,6 +281,17 @@ void World::shieldJet(FireEmitter& emitter, double now) noexcept {
     }
 }
 
+void World::forgetGates(uint32_t slot) noexcept {
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
+        FireEmitter* emitter = emitters_.at(i);
+        if (!emitter || !emitter->stream) continue;
+        for (JetParcel& parcel : emitter->stream->parcels)
+            for (JetRay& ray : parcel.rays)
+                for (uint32_t g = 0; g < ray.gateCount; ++g)
+                    if (ray.gates[g].object == slot) ray.gateCount = 0;
+    }
+}
+
 // What a ray comes to beyond a hole: for what is seen. (Its heat asks the backend.)
 void World::passHole(const FireEmitter& emitter, JetHit& hit) noexcept {
     JetGate gate;
@@ -463,6 +474,7 @@ void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetRa
         return std::max<uint64_t>(uint64_t(std::llround(domain.areas[texel] * square * kNano)), 1);
     };
     const uint64_t power = parcel.power + (sure ? emitter.stream->kept : 0);
+    if (power == 0) return;
     const size_t most = kMostPoints >> ray.gateCount;
     uint64_t covered = 0;
     for (uint32_t i = 0; i < kMostGrowths && covered * gpu::kFluxMost < power; ++i) {

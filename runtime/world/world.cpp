@@ -430,7 +430,12 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     countImages(object.data, false);
     const uint32_t meshSlot = object.data.meshSlot;
     --meshes_.at(meshSlot)->users;
-    std::erase_if(pending_, [&](const PendingTexel& p) { return p.object == slot; });
+    std::erase_if(pending_, [&](const PendingTexel& p) {
+        bool there = p.object == slot;
+        for (uint32_t g = 0; g < p.gateCount; ++g) there |= p.gates[g].object == slot;
+        return there;
+    });
+    forgetGates(slot);
     std::erase_if(tags_, [&](const Tag& tag) { return tag.object.index1 == id.index1; });
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)
         if (Query* query = queries_.at(i); query && query->object.index1 == id.index1)

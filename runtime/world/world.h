@@ -441,6 +441,7 @@ class World {
     void sweepJets(components::FireEmitter& emitter) noexcept;
     void shieldJet(components::FireEmitter& emitter, double now) noexcept;
     void touchByJet(components::FireEmitter& emitter, uint32_t now);
+    void forgetGates(uint32_t slot) noexcept;  // of an object that goes
     void passHole(const components::FireEmitter& emitter, components::JetHit& hit) noexcept;
     void launchJet(const components::FireEmitter& emitter, components::JetParcel& parcel,
                    uint32_t now) const noexcept;
