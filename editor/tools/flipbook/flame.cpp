@@ -42,6 +42,7 @@ class FlameScene final : public Scene {
         flame.power = preset.power;
         flame.diameter = preset.diameter;
         flame.seed = def.seed;
+        diameter_ = preset.diameter;
         volume::paintLook(flame.look, profile_);
         const book::Facts& f = def.facts;
         faded_ = f.frames / 4;
@@ -74,8 +75,9 @@ class FlameScene final : public Scene {
                                   (float(y) + b) / float(f.height));
                     const Seen one = look(moment, vec3((uv.x - 0.5f) * size_.x,
                                                        (uv.y - 0.05f) * size_.y, 10 * size_.y));
-                    sum.light += one.light, sum.soot += one.soot;
-                    sum.hidden += one.hidden, sum.thin += one.thin;
+                    const float share = foot(uv);
+                    sum.light += share * one.light, sum.soot += share * one.soot;
+                    sum.hidden += share * one.hidden, sum.thin += share * one.thin;
                 }
                 const float soot = sum.soot / count;
                 out.texels[size_t(y) * f.width + x] =
@@ -92,6 +94,13 @@ class FlameScene final : public Scene {
     static float red(float light) {
         const float kelvin = 1 / (1 / 1600.0f - std::log2(std::max(light, 1e-9f)) / 34981.0f);
         return std::clamp((kelvin - gpu::kBookCold) / (gpu::kBookHot - gpu::kBookCold), 0.0f, 1.0f);
+    }
+    // What is shown stands on nothing: its foot is a bowl that thins out, not a cut.
+    [[nodiscard]] float foot(vec2 uv) const {
+        const float out = (uv.x - 0.5f) * size_.x / (0.5f * diameter_);
+        const float low = 0.02f + 0.07f * out * out;
+        const float share = glm::smoothstep(low, low + 0.22f, uv.y);
+        return share * share;
     }
     [[nodiscard]] Seen look(const Moment& moment, vec3 from) const {
         constexpr uint32_t kSteps = 56;
@@ -127,6 +136,7 @@ class FlameScene final : public Scene {
     volume::Profile profile_;
     std::vector<Moment> moments_;
     uint32_t faded_ = 0;
+    float diameter_ = 1;  // m, of its foot
     vec2 size_{1.0f};
 };
 

@@ -177,7 +177,7 @@ uint64_t settingsOf(const Options& o) {
         for (size_t i = 0; i < bytes; ++i)
             hash = (hash ^ static_cast<const uint8_t*>(data)[i]) * 1099511628211ull;
     };
-    constexpr uint32_t kBake = 1;  // another one for each change of what is baked
+    constexpr uint32_t kBake = 2;  // another one for each change of what is baked
     add(o.scene.data(), o.scene.size());
     for (const uint32_t word : {kBake, f.frames, f.width, f.height, o.bake.seed, o.bake.samples})
         add(&word, sizeof word);
