@@ -92,6 +92,8 @@ void defaults(FwParticleFieldDef& def) noexcept {
 
 void defaults(FwFireProfileDef&) noexcept {}
 
+void defaults(FwFlipbookDef&) noexcept {}
+
 void defaults(FwFireTrackDef& def) noexcept { def.weight = 1; }
 
 void defaults(FwFireColliderDef& def) noexcept {
@@ -173,6 +175,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwVolumetricFireDef);
         case FW_DEF_FIRE_PROFILE:
             return sizeof(FwFireProfileDef);
+        case FW_DEF_FLIPBOOK:
+            return sizeof(FwFlipbookDef);
         case FW_DEF_FIRE_COLLIDER:
             return sizeof(FwFireColliderDef);
         case FW_DEF_FIRE_TRACK:
@@ -223,6 +227,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_FIRE_PROFILE:
             write<FwFireProfileDef>(def);
+            return true;
+        case FW_DEF_FLIPBOOK:
+            write<FwFlipbookDef>(def);
             return true;
         case FW_DEF_FIRE_COLLIDER:
             write<FwFireColliderDef>(def);

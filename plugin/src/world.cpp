@@ -351,6 +351,23 @@ FwResult FW_CALL fwWorld_DestroyFireProfile(FwWorld* world, FwFireProfileId id) 
     return destroyOf("fwWorld_DestroyFireProfile", world, &world::World::destroyFireProfile, id);
 }
 
+FwResult FW_CALL fwWorld_CreateFlipbook(FwWorld* world, const FwFlipbookDef* given,
+                                        FwFlipbookId* id) {
+    return createOf("fwWorld_CreateFlipbook", world, &world::World::createFlipbook, given,
+                    FW_DEF_FLIPBOOK, "FwFlipbookDef", id);
+}
+
+FwResult FW_CALL fwWorld_DestroyFlipbook(FwWorld* world, FwFlipbookId id) {
+    return destroyOf("fwWorld_DestroyFlipbook", world, &world::World::destroyFlipbook, id);
+}
+
+FwResult FW_CALL fwWorld_SetFlameFlipbooks(FwWorld* world, FwFlipbookId fire, FwFlipbookId smoke) {
+    return onWorld("fwWorld_SetFlameFlipbooks", world, [&](world::World& w) {
+        w.setFlameFlipbooks(fire, smoke);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_AddFireCollider(FwWorld* world, const FwFireColliderDef* given,
                                          FwFireColliderId* id) {
     return createOf("fwWorld_AddFireCollider", world, &world::World::addFireCollider, given,

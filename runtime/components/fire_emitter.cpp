@@ -257,6 +257,8 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     record.apart = float(1.0 / rate);
     record.age = burns ? float(part / rate) : 0.0f;
     record.seed = emitter.seed;
+    record.books = emitter.books.fire;
+    record.otherBooks = emitter.books.other;
     record.flags = ((def.flags & FW_EMITTER_HIDDEN) ? gpu::kEmitterHidden : 0u) |
                    ((def.flags & FW_EMITTER_GROUND) ? gpu::kEmitterGround : 0u) |
                    ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u);

@@ -51,9 +51,14 @@ struct EmitterAir {
     double now = 0;  // s
 };
 
+struct EmitterBooks {
+    uint32_t fire = 0, other = 0;  // as ParticleEmitter has them
+};
+
 struct FireEmitter {
     FwFireEmitterDef def{};
     EmitterLook look;
+    EmitterBooks books;
     uint32_t seed = 0;
     uint32_t first = 0, ring = 0;  // particles of the world's
     float position[3] = {}, direction[3] = {0, 1, 0};

@@ -178,6 +178,13 @@ class Backend {
     virtual void destroyImage(uint32_t slot) noexcept = 0;
     // A fire profile of the host's, kProfileWidth x kProfileHeight pairs of halfs. Looks alone.
     virtual void setFireProfile(uint32_t /*slot*/, std::span<const uint32_t> /*texels*/) {}
+    // All flipbooks, instead of those before: RGBA8, and words as shared/book.h has them; a width
+    // of 0: there are none. Unchanged when it throws. Looks alone.
+    virtual void setBooks(uint32_t /*width*/, uint32_t /*height*/,
+                          std::span<const std::byte> /*texels*/,
+                          std::span<const uint32_t> /*words*/) {}
+    // That show burning meshes' flames, from the next frame on: byte 0 fire's + 1, byte 1 smoke's.
+    virtual void setFlameBooks(uint32_t /*books*/) noexcept {}
 
     // Particle fields. Masks: a byte per cell, see kFieldWall. It begins empty; a wall that comes
     // kills what is there. Creation and masking: unchanged when they throw.

@@ -46,6 +46,7 @@ FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
                    emitters_.live(), gpu::kMaxEmitters);
     FireEmitter emitter;
     components::makeFireEmitter(def, def_.seed * 0x9E3779B9u + 77u * (emittersMade_ + 1), emitter);
+    emitter.books = emitterBooks(def);
     emitter.ring = std::max(components::emitterNeeds(emitter), 1u);
     emitter.first = emitterRoom(emitter.ring);
     const size_t groups = emitterGroups_.capacity();
@@ -65,10 +66,15 @@ FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
         emitter.stream = core::Owned<components::JetStream>::make(memory_);
     const FwFireEmitterId id = emitters_.create(std::move(emitter));
     ++emittersMade_;
+    countBookUsers(def, 1);
     return id;
 }
 
-void World::destroyFireEmitter(FwFireEmitterId id) { emitters_.destroy(id); }
+void World::destroyFireEmitter(FwFireEmitterId id) {
+    const FwFireEmitterDef def = emitters_.get(id).def;
+    emitters_.destroy(id);
+    countBookUsers(def, -1);
+}
 
 void World::moveFireEmitter(FwFireEmitterId id, const float position[3], const float* direction) {
     components::moveFireEmitter(emitters_.get(id), position, direction);

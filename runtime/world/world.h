@@ -2,6 +2,7 @@
 // CPU code, the same for every backend; it knows no device and no C edge. Calls throw core::Error
 // or std::bad_alloc and then have changed nothing. One thread at a time.
 #pragma once
+#include "book/book.h"
 #include "components/fire_emitter.h"
 #include "components/fire_flames.h"
 #include "components/particle_field.h"
@@ -165,6 +166,11 @@ struct FireProfileEntry {
     uint32_t layer = 0, users = 0;
 };
 
+struct FlipbookEntry {
+    core::Owned<book::Book> book;
+    uint32_t users = 0;
+};
+
 struct FireColliderEntry {
     explicit FireColliderEntry(std::pmr::memory_resource* memory) : heights(memory) {}
     volume::Collider shape;
@@ -301,6 +307,9 @@ class World {
     void setFireEmitterPower(FwFireEmitterId id, float power);
     void setFireEmitterHidden(FwFireEmitterId id, bool hidden);
     void fireEmitterState(FwFireEmitterId id, FwFireEmitterState& state);
+    FwFlipbookId createFlipbook(const FwFlipbookDef& def);
+    void destroyFlipbook(FwFlipbookId id);
+    void setFlameFlipbooks(FwFlipbookId fire, FwFlipbookId smoke);
     FwFireProfileId createFireProfile(const FwFireProfileDef& def);
     void destroyFireProfile(FwFireProfileId id);
     FwFireColliderId addFireCollider(const FwFireColliderDef& def);
@@ -424,6 +433,11 @@ class World {
     void commitFires() noexcept;
     // emitters.cpp
     [[nodiscard]] components::EmitterAir emitterAir(float ahead) const noexcept;
+    // books.cpp
+    void showBooks(uint32_t slot, const book::Book* fresh);
+    uint32_t bookByte(FwFlipbookId id, const char* name, book::Kind kind);
+    components::EmitterBooks emitterBooks(const FwFireEmitterDef& def);
+    void countBookUsers(const FwFireEmitterDef& def, int by) noexcept;
     uint32_t emitterRoom(uint32_t particles);
     void planEmitters(float seconds) noexcept;
     void commitEmitters(float seconds) noexcept;
@@ -547,6 +561,8 @@ class World {
     core::HandlePool<FwVolumetricFireId, core::Owned<Fire>> fires_;
     core::HandlePool<FwParticleFieldId, core::Owned<Field>> fields_;
     core::HandlePool<FwFireProfileId, FireProfileEntry> fireProfiles_;
+    core::HandlePool<FwFlipbookId, FlipbookEntry> flipbooks_;
+    FwFlipbookId flameBooks_[2] = {};  // of burning meshes' flames: fire's, smoke's
     core::HandlePool<FwFireColliderId, core::Owned<FireColliderEntry>> fireColliders_;
     std::pmr::vector<core::Owned<volume::Profile>> profiles_;  // by layer; null: none needed it
     std::pmr::vector<volume::Collider> fireShapes_;  // of a frame: colliders, then blockers

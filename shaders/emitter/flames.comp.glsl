@@ -15,6 +15,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_BURN_TILES readonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
+#include "shared/book.h"
 #include "shared/look.h"
 layout(std430, set = 0, binding = FW_BIND_LOOKS) readonly buffer LooksBuffer {
     MaterialLook looks[];
@@ -23,6 +24,7 @@ layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer 
     FlameQuad flameQuad[];
 };
 layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
+layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer BooksBuffer { uint books[]; };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 #include "emitter/cells.glsl"
 #include "lib/turn.glsl"
@@ -182,7 +184,21 @@ void main() {
                 // The fire below lights it from its first moments.
                 quad.kelvin = 1.0 - a;
             }
-            quad.kind = (g & 0xFFFFu) << 2u | (smoke ? kQuadSmoke : kQuadTongue);
+            quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue);
+            // The world's books: fire's, smoke's.
+            uint book = push.count >> (smoke ? 8u : 0u) & 0xFFu;
+            if (book != 0u) {
+                uint at = (book - 1u) * kBookRecordWords;
+                bool loops = (books[at + 6u] & kBookLoops) != 0u;
+                quad.phase = bookTime(loops, uintBitsToFloat(books[at + 8u]), a, a * period, r4);
+                quad.kind |= book << kQuadBook;
+                // A flame fills a part of its page; its foot is a twentieth up.
+                if (!smoke && loops) {
+                    quad.axisWidth.w *= 2.4;
+                    quad.baseHeight.xyz -= quad.axisWidth.xyz * (0.07 * quad.baseHeight.w);
+                    quad.baseHeight.w *= 1.45;
+                }
+            }
             if (quad.opacity > 0.004) emit(quad);
         }
     }

@@ -16,6 +16,33 @@ layout(location = 1) flat in vec4 inState;
 layout(location = 2) flat in uint inKind;
 layout(location = 3) flat in float inWidth;
 
+#ifdef FW_BOOKS
+#include "shared/book.h"
+layout(set = 1, binding = 0) uniform sampler2D bookPicture;
+layout(location = 4) flat in vec4 inFrames;   // texel of the frame before and of that after
+layout(location = 5) flat in vec4 inMotions;  // the same of their motion
+layout(location = 6) flat in vec4 inSizes;    // texels of a frame, of its motion
+layout(location = 7) flat in vec2 inBetween;  // part of the way, most motion
+layout(location = 8) flat in vec2 inSun;      // where the light comes from, in the quad's plane
+
+// Half a texel beyond a border nothing is left: there lies the texel between frames.
+vec4 bookTexel(vec2 at, vec2 uv) {
+    vec2 p = clamp(uv * inSizes.xy, vec2(-0.5), inSizes.xy + 0.5);
+    return textureLod(bookPicture, (at + p) / vec2(textureSize(bookPicture, 0)), 0.0);
+}
+vec2 bookMotionAt(vec2 at, vec2 uv) {
+    vec2 p = clamp(uv * inSizes.zw, vec2(0.5), inSizes.zw - 0.5);
+    vec2 size = vec2(textureSize(bookPicture, 0));
+    return bookMotion(textureLod(bookPicture, (at + p) / size, 0.0).rg, inBetween.y);
+}
+vec4 showBook(vec2 uv) {
+    vec2 before = bookBefore(uv, bookMotionAt(inMotions.xy, uv), inBetween.x);
+    vec2 after = bookAfter(uv, bookMotionAt(inMotions.zw, uv), inBetween.x);
+    return bookMix(bookTexel(inFrames.xy, before), bookTexel(inFrames.zw, after), inBetween.x);
+}
+const float kBookSpan = 600.0;  // K between a book's coldest and its hottest, about the quad's own
+#endif
+
 layout(location = 0) out vec4 outColor;
 
 #include "lib/colour.glsl"
@@ -35,7 +62,7 @@ vec2 rolled(vec2 p, vec2 c, float h) {
 }
 
 void main() {
-    uint what = inKind & 3u, named = inKind >> 2u << 1u | (inKind & 1u);
+    uint what = inKind & 3u, named = (inKind >> kQuadSeed & 0xFFFFu) << 1u | (inKind & 1u);
     bool tongue = what == kQuadTongue, smoke = what == kQuadSmoke, spark = what == kQuadSpark;
     float opacity = inState.x, phase = inState.y, aspect = inState.w;
     float x = inPlace.x, y = inPlace.y;
@@ -101,6 +128,17 @@ void main() {
         // What is cool hides little: what is shown would turn grey, not red.
         hides = 0.85 * smoothstep(1050.0, 1480.0, kelvin);
     }
+#ifdef FW_BOOKS
+    bool booked = inKind >> kQuadBook != 0u;
+    vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
+    vec4 page = showBook(uv);
+    if (booked) {
+        soot = page.y;
+        kelvin = inState.z + kBookSpan * (page.x - 0.5);
+        // Of all that it hides what is cool hides little, or it would turn grey and not red.
+        hides = 0.85 * page.z / max(page.y, 1e-4) * smoothstep(1050.0, 1400.0, kelvin);
+    }
+#endif
     color = sootRadiance(kelvin) * (kFlameWhite * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     if (smoke) {
@@ -108,6 +146,14 @@ void main() {
         float body = smoothstep(0.0, 0.75, 1.0 - r + 0.7 * billow) *
                      (1.0 - smoothstep(0.7, 1.0, r));
         alpha = saturate(body * opacity);
+#ifdef FW_BOOKS
+        if (booked) {
+            alpha = page.z * opacity;
+            // Thinner towards the light than here: it faces it.
+            vec2 sun = vec2((inKind >> kQuadSeed & 1u) != 0u ? -inSun.x : inSun.x, inSun.y);
+            billow = 1.6 * (page.w - bookTexel(inFrames.xy, uv + 0.09 * sun).w);
+        }
+#endif
         // Crests catch the sun and the sky, hollows the fire below.
         float crest = saturate(0.5 + 0.9 * billow + 0.25 * c.y);
         vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.35 + 0.5 * crest) * 0.9 +
@@ -118,6 +164,9 @@ void main() {
     }
     if (spark) {
         float body = saturate(1.6 * (1.0 - r * r)) * opacity;
+#ifdef FW_BOOKS
+        if (booked) body = page.y * opacity;
+#endif
         // Its true light falls a thousandfold while it flies: nobody would see the end of it.
         vec3 glow = sootRadiance(inState.z);
         color = glow * (pow(max(glow.g * 2.5, 1e-4), -0.5) * kFlameWhite * view.sunColor.w * body);

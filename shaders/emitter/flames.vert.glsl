@@ -19,6 +19,47 @@ layout(location = 1) flat out vec4 outState;   // opacity, phase, kelvin, length
 layout(location = 2) flat out uint outKind;
 layout(location = 3) flat out float outWidth;  // m, half of it
 
+#ifdef FW_BOOKS
+#include "shared/book.h"
+layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer BooksBuffer { uint books[]; };
+layout(location = 4) flat out vec4 outFrames;   // texel of the frame before and of that after
+layout(location = 5) flat out vec4 outMotions;  // the same of their motion
+layout(location = 6) flat out vec4 outSizes;    // texels of a frame, of its motion
+layout(location = 7) flat out vec2 outBetween;  // part of the way, most motion
+layout(location = 8) flat out vec2 outSun;      // where the light comes from, in the quad's plane
+
+BookRecord bookOf(uint i) {
+    uint at = i * kBookRecordWords;
+    BookRecord b;
+    b.at = books[at];
+    b.size = books[at + 1u];
+    b.motionAt = books[at + 2u];
+    b.motionSize = books[at + 3u];
+    b.frames = books[at + 4u];
+    b.columns = books[at + 5u];
+    b.flags = books[at + 6u];
+    b.motionMost = uintBitsToFloat(books[at + 7u]);
+    return b;
+}
+vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u)); }
+
+// What the fragments read of a quad's book; of its corner, the one of what it shows.
+vec2 openBook(FlameQuad quad, vec2 place) {
+    uint book = (quad.kind >> kQuadBook) - 1u;
+    BookRecord b = bookOf(book);
+    BookPlace p = bookPlace(quad.phase, b.frames, (b.flags & kBookLoops) != 0u);
+    outFrames = vec4(vec2(bookCell(b, p.before)), vec2(bookCell(b, p.after)));
+    outMotions = vec4(vec2(bookMotionCell(b, p.before)), vec2(bookMotionCell(b, p.after)));
+    outSizes = vec4(halves(b.size), halves(b.motionSize));
+    outBetween = vec2(p.part, b.motionMost);
+    uint rect = kBookRects + 2u * (book * kMostBookFrames + p.before);
+    vec2 low = halves(books[rect]) / outSizes.xy, high = halves(books[rect + 1u]) / outSizes.xy;
+    bool mirrored = (quad.kind >> kQuadSeed & 1u) != 0u;
+    float x = place.x > 0.0 != mirrored ? high.x : low.x;
+    return vec2((2.0 * x - 1.0) * (mirrored ? -1.0 : 1.0), place.y > 0.5 ? high.y : low.y);
+}
+#endif
+
 void main() {
     uint number = uint(gl_VertexIndex) / 6u, vertex = uint(gl_VertexIndex) % 6u;
     FlameQuad quad = flameQuad[drawArgs[kFlameOrder + number]];
@@ -27,6 +68,11 @@ void main() {
     if (vertex == 3u) place = vec2(-1.0, 1.0);
     if (vertex == 4u) place = vec2(1.0, 0.0);
     if (vertex == 5u) place = vec2(1.0, 1.0);
+#ifdef FW_BOOKS
+    outFrames = outMotions = outSizes = vec4(0.0);
+    outBetween = vec2(0.0);
+    if (quad.kind >> kQuadBook != 0u) place = openBook(quad, place);
+#endif
     vec3 foot = quad.baseHeight.xyz - view.eye.xyz;
     vec3 middle = foot + quad.axisWidth.xyz * (0.5 * quad.baseHeight.w);
     vec3 toEye = view.forward.w > 0.5 ? -normalize(middle) : -view.forward.xyz;
@@ -44,6 +90,9 @@ void main() {
     vec3 at = start + side * (place.x * quad.axisWidth.w) + axis * (place.y * quad.baseHeight.w);
     // Towards the eye, so that a wall behind does not cut the tongue's side.
     at += toEye * (smoke ? 0.0 : 0.35 * quad.axisWidth.w);
+#ifdef FW_BOOKS
+    outSun = vec2(dot(view.sunDirection.xyz, side), dot(view.sunDirection.xyz, axis));
+#endif
     outPlace = place;
     outState = vec4(quad.opacity, quad.phase, quad.kelvin, quad.baseHeight.w / quad.axisWidth.w);
     outKind = quad.kind;

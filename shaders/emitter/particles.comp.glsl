@@ -3,6 +3,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
+#include "shared/book.h"
 #include "shared/burn.h"
 #include "shared/look.h"
 #include "shared/particle.h"
@@ -19,6 +20,7 @@ layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer 
     FlameQuad flameQuad[];
 };
 layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
+layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer BooksBuffer { uint books[]; };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(push_constant) uniform Push { ParticlePush push; };
 
@@ -51,9 +53,20 @@ ParticleEmitter emitterOf(uint i) {
     e.flags = emitters[i].flags;
     e.steps = emitters[i].steps;
     e.shieldCount = emitters[i].shieldCount;
+    e.books = emitters[i].books;
+    e.otherBooks = emitters[i].otherBooks;
     e.waves0 = emitters[i].waves0;
     e.waves1 = emitters[i].waves1;
     return e;
+}
+
+// What shows a quad by `book` (+ 1; 0: nothing does, and its phase is its own).
+void show(inout FlameQuad quad, uint book, float life, float age, float own) {
+    if (book == 0u) return;
+    uint at = (book - 1u) * kBookRecordWords;
+    bool loops = (books[at + 6u] & kBookLoops) != 0u;
+    quad.phase = bookTime(loops, uintBitsToFloat(books[at + 8u]), life, age, own);
+    quad.kind |= book << kQuadBook;
 }
 
 void main() {
@@ -152,6 +165,10 @@ void main() {
         quad.phase = min(0.10 + max(a, 0.0) * (0.75 + 0.3 * t.other), 0.98);
         quad.kelvin = spark ? 1850.0 - 650.0 * a : particleKelvin(e, a, t.own);
         quad.kind = (seed & 0xFFFFu) << 2u | (spark ? kQuadSpark : kQuadFire);
+        uint book = spark ? e.otherBooks >> 16u & 0xFFu : particleBook(e.books, 3u, seed);
+        // A book begins as a ball without shape too.
+        float shown = spark ? a : 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
+        show(quad, book, shown, age, t.own);
         bool fire = drawn && opacity > 0.004 && a < 1.0;
         FlameQuad smoke;
         float lit = clamp(1.25 - a, 0.0, 1.0);
@@ -161,6 +178,8 @@ void main() {
         smoke.phase = 0.10 * age + 5.0 * t.other;
         smoke.kelvin = lit;
         smoke.kind = (seed & 0xFFFFu) << 2u | kQuadSmoke;
+        show(smoke, particleBook(e.otherBooks & 0xFFFFu, 2u, seed),
+             (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
         bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 
         uint count = (fire ? 1u : 0u) + (smokes ? 1u : 0u);

@@ -16,6 +16,45 @@ using glm::mix;
 FW_SHARED_CONST float kBookCold = 800.0f;   // K, of a texel's red: 0
 FW_SHARED_CONST float kBookHot = 2000.0f;   // K, 1
 
+// Books on the device: frames lie in one picture, motion too; a record says where. Words: records
+// (BookRecord), then rects of all frames of a book, two words each: left | low << 16, right | high.
+FW_SHARED_CONST uint kMaxBooks = 32u;         // of a world
+FW_SHARED_CONST uint kMostBookFrames = 256u;
+FW_SHARED_CONST uint kBookRecordWords = 16u;
+FW_SHARED_CONST uint kBookRects = kMaxBooks * kBookRecordWords;  // first word
+FW_SHARED_CONST uint kBookWords = kBookRects + kMaxBooks * kMostBookFrames * 2u;
+FW_SHARED_CONST uint kBookLoops = 1u;   // BookRecord::flags
+
+struct BookRecord {
+    uint at;             // texel of the picture: x | y << 16, first frame's first texel
+    uint size;           // width | height << 16 of a frame
+    uint motionAt;       // the same of motion
+    uint motionSize;
+    uint frames;
+    uint columns;        // frames of a row in the picture; of motion the same
+    uint flags;
+    float motionMost;    // uv per frame of a full motion texel
+    float seconds;       // a turn
+    uint reserved0; uint reserved1; uint reserved2; uint reserved3; uint reserved4; uint reserved5;
+    uint reserved6;
+};
+FW_SHARED_SIZE(BookRecord, 64)
+// Between frames of the picture lies a texel of nothing, so that what is read beyond a border is that.
+FW_SHARED_FN uvec2 bookCell(BookRecord b, uint frame) {
+    return uvec2((b.at & 0xFFFFu) + frame % b.columns * ((b.size & 0xFFFFu) + 2u),
+                 (b.at >> 16) + frame / b.columns * ((b.size >> 16) + 2u));
+}
+FW_SHARED_FN uvec2 bookMotionCell(BookRecord b, uint frame) {
+    return uvec2((b.motionAt & 0xFFFFu) + frame % b.columns * (b.motionSize & 0xFFFFu),
+                 (b.motionAt >> 16) + frame / b.columns * (b.motionSize >> 16));
+}
+
+// A particle that is shown by a book: `life` [0, 1] of what it shows once; `age` s and `own` [0, 1)
+// its phase in a loop.
+FW_SHARED_FN float bookTime(bool loops, float seconds, float life, float age, float own) {
+    return loops ? age / seconds + 7.0f * own : clamp(life, 0.0f, 1.0f);
+}
+
 struct BookPlace {
     uint before;  // frames
     uint after;

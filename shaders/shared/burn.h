@@ -98,7 +98,8 @@
 #define FW_BIND_EMITTERS 120         // ParticleEmitter[]: fire emitters of the frame, see particle.h
 #define FW_BIND_EMITTER_GROUPS 121   // uvec2[]: emitter, first slot of its ring that a group works on
 #define FW_BIND_PARTICLES 122        // Particle[]: rings of emitters
-#define FW_BIND_COUNT 123
+#define FW_BIND_BOOKS 123            // uint[]: flipbooks, see book.h
+#define FW_BIND_COUNT 124
 
 FW_SHARED_BEGIN
 

@@ -183,9 +183,10 @@ struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m
     vec4 axisWidth;          // unit, foot to tip; w: half width m
     float opacity;           // [0, 1]
-    float phase;             // s of scroll, already offset by its seed; of kQuadFire: its life, [0, 1]
+    float phase;             // s of scroll, already offset by its seed; of kQuadFire: its life, [0, 1];
+                             // of one with a book bookPlace's time
     float kelvin;            // K of the hottest part; of kQuadSmoke: how lit by fire, [0, 1]
-    uint kind;               // seed << 2 | kQuad...
+    uint kind;               // kQuad... | seed << 2 | its book + 1 << 18, 0: it has none
 };
 FW_SHARED_SIZE(FlameQuad, 48)
 
@@ -193,6 +194,8 @@ FW_SHARED_CONST uint kQuadTongue = 0u;  // of a burning tile
 FW_SHARED_CONST uint kQuadSmoke = 1u;
 FW_SHARED_CONST uint kQuadFire = 2u;    // of a particle
 FW_SHARED_CONST uint kQuadSpark = 3u;
+FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
+FW_SHARED_CONST uint kQuadBook = 18u;
 
 // Draw arguments of the flames, then the order they are drawn in: farthest first, then as many words
 // that the sort works in. Quads are burning tiles', at most kFlameCapacity, then particles'.

@@ -64,11 +64,15 @@ struct ParticleEmitter {  // one frame of one emitter
     uint flags;
     uint steps;      // of this frame
     uint shieldCount;
+    uint books;      // that show fire, and
+    uint otherBooks; // smoke (two) and sparks: bytes, book + 1; 0: there are no more
+    uint reserved0;
+    uint reserved1;
     vec4 waves0;     // rad, rad, share: how a stream swings and pulses, at the frame's start
     vec4 waves1;     // and at its end
     vec4 shields[64]; // m, world, and radius; unit normal: what stops a jet
 };
-FW_SHARED_SIZE(ParticleEmitter, 1296)
+FW_SHARED_SIZE(ParticleEmitter, 1312)
 
 struct Particle {
     vec4 placeAge;   // m, world; s, < 0: rests no more
@@ -109,6 +113,14 @@ FW_SHARED_FN uint particleBirths(uint head, uint ring, uint i) {
 }
 FW_SHARED_FN uint particleSeed(uint seed, uint serial) {
     return particleBits(serial * 747796405u + seed * 2891336453u);
+}
+
+// Which of so many books in the bytes of a word, one behind the other: + 1; 0: there are none.
+FW_SHARED_FN uint particleBook(uint bytes, uint most, uint seed) {
+    uint count = 0u;
+    for (uint i = 0u; i < most; ++i) count += (bytes >> (8u * i) & 0xFFu) != 0u ? 1u : 0u;
+    uint one = count > 0u ? particleBits(seed + 31u) % count : 0u;
+    return bytes >> (8u * one) & (count > 0u ? 0xFFu : 0u);
 }
 
 // What a particle is by its seed alone.

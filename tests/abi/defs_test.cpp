@@ -48,6 +48,7 @@ const DefCase kDefs[] = {
     {"offscreen", FW_DEF_OFFSCREEN, sizeof(FwOffscreenDef)},
     {"blocker", FW_DEF_BLOCKER, sizeof(FwBlockerDef)},
     {"fire", FW_DEF_VOLUMETRIC_FIRE, sizeof(FwVolumetricFireDef)},
+    {"flipbook", FW_DEF_FLIPBOOK, sizeof(FwFlipbookDef)},
     {"profile", FW_DEF_FIRE_PROFILE, sizeof(FwFireProfileDef)},
     {"collider", FW_DEF_FIRE_COLLIDER, sizeof(FwFireColliderDef)},
     {"track", FW_DEF_FIRE_TRACK, sizeof(FwFireTrackDef)},
@@ -212,6 +213,17 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
             FwFireColliderId id{};
             const FwResult result = fwWorld_AddFireCollider(w.world, def, &id);
             if (result == FW_OK) (void)fwWorld_RemoveFireCollider(w.world, id);
+            return result;
+        },
+        worldMessage);
+    FwFlipbookDef book = fwDefaultFlipbookDef();
+    book.preset = FW_FLIPBOOK_SPARK;
+    checkSizes<FwFlipbookDef>(
+        "FwFlipbookDef", book,
+        [&](const FwFlipbookDef* def) {
+            FwFlipbookId id{};
+            const FwResult result = fwWorld_CreateFlipbook(w.world, def, &id);
+            if (result == FW_OK) (void)fwWorld_DestroyFlipbook(w.world, id);
             return result;
         },
         worldMessage);

@@ -23,6 +23,7 @@ int fwTestCallEverything(int* calls) {
     const FwVolumetricFireId fire = {0, 0};
     const FwFireEmitterId emitter = {0, 0};
     const FwFireProfileId profile = {0, 0};
+    const FwFlipbookId book = {0, 0};
     const FwFireColliderId collider = {0, 0};
     const FwParticleFieldId field = {0, 0};
 
@@ -75,6 +76,9 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_GetFireEmitterState(NULL, emitter, NULL));
     REFUSES(fwWorld_CreateFireProfile(NULL, NULL, NULL));
     REFUSES(fwWorld_DestroyFireProfile(NULL, profile));
+    REFUSES(fwWorld_CreateFlipbook(NULL, NULL, NULL));
+    REFUSES(fwWorld_DestroyFlipbook(NULL, book));
+    REFUSES(fwWorld_SetFlameFlipbooks(NULL, book, book));
     REFUSES(fwCookFireProfile(NULL, NULL, NULL, NULL));
     REFUSES(fwWorld_AddFireCollider(NULL, NULL, NULL));
     REFUSES(fwWorld_SetFireCollider(NULL, collider, NULL));
@@ -130,6 +134,7 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultBlockerDef().structSize == sizeof(FwBlockerDef) ? 0 : 1;
     wrong += fwDefaultVolumetricFireDef().structSize == sizeof(FwVolumetricFireDef) ? 0 : 1;
     wrong += fwDefaultFireEmitterDef().structSize == sizeof(FwFireEmitterDef) ? 0 : 1;
+    wrong += fwDefaultFlipbookDef().structSize == sizeof(FwFlipbookDef) ? 0 : 1;
     wrong += fwDefaultFireProfileDef().structSize == sizeof(FwFireProfileDef) ? 0 : 1;
     wrong += fwDefaultFireColliderDef().structSize == sizeof(FwFireColliderDef) ? 0 : 1;
     wrong += fwDefaultFireTrackDef().structSize == sizeof(FwFireTrackDef) ? 0 : 1;

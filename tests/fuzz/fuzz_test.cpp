@@ -239,6 +239,8 @@ class Fuzz {
         for (float& x : def.extent) x = random_.number();
         garble(def);
         def.structSize = sizeof def;
+        if (random_.once(2)) def.fireBooks[random_.below(3)] = books_.any(random_);
+        if (random_.once(2)) def.smokeBooks[random_.below(2)] = books_.any(random_);
         FwFireEmitterId id{};
         const FwResult result = fwWorld_CreateFireEmitter(world_, &def, &id);
         check(result);
@@ -349,6 +351,23 @@ class Fuzz {
         auto& random = *static_cast<Random*>(user);
         for (int i = 0; i < 3; ++i) normal[i] = random.number();
         return random.once(3) ? random.number() : point[1];
+    }
+
+    void createBook() {
+        FwFlipbookDef def = fwDefaultFlipbookDef();
+        def.preset = random_.below(FW_FLIPBOOK_PRESET_COUNT + 1);
+        std::vector<unsigned char> bytes(random_.below(200));
+        for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(random_.below(256));
+        if (bytes.size() > 8 && random_.once(2)) std::memcpy(bytes.data(), "FWBK\1\0\0", 8);
+        if (random_.once(4)) {
+            def.cooked = bytes.data();
+            def.cookedSize = bytes.size();
+        }
+        FwFlipbookId id{};
+        const FwResult result = fwWorld_CreateFlipbook(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) books_.known.push_back(id);
+        check(fwWorld_SetFlameFlipbooks(world_, books_.any(random_), books_.any(random_)));
     }
 
     void createProfile() {
@@ -618,6 +637,8 @@ class Fuzz {
                 break;
             case 27:
                 if (profiles_.known.size() < 4 || random_.once(8)) createProfile();
+                if (books_.known.size() < 3 || random_.once(20)) createBook();
+                if (random_.once(3)) destroy(books_, fwWorld_DestroyFlipbook);
                 if (random_.once(3)) destroy(profiles_, fwWorld_DestroyFireProfile);
                 break;
             case 28:
@@ -647,6 +668,7 @@ class Fuzz {
             flames_.known.clear();
             emitters_.known.clear();
             profiles_.known.clear();
+            books_.known.clear();
             colliders_.known.clear();
             fields_.known.clear();
             queries_.known.clear();
@@ -664,6 +686,7 @@ class Fuzz {
     Ids<FwVolumetricFireId> flames_;
     Ids<FwFireEmitterId> emitters_;
     Ids<FwFireProfileId> profiles_;
+    Ids<FwFlipbookId> books_;
     Ids<FwFireColliderId> colliders_;
     Ids<FwParticleFieldId> fields_;
     Ids<FwQueryId> queries_;

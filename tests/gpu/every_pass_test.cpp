@@ -1,6 +1,8 @@
 // Every pass and shader once, on buffers that end where the last thing in them does. Under
 // GPU-assisted validation (tests/run --gpu-assisted) each access past an end is reported, and the
 // second test proves that; without it the software device would never notice.
+#include "book/own.h"
+#include "book/picture.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
 #include "components/volumetric_fire.h"
@@ -312,6 +314,20 @@ class EveryPass : public GpuTest {
         EXPECT_TRUE(rig_->backend.recordComposite(frame, target_, view, images));
     }
 
+    // Flames and particles show flipbooks from now on.
+    void showBooks() {
+        std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+        book::Book books[3]{book::Book(memory), book::Book(memory), book::Book(memory)};
+        const book::Book* laid[] = {&books[0], &books[1], &books[2]};
+        const uint32_t presets[] = {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SMOKE, FW_FLIPBOOK_SPARK};
+        for (int i = 0; i < 3; ++i) book::readBook(book::ownBook(presets[i], memory), books[i]);
+        const book::Picture picture = book::layBooks(laid, memory);
+        rig_->backend.setBooks(picture.width, picture.height,
+                               std::as_bytes(std::span(picture.texels)), picture.words);
+        rig_->backend.setFlameBooks(1u | 2u << 8);
+        emitter_->emitter.books = {1u, 2u | 3u << 16};
+    }
+
     // Unburnt, lit, blown at, soaked, dried, put out, lit all over, looked at tile by tile, and
     // again in a slot that was given back.
     void burn() {
@@ -330,6 +346,7 @@ class EveryPass : public GpuTest {
         frame({.steps = 2, .switches = gpu::kSwitchDense, .probes = true});
         for (int i = 0; i < 3; ++i) frame({.steps = 4});
         placeBox();
+        showBooks();
         frame({gpu::kEventExtinguish, 2});
         frame({gpu::kEventDry, 1});
         frame({gpu::kEventIgnite, 7});

@@ -1,6 +1,7 @@
 // Particles on a device: they move as the library's text says, and their quads are drawn in order.
 #include "components/view_params.h"
 #include "gpu/passes/draw.h"
+#include "shared/book.h"
 #include "shared/particle.h"
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
@@ -23,7 +24,8 @@ class ParticlePass : public GpuTest {
     void makeRig(uint32_t quads) {
         static constexpr uint32_t kBindings[] = {FW_BIND_EMITTERS,  FW_BIND_EMITTER_GROUPS,
                                                  FW_BIND_PARTICLES, FW_BIND_FLAMES,
-                                                 FW_BIND_DRAW_ARGS, FW_BIND_VIEW};
+                                                 FW_BIND_DRAW_ARGS, FW_BIND_VIEW,
+                                                 FW_BIND_BOOKS};
         static constexpr uint32_t kUniforms[] = {FW_BIND_VIEW};
         rig_ = std::make_unique<PassRig>(*device_, kBindings, uint32_t(sizeof(gpu::ParticlePush)),
                                          std::span<const uint32_t>{}, kUniforms);
@@ -33,6 +35,7 @@ class ParticlePass : public GpuTest {
         rig_->make(FW_BIND_PARTICLES, std::max(end_, 1u) * sizeof(gpu::Particle));
         rig_->make(FW_BIND_FLAMES, (kTiles + quads) * sizeof(gpu::FlameQuad));
         rig_->make(FW_BIND_DRAW_ARGS, (gpu::kFlameOrder + 2 * (kTiles + quads)) * 4);
+        rig_->make(FW_BIND_BOOKS, gpu::kBookWords * 4);
         gpu::ViewInput input;
         input.view = &view_;
         input.viewport[2] = input.viewport[3] = 512;

@@ -190,8 +190,8 @@ book::Rect rectOf(const Frame& frame, uint32_t width, uint32_t height, book::Rec
     return rect;
 }
 
-// Where nothing glows the temperature is that of what glows beside it: a filter between texels would
-// else draw cold rims around all that is hot.
+// Where nothing glows the temperature is that of what glows beside it: a filter between texels
+// would else draw cold rims around all that is hot.
 void warmBorders(Frame& frame, uint32_t width, uint32_t height) {
     std::vector<uint8_t> known;
     for (const vec4& t : frame.texels) known.push_back(t.y > 0.02f);

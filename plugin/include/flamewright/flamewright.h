@@ -50,6 +50,7 @@ typedef struct FwVolumetricFireId { uint32_t index1, generation; } FwVolumetricF
 typedef struct FwFireProfileId { uint32_t index1, generation; } FwFireProfileId;
 typedef struct FwFireColliderId { uint32_t index1, generation; } FwFireColliderId;
 typedef struct FwFireEmitterId { uint32_t index1, generation; } FwFireEmitterId;
+typedef struct FwFlipbookId { uint32_t index1, generation; } FwFlipbookId;
 typedef struct FwParticleFieldId { uint32_t index1, generation; } FwParticleFieldId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
@@ -100,6 +101,7 @@ typedef enum FwDefType {
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
+    FW_DEF_FLIPBOOK = 21,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -647,6 +649,38 @@ typedef struct FwFirePush {     /* on a ball that stands still */
 /* radius: m, [0, 100]. [world] */
 FW_API FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld*, const float centre[3], float radius, FwFirePush* push);
 
+/* ---- flipbooks: what particles and flames show --------------------------------------------------------------- */
+
+typedef enum FwFlipbookPreset { /* our own, baked from our own flames: 64 x 64 texels a frame, sparks 32 x 32 */
+    FW_FLIPBOOK_CUSTOM = 0,  /* FwFlipbookDef::cooked */
+    FW_FLIPBOOK_FLAME = 1,   /* fire: a standing flame, a loop of 1.6 s */
+    FW_FLIPBOOK_ROLL = 2,    /* fire: a ball that rolls up about a ring and is torn */
+    FW_FLIPBOOK_PUFF = 3,    /* fire: a ball that eddies tear */
+    FW_FLIPBOOK_SMOKE = 4,   /* smoke: thick, in billows */
+    FW_FLIPBOOK_HAZE = 5,    /* smoke: thin, drawn out */
+    FW_FLIPBOOK_SPARK = 6,   /* sparks: a streak */
+    FW_FLIPBOOK_PRESET_COUNT = 7, FW_FLIPBOOK_PRESET_FORCE32 = 0x7fffffff
+} FwFlipbookPreset;
+/* Frames of fire, smoke or sparks with the motion between them: what moves between two frames is seen once, on its
+ * way, not twice beside itself. Temperatures, not colours: black bodies colour them as they do volumetric flames. */
+typedef struct FwFlipbookDef {
+    uint32_t structSize, flags; /* flags: 0 */
+    uint32_t preset;            /* FwFlipbookPreset, default FW_FLIPBOOK_CUSTOM */
+    uint32_t reserved;          /* 0 */
+    const void* cooked;         /* content of a .fwbook (flamewright_flipbook bakes them); null with a preset */
+    uint64_t cookedSize;        /* bytes */
+} FwFlipbookDef;
+static inline FwFlipbookDef fwDefaultFlipbookDef(void) {
+    FwFlipbookDef d; fwInitDef(FW_DEF_FLIPBOOK, &d, (uint32_t)sizeof d); return d;
+}
+/* At most 32 at a time; all of a world's lie in one picture of at most 4096 x 4096 texels (else
+ * FW_ERROR_OUT_OF_MEMORY). FW_ERROR_BAD_DATA, FW_ERROR_VERSION: what is wrong with the file. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateFlipbook(FwWorld*, const FwFlipbookDef* def, FwFlipbookId* id);
+FW_API FwResult FW_CALL fwWorld_DestroyFlipbook(FwWorld*, FwFlipbookId id); /* refused while something shows it [world] */
+/* What the flames and the smoke of burning meshes show from the next frame on; null: as they are made without, by
+ * noise. Books of fire and of smoke. [world] */
+FW_API FwResult FW_CALL fwWorld_SetFlameFlipbooks(FwWorld*, FwFlipbookId fire, FwFlipbookId smoke);
+
 /* ---- fire emitters: particles ------------------------------------------------------------------------------- */
 
 typedef enum FwEmitterShape {
@@ -707,6 +741,10 @@ typedef struct FwFireEmitterDef {
      * holes burn and no two walls more are in the way; not those of FW_BURNABLE_LITE, nor to what is that. */
     float behind;               /* m, [0, 10], default 0.5 */
     float heat;                 /* [0, 1], default 0.35 */
+    /* What its particles show, each by chance one of those given, at its own phase; none given: noise. */
+    FwFlipbookId fireBooks[3];
+    FwFlipbookId smokeBooks[2];
+    FwFlipbookId sparkBook;
 } FwFireEmitterDef;
 static inline FwFireEmitterDef fwDefaultFireEmitterDef(void) {
     FwFireEmitterDef d; fwInitDef(FW_DEF_FIRE_EMITTER, &d, (uint32_t)sizeof d); return d;

@@ -65,6 +65,10 @@ template <>
     return fwDefaultFireProfileDef();
 }
 template <>
+[[nodiscard]] inline FwFlipbookDef def<FwFlipbookDef>() noexcept {
+    return fwDefaultFlipbookDef();
+}
+template <>
 [[nodiscard]] inline FwFireColliderDef def<FwFireColliderDef>() noexcept {
     return fwDefaultFireColliderDef();
 }
@@ -198,6 +202,7 @@ using BurnableMesh = Owned<FwBurnableMeshId, fwWorld_DestroyBurnableMesh>;
 using VolumetricFire = Owned<FwVolumetricFireId, fwWorld_DestroyVolumetricFire>;
 using ParticleField = Owned<FwParticleFieldId, fwWorld_DestroyParticleField>;
 using FireProfile = Owned<FwFireProfileId, fwWorld_DestroyFireProfile>;
+using Flipbook = Owned<FwFlipbookId, fwWorld_DestroyFlipbook>;
 using FireCollider = Owned<FwFireColliderId, fwWorld_RemoveFireCollider>;
 using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
 
@@ -253,6 +258,12 @@ using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
                                                    const FwFireProfileDef& made) {
     FwFireProfileId id{};
     (void)fwWorld_CreateFireProfile(world.get(), &made, &id);
+    return {world.get(), id};
+}
+
+[[nodiscard]] inline Flipbook createFlipbook(const World& world, const FwFlipbookDef& made) {
+    FwFlipbookId id{};
+    (void)fwWorld_CreateFlipbook(world.get(), &made, &id);
     return {world.get(), id};
 }
 

@@ -95,7 +95,7 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
 extern const DrawPass kZPass;
 bool zPassDraws(std::span<const DrawItem> items);
 void recordZPass(DrawRecorder& recorder, std::span<const DrawItem> items);
-extern const DrawPass kFlamesPass;
+extern const DrawPass kFlamesPass, kBookFlamesPass;  // one or the other
 void recordFlames(DrawRecorder& recorder);
 
 struct VolumeItem {  // a volumetric flame that a view may show

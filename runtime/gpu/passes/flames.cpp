@@ -12,7 +12,7 @@ constexpr Use kMakeUses[] = {
     {FW_BIND_TILE_STATE, Access::read},  {FW_BIND_LOOKS, Access::read},
     {FW_BIND_FLAMES, Access::write},     {FW_BIND_DRAW_ARGS, Access::write},
     {FW_BIND_VIEW, Access::uniformView}, {FW_BIND_SKIN_TEXELS, Access::read},
-    {FW_BIND_SHOWN, Access::read},
+    {FW_BIND_SHOWN, Access::read},       {FW_BIND_BOOKS, Access::read},
 };
 constexpr Use kSortUses[] = {
     {FW_BIND_FLAMES, Access::read},
@@ -23,6 +23,11 @@ constexpr Use kDrawUses[] = {
     {FW_BIND_FLAMES, Access::drawRead},
     {FW_BIND_DRAW_ARGS, Access::drawRead},
     {FW_BIND_DRAW_ARGS, Access::indirect},
+    {FW_BIND_VIEW, Access::uniformView},
+};
+constexpr Use kBookUses[] = {
+    {FW_BIND_FLAMES, Access::drawRead},    {FW_BIND_DRAW_ARGS, Access::drawRead},
+    {FW_BIND_DRAW_ARGS, Access::indirect}, {FW_BIND_BOOKS, Access::drawRead},
     {FW_BIND_VIEW, Access::uniformView},
 };
 
@@ -40,6 +45,17 @@ const DrawPass kFlamesPass{.name = "flames",
                            .pushBytes = 0,
                            .softShader = "flames_soft.frag",
                            .softShaderMultisampled = "flames_soft_ms.frag"};
+// Where the world has flipbooks: what is shown by none costs four texels more there.
+const DrawPass kBookFlamesPass{.name = "book flames",
+                               .vertexShader = "book_flames.vert",
+                               .fragmentShader = "book_flames.frag",
+                               .uses = kBookUses,
+                               .vertexInput = VertexInput::none,
+                               .blend = Blend::premultiplied,
+                               .writeDepth = false,
+                               .pushBytes = 0,
+                               .softShader = "book_flames_soft.frag",
+                               .softShaderMultisampled = "book_flames_soft_ms.frag"};
 
 void recordFlames(DrawRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); }
 

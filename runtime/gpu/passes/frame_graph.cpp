@@ -39,16 +39,17 @@ constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[28],  &kSurfacePasses[29],  &kSurfacePasses[30], &kSurfacePasses[31],
     &kSurfacePasses[32],  &kSurfacePasses[33],  &kSurfacePasses[34], &kZPass,
     &kFlamesPass,         &kVolumePass,         &kVolumeCardPass,    &kVolumeCompositePass,
-    &kFieldDrawPasses[0], &kFieldDrawPasses[1], &kFieldDrawPasses[2]};
+    &kFieldDrawPasses[0], &kFieldDrawPasses[1], &kFieldDrawPasses[2], &kBookFlamesPass};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
 constexpr uint32_t kNumberOfFields = kNumberOfZPass + 5;
-static_assert(std::size(kDrawPasses) == kNumberOfFields + kFieldVariants);
+constexpr uint32_t kNumberOfBookFlames = kNumberOfFields + kFieldVariants;
+static_assert(std::size(kDrawPasses) == kNumberOfBookFlames + 1);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first. The variants of
 // fields are one step, in which they are drawn as they lie behind each other.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 6> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 7> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
@@ -56,9 +57,10 @@ constexpr auto kDrawSteps = [] {
     steps[kSurfaceVariants] = {kNumberOfZPass, true};
     steps[2 * kSurfaceVariants + 1] = {kNumberOfFields, false};
     steps[2 * kSurfaceVariants + 2] = {kNumberOfZPass + 1, false};
-    steps[2 * kSurfaceVariants + 3] = {kNumberOfZPass + 2, false};
-    steps[2 * kSurfaceVariants + 4] = {kNumberOfZPass + 3, false};  // cards: small, mostly far
-    steps[2 * kSurfaceVariants + 5] = {kNumberOfZPass + 4, false};
+    steps[2 * kSurfaceVariants + 3] = {kNumberOfBookFlames, false};
+    steps[2 * kSurfaceVariants + 4] = {kNumberOfZPass + 2, false};
+    steps[2 * kSurfaceVariants + 5] = {kNumberOfZPass + 3, false};  // cards: small, mostly far
+    steps[2 * kSurfaceVariants + 6] = {kNumberOfZPass + 4, false};
     return steps;
 }();
 
@@ -281,7 +283,7 @@ void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList
         recordSurface(recorder, step.pass, list.surfaces, step.afterZ, list.turned);
     else if (step.pass == kNumberOfZPass)
         recordZPass(recorder, list.surfaces);
-    else if (kDrawPasses[step.pass] == &kFlamesPass)
+    else if (kDrawPasses[step.pass] == &kFlamesPass || step.pass == kNumberOfBookFlames)
         recordFlames(recorder);
     else if (kDrawPasses[step.pass] == &kVolumePass)
         recordVolume(recorder, list.volumes);
@@ -295,7 +297,8 @@ bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (step.pass < kSurfaceVariants) return surfaceDraws(step.pass, list.surfaces, step.afterZ);
     if (step.pass == kNumberOfZPass) return zPassDraws(list.surfaces);
     if (step.pass == kNumberOfFields) return !list.fields.empty();
-    if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames;
+    if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames && !list.books;
+    if (step.pass == kNumberOfBookFlames) return list.flames && list.books;
     if (kDrawPasses[step.pass] == &kVolumeCardPass) return !list.cards.empty();
     return kDrawPasses[step.pass] == &kVolumePass ? !list.volumes.empty() : !list.marched.empty();
 }
@@ -307,8 +310,10 @@ void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t
     recorder.dispatch(kLightsPass, &push, 1);
 }
 
-void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {
+void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick,
+                      uint32_t books) {
     StepPush push{};
+    push.count = books;
     push.now = endTick;
     push.burnParity = lists.burnParity;
     recorder.dispatch(kFlameQuadsPass, &push, 16);

@@ -119,6 +119,7 @@ void sortFields(std::span<FieldItem> items) noexcept;  // farthest first
 struct DrawList {                                      // what a view may show
     std::span<const DrawItem> surfaces;
     bool flames = false;  // something burns
+    bool books = false;   // flipbooks show some of it
     std::span<const VolumeItem> volumes;
     std::span<const MarchedVolume> marched;  // instead of them, and `cards`
     std::span<const FieldItem> fields;
@@ -130,7 +131,9 @@ bool drawStepDraws(const DrawStep& step, const DrawList& list);
 void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList& list);
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 // For the frame's view, after the lights: quads of burning meshes' flames.
-void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
+// `books`: that show them, byte 0 fire's + 1, byte 1 smoke's + 1.
+void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick,
+                      uint32_t books);
 
 // And of emitters' particles, which move here; `alone`: there are no others.
 void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,

@@ -60,7 +60,8 @@ enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone };
 
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
 // 2 DrawPass::variant.
-// Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none); 2
+// Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none), of `book
+// flames` the flipbooks (sampler2D); 2
 // binding 0 the look textures, of `volume` the fire profiles (sampler2DArray); 3, with softShader
 // alone, binding 0 the depth that the host lends (sampler2D or sampler2DMS).
 struct DrawPass {

@@ -1,6 +1,7 @@
 #include "gpu/vk/planes.h"
 
 #include "core/error.h"
+#include "shared/book.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
@@ -104,6 +105,7 @@ constexpr Plane kPlanes[] = {
      0},
     {FW_BIND_EMITTER_GROUPS, kSpaceEmitterGroups, 8, false, kComponentFlames, "emitter groups", 0},
     {FW_BIND_PARTICLES, kSpaceParticles, sizeof(Particle), true, kComponentFlames, "particles", 0},
+    {FW_BIND_BOOKS, kSpaceFixed, 4 * kBookWords, true, kComponentFlames, "flipbooks", 0},
     {FW_BIND_REFINE_OBJECTS, kSpaceObjects, sizeof(RefineObject), true, kComponentRefine,
      "refined objects", 0},
     {FW_BIND_REFINE_DRAWS, kSpaceObjects, 20 * kMaterialsPerObject, true, kComponentRefine,

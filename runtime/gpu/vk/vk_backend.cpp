@@ -105,6 +105,7 @@ VkBackend::State::~State() {
     drop(white);
     drop(lookTextures);
     drop(profiles);
+    drop(books);
     for (FrameInFlight& slot : ring.slots()) {
         deviceMemory.destroy(slot.upload);
         deviceMemory.destroy(slot.readback);

@@ -86,6 +86,9 @@ class VkBackend final : public Backend {
     void setVertices(uint32_t slot, std::span<const float> positions,
                      std::span<const float> normals) noexcept override;
     void setFireProfile(uint32_t slot, std::span<const uint32_t> texels) override;
+    void setBooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
+                  std::span<const uint32_t> words) override;
+    void setFlameBooks(uint32_t books) noexcept override;
     void createField(uint32_t slot, const FieldRules& rules,
                      std::span<const uint8_t> masks) override;
     void destroyField(uint32_t slot) noexcept override;

@@ -173,6 +173,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     std::array<FieldItem, kMaxFields> fieldItems;
     DrawList list{drawItems,
                   !burnEmpty || emitterGroups > 0,
+                  books.live,
                   {},
                   {},
                   {fieldItems.data(), orderFields(fieldItems)},
@@ -212,6 +213,9 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                                      usesView ? 1 : 0, &viewOffset);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
                                  volume ? &profiles.set.set : &lookTextures.set.set, 0, nullptr);
+        if (&pass == &kBookFlamesPass)
+            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 1,
+                                     &books.set.set, 0, nullptr);
         if (depth)
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
                                      &depth, 0, nullptr);

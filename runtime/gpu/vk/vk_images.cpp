@@ -116,19 +116,47 @@ void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
     s.addImage(entry, width, height, 1, mips, VK_FORMAT_R8G8B8A8_SRGB, all, "base colour");
 }
 
+// Once the frames so far are done with it.
+void VkBackend::State::dropImage(ImageEntry& entry) noexcept {
+    for (size_t i = 0; i < uploads.size(); ++i) {
+        if (uploads[i].image != entry.image.handle) continue;
+        deviceMemory.destroy(uploads[i].staging);
+        uploads.erase(uploads.begin() + std::ptrdiff_t(i));
+        break;
+    }
+    retired.push(ring.newest(), entry.image);
+    retired.push(ring.newest(), entry.set.pool);
+    entry = {};
+}
+
+void VkBackend::setBooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
+                         std::span<const uint32_t> words) {
+    State& s = *state_;
+    if (!s.lookTextures.live) return;  // nothing is ever drawn
+    ImageEntry fresh;
+    const size_t kept = s.uploads.size();
+    if (width > 0) {
+        PendingUpload& upload = s.stage(words.size_bytes(), "flipbooks");
+        std::memcpy(upload.staging.mapped, words.data(), words.size_bytes());
+        upload.regions[upload.regionCount++] = {FW_BIND_BOOKS, 0, 0, words.size_bytes()};
+        try {
+            s.addImage(fresh, width, height, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, texels, "flipbooks");
+        } catch (...) {
+            s.dropUploads(kept);
+            throw;
+        }
+    }
+    if (s.books.live) s.dropImage(s.books);
+    s.books = fresh;
+}
+
+void VkBackend::setFlameBooks(uint32_t books) noexcept { state_->flameBooks = books; }
+
 void VkBackend::destroyImage(uint32_t slot) noexcept {
     State& s = *state_;
     ImageEntry& entry = s.images[slot];
     if (!entry.live) return;
-    for (size_t i = 0; i < s.uploads.size(); ++i) {
-        if (s.uploads[i].image != entry.image.handle) continue;
-        s.deviceMemory.destroy(s.uploads[i].staging);
-        s.uploads.erase(s.uploads.begin() + std::ptrdiff_t(i));
-        break;
-    }
-    s.retired.push(s.ring.newest(), entry.image);
-    s.retired.push(s.ring.newest(), entry.set.pool);
-    entry = {};
+    s.dropImage(entry);
     for (ObjectEntry& object : s.objects) {  // back to their own base colour
         for (uint32_t& image : object.images) {
             if (image != slot + 1) continue;

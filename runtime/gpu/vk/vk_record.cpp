@@ -515,7 +515,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
         if (!burnEmpty) {
             recordLights(looks, lists, open.endTick);
             recordSooting(*this, looks);
-            if (view) recordFlameQuads(looks, lists, open.endTick);
+            if (view) recordFlameQuads(looks, lists, open.endTick, books.live ? flameBooks : 0);
         }
         const SortPush room = quadRoom();
         if (particles) {

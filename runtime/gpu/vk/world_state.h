@@ -251,6 +251,7 @@ struct VkBackend::State {
     std::pmr::vector<ObjectEntry> objects;
     std::pmr::vector<ImageEntry> images;
     ImageEntry white, lookTextures, profiles;
+    ImageEntry books;  // the flipbooks; not live: there are none
     std::pmr::vector<PendingUpload> uploads;
     std::pmr::vector<Quarantined> quarantine;
     std::pmr::vector<Skin> skins;
@@ -299,6 +300,7 @@ struct VkBackend::State {
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
     bool emittersMove = false;            // in the open frame
+    uint32_t flameBooks = 0;              // as setFlameBooks has them
     std::pmr::vector<FieldEntry> fields;
     std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their plane has them
     bool fieldsDirty = false;                // one of them has something for the next frame
@@ -365,6 +367,7 @@ struct VkBackend::State {
     void addImage(ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
                   uint32_t mips, VkFormat format, std::span<const std::byte> pixels,
                   const char* name);
+    void dropImage(ImageEntry& entry) noexcept;
     // vk_record.cpp
     void openFrame(VkCommandBuffer commands, uint64_t ringFrame);
     void run(const FramePlan& plan);

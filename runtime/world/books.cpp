@@ -1,0 +1,122 @@
+// Flipbooks: ids, who uses them, and their way to the backend. Looks alone.
+#include "world/world.h"
+
+#include "book/own.h"
+#include "book/picture.h"
+#include "components/fire_emitter.h"
+
+namespace fw::world {
+
+// Of all that there are and `fresh` in `slot`; without what is there already where `fresh` is null.
+void World::showBooks(uint32_t slot, const book::Book* fresh) {
+    const book::Book* all[gpu::kMaxBooks] = {};
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < gpu::kMaxBooks; ++i) {
+        const FlipbookEntry* entry = i < flipbooks_.slotCount() ? flipbooks_.at(i) : nullptr;
+        all[i] = i == slot ? fresh : entry ? entry->book.get() : nullptr;
+        count += all[i] != nullptr;
+    }
+    if (count == 0) {
+        backend_.setBooks(0, 0, {}, {});
+        return;
+    }
+    const book::Picture picture = book::layBooks(all, memory_);
+    backend_.setBooks(picture.width, picture.height, std::as_bytes(std::span(picture.texels)),
+                      picture.words);
+}
+
+FwFlipbookId World::createFlipbook(const FwFlipbookDef& def) {
+    if (flipbooks_.live() >= gpu::kMaxBooks)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u flipbooks are there; the limit is %u.",
+                   flipbooks_.live(), gpu::kMaxBooks);
+    components::checkWhole(def.flags, "FwFlipbookDef::flags", 0, 0);
+    components::checkWhole(def.preset, "FwFlipbookDef::preset", 0, FW_FLIPBOOK_PRESET_COUNT - 1);
+    components::checkWhole(def.reserved, "FwFlipbookDef::reserved", 0, 0);
+    auto book = core::Owned<book::Book>::make(memory_, memory_);
+    if (def.preset == FW_FLIPBOOK_CUSTOM) {
+        if (!def.cooked)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwFlipbookDef::cooked is null, and FwFlipbookDef::preset is "
+                       "FW_FLIPBOOK_CUSTOM.");
+        if (def.cookedSize > (uint64_t(1) << 30))
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFlipbookDef::cookedSize is %llu.",
+                       static_cast<unsigned long long>(def.cookedSize));
+        const auto* bytes = static_cast<const std::byte*>(def.cooked);
+        book::readBook({bytes, size_t(def.cookedSize)}, *book);
+    } else {
+        if (def.cooked)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwFlipbookDef::cooked is not null, and FwFlipbookDef::preset is %u.",
+                       def.preset);
+        book::readBook(book::ownBook(def.preset, memory_), *book);
+    }
+    const FwFlipbookId id = flipbooks_.create();
+    try {
+        showBooks(id.index1 - 1, book.get());
+    } catch (...) {
+        flipbooks_.destroy(id);
+        throw;
+    }
+    flipbooks_.get(id).book = std::move(book);
+    return id;
+}
+
+void World::destroyFlipbook(FwFlipbookId id) {
+    const uint32_t users = flipbooks_.get(id).users;
+    if (users > 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Flipbook %u (generation %u) is used by %u emitter(s) and flames; destroy or "
+                   "change them first.",
+                   id.index1, id.generation, users);
+    showBooks(id.index1 - 1, nullptr);
+    flipbooks_.destroy(id);
+}
+
+uint32_t World::bookByte(FwFlipbookId id, const char* name, book::Kind kind) {
+    if (id.index1 == 0) return 0;
+    const FlipbookEntry& entry = flipbooks_.get(id);
+    static constexpr const char* kNames[] = {"fire", "smoke", "sparks"};
+    const book::Kind has = entry.book->facts.kind;
+    if (has != kind)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is a flipbook of %s; it must be one of %s.", name,
+                   kNames[uint32_t(has)], kNames[uint32_t(kind)]);
+    return id.index1;
+}
+
+void World::setFlameFlipbooks(FwFlipbookId fire, FwFlipbookId smoke) {
+    const uint32_t bytes =
+        bookByte(fire, "fire", book::Kind::Fire) | bookByte(smoke, "smoke", book::Kind::Smoke) << 8;
+    const FwFlipbookId now[2] = {fire, smoke};
+    for (int i = 0; i < 2; ++i) {
+        if (now[i].index1) ++flipbooks_.get(now[i]).users;
+        if (flameBooks_[i].index1) --flipbooks_.get(flameBooks_[i]).users;
+        flameBooks_[i] = now[i];
+    }
+    backend_.setFlameBooks(bytes);
+}
+
+components::EmitterBooks World::emitterBooks(const FwFireEmitterDef& def) {
+    components::EmitterBooks books;
+    for (uint32_t i = 0, at = 0; i < 3; ++i)
+        if (const uint32_t b =
+                bookByte(def.fireBooks[i], "FwFireEmitterDef::fireBooks", book::Kind::Fire))
+            books.fire |= b << (8 * at++);
+    for (uint32_t i = 0, at = 0; i < 2; ++i)
+        if (const uint32_t b =
+                bookByte(def.smokeBooks[i], "FwFireEmitterDef::smokeBooks", book::Kind::Smoke))
+            books.other |= b << (8 * at++);
+    books.other |= bookByte(def.sparkBook, "FwFireEmitterDef::sparkBook", book::Kind::Spark) << 16;
+    return books;
+}
+
+// `by` is 1 or -1.
+void World::countBookUsers(const FwFireEmitterDef& def, int by) noexcept {
+    const auto count = [&](FwFlipbookId id) {
+        if (id.index1) flipbooks_.at(id.index1 - 1)->users += uint32_t(by);
+    };
+    for (const FwFlipbookId id : def.fireBooks) count(id);
+    for (const FwFlipbookId id : def.smokeBooks) count(id);
+    count(def.sparkBook);
+}
+
+}  // namespace fw::world

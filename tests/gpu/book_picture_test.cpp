@@ -1,0 +1,188 @@
+// Flipbooks as a device draws them: a particle shows what its book says, between two frames too,
+// and a book that the host takes back leaves the others as they were. Smoke's quads stand upright
+// and their alpha is their book's alone, so that pictures can be compared texel by texel.
+#include "book/book.h"
+#include "book/picture.h"
+#include "shared/particle.h"
+#include "support/own_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::test {
+namespace {
+
+using gpu::vec2;
+using gpu::vec4;
+
+constexpr uint32_t kSide = 256;  // px
+constexpr float kSize = 1;       // m, of the particle
+constexpr uint32_t kSeed = 0x51a3;
+constexpr float kSmokeLife = 10;  // in lives of the fire
+
+std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
+
+// A soft spot that goes 8 of 64 texels to the right with each frame, 6 up.
+book::Book spots(book::Kind kind) {
+    book::Book made(memory());
+    book::Facts& f = made.facts;
+    f.kind = kind;
+    f.loops = 0;
+    f.width = f.height = 64;
+    f.motionWidth = f.motionHeight = 8;
+    f.frames = 5;
+    f.motionMost = 0.25f;
+    f.seconds = 1;
+    for (uint32_t frame = 0; frame < f.frames; ++frame) {
+        for (uint32_t y = 0; y < 64; ++y)
+            for (uint32_t x = 0; x < 64; ++x) {
+                const float dx = float(x) + 0.5f - 14 - 8 * float(frame);
+                const float dy = float(y) + 0.5f - 18 - 6 * float(frame);
+                const float v = std::exp(-(dx * dx + dy * dy) / 40);
+                for (const float c : {0.5f, 0.0f, v, 0.5f * v})
+                    made.texels.push_back(uint8_t(255 * c + 0.5f));
+            }
+        for (uint32_t i = 0; i < 64; ++i) {
+            made.motion.push_back(uint8_t(128.5f + 127 * (8 / 64.0f) / f.motionMost));
+            made.motion.push_back(uint8_t(128.5f + 127 * (6 / 64.0f) / f.motionMost));
+        }
+        made.rects.push_back({0, 0, 64, 64});
+    }
+    return made;
+}
+
+struct Shown {
+    std::vector<float> alpha;  // kSide^2, rows from the bottom
+    float width = 0;           // m, of the quad
+    bool mirrored = false;
+};
+
+class BookPicture : public OwnWorld {
+ protected:
+    void SetUp() override {
+        OwnWorld::SetUp();
+        if (IsSkipped()) return;
+        FwWorldDef def = fwDefaultWorldDef();
+        ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_));
+    }
+    FwFlipbookId create(const book::Book& made) {
+        const auto bytes = book::cookBook(made, memory());
+        FwFlipbookDef def = fwDefaultFlipbookDef();
+        def.cooked = bytes.data();
+        def.cookedSize = bytes.size();
+        FwFlipbookId id{};
+        EXPECT_EQ(FW_OK, fwWorld_CreateFlipbook(world_, &def, &id));
+        return id;
+    }
+    FwFlipbookId create(uint32_t preset) {
+        FwFlipbookDef def = fwDefaultFlipbookDef();
+        def.preset = preset;
+        FwFlipbookId id{};
+        EXPECT_EQ(FW_OK, fwWorld_CreateFlipbook(world_, &def, &id));
+        return id;
+    }
+    // One particle, a second old, that is nothing but smoke and shows `time` of its book.
+    Shown smokeAt(FwFlipbookId book, float time) {
+        FwFireEmitterDef def = fwDefaultFireEmitterDef();
+        def.seed = kSeed;
+        def.shape = FW_EMITTER_DISC;  // of no size
+        def.rate = 0.25f;
+        def.speed = 1e-3f;
+        def.cone = 1e-5f;
+        def.size0 = def.size1 = kSize;
+        def.buoyancy = def.turbulence = def.sparks = def.lifeVariance = 0;
+        def.smoke = 1;
+        def.smokeLife = kSmokeLife;
+        def.life = 1 / (0.65f + time * (0.35f + kSmokeLife));
+        def.maxParticles = 1;
+        def.smokeBooks[0] = book;
+        FwFireEmitterId emitter{};
+        EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(world_, &def, &emitter));
+        for (int i = 0; i < 5 * 32; ++i) fwWorld_Step(world_, 1.0f / 32);
+        const FwView view = frontView({0, 0}, 2, 2);
+        const float nothing[4] = {0, 0, 0, 0};
+        const std::vector<uint8_t> pixels = shoot(world_, view, kSide, kSide, nothing);
+        EXPECT_EQ(FW_OK, fwWorld_DestroyFireEmitter(world_, emitter));
+        gpu::ParticleEmitter record{};
+        record.life = {def.life, 0, kSmokeLife, 1};
+        record.heat = {1500, 1400, 1, 0};
+        record.size = {kSize, 0, 0, 1};
+        const uint32_t seed = gpu::particleSeed(kSeed, 0);
+        const gpu::ParticleTraits traits = gpu::particleTraits(record, seed);
+        Shown shown;
+        shown.width = 1.24f * gpu::particleSize(record, traits, 1, 0, traits.own);
+        shown.mirrored = (seed & 1) != 0;
+        for (uint32_t y = 0; y < kSide; ++y)
+            for (uint32_t x = 0; x < kSide; ++x)
+                shown.alpha.push_back(float(pixels[4 * (size_t(kSide - 1 - y) * kSide + x) + 3]) /
+                                      255);
+        return shown;
+    }
+    // Of the book, where a pixel lies.
+    static vec2 uvOf(const Shown& shown, uint32_t x, uint32_t y) {
+        const float metres = 2.0f / kSide;
+        float u = (float(x) + 0.5f - kSide / 2.0f) * metres / shown.width;
+        if (shown.mirrored) u = -u;
+        return {u + 0.5f, (float(y) + 0.5f - kSide / 2.0f) * metres / shown.width + 0.5f};
+    }
+};
+
+TEST_F(BookPicture, DrawnAsTheBookSaysOnAFrameAndBetweenTwo) {
+    const book::Book made = spots(book::Kind::Smoke);
+    (void)create(FW_FLIPBOOK_SPARK);  // it is not the only one
+    const FwFlipbookId id = create(made);
+    for (const float time : {0.25f, 0.375f}) {  // frame 1; halfway from it to 2
+        const Shown shown = smokeAt(id, time);
+        double drawn = 0, said = 0, worst = 0;
+        float most = 0;
+        for (uint32_t y = 0; y < kSide; ++y)
+            for (uint32_t x = 0; x < kSide; ++x) {
+                const float v = book::showBook(made, time, uvOf(shown, x, y)).z;
+                drawn += double(shown.alpha[y * kSide + x] * v), said += double(v * v);
+                most = std::max(most, shown.alpha[y * kSide + x]);
+            }
+        const auto opacity = float(drawn / said);
+        ASSERT_GT(opacity, 0.1f);
+        for (uint32_t y = 0; y < kSide; ++y)
+            for (uint32_t x = 0; x < kSide; ++x) {
+                const float v = book::showBook(made, time, uvOf(shown, x, y)).z;
+                worst = std::max(worst, std::abs(double(shown.alpha[y * kSide + x] / opacity - v)));
+            }
+        // Peaks, a spot's width apart.
+        int peaks = 0;
+        constexpr int kNear = 12;
+        for (int y = kNear; y + kNear < int(kSide); ++y)
+            for (int x = kNear; x + kNear < int(kSide); ++x) {
+                const float v = shown.alpha[size_t(y) * kSide + size_t(x)];
+                bool peak = v > 0.3f * opacity;
+                for (int j = -kNear; peak && j <= kNear; ++j)
+                    for (int i = -kNear; peak && i <= kNear; ++i) {
+                        const float other = shown.alpha[size_t(y + j) * kSide + size_t(x + i)];
+                        peak = j < 0 || (j == 0 && i < 0) ? v > other : v >= other;
+                    }
+                peaks += peak;
+            }
+        std::printf("[   FIGURE ] book at %.3f: off by %.4f at most, %d peak(s), %.2f high\n",
+                    double(time), worst, peaks, double(most / opacity));
+        EXPECT_LT(worst, 0.04) << time;  // 8 bits of book, of motion and of picture
+        EXPECT_EQ(1, peaks) << time;
+        EXPECT_GT(most / opacity, 0.9f) << time;  // a cross-fade would have 0.6
+    }
+}
+
+TEST_F(BookPicture, BooksComeAndGo) {
+    const book::Book made = spots(book::Kind::Smoke);
+    const FwFlipbookId roll = create(FW_FLIPBOOK_ROLL), id = create(made);
+    const Shown before = smokeAt(id, 0.25f);
+    ASSERT_EQ(FW_OK, fwWorld_DestroyFlipbook(world_, roll));  // the picture is laid anew
+    const Shown after = smokeAt(id, 0.25f);
+    EXPECT_EQ(before.alpha, after.alpha);
+    ASSERT_EQ(FW_OK, fwWorld_DestroyFlipbook(world_, id));
+    const Shown without = smokeAt({}, 0.25f);  // by noise
+    EXPECT_NE(before.alpha, without.alpha);
+    EXPECT_GT(*std::max_element(without.alpha.begin(), without.alpha.end()), 0.05f);
+}
+
+}  // namespace
+}  // namespace fw::test
