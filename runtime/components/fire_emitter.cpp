@@ -107,7 +107,7 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwFireEmitterDef::flags is 0x%x; the known flags are 0x%x.", def.flags, kKnown);
-    checkWhole(def.shape, "FwFireEmitterDef::shape", 0, FW_EMITTER_LINE);
+    checkWhole(def.shape, "FwFireEmitterDef::shape", 0, FW_EMITTER_MESH);
     checkWhole(def.reserved, "FwFireEmitterDef::reserved", 0, 0);
     checkWhole(def.maxParticles, "FwFireEmitterDef::maxParticles", 0, 1u << 20);
     checkValues(def.position, 3, "FwFireEmitterDef::position", -1e6f, 1e6f);
@@ -136,6 +136,11 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     checkValue(def.ground, "FwFireEmitterDef::ground", -1e6f, 1e6f);
     checkValue(def.behind, "FwFireEmitterDef::behind", 0.0f, 10.0f);
     checkValue(def.heat, "FwFireEmitterDef::heat", 0.0f, 1.0f);
+    if (def.shape == FW_EMITTER_MESH && (def.flags & FW_EMITTER_JET))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwFireEmitterDef::shape is FW_EMITTER_MESH and FwFireEmitterDef::flags is "
+                   "0x%x; FW_EMITTER_JET goes with the other shapes.",
+                   def.flags);
     if ((def.flags & FW_EMITTER_IGNITES) && !isSwept(def))
         core::fail(
             FW_ERROR_INVALID_ARGUMENT,
@@ -208,10 +213,11 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     std::copy_n(emitter.position, 3, births.position);
     births.placed = true;
 
-    const bool burns = def.power > 0;
+    const bool onMesh = def.shape == FW_EMITTER_MESH;
+    const bool burns = def.power > 0 && emitter.share > 0;
     uint32_t fresh = 0;
     double part = births.part;
-    const double rate = std::max(double(look.rate), 1e-3);
+    const double rate = std::max(double(look.rate) * double(emitter.share), 1e-3);
     if (burns) {
         part += rate * double(seconds);
         const double whole = std::floor(part);
@@ -230,6 +236,7 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     const bool smokes = !(def.flags & FW_EMITTER_NO_SMOKE);
     const float wind[3] = {air.wind[0] * def.windResponse, air.wind[1] * def.windResponse,
                            air.wind[2] * def.windResponse};
+    if (onMesh) moved[0] = moved[1] = moved[2] = 0;
     const float carried[3] = {moved[0] * carry, moved[1] * carry, moved[2] * carry};
     const float none[3] = {};
     record = {};
@@ -237,6 +244,9 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     record.place = with(emitter.position, def.shape == FW_EMITTER_DISC   ? def.radius
                                           : (def.flags & FW_EMITTER_JET) ? 0.1f * look.size0
                                                                          : 0.2f * look.diameter);
+    if (onMesh) record.place = record.from = vec4(0, 0, 0, 0);  // its tiles are the device's
+    record.from.w = seconds;
+    record.object = onMesh ? def.object.index1 : 0;
     record.direction = with(emitter.direction, look.cone);
     record.half_ = with(def.shape == FW_EMITTER_LINE ? def.extent : none, look.speed);
     record.carried = with(carried, def.ground);

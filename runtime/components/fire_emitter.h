@@ -59,6 +59,7 @@ struct FireEmitter {
     FwFireEmitterDef def{};
     EmitterLook look;
     EmitterBooks books;
+    float share = 1;  // of its births: of a mesh, by what burns there
     uint32_t seed = 0;
     uint32_t first = 0, ring = 0;  // particles of the world's
     float position[3] = {}, direction[3] = {0, 1, 0};

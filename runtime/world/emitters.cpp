@@ -47,6 +47,7 @@ FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
     FireEmitter emitter;
     components::makeFireEmitter(def, def_.seed * 0x9E3779B9u + 77u * (emittersMade_ + 1), emitter);
     emitter.books = emitterBooks(def);
+    if (def.shape == FW_EMITTER_MESH) (void)objects_.get(def.object);
     emitter.ring = std::max(components::emitterNeeds(emitter), 1u);
     emitter.first = emitterRoom(emitter.ring);
     const size_t groups = emitterGroups_.capacity();
@@ -95,6 +96,13 @@ void World::fireEmitterState(FwFireEmitterId id, FwFireEmitterState& state) {
 
 // ---- frames -----------------------------------------------------------------------------------
 
+// Of a mesh emitter's power that its mesh has, as of the last readback.
+float World::burningShare(const FireEmitter& emitter) noexcept {
+    const core::Owned<Object>* object = objects_.find(emitter.def.object);
+    if (!object || !(emitter.def.power > 0)) return 0;
+    return std::clamp(powerOf(**object) / (1000 * emitter.def.power), 0.0f, 1.0f);
+}
+
 void World::planEmitters(float seconds) noexcept {
     emitterRecords_.clear();
     emitterGroups_.clear();
@@ -104,6 +112,8 @@ void World::planEmitters(float seconds) noexcept {
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
         FireEmitter* emitter = emitters_.at(i);
         gpu::ParticleEmitter record;
+        if (emitter && emitter->def.shape == FW_EMITTER_MESH)
+            emitter->share = burningShare(*emitter);
         if (emitter && components::isSwept(emitter->def)) {
             if (!listed) listFireColliders();
             listed = true;

@@ -223,7 +223,8 @@ uint32_t World::lights(std::span<FwLight> out) const noexcept {
     const components::EmitterAir air = emitterAir(0);
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
         const components::FireEmitter* emitter = emitters_.at(i);
-        if (!emitter || emitter->births.filled == 0 ||
+        // A mesh that burns shines by itself.
+        if (!emitter || emitter->births.filled == 0 || emitter->def.shape == FW_EMITTER_MESH ||
             (emitter->def.flags & (FW_EMITTER_HIDDEN | FW_EMITTER_NO_LIGHT)))
             continue;
         add(components::emitterLight(*emitter, air, 0x40000000u | i, lastFrame_));

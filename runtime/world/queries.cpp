@@ -77,6 +77,20 @@ void World::tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag)
     tags_.push_back({id, texel, tag});
 }
 
+float World::burningAreaOf(const Object& object) noexcept {
+    const auto& report = meshes_.at(object.data.meshSlot)->domain->report;
+    const float scale = object.data.pose.scale;
+    const float texelArea =
+        report.realTexels ? float(report.texelArea) / float(report.realTexels) : 0.0f;
+    return float(object.counters.burning) * texelArea * scale * scale;
+}
+
+float World::powerOf(const Object& object) noexcept {
+    if (components::hasHeat(object.data)) return object.power;
+    return burningAreaOf(object) *
+           components::powerPerArea(object.data, meshes_.at(object.data.meshSlot)->texelsOf);
+}
+
 void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
     const Object& object = *objects_.get(id);
     state.frameIndex = object.countersFrame;
@@ -88,19 +102,9 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
     state.refinedTriangles = object.counters.refined;
     state.burntFraction =
         object.texels ? std::min(1.0f, float(object.mostIgnited) / float(object.texels)) : 0.0f;
-    const MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
-    const float scale = object.data.pose.scale;
-    const float texelArea =
-        mesh.domain->report.realTexels
-            ? float(mesh.domain->report.texelArea) / float(mesh.domain->report.realTexels)
-            : 0.0f;
-    state.burningArea = float(object.counters.burning) * texelArea * scale * scale;
-    if (components::hasHeat(object.data)) {
-        state.power = object.power;
-        state.energy = double(object.energy) / 1048576;
-    } else {
-        state.power = state.burningArea * components::powerPerArea(object.data, mesh.texelsOf);
-    }
+    state.burningArea = burningAreaOf(object);
+    state.power = powerOf(object);
+    if (components::hasHeat(object.data)) state.energy = double(object.energy) / 1048576;
 }
 
 Query World::makeQuery(FwBurnableMeshId id, const float position[3]) {

@@ -433,6 +433,9 @@ class World {
     void commitFires() noexcept;
     // emitters.cpp
     [[nodiscard]] components::EmitterAir emitterAir(float ahead) const noexcept;
+    [[nodiscard]] float burningAreaOf(const Object& object) noexcept;  // m^2
+    [[nodiscard]] float powerOf(const Object& object) noexcept;        // W
+    [[nodiscard]] float burningShare(const components::FireEmitter& emitter) noexcept;
     // books.cpp
     void showBooks(uint32_t slot, const book::Book* fresh);
     uint32_t bookByte(FwFlipbookId id, const char* name, book::Kind kind);

@@ -3,6 +3,9 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
+#define FW_USE_COUNTERS readonly
+#define FW_USE_BURN_TILES readonly
+#include "lib/buffers.glsl"
 #include "shared/book.h"
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -55,9 +58,34 @@ ParticleEmitter emitterOf(uint i) {
     e.shieldCount = emitters[i].shieldCount;
     e.books = emitters[i].books;
     e.otherBooks = emitters[i].otherBooks;
+    e.object = emitters[i].object;
     e.waves0 = emitters[i].waves0;
     e.waves1 = emitters[i].waves1;
     return e;
+}
+
+// A birth on a flaming tile of the emitter's mesh, each as likely as it has power: of a few that it
+// meets. None met: it is never seen.
+Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
+    uint count = push.burnRow == kNoBurnRow ? 0u : counters[push.burnRow].runCount;
+    uint met = 0u;
+    float all = 0.0;
+    vec4 place = vec4(0.0), normal = vec4(0.0, 1.0, 0.0, 0.0);
+    for (uint i = 0u; i < kTileTries && count > 0u; ++i) {
+        uint tile = particleBits(seed + 101u * (i + 1u)) % count;
+        if (met == kTileChoice || burnTiles[tile].object + 1u != e.object) continue;
+        ++met;
+        vec4 there = burnTiles[tile].normalPower;
+        float power = max(there.w, 1e-3);
+        all += power;
+        if (particleHash(seed + 57u + i) * all > power) continue;
+        normal = there;
+        place = burnTiles[tile].positionArea;
+    }
+    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)),
+                       place.w);
+    p.placeAge.w = met > 0u ? p.placeAge.w : 1e6;
+    return p;
 }
 
 // What shows a quad by `book` (+ 1; 0: nothing does, and its phase is its own).
@@ -85,6 +113,7 @@ void main() {
         bool fresh = births < e.fresh && push.still == 0u;
         float lived = fresh ? e.age + e.apart * float(births) : e.from.w;
         Particle born = particleBorn(e, seed, lived);
+        if (fresh && e.object != 0u) born = bornOnTile(e, born, seed);
         p.placeAge = fresh ? born.placeAge : p.placeAge;
         p.speedPath = fresh ? born.speedPath : p.speedPath;
         p.hit = fresh ? born.hit : p.hit;
@@ -153,6 +182,8 @@ void main() {
             // A streak of a fiftieth of a second; what is too thin for a pixel is dimmer instead.
             float pixel = view.eye.w * max(far, 0.05);
             float thick = 0.004 + 0.004 * t.other;
+            // A book's streak fills a third of its page.
+            if ((e.otherBooks >> 16u & 0xFFu) != 0u) thick *= 3.0;
             along = speed > 1e-3 ? v / max(length(v), 1e-3) : above;
             wide = max(thick, 0.7 * pixel);
             tall = length(v) * 0.02 + 2.0 * wide;

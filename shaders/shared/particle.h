@@ -34,6 +34,10 @@ FW_SHARED_CONST uint kMaxEmitters = 256u;
 FW_SHARED_CONST float kMostParticleStep = 0.0334f;  // s; longer frames take several
 FW_SHARED_CONST uint kMostParticleSteps = 32u;
 
+FW_SHARED_CONST uint kNoBurnRow = 0xFFFFFFFFu;
+FW_SHARED_CONST uint kTileTries = 32u;  // tiles that a birth looks at, at most, and
+FW_SHARED_CONST uint kTileChoice = 6u;  // of its mesh among them, from which it chooses by power
+
 // ParticleEmitter::flags
 FW_SHARED_CONST uint kEmitterHidden = 1u;
 FW_SHARED_CONST uint kEmitterGround = 2u;  // they come to rest on `carried.w`
@@ -66,8 +70,8 @@ struct ParticleEmitter {  // one frame of one emitter
     uint shieldCount;
     uint books;      // that show fire, and
     uint otherBooks; // smoke (two) and sparks: bytes, book + 1; 0: there are no more
+    uint object;     // slot + 1 of the burning mesh whose flaming tiles it is born on; 0: of none
     uint reserved0;
-    uint reserved1;
     vec4 waves0;     // rad, rad, share: how a stream swings and pulses, at the frame's start
     vec4 waves1;     // and at its end
     vec4 shields[64]; // m, world, and radius; unit normal: what stops a jet
@@ -85,7 +89,7 @@ struct ParticlePush {
     uint quads;      // that may be shown; 0: none are made
     uint firstQuad;  // of them
     uint still;      // 1: no time passes, the frame's births were made before
-    uint reserved0;
+    uint burnRow;    // counters row that says how many burning tiles there are; kNoBurnRow: none
 };
 FW_SHARED_SIZE(ParticlePush, 16)
 
@@ -175,6 +179,19 @@ FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
     p.placeAge = vec4(at, 0.0f);
     p.speedPath = vec4(v + vec3(e.carried.x, e.carried.y, e.carried.z), 0.0f);
     p.hit = vec4(0.0f, 0.0f, 0.0f, -1.0f);
+    return p;
+}
+
+// Moves it to a flaming tile: anywhere on its `area` m^2 about `at`, off its surface at first.
+FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n,
+                                     float area) {
+    vec3 r = particleAcross(n), u = cross(r, n);
+    float turn = 6.2831853f * particleHash(seed + 41u);
+    float away = 0.8f * sqrt(area * particleHash(seed + 42u));
+    vec3 moved = at + (r * cos(turn) + u * sin(turn)) * away + n * (0.1f * e.size.x);
+    vec3 v = n * (0.6f * e.half_.w);
+    p.placeAge = p.placeAge + vec4(moved, 0.0f);
+    p.speedPath = p.speedPath + vec4(v, 0.0f);
     return p;
 }
 

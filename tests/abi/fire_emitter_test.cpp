@@ -1,6 +1,7 @@
 // Fire emitters through the C ABI on the cpu backend: what they say of themselves, what they may
 // not be, and that a frame of theirs asks for no memory.
 #include "abi/fire_world.h"
+#include "abi/panels.h"
 
 #include <gmock/gmock.h>
 
@@ -67,8 +68,14 @@ TEST(AbiFireEmitter, RefusesWhatItCannotBe) {
     };
     def.flags = 1u << 20;
     refuses("FwFireEmitterDef::flags is 0x100000");
-    def.shape = 3;
-    refuses("FwFireEmitterDef::shape is 3");
+    def.shape = 4;
+    refuses("FwFireEmitterDef::shape is 4");
+    def.shape = FW_EMITTER_MESH;
+    def.flags = FW_EMITTER_JET;
+    refuses("FwFireEmitterDef::shape is FW_EMITTER_MESH and FwFireEmitterDef::flags is 0x10");
+    def.shape = FW_EMITTER_MESH;
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CreateFireEmitter(w.world, &def, &id));
+    def = fwDefaultFireEmitterDef();
     def.direction[1] = 0;
     refuses("FwFireEmitterDef::direction has length 0");
     def.extent[2] = 200;
@@ -88,6 +95,44 @@ TEST(AbiFireEmitter, RefusesWhatItCannotBe) {
     ASSERT_EQ(FW_OK, fwWorld_DestroyFireEmitter(w.world, live));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetFireEmitterPower(w.world, live, 1));
     EXPECT_THAT(lastMessage(w.world), HasSubstr("Fire emitter 1"));
+}
+
+// What burns feeds it: nothing, then more the more burns, and nothing again.
+TEST(AbiFireEmitter, OnAMeshIsFedByWhatBurnsThere) {
+    host::Panels panels(fwDefaultWorldDef(), 6);
+    const FwBurnableMeshId sheet = panels.add(0, 0, 0), other = panels.add(3, 0, 0);
+    FwFireEmitterDef def = fwDefaultFireEmitterDef();
+    def.shape = FW_EMITTER_MESH;
+    def.object = sheet;
+    def.power = 20;
+    def.rate = 400;
+    def.life = 0.5f;
+    def.smoke = 0;
+    FwFireEmitterId id{};
+    ASSERT_EQ(FW_OK, fwWorld_CreateFireEmitter(panels.world, &def, &id));
+    const auto alive = [&] {
+        FwFireEmitterState state{};
+        state.structSize = sizeof state;
+        EXPECT_EQ(FW_OK, fwWorld_GetFireEmitterState(panels.world, id, &state));
+        return state.particles;
+    };
+    panels.ignite(other, 3.2f, 0, 0.1f);  // not its own
+    panels.run(1);
+    EXPECT_EQ(0u, alive());
+    panels.ignite(sheet, 0.2f, 0, 0.1f);
+    panels.run(0.5);
+    const uint32_t few = alive();
+    EXPECT_GT(few, 0u);
+    panels.run(2.5);
+    EXPECT_GT(alive(), 2 * few);
+    FwLight lights[8];
+    for (uint32_t i = 0, n = fwWorld_GetLights(panels.world, lights, 8); i < n; ++i)
+        EXPECT_NE(0x40000000u, lights[i].id & 0xC0000000u);  // the mesh's own shine
+    panels.run(30);
+    EXPECT_EQ(0u, alive());
+    ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(panels.world, sheet));
+    panels.run(0.5);
+    EXPECT_EQ(0u, alive());
 }
 
 TEST(AbiFireEmitter, RoomOfOneThatIsGoneIsGivenAgain) {

@@ -234,7 +234,7 @@ class Fuzz {
     void createEmitter() {
         FwFireEmitterDef def = fwDefaultFireEmitterDef();
         def.flags = random_.below(64);
-        def.shape = random_.below(4);
+        def.shape = random_.below(5);
         for (float& x : def.position) x = random_.unit();
         for (float& x : def.extent) x = random_.number();
         garble(def);

@@ -18,14 +18,15 @@ namespace {
 using gpu::vec3;
 
 constexpr uint32_t kTiles = 64;  // quads that burning meshes might have
+constexpr uint32_t kBurnTiles = 40;
 
 class ParticlePass : public GpuTest {
  protected:
     void makeRig(uint32_t quads) {
-        static constexpr uint32_t kBindings[] = {FW_BIND_EMITTERS,  FW_BIND_EMITTER_GROUPS,
-                                                 FW_BIND_PARTICLES, FW_BIND_FLAMES,
-                                                 FW_BIND_DRAW_ARGS, FW_BIND_VIEW,
-                                                 FW_BIND_BOOKS};
+        static constexpr uint32_t kBindings[] = {
+            FW_BIND_EMITTERS, FW_BIND_EMITTER_GROUPS, FW_BIND_PARTICLES,
+            FW_BIND_FLAMES,   FW_BIND_DRAW_ARGS,      FW_BIND_VIEW,
+            FW_BIND_BOOKS,    FW_BIND_COUNTERS,       FW_BIND_BURN_TILES};
         static constexpr uint32_t kUniforms[] = {FW_BIND_VIEW};
         rig_ = std::make_unique<PassRig>(*device_, kBindings, uint32_t(sizeof(gpu::ParticlePush)),
                                          std::span<const uint32_t>{}, kUniforms);
@@ -36,6 +37,8 @@ class ParticlePass : public GpuTest {
         rig_->make(FW_BIND_FLAMES, (kTiles + quads) * sizeof(gpu::FlameQuad));
         rig_->make(FW_BIND_DRAW_ARGS, (gpu::kFlameOrder + 2 * (kTiles + quads)) * 4);
         rig_->make(FW_BIND_BOOKS, gpu::kBookWords * 4);
+        rig_->make(FW_BIND_COUNTERS, sizeof(gpu::IterationCounters));
+        rig_->make(FW_BIND_BURN_TILES, kBurnTiles * sizeof(gpu::BurnTile));
         gpu::ViewInput input;
         input.view = &view_;
         input.viewport[2] = input.viewport[3] = 512;
@@ -81,6 +84,7 @@ class ParticlePass : public GpuTest {
         push.quads = room_.particles;
         push.firstQuad = room_.tiles;
         push.still = still ? 1 : 0;
+        push.burnRow = 0;
         device_->run([&](VkCommandBuffer commands) {
             rig_->begin(commands);
             if (groups_) rig_->dispatch(commands, particles_, &push, groups_);
@@ -166,6 +170,57 @@ TEST_F(ParticlePass, MovesThemAsTheLibrarySays) {
     EXPECT_EQ(0, std::memcmp(before.data(), of<gpu::Particle>(FW_BIND_PARTICLES).data(),
                              before.size() * sizeof(gpu::Particle)));
     EXPECT_LT(40u, quads());
+}
+
+// Of two meshes' tiles only its own; the strong ones as much more often as they have power.
+TEST_F(ParticlePass, AreBornOnTheTilesOfTheirMeshByPower) {
+    FwFireEmitterDef def = emitterDef(0, 60);
+    def.shape = FW_EMITTER_MESH;
+    def.object.index1 = 5;
+    def.rate = 4000;
+    def.life = 3;
+    def.speed = 0.01f;
+    def.buoyancy = def.turbulence = 0;
+    def.smoke = def.sparks = 0;
+    ParticleReference& fire = add(def);
+    makeRig(16384);
+    const auto tiles = rig_->of<gpu::BurnTile>(FW_BIND_BURN_TILES);
+    for (uint32_t i = 0; i < kBurnTiles; ++i) {
+        tiles[i] = {};
+        tiles[i].object = i % 2 ? 4 : 2;
+        tiles[i].positionArea = {10.0f * float(i), 1, 0, 0.01f};
+        tiles[i].normalPower = {0, 0, 1, i % 4 == 1 ? 300.0f : 100.0f};
+    }
+    rig_->of<gpu::IterationCounters>(FW_BIND_COUNTERS)[0].runCount = kBurnTiles;
+    for (int i = 0; i < 30; ++i) frame(1.0f / 60);
+    uint32_t weak = 0, strong = 0, elsewhere = 0, lost = 0;
+    for (uint32_t i = 0; i < fire.emitter.ring; ++i) {
+        if (fire.births(i) >= fire.record.filled) continue;
+        const gpu::Particle& p = of<gpu::Particle>(FW_BIND_PARTICLES)[fire.emitter.first + i];
+        if (p.placeAge.w > 1e5f) {
+            ++lost;
+            continue;
+        }
+        const auto tile = uint32_t(p.placeAge.x / 10 + 0.5f);
+        const float off = p.placeAge.x - 10 * float(tile);
+        ASSERT_LT(std::abs(off), 0.4f) << i;
+        ++(tile % 2 == 0 ? elsewhere : tile % 4 == 1 ? strong : weak);
+    }
+    std::printf("[   FIGURE ] births on strong tiles %u, on weak ones %u, elsewhere %u, none %u\n",
+                strong, weak, elsewhere, lost);
+    EXPECT_EQ(0u, elsewhere);
+    EXPECT_GT(strong + weak, 1800u);
+    EXPECT_LT(lost, 20u);
+    EXPECT_NEAR(double(strong) / weak, 3, 0.75);  // of few that are met the strong are chosen less
+    // Nothing burns any more: who is born now is not seen.
+    const uint32_t serial = fire.record.serial;
+    rig_->of<gpu::IterationCounters>(FW_BIND_COUNTERS)[0].runCount = 0;
+    frame(1.0f / 60);
+    ASSERT_GT(fire.record.serial, serial);
+    for (uint32_t i = 0; i < fire.emitter.ring; ++i) {
+        if (fire.births(i) >= fire.record.fresh) continue;
+        EXPECT_GT(of<gpu::Particle>(FW_BIND_PARTICLES)[fire.emitter.first + i].placeAge.w, 1e5f);
+    }
 }
 
 TEST_F(ParticlePass, QuadsAreDrawnFarthestFirstFewOrMany) {

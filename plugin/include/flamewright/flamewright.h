@@ -687,6 +687,8 @@ typedef enum FwEmitterShape {
     FW_EMITTER_POINT = 0,
     FW_EMITTER_DISC = 1,  /* across direction, of radius */
     FW_EMITTER_LINE = 2,  /* from position - extent to position + extent */
+    FW_EMITTER_MESH = 3,  /* on the tiles of `object` that flame, each as likely as it has power. At `power` or more
+                             it has all its births, at less as many fewer. Its light is the mesh's */
     FW_EMITTER_SHAPE_FORCE32 = 0x7fffffff
 } FwEmitterShape;
 typedef enum FwEmitterFlags {
@@ -745,6 +747,7 @@ typedef struct FwFireEmitterDef {
     FwFlipbookId fireBooks[3];
     FwFlipbookId smokeBooks[2];
     FwFlipbookId sparkBook;
+    FwBurnableMeshId object;    /* of FW_EMITTER_MESH; once it is gone nothing more is born */
 } FwFireEmitterDef;
 static inline FwFireEmitterDef fwDefaultFireEmitterDef(void) {
     FwFireEmitterDef d; fwInitDef(FW_DEF_FIRE_EMITTER, &d, (uint32_t)sizeof d); return d;

@@ -10,7 +10,8 @@ constexpr Use kUses[] = {
     {FW_BIND_EMITTERS, Access::read},   {FW_BIND_EMITTER_GROUPS, Access::read},
     {FW_BIND_PARTICLES, Access::write}, {FW_BIND_FLAMES, Access::write},
     {FW_BIND_DRAW_ARGS, Access::write}, {FW_BIND_VIEW, Access::uniformView},
-    {FW_BIND_BOOKS, Access::read},
+    {FW_BIND_BOOKS, Access::read},      {FW_BIND_COUNTERS, Access::read},
+    {FW_BIND_BURN_TILES, Access::read},
 };
 
 }  // namespace

@@ -523,6 +523,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
             push.quads = view ? room.particles : 0;
             push.firstQuad = room.tiles;
             push.still = emittersMove ? 0 : 1;
+            push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
             recordParticles(looks, push, emitterGroups, burnEmpty);
         }
         if (view && (!burnEmpty || particles)) recordFlameSort(looks, room);
