@@ -104,7 +104,7 @@ TEST(AbiFireEmitter, OnAMeshIsFedByWhatBurnsThere) {
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
     def.shape = FW_EMITTER_MESH;
     def.object = sheet;
-    def.power = 20;
+    def.power = 2;
     def.rate = 400;
     def.life = 0.5f;
     def.smoke = 0;
