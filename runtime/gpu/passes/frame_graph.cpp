@@ -29,16 +29,16 @@ constexpr const ComputePass* kComputePasses[] = {
     &kFieldPass,           &kFieldMaskPass,   &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0],   &kSurfacePasses[1],   &kSurfacePasses[2],  &kSurfacePasses[3],
-    &kSurfacePasses[4],   &kSurfacePasses[5],   &kSurfacePasses[6],  &kSurfacePasses[7],
-    &kSurfacePasses[8],   &kSurfacePasses[9],   &kSurfacePasses[10], &kSurfacePasses[11],
-    &kSurfacePasses[12],  &kSurfacePasses[13],  &kSurfacePasses[14], &kSurfacePasses[15],
-    &kSurfacePasses[16],  &kSurfacePasses[17],  &kSurfacePasses[18], &kSurfacePasses[19],
-    &kSurfacePasses[20],  &kSurfacePasses[21],  &kSurfacePasses[22], &kSurfacePasses[23],
-    &kSurfacePasses[24],  &kSurfacePasses[25],  &kSurfacePasses[26], &kSurfacePasses[27],
-    &kSurfacePasses[28],  &kSurfacePasses[29],  &kSurfacePasses[30], &kSurfacePasses[31],
-    &kSurfacePasses[32],  &kSurfacePasses[33],  &kSurfacePasses[34], &kZPass,
-    &kFlamesPass,         &kVolumePass,         &kVolumeCardPass,    &kVolumeCompositePass,
+    &kSurfacePasses[0],   &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
+    &kSurfacePasses[4],   &kSurfacePasses[5],   &kSurfacePasses[6],   &kSurfacePasses[7],
+    &kSurfacePasses[8],   &kSurfacePasses[9],   &kSurfacePasses[10],  &kSurfacePasses[11],
+    &kSurfacePasses[12],  &kSurfacePasses[13],  &kSurfacePasses[14],  &kSurfacePasses[15],
+    &kSurfacePasses[16],  &kSurfacePasses[17],  &kSurfacePasses[18],  &kSurfacePasses[19],
+    &kSurfacePasses[20],  &kSurfacePasses[21],  &kSurfacePasses[22],  &kSurfacePasses[23],
+    &kSurfacePasses[24],  &kSurfacePasses[25],  &kSurfacePasses[26],  &kSurfacePasses[27],
+    &kSurfacePasses[28],  &kSurfacePasses[29],  &kSurfacePasses[30],  &kSurfacePasses[31],
+    &kSurfacePasses[32],  &kSurfacePasses[33],  &kSurfacePasses[34],  &kZPass,
+    &kFlamesPass,         &kVolumePass,         &kVolumeCardPass,     &kVolumeCompositePass,
     &kFieldDrawPasses[0], &kFieldDrawPasses[1], &kFieldDrawPasses[2], &kBookFlamesPass};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
