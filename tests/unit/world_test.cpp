@@ -169,6 +169,7 @@ class PlannedWorld : public ::testing::Test {
         def.maxRefinedTriangles = 400000;
         def.volumeCell = 2;
         def.volumeSteps = 64;
+        def.arrivalTiles = 1024;
         world.emplace(def, backend, log, std::pmr::new_delete_resource());
         FwMeshDef mesh{};
         mesh.structSize = sizeof mesh;
