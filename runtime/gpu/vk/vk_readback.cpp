@@ -129,6 +129,9 @@ const Readback* VkBackend::State::nextReadback() {
             slot->readbackPending = false;
         } else {
             given.runTiles = 0;
+            FrameInFlight* looks = one.looks >= 0 ? &ring.slots()[size_t(one.looks)] : nullptr;
+            if (looks && looks->frameIndex == one.ringFrame)
+                looks->timers.read(device, one.frameIndex, times);
         }
         pendingFirst = (pendingFirst + 1) % uint32_t(pending.size());
         --pendingCount;

@@ -564,9 +564,11 @@ void VkBackend::State::closeFrame(const FwView* view) {
                                  map.heatAt, uint64_t(map.texels) * sizeof(uvec2));
         }
         slot.readbackPending = true;
+    }
+    if (open.planFrame) {
         PendingReadback one;
         one.ringFrame = open.ringFrame;
-        one.slot = int32_t(ring.indexOf(slot));
+        (open.readback ? one.slot : one.looks) = int32_t(ring.indexOf(slot));
         one.frameIndex = open.planFrame;
         one.endTick = open.endTick;
         pushPending(one);

@@ -190,7 +190,8 @@ struct Quarantined {
 
 struct PendingReadback {  // in the order of frames
     uint64_t ringFrame = 0;
-    int32_t slot = -1;  // -1: nothing was recorded, the last figures hold
+    int32_t slot = -1;   // -1: nothing was simulated, the last figures hold
+    int32_t looks = -1;  // slot of a frame that recorded looks alone, whose passes took time
     uint64_t frameIndex = 0;
     uint32_t endTick = 0;
 };
