@@ -24,6 +24,7 @@ FwQueryId World::requestArrival(FwBurnableMeshId id, const float position[3]) {
     if (!object.forecast) {
         auto forecast = core::Owned<Forecast>::make(memory_, memory_);
         mesh::reserveArrivals(forecast->arrivals, domainOf(object));
+        forecasts_.push_back(object.slot);
         object.forecast = std::move(forecast);
     }
     query.isArrival = true;
@@ -77,11 +78,10 @@ void World::takeForecast(Object& object, const gpu::BurnMap& map,
 // Slices of all forecasts that are not through, in turn.
 void World::runForecasts() noexcept {
     uint32_t tiles = def_.arrivalTiles;
-    for (uint32_t i = 0, count = objects_.slotCount(); i < count && tiles > 0; ++i) {
-        auto* owned = objects_.at((nextForecast_ + i) % count);
-        if (!owned || !(*owned)->forecast || (*owned)->forecast->arrivals.whole) continue;
-        tiles = mesh::runArrivals((*owned)->forecast->arrivals, tiles);
-        if (tiles == 0) nextForecast_ = ((nextForecast_ + i) + 1) % count;
+    for (size_t i = 0, count = forecasts_.size(); i < count && tiles > 0; ++i) {
+        const size_t at = (nextForecast_ + i) % count;
+        tiles = mesh::runArrivals((*objects_.at(forecasts_[at]))->forecast->arrivals, tiles);
+        if (tiles == 0) nextForecast_ = (at + 1) % count;
     }
 }
 

@@ -107,6 +107,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       remote_(memory),
       imageUsers_(memory),
       touched_(memory),
+      forecasts_(memory),
       tags_(memory),
       pending_(memory),
       found_(memory),
@@ -442,6 +443,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
         if (Query* query = queries_.at(i); query && query->object.index1 == id.index1)
             query->orphaned = true;
     std::erase(touched_, &object);
+    std::erase(forecasts_, slot);
     std::erase(remote_.due, slot);
     texels_ -= object.texels;
     if (object.map.wished) --mapsWished_;

@@ -590,7 +590,8 @@ class World {
     uint64_t texels_ = 0;                    // of all objects, that can burn
     uint32_t mapsWished_ = 0;                // wishes for objects' states that are still to be sent
     uint64_t driveChanges_ = 0;              // of the wind
-    uint32_t nextForecast_ = 0;              // object slot whose turn it is
+    std::pmr::vector<uint32_t> forecasts_;   // slots of objects that were asked when fire arrives
+    size_t nextForecast_ = 0;                // of those, whose turn it is
     std::pmr::vector<Tag> tags_;
     std::pmr::vector<PendingTexel> pending_;
     std::pmr::vector<uint32_t> found_;  // scratch of ball queries
