@@ -1,5 +1,6 @@
 #include "components/fire_emitter.h"
 
+#include "components/lights.h"
 #include "components/pose.h"
 #include "core/error.h"
 #include "shared/particle.h"
@@ -15,7 +16,6 @@ using gpu::vec4;
 
 constexpr float kMostPower = 1e5f;  // kW
 constexpr float kTeleport = 100;    // m/s: what is faster was put there, it did not fly
-constexpr float kLight = 0.3f;      // of the power that leaves as light and heat
 
 float length3(const float v[3]) noexcept {
     return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -311,14 +311,11 @@ FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t
     light.color[2] = 0.292f;
     light.radius = std::max(0.5f * look.diameter, 0.25f * look.reach);
     const double phase = double(emitter.seed & 1023u) * 0.137;
-    const auto flicker = float(1.0 + 0.10 * std::sin(11.3 * air.now + phase) +
-                               0.07 * std::sin(17.9 * air.now + 2.3 * phase) +
-                               0.05 * std::sin(29.1 * air.now + 4.1 * phase));
     // It fades with its last particles.
     const double since = air.now - emitter.births.last - 0.1;
     const auto left = float(std::clamp(1.0 - since / double(look.life), 0.0, 1.0));
     light.power = 1000.0f * emitter.def.power;
-    light.intensity = light.power * (kLight / 12.566f) * flicker * left;
+    light.intensity = light.power * (kLightShare / kSphere) * flicker(air.now, phase) * left;
     light.id = id;
     light.frameIndex = frameIndex;
     return light;

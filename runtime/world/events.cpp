@@ -188,45 +188,4 @@ void World::takeAnswers(const gpu::Readback& readback) noexcept {
     known->frameIndex = 0;
 }
 
-void World::takeLights(const gpu::Readback& readback) noexcept {
-    lightsBefore_.swap(lights_);
-    lights_.clear();
-    uint64_t taken = 0;  // bits of lightsBefore_, at most 64
-    for (const gpu::BurnLight& given : readback.lights) {
-        if (lights_.size() == std::min<size_t>(def_.maxLights, lights_.capacity())) break;
-        FwLight light{};
-        for (int i = 0; i < 3; ++i) {
-            light.position[i] = given.positionRadius[i];
-            light.color[i] = given.colorIntensity[i];
-        }
-        light.radius = given.positionRadius.w;
-        light.intensity = given.colorIntensity.w;
-        light.power = given.power;
-        light.frameIndex = readback.frameIndex;
-        // The nearest old light within reach is the same fire.
-        size_t best = lightsBefore_.size();
-        float bestDistance = 4 * (light.radius + 0.25f) * (light.radius + 0.25f);
-        for (size_t i = 0; i < lightsBefore_.size(); ++i) {
-            if (taken >> i & 1) continue;
-            float distance = 0;
-            for (int k = 0; k < 3; ++k) {
-                const float d = lightsBefore_[i].position[k] - light.position[k];
-                distance += d * d;
-            }
-            if (distance < bestDistance) {
-                bestDistance = distance;
-                best = i;
-            }
-        }
-        if (best < lightsBefore_.size()) {
-            taken |= uint64_t(1) << best;
-            light.id = lightsBefore_[best].id;
-        } else {
-            light.id = nextLight_++;
-            if (nextLight_ == 0) nextLight_ = 1;
-        }
-        lights_.push_back(light);
-    }
-}
-
 }  // namespace fw::world

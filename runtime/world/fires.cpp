@@ -197,39 +197,4 @@ void World::commitFires() noexcept {
         if (auto* fire = fires_.at(i)) (*fire)->data.state = (*fire)->data.nextState;
 }
 
-uint32_t World::lights(std::span<FwLight> out) const noexcept {
-    size_t count = std::min(out.size(), lights_.size());
-    std::copy_n(lights_.begin(), count, out.begin());
-    const size_t most = std::min<size_t>(out.size(), def_.maxLights);
-    // The strongest of all kinds, strongest first.
-    const auto add = [&](const FwLight& light) {
-        const auto weaker =
-            std::find_if(out.begin(), out.begin() + std::ptrdiff_t(count),
-                         [&](const FwLight& l) { return l.intensity < light.intensity; });
-        if (weaker == out.begin() + std::ptrdiff_t(most)) return;
-        const size_t kept = std::min(count + 1, most);
-        std::move_backward(weaker, out.begin() + std::ptrdiff_t(kept - 1),
-                           out.begin() + std::ptrdiff_t(kept));
-        *weaker = light;
-        count = kept;
-    };
-    for (uint32_t i = 0; i < fires_.slotCount(); ++i) {
-        const auto* entry = fires_.at(i);
-        if (!entry) continue;
-        const VolumetricFire& fire = (*entry)->data;
-        if (fire.state.flames == 0 || (fire.flags & (FW_FIRE_HIDDEN | FW_FIRE_NO_LIGHT))) continue;
-        add(components::fireLight(fire, 0x80000000u | i, lastFrame_));
-    }
-    const components::EmitterAir air = emitterAir(0);
-    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
-        const components::FireEmitter* emitter = emitters_.at(i);
-        // A mesh that burns shines by itself.
-        if (!emitter || emitter->births.filled == 0 || emitter->def.shape == FW_EMITTER_MESH ||
-            (emitter->def.flags & (FW_EMITTER_HIDDEN | FW_EMITTER_NO_LIGHT)))
-            continue;
-        add(components::emitterLight(*emitter, air, 0x40000000u | i, lastFrame_));
-    }
-    return uint32_t(count);
-}
-
 }  // namespace fw::world

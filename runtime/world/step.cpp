@@ -70,6 +70,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
 
     commitFrame(frameIndex, time, !skip);
     commitEmitters(deltaTime);
+    followLights(deltaTime);
     collect();
     runForecasts();
 }

@@ -2,6 +2,7 @@
 #include "world/world.h"
 
 #include "components/deform.h"
+#include "components/lights.h"
 #include "components/look_table.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
@@ -47,7 +48,7 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     checkValues(def.wind, 3, "FwWorldDef::wind", -120.0f, 120.0f);
     checkLimit(def.reserved, "FwWorldDef::reserved", 0, 0);
     checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
-    checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, 64);
+    checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, components::kMostLights);
     checkLimit(def.maxRefinedTriangles, "FwWorldDef::maxRefinedTriangles", 1000, 16000000);
     checkLimit(def.volumeCell, "FwWorldDef::volumeCell", 1, 16);
     checkLimit(def.volumeSteps, "FwWorldDef::volumeSteps", 6, 64);
@@ -118,14 +119,23 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       probeFrames_(memory),
       frame_(memory),
       lights_(memory),
-      lightsBefore_(memory) {
+      lightsBefore_(memory),
+      shownLights_(memory),
+      keptLights_(memory),
+      lightSources_(memory),
+      lightTaken_(memory) {
     std::copy_n(def_.wind, 3, wind_);
     setFlags(def_.flags);
     remote_.governance = {def_.spreadChance, def_.maxHops, def_.maxBurningTiles, def_.timeToLive};
     remote_.governed = def_.maxBurningTiles != 0 || def_.timeToLive > 0;
     frame_.steps.reserve(kMaxSteps);
-    lights_.reserve(64);
-    lightsBefore_.reserve(64);
+    lights_.reserve(components::kMostLights);
+    lightsBefore_.reserve(components::kMostLights);
+    shownLights_.reserve(2 * components::kMostLights);
+    keptLights_.reserve(components::kMostLights);
+    // Of meshes, of fires, of emitters.
+    lightSources_.reserve(2 * components::kMostLights + gpu::kMaxVolumeFlames + gpu::kMaxEmitters);
+    lightTaken_.reserve(lightSources_.capacity());
     probeFrames_.reserve(kFramesInFlight);
     for (uint32_t i = 0; i < kFramesInFlight; ++i) probeFrames_.emplace_back(memory);
 }

@@ -342,7 +342,7 @@ class World {
     FwQueryId requestArrival(FwBurnableMeshId id, const float position[3]);
     bool fetchArrival(FwQueryId id, FwArrivalState& state);  // false: not ready
     void dropQuery(FwQueryId id) { queries_.destroy(id); }
-    uint32_t lights(std::span<FwLight> out) const noexcept;
+    uint32_t lights(std::span<FwLight> out);
     void stats(FwWorldStats& stats) noexcept;
 
     // flamewright_debug.h
@@ -505,6 +505,7 @@ class World {
     void takeEnergy(Object& object, uint32_t endTick) noexcept;
     void takeAnswers(const gpu::Readback& readback) noexcept;
     void takeLights(const gpu::Readback& readback) noexcept;
+    void followLights(float seconds);
     void raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
                const float position[3], float value, FwBurnableMeshId other = {}) noexcept;
     // arrivals.cpp
@@ -619,8 +620,12 @@ class World {
     uint32_t frontTiles_ = 0, runTiles_ = 0, burningTiles_ = 0, flames_ = 0, lateClamps_ = 0;
     uint32_t hotTiles_ = 0;
     uint32_t receivers_ = 0;
-    std::pmr::vector<FwLight> lights_, lightsBefore_;
+    std::pmr::vector<FwLight> lights_, lightsBefore_;  // of burning meshes
     uint32_t nextLight_ = 1;
+    std::pmr::vector<FwLight> shownLights_;   // those, smooth from frame to frame
+    std::pmr::vector<uint32_t> keptLights_;   // ids of those that the last frame chose
+    std::pmr::vector<FwLight> lightSources_;  // scratch
+    std::pmr::vector<uint8_t> lightTaken_;
 };
 
 }  // namespace fw::world

@@ -1,5 +1,6 @@
-// Clusters burning tiles into cells and the cells into the strongest lights. One group; sums are
-// integers, so the result does not depend on the order of the list.
+// Clusters burning tiles into cells and the cells into the strongest lights, which shine for all of
+// them: no watt is lost. One group; sums are integers, so the result does not depend on the order of
+// the list.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
@@ -27,21 +28,23 @@ const uint kMostLights = 64u;
 shared uint candidate[kMost];  // slots of cells
 shared float score[kMost];
 shared uint candidates, bestScore, bestKey, bestAt;
-shared uint lightPower[kMostLights];
+shared uint lightPower[kMostLights], lightRelease[kMostLights];  // W: that shines, and all
+shared uint homelessPower, homelessRelease;  // W of tiles and cells that found no room
+shared uint lightNear[kMostLights];          // 16 W: that is near enough to say where the light is
 shared int lightOffset[kMostLights * 3u];
 shared uint lightArea[kMostLights];
 shared uint lightSlot[kMostLights];
 shared float lightPlace[kMostLights * 4u];
 
-void addTo(BurnTile tile, vec3 place, float side, uint level) {
+void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     vec3 at = place / side;
     ivec3 cell = ivec3(floor(at));
     uint key = cellKey(cell, side);
+    uint weight = max(uint(tile.normalPower.w + 0.5), 1u);  // W
     for (uint i = 0u; i < kCellProbes; ++i) {
         uint slot = (key + i) % kLightCells;
         uint there = atomicCompSwap(cells[cellWord(slot, 0u)], 0u, key);
         if (there != 0u && there != key) continue;
-        uint weight = max(uint(tile.normalPower.w + 0.5), 1u);  // W
         atomicAdd(cells[cellWord(slot, 1u)], weight);
         if (level == 0u) {
             uvec3 offset = uvec3((at - vec3(cell)) * 64.0) * weight;
@@ -52,8 +55,12 @@ void addTo(BurnTile tile, vec3 place, float side, uint level) {
         // Every tile of a cell writes the same.
         for (uint k = 0u; k < 3u; ++k) cells[cellWord(slot, 7u + k)] = uint(cell[k]);
         cells[cellWord(slot, 10u)] = level;
+        atomicAdd(cells[cellWord(slot, 11u)], release);
         return;
     }
+    if (level != 0u) return;
+    atomicAdd(homelessPower, weight);
+    atomicAdd(homelessRelease, release);
 }
 
 // m, world: weighted mean of the cell.
@@ -73,6 +80,8 @@ void main() {
         cells[i] = 0u;
     if (me == 0u) {
         candidates = 0u;
+        homelessPower = 0u;
+        homelessRelease = 0u;
         drawArgs[0] = 6u;
         for (uint i = 1u; i < kFlameOrder; ++i) drawArgs[i] = 0u;
     }
@@ -81,18 +90,23 @@ void main() {
     for (uint i = me; i < count; i += 128u) {
         BurnTile tile = burnTiles[i];
         float fade = flameFade(tile);
+        uint release = max(uint(tile.normalPower.w + 0.5), 1u);
         tile.normalPower.w *= fade;
         tile.positionArea.w *= fade;
         float small = lightCellSide(tile.object), large = flameCellSide(tile.object);
-        addTo(tile, lightPlaceOf(tile, small), small, 0u);
-        addTo(tile, flamePlaceOf(tile, large), large, 1u);
+        addTo(tile, lightPlaceOf(tile, small), small, 0u, release);
+        addTo(tile, flamePlaceOf(tile, large), large, 1u, release);
     }
     memoryBarrierBuffer();
     barrier();
     for (uint slot = me; slot < kLightCells; slot += 128u) {
         if (cells[cellWord(slot, 0u)] == 0u || cells[cellWord(slot, 10u)] != 0u) continue;
         uint at = atomicAdd(candidates, 1u);
-        if (at >= kMost) continue;
+        if (at >= kMost) {
+            atomicAdd(homelessPower, cells[cellWord(slot, 1u)]);
+            atomicAdd(homelessRelease, cells[cellWord(slot, 11u)]);
+            continue;
+        }
         candidate[at] = slot;
         score[at] = float(cells[cellWord(slot, 1u)]);
     }
@@ -136,6 +150,8 @@ void main() {
             lightPlace[light * 4u + 2u] = here.z;
             lightPlace[light * 4u + 3u] = side;
             lightPower[light] = 0u;
+            lightRelease[light] = 0u;
+            lightNear[light] = 0u;
             lightArea[light] = 0u;
             for (uint k = 0u; k < 3u; ++k) lightOffset[light * 3u + k] = 0;
             score[bestAt] = 0.0;
@@ -157,13 +173,15 @@ void main() {
                 nearest = light;
             }
         }
+        atomicAdd(lightPower[nearest], cells[cellWord(candidate[i], 1u)]);
+        atomicAdd(lightRelease[nearest], cells[cellWord(candidate[i], 11u)]);
         float side = lightPlace[nearest * 4u + 3u];
-        if (least > 36.0 * side * side) continue;  // too far to speak for
+        if (least > 36.0 * side * side) continue;  // it shines for it, but is not drawn to it
         uint weight = max(cells[cellWord(candidate[i], 1u)] >> 4u, 1u);
         vec3 d = here - vec3(lightPlace[nearest * 4u], lightPlace[nearest * 4u + 1u],
                              lightPlace[nearest * 4u + 2u]);
         ivec3 offset = ivec3(d / side * 64.0) * int(min(weight, 100000u));
-        atomicAdd(lightPower[nearest], weight);
+        atomicAdd(lightNear[nearest], weight);
         atomicAdd(lightArea[nearest], cells[cellWord(candidate[i], 5u)]);
         for (uint k = 0u; k < 3u; ++k) atomicAdd(lightOffset[nearest * 3u + k], offset[k]);
     }
@@ -174,18 +192,19 @@ void main() {
         l.colorIntensity = vec4(0.0);
         l.power = 0.0;
         l.id = 0u;
-        l.reserved0 = 0u;
-        l.reserved1 = 0u;
+        l.release = 0.0;
+        l.reserved = 0u;
         if (light < found) {
-            float weight = float(lightPower[light]);
+            float weight = float(lightNear[light]);
             float side = lightPlace[light * 4u + 3u];
             vec3 mean = vec3(float(lightOffset[light * 3u]), float(lightOffset[light * 3u + 1u]),
                              float(lightOffset[light * 3u + 2u])) *
                         (side / (64.0 * max(weight, 1.0)));
             uint key = cells[cellWord(lightSlot[light], 0u)];
             float area = float(lightArea[light]) * 1e-5;
-            float power = weight * 16.0;
-            float len = flameLength(power, area);
+            uint homeless = light == 0u ? homelessPower : 0u;
+            float power = float(lightPower[light] + homeless);
+            float len = flameLength(min(weight * 16.0, power), area);
             vec3 at = vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u],
                            lightPlace[light * 4u + 2u]) + mean + view.up.xyz * (0.25 * len);
             // Two sines that never meet again: no lookup, no pop.
@@ -196,6 +215,7 @@ void main() {
             // 30 % leaves as light and heat; luminance of the colour is 1.
             l.colorIntensity = vec4(vec3(1.717, 0.858, 0.292), power * (0.3 / 12.566) * flicker);
             l.power = power;
+            l.release = float(lightRelease[light] + (light == 0u ? homelessRelease : 0u));
             l.id = key;
         }
         lights[light] = l;

@@ -316,7 +316,9 @@ FW_SHARED_SIZE(BurnTile, 48)
 struct BurnLight {    // as FwLight
     vec4 positionRadius;
     vec4 colorIntensity;
-    float power; uint id; uint reserved0; uint reserved1;
+    float power; uint id; // W of what shines: old embers count less
+    float release;        // W, all
+    uint reserved;
 };
 FW_SHARED_SIZE(BurnLight, 48)
 

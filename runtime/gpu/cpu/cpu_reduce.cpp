@@ -15,8 +15,9 @@ constexpr uint32_t kLightSlots = 1024;  // open hash; what finds no slot joins t
 struct Cell {
     uint64_t key = 0;
     uint32_t id = 0;
-    float power = 0, area = 0;
-    float position[3] = {};  // weighted by power
+    float power = 0, area = 0;  // W, m^2
+    float seen = 0;             // W of its own tiles
+    float position[3] = {};     // weighted by `seen`
 };
 
 uint64_t cellKey(const BurnTile& tile) {
@@ -116,6 +117,7 @@ void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {
         }
         const float power = std::max(tile.normalPower.w, 1e-6f);
         cell.power += power;
+        cell.seen += power;
         cell.area += tile.positionArea.w;
         for (int i = 0; i < 3; ++i) cell.position[i] += power * tile.positionArea[i];
     }
@@ -126,15 +128,32 @@ void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {
                       [](const Cell& a, const Cell& b) {
                           return a.power != b.power ? a.power > b.power : a.key < b.key;
                       });
+    // The others shine from the nearest of those: no watt is lost.
+    for (auto cell = cells.begin() + std::ptrdiff_t(count); cell != end; ++cell) {
+        size_t nearest = 0;
+        float least = 0;
+        for (size_t i = 0; i < count; ++i) {
+            float distance = 0;
+            for (int k = 0; k < 3; ++k) {
+                const float d =
+                    cells[i].position[k] / cells[i].seen - cell->position[k] / cell->seen;
+                distance += d * d;
+            }
+            if (i > 0 && distance >= least) continue;
+            nearest = i;
+            least = distance;
+        }
+        cells[nearest].power += cell->power;
+    }
     for (size_t i = 0; i < count; ++i) {
         const Cell& cell = cells[i];
         BurnLight light{};
         // As lights.comp, but that one flickers and knows old embers: 30 % of the power leaves as
         // light and heat; colour of a sooty flame, luminance 1.
-        light.positionRadius = {cell.position[0] / cell.power, cell.position[1] / cell.power,
-                                cell.position[2] / cell.power, std::sqrt(cell.area / 3.14159265f)};
+        light.positionRadius = {cell.position[0] / cell.seen, cell.position[1] / cell.seen,
+                                cell.position[2] / cell.seen, std::sqrt(cell.area / 3.14159265f)};
         light.colorIntensity = {1.717f, 0.858f, 0.292f, cell.power * 0.3f / 12.566f};
-        light.power = cell.power;
+        light.power = light.release = cell.power;
         light.id = cell.id;
         out.push_back(light);
     }
