@@ -560,6 +560,42 @@ uint32_t FW_CALL fwWorld_GetLights(FwWorld* world, FwLight* lights, uint32_t cap
     return count;
 }
 
+FwResult FW_CALL fwWorld_AskSurroundings(FwWorld* world, const float point[3],
+                                         FwSurroundings* surroundings) {
+    return onWorld("fwWorld_AskSurroundings", world, [&](world::World& w) {
+        checkPointer(point, "point");
+        const uint32_t size = edge::checkInfo(surroundings, "FwSurroundings");
+        FwSurroundings filled{};
+        w.askSurroundings(point, filled);
+        edge::writeInfo(surroundings, size, filled);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_AskSight(FwWorld* world, const float from[3], const float to[3],
+                                  float* seen) {
+    return onWorld("fwWorld_AskSight", world, [&](world::World& w) {
+        checkPointer(from, "from");
+        checkPointer(to, "to");
+        checkPointer(seen, "seen");
+        *seen = w.askSight(from, to);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_MakeSafetyMask(FwWorld* world, const float corner[3],
+                                        const float columnStep[3], const float rowStep[3],
+                                        uint32_t columns, uint32_t rows, uint8_t* mask) {
+    return onWorld("fwWorld_MakeSafetyMask", world, [&](world::World& w) {
+        checkPointer(corner, "corner");
+        checkPointer(columnStep, "columnStep");
+        checkPointer(rowStep, "rowStep");
+        checkPointer(mask, "mask");
+        w.makeSafetyMask(corner, columnStep, rowStep, columns, rows, mask);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_GetStats(FwWorld* world, FwWorldStats* stats) {
     return onWorld("fwWorld_GetStats", world, [&](world::World& w) {
         const uint32_t size = edge::checkInfo(stats, "FwWorldStats");

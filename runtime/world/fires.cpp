@@ -9,8 +9,6 @@ namespace {
 
 using components::VolumetricFire;
 
-constexpr uint32_t kMaxFireShapes = 64 + gpu::kMaxBlockers;
-
 volume::vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
 
 }  // namespace

@@ -123,7 +123,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       shownLights_(memory),
       keptLights_(memory),
       lightSources_(memory),
-      lightTaken_(memory) {
+      lightTaken_(memory),
+      sources_(memory) {
     std::copy_n(def_.wind, 3, wind_);
     setFlags(def_.flags);
     remote_.governance = {def_.spreadChance, def_.maxHops, def_.maxBurningTiles, def_.timeToLive};
@@ -136,6 +137,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
     // Of meshes, of fires, of emitters.
     lightSources_.reserve(2 * components::kMostLights + gpu::kMaxVolumeFlames + gpu::kMaxEmitters);
     lightTaken_.reserve(lightSources_.capacity());
+    sources_.reserve(lightSources_.capacity());
     probeFrames_.reserve(kFramesInFlight);
     for (uint32_t i = 0; i < kFramesInFlight; ++i) probeFrames_.emplace_back(memory);
 }

@@ -7,6 +7,7 @@
 #include "components/fire_flames.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
+#include "components/surroundings.h"
 #include "core/handle_pool.h"
 #include "core/log.h"
 #include "core/owned.h"
@@ -343,6 +344,10 @@ class World {
     bool fetchArrival(FwQueryId id, FwArrivalState& state);  // false: not ready
     void dropQuery(FwQueryId id) { queries_.destroy(id); }
     uint32_t lights(std::span<FwLight> out);
+    void askSurroundings(const float point[3], FwSurroundings& out);
+    float askSight(const float from[3], const float to[3]);
+    void makeSafetyMask(const float corner[3], const float columnStep[3], const float rowStep[3],
+                        uint32_t columns, uint32_t rows, uint8_t* mask);
     void stats(FwWorldStats& stats) noexcept;
 
     // flamewright_debug.h
@@ -360,8 +365,9 @@ class World {
     static_assert(kMaxSteps == gpu::kMaxFieldRounds);
     static constexpr uint32_t kMaxTags = 4096;
     static constexpr uint32_t kMaxQueries = 1024;
-    static constexpr size_t kMaxPending = size_t(1) << 22;  // texel events that wait
-    static constexpr uint32_t kFramesInFlight = 16;         // readbacks we still know the probes of
+    static constexpr size_t kMaxPending = size_t(1) << 22;              // texel events that wait
+    static constexpr uint32_t kMaxFireShapes = 64 + gpu::kMaxBlockers;  // colliders and blockers
+    static constexpr uint32_t kFramesInFlight = 16;  // readbacks we still know the probes of
 
     struct ProbeRef {  // what a probe of a frame was for
         bool isTag = false;
@@ -506,6 +512,9 @@ class World {
     void takeAnswers(const gpu::Readback& readback) noexcept;
     void takeLights(const gpu::Readback& readback) noexcept;
     void followLights(float seconds);
+    components::SurroundingAir listSources();
+    components::Surroundings surroundingsAt(const components::SurroundingAir& air,
+                                            components::vec3 point) const noexcept;
     void raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
                const float position[3], float value, FwBurnableMeshId other = {}) noexcept;
     // arrivals.cpp
@@ -626,6 +635,7 @@ class World {
     std::pmr::vector<uint32_t> keptLights_;   // ids of those that the last frame chose
     std::pmr::vector<FwLight> lightSources_;  // scratch
     std::pmr::vector<uint8_t> lightTaken_;
+    std::pmr::vector<components::FireSource> sources_;  // of the last question
 };
 
 }  // namespace fw::world

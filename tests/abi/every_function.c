@@ -85,6 +85,9 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RemoveFireCollider(NULL, collider));
     REFUSES(fwWorld_AskVolumetricFires(NULL, NULL, NULL));
     REFUSES(fwWorld_GetVolumetricFirePush(NULL, NULL, 0.0f, NULL));
+    REFUSES(fwWorld_AskSurroundings(NULL, NULL, NULL));
+    REFUSES(fwWorld_AskSight(NULL, NULL, NULL, NULL));
+    REFUSES(fwWorld_MakeSafetyMask(NULL, NULL, NULL, NULL, 1, 1, NULL));
     REFUSES(fwInitFieldPreset(NULL, 0));
     RUNS(fwFieldPresetName(0));
     REFUSES(fwWorld_CreateParticleField(NULL, NULL, NULL));

@@ -3,6 +3,7 @@
 #include "abi/abi_support.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -467,6 +468,26 @@ class Fuzz {
         if (result == FW_OK) {
             EXPECT_TRUE(std::isfinite(push.force[0] + push.force[1] + push.force[2]));
         }
+        FwSurroundings at{};
+        at.structSize = sizeof at;
+        result = fwWorld_AskSurroundings(world_, place, &at);
+        check(result);
+        if (result == FW_OK) {
+            EXPECT_TRUE(at.temperature >= 293.0f && at.temperature < 4000.0f);
+            EXPECT_TRUE(at.heatFlux >= 0.0f && at.heatFlux <= 2e5f);
+            EXPECT_TRUE(at.danger >= 0.0f && std::isfinite(at.smoke) && at.nearest >= 0.0f);
+        }
+        float other[3], seen = -1;
+        for (float& x : other) x = random_.number();
+        result = fwWorld_AskSight(world_, place, other, &seen);
+        check(result);
+        if (result == FW_OK) {
+            EXPECT_TRUE(seen >= 0.0f && seen <= 1.0f);
+        }
+        std::array<uint8_t, 24> mask{};
+        const uint32_t columns = random_.below(7), rows = random_.once(6) ? 5000 : random_.below(5);
+        if (columns * rows <= mask.size() || rows > 4096)
+            check(fwWorld_MakeSafetyMask(world_, place, other, place, columns, rows, mask.data()));
     }
 
     template <class Id>

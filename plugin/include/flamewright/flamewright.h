@@ -1013,9 +1013,37 @@ typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host'
     uint32_t id, reserved1;    /* stable while the same fire burns */
     uint64_t frameIndex;
 } FwLight;
-/* The strongest fires: of burning meshes as of the last readback, volumetric ones as of the last frame, or as
- * they are about to be (their ids have the highest bit set), fire emitters (the bit below it). Returns how many were written. [world] */
+/* The strongest fires, which shine for all others too: the sum of power and intensity is that of all fires, however
+ * few lights there are. Of burning meshes as of the last readback, and smooth from frame to frame (a filter of 0.1 s,
+ * and flicker of at most 7 % in 1/60 s); volumetric fires as of the last frame, or as they are about to be (their ids
+ * have the highest bit set); fire emitters (the bit below it). At most FwWorldDef::maxLights; strongest first. Returns
+ * how many were written. [world] */
 FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t capacity);
+
+/* What fire does to a place: for damage, for what characters feel and see. Of burning meshes (their lights), fire
+ * emitters and volumetric fires, as of the last frame; cosmetic. Plumes are McCaffrey's and lean with the wind;
+ * blockers and colliders shade radiation. */
+typedef struct FwSurroundings {
+    uint32_t structSize;
+    float heatFlux;            /* W/m^2 on a small cold body there, by radiation and hot gas; at most 150 kW/m^2 */
+    float temperature;         /* K of the air; 293 where nothing warms it */
+    float smoke;               /* 1/m: through a metre of it passes exp(-smoke) of the light; 0: clear */
+    float danger;              /* 0: none. 1: as much as people bear: 2.5 kW/m^2, 60 C or smoke of 1 1/m. No upper end */
+    float nearest;             /* m to the edge of the nearest flame; FLT_MAX: nothing burns */
+    float nearestPosition[3];  /* m, world: foot of that fire */
+    float nearestPower;        /* W */
+    uint32_t nearestLight;     /* its FwLight::id, if it has a light of its own */
+    uint32_t reserved;
+} FwSurroundings;
+/* At once, on every backend; some tens of nanoseconds a fire. [world] */
+FW_API FwResult FW_CALL fwWorld_AskSurroundings(FwWorld*, const float point[3], FwSurroundings* surroundings);
+/* How much of one point is seen from the other through smoke, [0, 1]. Walls are the host's business. [world] */
+FW_API FwResult FW_CALL fwWorld_AskSight(FwWorld*, const float from[3], const float to[3], float* seen);
+/* Where people may walk: danger at columns x rows points, row after row, as a byte each: 127 for a danger of 1, at
+ * most 255. The first point is `corner` (m, world: at the height of heads), the others `columnStep` and `rowStep` (m)
+ * apart. columns and rows: each [1, 4096]. [world] */
+FW_API FwResult FW_CALL fwWorld_MakeSafetyMask(FwWorld*, const float corner[3], const float columnStep[3],
+                                               const float rowStep[3], uint32_t columns, uint32_t rows, uint8_t* mask);
 
 typedef struct FwWorldStats {
     uint32_t structSize, reserved;

@@ -1,0 +1,108 @@
+// What a game's characters ask: how hot, how smoky, how far from fire. Volumetric fires answer for
+// themselves, what burns on meshes and streams are fires at the places of their lights.
+#include "components/surroundings.h"
+#include "components/pose.h"
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+namespace {
+
+constexpr float kAmbient = 293;      // K
+constexpr float kMostFlux = 150000;  // W/m^2
+constexpr uint32_t kMostMaskSide = 4096;
+
+components::vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+components::SurroundingAir World::listSources() {
+    components::SurroundingAir air;
+    air.up = vecOf(def_.up);
+    air.wind = vecOf(wind_);
+    fireShapes_.reserve(kMaxFireShapes);
+    listFireColliders();  // as they stand now
+    air.walls = fireShapes_;
+    sources_.clear();
+    // A light stands a quarter of its flame above what burns (lights.comp).
+    const auto add = [&](const FwLight& light) {
+        components::FireSource source = components::fireSource(vecOf(light.position), light.radius,
+                                                               0.001f * light.power, light.id);
+        source.base = source.base - air.up * (0.25f * source.height);
+        sources_.push_back(source);
+    };
+    for (const FwLight& light : shownLights_) add(light);
+    for (uint32_t i = 0; i < fires_.slotCount(); ++i) {
+        const auto* entry = fires_.at(i);
+        if (!entry || (*entry)->data.state.flames == 0) continue;
+        const components::VolumetricFire& fire = (*entry)->data;
+        components::FireSource source = components::fireSource(
+            vecOf(fire.position), 0.5f * fire.diameter, fire.state.power, 0x80000000u | i);
+        source.exact = true;
+        sources_.push_back(source);
+    }
+    const components::EmitterAir now = emitterAir(0);
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
+        const components::FireEmitter* emitter = emitters_.at(i);
+        if (!emitter || emitter->births.filled == 0 || emitter->def.shape == FW_EMITTER_MESH)
+            continue;
+        add(components::emitterLight(*emitter, now, 0x40000000u | i, lastFrame_));
+    }
+    return air;
+}
+
+components::Surroundings World::surroundingsAt(const components::SurroundingAir& air,
+                                               components::vec3 point) const noexcept {
+    components::Surroundings at = components::surroundingsOf(sources_, air, point);
+    if (burning_.now().empty()) return at;
+    const components::FireAnswer fires =
+        components::askFires(burning_.now(), profiles_, air.walls, point);
+    at.excess = std::max(at.excess, fires.air.kelvin - kAmbient);
+    at.heatFlux = std::min(at.heatFlux + fires.air.heatFlux, kMostFlux);
+    return at;
+}
+
+void World::askSurroundings(const float point[3], FwSurroundings& out) {
+    components::checkValues(point, 3, "point", -1e6f, 1e6f);
+    const components::Surroundings at = surroundingsAt(listSources(), vecOf(point));
+    out.heatFlux = at.heatFlux;
+    out.temperature = kAmbient + at.excess;
+    out.smoke = at.smoke;
+    out.danger = components::dangerOf(at);
+    out.nearest = at.nearest;
+    if (!at.source) return;
+    for (int i = 0; i < 3; ++i) out.nearestPosition[i] = at.source->base[i];
+    out.nearestPower = 1000 * at.source->power;
+    out.nearestLight = at.source->id;
+}
+
+float World::askSight(const float from[3], const float to[3]) {
+    components::checkValues(from, 3, "from", -1e6f, 1e6f);
+    components::checkValues(to, 3, "to", -1e6f, 1e6f);
+    const components::SurroundingAir air = listSources();
+    return components::sightThrough(sources_, air, vecOf(from), vecOf(to));
+}
+
+void World::makeSafetyMask(const float corner[3], const float columnStep[3], const float rowStep[3],
+                           uint32_t columns, uint32_t rows, uint8_t* mask) {
+    components::checkValues(corner, 3, "corner", -1e6f, 1e6f);
+    components::checkValues(columnStep, 3, "columnStep", -1e4f, 1e4f);
+    components::checkValues(rowStep, 3, "rowStep", -1e4f, 1e4f);
+    if (columns < 1 || columns > kMostMaskSide || rows < 1 || rows > kMostMaskSide)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The mask has %u columns and %u rows; the limits are [1, %u] each.", columns,
+                   rows, kMostMaskSide);
+    const components::SurroundingAir air = listSources();
+    for (uint32_t row = 0; row < rows; ++row)
+        for (uint32_t column = 0; column < columns; ++column) {
+            const components::vec3 point =
+                vecOf(corner) + vecOf(columnStep) * float(column) + vecOf(rowStep) * float(row);
+            const float danger = components::dangerOf(surroundingsAt(air, point));
+            mask[size_t{row} * columns + column] =
+                static_cast<uint8_t>(std::min(127.0f * danger, 255.0f));
+        }
+}
+
+}  // namespace fw::world
