@@ -29,7 +29,7 @@ using std::sqrt;
 
 // An emitter's particles are a ring: the k-th that it ever spawns lies k mod `ring` after `first`,
 // so nothing is allotted, listed or given back, and every device makes the same ones.
-FW_SHARED_CONST uint kParticleGroup = 256u;  // slots of a ring that a group of 64 threads works on
+FW_SHARED_CONST uint kParticleGroup = 1024u;  // slots of a ring that a group of 64 threads works on
 FW_SHARED_CONST uint kMaxEmitters = 256u;
 FW_SHARED_CONST float kMostParticleStep = 0.0334f;  // s; longer frames take several
 FW_SHARED_CONST uint kMostParticleSteps = 32u;
@@ -83,12 +83,21 @@ struct Particle {
     vec4 speedPath;  // m/s; m it has come
     vec4 hit;        // unit normal of what it struck; s since then, < 0: nothing yet
 };
-FW_SHARED_SIZE(Particle, 48)
+
+struct ParticleWords {  // one as it is kept: each word is a load and a store of a frame
+    vec4 placeAge;
+    uint speed0;  // 21 bits a part, in 1/4096 m/s
+    uint speed1;
+    uint hit;     // octahedron 8 + 8 bits; 1/1024 s, kNoHit: nothing yet
+    float path;   // where the emitter's particles grow with it
+};
+FW_SHARED_SIZE(ParticleWords, 32)
+FW_SHARED_CONST uint kNoHit = 0xFFFFu;
 
 struct ParticlePush {
-    uint quads;      // that may be shown; 0: none are made
+    uint quads;      // that may be shown
     uint firstQuad;  // of them
-    uint still;      // 1: no time passes, the frame's births were made before
+    uint reserved;
     uint burnRow;    // counters row that says how many burning tiles there are; kNoBurnRow: none
 };
 FW_SHARED_SIZE(ParticlePush, 16)
@@ -109,6 +118,58 @@ FW_SHARED_FN float particleGauss(uint x) {
     uint a = particleBits(x), b = particleBits(x + 0x9e3779b9u);
     return (float(a & 0xFFFFu) + float(a >> 16) + float(b & 0xFFFFu) - 98302.5f) *
            (2.0f / 65535.0f);
+}
+
+FW_SHARED_FN uint particleSpeedBits(float v) {
+    return uint(int(clamp(v, -255.0f, 255.0f) * 4096.0f + (v < 0.0f ? -0.5f : 0.5f))) & 0x1FFFFFu;
+}
+FW_SHARED_FN float particleSpeedOf(uint bits) {
+    return float(int(bits << 11) >> 11) * (1.0f / 4096.0f);
+}
+FW_SHARED_FN uint particleHitBits(vec4 hit) {
+    if (hit.w < 0.0f) return kNoHit << 16;
+    vec3 n = vec3(hit.x, hit.y, hit.z);
+    float sum = (n.x < 0.0f ? -n.x : n.x) + (n.y < 0.0f ? -n.y : n.y) + (n.z < 0.0f ? -n.z : n.z);
+    n = n / max(sum, 1e-6f);
+    float x = n.x, y = n.y;
+    if (n.z < 0.0f) {  // the lower half is folded out
+        x = (1.0f - (n.y < 0.0f ? -n.y : n.y)) * (n.x < 0.0f ? -1.0f : 1.0f);
+        y = (1.0f - (n.x < 0.0f ? -n.x : n.x)) * (n.y < 0.0f ? -1.0f : 1.0f);
+    }
+    return uint(x * 127.0f + 127.5f) | uint(y * 127.0f + 127.5f) << 8 |
+           uint(min(hit.w * 1024.0f + 0.5f, 65534.0f)) << 16;
+}
+FW_SHARED_FN vec4 particleHitOf(uint bits) {
+    uint since = bits >> 16;
+    float x = float(bits & 0xFFu) * (1.0f / 127.0f) - 1.0f;
+    float y = float(bits >> 8 & 0xFFu) * (1.0f / 127.0f) - 1.0f;
+    float u = x < 0.0f ? -x : x, v = y < 0.0f ? -y : y, z = 1.0f - u - v;
+    float fold = max(-z, 0.0f);
+    x += x < 0.0f ? fold : -fold;
+    y += y < 0.0f ? fold : -fold;
+    vec3 n = normalize(vec3(x, y, z));
+    return since == kNoHit ? vec4(0.0f, 0.0f, 0.0f, -1.0f)
+                           : vec4(n, float(since) * (1.0f / 1024.0f));
+}
+FW_SHARED_FN ParticleWords particlePacked(Particle p) {
+    ParticleWords w;
+    uint x = particleSpeedBits(p.speedPath.x), y = particleSpeedBits(p.speedPath.y);
+    uint z = particleSpeedBits(p.speedPath.z);
+    w.placeAge = p.placeAge;
+    w.speed0 = x | y << 21;
+    w.speed1 = y >> 11 | z << 10;
+    w.hit = particleHitBits(p.hit);
+    w.path = p.speedPath.w;
+    return w;
+}
+FW_SHARED_FN Particle particleUnpacked(ParticleWords w) {
+    Particle p;
+    p.placeAge = w.placeAge;
+    p.speedPath = vec4(particleSpeedOf(w.speed0 & 0x1FFFFFu),
+                       particleSpeedOf((w.speed0 >> 21 | w.speed1 << 11) & 0x1FFFFFu),
+                       particleSpeedOf(w.speed1 >> 10), w.path);
+    p.hit = particleHitOf(w.hit);
+    return p;
 }
 
 // How many births ago slot `i` of the ring got its particle: 0 the newest. None: >= filled.
@@ -286,29 +347,33 @@ FW_SHARED_FN float particleMeets(vec3 from, vec3 to, vec4 disc, vec3 n, float re
     return b < 0.0f && a > b && a > -0.4f && dot(d, d) < disc.w * disc.w ? f : 2.0f;
 }
 
-// After a step from `from`: what it met first, of its jet's shields (`share` of the step, at `disc`
-// with normal `n`; 2: none) and the ground.
-FW_SHARED_FN Particle particleStops(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
-                                    vec3 from, float share, vec4 disc, vec3 n) {
+// m that it is above the ground of its emitter.
+FW_SHARED_FN float particleAbove(ParticleEmitter e, Particle p) {
+    return dot(vec3(p.placeAge.x, p.placeAge.y, p.placeAge.z), vec3(e.up.x, e.up.y, e.up.z)) -
+           e.carried.w;
+}
+FW_SHARED_FN bool particleLands(ParticleEmitter e, Particle p, float size, float above) {
+    return (e.flags & kEmitterGround) != 0u && above < min(0.12f * size, 0.12f) &&
+           dot(vec3(p.speedPath.x, p.speedPath.y, p.speedPath.z),
+               vec3(e.up.x, e.up.y, e.up.z)) < 0.0f;
+}
+// m that it would be in the ground.
+FW_SHARED_FN float particleSunk(ParticleEmitter e, float above) {
+    return (e.flags & kEmitterGround) != 0u ? max(-above, 0.0f) : 0.0f;
+}
+// In a step from `from` it met one of its jet's shields (at `share` of the step, at `disc` with
+// normal `n`) or, where share > 1, the ground.
+FW_SHARED_FN Particle particleMet(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
+                                  vec3 from, float share, vec4 disc, vec3 n, float size,
+                                  float above) {
     vec3 up = vec3(e.up.x, e.up.y, e.up.z), at = vec3(p.placeAge.x, p.placeAge.y, p.placeAge.z);
-    vec3 v = vec3(p.speedPath.x, p.speedPath.y, p.speedPath.z);
-    float size = particleSize(e, t, p.placeAge.w, p.speedPath.w, t.own);
-    float above = dot(at, up) - e.carried.w;
-    bool shield = share <= 1.0f;
-    bool meets = shield || ((e.flags & kEmitterGround) != 0u && above < min(0.12f * size, 0.12f) &&
-                            dot(v, up) < 0.0f);
     vec3 c = at - up * above, normal = up;
-    if (shield) {
+    if (share <= 1.0f) {
         vec3 d = from + (at - from) * share, middle = vec3(disc.x, disc.y, disc.z);
         c = d - n * dot(d - middle, n);
         normal = n;
     }
-    Particle q = particleSplash(e, t, p, seed, c, normal, size);
-    float deep = (e.flags & kEmitterGround) != 0u ? max(-above, 0.0f) : 0.0f;
-    p.placeAge = meets ? q.placeAge : p.placeAge + vec4(up * deep, 0.0f);
-    p.speedPath = meets ? q.speedPath : p.speedPath;
-    p.hit = meets ? q.hit : p.hit;
-    return p;
+    return particleSplash(e, t, p, seed, c, normal, size);
 }
 
 // ---- how it is shown, over a = age in lives -------------------------------------------------------

@@ -71,9 +71,15 @@ class ParticleReference {
                     disc = e.shields[2 * k];
                     normal = e.shields[2 * k + 1];
                 }
-                p = gpu::particleStops(e, t, p, seed, from, least, disc, gpu::vec3(normal));
+                const float above = gpu::particleAbove(e, p);
+                if (least <= 1 || gpu::particleLands(e, p, size, above))
+                    p = gpu::particleMet(e, t, p, seed, from, least, disc, gpu::vec3(normal), size,
+                                         above);
+                else
+                    p.placeAge += gpu::vec4(gpu::vec3(e.up) * gpu::particleSunk(e, above), 0.0f);
                 now += dt;
             }
+            p = gpu::particleUnpacked(gpu::particlePacked(p));
         }
     }
 };

@@ -26,7 +26,7 @@ constexpr const ComputePass* kComputePasses[] = {
     &kRecedePass,          &kBendPass,        &kSoftPass,        &kSpringsPass,
     &kDrapePass,           &kSkinPass,        &kSootPass,        &kRefineCutPass,
     &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass, &kParticlesPass,
-    &kFieldPass,           &kFieldMaskPass,   &kFieldShowPass};
+    &kParticleQuadsPass,   &kFieldPass,       &kFieldMaskPass,   &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],   &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -319,10 +319,14 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
     recorder.dispatch(kFlameQuadsPass, &push, 16);
 }
 
-void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,
-                     bool alone) {
-    if (alone) recorder.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
+void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups) {
     recorder.dispatch(kParticlesPass, &push, std::min(groups, kMaxGroups));
+}
+
+void recordParticleQuads(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,
+                         bool alone) {
+    if (alone) recorder.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
+    recorder.dispatch(kParticleQuadsPass, &push, std::min(groups, kMaxGroups));
 }
 
 void recordFlameSort(vk::FrameRecorder& recorder, const SortPush& push) {

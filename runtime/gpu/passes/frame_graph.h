@@ -27,7 +27,8 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
     kRecedePass, kBendPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
-    kVolumeProbePass, kVolumeMarchPass, kParticlesPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
+    kVolumeProbePass, kVolumeMarchPass, kParticlesPass, kParticleQuadsPass, kFieldPass,
+    kFieldMaskPass, kFieldShowPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -135,9 +136,11 @@ void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t
 void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick,
                       uint32_t books);
 
-// And of emitters' particles, which move here; `alone`: there are no others.
-void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,
-                     bool alone);
+// Of emitters' particles, which move once a frame.
+void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups);
+// And quads of theirs; `alone`: there are no others.
+void recordParticleQuads(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,
+                         bool alone);
 // The order of all quads.
 void recordFlameSort(vk::FrameRecorder& recorder, const SortPush& push);
 

@@ -1,5 +1,5 @@
-// Particles of all fire emitters: births and motion, and the quads that show them to the frame's
-// view. They are drawn with the flames of burning meshes: one order, one draw.
+// Particles of all fire emitters: births and motion; and the quads that show them to the frame's
+// view, drawn with the flames of burning meshes: one order, one draw.
 #include "gpu/passes/frame_graph.h"
 #include "shared/particle.h"
 
@@ -8,14 +8,20 @@ namespace {
 
 constexpr Use kUses[] = {
     {FW_BIND_EMITTERS, Access::read},   {FW_BIND_EMITTER_GROUPS, Access::read},
-    {FW_BIND_PARTICLES, Access::write}, {FW_BIND_FLAMES, Access::write},
-    {FW_BIND_DRAW_ARGS, Access::write}, {FW_BIND_VIEW, Access::uniformView},
-    {FW_BIND_BOOKS, Access::read},      {FW_BIND_COUNTERS, Access::read},
+    {FW_BIND_PARTICLES, Access::write}, {FW_BIND_COUNTERS, Access::read},
     {FW_BIND_BURN_TILES, Access::read},
+};
+constexpr Use kQuadUses[] = {
+    {FW_BIND_EMITTERS, Access::read},   {FW_BIND_EMITTER_GROUPS, Access::read},
+    {FW_BIND_PARTICLES, Access::read},  {FW_BIND_FLAMES, Access::write},
+    {FW_BIND_DRAW_ARGS, Access::write}, {FW_BIND_VIEW, Access::uniformView},
+    {FW_BIND_BOOKS, Access::read},
 };
 
 }  // namespace
 
 const ComputePass kParticlesPass{"particles", "particles.comp", kUses, sizeof(ParticlePush)};
+const ComputePass kParticleQuadsPass{"particle quads", "particle_quads.comp", kQuadUses,
+                                     sizeof(ParticlePush)};
 
 }  // namespace fw::gpu

@@ -104,7 +104,7 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_EMITTERS, kSpaceEmitters, sizeof(ParticleEmitter), false, kComponentFlames, "emitters",
      0},
     {FW_BIND_EMITTER_GROUPS, kSpaceEmitterGroups, 8, false, kComponentFlames, "emitter groups", 0},
-    {FW_BIND_PARTICLES, kSpaceParticles, sizeof(Particle), true, kComponentFlames, "particles", 0},
+    {FW_BIND_PARTICLES, kSpaceParticles, sizeof(ParticleWords), true, kComponentFlames, "particles", 0},
     {FW_BIND_BOOKS, kSpaceFixed, 4 * kBookWords, true, kComponentFlames, "flipbooks", 0},
     {FW_BIND_REFINE_OBJECTS, kSpaceObjects, sizeof(RefineObject), true, kComponentRefine,
      "refined objects", 0},

@@ -520,11 +520,11 @@ void VkBackend::State::closeFrame(const FwView* view) {
         const SortPush room = quadRoom();
         if (particles) {
             ParticlePush push{};
-            push.quads = view ? room.particles : 0;
+            push.quads = room.particles;
             push.firstQuad = room.tiles;
-            push.still = emittersMove ? 0 : 1;
             push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
-            recordParticles(looks, push, emitterGroups, burnEmpty);
+            if (emittersMove) recordParticles(looks, push, emitterGroups);
+            if (view) recordParticleQuads(looks, push, emitterGroups, burnEmpty);
         }
         if (view && (!burnEmpty || particles)) recordFlameSort(looks, room);
         if (marches) marchVolumes(looks);

@@ -1,0 +1,162 @@
+// What particles look like to the frame's view: quads. A group works on a part of one emitter's ring.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#include "shared/book.h"
+#include "shared/burn.h"
+#include "shared/look.h"
+#include "shared/particle.h"
+layout(std430, set = 0, binding = FW_BIND_EMITTERS) readonly buffer EmittersBuffer {
+    ParticleEmitter emitters[];
+};
+layout(std430, set = 0, binding = FW_BIND_EMITTER_GROUPS) readonly buffer GroupsBuffer {
+    uvec2 groups[];  // emitter, first slot of its ring
+};
+layout(std430, set = 0, binding = FW_BIND_PARTICLES) readonly buffer ParticlesBuffer {
+    ParticleWords particles[];
+};
+layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer {
+    FlameQuad flameQuad[];
+};
+layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
+layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer BooksBuffer { uint books[]; };
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(push_constant) uniform Push { ParticlePush push; };
+
+const float kNearFade = 0.3;  // m before the eye
+
+// Of an emitter's record what its particles' looks need: a software device loads each word for each
+// lane.
+ParticleEmitter emitterOf(uint i) {
+    ParticleEmitter e;
+    e.carried.w = emitters[i].carried.w;
+    e.half_.w = emitters[i].half_.w;
+    e.up = emitters[i].up;
+    e.size = emitters[i].size;
+    e.life = emitters[i].life;
+    e.heat = emitters[i].heat;
+    e.first = emitters[i].first;
+    e.ring = emitters[i].ring;
+    e.head = emitters[i].head;
+    e.filled = emitters[i].filled;
+    e.serial = emitters[i].serial;
+    e.seed = emitters[i].seed;
+    e.flags = emitters[i].flags;
+    e.shieldCount = emitters[i].shieldCount;
+    e.books = emitters[i].books;
+    e.otherBooks = emitters[i].otherBooks;
+    return e;
+}
+
+// What shows a quad by `book` (+ 1; 0: nothing does, and its phase is its own).
+void show(inout FlameQuad quad, uint book, float life, float age, float own) {
+    if (book == 0u) return;
+    uint at = (book - 1u) * kBookRecordWords;
+    bool loops = (books[at + 6u] & kBookLoops) != 0u;
+    quad.phase = bookTime(loops, uintBitsToFloat(books[at + 8u]), life, age, own);
+    quad.kind |= book << kQuadBook;
+}
+
+// A quad of fire or a spark, one of smoke, both or none.
+void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
+    bool perspective = view.forward.w > 0.5;
+    float age = p.placeAge.w, a = age / t.life;
+    float size = particleSize(e, t, age, p.speedPath.w, t.own);
+    vec3 place = p.placeAge.xyz, v = p.speedPath.xyz;
+    vec3 toEye = view.eye.xyz - place;
+    float far = perspective ? dot(-toEye, view.forward.xyz) : 1e3;
+    toEye = perspective ? toEye / max(length(toEye), 1e-3) : -view.forward.xyz;
+    vec3 right = cross(view.up.xyz, toEye);
+    right = dot(right, right) > 1e-4 ? normalize(right) : vec3(1.0, 0.0, 0.0);
+    vec3 above = cross(toEye, right);
+    vec2 across = vec2(dot(v, right), dot(v, above));
+    float speed = length(across);
+    vec2 way = speed > 1e-3 ? across / speed : vec2(0.0, 1.0);
+    float follows = particleFollows(e, a, speed, p.hit.w);
+    float stretch = particleStretch(e, a, speed, p.hit.w);
+    // Its own turn, or that of its way with some of it.
+    float spin = 2.0 * t.own - 1.0;
+    float own = 1.6 * spin + 2.2 * (t.other - 0.5) * age;
+    float turned = mix(own, 0.5 * spin * smoothstep(0.1, 0.4, a), follows);
+    vec2 axis = way * cos(turned) + vec2(way.y, -way.x) * sin(turned);
+    // Close to the eye it fades, and so does what would fill the view.
+    float near = smoothstep(kNearFade, kNearFade + 0.8, far) *
+                 (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
+    bool drawn = near > 0.0;
+    bool spark = t.spark > 0.5;
+
+    FlameQuad quad;
+    vec3 along = right * axis.x + above * axis.y;
+    // A fire's foot is where it is born; nothing reaches into the ground.
+    bool jet = (e.flags & kEmitterJet) != 0u;
+    place += e.up.xyz * (jet || spark ? 0.0 : 0.35 * size * (1.0 - smoothstep(0.0, 0.5, a)));
+    float height = dot(place, e.up.xyz) - e.carried.w;
+    float root = sqrt(sqrt(stretch));
+    float tall = size * root * root * root, wide = 0.5 * size / root;
+    float upright = abs(dot(along, e.up.xyz));
+    float low = mix(0.7 * wide, 0.42 * tall, upright);
+    place += e.up.xyz * ((e.flags & kEmitterGround) != 0u && !spark ? max(0.0, low - height)
+                                                                     : 0.0);
+    float opacity = particleFire(a, t.own) * near;
+    if (spark) {
+        // A streak of a fiftieth of a second; what is too thin for a pixel is dimmer instead.
+        float pixel = view.eye.w * max(far, 0.05);
+        float thick = 0.004 + 0.004 * t.other;
+        // A book's streak fills a third of its page.
+        if ((e.otherBooks >> 16u & 0xFFu) != 0u) thick *= 3.0;
+        along = speed > 1e-3 ? v / max(length(v), 1e-3) : above;
+        wide = max(thick, 0.7 * pixel);
+        tall = length(v) * 0.02 + 2.0 * wide;
+        opacity = thick / wide * (1.0 - smoothstep(0.6, 1.0, a)) * near;
+    }
+    quad.axisWidth = vec4(along, wide);
+    quad.baseHeight = vec4(place - along * (0.5 * tall), tall);
+    quad.opacity = opacity;
+    // What is whole has no shape yet.
+    quad.phase = min(0.10 + max(a, 0.0) * (0.75 + 0.3 * t.other), 0.98);
+    quad.kelvin = spark ? 1850.0 - 650.0 * a : particleKelvin(e, a, t.own);
+    quad.kind = (seed & 0xFFFFu) << 2u | (spark ? kQuadSpark : kQuadFire);
+    uint book = spark ? e.otherBooks >> 16u & 0xFFu : particleBook(e.books, 3u, seed);
+    // A book begins as a ball without shape too.
+    float shown = spark ? a : 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
+    show(quad, book, shown, age, t.own);
+    bool fire = drawn && opacity > 0.004 && a < 1.0;
+    FlameQuad smoke;
+    float lit = clamp(1.25 - a, 0.0, 1.0);
+    smoke.axisWidth = vec4(view.up.xyz, 0.62 * size);
+    smoke.baseHeight = vec4(place - view.up.xyz * (0.62 * size), 1.24 * size);
+    smoke.opacity = particleSmoke(e, a) * t.smoke * near;
+    smoke.phase = 0.10 * age + 5.0 * t.other;
+    smoke.kelvin = lit;
+    smoke.kind = (seed & 0xFFFFu) << 2u | kQuadSmoke;
+    show(smoke, particleBook(e.otherBooks & 0xFFFFu, 2u, seed),
+         (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
+    bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
+
+    uint count = (fire ? 1u : 0u) + (smokes ? 1u : 0u);
+    uint first = 0u;
+    if (count > 0u) first = atomicAdd(drawArgs[kFlameParticles], count);
+    if (fire && first < push.quads) flameQuad[push.firstQuad + first] = quad;
+    if (fire) ++first;
+    if (smokes && first < push.quads) flameQuad[push.firstQuad + first] = smoke;
+}
+
+void main() {
+    uvec2 group = groups[gl_WorkGroupID.x];
+    ParticleEmitter e = emitterOf(group.x);
+    if ((e.flags & kEmitterHidden) != 0u) return;
+    bool stops = (e.flags & kEmitterGround) != 0u || e.shieldCount > 0u, grows = e.size.y > 0.0;
+    uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
+    for (uint turn = 0u; turn < turns; ++turn) {
+        uint slot = group.y + turn * 64u + gl_LocalInvocationID.x;
+        uint births = particleBirths(e.head, e.ring, slot);
+        if (slot >= e.ring || births >= e.filled) continue;
+        uint seed = particleSeed(e.seed, e.serial - 1u - births), at = e.first + slot;
+        ParticleTraits t = particleTraits(e, seed);
+        ParticleWords kept = particles[at];
+        if (!stops) kept.hit = kNoHit << 16u;
+        if (!grows) kept.path = 0.0;
+        Particle p = particleUnpacked(kept);
+        if (p.placeAge.w < t.all) makeQuads(e, t, p, seed);
+    }
+}
