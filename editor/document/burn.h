@@ -1,0 +1,91 @@
+// A scene as a world of the plugin, through its public C headers alone: what a game would show.
+// Whoever holds the context steps or records the world; feedBurn says what happens on the way.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "document/document.h"
+#include "flamewright/flamewright.h"
+#include "import/gltf_import.h"
+
+namespace fwedit {
+
+// Imported files and baked burn maps, kept from burn to burn. One per program.
+struct Assets {
+    std::filesystem::path cache;  // folder of bakes; empty: none are kept
+    std::map<std::string, std::shared_ptr<const fwimport::ImportedModel>> models;  // by full path
+    std::map<std::string, std::shared_ptr<const std::vector<char>>> bakes;         // by hash
+    std::map<std::string, std::shared_ptr<const PaintSurface>> surfaces;           // by hash
+    // Stage by name and share of it, [0, 1]; false: stop. May be null.
+    std::function<bool(const std::string& stage, float share)> progress;
+};
+
+struct BurnMesh {
+    ObjectId id = 0;
+    FwMeshId mesh{};
+    FwBurnableMeshId object{};
+    std::shared_ptr<const fwimport::ImportedModel> model;
+    std::string bake;  // key into Assets::bakes and surfaces
+};
+struct BurnPart {  // a source, flame or emitter at work
+    ObjectId id = 0;
+    std::vector<FwVolumetricFireId> fires;
+    FwFireEmitterId emitter{};
+    FwParticleFieldId field{};
+    float lastFactor = -1;
+};
+
+struct Burn {
+    FwContext* context = nullptr;  // not ours
+    FwWorld* world = nullptr;
+    Scene scene;      // that it was made of
+    double time = 0;  // s, of the world
+    std::vector<BurnMesh> meshes;
+    std::vector<BurnPart> parts;
+    std::vector<std::string> report;  // what was left out, and why
+    double watered = 0;               // s, up to where rain has fallen
+
+    Burn() = default;
+    ~Burn();
+    Burn(const Burn&) = delete;
+    Burn& operator=(const Burn&) = delete;
+};
+
+// `folder`: where relative paths begin. A mesh that cannot be had is left out and reported. Null:
+// `error` says why there is no world.
+std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const PaintImages& images,
+                                 const std::filesystem::path& folder, Assets& assets,
+                                 std::string& error);
+// Call right before each fwWorld_Step or fwWorld_RecordOutside with its deltaTime: sources, keys
+// and wind of [time, time + deltaTime). Moves burn.time on.
+bool feedBurn(Burn& burn, float deltaTime, std::string& error);
+// Contexts that step themselves (own device, cpu): feeds and steps on to `time`, in frames of the
+// scene. False: `error`. Back in time: create it anew.
+bool runBurn(Burn& burn, double time, std::string& error);
+// The scene's camera and light. `time`: s, for flicker.
+FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time);
+// Own device: RGBA8 sRGB, rows top first.
+bool shootBurn(Burn& burn, uint32_t width, uint32_t height, std::vector<uint8_t>& rgba,
+               std::string& error);
+
+// The bounds of all meshes of the scene in world space; false: there are none.
+bool sceneBounds(const Scene& scene, const std::filesystem::path& folder, Assets& assets, Vec3& low,
+                 Vec3& high);
+// Null: `error`. Imports and caches.
+std::shared_ptr<const fwimport::ImportedModel> modelOf(const Mesh& mesh,
+                                                       const std::filesystem::path& folder,
+                                                       Assets& assets, std::string& error);
+// The texels to paint on: bakes if need be.
+std::shared_ptr<const PaintSurface> paintSurfaceOf(FwContext* context, const Mesh& mesh,
+                                                   const std::filesystem::path& folder,
+                                                   Assets& assets, std::string& error);
+// The layers of a mesh put together for FwBurnableMeshDef::multiplier; empty: nothing is painted.
+std::vector<uint8_t> multiplierOf(const Scene& scene, const PaintImages& images, ObjectId mesh,
+                                  uint32_t& width, uint32_t& height);
+
+}  // namespace fwedit
