@@ -22,7 +22,7 @@ enum class FieldType : uint32_t {
     Object,
     Vector,
     Choices,
-    Keys,
+    KeyList,
     Rows
 };
 

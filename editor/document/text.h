@@ -1,0 +1,20 @@
+// Words and numbers of the document's files and commands.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "document/scene.h"
+
+namespace fwedit {
+
+// Shortest decimal that reads back as the same float.
+std::string printNumber(double value);
+// "a \"b\"": in quotes, with \" and \\ within them.
+std::string quoted(std::string_view text);
+// Without control characters, as valid UTF-8, of at most `most` bytes.
+std::string cleanText(std::string_view text, size_t most);
+// A target's word: a name, or #id. 0: there is none.
+ObjectId findByWord(const Scene& scene, std::string_view word);
+
+}  // namespace fwedit
