@@ -10,7 +10,7 @@ packages=(
     libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
     libglm-dev
     libglfw3-dev
-    libtinygltf-dev
+    libtinygltf-dev nlohmann-json3-dev
     libopenimageio-dev libimath-dev zlib1g-dev
     assimp-testmodels
 )

@@ -7,9 +7,10 @@
 //   duplicate "Corner torch"            remove "Corner torch" #7
 //   order "Corner torch" 0              rename "Corner torch" "Back torch"
 //   import "gate.glb" name="Gate"
-//   stroke "Dry side" size 0.05 value 0.2 strength 1 hardness 0.5 path 0 1 0.2  0.1 1 0.2
+//   stroke "Dry side" size 0.05 value 0.2 strength 1 hardness 0.5 path 0:1:0.2 0.1:1:0.2
 //   fill "Dry side" value 0.5 by all
-// Targets are names in quotes, or #id. A name that several have means the first.
+// Targets are names in quotes, or #id. A name that several have means the first. // begins a
+// comment.
 #pragma once
 
 #include <string>
@@ -60,7 +61,8 @@ std::string printCommand(const Scene& scene, const Command& command);
 // "Move Corner torch", "Output of Corner torch", "Add heat source"; at most 40 characters.
 std::string undoName(const Scene& before, const Command& command);
 
-// Words of a line: quotes hold spaces, \" and \\ within them; # starts an id, // a comment.
+// Words of a line: quotes hold spaces, \" and \\ within them; // at a word's start begins a
+// comment.
 bool splitWords(std::string_view line, std::vector<std::string>& words, std::string& error);
 
 }  // namespace fwedit

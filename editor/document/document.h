@@ -71,6 +71,10 @@ bool undo(Document& document);
 bool redo(Document& document);
 void goTo(Document& document, size_t step);  // a click in the history
 
+// For those who open and save: the scene as it is begins a new history; a change of every step.
+void resetHistory(Document& document);
+void changeEverywhere(Document& document, const std::function<void(Scene&)>& change);
+
 // ---- files. `error` and `repairs` are whole sentences for people: file, field, value, limit.
 std::string printScene(const Scene& scene);
 // `name` is for messages. What can be mended is, and told; what cannot leaves `scene` untouched.

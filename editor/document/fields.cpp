@@ -539,6 +539,10 @@ bool readChoice(const FieldInfo& info, std::string_view text, double& value, std
     return false;
 }
 
+const char* wordAt(const FieldInfo& info, double number) {
+    return info.choices[static_cast<size_t>(std::clamp(number, 0.0, info.high))];
+}
+
 std::vector<std::string_view> split(std::string_view text, char by) {
     std::vector<std::string_view> parts;
     for (size_t at = 0; at <= text.size();) {
@@ -628,30 +632,33 @@ std::string printValue(const Scene& scene, const FieldInfo& field, const Value& 
         case FieldType::Flag:
             return *number != 0 ? "yes" : "no";
         case FieldType::Whole:
-            return std::to_string(static_cast<uint64_t>(*number));
+            return std::to_string(static_cast<uint64_t>(std::clamp(*number, 0.0, 4294967295.0)));
         case FieldType::Number:
             return printNumber(*number);
         case FieldType::Choice:
-            return field.choices[static_cast<size_t>(*number)];
+            return wordAt(field, *number);
         case FieldType::Text:
         case FieldType::File:
             return quoted(std::get<std::string>(value));
         case FieldType::Object:
             if (!findObject(scene, static_cast<ObjectId>(*number))) return "none";
-            return "#" + std::to_string(static_cast<ObjectId>(*number));
+            return join("#", std::to_string(static_cast<ObjectId>(*number)));
         case FieldType::Vector:
-            for (const double part : *list) text += (text.empty() ? "" : " ") + printNumber(part);
+            for (const double part : *list)
+                text += join(text.empty() ? "" : " ", printNumber(part));
             return text;
         case FieldType::Choices:
             for (const double part : *list)
-                text += (text.empty() ? "" : "/") +
-                        std::string(field.choices[static_cast<size_t>(part)]);
+                text += join(text.empty() ? "" : "/", wordAt(field, part));
             return text;
         case FieldType::KeyList:
         case FieldType::Rows:
             if (list->empty()) return "none";
             for (size_t i = 0; i < list->size(); ++i)
-                text += (i == 0 ? "" : i % field.width == 0 ? " " : ":") + printNumber((*list)[i]);
+                text += join(i == 0                 ? ""
+                             : i % field.width == 0 ? " "
+                                                    : ":",
+                             printNumber((*list)[i]));
             return text;
     }
     return text;
@@ -745,6 +752,22 @@ bool parseValue(const Scene& scene, const FieldInfo& field, std::span<const std:
         }
     }
     return false;
+}
+
+size_t wordsOfValue(const FieldInfo& field, std::span<const std::string> words) {
+    size_t count = 1;
+    if (field.type == FieldType::KeyList || field.type == FieldType::Rows) {
+        if (!words.empty() && words[0] == "none") return 1;
+        while (count < words.size() && words[count].find(':') != std::string::npos) ++count;
+        return std::min(count, words.size());
+    }
+    if (field.type == FieldType::Vector) count = field.width;
+    const bool counts = field.type == FieldType::Vector || field.type == FieldType::Number ||
+                        field.type == FieldType::Whole;
+    if (counts && count < words.size() && !words[count].empty() &&
+        unitFactor(field.unit, words[count]) != 0)
+        ++count;
+    return std::min(count, words.size());
 }
 
 }  // namespace fwedit

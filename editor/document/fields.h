@@ -60,5 +60,7 @@ std::string printValue(const Scene& scene, const FieldInfo& field, const Value& 
 // False: `error` names the field, the value and what is allowed. Units after numbers are taken.
 bool parseValue(const Scene& scene, const FieldInfo& field, std::span<const std::string> words,
                 Value& value, std::string& error);
+// How many of the words, from the first on, are a value of the field, its unit included.
+size_t wordsOfValue(const FieldInfo& field, std::span<const std::string> words);
 
 }  // namespace fwedit

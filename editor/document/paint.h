@@ -2,6 +2,7 @@
 // unwrap as over any other place. Works on the texels of the burn map as the plugin baked it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -22,7 +23,14 @@ struct PaintSurface {
     std::vector<uint32_t> piece;     // connected parts of the surface, across seams
     std::vector<uint8_t> material;   // slot
     float spacing = 0;               // m between texels
+    // Texels by where they are, for the brush; see indexSurface.
+    Vec3 low{};
+    float cell = 0;  // m
+    std::array<uint32_t, 3> cells{};
+    std::vector<uint32_t> cellBegin, cellTexels;
 };
+// Sorts the texels into cells. Without it a brush looks at every texel.
+void indexSurface(PaintSurface& surface);
 
 // A layer's values over the burn map, in tiles that undo's steps share.
 // Multiplier: 128 is as is, 0 never burns, 255 twice as fast. Moisture: 255 is 100 %. Material: the
@@ -39,6 +47,9 @@ struct PaintImage {
     bool operator==(const PaintImage&) const;
 };
 PaintImage makePaintImage(uint32_t kind, uint32_t width, uint32_t height);
+PaintImage paintImageOf(uint32_t kind, uint32_t width, uint32_t height,
+                        std::span<const uint8_t> values);
+PaintImage resizedPaint(const PaintImage& image, uint32_t kind, uint32_t width, uint32_t height);
 uint8_t emptyValue(uint32_t kind);
 
 enum class BrushMode : uint32_t { Paint, Erase, Smooth };
@@ -80,13 +91,16 @@ class StrokePainter {
     [[nodiscard]] std::span<const uint8_t> values() const { return values_; }  // width x height
 
  private:
+    void sweep(const Vec3& from, const Vec3& to, const Vec3* fromNormal, const Vec3* toNormal,
+               PaintedArea& area);
+    [[nodiscard]] uint8_t smoothed(size_t texel) const;
     const PaintSurface& surface_;
     uint32_t kind_;
     PaintImage before_;
     Stroke brush_;
     std::vector<uint8_t> values_;
-    std::vector<float> cover_;  // of the stroke so far, [0, 1]
-    std::vector<Vec3> last_;
+    std::vector<uint8_t> original_;  // of a stroke that smooths
+    std::vector<float> cover_;       // of the stroke so far, [0, 1]
 };
 
 PaintImage applyStroke(const PaintSurface& surface, uint32_t kind, const PaintImage& image,

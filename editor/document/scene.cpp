@@ -98,4 +98,25 @@ Vec3 worldPosition(const Scene& scene, ObjectId id) {
     return result;
 }
 
+Vec3 positionWithin(const Scene& scene, ObjectId parent, const Vec3& world) {
+    if (parent == 0) return world;
+    const Mesh* mesh = findIn(scene.meshes, parent);
+    if (!mesh) {
+        const Vec3 base = worldPosition(scene, parent);
+        return {world[0] - base[0], world[1] - base[1], world[2] - base[2]};
+    }
+    const std::array<float, 16> m = transformOf(*mesh);
+    // Its columns are at right angles, so each coordinate is a projection.
+    Vec3 result{};
+    for (size_t c = 0; c < 3; ++c) {
+        float along = 0, square = 0;
+        for (size_t k = 0; k < 3; ++k) {
+            along += m[c * 4 + k] * (world[k] - m[12 + k]);
+            square += m[c * 4 + k] * m[c * 4 + k];
+        }
+        result[c] = square > 0 ? along / square : 0;
+    }
+    return result;
+}
+
 }  // namespace fwedit

@@ -218,5 +218,7 @@ const T* findIn(const std::vector<T>& list, ObjectId id) {
 std::array<float, 16> transformOf(const Mesh& mesh);
 // Position of anything that has one, what it sticks to included; the middle of the scene else.
 Vec3 worldPosition(const Scene& scene, ObjectId id);
+// The position by which something that sticks to `parent` (0: to nothing) is at `world`.
+Vec3 positionWithin(const Scene& scene, ObjectId parent, const Vec3& world);
 
 }  // namespace fwedit

@@ -8,6 +8,13 @@
 
 namespace fwedit {
 
+template <typename... Parts>
+std::string join(const Parts&... parts) {
+    std::string text;
+    ((text += parts), ...);
+    return text;
+}
+
 // Shortest decimal that reads back as the same float.
 std::string printNumber(double value);
 // "a \"b\"": in quotes, with \" and \\ within them.

@@ -20,6 +20,7 @@ plugin/include|flamewright/
 shaders/shared|shared/
 samples|flamewright/|common/|import/
 editor/import|flamewright/|import/
+editor/document|flamewright/|import/|document/
 editor/tools|flamewright/|import/|tools/|book/|core/|volume/|shared/
 '
 
