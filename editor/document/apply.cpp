@@ -248,7 +248,8 @@ bool mendReferences(Scene& scene, std::vector<std::string>* repairs) {
         for (size_t i = 0; i < list.size(); ++i) {
             auto& object = list[i];
             std::string why;
-            const std::string where = std::string(kindKey(kind)) + "s[" + std::to_string(i) + "].";
+            const std::string where =
+                join(kindKey(kind), kind == Kind::Mesh ? "es[" : "s[", std::to_string(i), "].");
             if constexpr (requires { object.sticksTo; }) {
                 why = whyNotAttached(scene, object.id, object.sticksTo);
                 if (!why.empty()) {

@@ -58,9 +58,20 @@ std::shared_ptr<const Snapshot> takeSnapshot(const Scene& scene, const PaintImag
     return made;
 }
 
+template <typename T>
+bool sameList(const SharedList<T>& a, const SharedList<T>& b) {
+    if (a == b) return true;
+    return std::equal(a->begin(), a->end(), b->begin(), b->end(),
+                      [](const auto& x, const auto& y) { return x == y || *x == *y; });
+}
+
 bool sameSnapshot(const Snapshot& a, const Snapshot& b) {
-    return a.settings == b.settings && a.nextId == b.nextId && a.lists == b.lists &&
-           a.images == b.images;
+    const bool same = std::apply(
+        [&](const auto&... list) {
+            return (sameList(list, std::get<std::remove_cvref_t<decltype(list)>>(b.lists)) && ...);
+        },
+        a.lists);
+    return same && a.settings == b.settings && a.nextId == b.nextId && a.images == b.images;
 }
 
 void restore(const Snapshot& snapshot, Document& document) {

@@ -29,7 +29,7 @@ std::string jsonText(std::string_view text) {
 }
 
 std::string listName(Kind kind) {
-    return std::string(kindKey(kind)) + (kind >= Kind::Settings ? "" : "s");
+    return join(kindKey(kind), kind >= Kind::Settings ? "" : kind == Kind::Mesh ? "es" : "s");
 }
 
 std::string jsonValue(const FieldInfo& field, const Value& value, const std::string& indent) {

@@ -1,0 +1,21 @@
+// The objects of a scene as definitions of the plugin, kind by kind; burn.cpp puts them together.
+#pragma once
+
+#include "document/burn.h"
+
+namespace fwedit {
+
+// Empty if the result is fine, else the plugin's own words.
+std::string worldProblem(const Burn& burn, FwResult result);
+
+FwWorldDef worldDefOf(const Scene& scene);
+FwFireEmitterDef jetDefOf(const Scene& scene, const HeatSource& source);
+FwFireEmitterDef emitterDefOf(const Scene& scene, const Emitter& emitter);
+FwVolumetricFireDef fireDefOf(const Scene& scene, const Flame& flame);
+// The flames of a source: one, or for a line as many as it is long.
+std::vector<FwVolumetricFireDef> sourceFiresOf(const Scene& scene, const HeatSource& source);
+FwBurnableMeshDef burnableDefOf(const Mesh& mesh);
+FwFireColliderDef colliderDefOf(const Scene& scene, const Collider& collider);
+FwBlockerDef blockerDefOf(const Scene& scene, const Collider& collider);
+
+}  // namespace fwedit

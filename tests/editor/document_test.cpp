@@ -1,0 +1,701 @@
+// The editor's document without a window: files, commands, undo.
+#include "document/document.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "document/text.h"
+
+namespace {
+
+using namespace fwedit;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+struct Folder {
+    fs::path path;
+    Folder() {
+        static int number = 0;
+        path = fs::temp_directory_path() /
+               ("fw_document_" + std::to_string(::getpid()) + "_" + std::to_string(number++));
+        fs::create_directories(path);
+    }
+    ~Folder() { fs::remove_all(path); }
+};
+
+std::string textOf(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {(std::istreambuf_iterator<char>(stream)), {}};
+}
+
+void mustRun(Document& document, const std::string& line) {
+    std::string message;
+    ASSERT_TRUE(runLine(document, line, message)) << line << "\n" << message;
+}
+
+std::string refusal(Document& document, const std::string& line) {
+    const std::string before = printScene(document.scene);
+    const size_t steps = document.steps.size();
+    std::string message;
+    EXPECT_FALSE(runLine(document, line, message)) << line;
+    EXPECT_EQ(before, printScene(document.scene)) << line;
+    EXPECT_EQ(steps, document.steps.size()) << line;
+    return message;
+}
+
+// A flat sheet of 64 x 32 texels, one metre wide, whose unwrap has two islands: the right half lies
+// left in the map. So a stroke across its middle goes over a seam.
+const PaintSurface& sheet() {
+    static const PaintSurface surface = [] {
+        PaintSurface made;
+        made.width = 64;
+        made.height = 32;
+        made.spacing = 1.0f / 64;
+        for (uint32_t y = 0; y < 32; ++y)
+            for (uint32_t x = 0; x < 64; ++x) {
+                const uint32_t column = x < 32 ? x + 32 : x - 32;
+                made.positions.insert(made.positions.end(), {(float(column) + 0.5f) / 64 - 0.5f,
+                                                             (float(y) + 0.5f) / 64, 0});
+                made.normals.insert(made.normals.end(), {0, 0, 1});
+                made.real.push_back(1);
+                made.island.push_back(x < 32 ? 0 : 1);
+                made.piece.push_back(0);
+                made.material.push_back(y < 16 ? 0 : 1);
+            }
+        indexSurface(made);
+        return made;
+    }();
+    return surface;
+}
+
+Document paintable() {
+    Document document = newDocument();
+    document.surface = [](const Scene& scene, ObjectId mesh) {
+        return findIn(scene.meshes, mesh) ? &sheet() : nullptr;
+    };
+    return document;
+}
+
+TEST(EditorCommands, AddsWhatItsLineSays) {
+    Document document = newDocument();
+    mustRun(document,
+            "add source point name=\"Corner torch\" position 0.1 0.2 0.3 output 18 kW radius 5 cm");
+    ASSERT_EQ(1u, document.scene.sources.size());
+    const HeatSource& source = document.scene.sources[0];
+    EXPECT_EQ("Corner torch", source.name);
+    EXPECT_EQ((Vec3{0.1f, 0.2f, 0.3f}), source.position);
+    EXPECT_EQ(18, source.output);
+    EXPECT_EQ(0.05f, source.radius);
+    EXPECT_EQ(SourcePoint, source.shape);
+    EXPECT_EQ("Add heat source", document.steps[1].name);
+}
+
+TEST(EditorCommands, PrintedLinesDoTheSame) {
+    Document first = newDocument(), second = newDocument();
+    for (const char* line :
+         {"add source flamethrower name=\"A \\\"jet\\\"\" position 1 2 3 direction 0 0 -1",
+          "import \"crates/gate.glb\" name=\"Gate\" materials "
+          "pine/paper/pine/pine/pine/pine/pine/pine",
+          "set \"Gate\" pins 0:1:0:1:1:0:0.02 0:0:0:0:1:0:0.1 deform sheet", "key \"Gate\" 1 2",
+          "key #1 2.5 0.4", "key #1 1/3 1", "set settings wind 1 0 -2 up 0 0 1 pace 20",
+          "set #1 sticks_to \"Gate\"", "duplicate #1 \"Gate\"", "order #1 7",
+          "move #1 #2 0.1 0 1e-3", "add layer moisture mesh \"Gate\"", "rename #1 \"B\"",
+          "unkey \"B\" 2.5", "add event time 3 note \"roof\"",
+          "set #2 hidden yes locked no scale 1 2 1"}) {
+        Command command;
+        std::string error, message;
+        if (!parseCommand(first.scene, line, command, error)) {
+            EXPECT_TRUE(std::string(line).find("1/3") != std::string::npos ||
+                        std::string(line) == "key \"Gate\" 1 2")
+                << line << ": " << error;
+            continue;
+        }
+        const std::string printed = printCommand(first.scene, command);
+        const bool done = run(first, command, message);
+        EXPECT_EQ(done, runLine(second, printed, error)) << printed << ": " << error;
+        EXPECT_EQ(printScene(first.scene), printScene(second.scene)) << printed;
+        Command again;
+        if (done && command.verb != Verb::Add && command.verb != Verb::Import) {
+            EXPECT_TRUE(parseCommand(first.scene, printed, again, error)) << printed << error;
+        }
+    }
+    EXPECT_GE(first.steps.size(), 13u);
+}
+
+TEST(EditorCommands, RefusalsNameTheWordAndWhatIsTaken) {
+    Document document = newDocument();
+    mustRun(document, "add source disc name=Torch");
+    EXPECT_THAT(refusal(document, "ad source"), HasSubstr("\"ad\" is no command"));
+    EXPECT_THAT(refusal(document, "set \"Lamp\" output 3"), HasSubstr("no object \"Lamp\""));
+    EXPECT_THAT(refusal(document, "set \"Torch\" outptu 3"), HasSubstr("no field \"outptu\""));
+    EXPECT_THAT(refusal(document, "set \"Torch\" output three"),
+                HasSubstr("output is \"three\"; it takes a number in kW"));
+    EXPECT_THAT(refusal(document, "set \"Torch\" output 3 cm"), HasSubstr("cm"));
+    EXPECT_THAT(refusal(document, "set \"Torch\" shape round"), HasSubstr("match, point, disc"));
+    EXPECT_THAT(refusal(document, "set \"Torch\" position 1 2"), HasSubstr("3 numbers in m"));
+    EXPECT_THAT(refusal(document, "set \"Torch\" output nan"), HasSubstr("output"));
+    EXPECT_THAT(refusal(document, "set \"Torch\" sticks_to \"Torch\""), HasSubstr("sticks to it"));
+    EXPECT_THAT(refusal(document, "add source \"x"), HasSubstr("quote is not closed"));
+    EXPECT_THAT(refusal(document, "move \"Torch\" 0 0"), HasSubstr("line ends"));
+    EXPECT_THAT(refusal(document, "remove \"Torch\" now"), HasSubstr("one word too many"));
+    EXPECT_THAT(refusal(document, "fill \"Torch\" value 1"), HasSubstr("no layer"));
+}
+
+TEST(EditorCommands, ValuesBeyondLimitsAreSetToThemAndTold) {
+    Document document = newDocument();
+    mustRun(document, "add source point name=Torch");
+    std::string message;
+    ASSERT_TRUE(runLine(document, "set \"Torch\" radius -0.4", message));
+    EXPECT_EQ("radius was -0.4 m, below 0 m; it is now 0 m", message);
+    EXPECT_EQ(0, document.scene.sources[0].radius);
+}
+
+TEST(EditorUndo, NamesAreVerbAndThing) {
+    Document document = paintable();
+    mustRun(document, "add source point name=\"Corner torch\"");
+    mustRun(document, "import crate.glb name=Crate");
+    mustRun(document, "add layer multiplier mesh Crate name=Dry");
+    const std::pair<const char*, const char*> rows[] = {
+        {"move \"Corner torch\" 1 0 0", "Move Corner torch"},
+        {"set \"Corner torch\" output 20", "Output of Corner torch"},
+        {"stroke Dry value 0.2 path 0:0.2:0", "Paint burn multiplier on Crate"},
+        {"fill Dry value 1.5", "Fill burn multiplier on Crate"},
+        {"set settings wind 3 0 0", "Wind of the scene"},
+        {"set \"Corner torch\" hidden yes", "Hide Corner torch"},
+        {"move \"Corner torch\" Crate 1 0 0", nullptr},
+        {"rename \"Corner torch\" \"A name so long that no list of steps can show it\"",
+         "Rename Corner torch"},
+        {"remove #1", "Delete A name so long that no list of s…"}};
+    for (const auto& [line, name] : rows) {
+        std::string message;
+        const bool done = runLine(document, line, message);
+        if (!name) continue;
+        ASSERT_TRUE(done) << line << message;
+        EXPECT_EQ(name, document.steps.back().name);
+    }
+}
+
+TEST(EditorUndo, ADragIsOneStepAndNoneIfNothingMoved) {
+    Document document = newDocument();
+    mustRun(document, "add source point name=Torch");
+    beginDrag(document);
+    for (int i = 0; i < 50; ++i) mustRun(document, "move \"Torch\" 0.015625 0 0");
+    endDrag(document);
+    ASSERT_EQ(3u, document.steps.size());
+    EXPECT_EQ("Move Torch", document.steps[2].name);
+    const std::string after = printScene(document.scene);
+
+    beginDrag(document);
+    mustRun(document, "move \"Torch\" 1 0 0");
+    mustRun(document, "move \"Torch\" -1 0 0");
+    endDrag(document);
+    EXPECT_EQ(3u, document.steps.size());
+
+    beginDrag(document);
+    mustRun(document, "set \"Torch\" output 99");
+    cancelDrag(document);
+    EXPECT_EQ(3u, document.steps.size());
+    EXPECT_EQ(after, printScene(document.scene));
+    EXPECT_TRUE(undo(document));
+    EXPECT_EQ(0, document.scene.sources[0].position[0]);
+}
+
+TEST(EditorUndo, NudgesMergeWithinEightTenthsOfASecond) {
+    Document document = newDocument();
+    mustRun(document, "add source point name=Torch");
+    const auto nudge = [&](const char* line, double now) {
+        Command command;
+        std::string error;
+        ASSERT_TRUE(parseCommand(document.scene, line, command, error)) << error;
+        ASSERT_TRUE(runNudge(document, command, now, error)) << error;
+    };
+    nudge("set \"Torch\" output 19", 1.0);
+    nudge("set \"Torch\" output 20", 1.5);
+    nudge("set \"Torch\" output 21", 2.2);
+    EXPECT_EQ(3u, document.steps.size());
+    nudge("set \"Torch\" output 22", 3.1);  // too late
+    EXPECT_EQ(4u, document.steps.size());
+    nudge("set \"Torch\" radius 0.1", 3.2);  // another field
+    EXPECT_EQ(5u, document.steps.size());
+    mustRun(document, "move \"Torch\" 1 0 0");  // something else happened
+    nudge("set \"Torch\" radius 0.2", 3.3);
+    EXPECT_EQ(7u, document.steps.size());
+    nudge("set \"Torch\" radius 0.1", 3.4);  // back to what it was: no change, no step
+    EXPECT_EQ(6u, document.steps.size());
+}
+
+TEST(EditorUndo, TheCameraIsNoStep) {
+    Document document = newDocument();
+    mustRun(document, "set camera yaw 90 distance 2");
+    EXPECT_EQ(1u, document.steps.size());
+    EXPECT_EQ(90, document.scene.camera.yaw);
+}
+
+// A line that may or may not be possible: what an impatient hand does.
+std::string randomLine(std::mt19937& random, const Scene& scene) {
+    const auto pick = [&](uint32_t n) { return random() % n; };
+    const auto number = [&] {
+        return printNumber(std::ldexp(double(int32_t(random())), -int(20 + pick(14))));
+    };
+    std::vector<ObjectId> ids, layers;
+    forEachList(scene, [&](Kind kind, const auto& list) {
+        for (const auto& object : list) ids.push_back(object.id);
+        for (const auto& object : list)
+            if (kind == Kind::Layer) layers.push_back(object.id);
+    });
+    const auto target = [&] {
+        return ids.empty() || pick(20) == 0 ? std::string("#999999")
+                                            : "#" + std::to_string(ids[pick(uint32_t(ids.size()))]);
+    };
+    const auto assignment = [&](Kind kind) {
+        const auto fields = fieldsOf(kind);
+        const FieldInfo& field = fields[pick(uint32_t(fields.size()))];
+        std::string text = std::string(" ") + field.key + " ";
+        switch (field.type) {
+            case FieldType::Flag:
+                return text + (pick(2) ? "yes" : "no");
+            case FieldType::Whole:
+                return text + std::to_string(pick(5000));
+            case FieldType::Number:
+                return text + number();
+            case FieldType::Choice:
+                return text + field.choices[pick(uint32_t(field.choices.size()))];
+            case FieldType::Text:
+            case FieldType::File:
+                return text + fwedit::quoted("n \"" + std::to_string(pick(9)) + "\\ ü");
+            case FieldType::Object:
+                return text + (pick(3) ? target() : "none");
+            case FieldType::Vector:
+                return text + number() + " " + number() + " " + number();
+            case FieldType::Choices:
+                return text + field.choices[pick(14)];
+            case FieldType::KeyList:
+                return pick(4) ? text + number() + ":" + number() + " 2:3 2:4" : text + "none";
+            case FieldType::Rows:
+                return text + "0:1:2:3:4:" + number() + ":0.5";
+        }
+        return text;
+    };
+    static const char* kinds[] = {"mesh", "source",   "flame", "emitter",
+                                  "wind", "collider", "layer", "event"};
+    switch (pick(16)) {
+        case 0:
+        case 1: {
+            const uint32_t kind = pick(8);
+            std::string line = std::string("add ") + kinds[kind];
+            for (uint32_t i = pick(4); i > 0; --i) line += assignment(Kind(kind));
+            return line;
+        }
+        case 2:
+            return "move " + target() + " " + target() + " " + number() + " 0 " + number();
+        case 3:
+            return "key " + target() + " " + std::to_string(pick(9)) + " " + number();
+        case 4:
+            return "unkey " + target() + " " + std::to_string(pick(9));
+        case 5:
+            return "duplicate " + target();
+        case 6:
+            return "remove " + target();
+        case 7:
+            return "order " + target() + " " + std::to_string(pick(12));
+        case 8:
+            return "import \"a/b " + std::to_string(pick(5)) + ".glb\"";
+        case 9:
+            return "set settings" + assignment(Kind::Settings);
+        case 10:
+        case 11:
+            if (layers.empty()) return "add layer multiplier mesh " + target();
+            return "stroke #" + std::to_string(layers[pick(uint32_t(layers.size()))]) + " size " +
+                   std::to_string(0.02 + 0.01 * pick(20)) + " value " + std::to_string(pick(2)) +
+                   " mode " + (pick(4) ? "paint" : "smooth") + " path " +
+                   std::to_string(pick(100) * 0.01 - 0.5) +
+                   ":0.2:0 0:" + std::to_string(pick(50) * 0.01) + ":0";
+        case 12:
+            if (layers.empty()) return "add layer moisture";
+            return "fill #" + std::to_string(layers[pick(uint32_t(layers.size()))]) + " value 0." +
+                   std::to_string(pick(9)) + (pick(2) ? " by all" : " by island at 0.4 0.2 0");
+        default: {
+            if (ids.empty()) return "add source";
+            Kind kind{};
+            const ObjectId id = ids[pick(uint32_t(ids.size()))];
+            findObject(scene, id, &kind);
+            return "set #" + std::to_string(id) + assignment(kind) + assignment(kind);
+        }
+    }
+}
+
+std::string everythingOf(const Document& document) {
+    Scene scene = document.scene;
+    scene.camera = {};
+    std::string text = printScene(scene);
+    for (const auto& [layer, image] : document.images) {
+        const auto values = image.flat();
+        text += "\n" + std::to_string(layer) + ":";
+        text.append(values.begin(), values.end());
+    }
+    return text;
+}
+
+TEST(EditorUndo, AThousandRandomStepsGoBackAndForthToTheByte) {
+    for (uint32_t seed = 1; seed <= 4; ++seed) {
+        std::mt19937 random(seed);
+        Document document = paintable();
+        mustRun(document, "import start.glb name=Start");
+        mustRun(document, "add layer multiplier mesh Start");
+        resetHistory(document);
+        const std::string start = everythingOf(document);
+        std::vector<std::string> after = {start};
+        int tries = 0;
+        while (document.steps.size() <= 1000) {
+            ASSERT_LT(++tries, 20000);
+            std::string message;
+            const size_t before = document.steps.size();
+            const std::string line = randomLine(random, document.scene);
+            if (!runLine(document, line, message)) {
+                ASSERT_FALSE(message.empty()) << line;
+                ASSERT_EQ(after.back(), everythingOf(document)) << line;
+            }
+            if (document.steps.size() > before) after.push_back(everythingOf(document));
+            if (random() % 50 == 0 && canUndo(document)) {  // now and then back, and on from there
+                for (uint32_t back = random() % 5; back > 0 && canUndo(document); --back) {
+                    undo(document);
+                }
+                after.resize(document.at + 1);
+                ASSERT_EQ(after.back(), everythingOf(document));
+            }
+            if (document.at + 1 < document.steps.size()) document.steps.resize(document.at + 1);
+        }
+        const std::string end = everythingOf(document);
+        for (size_t i = document.at; i-- > 0;) {
+            ASSERT_TRUE(undo(document));
+            ASSERT_EQ(after[i], everythingOf(document)) << "seed " << seed << ", step " << i;
+        }
+        EXPECT_FALSE(canUndo(document));
+        EXPECT_EQ(start, everythingOf(document));
+        while (canRedo(document)) redo(document);
+        EXPECT_EQ(end, everythingOf(document));
+    }
+}
+
+TEST(EditorUndo, TheLinesOfTheStepsMakeTheSameScene) {
+    std::mt19937 random(7);
+    Document first = paintable(), second = paintable();
+    std::string message;
+    while (first.steps.size() <= 300)
+        (void)runLine(first, randomLine(random, first.scene), message);
+    for (size_t i = 1; i < first.steps.size(); ++i)
+        ASSERT_TRUE(runLine(second, first.steps[i].line, message))
+            << first.steps[i].line << ": " << message;
+    EXPECT_EQ(everythingOf(first), everythingOf(second));
+}
+
+TEST(EditorFile, ASceneReadsBackEqualAndPrintsTheSameBytes) {
+    std::mt19937 random(3);
+    Document document = paintable();
+    std::string message;
+    while (document.steps.size() <= 400)
+        (void)runLine(document, randomLine(random, document.scene), message);
+    const std::string text = printScene(document.scene);
+    Scene back;
+    std::vector<std::string> repairs;
+    std::string error;
+    ASSERT_TRUE(readScene(text, "a.fwscene", back, repairs, error)) << error;
+    EXPECT_THAT(repairs, ::testing::IsEmpty());
+    EXPECT_TRUE(back == document.scene);
+    EXPECT_EQ(text, printScene(back));
+}
+
+TEST(EditorFile, OneChangedValueIsOneChangedLine) {
+    Document document = newDocument();
+    mustRun(document, "add source point name=Torch position 1 2 3");
+    const std::string before = printScene(document.scene);
+    mustRun(document, "set \"Torch\" position 1 2 3.5");
+    const std::string after = printScene(document.scene);
+    std::istringstream a(before), b(after);
+    std::string x, y;
+    int lines = 0;
+    while (std::getline(a, x) && std::getline(b, y)) lines += x != y;
+    EXPECT_EQ(1, lines);
+    EXPECT_THAT(after, HasSubstr("\"position\": [1, 2, 3.5]"));
+}
+
+TEST(EditorFile, SaveAndOpenKeepSceneAndPaint) {
+    Folder folder;
+    Document document = paintable();
+    mustRun(document, "import \"" + (folder.path / "models/crate.glb").string() + "\" name=Crate");
+    mustRun(document, "add layer multiplier name=Dry");
+    mustRun(document, "stroke Dry size 0.1 value 0.2 path -0.2:0.2:0 0.2:0.3:0");
+    std::string error;
+    EXPECT_TRUE(unsaved(document));
+    const fs::path file = folder.path / "yard.fwscene";
+    ASSERT_TRUE(saveDocument(document, file, error)) << error;
+    EXPECT_FALSE(unsaved(document));
+    EXPECT_EQ("models/crate.glb", document.scene.meshes[0].file);
+    EXPECT_EQ(textOf(file), printScene(document.scene));
+    EXPECT_FALSE(fs::exists(file.string() + ".new"));
+
+    Document back;
+    std::vector<std::string> repairs;
+    ASSERT_TRUE(openDocument(file, back, repairs, error)) << error;
+    EXPECT_THAT(repairs, ::testing::IsEmpty());
+    EXPECT_TRUE(back.scene == document.scene);
+    EXPECT_TRUE(back.images == document.images);
+    EXPECT_FALSE(unsaved(back));
+
+    // Elsewhere: paths begin there; the old file stays; undo still goes to the start.
+    const fs::path other = folder.path / "shots/night.fwscene";
+    ASSERT_TRUE(saveDocument(document, other, error)) << error;
+    EXPECT_EQ("../models/crate.glb", document.scene.meshes[0].file);
+    ASSERT_TRUE(openDocument(file, back, repairs, error)) << error;
+    EXPECT_TRUE(back.images == document.images);
+    while (undo(document)) {
+    }
+    EXPECT_TRUE(document.scene.meshes.empty());
+    EXPECT_TRUE(unsaved(document));
+}
+
+TEST(EditorFile, ASaveThatCannotBeSaysWhyAndKeepsTheOldFile) {
+    Folder folder;
+    Document document = newDocument();
+    std::string error;
+    EXPECT_FALSE(saveDocument(document, "/proc/nowhere/a.fwscene", error));
+    EXPECT_THAT(error, HasSubstr("/proc/nowhere/a.fwscene is not saved"));
+    std::ofstream(folder.path / "plain") << "x";
+    EXPECT_FALSE(saveDocument(document, folder.path / "plain" / "a.fwscene", error));
+    EXPECT_TRUE(document.file.empty());
+}
+
+TEST(EditorFile, RepairsNameFileFieldValueAndLimit) {
+    Document document = newDocument();
+    mustRun(document, "add source point name=A");
+    mustRun(document, "add source point name=B");
+    mustRun(document, "add layer multiplier");
+    std::string text = printScene(document.scene);
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        const size_t at = text.find(from);
+        ASSERT_NE(std::string::npos, at) << from;
+        text.replace(at, from.size(), to);
+    };
+    replace("\"radius\": 0.05", "\"radius\": -0.4");
+    replace("\"output\": 18", "\"output\": \"hot\"");
+    replace("\"shape\": \"point\"", "\"shape\": \"round\"");
+    replace("\"id\": 2", "\"id\": 1");
+    replace("\"mesh\": 0", "\"mesh\": 77");
+    replace("\"up\": [0, 1, 0]", "\"up\": [0, 1]");
+    replace("\"length\": 1", "\"lenght\": 1");
+    Scene scene;
+    std::vector<std::string> repairs;
+    std::string error;
+    ASSERT_TRUE(readScene(text, "yard.fwscene", scene, repairs, error)) << error;
+    const auto told = [&](const char* part) {
+        EXPECT_THAT(repairs, ::testing::Contains(HasSubstr(part)));
+    };
+    told("yard.fwscene: sources[0].radius was -0.4 m, below 0 m; it is now 0 m.");
+    told("yard.fwscene: sources[0].output is a text; it takes a number");
+    told("sources[0].shape is \"round\"; it takes match, point, disc");
+    told("sources[1].id is 1, which another object has; it is now 4");
+    told("layers[0].mesh was #77, which is no mesh of the scene");
+    told("settings.up takes 3 numbers");
+    told("sources[0].lenght is not known here");
+    told("next_id is 4; it must be above every id; it is now 5");
+    EXPECT_EQ(8u, repairs.size());
+    repairs.clear();
+    Scene again;
+    ASSERT_TRUE(readScene(printScene(scene), "b", again, repairs, error));
+    EXPECT_THAT(repairs, ::testing::IsEmpty());
+    EXPECT_TRUE(scene == again);
+}
+
+TEST(EditorFile, RefusalsSayWhatItIs) {
+    const auto why = [](std::string_view text) {
+        Scene scene;
+        scene.nextId = 77;
+        std::vector<std::string> repairs;
+        std::string error;
+        EXPECT_FALSE(readScene(text, "x.fwscene", scene, repairs, error));
+        EXPECT_EQ(77u, scene.nextId);
+        return error;
+    };
+    EXPECT_THAT(why(""), HasSubstr("x.fwscene was not opened"));
+    EXPECT_THAT(why("{\"fwscene\": 1"), HasSubstr("line 1"));
+    EXPECT_THAT(why("[]"), HasSubstr("a list"));
+    EXPECT_THAT(why("{}"), HasSubstr("which version"));
+    EXPECT_THAT(why("{\"fwscene\": 2}"), HasSubstr("fwscene is 2; this program reads up to 1"));
+    EXPECT_THAT(why(std::string(200000, '[')), HasSubstr("not opened"));
+    EXPECT_THAT(why("\x89PNG\r\n"), HasSubstr("not opened"));
+    EXPECT_THAT(why(std::string(size_t{17} << 20, ' ')), HasSubstr("above 16777216"));
+}
+
+TEST(EditorFile, TenThousandSpoiltScenesAreRefusedOrMended) {
+    std::mt19937 random(11);
+    Document document = paintable();
+    std::string message;
+    while (document.steps.size() <= 25)
+        (void)runLine(document, randomLine(random, document.scene), message);
+    const std::string whole = printScene(document.scene);
+    static const char* kSpoilt[] = {"null", "-1",      "1e400", "99999999999999999999",
+                                    "\"\"", "[]",      "{}",    "true",
+                                    "NaN",  "[[[1]]]", "0.5",   "\\u0000"};
+    int refused = 0, mended = 0;
+    for (int i = 0; i < 10000; ++i) {
+        std::string text = whole;
+        for (uint32_t times = 1 + random() % 4; times > 0; --times) {
+            if (text.empty()) break;
+            const size_t at = random() % text.size();
+            switch (random() % 5) {
+                case 0:
+                    text[at] = static_cast<char>(random());
+                    break;
+                case 1:
+                    text.erase(at, random() % 40);
+                    break;
+                case 2:
+                    text.insert(at, kSpoilt[random() % std::size(kSpoilt)]);
+                    break;
+                case 3:
+                    text.resize(at + 1);
+                    break;
+                default: {  // another value where one was
+                    const size_t colon = text.find(": ", at);
+                    if (colon == std::string::npos) break;
+                    const size_t end = text.find_first_of(",\n", colon);
+                    text.replace(colon + 2, std::min(end, text.size()) - colon - 2,
+                                 kSpoilt[random() % std::size(kSpoilt)]);
+                }
+            }
+        }
+        Scene scene;
+        std::vector<std::string> repairs;
+        std::string error;
+        if (!readScene(text, "spoilt", scene, repairs, error)) {
+            ++refused;
+            ASSERT_THAT(error, HasSubstr("spoilt was not opened: "));
+            continue;
+        }
+        mended += !repairs.empty();
+        // What was let in is a scene like any other.
+        Scene again;
+        repairs.clear();
+        const std::string printed = printScene(scene);
+        ASSERT_TRUE(readScene(printed, "again", again, repairs, error)) << error << text;
+        ASSERT_TRUE(repairs.empty()) << repairs[0];
+        ASSERT_EQ(printed, printScene(again));
+    }
+    EXPECT_GT(refused, 1000);
+    EXPECT_GT(mended, 500);
+}
+
+TEST(EditorScene, WhatSticksMovesAlongAndStaysWhenItsHolderGoes) {
+    Document document = newDocument();
+    mustRun(document, "import a.glb name=Box position 1 0 0 rotation 0 90 0 scale 2 2 2");
+    mustRun(document, "add source point name=Torch position 1 0 -2");
+    mustRun(document, "set \"Torch\" sticks_to \"Box\"");
+    const auto near = [&](Vec3 wish) {
+        const Vec3 at = worldPosition(document.scene, document.scene.sources[0].id);
+        for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(wish[k], at[k], 1e-5f) << k;
+    };
+    near({1, 0, -2});
+    EXPECT_NEAR(1.0f, document.scene.sources[0].position[0], 1e-5f);  // along the box's own x
+    mustRun(document, "move \"Box\" 0 3 0");
+    near({1, 3, -2});
+    EXPECT_THAT(refusal(document, "set \"Torch\" sticks_to \"Torch\""), HasSubstr("sticks to it"));
+    mustRun(document, "remove \"Box\"");
+    EXPECT_EQ(0u, document.scene.sources[0].sticksTo);
+    near({1, 3, -2});
+}
+
+TEST(EditorScene, KeysAreStraightLinesBetweenThem) {
+    const Keys keys = {{1, 2}, {3, 4}};
+    EXPECT_EQ(1, valueAt({}, 5));
+    EXPECT_EQ(2, valueAt(keys, 0));
+    EXPECT_EQ(3, valueAt(keys, 2));
+    EXPECT_EQ(4, valueAt(keys, 9));
+}
+
+TEST(EditorPaint, AStrokeGoesOverASeam) {
+    Stroke stroke;
+    stroke.size = 0.1f;
+    stroke.value = 0;
+    stroke.hardness = 1;
+    stroke.path = {{0, 0.25f, 0}};  // where the two islands meet on the sheet
+    const PaintImage image =
+        applyStroke(sheet(), PaintMultiplier, makePaintImage(PaintMultiplier, 64, 32), stroke);
+    for (uint32_t y = 0; y < 32; ++y)
+        for (uint32_t x = 0; x < 64; ++x) {
+            const size_t i = size_t{y} * 64 + x;
+            const float dx = sheet().positions[i * 3], dy = sheet().positions[i * 3 + 1] - 0.25f;
+            const bool within = std::sqrt(dx * dx + dy * dy) < 0.1f;
+            EXPECT_EQ(within ? 0 : 128, image.at(x, y)) << x << " " << y;
+        }
+    EXPECT_EQ(0, image.at(63, 16));  // right border of the map: left of the seam
+    EXPECT_EQ(0, image.at(0, 16));
+}
+
+TEST(EditorPaint, AStrokeIsTheSameInHoweverManyPiecesItComes) {
+    Stroke stroke;
+    stroke.value = 2;
+    stroke.strength = 0.7f;
+    stroke.path = {{-0.3f, 0.1f, 0}, {0, 0.3f, 0}, {0.2f, 0.1f, 0}};
+    const PaintImage empty = makePaintImage(PaintMultiplier, 64, 32);
+    const PaintImage whole = applyStroke(sheet(), PaintMultiplier, empty, stroke);
+    StrokePainter painter(sheet(), PaintMultiplier, empty, stroke);
+    PaintedArea all;
+    for (const Vec3& point : stroke.path) {
+        const PaintedArea area = painter.extend(point);
+        EXPECT_FALSE(area.empty());
+        all = area;
+    }
+    EXPECT_TRUE(whole == painter.image());
+    // A path that goes to and fro over itself is no stronger than one that goes once.
+    stroke.path.insert(stroke.path.end(), {{0, 0.3f, 0}, {-0.3f, 0.1f, 0}});
+    EXPECT_TRUE(whole == applyStroke(sheet(), PaintMultiplier, empty, stroke));
+}
+
+TEST(EditorPaint, FillsKeepToWhatTheyAreBy) {
+    const PaintImage empty = makePaintImage(PaintMoisture, 64, 32);
+    FillRequest fill;
+    fill.value = 1;
+    fill.by = FillBy::Island;
+    fill.at = {0.4f, 0.2f, 0};
+    PaintImage image = applyFill(sheet(), PaintMoisture, empty, fill, {0, 1, 0});
+    EXPECT_EQ(255, image.at(10, 5));
+    EXPECT_EQ(0, image.at(40, 5));
+    fill.by = FillBy::Material;
+    fill.material = 1;
+    image = applyFill(sheet(), PaintMoisture, empty, fill, {0, 1, 0});
+    EXPECT_EQ(0, image.at(10, 5));
+    EXPECT_EQ(255, image.at(10, 20));
+    fill.by = FillBy::Slope;  // the sheet stands upright: 90 degrees
+    fill.slopeLow = 80;
+    fill.slopeHigh = 100;
+    image = applyFill(sheet(), PaintMoisture, empty, fill, {0, 1, 0});
+    EXPECT_EQ(255, image.at(10, 5));
+    fill.slopeHigh = 85;
+    image = applyFill(sheet(), PaintMoisture, empty, fill, {0, 1, 0});
+    EXPECT_EQ(0, image.at(10, 5));
+}
+
+TEST(EditorPaint, SmoothingLevelsAnEdgeAcrossTheSeam) {
+    std::vector<uint8_t> values(64 * 32, 0);
+    for (size_t i = 0; i < values.size(); ++i)
+        if (sheet().positions[i * 3] > 0) values[i] = 255;
+    const PaintImage edge = paintImageOf(PaintMoisture, 64, 32, values);
+    Stroke stroke;
+    stroke.mode = BrushMode::Smooth;
+    stroke.size = 0.2f;
+    stroke.hardness = 1;
+    stroke.path = {{0, 0.25f, 0}};
+    const PaintImage image = applyStroke(sheet(), PaintMoisture, edge, stroke);
+    EXPECT_GT(image.at(63, 16), 60);  // just left of the seam
+    EXPECT_LT(image.at(0, 16), 195);  // just right of it
+}
+
+}  // namespace
