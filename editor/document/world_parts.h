@@ -17,5 +17,9 @@ std::vector<FwVolumetricFireDef> sourceFiresOf(const Scene& scene, const HeatSou
 FwBurnableMeshDef burnableDefOf(const Mesh& mesh);
 FwFireColliderDef colliderDefOf(const Scene& scene, const Collider& collider);
 FwBlockerDef blockerDefOf(const Scene& scene, const Collider& collider);
+// The texels of a cooked burn map; `slots`: material by triangle of the model.
+bool surfaceOfBake(FwContext* context, const std::vector<char>& bake,
+                   const fwimport::ImportedModel& model, const std::vector<uint8_t>& slots,
+                   PaintSurface& surface, std::string& error);
 
 }  // namespace fwedit
