@@ -58,23 +58,25 @@ void main() {
         }
         // Places of others are the solver's: here it learns what burnt, and at first where things rest.
         if (moves) {
-            uint own = softBase * kSoftQuads + item.parity * sizes.y + number;
-            uvec4 before = soft(own);
-            float reach = reachOf(before.w);
+            uint own = softBase * kSoftQuads + number, seenAt = own + kSoftSeen * sizes.y;
+            uint placeAt = own + item.parity * sizes.y;
+            uvec4 seen = soft(seenAt);
+            float way = wayOf(wayBits(soft(placeAt)));
             if (item.reset) {
-                before.xyz = rest.xyz;
-                reach = kReachNone;
+                way = kReachNone;
                 for (uint i = 0u; i < bases.w; ++i) {
                     vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
                     vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
                     // Known from the start, or a sheet would fall until word of its pins came to it.
                     float away = length(place - pinPoint(place, from.xyz, to.xyz)) - from.w;
-                    reach = min(reach, max(away, 0.0));
+                    way = min(way, max(away, 0.0));
                 }
+                bool sheet = (bases.z & kDeformShell) != 0u;
+                softOut[placeAt] = uvec4(sheet ? softPlace(place, packWay(way, false)) : rest.xyz, 0u);
             }
-            if (reach == 0.0 && burntOf(packFacts(reach, burnt)) > kPinBurns) reach = kReachNone;
-            before.w = packFacts(reach, burnt) | (item.reset ? 0u : before.w & kReachKnown);
-            softOut[own] = before;
+            // Its arms' shares were of the step before it lay still, which minded other arms.
+            softOut[seenAt] = uvec4(packFacts(burnt, way == 0.0), 0u,
+                                    item.reset || item.woke ? uvec2(0u) : seen.zw);
             if (!item.reset) place = shown(vertex).xyz;
             // What the springs are told of a frame, in equal parts for its steps.
             float steps = float(push.parity >> 1u);

@@ -1,5 +1,7 @@
 // One step of sheets: every node moves to where its links, its bending and its pins allow, and on
-// with the speed that this gives it. kDeformGroup nodes of one object a group.
+// with the speed that this gives it. It gives way to its own bend now, and to those of its neighbours
+// as they were a step ago: what they will ask of it now they only find out while it moves.
+// kDeformGroup nodes of one object a group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -19,77 +21,120 @@ void main() {
     float ground = uintBitsToFloat(facts2.x), scale = uintBitsToFloat(facts2.z);
     vec3 up = upHere(facts2), wind = toObject(facts2, push.wind.xyz) / scale;
     vec4 height = heightHere(facts2);
+    uint way = push.parity >> 1u, echoed = (way + kArmWays - 1u) % kArmWays;
 
     uint last = min(item.end, sizes.y);
     uint number = item.number;
     if (number >= last) return;
     do {
         uint at = sizes.x * kDeformNodeQuads + number;
-        uvec2 facts = deformNode(at).xy;
-        uint vertex = facts.x;
-        float shrink = uintBitsToFloat(material0.z), drag = uintBitsToFloat(more0.w);
+        uvec4 facts = deformNode(at);
+        uvec4 material = material0, more = more0;
         if ((facts.y & 7u) != 0u) {
             uint materialAt = item.object + 4u + (facts.y & 7u) * 2u;
-            shrink = uintBitsToFloat(deformObjects[materialAt].z);
-            drag = uintBitsToFloat(deformObjects[materialAt + 1u].w);
+            material = deformObjects[materialAt];
+            more = deformObjects[materialAt + 1u];
         }
+        float shrink = uintBitsToFloat(material.z), curl = uintBitsToFloat(material.w);
+        float bend = uintBitsToFloat(more.z), drag = uintBitsToFloat(more.w);
 
-        uint own = softBase * kSoftQuads + number;
-        uint seenAt = own - number + kSoftSeen * sizes.y, ownAt = seenAt + sizes.y;
-        uvec4 seen = soft(seenAt + number), bent = soft(ownAt + number);
-        vec3 x = uintBitsToFloat(seen.xyz), normal = bentNormal(bent.x);
-        float burnt = burntOf(bent.z), reach = reachOf(bent.z), charred = charredShare(burnt);
-        bool pinned = reach == 0.0;
+        uint own = softBase * kSoftQuads + number, places = own - number + item.parity * sizes.y;
+        uint seenAt = own - number + kSoftSeen * sizes.y;
+        uvec4 self = soft(places + number);
+        vec3 x = placeOf(self);
+        uvec4 ties = soft(own + kSoftTies * sizes.y);
+        float burnt = burntOf(ties.w), charred = charredShare(burnt), reach = kReachNone;
+        bool pinned = pinnedOf(ties.w) != 0u;
         // Both ends of a link agree on its length.
         float shrunk = shrink * 0.5 / kCharredSteps, mine = floor(charred * kCharredSteps + 0.5);
+        // Charring stiffens what held its shape only loosely.
+        float stiff = mix(bend, max(bend, 0.9), charred);
 
-        vec3 links = vec3(0.0);
-        vec3 bending = shareOf(seen.w) * nearCount(bent.x) + shareOf(bent.w) * 2.0;
-        uint turn = 0u, turns = nodeTurns(facts.y), all = turns + nodeArms(facts.y);
-        do {  // the neighbours, and arms at last
-            bool arms = turn == turns;
-            uvec4 two = deformNode(at + (arms ? kNodeArms + (push.parity >> 1u) : kNodeNear + turn) * sizes.y);
+        vec3 turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0), sum = vec3(0.0), nearSum = vec3(0.0);
+        vec3 links = vec3(0.0), bending = vec3(0.0);
+        vec2 squares = vec2(0.0), nearSquares = vec2(0.0);  // of rest lengths, and how many
+        float rise = 0.0;  // of arms
+        uint turn = 0u, turns = nodeTurns(facts.y), all = turns + nodeArms(facts.y) * 2u;
+        do {  // the neighbours, arms, and those of the step before at last
+            bool arms = turn >= turns, echo = turn > turns;
+            uint quad = arms ? kNodeArms + (echo ? echoed : way) : kNodeNear + turn;
+            uvec4 two = deformNode(at + quad * sizes.y);
+            if (turn == turns) {
+                nearSum = sum;
+                nearSquares = squares;
+                sum = vec3(0.0);
+                squares = vec2(0.0);
+                rise = uintBitsToFloat(two.w);
+            }
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
-                uint k = (arms ? 8u : turn * kDeformLinks) + i;
-                bool holds = (bent.x >> k & 1u) != 0u;
-                uvec4 there = soft((arms ? ownAt : seenAt) + (two[i] & kDeformNode));
-                bending -= holds ? shareOf(there.w) : vec3(0.0);
+                uint k = turn * kDeformLinks + i;
+                float rest = unpackHalf2x16(two.z)[i];
+                uvec4 there = soft((echo ? seenAt : places) + (two[i] & kDeformNode));
+                vec3 y = placeOf(there), arm = y - x;
+                bool holds = (ties.x >> (arms ? kTiesArms + way * kDeformLinks + i : k) & 1u) != 0u;
+                // Who has parted from a node has no share in it: it is not whole, or has no arms.
+                uint share = echo ? (item.parity == 0u ? there.z : there.w) : there.w;
+                bending -= (echo ? rest > 0.0 : holds && !arms) ? shareOf(share) : vec3(0.0);
+                holds = holds && !echo && (!arms || dot(arm, arm) <= kArmTears * kArmTears * rest * rest);
+                sum += holds ? arm : vec3(0.0);
+                squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
                 if (arms) continue;
-                float theirs = float(bent.y >> (4u * k) & 15u);
-                float wanted = unpackHalf2x16(two.z)[i] * (1.0 - shrunk * (mine + theirs));
-                vec3 p = linkPush(x, uintBitsToFloat(there.xyz), wanted,
-                                  (bent.z >> (24u + k) & 1u) != 0u ? 1.0 : 0.5);
+                turned += cross(before, arm);
+                if (k == 0u) first = arm;
+                before = arm;
+                float theirs = float(ties.y >> (4u * k) & 15u);
+                vec3 p = linkPush(x, y, rest * (1.0 - shrunk * (mine + theirs)),
+                                  (ties.x >> (kTiesPinned + k) & 1u) != 0u ? 1.0 : 0.5);
                 links += holds ? p : vec3(0.0);
+                reach = holds ? min(reach, wayOf(wayBits(there)) + rest) : reach;
             }
         } while (++turn < all);
-        uint shownAt = (bases.x + vertex) * kShownQuads;
-        vec3 before = shown(shownAt).xyz;
+        bool reaches = all != turns;
+        nearSum = reaches ? nearSum : sum;
+        nearSquares = reaches ? nearSquares : squares;
+
+        if ((facts.y & kNodeClosed) != 0u) turned += cross(before, first);
+        float size = length(turned);
+        vec3 normal = size > 1e-18 ? turned / size : up;
+        curl *= curlSide(normal, up) * scale * charred;
+        float count = nearSquares.y, mean = 1.0 / max(count, 1.0);
+        vec3 b = bendOf(nearSum * mean, normal,
+                        uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
+                        stiff * kBendRelax, (facts.y & kNodeEven) != 0u);
+        uint nearShare = packShare((ties.x & kTiesWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
+        bending += shareOf(nearShare) * count;
+        if (reaches) {
+            uint ends = ties.z >> (way * kDeformLinks * 4u);
+            float across = armCurl(float(ends & 15u) / kCharredSteps, float(ends >> 4u & 15u) / kCharredSteps);
+            b = bendOf(sum * 0.5, normal, rise + kArmCurls * across * curlRise(curl, squares.x * 0.5), 2.0,
+                       armFirm(stiff, charred, across), (facts.y & kNodeArmsEven << way) != 0u);
+            uint armShare = packShare(squares.y == 2.0 ? b * (0.5 * kBendUnit) : vec3(0.0));
+            bending += shareOf(armShare) * 2.0;
+            if (item.parity == 0u) softOut[seenAt + number].w = armShare;
+            else softOut[seenAt + number].z = armShare;
+        }
+
+        float was = wayOf(wayBits(self));
+        if (was == 0.0 && !pinned) was = kReachNone;
+        bool knew = (wayBits(self) & kWayKnown) != 0u;
+        bool known = knew || reachKnown(reach, was);
+        reach = pinned ? 0.0 : reachNext(reach, was, knew);
+
+        uint shownAt = (bases.x + facts.x) * kShownQuads;
+        vec3 last_ = shown(shownAt).xyz;
         vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
                      bending * (relaxAt(1.0, push.step) / kBendUnit);
         // No farther from the nearest pin than its way there over links that hold.
         if (reach < 0.5 * kReachNone) {
-            vec3 anchor = vec3(0.0);
-            float nearest = 1e30, radius = 0.0;
-            uint i = 0u;
-            do {
-                vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
-                vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
-                vec3 point = pinPoint(moved, from.xyz, to.xyz);
-                float d = length(moved - point);
-                if (d < nearest) {
-                    nearest = d;
-                    anchor = point;
-                    radius = from.w;
-                }
-            } while (++i < bases.w);
-            float most = reach * kReachSlack + radius;
-            if (nearest > most) moved = anchor + (moved - anchor) * (most / nearest);
+            vec4 anchor = uintBitsToFloat(soft(own + kSoftAnchor * sizes.y));
+            float away = length(moved - anchor.xyz), most = reach * kReachSlack + anchor.w;
+            if (away > most) moved = anchor.xyz + (moved - anchor.xyz) * (most / away);
         }
         float above = dot(height.xyz, moved) + height.w - ground;
         bool down = above < 0.0;
         if (down) moved -= up * (above / scale);
 
-        vec3 velocity = noFasterThan((moved - before) / push.step, kFastest / scale);
+        vec3 velocity = noFasterThan((moved - last_) / push.step, kFastest / scale);
         velocity *= down ? 0.5 : sheetDamping(charred, push.step);
         vec3 air = wind * gustAt(x, scale, push.wind.w) + up * (updraftAt(burnt) / scale);
         float slowed = drag * (1.0 + 2.0 * charred) * push.step;
@@ -100,8 +145,7 @@ void main() {
         if (pinned) moved = next = x;  // where it has been from the first
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(moved, 0.0));
-        softOut[own + (item.parity ^ 1u) * sizes.y] =
-            uvec4(floatBitsToUint(next), packFacts(reach, burnt) | (bent.z & kReachKnown));
+        softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(softPlace(next, packWay(reach, known)), nearShare);
         number += 64u;
     } while (number < last);
 }

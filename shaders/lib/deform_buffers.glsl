@@ -49,51 +49,27 @@ FW_BUFFER(FW_BIND_SHOWN, writeonly, ShownWordsBuffer, uint, shownWords);
 #endif
 
 #ifdef FW_USE_SOFT
-// Per node: two places, each with its facts; what neighbours see of bend.comp's result, the
-// place and a share; what is the node's own of it: normal and links that hold (near, arms << 8),
-// neighbours' charred shares, way to a pin and which of them are pinned, a share for arms' ends.
+// Per node: two places, each with a way to a pin and the share that neighbours have of how it bends
+// (packShare); its ties; facts that neighbours see (packFacts), and two shares that the ends of its
+// arms have; the nearest point of a pin, with its radius.
 FW_QUADS(FW_BIND_SOFT, SoftBuffer, softQuads);
 #ifdef FW_TEXELS
 FW_BUFFER(FW_BIND_SOFT, writeonly, SoftOutBuffer, uvec4, softOut);
 #endif
 uvec4 soft(uint quad) { return FW_QUAD(softQuads, quad); }
-const uint kSoftSeen = 2u, kSoftOwn = 3u;
-
-const float kCharredSteps = 15.0;  // in which neighbours know of it
-// Way to a pin, burnt share (8 bits), charred share (4 bits) and whether it is pinned.
-uint packFacts(float reach, float burnt) {
-    return (packHalf2x16(vec2(reach, 0.0)) & 0xFFFFu) | uint(burnt * 255.0) << 16u |
-           uint(charredShare(burnt) * kCharredSteps + 0.5) << 24u | (reach == 0.0 ? 1u << 28u : 0u);
+const uint kSoftTies = 2u, kSoftSeen = 3u, kSoftAnchor = 4u;
+uvec3 softPlace(vec3 place, uint way) {
+    uvec3 p = floatBitsToUint(place);
+    return uvec3(packPlace(p.x, way, kWayLow), packPlace(p.y, way >> 5u, kWayLow),
+                 packPlace(p.z, way >> 10u, kWayHigh));
 }
-float reachOf(uint facts) { return unpackHalf2x16(facts & 0x7FFFu).x; }
-const uint kReachKnown = 0x8000u;  // beside it: it once was what it had been
-float burntOf(uint facts) { return float(facts >> 16u & 255u) * (1.0 / 255.0); }
-uint charredOf(uint facts) { return facts >> 24u & 15u; }
-uint pinnedOf(uint facts) { return facts >> 28u; }
-
-uint packBent(vec3 n, uint links) {
-    n /= abs(n.x) + abs(n.y) + abs(n.z);
-    vec2 o = n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
-    return (packSnorm4x8(vec4(o, 0.0, 0.0)) << 16u) | links;
+vec3 placeOf(uvec4 quad) { return uintBitsToFloat(quad.xyz & ~uvec3(kWayLow, kWayLow, kWayHigh)); }
+uint wayBits(uvec4 quad) {
+    return (quad.x & kWayLow) | (quad.y & kWayLow) << 5u | (quad.z & kWayHigh) << 10u;
 }
-vec3 bentNormal(uint packed) {
-    vec2 o = unpackSnorm4x8(packed >> 16u).xy;
-    vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
-    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
-    return normalize(n);
-}
-// Every neighbour's share of what the node gives way by, which is that often what a share is: who
-// bends has all of them. Halfs, shortened to 11, 11 and 10 bits: all see the same.
-uint packShare(vec3 share) {
-    uvec3 h = uvec3(packHalf2x16(share.xy), 0u, packHalf2x16(vec2(share.z, 0.0)) & 0xFFFFu);
-    h = uvec3(h.x & 0xFFFFu, h.x >> 16u, h.z) + uvec3(16u, 16u, 32u);
-    return h.x >> 5u | (h.y >> 5u) << 11u | (h.z >> 6u) << 22u;
-}
-vec3 shareOf(uint packed) {
-    return vec3(unpackHalf2x16((packed & 0x7FFu) << 5u | (packed & 0x3FF800u) << 10u),
-                unpackHalf2x16(packed >> 22u << 6u).x);
-}
-float nearCount(uint links) { return float(bitCount(links & 0xFFu)); }
+// The ties' first word: links that hold, below bit 8; neighbours that are pinned, below 16; arms that
+// hold, two for each way, below 24. Then charred shares, of neighbours and of arms' ends; own facts.
+const uint kTiesPinned = 8u, kTiesArms = 16u, kTiesWhole = 0x1000000u;  // no neighbour has parted
 #endif
 
 layout(push_constant) uniform DeformPushBlock { DeformPush push; };
@@ -108,6 +84,7 @@ struct DeformItem {
     uint parity;  // of the places that are read
     bool reset;
     bool crosses;
+    bool woke;
 };
 DeformItem deformItem() {
     uvec2 group = deformGroups[push.first + gl_WorkGroupID.x];
@@ -118,6 +95,7 @@ DeformItem deformItem() {
     item.parity = ((group.y & kDeformOdd) != 0u ? 1u : 0u) ^ (push.parity & 1u);
     item.reset = (group.y & kDeformReset) != 0u;
     item.crosses = (group.y & kDeformCrosses) != 0u;
+    item.woke = (group.y & kDeformWoke) != 0u;
     return item;
 }
 

@@ -36,9 +36,10 @@ FW_SHARED_CONST uint kDeformGroup = 512u;     // nodes or vertices of a workgrou
 FW_SHARED_CONST uint kDeformReset = 0x80000000u;  // start from rest
 FW_SHARED_CONST uint kDeformOdd = 0x40000000u;    // its places are the second ones
 FW_SHARED_CONST uint kDeformCrosses = 0x20000000u; // walls may cross and open by themselves
-FW_SHARED_CONST uint kDeformItem = 0x1FFFFFFFu;
+FW_SHARED_CONST uint kDeformWoke = 0x10000000u;   // it did not move in the frame before
+FW_SHARED_CONST uint kDeformItem = 0x0FFFFFFFu;
 FW_SHARED_CONST uint kDeformNode = 0xFFFFFFu; // of a link: which node
-FW_SHARED_CONST uint kSoftQuads = 4u;         // of a vertex of what moves: see lib/deform_buffers.glsl
+FW_SHARED_CONST uint kSoftQuads = 5u;         // of a vertex of what moves: see lib/deform_buffers.glsl
 FW_SHARED_CONST uint kSoftTicks = 32u;        // of one of its steps: 1/128 s
 FW_SHARED_CONST uint kMostSoftSteps = 6u;     // of a frame; a hitch drops the rest
 
@@ -229,6 +230,10 @@ FW_SHARED_FN float reachNext(float way, float before, bool known) {
 }
 FW_SHARED_CONST float kReachSlack = 1.001f;   // it is kept as a half
 FW_SHARED_CONST float kBendUnit = 4096.0f;    // of packed bends, per m
+FW_SHARED_CONST float kCharredSteps = 15.0f;  // in which nodes know of others'
+// Which links hold is looked at once in so many steps: fire takes seconds.
+FW_SHARED_CONST uint kTieSteps = 4u;
+FW_SHARED_FN bool tiesAt(uint way) { return way % kTieSteps == 0u; }
 // Neighbours correct at the same time: a pattern of alternating nodes is corrected by up to 4 times
 // the one and twice 3.4 times the other, and with speeds that is stable while it is below 4/3.
 FW_SHARED_CONST float kLinkRelax = 0.2f;
@@ -244,6 +249,46 @@ FW_SHARED_FN uint linkOdds(uint a, uint b) {
 }
 FW_SHARED_FN bool linkHolds(float burntA, float burntB, uint odds) {
     return leastF(burntA, burntB) < 0.80f + 0.15f / 256.0f * float(odds);
+}
+
+// How far shrinking and curling have come: all of it before links part.
+FW_SHARED_FN float charredShare(float burnt) {
+    float x = unitF(burnt * 1.8f);
+    return x * x * (3.0f - 2.0f * x);
+}
+
+// What neighbours know of a node's fire: burnt share (8 bits), charred share (4 bits) and whether it
+// is pinned.
+FW_SHARED_FN uint packFacts(float burnt, bool pinned) {
+    return uint(burnt * 255.0f) | uint(charredShare(burnt) * kCharredSteps + 0.5f) << 8u |
+           (pinned && burnt <= kPinBurns ? 1u << 12u : 0u);
+}
+FW_SHARED_FN float burntOf(uint facts) { return float(facts & 255u) * (1.0f / 255.0f); }
+FW_SHARED_FN uint charredOf(uint facts) { return (facts >> 8u) & 15u; }
+FW_SHARED_FN uint pinnedOf(uint facts) { return (facts >> 12u) & 1u; }
+
+// Neighbours know its way to a pin as well: with its place, in the last bits of that, a millionth of it.
+FW_SHARED_CONST uint kWayKnown = 0x8000u;  // beside the way: it once was what it had been
+FW_SHARED_FN uint packWay(float way, bool known) {
+    return (packHalf2x16(vec2(way, 0.0f)) & 0x7FFFu) | (known ? kWayKnown : 0u);
+}
+FW_SHARED_FN float wayOf(uint bits) { return unpackHalf2x16(bits & 0x7FFFu).x; }
+FW_SHARED_CONST uint kWayLow = 31u;   // of the bits of x and y
+FW_SHARED_CONST uint kWayHigh = 63u;  // of those of z
+FW_SHARED_FN uint packPlace(uint word, uint bits, uint mask) {
+    return ((word + (mask + 1u) / 2u) & ~mask) | (bits & mask);
+}
+
+// Every neighbour's share of what a node gives way by, which is that often what a share is: who
+// bends has all of them. Halfs, shortened to 11, 11 and 10 bits: all see the same.
+FW_SHARED_FN uint packShare(vec3 share) {
+    uint xy = packHalf2x16(vec2(share.x, share.y)), z = packHalf2x16(vec2(share.z, 0.0f));
+    return (((xy & 0xFFFFu) + 16u) >> 5u) | (((xy >> 16u) + 16u) >> 5u) << 11u |
+           (((z & 0xFFFFu) + 32u) >> 6u) << 22u;
+}
+FW_SHARED_FN vec3 shareOf(uint bits) {
+    vec2 xy = unpackHalf2x16((bits & 0x7FFu) << 5u | (bits & 0x3FF800u) << 10u);
+    return vec3(xy.x, xy.y, unpackHalf2x16((bits >> 22u) << 6u).x);
 }
 
 // A relaxation that stands for the same stiffness whatever the step.
@@ -262,12 +307,6 @@ FW_SHARED_CONST float kTornSquare = 2.6f;  // of rest lengths' squares
 FW_SHARED_CONST float kTornLead = 1000.0f; // s of look time
 FW_SHARED_FN float tornLead(float square, float longest, float burnt) {
     return burnt > 0.5f && square > kTornSquare * longest ? kTornLead : 0.0f;
-}
-
-// How far shrinking and curling have come: all of it before links part.
-FW_SHARED_FN float charredShare(float burnt) {
-    float x = unitF(burnt * 1.8f);
-    return x * x * (3.0f - 2.0f * x);
 }
 
 // The air at a node, in its object's units: it goes with the wind, in gusts, and rises where it burns.
@@ -300,7 +339,7 @@ FW_SHARED_FN float curlSide(vec3 normal, vec3 up) {
 // and one as far ahead, in whose middle it belongs; who is somebody's node ahead has that one behind.
 // Waves as long as an arm would pass unnoticed, so there are shorter ones too. A step minds one kind.
 // Where a node's arms do not hold it has none.
-FW_SHARED_CONST float kArmRelax = 0.15f;
+FW_SHARED_CONST float kArmRelax = 0.17f;
 FW_SHARED_CONST float kArmTears = 1.1f;  // of its length: what lies between has parted
 FW_SHARED_CONST float kArmCurls = 1.4f;  // more than a ring of the same reach does
 // They curl across a burning edge and not along it, as a sheet cannot do both: how much, by the charred

@@ -59,7 +59,7 @@ struct Pair {
         rig.make(FW_BIND_DEFORM_COATS, coats.size() * sizeof coats[0], coats.data());
         rig.make(FW_BIND_SHOWN, domain.vertices.size() * sizeof(gpu::ShownVertex));
         rig.make(FW_BIND_SOFT, nodes.size() * 16 * gpu::kSoftQuads);
-        for (const std::string pass : {"recede", "bend", "soft", "springs", "drape"})
+        for (const std::string pass : {"recede", "ties", "soft", "springs", "drape"})
             rig.add((pass + (words ? ".comp" : "_texels.comp")).c_str());
         push.up = {0, 1, 0, 0};
         push.step = kStep;
@@ -86,8 +86,10 @@ struct Pair {
             push.parity = steps << 1;
             rig.dispatch(commands, 0, &push, groups);
             for (uint32_t i = 0; i < steps && soft; ++i) {
-                push.parity = (i & 1) | (state.way + i) % gpu::kArmWays << 1;
-                if (!springs) rig.dispatch(commands, 1, &push, groups);
+                const uint32_t way = (state.way + i) % gpu::kArmWays;
+                push.parity = (i & 1) | way << 1;
+                if (!springs && (gpu::tiesAt(way) || (i == 0 && !state.tied)))
+                    rig.dispatch(commands, 1, &push, groups);
                 rig.dispatch(commands, springs ? 3 : 2, &push, groups);
             }
             push.parity = 0;
@@ -120,7 +122,7 @@ struct Pair {
         fresh = false;
     }
 
-    // The device goes on from where the library is. Its next frame packs the other facts anew.
+    // The device goes on from where the library is.
     void sync() {
         const auto shown = rig.of<gpu::ShownVertex>(FW_BIND_SHOWN);
         const auto soft = rig.of<gpu::uvec4>(FW_BIND_SOFT);
@@ -128,15 +130,22 @@ struct Pair {
             const uint32_t vertex = model.nodes[i].vertex;
             const mesh::DeformState::Soft& own = state.soft[vertex];
             const vec3 at = own.place[state.parity];
+            const auto shareOf = [&](int kind) {
+                return gpu::packShare(own.share[state.parity][kind] * gpu::kBendUnit);
+            };
+            const uint32_t way = gpu::packWay(own.reach[state.parity], own.known);
             soft[i + (odd ? model.nodes.size() : 0)] = {
-                std::bit_cast<uint32_t>(at.x), std::bit_cast<uint32_t>(at.y),
-                std::bit_cast<uint32_t>(at.z),
-                gpu::packHalf2x16({std::min(own.reach[state.parity], gpu::kReachNone), 0}) |
-                    (own.known ? 0x8000u : 0u)};
+                gpu::packPlace(std::bit_cast<uint32_t>(at.x), way, gpu::kWayLow),
+                gpu::packPlace(std::bit_cast<uint32_t>(at.y), way >> 5, gpu::kWayLow),
+                gpu::packPlace(std::bit_cast<uint32_t>(at.z), way >> 10, gpu::kWayHigh),
+                shareOf(0)};
+            soft[i + 3 * model.nodes.size()] = {
+                gpu::packFacts(own.burnt, own.reach[state.parity] == 0), 0, shareOf(1), shareOf(1)};
             shown[vertex].x = state.shown[vertex].x;
             shown[vertex].y = state.shown[vertex].y;
             shown[vertex].z = state.shown[vertex].z;
         }
+        state.tied = false;  // and looks at its ties, as the library does
     }
 
     struct Apart {

@@ -23,7 +23,7 @@ constexpr const ComputePass* kComputePasses[] = {
     &kPredictPass,         &kPredictRimPass,  &kSupportPass,     &kProbePass,
     &kLightsPass,          &kFlameQuadsPass,  &kFlameSortPass,   &kRefineHeatPass,
     &kRefineLevelsPass,    &kRefineScanPass,  &kRefineEmitPass,  &kRefinePlacePass,
-    &kRecedePass,          &kBendPass,        &kSoftPass,        &kSpringsPass,
+    &kRecedePass,          &kTiesPass,        &kSoftPass,        &kSpringsPass,
     &kDrapePass,           &kSkinPass,        &kSootPass,        &kRefineCutPass,
     &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass, &kParticlesPass,
     &kParticleQuadsPass,   &kFieldPass,       &kFieldMaskPass,   &kFieldShowPass};
@@ -244,9 +244,12 @@ void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform) {
     };
     const uint32_t sheets = deform.nodeGroups, springs = sheets + deform.sheetGroups;
     dispatch(kRecedePass, 0, deform.nodeGroups, deform.steps << 1);
+    // Whoever begins knows of no link yet.
+    if (deform.begins && !(deform.steps > 0 && tiesAt(deform.way)))
+        dispatch(kTiesPass, sheets, deform.sheetGroups, 0);
     for (uint32_t i = 0; i < deform.steps; ++i) {
         const uint32_t way = (deform.way + i) % kArmWays;
-        dispatch(kBendPass, sheets, deform.sheetGroups, (i & 1) | way << 1);
+        if (tiesAt(way)) dispatch(kTiesPass, sheets, deform.sheetGroups, i & 1);
         dispatch(kSoftPass, sheets, deform.sheetGroups, (i & 1) | way << 1);
         dispatch(kSpringsPass, springs, deform.springGroups, i & 1);
     }

@@ -26,7 +26,7 @@ extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedul
     kEmbersPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
     kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
-    kRecedePass, kBendPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
+    kRecedePass, kTiesPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
     kVolumeProbePass, kVolumeMarchPass, kParticlesPass, kParticleQuadsPass, kFieldPass,
     kFieldMaskPass, kFieldShowPass;
 
@@ -60,8 +60,9 @@ struct DeformRecord {
     DeformPush push{};
     Staged groups;
     uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;
-    uint32_t steps = 0;  // of sheets and springs
-    uint32_t way = 0;    // of the first: which arms it minds
+    uint32_t steps = 0;   // of sheets and springs
+    uint32_t way = 0;     // of the first: which arms it minds
+    bool begins = false;  // some sheet did not move in the frame before
 };
 
 struct PublishedStep {  // one object in as-published mode

@@ -11,7 +11,7 @@ namespace {
 // Does a group of its nodes learn in this frame what has burnt? Of a sheet, which moves by steps of
 // its own, every other one.
 bool recedes(const ObjectEntry& object, uint32_t group) noexcept {
-    return (object.deform.flags & kDeformShell) == 0 || object.deformReset ||
+    return (object.deform.flags & kDeformShell) == 0 || object.deformReset || object.deformWoke ||
            (group & 1) == (object.recedeOdd ? 1u : 0u);
 }
 
@@ -87,12 +87,16 @@ void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry
 void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameNeeds& needs) {
     ObjectEntry& object = s.objects[slot];
     if (object.soft.units && object.softUntil == 0) object.softUntil = endTick + kSettleTicks;
+    object.deformWoke = !object.deformsNow;
     object.deformsNow = deforms(s, slot, endTick);
     if (object.deformsNow) {
         const uint32_t groups = groupsOf(object.deform.nodeCount);
         for (uint32_t group = 0; group < groups; ++group)
             needs.nodeGroups += recedes(object, group) ? 1 : 0;
-        if (object.deform.flags & kDeformShell) needs.sheetGroups += groups;
+        if (object.deform.flags & kDeformShell) {
+            needs.sheetGroups += groups;
+            needs.sheetsBegin |= object.deformReset || object.deformWoke;
+        }
         if (object.deform.flags & kDeformSprings) needs.springGroups += groups;
         needs.vertexGroups += groupsOf(object.deform.vertexCount);
     }
@@ -127,6 +131,7 @@ Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writ
     const auto append = [&](const ObjectEntry& object, uint32_t items, bool recede = false) {
         const uint32_t marks = (object.deformReset ? kDeformReset : 0) |
                                (object.softOdd ? kDeformOdd : 0) |
+                               (object.deformWoke ? kDeformWoke : 0) |
                                ((s.crossing & kSwitchCrossing) ? kDeformCrosses : 0);
         for (uint32_t first = 0; first < items; first += kDeformGroup) {
             if (recede && !recedes(object, first / kDeformGroup)) continue;

@@ -478,7 +478,8 @@ void VkBackend::State::run(const FramePlan& plan) {
         deform.sheetGroups = needs.sheetGroups;
         deform.springGroups = needs.springGroups;
         deform.steps = softSteps;
-        deform.way = uint32_t((softStep - softSteps) % kArmWays);
+        deform.way = softWay;
+        deform.begins = needs.sheetsBegin;
         deform.vertexGroups = needs.vertexGroups;
         deform.groups = writeDeformGroups(*this, softSteps, writer);
         deform.push.now = plan.endTick;
@@ -489,6 +490,7 @@ void VkBackend::State::run(const FramePlan& plan) {
                           tickFraction * float(kStepTicks)};
         recordDeform(recorder, deform);
     }
+    softWay = (softWay + softSteps) % kArmWays;
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }
 

@@ -125,6 +125,7 @@ struct ObjectEntry {
     uint32_t deformTicks = 0;    // that something moves after the last texel caught
     uint64_t lastEvent = 0;      // tick
     bool softOdd = false;        // its places are the second ones
+    bool deformWoke = false;     // scratch of run: it did not move in the frame before
     uint64_t softUntil = 0;      // tick until which it is not yet at rest
     uint32_t skinPlus1 = 0;      // of a skinned object: its Skin
     float shape[3] = {1, 1, 1};  // what its mesh was stretched by
@@ -279,6 +280,7 @@ struct VkBackend::State {
     float tickFraction = 0;
     uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoZPass
     uint64_t softStep = 0;  // number of the step that sheets and springs have come to
+    uint32_t softWay = 0;   // which arms the next one minds
 
     // The frame that is open.
     struct Open {

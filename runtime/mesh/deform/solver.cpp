@@ -11,8 +11,6 @@ using gpu::DeformNode;
 using gpu::ShownVertex;
 using gpu::vec3;
 
-constexpr float kCharredSteps = 15;  // in which nodes know of others'
-
 vec3 placeOf(const ShownVertex& v) { return {v.x, v.y, v.z}; }
 void place(ShownVertex& v, vec3 p) {
     v.x = p.x;
@@ -45,69 +43,110 @@ vec3 normalOf(const DeformNode& node, const DeformState& state, uint32_t parity)
     return size > 1e-18f ? turned / size : vec3(0);
 }
 
-void bendPass(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
-              DeformState& state) {
+float inSteps(float charred) { return std::floor(charred * gpu::kCharredSteps + 0.5f); }
+
+void tiesPass(const DeformModel& model, const gpu::DeformObject& object, DeformState& state) {
+    for (const DeformNode& node : model.nodes)
+        state.soft[node.vertex].burnt = state.shown[node.vertex].burnt;
     for (const DeformNode& node : model.nodes) {
         DeformState::Soft& self = state.soft[node.vertex];
         const auto number = uint32_t(&node - model.nodes.data());
-        const DeformMaterial& material = object.materials[node.flags & 7u];
-        const float burnt = state.shown[node.vertex].burnt;
-        const vec3 x = self.place[state.parity];
-        self.normal = normalOf(node, state, state.parity);
-        const float charred = gpu::charredShare(burnt);
-        const float stiff = gpu::mixF(material.bend, std::max(material.bend, 0.9f), charred);
-        const float curl = gpu::curlSide(self.normal, drive.up) * material.curl * charred;
-        self.holds = 0;
         const auto holds = [&](uint32_t other) {
-            return gpu::linkHolds(burnt, state.shown[other].burnt,
+            return gpu::linkHolds(self.burnt, state.soft[other].burnt,
                                   gpu::linkOdds(number, model.nodeOf[other]));
         };
-        const auto bend = [&](uint32_t kind, vec3 sum, float count, float rise, float relax,
-                              bool whole, bool even) {
-            const float mean = 1 / std::max(count, 1.0f);
-            self.bend[kind] =
-                whole ? gpu::bendOf(sum * mean, self.normal, rise, count, relax, even) : vec3(0);
-            self.share[kind] = self.bend[kind] * mean;
-        };
         const Links links(node.ringLength);
-        vec3 sum(0);
-        float count = 0, squares = 0;
+        self.holds = self.pinned = 0;
+        uint32_t count = 0;
         for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
-            const float rest = links.rest[k];
-            if (!(rest > 0) || !holds(node.ring[k])) continue;
+            if (!(links.rest[k] > 0)) continue;
+            const DeformState::Soft& there = state.soft[node.ring[k]];
+            self.pinned |=
+                there.reach[state.parity] == 0 && there.burnt <= gpu::kPinBurns ? 1u << k : 0;
+            if (!holds(node.ring[k])) continue;
             self.holds |= 1u << k;
-            sum += state.soft[node.ring[k]].place[state.parity] - x;
-            squares += rest * rest;
-            count += 1;
+            ++count;
         }
+        for (uint32_t k = 0; k < 2 * gpu::kArmWays; ++k)
+            if (node.arms[k] != kNone && holds(node.arms[k])) self.holds |= 1u << (k + 8);
         const uint32_t ring = node.flags >> gpu::kNodeRingShift & 15u;
-        bend(0, sum, count, node.rise + gpu::curlRise(curl, squares / std::max(count, 1.0f)),
-             stiff * gpu::kBendRelax, (node.flags & gpu::kNodeClosed) && count == float(ring),
-             (node.flags & gpu::kNodeEven) != 0);
-        sum = vec3(0);
-        count = squares = 0;
-        float ends[2]{};
-        for (uint32_t k = 0; k < 2; ++k) {
-            const uint32_t other = node.arms[2 * state.way + k];
-            if (other == kNone || !holds(other)) continue;
-            const float rest = node.armLength[2 * state.way + k];
-            const vec3 arm = state.soft[other].place[state.parity] - x;
-            if (gpu::length(arm) > gpu::kArmTears * rest) continue;
-            self.holds |= 1u << (k + 8);
-            ends[k] =
-                std::floor(gpu::charredShare(state.shown[other].burnt) * kCharredSteps + 0.5f) /
-                kCharredSteps;
-            sum += arm;
-            squares += rest * rest;
-            count += 1;
+        self.whole = (node.flags & gpu::kNodeClosed) && count == ring;
+        float nearest = 1e30f;
+        const vec3 x = self.place[state.parity];
+        for (uint32_t i = 0; i < object.pinCount; ++i) {
+            const vec3 point =
+                gpu::pinPoint(x, vec3(object.pins[i * 2]), vec3(object.pins[i * 2 + 1]));
+            const float away = gpu::length(x - point);
+            if (away >= nearest) continue;
+            nearest = away;
+            self.anchor = gpu::vec4(point, object.pins[i * 2].w);
         }
-        const float across = gpu::armCurl(ends[0], ends[1]);
-        bend(
-            1, sum, count,
-            node.armRise[state.way] + gpu::kArmCurls * across * gpu::curlRise(curl, squares * 0.5f),
-            gpu::armFirm(stiff, charred, across), count == 2,
-            (node.flags & gpu::kNodeArmsEven << state.way) != 0);
     }
+    state.tied = true;
+}
+
+// m, as devices keep it.
+vec3 shareOf(vec3 share) {
+    return gpu::shareOf(gpu::packShare(share * gpu::kBendUnit)) / gpu::kBendUnit;
+}
+
+// Its own bends, and its shares of others', which are of the step before.
+vec3 bendingOf(const DeformNode& node, const DeformMaterial& material, const SheetDrive& drive,
+               DeformState& state) {
+    DeformState::Soft& self = state.soft[node.vertex];
+    const uint32_t now = state.parity;
+    const vec3 x = self.place[now];
+    self.normal = normalOf(node, state, now);
+    const float charred = gpu::charredShare(self.burnt);
+    const float stiff = gpu::mixF(material.bend, std::max(material.bend, 0.9f), charred);
+    const float curl = gpu::curlSide(self.normal, drive.up) * material.curl * charred;
+    vec3 bending(0);
+    const auto bend = [&](uint32_t kind, vec3 sum, float count, float rise, float relax, bool whole,
+                          bool even) {
+        const float mean = 1 / std::max(count, 1.0f);
+        self.bend[kind] =
+            whole ? gpu::bendOf(sum * mean, self.normal, rise, count, relax, even) : vec3(0);
+        self.share[now ^ 1][kind] = shareOf(self.bend[kind] * mean);
+        bending += self.share[now ^ 1][kind] * count;
+    };
+    const Links links(node.ringLength);
+    vec3 sum(0);
+    float count = 0, squares = 0;
+    for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
+        if ((self.holds >> k & 1u) == 0) continue;
+        const DeformState::Soft& there = state.soft[node.ring[k]];
+        sum += there.place[now] - x;
+        squares += links.rest[k] * links.rest[k];
+        count += 1;
+        bending -= there.share[now][0];
+    }
+    bend(0, sum, count, node.rise + gpu::curlRise(curl, squares / std::max(count, 1.0f)),
+         stiff * gpu::kBendRelax, self.whole, (node.flags & gpu::kNodeEven) != 0);
+    sum = vec3(0);
+    count = squares = 0;
+    float ends[2]{};
+    for (uint32_t k = 0; k < 2; ++k) {
+        const uint32_t arm = 2 * state.way + k, other = node.arms[arm];
+        if (other == kNone) continue;
+        ends[k] = inSteps(gpu::charredShare(state.soft[other].burnt)) / gpu::kCharredSteps;
+        const vec3 to = state.soft[other].place[now] - x;
+        if ((self.holds >> (arm + 8) & 1u) == 0 ||
+            gpu::length(to) > gpu::kArmTears * node.armLength[arm])
+            continue;
+        sum += to;
+        squares += node.armLength[arm] * node.armLength[arm];
+        count += 1;
+    }
+    const float across = gpu::armCurl(ends[0], ends[1]);
+    bend(1, sum, count,
+         node.armRise[state.way] + gpu::kArmCurls * across * gpu::curlRise(curl, squares * 0.5f),
+         gpu::armFirm(stiff, charred, across), count == 2,
+         (node.flags & gpu::kNodeArmsEven << state.way) != 0);
+    const uint32_t echoed = (state.way + gpu::kArmWays - 1) % gpu::kArmWays;
+    for (uint32_t k = 0; k < 2; ++k)
+        if (const uint32_t other = node.arms[2 * echoed + k]; other != kNone)
+            bending -= state.soft[other].share[now][1];
+    return bending;
 }
 
 }  // namespace
@@ -115,6 +154,7 @@ void bendPass(const DeformModel& model, const gpu::DeformObject& object, const S
 void resetSoft(const DeformModel& model, const gpu::DeformObject& object, DeformState& state) {
     state.soft.assign(model.coats.size(), {});
     state.parity = state.way = 0;
+    state.tied = false;
     for (const DeformNode& node : model.nodes) {
         DeformState::Soft& soft = state.soft[node.vertex];
         soft.place[0] = soft.place[1] = restOf(node);
@@ -132,56 +172,40 @@ void resetSoft(const DeformModel& model, const gpu::DeformObject& object, Deform
 
 void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
                DeformState& state) {
-    bendPass(model, object, drive, state);
+    if (!state.tied || gpu::tiesAt(state.way)) tiesPass(model, object, state);
     const uint32_t now = state.parity;
     for (const DeformNode& node : model.nodes) {
         DeformState::Soft& self = state.soft[node.vertex];
         ShownVertex& shown = state.shown[node.vertex];
         const DeformMaterial& material = object.materials[node.flags & 7u];
-        if (self.reach[now] == 0 && shown.burnt > gpu::kPinBurns) self.reach[now] = gpu::kReachNone;
-        const float charred = gpu::charredShare(shown.burnt);
+        const float charred = gpu::charredShare(self.burnt);
+        const bool pinned = self.reach[now] == 0 && self.burnt <= gpu::kPinBurns;
         const vec3 x = self.place[now];
         const Links links(node.ringLength);
-        vec3 pushed(0), bending = self.bend[0] + self.bend[1];
+        const vec3 bending = bendingOf(node, material, drive, state);
+        vec3 pushed(0);
         float reach = gpu::kReachNone;
         for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
-            const uint32_t other = node.ring[k];
-            const ShownVertex& facts = state.shown[other];
             if ((self.holds >> k & 1u) == 0) continue;
-            const DeformState::Soft& there = state.soft[other];
-            const float wanted =
-                links.rest[k] *
-                (1 - material.shrink * 0.5f * (charred + gpu::charredShare(facts.burnt)));
-            pushed +=
-                gpu::linkPush(x, there.place[now], wanted, there.reach[now] == 0 ? 1.0f : 0.5f);
-            bending -= there.share[0];
+            const DeformState::Soft& there = state.soft[node.ring[k]];
+            const float shrunk = material.shrink * 0.5f / gpu::kCharredSteps;
+            const float both = inSteps(charred) + inSteps(gpu::charredShare(there.burnt));
+            pushed += gpu::linkPush(x, there.place[now], links.rest[k] * (1 - shrunk * both),
+                                    (self.pinned >> k & 1u) ? 1.0f : 0.5f);
             reach = std::min(reach, there.reach[now] + links.rest[k]);
         }
-        reach = std::min(reach, gpu::kReachNone);
-        const float was = self.reach[now], way = reach;
-        reach = gpu::reachNext(way, was, self.known);
-        self.known = self.known || gpu::reachKnown(way, was);
-        for (uint32_t k = 0; k < 2; ++k)
-            if (self.holds >> (k + 8) & 1u)
-                bending -= state.soft[node.arms[2 * state.way + k]].share[1];
+        const float was = self.reach[now] == 0 && !pinned ? gpu::kReachNone : self.reach[now];
+        const bool knew = self.known;
+        self.known = knew || gpu::reachKnown(reach, was);
+        reach = pinned ? 0 : gpu::reachNext(reach, was, knew);
         const vec3 last = placeOf(shown);
         vec3 moved = x + pushed * gpu::relaxAt(gpu::kLinkRelax, drive.step) +
                      bending * gpu::relaxAt(1, drive.step);
         if (reach < 0.5f * gpu::kReachNone) {
-            float nearest = 1e30f, radius = 0;
-            vec3 anchor(0);
-            for (uint32_t i = 0; i < object.pinCount; ++i) {
-                const vec3 point =
-                    gpu::pinPoint(moved, vec3(object.pins[i * 2]), vec3(object.pins[i * 2 + 1]));
-                const float d = gpu::length(moved - point);
-                if (d >= nearest) continue;
-                nearest = d;
-                anchor = point;
-                radius = object.pins[i * 2].w;
-            }
-            const float most = reach * gpu::kReachSlack + radius;
-            if (nearest < 1e29f && nearest > most)
-                moved = anchor + (moved - anchor) * (most / nearest);
+            const vec3 anchor(self.anchor);
+            const float away = gpu::length(moved - anchor);
+            const float most = reach * gpu::kReachSlack + self.anchor.w;
+            if (away > most) moved = anchor + (moved - anchor) * (most / away);
         }
         const float height = gpu::dot(moved, drive.up);
         const bool down = height < object.ground;
@@ -190,14 +214,11 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
         velocity *= down ? 0.5f : gpu::sheetDamping(charred, drive.step);
         const float slowed = material.drag * (1 + 2 * charred) * drive.step;
         const vec3 air = drive.wind * gpu::gustAt(x, 1, drive.time) +
-                         drive.up * (drive.updraft * gpu::updraftAt(shown.burnt));
+                         drive.up * (drive.updraft * gpu::updraftAt(self.burnt));
         velocity += self.normal * (gpu::dot(self.normal, air - velocity) * slowed / (1 + slowed));
         velocity -= drive.up * (drive.gravity * drive.step);
         vec3 next = moved + velocity * drive.step;
-        if (self.reach[now] == 0) {
-            moved = next = restOf(node);
-            reach = 0;
-        }
+        if (pinned) moved = next = restOf(node);
         place(shown, moved);
         self.place[now ^ 1] = next;
         self.reach[now ^ 1] = reach;

@@ -10,17 +10,24 @@ namespace fw::mesh {
 struct DeformState {  // of one object; per vertex of the domain
     explicit DeformState(std::pmr::memory_resource* memory) : shown(memory), soft(memory) {}
     std::pmr::vector<gpu::ShownVertex> shown;
-    struct Soft {             // of what moves; only vertices that keep a node's state count
-        gpu::vec3 place[2];   // m: where it would be without constraints, now and next
-        gpu::vec3 normal;     // unit
-        float reach[2] = {};  // m to a pin along links that hold; 0: pinned
-        bool known = false;   // see reachNext
-        gpu::vec3 bend[2]{}, share[2]{};  // m: of it, and of each neighbour or arm
-        uint32_t holds = 0;               // bits of the links that count: near, arms << 8
+    struct Soft {                 // of what moves; only vertices that keep a node's state count
+        gpu::vec3 place[2];       // m: where it would be without constraints, now and next
+        gpu::vec3 normal;         // unit
+        float reach[2] = {};      // m to a pin along links that hold; 0: pinned
+        bool known = false;       // see reachNext
+        gpu::vec3 bend[2]{};      // m, by which it gives way: to neighbours, to arms
+        gpu::vec3 share[2][2]{};  // m, of each of those, in the step before and in this one
+        // As of when its ties were looked at.
+        float burnt = 0;
+        uint32_t holds = 0;   // bits of the links that count: near, arms of all ways << 8
+        uint32_t pinned = 0;  // bits of neighbours
+        gpu::vec4 anchor{0};  // m, the nearest point of a pin, and its radius
+        bool whole = false;   // no neighbour has parted
     };
     std::pmr::vector<Soft> soft;
     uint32_t parity = 0;  // of the next step: which places are now
     uint32_t way = 0;     // and which arms it minds
+    bool tied = false;    // its ties have been looked at
 };
 
 struct SheetDrive {  // object axes
@@ -41,7 +48,7 @@ void recede(const DeformModel& model, const gpu::DeformObject& object,
             std::span<const uint32_t> states, uint32_t now, DeformState& state);
 // `tears`: a sheet, which has holes where it was torn.
 void drape(const DeformModel& model, DeformState& state, bool tears = false);
-// One step of a sheet: passes bend and soft.
+// One step of a sheet: pass soft, and before every fourth pass ties.
 void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
                DeformState& state);
 // One step of the published springs; `lost`: m that every node recedes in it.

@@ -1,0 +1,64 @@
+// What holds a sheet's nodes together: which of their links and arms have not parted, which neighbours
+// are pinned, how far they have charred, and which point of a pin is the nearest. Once in kTieSteps steps. kDeformGroup nodes of one object a group.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_DEFORM_NODES
+#define FW_USE_SOFT
+#include "lib/deform_buffers.glsl"
+
+void main() {
+    DeformItem item = deformItem();
+    uvec2 sizes = deformObjects[item.object].xy;
+    uint pins = deformObjects[item.object + 1u].w, softBase = deformObjects[item.object + 3u].x;
+
+    uint last = min(item.end, sizes.y);
+    uint number = item.number;
+    if (number >= last) return;
+    do {
+        uint at = sizes.x * kDeformNodeQuads + number;
+        uint flags = deformNode(at).y;
+        uint own = softBase * kSoftQuads + number, seenAt = own + kSoftSeen * sizes.y;
+        uint mine = soft(seenAt).x;
+        float burnt = burntOf(mine);
+
+        uint holding = 0u, charreds = 0u, ends = 0u, count = 0u;
+        uint turn = 0u, turns = nodeTurns(flags), all = turns + nodeArms(flags) * kArmWays;
+        do {  // the neighbours, and arms of all ways at last
+            bool arms = turn >= turns;
+            uint way = turn - turns;
+            uvec4 two = deformNode(at + (arms ? kNodeArms + way : kNodeNear + turn) * sizes.y);
+            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
+                uint k = (arms ? way : turn) * kDeformLinks + i;
+                float rest = unpackHalf2x16(two.z)[i];
+                uint there = soft(seenAt - number + (two[i] & kDeformNode)).x;
+                bool holds = rest > 0.0 && linkHolds(burnt, burntOf(there), two[i] >> 24u);
+                uint charred = charredOf(there) << (4u * k);
+                holding |= holds ? 1u << ((arms ? kTiesArms : 0u) + k) : 0u;
+                ends |= arms ? charred : 0u;
+                if (arms) continue;
+                charreds |= charred;
+                holding |= pinnedOf(there) << (kTiesPinned + k);
+                count += holds ? 1u : 0u;
+            }
+        } while (++turn < all);
+        bool whole = (flags & kNodeClosed) != 0u && count == (flags >> kNodeRingShift & 15u);
+        holding |= whole ? kTiesWhole : 0u;
+
+        vec3 x = placeOf(soft(own + item.parity * sizes.y));
+        vec4 anchor = vec4(0.0);
+        float nearest = 1e30;
+        uint i = 0u;
+        do {
+            vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
+            vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
+            vec3 point = pinPoint(x, from.xyz, to.xyz);
+            float away = length(x - point);
+            anchor = away < nearest ? vec4(point, from.w) : anchor;
+            nearest = min(nearest, away);
+        } while (++i < pins);
+        softOut[own + kSoftAnchor * sizes.y] = floatBitsToUint(anchor);
+        softOut[own + kSoftTies * sizes.y] = uvec4(holding, charreds, ends, mine);
+        number += 64u;
+    } while (number < last);
+}
