@@ -606,4 +606,36 @@ FwResult FW_CALL fwWorld_GetStats(FwWorld* world, FwWorldStats* stats) {
     });
 }
 
+FwResult FW_CALL fwWorld_RequestSave(FwWorld* world) {
+    return onWorld("fwWorld_RequestSave", world, [&](world::World& w) {
+        w.requestSave();
+        answerAtOnce(world);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_FetchSave(FwWorld* world, void* buffer, uint64_t* size) {
+    return onWorld("fwWorld_FetchSave", world, [&](world::World& w) {
+        checkPointer(size, "size");
+        const std::pmr::vector<std::byte>* bytes = w.fetchSave();
+        if (!bytes) return FW_NOT_READY;
+        const uint64_t room = *size;
+        *size = bytes->size();
+        if (!buffer) return FW_OK;
+        if (room < bytes->size())
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "*size is %llu and the save has %zu bytes.",
+                       static_cast<unsigned long long>(room), bytes->size());
+        std::memcpy(buffer, bytes->data(), bytes->size());
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_Load(FwWorld* world, const void* bytes, uint64_t size) {
+    return onWorld("fwWorld_Load", world, [&](world::World& w) {
+        checkPointer(bytes, "bytes");
+        w.load({static_cast<const std::byte*>(bytes), size_t(size)});
+        return FW_OK;
+    });
+}
+
 }  // extern "C"

@@ -99,11 +99,31 @@ struct FieldUpdate {
     std::span<const uint32_t> drawn;  // slots of those
 };
 
+// All of an object that its future hangs on. What is not in it follows from it, or shows nothing
+// that a step could not bring back.
+struct ObjectImage {
+    uint32_t object = 0;
+    std::span<const uint32_t> ticks;  // codes, by texel
+    std::span<const uvec2> heat;      // packed HeatTexel; empty: none
+    // By tile: of the flag the bits of kTileKept, and lastChange. The rest is of no account.
+    std::span<const TileState> tiles;
+    std::span<const TileHeat> tileHeat;
+    ObjectCounters counters;
+};
+constexpr uint32_t kTileKept = kTileListed | kTileBurning | kTileHot | kTileWarm;
+
+struct RestoredObject {
+    ObjectImage image;
+    BurnMaterial materials[kMaterialsPerObject];
+    uint32_t window = 0, substepShift = 0;
+};
+
 struct FramePlan {
     uint64_t frameIndex = 0;
     std::span<const StepPlan> steps;
     std::span<const Probe> probes;            // answered in this frame's readback, in order
     std::span<const uint32_t> burnMaps;       // object slots whose whole state is read back
+    std::span<const uint32_t> images;         // and those that come as ObjectImages, by slot
     uint32_t switches = 0;                    // FwDebugSwitch
     uint32_t endTick = 0;                     // tick after the last step
     float wind[3] = {};                       // m/s, world; for looks only
@@ -125,6 +145,7 @@ struct Readback {  // valid until the next call of nextReadback
     std::span<const ObjectCounters> objects;  // by object slot
     std::span<const ProbeAnswer> answers;     // of the probes of that frame
     std::span<const BurnMap> burnMaps;
+    std::span<const ObjectImage> images;
     std::span<const BurnLight> lights;
     std::span<const FieldCounters> fields;  // by slot; those of its rows are the backend's
     uint32_t frontTiles = 0;                // length of the front list: 0 and no events = idle
@@ -194,6 +215,11 @@ class Backend {
     virtual void setFieldRules(uint32_t /*slot*/, const FieldRules&) noexcept {}
     virtual void setFieldMasks(uint32_t /*slot*/, std::span<const uint8_t> /*masks*/) {}
     [[nodiscard]] virtual uint64_t fieldBytes(uint32_t /*slot*/) const noexcept { return 0; }
+
+    // All objects as they were when images of these were taken: the others are at rest. Frames go
+    // on from `tick`, and what was to be read back of earlier ones never comes. Neighbours, links
+    // and blockers are told anew. Unchanged when it throws.
+    virtual void restore(std::span<const RestoredObject> objects, uint32_t tick) = 0;
 
     // Runs (cpu) or records (vk, between its begin and end of the outside part) a frame's steps.
     virtual void run(const FramePlan& plan) = 0;

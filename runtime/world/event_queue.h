@@ -17,6 +17,7 @@ class EventQueue {
 
     void push(const FwEvent& event) noexcept;
     uint32_t poll(std::span<FwEvent> out) noexcept;
+    void clear() noexcept { count_ = 0; }
     // Events lost since the last call.
     uint64_t takeDropped() noexcept;
 

@@ -43,6 +43,7 @@ void World::collect() noexcept {
 
 void World::collectReadbacks() {
     while (const gpu::Readback* readback = backend_.nextReadback()) {
+        if (readback->frameIndex <= loadedFrame_) continue;
         readbackFrame_ = readback->frameIndex;
         readbackTick_ = readback->endTick;
         frontTiles_ = readback->frontTiles;
@@ -70,6 +71,7 @@ void World::collectReadbacks() {
             copy.pending = false;
             copy.ready = true;
         }
+        takeSave(*readback);
         if (frontTiles_ == 0 && burningTiles_ == 0 && hotTiles_ == 0 && receivers_ == 0 &&
             readback->endTick >= lastStimulus_ + kSettleTicks)
             idle_ = true;

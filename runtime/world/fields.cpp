@@ -105,7 +105,7 @@ void World::planFields(const ClockAdvance& time) noexcept {
             if (!field) continue;
             const uint32_t step = (*field)->steps + round;
             if (step < components::fieldSteps((*field)->data, end - (*field)->began))
-                frame_.fieldRuns.push_back({i, step});
+                frame_.fieldRuns.push_back({i, step - (*field)->shownBase});
         }
         const auto count = uint32_t(frame_.fieldRuns.size());
         if (count == (round > 0 ? frame_.fieldRounds.back() : 0)) break;

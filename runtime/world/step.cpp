@@ -43,6 +43,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
         touchByFires(time.after.tick);
         planSteps(time);
         planProbes();
+        planSave();
     } catch (...) {
         pending_.resize(waiting);
         throw;
@@ -59,6 +60,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     if (!skip) plan.steps = frame_.steps;
     plan.probes = frame_.probes;
     plan.burnMaps = frame_.burnMaps;
+    plan.images = frame_.images;
     plan.switches = switches_;
     plan.endTick = uint32_t(time.after.tick);
     std::copy_n(wind_, 3, plan.wind);
@@ -71,6 +73,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     commitFrame(frameIndex, time, !skip);
     commitEmitters(deltaTime);
     followLights(deltaTime);
+    commitSave(frameIndex);
     collect();
     runForecasts();
 }

@@ -8,6 +8,7 @@
 #include "mesh/shaped.h"
 #include "shared/particle.h"
 #include "world/mesh_input.h"
+#include "world/save.h"
 
 #include <algorithm>
 #include <cmath>

@@ -31,6 +31,7 @@ struct MeshEntry {
     // A shape of another mesh, for objects whose scale is not uniform: lives while one uses it.
     uint32_t parentPlus1 = 0;  // its slot + 1; 0: a mesh of the host's
     float shape[3] = {1, 1, 1};
+    uint64_t hash = 0;         // of the domain, once a save asked; 0: not yet
     uint32_t refinements = 0;  // bit per depth that the backend has; 16 higher: as published
     // By depth, once an object is refined by the published scheme.
     std::array<core::Owned<mesh::ArpModel>, gpu::kRefineDepth + 1> arps;
@@ -151,7 +152,8 @@ struct Field {
     explicit Field(std::pmr::memory_resource* memory) : data(memory) {}
     components::ParticleField data;
     uint64_t began = 0;       // tick
-    uint32_t steps = 0;       // that the backend has been told
+    uint32_t steps = 0;       // that it has come to
+    uint32_t shownBase = 0;   // the backend has run all but these
     uint64_t firstFrame = 0;  // readbacks of older frames speak of another field
     gpu::FieldCounters counters{};
     uint64_t countersFrame = 0;
@@ -261,6 +263,13 @@ struct PendingTexel {  // an event that waits for its step
 
 void checkWorldDef(const FwWorldDef& def);  // throws
 
+// save.h
+struct SavedWorld;
+struct SavedObject;
+struct SavedEmitter;
+struct SavedStory;
+struct Save;
+
 class World {
  public:
     // `def` is checked here. The backend outlives the world.
@@ -350,6 +359,12 @@ class World {
                         uint32_t columns, uint32_t rows, uint8_t* mask);
     void stats(FwWorldStats& stats) noexcept;
 
+    // save.cpp. A save comes with the readback of the next frame; load is at once, or throws and
+    // has changed nothing.
+    void requestSave();
+    const std::pmr::vector<std::byte>* fetchSave();  // null: not ready
+    void load(std::span<const std::byte> bytes);
+
     // flamewright_debug.h
     void requestBurnMap(FwBurnableMeshId id);
     const BurnMapCopy* fetchBurnMap(FwBurnableMeshId id);  // null: not ready
@@ -391,6 +406,7 @@ class World {
               latches(memory),
               probes(memory),
               burnMaps(memory),
+              images(memory),
               remote(memory),
               fieldRuns(memory),
               fieldRounds(memory),
@@ -412,6 +428,7 @@ class World {
         std::pmr::vector<LatchOf> latches;  // of touched objects, as they are at the frame's end
         std::pmr::vector<gpu::Probe> probes;
         std::pmr::vector<uint32_t> burnMaps;
+        std::pmr::vector<uint32_t> images;                   // slots of objects that a save takes
         std::pmr::vector<core::Owned<RemoteTables>> remote;  // the first `remoteUsed` of them
         size_t remoteUsed = 0;
         bool remoteLatched = false, remoteFlushed = false;
@@ -525,6 +542,22 @@ class World {
     void takeForecast(Object& object, const gpu::BurnMap& map,
                       const gpu::Readback& readback) noexcept;
     void runForecasts() noexcept;
+    // save.cpp
+    [[nodiscard]] uint64_t assetOf(const Object& object) noexcept;
+    [[nodiscard]] uint32_t windowOf(const Object& object) noexcept;
+    void planSave();
+    void commitSave(uint64_t frameIndex) noexcept;
+    void noteSaved(SavedWorld& to);
+    void noteObject(Object& object, SavedObject& saved) noexcept;
+    void noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
+                     std::pmr::vector<SavedEmitter>& to) const;
+    void takeSave(const gpu::Readback& readback) noexcept;
+    void tellStory(const Object& object, SavedStory& story) const noexcept;
+    void checkSaved(const SavedWorld& saved);  // throws
+    void applySaved(const SavedWorld& saved, std::span<const components::Latch> latches) noexcept;
+    void applyObject(const SavedObject& from, const components::Latch& latch,
+                     Object& object) noexcept;
+    void applyEmitter(const SavedEmitter& from, components::FireEmitter& emitter) noexcept;
     // queries.cpp
     Query makeQuery(FwBurnableMeshId id, const float position[3]);
     Query& openQuery(FwQueryId id, bool isArrival);  // throws and closes it where it is orphaned
@@ -623,6 +656,8 @@ class World {
     bool idle_ = true;
     uint32_t switches_ = 0;
     uint64_t planStamp_ = 0;
+    core::Owned<Save> save_;    // once one was asked for
+    uint64_t loadedFrame_ = 0;  // readbacks up to this frame are of another past
 
     // As of the last readback.
     uint64_t readbackFrame_ = 0, readbackTick_ = 0;

@@ -108,6 +108,9 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RequestArrival(NULL, object, NULL, NULL));
     REFUSES(fwWorld_FetchArrival(NULL, query, NULL));
     IS_ZERO(fwWorld_GetLights(NULL, NULL, 0));
+    REFUSES(fwWorld_RequestSave(NULL));
+    REFUSES(fwWorld_FetchSave(NULL, NULL, NULL));
+    REFUSES(fwWorld_Load(NULL, NULL, 0));
     REFUSES(fwWorld_GetStats(NULL, NULL));
 
     REFUSES(fwQueryVulkanWishes(NULL));

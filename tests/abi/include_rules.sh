@@ -10,10 +10,11 @@ runtime/core|core/|flamewright/flamewright.h
 runtime/fire|fire/|core/|shared/|flamewright/flamewright.h
 runtime/mesh|mesh/|core/|shared/|flamewright/flamewright.h
 runtime/volume|volume/|core/|shared/|flamewright/flamewright.h
+runtime/save|save/|core/
 runtime/book|book/|core/|shared/|flamewright/flamewright.h
 runtime/field|field/|core/|shared/|flamewright/flamewright.h
 runtime/components|components/|core/|fire/|mesh/|volume/|field/|book/|shared/|flamewright/flamewright.h
-runtime/world|world/|components/|core/|fire/|mesh/|volume/|field/|book/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
+runtime/world|world/|components/|core/|fire/|mesh/|volume/|field/|book/|save/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
 runtime/gpu|gpu/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/
 plugin/src|flamewright/|world/|components/|core/|gpu/backend.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
 plugin/include|flamewright/

@@ -32,6 +32,7 @@ void host(const FwVulkanHost lent, const FwWorldDef worldDef, const FwVulkanTarg
     FwMeshId mesh;
     FwBurnableMeshId crate;
     FwEvent event;
+    static unsigned char buffer[65536];
 CODE
     cat "$1"
     echo '}'

@@ -232,6 +232,24 @@ class Fuzz {
         }
     }
 
+    // Saves, and loads of what was saved, whole or not, in a world that may hold other things by
+    // now.
+    void useSaves() {
+        const FwResult asked = fwWorld_RequestSave(world_);
+        check(asked);
+        uint64_t size = 0;
+        if (asked == FW_OK && fwWorld_FetchSave(world_, nullptr, &size) == FW_OK) {
+            std::vector<unsigned char> bytes(size);
+            check(fwWorld_FetchSave(world_, bytes.data(), &size));
+            if (saved_.empty() || random_.once(2)) saved_.swap(bytes);
+        }
+        if (saved_.empty()) return;
+        std::vector<unsigned char> bytes = saved_;
+        if (random_.once(3)) bytes[random_.below(uint32_t(bytes.size()))] ^= 1u << random_.below(8);
+        if (random_.once(5)) bytes.resize(random_.below(uint32_t(bytes.size())) + 1);
+        check(fwWorld_Load(world_, bytes.data(), bytes.size()));
+    }
+
     void createEmitter() {
         FwFireEmitterDef def = fwDefaultFireEmitterDef();
         def.flags = random_.below(64);
@@ -623,6 +641,7 @@ class Fuzz {
                 break;
             }
             case 21: {
+                if (random_.once(4)) useSaves();
                 FwLight lights[8];
                 EXPECT_GE(8u, fwWorld_GetLights(world_, lights, random_.below(9)));
                 break;
@@ -708,6 +727,7 @@ class Fuzz {
     Ids<FwFireEmitterId> emitters_;
     Ids<FwFireProfileId> profiles_;
     Ids<FwFlipbookId> books_;
+    std::vector<unsigned char> saved_;  // the last one that was kept
     Ids<FwFireColliderId> colliders_;
     Ids<FwParticleFieldId> fields_;
     Ids<FwQueryId> queries_;

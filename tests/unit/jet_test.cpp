@@ -109,6 +109,7 @@ TEST(JetStream, SharesAllOfItsPowerExactly) {
 // Sums the heat that a world sends to its backend, as nW, while nothing has burnt through.
 class HeatBook final : public gpu::Backend {
  public:
+    void restore(std::span<const gpu::RestoredObject>, uint32_t) override {}
     void createMesh(uint32_t, const mesh::BurnDomain&) override {}
     void destroyMesh(uint32_t) noexcept override {}
     void createObject(uint32_t, const gpu::ObjectInit&) override {}

@@ -80,6 +80,7 @@ TEST(Pose, GoesThereAndBack) {
 // Keeps what it was told; answers when a test says so, as a device would, frames later.
 class Recorder final : public gpu::Backend {
  public:
+    void restore(std::span<const gpu::RestoredObject>, uint32_t) override {}
     struct Frame {
         uint64_t index = 0;
         std::vector<gpu::StepPlan> steps;

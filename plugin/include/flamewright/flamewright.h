@@ -1003,6 +1003,30 @@ FW_API FwResult FW_CALL fwWorld_RequestArrival(FwWorld*, FwBurnableMeshId id, co
 /* FW_NOT_READY until the answer is here; FW_OK writes it and frees the query. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArrivalState* state);
 
+/* ---- saves: a world mid-burn as bytes -------------------------------------------------------------------- */
+
+/* Wishes a save of the world as it is after the next frame; with a device the bytes come some frames later, and
+ * nothing waits for them. One at a time: a second wish begins anew. In a save: every texel's state, temperature, fuel
+ * and water; counters, clocks, wind, flags and what the wind's filters hold; transforms of objects and blockers; events
+ * that wait, tags, contacts; what jets have in the air, what fires and jets are about to light, cells of fields that
+ * wet. Not in it: what only shows (particles, flames, soot, sheets in motion), queries, events not yet polled, hidden,
+ * and what the host made: meshes, materials, objects. Refused while an object with FW_BURNABLE_PUBLISHED burns. The bytes
+ * are the same on every backend: little-endian, versioned, with a checksum, compressed. [world] */
+FW_API FwResult FW_CALL fwWorld_RequestSave(FwWorld*);
+/* FW_NOT_READY until it is there. Call with buffer null for the size, or with enough room; *size is what is (or would
+ * be) written, in bytes. The library keeps them until the next fwWorld_RequestSave. To keep them, write them to a new
+ * file, and rename that over the old one: then a crash leaves the old one whole. [world] */
+FW_API FwResult FW_CALL fwWorld_FetchSave(FwWorld*, void* buffer, uint64_t* size);
+/* The world as it was saved, on whatever backend: from here on both burn bit by bit alike, whatever frame rate each of
+ * them has, if they hear the same calls. The world holds what the saved one did, made in the same order, so that the
+ * ids' index1 are the same: burnable meshes of the same meshes and materials (by a hash of them and of their defs),
+ * blockers, fires, emitters and fields. Its FwWorldDef has the same paceFactor, up, seed and limits of spread. All in it
+ * goes to where and what it was, also what has never burnt; ids stay valid. Unpolled events are dropped, queries that
+ * wait are asked anew. FW_ERROR_BAD_DATA, and nothing is changed: the bytes are damaged, cut, of another version, or of
+ * another world; the message says of what, with both values. Time is that of the save; frame indices go on growing.
+ * Uploads with the next frame. [world] */
+FW_API FwResult FW_CALL fwWorld_Load(FwWorld*, const void* bytes, uint64_t size);
+
 typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host's own lighting */
     float position[3];         /* m, world */
     float radius;              /* m, of the source */

@@ -179,7 +179,11 @@ static inline FwVulkanVertices fwDefaultVulkanVertices(void) {
  * before and after, and forgets the handle. Call it for each frame in which they move. Ignitions,
  * queries and tags go by the last fwWorld_SetVertexPositions, or by the mesh at rest. [world] */
 FW_API FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld*, FwBurnableMeshId id, const FwVulkanVertices* vertices);
-/* Tell us the device is lost: nothing more is recorded, destroy still frees. [any] */
+/* Tell us the device is lost: nothing more is recorded, destroy still frees. We latch it, too, when a Vulkan call says
+ * so. What then: the fire lives on in the last save (fwWorld_RequestSave; ask for one every few seconds and keep its
+ * bytes: they are the mirror). Destroy the context, create one on a new device, a world and what it held in the same
+ * order, and fwWorld_Load those bytes: the fire goes on from there, bit for bit, as if the device had never been lost.
+ * fwWorld_FetchSave still works on the lost world. [any] */
 FW_API void FW_CALL fwContext_NotifyDeviceLost(FwContext*);
 
 #ifdef __cplusplus

@@ -358,16 +358,9 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     std::copy_n(init.materials.begin(), kMaterialsPerObject, object->materials.begin());
     object->slowness.assign(init.slowness.begin(), init.slowness.end());
     object->state.resize(texels);
-    const uint16_t* slow =
-        object->slowness.empty() ? domain.slowness.data() : object->slowness.data();
-    for (uint32_t i = 0; i < texels; ++i) {
-        const uint32_t flags = domain.texels[i].materialFlags;
-        const bool burns = texelBurns(flags, slow[i], object->materials[flags & 7].flags);
-        object->state[i] = burns ? kNever : kInert;
-    }
     if (!init.heat.empty()) {
         std::copy_n(init.heat.begin(), kMaterialsPerObject, object->heatMaterials.begin());
-        createHeat(*object);
+        object->heat.resize(texels);
     }
     if ((init.record.flags & kObjectPublished) != 0) createPublished(*object);
     object->sources.resize(mesh::sourceCells(domain));
@@ -381,11 +374,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     object->record.tileCount = domain.tileCount();
     object->record.flags |= kObjectLive;
     object->live = true;
-    for (uint32_t local = 0; local < domain.tileCount(); ++local) {
-        s.tiles[first + local] = {kNever, 0, kFarPast, slot};
-        s.tileHeat[first + local] = {};
-        s.tileFire[first + local] = 0;
-    }
+    s.rest(*object, slot);
     if (!object->published.empty()) ++s.publishedObjects;
     s.objects[slot] = std::move(object);
 }
@@ -437,6 +426,7 @@ void CpuBackend::run(const FramePlan& plan) {
     store.mapHeat.resize(heatTexels);
     store.maps.clear();
     store.maps.reserve(plan.burnMaps.size());
+    s.reserveImages(store, plan.images);
     store.lights.clear();
     store.lights.reserve(s.maxLights);
     store.fields.resize(s.fields.size());
@@ -511,6 +501,7 @@ void CpuBackend::run(const FramePlan& plan) {
         store.maps.back().heat = {store.mapHeat.data() + heatAt, heat.size()};
         heatAt += heat.size();
     }
+    s.takeImages(store, plan.images);
     s.findLights(store.lights);
     store.readback = {};
     store.readback.frameIndex = plan.frameIndex;
@@ -518,6 +509,7 @@ void CpuBackend::run(const FramePlan& plan) {
     store.readback.objects = store.objects;
     store.readback.answers = store.answers;
     store.readback.burnMaps = store.maps;
+    store.readback.images = store.images;
     store.readback.lights = store.lights;
     store.readback.fields = store.fields;
     store.readback.frontTiles = uint32_t(s.list.size());

@@ -50,6 +50,11 @@ struct ReadbackStore {
           mapTicks(memory),
           mapHeat(memory),
           maps(memory),
+          imageTicks(memory),
+          imageHeat(memory),
+          imageTiles(memory),
+          imageTileHeat(memory),
+          images(memory),
           lights(memory),
           fields(memory) {}
     Readback readback;
@@ -58,6 +63,11 @@ struct ReadbackStore {
     std::pmr::vector<uint32_t> mapTicks;
     std::pmr::vector<uvec2> mapHeat;
     std::pmr::vector<BurnMap> maps;
+    std::pmr::vector<uint32_t> imageTicks;
+    std::pmr::vector<uvec2> imageHeat;
+    std::pmr::vector<TileState> imageTiles;
+    std::pmr::vector<TileHeat> imageTileHeat;
+    std::pmr::vector<ObjectImage> images;
     std::pmr::vector<BurnLight> lights;
     std::pmr::vector<FieldCounters> fields;
 };
@@ -121,6 +131,10 @@ struct CpuBackend::State {
     void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
     uint32_t allocateTiles(uint32_t count);
     void releaseTiles(uint32_t first, uint32_t count) noexcept;
+    // cpu_restore.cpp
+    void reserveImages(ReadbackStore& store, std::span<const uint32_t> slots) const;  // throws
+    void takeImages(ReadbackStore& store, std::span<const uint32_t> slots) const noexcept;
+    void rest(CpuObject& object, uint32_t slot) noexcept;  // as it was made
     // cpu_field.cpp
     void stepFields(const FieldUpdate& update) noexcept;
     void countFields(std::span<FieldCounters> out) const noexcept;

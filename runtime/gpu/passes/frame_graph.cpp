@@ -15,18 +15,19 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,           &kEventsPass,      &kHeatPass,        &kWakePass,
-    &kSchedulePass,        &kGatherPass,      &kArrivalPass,     &kArrivalRimPass,
-    &kCommitPass,          &kPublishedPass,   &kReduceClearPass, &kReduceFrontPass,
-    &kReducePass,          &kFireCellsPass,   &kFireSourcesPass, &kReceiversPass,
-    &kExchangePass,        &kContactsPass,    &kEmbersPass,      &kPredictGatherPass,
-    &kPredictPass,         &kPredictRimPass,  &kSupportPass,     &kProbePass,
-    &kLightsPass,          &kFlameQuadsPass,  &kFlameSortPass,   &kRefineHeatPass,
-    &kRefineLevelsPass,    &kRefineScanPass,  &kRefineEmitPass,  &kRefinePlacePass,
-    &kRecedePass,          &kTiesPass,        &kSoftPass,        &kSpringsPass,
-    &kDrapePass,           &kSkinPass,        &kSootPass,        &kRefineCutPass,
-    &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass, &kParticlesPass,
-    &kParticleQuadsPass,   &kFieldPass,       &kFieldMaskPass,   &kFieldShowPass};
+    &kResetPass,         &kRestorePass,         &kEventsPass,      &kHeatPass,
+    &kWakePass,          &kSchedulePass,        &kGatherPass,      &kArrivalPass,
+    &kArrivalRimPass,    &kCommitPass,          &kPublishedPass,   &kReduceClearPass,
+    &kReduceFrontPass,   &kReducePass,          &kFireCellsPass,   &kFireSourcesPass,
+    &kReceiversPass,     &kExchangePass,        &kContactsPass,    &kEmbersPass,
+    &kPredictGatherPass, &kPredictPass,         &kPredictRimPass,  &kSupportPass,
+    &kProbePass,         &kLightsPass,          &kFlameQuadsPass,  &kFlameSortPass,
+    &kRefineHeatPass,    &kRefineLevelsPass,    &kRefineScanPass,  &kRefineEmitPass,
+    &kRefinePlacePass,   &kRecedePass,          &kTiesPass,        &kSoftPass,
+    &kSpringsPass,       &kDrapePass,           &kSkinPass,        &kSootPass,
+    &kRefineCutPass,     &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass,
+    &kParticlesPass,     &kParticleQuadsPass,   &kFieldPass,       &kFieldMaskPass,
+    &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],   &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],

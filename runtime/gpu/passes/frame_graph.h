@@ -20,11 +20,11 @@ class FrameRecorder;
 
 struct ParticlePush;  // shared/particle.h
 
-extern const ComputePass kResetPass, kEventsPass, kHeatPass, kWakePass, kSchedulePass, kGatherPass,
-    kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass, kReduceFrontPass,
-    kReducePass, kFireCellsPass, kFireSourcesPass, kReceiversPass, kExchangePass, kContactsPass,
-    kEmbersPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
-    kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
+extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWakePass, kSchedulePass,
+    kGatherPass, kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass,
+    kReduceFrontPass, kReducePass, kFireCellsPass, kFireSourcesPass, kReceiversPass, kExchangePass,
+    kContactsPass, kEmbersPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass,
+    kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
     kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
     kRecedePass, kTiesPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
     kVolumeProbePass, kVolumeMarchPass, kParticlesPass, kParticleQuadsPass, kFieldPass,

@@ -4,6 +4,7 @@
 #include "gpu/vk/world_state.h"
 
 #include <cstring>
+#include <functional>
 
 namespace fw::gpu::vk {
 
@@ -84,6 +85,18 @@ struct FrameNeeds {
 // All that may fail: buffers of the size that the frame needs, and sets that name them.
 [[nodiscard]] FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan,
                                       const FrameNeeds& needs);
+
+// vk_record.cpp
+void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& upload);
+
+// vk_restore.cpp
+void recordRestores(VkBackend::State& s, FrameRecorder& recorder);
+// Where the images of a frame will lie; throws.
+void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,
+               const std::function<uint64_t(uint64_t)>& place);
+void recordImages(VkBackend::State& s, FrameRecorder& recorder);
+// Of a readback buffer; throws std::bad_alloc.
+[[nodiscard]] std::span<const ObjectImage> giveImages(VkBackend::State& s, const std::byte* from);
 
 // vk_deform.cpp
 // What object `slot` needs to deform or to be skinned in this frame; marks if it does.

@@ -25,6 +25,7 @@ struct ReadbackLayout {  // where the pieces of a frame's readback lie, bytes
     static constexpr uint32_t kMaxMaps = 64;
     std::array<MapAt, kMaxMaps> maps{};
     uint32_t mapCount = 0;
+    bool images = false;  // where they are is the world's: one frame's at a time
 };
 
 struct FrameInFlight {

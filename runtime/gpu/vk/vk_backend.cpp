@@ -30,6 +30,10 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       objects(pmr),
       images(pmr),
       uploads(pmr),
+      restores(pmr),
+      restoredObjects(pmr),
+      imageLayout(pmr),
+      givenImages(pmr),
       quarantine(pmr),
       skins(pmr),
       arps(pmr),
@@ -96,7 +100,8 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
 VkBackend::State::~State() {
     const Table& vk = device.table;
     const VkAllocationCallbacks* callbacks = device.allocationCallbacks;
-    for (PendingUpload& upload : uploads) deviceMemory.destroy(upload.staging);
+    for (auto* waiting : {&uploads, &restores})
+        for (PendingUpload& upload : *waiting) deviceMemory.destroy(upload.staging);
     const auto drop = [&](ImageEntry& entry) {
         deviceMemory.destroy(entry.image);
         vk.DestroyDescriptorPool(device.handle, entry.set.pool, callbacks);

@@ -99,6 +99,8 @@ class VkBackend final : public Backend {
                      std::span<const std::byte> pixels) override;
     void destroyImage(uint32_t slot) noexcept override;
 
+    void restore(std::span<const RestoredObject> objects, uint32_t tick) override;
+
     // Vertices as setVertices', from a buffer that the next frame copies. Throws where memory is
     // refused.
     void setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices);

@@ -23,7 +23,7 @@ void ensure(VkBackend::State& s, Buffer& buffer, uint64_t bytes, VkBufferUsageFl
 }
 
 // Where the pieces of the frame's readback will lie; `bytes`: all of it.
-ReadbackLayout layoutOf(const VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
+ReadbackLayout layoutOf(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
                         uint64_t& bytes) {
     ReadbackLayout layout;
     layout.frameIndex = plan.frameIndex;
@@ -53,6 +53,7 @@ ReadbackLayout layoutOf(const VkBackend::State& s, const FramePlan& plan, const 
         map.heat = (s.objects[object].record.flags & kObjectHeat) != 0;
         if (map.heat) map.heatAt = place(uint64_t(map.texels) * sizeof(uvec2));
     }
+    layImages(s, plan.images, layout, place);
     return layout;
 }
 
@@ -60,6 +61,7 @@ ReadbackLayout layoutOf(const VkBackend::State& s, const FramePlan& plan, const 
 
 FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     FrameNeeds needs;
+    needs.stimulus = s.restoreDue;
     needs.dense = (plan.switches & kSwitchDense) != 0;
     needs.never = (plan.switches & FW_DEBUG_NEVER_IDLE) != 0;
     uint64_t denseGroups = 0;
@@ -156,7 +158,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     needs.falling =
         anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
-                     needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty();
+                     needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty() ||
+                     !plan.images.empty();
     if (plan.volumes) {
         if (plan.volumes->count > kMaxVolumeFlames)
             core::fail(FW_ERROR_INVALID_ARGUMENT,

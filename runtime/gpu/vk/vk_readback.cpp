@@ -1,5 +1,5 @@
 // Readbacks, oldest first, once the host says that their frame is done. Never waits.
-#include "gpu/vk/world_state.h"
+#include "gpu/vk/frame_needs.h"
 
 #include <algorithm>
 #include <cstring>
@@ -24,6 +24,7 @@ const Readback* VkBackend::State::nextReadback() {
         const bool stolen = slot && (slot->frameIndex != one.ringFrame || !slot->readbackPending);
         given.answers = {};
         given.burnMaps = {};
+        given.images = {};
         if (slot && !stolen) {
             // Room first: it may throw, and then the readback is still there.
             const ReadbackLayout& layout = slot->layout;
@@ -123,6 +124,8 @@ const Readback* VkBackend::State::nextReadback() {
                             row(kRowBurn + layout.burnParity).listCount == 0;
                 predictEmpty = frontEmpty && row(kRowPredict + layout.predictParity).listCount == 0;
             }
+            if (layout.images && imagesFrame == one.ringFrame)
+                given.images = giveImages(*this, from);
             given.answers = givenAnswers;
             given.burnMaps = givenMaps;
             slot->timers.read(device, one.frameIndex, times);

@@ -55,14 +55,7 @@ void recordUploads(VkBackend::State& s) {
     const Table& vk = s.device.table;
     for (PendingUpload& upload : s.uploads) {
         if (upload.image) recordImageUpload(vk, s.open.commands, upload);
-        for (uint32_t i = 0; i < upload.regionCount; ++i) {
-            const PendingUpload::Region& region = upload.regions[i];
-            const Use uses[] = {{region.resource, Access::copyWrite}};
-            s.barriers.use(vk, s.open.commands, uses);
-            const VkBufferCopy copy{region.from, region.at, region.bytes};
-            vk.CmdCopyBuffer(s.open.commands, upload.staging.handle,
-                             s.planes.buffer(region.resource).handle, 1, &copy);
-        }
+        recordRegions(vk, s, upload);
         s.retired.push(s.open.ringFrame, upload.staging);
     }
     s.uploads.clear();
@@ -310,6 +303,17 @@ void recordSooting(VkBackend::State& s, FrameRecorder& recorder) {
 
 }  // namespace
 
+void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& upload) {
+    for (uint32_t i = 0; i < upload.regionCount; ++i) {
+        const PendingUpload::Region& region = upload.regions[i];
+        const Use uses[] = {{region.resource, Access::copyWrite}};
+        s.barriers.use(vk, s.open.commands, uses);
+        const VkBufferCopy copy{region.from, region.at, region.bytes};
+        vk.CmdCopyBuffer(s.open.commands, upload.staging.handle,
+                         s.planes.buffer(region.resource).handle, 1, &copy);
+    }
+}
+
 void VkBackend::State::openFrame(VkCommandBuffer commands, uint64_t ringFrame) {
     open = {};
     open.open = true;
@@ -410,6 +414,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     }
     recordUploads(*this);
     if (recordsDirty) recordObjects(*this, recorder, writer);
+    recordRestores(*this, recorder);
     recordForgetting(*this, recorder);
     drawVertices = planes.buffer(kResourceVertices).handle;
     drawIndices = planes.buffer(kResourceIndices).handle;
@@ -565,6 +570,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
                 recorder.copyOut(FW_BIND_HEAT, uint64_t(object.heatBase) * sizeof(uvec2),
                                  map.heatAt, uint64_t(map.texels) * sizeof(uvec2));
         }
+        if (layout.images) recordImages(*this, recorder);
         slot.readbackPending = true;
     }
     if (open.planFrame) {

@@ -189,6 +189,12 @@ struct Quarantined {
     uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;  // to be passed
 };
 
+struct ImageAt {  // an object's image in a frame's readback, bytes
+    uint32_t object = 0, texels = 0, tiles = 0;
+    uint64_t ticksAt = 0, heatAt = 0, tilesAt = 0, tileHeatAt = 0;
+    bool heat = false;
+};
+
 struct PendingReadback {  // in the order of frames
     uint64_t ringFrame = 0;
     int32_t slot = -1;   // -1: nothing was simulated, the last figures hold
@@ -255,6 +261,13 @@ struct VkBackend::State {
     ImageEntry white, lookTextures, profiles;
     ImageEntry books;  // the flipbooks; not live: there are none
     std::pmr::vector<PendingUpload> uploads;
+    // Of restore, for the next frame: what goes over objects that were made anew.
+    std::pmr::vector<PendingUpload> restores;
+    std::pmr::vector<uint32_t> restoredObjects;
+    bool restoreDue = false;
+    std::pmr::vector<ImageAt> imageLayout;  // of the last frame that took images
+    uint64_t imagesFrame = 0;               // ring frame, of that
+    std::pmr::vector<ObjectImage> givenImages;
     std::pmr::vector<Quarantined> quarantine;
     std::pmr::vector<Skin> skins;
     std::pmr::vector<core::Owned<ArpUse>> arps;

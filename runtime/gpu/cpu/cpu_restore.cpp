@@ -1,0 +1,115 @@
+// Images of objects: taken at a frame's end, and put back. Lists are not kept: which tiles are in
+// them is in the tiles' flags, and what is pending is found anew where tiles are touched.
+#include "gpu/cpu/cpu_state.h"
+
+#include <algorithm>
+
+namespace fw::gpu::cpu {
+
+void CpuBackend::State::reserveImages(ReadbackStore& store, std::span<const uint32_t> slots) const {
+    size_t texels = 0, heated = 0, tileCount = 0;
+    for (const uint32_t slot : slots) {
+        const CpuObject& object = *objects[slot];
+        texels += object.state.size();
+        heated += object.heat.size();
+        tileCount += object.record.tileCount;
+    }
+    store.imageTicks.resize(texels);
+    store.imageHeat.resize(heated);
+    store.imageTiles.resize(tileCount);
+    store.imageTileHeat.resize(tileCount);
+    store.images.clear();
+    store.images.reserve(slots.size());
+}
+
+void CpuBackend::State::takeImages(ReadbackStore& store,
+                                   std::span<const uint32_t> slots) const noexcept {
+    size_t texel = 0, heated = 0, tile = 0;
+    for (const uint32_t slot : slots) {
+        const CpuObject& object = *objects[slot];
+        const auto first = std::ptrdiff_t(object.record.worldTileBase);
+        const size_t count = object.record.tileCount;
+        std::copy(object.state.begin(), object.state.end(),
+                  store.imageTicks.begin() + std::ptrdiff_t(texel));
+        std::copy(object.heat.begin(), object.heat.end(),
+                  store.imageHeat.begin() + std::ptrdiff_t(heated));
+        std::copy_n(tiles.begin() + first, count, store.imageTiles.begin() + std::ptrdiff_t(tile));
+        std::copy_n(tileHeat.begin() + first, count,
+                    store.imageTileHeat.begin() + std::ptrdiff_t(tile));
+        ObjectImage image;
+        image.object = slot;
+        image.ticks = std::span(store.imageTicks).subspan(texel, object.state.size());
+        image.heat = std::span(store.imageHeat).subspan(heated, object.heat.size());
+        image.tiles = std::span(store.imageTiles).subspan(tile, count);
+        image.tileHeat = std::span(store.imageTileHeat).subspan(tile, count);
+        image.counters = object.counters;
+        store.images.push_back(image);
+        texel += object.state.size();
+        heated += object.heat.size();
+        tile += count;
+    }
+}
+
+void CpuBackend::State::rest(CpuObject& object, uint32_t slot) noexcept {
+    const mesh::BurnDomain& domain = *object.domain;
+    const uint16_t* slow =
+        object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
+    for (uint32_t i = 0; i < object.state.size(); ++i) {
+        const uint32_t flags = domain.texels[i].materialFlags;
+        const bool burns = texelBurns(flags, slow[i], object.materials[flags & 7].flags);
+        object.state[i] = burns ? kNever : kInert;
+    }
+    if (!object.heat.empty()) createHeat(object);
+    if (!object.published.empty()) {
+        std::fill(object.published.begin(), object.published.end(), 0.0f);
+        createPublished(object);  // its room is there
+    }
+    object.counters = {};
+    std::fill(object.sources.begin(), object.sources.end(), FireSource{});
+    const uint32_t first = object.record.worldTileBase;
+    for (uint32_t worldTile = first; worldTile < first + object.record.tileCount; ++worldTile) {
+        tiles[worldTile] = {kNever, 0, kFarPast, slot};
+        tileHeat[worldTile] = {};
+        tileFire[worldTile] = 0;
+    }
+}
+
+void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t) {
+    State& s = *state_;
+    for (auto* entries : {&s.list, &s.listOut, &s.runList, &s.burnList, &s.hotList, &s.hotOut})
+        entries->clear();
+    s.burnTiles.clear();
+    s.goneBurning = s.scheduledBurning = s.receivers = 0;
+    s.head = s.waiting = 0;
+    s.neighbours.clear();
+    s.links.clear();
+    s.blockers.clear();
+    for (uint32_t slot = 0; slot < s.objects.size(); ++slot) {
+        if (!s.objects[slot]) continue;
+        s.rest(*s.objects[slot], slot);
+        s.objects[slot]->remote = {};
+    }
+    for (const RestoredObject& one : restored) {
+        const ObjectImage& image = one.image;
+        CpuObject& object = *s.objects[image.object];
+        std::copy_n(one.materials, kMaterialsPerObject, object.materials.begin());
+        object.record.window = one.window;
+        object.record.substepShift = one.substepShift;
+        std::copy(image.ticks.begin(), image.ticks.end(), object.state.begin());
+        std::copy(image.heat.begin(), image.heat.end(), object.heat.begin());
+        const uint32_t base = object.record.worldTileBase;
+        for (uint32_t local = 0; local < object.record.tileCount; ++local) {
+            const uint32_t kept = image.tiles[local].flag & kTileKept;
+            const uint32_t worldTile = base + local;
+            s.tiles[worldTile].lastChange = image.tiles[local].lastChange;
+            s.tileHeat[worldTile] = image.tileHeat[local];
+            if ((kept & kTileListed) != 0) s.touch(worldTile, kTileTouched);
+            if ((kept & kTileBurning) != 0) s.burnList.push_back(worldTile);
+            if ((kept & kTileHot) != 0) s.hotList.push_back(worldTile);
+            s.tiles[worldTile].flag |= kept;
+        }
+        object.counters = image.counters;
+    }
+}
+
+}  // namespace fw::gpu::cpu

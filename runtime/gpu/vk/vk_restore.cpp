@@ -1,0 +1,187 @@
+// Objects put back as they once were: every object is made anew, what the images hold is copied
+// over that, and the tiles join their lists. All of it is recorded with the next frame.
+#include "gpu/vk/frame_needs.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace fw::gpu::vk {
+namespace {
+
+// What was wetted or put out shows in looks of its own.
+bool showsWater(const ObjectImage& image) noexcept {
+    const auto wet = [](uint32_t t) { return t == kWet || t == kOut || t == kOutWet; };
+    return std::any_of(image.ticks.begin(), image.ticks.end(), wet) ||
+           std::any_of(image.heat.begin(), image.heat.end(),
+                       [](const uvec2& texel) { return (texel.y & 0x3FFu) != 0; });
+}
+
+void stageImage(VkBackend::State& s, const ObjectImage& image) {
+    const BurnObject& record = s.objects[image.object].record;
+    PendingUpload& upload =
+        s.stage(image.ticks.size_bytes() + image.heat.size_bytes() + image.tiles.size_bytes() +
+                    image.tileHeat.size_bytes() + sizeof image.counters,
+                "restore staging");
+    uint64_t from = 0;
+    const auto add = [&](uint32_t resource, uint64_t at, const void* data, uint64_t bytes) {
+        if (bytes == 0) return;
+        std::memcpy(upload.staging.mapped + from, data, bytes);
+        upload.regions[upload.regionCount++] = {resource, from, at, bytes};
+        from += bytes;
+    };
+    add(FW_BIND_STATE, uint64_t(record.stateBase) * 4, image.ticks.data(),
+        image.ticks.size_bytes());
+    add(FW_BIND_HEAT, uint64_t(record.heatBase) * sizeof(uvec2), image.heat.data(),
+        image.heat.size_bytes());
+    const uint64_t tilesFrom = from;
+    add(FW_BIND_TILE_STATE, uint64_t(record.worldTileBase) * sizeof(TileState), image.tiles.data(),
+        image.tiles.size_bytes());
+    for (size_t i = 0; i < image.tiles.size(); ++i) {
+        const TileState tile{image.tiles[i].flag & kTileKept, 0, image.tiles[i].lastChange,
+                             image.object};
+        std::memcpy(upload.staging.mapped + tilesFrom + i * sizeof tile, &tile, sizeof tile);
+    }
+    add(FW_BIND_TILE_HEAT, uint64_t(record.worldTileBase) * sizeof(TileHeat), image.tileHeat.data(),
+        image.tileHeat.size_bytes());
+    add(FW_BIND_OBJECT_COUNTERS, uint64_t(image.object) * sizeof(ObjectCounters), &image.counters,
+        sizeof image.counters);
+}
+
+}  // namespace
+
+void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick) {
+    State& s = *state_;
+    const size_t uploadsBefore = s.uploads.size();
+    s.restores.reserve(std::max(s.restores.size(), restored.size()));
+    s.restoredObjects.reserve(restored.size());
+    try {
+        for (const RestoredObject& one : restored) stageImage(s, one.image);
+    } catch (...) {
+        s.dropUploads(uploadsBefore);
+        throw;
+    }
+    // One that no frame has recorded is of no use any more.
+    for (PendingUpload& old : s.restores) s.deviceMemory.destroy(old.staging);
+    s.restores.assign(s.uploads.begin() + std::ptrdiff_t(uploadsBefore), s.uploads.end());
+    s.uploads.resize(uploadsBefore);
+    s.restoredObjects.clear();
+    for (ObjectEntry& object : s.objects) {
+        if (!object.live) continue;
+        object.resetDue = object.recordDirty = true;
+        object.touched = object.doused = object.warmed = object.charred = false;
+        object.publishedTouched = false;
+        object.publishedParity = 0;
+        object.lastDouse = 0;
+        object.lastEvent = 0;
+        object.softUntil = 0;
+        object.refine.quietTick = 0;
+        object.refine.epochTick = std::min(object.refine.epochTick, tick);
+        if (object.shown.units != 0 && object.skinPlus1 == 0) object.deformReset = true;
+    }
+    for (const RestoredObject& one : restored) {
+        ObjectEntry& object = s.objects[one.image.object];
+        std::copy_n(one.materials, kMaterialsPerObject, object.materials);
+        object.record.window = one.window;
+        object.record.substepShift = one.substepShift;
+        object.materialsDirty = true;
+        object.touched = true;
+        object.doused = showsWater(one.image);
+        object.warmed = one.image.counters.until != 0 && (object.record.flags & kObjectHeat) != 0;
+        object.lastEvent = tick;
+        s.restoredObjects.push_back(one.image.object);
+        if (one.image.counters.ignited != 0) s.noteFire(one.image.object, tick);
+    }
+    s.recordsDirty = s.restoreDue = true;
+    s.shownTick = tick;
+    s.links = s.blockers = 0;
+    s.pendingCount = 0;
+    for (FrameInFlight& slot : s.ring.slots()) slot.readbackPending = false;
+    s.frontEmpty = s.burnEmpty = s.predictEmpty = s.hotEmpty = false;
+}
+
+void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
+    if (!s.restoreDue) return;
+    s.restoreDue = false;
+    // The lists begin anew: whoever waited for a walk through them need not.
+    recorder.fillZero(FW_BIND_COUNTERS, 0, VK_WHOLE_SIZE);
+    ++s.frontWalks, ++s.burnWalks, ++s.predictWalks, ++s.hotWalks;
+    const Table& vk = s.device.table;
+    for (PendingUpload& upload : s.restores) {
+        recordRegions(vk, s, upload);
+        s.retired.push(s.open.ringFrame, upload.staging);
+    }
+    s.restores.clear();
+    StepPush push{};
+    push.parity = s.lists.parity;
+    push.row = s.lists.row;
+    push.burnParity = s.lists.burnParity;
+    push.predictParity = s.lists.predictParity;
+    push.hotParity = s.lists.hotParity;
+    for (const uint32_t slot : s.restoredObjects) {
+        const ObjectEntry& object = s.objects[slot];
+        if (!object.live) continue;
+        const uint64_t texels = uint64_t(object.record.width) * object.record.height;
+        recorder.fillZero(FW_BIND_SETTLED, uint64_t(object.record.stateBase) / 8 * 4,
+                          texels / 8 * 4);
+        recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
+                             texels * 4);
+        push.object = slot;
+        recorder.dispatch(kRestorePass, &push, std::max((object.record.tileCount + 63) / 64, 1u));
+    }
+    s.restoredObjects.clear();
+}
+
+void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,
+               const std::function<uint64_t(uint64_t)>& place) {
+    layout.images = !slots.empty();
+    if (slots.empty()) return;
+    s.imageLayout.clear();
+    for (const uint32_t slot : slots) {
+        const BurnObject& record = s.objects[slot].record;
+        ImageAt& at = s.imageLayout.emplace_back();
+        at.object = slot;
+        at.texels = record.width * record.height;
+        at.tiles = record.tileCount;
+        at.heat = (record.flags & kObjectHeat) != 0;
+        at.ticksAt = place(uint64_t(at.texels) * 4);
+        if (at.heat) at.heatAt = place(uint64_t(at.texels) * sizeof(uvec2));
+        at.tilesAt = place(uint64_t(at.tiles) * sizeof(TileState));
+        at.tileHeatAt = place(uint64_t(at.tiles) * sizeof(TileHeat));
+    }
+    s.imagesFrame = s.open.ringFrame;
+}
+
+void recordImages(VkBackend::State& s, FrameRecorder& recorder) {
+    for (const ImageAt& at : s.imageLayout) {
+        const BurnObject& record = s.objects[at.object].record;
+        recorder.copyOut(FW_BIND_STATE, uint64_t(record.stateBase) * 4, at.ticksAt,
+                         uint64_t(at.texels) * 4);
+        if (at.heat)
+            recorder.copyOut(FW_BIND_HEAT, uint64_t(record.heatBase) * sizeof(uvec2), at.heatAt,
+                             uint64_t(at.texels) * sizeof(uvec2));
+        recorder.copyOut(FW_BIND_TILE_STATE, uint64_t(record.worldTileBase) * sizeof(TileState),
+                         at.tilesAt, uint64_t(at.tiles) * sizeof(TileState));
+        recorder.copyOut(FW_BIND_TILE_HEAT, uint64_t(record.worldTileBase) * sizeof(TileHeat),
+                         at.tileHeatAt, uint64_t(at.tiles) * sizeof(TileHeat));
+    }
+}
+
+// As they lie in the readback buffer, which is not written again before the next frame.
+std::span<const ObjectImage> giveImages(VkBackend::State& s, const std::byte* from) {
+    s.givenImages.clear();
+    const auto array = [&]<class T>(uint64_t at, uint32_t count, std::span<const T>& out) {
+        out = {reinterpret_cast<const T*>(from + at), count};
+    };
+    for (const ImageAt& at : s.imageLayout) {
+        ObjectImage& image = s.givenImages.emplace_back();
+        image.object = at.object;
+        array(at.ticksAt, at.texels, image.ticks);
+        if (at.heat) array(at.heatAt, at.texels, image.heat);
+        array(at.tilesAt, at.tiles, image.tiles);
+        array(at.tileHeatAt, at.tiles, image.tileHeat);
+        if (at.object < s.givenObjects.size()) image.counters = s.givenObjects[at.object];
+    }
+    return s.givenImages;
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,84 @@
+// Bytes of a save in a fixed order, little-endian. The reader trusts nothing: every number is
+// checked against what is left before it is used. Says nothing of worlds.
+#pragma once
+#include "core/error.h"
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace fw::save {
+
+template <typename T>
+concept Number = std::is_arithmetic_v<T> && !std::is_same_v<T, bool> && sizeof(T) != 1;
+
+template <typename T>
+using WordOf = std::conditional_t<sizeof(T) == 8, uint64_t,
+                                  std::conditional_t<sizeof(T) == 4, uint32_t, uint16_t>>;
+
+class Writer {
+ public:
+    static constexpr bool kReads = false;
+    explicit Writer(std::pmr::vector<std::byte>& out) : out_(out) {}
+    template <Number T>
+    void number(const T& value) {
+        const auto word = std::bit_cast<WordOf<T>>(value);
+        for (size_t k = 0; k < sizeof(T); ++k) out_.push_back(std::byte(word >> (8 * k)));
+    }
+    void number(bool value) { out_.push_back(std::byte(value ? 1 : 0)); }
+    [[nodiscard]] std::pmr::vector<std::byte>& bytes() noexcept { return out_; }
+
+ private:
+    std::pmr::vector<std::byte>& out_;
+};
+
+class Reader {
+ public:
+    static constexpr bool kReads = true;
+    explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    template <Number T>
+    void number(T& value) {
+        const std::span<const std::byte> from = take(sizeof(T));
+        WordOf<T> word = 0;
+        for (size_t k = 0; k < sizeof(T); ++k)
+            word = WordOf<T>(word | WordOf<T>(WordOf<T>(from[k]) << (8 * k)));
+        value = std::bit_cast<T>(word);
+    }
+    void number(bool& value) {
+        const uint32_t word = uint32_t(take(1)[0]);
+        if (word > 1)
+            core::fail(FW_ERROR_BAD_DATA, "Byte %zu of the save is %u where a 0 or 1 is expected.",
+                       at_ - 1, word);
+        value = word == 1;
+    }
+    // A count of things that need at least `bytesEach` bytes each.
+    uint32_t count(const char* name, size_t bytesEach) {
+        uint32_t value = 0;
+        number(value);
+        if (uint64_t(value) * bytesEach > left())
+            core::fail(FW_ERROR_BAD_DATA, "The save says that it has %u %s; %zu bytes are left.",
+                       value, name, left());
+        return value;
+    }
+    std::span<const std::byte> take(size_t size) {
+        if (left() < size)
+            core::fail(FW_ERROR_BAD_DATA, "The save ends after %zu bytes of its content.",
+                       bytes_.size());
+        at_ += size;
+        return bytes_.subspan(at_ - size, size);
+    }
+    [[nodiscard]] size_t left() const noexcept { return bytes_.size() - at_; }
+
+ private:
+    std::span<const std::byte> bytes_;
+    size_t at_ = 0;
+};
+
+// FNV-1a over 8 bytes at a time, the last few one by one.
+[[nodiscard]] uint64_t checksum(std::span<const std::byte> bytes) noexcept;
+
+}  // namespace fw::save

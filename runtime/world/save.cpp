@@ -1,0 +1,743 @@
+// Saving and loading a world mid-burn. What the world knows is noted at the frame that was asked
+// for, the objects' planes come with its readback, and then it is bytes. Loading checks all of it
+// before anything changes; the backend goes first, since it alone may still fail.
+#include "world/save.h"
+
+#include "core/hash.h"
+#include "shared/field_draw.h"
+#include "shared/heat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::world {
+namespace {
+
+using components::checkValue;
+using components::checkValues;
+
+void hashMore(uint64_t& hash, const void* data, size_t bytes) noexcept {
+    const auto* from = static_cast<const unsigned char*>(data);
+    for (size_t at = 0; at < bytes; at += sizeof(uint32_t)) {
+        uint32_t word = 0;
+        std::memcpy(&word, from + at, std::min(sizeof word, bytes - at));
+        hash = core::hashWords(std::span(&word, 1), hash);
+    }
+}
+
+uint64_t hashOf(const mesh::BurnDomain& domain) noexcept {
+    uint64_t hash = core::kFnvOffset;
+    const auto add = [&](const auto& array) {
+        hashMore(hash, array.data(), array.size() * sizeof array[0]);
+    };
+    hashMore(hash, &domain.width, sizeof domain.width);
+    hashMore(hash, &domain.height, sizeof domain.height);
+    hashMore(hash, &domain.quantum, sizeof domain.quantum);
+    add(domain.texels), add(domain.normals), add(domain.slowness), add(domain.links);
+    return hash;
+}
+
+void checkPose(const components::Pose& pose, uint32_t object) {
+    bool good = pose.scale >= 1e-4f && pose.scale <= 1e4f;
+    for (const auto& row : pose.rotation)
+        for (const float value : row) good &= std::abs(value) <= 1.01f;
+    for (const float value : pose.stretch) {
+        const float size = std::abs(value);
+        good &= size >= 1.0f / 64 && size <= 64;
+    }
+    for (const float value : pose.translation) good &= std::abs(value) <= 1e6f;
+    if (!good)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The save has a transform that none can be for burnable mesh %u.", object + 1);
+}
+
+void checkRule(float saved, float mine, const char* name) {
+    if (!(saved == mine))
+        core::fail(FW_ERROR_BAD_DATA, "The save's FwWorldDef::%s is %g; this world's is %g.", name,
+                   double(saved), double(mine));
+}
+void checkRule(uint32_t saved, uint32_t mine, const char* name) {
+    if (saved != mine)
+        core::fail(FW_ERROR_BAD_DATA, "The save's FwWorldDef::%s is %u; this world's is %u.", name,
+                   saved, mine);
+}
+void checkCount(size_t saved, size_t mine, const char* name) {
+    if (saved != mine)
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu %s; this world has %zu.", saved, name,
+                   mine);
+}
+
+SavedTouch savedTouch(const FireTouch& touch) noexcept {
+    SavedTouch saved;
+    saved.object1 = touch.object.index1;
+    saved.since = touch.since;
+    std::copy_n(touch.fireAt, 3, saved.fireAt);
+    std::copy_n(touch.objectAt, 3, saved.objectAt);
+    saved.flag = touch.lit;
+    return saved;
+}
+
+}  // namespace
+
+uint64_t World::assetOf(const Object& object) noexcept {
+    MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
+    if (mesh.hash == 0) mesh.hash = hashOf(*mesh.domain) | 1;
+    uint64_t hash = mesh.hash;
+    const components::BurnableMesh& data = object.data;
+    const uint32_t flags = data.flags & ~uint32_t(FW_BURNABLE_HIDDEN);
+    hashMore(hash, &flags, sizeof flags);
+    hashMore(hash, &data.moisture, sizeof data.moisture);
+    hashMore(hash, data.shape, sizeof data.shape);
+    hashMore(hash, &data.materialMask, sizeof data.materialMask);
+    for (uint32_t i = 0; i < components::kMaterials; ++i)
+        if ((data.materialMask >> i & 1) != 0)
+            hashMore(hash, &data.materials[i], sizeof data.materials[i]);
+    hashMore(hash, object.slowness.data(), object.slowness.size() * sizeof(uint16_t));
+    static_assert(sizeof(components::Governance) == 16);
+    hashMore(hash, &object.governance, sizeof object.governance);
+    return hash;
+}
+
+// Ticks beyond which nobody asks when a tile last changed.
+uint32_t World::windowOf(const Object& object) noexcept {
+    components::Latch latch = object.latch;
+    const components::Records records =
+        components::makeRecords(object.data, domainOf(object), driveInput(), latch);
+    uint32_t window = records.timing.window;
+    for (const gpu::BurnMaterial& material : records.materials)
+        window = std::max(window, material.windowMax);
+    return std::min(window, 1u << 24) + 2 * gpu::kStepTicks;
+}
+
+// ---- saving ------------------------------------------------------------------------------------
+
+void World::requestSave() {
+    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+        if (auto* object = objects_.at(i);
+            object && ((*object)->data.flags & FW_BURNABLE_PUBLISHED) && (*object)->touched)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be saved.",
+                       i + 1);
+    if (!save_) save_ = core::Owned<Save>::make(memory_, memory_);
+    save_->wished = true;
+    save_->ready = false;
+}
+
+const std::pmr::vector<std::byte>* World::fetchSave() {
+    if (!save_ || (!save_->wished && !save_->pending && !save_->ready))
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "No save was asked for; request it first.");
+    if (save_->failed) {
+        save_->failed = false;
+        throw std::bad_alloc();
+    }
+    return save_->ready && !save_->wished ? &save_->bytes : nullptr;
+}
+
+// Before a frame's plan: the objects that have something to save.
+void World::planSave() {
+    frame_.images.clear();
+    if (!save_ || !save_->wished || save_->pending) return;
+    frame_.images.reserve(objects_.slotCount());
+    for (uint32_t i = 0; i < objects_.slotCount(); ++i) {
+        auto* owned = objects_.at(i);
+        if (!owned) continue;
+        const Object& object = **owned;
+        const bool due =
+            std::any_of(frame_.due.begin(), frame_.due.end(),
+                        [&](const Frame::Due& one) { return one.event.object == i; }) ||
+            std::any_of(frame_.latches.begin(), frame_.latches.end(),
+                        [&](const Frame::LatchOf& one) { return one.object == &object; });
+        if (object.touched || due) frame_.images.push_back(i);
+    }
+}
+
+// After it was committed.
+void World::commitSave(uint64_t frameIndex) noexcept {
+    if (!save_ || !save_->wished || save_->pending) return;
+    save_->wished = false;
+    try {
+        noteSaved(save_->saved);
+        save_->pending = true;
+        save_->frameIndex = frameIndex;
+    } catch (...) {
+        save_->failed = true;
+    }
+}
+
+void World::noteSaved(SavedWorld& to) {
+    to.pace = def_.paceFactor;
+    std::copy_n(def_.up, 3, to.up);
+    to.spreadChance = def_.spreadChance;
+    to.timeToLive = def_.timeToLive;
+    to.seed = def_.seed;
+    to.maxHops = def_.maxHops;
+    to.maxBurningTiles = def_.maxBurningTiles;
+    to.clock = clock_;
+    to.steps = steps_;
+    to.droppedSteps = droppedSteps_;
+    to.order = order_;
+    std::copy_n(wind_, 3, to.wind);
+    to.flags = remote_.flags | remote_.objectFlags;
+    to.warms = remote_.warms;
+    to.blockersDue = remote_.blockersDue;
+    to.fades = remote_.fades;
+    to.objects.clear();
+    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+        if (auto* owned = objects_.at(i)) noteObject(**owned, to.objects.emplace_back());
+    to.pending.assign(pending_.begin(), pending_.end());
+    to.tags.clear();
+    for (const Tag& tag : tags_) to.tags.push_back({tag.object.index1 - 1, tag.texel, tag.tag});
+    to.pairs.clear();
+    for (size_t i = 0; i < remote_.pairsUsed; ++i) {
+        const PairContacts& pair = remote_.pairs[i];
+        if (!pair.links.empty())
+            to.pairs.push_back({{pair.slots[0], pair.slots[1]}, pair.links[0].since});
+    }
+    std::sort(to.pairs.begin(), to.pairs.end(), [](const SavedPair& a, const SavedPair& b) {
+        return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
+    });
+    to.blockers.clear();
+    for (uint32_t i = 0; i < blockers_.slotCount(); ++i)
+        if (const BlockerEntry* entry = blockers_.at(i)) {
+            SavedBlocker& saved = to.blockers.emplace_back();
+            saved.slot = i;
+            saved.pose = entry->pose;
+            std::copy_n(entry->halfSize, 3, saved.halfSize);
+        }
+    to.latchedBlockers.assign(remote_.blockers.begin(), remote_.blockers.end());
+    to.fires.clear();
+    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
+        if (const auto* fire = fires_.at(i)) {
+            SavedFire& saved = to.fires.emplace_back();
+            saved.slot = i;
+            saved.flags = (*fire)->data.flags & FW_FIRE_IGNITES;
+            std::copy_n((*fire)->data.position, 3, saved.position);
+            saved.power = (*fire)->data.power;
+            for (size_t k = 0; k < saved.touches.size(); ++k)
+                saved.touches[k] = savedTouch((*fire)->touches[k]);
+        }
+    to.emitters.clear();
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
+        if (const auto* emitter = emitters_.at(i)) noteEmitter(i, *emitter, to.emitters);
+    to.fields.clear();
+    for (uint32_t i = 0; i < fields_.slotCount(); ++i)
+        if (const auto* field = fields_.at(i)) {
+            SavedField& saved = to.fields.emplace_back();
+            saved.slot = i;
+            saved.width = (*field)->data.def.width;
+            saved.height = (*field)->data.def.height;
+            saved.began = (*field)->began;
+            saved.wets = bool((*field)->cells);
+            if (!saved.wets) continue;
+            const field::Field& cells = *(*field)->cells;
+            saved.step = cells.step;
+            saved.emitted = cells.emitted;
+            saved.died = cells.died;
+            saved.left = cells.left;
+            saved.cells.assign(cells.cells.begin(), cells.cells.end());
+        }
+}
+
+void World::noteObject(Object& object, SavedObject& saved) noexcept {
+    saved = {};
+    saved.slot = object.slot;
+    saved.asset = assetOf(object);
+    saved.pose = object.data.pose;
+    saved.firstEvent = object.firstEvent;
+    saved.placed = object.remoteVersion != 0;
+    saved.due = object.remoteDue;
+    saved.remote = object.remote;
+    saved.remote.neighbourFirst = saved.remote.neighbourCount = 0;
+    saved.touched = object.touched;
+    if (!object.touched) return;
+    saved.filters = object.latch.filters;
+    saved.latched = object.latch.pose;
+}
+
+void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
+                        std::pmr::vector<SavedEmitter>& to) const {
+    SavedEmitter& saved = to.emplace_back();
+    saved.slot = slot;
+    saved.flags = emitter.def.flags & (FW_EMITTER_JET | FW_EMITTER_IGNITES);
+    std::copy_n(emitter.position, 3, saved.position);
+    std::copy_n(emitter.direction, 3, saved.direction);
+    saved.power = emitter.def.power;
+    for (size_t k = 0; k < saved.touches.size(); ++k) {
+        saved.touches[k].object1 = emitter.touches[k].object.index1;
+        saved.touches[k].since = emitter.touches[k].since;
+        saved.touches[k].flag = emitter.touches[k].seen;
+    }
+    saved.streams = bool(emitter.stream);
+    if (!saved.streams) return;
+    saved.kept = emitter.stream->kept;
+    for (uint32_t place = 0; place < components::kJetParcels; ++place) {
+        const components::JetParcel& parcel = emitter.stream->parcels[place];
+        if (parcel.launched == components::kJetNever) continue;
+        saved.places.push_back(place);
+        saved.parcels.push_back(parcel);
+        for (const components::JetRay& ray : parcel.rays)
+            saved.swept.push_back(ray.version == geometry_ ? 1 : 0);
+    }
+}
+
+// With a readback, after the counters were taken.
+void World::takeSave(const gpu::Readback& readback) noexcept {
+    if (!save_ || !save_->pending || readback.frameIndex < save_->frameIndex) return;
+    save_->pending = false;
+    SavedWorld& saved = save_->saved;
+    size_t touched = 0;
+    bool whole = readback.frameIndex == save_->frameIndex;
+    for (const SavedObject& object : saved.objects) {
+        touched += object.touched ? 1 : 0;
+        whole = whole && object.slot < objects_.slotCount() && objects_.at(object.slot);
+    }
+    // What came is of less than was noted: objects went since. The next frame tries again.
+    if (!whole || touched != readback.images.size()) {
+        save_->wished = true;
+        return;
+    }
+    try {
+        save_->planes.clear();
+        std::pmr::vector<size_t> ends(memory_);
+        for (const gpu::ObjectImage& image : readback.images) {
+            const Object& object = **objects_.at(image.object);
+            writeImage(image, domainOf(object), readback.endTick, windowOf(object), save_->scratch,
+                       save_->planes);
+            ends.push_back(save_->planes.size());
+        }
+        size_t next = 0, from = 0;
+        for (SavedObject& object : saved.objects) {
+            if (!object.touched) continue;
+            const gpu::ObjectImage& image = readback.images[next];
+            if (image.object != object.slot) {
+                save_->wished = true;
+                return;
+            }
+            object.planes = std::span(save_->planes).subspan(from, ends[next] - from);
+            from = ends[next++];
+            object.counters = image.counters;
+            object.counters.refined = 0;
+            tellStory(**objects_.at(object.slot), object.story);
+        }
+        writeSaved(saved, save_->bytes);
+        save_->ready = true;
+    } catch (...) {
+        save_->failed = true;
+    }
+}
+
+void World::tellStory(const Object& object, SavedStory& story) const noexcept {
+    story.active = object.active;
+    story.sawFire = object.sawFire;
+    story.doused = object.doused;
+    story.ignitionKnown = object.ignitionKnown;
+    story.lastStimulus = object.lastStimulus;
+    story.lastDouse = object.lastDouse;
+    story.lastBurning = object.lastBurning;
+    story.firstIgnition = object.firstIgnition;
+    std::copy_n(object.ignitionPoint, 3, story.ignitionPoint);
+    story.litTold = object.litTold;
+    story.spotsTold = object.spotsTold;
+    story.mostIgnited = object.mostIgnited;
+    story.clampsTold = object.clampsTold;
+    story.energy = object.energy;
+    story.heatSteps = object.heatSteps;
+    story.power = object.power;
+}
+
+// ---- loading -----------------------------------------------------------------------------------
+
+void World::checkSaved(const SavedWorld& saved) {
+    checkRule(saved.pace, def_.paceFactor, "paceFactor");
+    for (int i = 0; i < 3; ++i) checkRule(saved.up[i], def_.up[i], "up");
+    checkRule(saved.spreadChance, def_.spreadChance, "spreadChance");
+    checkRule(saved.timeToLive, def_.timeToLive, "timeToLive");
+    checkRule(saved.seed, def_.seed, "seed");
+    checkRule(saved.maxHops, def_.maxHops, "maxHops");
+    checkRule(saved.maxBurningTiles, def_.maxBurningTiles, "maxBurningTiles");
+    const Clock& clock = saved.clock;
+    if (clock.tick > Clock::kLastTick || clock.tick % gpu::kStepTicks != 0 ||
+        clock.fraction >= Clock::kStepUnits)
+        core::fail(FW_ERROR_BAD_DATA, "The save is of tick %llu, which no world has.",
+                   static_cast<unsigned long long>(clock.tick));
+    for (const float value : saved.wind)
+        if (!(std::abs(value) <= 120.0f))
+            core::fail(FW_ERROR_BAD_DATA, "The save's wind is %g m/s; the limits are [-120, 120].",
+                       double(value));
+    if ((saved.flags & ~kWorldFlags) != 0)
+        core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
+                   saved.flags, kWorldFlags);
+    checkCount(saved.objects.size(), objects_.live(), "burnable meshes");
+    checkCount(saved.blockers.size(), blockers_.live(), "blockers");
+    checkCount(saved.fires.size(), fires_.live(), "volumetric fires");
+    checkCount(saved.emitters.size(), emitters_.live(), "fire emitters");
+    checkCount(saved.fields.size(), fields_.live(), "particle fields");
+    uint32_t next = 0;
+    for (const SavedObject& object : saved.objects) {
+        if (object.slot < next || object.slot >= objects_.slotCount() || !objects_.at(object.slot))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has burnable mesh %u, which this world does not. Create what it "
+                       "was made with in the same order.",
+                       object.slot + 1);
+        next = object.slot + 1;
+        const uint64_t mine = assetOf(**objects_.at(object.slot));
+        if (object.asset != mine)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "Burnable mesh %u is not the save's: mesh, materials and def hash to "
+                       "0x%016llX, the save's to 0x%016llX.",
+                       object.slot + 1, static_cast<unsigned long long>(mine),
+                       static_cast<unsigned long long>(object.asset));
+        checkPose(object.pose, object.slot);
+        if (object.touched) checkPose(object.latched, object.slot);
+        for (const fire::WindFilter& filter : object.filters)
+            for (int i = 0; i < 3; ++i)
+                if (std::abs(filter.latched[size_t(i)]) > 120 * 128 ||
+                    std::abs(double(filter.value[size_t(i)])) > 120.0 * 128 * 16777216 + 1)
+                    core::fail(FW_ERROR_BAD_DATA, "The save's wind at burnable mesh %u is absurd.",
+                               object.slot + 1);
+    }
+    const auto checkTexel = [&](uint32_t slot, uint32_t texel, const char* what) {
+        if (slot >= objects_.slotCount() || !objects_.at(slot) ||
+            texel >= domainOf(**objects_.at(slot)).texelCount())
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has %s at texel %u of burnable mesh %u, which is not there.", what,
+                       texel, slot + 1);
+    };
+    if (saved.pending.size() > kMaxPending)
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu events that wait; the limit is %zu.",
+                   saved.pending.size(), kMaxPending);
+    for (const PendingTexel& event : saved.pending) {
+        checkTexel(event.object, event.texel, "an event");
+        if (event.kind > gpu::kEventHeat)
+            core::fail(FW_ERROR_BAD_DATA, "The save has an event of kind %u; the limit is %u.",
+                       event.kind, gpu::kEventHeat);
+        for (uint32_t g = 0; g < event.gateCount; ++g)
+            checkTexel(event.gates[g].object, event.gates[g].texel, "a hole");
+    }
+    if (saved.tags.size() > kMaxTags)
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu tags; the limit is %u.", saved.tags.size(),
+                   kMaxTags);
+    for (const SavedTag& tag : saved.tags) checkTexel(tag.object, tag.texel, "a tag");
+    for (const SavedPair& pair : saved.pairs) {
+        checkTexel(pair.slots[0], 0, "a contact");
+        checkTexel(pair.slots[1], 0, "a contact");
+    }
+    for (const SavedBlocker& blocker : saved.blockers) {
+        if (blocker.slot >= blockers_.slotCount() || !blockers_.at(blocker.slot))
+            core::fail(FW_ERROR_BAD_DATA, "The save has blocker %u, which this world does not.",
+                       blocker.slot + 1);
+        checkPose(blocker.pose, blocker.slot);
+        for (const float half : blocker.halfSize)
+            if (!(half >= 0 && half <= 30))
+                core::fail(FW_ERROR_BAD_DATA,
+                           "The save has a blocker of half size %g m; the limits are [0, 30].",
+                           double(half));
+    }
+    if (saved.latchedBlockers.size() > gpu::kMaxBlockers)
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu latched blockers; the limit is %u.",
+                   saved.latchedBlockers.size(), gpu::kMaxBlockers);
+    const auto checkTouches = [&](const std::array<SavedTouch, 8>& touches) {
+        for (const SavedTouch& touch : touches)
+            if (touch.object1 != 0) checkTexel(touch.object1 - 1, 0, "a flame");
+    };
+    const auto checkPlace = [](const float(&place)[3], const char* what) {
+        for (const float value : place)
+            if (!(std::abs(value) <= 1e6f))
+                core::fail(FW_ERROR_BAD_DATA, "The save has %s at %g m; the limits are +-1e6.",
+                           what, double(value));
+    };
+    for (const SavedFire& fire : saved.fires) {
+        const auto* mine = fire.slot < fires_.slotCount() ? fires_.at(fire.slot) : nullptr;
+        if (!mine || ((*mine)->data.flags & FW_FIRE_IGNITES) != fire.flags)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has volumetric fire %u, which is none or another one here.",
+                       fire.slot + 1);
+        checkPlace(fire.position, "a volumetric fire");
+        if (!(fire.power >= 0 && fire.power <= 1e6f))
+            core::fail(FW_ERROR_BAD_DATA, "The save has a fire of %g kW.", double(fire.power));
+        checkTouches(fire.touches);
+    }
+    for (const SavedEmitter& emitter : saved.emitters) {
+        const auto* mine =
+            emitter.slot < emitters_.slotCount() ? emitters_.at(emitter.slot) : nullptr;
+        constexpr uint32_t kKind = FW_EMITTER_JET | FW_EMITTER_IGNITES;
+        if (!mine || (mine->def.flags & kKind) != emitter.flags ||
+            bool(mine->stream) != emitter.streams)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has fire emitter %u, which is none or another one here.",
+                       emitter.slot + 1);
+        checkPlace(emitter.position, "a fire emitter");
+        checkPlace(emitter.direction, "a direction");
+        if (!(emitter.power >= 0 && emitter.power <= 100000))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has an emitter of %g kW; the limits are [0, 100000].",
+                       double(emitter.power));
+        checkTouches(emitter.touches);
+        for (const components::JetParcel& parcel : emitter.parcels) {
+            checkPlace(parcel.from, "a jet's stream");
+            if (!(parcel.wide >= 0 && parcel.wide <= 4) || parcel.most > 10000000 ||
+                parcel.launched > clock.tick)
+                core::fail(FW_ERROR_BAD_DATA, "The save has a jet's stream that none can be.");
+            for (const components::JetRay& ray : parcel.rays) {
+                checkPlace(ray.way, "a ray");
+                checkPlace(ray.hit.place, "a ray");
+                checkPlace(ray.hit.normal, "a ray");
+                if (!(std::abs(ray.hit.distance) <= 1e6f))
+                    core::fail(FW_ERROR_BAD_DATA, "The save has a ray that none can be.");
+                if (ray.hit.met && ray.hit.object.index1 != 0)
+                    checkTexel(ray.hit.object.index1 - 1, ray.hit.texel, "a ray");
+                for (uint32_t g = 0; g < ray.gateCount; ++g)
+                    checkTexel(ray.gates[g].object, ray.gates[g].texel, "a hole");
+            }
+        }
+    }
+    for (const SavedField& field : saved.fields) {
+        const auto* mine = field.slot < fields_.slotCount() ? fields_.at(field.slot) : nullptr;
+        if (!mine || bool((*mine)->cells) != field.wets || (*mine)->data.def.width != field.width ||
+            (*mine)->data.def.height != field.height || field.began > clock.tick)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has particle field %u, which is none or another one here.",
+                       field.slot + 1);
+    }
+}
+
+void World::load(std::span<const std::byte> bytes) {
+    SavedWorld saved(memory_);
+    readSaved(bytes, saved);
+    checkSaved(saved);
+    // The latches first: what the backend gets follows from them.
+    const auto drive = [&] {
+        components::DriveInput input = driveInput();
+        input.wind = fire::windUnits(saved.wind);
+        return input;
+    }();
+    std::pmr::vector<components::Latch> latches(memory_);
+    std::pmr::vector<ImageStore> stores(memory_);
+    std::pmr::vector<gpu::RestoredObject> restored(memory_);
+    latches.reserve(saved.objects.size());
+    stores.reserve(saved.objects.size());
+    restored.reserve(saved.objects.size());
+    PlaneScratch scratch(memory_);
+    for (const SavedObject& from : saved.objects) {
+        const Object& object = **objects_.at(from.slot);
+        const mesh::BurnDomain& domain = domainOf(object);
+        components::BurnableMesh posed = object.data;
+        posed.pose = from.pose;
+        components::Latch& latch = latches.emplace_back();
+        components::resetLatch(posed, drive, latch);
+        if (!from.touched) continue;
+        latch.filters = from.filters;
+        latch.pose = from.latched;
+        const components::Records records = components::makeRecords(posed, domain, drive, latch);
+        latch.sent = true;
+        std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat{};
+        const bool heated = components::hasHeat(object.data);
+        if (heated) heat = components::makeHeatMaterials(posed, domain, def_.paceFactor);
+        uint32_t window = records.timing.window;
+        for (const gpu::BurnMaterial& material : records.materials)
+            window = std::max(window, material.windowMax);
+        ImageStore& store = stores.emplace_back(memory_);
+        readImage(from.planes, domain, uint32_t(saved.clock.tick),
+                  std::min(window, 1u << 24) + 2 * gpu::kStepTicks,
+                  std::span<const gpu::HeatMaterial>(heat).first(heated ? heat.size() : 0), scratch,
+                  store);
+        gpu::RestoredObject& one = restored.emplace_back();
+        one.image = {from.slot,   store.ticks,    store.heat,
+                     store.tiles, store.tileHeat, from.counters};
+        std::copy(records.materials.begin(), records.materials.end(), one.materials);
+        one.window = records.timing.window;
+        one.substepShift = records.timing.substepShift;
+    }
+    while (remote_.pairs.size() < saved.pairs.size()) remote_.pairs.emplace_back(memory_);
+    for (size_t i = 0; i < saved.pairs.size(); ++i) remote_.pairs[i].links.reserve(1);
+    std::pmr::vector<Tag> tags(memory_);
+    for (const SavedTag& tag : saved.tags)
+        tags.push_back({objects_.idOf(tag.object), tag.texel, tag.tag});
+    touched_.reserve(objects_.slotCount());
+    remote_.due.reserve(objects_.slotCount());
+    remote_.blockers.reserve(saved.latchedBlockers.size());
+    backend_.restore(restored, uint32_t(saved.clock.tick));
+
+    // From here on nothing fails.
+    applySaved(saved, latches);
+    tags_.swap(tags);
+    pending_.swap(saved.pending);
+    for (SavedField& field : saved.fields)
+        if (field.wets) (*fields_.at(field.slot))->cells->cells.swap(field.cells);
+}
+
+void World::applySaved(const SavedWorld& saved,
+                       std::span<const components::Latch> latches) noexcept {
+    clock_ = saved.clock;
+    steps_ = saved.steps;
+    droppedSteps_ = saved.droppedSteps;
+    order_ = saved.order;
+    std::copy_n(saved.wind, 3, wind_);
+    sendFieldRules();
+    remote_.flags = saved.flags & kWaysOfFire;
+    remote_.objectFlags = saved.flags & ~kWaysOfFire;
+    remote_.warms = saved.warms;
+    remote_.fades = saved.fades;
+    ++driveChanges_;
+    ++geometry_;
+    loadedFrame_ = lastFrame_;
+    if (save_ && save_->pending) {  // of the world that was
+        save_->pending = false;
+        save_->wished = true;
+    }
+    // What was asked of frames before is asked anew.
+    for (ProbeFrame& frame : probeFrames_) frame.frameIndex = 0;
+    for (uint32_t i = 0; i < queries_.slotCount(); ++i)
+        if (Query* query = queries_.at(i); query && !query->ready) query->asked = false;
+    events_.clear();
+    lights_.clear();
+    readbackTick_ = clock_.tick;
+    idle_ = false;
+    lastStimulus_ = clock_.tick;
+    // Who is where.
+    remote_.unsent = true;
+    remote_.blockersDue = saved.blockersDue;
+    remote_.blockers.assign(saved.latchedBlockers.begin(), saved.latchedBlockers.end());
+    remote_.seen.clear();
+    remote_.due.clear();
+    remote_.pairsUsed = saved.pairs.size();
+    for (const SavedBlocker& blocker : saved.blockers) {
+        BlockerEntry& entry = *blockers_.at(blocker.slot);
+        entry.pose = blocker.pose;
+        std::copy_n(blocker.halfSize, 3, entry.halfSize);
+    }
+    touched_.clear();
+    for (size_t i = 0; i < saved.objects.size(); ++i)
+        applyObject(saved.objects[i], latches[i], **objects_.at(saved.objects[i].slot));
+    for (size_t i = 0; i < saved.pairs.size(); ++i) {
+        PairContacts& pair = remote_.pairs[i];
+        pair.begin(saved.pairs[i].slots[0], saved.pairs[i].slots[1]);
+        pair.used = true;
+        for (int k = 0; k < 2; ++k) pair.ids[k] = objects_.idOf(pair.slots[k]);
+        gpu::ContactLink since{};  // found anew, of the same beginning
+        since.since = saved.pairs[i].since;
+        pair.links.push_back(since);
+    }
+    const auto idOf = [&](uint32_t plus1) {
+        return plus1 != 0 ? objects_.idOf(plus1 - 1) : FwBurnableMeshId{};
+    };
+    for (const SavedFire& from : saved.fires) {
+        Fire& fire = **fires_.at(from.slot);
+        std::copy_n(from.position, 3, fire.data.position);
+        fire.data.power = from.power;
+        for (size_t k = 0; k < from.touches.size(); ++k) {
+            FireTouch& touch = fire.touches[k];
+            touch.object = idOf(from.touches[k].object1);
+            touch.since = from.touches[k].since;
+            std::copy_n(from.touches[k].fireAt, 3, touch.fireAt);
+            std::copy_n(from.touches[k].objectAt, 3, touch.objectAt);
+            touch.lit = from.touches[k].flag;
+        }
+    }
+    for (const SavedEmitter& from : saved.emitters) applyEmitter(from, *emitters_.at(from.slot));
+    for (const SavedField& from : saved.fields) {
+        Field& field = **fields_.at(from.slot);
+        // The backend counts its own steps: what it shows goes on from where it is.
+        const uint32_t ran = field.steps - field.shownBase;
+        field.began = from.began;
+        field.steps = components::fieldSteps(field.data, clock_.tick - field.began);
+        field.shownBase = field.steps - ran;
+        if (!from.wets) continue;
+        field.cells->step = from.step;
+        field.cells->emitted = from.emitted;
+        field.cells->died = from.died;
+        field.cells->left = from.left;
+    }
+}
+
+void World::applyObject(const SavedObject& from, const components::Latch& latch,
+                        Object& object) noexcept {
+    object.data.pose = from.pose;
+    sendPose(object);
+    object.latch = latch;
+    object.firstEvent = from.firstEvent;
+    object.firstFrame = lastFrame_ + 1;
+    object.touched = from.touched;
+    ++object.changes;
+    // What was read back for it and is lost is wished again.
+    const auto again = [&](bool& wished, bool& pending) {
+        if (!pending) return;
+        pending = false;
+        if (!wished) ++mapsWished_;
+        wished = true;
+    };
+    again(object.map.wished, object.map.pending);
+    if (object.forecast) {
+        again(object.forecast->wished, object.forecast->pending);
+        object.forecast->told = false;
+    }
+    object.remote = {};
+    object.remoteSent = false;
+    object.remoteDue = from.due;
+    object.remoteVersion = from.placed ? ++remote_.version : 0;
+    if (from.due) remote_.due.push_back(object.slot);
+    if (from.placed) {
+        const mesh::BurnDomain& domain = domainOf(object);
+        if (from.due) {
+            object.remote = from.remote;
+        } else {
+            components::placeRemote(object.data.pose, domain, object.remote);
+            components::fillRemote(object.data, domain, object.governance, object.remote);
+            if (object.texels == 0) object.remote.flags &= ~gpu::kRemoteLive;
+        }
+        object.reach = components::remoteReach(object.data, domain,
+                                               meshes_.at(object.data.meshSlot)->texelsOf);
+    }
+    const SavedStory& story = from.story;
+    object.active = story.active;
+    object.sawFire = story.sawFire;
+    object.doused = story.doused;
+    object.ignitionKnown = story.ignitionKnown;
+    object.lastStimulus = story.lastStimulus;
+    object.lastDouse = story.lastDouse;
+    object.lastBurning = story.lastBurning;
+    object.firstIgnition = story.firstIgnition;
+    std::copy_n(story.ignitionPoint, 3, object.ignitionPoint);
+    object.litTold = story.litTold;
+    object.spotsTold = story.spotsTold;
+    object.mostIgnited = story.mostIgnited;
+    object.clampsTold = story.clampsTold;
+    object.energy = story.energy;
+    object.heatSteps = story.heatSteps;
+    object.power = story.power;
+    object.counters = from.counters;
+    if (!from.touched) return;
+    touched_.push_back(&object);
+    if (object.ignitionKnown)
+        backend_.startBoundary(object.slot, object.ignitionPoint, uint32_t(object.firstIgnition));
+}
+
+void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emitter) noexcept {
+    std::copy_n(from.position, 3, emitter.position);
+    std::copy_n(from.direction, 3, emitter.direction);
+    if (emitter.def.power != from.power) components::setEmitterPower(emitter, from.power);
+    emitter.swept = 0;
+    for (size_t k = 0; k < from.touches.size(); ++k) {
+        components::JetTouch& touch = emitter.touches[k];
+        const uint32_t object1 = from.touches[k].object1;
+        touch.object = object1 != 0 ? objects_.idOf(object1 - 1) : FwBurnableMeshId{};
+        touch.since = from.touches[k].since;
+        touch.seen = from.touches[k].flag;
+    }
+    if (!emitter.stream) return;
+    emitter.stream->kept = from.kept;
+    for (components::JetParcel& parcel : emitter.stream->parcels) parcel = {};
+    for (size_t i = 0; i < from.parcels.size(); ++i) {
+        components::JetParcel& parcel = emitter.stream->parcels[from.places[i]];
+        parcel = from.parcels[i];
+        for (uint32_t r = 0; r < components::kJetRays; ++r) {
+            components::JetRay& ray = parcel.rays[r];
+            const uint32_t object1 = ray.hit.object.index1;
+            ray.hit.object = object1 != 0 ? objects_.idOf(object1 - 1) : FwBurnableMeshId{};
+            ray.version = from.swept[i * components::kJetRays + r] != 0 ? geometry_ : 0;
+        }
+    }
+}
+
+}  // namespace fw::world

@@ -1,0 +1,449 @@
+// Saves as bytes: one description of every record for both directions, and the planes of an object.
+#include "save/plane.h"
+#include "save/stream.h"
+#include "shared/heat.h"
+#include "world/save.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace fw::world {
+namespace {
+
+using save::PlaneMask;
+using save::Reader;
+using save::Writer;
+
+constexpr uint32_t kMagic = 0x56535746u;  // "FWSV"
+constexpr size_t kHeaderBytes = 24;
+
+// ---- records: `s` is a Writer and T const, or a Reader -----------------------------------------
+
+template <typename S, typename T>
+concept Is = std::is_same_v<std::remove_const_t<S>, T>;
+
+template <typename S, Is<components::Pose> T>
+void put(S& s, T& value);
+template <typename S, Is<fire::WindFilter> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedTouch> T>
+void put(S& s, T& value);
+template <typename S, Is<components::JetGate> T>
+void put(S& s, T& value);
+template <typename S, Is<components::JetHit> T>
+void put(S& s, T& value);
+template <typename S, Is<components::JetRay> T>
+void put(S& s, T& value);
+template <typename S, Is<components::JetParcel> T>
+void put(S& s, T& value);
+template <typename S, Is<PendingTexel> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedTag> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedPair> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedBlocker> T>
+void put(S& s, T& value);
+template <typename S, Is<gpu::Blocker> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedFire> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedStory> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedObject> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedEmitter> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedField> T>
+void put(S& s, T& value);
+
+template <typename S, typename T>
+requires std::is_arithmetic_v<std::remove_const_t<T>>
+void put(S& s, T& value) { s.number(value); }
+
+template <typename S, typename T, size_t N>
+void put(S& s, T (&values)[N]) {
+    for (auto& value : values) put(s, value);
+}
+template <typename S, typename T, size_t N>
+void put(S& s, std::array<T, N>& values) {
+    for (auto& value : values) put(s, value);
+}
+template <typename S, typename T, size_t N>
+void put(S& s, const std::array<T, N>& values) {
+    for (auto& value : values) put(s, value);
+}
+
+template <typename S, typename... T>
+void all(S& s, T&... values) {
+    (put(s, values), ...);
+}
+
+// Structs of words alone, as backends share them.
+template <typename S, typename T>
+void putWords(S& s, T& value) {
+    using Words = std::array<uint32_t, sizeof(T) / sizeof(uint32_t)>;
+    static_assert(sizeof(Words) == sizeof(T) && std::is_trivially_copyable_v<T>);
+    auto words = std::bit_cast<Words>(value);
+    for (uint32_t& word : words) s.number(word);
+    if constexpr (S::kReads) value = std::bit_cast<T>(words);
+}
+
+template <typename S, Is<components::Pose> T>
+void put(S& s, T& p) {
+    all(s, p.rotation, p.scale, p.stretch, p.translation);
+}
+template <typename S, Is<fire::WindFilter> T>
+void put(S& s, T& f) {
+    all(s, f.value, f.latched);
+}
+template <typename S, Is<SavedTouch> T>
+void put(S& s, T& t) {
+    all(s, t.object1);
+    if (t.object1 != 0) all(s, t.since, t.fireAt, t.objectAt, t.flag);
+}
+template <typename S, Is<components::JetGate> T>
+void put(S& s, T& g) {
+    all(s, g.object, g.texel, g.holeTicks, g.distance);
+}
+template <typename S, Is<components::JetHit> T>
+void put(S& s, T& h) {
+    all(s, h.met, h.distance, h.place, h.normal, h.object.index1, h.texel);
+}
+template <typename S, Is<components::JetRay> T>
+void put(S& s, T& r) {
+    all(s, r.way, r.hit, r.spent, r.gates, r.passed, r.gateCount);
+    if constexpr (S::kReads)
+        if (r.gateCount > components::kJetGates)
+            core::fail(FW_ERROR_BAD_DATA, "A ray of the save has passed %u holes; the limit is %u.",
+                       r.gateCount, components::kJetGates);
+}
+template <typename S, Is<components::JetParcel> T>
+void put(S& s, T& p) {
+    all(s, p.launched, p.power, p.from, p.wide, p.most, p.flight, p.rays);
+}
+template <typename S, Is<PendingTexel> T>
+void put(S& s, T& p) {
+    all(s, p.object, p.texel, p.kind, p.tick, p.water, p.order, p.gateCount, p.shut);
+    if constexpr (S::kReads)
+        if (p.gateCount > components::kJetGates)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "An event of the save waits for %u holes; the limit is %u.", p.gateCount,
+                       components::kJetGates);
+    for (uint32_t i = 0; i < p.gateCount; ++i) put(s, p.gates[i]);
+}
+template <typename S, Is<SavedTag> T>
+void put(S& s, T& t) {
+    all(s, t.object, t.texel, t.tag);
+}
+template <typename S, Is<SavedPair> T>
+void put(S& s, T& p) {
+    all(s, p.slots, p.since);
+}
+template <typename S, Is<SavedBlocker> T>
+void put(S& s, T& b) {
+    all(s, b.slot, b.pose, b.halfSize);
+}
+template <typename S, Is<gpu::Blocker> T>
+void put(S& s, T& b) {
+    putWords(s, b);
+}
+template <typename S, Is<SavedFire> T>
+void put(S& s, T& f) {
+    all(s, f.slot, f.flags, f.position, f.power, f.touches);
+}
+template <typename S, Is<SavedStory> T>
+void put(S& s, T& o) {
+    all(s, o.active, o.sawFire, o.doused, o.ignitionKnown, o.lastStimulus, o.lastDouse,
+        o.lastBurning, o.firstIgnition, o.ignitionPoint, o.litTold, o.spotsTold, o.mostIgnited,
+        o.clampsTold, o.energy, o.heatSteps, o.power);
+}
+template <typename S, Is<SavedObject> T>
+void put(S& s, T& o) {
+    all(s, o.slot, o.asset, o.pose, o.firstEvent, o.placed, o.due);
+    if (o.placed && o.due) putWords(s, o.remote);
+    all(s, o.touched);
+    if (!o.touched) return;
+    all(s, o.filters, o.latched, o.story);
+    putWords(s, o.counters);
+    if constexpr (S::kReads) {
+        const uint32_t size = s.count("bytes of an object's planes", 1);
+        o.planes = s.take(size);
+    } else {
+        s.number(uint32_t(o.planes.size()));
+        s.bytes().insert(s.bytes().end(), o.planes.begin(), o.planes.end());
+    }
+}
+
+// A list: its length and its entries, each of them `bytesEach` bytes or more.
+template <typename S, typename List>
+void list(S& s, List& entries, const char* name, size_t bytesEach) {
+    if constexpr (S::kReads) {
+        const uint32_t count = s.count(name, bytesEach);
+        entries.clear();
+        entries.reserve(count);
+        for (uint32_t i = 0; i < count; ++i) put(s, entries.emplace_back());
+    } else {
+        s.number(uint32_t(entries.size()));
+        for (auto& entry : entries) put(s, entry);
+    }
+}
+
+template <typename S, Is<SavedEmitter> T>
+void put(S& s, T& e) {
+    all(s, e.slot, e.flags, e.position, e.direction, e.power, e.touches, e.streams);
+    if (!e.streams) return;
+    all(s, e.kept);
+    list(s, e.parcels, "parcels of a jet", 16);
+    const size_t rays = e.parcels.size() * components::kJetRays;
+    if constexpr (S::kReads) {
+        e.places.resize(e.parcels.size());
+        e.swept.resize(rays);
+    }
+    for (size_t i = 0; i < e.parcels.size(); ++i) {
+        put(s, e.places[i]);
+        if constexpr (S::kReads)
+            if (e.places[i] >= components::kJetParcels)
+                core::fail(FW_ERROR_BAD_DATA,
+                           "A parcel of the save has place %u; there are %u of them.", e.places[i],
+                           components::kJetParcels);
+    }
+    for (size_t i = 0; i < rays; ++i) {
+        bool swept = e.swept[i] != 0;
+        put(s, swept);
+        if constexpr (S::kReads) e.swept[i] = swept ? 1 : 0;
+    }
+}
+template <typename S, Is<SavedField> T>
+void put(S& s, T& f) {
+    all(s, f.slot, f.width, f.height, f.began, f.wets);
+    if (!f.wets) return;
+    all(s, f.step, f.emitted, f.died, f.left);
+    if constexpr (S::kReads) {
+        if (f.width - 1 > 255 || f.height - 1 > 255)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "A particle field of the save has %u x %u cells; the limits are [1, 256].",
+                       f.width, f.height);
+        f.cells.resize(size_t(f.width) * f.height);
+        const uint32_t size = s.count("bytes of a field's cells", 1);
+        if (!save::readPlane(s.take(size), f.width, {}, f.cells))
+            core::fail(FW_ERROR_BAD_DATA, "The cells of particle field %u in the save are damaged.",
+                       f.slot + 1);
+    } else {
+        std::pmr::vector<std::byte> cells(s.bytes().get_allocator());
+        save::writePlane(f.cells, f.width, {}, cells);
+        s.number(uint32_t(cells.size()));
+        s.bytes().insert(s.bytes().end(), cells.begin(), cells.end());
+    }
+}
+
+template <typename S, Is<SavedWorld> T>
+void put(S& s, T& w) {
+    all(s, w.pace, w.up, w.spreadChance, w.timeToLive, w.seed, w.maxHops, w.maxBurningTiles);
+    all(s, w.clock.tick, w.clock.fraction, w.steps, w.droppedSteps, w.order, w.wind, w.flags,
+        w.warms, w.blockersDue, w.fades);
+    list(s, w.objects, "burnable meshes", 64);
+    list(s, w.pending, "events that wait", 32);
+    list(s, w.tags, "tags", 12);
+    list(s, w.pairs, "pairs that touch", 12);
+    list(s, w.blockers, "blockers", 64);
+    list(s, w.latchedBlockers, "latched blockers", 64);
+    list(s, w.fires, "volumetric fires", 24);
+    list(s, w.emitters, "fire emitters", 36);
+    list(s, w.fields, "particle fields", 20);
+}
+
+// ---- planes ------------------------------------------------------------------------------------
+
+// A texel's code as a small number: 5 is a source, whose tick is in another plane.
+constexpr uint32_t kClassSource = 5;
+constexpr uint32_t kClassCodes[kClassSource] = {gpu::kNever, gpu::kInert, gpu::kWet, gpu::kOut,
+                                                gpu::kOutWet};
+uint32_t classOf(uint32_t code) noexcept {
+    if (gpu::isSource(code)) return kClassSource;
+    uint32_t found = 0;
+    while (found + 1 < kClassSource && kClassCodes[found] != code) ++found;
+    return found;
+}
+
+// Fields of a packed HeatTexel, by word and bits.
+struct HeatField {
+    uint32_t word, shift, bits;
+};
+constexpr HeatField kHeatFields[] = {{0, 0, 16}, {0, 16, 16}, {1, 0, 10}, {1, 10, 2},
+                                     {1, 12, 8}, {1, 20, 8},  {1, 28, 2}, {1, 30, 2}};
+
+constexpr uint32_t kKeptBits[] = {gpu::kTileListed, gpu::kTileBurning, gpu::kTileHot,
+                                  gpu::kTileWarm};
+
+void markReal(const mesh::BurnDomain& domain, PlaneScratch& scratch) {
+    scratch.real.resize(domain.texelCount());
+    for (uint32_t i = 0; i < domain.texelCount(); ++i) scratch.real[i] = domain.real(i) ? 1 : 0;
+}
+
+// One plane: its size and its bytes.
+void plane(std::span<const uint32_t> values, uint32_t width, PlaneMask mask,
+           std::pmr::vector<std::byte>& out) {
+    const size_t at = out.size();
+    Writer(out).number(uint32_t(0));
+    save::writePlane(values, width, mask, out);
+    const auto size = uint32_t(out.size() - at - sizeof(uint32_t));
+    for (size_t k = 0; k < sizeof size; ++k) out[at + k] = std::byte(size >> (8 * k));
+}
+
+void readOne(Reader& from, uint32_t width, PlaneMask mask, std::span<uint32_t> values,
+             uint32_t most, const char* name) {
+    const uint32_t size = from.count("bytes of a plane", 1);
+    std::fill(values.begin(), values.end(), 0u);
+    if (!save::readPlane(from.take(size), width, mask, values))
+        core::fail(FW_ERROR_BAD_DATA, "The plane \"%s\" of the save is damaged.", name);
+    for (const uint32_t value : values)
+        if (value > most)
+            core::fail(FW_ERROR_BAD_DATA, "The plane \"%s\" of the save holds %u; the limit is %u.",
+                       name, value, most);
+}
+
+}  // namespace
+
+void writeImage(const gpu::ObjectImage& image, const mesh::BurnDomain& domain, uint32_t tick,
+                uint32_t windowMost, PlaneScratch& scratch, std::pmr::vector<std::byte>& out) {
+    const uint32_t width = domain.width;
+    markReal(domain, scratch);
+    const size_t texels = image.ticks.size();
+    scratch.values.resize(std::max<size_t>(texels, image.tiles.size()));
+    scratch.sources.resize(texels);
+    const std::span<uint32_t> values = std::span(scratch.values).first(texels);
+    for (size_t i = 0; i < texels; ++i) {
+        values[i] = classOf(image.ticks[i]);
+        scratch.sources[i] = scratch.real[i] != 0 && values[i] == kClassSource ? 1 : 0;
+    }
+    plane(values, width, scratch.real, out);
+    plane(image.ticks, width, scratch.sources, out);
+    Writer(out).number(!image.heat.empty());
+    for (const HeatField& field : kHeatFields) {
+        if (image.heat.empty()) break;
+        for (size_t i = 0; i < texels; ++i) {
+            const uint32_t word = field.word == 0 ? image.heat[i].x : image.heat[i].y;
+            values[i] = (word >> field.shift) & ((1u << field.bits) - 1);
+        }
+        plane(values, width, scratch.real, out);
+    }
+    const size_t tiles = image.tiles.size();
+    const std::span<uint32_t> perTile = std::span(scratch.values).first(tiles);
+    for (size_t i = 0; i < tiles; ++i) {
+        perTile[i] = 0;
+        for (uint32_t bit = 0; bit < std::size(kKeptBits); ++bit)
+            perTile[i] |= (image.tiles[i].flag & kKeptBits[bit]) != 0 ? 1u << bit : 0u;
+    }
+    plane(perTile, domain.tilesX, {}, out);
+    // Beyond the window nobody asks how long ago it was.
+    for (size_t i = 0; i < tiles; ++i) {
+        const uint32_t changed = image.tiles[i].lastChange;
+        const uint32_t age = tick - changed;
+        perTile[i] = changed == gpu::kFarPast ? windowMost + 1 : std::min(age, windowMost);
+    }
+    plane(perTile, domain.tilesX, {}, out);
+    for (size_t i = 0; i < tiles; ++i) perTile[i] = image.tileHeat[i].flux;
+    plane(perTile, domain.tilesX, {}, out);
+    for (size_t i = 0; i < tiles; ++i) perTile[i] = image.tileHeat[i].pilot;
+    plane(perTile, domain.tilesX, {}, out);
+}
+
+void readImage(std::span<const std::byte> planes, const mesh::BurnDomain& domain, uint32_t tick,
+               uint32_t windowMost, std::span<const gpu::HeatMaterial> heat, PlaneScratch& scratch,
+               ImageStore& store) {
+    const uint32_t width = domain.width, texels = domain.texelCount(), tiles = domain.tileCount();
+    Reader from(planes);
+    markReal(domain, scratch);
+    scratch.values.resize(std::max(texels, tiles));
+    scratch.sources.resize(texels);
+    const std::span<uint32_t> values = std::span(scratch.values).first(texels);
+    readOne(from, width, scratch.real, values, kClassSource, "states");
+    store.ticks.resize(texels);
+    for (uint32_t i = 0; i < texels; ++i) {
+        const bool real = scratch.real[i] != 0;
+        scratch.sources[i] = real && values[i] == kClassSource ? 1 : 0;
+        store.ticks[i] = real && values[i] < kClassSource ? kClassCodes[values[i]] : gpu::kInert;
+    }
+    readOne(from, width, scratch.sources, values, gpu::kLiveEnd - 1, "ignition ticks");
+    for (uint32_t i = 0; i < texels; ++i)
+        if (scratch.sources[i] != 0) store.ticks[i] = values[i];
+    bool heated = false;
+    from.number(heated);
+    if (heated == heat.empty())
+        core::fail(FW_ERROR_BAD_DATA, "The save has %s heat for an object that has %s.",
+                   heated ? "some" : "no", heated ? "none" : "some");
+    store.heat.assign(heated ? texels : 0, gpu::uvec2(0, 0));
+    for (const HeatField& field : kHeatFields) {
+        if (!heated) break;
+        readOne(from, width, scratch.real, values, (1u << field.bits) - 1, "heat");
+        for (uint32_t i = 0; i < texels; ++i)
+            (field.word == 0 ? store.heat[i].x : store.heat[i].y) |= values[i] << field.shift;
+    }
+    for (uint32_t i = 0; heated && i < texels; ++i)
+        if (scratch.real[i] == 0)
+            store.heat[i] =
+                gpu::packHeat(gpu::heatRests(heat[domain.texels[i].materialFlags & 7], false));
+    store.tiles.assign(tiles, gpu::TileState{gpu::kNever, 0, gpu::kFarPast, 0});
+    store.tileHeat.assign(tiles, gpu::TileHeat{});
+    const std::span<uint32_t> perTile = std::span(scratch.values).first(tiles);
+    readOne(from, domain.tilesX, {}, perTile, 15, "tiles");
+    for (uint32_t i = 0; i < tiles; ++i)
+        for (uint32_t bit = 0; bit < std::size(kKeptBits); ++bit)
+            if ((perTile[i] >> bit & 1) != 0) store.tiles[i].flag |= kKeptBits[bit];
+    readOne(from, domain.tilesX, {}, perTile, windowMost + 1, "ages of tiles");
+    for (uint32_t i = 0; i < tiles; ++i)
+        if (perTile[i] <= windowMost) store.tiles[i].lastChange = tick - perTile[i];
+    readOne(from, domain.tilesX, {}, perTile, 0xFFFFFFFFu, "flux to tiles");
+    for (uint32_t i = 0; i < tiles; ++i) store.tileHeat[i].flux = perTile[i];
+    readOne(from, domain.tilesX, {}, perTile, 1, "flames near tiles");
+    for (uint32_t i = 0; i < tiles; ++i) store.tileHeat[i].pilot = perTile[i];
+    if (from.left() != 0)
+        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow an object's planes in the save.",
+                   from.left());
+}
+
+void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out) {
+    out.assign(kHeaderBytes, std::byte(0));
+    Writer writer(out);
+    put(writer, saved);
+    std::pmr::vector<std::byte> head(out.get_allocator());
+    Writer header(head);
+    header.number(kMagic);
+    header.number(kSaveVersion);
+    header.number(uint64_t(out.size() - kHeaderBytes));
+    header.number(save::checksum(std::span(out).subspan(kHeaderBytes)));
+    std::copy(head.begin(), head.end(), out.begin());
+}
+
+void readSaved(std::span<const std::byte> bytes, SavedWorld& saved) {
+    if (bytes.size() < kHeaderBytes)
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes; its header alone has %zu.",
+                   bytes.size(), kHeaderBytes);
+    Reader header(bytes.first(kHeaderBytes));
+    uint32_t magic = 0, version = 0;
+    uint64_t size = 0, told = 0;
+    all(header, magic, version, size, told);
+    if (magic != kMagic)
+        core::fail(FW_ERROR_BAD_DATA, "The save begins with 0x%08X; 0x%08X (\"FWSV\") is expected.",
+                   magic, kMagic);
+    if (version != kSaveVersion)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The save has format version %u; this library reads version %u.", version,
+                   kSaveVersion);
+    const auto content = bytes.subspan(kHeaderBytes);
+    if (size != content.size())
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes of content; its header says %llu.",
+                   content.size(), static_cast<unsigned long long>(size));
+    const uint64_t found = save::checksum(content);
+    if (found != told)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The save's checksum is 0x%016llX; its header says 0x%016llX.",
+                   static_cast<unsigned long long>(found), static_cast<unsigned long long>(told));
+    Reader reader(content);
+    put(reader, saved);
+    if (reader.left() != 0)
+        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the content of the save.", reader.left());
+}
+
+}  // namespace fw::world

@@ -1,0 +1,329 @@
+// Saves: a world that is saved and loaded goes on bit by bit as the one that was not, on the same
+// backend or on another; what cannot be loaded is refused and changes nothing.
+#include "abi_support.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace {
+
+using namespace host;
+
+using Bytes = std::vector<unsigned char>;
+
+// Much goes on at once in it: boxes and boards of several materials that light each other, wind
+// that turns, water, a flamethrower, a fire that stands there, a field that wets, a wall, a tag.
+class BusyWorld {
+ public:
+    explicit BusyWorld(uint32_t backend, float pace = 12, uint32_t things = 10) {
+        FwContextDef contextDef = fwDefaultContextDef();
+        contextDef.backend = backend;
+        contextDef.callbacks = host.callbacks();
+        FwErrorInfo error{};
+        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        FwWorldDef def = fwDefaultWorldDef();
+        def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
+        def.paceFactor = pace;
+        def.seed = 5;
+        def.maxBurningTiles = 250;
+        ok(fwCreateWorld(context, &def, &world));
+        for (uint32_t i = 0; i < things; ++i) add(i);
+        FwFireEmitterDef jetDef = fwDefaultFireEmitterDef();
+        jetDef.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES;
+        put(jetDef.position, -1.2f, 0.15f, 0.1f);
+        put(jetDef.direction, 1, 0, 0.05f);
+        jetDef.power = 400;
+        ok(fwWorld_CreateFireEmitter(world, &jetDef, &jet));
+        FwVolumetricFireDef fireDef = fwDefaultVolumetricFireDef();
+        fireDef.flags |= FW_FIRE_IGNITES;
+        put(fireDef.position, 1.8f, 0, 0.55f);
+        ok(fwWorld_CreateVolumetricFire(world, &fireDef, &fire));
+        FwParticleFieldDef fieldDef = fwDefaultParticleFieldDef();
+        ok(fwInitFieldPreset(&fieldDef, FW_FIELD_WATER));
+        fieldDef.flags |= FW_FIELD_WETS;
+        put(fieldDef.position, 0.9f, 0.0f, 0.5f);
+        fieldDef.width = fieldDef.height = 32;
+        ok(fwWorld_CreateParticleField(world, &fieldDef, &field));
+        FwBlockerDef wall = fwDefaultBlockerDef();
+        place(wall.transform, 1.0f, 0.3f, 0.25f, 0);
+        put(wall.halfSize, 0.3f, 0.3f, 0.01f);
+        ok(fwWorld_AddBlocker(world, &wall, &blocker));
+    }
+    BusyWorld(const BusyWorld&) = delete;
+    BusyWorld& operator=(const BusyWorld&) = delete;
+    ~BusyWorld() {
+        fwDestroyContext(context);
+        EXPECT_EQ(0, host.blocks);
+    }
+
+    // What happens in a frame follows from its number alone. Rates of frames vary.
+    void run(uint32_t from, uint32_t to) {
+        for (uint32_t frame = from; frame < to; ++frame) {
+            act(frame);
+            ok(fwWorld_Step(world, frame % 3 == 0 ? 1.0f / 60 : 1.0f / 24));
+        }
+    }
+    // Of every texel and what it holds, and of the tick.
+    uint64_t hash() {
+        uint64_t all = 0;
+        for (const FwBurnableMeshId id : ids) ok(fwDebug_RequestBurnMap(world, id));
+        for (const FwBurnableMeshId id : ids) {
+            uint64_t one = 0, tick = 0;
+            come([&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, &tick); });
+            all = all * 31 + one + tick;
+        }
+        return all;
+    }
+    Bytes save() {
+        ok(fwWorld_RequestSave(world));
+        uint64_t size = 0;
+        come([&] { return fwWorld_FetchSave(world, nullptr, &size); });
+        Bytes bytes(size);
+        ok(fwWorld_FetchSave(world, bytes.data(), &size));
+        return bytes;
+    }
+    FwResult load(const Bytes& bytes) {
+        const unsigned char none = 0;  // an empty vector has no address
+        return fwWorld_Load(world, bytes.empty() ? &none : bytes.data(), bytes.size());
+    }
+    uint32_t burning() {  // objects that caught
+        uint32_t caught = 0;
+        for (const FwBurnableMeshId id : ids) {
+            FwObjectState state{};
+            state.structSize = sizeof state;
+            ok(fwWorld_GetObjectState(world, id, &state));
+            caught += state.ignited > 0 ? 1 : 0;
+        }
+        return caught;
+    }
+
+    Host host;
+    FwContext* context = nullptr;
+    FwWorld* world = nullptr;
+    std::vector<FwBurnableMeshId> ids;
+    FwFireEmitterId jet{};
+    FwVolumetricFireId fire{};
+    FwParticleFieldId field{};
+    FwBlockerId blocker{};
+
+ private:
+    // With a device an answer comes with a frame, be it of no time.
+    void come(const std::function<FwResult()>& fetch) {
+        FwResult result = fetch();
+        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+            ok(fwWorld_Step(world, 0));
+            result = fetch();
+        }
+        ok(result);
+    }
+    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
+    static void put(float (&to)[3], float x, float y, float z) { to[0] = x, to[1] = y, to[2] = z; }
+    static void place(float (&at)[16], float x, float y, float z, float turn) {
+        std::fill(std::begin(at), std::end(at), 0.0f);
+        at[0] = at[10] = std::cos(turn);
+        at[8] = std::sin(turn);
+        at[2] = -at[8];
+        at[5] = at[15] = 1;
+        at[12] = x, at[13] = y, at[14] = z;
+    }
+    void add(uint32_t i) {
+        static const uint32_t kPresets[] = {FW_MATERIAL_PLYWOOD, FW_MATERIAL_PAPER,
+                                            FW_MATERIAL_COTTON, FW_MATERIAL_PINE,
+                                            FW_MATERIAL_DRY_LEAF};
+        const Sheet sheet(0.5f, 0.35f, 2);
+        const FwMeshDef meshDef = [&] {
+            FwMeshDef made = sheet.def(64);
+            made.noiseAmplitude = 0.15f;
+            return made;
+        }();
+        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+        ok(fwWorld_CreateMesh(world, &meshDef, &def.mesh));
+        FwMaterialDef material = fwDefaultMaterialDef();
+        ok(fwInitMaterialPreset(&material, kPresets[i % 5]));
+        ok(fwWorld_CreateMaterial(world, &material, &def.materials[0]));
+        if (i == 4) def.flags |= FW_BURNABLE_LITE;
+        place(def.transform, float(i % 5) * 0.45f, 0.12f * float(i % 3), float(i / 5) * 0.4f,
+              0.2f * float(i));
+        FwBurnableMeshId id{};
+        ok(fwWorld_CreateBurnableMesh(world, &def, &id));
+        ids.push_back(id);
+    }
+    void act(uint32_t frame) {
+        FwIgnitionDef ball = fwDefaultIgnitionDef();
+        uint32_t texels = 0;
+        if (frame == 2 || frame == 90) {
+            ball.radius = 0.15f;
+            ball.delay = frame == 90 ? 0.7f : 0.0f;
+            put(ball.position, frame == 2 ? 0.6f : 1.4f, 0.1f, 0.2f);
+            ok(fwWorld_Ignite(world, &ball, &texels));
+        }
+        if (frame == 60 || frame == 130) {
+            ball.kind = frame == 60 ? FW_WET : FW_EXTINGUISH;
+            ball.water = frame == 60 ? 80.0f : 0.0f;
+            ball.radius = 0.2f;
+            put(ball.position, 0.5f, 0.1f, 0.1f);
+            ok(fwWorld_Ignite(world, &ball, &texels));
+        }
+        if (frame % 25 == 7) {
+            const float wind[3] = {std::cos(float(frame)) * 3, 0, std::sin(float(frame)) * 3};
+            ok(fwWorld_SetWind(world, wind));
+        }
+        if (frame % 40 == 11) {
+            float at[16];
+            place(at, 0.9f + 0.01f * float(frame % 7), 0.1f, 0.5f, 0.1f * float(frame));
+            ok(fwWorld_SetTransform(world, ids[7 % ids.size()], at));
+        }
+        if (frame == 100) ok(fwWorld_SetFlags(world, FW_WORLD_RADIATION | FW_WORLD_CONTACT));
+        if (frame == 150)
+            ok(fwWorld_SetFlags(
+                world, FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS));
+    }
+};
+
+bool there(const BusyWorld& w) { return w.world != nullptr; }
+
+// Saves at several moments; each is loaded into a new world, which goes on to the end.
+void goesOnAlike(uint32_t saves, uint32_t loads, uint32_t end) {
+    BusyWorld first(saves);
+    if (!there(first)) GTEST_SKIP() << "there is no such backend here";
+    const uint32_t moments[] = {25, 92, 140};
+    std::vector<Bytes> bytes;
+    std::vector<uint64_t> hashes;
+    uint32_t frame = 0;
+    for (const uint32_t moment : moments) {
+        if (moment >= end) continue;
+        first.run(frame, moment);
+        bytes.push_back(first.save());
+        hashes.push_back(first.hash());
+        frame = moment;
+    }
+    first.run(frame, end);
+    const uint64_t last = first.hash();
+    EXPECT_GE(first.burning(), 4u);
+    for (size_t i = 0; i < bytes.size(); ++i) {
+        BusyWorld other(loads);
+        if (!there(other)) GTEST_SKIP() << "there is no such backend here";
+        ASSERT_EQ(FW_OK, other.load(bytes[i])) << lastMessage(other.world);
+        EXPECT_EQ(hashes[i], other.hash()) << "at " << moments[i];
+        EXPECT_EQ(bytes[i], other.save()) << "saved again, at " << moments[i];
+        other.run(moments[i], end);
+        EXPECT_EQ(last, other.hash()) << "from " << moments[i];
+    }
+}
+
+TEST(Save, GoesOnAlike) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_CPU, 260); }
+TEST(Save, GoesOnAlikeOnADevice) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_VULKAN, 150); }
+TEST(Save, FromADeviceToTheCpu) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_CPU, 110); }
+TEST(Save, FromTheCpuToADevice) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_VULKAN, 110); }
+
+// Back in the same world, twice, from a later and from an earlier moment.
+void goesBack(uint32_t backend) {
+    BusyWorld w(backend);
+    if (!there(w)) GTEST_SKIP() << "there is no such backend here";
+    w.run(0, 70);
+    const Bytes bytes = w.save();
+    const uint64_t then = w.hash();
+    w.run(70, 150);
+    const uint64_t later = w.hash();
+    EXPECT_NE(then, later);
+    for (int i = 0; i < 2; ++i) {
+        ASSERT_EQ(FW_OK, w.load(bytes)) << lastMessage(w.world);
+        EXPECT_EQ(then, w.hash());
+        w.run(70, 150);
+        EXPECT_EQ(later, w.hash());
+    }
+}
+TEST(Save, GoesBackInTheSameWorld) { goesBack(FW_BACKEND_CPU); }
+TEST(Save, GoesBackInTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
+
+void expectRefused(BusyWorld& w, const Bytes& bytes, const char* says) {
+    const uint64_t before = w.hash();
+    EXPECT_EQ(FW_ERROR_BAD_DATA, w.load(bytes)) << says;
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find(says)) << lastMessage(w.world);
+    EXPECT_EQ(before, w.hash()) << says;
+}
+
+TEST(Save, RefusesWhatIsNotTheWorlds) {
+    BusyWorld w(FW_BACKEND_CPU);
+    w.run(0, 30);
+    const Bytes bytes = w.save();
+    Bytes wrong = bytes;
+    wrong[0] ^= 1;
+    expectRefused(w, wrong, "\"FWSV\"");
+    wrong = bytes;
+    wrong[4] = 9;
+    expectRefused(w, wrong, "format version 9");
+    wrong = bytes;
+    wrong[bytes.size() / 2] ^= 0x10;
+    expectRefused(w, wrong, "checksum");
+    wrong.assign(bytes.begin(), bytes.end() - 1);
+    expectRefused(w, wrong, "bytes of content; its header says");
+    wrong.assign(bytes.begin(), bytes.begin() + 11);
+    expectRefused(w, wrong, "has 11 bytes");
+    expectRefused(w, {}, "has 0 bytes");
+    BusyWorld slower(FW_BACKEND_CPU, 11);
+    expectRefused(slower, bytes, "FwWorldDef::paceFactor is 12; this world's is 11");
+    BusyWorld fewer(FW_BACKEND_CPU, 12, 9);
+    expectRefused(fewer, bytes, "10 burnable meshes; this world has 9");
+    uint64_t size = 3;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchSave(fewer.world, nullptr, &size));
+    EXPECT_NE(std::string::npos, lastMessage(fewer.world).find("request it first"));
+    unsigned char few[3];
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchSave(w.world, few, &size));
+    EXPECT_EQ(bytes.size(), size);
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchSave(w.world, few, nullptr));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Load(w.world, nullptr, 0));
+}
+
+// The sum that a save's header has, so that what is behind it is looked at.
+void sign(Bytes& bytes) {
+    uint64_t hash = 1469598103934665603ull;
+    size_t at = 24;
+    for (; at + 8 <= bytes.size(); at += 8) {
+        uint64_t word = 0;
+        std::memcpy(&word, &bytes[at], 8);
+        hash = (hash ^ word) * 1099511628211ull;
+        hash ^= hash >> 29;
+    }
+    for (; at < bytes.size(); ++at) hash = (hash ^ bytes[at]) * 1099511628211ull;
+    const uint64_t size = bytes.size() - 24;
+    std::memcpy(&bytes[8], &size, 8);
+    std::memcpy(&bytes[16], &hash, 8);
+}
+
+// With a right checksum: it is loaded or refused with a message, and the world lives on.
+TEST(Save, DamagedOnesNeverCrash) {
+    BusyWorld w(FW_BACKEND_CPU, 12, 5);
+    w.run(0, 40);
+    const Bytes bytes = w.save();
+    uint32_t random = 7, refused = 0;
+    const auto next = [&](uint32_t most) {
+        random = random * 1664525u + 1013904223u;
+        return uint32_t((uint64_t(random) * most) >> 32);
+    };
+    for (int i = 0; i < 400; ++i) {
+        Bytes wrong = bytes;
+        const uint32_t kind = next(8);
+        if (kind == 0) wrong.resize(24 + next(uint32_t(bytes.size() - 24)));
+        const uint32_t changes = 1 + next(4);
+        for (uint32_t k = 0; k < changes && wrong.size() > 24; ++k) {
+            // Half of them where the numbers of the world and its objects are.
+            const auto most = uint32_t(wrong.size() - 24);
+            const uint32_t at = 24 + next(next(2) ? most : std::min(most, 900u));
+            wrong[at] = kind == 1 ? 0xFF : (unsigned char)(wrong[at] ^ (1u << next(8)));
+        }
+        sign(wrong);
+        const FwResult result = w.load(wrong);
+        if (result != FW_OK) {
+            EXPECT_EQ(FW_ERROR_BAD_DATA, result) << lastMessage(w.world);
+            EXPECT_FALSE(lastMessage(w.world).empty());
+            ++refused;
+        }
+        EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 1.0f / 16)) << lastMessage(w.world);
+    }
+    EXPECT_GT(refused, 40u);
+    EXPECT_EQ(FW_OK, w.load(bytes)) << lastMessage(w.world);
+    EXPECT_EQ(bytes, w.save());
+}
+
+}  // namespace

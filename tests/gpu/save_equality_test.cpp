@@ -1,0 +1,195 @@
+// Saves of a lent device, which come some frames late, against those of the cpu backend: worlds
+// that are made of either go on alike on both.
+#include "gpu/cpu/cpu_backend.h"
+#include "support/burn_scene.h"
+#include "support/world_defs.h"
+#include "world/world.h"
+
+#include "core/hash.h"
+#include "fire/presets.h"
+
+#include <cmath>
+
+namespace fw::test {
+namespace {
+
+using Bytes = std::pmr::vector<std::byte>;
+
+FwWorldDef saveWorldDef() {
+    FwWorldDef def =
+        plainWorldDef(FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS);
+    def.paceFactor = 15;
+    def.seed = 3;
+    def.maxBurningTiles = 120;
+    return def;
+}
+
+// One world on a backend of either kind, driven by frames that both count alike.
+class AWorld {
+ public:
+    AWorld(TestDevice* device, uint32_t inFlight = 3) {
+        std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+        if (device) {
+            rig_ = std::make_unique<VkRig>(*device, inFlight);
+        } else {
+            cpu_ = std::make_unique<gpu::cpu::CpuBackend>(memory, 4);
+        }
+        gpu::Backend& backend = rig_ ? static_cast<gpu::Backend&>(rig_->backend) : *cpu_;
+        world_ = std::make_unique<world::World>(saveWorldDef(), backend, log_, memory);
+        const Mesh board = makePlane(0.5, 0.3), box = makeCube(0.25, 2);
+        const uint32_t presets[] = {FW_MATERIAL_PAPER, FW_MATERIAL_COTTON, FW_MATERIAL_DRY_LEAF,
+                                    FW_MATERIAL_PLYWOOD, FW_MATERIAL_PINE};
+        for (uint32_t i = 0; i < 12; ++i) {
+            FwMeshDef def = plainMeshDef(i % 3 ? board : box, 40);
+            def.noiseAmplitude = 0.15f;
+            FwBurnableMeshDef object = plainBurnableDef(world_->createMesh(def));
+            object.flags = i % 5 == 4 ? uint32_t(FW_BURNABLE_LITE) : 0u;
+            object.materials[0] = world_->createMaterial(fire::presetDef(presets[i % 5]));
+            float(&at)[16] = object.transform;
+            const float turn = 0.4f * float(i);
+            at[0] = at[10] = std::cos(turn);
+            at[8] = std::sin(turn);
+            at[2] = -at[8];
+            at[5] = at[15] = 1;
+            at[12] = 0.35f * float(i % 4);
+            at[13] = 0.1f * float(i % 2);
+            at[14] = 0.3f * float(i / 4);
+            ids_.push_back(world_->createBurnableMesh(object));
+        }
+    }
+
+    void step(float seconds) {
+        if (!rig_) {
+            world_->advance(++frame_, seconds);
+            return;
+        }
+        const FwVulkanFrame frame = rig_->frames.begin();
+        ASSERT_TRUE(rig_->backend.beginOutside(frame));
+        world_->advance(frame.frameIndex, seconds);
+        rig_->backend.endOutside(rig_->view);
+        rig_->frames.submit();
+    }
+    void run(uint32_t from, uint32_t to) {
+        for (uint32_t i = from; i < to; ++i) {
+            act(i);
+            step(1 / 20.0f);
+        }
+    }
+    // Of the world as it is after the next frame, of no time.
+    Bytes save() {
+        world_->requestSave();
+        for (int i = 0; i < 8; ++i) step(0);
+        const Bytes* bytes = world_->fetchSave();
+        EXPECT_TRUE(bytes);
+        return bytes ? *bytes : Bytes();
+    }
+    uint64_t hash() {
+        for (const FwBurnableMeshId id : ids_) world_->requestBurnMap(id);
+        for (int i = 0; i < 8; ++i) step(0);
+        uint64_t hash = core::kFnvOffset;
+        for (const FwBurnableMeshId id : ids_) {
+            const world::BurnMapCopy* map = world_->fetchBurnMap(id);
+            EXPECT_TRUE(map);
+            if (!map) return 0;
+            hash = core::hashWords(map->ticks, hash);
+            for (const gpu::uvec2& texel : map->heat) {
+                const uint32_t words[2] = {texel.x, texel.y};
+                hash = core::hashWords(words, hash);
+            }
+            FwObjectState state{};
+            world_->objectState(id, state);
+            const uint32_t words[] = {state.ignited, state.burning};
+            hash = core::hashWords(words, hash);
+            burnt_ += state.ignited;
+        }
+        return hash;
+    }
+    void load(const Bytes& bytes) { world_->load(bytes); }
+    [[nodiscard]] uint64_t burnt() const { return burnt_; }
+    world::World& world() { return *world_; }
+
+ private:
+    void act(uint32_t frame) {
+        FwIgnitionDef ball{};
+        if (frame == 1 || frame == 70) {
+            ball.position[0] = frame == 1 ? 0.3f : 0.9f;
+            ball.position[2] = 0.3f;
+            ball.radius = 0.4f;
+            ball.delay = frame == 70 ? 0.4f : 0.0f;
+            world_->ignite(ball);
+        }
+        if (frame == 50) {
+            ball.kind = FW_WET;
+            ball.water = 60;
+            ball.position[0] = 0.2f;
+            ball.radius = 0.3f;
+            world_->ignite(ball);
+        }
+        if (frame % 20 == 9) {
+            const float wind[3] = {2 * std::cos(float(frame)), 0, 2 * std::sin(float(frame))};
+            world_->setWind(wind);
+        }
+    }
+
+    core::Log log_{FwCallbacks{}};
+    std::unique_ptr<VkRig> rig_;
+    std::unique_ptr<gpu::cpu::CpuBackend> cpu_;
+    std::unique_ptr<world::World> world_;
+    std::vector<FwBurnableMeshId> ids_;
+    uint64_t frame_ = 0, burnt_ = 0;
+};
+
+class SaveEquality : public GpuTest {};
+
+TEST_F(SaveEquality, BothBackendsGoOnFromEither) {
+    if (!device_) return;
+    AWorld device(device_.get()), cpu(nullptr);
+    uint32_t at = 0;
+    for (const uint32_t moment : {30u, 72u}) {
+        device.run(at, moment);
+        cpu.run(at, moment);
+        const Bytes ofDevice = device.save(), ofCpu = cpu.save();
+        const uint64_t then = cpu.hash();
+        EXPECT_EQ(then, device.hash());
+        const uint32_t end = moment + 45;
+        AWorld plain(nullptr);  // that was never saved
+        plain.run(0, end);
+        const uint64_t later = plain.hash();
+        EXPECT_GT(plain.burnt(), 1000u);
+        EXPECT_NE(then, later);
+        for (const Bytes* bytes : {&ofDevice, &ofCpu})
+            for (TestDevice* on : {device_.get(), static_cast<TestDevice*>(nullptr)}) {
+                AWorld other(on);
+                other.load(*bytes);
+                EXPECT_EQ(then, other.hash()) << moment << (on ? " device" : " cpu");
+                EXPECT_EQ(*bytes, other.save()) << moment << (on ? " device" : " cpu");
+                other.run(moment, end);
+                EXPECT_EQ(later, other.hash()) << moment << (on ? " device" : " cpu");
+            }
+        at = moment;
+    }
+}
+
+// Frames go on while a save is under way: it is of the frame that was asked for. And a load comes
+// into frames in flight, whose readbacks are of another past.
+TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
+    if (!device_) return;
+    AWorld device(device_.get()), plain(nullptr);
+    device.run(0, 40);
+    device.world().requestSave();
+    device.run(40, 60);
+    const Bytes* bytes = device.world().fetchSave();
+    ASSERT_TRUE(bytes);
+    const Bytes kept = *bytes;
+    plain.run(0, 41);
+    const uint64_t then = plain.hash();
+    plain.run(41, 80);
+    const uint64_t later = plain.hash();
+    device.load(kept);
+    EXPECT_EQ(then, device.hash());
+    device.run(41, 80);
+    EXPECT_EQ(later, device.hash());
+}
+
+}  // namespace
+}  // namespace fw::test
