@@ -498,6 +498,10 @@ std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const P
         error = worldProblem(*burn, result);
         return nullptr;
     }
+    burn->surfaceOf = [context, folder, &assets](const Mesh& mesh) {
+        std::string ignored;
+        return paintSurfaceOf(context, mesh, folder, assets, ignored);
+    };
     Shared shared;
     for (const Mesh& mesh : scene.meshes) {
         const std::string problem = addMesh(*burn, shared, mesh, images, folder, assets);

@@ -48,7 +48,8 @@ struct Burn {
     std::vector<BurnMesh> meshes;
     std::vector<BurnPart> parts;
     std::vector<std::string> report;  // what was left out, and why
-    double watered = 0;               // s, up to where rain has fallen
+    // Texels of a mesh's burn map, for questions about paint; set by createBurn.
+    std::function<std::shared_ptr<const PaintSurface>(const Mesh&)> surfaceOf;
 
     Burn() = default;
     ~Burn();
@@ -56,8 +57,8 @@ struct Burn {
     Burn& operator=(const Burn&) = delete;
 };
 
-// `folder`: where relative paths begin. A mesh that cannot be had is left out and reported. Null:
-// `error` says why there is no world.
+// `folder`: where relative paths begin. `assets` outlives the burn. A mesh that cannot be had is
+// left out and reported. Null: `error` says why there is no world.
 std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const PaintImages& images,
                                  const std::filesystem::path& folder, Assets& assets,
                                  std::string& error);

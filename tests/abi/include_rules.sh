@@ -22,6 +22,7 @@ shaders/shared|shared/
 samples|flamewright/|common/|import/
 editor/import|flamewright/|import/
 editor/document|flamewright/|import/|document/
+editor/script|flamewright/|import/|document/|script/
 editor/tools|flamewright/|import/|tools/|book/|core/|volume/|shared/
 '
 

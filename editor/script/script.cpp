@@ -1,0 +1,462 @@
+// See script.h.
+#include "script/script.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "document/text.h"
+#include "import/float_picture.h"
+
+namespace fwedit {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+bool numberOf(const std::string& word, double& value) {
+    const char* end = word.data() + word.size();
+    const auto [at, code] = std::from_chars(word.data(), end, value);
+    return code == std::errc{} && at == end && std::isfinite(value);
+}
+
+bool need(const Words& words, size_t least, size_t most, const char* form, std::string& error) {
+    if (words.size() >= least && words.size() <= most) return true;
+    error = std::string("it takes: ") + form;
+    return false;
+}
+
+bool times(const Words& words, uint32_t& count, std::string& error) {
+    double value = 1;
+    if (!need(words, 1, 2, "a number of steps", error)) return false;
+    if (words.size() == 2 && (!numberOf(words[1], value) || value < 0 || value > 1e6)) {
+        error = "\"" + words[1] + "\" is no number of steps from 0 to 1000000";
+        return false;
+    }
+    count = static_cast<uint32_t>(value);
+    return true;
+}
+
+fs::path folderOfDocument(const ScriptHost& host) {
+    return host.document.file.empty() ? host.folder
+                                      : fs::absolute(host.document.file).parent_path();
+}
+
+bool openScene(ScriptHost& host, const Words& words, std::string& error) {
+    std::vector<std::string> repairs;
+    if (!need(words, 2, 2, "open FILE", error) ||
+        !openDocument(host.folder / words[1], host.document, repairs, error))
+        return false;
+    for (const std::string& repair : repairs) host.say(repair);
+    host.burn = nullptr;
+    return true;
+}
+
+bool saveScene(ScriptHost& host, const Words& words, std::string& error) {
+    if (!need(words, 1, 2, "save [FILE]", error)) return false;
+    const fs::path file = words.size() == 2 ? host.folder / words[1] : host.document.file;
+    if (file.empty()) {
+        error = "the scene has no file yet";
+        return false;
+    }
+    return saveDocument(host.document, file, error);
+}
+
+bool play(ScriptHost& host, const Words& words, std::string& error) {
+    double to = 0;
+    if (!need(words, 2, 2, "play SECONDS", error)) return false;
+    if (!numberOf(words[1], to) || to < 0 || to > 100000) {
+        error = "\"" + words[1] + "\" is no time from 0 to 100000 s";
+        return false;
+    }
+    host.playhead = to;
+    return true;
+}
+
+bool shot(ScriptHost& host, const Words& words, std::string& error) {
+    uint32_t width = 640, height = 360;
+    if (!need(words, 2, 3, "shot FILE [WIDTHxHEIGHT]", error)) return false;
+    if (words.size() == 3) {
+        unsigned w = 0, h = 0;
+        char rest = 0;
+        if (std::sscanf(words[2].c_str(), "%ux%u%c", &w, &h, &rest) != 2 || w < 1 || h < 1 ||
+            w > 8192 || h > 8192) {
+            error = "\"" + words[2] + "\" is no size from 1x1 to 8192x8192";
+            return false;
+        }
+        width = w;
+        height = h;
+    }
+    return writeShot(host, host.folder / words[1], width, height, error);
+}
+
+bool recorded(ScriptHost& host, std::string& error) {
+    if (host.recordRevision == host.document.revision) return true;
+    FwContext* cpu = host.cpu(error);
+    if (!cpu || !recordBurn(cpu, host.document.scene, host.document.images, folderOfDocument(host),
+                            host.assets, host.record, error))
+        return false;
+    host.recordRevision = host.document.revision;
+    return true;
+}
+
+bool why(ScriptHost& host, const Words& words, std::string& error) {
+    double x = 0, y = 0, z = 0;
+    if (!need(words, 5, 5, "why MESH X Y Z", error)) return false;
+    const ObjectId mesh = findByWord(host.document.scene, words[1]);
+    if (!numberOf(words[2], x) || !numberOf(words[3], y) || !numberOf(words[4], z)) {
+        error = "a place is three numbers in m";
+        return false;
+    }
+    FwContext* cpu = host.cpu(error);
+    if (!cpu || !burnToPlayhead(host, cpu, error)) return false;
+    WhyAnswer answer;
+    if (!askWhy(*host.burn, host.document.images, mesh,
+                {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}, answer,
+                error))
+        return false;
+    host.say(answer.answer);
+    for (const std::string& cause : answer.causes) host.say("  " + cause);
+    if (!answer.forecast.empty()) host.say("  " + answer.forecast);
+    return true;
+}
+
+bool expectCount(ScriptHost& host, const Words& words, std::string& error) {
+    Kind kind{};
+    double wanted = 0;
+    if (!need(words, 4, 4, "expect count KIND NUMBER", error)) return false;
+    if (!kindOfKey(words[2], kind) || kind >= Kind::Settings || !numberOf(words[3], wanted)) {
+        error = "\"" + words[2] + " " + words[3] + "\" is no kind of object and number";
+        return false;
+    }
+    size_t count = 0;
+    forEachList(host.document.scene, [&](Kind which, const auto& list) {
+        if (which == kind) count = list.size();
+    });
+    if (static_cast<double>(count) == wanted) return true;
+    error = "there are " + std::to_string(count) + ", not " + words[3];
+    return false;
+}
+
+bool expectLit(ScriptHost& host, const Words& words, std::string& error) {
+    double limit = 0;
+    if (!need(words, 5, 5, "expect lit MESH above|below SHARE", error)) return false;
+    if ((words[3] != "above" && words[3] != "below") || !numberOf(words[4], limit)) {
+        error = "it takes: expect lit MESH above|below SHARE";
+        return false;
+    }
+    if (!recorded(host, error)) return false;
+    const ObjectId mesh = findByWord(host.document.scene, words[2]);
+    for (const ArrivalField& field : host.record.fields) {
+        if (field.mesh != mesh) continue;
+        const double share = litShare(field, static_cast<float>(host.playhead));
+        if (words[3] == "above" ? share > limit : share < limit) return true;
+        error = std::to_string(share) + " of \"" + words[2] + "\" caught by " +
+                std::to_string(host.playhead) + " s";
+        return false;
+    }
+    error = "\"" + words[2] + "\" is no mesh that burns";
+    return false;
+}
+
+bool expectField(ScriptHost& host, const Words& words, std::string& error) {
+    if (words.size() < 4) return need(words, 4, 4, "expect OBJECT FIELD VALUE", error);
+    const Scene& scene = host.document.scene;
+    Kind kind{};
+    ObjectId id = 0;
+    if (words[1] == "settings" || words[1] == "camera") {
+        kindOfKey(words[1], kind);
+    } else {
+        id = findByWord(scene, words[1]);
+        if (!findObject(scene, id, &kind)) {
+            error = "there is no object \"" + words[1] + "\"";
+            return false;
+        }
+    }
+    const FieldInfo* info = findField(kind, words[2]);
+    if (!info) {
+        error = "a " + std::string(kindKey(kind)) + " has no field \"" + words[2] + "\"";
+        return false;
+    }
+    Value is, wanted;
+    const std::vector<std::string> rest(words.begin() + 3, words.end());
+    if (!parseValue(scene, *info, rest, wanted, error)) return false;
+    getField(scene, kind, id, words[2], is);
+    const std::string text = printValue(scene, *info, is);
+    if (text == printValue(scene, *info, wanted)) return true;
+    error = words[2] + " is " + text;
+    return false;
+}
+
+bool expect(ScriptHost& host, const Words& words, std::string& error) {
+    if (words.size() < 2) return need(words, 2, 2, "expect WHAT ...", error);
+    const Document& document = host.document;
+    if (words[1] == "count") return expectCount(host, words, error);
+    if (words[1] == "lit") return expectLit(host, words, error);
+    if (words.size() == 3 && words[1] == "unsaved") {
+        if ((words[2] == "yes") == unsaved(document)) return true;
+        error = std::string("the scene is ") + (unsaved(document) ? "not saved" : "saved");
+        return false;
+    }
+    if (words.size() == 3 && words[1] == "step") {
+        const std::string& name = document.steps[document.at].name;
+        if (name == words[2]) return true;
+        error = "the last step is \"" + name + "\"";
+        return false;
+    }
+    if (words.size() == 3 && words[1] == "same") {
+        std::ifstream stream(host.folder / words[2], std::ios::binary);
+        const std::string text((std::istreambuf_iterator<char>(stream)), {});
+        if (text == printScene(document.scene)) return true;
+        error = "the scene is not the same as " + words[2];
+        return false;
+    }
+    return expectField(host, words, error);
+}
+
+bool drag(ScriptHost& host, const Words& words, std::string& error) {
+    if (!need(words, 2, 2, "drag begin|end|cancel", error)) return false;
+    if (words[1] == "begin")
+        beginDrag(host.document);
+    else if (words[1] == "end")
+        endDrag(host.document);
+    else if (words[1] == "cancel")
+        cancelDrag(host.document);
+    else {
+        error = "\"" + words[1] + "\" is none of begin, end, cancel";
+        return false;
+    }
+    return true;
+}
+
+bool refuse(ScriptHost& host, const std::string& line, std::string& error) {
+    const size_t at = line.find("refuse") + 6;
+    std::string message;
+    if (runLine(host.document, std::string_view(line).substr(at), message)) {
+        error = "it was possible";
+        return false;
+    }
+    host.say("refused: " + message);
+    return true;
+}
+
+bool printReport(ScriptHost& host, std::string& error) {
+    FwContext* cpu = host.cpu(error);
+    if (!cpu || !burnToPlayhead(host, cpu, error)) return false;
+    for (const std::string& line : host.burn->report) host.say(line);
+    for (const BurnMesh& mesh : host.burn->meshes)
+        for (const std::string& line : mesh.model->report) host.say(line);
+    return true;
+}
+
+// What only a script does; false in `known`: it is a command of the document.
+bool runOwn(ScriptHost& host, const Words& words, const std::string& line, bool& known,
+            std::string& error) {
+    const std::string& verb = words[0];
+    uint32_t count = 0;
+    if (verb == "new") {
+        auto surface = host.document.surface;
+        host.document = newDocument();
+        host.document.surface = std::move(surface);
+        host.burn = nullptr;
+        host.playhead = 0;
+        return true;
+    }
+    if (verb == "open") return openScene(host, words, error);
+    if (verb == "save") return saveScene(host, words, error);
+    if (verb == "undo" || verb == "redo") {
+        if (!times(words, count, error)) return false;
+        for (uint32_t i = 0; i < count; ++i)
+            if (!(verb == "undo" ? undo(host.document) : redo(host.document))) {
+                error = "there is nothing more to " + verb;
+                return false;
+            }
+        return true;
+    }
+    if (verb == "drag") return drag(host, words, error);
+    if (verb == "play") return play(host, words, error);
+    if (verb == "shot") return shot(host, words, error);
+    if (verb == "frame") return frameScene(host, error);
+    if (verb == "burn") return recorded(host, error);
+    if (verb == "why") return why(host, words, error);
+    if (verb == "report") return printReport(host, error);
+    if (verb == "expect") return expect(host, words, error);
+    if (verb == "refuse") return refuse(host, line, error);
+    known = false;
+    return false;
+}
+
+}  // namespace
+
+ScriptHost::ScriptHost(fs::path begin) : folder(std::move(begin)), document(newDocument()) {
+    say = [](const std::string&) {};
+    document.surface = [this](const Scene& scene, ObjectId mesh) -> const PaintSurface* {
+        const Mesh* found = findIn(scene.meshes, mesh);
+        std::string error;
+        FwContext* context = cpu(error);
+        if (!found || !context) return nullptr;
+        const auto surface =
+            paintSurfaceOf(context, *found, folderOfDocument(*this), assets, error);
+        if (!surface) say(error);
+        return surface.get();  // assets keep it
+    };
+}
+
+ScriptHost::~ScriptHost() {
+    burn = nullptr;
+    fwDestroyContext(device_);
+    fwDestroyContext(cpu_);
+}
+
+FwContext* ScriptHost::device(std::string& error) {
+    if (device_) return device_;
+    const FwContextDef def = fwDefaultContextDef();
+    FwErrorInfo info{};
+    if (fwCreateContext(&def, &device_, &info) < 0) error = info.message;
+    return device_;
+}
+
+FwContext* ScriptHost::cpu(std::string& error) {
+    if (cpu_) return cpu_;
+    FwContextDef def = fwDefaultContextDef();
+    def.backend = FW_BACKEND_CPU;
+    FwErrorInfo info{};
+    if (fwCreateContext(&def, &cpu_, &info) < 0) error = info.message;
+    return cpu_;
+}
+
+bool burnToPlayhead(ScriptHost& host, FwContext* context, std::string& error) {
+    const bool stale = !host.burn || host.burnRevision != host.document.revision ||
+                       host.burn->context != context || host.burn->time > host.playhead + 1e-6;
+    if (stale) {
+        host.burn = nullptr;
+        host.burn = createBurn(context, host.document.scene, host.document.images,
+                               folderOfDocument(host), host.assets, error);
+        if (!host.burn) return false;
+        host.burnRevision = host.document.revision;
+        for (const std::string& line : host.burn->report) host.say(line);
+    }
+    return runBurn(*host.burn, host.playhead, error);
+}
+
+bool writeShot(ScriptHost& host, const fs::path& file, uint32_t width, uint32_t height,
+               std::string& error) {
+    FwContext* context = host.device(error);
+    std::vector<uint8_t> rgba;
+    if (!context || !burnToPlayhead(host, context, error) ||
+        !shootBurn(*host.burn, width, height, rgba, error))
+        return false;
+    fwimport::FloatPicture picture;
+    picture.width = width;
+    picture.height = height;
+    picture.channels = 3;
+    picture.whole = true;
+    picture.names = {"R", "G", "B"};
+    for (size_t i = 0; i < rgba.size(); i += 4)
+        for (size_t c = 0; c < 3; ++c)
+            picture.values.push_back(static_cast<float>(rgba[i + c]) / 255.0f);
+    std::error_code ignored;
+    if (file.has_parent_path()) fs::create_directories(file.parent_path(), ignored);
+    return fwimport::writePicture(file, picture, error);
+}
+
+bool frameScene(ScriptHost& host, std::string& error) {
+    Vec3 low, high;
+    if (!sceneBounds(host.document.scene, folderOfDocument(host), host.assets, low, high)) {
+        error = "there is no mesh to look at";
+        return false;
+    }
+    Camera& camera = host.document.scene.camera;
+    float square = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        camera.target[k] = 0.5f * (low[k] + high[k]);
+        square += (high[k] - low[k]) * (high[k] - low[k]);
+    }
+    // The ball around it fills the picture's height, with room for the flames above.
+    const float radius = 0.5f * std::sqrt(square);
+    camera.distance = 1.15f * radius / std::sin(0.5f * camera.fieldOfView * 0.017453292f);
+    camera.target[1] += 0.15f * radius;
+    ++host.document.revision;
+    return true;
+}
+
+bool runScriptLine(ScriptHost& host, const std::string& line, std::string& error) {
+    Words words;
+    error.clear();
+    if (!splitWords(line, words, error)) return false;
+    if (words.empty()) return true;
+    bool known = true;
+    const bool done = runOwn(host, words, line, known, error);
+    if (known) return done;
+    if (words[0] == "import") {
+        // A file that cannot be read is no object of the scene.
+        Command command;
+        if (!parseCommand(host.document.scene, line, command, error)) return false;
+        Mesh mesh;
+        mesh.name = command.file;
+        mesh.file = command.file;
+        const auto model = modelOf(mesh, folderOfDocument(host), host.assets, error);
+        if (!model) return false;
+        for (const std::string& note : model->report) host.say(note);
+    }
+    std::string message;
+    const bool good = runLine(host.document, line, message);
+    if (!good)
+        error = message;
+    else if (!message.empty())
+        host.say(message);
+    return good;
+}
+
+bool runScript(ScriptHost& host, const fs::path& file, std::string& error) {
+    std::ifstream stream(file);
+    if (!stream) {
+        error = file.string() + " cannot be read";
+        return false;
+    }
+    std::string line;
+    for (size_t number = 1; std::getline(stream, line); ++number) {
+        if (runScriptLine(host, line, error)) continue;
+        error = file.string() + ":" + std::to_string(number) + ": " + line + "\n  " + error;
+        return false;
+    }
+    return true;
+}
+
+int scriptMain(int count, char** words) {
+    static constexpr const char* kHelp =
+        "--script FILE --headless [--cache FOLDER] [--quiet]\n"
+        "  Runs the commands of FILE, one a line, without a window. Paths begin at FILE's folder.\n"
+        "  --cache FOLDER  keeps what was baked there\n"
+        "Exit code: 0 all lines worked, 1 one did not (it is named), 2 the command line is "
+        "wrong.\n";
+    fs::path script, cache;
+    bool quiet = false;
+    for (int i = 1; i < count; ++i) {
+        const std::string word = words[i];
+        if (word == "--help") return std::fputs(kHelp, stdout), 0;
+        if (word == "--headless") continue;
+        if (word == "--quiet") {
+            quiet = true;
+        } else if ((word == "--script" || word == "--cache") && i + 1 < count) {
+            (word == "--script" ? script : cache) = words[++i];
+        } else {
+            std::fprintf(stderr, "\"%s\" is not known here\n%s", word.c_str(), kHelp);
+            return 2;
+        }
+    }
+    if (script.empty()) return std::fprintf(stderr, "No script is named\n%s", kHelp), 2;
+    std::error_code ignored;
+    ScriptHost host(fs::absolute(script, ignored).parent_path());
+    host.assets.cache = cache;
+    if (!quiet) host.say = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
+    std::string error;
+    if (runScript(host, script, error)) return 0;
+    std::fprintf(stderr, "%s\n", error.c_str());
+    return 1;
+}
+
+}  // namespace fwedit
