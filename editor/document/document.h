@@ -28,6 +28,8 @@ struct Document {
     Scene scene;
     PaintImages images;
     std::filesystem::path file;  // empty: never saved
+    // Where relative paths begin while there is no file; empty: the current folder.
+    std::filesystem::path folder;
 
     std::vector<Step> steps;  // steps[0] is the scene as opened, without a name
     size_t at = 0;            // of the step whose scene is shown
@@ -46,6 +48,8 @@ struct Document {
 };
 
 Document newDocument();
+// Where the scene's relative paths begin now.
+std::filesystem::path baseFolder(const Document& document);
 [[nodiscard]] inline bool unsaved(const Document& document) {
     return document.at != document.saved;
 }

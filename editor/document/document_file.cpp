@@ -131,8 +131,7 @@ bool writeScene(Scene& scene, const Document& document, const fs::path& file, st
     std::error_code code;
     const fs::path folder = folderOf(file);
     fs::create_directories(folder, code);
-    rebaseScene(scene, document.file.empty() ? fs::current_path(code) : folderOf(document.file),
-                folder);
+    rebaseScene(scene, baseFolder(document), folder);
     const fs::path whole = folder / file.filename();
     return savePictures(scene, document.images, whole, error) &&
            writeWhole(whole, printScene(scene), error);
@@ -167,6 +166,13 @@ void readPictures(Document& document, std::vector<std::string>& repairs) {
 
 }  // namespace
 
+fs::path baseFolder(const Document& document) {
+    std::error_code ignored;
+    if (!document.file.empty()) return folderOf(document.file);
+    return document.folder.empty() ? fs::current_path(ignored)
+                                   : fs::absolute(document.folder, ignored);
+}
+
 bool openDocument(const fs::path& file, Document& document, std::vector<std::string>& repairs,
                   std::string& error) {
     std::error_code code;
@@ -189,6 +195,7 @@ bool openDocument(const fs::path& file, Document& document, std::vector<std::str
     Document fresh;
     if (!readScene(text, file.filename().string(), fresh.scene, repairs, error)) return false;
     fresh.file = file;
+    fresh.folder = document.folder;
     fresh.surface = document.surface;
     readPictures(fresh, repairs);
     resetHistory(fresh);
@@ -212,7 +219,7 @@ bool saveDocument(Document& document, const fs::path& file, std::string& error) 
     // The history speaks of the same files from now on: by paths from the new folder, and each
     // layer by the picture that was just written.
     std::error_code code;
-    const fs::path from = document.file.empty() ? fs::current_path(code) : folderOf(document.file);
+    const fs::path from = baseFolder(document);
     const fs::path to = folderOf(file);
     std::set<std::string> before, kept;
     for (const PaintLayer& layer : document.scene.layers) before.insert(layer.image);

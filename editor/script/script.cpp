@@ -40,11 +40,6 @@ bool times(const Words& words, uint32_t& count, std::string& error) {
     return true;
 }
 
-fs::path folderOfDocument(const ScriptHost& host) {
-    return host.document.file.empty() ? host.folder
-                                      : fs::absolute(host.document.file).parent_path();
-}
-
 bool openScene(ScriptHost& host, const Words& words, std::string& error) {
     std::vector<std::string> repairs;
     if (!need(words, 2, 2, "open FILE", error) ||
@@ -96,8 +91,8 @@ bool shot(ScriptHost& host, const Words& words, std::string& error) {
 bool recorded(ScriptHost& host, std::string& error) {
     if (host.recordRevision == host.document.revision) return true;
     FwContext* cpu = host.cpu(error);
-    if (!cpu || !recordBurn(cpu, host.document.scene, host.document.images, folderOfDocument(host),
-                            host.assets, host.record, error))
+    if (!cpu || !recordBurn(cpu, host.document.scene, host.document.images,
+                            baseFolder(host.document), host.assets, host.record, error))
         return false;
     host.recordRevision = host.document.revision;
     return true;
@@ -258,9 +253,11 @@ bool runOwn(ScriptHost& host, const Words& words, const std::string& line, bool&
     const std::string& verb = words[0];
     uint32_t count = 0;
     if (verb == "new") {
-        auto surface = host.document.surface;
-        host.document = newDocument();
-        host.document.surface = std::move(surface);
+        Document fresh = newDocument();
+        fresh.surface = host.document.surface;
+        fresh.folder = host.folder;
+        fresh.revision = host.document.revision + 1;
+        host.document = std::move(fresh);
         host.burn = nullptr;
         host.playhead = 0;
         return true;
@@ -293,13 +290,13 @@ bool runOwn(ScriptHost& host, const Words& words, const std::string& line, bool&
 
 ScriptHost::ScriptHost(fs::path begin) : folder(std::move(begin)), document(newDocument()) {
     say = [](const std::string&) {};
+    document.folder = folder;
     document.surface = [this](const Scene& scene, ObjectId mesh) -> const PaintSurface* {
         const Mesh* found = findIn(scene.meshes, mesh);
         std::string error;
         FwContext* context = cpu(error);
         if (!found || !context) return nullptr;
-        const auto surface =
-            paintSurfaceOf(context, *found, folderOfDocument(*this), assets, error);
+        const auto surface = paintSurfaceOf(context, *found, baseFolder(document), assets, error);
         if (!surface) say(error);
         return surface.get();  // assets keep it
     };
@@ -334,7 +331,7 @@ bool burnToPlayhead(ScriptHost& host, FwContext* context, std::string& error) {
     if (stale) {
         host.burn = nullptr;
         host.burn = createBurn(context, host.document.scene, host.document.images,
-                               folderOfDocument(host), host.assets, error);
+                               baseFolder(host.document), host.assets, error);
         if (!host.burn) return false;
         host.burnRevision = host.document.revision;
         for (const std::string& line : host.burn->report) host.say(line);
@@ -365,7 +362,7 @@ bool writeShot(ScriptHost& host, const fs::path& file, uint32_t width, uint32_t 
 
 bool frameScene(ScriptHost& host, std::string& error) {
     Vec3 low, high;
-    if (!sceneBounds(host.document.scene, folderOfDocument(host), host.assets, low, high)) {
+    if (!sceneBounds(host.document.scene, baseFolder(host.document), host.assets, low, high)) {
         error = "there is no mesh to look at";
         return false;
     }
@@ -398,7 +395,7 @@ bool runScriptLine(ScriptHost& host, const std::string& line, std::string& error
         Mesh mesh;
         mesh.name = command.file;
         mesh.file = command.file;
-        const auto model = modelOf(mesh, folderOfDocument(host), host.assets, error);
+        const auto model = modelOf(mesh, baseFolder(host.document), host.assets, error);
         if (!model) return false;
         for (const std::string& note : model->report) host.say(note);
     }

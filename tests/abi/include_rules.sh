@@ -23,7 +23,7 @@ samples|flamewright/|common/|import/
 editor/import|flamewright/|import/
 editor/document|flamewright/|import/|document/
 editor/script|flamewright/|import/|document/|script/
-editor/tools|flamewright/|import/|tools/|book/|core/|volume/|shared/
+editor/tools|flamewright/|import/|document/|script/|scene/|tools/|book/|core/|volume/|shared/
 '
 
 sources() {

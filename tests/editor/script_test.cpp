@@ -1,0 +1,355 @@
+// The editor driven by its scripts, through the shared library as a game links it: what is painted,
+// lit and asked is what burns and shows.
+#include "script/script.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "import/float_picture.h"
+
+namespace {
+
+using namespace fwedit;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+// A folder with "board.glb" in it: an upright board, 1 m wide, 0.4 m tall, 2 cm thick, its lower
+// edge at y = 0; and a second, loose board behind it.
+struct Yard {
+    fs::path folder;
+    std::vector<std::string> said;
+    std::unique_ptr<ScriptHost> host;
+
+    Yard() {
+        static int number = 0;
+        folder = fs::temp_directory_path() /
+                 ("fw_yard_" + std::to_string(::getpid()) + "_" + std::to_string(number++));
+        fs::create_directories(folder);
+        writeBoards();
+        host = std::make_unique<ScriptHost>(folder);
+        host->say = [this](const std::string& line) { said.push_back(line); };
+    }
+    ~Yard() {
+        host = nullptr;
+        fs::remove_all(folder);
+    }
+    void run(const std::string& lines) {
+        std::istringstream stream(lines);
+        std::string line, error;
+        while (std::getline(stream, line))
+            ASSERT_TRUE(runScriptLine(*host, line, error)) << line << "\n  " << error;
+    }
+    std::string why(const std::string& line) {
+        said.clear();
+        run(line);
+        return said.empty() ? "" : said[0];
+    }
+
+ private:
+    void writeBoards() const {
+        std::vector<float> positions;
+        std::vector<uint16_t> indices;
+        for (int board = 0; board < 2; ++board)
+            for (int face = 0; face < 6; ++face) {
+                const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+                const float half[3] = {0.5f, 0.2f, 0.01f}, middle[3] = {0, 0.2f, board * -0.5f};
+                const float side = face & 1 ? 1.0f : -1.0f;
+                const auto base = static_cast<uint16_t>(positions.size() / 3);
+                for (int c = 0; c < 4; ++c) {
+                    float p[3];
+                    p[axis] = middle[axis] + side * half[axis];
+                    p[u] = middle[u] + ((c == 1 || c == 2) ? side : -side) * half[u];
+                    p[v] = middle[v] + (c >= 2 ? 1.0f : -1.0f) * half[v];
+                    positions.insert(positions.end(), p, p + 3);
+                }
+                for (const int i : {0, 1, 2, 0, 2, 3})
+                    indices.push_back(static_cast<uint16_t>(base + i));
+            }
+        const size_t bytes = positions.size() * 4;
+        std::string json =
+            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+            R"("buffers":[{"byteLength":)" +
+            std::to_string(bytes + indices.size() * 2) + R"(}],"bufferViews":[{"buffer":0,)" +
+            R"("byteOffset":0,"byteLength":)" + std::to_string(bytes) +
+            R"(},{"buffer":0,"byteOffset":)" + std::to_string(bytes) + R"(,"byteLength":)" +
+            std::to_string(indices.size() * 2) +
+            R"(}],"accessors":[{"bufferView":0,"componentType":5126,"count":)" +
+            std::to_string(positions.size() / 3) +
+            R"(,"type":"VEC3","min":[-0.5,0,-0.51],"max":[0.5,0.4,0.01]},)" +
+            R"({"bufferView":1,"componentType":5123,"count":)" + std::to_string(indices.size()) +
+            R"(,"type":"SCALAR"}]})";
+        while (json.size() % 4) json += ' ';
+        std::ofstream file(folder / "board.glb", std::ios::binary);
+        const auto word = [&](size_t value) {
+            const auto v = static_cast<uint32_t>(value);
+            file.write(reinterpret_cast<const char*>(&v), 4);
+        };
+        const size_t body = bytes + indices.size() * 2;
+        word(0x46546c67);
+        word(2);
+        word(28 + json.size() + body);
+        word(json.size());
+        word(0x4e4f534a);
+        file.write(json.data(), static_cast<std::streamsize>(json.size()));
+        word(body);
+        word(0x004e4942);
+        file.write(reinterpret_cast<const char*>(positions.data()),
+                   static_cast<std::streamsize>(bytes));
+        file.write(reinterpret_cast<const char*>(indices.data()),
+                   static_cast<std::streamsize>(indices.size() * 2));
+    }
+};
+
+// The board of paper, lit at its left end.
+constexpr const char* kBoard =
+    "import board.glb name=Board materials paper map_size 128 texels_per_metre 64\n"
+    "set settings pace 20 duration 20 frames_per_second 8 radiation no plume no contact no "
+    "embers no\n"
+    "add source match name=Match position -0.5 0.2 0 radius 0.04\n";
+
+TEST(EditorScript, AFireIsLitUndoneRedoneSavedAndReopened) {
+    Yard yard;
+    yard.run(kBoard);
+    yard.run(
+        "expect count source 1\nexpect step \"Add heat source\"\n"
+        "play 20\nexpect lit Board above 0.9\n"
+        "set Match start 5\nplay 4.9\nexpect lit Board below 0.001\nundo\nexpect Match start 0\n"
+        "redo\nexpect Match start 5 s\nundo\nsave \"yard.fwscene\"\nexpect unsaved no\n"
+        "expect same yard.fwscene\nmove Match 0.1 0 0\nexpect unsaved yes\nundo\nexpect unsaved "
+        "no\n"
+        "new\nexpect count mesh 0\nopen yard.fwscene\nexpect same yard.fwscene\n"
+        "expect count mesh 1\nplay 20\nexpect lit Board above 0.9\n");
+}
+
+TEST(EditorScript, WhatDoesNotWorkIsNamedByItsLine) {
+    Yard yard;
+    const auto fails = [&](const std::string& line) {
+        std::string error;
+        EXPECT_FALSE(runScriptLine(*yard.host, line, error)) << line;
+        return error;
+    };
+    EXPECT_THAT(fails("import nothing.glb"), HasSubstr("nothing.glb"));
+    EXPECT_EQ(1u, yard.host->document.steps.size());
+    EXPECT_THAT(fails("undo"), HasSubstr("nothing more to undo"));
+    EXPECT_THAT(fails("save"), HasSubstr("no file yet"));
+    EXPECT_THAT(fails("shot a.png 0x9"), HasSubstr("1x1 to 8192x8192"));
+    EXPECT_THAT(fails("play soon"), HasSubstr("\"soon\""));
+    EXPECT_THAT(fails("expect count mesh 1"), HasSubstr("there are 0"));
+    EXPECT_THAT(fails("open board.glb"), HasSubstr("was not opened"));
+    EXPECT_THAT(fails("refuse add source"), HasSubstr("possible"));
+    std::ofstream(yard.folder / "bad.txt") << "add source\n\n// fine\nset \"Nobody\" output 1\n";
+    std::string error;
+    EXPECT_FALSE(runScript(*yard.host, yard.folder / "bad.txt", error));
+    EXPECT_THAT(error, HasSubstr("bad.txt:4: "));
+    EXPECT_THAT(error, HasSubstr("no object \"Nobody\""));
+}
+
+TEST(EditorBurn, APaintedBeltHoldsTheFireOnBothSidesOfEverySeam) {
+    Yard yard;
+    yard.run(kBoard);
+    yard.run("play 20\nexpect lit Board above 0.9\n");
+    const size_t whole = static_cast<size_t>(std::count_if(
+        yard.host->record.fields[0].seconds.begin(), yard.host->record.fields[0].seconds.end(),
+        [](float seconds) { return seconds < kNeverLit; }));
+    // Around the board, over the six faces' seams: one stroke along its height is enough, for the
+    // brush is a ball.
+    yard.run(
+        "add layer multiplier name=Belt mesh Board\n"
+        "stroke Belt value 0 size 0.06 hardness 1 path 0:-0.05:0 0:0.45:0\n"
+        "expect step \"Paint burn multiplier on Board\"\nburn\n");
+    const ArrivalField& field = yard.host->record.fields[0];
+    std::string error;
+    const auto surface = paintSurfaceOf(yard.host->cpu(error), yard.host->document.scene.meshes[0],
+                                        yard.folder, yard.host->assets, error);
+    ASSERT_TRUE(surface) << error;
+    ASSERT_EQ(surface->width, field.width);
+    size_t left = 0, right = 0, belt = 0;
+    for (size_t i = 0; i < field.seconds.size(); ++i) {
+        if (!surface->real[i] || field.seconds[i] >= kNeverLit) continue;
+        const float x = surface->positions[i * 3];
+        left += x < -0.06f;
+        right += x > 0.06f;
+        belt += std::abs(x) < 0.055f;
+    }
+    EXPECT_GT(left, whole / 3);
+    EXPECT_EQ(0u, right);
+    EXPECT_EQ(0u, belt);
+    yard.run("undo\nplay 20\nexpect lit Board above 0.9\n");
+}
+
+TEST(EditorBurn, TheSurfaceToPaintOnKnowsIslandsPiecesAndNormals) {
+    Yard yard;
+    yard.run(kBoard);
+    std::string error;
+    const auto surface = paintSurfaceOf(yard.host->cpu(error), yard.host->document.scene.meshes[0],
+                                        yard.folder, yard.host->assets, error);
+    ASSERT_TRUE(surface) << error;
+    std::vector<uint32_t> pieces, islands;
+    size_t real = 0;
+    for (size_t i = 0; i < surface->real.size(); ++i) {
+        if (!surface->real[i]) continue;
+        ++real;
+        pieces.push_back(surface->piece[i]);
+        islands.push_back(surface->island[i]);
+        const float* n = &surface->normals[i * 3];
+        const float* p = &surface->positions[i * 3];
+        EXPECT_NEAR(1, n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1e-4f);
+        // Outwards: from the middle of the board that it is on.
+        const float middle = p[2] < -0.25f ? -0.5f : 0;
+        if (std::abs(p[2] - middle) > 0.0099f && std::abs(p[0]) < 0.48f &&
+            std::abs(p[1] - 0.2f) < 0.18f) {
+            EXPECT_GT(n[2] * (p[2] - middle), 0.009f);
+        }
+    }
+    EXPECT_GT(real, 2000u);
+    const auto kinds = [](std::vector<uint32_t>& list) {
+        std::sort(list.begin(), list.end());
+        return std::unique(list.begin(), list.end()) - list.begin();
+    };
+    EXPECT_EQ(2, kinds(pieces));
+    EXPECT_GE(kinds(islands), 2);
+    // Filling by piece leaves the other board as it is.
+    yard.run("add layer moisture name=Wet mesh Board\nfill Wet value 1 by piece at 0 0.2 0.01\n");
+    const PaintImage& image = yard.host->document.images.begin()->second;
+    for (size_t i = 0; i < surface->real.size(); ++i)
+        if (surface->real[i]) {
+            const uint8_t value = image.at(static_cast<uint32_t>(i % surface->width),
+                                           static_cast<uint32_t>(i / surface->width));
+            ASSERT_EQ(surface->positions[i * 3 + 2] > -0.25f ? 255 : 0, value);
+        }
+}
+
+TEST(EditorBurn, EveryKindOfObjectComesIntoTheWorld) {
+    Yard yard;
+    yard.run(kBoard);
+    yard.run(
+        "add source point position 0 0 0.1 output 30 radius 0.1\n"
+        "add source disc position 0.3 0 0 output 60 radius 0.2\n"
+        "add source line position 0 0 0.3 direction 1 0 0 length 1 output 50 radius 0.08\n"
+        "add source flamethrower position -1 0.2 0 direction 1 0 0 output 500 keys 0:0 2:1\n"
+        "add source rain position 0 1 0 radius 0.5 output 0.1 length 1\n"
+        "add source water position 0.5 0.2 0 radius 0.1 output 0.05\n"
+        "add flame candle position 1 0 0 sticks_to Board\n"
+        "add emitter mesh sticks_to Board\nadd emitter disc position 0 0 1 duration 2\n"
+        "add wind velocity 3 0 0 start 1 duration 2\n"
+        "add collider ball position 0 0 3\nadd collider capsule position 0 0 4 rotation 0 0 90\n"
+        "add collider box position 0 0 5 rotation 10 20 30\nadd collider floor position 0 -0.1 0\n"
+        "add event time 3 note roof\nplay 3\nwhy Board 0.4 0.2 0.01\n");
+    ASSERT_TRUE(yard.host->burn);
+    EXPECT_THAT(yard.host->burn->report, ::testing::IsEmpty());
+    EXPECT_NEAR(3, yard.host->burn->time, 1e-6);
+    // What cannot work is left out and named; the rest burns.
+    yard.run("add emitter mesh name=Lost\nimport board.glb name=Second\nplay 0\n");
+    fs::remove(yard.folder / "board.glb");
+    yard.host->assets.models.clear();
+    std::string error;
+    ASSERT_TRUE(burnToPlayhead(*yard.host, yard.host->cpu(error), error)) << error;
+    EXPECT_THAT(
+        yard.host->burn->report,
+        ::testing::Contains(HasSubstr("\"Lost\" is left out: it shows the fire of a mesh")));
+    EXPECT_THAT(yard.host->burn->report, ::testing::Contains(HasSubstr("\"Second\" is left out")));
+}
+
+TEST(EditorBurn, ASourceOfHeatLightsAndWaterHolds) {
+    Yard yard;
+    yard.run(
+        "import board.glb name=Board materials paper map_size 128 texels_per_metre 64\n"
+        "set settings pace 20 duration 15 frames_per_second 8 radiation no plume no contact no "
+        "embers no\nadd source point name=Torch position 0 0 0.02 output 30 radius 0.1\n"
+        "play 15\nexpect lit Board above 0.3\n"
+        "set Torch keys 0:0\nexpect lit Board below 0.001\nundo\n");
+    yard.run(
+        "add source water name=Hose position 0 0.2 0 radius 1.2 output 40\n"
+        "expect lit Board below 0.05\n");
+}
+
+TEST(EditorWhy, AnswersInAnArtistsWords) {
+    Yard yard;
+    yard.run(kBoard);
+    yard.run("play 0");
+    EXPECT_THAT(yard.why("why Board 0.45 0.2 0.01"), HasSubstr("Not lit: heat 0.00 of 1.00"));
+    yard.run("play 1.5");
+    const std::string ahead = yard.why("why Board 0.45 0.2 0.01");
+    EXPECT_THAT(ahead, HasSubstr(", arrives in "));
+    EXPECT_THAT(yard.why("why Board -0.5 0.2 0"), HasSubstr(" 1.5 s"));
+    // The forecast comes true.
+    const double seconds = std::stod(ahead.substr(ahead.find("arrives in ") + 11));
+    yard.run("play " + std::to_string(1.5 + seconds - 0.3));
+    EXPECT_THAT(yard.why("why Board 0.45 0.2 0.01"), HasSubstr("Not lit"));
+    yard.run("play " + std::to_string(1.5 + seconds + 0.3));
+    EXPECT_THAT(yard.why("why Board 0.45 0.2 0.01"), ::testing::Not(HasSubstr("Not lit")));
+    // Paint that stops it is the first cause.
+    yard.run("add layer multiplier name=Belt mesh Board\nfill Belt value 0\nplay 1\n");
+    (void)yard.why("why Board 0.45 0.2 0.01");
+    EXPECT_THAT(yard.said, ::testing::Contains(HasSubstr("painted ×0")));
+}
+
+TEST(EditorInspect, ScrubbingOnlyComparesTimes) {
+    ArrivalField field;
+    field.width = field.height = 1024;
+    field.seconds.resize(1024 * 1024);
+    for (size_t i = 0; i < field.seconds.size(); ++i)
+        field.seconds[i] = i % 5 == 0 ? kNeverLit : static_cast<float>(i) * 1e-5f;
+    const auto begin = std::chrono::steady_clock::now();
+    const std::vector<uint8_t> map = burnTimeMap(field, 10);
+    EXPECT_NEAR(0.5, litShare(field, 5.24f), 0.01);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(took.count(), 1.0);
+    EXPECT_EQ(255, map[0]);
+    EXPECT_EQ(0, map[1]);
+    EXPECT_NEAR(127, map[500001], 1);
+    EXPECT_EQ(254, map[1024 * 1024 - 2]);
+}
+
+// Mean brightness of a picture, and how much of it is the colour of fire.
+struct Seen {
+    double light = 0, fire = 0;
+};
+Seen lookAt(const fs::path& file) {
+    fwimport::FloatPicture picture;
+    std::string error;
+    EXPECT_TRUE(fwimport::readPicture(file, picture, error)) << error;
+    Seen seen;
+    const double pixels = double(picture.width) * picture.height;
+    for (uint32_t y = 0; y < picture.height; ++y)
+        for (uint32_t x = 0; x < picture.width; ++x) {
+            const float r = picture.at(x, y, 0), b = picture.at(x, y, 2);
+            seen.light += double(r + picture.at(x, y, 1) + b) / 3 / pixels;
+            seen.fire += (r > 0.75f && r > b + 0.3f) / pixels;
+        }
+    return seen;
+}
+
+std::string bytesOf(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {(std::istreambuf_iterator<char>(stream)), {}};
+}
+
+TEST(EditorShot, ShowsTheFireThatTheScriptLitAndAgainFromTheSavedFile) {
+    Yard yard;
+    std::string error;
+    if (!yard.host->device(error)) GTEST_SKIP() << "no Vulkan device: " << error;
+    yard.run(kBoard);
+    yard.run(
+        "set settings daylight night\nset Match radius 0.15\nframe\nset camera distance 1.6\n"
+        "play 0\nshot before.png 160x90\nplay 0.75\nshot during.png 160x90\n"
+        "save yard.fwscene\nnew\nopen yard.fwscene\n"
+        "play 0\nshot before.png 160x90\nplay 0.75\n"
+        "shot again.png 160x90\n");
+    const Seen before = lookAt(yard.folder / "before.png"),
+               during = lookAt(yard.folder / "during.png");
+    EXPECT_LT(before.fire, 0.001);
+    EXPECT_GT(during.fire, 0.004);
+    EXPECT_GT(during.light, before.light);
+    EXPECT_TRUE(bytesOf(yard.folder / "during.png") == bytesOf(yard.folder / "again.png"));
+}
+
+}  // namespace
