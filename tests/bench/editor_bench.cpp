@@ -1,0 +1,101 @@
+// What an artist's hand waits for, without the window: a dab of the brush on a map of 1024^2, a
+// scrub to any time, a scene with a bunny of 31,000 triangles opened with its bake in the cache.
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "script/script.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A sheet of one metre under 1024 x 1024 texels.
+fwedit::PaintSurface sheet() {
+    constexpr uint32_t side = 1024;
+    fwedit::PaintSurface surface;
+    surface.width = surface.height = side;
+    surface.spacing = 1.0f / side;
+    for (uint32_t y = 0; y < side; ++y)
+        for (uint32_t x = 0; x < side; ++x) {
+            surface.positions.insert(surface.positions.end(),
+                                     {(float(x) + 0.5f) / side, (float(y) + 0.5f) / side, 0.0f});
+            surface.normals.insert(surface.normals.end(), {0.0f, 0.0f, 1.0f});
+        }
+    surface.real.assign(size_t{side} * side, 1);
+    fwedit::indexSurface(surface);
+    return surface;
+}
+
+// One move of a brush of 10 cm across, as a mouse makes sixty of in a second.
+void stroke(benchmark::State& state) {
+    const fwedit::PaintSurface surface = sheet();
+    fwedit::Stroke brush;
+    brush.value = 0.2f;
+    const fwedit::PaintImage empty = fwedit::makePaintImage(fwedit::PaintMultiplier, 1024, 1024);
+    fwedit::StrokePainter painter(surface, fwedit::PaintMultiplier, empty, brush);
+    float angle = 0;
+    size_t texels = 0;
+    for (auto _ : state) {
+        angle += 0.05f;
+        const float radius = 0.05f + 0.35f * std::fmod(angle * 0.01f, 1.0f);
+        const fwedit::PaintedArea area = painter.extend(
+            {0.5f + radius * std::cos(angle), 0.5f + radius * std::sin(angle), 0.0f});
+        texels += size_t{area.x1 - area.x0} * (area.y1 - area.y0);
+    }
+    state.counters["texels"] =
+        benchmark::Counter(double(texels), benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(stroke)->Name("editor/stroke")->Unit(benchmark::kMillisecond);
+
+// To another time: the share that is lit, for the strip, and the map of burn times.
+void scrub(benchmark::State& state) {
+    fwedit::ArrivalField field;
+    field.width = field.height = 1024;
+    field.seconds.resize(size_t{1024} * 1024);
+    for (size_t i = 0; i < field.seconds.size(); ++i)
+        field.seconds[i] = i % 7 == 0 ? fwedit::kNeverLit : float(i % 4096) * 0.01f;
+    float time = 0;
+    for (auto _ : state) {
+        time = std::fmod(time + 3.7f, 40.0f);
+        benchmark::DoNotOptimize(fwedit::litShare(field, time));
+        benchmark::DoNotOptimize(fwedit::burnTimeMap(field, time).data());
+    }
+}
+BENCHMARK(scrub)->Name("editor/scrub/1024")->Unit(benchmark::kMillisecond);
+
+void openBunny(benchmark::State& state) {
+    const char* assets = std::getenv("FLAMEWRIGHT_ASSETS");
+    const fs::path bunny = assets ? fs::path(assets) / "bunny_31k.glb" : fs::path();
+    if (!assets || !fs::exists(bunny)) {
+        state.SkipWithError("FLAMEWRIGHT_ASSETS has no bunny_31k.glb");
+        return;
+    }
+    const fs::path folder =
+        fs::temp_directory_path() / ("fw_editor_bench_" + std::to_string(::getpid()));
+    std::string error;
+    const auto must = [&](fwedit::ScriptHost& host, const std::string& line) {
+        if (error.empty() && !fwedit::runScriptLine(host, line, error))
+            state.SkipWithError(error.c_str());
+    };
+    {
+        fwedit::ScriptHost host(folder);
+        host.assets.cache = folder / "cache";
+        must(host, "import \"" + bunny.string() + "\"");
+        must(host, "save bunny.fwscene");
+        must(host, "report");  // bakes
+    }
+    for (auto _ : state) {
+        fwedit::ScriptHost host(folder);
+        host.assets.cache = folder / "cache";
+        must(host, "open bunny.fwscene");
+        must(host, "report");
+    }
+    fs::remove_all(folder);
+}
+BENCHMARK(openBunny)->Name("editor/open_bunny31k")->Unit(benchmark::kMillisecond)->Iterations(2);
+
+}  // namespace
