@@ -39,6 +39,7 @@ void defaults(FwWorldDef& def) noexcept {
     def.volumeSteps = 64;
     def.maxParticles = 16384;
     def.arrivalTiles = 1024;
+    def.volumeOctaves = 4;
 }
 
 void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }

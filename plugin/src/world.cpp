@@ -273,6 +273,14 @@ FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld* world, FwVolumetricFir
     });
 }
 
+FwResult FW_CALL fwWorld_SetVolumetricFireTier(FwWorld* world, FwVolumetricFireId id,
+                                               uint32_t tier) {
+    return onWorld("fwWorld_SetVolumetricFireTier", world, [&](world::World& w) {
+        w.setVolumetricFireTier(id, tier);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld* world, FwVolumetricFireId id,
                                                 FwVolumetricFireState* state) {
     return onWorld("fwWorld_GetVolumetricFireState", world, [&](world::World& w) {

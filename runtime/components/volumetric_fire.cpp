@@ -118,7 +118,6 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
                    "FwVolumetricFireDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
                    kKnown);
     checkWhole(def.preset, "FwVolumetricFireDef::preset", 0, FW_FIRE_PRESET_COUNT - 1);
-    checkWhole(def.tier, "FwVolumetricFireDef::tier", 0, FW_FIRE_TIER_IMPOSTOR);
     checkValue(def.diameter, "FwVolumetricFireDef::diameter", 0.002f, 20.0f);
     checkValue(def.windResponse, "FwVolumetricFireDef::windResponse", 0.0f, 4.0f);
     checkValue(def.turbulence, "FwVolumetricFireDef::turbulence", 0.0f, 3.0f);
@@ -132,9 +131,9 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
     fire.diameter = def.diameter;
     setFirePosition(fire, def.position);
     setFirePower(fire, def.power);
+    setFireTier(fire, def.tier, "FwVolumetricFireDef::tier");
     setFirePoints(fire, def.points, def.pointCount, "FwVolumetricFireDef::points");
     fire.flags = def.flags;
-    fire.tier = def.tier;
     fire.preset = fire.profile = def.preset;
     fire.ownProfile = def.profile;
     fire.seed = def.seed ? def.seed : ownSeed;
@@ -172,6 +171,11 @@ void setFirePower(VolumetricFire& fire, float power) {
 void setFirePosition(VolumetricFire& fire, const float position[3]) {
     checkValues(position, 3, "position", -1e6f, 1e6f);
     std::copy_n(position, 3, fire.position);
+}
+
+void setFireTier(VolumetricFire& fire, uint32_t tier, const char* name) {
+    checkWhole(tier, name, 0, FW_FIRE_TIER_SLICES);
+    fire.tier = tier;
 }
 
 void setFirePoints(VolumetricFire& fire, const FwFirePoint* points, uint32_t count,

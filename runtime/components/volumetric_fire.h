@@ -66,6 +66,7 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
 uint32_t mostParts(float power, float diameter) noexcept;  // that it would be divided into
 void setFirePower(VolumetricFire& fire, float power);
 void setFirePosition(VolumetricFire& fire, const float position[3]);
+void setFireTier(VolumetricFire& fire, uint32_t tier, const char* name);
 void setFirePoints(VolumetricFire& fire, const FwFirePoint* points, uint32_t count,
                    const char* name);
 void setFireTrack(VolumetricFire& fire, const FwFireTrackDef* def);

@@ -106,6 +106,11 @@ void World::setVolumetricFireHidden(FwVolumetricFireId id, bool hidden) {
     flags = (flags & ~uint32_t(FW_FIRE_HIDDEN)) | (hidden ? uint32_t(FW_FIRE_HIDDEN) : 0u);
 }
 
+void World::setVolumetricFireTier(FwVolumetricFireId id, uint32_t tier) {
+    VolumetricFire& fire = fires_.get(id)->data;
+    components::setFireTier(fire, tier, "tier");
+}
+
 void World::volumetricFireState(FwVolumetricFireId id, FwVolumetricFireState& state) {
     components::fillFireState(fires_.get(id)->data, state);
 }
@@ -182,6 +187,10 @@ void World::planFires(float seconds) noexcept {
             if (auto* fire = fires_.at(i)) burning_.settle((*fire)->data, air);
         burning_.advance(air, seconds);
         count = burning_.write(fireFlames_);
+        for (uint32_t i = 0; i < count; ++i) {
+            uint32_t& octaves = fireFlames_[i].record.octaves;
+            octaves = std::min(octaves, def_.volumeOctaves);
+        }
     }
     frame_.volumes = {fireFlames_.data(), count};
     frame_.volumesDue = fires_.live() > 0 || flamesShown_ > 0;

@@ -53,7 +53,9 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     checkLimit(def.maxRefinedTriangles, "FwWorldDef::maxRefinedTriangles", 1000, 16000000);
     checkLimit(def.volumeCell, "FwWorldDef::volumeCell", 1, 16);
     checkLimit(def.volumeSteps, "FwWorldDef::volumeSteps", 6, 64);
+    checkLimit(def.volumeOctaves, "FwWorldDef::volumeOctaves", 1, gpu::kFlameOctaves);
     checkLimit(def.reserved1, "FwWorldDef::reserved1", 0, 0);
+    checkLimit(def.reserved2, "FwWorldDef::reserved2", 0, 0);
     checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
     checkLimit(def.maxParticles, "FwWorldDef::maxParticles", 0, 1u << 20);
     checkLimit(def.arrivalTiles, "FwWorldDef::arrivalTiles", 1, 1u << 20);

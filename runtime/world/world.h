@@ -309,6 +309,7 @@ class World {
     void setVolumetricFirePower(FwVolumetricFireId id, float power);
     void setVolumetricFirePoints(FwVolumetricFireId id, const FwFirePoint* points, uint32_t count);
     void setVolumetricFireHidden(FwVolumetricFireId id, bool hidden);
+    void setVolumetricFireTier(FwVolumetricFireId id, uint32_t tier);
     void setVolumetricFireTrack(FwVolumetricFireId id, const FwFireTrackDef* def);
     void volumetricFireState(FwVolumetricFireId id, FwVolumetricFireState& state);
     FwFireEmitterId createFireEmitter(const FwFireEmitterDef& def);

@@ -39,13 +39,13 @@ struct VolumeDraw {
     float spacing;        // m, between samples where mostSteps allows it
     uint intervals;       // [1, kFlameIntervals], of a ray, between knots
     float wide;           // m, the flame's diameter
-    float reserved;
+    uint perPixel;        // rays a side of a pixel; [1, 8]
 };
 FW_SHARED_SIZE(VolumeDraw, 112)
 
 FW_SHARED_CONST uint kVolumeTile = 8u;          // cells a side; a workgroup marches a tile
-FW_SHARED_CONST uint kVolumeCellWords = 3u;     // of a cell in a slab, as halfs: red and green, blue and alpha; in
-                                                // slabs: see volumeLies
+FW_SHARED_CONST uint kVolumeCellWords = 4u;     // of a cell in a slab, a texel: as halfs red and green, blue and
+                                                // alpha; in slabs: see volumeLies; nothing yet
 
 // Arguments of a flame's march and of its draw: a tile each of those that are worth a march. Zero before the probe.
 struct VolumeWork {
@@ -120,6 +120,18 @@ struct VolumeCard {
 };
 FW_SHARED_SIZE(VolumeCard, 80)
 
+// Push constants of a flame that is drawn as slices of its lattice, see volume_slices.h.
+struct VolumeSlices {
+    vec4 clip;            // as VolumeDraw's
+    float front;          // m along the view, where the nearest slice's part begins
+    float spacing;        // m along the view, of a slice's part
+    uint slices;          // [1, kVolumeSlices]
+    float from; float to; // see volumeTurned
+    uint reserved0; uint reserved1; uint reserved2;
+};
+FW_SHARED_SIZE(VolumeSlices, 48)
+FW_SHARED_CONST uint kVolumeSlices = 64u;       // most of a flame
+
 // Whether a pixel shows what has the thresholds in [from, to) of [0, 1): two that share them lie in a
 // fine pattern side by side, where laid over each other both would be too faint. Bayer's order.
 FW_SHARED_FN bool volumeTurned(uint x, uint y, float from, float to) {
@@ -164,6 +176,12 @@ float volumeNearer(uint lies, float cut) {
     return clamp((cut - ends.x) / max(ends.y - ends.x, 1e-2), 0.0, 1.0);
 }
 #endif
+
+// m: of what a ray stands for where as many go through a pixel each way: detail as fine as a part of it is sampled,
+// since what a pixel averages is many rays; of a large flame's one ray what is not finer than it.
+FW_SHARED_FN float volumeFine(float pixel, uint perPixel) {
+    return perPixel > 1u ? 0.25f * pixel / float(perPixel) : pixel;
+}
 
 // How many samples a ray takes over so many metres.
 FW_SHARED_FN float volumeSteps(float metres, float spacing, uint most) {

@@ -35,11 +35,8 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
     return tube;
 }
 
-// At t m along the ray; `size`: as flameLookup's.
-FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
-    float u = (t - tube.chord.from) / max(tube.chord.gap, 1e-9);
-    FlameLookup look = flameLookup(f, flameAlong(tube.first, tube.delta, u), size);
-    if (((tube.broken >> uint(clamp(u, 0.0, float(kFlameIntervals)))) & 1u) != 0u) look.lit = 0.0;
+// What burns where a lookup looks.
+FlameMedium lookMedium(FlameRecord f, FlameLookup look) {
     vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach),
                       look.y * float(kProfileHeight));
     vec2 texels = vec2(float(kProfileWidth), float(kProfileHeight));
@@ -48,6 +45,19 @@ FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
     if (look.lit > 0.0)
         m = flameMedium(f, look, textureLod(profiles, vec3(uv, float(f.profile)), 0.0).xy);
     return m;
+}
+
+// At a place in the tube; `size`: as flameLookup's.
+FlameMedium placeMedium(FlameRecord f, FlamePlace at, float size) {
+    return lookMedium(f, flameLookup(f, at, size));
+}
+
+// At t m along the ray.
+FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
+    float u = (t - tube.chord.from) / max(tube.chord.gap, 1e-9);
+    FlameLookup look = flameLookup(f, flameAlong(tube.first, tube.delta, u), size);
+    if (((tube.broken >> uint(clamp(u, 0.0, float(kFlameIntervals)))) & 1u) != 0u) look.lit = 0.0;
+    return lookMedium(f, look);
 }
 
 // Soot glows as a camera that is set for fire sees it; tints are what they are.

@@ -1,6 +1,6 @@
 #version 450
 // A volumetric flame along one ray, or the part of it in one slab, for views that were not marched
-// before: samples at even steps through the tube, each with emission and absorption that are exact
+// before; of a small flame, along many: samples at even steps through the tube, each with emission and absorption that are exact
 // for its step, so that neither their number nor that of the slabs changes how bright it is.
 // Premultiplied: light, and what it hides.
 #extension GL_GOOGLE_include_directive : require
@@ -27,17 +27,13 @@ layout(location = 0) out vec4 outColor;
 #include "volume/scene_depth.glsl"
 #endif
 
-void main() {
-    FlameRecord f = flame.record;
-    // Zero. A software device compiles a shader anew, in milliseconds a draw, for each set of
-    // constants that alone decide its branches.
-    f.octaves |= inZero;
-    f.tint.w += float(inZero);
-    f.smoke += float(inZero);
-    f.puff += float(inZero);
+// Of the ray `off` pixels beside the pixel's middle, whose samples begin `jitter` of a step late.
+vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     bool perspective = view.forward.w > 0.5;
-    vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : inRay);
-    vec3 along = perspective ? inRay : view.forward.xyz;
+    vec2 perPixel = 2.0 / abs(view.viewport.zw);
+    vec3 way = inRay + off.x * perPixel.x * draw.rayX.xyz + off.y * perPixel.y * draw.rayY.xyz;
+    vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : way);
+    vec3 along = perspective ? way : view.forward.xyz;
     float perDepth = length(along);  // m along the ray per m along the view
     vec3 direction = along / perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
@@ -50,8 +46,7 @@ void main() {
 #endif
     vec4 spans = flameSpans(f, from, direction);
     spans.yw = min(spans.yw, vec2(farthest));
-    float jitter = volumeJitter(gl_FragCoord.x, gl_FragCoord.y, view.ambientSky.w);
-    float pixel = view.eye.w * (perspective ? 1.0 / perDepth : 0.0);
+    float pixel = volumeFine(view.eye.w * (perspective ? 1.0 / perDepth : 0.0), draw.perPixel);
     vec2 slab = inSlab * perDepth;
 
     RayTube tube = rayTube(f, spans, from, direction, draw.intervals | inZero);
@@ -88,5 +83,29 @@ void main() {
     vec3 scattered = smoke.front.radiance + smoke.front.through * ray.through * smoke.back.radiance;
     ray = flameBetween(ray, smoke);
 
-    outColor = flameShown(ray, scattered, white * view.sunDirection.w, kEncoding);
+    return flameShown(ray, scattered, white * view.sunDirection.w, kEncoding);
+}
+
+void main() {
+    FlameRecord f = flame.record;
+    // Zero. A software device compiles a shader anew, in milliseconds a draw, for each set of
+    // constants that alone decide its branches.
+    f.octaves |= inZero;
+    f.tint.w += float(inZero);
+    f.smoke += float(inZero);
+    f.puff += float(inZero);
+    uint side = draw.perPixel | inZero;
+    uvec2 first = uvec2(gl_FragCoord.xy) * side;
+    vec4 sum = vec4(0.0);
+    uint k = 0u;
+    do {  // as many turns for all
+        uvec2 cell = first + uvec2(k % side, k / side);
+        vec2 off = (vec2(k % side, k / side) + 0.5 + (side > 1u ? volumeShift(cell.x, cell.y) : vec2(0.0))) /
+                       float(side) - 0.5;
+        float jitter = side > 1u ? volumePhase(cell.x, cell.y, view.ambientSky.w)
+                                 : volumeJitter(gl_FragCoord.x, gl_FragCoord.y, view.ambientSky.w);
+        sum += shownAlong(f, off, jitter);
+        k += 1u;
+    } while (k < side * side);
+    outColor = sum / float(side * side);
 }

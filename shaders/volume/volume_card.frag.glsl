@@ -5,7 +5,6 @@
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 
-layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) readonly buffer Rays { uint rays[]; };
 layout(push_constant) uniform Push { VolumeCard draw; };
 
 layout(location = 0) in vec2 inCell;
@@ -15,6 +14,8 @@ layout(location = 3) flat in vec2 inHalf;
 layout(location = 4) flat in vec2 inShows;
 
 layout(location = 0) out vec4 outColor;
+
+#include "volume/cells.glsl"
 
 #ifdef FW_SOFT
 #include "volume/scene_depth.glsl"
@@ -40,11 +41,11 @@ void main() {
             int x = first.x + i;
             float weight = tall * clamp(min(high.x, float(x + 1)) - max(low.x, float(x)), 0.0, 1.0);
             if (x < 0 || x >= inTaps.z) weight = 0.0;
-            uint at = draw.samples + kVolumeCellWords * (row + uint(clamp(x, 0, inTaps.z - 1)));
+            uvec4 cell = cellAt(draw.samples + kVolumeCellWords * (row + uint(clamp(x, 0, inTaps.z - 1))));
 #ifdef FW_SOFT
-            weight *= volumeNearer(rays[at + 2u], cut);
+            weight *= volumeNearer(cell.z, cut);
 #endif
-            color += weight * vec4(unpackHalf2x16(rays[at]), unpackHalf2x16(rays[at + 1u]));
+            color += weight * cellColor(cell);
         }
     }
     outColor = color / (4.0 * inHalf.x * inHalf.y);

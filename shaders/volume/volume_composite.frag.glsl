@@ -6,7 +6,6 @@
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 
-layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) readonly buffer Rays { uint rays[]; };
 layout(push_constant) uniform Push { VolumeComposite draw; };
 
 layout(location = 0) in vec2 inCell;
@@ -18,6 +17,8 @@ layout(location = 5) flat in vec2 inShows;
 
 layout(location = 0) out vec4 outColor;
 
+#include "volume/cells.glsl"
+
 #ifdef FW_SOFT
 #include "volume/scene_depth.glsl"
 #endif
@@ -27,13 +28,13 @@ float cut = 1e9;  // slabs from this one's front to the scene
 // A cell counts as much as the slabs before this one let through of it: the mean of that is what they
 // let through of a pixel as they are drawn, so slabs neither lose nor make light.
 void add(uint at, float weight, inout vec4 color, inout float through) {
-    uint lies = rays[at + 2u];
-    weight *= volumeThrough(lies);
+    uvec4 cell = cellAt(at);
+    weight *= volumeThrough(cell.z);
     through += weight;
 #ifdef FW_SOFT
-    weight *= volumeNearer(lies, cut);
+    weight *= volumeNearer(cell.z, cut);
 #endif
-    color += weight * vec4(unpackHalf2x16(rays[at]), unpackHalf2x16(rays[at + 1u]));
+    color += weight * cellColor(cell);
 }
 
 void main() {

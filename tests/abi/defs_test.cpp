@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(98, calls);  // every function of the three headers
+    EXPECT_EQ(99, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -347,6 +347,12 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeWorld(&few));
         EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::volumeSteps is"));
     }
+    for (const uint32_t octaves : {0u, 5u}) {
+        FwWorldDef smooth = fwDefaultWorldDef();
+        smooth.volumeOctaves = octaves;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeWorld(&smooth));
+        EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::volumeOctaves is"));
+    }
 
     const std::function<FwResult(const FwMaterialDef*)> makeMaterial =
         [&](const FwMaterialDef* def) {
@@ -419,9 +425,9 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     refuseFloat<F>(fire, &F::tintWeight, "tintWeight", makeFire, worldMessage, {-0.1f, 1.1f});
     refuseFloat<F>(fire, &F::blend, "blend", makeFire, worldMessage, {-0.1f, 61.0f});
     F tiered = fire;
-    tiered.tier = 4;
+    tiered.tier = 5;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeFire(&tiered));
-    EXPECT_NE(std::string::npos, worldMessage().find("FwVolumetricFireDef::tier is 4"));
+    EXPECT_NE(std::string::npos, worldMessage().find("FwVolumetricFireDef::tier is 5"));
     tiered.tier = FW_FIRE_TIER_IMPOSTOR;
     EXPECT_EQ(FW_OK, makeFire(&tiered));
     for (int i = 0; i < 3; ++i) {

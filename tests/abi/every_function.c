@@ -66,6 +66,7 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_SetVolumetricFirePower(NULL, fire, 0.0f));
     REFUSES(fwWorld_SetVolumetricFirePoints(NULL, fire, NULL, 0));
     REFUSES(fwWorld_SetVolumetricFireHidden(NULL, fire, 1));
+    REFUSES(fwWorld_SetVolumetricFireTier(NULL, fire, FW_FIRE_TIER_AUTO));
     REFUSES(fwWorld_GetVolumetricFireState(NULL, fire, NULL));
     REFUSES(fwWorld_SetVolumetricFireTrack(NULL, fire, NULL));
     REFUSES(fwWorld_CreateFireEmitter(NULL, NULL, NULL));

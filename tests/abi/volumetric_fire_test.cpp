@@ -135,6 +135,19 @@ TEST(AbiVolumetricFire, IsALight) {
     EXPECT_EQ(1u, fwWorld_GetLights(w.world, lights, 8));
 }
 
+// A host may say at any time as what views show a fire.
+TEST(AbiVolumetricFire, TakesATierAtAnyTime) {
+    FireWorld w;
+    const FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    const FwVolumetricFireId id = w.make(def);
+    for (uint32_t tier = FW_FIRE_TIER_AUTO; tier <= FW_FIRE_TIER_SLICES; ++tier)
+        EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFireTier(w.world, id, tier));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFireTier(w.world, id, 5));
+    EXPECT_NE(std::string::npos, std::string(lastMessage(w.world)).find("tier is 5"));
+    EXPECT_EQ(FW_OK, fwWorld_DestroyVolumetricFire(w.world, id));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetVolumetricFireTier(w.world, id, FW_FIRE_TIER_AUTO));
+}
+
 // A host lights its first picture, too: what it is told then is what the first frame makes of it.
 TEST(AbiVolumetricFire, LightsTheSceneBeforeItsFirstFrame) {
     FwFirePoint line[2] = {{{3, 0, 0}, 0.1f}, {{4, 1, 0}, 0.1f}};

@@ -1,10 +1,12 @@
-// What volumetric flames cost: the time of an offscreen picture with them, submitted and waited
-// for, less that of one where they are hidden, taken in turns. cpu_ms: the same of all this
-// process's threads. boxed: part of the picture in their bounds, as seen; lit: that they change.
+// What volumetric flames cost, and of that (least) probe, march and composite, as the device says:
+// the time of an offscreen picture with them, submitted and waited for, less that of one where they
+// are hidden, taken in turns. cpu_ms: the same of all this process's threads. boxed: part of the
+// picture in their bounds, as seen; lit: that they change.
 #include <benchmark/benchmark.h>
 
 #include "bench/bench_device.h"
 #include "flamewright/flamewright.h"
+#include "flamewright/flamewright_debug.h"
 
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -19,9 +21,10 @@ namespace {
 
 struct Case {
     uint32_t width, height, fires;
-    uint32_t flags;                 // FwVolumetricFireFlags
-    float boxed;                    // part of the picture that one fire's bounds take
-    uint32_t cell = 2, steps = 64;  // as FwWorldDef's
+    uint32_t flags;                              // FwVolumetricFireFlags
+    float boxed;                                 // part of the picture that one fire's bounds take
+    uint32_t cell = 2, steps = 64, octaves = 4;  // as FwWorldDef's
+    uint32_t preset = FW_FIRE_CAMP;
 };
 
 class Fires {
@@ -40,13 +43,14 @@ class Fires {
         worldDef.maxFlames = 0;
         worldDef.volumeCell = case_.cell;
         worldDef.volumeSteps = case_.steps;
+        worldDef.volumeOctaves = case_.octaves;
         FwErrorInfo info{};
         if (fwCreateContext(&contextDef, &context_, &info) != FW_OK ||
             fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
             return "no device";
         for (uint32_t i = 0; i < case_.fires; ++i) {
             FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
-            fwInitFirePreset(&def, FW_FIRE_CAMP);
+            fwInitFirePreset(&def, case_.preset);
             def.flags = case_.flags;
             def.seed = 7 + i;
             def.position[0] = 1.1f * (float(i % 8) - 0.5f * float(std::min(case_.fires, 8u) - 1));
@@ -71,6 +75,16 @@ class Fires {
         const double cpu = fw::test::cpuSeconds();
         fwWorld_RenderOffscreen(world_, &shot_);
         return {fw::test::secondsSince(start), fw::test::cpuSeconds() - cpu};
+    }
+    // ms, of the passes whose names begin so in the last frame that told its times.
+    double passes(const char* name) {
+        FwPassTime times[64];
+        const uint32_t count = fwDebug_GetPassTimes(world_, times, 64);
+        double sum = 0;
+        for (uint32_t i = 0; i < count && i < 64; ++i)
+            if (std::strncmp(times[i].name, name, std::strlen(name)) == 0)
+                sum += times[i].milliseconds;
+        return sum;
     }
     [[nodiscard]] double lit() const {
         size_t sum = 0;
@@ -128,16 +142,25 @@ void drawFires(benchmark::State& state, const Case& what) {
         return;
     }
     double cpu = 0, least = 1e9;
+    constexpr const char* kPasses[] = {"volume probe", "volume march", "volume composite"};
+    double passes[3] = {1e9, 1e9, 1e9};
     const auto both = [&] {
         const Fires::Cost without = fires.take(true), with = fires.take(false);
         cpu += with.cpu - without.cpu;
         least = std::min(least, with.cpu - without.cpu);
+        for (int i = 0; i < 3; ++i)
+            if (const double ms = fires.passes(kPasses[i]); ms > 0)
+                passes[i] = std::min(passes[i], ms);
         return std::max(with.wall - without.wall, 1e-6);
     };
     for (int i = 0; i < 3; ++i) both();  // pipelines are compiled at first use
     cpu = 0, least = 1e9;
+    passes[0] = passes[1] = passes[2] = 1e9;
     for (auto _ : state) state.SetIterationTime(both());
     state.counters["cpu_least_ms"] = 1e3 * least;
+    state.counters["probe_ms"] = passes[0];
+    state.counters["march_ms"] = passes[1];
+    state.counters["composite_ms"] = passes[2];
     state.counters["cpu_ms"] = 1e3 * cpu / double(state.iterations());
     state.counters["boxed"] = fires.boxed();
     state.counters["lit"] = fires.lit();
@@ -156,6 +179,14 @@ FW_VOLUME_ROW(small, "volume/15percent_screen/720p", 1280, 720, 1, FW_FIRE_NO_SM
 FW_VOLUME_ROW(steps16, "volume/steps16/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 16);
 FW_VOLUME_ROW(steps24, "volume/steps24/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 24);
 FW_VOLUME_ROW(steps32, "volume/steps32/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 32);
+FW_VOLUME_ROW(octaves1, "volume/octaves1/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 64, 1,
+              FW_FIRE_HOUSE);
+FW_VOLUME_ROW(octaves2, "volume/octaves2/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 64, 2,
+              FW_FIRE_HOUSE);
+FW_VOLUME_ROW(octaves3, "volume/octaves3/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 64, 3,
+              FW_FIRE_HOUSE);
+FW_VOLUME_ROW(octaves4, "volume/octaves4/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 64, 4,
+              FW_FIRE_HOUSE);
 FW_VOLUME_ROW(flames32, "volume/flames32/720p", 1280, 720, 32, FW_FIRE_NO_SMOKE, 1.0f);
 
 }  // namespace

@@ -350,6 +350,7 @@ class Fuzz {
                 break;
             case 3:
                 check(fwWorld_SetVolumetricFireHidden(world_, id, random_.below(2)));
+                check(fwWorld_SetVolumetricFireTier(world_, id, random_.below(7)));
                 break;
             default: {
                 FwVolumetricFireState state{};

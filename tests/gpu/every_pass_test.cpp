@@ -92,9 +92,8 @@ class EveryPass : public GpuTest {
         scene_->create(rig_->backend);
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         def.flags = FW_TARGET_COMPOSITE;
-        def.colorFormat = VK_FORMAT_R8G8B8A8_UNORM;
+        def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show
         def.depthFormat = VK_FORMAT_D32_SFLOAT;
-        def.encoding = FW_OUTPUT_DISPLAY_UNORM;
         target_ = rig_->context.registerTarget(def);
         color_ = device_->makeImage(
             def.colorFormat, {kSide, kSide}, 1,
@@ -112,6 +111,9 @@ class EveryPass : public GpuTest {
         flames_[0].record.tier = FW_FIRE_TIER_MARCH_HIGH;
         flames_[1].record.tier = FW_FIRE_TIER_IMPOSTOR;
         flames_[1].record.key = 1;
+        flames_[2] = flames_[1];
+        flames_[2].record.tier = FW_FIRE_TIER_SLICES;
+        flames_[2].record.key = 2;
         FwFireEmitterDef jet = fwDefaultFireEmitterDef();
         jet.flags = FW_EMITTER_JET | FW_EMITTER_GROUND;
         jet.power = 20;
@@ -245,7 +247,7 @@ class EveryPass : public GpuTest {
         plan.steps = steps;
         plan.probes = probes;
         if (what.probes) plan.burnMaps = {&map, 1};
-        const gpu::VolumeUpdate volumes{flames_, 2};
+        const gpu::VolumeUpdate volumes{flames_, 3};
         plan.volumes = &volumes;
         const gpu::uvec2 group(0, 0);
         gpu::EmitterUpdate emitters;
@@ -416,7 +418,7 @@ class EveryPass : public GpuTest {
     gpu::RemoteUpdate remote_;
     std::vector<gpu::ContactLink> links_;
     gpu::Blocker blocker_{};
-    gpu::VolumeFlame flames_[2]{};
+    gpu::VolumeFlame flames_[3]{};
     std::unique_ptr<ParticleReference> emitter_;
     gpu::FieldDraw fieldDraws_[3]{};
     uint32_t fieldStep_ = 0;

@@ -20,6 +20,7 @@ inline FwWorldDef plainWorldDef(uint32_t flags) {
     def.volumeCell = 2;
     def.volumeSteps = 64;
     def.arrivalTiles = 1024;
+    def.volumeOctaves = 4;
     return def;
 }
 

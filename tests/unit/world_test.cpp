@@ -171,6 +171,7 @@ class PlannedWorld : public ::testing::Test {
         def.volumeCell = 2;
         def.volumeSteps = 64;
         def.arrivalTiles = 1024;
+        def.volumeOctaves = 4;
         world.emplace(def, backend, log, std::pmr::new_delete_resource());
         FwMeshDef mesh{};
         mesh.structSize = sizeof mesh;

@@ -212,6 +212,9 @@ typedef struct FwWorldDef {
     uint32_t arrivalTiles;      /* [1, 1048576], default 1024: tiles of 8 x 8 texels that questions for arrivals
                                    look at in a frame, together; some 2 us each, and some 25 looks at each
                                    tile of a map. See fwWorld_RequestArrival */
+    uint32_t volumeOctaves;     /* [1, 4], default 4: most octaves of noise of a volumetric flame; presets have
+                                   3, large fires 4. Fewer are quicker and smoother, and as high and bright */
+    uint32_t reserved2;         /* 0 */
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
     FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;
@@ -484,10 +487,14 @@ typedef enum FwVolumetricFireFlags {
 typedef enum FwFireTier { /* how a view shows it: the view that RecordOutside gets; others march what they show */
     FW_FIRE_TIER_AUTO = 0,       /* by its size on the screen; 32 flames are marched at most, the 16 largest high */
     FW_FIRE_TIER_MARCH_HIGH = 1, /* each frame, up to 64 samples a ray */
-    FW_FIRE_TIER_MARCH_LOW = 2,  /* each frame, half of them */
+    FW_FIRE_TIER_MARCH_LOW = 2,  /* each frame, two thirds of them */
     FW_FIRE_TIER_IMPOSTOR = 3,   /* a card that faces the camera, up to 24 cells across the flame: marched as those
                                     are, but twelve in a frame, in turn, however many there are. Meant for flames
                                     of less than 13 px across */
+    FW_FIRE_TIER_SLICES = 4,     /* planes across the view through the flame's lattice, a sample each: the published
+                                    method, of use where little else may run before the pass. Layers may show.
+                                    Where we tone map (FwOutputEncoding other than FW_OUTPUT_LINEAR) they would add
+                                    up wrongly: there it is marched, low */
     FW_FIRE_TIER_FORCE32 = 0x7fffffff
 } FwFireTier;
 typedef struct FwFirePoint { /* of the line that a flame follows, its base first */
@@ -541,6 +548,8 @@ FW_API FwResult FW_CALL fwWorld_SetVolumetricFirePower(FwWorld*, FwVolumetricFir
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld*, FwVolumetricFireId id, const FwFirePoint* points,
                                                         uint32_t pointCount);
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld*, FwVolumetricFireId id, uint32_t hidden); /* [world] */
+/* FwFireTier, as FwVolumetricFireDef::tier; views go over to it within 16 frames. [world] */
+FW_API FwResult FW_CALL fwWorld_SetVolumetricFireTier(FwWorld*, FwVolumetricFireId id, uint32_t tier);
 
 typedef struct FwVolumetricFireState { /* as of the last frame; before its first one as it is about to be */
     uint32_t structSize, flames; /* flames it burns as; 0: out */

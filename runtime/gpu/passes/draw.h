@@ -6,6 +6,7 @@
 #include "shared/look.h"
 #include "shared/volume_draw.h"
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -65,8 +66,9 @@ class DrawRecorder {
     virtual void drawCut(const DrawItem& item, const void* push) = 0;
     // A VkDrawIndirectCommand at `offset` bytes of the resource.
     virtual void drawIndirect(uint32_t resource, uint64_t offset) = 0;
-    // The slabs of volumetric flame `flame`.
-    virtual void drawVolume(uint32_t flame, const VolumeDraw& push) = 0;
+    // Of volumetric flame `flame`, of vertices that the shader makes.
+    virtual void drawVolume(uint32_t flame, const void* push, uint32_t vertices,
+                            uint32_t instances) = 0;
     // The same, of vertices that the shader makes.
     virtual void drawListed(uint32_t resource, uint64_t offset, const void* push) = 0;
     // Six vertices, which the shader makes.
@@ -102,7 +104,8 @@ struct VolumeItem {  // a volumetric flame that a view may show
     uint32_t flame = 0;
     VolumeDraw draw{};
     vec4 whole{};  // VolumeDraw::rect as if the view had no edge; empty: it is around the eye
-    vec3 middle{}, base{};  // m, world: of its bounds; where it stands
+    vec3 middle{}, base{};    // m, world: of its bounds; where it stands
+    float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
 };
 extern const DrawPass kVolumePass;
 // Where the view shows it, in so many slabs; false: nowhere.
@@ -140,6 +143,8 @@ struct VolumeScreen {     // what the marched view is shown on
 uint32_t volumeRayWords(const VolumeScreen& screen);
 // px, across a flame.
 float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept;
+// Rays and samples of a flame that is marched as it is drawn: as many as if it were before.
+void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept;
 // Cells of all `items`, as fine as `words` allow, in their order, behind the `first` words, which
 // are others'; `perPixel`: m per pixel at a depth of 1. 0: they do not fit; else the end of the
 // words that are known of tiles.
@@ -168,5 +173,33 @@ bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen
               uint32_t slot, const VolumeCardShape& card, VolumeCard& out) noexcept;
 // Farthest first.
 void recordVolumeCards(DrawRecorder& recorder, std::span<const VolumeCard> cards);
+
+extern const DrawPass kVolumeSlicesPass;
+struct SlicedVolume {  // one that is drawn as slices of its lattice
+    uint32_t flame = 0;
+    VolumeSlices draw{};
+};
+bool slicesShow(uint32_t encoding) noexcept;  // whether slices add up there, see FwOutputEncoding
+SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept;
+// Farthest first.
+void recordVolumeSlices(DrawRecorder& recorder, std::span<const SlicedVolume> volumes);
+
+// Volumetric flames of all kinds as a view draws them, farthest first: runs of neighbours that one
+// pass draws, each run behind the last one of its pass.
+struct VolumeRun {
+    const DrawPass* pass = nullptr;
+    uint32_t first = 0, count = 0;
+};
+struct VolumeOrder {
+    std::array<VolumeRun, 2 * kMaxVolumeFlames> runs;  // a flame that turns is in two
+    uint32_t count = 0;
+    // The next flame is `index` of its pass.
+    void add(const DrawPass& pass, uint32_t index) noexcept {
+        if (count > 0 && runs[count - 1].pass == &pass)
+            ++runs[count - 1].count;
+        else
+            runs[count++] = {&pass, index, 1};
+    }
+};
 
 }  // namespace fw::gpu

@@ -30,27 +30,30 @@ constexpr const ComputePass* kComputePasses[] = {
     &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0],   &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
-    &kSurfacePasses[4],   &kSurfacePasses[5],   &kSurfacePasses[6],   &kSurfacePasses[7],
-    &kSurfacePasses[8],   &kSurfacePasses[9],   &kSurfacePasses[10],  &kSurfacePasses[11],
-    &kSurfacePasses[12],  &kSurfacePasses[13],  &kSurfacePasses[14],  &kSurfacePasses[15],
-    &kSurfacePasses[16],  &kSurfacePasses[17],  &kSurfacePasses[18],  &kSurfacePasses[19],
-    &kSurfacePasses[20],  &kSurfacePasses[21],  &kSurfacePasses[22],  &kSurfacePasses[23],
-    &kSurfacePasses[24],  &kSurfacePasses[25],  &kSurfacePasses[26],  &kSurfacePasses[27],
-    &kSurfacePasses[28],  &kSurfacePasses[29],  &kSurfacePasses[30],  &kSurfacePasses[31],
-    &kSurfacePasses[32],  &kSurfacePasses[33],  &kSurfacePasses[34],  &kZPass,
-    &kFlamesPass,         &kVolumePass,         &kVolumeCardPass,     &kVolumeCompositePass,
-    &kFieldDrawPasses[0], &kFieldDrawPasses[1], &kFieldDrawPasses[2], &kBookFlamesPass};
+    &kSurfacePasses[0],  &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
+    &kSurfacePasses[4],  &kSurfacePasses[5],   &kSurfacePasses[6],   &kSurfacePasses[7],
+    &kSurfacePasses[8],  &kSurfacePasses[9],   &kSurfacePasses[10],  &kSurfacePasses[11],
+    &kSurfacePasses[12], &kSurfacePasses[13],  &kSurfacePasses[14],  &kSurfacePasses[15],
+    &kSurfacePasses[16], &kSurfacePasses[17],  &kSurfacePasses[18],  &kSurfacePasses[19],
+    &kSurfacePasses[20], &kSurfacePasses[21],  &kSurfacePasses[22],  &kSurfacePasses[23],
+    &kSurfacePasses[24], &kSurfacePasses[25],  &kSurfacePasses[26],  &kSurfacePasses[27],
+    &kSurfacePasses[28], &kSurfacePasses[29],  &kSurfacePasses[30],  &kSurfacePasses[31],
+    &kSurfacePasses[32], &kSurfacePasses[33],  &kSurfacePasses[34],  &kZPass,
+    &kFlamesPass,        &kVolumePass,         &kVolumeCardPass,     &kVolumeCompositePass,
+    &kVolumeSlicesPass,  &kFieldDrawPasses[0], &kFieldDrawPasses[1], &kFieldDrawPasses[2],
+    &kBookFlamesPass};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
-constexpr uint32_t kNumberOfFields = kNumberOfZPass + 5;
+constexpr uint32_t kNumberOfVolumes = kNumberOfZPass + 2;
+constexpr uint32_t kNumberOfFields = kNumberOfZPass + 6;
 constexpr uint32_t kNumberOfBookFlames = kNumberOfFields + kFieldVariants;
 static_assert(std::size(kDrawPasses) == kNumberOfBookFlames + 1);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first. The variants of
-// fields are one step, in which they are drawn as they lie behind each other.
+// fields are one step, in which they are drawn as they lie behind each other, and so are volumetric
+// flames of all tiers.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 7> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 5> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
@@ -59,9 +62,7 @@ constexpr auto kDrawSteps = [] {
     steps[2 * kSurfaceVariants + 1] = {kNumberOfFields, false};
     steps[2 * kSurfaceVariants + 2] = {kNumberOfZPass + 1, false};
     steps[2 * kSurfaceVariants + 3] = {kNumberOfBookFlames, false};
-    steps[2 * kSurfaceVariants + 4] = {kNumberOfZPass + 2, false};
-    steps[2 * kSurfaceVariants + 5] = {kNumberOfZPass + 3, false};  // cards: small, mostly far
-    steps[2 * kSurfaceVariants + 6] = {kNumberOfZPass + 4, false};
+    steps[2 * kSurfaceVariants + 4] = {kNumberOfVolumes, false};
     return steps;
 }();
 
@@ -80,6 +81,11 @@ std::span<const DrawStep> drawSteps() { return kDrawSteps; }
 size_t passNumber(const ComputePass& pass) {
     return size_t(std::find(std::begin(kComputePasses), std::end(kComputePasses), &pass) -
                   std::begin(kComputePasses));
+}
+
+size_t passNumber(const DrawPass& pass) {
+    return size_t(std::find(std::begin(kDrawPasses), std::end(kDrawPasses), &pass) -
+                  std::begin(kDrawPasses));
 }
 
 void recordCounters(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t iterations) {
@@ -287,14 +293,19 @@ void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList
         recordSurface(recorder, step.pass, list.surfaces, step.afterZ, list.turned);
     else if (step.pass == kNumberOfZPass)
         recordZPass(recorder, list.surfaces);
-    else if (kDrawPasses[step.pass] == &kFlamesPass || step.pass == kNumberOfBookFlames)
+    else if (step.pass != kNumberOfFields && step.pass != kNumberOfVolumes)  // bind by themselves
         recordFlames(recorder);
-    else if (kDrawPasses[step.pass] == &kVolumePass)
-        recordVolume(recorder, list.volumes);
-    else if (kDrawPasses[step.pass] == &kVolumeCardPass)
-        recordVolumeCards(recorder, list.cards);
-    else if (step.pass != kNumberOfFields)  // fields bind by themselves
-        recordVolumeComposite(recorder, list.marched);
+}
+
+void recordVolumeRun(const VolumeRun& run, DrawRecorder& recorder, const DrawList& list) {
+    if (run.pass == &kVolumePass)
+        recordVolume(recorder, list.volumes.subspan(run.first, run.count));
+    else if (run.pass == &kVolumeCardPass)
+        recordVolumeCards(recorder, list.cards.subspan(run.first, run.count));
+    else if (run.pass == &kVolumeSlicesPass)
+        recordVolumeSlices(recorder, list.sliced.subspan(run.first, run.count));
+    else
+        recordVolumeComposite(recorder, list.marched.subspan(run.first, run.count));
 }
 
 bool drawStepDraws(const DrawStep& step, const DrawList& list) {
@@ -303,8 +314,7 @@ bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (step.pass == kNumberOfFields) return !list.fields.empty();
     if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames && !list.books;
     if (step.pass == kNumberOfBookFlames) return list.flames && list.books;
-    if (kDrawPasses[step.pass] == &kVolumeCardPass) return !list.cards.empty();
-    return kDrawPasses[step.pass] == &kVolumePass ? !list.volumes.empty() : !list.marched.empty();
+    return !list.volumeRuns.empty();
 }
 
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick) {

@@ -123,14 +123,18 @@ struct DrawList {                                      // what a view may show
     bool flames = false;  // something burns
     bool books = false;   // flipbooks show some of it
     std::span<const VolumeItem> volumes;
-    std::span<const MarchedVolume> marched;  // instead of them, and `cards`
+    std::span<const MarchedVolume> marched;  // instead of them
     std::span<const FieldItem> fields;
     bool turned = false;  // counter-clockwise triangles turn their backs to it
     std::span<const VolumeCard> cards{};
+    std::span<const SlicedVolume> sliced{};
+    std::span<const VolumeRun> volumeRuns{};  // of these four
 };
 // False: it would draw nothing, do not bind it.
 bool drawStepDraws(const DrawStep& step, const DrawList& list);
 void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList& list);
+void recordVolumeRun(const VolumeRun& run, DrawRecorder& recorder, const DrawList& list);
+size_t passNumber(const DrawPass& pass);
 void recordLights(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t endTick);
 // For the frame's view, after the lights: quads of burning meshes' flames.
 // `books`: that show them, byte 0 fire's + 1, byte 1 smoke's + 1.

@@ -23,6 +23,7 @@ enum class Access : uint8_t {
                   // of them: a software device reads those faster. At most 4, before any `write`
     indirect,     // arguments of a dispatch or draw
     drawRead,     // storage buffer, vertex and fragment shaders
+    drawTexels,   // as drawRead, but as readTexels; after the drawRead of who reads both ways
     drawUniform,  // uniform buffer, vertex and fragment shaders; at most 16 KiB
     drawEach,     // the same, of which a draw sees one record: FW_BIND_VOLUMES only
     each,         // the same for a dispatch, uniform buffer, compute
@@ -31,6 +32,10 @@ enum class Access : uint8_t {
     copyRead,
     copyWrite,
 };
+
+constexpr bool byTexels(Access access) noexcept {
+    return access == Access::readTexels || access == Access::drawTexels;
+}
 
 struct Use {
     uint32_t resource;
@@ -80,6 +85,8 @@ struct DrawPass {
     // Instead of fragmentShader where the target samples depth; null: not drawn there.
     const char* softShader = nullptr;
     const char* softShaderMultisampled = nullptr;
+    // The three where `uses` has texels: instead, if the device has them.
+    const char* const* texelShaders = nullptr;
 };
 
 }  // namespace fw::gpu

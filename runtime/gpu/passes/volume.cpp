@@ -96,6 +96,7 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
     out.deep = (far - near) / float(slabs);
     out.slabs = slabs;
     out.mostSteps = kHighSteps;
+    out.perPixel = 1;
     out.intervals = kFlameIntervals;
     out.wide = low.w;
     out.spacing = std::max(kSpacing * low.w, 1e-4f);
@@ -153,7 +154,8 @@ uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count) {
 }
 
 void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items) {
-    for (const VolumeItem& item : items) recorder.drawVolume(item.flame, item.draw);
+    for (const VolumeItem& item : items)
+        recorder.drawVolume(item.flame, &item.draw, 6, item.draw.slabs);
 }
 
 }  // namespace fw::gpu

@@ -9,7 +9,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawRead}};
+constexpr Use kUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawTexels}};
 
 constexpr float kCellsAcross = 24.0f;  // of a flame's diameter, where its smoke leaves as many
 constexpr float kFinest = 0.25f;       // as volume_march's
@@ -28,6 +28,9 @@ vec3 placeOf(const ViewParams& view, vec3 point) {
     return {clip.x / clip.w, clip.y / clip.w, glm::dot(from, vec3(view.forward))};
 }
 
+constexpr const char* kTexelShaders[] = {"volume_card_texels.frag", "volume_card_texels_soft.frag",
+                                         "volume_card_texels_soft_ms.frag"};
+
 }  // namespace
 
 const DrawPass kVolumeCardPass{.name = "volume card",
@@ -39,7 +42,8 @@ const DrawPass kVolumeCardPass{.name = "volume card",
                                .writeDepth = false,
                                .pushBytes = sizeof(VolumeCard),
                                .softShader = "volume_card_soft.frag",
-                               .softShaderMultisampled = "volume_card_soft_ms.frag"};
+                               .softShaderMultisampled = "volume_card_soft_ms.frag",
+                               .texelShaders = kTexelShaders};
 
 bool cardFits(const VolumeItem& item) noexcept {
     return item.whole.x < item.whole.z && item.whole.y < item.whole.w && item.draw.front > 0.0f;

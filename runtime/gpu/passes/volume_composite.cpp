@@ -8,7 +8,12 @@ namespace fw::gpu {
 namespace {
 
 constexpr Use kUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawRead},
+                         {FW_BIND_VOLUME_RAYS, Access::drawTexels},
                          {FW_BIND_VOLUME_WORK, Access::indirect}};
+
+constexpr const char* kTexelShaders[] = {"volume_composite_texels.frag",
+                                         "volume_composite_texels_soft.frag",
+                                         "volume_composite_texels_soft_ms.frag"};
 
 }  // namespace
 
@@ -21,7 +26,8 @@ const DrawPass kVolumeCompositePass{.name = "volume composite",
                                     .writeDepth = false,
                                     .pushBytes = sizeof(VolumeComposite),
                                     .softShader = "volume_composite_soft.frag",
-                                    .softShaderMultisampled = "volume_composite_soft_ms.frag"};
+                                    .softShaderMultisampled = "volume_composite_soft_ms.frag",
+                                    .texelShaders = kTexelShaders};
 
 void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes) {
     for (const MarchedVolume& one : volumes)

@@ -24,7 +24,9 @@ constexpr float kCellsAcross = 16.0f;
 // Detail as fine as this part of a cell is still sampled: what a pixel averages is many cells, and
 // to leave sheets out costs light where to sample them costs none.
 constexpr float kFinest = 0.25f;
-constexpr float kAllDetail = 96.0f;  // px across a flame from which its samples are as it says
+constexpr float kAllDetail = 96.0f;    // px across a flame from which its samples are as it says
+constexpr float kSmallSpacing = 0.5f;  // of small ones, of those
+constexpr float kSamplesPerStep = 2.75f;
 constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
 constexpr uint64_t kLeastTiles = 512;       // of small flames, however small the screen
 
@@ -69,12 +71,21 @@ float cellOf(const VolumeDraw& draw, const VolumeScreen& screen, float least) {
     return std::max(cell, least);
 }
 
-// Of a slab. Where sheets are closer than samples thick flame is too dark; a small one, which costs
-// little, gets up to twice as many.
+// m between samples. Where sheets are closer than samples thick flame is too dark; a small one,
+// which costs little, gets up to twice as many.
+float spacingOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+    return draw.spacing * std::clamp(volumeWide(draw, screen) / kAllDetail, kSmallSpacing, 1.0f);
+}
+
+// Samples of a ray: of those with few steps as many as show the light of those with many.
+uint32_t mostOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+    return std::min(uint32_t(kSamplesPerStep * float(draw.mostSteps)), screen.steps);
+}
+
+// Of a slab.
 uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
-    const float spacing =
-        draw.spacing * std::clamp(volumeWide(draw, screen) / kAllDetail, 0.5f, 1.0f);
-    const uint32_t most = std::min(2 * draw.mostSteps, screen.steps) / draw.slabs;
+    const float spacing = spacingOf(draw, screen);
+    const uint32_t most = mostOf(draw, screen) / draw.slabs;
     return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
 }
 
@@ -95,6 +106,17 @@ const ComputePass kVolumeMarchPass{
 float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept {
     const float pixel = 2.0f / screen.size.x * glm::length(vec3(draw.rayX)) * awayOf(draw);
     return draw.wide / std::max(pixel, 1e-9f);
+}
+
+void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept {
+    const float cell = cellOf(draw, screen, 1.0f / float(kMostPerPixel));
+    draw.perPixel = cell <= 1.0f ? std::max(uint32_t(1.0f / cell), 2u) : 1;
+    draw.spacing = spacingOf(draw, screen);
+    draw.mostSteps = mostOf(draw, screen);
+    if (draw.perPixel == 1) return;
+    // Of a pixel that is flame in part slabs would show less light than it has.
+    draw.deep *= float(draw.slabs);
+    draw.slabs = 1;
 }
 
 uint32_t volumeRayWords(const VolumeScreen& screen) {

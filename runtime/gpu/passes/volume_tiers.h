@@ -34,6 +34,9 @@ struct TierLife {  // of a flame, as long as the view shows it; its place is its
     [[nodiscard]] bool shows(uint32_t as) const noexcept {
         return tier == as || (turned < kTierFrames && before == as);
     }
+    [[nodiscard]] bool marchedNow() const noexcept {
+        return tier == FW_FIRE_TIER_MARCH_HIGH || tier == FW_FIRE_TIER_MARCH_LOW;
+    }
     [[nodiscard]] bool marched() const noexcept {
         return shows(FW_FIRE_TIER_MARCH_HIGH) || shows(FW_FIRE_TIER_MARCH_LOW);
     }

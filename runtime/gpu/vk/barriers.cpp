@@ -21,6 +21,7 @@ Scope scopeOf(Access access) noexcept {
             return {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
                     false};
         case Access::drawRead:
+        case Access::drawTexels:
             return {VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                     VK_ACCESS_SHADER_READ_BIT, false};
         case Access::drawUniform:

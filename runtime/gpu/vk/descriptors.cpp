@@ -18,7 +18,7 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
     uint32_t count = 0;
     std::array<bool, 2 * FW_BIND_COUNT> seen{};
     for (const Use& use : uses) {
-        const bool texels = device_.texels && use.access == Access::readTexels;
+        const bool texels = device_.texels && byTexels(use.access);
         const uint32_t number = texels ? texelBinding(use.resource) : use.resource;
         if (use.resource >= FW_BIND_COUNT || seen[number]) continue;
         if (use.access == Access::indirect || use.access == Access::copyRead ||
@@ -60,7 +60,7 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
         for (const Use& use : uses)
             ++(use.resource == FW_BIND_VIEW || use.resource == FW_BIND_VOLUMES ? view
                : use.access == Access::drawUniform                             ? uniform
-               : device_.texels && use.access == Access::readTexels            ? texels
+               : device_.texels && byTexels(use.access)                        ? texels
                                                                                : storage);
     };
     for (const ComputePass* pass : computePasses()) add(pass->uses);

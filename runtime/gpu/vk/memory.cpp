@@ -175,6 +175,8 @@ Buffer DeviceMemory::createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, M
                                   Component component, const char* name) {
     const std::lock_guard lock(mutex_);
     const Table& vk = device_.table;
+    if (usage & VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT)
+        size = std::max(size, VkDeviceSize{16});  // a view of it is not empty
     Buffer buffer;
     buffer.size = size;
     buffer.component = component;

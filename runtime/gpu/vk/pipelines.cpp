@@ -177,10 +177,11 @@ void Pipelines::makeLayouts() {
         for (const Use& use : uses) {
             const bool bound = use.access == Access::read || use.access == Access::write ||
                                use.access == Access::readTexels || use.access == Access::drawRead ||
+                               use.access == Access::drawTexels ||
                                use.access == Access::drawUniform ||
                                use.access == Access::drawEach || use.access == Access::each ||
                                use.access == Access::uniformView;
-            const bool texels = device_.texels && use.access == Access::readTexels;
+            const bool texels = device_.texels && byTexels(use.access);
             const uint32_t number = texels ? texelBinding(use.resource) : use.resource;
             if (!bound || seen[number]) continue;
             seen[number] = true;
@@ -447,10 +448,15 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     info.renderPass = renderPass;
     info.subpass = key.subpass;
     stages[0].module = modules.get(pass.vertexShader);
-    if (colors)
-        stages[1].module = modules.get(!key.samplesDepth()    ? pass.fragmentShader
-                                       : key.depthSamples > 1 ? pass.softShaderMultisampled
-                                                              : pass.softShader);
+    if (colors) {
+        const char* const words[3] = {pass.fragmentShader, pass.softShader,
+                                      pass.softShaderMultisampled};
+        const char* const* shaders =
+            device_.texels && pass.texelShaders ? pass.texelShaders : words;
+        stages[1].module = modules.get(shaders[!key.samplesDepth()    ? 0
+                                               : key.depthSamples > 1 ? 2
+                                                                      : 1]);
+    }
     VkPipeline pipeline = VK_NULL_HANDLE;
     device_.check(
         device_.table.CreateGraphicsPipelines(device_.handle, device_.pipelineCache, 1, &info,

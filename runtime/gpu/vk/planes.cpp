@@ -135,7 +135,7 @@ constexpr Plane kPlanes[] = {
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_VOLUMES, kSpaceVolumes, kVolumeFlameBytes, false, kComponentFlames, "volumes",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
-    {FW_BIND_VOLUME_RAYS, kSpaceVolumeRays, 4, false, kComponentFlames, "marched volumes", 0},
+    {FW_BIND_VOLUME_RAYS, kSpaceVolumeRays, 4, false, kComponentFlames, "marched volumes", kTexels},
     {FW_BIND_VOLUME_WORK, kSpaceVolumes, sizeof(VolumeWork), false, kComponentFlames,
      "volumes' work", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_FIELDS, kSpaceFields, sizeof(FieldRecord), true, kComponentFlames, "fields", 0},
@@ -158,7 +158,7 @@ constexpr uint32_t kInitialUnits[kSpaceCount] = {
     4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
     1024, 4096, 256,  256, 1,    1,    1,    1,     1,
     1,    1,    1,    1,   1,    1,    1,    1,     1024,
-    1,    1,    1,    1,   1,    1,    1,    1,     1,
+    1,    1,    1,    4,   1,    1,    1,    1,     1,
     1,    1,    1,    1};
 
 }  // namespace

@@ -88,7 +88,8 @@ class PassRecorder : public DrawRecorder {
     void drawIndirect(uint32_t resource, uint64_t offset) override {
         s_.device.table.CmdDrawIndirect(commands_, s_.planes.buffer(resource).handle, offset, 1, 0);
     }
-    void drawVolume(uint32_t flame, const VolumeDraw& push) override {
+    void drawVolume(uint32_t flame, const void* push, uint32_t vertices,
+                    uint32_t instances) override {
         const Table& vk = s_.device.table;
         // In the order of their bindings: the view, the flame.
         const std::array<uint32_t, 2> offsets{viewOffset_, flame * kVolumeFlameBytes};
@@ -97,8 +98,8 @@ class PassRecorder : public DrawRecorder {
                                  uint32_t(offsets.size()), offsets.data());
         vk.CmdPushConstants(commands_, layout_,
                             VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                            sizeof push, &push);
-        vk.CmdDraw(commands_, 6, push.slabs, 0, 0);
+                            pass_.pushBytes, push);
+        vk.CmdDraw(commands_, vertices, instances, 0, 0);
     }
     void drawListed(uint32_t resource, uint64_t offset, const void* push) override {
         const Table& vk = s_.device.table;
@@ -170,6 +171,8 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                       uint32_t(std::max(viewport.y + viewport.height - top, 0.0f))};
     vk.CmdSetScissor(commands, 0, 1, &scissor);
     std::array<VolumeItem, kMaxVolumeFlames> items;
+    std::array<SlicedVolume, kMaxVolumeFlames> sliced;
+    VolumeOrder order;
     std::array<FieldItem, kMaxFields> fieldItems;
     DrawList list{drawItems,
                   !burnEmpty || emitterGroups > 0,
@@ -186,9 +189,27 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         if (made) {
             list.marched = {march.items.data(), march.count};
             list.cards = {march.cards.data(), march.cardCount};
+            list.sliced = {march.sliced.data(), march.slicedCount};
+            list.volumeRuns = {march.order.runs.data(), march.order.count};
+        } else {
+            const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
+            const uint32_t count = orderVolumes(slabs, items);
+            uint32_t whole = 0, cut = 0;
+            for (uint32_t i = 0; i < count; ++i) {
+                if (volumes[items[i].flame].tier == FW_FIRE_TIER_SLICES &&
+                    slicesShow(screen.encoding)) {
+                    sliced[cut] = layVolumeSlices(items[i]);
+                    order.add(kVolumeSlicesPass, cut++);
+                } else {
+                    items[whole] = items[i];
+                    volumeRays(screen, items[whole].draw);
+                    order.add(kVolumePass, whole++);
+                }
+            }
+            list.volumes = {items.data(), whole};
+            list.sliced = {sliced.data(), cut};
+            list.volumeRuns = {order.runs.data(), order.count};
         }
-        const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
-        if (!made) list.volumes = {items.data(), orderVolumes(slabs, items)};
     }
     for (const DrawStep& step : drawSteps()) {
         const uint32_t i = step.pass;
@@ -196,6 +217,10 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         const bool surface = pass.vertexInput == VertexInput::mesh;
         if (!target.pipelines[i] || !drawStepDraws(step, list)) continue;
         if ((crossing & kSwitchNoZPass) && &pass == &kZPass) continue;
+        if (&pass == &kVolumePass) {
+            recordVolumeDraws(slot, commands, target, list, viewOffset, depth);
+            continue;
+        }
         slot.timers.begin(device, commands, pass.name);
         if (&pass == &kFieldDrawPasses[0]) {
             recordFieldDraws(commands, target, i, list.fields, viewOffset, depth);
@@ -206,13 +231,11 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[i]);
         bool usesView = false;
         for (const Use& use : pass.uses) usesView |= use.access == Access::uniformView;
-        const bool volume = &pass == &kVolumePass;  // binds its set 0 for each flame
         const VkDescriptorSet set = sets.draw(i);
-        if (!volume)
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
-                                     usesView ? 1 : 0, &viewOffset);
+        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
+                                 usesView ? 1 : 0, &viewOffset);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
-                                 volume ? &profiles.set.set : &lookTextures.set.set, 0, nullptr);
+                                 &lookTextures.set.set, 0, nullptr);
         if (&pass == &kBookFlamesPass)
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 1,
                                      &books.set.set, 0, nullptr);
@@ -227,6 +250,33 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         }
         PassRecorder recorder(*this, commands, i, viewOffset);
         recordDrawStep(step, recorder, list);
+        slot.timers.end(device, commands);
+    }
+}
+
+void VkBackend::State::recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands,
+                                         const Target& target, const DrawList& list,
+                                         uint32_t viewOffset, VkDescriptorSet depth) {
+    const Table& vk = device.table;
+    for (const VolumeRun& run : list.volumeRuns) {
+        const size_t number = passNumber(*run.pass);
+        if (!target.pipelines[number]) continue;
+        slot.timers.begin(device, commands, run.pass->name);
+        const VkPipelineLayout layout = context.pipelines.draw(number).layout;
+        vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
+        // Who sees one flame at a time binds its set 0 for each.
+        const bool each = run.pass == &kVolumePass || run.pass == &kVolumeSlicesPass;
+        const VkDescriptorSet set = sets.draw(number);
+        if (!each)
+            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
+                                     0, nullptr);
+        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
+                                 each ? &profiles.set.set : &lookTextures.set.set, 0, nullptr);
+        if (depth)
+            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
+                                     &depth, 0, nullptr);
+        PassRecorder recorder(*this, commands, number, viewOffset);
+        recordVolumeRun(run, recorder, list);
         slot.timers.end(device, commands);
     }
 }

@@ -162,6 +162,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
     makeOffscreen(def.width, def.height);
     const Target& target = *context.pipelines.findTarget(own.target);
     beginOwn();
+    FrameInFlight* recorded = nullptr;
     try {
         // A frame without steps: brings what waits to the device, and what looks need for this
         // view.
@@ -177,6 +178,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         closeFrame(&def.view);
         const Table& vk = device.table;
         FrameInFlight& slot = ring.slotFor(ringFrame);
+        recorded = &slot;
         std::array<VkClearValue, 2> clears{};
         std::memcpy(clears[0].color.float32, def.background, sizeof def.background);
         clears[1].depthStencil.depth = 1;
@@ -218,6 +220,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         throw;
     }
     submitOwn();
+    recorded->timers.read(device, recorded->frameIndex, times);
     std::memcpy(def.pixels, own.pixels.mapped, size_t(def.width) * def.height * 4);
 }
 

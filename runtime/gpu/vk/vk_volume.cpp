@@ -59,6 +59,8 @@ uint32_t VkBackend::State::orderVolumes(
             continue;
         item.middle = 0.5f * (vec3(volumes[i].flameLow) + vec3(volumes[i].flameHigh));
         item.base = volumes[i].base;
+        item.near = item.draw.front;
+        item.far = item.draw.front + item.draw.deep * float(slabs);
         volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);
         item.draw.intervals = volumes[i].intervals;
         ++count;
@@ -126,7 +128,7 @@ void setFade(const TierLife& life, bool now, float& from, float& to) noexcept {
 }  // namespace
 
 void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
-    march.count = march.cardCount = 0;
+    march.count = march.cardCount = march.slicedCount = march.order.count = 0;
     march.there = false;
     if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return;
     std::array<VolumeItem, kMaxVolumeFlames> items;
@@ -153,7 +155,11 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         const vec4& r = items[i].draw.rect;
         asked[i] = {box.key, box.tier, volumeWide(items[i].draw, march.screen),
                     (r.z - r.x) * (r.w - r.y)};
-        if (!cardFits(items[i])) asked[i].asked = FW_FIRE_TIER_MARCH_HIGH;  // around the eye
+        const bool slices = box.tier == FW_FIRE_TIER_SLICES;
+        if (slices && !slicesShow(march.screen.encoding))
+            asked[i].asked = FW_FIRE_TIER_MARCH_LOW;
+        else if (!slices && !cardFits(items[i]))
+            asked[i].asked = FW_FIRE_TIER_MARCH_HIGH;  // around the eye
     }
     chooseTiers({asked.data(), items.size()}, slots, march.lives, places);
     // A place may have gone to another flame.
@@ -183,9 +189,8 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
     if (count > 0 && end == 0) return;
     for (uint32_t i = 0; i < count; ++i) {
         const TierLife& life = march.lives[lives[i]];
-        const bool now = life.tier != FW_FIRE_TIER_IMPOSTOR;
         VolumeComposite& composite = march.items[i].composite;
-        setFade(life, now, composite.from, composite.to);
+        setFade(life, life.marchedNow(), composite.from, composite.to);
     }
 
     // Those that have none, and of the others the oldest.
@@ -216,15 +221,23 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         one.march.flame = uint32_t(volumes.size()) + one.flame;
         ++cards;
     }
-    for (size_t i = 0; i < items.size(); ++i) {
+    // In the order in which they lie behind each other, whatever they are shown as.
+    for (size_t i = 0, shown = 0; i < items.size(); ++i) {
         if (places[i] == kMaxVolumeFlames) continue;
         const TierLife& life = march.lives[places[i]];
+        if (life.marched()) march.order.add(kVolumeCompositePass, uint32_t(shown++));
+        if (life.shows(FW_FIRE_TIER_SLICES)) {
+            SlicedVolume& one = march.sliced[march.slicedCount];
+            one = layVolumeSlices(items[i]);
+            setFade(life, life.tier == FW_FIRE_TIER_SLICES, one.draw.from, one.draw.to);
+            march.order.add(kVolumeSlicesPass, march.slicedCount++);
+        }
         VolumeCard& card = march.cards[march.cardCount];
         if (!life.shows(FW_FIRE_TIER_IMPOSTOR) ||
             !showCard(seen, items[i], march.screen, places[i], march.shapes[places[i]], card))
             continue;
         setFade(life, life.tier == FW_FIRE_TIER_IMPOSTOR, card.from, card.to);
-        ++march.cardCount;
+        march.order.add(kVolumeCardPass, march.cardCount++);
     }
     march.made = march.screen;
     march.view = outside;

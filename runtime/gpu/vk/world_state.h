@@ -335,6 +335,9 @@ struct VkBackend::State {
             items;  // cards that are marched behind them
         uint32_t cardCount = 0;
         std::array<VolumeCard, kMaxVolumeFlames> cards;
+        uint32_t slicedCount = 0;
+        std::array<SlicedVolume, kMaxVolumeFlames> sliced;
+        VolumeOrder order;  // of all of them
         TierLives lives;
         std::array<VolumeCardShape, kMaxVolumeFlames> shapes;  // by life
         uint32_t slots = 0;     // cards that there is room for, before all else
@@ -441,6 +444,9 @@ struct VkBackend::State {
                           VkDescriptorSet depth) noexcept;
     // vk_draw.cpp
     // `depth`: a set with the depth that the target samples, or null.
+    // Volumetric flames of all tiers, in their order.
+    void recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
+                           const DrawList& list, uint32_t viewOffset, VkDescriptorSet depth);
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
                      const FwView& view, const VkViewport& viewport,
                      VkDescriptorSet depth = VK_NULL_HANDLE);

@@ -1,0 +1,56 @@
+// Volumetric flames as slices of their lattice: planes across the view, evenly apart, each cut by
+// the device into a convex polygon per piece of the lattice. Nothing is marched before. Only where
+// light is added as it is, not where it is tone mapped: there many thin slices would be brighter
+// than their sum.
+#include "shared/volume_slices.h"
+#include "gpu/passes/draw.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::gpu {
+namespace {
+
+constexpr Use kUses[] = {
+    {FW_BIND_VIEW, Access::uniformView},
+    {FW_BIND_VOLUMES, Access::drawEach},
+};
+
+constexpr float kFewest = 12.0f;  // slices of a flame
+constexpr float kApart = 0.5f;    // of VolumeDraw::spacing: sheets are closer than that
+
+}  // namespace
+
+const DrawPass kVolumeSlicesPass{.name = "volume slices",
+                                 .vertexShader = "volume_slices.vert",
+                                 .fragmentShader = "volume_slices.frag",
+                                 .uses = kUses,
+                                 .vertexInput = VertexInput::none,
+                                 .blend = Blend::premultiplied,
+                                 .writeDepth = false,
+                                 .pushBytes = sizeof(VolumeSlices),
+                                 .softShader = "volume_slices_soft.frag",
+                                 .softShaderMultisampled = "volume_slices_soft_ms.frag"};
+
+bool slicesShow(uint32_t encoding) noexcept { return encoding == 0; }  // FW_OUTPUT_LINEAR
+
+SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept {
+    SlicedVolume out;
+    out.flame = item.flame;
+    VolumeSlices& draw = out.draw;
+    const float deep = item.far - item.near;
+    draw.clip = item.draw.clip;
+    draw.front = item.near;
+    draw.slices = uint32_t(
+        std::clamp(std::ceil(deep / (kApart * item.draw.spacing)), kFewest, float(kVolumeSlices)));
+    draw.spacing = deep / float(draw.slices);
+    draw.to = 1.0f;
+    return out;
+}
+
+void recordVolumeSlices(DrawRecorder& recorder, std::span<const SlicedVolume> volumes) {
+    for (const SlicedVolume& one : volumes)
+        recorder.drawVolume(one.flame, &one.draw, kFlamePieces * kSliceVertices, one.draw.slices);
+}
+
+}  // namespace fw::gpu

@@ -1,0 +1,67 @@
+#version 450
+// A slice of a volumetric flame's lattice: one sample, which stands for the flame as deep as slices are
+// apart along its ray, so that how many there are does not change how bright it is. Premultiplied.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/look.h"
+#include "shared/volume_flame.h"
+
+layout(constant_id = 0) const uint kEncoding = 0u;
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
+layout(set = 2, binding = 0) uniform sampler2DArray profiles;
+layout(push_constant) uniform Push { VolumeSlices draw; };
+
+layout(location = 0) in vec4 inPlace;
+layout(location = 1) in vec3 inOff;
+layout(location = 2) flat in vec2 inShows;
+layout(location = 3) flat in float inDepth;
+layout(location = 4) flat in uint inZero;
+layout(location = 5) in vec4 inSlope;
+
+layout(location = 0) out vec4 outColor;
+
+#define FW_FLAME_NODE(i) flame.nodes[i]
+#include "lib/colour.glsl"
+#include "volume/ray.glsl"
+#ifdef FW_SOFT
+#include "volume/scene_depth.glsl"
+#endif
+
+void main() {
+    outColor = vec4(0.0);
+    if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    FlameRecord f = flame.record;
+    f.octaves |= inZero;
+    f.tint.w += float(inZero);
+    f.smoke += float(inZero);
+    f.puff += float(inZero);
+    bool perspective = view.forward.w > 0.5;
+    float away = length(inOff);
+    float perDepth = perspective ? away / max(inDepth, 1e-6) : 1.0;
+    vec3 direction = perspective ? inOff / away : view.forward.xyz;
+    vec3 white = flameWhite(f, view.sunColor.w);
+    f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
+    float stride = draw.spacing * perDepth;
+    float pixel = view.eye.w * (perspective ? inDepth : 1.0);
+    // Somewhere in the slice's part, another place for each pixel of four: no layers show.
+    float later = draw.spacing * (volumePhase(uint(gl_FragCoord.x), uint(gl_FragCoord.y), view.ambientSky.w) - 0.5);
+    vec4 place = inPlace + later * inSlope;
+    FlamePlace at;
+    at.p = place.xy;
+    at.s = place.z;
+    at.radius = place.w;
+    FlameMedium m = placeMedium(f, at, max(0.35 * stride, 0.25 * pixel));
+    vec2 smoke = flameSmoke(f, at);
+    m.smoke = f.air.w * smoke.x;
+    vec3 x = view.eye.xyz + inOff + later * perDepth * direction;
+    FlameSun sun = raySun(direction, white);
+    vec3 to = f.glow.xyz - x;
+    vec3 light = flameSmokeLight(f, dot(to, to), smoke.y, sun.light, flameSmokeDepth(f, at, sun.to));
+    float part = 1.0;
+#ifdef FW_SOFT
+    part = clamp((depthOfScene(draw.clip) - inDepth) / draw.spacing + 0.5, 0.0, 1.0);
+#endif
+    FlameRay one = flameStep(FlameRay(vec3(0.0), vec3(1.0)), m, light, stride * part);
+    outColor = flameShown(one, vec3(0.0), white * view.sunDirection.w, kEncoding);
+}

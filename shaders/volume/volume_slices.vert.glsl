@@ -1,0 +1,49 @@
+#version 450
+// The sliced lattice of a volumetric flame: an instance is a plane across the view, the farthest first,
+// and of each piece of the lattice it holds the polygon that the plane cuts out of it.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/look.h"
+#include "shared/volume_flame.h"
+
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
+layout(push_constant) uniform Push { VolumeSlices draw; };
+
+#define FW_FLAME_NODE(i) flame.nodes[i]
+#include "shared/volume_slices.h"
+
+layout(location = 0) out vec4 outPlace;        // m: off the axis, along it, the tube's radius
+layout(location = 1) out vec3 outOff;          // m, from the eye
+layout(location = 2) flat out vec2 outShows;
+layout(location = 3) flat out float outDepth;  // m along the view
+layout(location = 4) flat out uint outZero;
+layout(location = 5) out vec4 outSlope;        // of outPlace, per m along the view
+
+void main() {
+    uint vertex = uint(gl_VertexIndex);
+    uint piece = vertex / kSliceVertices;
+    uint zero = vertex >> 31u;  // not a constant, see volume.frag
+    FlameRecord f = flame.record;
+    f.smoke += float(zero);
+    FlameNode a = FW_FLAME_NODE(flameNodeOf(piece));
+    FlameNode b = FW_FLAME_NODE(flameNodeOf(piece + 1u));
+    float depth = draw.front + draw.spacing * (float(draw.slices - 1u - uint(gl_InstanceIndex)) + 0.5);
+    SlicePoint point = sliceVertex(f, a, b, view.eye.xyz, view.forward.xyz, depth,
+                                   sliceFan(vertex - kSliceVertices * piece));
+    FlamePlace place = slicePlace(a, b, point.at);
+    outPlace = vec4(place.p, place.s, place.radius);
+    // Half a slice further along the ray.
+    vec3 ray = view.forward.w > 0.5 ? (point.at - view.eye.xyz) / max(depth, 1e-6) : view.forward.xyz;
+    vec3 beyond = point.at + 0.5 * draw.spacing * ray;
+    place = flamePlaceAt(beyond, a, b, flamePlane(beyond, a), flamePlane(beyond, b));
+    outSlope = (vec4(place.p, place.s, place.radius) - outPlace) / (0.5 * draw.spacing);
+    outOff = point.at - view.eye.xyz;
+    outShows = vec2(draw.from, draw.to) + float(zero);
+    outDepth = depth;
+    outZero = zero;
+    float top = f.high.w * max(kFlameTop, f.smoke > 0.0 ? f.smokeTop : 0.0);
+    bool shows = point.corners > 0u && a.along.w < top;
+    vec4 clip = outOff.x * view.clip0 + outOff.y * view.clip1 + outOff.z * view.clip2 + view.clip3;
+    gl_Position = shows ? vec4(clip.xy, clamp(clip.z, 0.0, clip.w), clip.w) : vec4(0.0, 0.0, 0.0, 1.0);
+}
