@@ -247,6 +247,21 @@ TEST(AbiOwnDevice, RefusesWhatBelongsToALentOneAndBadPictures) {
     def.background[0] = 0;
     ASSERT_EQ(FW_OK, fwWorld_RenderOffscreen(world, &def)) << lastMessage(world);
     EXPECT_EQ(0xFF000000u, pixels[0]);
+    // A picture's passes are timed like a frame's.
+    FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
+    FwFireEmitterId id{};
+    ASSERT_EQ(FW_OK, fwWorld_CreateFireEmitter(world, &emitter, &id));
+    ASSERT_EQ(FW_OK, fwWorld_Step(world, 0.1f));
+    ASSERT_EQ(FW_OK, fwWorld_RenderOffscreen(world, &def));
+    FwContextInfo capable{};
+    capable.structSize = sizeof capable;
+    ASSERT_EQ(FW_OK, fwContext_GetInfo(context, &capable));
+    FwPassTime times[64];
+    const uint32_t count = std::min(fwDebug_GetPassTimes(world, times, 64), 64u);
+    bool sorted = false;
+    for (uint32_t i = 0; i < count; ++i)
+        sorted |= std::string(times[i].name) == "flame sort" && times[i].milliseconds > 0;
+    EXPECT_EQ(capable.gpuTimers != 0, sorted);
     // Lost: nothing runs any more, and everything is freed all the same.
     fwContext_NotifyDeviceLost(context);
     EXPECT_EQ(FW_ERROR_DEVICE_LOST, fwWorld_Step(world, 0.1f));

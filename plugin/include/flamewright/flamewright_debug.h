@@ -10,7 +10,8 @@ extern "C" {
 #endif
 
 typedef struct FwPassTime { char name[32]; double milliseconds; uint64_t frameIndex; uint32_t count, reserved; } FwPassTime;
-/* GPU (or cpu backend) time per pass of the newest timed frame; returns how many there are. [world] */
+/* GPU (or cpu backend) time per pass of the newest timed frame (frameIndex 0: a picture of fwWorld_RenderOffscreen); returns
+ * how many there are. [world] */
 FW_API uint32_t FW_CALL fwDebug_GetPassTimes(FwWorld*, FwPassTime* times, uint32_t capacity);
 
 /* Asks for the ignition ticks of an object. A later frame's readback brings them (cpu: at once). [world] */

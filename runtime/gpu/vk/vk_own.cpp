@@ -162,7 +162,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
     makeOffscreen(def.width, def.height);
     const Target& target = *context.pipelines.findTarget(own.target);
     beginOwn();
-    FrameInFlight* recorded = nullptr;
+    uint64_t ringFrame = 0;
     try {
         // A frame without steps: brings what waits to the device, and what looks need for this
         // view.
@@ -174,11 +174,10 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         plan.switches = (refine.full ? kSwitchRefineFull : 0) | crossing;
         march.screen = screenOf(target.key, {float(def.width), float(def.height)});
         run(plan);
-        const uint64_t ringFrame = open.ringFrame;
+        ringFrame = open.ringFrame;
         closeFrame(&def.view);
         const Table& vk = device.table;
         FrameInFlight& slot = ring.slotFor(ringFrame);
-        recorded = &slot;
         std::array<VkClearValue, 2> clears{};
         std::memcpy(clears[0].color.float32, def.background, sizeof def.background);
         clears[1].depthStencil.depth = 1;
@@ -220,7 +219,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         throw;
     }
     submitOwn();
-    recorded->timers.read(device, recorded->frameIndex, times);
+    ring.slotFor(ringFrame).timers.read(device, 0, times);
     std::memcpy(def.pixels, own.pixels.mapped, size_t(def.width) * def.height * 4);
 }
 
