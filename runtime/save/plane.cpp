@@ -10,16 +10,13 @@
 namespace fw::save {
 namespace {
 
-constexpr uint32_t kContexts = 18;     // by how much the neighbours differ, in powers of two
-constexpr uint32_t kUnaryMost = 24;    // then the value follows as it is
-constexpr uint32_t kForgetAfter = 64;  // values, in a context
+constexpr uint32_t kContexts = 18;  // by how much the neighbours differ, in powers of two
 
 // What a cell's neighbours tell of it. Without left, upper and upper left: what of them there is,
 // and at last the value before.
 struct Seen {
     uint32_t guess = 0;
     uint32_t context = 0;
-    bool flat = false;  // they are all alike
 };
 
 class Neighbours {
@@ -42,7 +39,6 @@ class Neighbours {
         const uint32_t a = left ? values_[cell - 1] : values_[cell - width_];
         const uint32_t b = up ? values_[cell - width_] : a;
         const uint32_t c = corner ? values_[cell - width_ - 1] : (left && up ? std::min(a, b) : a);
-        seen.flat = a == b && b == c;
         const bool right = up && x + 1 < width_ && has(cell - width_ + 1);
         const uint32_t d = right ? values_[cell - width_ + 1] : b;
         // The plane through the three, kept within what lies around it by the slope beyond.
@@ -66,53 +62,153 @@ class Neighbours {
     uint32_t width_;
 };
 
-struct Context {
-    uint64_t sum = 16;  // of what was missed
-    uint32_t count = 1;
-    [[nodiscard]] uint32_t rice() const noexcept {
-        uint32_t k = 0;
-        while (k < 24 && (uint64_t(count) << k) * 16 < sum * 11) ++k;  // ln 2 of the mean
-        return k;
+// ---- the range coder: bits by what was seen before them
+// ------------------------------------------
+
+constexpr uint32_t kChanceBits = 15, kLearn = 5;
+constexpr uint32_t kTop = 1u << 24;  // below it a byte is due
+using Chance = uint16_t;             // of a zero, of 1 << kChanceBits
+constexpr Chance kEven = 1u << (kChanceBits - 1);
+
+void learn(Chance& chance, uint32_t bit) noexcept {
+    if (bit == 0)
+        chance = Chance(chance + (((1u << kChanceBits) - chance) >> kLearn));
+    else
+        chance = Chance(chance - (chance >> kLearn));
+}
+
+class Encoder {
+ public:
+    explicit Encoder(std::pmr::vector<std::byte>& out) : out_(out) {}
+    uint32_t bit(Chance& chance, uint32_t value) {
+        const uint32_t bound = (range_ >> kChanceBits) * chance;
+        if (value == 0) {
+            range_ = bound;
+        } else {
+            low_ += bound;
+            range_ -= bound;
+        }
+        learn(chance, value);
+        while (range_ < kTop) shift();
+        return value;
     }
-    void learn(uint32_t missed) noexcept {
-        sum += missed;
-        if (++count < kForgetAfter) return;
-        sum >>= 1;
-        count >>= 1;
+    uint32_t even(uint32_t value) {
+        range_ >>= 1;
+        if (value != 0) low_ += range_;
+        while (range_ < kTop) shift();
+        return value;
+    }
+    void finish() {
+        for (int i = 0; i < 5; ++i) shift();
+    }
+
+ private:
+    void shift() {
+        // A byte that may still take a carry waits, and those of all ones behind it.
+        if (low_ < 0xFF000000u || low_ > 0xFFFFFFFFu) {
+            const auto carry = uint32_t(low_ >> 32);
+            for (uint64_t i = 0; i < waiting_; ++i)
+                out_.push_back(std::byte((i == 0 ? first_ : 0xFFu) + carry));
+            waiting_ = 0;
+            first_ = uint32_t(low_ >> 24) & 0xFFu;
+        }
+        ++waiting_;
+        low_ = (low_ & 0x00FFFFFFu) << 8;
+        range_ <<= 8;
+    }
+
+    std::pmr::vector<std::byte>& out_;
+    uint64_t low_ = 0, waiting_ = 1;
+    uint32_t range_ = 0xFFFFFFFFu, first_ = 0;
+};
+
+class Decoder {
+ public:
+    explicit Decoder(std::span<const std::byte> bytes) : bytes_(bytes) {
+        for (int i = 0; i < 5; ++i) code_ = (code_ << 8) | next();
+    }
+    uint32_t bit(Chance& chance, uint32_t = 0) {
+        const uint32_t bound = (range_ >> kChanceBits) * chance;
+        const uint32_t value = code_ < bound ? 0 : 1;
+        if (value == 0) {
+            range_ = bound;
+        } else {
+            code_ -= bound;
+            range_ -= bound;
+        }
+        learn(chance, value);
+        shift();
+        return value;
+    }
+    uint32_t even(uint32_t = 0) {
+        range_ >>= 1;
+        const uint32_t value = code_ < range_ ? 0 : 1;
+        if (value != 0) code_ -= range_;
+        shift();
+        return value;
+    }
+    [[nodiscard]] bool all() const noexcept { return at_ == bytes_.size(); }
+    [[nodiscard]] bool ended() const noexcept { return at_ > bytes_.size(); }
+
+ private:
+    uint32_t next() noexcept {  // past the end come zeros
+        const uint32_t byte = at_ < bytes_.size() ? uint32_t(bytes_[at_]) : 0;
+        ++at_;
+        return byte;
+    }
+    void shift() noexcept {
+        while (range_ < kTop) {
+            code_ = (code_ << 8) | next();
+            range_ <<= 8;
+        }
+    }
+
+    std::span<const std::byte> bytes_;
+    size_t at_ = 0;
+    uint32_t range_ = 0xFFFFFFFFu, code_ = 0;
+};
+
+// What was missed by, in a context: whether anything, how many bits it has, its two highest.
+struct Models {
+    std::array<Chance, 2> zero;
+    std::array<Chance, 64> size;                  // a tree
+    std::array<std::array<Chance, 4>, 33> upper;  // by size, a tree
+    Models() {
+        zero.fill(kEven);
+        size.fill(kEven);
+        for (auto& tree : upper) tree.fill(kEven);
     }
 };
+
+// Both ways: a coder's bit() gives back what it was given, or what there is. `before`: the value
+// before was missed.
+template <class Coder>
+uint32_t code(Coder& coder, Models& models, uint32_t before, uint32_t missed) {
+    if (coder.bit(models.zero[before], missed != 0 ? 1 : 0) == 0) return 0;
+    const auto wanted = uint32_t(std::bit_width(missed));  // [1, 32]
+    uint32_t node = 1;
+    for (int i = 5; i >= 0; --i) node = node * 2 + coder.bit(models.size[node], (wanted >> i) & 1);
+    const uint32_t size = std::clamp<uint32_t>(node & 63, 1, 32);
+    uint32_t value = 1;
+    node = 1;
+    for (uint32_t i = 1; i < size; ++i) {
+        const uint32_t wish = (missed >> (size - 1 - i)) & 1;
+        uint32_t bit = 0;
+        if (i <= 2) {
+            bit = coder.bit(models.upper[size][node], wish);
+            node = node * 2 + bit;
+        } else {
+            bit = coder.even(wish);
+        }
+        value = value * 2 + bit;
+    }
+    return value;
+}
 
 uint32_t folded(uint32_t difference) noexcept {  // signs to odd and even
     return (difference << 1) ^ (0u - (difference >> 31));
 }
 uint32_t unfolded(uint32_t value) noexcept { return (value >> 1) ^ (0u - (value & 1)); }
-
-// Lengths of runs adapt to those before: as many bits as the last ones had.
-struct RunLengths {
-    uint32_t bits = 4;
-    void learn(uint32_t length) noexcept {
-        const auto had = uint32_t(std::bit_width(length));
-        bits = std::clamp<uint32_t>((bits * 3 + had + 2) / 4, 0, 20);
-    }
-};
-
-void putRice(BitWriter& out, uint32_t value, uint32_t k) {
-    const uint32_t high = value >> k;
-    if (high >= kUnaryMost) {
-        out.put((1u << kUnaryMost) - 1, kUnaryMost);
-        out.put(value, 32);
-        return;
-    }
-    out.put((1u << high) - 1, high + 1);  // ones, then a zero
-    out.put(k > 0 ? value & ((1u << k) - 1) : 0, k);
-}
-
-uint32_t getRice(BitReader& in, uint32_t k) {
-    uint32_t high = 0;
-    while (high < kUnaryMost && in.get(1) != 0) ++high;
-    if (high == kUnaryMost) return in.get(32);
-    return (high << k) | in.get(k);
-}
 
 }  // namespace
 
@@ -131,71 +227,41 @@ uint64_t checksum(std::span<const std::byte> bytes) noexcept {
 
 void writePlane(std::span<const uint32_t> values, uint32_t width, PlaneMask mask,
                 std::pmr::vector<std::byte>& out) {
-    BitWriter bits(out);
+    Encoder coder(out);
     const Neighbours around(values, width, mask);
-    std::array<Context, kContexts> contexts{};
-    RunLengths lengths;
-    uint32_t last = 0, run = 0, x = 0;
-    bool running = false;
-    const auto endRun = [&] {
-        putRice(bits, run, lengths.bits);
-        lengths.learn(run);
-        running = false;
-        run = 0;
-    };
+    std::array<Models, kContexts> models;
+    uint32_t last = 0, before = 0, x = 0;
+    bool any = false;
     for (size_t cell = 0; cell < values.size(); ++cell, x = x + 1 == width ? 0 : x + 1) {
         if (!around.has(cell)) continue;
-        const uint32_t value = values[cell];
+        any = true;
         const Seen seen = around.at(cell, x, last);
-        last = value;
-        const bool flat = seen.flat || running;
-        if (flat && value == seen.guess) {
-            running = true;
-            ++run;
-            continue;
-        }
-        const bool told = flat;  // that it is not what was guessed
-        if (flat) endRun();
-        Context& context = contexts[seen.context];
-        const uint32_t missed = folded(value - seen.guess);
-        const uint32_t coded = told ? missed - 1 : missed;
-        putRice(bits, coded, context.rice());
-        context.learn(coded);
+        last = values[cell];
+        const uint32_t missed = folded(last - seen.guess);
+        (void)code(coder, models[seen.context], before, missed);
+        before = missed != 0 ? 1 : 0;
     }
-    if (running) endRun();
-    bits.finish();
+    if (any) coder.finish();
 }
 
 bool readPlane(std::span<const std::byte> bytes, uint32_t width, PlaneMask mask,
                std::span<uint32_t> values) {
-    BitReader bits(bytes);
     const Neighbours around(values, width, mask);
-    std::array<Context, kContexts> contexts{};
-    RunLengths lengths;
-    uint32_t last = 0, run = 0, x = 0;
-    bool running = false;
+    const auto none = [](uint8_t cell) { return cell == 0; };
+    if (values.empty() || (!mask.empty() && std::all_of(mask.begin(), mask.end(), none)))
+        return bytes.empty();
+    Decoder coder(bytes);
+    std::array<Models, kContexts> models;
+    uint32_t last = 0, before = 0, x = 0;
     for (size_t cell = 0; cell < values.size(); ++cell, x = x + 1 == width ? 0 : x + 1) {
         if (!around.has(cell)) continue;
         const Seen seen = around.at(cell, x, last);
-        if ((seen.flat || running) && !running) {
-            running = true;
-            run = getRice(bits, lengths.bits);
-            lengths.learn(run);
-        }
-        if (running && run > 0) {
-            --run;
-            last = values[cell] = seen.guess;
-            continue;
-        }
-        const bool told = running;
-        running = false;
-        Context& context = contexts[seen.context];
-        const uint32_t coded = getRice(bits, context.rice());
-        context.learn(coded);
-        last = values[cell] = seen.guess + unfolded(told ? coded + 1 : coded);
-        if (bits.ended()) return false;
+        const uint32_t missed = code(coder, models[seen.context], before, 0);
+        last = values[cell] = seen.guess + unfolded(missed);
+        before = missed != 0 ? 1 : 0;
+        if (coder.ended()) return false;
     }
-    return bits.all();
+    return coder.all();
 }
 
 }  // namespace fw::save

@@ -32,6 +32,7 @@ struct Burnt {
         mesh.noiseAmplitude = 0.15f;  // as the default has it
         mesh.noiseFeature = 0.012f;
         FwBurnableMeshDef object = plainBurnableDef(world->createMesh(mesh));
+        for (const int i : {0, 5, 10, 15}) object.transform[i] = 1;
         object.materials[0] = world->createMaterial(fire::presetDef(FW_MATERIAL_PAPER));
         id = world->createBurnableMesh(object);
         if (!burns) return;
@@ -44,7 +45,11 @@ struct Burnt {
             world->advance(++frame, 0.5f);
             world->objectState(id, state);
         } while (frame < 20 || (state.burning > 0 && frame < 4000));
-        for (int i = 0; i < 100; ++i) world->advance(++frame, 0.5f);  // it cools
+        FwWorldStats stats{};
+        do {  // until it is cold
+            world->advance(++frame, 0.5f);
+            world->stats(stats);
+        } while (stats.hotTiles > 0 && frame < 8000);
     }
     void save() {
         world->requestSave();
