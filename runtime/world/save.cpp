@@ -214,8 +214,10 @@ void World::noteSaved(SavedWorld& to) {
             saved.flags = (*fire)->data.flags & FW_FIRE_IGNITES;
             std::copy_n((*fire)->data.position, 3, saved.position);
             saved.power = (*fire)->data.power;
-            for (size_t k = 0; k < saved.touches.size(); ++k)
+            for (size_t k = 0; k < saved.touches.size(); ++k) {
                 saved.touches[k] = savedTouch((*fire)->touches[k]);
+                if (!objects_.find((*fire)->touches[k].object)) saved.touches[k] = {};
+            }
         }
     to.emitters.clear();
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
@@ -264,6 +266,7 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
     std::copy_n(emitter.direction, 3, saved.direction);
     saved.power = emitter.def.power;
     for (size_t k = 0; k < saved.touches.size(); ++k) {
+        if (!objects_.find(emitter.touches[k].object)) continue;
         saved.touches[k].object1 = emitter.touches[k].object.index1;
         saved.touches[k].since = emitter.touches[k].since;
         saved.touches[k].flag = emitter.touches[k].seen;
@@ -276,8 +279,12 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
         if (parcel.launched == components::kJetNever) continue;
         saved.places.push_back(place);
         saved.parcels.push_back(parcel);
-        for (const components::JetRay& ray : parcel.rays)
-            saved.swept.push_back(ray.version == geometry_ ? 1 : 0);
+        for (components::JetRay& ray : saved.parcels.back().rays) {
+            const bool swept = ray.version == geometry_;
+            saved.swept.push_back(swept ? 1 : 0);
+            if (!swept) ray.hit = {};  // it is sought anew, and may be of what is gone
+            if (!objects_.find(ray.hit.object)) ray.hit.object = {};
+        }
     }
 }
 
@@ -485,7 +492,7 @@ void World::checkSaved(const SavedWorld& saved) {
                 checkPlace(ray.hit.normal, "a ray");
                 if (!(std::abs(ray.hit.distance) <= 1e6f))
                     core::fail(FW_ERROR_BAD_DATA, "The save has a ray that none can be.");
-                if (ray.hit.met && ray.hit.object.index1 != 0)
+                if (ray.hit.object.index1 != 0)
                     checkTexel(ray.hit.object.index1 - 1, ray.hit.texel, "a ray");
                 for (uint32_t g = 0; g < ray.gateCount; ++g)
                     checkTexel(ray.gates[g].object, ray.gates[g].texel, "a hole");

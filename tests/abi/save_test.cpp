@@ -236,6 +236,37 @@ void goesBack(uint32_t backend) {
 TEST(Save, GoesBackInTheSameWorld) { goesBack(FW_BACKEND_CPU); }
 TEST(Save, GoesBackInTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
 
+// The device goes at some frame. The last save that was fetched, or that is still in the lost
+// world, is the mirror: on another device, or on none, the fire is as it was then, and goes on.
+TEST(Save, LivesThroughALostDevice) {
+    const uint32_t losses[] = {26, 41};
+    for (const uint32_t loss : losses) {
+        BusyWorld w(FW_BACKEND_VULKAN);
+        if (!there(w)) GTEST_SKIP() << "there is no such backend here";
+        w.run(0, loss - 5);
+        const Bytes mirror = w.save();
+        const uint64_t then = w.hash();
+        w.run(loss - 5, loss);
+        fwContext_NotifyDeviceLost(w.context);
+        EXPECT_EQ(FW_ERROR_DEVICE_LOST, fwWorld_Step(w.world, 1.0f / 32));
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find("lost")) << lastMessage(w.world);
+        uint64_t size = mirror.size();
+        Bytes again(mirror.size());
+        EXPECT_EQ(FW_OK, fwWorld_FetchSave(w.world, again.data(), &size)) << lastMessage(w.world);
+        EXPECT_EQ(mirror, again);
+        BusyWorld plain(FW_BACKEND_CPU);  // that has nothing to lose
+        plain.run(0, loss + 10);
+        const uint64_t later = plain.hash();
+        for (const uint32_t backend : {FW_BACKEND_VULKAN, FW_BACKEND_CPU}) {
+            BusyWorld other(backend);
+            ASSERT_EQ(FW_OK, other.load(mirror)) << lastMessage(other.world);
+            EXPECT_EQ(then, other.hash()) << loss;
+            other.run(loss - 5, loss + 10);
+            EXPECT_EQ(later, other.hash()) << loss;
+        }
+    }
+}
+
 void expectRefused(BusyWorld& w, const Bytes& bytes, const char* says) {
     const uint64_t before = w.hash();
     EXPECT_EQ(FW_ERROR_BAD_DATA, w.load(bytes)) << says;
