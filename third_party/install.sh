@@ -11,13 +11,15 @@ packages=(
     libglm-dev
     libglfw3-dev
     libtinygltf-dev nlohmann-json3-dev
+    libimgui-dev libstb-dev libfreetype-dev
+    fonts-inter fonts-material-design-icons-iconfont
     libopenimageio-dev libimath-dev zlib1g-dev
     assimp-testmodels
 )
 test_packages=(
     libgtest-dev libgmock-dev libbenchmark-dev
     spirv-tools
-    xvfb
+    xvfb xdotool
 )
 
 case "${1:-}" in

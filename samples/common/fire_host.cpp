@@ -27,7 +27,7 @@ void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool
     view.time = static_cast<float>(frame.time);
 }
 
-FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef) : device_(host.device) {
+FwContext* createContext(const VulkanHost& host) {
     // The device goes over as it was made. What is not said here counts as not enabled.
     FwVulkanHost lent = fwDefaultVulkanHost();
     lent.apiVersion = host.made.apiVersion;
@@ -46,12 +46,23 @@ FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef) : device_
     FwContextDef def = fwDefaultContextDef();
     def.callbacks.log = printLog;
     def.vulkan = &lent;
+    FwContext* context = nullptr;
     FwErrorInfo error{};
     if (fwCreateContext(&def, &context, &error) != FW_OK) {
         throw Failure(std::string("fwCreateContext: ") + error.message);
     }
+    if (fwContext_Prepare(context) != FW_OK) {  // a loading screen's work
+        char text[512] = "";
+        fwContext_GetLastMessage(context, text, sizeof text);
+        fwDestroyContext(context);
+        throw Failure(std::string("fwContext_Prepare: ") + text);
+    }
+    return context;
+}
+
+FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef)
+    : context(createContext(host)), device_(host.device) {
     try {
-        check(fwContext_Prepare(context), "fwContext_Prepare");  // a loading screen's work
         check(fwCreateWorld(context, &worldDef, &world), "fwCreateWorld");
     } catch (...) {
         fwDestroyContext(context);

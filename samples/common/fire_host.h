@@ -16,6 +16,10 @@ namespace sample {
 // Where the frame is seen from, and when.
 void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool reversed = false);
 
+// Lends the host's device and builds the pipelines. Throws Failure with the reason. The caller
+// destroys the context, after a wait for the device.
+FwContext* createContext(const VulkanHost& host);
+
 class FireHost {
  public:
     // Lends the device, builds the pipelines, makes the world. Throws Failure with the reason.

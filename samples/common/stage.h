@@ -26,6 +26,15 @@ struct StageRequest {
     float vignette = 0.15f;  // [0, 1]
 };
 
+// A scene pass, for what draws in it.
+struct ScenePass {
+    VkRenderPass pass = VK_NULL_HANDLE;
+    VkFormat colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+    VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+    VkCompareOp depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL;
+    uint32_t framesInFlight = 2;  // [1, 4]
+};
+
 struct StageFrame {
     VkCommandBuffer commands = VK_NULL_HANDLE;  // primary, recording
     uint64_t frameIndex = 0;                    // from 1, grows by one
@@ -70,6 +79,10 @@ class Stage {
     // What a pipeline in the scene pass needs to agree with the stage.
     VkCompareOp depthCompare() const {
         return made.reversedDepth ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_LESS_OR_EQUAL;
+    }
+    ScenePass describePass() const {
+        return {scenePass, made.colorFormat, made.samples, depthCompare(),
+                static_cast<uint32_t>(slots_.size())};
     }
     VkExtent2D extent() const { return extent_; }
     uint32_t frames() const { return frameLimit_; }

@@ -165,6 +165,9 @@ void FireLook::lightUp(FwView& lit, float night, float day) const {
 }
 
 Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, float size)
+    : Studio(host, stage.describePass(), center, size) {}
+
+Studio::Studio(const VulkanHost& host, const ScenePass& scene, glm::vec3 center, float size)
     : host_(host), center_(center), size_(size) {
     // A profile turned around the vertical: flat floor, a quarter circle, wall.
     constexpr int kAround = 64;
@@ -208,7 +211,7 @@ Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, flo
 
     constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     setLayout_ = makeSetLayout(host, {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kImage, kImage});
-    const uint32_t slots = stage.made.framesInFlight;
+    const uint32_t slots = scene.framesInFlight;
     pool_ = makeSetPool(host, slots, slots, 2 * slots);
     for (uint32_t i = 0; i < slots; ++i) {
         sets_.push_back(makeSet(host, pool_, setLayout_));
@@ -218,16 +221,16 @@ Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, flo
     writeSets();
 
     layout_ = makeLayout(host, {setLayout_}, {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(float)});
-    const int32_t display = stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT ? 0
-                            : stage.made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB     ? 1
-                                                                                    : 2;
+    const int32_t display = scene.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT ? 0
+                            : scene.colorFormat == VK_FORMAT_R8G8B8A8_SRGB     ? 1
+                                                                               : 2;
     const VkSpecializationMapEntry entry{0, 0, sizeof display};
     const VkSpecializationInfo specialization{1, &entry, sizeof display, &display};
     PipelineRequest request;
-    request.pass = stage.scenePass;
+    request.pass = scene.pass;
     request.layout = layout_;
-    request.samples = stage.made.samples;
-    request.depthCompare = stage.depthCompare();
+    request.samples = scene.samples;
+    request.depthCompare = scene.depthCompare;
     request.vertex = host.createShader(kStudioVert, sizeof kStudioVert);
     request.fragment = host.createShader(kStudioFrag, sizeof kStudioFrag);
     request.bindings = {{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX}};

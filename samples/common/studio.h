@@ -19,6 +19,8 @@ class Studio {
  public:
     // `center` is on the floor; `size` is about the object's largest side, m.
     Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, float size);
+    // For a host whose scene pass is not a stage's.
+    Studio(const VulkanHost& host, const ScenePass& pass, glm::vec3 center, float size);
     ~Studio();
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;

@@ -39,6 +39,11 @@ class Window {
     // Sleeps so that calls come at most `framesPerSecond` apart: FIFO does not pace every driver.
     void limitRate(double framesPerSecond);
 
+    // For a host that takes GLFW's callbacks itself instead of poll(). GLFW's user pointer of the
+    // window stays ours; `guest` is for them.
+    GLFWwindow* handle() const { return window_; }
+    void* guest = nullptr;
+
     VkFormat format = VK_FORMAT_UNDEFINED;
     VkExtent2D extent{};
     std::vector<VkImageView> views;

@@ -1,0 +1,64 @@
+// The editor's frames: a ring of command buffers and the output that the interface is drawn to, a
+// window's or a picture's.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/picture.h"
+#include "common/window.h"
+
+namespace fwui {
+
+struct Frame {
+    VkCommandBuffer commands = VK_NULL_HANDLE;  // recording
+    uint64_t index = 0;                         // from 1
+    uint64_t completed = 0;                     // the device is done with this and all before
+    uint32_t slot = 0;
+    VkExtent2D extent{};  // pixels of the output
+};
+
+class Frames {
+ public:
+    static constexpr uint32_t kSlots = 2;
+    // A window of that size if the host has windows, else pictures of it.
+    Frames(const sample::VulkanHost& host, const char* title, VkExtent2D size);
+    ~Frames();
+    Frames(const Frames&) = delete;
+    Frames& operator=(const Frames&) = delete;
+
+    // False: there is nothing to draw into now.
+    bool begin(Frame& frame);
+    void beginOutput(const Frame& frame);
+    // Ends the output, submits, shows.
+    void end(const Frame& frame);
+    // Without a window: what the last frame drew. Waits.
+    sample::Picture picture();
+
+    std::unique_ptr<sample::Window> window;  // null: pictures
+    VkRenderPass outputPass = VK_NULL_HANDLE;
+    [[nodiscard]] VkExtent2D extent() const { return window ? window->extent : size_; }
+
+ private:
+    struct Slot {
+        VkCommandPool pool = VK_NULL_HANDLE;
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        VkFence fence = VK_NULL_HANDLE;
+        VkSemaphore available = VK_NULL_HANDLE;
+        uint64_t index = 0;
+    };
+    void makePass(VkFormat format);
+    void makeFramebuffers();
+    void dropFramebuffers();
+
+    const sample::VulkanHost& host_;
+    VkExtent2D size_;
+    Slot slots_[kSlots];
+    uint64_t index_ = 0, completed_ = 0;
+    uint32_t imageIndex_ = 0, generation_ = 0;
+    sample::Image output_;
+    sample::Buffer readback_;
+    std::vector<VkFramebuffer> framebuffers_;
+};
+
+}  // namespace fwui
