@@ -120,7 +120,11 @@ Edit typeNumber(ImGuiID id, ImVec2 at, ImVec2 size, float& value, const NumberLo
     state.typing = 0;
     float typed = 0;
     if (dropped || !parseNumber(state.text, look.unit, value, typed)) return Edit::kNone;
-    if (look.highest > look.lowest) typed = std::clamp(typed, look.lowest, look.highest);
+    if (look.most > look.least) {
+        typed = std::clamp(typed, look.least, look.most);
+    } else if (look.highest > look.lowest) {
+        typed = std::clamp(typed, look.lowest, look.highest);
+    }
     if (typed == value) return Edit::kNone;
     value = typed;
     return Edit::kTyped;
@@ -150,7 +154,7 @@ void splitter(const char* id, const SplitterRequest& request, float& size) {
     const auto [vertical, at, from, to, design, lowest, highest, sign] = request;
     const Rect rect =
         vertical ? Rect{at - dp(2), from, at + dp(4), to} : Rect{from, at - dp(2), to, at + dp(4)};
-    ImDrawList* list = beginPanel(id, rect, 0);
+    ImDrawList* list = beginPanel(id, rect, 0, false, true);
     bool hovered = false, held = false;
     hit("grab", rect.low(), {rect.width(), rect.height()}, &hovered, &held);
     FieldState& state = fieldState();

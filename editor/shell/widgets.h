@@ -68,6 +68,7 @@ struct NumberLook {
     float lowest = 0, highest = 0;  // equal: any number, and no fill
     float step = 0.01f;             // a pixel's worth where there is no range
     float snap = 0;                 // with Ctrl; 0: none
+    float least = 0, most = 0;      // of what is typed; equal: as the range
     ImU32 fill = 0;
     const char* letter = nullptr;  // of an axis
     ImU32 letterColor = 0;

@@ -1,0 +1,762 @@
+// See app.h: what the pages' acts do.
+#include "app/app.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include "app/built_in.h"
+#include "app/flame_page.h"
+#include "shell/icons.h"
+
+namespace fwapp {
+
+namespace fs = std::filesystem;
+namespace icons = fwui::icons;
+using fwedit::Command;
+using fwedit::Kind;
+using fwedit::ObjectId;
+using fwedit::Verb;
+
+App::App(const sample::VulkanHost& hostGiven, FwContext* contextGiven, fwui::UiRenderer& uiGiven)
+    : host(hostGiven),
+      context(contextGiven),
+      ui(uiGiven),
+      document(fwedit::newDocument()),
+      live(hostGiven, contextGiven, uiGiven),
+      flame(std::make_unique<FlamePage>(hostGiven, contextGiven, uiGiven)) {
+    const std::string name = host.properties.deviceName;
+    device = host.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? "CPU renderer" : name;
+    loadUserState(user);
+    camera = document.scene.camera;
+    actions = makeActions(*this);
+}
+
+App::~App() = default;
+
+void toast(App& app, Toast::Kind kind, const std::string& title, const std::string& text) {
+    if (app.toasts.size() >= 3) app.toasts.erase(app.toasts.begin());
+    app.toasts.push_back({kind, title, text, app.now});
+}
+
+void say(App& app, const std::string& what) {
+    app.result = what;
+    app.resultTime = app.now;
+}
+
+bool perform(App& app, const Command& command, ObjectId* added) {
+    std::string message;
+    const bool done = fwedit::run(app.document, command, message, added);
+    if (!done) {
+        toast(app, Toast::Kind::kError, "That was not done", message);
+    } else if (!message.empty()) {
+        toast(app, Toast::Kind::kInfo, "A value was mended", message);
+    } else if (!app.document.dragging) {
+        say(app, app.document.steps[app.document.at].name);
+    }
+    return done;
+}
+
+bool performSet(App& app, ObjectId id, const char* key, const fwedit::Value& value) {
+    Command command;
+    command.verb = Verb::Set;
+    if (id != 0) command.targets = {id};
+    if (id == 0) command.kind = Kind::Settings;
+    command.fields = {{key, value}};
+    return perform(app, command);
+}
+
+bool isSelected(const App& app, ObjectId id) {
+    return std::find(app.selection.begin(), app.selection.end(), id) != app.selection.end();
+}
+
+void select(App& app, ObjectId id, bool add, bool flip) {
+    if (flip && isSelected(app, id)) {
+        std::erase(app.selection, id);
+        return;
+    }
+    if (!add && !flip) app.selection.clear();
+    if (id != 0 && !isSelected(app, id)) app.selection.push_back(id);
+}
+
+ObjectId addObject(App& app, Kind kind, std::vector<fwedit::Assignment> fields) {
+    Command command;
+    command.verb = Verb::Add;
+    command.kind = kind;
+    command.fields = std::move(fields);
+    ObjectId added = 0;
+    if (perform(app, command, &added)) select(app, added, false, false);
+    return added;
+}
+
+void frameSelection(App& app, bool all) {
+    glm::vec3 low(0), high(0);
+    bool any = false;
+    auto take = [&](glm::vec3 p, float radius) {
+        low = any ? glm::min(low, p - radius) : p - radius;
+        high = any ? glm::max(high, p + radius) : p + radius;
+        any = true;
+    };
+    const fwedit::Scene& scene = app.document.scene;
+    for (const ObjectId id : app.selection) {
+        if (all) break;
+        if (fwedit::findIn(scene.meshes, id)) continue;
+        const fwedit::Vec3 p = fwedit::worldPosition(scene, id);
+        take({p[0], p[1], p[2]}, 0.25f);
+    }
+    if (!any) {
+        glm::vec3 a, b;
+        if (app.live.bounds(a, b)) {
+            take(a, 0);
+            take(b, 0);
+        }
+        for (const fwedit::Flame& flame : scene.flames) {
+            const fwedit::Vec3 p = fwedit::worldPosition(scene, flame.id);
+            take({p[0], p[1] + flame.diameter, p[2]}, flame.diameter);
+        }
+    }
+    if (!any) return;
+    const glm::vec3 middle = 0.5f * (low + high);
+    app.camera.target = {middle.x, middle.y, middle.z};
+    const float radius = std::max(0.05f, 0.5f * glm::length(high - low));
+    app.camera.distance =
+        1.15f * radius / std::sin(0.5f * glm::radians(std::max(5.0f, app.camera.fieldOfView)));
+}
+
+const char* iconOf(const fwedit::Scene& scene, Kind kind, ObjectId id) {
+    if (kind == Kind::Source) {
+        const fwedit::HeatSource* source = fwedit::findIn(scene.sources, id);
+        constexpr const char* kShapes[] = {icons::flame,   icons::srcPoint, icons::srcDisc,
+                                           icons::srcLine, icons::srcJet,   icons::srcRain,
+                                           icons::water};
+        if (source && source->shape < std::size(kShapes)) return kShapes[source->shape];
+        return icons::srcPoint;
+    }
+    switch (kind) {
+        case Kind::Mesh:
+            return icons::crate;
+        case Kind::Flame:
+            return icons::firepit;
+        case Kind::Emitter:
+            return icons::bolt;
+        case Kind::Wind:
+            return icons::wind;
+        case Kind::Collider:
+            return icons::mesh;
+        case Kind::Layer:
+            return icons::layers;
+        case Kind::Event:
+            return icons::event;
+        default:
+            return icons::tune;
+    }
+}
+
+ImU32 colorOf(const fwedit::Scene& scene, Kind kind, ObjectId id) {
+    if (kind == Kind::Source) {
+        const fwedit::HeatSource* source = fwedit::findIn(scene.sources, id);
+        return source && source->shape >= fwedit::SourceRain ? fwui::colors::wet
+                                                             : fwui::colors::heat;
+    }
+    if (kind == Kind::Flame || kind == Kind::Emitter) return fwui::colors::heat;
+    if (kind == Kind::Wind) return fwui::colors::wet;
+    return fwui::colors::text;
+}
+
+std::string clockText(double seconds, bool tenths) {
+    char text[32];
+    const int minutes = int(seconds / 60);
+    const double rest = std::max(0.0, seconds - 60.0 * minutes);
+    if (tenths) {
+        std::snprintf(text, sizeof text, "%d:%04.1f", minutes, std::floor(rest * 10 + 1e-3) / 10);
+    } else {
+        std::snprintf(text, sizeof text, "%d:%02d", minutes, int(rest + 1e-3));
+    }
+    return text;
+}
+
+std::string sceneName(const App& app) {
+    return app.document.file.empty() ? "Untitled" : app.document.file.filename().string();
+}
+
+namespace {
+
+void showDocument(App& app, fwedit::Document document) {
+    app.document = std::move(document);
+    app.live.forget();
+    app.selection.clear();
+    app.strip.clear();
+    app.camera = app.document.scene.camera;
+    app.playing = false;
+    app.placing = false;
+    app.page = Page::kScene;
+    app.savedRevision = app.document.revision;
+    dropRecovery();
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+    std::string text;
+    for (size_t i = 0; i < lines.size() && i < 3; ++i) text += (i ? "\n" : "") + lines[i];
+    if (lines.size() > 3) text += "\nand " + std::to_string(lines.size() - 3) + " more";
+    return text;
+}
+
+}  // namespace
+
+void newScene(App& app) {
+    ifSaved(app, [&app] { showDocument(app, fwedit::newDocument()); });
+}
+
+void openScene(App& app, const fs::path& file) {
+    ifSaved(app, [&app, file] {
+        fwedit::Document document;
+        std::vector<std::string> repairs;
+        std::string error;
+        if (!fwedit::openDocument(file, document, repairs, error)) {
+            toast(app, Toast::Kind::kError, file.filename().string() + " was not opened", error);
+            return;
+        }
+        showDocument(app, std::move(document));
+        addRecent(app.user, file);
+        if (!repairs.empty())
+            toast(app, Toast::Kind::kWarning, file.filename().string() + " opened with repairs",
+                  joined(repairs));
+        say(app, "Opened " + file.filename().string());
+    });
+}
+
+void openBuiltIn(App& app, int which) {
+    ifSaved(app, [&app, which] {
+        fwedit::Document document = fwedit::newDocument();
+        std::string error;
+        if (!makeBuiltIn(which, stateFolder(), document, error)) {
+            toast(app, Toast::Kind::kError, "That scene was not made", error);
+            return;
+        }
+        showDocument(app, std::move(document));
+    });
+}
+
+void importMesh(App& app, const fs::path& file) {
+    Command command;
+    command.verb = Verb::Import;
+    // A scene with a file of its own keeps paths beside it relative.
+    command.file = fs::absolute(file).lexically_normal().string();
+    if (!app.document.file.empty()) {
+        const fs::path beside = fs::absolute(app.document.file).parent_path();
+        const fs::path relative = fs::absolute(file).lexically_relative(beside);
+        if (!relative.empty()) command.file = relative.string();
+    }
+    command.kind = Kind::Mesh;
+    const fs::path stem = file.stem();
+    command.fields = {{"name", stem.string()}};
+    ObjectId added = 0;
+    const bool first = app.document.scene.meshes.empty();
+    if (app.page == Page::kWelcome) app.page = Page::kScene;
+    if (!perform(app, command, &added)) return;
+    if (added != 0) select(app, added, false, false);
+    if (first) app.camera.distance = -1;  // framed once it is there
+}
+
+bool save(App& app, bool elsewhere, std::function<void()> after) {
+    auto write = [&app, after](fs::path file) {
+        if (file.extension() != ".fwscene") file += ".fwscene";
+        std::string error;
+        if (!fwedit::saveDocument(app.document, file, error)) {
+            toast(app, Toast::Kind::kError, "The scene is not saved", error);
+            return false;
+        }
+        app.savedTime = app.now;
+        app.savedRevision = app.document.revision;
+        addRecent(app.user, file);
+        dropRecovery();
+        say(app, "Saved " + file.filename().string());
+        if (after) after();
+        return true;
+    };
+    if (!elsewhere && !app.document.file.empty()) return write(app.document.file);
+    FileDialog dialog;
+    dialog.saves = true;
+    dialog.title = "Save the scene";
+    dialog.act = "Save";
+    dialog.name = app.document.file.empty() ? "scene.fwscene" : sceneName(app);
+    dialog.endings = {".fwscene"};
+    dialog.done = [write](const fs::path& file) { write(file); };
+    askFile(app, dialog);
+    return false;
+}
+
+void ifSaved(App& app, std::function<void()> then) {
+    if (!fwedit::unsaved(app.document)) {
+        then();
+        return;
+    }
+    app.guard = true;
+    app.afterGuard = std::move(then);
+}
+
+void takeDropped(App& app, const std::vector<fs::path>& files) {
+    for (const fs::path& file : files) {
+        const std::string ending = file.extension().string();
+        if (ending == ".fwscene") {
+            openScene(app, file);
+        } else if (ending == ".glb" || ending == ".gltf") {
+            importMesh(app, file);
+        } else if (app.page == Page::kFlame) {
+            app.flame->import(app, file);
+        } else {
+            toast(app, Toast::Kind::kWarning, file.filename().string() + " was not opened",
+                  "Scenes (.fwscene) and meshes (.glb, .gltf) can be dropped here.");
+        }
+    }
+}
+
+void autosave(App& app) {
+    constexpr double kEvery = 20;  // s
+    static_assert(kEvery < 30);    // at most so much work is lost
+    if (!fwedit::unsaved(app.document) || app.document.dragging) return;
+    if (app.document.revision == app.savedRevision || app.now - app.savedTime < kEvery) return;
+    app.savedTime = app.now;
+    app.savedRevision = app.document.revision;
+    std::string error;
+    if (stateFolder().empty() || !fwedit::saveCopy(app.document, recoveryFile(), error)) return;
+    noteRecovery(app.document.file);
+}
+
+const Action* findAction(const App& app, const char* name) {
+    for (const Action& action : app.actions)
+        if (!std::strcmp(action.name, name)) return &action;
+    return nullptr;
+}
+
+std::vector<Action> makeActions(App& app) {
+    App* at = &app;
+    const int scene = int(Page::kScene);
+    const int opened = -3;
+    auto hasSelection = [at] { return !at->selection.empty(); };
+    auto sceneFile = [at](const char* title, const char* act, std::vector<std::string> endings,
+                          auto done) {
+        FileDialog dialog;
+        dialog.title = title;
+        dialog.act = act;
+        dialog.endings = std::move(endings);
+        dialog.done = done;
+        askFile(*at, dialog);
+    };
+    auto place = [at](fwedit::SourceShape shape) {
+        at->placing = true;
+        at->placed = shape;
+        at->page = Page::kScene;
+    };
+    auto atTarget = [at] {
+        const fwedit::Vec3 p = at->camera.target;
+        return std::vector<double>{p[0], p[1], p[2]};
+    };
+    auto seekBy = [at](double seconds) {
+        at->playing = false;
+        at->live.seek(at->live.time() + seconds);
+    };
+    auto many = [at](Verb verb) {
+        Command command;
+        command.verb = verb;
+        command.targets = at->selection;
+        ObjectId added = 0;
+        if (!perform(*at, command, &added)) return;
+        if (verb == Verb::Remove) at->selection.clear();
+        if (verb == Verb::Duplicate && added) select(*at, added, false, false);
+    };
+    auto look = [at](float yaw, float pitch) {
+        at->camera.yaw = yaw;
+        at->camera.pitch = pitch;
+    };
+    std::vector<Action> list = {
+        {"New scene", "File", "Ctrl+N", icons::newFile, [at] { newScene(*at); }},
+        {"Open…", "File", "Ctrl+O", icons::open,
+         [at, sceneFile] {
+             sceneFile("Open a scene or a mesh", "Open", {".fwscene", ".glb", ".gltf"},
+                       [at](const fs::path& file) { takeDropped(*at, {file}); });
+         }},
+        {"Import mesh…", "File", "Ctrl+I", icons::importFrom,
+         [at, sceneFile] {
+             sceneFile("Import a mesh", "Import", {".glb", ".gltf"},
+                       [at](const fs::path& file) { importMesh(*at, file); });
+         }},
+        {"Save", "File", "Ctrl+S", icons::save, [at] { save(*at, false); }, {}, opened, true},
+        {"Save as…", "File", "Ctrl+Shift+S", nullptr, [at] { save(*at, true); }, {}, opened},
+        {"Close scene",
+         "File",
+         "Ctrl+W",
+         nullptr,
+         [at] {
+             ifSaved(*at, [at] {
+                 at->document = fwedit::newDocument();
+                 at->live.forget();
+                 at->selection.clear();
+                 at->page = Page::kWelcome;
+                 dropRecovery();
+             });
+         },
+         {},
+         opened,
+         true},
+        {"Quit", "File", "Ctrl+Q", nullptr, [at] { ifSaved(*at, [at] { at->quit = true; }); }},
+
+        {"Undo", "Edit", "Ctrl+Z", icons::undo,
+         [at] {
+             if (at->page == Page::kFlame) return at->flame->undo();
+             if (fwedit::undo(at->document)) say(*at, "Undone");
+         },
+         [at] {
+             return at->page == Page::kFlame ? at->flame->at > 0 : fwedit::canUndo(at->document);
+         },
+         opened},
+        {"Redo", "Edit", "Ctrl+Shift+Z", icons::redo,
+         [at] {
+             if (at->page == Page::kFlame) return at->flame->redo();
+             if (fwedit::redo(at->document)) say(*at, "Done again");
+         },
+         [at] {
+             return at->page == Page::kFlame ? at->flame->at + 1 < at->flame->steps.size()
+                                             : fwedit::canRedo(at->document);
+         },
+         opened},
+        {"Duplicate", "Edit", "Ctrl+D", icons::copy, [many] { many(Verb::Duplicate); },
+         hasSelection, scene, true},
+        {"Delete", "Edit", "Del", icons::trash, [many] { many(Verb::Remove); }, hasSelection,
+         scene},
+        {"Select all",
+         "Edit",
+         "Ctrl+A",
+         nullptr,
+         [at] {
+             at->selection.clear();
+             fwedit::forEachList(at->document.scene, [at](Kind kind, auto& objects) {
+                 if (kind == Kind::Layer || kind == Kind::Event) return;
+                 for (const auto& object : objects) at->selection.push_back(object.id);
+             });
+         },
+         {},
+         scene,
+         true},
+        {"Select nothing", "Edit", "", nullptr, [at] { at->selection.clear(); }, hasSelection,
+         scene},
+
+        {"Frame selection",
+         "View",
+         "F",
+         icons::frame,
+         [at] { frameSelection(*at, false); },
+         {},
+         scene},
+        {"Frame all", "View", "A", nullptr, [at] { frameSelection(*at, true); }, {}, scene},
+        {"Front", "View", "Num 1", icons::camera, [look] { look(0, 0); }, {}, scene, true},
+        {"Side", "View", "Num 3", nullptr, [look] { look(90, 0); }, {}, scene},
+        {"Top", "View", "Num 7", nullptr, [look] { look(0, 89); }, {}, scene},
+        {"Keep this view in the scene",
+         "View",
+         "",
+         nullptr,
+         [at] {
+             Command command;
+             command.verb = Verb::Set;
+             command.kind = Kind::Camera;
+             const fwedit::Camera& c = at->camera;
+             command.fields = {
+                 {"target", std::vector<double>{c.target[0], c.target[1], c.target[2]}},
+                 {"distance", double(c.distance)},
+                 {"yaw", double(c.yaw)},
+                 {"pitch", double(c.pitch)},
+                 {"field_of_view", double(c.fieldOfView)}};
+             perform(*at, command);
+         },
+         {},
+         scene},
+        {"Show marks",
+         "View",
+         "H",
+         icons::eye,
+         [at] { at->showHelpers = !at->showHelpers; },
+         {},
+         scene,
+         true},
+        {"Larger interface", "View", "Ctrl+Plus", nullptr,
+         [at] { at->user.interfaceSize = std::min(2.0f, at->user.interfaceSize + 0.25f); },
+         [at] { return at->user.interfaceSize < 2; }, -2, true},
+        {"Smaller interface", "View", "Ctrl+Minus", nullptr,
+         [at] { at->user.interfaceSize = std::max(0.75f, at->user.interfaceSize - 0.25f); },
+         [at] { return at->user.interfaceSize > 0.75f; }},
+
+        {"Add heat source",
+         "Scene",
+         "Shift+A",
+         icons::srcPoint,
+         [place] { place(fwedit::SourcePoint); },
+         {},
+         scene},
+        {"Add match",
+         "Scene",
+         "",
+         icons::flame,
+         [place] { place(fwedit::SourceMatch); },
+         {},
+         scene},
+        {"Add heat disc",
+         "Scene",
+         "",
+         icons::srcDisc,
+         [place] { place(fwedit::SourceDisc); },
+         {},
+         scene},
+        {"Add heat line",
+         "Scene",
+         "",
+         icons::srcLine,
+         [place] { place(fwedit::SourceLine); },
+         {},
+         scene},
+        {"Add flamethrower",
+         "Scene",
+         "",
+         icons::srcJet,
+         [place] { place(fwedit::SourceFlamethrower); },
+         {},
+         scene},
+        {"Add rain",
+         "Scene",
+         "",
+         icons::srcRain,
+         [place] { place(fwedit::SourceRain); },
+         {},
+         scene,
+         true},
+        {"Add water",
+         "Scene",
+         "",
+         icons::water,
+         [place] { place(fwedit::SourceWater); },
+         {},
+         scene},
+        {"Add flame",
+         "Scene",
+         "",
+         icons::firepit,
+         [at, atTarget] {
+             std::vector<double> p = atTarget();
+             p[1] = double(at->document.scene.settings.ground);
+             addObject(*at, Kind::Flame, {{"position", p}});
+         },
+         {},
+         scene,
+         true},
+        {"Add wind", "Scene", "", icons::wind, [at] { addObject(*at, Kind::Wind, {}); }, {}, scene},
+        {"Add wall",
+         "Scene",
+         "",
+         icons::mesh,
+         [at, atTarget] {
+             addObject(*at, Kind::Collider, {{"position", atTarget()}});
+         },
+         {},
+         scene},
+        {"Drop to surface", "Scene", "D", icons::down,
+         [at] {
+             for (const ObjectId id : at->selection) {
+                 const fwedit::Vec3 p = fwedit::worldPosition(at->document.scene, id);
+                 if (!at->live.burn()) continue;
+                 fwview::Ray ray;
+                 ray.origin = {p[0], p[1] + 0.02f, p[2]};
+                 ray.direction = {0, -1, 0};
+                 float down = ray.origin.y - at->document.scene.settings.ground;
+                 for (const fwedit::BurnMesh& mesh : at->live.burn()->meshes) {
+                     const fwedit::Mesh* object =
+                         fwedit::findIn(at->document.scene.meshes, mesh.id);
+                     if (!object || mesh.id == id || !mesh.model) continue;
+                     const auto pose = fwedit::transformOf(*object);
+                     glm::mat4 matrix;
+                     std::memcpy(&matrix[0][0], pose.data(), sizeof pose);
+                     const fwview::SurfaceHit hit = fwview::castRay(*mesh.model, matrix, ray);
+                     if (hit.hit) down = std::min(down, hit.distance);
+                 }
+                 Command command;
+                 command.verb = Verb::Move;
+                 command.targets = {id};
+                 command.offset = {0, 0.02f - down, 0};
+                 perform(*at, command);
+             }
+         },
+         hasSelection, scene, true},
+
+        {"Play, pause",
+         "Time",
+         "Space",
+         icons::play,
+         [at] { at->playing = !at->playing; },
+         {},
+         scene},
+        {"Back one frame",
+         "Time",
+         ",",
+         icons::stepBack,
+         [at, seekBy] { seekBy(-1.0 / double(at->document.scene.settings.framesPerSecond)); },
+         {},
+         scene},
+        {"On one frame",
+         "Time",
+         ".",
+         icons::stepFwd,
+         [at, seekBy] { seekBy(1.0 / double(at->document.scene.settings.framesPerSecond)); },
+         {},
+         scene},
+        {"To start", "Time", "Home", icons::toStart, [at] { at->live.seek(0); }, {}, scene},
+        {"To end",
+         "Time",
+         "End",
+         icons::toEnd,
+         [at] { at->live.seek(double(at->document.scene.settings.duration)); },
+         {},
+         scene},
+        {"Loop", "Time", "L", icons::loop, [at] { at->looping = !at->looping; }, {}, scene},
+        {"Add event",
+         "Time",
+         "M",
+         icons::event,
+         [at] {
+             addObject(*at, Kind::Event, {{"time", at->live.time()}});
+         },
+         {},
+         scene,
+         true},
+
+        {"Select", "Tools", "Q", icons::select, [at] { at->tool = Tool::kSelect; }, {}, scene},
+        {"Move", "Tools", "W", icons::move, [at] { at->tool = Tool::kMove; }, {}, scene},
+
+        {"Scene", "Pages", "1", icons::local, [at] { at->page = Page::kScene; }, {}, opened},
+        {"Flame", "Pages", "2", icons::flame, [at] { at->page = Page::kFlame; }, {}, opened},
+
+        {"Find anything", "Help", "Ctrl+P", icons::search,
+         [at] {
+             at->palette = true;
+             at->paletteFresh = true;
+             at->paletteText.clear();
+             at->paletteAt = 0;
+         }},
+        {"Keys", "Help", "F1", icons::keyboard, [at] { at->keys = !at->keys; }},
+        {"About Flamewright", "Help", "", icons::info, [at] { at->about = true; }},
+    };
+    addFlameActions(app, list);
+    return list;
+}
+
+namespace {
+
+// GLFW's number of a key by its name on the cap.
+int keyCode(const std::string& name) {
+    if (name.size() == 1) {
+        const char c = name[0];
+        if ((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')) return c;
+        if (std::strchr(",.[]-=/;'", c)) return c;
+    }
+    struct Named {
+        const char* name;
+        int code;
+    };
+    constexpr Named kNamed[] = {{"Space", 32}, {"Del", 261},   {"Home", 268},  {"End", 269},
+                                {"F1", 290},   {"Esc", 256},   {"Tab", 258},   {"Plus", 61},
+                                {"Minus", 45}, {"Num 1", 321}, {"Num 3", 323}, {"Num 7", 327}};
+    for (const Named& named : kNamed)
+        if (name == named.name) return named.code;
+    return -1;
+}
+
+bool keysPressed(const char* keys) {
+    const ImGuiIO& io = ImGui::GetIO();
+    bool ctrl = false, shift = false;
+    std::string rest = keys;
+    if (rest.starts_with("Ctrl+")) {
+        ctrl = true;
+        rest.erase(0, 5);
+    }
+    if (rest.starts_with("Shift+")) {
+        shift = true;
+        rest.erase(0, 6);
+    }
+    const int code = keyCode(rest);
+    return code >= 0 && io.KeyCtrl == ctrl && io.KeyShift == shift && !io.KeyAlt &&
+           ImGui::IsKeyPressed(code, false);
+}
+
+}  // namespace
+
+void runKeys(App& app) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsKeyPressed(256, false)) {  // Esc closes the topmost
+        if (app.files.open) {
+            app.files.open = false;
+        } else if (app.palette) {
+            app.palette = false;
+        } else if (app.keys) {
+            app.keys = false;
+        } else if (app.about) {
+            app.about = false;
+        } else if (app.guard) {
+            app.guard = false;
+        } else if (app.placing) {
+            app.placing = false;
+        } else if (!io.WantTextInput && !ImGui::IsAnyItemActive()) {
+            app.selection.clear();
+        }
+        return;
+    }
+    const bool covered = app.files.open || app.palette || app.guard || app.about;
+    if (covered) return;
+    for (const Action& action : app.actions) {
+        if (!*action.keys || !keysPressed(action.keys)) continue;
+        if (io.WantTextInput && !io.KeyCtrl && std::strcmp(action.keys, "F1")) continue;
+        if (app.keys && std::strcmp(action.keys, "F1")) continue;
+        if (action.page == -3 && app.page == Page::kWelcome) continue;
+        if (action.page >= -1 && action.page != int(app.page)) continue;
+        if (action.enabled && !action.enabled()) continue;
+        action.run();
+        return;
+    }
+}
+
+void recordPages(App& app, const fwui::Frame& frame) {
+    if (app.page == Page::kFlame) app.flame->record(frame, app.deltaTime);
+    if (app.page != Page::kScene) return;
+    const bool runs = app.playing && !app.live.preparing();
+    app.live.record(frame, app.camera, runs ? app.deltaTime * app.speed : 0);
+    if (app.live.milliseconds() <= 0) return;
+    app.costs.push_back(float(app.live.milliseconds()));
+    if (app.costs.size() > 64) app.costs.erase(app.costs.begin());
+}
+
+bool isLively(const App& app) {
+    if (app.page == Page::kFlame && app.flame->lively()) return true;
+    if (app.page != Page::kScene) return false;
+    return app.playing || !app.live.settled() || app.live.preparing();
+}
+
+void showApp(App& app) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    app.screen = {0, 0, size.x, size.y};
+    ImGui::PushFont(fwui::fonts().body);
+    runKeys(app);
+    switch (app.page) {
+        case Page::kWelcome:
+            showWelcome(app, app.screen);
+            break;
+        case Page::kScene:
+            showScene(app, app.screen);
+            break;
+        case Page::kFlame:
+            showFlame(app, app.screen);
+            break;
+    }
+    showOverlays(app);
+    ImGui::PopFont();
+}
+
+}  // namespace fwapp

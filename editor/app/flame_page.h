@@ -1,0 +1,106 @@
+// The flame page: temperature and soot over radius and height, painted with a brush, seen burning
+// beside it at night, by day and in wind. A profile belongs to a flame of the scene once it is
+// saved for it; until then it is a draft of its own, with its own undo.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/app.h"
+#include "common/studio.h"
+#include "viewport/scene_target.h"
+
+namespace fwapp {
+
+// 64 x 128 as the plugin keeps them; rows from the base up.
+struct ProfilePaint {
+    static constexpr int kWidth = 64, kHeight = 128;
+    std::vector<float> kelvin = std::vector<float>(size_t(kWidth) * kHeight);  // [0, 3000]
+    std::vector<float> soot = std::vector<float>(size_t(kWidth) * kHeight);    // [0, 2]
+    bool operator==(const ProfilePaint&) const = default;
+};
+
+enum class ProfileTool : int { kPaint, kErase, kSmooth, kPick };
+enum class ProfilePlane : int { kTemperature, kSoot };
+
+// A dab of the brush at (x, y), texels, of a radius in texels; mirrored about the axis by nature.
+// `value`: K or soot that it goes towards. `hardness`, `strength`: [0, 1].
+struct Dab {
+    ProfileTool tool = ProfileTool::kPaint;
+    ProfilePlane plane = ProfilePlane::kTemperature;
+    float x = 0, y = 0, radiusX = 4, radiusY = 4;
+    float value = 1600, strength = 0.6f, hardness = 0.3f;
+};
+void paintDab(ProfilePaint& paint, const Dab& dab);
+
+struct FlameCanvas;
+
+struct FlamePage {
+    FlamePage(const sample::VulkanHost& host, FwContext* context, fwui::UiRenderer& ui);
+    ~FlamePage();
+    FlamePage(const FlamePage&) = delete;
+    FlamePage& operator=(const FlamePage&) = delete;
+
+    void import(App& app, const std::filesystem::path& file);
+    bool exportTo(App& app, const std::filesystem::path& file);
+    void usePreset(uint32_t preset);
+    void keepStep(const char* name);
+    void undo();
+    void redo();
+    void open();                         // worlds and targets, when the page is first seen
+    void relight();                      // the fires anew, of the profile as it is
+    [[nodiscard]] float height() const;  // m, of the flame at night
+    void record(const fwui::Frame& frame, float deltaTime);
+    [[nodiscard]] bool lively() const;
+
+    struct View {
+        std::unique_ptr<fwview::SceneTarget> target;
+        FwWorld* world = nullptr;
+        FwVolumetricFireId fire{};
+        FwFireProfileId profile{};
+        std::unique_ptr<sample::Studio> studio;
+        fwui::Rect rect;
+        float owed = 0;          // s that it has not been stepped
+        uint64_t drawn = ~0ull;  // pictureRevision that it shows
+        bool seen = false;
+    };
+    struct Step {
+        std::string name;
+        ProfilePaint paint;
+    };
+
+    const sample::VulkanHost& host;
+    FwContext* context;
+    fwui::UiRenderer& ui;
+    FwTargetId targetId{};
+    View views[3];  // night, day, wind
+    ProfilePaint paint;
+    std::vector<Step> steps;
+    size_t at = 0;
+    uint32_t preset = 0;
+    ProfileTool tool = ProfileTool::kPaint;
+    ProfilePlane plane = ProfilePlane::kTemperature;
+    float size = 12, strength = 60, softness = 70;  // cm, %, %
+    float celsius = 1380, soot = 0.8f;
+    float diameter = 0.6f, power = 60;  // m, kW: of the preview
+    float turbulence = 1, speed = 1, wind = 4;
+    bool paused = false, stroking = false, changed = true, opened = false;
+    bool brushOpen = true, sizeOpen = true, lifeOpen = true;
+    double time = 0;
+    uint64_t pictureRevision = 0, drawnRevision = ~0ull;
+    std::string problem;  // why there is no picture
+    double relitAt = -1;
+    float lastX = 0, lastY = 0;  // texels, of the stroke under way
+    float studioSize = 0;        // m
+    uint64_t frameCount = 0;
+    std::unique_ptr<FlameCanvas> canvas;
+    std::vector<sample::Image> presetImages;
+    std::vector<void*> presetTextures;
+};
+
+void addFlameActions(App& app, std::vector<Action>& list);
+
+}  // namespace fwapp

@@ -1,0 +1,400 @@
+// See inspector.h.
+#include "app/inspector.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "flamewright/flamewright.h"
+#include "shell/icons.h"
+
+namespace fwapp {
+
+using namespace fwui;
+using fwedit::FieldInfo;
+using fwedit::FieldType;
+using fwedit::Kind;
+using fwedit::ObjectId;
+
+namespace {
+
+// How far a slider goes where the limits of a field are far beyond use, and how a number is
+// written.
+struct Range {
+    const char* key;
+    float low, high;
+    const char* format;
+    bool heat = false;
+};
+constexpr Range kRanges[] = {{"output", 0, 60, "%.1f", true},
+                             {"power", 0, 400, "%.1f", true},
+                             {"radius", 0, 1, "%.3f"},
+                             {"length", 0, 5, "%.2f"},
+                             {"start", 0, 60, "%.1f"},
+                             {"duration", 0, 120, "%.1f"},
+                             {"time", 0, 120, "%.1f"},
+                             {"diameter", 0.002f, 3, "%.3f"},
+                             {"thickness", 0, 0.1f, "%.3f"},
+                             {"moisture", 0, 1, "%.2f"},
+                             {"speed", 0, 4, "%.2f"},
+                             {"life", 0, 10, "%.2f"},
+                             {"pace", 0.1f, 60, "%.1f"},
+                             {"light", 0, 4, "%.2f"},
+                             {"exposure", 0, 4, "%.2f"},
+                             {"ground", -2, 2, "%.2f"},
+                             {"texels_per_metre", 0, 1024, "%.0f"},
+                             {"seed", 0, 1000, "%.0f"},
+                             {"frames_per_second", 1, 120, "%.0f"},
+                             {"map_size", 64, 2048, "%.0f"}};
+
+NumberLook lookOf(const FieldInfo& field) {
+    NumberLook look;
+    look.unit = field.unit;
+    look.least = float(field.low);
+    look.most = float(field.high);
+    if (field.type == FieldType::Whole) look.format = "%.0f";
+    for (const Range& range : kRanges) {
+        if (std::strcmp(range.key, field.key)) continue;
+        look.lowest = std::max(range.low, look.least);
+        look.highest = std::min(range.high, look.most);
+        look.format = range.format;
+        if (range.heat) look.fill = colors::heat;
+        return look;
+    }
+    if (field.high - field.low <= 100 && field.type != FieldType::Vector) {
+        look.lowest = float(field.low);
+        look.highest = float(field.high);
+    }
+    return look;
+}
+
+std::string asWords(const char* key) {
+    std::string text = key;
+    std::replace(text.begin(), text.end(), '_', ' ');
+    if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+    return text;
+}
+
+// From press to release it is one step.
+void applyEdit(App& app, ObjectId id, const char* key, const fwedit::Value& value, Edit edit) {
+    if (edit == Edit::kDragging && !app.document.dragging) fwedit::beginDrag(app.document);
+    if (edit == Edit::kDragging || edit == Edit::kTyped) performSet(app, id, key, value);
+    if (edit == Edit::kDone && app.document.dragging) {
+        fwedit::endDrag(app.document);
+        say(app, app.document.steps[app.document.at].name);
+    }
+}
+
+void showObjectChoice(App& app, const Rows& rows, ObjectId id, const FieldInfo& field,
+                      ObjectId chosen) {
+    const fwedit::Object* object = fwedit::findObject(app.document.scene, chosen);
+    dropdown(field.key, {rows.fieldX(), rows.y}, {rows.fieldWidth(), dp(metrics::row)},
+             object ? object->name.c_str() : "Nothing", icons::link);
+    if (!beginMenu(field.key, {rows.fieldX(), rows.y + dp(24)}, rows.fieldWidth())) return;
+    if (menuItem("Nothing", nullptr, nullptr, true, chosen == 0))
+        performSet(app, id, field.key, 0.0);
+    const std::vector<fwedit::Mesh> meshes = app.document.scene.meshes;
+    for (const fwedit::Mesh& mesh : meshes) {
+        if (mesh.id == id) continue;
+        ImGui::PushID(int(mesh.id));
+        if (menuItem(mesh.name.c_str(), icons::crate, nullptr, true, mesh.id == chosen))
+            performSet(app, id, field.key, double(mesh.id));
+        ImGui::PopID();
+    }
+    endMenu();
+}
+
+void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& field) {
+    fwedit::Value value;
+    if (!fwedit::getField(app.document.scene, kind, id, field.key, value)) return;
+    const ImVec2 at(rows.fieldX(), rows.y), size(rows.fieldWidth(), dp(metrics::row));
+    switch (field.type) {
+        case FieldType::Flag: {
+            bool on = std::get<double>(value) != 0;
+            rows.label(field.label);
+            if (toggle(field.key, at + dp(0, 3), on))
+                performSet(app, id, field.key, on ? 1.0 : 0.0);
+            rows.next();
+            break;
+        }
+        case FieldType::Whole:
+        case FieldType::Number: {
+            auto number = float(std::get<double>(value));
+            const Edit edit = numberRow(rows, field.label, number, lookOf(field));
+            double wanted = double(number);
+            if (field.type == FieldType::Whole) wanted = std::round(wanted);
+            if (edit != Edit::kNone) applyEdit(app, id, field.key, wanted, edit);
+            break;
+        }
+        case FieldType::Choice: {
+            std::vector<std::string> names;
+            for (const char* word : field.choices) names.push_back(asWords(word));
+            std::vector<const char*> shown;
+            for (const std::string& name : names) shown.push_back(name.c_str());
+            int chosen = int(std::get<double>(value));
+            rows.label(field.label);
+            if (choice(field.key, at, size, shown, chosen))
+                performSet(app, id, field.key, double(chosen));
+            rows.next();
+            break;
+        }
+        case FieldType::Vector: {
+            const auto& list = std::get<std::vector<double>>(value);
+            float numbers[3];
+            for (size_t i = 0; i < 3; ++i) numbers[i] = i < list.size() ? float(list[i]) : 0;
+            NumberLook look = lookOf(field);
+            look.snap = 0.05f;
+            if (!std::strcmp(field.unit, "°")) {
+                look.format = "%.0f°";
+                look.unit = nullptr;
+                look.step = 0.5f;
+                look.snap = 15;
+            }
+            const Edit edit = vectorRow(rows, field.label, numbers, look);
+            if (edit != Edit::kNone)
+                applyEdit(
+                    app, id, field.key,
+                    std::vector<double>{double(numbers[0]), double(numbers[1]), double(numbers[2])},
+                    edit);
+            break;
+        }
+        case FieldType::Object:
+            rows.label(field.label);
+            showObjectChoice(app, rows, id, field, ObjectId(std::get<double>(value)));
+            rows.next();
+            break;
+        case FieldType::Text: {
+            rows.label(field.label);
+            static ImGuiID editing = 0;  // there is one keyboard
+            static std::string text;
+            const ImGuiID own = ImGui::GetID(field.key);
+            if (editing != own) text = std::get<std::string>(value);
+            std::string shown = editing == own ? text : std::get<std::string>(value);
+            const bool done = textField(field.key, at, size, shown, "");
+            if (ImGui::IsItemActive()) {
+                editing = own;
+                text = shown;
+            }
+            if (done && shown != std::get<std::string>(value))
+                performSet(app, id, field.key, shown);
+            if (done) editing = 0;
+            rows.next();
+            break;
+        }
+        case FieldType::File: {
+            rows.label(field.label);
+            const std::string file = std::get<std::string>(value);
+            const std::string name = std::filesystem::path(file).filename().string();
+            if (button(field.key, at, size, name.empty() ? "Choose…" : name.c_str())) {
+                FileDialog dialog;
+                dialog.title = field.label;
+                dialog.act = "Choose";
+                dialog.endings = kind == Kind::Mesh
+                                     ? std::vector<std::string>{".glb", ".gltf"}
+                                     : std::vector<std::string>{".fwprofile", ".png", ".exr"};
+                App* open = &app;
+                const std::string key = field.key;
+                dialog.done = [open, id, key](const std::filesystem::path& chosen) {
+                    performSet(*open, id, key.c_str(), chosen.string());
+                };
+                askFile(app, dialog);
+            }
+            tip(file.empty() ? field.label : file.c_str());
+            rows.next();
+            break;
+        }
+        case FieldType::Choices: {
+            // Of a mesh the materials by slot: those that its file has.
+            const auto& list = std::get<std::vector<double>>(value);
+            size_t slots = 1;
+            if (app.live.burn()) {
+                for (const fwedit::BurnMesh& mesh : app.live.burn()->meshes)
+                    if (mesh.id == id && mesh.model)
+                        slots = std::clamp<size_t>(mesh.model->materials.size(), 1, 8);
+            }
+            std::vector<std::string> names;
+            for (const char* word : field.choices) names.push_back(asWords(word));
+            std::vector<const char*> shown;
+            for (const std::string& name : names) shown.push_back(name.c_str());
+            for (size_t i = 0; i < slots && i < list.size(); ++i) {
+                const std::string label =
+                    slots == 1 ? "Material" : "Material " + std::to_string(i + 1);
+                int chosen = int(list[i]);
+                rows.label(label.c_str());
+                ImGui::PushID(int(i));
+                if (choice(field.key, {rows.fieldX(), rows.y}, size, shown, chosen,
+                           icons::material)) {
+                    std::vector<double> changed = list;
+                    changed[i] = chosen;
+                    performSet(app, id, field.key, changed);
+                }
+                ImGui::PopID();
+                rows.next();
+            }
+            break;
+        }
+        default:
+            break;  // keys and rows are edited where they show
+    }
+}
+
+enum class Part { kPlace, kMain, kTime, kMore };
+
+Part partOf(Kind kind, const char* key) {
+    auto is = [&](std::initializer_list<const char*> keys) {
+        return std::any_of(keys.begin(), keys.end(),
+                           [&](const char* one) { return !std::strcmp(one, key); });
+    };
+    if (kind == Kind::Settings) {
+        if (is({"duration", "frames_per_second", "pace"})) return Part::kTime;
+        if (is({"wind", "daylight", "light", "exposure"})) return Part::kMain;
+        return Part::kMore;
+    }
+    if (is({"position", "rotation", "scale", "sticks_to", "direction", "extent"}))
+        return Part::kPlace;
+    if (is({"start", "duration", "time"})) return Part::kTime;
+    if (kind == Kind::Mesh && !is({"file", "materials", "moisture", "thickness"}))
+        return Part::kMore;
+    if (kind == Kind::Flame && is({"density", "blue", "smoke", "tint", "tint_weight", "ignites"}))
+        return Part::kMore;
+    return Part::kMain;
+}
+
+// What no shape or kind of the object has any use for.
+bool isIdle(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key) {
+    auto is = [&](const char* one) { return !std::strcmp(one, key); };
+    if (is("name") || is("hidden") || is("locked")) return true;
+    if (kind == Kind::Event && is("note")) return false;
+    if (kind == Kind::Source) {
+        const fwedit::HeatSource* source = fwedit::findIn(scene.sources, id);
+        if (!source) return false;
+        const uint32_t shape = source->shape;
+        const bool line = shape == fwedit::SourceLine || shape == fwedit::SourceRain;
+        if (is("length")) return !line;
+        if (is("direction"))
+            return shape != fwedit::SourceLine && shape != fwedit::SourceFlamethrower &&
+                   shape != fwedit::SourceDisc;
+        if (is("output")) return shape == fwedit::SourceMatch;
+        if (is("duration")) return shape == fwedit::SourceMatch;
+    }
+    if (kind == Kind::Emitter) {
+        const fwedit::Emitter* emitter = fwedit::findIn(scene.emitters, id);
+        if (!emitter) return false;
+        if (is("extent")) return emitter->shape != fwedit::EmitterLine;
+        if (is("radius")) return emitter->shape != fwedit::EmitterDisc;
+    }
+    if (kind == Kind::Collider) {
+        const fwedit::Collider* collider = fwedit::findIn(scene.colliders, id);
+        if (!collider) return false;
+        const uint32_t shape = collider->shape;
+        if (is("half_size") || is("shields")) return shape != fwedit::ColliderBox;
+        if (is("radius")) return shape != fwedit::ColliderBall && shape != fwedit::ColliderCapsule;
+        if (is("length")) return shape != fwedit::ColliderCapsule;
+    }
+    if (kind == Kind::Mesh && is("refine_depth")) {
+        const fwedit::Mesh* mesh = fwedit::findIn(scene.meshes, id);
+        return mesh && !mesh->refine;
+    }
+    return false;
+}
+
+bool anyOf(const fwedit::Scene& scene, Kind kind, ObjectId id, Part part) {
+    const auto fields = fwedit::fieldsOf(kind);
+    return std::any_of(fields.begin(), fields.end(), [&](const FieldInfo& field) {
+        return partOf(kind, field.key) == part && !isIdle(scene, kind, id, field.key) &&
+               field.type != FieldType::KeyList && field.type != FieldType::Rows;
+    });
+}
+
+void showParts(App& app, Rows& rows, Kind kind, ObjectId id) {
+    struct Heading {
+        Part part;
+        const char* name;
+        bool* open;
+    };
+    const char* main = kind == Kind::Source     ? "Heat"
+                       : kind == Kind::Mesh     ? "Material"
+                       : kind == Kind::Flame    ? "Flame"
+                       : kind == Kind::Emitter  ? "Fire"
+                       : kind == Kind::Settings ? "Light and wind"
+                                                : "Shape";
+    const Heading headings[] = {{Part::kPlace, "Place", &app.placeOpen},
+                                {Part::kMain, main, &app.mainOpen},
+                                {Part::kTime, "Time", &app.timeOpen},
+                                {Part::kMore, "More", &app.moreOpen}};
+    for (const Heading& heading : headings) {
+        if (!anyOf(app.document.scene, kind, id, heading.part)) continue;
+        if (!section(rows, heading.name, *heading.open)) continue;
+        for (const FieldInfo& field : fwedit::fieldsOf(kind)) {
+            if (partOf(kind, field.key) != heading.part) continue;
+            if (isIdle(app.document.scene, kind, id, field.key)) continue;
+            showField(app, rows, kind, id, field);
+        }
+        rows.y += dp(4);
+    }
+}
+
+}  // namespace
+
+void showInspector(App& app, Rect rect) {
+    std::erase_if(app.selection,
+                  [&](ObjectId id) { return !fwedit::findObject(app.document.scene, id); });
+    const Rect head = rect.cutTop(dp(42));
+    ImDrawList* list = beginPanel("##inspector head", head);
+    list->AddRectFilled(head.low(), head.high(), colors::header);
+    Kind kind = Kind::Settings;
+    const ObjectId id = app.selection.size() == 1 ? app.selection[0] : 0;
+    const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
+    const fwedit::Object shown = object ? *object : fwedit::Object{};
+    if (!object) kind = Kind::Settings;
+    const bool several = app.selection.size() > 1;
+    const std::string title = object    ? shown.name
+                              : several ? std::to_string(app.selection.size()) + " things"
+                                        : std::string("Scene");
+    drawIcon(list, fonts().icon20, head.low() + dp(20, 21),
+             object ? colorOf(app.document.scene, kind, id) : colors::text,
+             object ? iconOf(app.document.scene, kind, id) : icons::tune);
+    drawTextFit(list, fonts().semi, head.x0 + dp(38), head.y0 + dp(14), head.width() - dp(130),
+                colors::title, title.c_str());
+    drawText(list, fonts().small, head.x0 + dp(38), head.y0 + dp(30), colors::dim,
+             object    ? fwedit::kindLabel(kind)
+             : several ? "Moved, duplicated and deleted together"
+                       : "Time, light and wind of all of it");
+    if (object) {
+        if (iconButton("eye", {head.x1 - dp(64), head.midY()},
+                       shown.hidden ? icons::eyeOff : icons::eye,
+                       shown.hidden ? colors::off : colors::text, shown.hidden ? "Show" : "Hide"))
+            performSet(app, id, "hidden", shown.hidden ? 0.0 : 1.0);
+        if (iconButton("lock", {head.x1 - dp(40), head.midY()},
+                       shown.locked ? icons::lock : icons::unlock, colors::text,
+                       shown.locked ? "Unlock" : "Lock"))
+            performSet(app, id, "locked", shown.locked ? 0.0 : 1.0);
+        if (iconButton("delete", {head.x1 - dp(16), head.midY()}, icons::trash, colors::dim,
+                       "Delete"))
+            findAction(app, "Delete")->run();
+    }
+    endPanel();
+    list = beginPanel("##inspector", rect, colors::panel, true);
+    if (several) {
+        drawIcon(list, fonts().icon34, {rect.midX(), rect.y0 + dp(70)}, colors::off, icons::layers);
+        drawTextCentred(list, fonts().body, rect.midX(), rect.y0 + dp(104), colors::dim,
+                        "Select one to edit it");
+        if (button("duplicate", {rect.midX() - dp(98), rect.y0 + dp(124)}, dp(94, 28), "Duplicate"))
+            findAction(app, "Duplicate")->run();
+        if (button("delete", {rect.midX() + dp(4), rect.y0 + dp(124)}, dp(94, 28), "Delete",
+                   ButtonKind::kDanger))
+            findAction(app, "Delete")->run();
+        endPanel();
+        return;
+    }
+    ImGui::PushID(int(id));
+    Rows rows{list, rect.x0 + dp(10), rect.x1 - dp(10), rect.y0 - ImGui::GetScrollY()};
+    showParts(app, rows, kind, id);
+    ImGui::SetCursorScreenPos({rect.x0, rows.y + dp(8)});
+    ImGui::Dummy({1, 1});
+    ImGui::PopID();
+    // A drag that lost its field (its object went) ends.
+    if (app.document.dragging && !ImGui::IsAnyMouseDown()) fwedit::endDrag(app.document);
+    endPanel();
+}
+
+}  // namespace fwapp

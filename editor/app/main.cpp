@@ -1,0 +1,272 @@
+// flamewright-editor: the window's loop. Frames are drawn when something moves or the hand does;
+// else the program sleeps.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include "app/app.h"
+#include "app/built_in.h"
+#include "app/flame_page.h"
+#include "common/fire_host.h"
+#include "common/options.h"
+#include "shell/frames.h"
+#include "shell/input_queue.h"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Wishes {
+    std::string shot;     // picture to write, then leave
+    std::string page;     // "welcome", "scene", "flame", with "+keys", "+palette", ...
+    std::string builtIn;  // name of a scene of the welcome page
+    float scale = 0;      // 0: as the monitor has it
+    float seconds = 0;    // that the burn runs before the shot
+};
+
+float monitorScale(GLFWwindow* window, VkExtent2D extent) {
+    float x = 1, y = 1;
+    if (window) glfwGetWindowContentScale(window, &x, &y);
+    if (x > 1.01f) return x;
+    const float fit =
+        std::min(float(extent.width) / 1280, float(extent.height) / 720);  // no scale reported
+    return std::clamp(std::floor(fit * 4) / 4, 1.0f, 3.0f);
+}
+
+// ImGui wants a cursor shown; GLFW knows four of them.
+struct Cursors {
+    GLFWcursor* made[ImGuiMouseCursor_COUNT] = {};
+    int shown = -1;
+    Cursors() {
+        made[ImGuiMouseCursor_TextInput] = glfwCreateStandardCursor(GLFW_IBEAM_CURSOR);
+        made[ImGuiMouseCursor_ResizeEW] = glfwCreateStandardCursor(GLFW_HRESIZE_CURSOR);
+        made[ImGuiMouseCursor_ResizeNS] = glfwCreateStandardCursor(GLFW_VRESIZE_CURSOR);
+        made[ImGuiMouseCursor_Hand] = glfwCreateStandardCursor(GLFW_HAND_CURSOR);
+    }
+    void show(GLFWwindow* window) {
+        const int wanted = ImGui::GetMouseCursor();
+        if (wanted == shown) return;
+        shown = wanted;
+        glfwSetCursor(window, wanted > 0 ? made[wanted] : nullptr);
+    }
+};
+
+class Program {
+ public:
+    Program(const sample::VulkanHost& host, VkExtent2D size, const Wishes& wishes)
+        : host_(host), frames_(host, "Flamewright", size), wishes_(wishes) {
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr;
+        ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+        ui_ = std::make_unique<fwui::UiRenderer>(host, frames_.outputPass, fwui::Frames::kSlots);
+        if (frames_.window) {
+            input_.listen(frames_.window->handle());
+            glfwSetWindowSizeLimits(frames_.window->handle(), 640, 400, GLFW_DONT_CARE,
+                                    GLFW_DONT_CARE);
+        }
+        fwui::mapKeys(frames_.window ? frames_.window->handle() : nullptr);
+        context_ = sample::createContext(host);
+        app_ = std::make_unique<fwapp::App>(host, context_, *ui_);
+        rescale();
+    }
+    ~Program() {
+        vkDeviceWaitIdle(host_.device);
+        app_.reset();
+        fwDestroyContext(context_);
+        ui_.reset();
+        ImGui::DestroyContext();
+    }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    fwapp::App& app() { return *app_; }
+
+    // One frame of `deltaTime` s. False: there was nothing to draw into.
+    bool frame(float deltaTime) {
+        rescale();
+        fwapp::App& app = *app_;
+        fwui::Frame frame;
+        if (!frames_.begin(frame)) return false;
+        ImGuiIO& io = ImGui::GetIO();
+        io.DisplaySize = {float(frame.extent.width), float(frame.extent.height)};
+        io.DeltaTime = std::max(1e-4f, deltaTime);
+        input_.deliver();
+        app.now += double(deltaTime);
+        app.deltaTime = deltaTime;
+        ImGui::NewFrame();
+        fwapp::showApp(app);
+        ImGui::Render();
+        fwapp::recordPages(app, frame);
+        frames_.beginOutput(frame);
+        ui_->draw(frame.commands, frame.slot, *ImGui::GetDrawData());
+        frames_.end(frame);
+        return true;
+    }
+
+    void run() {
+        GLFWwindow* window = frames_.window->handle();
+        Cursors cursors;
+        auto before = Clock::now();
+        double quiet = 0;  // s since the last input
+        uint32_t counted = 0;
+        double countedFrom = 0;
+        while (!app_->quit) {
+            const bool lively = fwapp::isLively(*app_) || quiet < 0.7 || !app_->toasts.empty();
+            if (lively) {
+                glfwPollEvents();
+            } else {
+                glfwWaitEventsTimeout(1.0);
+            }
+            const auto now = Clock::now();
+            const double passed = std::chrono::duration<double>(now - before).count();
+            const bool touched = !input_.empty() || input_.exposed;
+            input_.exposed = false;
+            quiet = touched ? 0 : quiet + passed;
+            before = now;
+            if (glfwWindowShouldClose(window)) {
+                glfwSetWindowShouldClose(window, GLFW_FALSE);
+                fwapp::ifSaved(*app_, [this] { app_->quit = true; });
+                quiet = 0;
+            }
+            if (!input_.dropped.empty()) {
+                fwapp::takeDropped(*app_, input_.dropped);
+                input_.dropped.clear();
+            }
+            fwapp::autosave(*app_);
+            if (!lively && !touched) {
+                app_->now += passed;
+                app_->framesPerSecond = 0;
+                continue;
+            }
+            const bool drawn = frame(float(std::min(passed, 0.25)));
+            if (!drawn) glfwWaitEventsTimeout(0.05);
+            cursors.show(window);
+            const std::string title =
+                (fwedit::unsaved(app_->document) ? "● " : "") +
+                (app_->page == fwapp::Page::kWelcome ? std::string("Flamewright")
+                                                     : fwapp::sceneName(*app_) + " – Flamewright");
+            if (title != title_) glfwSetWindowTitle(window, (title_ = title).c_str());
+            ++counted;
+            countedFrom += passed;
+            if (countedFrom > 0.5) {
+                app_->framesPerSecond = float(counted / countedFrom);
+                counted = 0;
+                countedFrom = 0;
+            }
+            frames_.window->limitRate(60);
+        }
+        fwapp::dropRecovery();
+        fwapp::saveUserState(app_->user);
+    }
+
+    // Without a window: the page that is asked for, once nothing is on its way any more.
+    void shoot() {
+        constexpr float kStep = 1.0f / 30;
+        for (int i = 0; i < 4; ++i) frame(kStep);
+        for (int i = 0; i < 2000 && app_->live.preparing(); ++i) {
+            frame(kStep);
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        app_->playing = wishes_.seconds > 0;
+        for (float t = 0; t < wishes_.seconds; t += kStep) frame(kStep);
+        app_->playing = false;
+        for (int i = 0; i < 3; ++i) frame(kStep);
+        sample::writePng(wishes_.shot, frames_.picture());
+    }
+
+ private:
+    void rescale() {
+        const VkExtent2D extent = frames_.extent();
+        GLFWwindow* window = frames_.window ? frames_.window->handle() : nullptr;
+        const float monitor = wishes_.scale > 0 ? wishes_.scale : monitorScale(window, extent);
+        const float scale = std::clamp(monitor * app_->user.interfaceSize, 0.75f, 4.0f);
+        if (scale == scale_) return;
+        scale_ = scale;
+        fwui::theme().scale = scale;
+        std::string error;
+        if (!fwui::loadFonts(error)) throw sample::Failure(error);
+        fwui::applyStyle();
+        ui_->uploadFonts();
+    }
+
+    const sample::VulkanHost& host_;
+    fwui::Frames frames_;
+    Wishes wishes_;
+    fwui::InputQueue input_;
+    std::unique_ptr<fwui::UiRenderer> ui_;
+    FwContext* context_ = nullptr;
+    std::unique_ptr<fwapp::App> app_;
+    float scale_ = 0;
+    std::string title_;
+};
+
+void openPage(fwapp::App& app, const Wishes& wishes) {
+    auto asks = [&](const char* word) { return wishes.page.find(word) != std::string::npos; };
+    if (asks("scene")) app.page = fwapp::Page::kScene;
+    if (asks("flame")) app.page = fwapp::Page::kFlame;
+    if (asks("keys")) app.keys = true;
+    if (asks("about")) app.about = true;
+    if (asks("palette")) fwapp::findAction(app, "Find anything")->run();
+    if (asks("guard")) app.guard = true;
+    if (asks("select") && !app.document.scene.sources.empty())
+        fwapp::select(app, app.document.scene.sources[0].id, false, false);
+    if (asks("mesh") && !app.document.scene.meshes.empty())
+        fwapp::select(app, app.document.scene.meshes[0].id, false, false);
+    if (asks("history")) app.leftTab = 1;
+    if (asks("toast"))
+        fwapp::toast(app, fwapp::Toast::Kind::kError, "gate.glb was not imported",
+                     "The mesh “Hinge” has 71,204 vertices. One mesh can have 65,535. Split it in "
+                     "two, or leave it out.");
+}
+
+int run(const sample::Options& options, const Wishes& wishes) {
+    sample::ValidationLog validation;
+    {
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
+        Program program(host, {options.width, options.height}, wishes);
+        fwapp::App& app = program.app();
+        for (const std::string& file : options.positional) fwapp::takeDropped(app, {file});
+        for (size_t i = 0; i < fwapp::builtIns().size(); ++i)
+            if (wishes.builtIn == fwapp::builtIns()[i].name) fwapp::openBuiltIn(app, int(i));
+        openPage(app, wishes);
+        if (options.headless) {
+            program.shoot();
+        } else {
+            program.run();
+        }
+    }
+    return validation.exitCode();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return sample::guardedMain("flamewright-editor", [&] {
+        sample::Options options;
+        options.width = 1280;
+        options.height = 720;
+        Wishes wishes;
+        sample::OptionParser parser("flamewright-editor", "scenes that burn, made by hand",
+                                    "[FILE.fwscene | FILE.glb]");
+        parser.addText("--shot", "FILE.png", "with --headless: a picture of the window, then leave",
+                       wishes.shot);
+        parser.addText("--page", "NAME", "welcome, scene or flame", wishes.page);
+        parser.addText("--scene", "NAME", "a scene of the welcome page, by its name",
+                       wishes.builtIn);
+        parser.addNumber("--scale", "size of the interface; 0: as the monitor has it", wishes.scale,
+                         0, 4);
+        parser.addNumber("--seconds", "how long the burn runs before the picture", wishes.seconds,
+                         0, 600);
+        if (!parser.parse(argc, argv, options)) return 0;
+        if (options.headless && wishes.shot.empty())
+            wishes.shot = (options.out / "editor.png").string();
+        if (options.headless && wishes.shot.find('/') != std::string::npos)
+            std::filesystem::create_directories(std::filesystem::path(wishes.shot).parent_path());
+        return run(options, wishes);
+    });
+}

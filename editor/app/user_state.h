@@ -1,0 +1,29 @@
+// What the editor remembers of its user between runs: sizes, recent files, what a crash left.
+// Kept beside other programs' settings, never in a scene.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fwapp {
+
+struct UserState {
+    float left = 216, right = 296, timeline = 144;  // design pixels
+    float interfaceSize = 1;                        // factor of the monitor's scale, [0.75, 2]
+    std::vector<std::filesystem::path> recent;      // the newest first, 8 at most
+    std::filesystem::path lastFolder;
+};
+
+std::filesystem::path stateFolder();  // created if need be; empty: there is none
+void loadUserState(UserState& state);
+void saveUserState(const UserState& state);
+void addRecent(UserState& state, const std::filesystem::path& file);
+
+// What was open, for recovery: its copy, and the file that it was of (empty: it had none).
+std::filesystem::path recoveryFile();
+bool findRecovery(std::filesystem::path& original);
+void noteRecovery(const std::filesystem::path& original);
+void dropRecovery();
+
+}  // namespace fwapp

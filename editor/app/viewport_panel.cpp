@@ -1,0 +1,608 @@
+// See viewport_panel.h.
+#include "app/viewport_panel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "shell/icons.h"
+
+namespace fwapp {
+
+using namespace fwui;
+using fwedit::Kind;
+using fwedit::ObjectId;
+
+namespace {
+
+constexpr float kGrab = 9;          // dp around a handle
+constexpr float kArm = 74;          // dp, of the gizmo's arrows
+constexpr float kSnapStep = 0.05f;  // m
+
+// What the mouse is busy with from press to release.
+enum class Busy { kNone, kOrbit, kPan, kAxis, kPlane, kBox, kClick };
+struct Hand {
+    Busy busy = Busy::kNone;
+    int axis = 0;  // of kAxis: along it; of kPlane: across it
+    ImVec2 press{};
+    glm::vec3 from{0};  // where the selection was
+    glm::vec3 grip{0};  // where it was taken
+    glm::vec3 moved{0};
+};
+Hand& hand() {
+    static Hand one;  // there is one mouse
+    return one;
+}
+
+struct Picture {
+    Rect rect;
+    const FwView& view;
+    bool at(glm::vec3 position, ImVec2& pixel) const {
+        const glm::vec3 p = fwview::onPicture(view, position);
+        pixel = {rect.x0 + p.x * rect.width(), rect.y0 + p.y * rect.height()};
+        return p.z > 0;
+    }
+    glm::vec2 share(ImVec2 pixel) const {
+        return {(pixel.x - rect.x0) / rect.width(), (pixel.y - rect.y0) / rect.height()};
+    }
+    fwview::Ray ray(ImVec2 pixel) const {
+        const glm::vec2 p = share(pixel);
+        return fwview::rayThrough(view, p.x, p.y);
+    }
+};
+
+glm::vec3 asVec(fwedit::Vec3 v) { return {v[0], v[1], v[2]}; }
+
+glm::vec3 axisOf(int axis) {
+    glm::vec3 v(0);
+    v[axis] = 1;
+    return v;
+}
+
+bool onPlane(const fwview::Ray& ray, glm::vec3 point, glm::vec3 normal, glm::vec3& hit) {
+    const float facing = glm::dot(ray.direction, normal);
+    if (std::fabs(facing) < 1e-4f) return false;
+    const float distance = glm::dot(point - ray.origin, normal) / facing;
+    if (distance <= 0) return false;
+    hit = ray.origin + distance * ray.direction;
+    return true;
+}
+
+// The point of a line that is nearest to a ray.
+bool alongAxis(const fwview::Ray& ray, glm::vec3 point, glm::vec3 axis, glm::vec3& hit) {
+    const glm::vec3 across = glm::cross(ray.direction, axis);
+    const glm::vec3 normal = glm::cross(across, axis);
+    if (!onPlane(ray, point, glm::normalize(normal), hit)) return false;
+    hit = point + glm::dot(hit - point, axis) * axis;
+    return true;
+}
+
+float distanceTo(ImVec2 p, ImVec2 a, ImVec2 b) {
+    const ImVec2 along = b - a;
+    const float length = along.x * along.x + along.y * along.y;
+    const float t =
+        length > 0
+            ? std::clamp(((p.x - a.x) * along.x + (p.y - a.y) * along.y) / length, 0.0f, 1.0f)
+            : 0.0f;
+    return std::hypot(p.x - a.x - t * along.x, p.y - a.y - t * along.y);
+}
+
+bool movable(Kind kind) {
+    return kind == Kind::Mesh || kind == Kind::Source || kind == Kind::Flame ||
+           kind == Kind::Emitter || kind == Kind::Collider;
+}
+
+// Where the gizmo stands: the middle of what is selected and can move.
+bool pivotOf(const App& app, glm::vec3& pivot) {
+    glm::vec3 sum(0);
+    float count = 0;
+    for (const ObjectId id : app.selection) {
+        Kind kind{};
+        const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
+        if (!object || object->locked || !movable(kind)) continue;
+        sum += asVec(fwedit::worldPosition(app.document.scene, id));
+        ++count;
+    }
+    if (count == 0) return false;
+    pivot = sum / count;
+    return true;
+}
+
+// Metres that so many pixels are at a place.
+float metresAt(const Picture& picture, glm::vec3 place, float pixels) {
+    const float depth = fwview::onPicture(picture.view, place).z;
+    const float scale = std::fabs(picture.view.projection[5]);
+    return 2 * pixels * depth / (scale * picture.rect.height());
+}
+
+void drawArrow(ImDrawList* list, ImVec2 from, ImVec2 to, ImU32 color, bool hot) {
+    const ImVec2 way = to - from;
+    const float length = std::hypot(way.x, way.y);
+    if (length < dp(10)) {
+        list->AddCircleFilled(to, dp(5), color, 16);
+        return;
+    }
+    const ImVec2 along = way / length, across(-along.y, along.x), neck = to - along * dp(13);
+    list->AddLine(from, neck, IM_COL32(0, 0, 0, 120), dp(5));
+    list->AddLine(from, neck, color, dp(hot ? 4 : 2.5f));
+    list->AddTriangleFilled(to, neck + across * dp(hot ? 7 : 5.5f),
+                            neck - across * dp(hot ? 7 : 5.5f), color);
+}
+
+struct Gizmo {
+    bool there = false;
+    ImVec2 origin{}, tips[3];
+    ImVec2 planes[3][4];
+    float arm = 0;  // m
+    glm::vec3 pivot{0};
+};
+
+Gizmo makeGizmo(const Picture& picture, glm::vec3 pivot) {
+    Gizmo gizmo;
+    gizmo.pivot = pivot;
+    if (!picture.at(pivot, gizmo.origin)) return gizmo;
+    gizmo.there = true;
+    gizmo.arm = metresAt(picture, pivot, dp(kArm));
+    for (int i = 0; i < 3; ++i) {
+        picture.at(pivot + gizmo.arm * axisOf(i), gizmo.tips[i]);
+        const glm::vec3 u = gizmo.arm * axisOf((i + 1) % 3), v = gizmo.arm * axisOf((i + 2) % 3);
+        constexpr float kNear = 0.32f, kFar = 0.58f;
+        picture.at(pivot + kNear * u + kNear * v, gizmo.planes[i][0]);
+        picture.at(pivot + kFar * u + kNear * v, gizmo.planes[i][1]);
+        picture.at(pivot + kFar * u + kFar * v, gizmo.planes[i][2]);
+        picture.at(pivot + kNear * u + kFar * v, gizmo.planes[i][3]);
+    }
+    return gizmo;
+}
+
+// -1: none; 0..2 an arrow, 3..5 a plane.
+int underMouse(const Gizmo& gizmo, ImVec2 mouse) {
+    if (!gizmo.there) return -1;
+    for (int i = 0; i < 3; ++i) {
+        const ImVec2* q = gizmo.planes[i];
+        if (ImTriangleContainsPoint(q[0], q[1], q[2], mouse) ||
+            ImTriangleContainsPoint(q[0], q[2], q[3], mouse))
+            return 3 + i;
+    }
+    int best = -1;
+    float nearest = dp(kGrab);
+    for (int i = 0; i < 3; ++i) {
+        const float distance = distanceTo(mouse, gizmo.origin, gizmo.tips[i]);
+        if (distance >= nearest) continue;
+        nearest = distance;
+        best = i;
+    }
+    return best;
+}
+
+void drawGizmo(ImDrawList* list, const Gizmo& gizmo, int hot) {
+    if (!gizmo.there) return;
+    for (int i = 0; i < 3; ++i) {
+        const bool lit = hot == 3 + i;
+        list->AddConvexPolyFilled(gizmo.planes[i], 4, faded(colors::axis[i], lit ? 0.8f : 0.4f));
+        list->AddPolyline(gizmo.planes[i], 4, colors::axis[i], ImDrawFlags_Closed, dp(1));
+    }
+    for (int i = 0; i < 3; ++i)
+        drawArrow(list, gizmo.origin, gizmo.tips[i], hot == i ? colors::white : colors::axis[i],
+                  hot == i);
+    list->AddCircleFilled(gizmo.origin, dp(4), colors::white, 20);
+}
+
+struct Marker {
+    ObjectId id;
+    Kind kind;
+    ImVec2 place;
+};
+
+std::vector<Marker> markersOf(const App& app, const Picture& picture) {
+    std::vector<Marker> markers;
+    fwedit::forEachList(app.document.scene, [&](Kind kind, const auto& list) {
+        if (!movable(kind) || kind == Kind::Mesh) return;
+        for (const auto& object : list) {
+            ImVec2 place;
+            if (object.hidden ||
+                !picture.at(asVec(fwedit::worldPosition(app.document.scene, object.id)), place))
+                continue;
+            if (picture.rect.holds(place)) markers.push_back({object.id, kind, place});
+        }
+    });
+    return markers;
+}
+
+// The reach of a source as a ring around its direction.
+void drawReach(const App& app, ImDrawList* list, const Picture& picture,
+               const fwedit::HeatSource& source, ImU32 color) {
+    const glm::vec3 place = asVec(fwedit::worldPosition(app.document.scene, source.id));
+    glm::vec3 axis = asVec(source.direction);
+    const bool flat = source.shape == fwedit::SourceDisc || source.shape == fwedit::SourceRain;
+    if (!flat || glm::length(axis) < 1e-5f)
+        axis = glm::vec3(glm::inverse(glm::make_mat4(picture.view.view))[2]);
+    axis = glm::normalize(axis);
+    const glm::vec3 u = glm::normalize(
+        glm::cross(axis, std::fabs(axis.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
+    const glm::vec3 v = glm::cross(axis, u);
+    std::array<ImVec2, 48> ring;
+    for (size_t i = 0; i < ring.size(); ++i) {
+        const float angle = float(i) * 6.2831853f / float(ring.size());
+        if (!picture.at(place + source.radius * (std::cos(angle) * u + std::sin(angle) * v),
+                        ring[i]))
+            return;
+    }
+    list->AddPolyline(ring.data(), int(ring.size()), IM_COL32(0, 0, 0, 150), ImDrawFlags_Closed,
+                      dp(4));
+    list->AddPolyline(ring.data(), int(ring.size()), color, ImDrawFlags_Closed, dp(2));
+    if (source.shape == fwedit::SourceFlamethrower || source.shape == fwedit::SourceLine) {
+        ImVec2 a, b;
+        const glm::vec3 way = glm::length(asVec(source.direction)) > 1e-5f
+                                  ? glm::normalize(asVec(source.direction))
+                                  : glm::vec3(0, 1, 0);
+        const float reach = source.shape == fwedit::SourceLine ? 0.5f * source.length : 0.6f;
+        const glm::vec3 back = source.shape == fwedit::SourceLine ? reach * way : glm::vec3(0);
+        if (picture.at(place - back, a) && picture.at(place + reach * way, b))
+            drawArrow(list, a, b, color, false);
+    }
+}
+
+void drawMarkers(App& app, ImDrawList* list, const Picture& picture,
+                 const std::vector<Marker>& markers) {
+    for (const Marker& marker : markers) {
+        const bool selected = isSelected(app, marker.id);
+        if (selected && marker.kind == Kind::Source)
+            drawReach(app, list, picture, *fwedit::findIn(app.document.scene.sources, marker.id),
+                      colors::accent);
+        list->AddCircleFilled(marker.place, dp(11), hex(0x151618, 225), 32);
+        list->AddCircle(marker.place, dp(11), selected ? colors::accent : hex(0xFFFFFF, 150), 32,
+                        dp(selected ? 2 : 1));
+        drawIcon(list, fonts().icon17, marker.place,
+                 colorOf(app.document.scene, marker.kind, marker.id),
+                 iconOf(app.document.scene, marker.kind, marker.id));
+    }
+}
+
+void drawOutlines(App& app, ImDrawList* list, const Picture& picture) {
+    std::vector<ImVec2> lines;
+    for (const ObjectId id : app.selection) {
+        app.live.outlineOf(id, lines);
+        const ImVec2 size(picture.rect.width(), picture.rect.height());
+        for (const auto& [color, width] :
+             {std::pair{colors::accent, dp(3.5f)}, std::pair{colors::white, dp(1.5f)}}) {
+            for (size_t i = 0; i + 1 < lines.size(); i += 2)
+                list->AddLine(picture.rect.low() + lines[i] * size,
+                              picture.rect.low() + lines[i + 1] * size, color, width);
+        }
+    }
+}
+
+// Three axes as they lie to the eye; a click on one looks along it.
+bool navigationBall(App& app, ImDrawList* list, const Picture& picture) {
+    const ImVec2 centre(picture.rect.x1 - dp(44), picture.rect.y0 + dp(46));
+    const float radius = dp(26);
+    const glm::mat4 view = glm::make_mat4(picture.view.view);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const bool over = std::hypot(mouse.x - centre.x, mouse.y - centre.y) < radius + dp(9);
+    list->AddCircleFilled(centre, radius + dp(9), hex(0x151618, over ? 200 : 150), 48);
+    struct Ball {
+        int axis;
+        float sign, depth;
+        ImVec2 place;
+    };
+    std::array<Ball, 6> balls;
+    for (int i = 0; i < 6; ++i) {
+        const glm::vec3 p(view * glm::vec4((i < 3 ? 1.0f : -1.0f) * axisOf(i % 3), 0));
+        balls[size_t(i)] = {i % 3, i < 3 ? 1.0f : -1.0f, p.z, centre + ImVec2(p.x, -p.y) * radius};
+    }
+    std::sort(balls.begin(), balls.end(),
+              [](const Ball& a, const Ball& b) { return a.depth < b.depth; });
+    constexpr const char* kLetters[3] = {"X", "Y", "Z"};
+    const Ball* hot = nullptr;
+    for (const Ball& ball : balls) {
+        const ImU32 color = colors::axis[ball.axis];
+        if (ball.sign > 0) {
+            list->AddLine(centre, ball.place, color, dp(2));
+            list->AddCircleFilled(ball.place, dp(8), color, 24);
+            drawTextCentred(list, fonts().smallSemi, ball.place.x, ball.place.y, hex(0x101113),
+                            kLetters[ball.axis]);
+        } else {
+            list->AddCircleFilled(ball.place, dp(4), faded(color, 0.5f), 16);
+        }
+        if (std::hypot(mouse.x - ball.place.x, mouse.y - ball.place.y) < dp(9)) hot = &ball;
+    }
+    if (hot && ImGui::IsMouseClicked(0)) {
+        const float turned = hot->sign > 0 ? 0.0f : 180.0f;
+        if (hot->axis == 0) app.camera.yaw = 90 + turned;
+        if (hot->axis == 2) app.camera.yaw = turned;
+        app.camera.pitch = hot->axis == 1 ? 89 * hot->sign : 0;
+    }
+    return over;
+}
+
+void orbit(App& app, ImVec2 by) {
+    app.camera.yaw -= 0.4f * by.x / theme().scale;
+    app.camera.pitch = std::clamp(app.camera.pitch + 0.4f * by.y / theme().scale, -89.0f, 89.0f);
+}
+
+void pan(App& app, const Picture& picture, ImVec2 by) {
+    const glm::mat4 back = glm::inverse(glm::make_mat4(picture.view.view));
+    const float metres = metresAt(picture, asVec(app.camera.target), 1);
+    const glm::vec3 way = metres * (-by.x * glm::vec3(back[0]) + by.y * glm::vec3(back[1]));
+    for (int i = 0; i < 3; ++i) app.camera.target[size_t(i)] += way[i];
+}
+
+void zoom(App& app, float notches) {
+    app.camera.distance = std::clamp(app.camera.distance * std::pow(0.88f, notches), 0.01f, 1e4f);
+}
+
+void moveSelection(App& app, glm::vec3 by) {
+    fwedit::Command command;
+    command.verb = fwedit::Verb::Move;
+    for (const ObjectId id : app.selection) {
+        Kind kind{};
+        const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
+        if (object && !object->locked && movable(kind)) command.targets.push_back(id);
+    }
+    command.offset = {by.x, by.y, by.z};
+    if (!command.targets.empty()) perform(app, command);
+}
+
+void endMove(App& app) {
+    if (!app.document.dragging) return;
+    fwedit::endDrag(app.document);
+    say(app, app.document.steps[app.document.at].name);
+}
+
+// A drag of a handle: measured from where it was taken, so that nothing adds up.
+void drag(App& app, const Picture& picture, ImDrawList* list) {
+    Hand& state = hand();
+    const ImGuiIO& io = ImGui::GetIO();
+    const fwview::Ray ray = picture.ray(io.MousePos);
+    glm::vec3 at(0);
+    const glm::vec3 axis = axisOf(state.axis);
+    const bool found = state.busy == Busy::kAxis ? alongAxis(ray, state.from, axis, at)
+                                                 : onPlane(ray, state.from, axis, at);
+    if (found) {
+        glm::vec3 way = at - state.grip;
+        if (io.KeyShift) way *= 0.1f;
+        if (io.KeyCtrl != app.snapping) {
+            for (int i = 0; i < 3; ++i) {
+                const bool free = (state.busy == Busy::kAxis) == (i == state.axis);
+                if (!free) continue;
+                way[i] =
+                    std::round((state.from[i] + way[i]) / kSnapStep) * kSnapStep - state.from[i];
+            }
+        }
+        if (glm::length(way - state.moved) > 1e-6f) {
+            if (!app.document.dragging) fwedit::beginDrag(app.document);
+            moveSelection(app, way - state.moved);
+            state.moved = way;
+        }
+    }
+    char text[64];
+    if (state.busy == Busy::kAxis) {
+        std::snprintf(
+            text, sizeof text, "%s m",
+            formatNumber(state.from[state.axis] + state.moved[state.axis], "%.2f").c_str());
+    } else {
+        std::snprintf(text, sizeof text, "%s m",
+                      formatNumber(glm::length(state.moved), "%.2f").c_str());
+    }
+    drawChip(list, io.MousePos + dp(0, -26), text);
+    if (ImGui::IsKeyPressed(256, false) || io.MouseDown[1]) {
+        fwedit::cancelDrag(app.document);
+        state.busy = Busy::kNone;
+    }
+}
+
+void place(App& app, ImDrawList* list, const Picture& picture, ImVec2 mouse) {
+    const glm::vec2 p = picture.share(mouse);
+    fwview::SurfaceHit hit = app.live.pick(p.x, p.y, false);
+    const float ground = app.document.scene.settings.ground;
+    if (!hit.hit) {
+        glm::vec3 at;
+        if (onPlane(picture.ray(mouse), {0, ground, 0}, {0, 1, 0}, at)) {
+            hit.position = at;
+            hit.normal = {0, 1, 0};
+        } else {
+            onPlane(picture.ray(mouse), asVec(app.camera.target), -picture.ray(mouse).direction,
+                    hit.position);
+        }
+    }
+    const bool rain = app.placed == fwedit::SourceRain;
+    const bool jet = app.placed == fwedit::SourceFlamethrower;
+    ImVec2 spot, tip;
+    const float arm = metresAt(picture, hit.position, dp(26));
+    if (picture.at(hit.position, spot) && picture.at(hit.position + arm * hit.normal, tip)) {
+        const ImU32 color = app.placed >= fwedit::SourceRain ? colors::wet : colors::heat;
+        list->AddLine(spot, tip, IM_COL32(0, 0, 0, 150), dp(4));
+        list->AddLine(spot, tip, colors::white, dp(2));
+        list->AddCircle(spot, dp(10), IM_COL32(0, 0, 0, 150), 32, dp(4));
+        list->AddCircle(spot, dp(10), color, 32, dp(2));
+    }
+    if (!ImGui::IsMouseReleased(0)) return;
+    glm::vec3 position = hit.position;
+    glm::vec3 direction = hit.normal;
+    if (rain) position.y += 2;
+    if (jet) {
+        position += 0.8f * hit.normal;
+        direction = -hit.normal;
+    }
+    constexpr const char* kNames[] = {"Match",        "Heat source", "Heat disc", "Heat line",
+                                      "Flamethrower", "Rain",        "Water"};
+    std::vector<fwedit::Assignment> fields = {
+        {"shape", double(app.placed)},
+        {"name", std::string(kNames[app.placed])},
+        {"position",
+         std::vector<double>{double(position.x), double(position.y), double(position.z)}}};
+    if (!rain)
+        fields.push_back({"direction", std::vector<double>{double(direction.x), double(direction.y),
+                                                           double(direction.z)}});
+    if (rain) fields.push_back({"radius", 1.0});
+    addObject(app, Kind::Source, fields);
+    app.placing = false;
+}
+
+// What a click means: the marker under it, else the surface, else nothing.
+void pickAt(App& app, const Picture& picture, const std::vector<Marker>& markers, ImVec2 mouse) {
+    const ImGuiIO& io = ImGui::GetIO();
+    for (auto marker = markers.rbegin(); marker != markers.rend(); ++marker) {
+        const fwedit::Object* object = fwedit::findObject(app.document.scene, marker->id);
+        if (!app.showHelpers || !object || object->locked) continue;
+        if (std::hypot(mouse.x - marker->place.x, mouse.y - marker->place.y) > dp(12)) continue;
+        select(app, marker->id, io.KeyShift, io.KeyCtrl);
+        return;
+    }
+    const glm::vec2 p = picture.share(mouse);
+    select(app, app.live.pick(p.x, p.y, true).object, io.KeyShift, io.KeyCtrl);
+}
+
+void pickBox(App& app, const Picture& picture, const std::vector<Marker>& markers, ImVec2 a,
+             ImVec2 b) {
+    const Rect box{std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+    if (!ImGui::GetIO().KeyShift) app.selection.clear();
+    for (const Marker& marker : markers)
+        if (box.holds(marker.place)) select(app, marker.id, true, false);
+    for (const fwedit::Mesh& mesh : app.document.scene.meshes) {
+        ImVec2 place;
+        if (!mesh.hidden && !mesh.locked && picture.at(asVec(mesh.position), place) &&
+            box.holds(place))
+            select(app, mesh.id, true, false);
+    }
+}
+
+}  // namespace
+
+void showViewport(App& app, const Rect& rect) {
+    ImDrawList* list = beginPanel("##view", rect, colors::gap);
+    app.live.target.resize(uint32_t(std::max(8.0f, rect.width())),
+                           uint32_t(std::max(8.0f, rect.height())));
+    const Picture picture{rect, app.live.view};
+    if (app.live.burn() && app.live.target.texture())
+        list->AddImage(app.live.target.texture(), rect.low(), rect.high());
+
+    const bool ready =
+        app.live.burn() && app.live.view.structSize != 0 && app.live.view.projection[0] != 0;
+    if (!ready) {
+        float share = 0;
+        const std::string stage = app.live.stage(share);
+        drawTextCentred(list, fonts().body, rect.midX(), rect.midY() - dp(8), colors::dim,
+                        stage.empty() ? "Preparing the scene" : stage.c_str());
+        progressBar(list, {rect.midX() - dp(110), rect.midY() + dp(8)}, dp(220), dp(6), share,
+                    colors::accent);
+        endPanel();
+        return;
+    }
+    hit("view", rect.low(), {rect.width(), rect.height()});
+    const bool hovered = ImGui::IsItemHovered();
+    const std::vector<Marker> markers = markersOf(app, picture);
+    const ImGuiIO& io = ImGui::GetIO();
+    const ImVec2 mouse = io.MousePos;
+    Hand& state = hand();
+
+    list->PushClipRect(rect.low(), rect.high(), true);
+    Gizmo gizmo;
+    glm::vec3 pivot(0);
+    if (app.showHelpers) {
+        drawOutlines(app, list, picture);
+        drawMarkers(app, list, picture, markers);
+        if (app.tool == Tool::kMove && !app.placing && pivotOf(app, pivot))
+            gizmo = makeGizmo(picture, pivot);
+    }
+    const bool overBall = navigationBall(app, list, picture);
+    const int hot = hovered && !overBall && !io.KeyAlt && state.busy == Busy::kNone
+                        ? underMouse(gizmo, mouse)
+                        : -1;
+    drawGizmo(list, gizmo,
+              state.busy == Busy::kAxis    ? state.axis
+              : state.busy == Busy::kPlane ? 3 + state.axis
+                                           : hot);
+    if (hovered && io.MouseWheel != 0) zoom(app, io.MouseWheel);
+
+    if (state.busy == Busy::kNone && hovered && !overBall) {
+        state.press = mouse;
+        if (ImGui::IsMouseClicked(2)) state.busy = Busy::kPan;
+        if (ImGui::IsMouseClicked(1)) state.busy = app.placing ? Busy::kNone : Busy::kOrbit;
+        if (ImGui::IsMouseClicked(1) && app.placing) app.placing = false;
+        if (ImGui::IsMouseClicked(0)) {
+            if (io.KeyAlt) {
+                state.busy = Busy::kOrbit;
+            } else if (!app.placing && hot >= 0) {
+                state.axis = hot % 3;
+                state.busy = hot < 3 ? Busy::kAxis : Busy::kPlane;
+                state.from = pivot;
+                state.moved = glm::vec3(0);
+                state.grip = pivot;
+                const fwview::Ray ray = picture.ray(mouse);
+                if (hot < 3) {
+                    alongAxis(ray, pivot, axisOf(state.axis), state.grip);
+                } else {
+                    onPlane(ray, pivot, axisOf(state.axis), state.grip);
+                }
+            } else if (!app.placing) {
+                state.busy = Busy::kClick;
+            }
+        }
+    }
+    if (app.placing && hovered && !overBall && !io.KeyAlt) place(app, list, picture, mouse);
+    switch (state.busy) {
+        case Busy::kOrbit:
+            orbit(app, io.MouseDelta);
+            if (!io.MouseDown[0] && !io.MouseDown[1]) state.busy = Busy::kNone;
+            break;
+        case Busy::kPan:
+            pan(app, picture, io.MouseDelta);
+            if (!io.MouseDown[2]) state.busy = Busy::kNone;
+            break;
+        case Busy::kAxis:
+        case Busy::kPlane:
+            drag(app, picture, list);
+            if (!io.MouseDown[0]) {
+                endMove(app);
+                state.busy = Busy::kNone;
+            }
+            break;
+        case Busy::kClick:
+            if (std::hypot(mouse.x - state.press.x, mouse.y - state.press.y) > dp(4))
+                state.busy = Busy::kBox;
+            if (!io.MouseDown[0]) {
+                pickAt(app, picture, markers, mouse);
+                state.busy = Busy::kNone;
+            }
+            break;
+        case Busy::kBox:
+            list->AddRectFilled(state.press, mouse, faded(colors::accent, 0.12f));
+            list->AddRect(state.press, mouse, colors::accent, 0, 0, hairline());
+            if (!io.MouseDown[0]) {
+                pickBox(app, picture, markers, state.press, mouse);
+                state.busy = Busy::kNone;
+            }
+            break;
+        case Busy::kNone:
+            break;
+    }
+    if (app.live.preparing()) {
+        float share = 0;
+        const std::string stage = app.live.stage(share);
+        const std::string text = stage.empty() ? "Preparing" : stage;
+        drawChip(list, {rect.midX(), rect.y1 - dp(22)}, text.c_str());
+    }
+    if (app.document.scene.meshes.empty() && app.document.scene.flames.empty() &&
+        app.document.scene.emitters.empty()) {
+        const ImVec2 low(rect.midX() - dp(150), rect.midY() - dp(62));
+        drawBox(list, low, low + dp(300, 124), hex(0x1E1F22, 235), 8, colors::edge);
+        drawTextCentred(list, fonts().semi, rect.midX(), low.y + dp(28), colors::title,
+                        "An empty scene");
+        drawTextCentred(list, fonts().small, rect.midX(), low.y + dp(50), colors::dim,
+                        "Drop a glTF file here, or");
+        if (button("import", {rect.midX() - dp(134), low.y + dp(76)}, dp(130, 30), "Import mesh",
+                   ButtonKind::kPrimary, icons::importFrom))
+            findAction(app, "Import mesh…")->run();
+        if (button("flame", {rect.midX() + dp(4), low.y + dp(76)}, dp(130, 30), "Add a flame",
+                   ButtonKind::kPlain, icons::firepit))
+            findAction(app, "Add flame")->run();
+    }
+    list->PopClipRect();
+    endPanel();
+}
+
+}  // namespace fwapp

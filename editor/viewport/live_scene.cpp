@@ -1,0 +1,333 @@
+// See live_scene.h.
+#include "viewport/live_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "common/fire_host.h"
+#include "flamewright/flamewright_debug.h"
+
+namespace fwview {
+namespace {
+
+constexpr float kSeekStep = 1.0f / 8;  // s of the fire in a frame that hurries
+constexpr uint32_t kSeekSteps = 4;     // such steps in one frame of the screen
+
+std::filesystem::path cacheFolder() {
+    if (const char* given = std::getenv("XDG_CACHE_HOME"); given && *given)
+        return std::filesystem::path(given) / "flamewright";
+    if (const char* home = std::getenv("HOME"); home && *home)
+        return std::filesystem::path(home) / ".cache/flamewright";
+    return {};
+}
+
+glm::mat4 poseOf(const fwedit::Mesh& mesh) {
+    const std::array<float, 16> values = fwedit::transformOf(mesh);
+    return glm::make_mat4(values.data());
+}
+
+std::string lastMessage(FwWorld* world) {
+    char text[512] = "";
+    fwWorld_GetLastMessage(world, text, sizeof text);
+    return text;
+}
+
+// What a new world must be made for. Names, marks and the camera change no fire.
+fwedit::Scene withoutLabels(const fwedit::Scene& scene) {
+    fwedit::Scene plain = scene;
+    plain.camera = {};
+    plain.events.clear();
+    plain.nextId = 0;
+    fwedit::forEachList(plain, [](fwedit::Kind, auto& list) {
+        for (auto& object : list) {
+            object.name.clear();
+            object.locked = false;
+        }
+    });
+    return plain;
+}
+
+}  // namespace
+
+LiveScene::LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::UiRenderer& ui)
+    : target(host, ui), host_(host), context_(context) {
+    assets_.cache = cacheFolder();
+    assets_.progress = [this](const std::string& stage, float share) {
+        const std::lock_guard lock(stageMutex_);
+        stage_ = stage;
+        share_ = share;
+        return !stop_;
+    };
+    FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
+    def.renderPass = target.pass().pass;
+    def.colorFormat = target.pass().colorFormat;
+    def.depthFormat = target.depthFormat();
+    def.samples = 1;
+    def.colorAttachmentCount = 1;
+    def.depthMode = FW_DEPTH_TEST;
+    def.encoding = FW_OUTPUT_LINEAR;
+    if (fwContext_RegisterTarget(context, &def, &targetId_) != FW_OK ||
+        fwContext_Prepare(context) != FW_OK) {
+        char text[512] = "";
+        fwContext_GetLastMessage(context, text, sizeof text);
+        throw sample::Failure(std::string("The viewport cannot be drawn: ") + text);
+    }
+}
+
+LiveScene::~LiveScene() {
+    stop_ = true;
+    if (work_.valid()) work_.wait();
+    vkDeviceWaitIdle(host_.device);
+    work_ = {};
+    burn_.reset();
+    fwContext_UnregisterTarget(context_, targetId_);
+}
+
+void LiveScene::forget() {
+    stop_ = true;
+    if (work_.valid()) work_.get();
+    vkDeviceWaitIdle(host_.device);
+    burn_.reset();
+    studio_.reset();
+    studioKey_.clear();
+    edges_.clear();
+    seen_ = ~0ull;
+    scene_ = {};
+    wanted_ = 0;
+    restart_ = true;
+    stale_ = true;
+}
+
+void LiveScene::follow(const fwedit::Document& document) {
+    if (work_.valid() && work_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+        adopt(work_.get());
+    if (work_.valid()) return;
+    if (document.revision == seen_ && !restart_) return;
+    if (document.dragging) {
+        moveDragged(document);
+        return;
+    }
+    seen_ = document.revision;
+    stale_ = true;
+    const bool same = burn_ && withoutLabels(document.scene) == withoutLabels(scene_) &&
+                      document.images == images_;
+    scene_ = document.scene;
+    images_ = document.images;
+    if (same && !restart_) return;
+    // A change is seen at the moment that is looked at.
+    if (!restart_ && burn_) wanted_ = std::max(wanted_, burn_->time);
+    restart_ = false;
+    folder_ = document.file.empty() ? std::filesystem::current_path()
+                                    : std::filesystem::absolute(document.file).parent_path();
+    stop_ = false;
+    work_ =
+        std::async(std::launch::async, [this, scene = scene_, images = images_, folder = folder_] {
+            Made made;
+            made.burn = fwedit::createBurn(context_, scene, images, folder, assets_, made.error);
+            return made;
+        });
+}
+
+void LiveScene::adopt(Made made) {
+    stale_ = true;
+    if (!made.burn) {
+        if (!stop_) report_.push_back(made.error);
+        return;
+    }
+    vkDeviceWaitIdle(host_.device);
+    report_.insert(report_.end(), made.burn->report.begin(), made.burn->report.end());
+    burn_ = std::move(made.burn);
+    setUpStudio();
+}
+
+// The backdrop stands below the meshes and catches their shadow.
+void LiveScene::setUpStudio() {
+    glm::vec3 low(-0.5f, 0, -0.5f), high(0.5f, 1, 0.5f);
+    const bool any = bounds(low, high);
+    std::string key;
+    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
+        const fwedit::Mesh* object = fwedit::findIn(burn_->scene.meshes, mesh.id);
+        key += mesh.bake;
+        if (object) {
+            const std::array<float, 16> pose = fwedit::transformOf(*object);
+            key.append(reinterpret_cast<const char*>(pose.data()), sizeof pose);
+        }
+    }
+    const fwedit::Vec3 sun = burn_->scene.settings.sunDirection;
+    key.append(reinterpret_cast<const char*>(sun.data()), sizeof sun);
+    if (studio_ && key == studioKey_) return;
+    studioKey_ = key;
+    const glm::vec3 size = high - low;
+    const float largest = std::max({size.x, size.y, size.z, 0.05f});
+    const glm::vec3 centre(0.5f * (low.x + high.x), std::min(low.y, burn_->scene.settings.ground),
+                           0.5f * (low.z + high.z));
+    studio_.reset();
+    studio_ = std::make_unique<sample::Studio>(host_, target.pass(), centre, largest);
+    if (!any) return;
+    std::vector<float> positions;
+    std::vector<uint32_t> indices;
+    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
+        const fwedit::Mesh* object = fwedit::findIn(burn_->scene.meshes, mesh.id);
+        if (!object || object->hidden || !mesh.model) continue;
+        const glm::mat4 pose = poseOf(*object);
+        const auto first = uint32_t(positions.size() / 3);
+        for (size_t i = 0; i + 2 < mesh.model->positions.size(); i += 3) {
+            const glm::vec3 p(pose * glm::vec4(glm::make_vec3(&mesh.model->positions[i]), 1));
+            positions.insert(positions.end(), {p.x, p.y, p.z});
+        }
+        for (const uint32_t index : mesh.model->indices) indices.push_back(first + index);
+    }
+    studio_->castShadow(positions, indices, glm::mat4(1),
+                        glm::normalize(glm::make_vec3(sun.data())));
+}
+
+// While a hand drags, the world that is there shows where things go.
+void LiveScene::moveDragged(const fwedit::Document& document) {
+    if (!burn_) return;
+    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
+        const fwedit::Mesh* object = fwedit::findIn(document.scene.meshes, mesh.id);
+        if (!object) continue;
+        const std::array<float, 16> pose = fwedit::transformOf(*object);
+        fwWorld_SetTransform(burn_->world, mesh.object, pose.data());
+    }
+    for (const fwedit::BurnPart& part : burn_->parts) {
+        if (!fwedit::findObject(document.scene, part.id)) continue;
+        const fwedit::Vec3 place = fwedit::worldPosition(document.scene, part.id);
+        for (const FwVolumetricFireId fire : part.fires)
+            fwWorld_MoveVolumetricFire(burn_->world, fire, place.data());
+    }
+    stale_ = true;
+}
+
+void LiveScene::seek(double time) {
+    wanted_ = std::max(0.0, time);
+    if (!burn_ || wanted_ + 1e-4 >= burn_->time) return;
+    restart_ = true;
+    stale_ = true;
+}
+
+void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime) {
+    if (!burn_ || !studio_ || target.extent().width == 0) return;
+    const bool moved = !(camera == camera_);
+    const bool hurries = seeking();
+    if (deltaTime <= 0 && !moved && !stale_ && !hurries) return;
+    stale_ = false;
+    camera_ = camera;
+
+    fwedit::Scene seen;  // viewOf reads these alone
+    seen.settings = scene_.settings;
+    seen.camera = camera;
+    std::string error;
+    FwVulkanFrame described = fwDefaultVulkanFrame();
+    described.commandBuffer = frame.commands;
+    described.frameIndex = frame.index;
+    described.completedFrameIndex = frame.completed;
+    float step = deltaTime;
+    if (hurries) {
+        step = std::min(float(wanted_ - burn_->time), kSeekStep * kSeekSteps);
+    } else if (!preparing()) {
+        wanted_ = 0;
+    }
+    view = fwedit::viewOf(seen, target.extent().width, target.extent().height, burn_->time);
+    if (step > 0 && !fwedit::feedBurn(*burn_, step, error)) report_.push_back(error);
+    described.deltaTime = step;
+
+    FwLight lights[8];
+    const uint32_t lightCount = fwWorld_GetLights(burn_->world, lights, 8);
+    const FwResult outside = fwWorld_RecordOutside(burn_->world, &described, &view);
+    if (outside < 0) report_.push_back(lastMessage(burn_->world));
+
+    target.begin(frame);
+    sample::StageFrame stage;
+    stage.commands = frame.commands;
+    stage.slot = frame.slot;
+    studio_->draw(stage, frame.commands, view, {lights, lightCount});
+    const VkViewport viewport = target.viewport();
+    if (outside == FW_OK) {
+        const FwResult inside =
+            fwWorld_RecordInside(burn_->world, &described, targetId_, &view, &viewport);
+        if (inside < 0) report_.push_back(lastMessage(burn_->world));
+    }
+    target.end(frame);
+
+    FwPassTime times[64];
+    const uint32_t count = std::min(fwDebug_GetPassTimes(burn_->world, times, 64), 64u);
+    double sum = 0;
+    for (uint32_t i = 0; i < count; ++i) sum += times[i].milliseconds;
+    if (count > 0) milliseconds_ = sum;
+}
+
+std::string LiveScene::stage(float& share) const {
+    const std::lock_guard lock(stageMutex_);
+    share = share_;
+    return stage_;
+}
+
+SurfaceHit LiveScene::pick(float x, float y, bool throughLocked) const {
+    SurfaceHit nearest;
+    if (!burn_) return nearest;
+    const Ray ray = rayThrough(view, x, y);
+    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
+        const fwedit::Mesh* object = fwedit::findIn(scene_.meshes, mesh.id);
+        if (!object || object->hidden || (throughLocked && object->locked) || !mesh.model) continue;
+        SurfaceHit hit = castRay(*mesh.model, poseOf(*object), ray);
+        if (!hit.hit || (nearest.hit && hit.distance >= nearest.distance)) continue;
+        nearest = hit;
+        nearest.object = mesh.id;
+    }
+    return nearest;
+}
+
+void LiveScene::outlineOf(fwedit::ObjectId id, std::vector<ImVec2>& lines) {
+    lines.clear();
+    if (!burn_) return;
+    const fwedit::Mesh* object = fwedit::findIn(scene_.meshes, id);
+    const auto found = std::find_if(burn_->meshes.begin(), burn_->meshes.end(),
+                                    [&](const fwedit::BurnMesh& mesh) { return mesh.id == id; });
+    if (!object || found == burn_->meshes.end() || !found->model) return;
+    const glm::mat4 pose = poseOf(*object);
+    const fwimport::ImportedModel& model = *found->model;
+    auto known = edges_.find(&model);
+    if (known == edges_.end()) known = edges_.emplace(&model, findEdges(model)).first;
+    const glm::vec3 eye(glm::inverse(glm::make_mat4(view.view) * pose)[3]);
+    std::vector<glm::vec3> edges;
+    findOutline(model, known->second, eye, edges);
+    for (size_t i = 0; i + 1 < edges.size(); i += 2) {
+        const glm::vec3 a = onPicture(view, glm::vec3(pose * glm::vec4(edges[i], 1)));
+        const glm::vec3 b = onPicture(view, glm::vec3(pose * glm::vec4(edges[i + 1], 1)));
+        if (a.z <= 0 || b.z <= 0) continue;
+        lines.push_back({a.x, a.y});
+        lines.push_back({b.x, b.y});
+    }
+}
+
+bool LiveScene::bounds(glm::vec3& low, glm::vec3& high) const {
+    if (!burn_) return false;
+    bool any = false;
+    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
+        const fwedit::Mesh* object = fwedit::findIn(burn_->scene.meshes, mesh.id);
+        if (!object || !mesh.model) continue;
+        const glm::mat4 pose = poseOf(*object);
+        for (int corner = 0; corner < 8; ++corner) {
+            glm::vec3 p;
+            for (int c = 0; c < 3; ++c)
+                p[c] = (corner >> c & 1) ? mesh.model->high[size_t(c)] : mesh.model->low[size_t(c)];
+            p = glm::vec3(pose * glm::vec4(p, 1));
+            low = any ? glm::min(low, p) : p;
+            high = any ? glm::max(high, p) : p;
+            any = true;
+        }
+    }
+    return any;
+}
+
+std::vector<std::string> LiveScene::takeReport() {
+    std::vector<std::string> taken;
+    taken.swap(report_);
+    return taken;
+}
+
+}  // namespace fwview

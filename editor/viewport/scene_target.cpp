@@ -1,0 +1,276 @@
+// See scene_target.h.
+#include "viewport/scene_target.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "common/pipeline.h"
+
+namespace fwview {
+namespace {
+
+#include "bloom.frag.h"
+#include "post.frag.h"
+#include "post.vert.h"
+
+using sample::checkVulkan;
+
+constexpr VkFormat kLight = VK_FORMAT_R16G16B16A16_SFLOAT, kDisplay = VK_FORMAT_R8G8B8A8_UNORM;
+
+struct Push {  // post.frag
+    float mode, exposure, bloom, vignette, aspect;
+};
+
+}  // namespace
+
+SceneTarget::SceneTarget(const sample::VulkanHost& host, fwui::UiRenderer& ui)
+    : host_(host), ui_(ui), depthFormat_(host.depthFormat()) {
+    scenePass_ = makePass(kLight, true, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    spreadPass_ = makePass(kLight, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    shownPass_ = makePass(kDisplay, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                  VK_SAMPLER_MIPMAP_MODE_NEAREST);
+    constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    setLayout_ = sample::makeSetLayout(host, {kImage, kImage});
+    pool_ = sample::makeSetPool(host, 1, 0, 2);
+    set_ = sample::makeSet(host, pool_, setLayout_);
+    layout_ =
+        sample::makeLayout(host, {setLayout_}, {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)});
+
+    sample::PipelineRequest request;
+    request.layout = layout_;
+    request.depthTest = request.depthWrite = false;
+    request.vertex = host.createShader(kPostVert, sizeof kPostVert);
+    request.pass = shownPass_;
+    request.fragment = host.createShader(kPostFrag, sizeof kPostFrag);
+    shownPipeline_ = sample::makePipeline(host, request);
+    vkDestroyShaderModule(host.device, request.fragment, nullptr);
+    request.pass = spreadPass_;
+    request.fragment = host.createShader(kBloomFrag, sizeof kBloomFrag);
+    spreadPipeline_ = sample::makePipeline(host, request);
+    vkDestroyShaderModule(host.device, request.fragment, nullptr);
+    vkDestroyShaderModule(host.device, request.vertex, nullptr);
+}
+
+SceneTarget::~SceneTarget() {
+    vkDeviceWaitIdle(host_.device);
+    dropImages();
+    vkDestroyPipeline(host_.device, shownPipeline_, nullptr);
+    vkDestroyPipeline(host_.device, spreadPipeline_, nullptr);
+    vkDestroyPipelineLayout(host_.device, layout_, nullptr);
+    vkDestroyDescriptorPool(host_.device, pool_, nullptr);
+    vkDestroyDescriptorSetLayout(host_.device, setLayout_, nullptr);
+    vkDestroySampler(host_.device, sampler_, nullptr);
+    for (VkRenderPass pass : {scenePass_, spreadPass_, shownPass_})
+        vkDestroyRenderPass(host_.device, pass, nullptr);
+}
+
+sample::ScenePass SceneTarget::pass() const {
+    return {scenePass_, kLight, VK_SAMPLE_COUNT_1_BIT, VK_COMPARE_OP_LESS_OR_EQUAL,
+            fwui::Frames::kSlots};
+}
+
+VkRenderPass SceneTarget::makePass(VkFormat color, bool depth, VkImageLayout after) const {
+    std::array<VkAttachmentDescription, 2> attachments{};
+    attachments[0].format = color;
+    attachments[0].samples = VK_SAMPLE_COUNT_1_BIT;
+    attachments[0].loadOp = depth ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    attachments[0].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    attachments[0].stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    attachments[0].stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    attachments[0].finalLayout = after;
+    attachments[1] = attachments[0];
+    attachments[1].format = depthFormat_;
+    attachments[1].storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    attachments[1].finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    const VkAttachmentReference colorPlace{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    const VkAttachmentReference depthPlace{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &colorPlace;
+    subpass.pDepthStencilAttachment = depth ? &depthPlace : nullptr;
+    constexpr VkPipelineStageFlags kWrites = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
+                                             VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
+                                             VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+    constexpr VkPipelineStageFlags kReads =
+        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    constexpr VkAccessFlags kWritten =
+        VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    std::array<VkSubpassDependency, 2> dependencies{};
+    dependencies[0].srcSubpass = VK_SUBPASS_EXTERNAL;
+    dependencies[0].srcStageMask = kWrites | kReads;
+    dependencies[0].srcAccessMask = kWritten;
+    dependencies[0].dstStageMask = kWrites;
+    dependencies[0].dstAccessMask = kWritten | VK_ACCESS_COLOR_ATTACHMENT_READ_BIT |
+                                    VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+    dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
+    dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    dependencies[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    dependencies[1].dstStageMask = kReads;
+    dependencies[1].dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
+    VkRenderPassCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+    info.attachmentCount = depth ? 2 : 1;
+    info.pAttachments = attachments.data();
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
+    info.dependencyCount = uint32_t(dependencies.size());
+    info.pDependencies = dependencies.data();
+    VkRenderPass made = VK_NULL_HANDLE;
+    checkVulkan(vkCreateRenderPass(host_.device, &info, nullptr, &made), "vkCreateRenderPass");
+    return made;
+}
+
+VkFramebuffer SceneTarget::makeFramebuffer(VkRenderPass pass,
+                                           std::initializer_list<VkImageView> views, uint32_t width,
+                                           uint32_t height) const {
+    VkFramebufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+    info.renderPass = pass;
+    info.attachmentCount = uint32_t(views.size());
+    info.pAttachments = views.begin();
+    info.width = width;
+    info.height = height;
+    info.layers = 1;
+    VkFramebuffer made = VK_NULL_HANDLE;
+    checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &made), "vkCreateFramebuffer");
+    return made;
+}
+
+void SceneTarget::dropImages() {
+    ui_.removeTexture(texture_);
+    texture_ = nullptr;
+    for (VkFramebuffer* framebuffer :
+         {&sceneFramebuffer_, &spreadFramebuffer_, &shownFramebuffer_}) {
+        vkDestroyFramebuffer(host_.device, *framebuffer, nullptr);
+        *framebuffer = VK_NULL_HANDLE;
+    }
+    for (sample::Image* image : {&color_, &depth_, &spread_, &shown_}) host_.destroy(*image);
+}
+
+void SceneTarget::resize(uint32_t width, uint32_t height) {
+    width = std::clamp(width, 8u, 8192u);
+    height = std::clamp(height, 8u, 8192u);
+    if (width == extent_.width && height == extent_.height) return;
+    checkVulkan(vkDeviceWaitIdle(host_.device), "vkDeviceWaitIdle");
+    dropImages();
+    extent_ = {width, height};
+    mips_ = 1;
+    while (mips_ < 5 && (std::min(width, height) >> mips_) >= 2) ++mips_;
+
+    sample::ImageRequest request;
+    request.width = width;
+    request.height = height;
+    request.mips = mips_;
+    request.format = kLight;
+    request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                    VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    color_ = host_.createImage(request);
+    request.mips = 1;
+    request.format = kDisplay;
+    request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    shown_ = host_.createImage(request);
+    request.format = depthFormat_;
+    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    if (depthFormat_ == VK_FORMAT_D24_UNORM_S8_UINT) request.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
+    depth_ = host_.createImage(request);
+    sample::ImageRequest quarter;
+    quarter.width = std::max(1u, width / 4);
+    quarter.height = std::max(1u, height / 4);
+    quarter.format = kLight;
+    quarter.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    spread_ = host_.createImage(quarter);
+
+    sceneFramebuffer_ = makeFramebuffer(scenePass_, {color_.firstMip, depth_.view}, width, height);
+    spreadFramebuffer_ =
+        makeFramebuffer(spreadPass_, {spread_.view}, quarter.width, quarter.height);
+    shownFramebuffer_ = makeFramebuffer(shownPass_, {shown_.view}, width, height);
+    sample::writeImage(host_, set_, 0, sampler_, color_.view);
+    sample::writeImage(host_, set_, 1, sampler_, spread_.view);
+    texture_ = ui_.addTexture(shown_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    // Black until the first frame: what is shown before has a layout to be read in.
+    host_.runNow([&](VkCommandBuffer commands) {
+        sample::imageBarrier(commands, shown_.image, VK_IMAGE_LAYOUT_UNDEFINED,
+                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                             VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0,
+                             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
+    });
+}
+
+void SceneTarget::begin(const fwui::Frame& frame) {
+    std::array<VkClearValue, 2> clear{};
+    clear[0].color = {{0.02f, 0.02f, 0.025f, 1.0f}};
+    clear[1].depthStencil = {1.0f, 0};
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = scenePass_;
+    info.framebuffer = sceneFramebuffer_;
+    info.renderArea = {{0, 0}, extent_};
+    info.clearValueCount = uint32_t(clear.size());
+    info.pClearValues = clear.data();
+    vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+    const VkViewport all = viewport();
+    vkCmdSetViewport(frame.commands, 0, 1, &all);
+    vkCmdSetScissor(frame.commands, 0, 1, &info.renderArea);
+}
+
+void SceneTarget::end(const fwui::Frame& frame) {
+    vkCmdEndRenderPass(frame.commands);
+    const Push push{0, 1, bloom, vignette, float(extent_.width) / float(extent_.height)};
+    vkCmdPushConstants(frame.commands, layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
+                       &push);
+    spreadLight(frame);
+    drawPost(frame, spreadPipeline_, spreadPass_, spreadFramebuffer_,
+             {spread_.made.width, spread_.made.height});
+    drawPost(frame, shownPipeline_, shownPass_, shownFramebuffer_, extent_);
+}
+
+// Halves the scene again and again, for the bloom to add up.
+void SceneTarget::spreadLight(const fwui::Frame& frame) {
+    auto side = [](uint32_t length, uint32_t mip) { return int32_t(std::max(1u, length >> mip)); };
+    for (uint32_t mip = 1; mip < mips_; ++mip) {
+        sample::imageBarrier(frame.commands, color_.image, VK_IMAGE_LAYOUT_UNDEFINED,
+                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0,
+                             VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, mip, 1);
+        VkImageBlit blit{};
+        blit.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1};
+        blit.srcOffsets[1] = {side(extent_.width, mip - 1), side(extent_.height, mip - 1), 1};
+        blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
+        blit.dstOffsets[1] = {side(extent_.width, mip), side(extent_.height, mip), 1};
+        vkCmdBlitImage(frame.commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                       color_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,
+                       VK_FILTER_LINEAR);
+        sample::imageBarrier(frame.commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             VK_ACCESS_TRANSFER_READ_BIT, mip, 1);
+    }
+    sample::imageBarrier(frame.commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                         VK_ACCESS_SHADER_READ_BIT);
+}
+
+void SceneTarget::drawPost(const fwui::Frame& frame, VkPipeline pipeline, VkRenderPass pass,
+                           VkFramebuffer framebuffer, VkExtent2D extent) {
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = pass;
+    info.framebuffer = framebuffer;
+    info.renderArea = {{0, 0}, extent};
+    vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+    const VkViewport all{0, 0, float(extent.width), float(extent.height), 0, 1};
+    vkCmdSetViewport(frame.commands, 0, 1, &all);
+    vkCmdSetScissor(frame.commands, 0, 1, &info.renderArea);
+    vkCmdBindPipeline(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_,
+                            0, nullptr);
+    vkCmdDraw(frame.commands, 3, 1, 0, 0);
+    vkCmdEndRenderPass(frame.commands);
+}
+
+}  // namespace fwview

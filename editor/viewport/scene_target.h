@@ -1,0 +1,61 @@
+// A picture of a scene that the interface shows: drawn in linear light, with depth; then bloom,
+// film curve and display values as the samples have them. The host's side of a lent device, off
+// screen.
+#pragma once
+
+#include "common/stage.h"
+#include "shell/frames.h"
+#include "shell/ui_renderer.h"
+
+namespace fwview {
+
+class SceneTarget {
+ public:
+    SceneTarget(const sample::VulkanHost& host, fwui::UiRenderer& ui);
+    ~SceneTarget();
+    SceneTarget(const SceneTarget&) = delete;
+    SceneTarget& operator=(const SceneTarget&) = delete;
+
+    // Pixels; nothing happens if it has that size. Waits for the device.
+    void resize(uint32_t width, uint32_t height);
+    void begin(const fwui::Frame& frame);
+    void end(const fwui::Frame& frame);
+    [[nodiscard]] sample::ScenePass pass() const;
+    [[nodiscard]] VkFormat depthFormat() const { return depthFormat_; }
+    [[nodiscard]] void* texture() const { return texture_; }  // for ImGui
+    [[nodiscard]] VkExtent2D extent() const { return extent_; }
+    [[nodiscard]] VkViewport viewport() const {
+        return {0, 0, float(extent_.width), float(extent_.height), 0, 1};
+    }
+
+    float bloom = 0.06f, vignette = 0.1f;
+
+ private:
+    VkRenderPass makePass(VkFormat color, bool depth, VkImageLayout after) const;
+    VkFramebuffer makeFramebuffer(VkRenderPass pass, std::initializer_list<VkImageView> views,
+                                  uint32_t width, uint32_t height) const;
+    void dropImages();
+    void spreadLight(const fwui::Frame& frame);
+    void drawPost(const fwui::Frame& frame, VkPipeline pipeline, VkRenderPass pass,
+                  VkFramebuffer framebuffer, VkExtent2D extent);
+
+    const sample::VulkanHost& host_;
+    fwui::UiRenderer& ui_;
+    VkExtent2D extent_{};
+    uint32_t mips_ = 1;
+    VkFormat depthFormat_ = VK_FORMAT_UNDEFINED;
+    sample::Image color_, depth_, spread_, shown_;
+    VkRenderPass scenePass_ = VK_NULL_HANDLE, spreadPass_ = VK_NULL_HANDLE,
+                 shownPass_ = VK_NULL_HANDLE;
+    VkFramebuffer sceneFramebuffer_ = VK_NULL_HANDLE, spreadFramebuffer_ = VK_NULL_HANDLE,
+                  shownFramebuffer_ = VK_NULL_HANDLE;
+    VkSampler sampler_ = VK_NULL_HANDLE;
+    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkPipeline shownPipeline_ = VK_NULL_HANDLE, spreadPipeline_ = VK_NULL_HANDLE;
+    void* texture_ = nullptr;
+};
+
+}  // namespace fwview
