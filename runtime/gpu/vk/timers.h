@@ -22,7 +22,12 @@ class FrameTimers {
     void end(const Device& device, VkCommandBuffer commands);
     // Sums by name into out, which keeps its room. The frame is done.
     void read(const Device& device, uint64_t frameIndex, std::pmr::vector<PassTime>& out);
-    void forget() noexcept { spans_ = 0; }
+    // Of another frame now: until reset() is recorded its pool holds the old frame's stamps, and a
+    // frame that has nothing to do but draw records none.
+    void forget() noexcept {
+        spans_ = 0;
+        armed_ = false;
+    }
 
  private:
     VkQueryPool pool_ = VK_NULL_HANDLE;
