@@ -28,7 +28,9 @@ App::App(const sample::VulkanHost& hostGiven, FwContext* contextGiven, fwui::UiR
       live(hostGiven, contextGiven, uiGiven),
       flame(std::make_unique<FlamePage>(hostGiven, contextGiven, uiGiven)) {
     const std::string name = host.properties.deviceName;
-    device = host.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? "CPU renderer" : name;
+    slow = host.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    flame->slow = slow;
+    device = slow ? "CPU renderer" : name;
     loadUserState(user);
     camera = document.scene.camera;
     actions = makeActions(*this);
@@ -736,6 +738,7 @@ void recordPages(App& app, const fwui::Frame& frame) {
 bool isLively(const App& app) {
     if (app.page == Page::kFlame && app.flame->lively()) return true;
     if (app.page != Page::kScene) return false;
+    if (app.now - app.movedAt < 1) return true;  // until the sharp picture is there
     return app.playing || !app.live.settled() || app.live.preparing();
 }
 

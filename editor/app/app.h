@@ -62,6 +62,7 @@ struct App {
     std::unique_ptr<FlamePage> flame;
     UserState user;
     std::string device;  // as people call it
+    bool slow = false;   // a device of the CPU's: pictures that move are drawn smaller
 
     Page page = Page::kWelcome;
     Tool tool = Tool::kMove;
@@ -72,6 +73,7 @@ struct App {
     fwedit::Camera camera;
     bool playing = false, looping = false;
     float speed = 1;
+    double movedAt = -1e9;    // s, when the view last moved by hand
     bool showHelpers = true;  // marks, gizmo and outline over the picture
     int leftTab = 0;
     std::string filter;

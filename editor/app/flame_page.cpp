@@ -293,11 +293,11 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
     for (int i = 0; i < 3; ++i) {
         View& view = views[i];
         if (!view.world || view.rect.width() < 8) continue;
-        // The two small ones take turns.
-        const bool due = i == 0 || (frameCount + uint64_t(i)) % 2 == 0;
+        // They take turns: on a slow device all three, else the two small ones.
+        const uint64_t turns = slow ? 3 : i == 0 ? 1 : 2;
+        const bool due = (frameCount + uint64_t(i)) % turns == 0;
         view.owed += deltaTime;
         if (!due || (paused && view.drawn == pictureRevision && view.seen)) continue;
-        view.target->resize(uint32_t(view.rect.width()), uint32_t(view.rect.height()));
         FwView camera = fwDefaultView();
         sample::duskLight(camera, i == 0 ? 0.012f : i == 1 ? 2.0f : 0.1f);
         sample::OrbitCamera orbit;
@@ -792,8 +792,9 @@ void showPreview(App& app, Rect rect) {
         FlamePage::View& view = page.views[i];
         view.rect = rects[i];
         if (view.target) {
-            view.target->resize(uint32_t(std::max(8.0f, rects[i].width())),
-                                uint32_t(std::max(8.0f, rects[i].height())));
+            const float share = page.slow ? 0.5f : 1.0f;
+            view.target->resize(uint32_t(std::max(8.0f, rects[i].width() * share)),
+                                uint32_t(std::max(8.0f, rects[i].height() * share)));
             list->AddImage(view.target->texture(), rects[i].low(), rects[i].high());
         }
         const ImVec2 low = rects[i].low() + dp(8, 8);

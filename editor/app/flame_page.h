@@ -87,6 +87,7 @@ struct FlamePage {
     float celsius = 1380, soot = 0.8f;
     float diameter = 0.6f, power = 60;  // m, kW: of the preview
     float turbulence = 1, speed = 1, wind = 4;
+    bool slow = false;  // see App::slow
     bool paused = false, stroking = false, changed = true, opened = false;
     bool brushOpen = true, sizeOpen = true, lifeOpen = true;
     double time = 0;

@@ -27,6 +27,7 @@ struct Wishes {
     std::string builtIn;  // name of a scene of the welcome page
     float scale = 0;      // 0: as the monitor has it
     float seconds = 0;    // that the burn runs before the shot
+    bool report = false;  // prints what happens, line by line
 };
 
 float monitorScale(GLFWwindow* window, VkExtent2D extent) {
@@ -144,6 +145,7 @@ class Program {
                 continue;
             }
             const bool drawn = frame(float(std::min(passed, 0.25)));
+            if (wishes_.report) report();
             if (!drawn) glfwWaitEventsTimeout(0.05);
             cursors.show(window);
             const std::string title =
@@ -162,6 +164,8 @@ class Program {
         }
         fwapp::dropRecovery();
         fwapp::saveUserState(app_->user);
+        if (wishes_.report && playedSeconds_ > 0)
+            std::printf("played at %.1f frames a second\n", playedFrames_ / playedSeconds_);
     }
 
     // Without a window: the page that is asked for, once nothing is on its way any more.
@@ -180,6 +184,30 @@ class Program {
     }
 
  private:
+    // For whoever drives the program from outside: what was done, and when there is a picture.
+    void report() {
+        const fwapp::App& app = *app_;
+        auto print = [](const std::string& line) {
+            std::printf("%s\n", line.c_str());
+            std::fflush(stdout);
+        };
+        if (app.resultTime != reportedResult_) print("did: " + app.result);
+        reportedResult_ = app.resultTime;
+        const bool ready = app.live.burn() && !app.live.preparing();
+        if (ready && !reportedReady_) print("ready");
+        reportedReady_ = ready;
+        const int second = int(app.live.time());
+        if (second != reportedSecond_) print("burn at " + std::to_string(second) + " s");
+        reportedSecond_ = second;
+        if (app.toasts.size() > reportedToasts_)
+            print("told: " + app.toasts.back().title + ": " + app.toasts.back().text);
+        reportedToasts_ = app.toasts.size();
+        if (app.playing && ready) {
+            ++playedFrames_;
+            playedSeconds_ += double(app.deltaTime);
+        }
+    }
+
     void rescale() {
         const VkExtent2D extent = frames_.extent();
         GLFWwindow* window = frames_.window ? frames_.window->handle() : nullptr;
@@ -202,6 +230,11 @@ class Program {
     FwContext* context_ = nullptr;
     std::unique_ptr<fwapp::App> app_;
     float scale_ = 0;
+    double reportedResult_ = -1e9, playedSeconds_ = 0;
+    bool reportedReady_ = false;
+    int reportedSecond_ = 0;
+    size_t reportedToasts_ = 0;
+    uint32_t playedFrames_ = 0;
     std::string title_;
 };
 
@@ -258,6 +291,7 @@ int main(int argc, char** argv) {
         parser.addText("--page", "NAME", "welcome, scene or flame", wishes.page);
         parser.addText("--scene", "NAME", "a scene of the welcome page, by its name",
                        wishes.builtIn);
+        parser.addFlag("--report", "print what is done, line by line", wishes.report);
         parser.addNumber("--scale", "size of the interface; 0: as the monitor has it", wishes.scale,
                          0, 4);
         parser.addNumber("--seconds", "how long the burn runs before the picture", wishes.seconds,

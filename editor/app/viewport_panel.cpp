@@ -474,8 +474,12 @@ void pickBox(App& app, const Picture& picture, const std::vector<Marker>& marker
 
 void showViewport(App& app, const Rect& rect) {
     ImDrawList* list = beginPanel("##view", rect, colors::gap);
-    app.live.target.resize(uint32_t(std::max(8.0f, rect.width())),
-                           uint32_t(std::max(8.0f, rect.height())));
+    constexpr double kStill = 0.3;  // s until what stood still is sharp again
+    if (hand().busy != Busy::kNone || ImGui::GetIO().MouseWheel != 0) app.movedAt = app.now;
+    const bool moves = app.playing || app.live.seeking() || app.now - app.movedAt < kStill;
+    const float sharpness = app.slow && moves ? 0.5f : 1.0f;
+    app.live.resize(uint32_t(std::max(8.0f, rect.width() * sharpness)),
+                    uint32_t(std::max(8.0f, rect.height() * sharpness)));
     const Picture picture{rect, app.live.view};
     if (app.live.burn() && app.live.target.texture())
         list->AddImage(app.live.target.texture(), rect.low(), rect.high());

@@ -202,6 +202,12 @@ void LiveScene::moveDragged(const fwedit::Document& document) {
     stale_ = true;
 }
 
+void LiveScene::resize(uint32_t width, uint32_t height) {
+    const VkExtent2D before = target.extent();
+    target.resize(width, height);
+    stale_ |= before.width != target.extent().width || before.height != target.extent().height;
+}
+
 void LiveScene::seek(double time) {
     wanted_ = std::max(0.0, time);
     if (!burn_ || wanted_ + 1e-4 >= burn_->time) return;

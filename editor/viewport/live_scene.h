@@ -38,7 +38,8 @@ class LiveScene {
     void record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime);
     // Nothing of what is seen would change: no frame is needed for its sake.
     [[nodiscard]] bool settled() const { return !preparing() && !seeking() && !stale_; }
-    void redraw() { stale_ = true; }
+    // Pixels of the picture.
+    void resize(uint32_t width, uint32_t height);
 
     [[nodiscard]] bool preparing() const { return work_.valid(); }
     [[nodiscard]] bool seeking() const { return burn_ && burn_->time + 1e-4 < wanted_; }
