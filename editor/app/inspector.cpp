@@ -110,8 +110,9 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
     switch (field.type) {
         case FieldType::Flag: {
             bool on = std::get<double>(value) != 0;
-            rows.label(field.label);
-            if (toggle(field.key, at + dp(0, 3), on))
+            drawTextFit(rows.list, fonts().body, rows.x0, rows.midY(), rows.x1 - rows.x0 - dp(36),
+                        colors::dim, field.label);
+            if (toggle(field.key, {rows.x1 - dp(28), rows.y + dp(3)}, on))
                 performSet(app, id, field.key, on ? 1.0 : 0.0);
             rows.next();
             break;
@@ -324,6 +325,15 @@ void showParts(App& app, Rows& rows, Kind kind, ObjectId id) {
     for (const Heading& heading : headings) {
         if (!anyOf(app.document.scene, kind, id, heading.part)) continue;
         if (!section(rows, heading.name, *heading.open)) continue;
+        // The column of labels is as wide as this section needs it, within reason.
+        float widest = dp(metrics::label);
+        for (const FieldInfo& field : fwedit::fieldsOf(kind)) {
+            if (partOf(kind, field.key) != heading.part || field.type == FieldType::Flag ||
+                field.type == FieldType::Vector || isIdle(app.document.scene, kind, id, field.key))
+                continue;
+            widest = std::max(widest, textSize(fonts().body, field.label).x + dp(10));
+        }
+        rows.labelWidth = std::min(widest / theme().scale, 156.0f);
         for (const FieldInfo& field : fwedit::fieldsOf(kind)) {
             if (partOf(kind, field.key) != heading.part) continue;
             if (isIdle(app.document.scene, kind, id, field.key)) continue;

@@ -262,15 +262,15 @@ void drawMarkers(App& app, ImDrawList* list, const Picture& picture,
 }
 
 void drawOutlines(App& app, ImDrawList* list, const Picture& picture) {
-    std::vector<ImVec2> lines;
+    std::vector<glm::vec2> lines;
+    const ImVec2 size(picture.rect.width(), picture.rect.height());
+    auto place = [&](glm::vec2 p) { return picture.rect.low() + ImVec2(p.x, p.y) * size; };
     for (const ObjectId id : app.selection) {
-        app.live.outlineOf(id, lines);
-        const ImVec2 size(picture.rect.width(), picture.rect.height());
+        app.live.outlineOf(id, size, lines);
         for (const auto& [color, width] :
-             {std::pair{colors::accent, dp(3.5f)}, std::pair{colors::white, dp(1.5f)}}) {
+             {std::pair{colors::accent, dp(3)}, std::pair{colors::white, dp(1)}}) {
             for (size_t i = 0; i + 1 < lines.size(); i += 2)
-                list->AddLine(picture.rect.low() + lines[i] * size,
-                              picture.rect.low() + lines[i + 1] * size, color, width);
+                list->AddLine(place(lines[i]), place(lines[i + 1]), color, width);
         }
     }
 }

@@ -93,7 +93,7 @@ void LiveScene::forget() {
     burn_.reset();
     studio_.reset();
     studioKey_.clear();
-    edges_.clear();
+    outlines_.clear();
     seen_ = ~0ull;
     scene_ = {};
     wanted_ = 0;
@@ -287,27 +287,42 @@ SurfaceHit LiveScene::pick(float x, float y, bool throughLocked) const {
     return nearest;
 }
 
-void LiveScene::outlineOf(fwedit::ObjectId id, std::vector<ImVec2>& lines) {
+void LiveScene::outlineOf(fwedit::ObjectId id, ImVec2 size, std::vector<glm::vec2>& lines) {
     lines.clear();
     if (!burn_) return;
     const fwedit::Mesh* object = fwedit::findIn(scene_.meshes, id);
     const auto found = std::find_if(burn_->meshes.begin(), burn_->meshes.end(),
                                     [&](const fwedit::BurnMesh& mesh) { return mesh.id == id; });
     if (!object || found == burn_->meshes.end() || !found->model) return;
-    const glm::mat4 pose = poseOf(*object);
-    const fwimport::ImportedModel& model = *found->model;
-    auto known = edges_.find(&model);
-    if (known == edges_.end()) known = edges_.emplace(&model, findEdges(model)).first;
-    const glm::vec3 eye(glm::inverse(glm::make_mat4(view.view) * pose)[3]);
-    std::vector<glm::vec3> edges;
-    findOutline(model, known->second, eye, edges);
-    for (size_t i = 0; i + 1 < edges.size(); i += 2) {
-        const glm::vec3 a = onPicture(view, glm::vec3(pose * glm::vec4(edges[i], 1)));
-        const glm::vec3 b = onPicture(view, glm::vec3(pose * glm::vec4(edges[i + 1], 1)));
-        if (a.z <= 0 || b.z <= 0) continue;
-        lines.push_back({a.x, a.y});
-        lines.push_back({b.x, b.y});
+    const glm::mat4 seen =
+        glm::make_mat4(view.projection) * glm::make_mat4(view.view) * poseOf(*object);
+    Outline& kept = outlines_[id];
+    const glm::vec2 pixels(size.x, size.y);
+    if (kept.seen == seen && kept.pixels == pixels && kept.model == found->model.get()) {
+        lines = kept.lines;
+        return;
     }
+    const fwimport::ImportedModel& model = *found->model;
+    std::vector<glm::vec3> places(model.vertexCount());
+    for (size_t i = 0; i < places.size(); ++i) {
+        const glm::vec4 clip = seen * glm::vec4(glm::make_vec3(&model.positions[3 * i]), 1);
+        const glm::vec2 share = 0.5f + 0.5f * glm::vec2(clip) / std::max(clip.w, 1e-6f);
+        places[i] = glm::vec3(share * pixels, clip.w);
+    }
+    std::vector<glm::vec2> corners;
+    corners.reserve(model.indices.size());
+    for (size_t i = 0; i + 2 < model.indices.size(); i += 3) {
+        const glm::vec3 &a = places[model.indices[i]], &b = places[model.indices[i + 1]],
+                        &c = places[model.indices[i + 2]];
+        if (std::min({a.z, b.z, c.z}) <= 1e-6f) continue;
+        corners.insert(corners.end(), {glm::vec2(a), glm::vec2(b), glm::vec2(c)});
+    }
+    findOutline(corners, uint32_t(std::clamp(size.x, 1.0f, 8192.0f)),
+                uint32_t(std::clamp(size.y, 1.0f, 8192.0f)), kept.lines);
+    kept.seen = seen;
+    kept.pixels = pixels;
+    kept.model = &model;
+    lines = kept.lines;
 }
 
 bool LiveScene::bounds(glm::vec3& low, glm::vec3& high) const {

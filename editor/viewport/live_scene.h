@@ -50,8 +50,8 @@ class LiveScene {
     void cancel() { stop_ = true; }
     // The surface under a pixel, x and y in [0, 1]; locked things are looked through if wished.
     SurfaceHit pick(float x, float y, bool throughLocked) const;
-    // The outline of a mesh as pairs of places on the picture, [0, 1].
-    void outlineOf(fwedit::ObjectId mesh, std::vector<ImVec2>& lines);
+    // The outline of a mesh as pairs of places in [0, 1] of a picture of so many pixels.
+    void outlineOf(fwedit::ObjectId mesh, ImVec2 size, std::vector<glm::vec2>& lines);
     bool bounds(glm::vec3& low, glm::vec3& high) const;    // of all meshes; false: there are none
     double milliseconds() const { return milliseconds_; }  // the device's, of the last frame
     std::vector<std::string> takeReport();                 // what was left out, for people
@@ -60,6 +60,12 @@ class LiveScene {
     FwView view{};  // of the last frame
 
  private:
+    struct Outline {  // as it was last asked for
+        glm::mat4 seen{0};
+        glm::vec2 pixels{0};
+        const fwimport::ImportedModel* model = nullptr;
+        std::vector<glm::vec2> lines;
+    };
     struct Made {
         std::unique_ptr<fwedit::Burn> burn;
         std::string error;
@@ -87,7 +93,7 @@ class LiveScene {
     double wanted_ = 0;  // s, of seek
     bool stale_ = true;
     fwedit::Camera camera_;
-    std::map<const fwimport::ImportedModel*, OutlineEdges> edges_;
+    std::map<fwedit::ObjectId, Outline> outlines_;
     std::vector<std::string> report_;
     double milliseconds_ = 0;
     std::string studioKey_;

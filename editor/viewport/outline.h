@@ -1,26 +1,17 @@
-// The outline of a model as seen: edges between a triangle that faces the eye and one that does
-// not.
+// The outline of a model as seen: where its shape on the picture ends. Found on a mask that is
+// filled as a device would fill it, so that boards inside a crate draw no lines.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
-
-#include "import/gltf_import.h"
 
 namespace fwview {
 
-struct OutlineEdges {  // of one model, made once
-    struct Edge {
-        uint32_t from, to;           // vertices
-        uint32_t left, right = ~0u;  // triangles; right ~0: an open edge
-    };
-    std::vector<Edge> edges;
-};
-// Vertices at one place count as one.
-OutlineEdges findEdges(const fwimport::ImportedModel& model);
-// Pairs of points, model space, as seen from `eye`, model space too.
-void findOutline(const fwimport::ImportedModel& model, const OutlineEdges& edges, glm::vec3 eye,
-                 std::vector<glm::vec3>& lines);
+// `corners`: three for each triangle, pixels of a picture of width x height, [1, 8192]; a triangle
+// with a corner behind the eye is left out by the caller. `lines`: pairs of places in [0, 1].
+void findOutline(std::span<const glm::vec2> corners, uint32_t width, uint32_t height,
+                 std::vector<glm::vec2>& lines);
 
 }  // namespace fwview

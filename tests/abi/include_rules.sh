@@ -23,7 +23,7 @@ samples|flamewright/|common/|import/
 editor/import|flamewright/|import/
 editor/shell|common/|shell/
 editor/viewport|flamewright/|common/|import/|shell/|document/|viewport/
-editor/app|flamewright/|common/|import/|shell/|document/|script/|viewport/|app/|tools/|profile/|volume/
+editor/app|flamewright/|common/|import/|shell/|document/|script/|viewport/|app/|tools/|profile/|volume/|core/error.h
 editor/document|flamewright/|import/|document/
 editor/script|flamewright/|import/|document/|script/
 editor/tools|flamewright/|import/|document/|script/|scene/|tools/|book/|core/|volume/|shared/
