@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <thread>
 
 #include "app/app.h"
@@ -14,6 +15,7 @@
 #include "app/flame_page.h"
 #include "common/fire_host.h"
 #include "common/options.h"
+#include "script/script.h"
 #include "shell/frames.h"
 #include "shell/input_queue.h"
 
@@ -279,13 +281,15 @@ int run(const sample::Options& options, const Wishes& wishes) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i)
+        if (std::string_view(argv[i]) == "--script") return fwedit::scriptMain(argc, argv);
     return sample::guardedMain("flamewright-editor", [&] {
         sample::Options options;
         options.width = 1280;
         options.height = 720;
         Wishes wishes;
         sample::OptionParser parser("flamewright-editor", "scenes that burn, made by hand",
-                                    "[FILE.fwscene | FILE.glb]");
+                                    "[FILE.fwscene | FILE.glb] | --script FILE [--headless]");
         parser.addText("--shot", "FILE.png", "with --headless: a picture of the window, then leave",
                        wishes.shot);
         parser.addText("--page", "NAME", "welcome, scene or flame", wishes.page);
