@@ -399,7 +399,7 @@ void World::checkSaved(const SavedWorld& saved) {
         if (object.touched) checkPose(object.latched, object.slot);
         for (const fire::WindFilter& filter : object.filters)
             for (int i = 0; i < 3; ++i)
-                if (std::abs(filter.latched[size_t(i)]) > 120 * 128 ||
+                if (std::abs(int64_t(filter.latched[size_t(i)])) > 120 * 128 ||
                     std::abs(double(filter.value[size_t(i)])) > 120.0 * 128 * 16777216 + 1)
                     core::fail(FW_ERROR_BAD_DATA, "The save's wind at burnable mesh %u is absurd.",
                                object.slot + 1);
