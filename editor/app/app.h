@@ -77,7 +77,7 @@ struct App {
     bool showHelpers = true;  // marks, gizmo and outline over the picture
     int leftTab = 0;
     std::string filter;
-    bool placeOpen = true, mainOpen = true, timeOpen = true, moreOpen = false, settingsOpen = true;
+    bool placeOpen = true, mainOpen = true, timeOpen = true, moreOpen = false;
     std::vector<std::pair<float, float>> strip;  // time, share burnt, as it was seen
     fwedit::ObjectId renaming = 0;
     std::string renamed;
@@ -99,11 +99,7 @@ struct App {
     std::vector<float> costs;  // ms of the device, the newest last
     double savedTime = 0;
     uint64_t savedRevision = 0;  // by autosave
-    // The picture of a built-in scene, for ImGui; null until there is one.
-    std::function<void*(int which)> thumbnails;
     fwui::Rect screen;
-    bool menuHeld = false;
-    std::string openMenu;
 };
 
 // ---- what pages call

@@ -247,16 +247,11 @@ void openPage(fwapp::App& app, const Wishes& wishes) {
     if (asks("keys")) app.keys = true;
     if (asks("about")) app.about = true;
     if (asks("palette")) fwapp::findAction(app, "Find anything")->run();
-    if (asks("guard")) app.guard = true;
     if (asks("select") && !app.document.scene.sources.empty())
         fwapp::select(app, app.document.scene.sources[0].id, false, false);
     if (asks("mesh") && !app.document.scene.meshes.empty())
         fwapp::select(app, app.document.scene.meshes[0].id, false, false);
     if (asks("history")) app.leftTab = 1;
-    if (asks("toast"))
-        fwapp::toast(app, fwapp::Toast::Kind::kError, "gate.glb was not imported",
-                     "The mesh “Hinge” has 71,204 vertices. One mesh can have 65,535. Split it in "
-                     "two, or leave it out.");
 }
 
 int run(const sample::Options& options, const Wishes& wishes) {

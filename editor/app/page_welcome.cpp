@@ -152,13 +152,8 @@ void showCards(App& app, Rect rect) {
         drawBox(list, low, high, hovered ? colors::control : colors::raised, 8);
         const ImVec2 end(high.x, low.y + picture);
         list->AddRectFilled(low, end, colors::well, dp(8), ImDrawFlags_RoundCornersTop);
-        if (void* shown = app.thumbnails ? app.thumbnails(int(i)) : nullptr) {
-            list->AddImageRounded(shown, low, end, {0, 0}, {1, 1}, colors::white, dp(8),
-                                  ImDrawFlags_RoundCornersTop);
-        } else {
-            drawIcon(list, fonts().icon34, {(low.x + end.x) * 0.5f, (low.y + end.y) * 0.5f},
-                     faded(colors::heat, 0.8f), card.icon);
-        }
+        drawIcon(list, fonts().icon34, {(low.x + end.x) * 0.5f, (low.y + end.y) * 0.5f},
+                 faded(colors::heat, 0.8f), card.icon);
         drawText(list, fonts().semi, low.x + dp(12), end.y + dp(20), colors::title, card.name);
         drawTextFit(list, fonts().small, low.x + dp(12), end.y + dp(39), width - dp(24),
                     colors::dim, card.about);
