@@ -116,6 +116,7 @@ void defaults(FwFireEmitterDef& def) noexcept {
     def.sparks = 0.04f;
     def.behind = 0.5f;
     def.heat = 0.35f;
+    def.stickTime = 6;
 }
 
 void defaults(FwIgnitionDef& def) noexcept { def.kind = FW_IGNITE; }

@@ -14,8 +14,9 @@ namespace {
 using gpu::vec3;
 using gpu::vec4;
 
-constexpr float kMostPower = 1e5f;  // kW
-constexpr float kTeleport = 100;    // m/s: what is faster was put there, it did not fly
+constexpr float kMostPower = 1e5f;   // kW
+constexpr float kTeleport = 100;     // m/s: what is faster was put there, it did not fly
+constexpr float kStuckRates = 1.2f;  // most births where fuel sticks, of those of the stream
 
 float length3(const float v[3]) noexcept {
     return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -136,6 +137,8 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     checkValue(def.ground, "FwFireEmitterDef::ground", -1e6f, 1e6f);
     checkValue(def.behind, "FwFireEmitterDef::behind", 0.0f, 10.0f);
     checkValue(def.heat, "FwFireEmitterDef::heat", 0.0f, 1.0f);
+    checkValue(def.stick, "FwFireEmitterDef::stick", 0.0f, 1.0f);
+    checkValue(def.stickTime, "FwFireEmitterDef::stickTime", 0.125f, 120.0f);
     if (def.shape == FW_EMITTER_MESH && (def.flags & FW_EMITTER_JET))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwFireEmitterDef::shape is FW_EMITTER_MESH and FwFireEmitterDef::flags is "
@@ -147,6 +150,11 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
             "FwFireEmitterDef::flags is 0x%x; FW_EMITTER_IGNITES goes with FW_EMITTER_JET and "
             "without FW_EMITTER_NO_COLLISION.",
             def.flags);
+    if (def.stick > 0 && !(def.flags & FW_EMITTER_IGNITES))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwFireEmitterDef::stick is %g and FwFireEmitterDef::flags is 0x%x; fuel sticks "
+                   "with FW_EMITTER_IGNITES alone.",
+                   double(def.stick), def.flags);
     emitter.def = def;
     emitter.seed = def.seed ? def.seed : ownSeed;
     std::copy_n(def.position, 3, emitter.position);
@@ -191,9 +199,36 @@ float emitterLasts(const FireEmitter& emitter) {
 
 uint32_t emitterNeeds(const FireEmitter& emitter) {
     if (emitter.def.maxParticles) return emitter.def.maxParticles;
-    const double needed = double(emitter.look.rate) * double(emitterLasts(emitter)) + 4;
+    const float stuck = emitter.def.stick > 0 ? kStuckRates : 0.0f;
+    const double needed =
+        double(emitter.look.rate) * double(1 + stuck) * double(emitterLasts(emitter)) + 4;
     return uint32_t(std::min(needed, 4e9));
 }
+
+namespace {
+
+// Where fuel sticks, into the record; births a second there.
+float stuckBirths(const FireEmitter& emitter, gpu::ParticleEmitter& record) noexcept {
+    record = {};
+    if (!emitter.stream) return 0;
+    float births[kJetPatches] = {}, sum = 0;
+    uint32_t count = 0;
+    for (const JetPatch& patch : emitter.stream->patches) {
+        if (patch.left == 0 || patch.power == 0) continue;
+        const float watts = float(double(patch.power) * 1e-9);
+        births[count] = 22 * std::clamp(std::sqrt(watts / 20000), 0.15f, 1.5f);
+        sum += births[count];
+        record.patches[2 * count] = with(patch.place, sum);
+        record.patches[2 * count + 1] = with(patch.normal, 0);
+        ++count;
+    }
+    if (count == 0) return 0;
+    for (uint32_t i = 0; i < count; ++i) record.patches[2 * i].w /= sum;
+    record.stuck.y = float(count);
+    return std::min(sum, kStuckRates * emitter.look.rate);
+}
+
+}  // namespace
 
 bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
                     gpu::ParticleEmitter& record) noexcept {
@@ -214,10 +249,13 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     births.placed = true;
 
     const bool onMesh = def.shape == FW_EMITTER_MESH;
-    const bool burns = def.power > 0 && emitter.share > 0;
+    const float stuckRate = stuckBirths(emitter, record);
+    const bool flows = def.power > 0 && emitter.share > 0;
+    const bool burns = flows || stuckRate > 0;
     uint32_t fresh = 0;
     double part = births.part;
-    const double rate = std::max(double(look.rate) * double(emitter.share), 1e-3);
+    const double rate = std::max(
+        (flows ? double(look.rate) * double(emitter.share) : 0.0) + double(stuckRate), 1e-3);
     if (burns) {
         part += rate * double(seconds);
         const double whole = std::floor(part);
@@ -239,7 +277,7 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     if (onMesh) moved[0] = moved[1] = moved[2] = 0;
     const float carried[3] = {moved[0] * carry, moved[1] * carry, moved[2] * carry};
     const float none[3] = {};
-    record = {};
+    record.stuck.x = stuckRate / float(rate);
     record.from = with(from, seconds);
     record.place = with(emitter.position, def.shape == FW_EMITTER_DISC   ? def.radius
                                           : (def.flags & FW_EMITTER_JET) ? 0.1f * look.size0
@@ -315,7 +353,23 @@ FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t
     const double since = air.now - emitter.births.last - 0.1;
     const auto left = float(std::clamp(1.0 - since / double(look.life), 0.0, 1.0));
     light.power = 1000.0f * emitter.def.power;
-    light.intensity = light.power * (kLightShare / kSphere) * flicker(air.now, phase) * left;
+    const float shines = flicker(air.now, phase);
+    light.intensity = light.power * (kLightShare / kSphere) * shines * left;
+    // Of a jet that no longer flows the fuel that sticks shines on.
+    if (emitter.stream && !(emitter.def.power > 0)) {
+        double sum = 0, at[3] = {};
+        for (const JetPatch& patch : emitter.stream->patches) {
+            const double watts = patch.left > 0 ? double(patch.power) * 1e-9 : 0;
+            sum += watts;
+            for (int i = 0; i < 3; ++i)
+                at[i] += watts * double(patch.place[i] + 0.3f * air.up[i] + 0.2f * patch.normal[i]);
+        }
+        if (sum > 0) {
+            for (int i = 0; i < 3; ++i) light.position[i] = float(at[i] / sum);
+            light.power = float(sum);
+            light.intensity = light.power * (kLightShare / kSphere) * shines;
+        }
+    }
     light.id = id;
     light.frameIndex = frameIndex;
     return light;
@@ -336,6 +390,16 @@ void fillEmitterState(const FireEmitter& emitter, const EmitterAir& air,
     out.struck = isSwept(emitter.def) ? emitter.struck : 0;
     out.freeWay = isSwept(emitter.def) && emitter.struck > 0 ? emitter.freeWay : look.reach;
     out.heated = emitter.heated;
+    if (emitter.stream) {
+        double fuel = 0, power = 0;
+        for (const JetPatch& patch : emitter.stream->patches) {
+            fuel += double(patch.fuel);
+            power += double(patch.power);
+            out.stuckPlaces += patch.left > 0 ? 1u : 0u;
+        }
+        out.stuckFuel = float(fuel / double(kPatchUnitsPerJoule) * 1e-3);
+        out.stuckPower = float(power * 1e-12);
+    }
     out.lightIntensity = emitter.births.filled > 0 ? light.intensity : 0.0f;
     for (int i = 0; i < 3; ++i) out.lightPosition[i] = light.position[i];
 }

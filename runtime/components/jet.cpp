@@ -43,6 +43,38 @@ uint32_t jetArrival(const JetFlight& flight, uint32_t exchange, uint32_t way) no
     return exchange * gpu::kExchangeTicks + uint32_t(within);
 }
 
+uint64_t burnPatch(JetPatch& patch, uint32_t now) noexcept {
+    patch.power = 0;
+    if (patch.left == 0) return 0;
+    if (patch.water > 0 && now >= patch.waterAt) {
+        patch.fuel -= std::min(patch.fuel, patch.water);
+        patch.water = 0;
+    }
+    patch.power = patch.fuel / patch.left;
+    patch.fuel -= patch.power;
+    --patch.left;
+    if (patch.fuel == 0) patch.left = 0;
+    if (patch.left == 0) patch.water = 0;
+    return patch.power;
+}
+
+uint64_t feedPatch(JetPatch& patch, uint64_t fuel, uint32_t exchanges) noexcept {
+    const uint64_t takes = std::min(fuel, kPatchMost - std::min(patch.fuel, kPatchMost));
+    if (takes == 0) return fuel;
+    patch.fuel += takes;
+    patch.left = exchanges;
+    return fuel - takes;
+}
+
+void wetPatch(JetPatch& patch, uint32_t grams, uint32_t tick) noexcept {
+    // Of 0.2 m^2, in whole units: grams * J * units / 5.
+    constexpr uint64_t kOfGram = kPatchJoulesPerGram * kPatchUnitsPerJoule / 5;
+    const uint64_t most = kPatchMost / kOfGram;
+    const uint64_t takes = grams < most ? grams * kOfGram : kPatchMost;
+    patch.waterAt = patch.water > 0 ? std::min(patch.waterAt, tick) : tick;
+    patch.water = std::min(patch.water + takes, kPatchMost);
+}
+
 uint64_t shareJet(uint64_t power, std::span<const uint64_t> areas,
                   std::span<uint32_t> flux) noexcept {
     uint64_t all = 0;

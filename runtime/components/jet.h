@@ -57,7 +57,8 @@ struct JetRay {
 
 struct JetParcel {
     uint32_t launched = kJetNever;  // tick
-    uint64_t power = 0;             // nW of each ray
+    uint64_t power = 0;             // nW of each ray, and of it
+    uint64_t sticks = 0;            // nW that stay as fuel
     float from[3] = {};             // m, world
     float wide = 0;                 // rad, half
     uint32_t most = 0;              // mm that it comes
@@ -65,9 +66,36 @@ struct JetParcel {
     std::array<JetRay, kJetRays> rays{};
 };
 
+// Fuel that sticks where rays struck. Counted in nW for the time of an exchange.
+constexpr uint32_t kJetPatches = 16;
+constexpr float kPatchRadius = 0.25f;                  // m
+constexpr uint64_t kPatchMost = uint64_t(1) << 61;     // of fuel
+constexpr uint64_t kPatchUnitsPerJoule = 8000000000u;  // exchanges a second, nW in a W
+constexpr uint64_t kPatchJoulesPerGram = 2600;         // that water takes: warmed and boiled off
+struct JetPatch {
+    FwBurnableMeshId object{};  // null: of a collider
+    uint32_t texel = 0;
+    uint32_t left = 0;             // exchanges that it burns on; 0: there is none
+    uint64_t fuel = 0, power = 0;  // power: what it gave at the last exchange
+    uint64_t water = 0;            // fuel that water takes at the first exchange from `waterAt` on
+    uint32_t waterAt = 0;          // tick
+    float place[3] = {}, normal[3] = {};  // m, world
+};
+using JetPatches = std::array<JetPatch, kJetPatches>;
+// One exchange of one: what it gives. With the last of its time goes the last of its fuel.
+uint64_t burnPatch(JetPatch& patch, uint32_t now) noexcept;
+// Adds what came, and starts its time anew; what it has no room for comes back.
+uint64_t feedPatch(JetPatch& patch, uint64_t fuel, uint32_t exchanges) noexcept;
+// g/m^2 of water that fall on it at a tick; kPatchDrowned: all that it takes.
+constexpr uint32_t kPatchDrowned = 0xFFFFFFFFu;
+void wetPatch(JetPatch& patch, uint32_t grams, uint32_t tick) noexcept;
+
 struct JetStream {
     std::array<JetParcel, kJetParcels> parcels{};
     uint64_t kept = 0;  // nW that no texel was small enough for: given with the next
+    // As of exchange `patchedAt`, and as the last frame left them: one that failed comes again.
+    JetPatches patches{}, before{};
+    uint32_t patchedAt = 0;  // tick
 };
 
 // W/m^2 for each of the texels, whose areas are in 1e-9 m^2, that together are `power` nW but for

@@ -76,6 +76,9 @@ void World::touchByFires(uint64_t end) {
     const uint64_t first =
         (clock_.tick + gpu::kExchangeTicks - 1) / gpu::kExchangeTicks * gpu::kExchangeTicks;
     if (emitters_.live() > 0 && first < end) listFireColliders();
+    for (uint32_t i = 0; i < emitters_.slotCount() && first < end; ++i)
+        if (auto* emitter = emitters_.at(i); emitter && emitter->stream)
+            settlePatches(*emitter, uint32_t(first));
     for (uint64_t now = first; now < end; now += gpu::kExchangeTicks) {
         for (uint32_t i = 0; i < fires_.slotCount(); ++i)
             if (auto* fire = fires_.at(i); fire && ((*fire)->data.flags & FW_FIRE_IGNITES))

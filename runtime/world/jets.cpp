@@ -16,6 +16,7 @@ using components::FireEmitter;
 using components::JetGate;
 using components::JetHit;
 using components::JetParcel;
+using components::JetPatch;
 using components::JetRay;
 using volume::vec3;
 
@@ -43,6 +44,7 @@ constexpr size_t kMostPoints = 64;    // that a ray heats at once, unless it wou
 constexpr uint32_t kMostGrowths = 6;  // of where a ray's power goes, until all of it does
 constexpr float kOverlap = 0.1f;      // m that a parcel looks back: what moves into it is met
 constexpr float kNano = 1e9f;         // of W and m^2
+constexpr float kNearPatch = 0.45f;   // m within which fuel sticks to fuel
 constexpr float kPastReach = 1.15f;   // a few particles come farther than most
 
 vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
@@ -128,6 +130,11 @@ bool aroundGate(const mesh::BurnDomain& domain, const components::Pose& pose, ui
         sum += d * d;
     }
     return sum < far * far && alike(domain, gate, texel);
+}
+
+// m over which power is spread that is no more than the least wide takes.
+float footprintRadius(float least, float watts) noexcept {
+    return std::max(least, std::sqrt(watts / (3.14159265f * float(gpu::kFluxMost))));
 }
 
 float mostScale(const components::Pose& pose) noexcept {
@@ -334,6 +341,7 @@ void World::probeJets(ProbeFrame& known) {
 void World::touchByJet(FireEmitter& emitter, uint32_t now) {
     emitter.heated = 0;
     for (components::JetTouch& touch : emitter.touches) touch.seen = false;
+    burnPatches(emitter, now);
     if (emitter.def.power > 0) {
         sweepJets(emitter);
         auto& parcels = emitter.stream->parcels;
@@ -351,6 +359,7 @@ void World::launchJet(const FireEmitter& emitter, JetParcel& parcel, uint32_t no
     parcel.launched = now;
     const double watts = 1000.0 * double(emitter.def.power) * double(emitter.def.heat);
     parcel.power = uint64_t(watts / kRays * double(kNano));
+    parcel.sticks = uint64_t(double(parcel.power) * double(emitter.def.stick));
     std::copy_n(emitter.position, 3, parcel.from);
     parcel.wide = halfAngle(emitter);
     parcel.most = millimetres(kPastReach * emitter.look.reach);
@@ -373,6 +382,13 @@ uint32_t World::gateTicks(const JetHit& hit, uint32_t tick) noexcept {
     const Object& object = **objects_.find(hit.object);
     if (!components::hasHeat(object.data) || (object.firstEvent >= tick && !remoteOn())) return 0;
     return components::holeTicks(object.data, texelMaterial(object, hit.texel), def_.paceFactor);
+}
+
+// Is what was struck there for sure? No fire can have been on it long enough to burn through.
+bool World::stands(const JetHit& hit, uint32_t holeTicks, uint32_t tick) noexcept {
+    if (holeTicks == 0) return true;
+    const Object& object = **objects_.find(hit.object);
+    return !remoteOn() && tick - std::min(object.firstEvent, tick) < holeTicks;
 }
 
 // On by one exchange. What was in the way as it left is, unless something moved since.
@@ -413,9 +429,12 @@ bool World::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay& ray, u
     gate.distance = hit.distance;
     gate.texel = hit.texel;
     if (ray.gateCount < components::kJetGates) gate.holeTicks = gateTicks(hit, tick);
+    uint64_t power = parcel.power;
+    if (parcel.sticks > 0 && ray.gateCount == 0 && stands(hit, gate.holeTicks, tick))
+        power -= parcel.sticks - stickFuel(emitter, hit, parcel.sticks);
     if (hit.object.index1 != 0) {
         gate.object = (*objects_.find(hit.object))->slot;
-        heatByJet(emitter, parcel, ray, hit, gate, tick);
+        heatByJet(emitter, parcel, ray, hit, gate, tick, power);
     }
     if (gate.holeTicks == 0) {
         ray.spent = now;
@@ -454,14 +473,11 @@ void World::findFootprint(const Object& object, const JetHit& hit, float radius)
 // All that a ray brings goes into the texels that it covers: where it is more than any fire gives,
 // it spreads over more of them.
 void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetRay& ray,
-                      const JetHit& hit, const JetGate& gate, uint32_t tick) {
+                      const JetHit& hit, const JetGate& gate, uint32_t tick, uint64_t brought) {
     Object& object = **objects_.find(hit.object);
     if (object.texels == 0) return;
-    const mesh::BurnDomain& domain = domainOf(object);
-    const float watts = float(parcel.power) / kNano;
-    const float shared = 0.10f + 0.35f * hit.distance * parcel.wide;
-    const float needed = std::sqrt(watts / (3.14159265f * float(gpu::kFluxMost)));
-    float radius = std::max(shared, needed);
+    const float watts = float(brought) / kNano;
+    const float radius = footprintRadius(0.10f + 0.35f * hit.distance * parcel.wide, watts);
     const bool sure = ray.gateCount == 0;  // to get here
     if (!components::hasHeat(object.data)) {
         if (!sure) return;  // it catches by our count alone, and we know of no hole
@@ -469,13 +485,29 @@ void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetRa
         heatLite(emitter, object, hit, radius, watts / (3.14159265f * radius * radius), tick);
         return;
     }
+    const uint64_t power = brought + (sure ? emitter.stream->kept : 0);
+    if (power == 0) return;
+    PendingTexel event;
+    event.gates = ray.gates;
+    event.gateCount = ray.gateCount;
+    event.shut = gate.holeTicks > 0;
+    if (event.shut) event.gates[event.gateCount++] = gate;
+    uint64_t left = 0;
+    const bool full =
+        heatFootprint(object, hit, radius, power, tick, kMostPoints >> ray.gateCount, event, left);
+    if (!sure) return;
+    emitter.stream->kept = full ? 0 : left;  // what even all of them cannot take goes past
+    emitter.heated += float(power - left) / kNano;
+}
+
+// True: they took all that they can. `like`: where the events come from. left: nW that did not go.
+bool World::heatFootprint(Object& object, const JetHit& hit, float radius, uint64_t power,
+                          uint32_t tick, size_t most, const PendingTexel& like, uint64_t& left) {
+    const mesh::BurnDomain& domain = domainOf(object);
     const float square = object.data.pose.scale * object.data.pose.scale;
     const auto areaOf = [&](uint32_t texel) {
         return std::max<uint64_t>(uint64_t(std::llround(domain.areas[texel] * square * kNano)), 1);
     };
-    const uint64_t power = parcel.power + (sure ? emitter.stream->kept : 0);
-    if (power == 0) return;
-    const size_t most = kMostPoints >> ray.gateCount;
     uint64_t covered = 0;
     for (uint32_t i = 0; i < kMostGrowths && covered * gpu::kFluxMost < power; ++i) {
         findFootprint(object, hit, radius);
@@ -497,25 +529,125 @@ void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetRa
     for (const uint32_t texel : found_) jetAreas_.push_back(areaOf(texel));
     jetFlux_.resize(found_.size());
     findPendingRoom(found_.size());
-    const uint64_t left = components::shareJet(power, jetAreas_, jetFlux_);
-    if (sure) {  // what even all of them cannot take goes past
-        emitter.stream->kept = jetFlux_[0] < gpu::kFluxMost ? left : 0;
-        emitter.heated += float(power - left) / kNano;
-    }
+    left = components::shareJet(power, jetAreas_, jetFlux_);
     object.firstEvent = std::min(object.firstEvent, tick);
-    PendingTexel event;
+    PendingTexel event = like;
     event.object = object.slot;
     event.kind = gpu::kEventHeat;
     event.tick = tick;
-    event.gates = ray.gates;
-    event.gateCount = ray.gateCount;
-    event.shut = gate.holeTicks > 0;
-    if (event.shut) event.gates[event.gateCount++] = gate;
     for (size_t i = 0; i < found_.size(); ++i) {
         event.texel = found_[i];
         event.water = jetFlux_[i];
         event.order = order_++;
         pending_.push_back(event);
+    }
+    return jetFlux_[0] >= gpu::kFluxMost;
+}
+
+// ---- fuel that sticks
+// -----------------------------------------------------------------------------
+
+// Where it struck, to what sticks near there already if there is any. What has no place comes back.
+uint64_t World::stickFuel(FireEmitter& emitter, const JetHit& hit, uint64_t fuel) noexcept {
+    JetPatch* nearest = nullptr;
+    JetPatch* free = nullptr;
+    float least = kNearPatch * kNearPatch;
+    for (JetPatch& patch : emitter.stream->patches) {
+        if (patch.left == 0) {
+            free = free ? free : &patch;
+            continue;
+        }
+        float apart = 0, along = 0;
+        for (int i = 0; i < 3; ++i) {
+            apart += (patch.place[i] - hit.place[i]) * (patch.place[i] - hit.place[i]);
+            along += patch.normal[i] * hit.normal[i];
+        }
+        if (patch.object.index1 != hit.object.index1 ||
+            patch.object.generation != hit.object.generation || apart > least || along < 0)
+            continue;
+        least = apart;
+        nearest = &patch;
+    }
+    JetPatch* patch = nearest ? nearest : free;
+    if (!patch) return fuel;
+    if (!nearest) {
+        *patch = {};
+        patch->object = hit.object;
+        patch->texel = hit.texel;
+        std::copy_n(hit.place, 3, patch->place);
+        std::copy_n(hit.normal, 3, patch->normal);
+    }
+    const auto exchanges = uint32_t(std::lround(emitter.def.stickTime * 8));
+    return components::feedPatch(*patch, fuel, std::max(exchanges, 1u));
+}
+
+// Before the exchanges of a frame, the first of them at tick `first`.
+void World::settlePatches(FireEmitter& emitter, uint32_t first) noexcept {
+    components::JetStream& stream = *emitter.stream;
+    if (stream.patchedAt >= first && first > 0)
+        stream.patches = stream.before;
+    else
+        stream.before = stream.patches;
+}
+
+void World::burnPatches(FireEmitter& emitter, uint32_t now) {
+    components::JetStream& stream = *emitter.stream;
+    stream.patchedAt = now;
+    for (JetPatch& patch : stream.patches) {
+        if (patch.left == 0) {
+            patch.power = 0;
+            continue;
+        }
+        auto* owned = objects_.find(patch.object);
+        if (patch.object.index1 != 0 && (!owned || (*owned)->texels == 0)) {
+            patch = {};
+            continue;
+        }
+        const uint64_t power = components::burnPatch(patch, now);
+        if (patch.object.index1 == 0 || power == 0) continue;
+        Object& object = **owned;
+        JetHit hit;
+        hit.met = true;
+        hit.object = patch.object;
+        hit.texel = patch.texel;
+        float local[3];
+        texelPlace(object, patch.texel, local);
+        components::toWorld(object.data.pose, local, patch.place);
+        std::copy_n(patch.place, 3, hit.place);
+        std::copy_n(patch.normal, 3, hit.normal);
+        const float watts = float(power) / kNano;
+        const float radius = footprintRadius(components::kPatchRadius, watts);
+        if (!components::hasHeat(object.data)) {
+            heatLite(emitter, object, hit, radius, watts / (3.14159265f * radius * radius), now);
+            emitter.heated += watts;
+            continue;
+        }
+        uint64_t left = 0;
+        (void)heatFootprint(object, hit, radius, power, now, kMostPoints / 2, {}, left);
+        // What no texel was small enough for is given with the next, while there is one.
+        if (patch.left > 0) patch.fuel += left;
+        emitter.heated += float(power - left) / kNano;
+    }
+}
+
+// Water that falls on an object falls on what sticks to it.
+void World::wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t grams,
+                       uint32_t tick) noexcept {
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
+        FireEmitter* emitter = emitters_.at(i);
+        if (!emitter || !emitter->stream) continue;
+        for (components::JetPatches* patches :
+             {&emitter->stream->patches, &emitter->stream->before})
+            for (JetPatch& patch : *patches) {
+                float apart = 0;
+                for (int k = 0; k < 3; ++k)
+                    apart +=
+                        (patch.place[k] - def.position[k]) * (patch.place[k] - def.position[k]);
+                const float far = def.radius + components::kPatchRadius;
+                if (patch.left > 0 && patch.object.index1 == object.id.index1 &&
+                    patch.object.generation == object.id.generation && apart < far * far)
+                    components::wetPatch(patch, grams, tick);
+            }
     }
 }
 

@@ -594,6 +594,8 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
     const uint32_t water =
         def.water > 0 ? std::max(uint32_t(std::lround(def.water)), 1u) : gpu::kFilmMost;
     addPending(object, def.kind, tick, water, found_);
+    if (def.kind == FW_WET || def.kind == FW_EXTINGUISH)
+        wetPatches(object, def, def.kind == FW_WET ? water : components::kPatchDrowned, tick);
     return uint32_t(found_.size());
 }
 

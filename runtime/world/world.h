@@ -478,6 +478,7 @@ class World {
     float sweepJet(const float start[3], const float way[3], float most, components::JetHit& hit,
                    const components::JetGate* passed = nullptr) noexcept;
     uint32_t gateTicks(const components::JetHit& hit, uint32_t tick) noexcept;
+    bool stands(const components::JetHit& hit, uint32_t holeTicks, uint32_t tick) noexcept;
     void listJetTargets(const float from[3], float reach) noexcept;
     void sweepJets(components::FireEmitter& emitter) noexcept;
     void shieldJet(components::FireEmitter& emitter, double now) noexcept;
@@ -491,7 +492,15 @@ class World {
                 components::JetRay& ray, uint32_t from, uint32_t to, uint32_t now, bool& listed);
     void heatByJet(components::FireEmitter& emitter, const components::JetParcel& parcel,
                    const components::JetRay& ray, const components::JetHit& hit,
-                   const components::JetGate& gate, uint32_t tick);
+                   const components::JetGate& gate, uint32_t tick, uint64_t brought);
+    bool heatFootprint(Object& object, const components::JetHit& hit, float radius, uint64_t power,
+                       uint32_t tick, size_t most, const PendingTexel& like, uint64_t& left);
+    uint64_t stickFuel(components::FireEmitter& emitter, const components::JetHit& hit,
+                       uint64_t fuel) noexcept;
+    void settlePatches(components::FireEmitter& emitter, uint32_t first) noexcept;
+    void burnPatches(components::FireEmitter& emitter, uint32_t now);
+    void wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t grams,
+                    uint32_t tick) noexcept;
     void heatLite(components::FireEmitter& emitter, Object& object, const components::JetHit& hit,
                   float radius, float flux, uint32_t now);
     void probeJets(ProbeFrame& known);

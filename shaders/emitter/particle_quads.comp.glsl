@@ -42,7 +42,6 @@ ParticleEmitter emitterOf(uint i) {
     e.serial = emitters[i].serial;
     e.seed = emitters[i].seed;
     e.flags = emitters[i].flags;
-    e.shieldCount = emitters[i].shieldCount;
     e.books = emitters[i].books;
     e.otherBooks = emitters[i].otherBooks;
     return e;
@@ -145,7 +144,7 @@ void main() {
     uvec2 group = groups[gl_WorkGroupID.x];
     ParticleEmitter e = emitterOf(group.x);
     if ((e.flags & kEmitterHidden) != 0u) return;
-    bool stops = (e.flags & kEmitterGround) != 0u || e.shieldCount > 0u, grows = e.size.y > 0.0;
+    bool stops = (e.flags & (kEmitterGround | kEmitterJet)) != 0u, grows = e.size.y > 0.0;
     uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
     for (uint turn = 0u; turn < turns; ++turn) {
         uint slot = group.y + turn * 64u + gl_LocalInvocationID.x;

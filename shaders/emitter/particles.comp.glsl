@@ -82,7 +82,16 @@ Particle bornNow(ParticleEmitter e, uint i, uint seed, float lived) {
     e.waves0 = emitters[i].waves0;
     e.waves1 = emitters[i].waves1;
     e.object = emitters[i].object;
+    e.stuck = emitters[i].stuck;
     Particle p = particleBorn(e, seed, lived);
+    if (particleSticks(e, seed)) {
+        float which = particleHash(seed + 66u);
+        uint k = 0u;
+        for (uint one = 0u; one + 1u < uint(e.stuck.y); ++one)
+            k += emitters[i].patches[2u * one].w < which ? 1u : 0u;
+        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz,
+                            emitters[i].patches[2u * k + 1u].xyz);
+    }
     if (e.object != 0u) p = bornOnTile(e, p, seed);
     return p;
 }
@@ -106,7 +115,7 @@ void main() {
     ParticleEmitter e = emitterOf(group.x);
     uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
     // What nothing stops has no hit, what does not grow on its way needs none of it.
-    bool stops = (e.flags & kEmitterGround) != 0u || e.shieldCount > 0u, grows = e.size.y > 0.0;
+    bool stops = (e.flags & (kEmitterGround | kEmitterJet)) != 0u, grows = e.size.y > 0.0;
     // Births lie in a row that ends before the ring's head and may begin at its end. Turns with any:
     // a thread gives birth to those that it then moves.
     uint end = group.y + turns * 64u;

@@ -74,9 +74,11 @@ struct ParticleEmitter {  // one frame of one emitter
     uint reserved0;
     vec4 waves0;     // rad, rad, share: how a stream swings and pulses, at the frame's start
     vec4 waves1;     // and at its end
+    vec4 stuck;       // share of births that are of fuel that sticks somewhere; its places
     vec4 shields[64]; // m, world, and radius; unit normal: what stops a jet
+    vec4 patches[32]; // m, world, and the share of it and all before; unit normal: where fuel sticks
 };
-FW_SHARED_SIZE(ParticleEmitter, 1312)
+FW_SHARED_SIZE(ParticleEmitter, 1840)
 
 struct Particle {
     vec4 placeAge;   // m, world; s, < 0: rests no more
@@ -253,6 +255,22 @@ FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, v
     vec3 v = n * (0.6f * e.half_.w);
     p.placeAge = p.placeAge + vec4(moved, 0.0f);
     p.speedPath = p.speedPath + vec4(v, 0.0f);
+    return p;
+}
+
+FW_SHARED_FN bool particleSticks(ParticleEmitter e, uint seed) {
+    return particleHash(seed + 61u) < e.stuck.x;
+}
+// Moves it to fuel that sticks at `at` on a surface with normal `n`: as a splash that has just been.
+FW_SHARED_FN Particle particleOnPatch(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n) {
+    vec3 r = particleAcross(n), u = cross(r, n), up = vec3(e.up.x, e.up.y, e.up.z);
+    float turn = 6.2831853f * particleHash(seed + 62u);
+    float away = 0.25f * sqrt(particleHash(seed + 63u));
+    p.placeAge = vec4(at + (r * cos(turn) + u * sin(turn)) * away + n * 0.08f, 0.2f * e.life.x);
+    p.speedPath = vec4(n * 0.25f + (up - n * dot(up, n)) * 0.5f + r * (0.2f * particleGauss(seed + 64u)) +
+                           up * (0.5f + 0.5f * particleHash(seed + 65u)),
+                       0.9f);
+    p.hit = vec4(n, 0.0f);
     return p;
 }
 

@@ -473,6 +473,8 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     refuse(&E::sparks, "sparks", {-0.1f, 1.1f});
     refuse(&E::temperature, "temperature", {-1.0f, 2501.0f});
     refuse(&E::ground, "ground", {-2e6f, 2e6f});
+    refuse(&E::stick, "stick", {-0.1f, 1.1f});
+    refuse(&E::stickTime, "stickTime", {0.1f, 121.0f});
     const std::function<FwResult(const FwParticleFieldDef*)> makeField =
         [&](const FwParticleFieldDef* def) {
             FwParticleFieldId id{};

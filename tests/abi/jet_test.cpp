@@ -46,6 +46,24 @@ struct Range : Panels {
         EXPECT_EQ(FW_OK, fwWorld_GetFireEmitterState(world, jet, &made));
         return made;
     }
+    // Of every object, states and heat.
+    std::vector<uint64_t> burnMaps() {
+        std::vector<uint64_t> all;
+        for (const FwBurnableMeshId id : ids) {
+            uint64_t one = 0;
+            EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world, id));
+            FwResult got = FW_NOT_READY;
+            for (int i = 0; i < 20 && got == FW_NOT_READY; ++i) {
+                got = fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, nullptr);
+                if (got == FW_NOT_READY) {
+                    EXPECT_EQ(FW_OK, fwWorld_Step(world, 0));
+                }
+            }
+            EXPECT_EQ(FW_OK, got);
+            all.push_back(one);
+        }
+        return all;
+    }
     FwFireEmitterDef jetDef{};
     FwFireEmitterId jet{};
     bool heat;
@@ -163,20 +181,105 @@ TEST(Jet, ADeviceBurnsTheSameThroughAHole) {
         if (!given) {
             EXPECT_LT(0u, r.lit(1)) << "it came through";
         }
-        std::vector<uint64_t>& all = hashes.emplace_back();
-        for (const FwBurnableMeshId id : r.ids) {
-            uint64_t one = 0;
-            ASSERT_EQ(FW_OK, fwDebug_RequestBurnMap(r.world, id));
-            FwResult got = FW_NOT_READY;
-            for (int i = 0; i < 20 && got == FW_NOT_READY; ++i) {
-                got = fwDebug_FetchBurnMap(r.world, id, nullptr, 0, nullptr, &one, nullptr);
-                if (got == FW_NOT_READY) {
-                    ASSERT_EQ(FW_OK, fwWorld_Step(r.world, 0));
-                }
-            }
-            ASSERT_EQ(FW_OK, got);
-            all.push_back(one);
+        hashes.push_back(r.burnMaps());
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+// Fuel that sticks burns on when the jet is off, with its own power, and none of it is lost: what
+// it gave, an eighth of a second at a time, is what stuck.
+TEST(Jet, FuelThatSticksBurnsOnAndNoneIsLost) {
+    Range r(true);
+    r.wall(3);
+    r.wall(4.5f);
+    r.jetDef.stick = 0.25f;
+    r.jetDef.stickTime = 5;
+    r.jetDef.power = 400;
+    r.fire();
+    double gave = 0, most = 0;
+    const auto exchanges = [&](int count) {
+        for (int i = 0; i < count; ++i) {
+            r.run(0.125);
+            gave += double(r.jetState().stuckPower) / 8;  // kJ
+            most = std::max(most, double(r.jetState().stuckPower));
         }
+    };
+    exchanges(16);
+    ASSERT_EQ(FW_OK, fwWorld_SetFireEmitterPower(r.world, r.jet, 0));
+    exchanges(15);  // the last of the stream arrives
+    EXPECT_LT(0u, r.jetState().stuckPlaces);
+    EXPECT_GT(17u, r.jetState().stuckPlaces);
+    const double left = double(r.jetState().stuckFuel), before = gave;
+    EXPECT_LT(10, left);
+    EXPECT_GT(35, most);  // kW: no more than comes
+    EXPECT_LT(0, r.jetState().heated) << "the wall gets it";
+    exchanges(42);
+    EXPECT_NEAR(left, gave - before, 1e-3 * left);
+    EXPECT_EQ(0, r.jetState().stuckFuel);
+    EXPECT_EQ(0u, r.jetState().stuckPlaces);
+    EXPECT_EQ(0, r.jetState().heated);
+    // What left the nozzle in these two seconds and struck: all of a quarter of 0.35 of it.
+    EXPECT_NEAR(0.25 * 0.35 * 400 * 2, gave, 0.08 * gave);
+    EXPECT_LT(0u, r.lit(0));
+    EXPECT_EQ(0u, r.lit(1)) << "behind";
+}
+
+// A short burst does not light a wall; the same burst of fuel that sticks does. Water takes it: as
+// much as it can boil, or with FW_EXTINGUISH all.
+TEST(Jet, FuelThatSticksLightsWhatABurstDoesNotAndWaterTakesIt) {
+    const auto litBy = [](float stick, uint32_t kind) {
+        Range r(true);
+        r.wall(3);
+        r.jetDef.power = 250;
+        r.jetDef.stick = stick;
+        r.jetDef.stickTime = 8;
+        r.fire();
+        r.run(0.75);
+        EXPECT_EQ(FW_OK, fwWorld_SetFireEmitterPower(r.world, r.jet, 0));
+        r.run(0.75);
+        const float before = r.jetState().stuckFuel;
+        if (kind) {
+            FwIgnitionDef water = fwDefaultIgnitionDef();
+            water.kind = kind;
+            water.position[0] = 3;
+            water.position[1] = 1;
+            water.radius = 1.5f;
+            water.water = kind == FW_WET ? 5.0f : 0.0f;
+            EXPECT_EQ(FW_OK, fwWorld_Ignite(r.world, &water, nullptr));
+            r.run(0.25);
+            const float after = r.jetState().stuckFuel;
+            EXPECT_LT(after, before - 2);
+            if (kind == FW_EXTINGUISH) {
+                EXPECT_EQ(0, after);
+            }
+        }
+        r.run(9);
+        return r.lit(0) > 0;
+    };
+    EXPECT_FALSE(litBy(0, 0));
+    EXPECT_TRUE(litBy(0.9f, 0));
+    EXPECT_FALSE(litBy(0.9f, FW_EXTINGUISH));
+    (void)litBy(0.9f, FW_WET);
+}
+
+TEST(Jet, ADeviceBurnsTheSameUnderFuelThatSticks) {
+    const FwContextDef def = fwDefaultContextDef();
+    FwContext* device = nullptr;
+    FwErrorInfo error{};
+    if (fwCreateContext(&def, &device, &error) != FW_OK)
+        GTEST_SKIP() << "no Vulkan device: " << error.message;
+    std::vector<std::vector<uint64_t>> hashes;
+    for (FwContext* given : {static_cast<FwContext*>(nullptr), device}) {
+        Range r(true, given);
+        r.wall(3);
+        r.wall(3, 1.2f);
+        r.jetDef.stick = 0.6f;
+        r.fire();
+        r.run(1, 1.0f / 16);
+        EXPECT_EQ(FW_OK, fwWorld_SetFireEmitterPower(r.world, r.jet, 0));
+        r.run(4, 1.0f / 16);
+        EXPECT_LT(0, r.jetState().stuckFuel);
+        hashes.push_back(r.burnMaps());
     }
     EXPECT_EQ(hashes[0], hashes[1]);
 }
@@ -341,6 +444,11 @@ TEST(Jet, RefusesWhatDoesNotGoTogetherAndPassesWhereNothingMayStopIt) {
     FwFireEmitterId id{};
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateFireEmitter(r.world, &r.jetDef, &id));
     EXPECT_THAT(lastMessage(r.world), HasSubstr("FW_EMITTER_IGNITES goes with FW_EMITTER_JET"));
+    r.jetDef.flags = FW_EMITTER_JET;
+    r.jetDef.stick = 0.5f;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateFireEmitter(r.world, &r.jetDef, &id));
+    EXPECT_THAT(lastMessage(r.world), HasSubstr("FwFireEmitterDef::stick is 0.5"));
+    r.jetDef.stick = 0;
     r.jetDef.flags = FW_EMITTER_JET | FW_EMITTER_NO_COLLISION;
     r.fire();
     r.run(1);

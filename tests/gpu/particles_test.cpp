@@ -144,7 +144,19 @@ FwFireEmitterDef emitterDef(uint32_t flags, float power) {
 }
 
 TEST_F(ParticlePass, MovesThemAsTheLibrarySays) {
-    ParticleReference& jet = add(emitterDef(FW_EMITTER_JET | FW_EMITTER_GROUND, 500));
+    FwFireEmitterDef sticky =
+        emitterDef(FW_EMITTER_JET | FW_EMITTER_IGNITES | FW_EMITTER_GROUND, 500);
+    sticky.stick = 0.3f;
+    ParticleReference& jet = add(sticky);
+    jet.emitter.stream = core::Owned<components::JetStream>::make(std::pmr::get_default_resource());
+    for (uint32_t i = 0; i < 2; ++i) {  // fuel on a wall far from the stream
+        components::JetPatch& patch = jet.emitter.stream->patches[2 * i + 1];
+        patch.left = 1000;
+        patch.power = 30000000000000u;
+        patch.place[2] = 20 + 2 * float(i);
+        patch.place[1] = 1;
+        patch.normal[0] = -1;
+    }
     ParticleReference& fire = add(emitterDef(0, 80));
     fire.air.wind[2] = 2;
     makeRig(512);
@@ -154,7 +166,7 @@ TEST_F(ParticlePass, MovesThemAsTheLibrarySays) {
         if (i == 30) components::setEmitterPower(fire.emitter, 20);
         frame(i % 9 == 8 ? 0.09f : 0.02f);
     }
-    uint32_t alive = 0;
+    uint32_t alive = 0, stuck[2] = {};
     for (const auto& one : references_) {
         for (uint32_t i = 0; i < one->record.ring; ++i) {
             if (!one->alive(i)) continue;
@@ -163,8 +175,12 @@ TEST_F(ParticlePass, MovesThemAsTheLibrarySays) {
             ASSERT_NEAR(one->particles[i].placeAge.w, p.placeAge.w, 1e-4f) << i;
             // Their sines and roots differ in the last bits.
             ASSERT_LT(glm::length(one->place(i) - vec3(p.placeAge)), 5e-3f) << i;
+            for (uint32_t k = 0; k < 2; ++k)
+                stuck[k] += std::abs(p.placeAge.z - 20 - 2 * float(k)) < 1 ? 1u : 0u;
         }
     }
+    EXPECT_LT(5u, stuck[0]);  // it burns where it sticks
+    EXPECT_LT(5u, stuck[1]);
     EXPECT_LT(60u, alive);
     EXPECT_LT(40u, quads());
     // Another picture of the same moment shows the same.

@@ -53,6 +53,14 @@ class ParticleReference {
             const bool fresh = ago < e.fresh;
             const float lived = fresh ? e.age + e.apart * float(ago) : e.from.w;
             if (fresh) p = gpu::particleBorn(e, seed, lived);
+            if (fresh && gpu::particleSticks(e, seed)) {
+                const float which = gpu::particleHash(seed + 66);
+                uint32_t k = 0;
+                for (uint32_t i = 0; i + 1 < uint32_t(e.stuck.y); ++i)
+                    k += e.patches[2 * i].w < which ? 1 : 0;
+                p = gpu::particleOnPatch(e, p, seed, gpu::vec3(e.patches[2 * k]),
+                                         gpu::vec3(e.patches[2 * k + 1]));
+            }
             const float dt = lived / float(std::max(e.steps, 1u));
             float now = e.wind.w - lived;
             for (uint32_t i = 0; i < e.steps; ++i) {

@@ -757,6 +757,13 @@ typedef struct FwFireEmitterDef {
     FwFlipbookId smokeBooks[2];
     FwFlipbookId sparkBook;
     FwBurnableMeshId object;    /* of FW_EMITTER_MESH; once it is gone nothing more is born */
+    /* Of a jet with FW_EMITTER_IGNITES: fuel that sticks. Of the power that strikes something the share `stick` stays
+     * there as fuel, in at most 16 places 0.25 m wide, and burns on evenly over stickTime from the last that came: it
+     * flames, and heats the mesh it sticks to with that power, counted in integers, none lost. Fuel that finds no room
+     * heats at once, and so does all that strikes what may have burnt through by then. Water (FW_WET) takes 2600 J a gram that falls
+     * on it from its fuel; FW_EXTINGUISH takes all. */
+    float stick;                /* [0, 1], default 0 */
+    float stickTime;            /* s, [0.125, 120], in eighths of a second; default 6 */
 } FwFireEmitterDef;
 static inline FwFireEmitterDef fwDefaultFireEmitterDef(void) {
     FwFireEmitterDef d; fwInitDef(FW_DEF_FIRE_EMITTER, &d, (uint32_t)sizeof d); return d;
@@ -784,6 +791,10 @@ typedef struct FwFireEmitterState { /* as of the last frame */
     uint32_t struck;            /* of a jet: rays of 16 that something stopped */
     float freeWay;              /* m from its nozzle to the nearest of it, 0: right there; else reach */
     float heated;               /* W that reached burnable meshes in the last eighth of a second */
+    float stuckFuel;            /* kJ of fuel that sticks somewhere */
+    float stuckPower;           /* kW that it gave in the last eighth of a second, to meshes or not */
+    uint32_t stuckPlaces;       /* [0, 16] */
+    uint32_t reserved1;
 } FwFireEmitterState;
 FW_API FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld*, FwFireEmitterId id, FwFireEmitterState* state); /* [world] */
 
