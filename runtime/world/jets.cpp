@@ -544,8 +544,7 @@ bool World::heatFootprint(Object& object, const JetHit& hit, float radius, uint6
     return jetFlux_[0] >= gpu::kFluxMost;
 }
 
-// ---- fuel that sticks
-// -----------------------------------------------------------------------------
+// ---- fuel that sticks -------------------------------------------------------------------------
 
 // Where it struck, to what sticks near there already if there is any. What has no place comes back.
 uint64_t World::stickFuel(FireEmitter& emitter, const JetHit& hit, uint64_t fuel) noexcept {

@@ -274,6 +274,11 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
     saved.streams = bool(emitter.stream);
     if (!saved.streams) return;
     saved.kept = emitter.stream->kept;
+    saved.patchedAt = emitter.stream->patchedAt;
+    for (size_t i = 0; i < saved.patches.size(); ++i) {
+        const components::JetPatch& patch = emitter.stream->patches[i];
+        if (patch.object.index1 == 0 || objects_.find(patch.object)) saved.patches[i] = patch;
+    }
     for (uint32_t place = 0; place < components::kJetParcels; ++place) {
         const components::JetParcel& parcel = emitter.stream->parcels[place];
         if (parcel.launched == components::kJetNever) continue;
@@ -481,6 +486,15 @@ void World::checkSaved(const SavedWorld& saved) {
                        "The save has an emitter of %g kW; the limits are [0, 100000].",
                        double(emitter.power));
         checkTouches(emitter.touches);
+        for (const components::JetPatch& patch : emitter.patches) {
+            if (patch.left == 0) continue;
+            checkPlace(patch.place, "fuel that sticks");
+            checkPlace(patch.normal, "fuel that sticks");
+            if (patch.fuel > components::kPatchMost || patch.water > components::kPatchMost)
+                core::fail(FW_ERROR_BAD_DATA, "The save has fuel that sticks and is too much.");
+            if (patch.object.index1 != 0)
+                checkTexel(patch.object.index1 - 1, patch.texel, "fuel that sticks");
+        }
         for (const components::JetParcel& parcel : emitter.parcels) {
             checkPlace(parcel.from, "a jet's stream");
             if (!(parcel.wide >= 0 && parcel.wide <= 4) || parcel.most > 10000000 ||
@@ -734,6 +748,12 @@ void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emit
     }
     if (!emitter.stream) return;
     emitter.stream->kept = from.kept;
+    emitter.stream->patches = from.patches;
+    for (components::JetPatch& patch : emitter.stream->patches)
+        patch.object =
+            patch.object.index1 != 0 ? objects_.idOf(patch.object.index1 - 1) : FwBurnableMeshId{};
+    emitter.stream->before = emitter.stream->patches;
+    emitter.stream->patchedAt = from.patchedAt;
     for (components::JetParcel& parcel : emitter.stream->parcels) parcel = {};
     for (size_t i = 0; i < from.parcels.size(); ++i) {
         components::JetParcel& parcel = emitter.stream->parcels[from.places[i]];

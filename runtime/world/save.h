@@ -25,6 +25,8 @@ struct SavedEmitter {
     std::array<SavedTouch, 8> touches{};
     bool streams = false;
     uint64_t kept = 0;
+    components::JetPatches patches{};  // fuel that sticks
+    uint32_t patchedAt = 0;
     std::pmr::vector<components::JetParcel> parcels;  // in flight, by their place
     std::pmr::vector<uint32_t> places;
     std::pmr::vector<uint8_t> swept;  // by parcel and ray: its hit is of the world as it is

@@ -36,6 +36,8 @@ template <typename S, Is<components::JetRay> T>
 void put(S& s, T& value);
 template <typename S, Is<components::JetParcel> T>
 void put(S& s, T& value);
+template <typename S, Is<components::JetPatch> T>
+void put(S& s, T& value);
 template <typename S, Is<PendingTexel> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedTag> T>
@@ -120,7 +122,13 @@ void put(S& s, T& r) {
 }
 template <typename S, Is<components::JetParcel> T>
 void put(S& s, T& p) {
-    all(s, p.launched, p.power, p.from, p.wide, p.most, p.flight, p.rays);
+    all(s, p.launched, p.power, p.sticks, p.from, p.wide, p.most, p.flight, p.rays);
+}
+template <typename S, Is<components::JetPatch> T>
+void put(S& s, T& p) {
+    all(s, p.left);
+    if (p.left == 0) return;
+    all(s, p.object.index1, p.texel, p.fuel, p.power, p.water, p.waterAt, p.place, p.normal);
 }
 template <typename S, Is<PendingTexel> T>
 void put(S& s, T& p) {
@@ -193,7 +201,7 @@ template <typename S, Is<SavedEmitter> T>
 void put(S& s, T& e) {
     all(s, e.slot, e.flags, e.position, e.direction, e.power, e.touches, e.streams);
     if (!e.streams) return;
-    all(s, e.kept);
+    all(s, e.kept, e.patches, e.patchedAt);
     list(s, e.parcels, "parcels of a jet", 16);
     const size_t rays = e.parcels.size() * components::kJetRays;
     if constexpr (S::kReads) {
