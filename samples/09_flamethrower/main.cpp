@@ -18,6 +18,9 @@ struct Box {
     bool wall = true;        // else it is what must, or must not, catch
 };
 
+constexpr float kPower = 700;   // kW
+constexpr float kFlows = 0.8f;  // of a case's time; then what stuck burns on
+
 struct Case {
     const char* name;
     glm::vec3 nozzle, direction;
@@ -162,7 +165,9 @@ void setUp(sample::FireHost& fire, FwMeshId cube, const FwMaterialId materials[2
     }
     FwFireEmitterDef jet = fwDefaultFireEmitterDef();
     jet.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES | FW_EMITTER_GROUND;
-    jet.power = 700;
+    jet.power = kPower;
+    jet.stick = 0.3f;
+    jet.stickTime = 4;
     for (int i = 0; i < 3; ++i) {
         jet.position[i] = what.nozzle[i];
         jet.direction[i] = what.direction[i];
@@ -227,6 +232,9 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
             const float position[3] = {place.x, place.y, place.z};
             fire.check(fwWorld_MoveFireEmitter(fire.world, range.jet, position, nullptr),
                        "fwWorld_MoveFireEmitter");
+            fire.check(
+                fwWorld_SetFireEmitterPower(fire.world, range.jet, part < kFlows ? kPower : 0),
+                "fwWorld_SetFireEmitterPower");
             sample::showStudio(frame, stage, studio, fire, view);
         }
 
