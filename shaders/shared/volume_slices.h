@@ -1,7 +1,6 @@
-// The sliced lattice: a flame's tube as a chain of hexahedra between its nodes' planes, and what a plane
-// across the view cuts out of each: a convex polygon whose corners keep their place along the curve.
-// FW_FLAME_NODE(i) is the caller's, see volume_march.h.
-// GLSL too, and laid out by hand.
+// The sliced lattice: a flame's tube as a chain of hexahedra between its nodes' planes, and what a
+// plane across the view cuts out of each: a convex polygon whose corners keep their place along the
+// curve. FW_FLAME_NODE(i) is the caller's, see volume_march.h. GLSL too, and laid out by hand.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_SLICES_H
 #define FW_SHARED_VOLUME_SLICES_H
