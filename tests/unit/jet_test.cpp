@@ -19,6 +19,7 @@ namespace {
 
 FwFireEmitterDef flamethrower() {
     FwFireEmitterDef def{};
+    def.stickTime = 6;
     def.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES;
     def.position[1] = 1;
     def.direction[0] = 1;

@@ -14,6 +14,7 @@ using gpu::vec3;
 
 FwFireEmitterDef jetDef() {
     FwFireEmitterDef def{};
+    def.stickTime = 6;
     def.flags = FW_EMITTER_JET;
     def.direction[0] = 1;
     def.power = 2000;
