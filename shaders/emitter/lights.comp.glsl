@@ -207,10 +207,12 @@ void main() {
             float len = flameLength(min(weight * 16.0, power), area);
             vec3 at = vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u],
                            lightPlace[light * 4u + 2u]) + mean + view.up.xyz * (0.25 * len);
-            // Two sines that never meet again: no lookup, no pop.
+            // Sines that never meet again: no lookup, no pop. What shines from afar is of many fires,
+            // and steady.
             float t = view.ambientSky.w, p = 6.2832 * unit(key);
-            float flicker = 1.0 + 0.10 * sin(11.3 * t + p) + 0.07 * sin(17.9 * t + 2.3 * p) +
-                            0.05 * sin(29.1 * t + 4.1 * p);
+            float flicker = 1.0 + min(weight * 16.0 / power, 1.0) *
+                                      (0.10 * sin(11.3 * t + p) + 0.07 * sin(17.9 * t + 2.3 * p) +
+                                       0.05 * sin(29.1 * t + 4.1 * p));
             l.positionRadius = vec4(at, clamp(0.4 * sqrt(area), 0.04, 0.5 * len + 0.04));
             // 30 % leaves as light and heat; luminance of the colour is 1.
             l.colorIntensity = vec4(vec3(1.717, 0.858, 0.292), power * (0.3 / 12.566) * flicker);
