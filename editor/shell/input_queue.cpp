@@ -28,6 +28,8 @@ float pixelsPerUnit(GLFWwindow* window) {
     return width > 0 ? float(pixels) / float(width) : 1.0f;
 }
 
+bool isModifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
+
 InputEvent pointerEvent(GLFWwindow* window, Type type) {
     double x = 0, y = 0;
     glfwGetCursorPos(window, &x, &y);
@@ -92,7 +94,7 @@ bool InputQueue::deliver() {
     ImGuiIO& io = ImGui::GetIO();
     std::bitset<512> keys;
     std::bitset<8> buttons;
-    bool wheel = false, any = false;
+    bool wheel = false, any = false, pressed = false;
     while (!events_.empty()) {
         const InputEvent& event = events_.front();
         const auto code = size_t(event.code);
@@ -100,6 +102,9 @@ bool InputQueue::deliver() {
         if (event.type == Type::kMove && (buttons.any() || wheel)) break;
         if (event.type == Type::kButton && (buttons.test(code) || wheel)) break;
         if (event.type == Type::kKey && keys.test(code)) break;
+        // What a key or click means is said by the modifiers that were held with it, although they
+        // may be let go of before it.
+        if (event.type == Type::kKey && isModifier(event.code) && (pressed || wheel)) break;
         if (event.type == Type::kWheel && buttons.any()) break;
         any = true;
         switch (event.type) {
@@ -110,10 +115,12 @@ bool InputQueue::deliver() {
                 io.MousePos = {event.x, event.y};
                 io.MouseDown[event.code] = event.down;
                 buttons.set(code);
+                pressed = true;
                 break;
             case Type::kKey:
                 io.KeysDown[event.code] = event.down;
                 keys.set(code);
+                pressed = pressed || !isModifier(event.code);
                 break;
             case Type::kText:
                 io.AddInputCharacter(event.character);
