@@ -11,6 +11,7 @@
 #include <iterator>
 
 #include "document/world_parts.h"
+#include "import/content_hash.h"
 #include "import/float_picture.h"
 
 namespace fwedit {
@@ -20,22 +21,6 @@ namespace fs = std::filesystem;
 using fwimport::ImportedModel;
 
 constexpr double kWateringStep = 0.125;  // s
-
-struct Hash {
-    uint64_t value = 0xcbf29ce484222325ull;
-    void add(const void* data, size_t size) {
-        const auto* bytes = static_cast<const uint8_t*>(data);
-        for (size_t i = 0; i < size; ++i) value = (value ^ bytes[i]) * 0x100000001b3ull;
-    }
-    template <typename T>
-    void add(const std::vector<T>& values) {
-        add(values.data(), values.size() * sizeof(T));
-    }
-    template <typename T>
-    void addValue(T item) {
-        add(&item, sizeof item);
-    }
-};
 
 // What the plugin's mesh is made of: materials of the file in its eight slots, and colours.
 struct Surfaces {
@@ -94,7 +79,7 @@ FwMeshDef meshDefOf(const Mesh& mesh, const ImportedModel& model, const Surfaces
 }
 
 std::string bakeKey(const FwMeshDef& def, const Surfaces& surfaces, const ImportedModel& model) {
-    Hash hash;
+    fwimport::ContentHash hash;
     hash.addValue(fwGetVersion());
     hash.addValue(def.mapSize);
     hash.addValue(def.texelsPerMetre);

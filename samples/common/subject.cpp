@@ -8,25 +8,9 @@
 #include <fstream>
 
 #include "common/toy.h"
+#include "import/content_hash.h"
 
 namespace {
-
-// FNV-1a over everything that the bake reads.
-struct Hash {
-    uint64_t value = 0xcbf29ce484222325ull;
-    void add(const void* data, size_t size) {
-        const auto* bytes = static_cast<const uint8_t*>(data);
-        for (size_t i = 0; i < size; ++i) value = (value ^ bytes[i]) * 0x100000001b3ull;
-    }
-    template <typename T>
-    void add(const std::vector<T>& values) {
-        add(values.data(), values.size() * sizeof(T));
-    }
-    template <typename T>
-    void addValue(T item) {
-        add(&item, sizeof item);
-    }
-};
 
 glm::vec3 vertexOf(const fwimport::ImportedModel& model, uint32_t index) {
     return {model.positions[index * 3], model.positions[index * 3 + 1],
@@ -261,7 +245,7 @@ FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMa
         return id;
     }
 
-    Hash hash;
+    fwimport::ContentHash hash;
     hash.addValue(fwGetVersion());
     hash.addValue(def.mapSize);
     hash.addValue(def.texelsPerMetre);

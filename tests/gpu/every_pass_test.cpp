@@ -334,7 +334,9 @@ class EveryPass : public GpuTest {
     // As a save may have it: unburnt, in all lists with all of its tiles.
     void restoreBox() {
         const mesh::BurnDomain& domain = scene_->domains[0];
-        const std::vector<uint32_t> ticks(domain.texelCount(), gpu::kNever);
+        std::vector<uint32_t> ticks(domain.texelCount(), gpu::kInert);
+        for (size_t i = 0; i < ticks.size(); ++i)
+            if (domain.texels[i].materialFlags & mesh::kTexelReal) ticks[i] = gpu::kNever;
         const std::vector<gpu::uvec2> heat(domain.texelCount(), gpu::uvec2(0xFFFFu, 0));
         const std::vector<gpu::TileState> tiles(
             domain.tileCount(), gpu::TileState{gpu::kNever, gpu::kTileKept, gpu::kFarPast, 0});
