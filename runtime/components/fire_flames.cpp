@@ -15,8 +15,6 @@ constexpr float kFluxMost = 200000.0f;     // W/m^2
 constexpr float kLumensPerWatt = 0.4f;     // as FlameLight::flux counts
 constexpr float kFullCircle = 12.566371f;  // sr of a sphere
 
-vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
-
 // Two directions across `up`.
 void across(vec3 up, vec3& x, vec3& z) noexcept {
     const vec3 other = std::abs(up.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 0, 1);
@@ -82,9 +80,9 @@ void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
     volume::Flame& flame = f.flame;
     volume::FlameDef& def = flame.def;
     vec3 x, z;
-    def.up = vecOf(air.up);
+    def.up = volume::vecOf(air.up);
     across(def.up, x, z);
-    def.position = vecOf(fire.position) + x * part.x + z * part.z;
+    def.position = volume::vecOf(fire.position) + x * part.x + z * part.z;
     def.power = part.power;
     def.diameter = part.diameter;
     def.look = fire.look;
@@ -176,7 +174,7 @@ void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
         volume::FlameDef first = wanted;
         if (fire.state.lit) first.power = 0;  // it catches; a new fire has burnt for long
         volume::FlameAir still;
-        still.wind = vecOf(air.wind) * fire.windResponse;
+        still.wind = volume::vecOf(air.wind) * fire.windResponse;
         volume::startFlame(f.flame, first, still);
         f.flame.def = wanted;
         if (fire.tracked()) f.flame.trackTime = double(fire.track.times[0]);
@@ -184,7 +182,7 @@ void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
 }
 
 void FireFlames::advance(const FireAir& air, float seconds) noexcept {
-    const vec3 up = vecOf(air.up);
+    const vec3 up = volume::vecOf(air.up);
     others_.clear();
     for (FireFlame& f : next_) {
         volume::Flame& flame = f.flame;
@@ -211,7 +209,7 @@ void FireFlames::advance(const FireAir& air, float seconds) noexcept {
         Near near;
         findNear(f, air.colliders, seconds, near);
         volume::FlameAir around;
-        around.wind = vecOf(air.wind) * f.fire->windResponse;
+        around.wind = volume::vecOf(air.wind) * f.fire->windResponse;
         around.neighbours = met_[i];
         around.neighbours.height *= 1.0f - f.flame.tracked;
         around.colliders = {near.list.data(), near.count};

@@ -51,7 +51,7 @@ FwLight* nearestOf(std::span<FwLight> lights, const FwLight& to) noexcept {
     return nearest;
 }
 
-FwLight* findLight(std::span<FwLight> lights, uint32_t id) noexcept {
+const FwLight* findLight(std::span<const FwLight> lights, uint32_t id) noexcept {
     const auto at = std::find_if(lights.begin(), lights.end(),
                                  [id](const FwLight& light) { return light.id == id; });
     return at == lights.end() ? nullptr : &*at;
@@ -122,9 +122,8 @@ void followLights(std::pmr::vector<FwLight>& shown, std::span<const FwLight> kno
     float all = 0;
     for (const FwLight& light : known) all += light.intensity;
     for (FwLight& light : shown) {
-        const auto to = std::find_if(known.begin(), known.end(),
-                                     [&](const FwLight& l) { return l.id == light.id; });
-        if (to == known.end()) {
+        const FwLight* to = findLight(known, light.id);
+        if (!to) {
             light.intensity *= 1 - share;
             light.power *= 1 - share;
             continue;
@@ -146,13 +145,9 @@ void followLights(std::pmr::vector<FwLight>& shown, std::span<const FwLight> kno
         fresh.power *= share;
     }
     // What fades gives way: first what is too faint to see, then whatever there is no room for.
-    const auto fades = [&](const FwLight& light) {
-        return std::none_of(known.begin(), known.end(),
-                            [&](const FwLight& l) { return l.id == light.id; });
-    };
     for (size_t i = shown.size(); i-- > 0;) {
         const bool faint = shown[i].intensity <= kFaintest * all || known.empty();
-        if (!fades(shown[i]) || (!faint && shown.size() <= most)) continue;
+        if (findLight(known, shown[i].id) || (!faint && shown.size() <= most)) continue;
         const FwLight gone = shown[i];
         shown.erase(shown.begin() + std::ptrdiff_t(i));
         if (FwLight* nearest = nearestOf(shown, gone)) {

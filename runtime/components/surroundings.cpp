@@ -12,7 +12,6 @@ constexpr float kRadiant = 0.3f;      // of a fire's power
 constexpr float kConvection = 25.0f;  // W/(m^2 K), of hot gas on a body
 constexpr float kLeastFlux = 20.0f;   // W/m^2: below it no wall is asked for
 constexpr float kSphere = 12.56637f;
-constexpr float kMostFlux = 150000.0f;  // W/m^2, of a full flame
 // Soot of a kJ of wood, g: 0.015 of its fuel at 15 kJ/g. Its cross-section, m^2/g.
 constexpr float kSootPerKilojoule = 0.015f / 15.0f, kSmokeArea = 8.7f;
 constexpr float kLeastSmoke = 1e-5f;  // 1/m
@@ -98,7 +97,7 @@ Surroundings surroundingsOf(std::span<const FireSource> sources, const Surroundi
         if (!hidden) all.heatFlux += flux;
         all.heatFlux += kConvection * excess;
     }
-    all.heatFlux = std::min(all.heatFlux, kMostFlux);
+    all.heatFlux = std::min(all.heatFlux, kMostHeatFlux);
     if (all.smoke < kLeastSmoke) all.smoke = 0;
     return all;
 }

@@ -12,6 +12,8 @@ namespace fw::components {
 
 using volume::vec3;
 
+constexpr float kMostHeatFlux = 150000.0f;  // W/m^2, of a full flame
+
 struct FireSource {      // something that burns, as a pool fire
     vec3 base{0.0f};     // m
     float radius = 0;    // m

@@ -16,8 +16,6 @@ using gpu::vec3;
 
 constexpr float kMostPower = 1e5f;  // kW
 
-vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
-
 void checkPoint(const FwFirePoint& point, const char* name, uint32_t index) {
     char field[96];
     std::snprintf(field, sizeof field, "%s[%u].position", name, index);
@@ -186,7 +184,7 @@ void setFirePoints(VolumetricFire& fire, const FwFirePoint* points, uint32_t cou
     if (count > 0 && !points) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
     for (uint32_t i = 0; i < count; ++i) checkPoint(points[i], name, i);
     for (uint32_t i = 0; i < count; ++i)
-        fire.points[i] = {vecOf(points[i].position), points[i].radius};
+        fire.points[i] = {volume::vecOf(points[i].position), points[i].radius};
     fire.pointCount = count;
     splitAgain(fire);
 }
@@ -206,7 +204,7 @@ void setFireTrack(VolumetricFire& fire, const FwFireTrackDef* def) {
         points.reserve(count);
         for (uint32_t i = 0; i < count; ++i) {
             checkPoint(def->points[i], "FwFireTrackDef::points", i);
-            points.push_back({vecOf(def->points[i].position), def->points[i].radius});
+            points.push_back({volume::vecOf(def->points[i].position), def->points[i].radius});
         }
         volume::setTrack(track, {def->times, def->keyCount}, points, def->pointsPerKey,
                          (def->flags & FW_FIRE_TRACK_LOOP) != 0);

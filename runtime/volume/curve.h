@@ -15,6 +15,8 @@ using gpu::vec2;
 using gpu::vec3;
 using gpu::vec4;
 
+inline vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
+
 constexpr uint32_t kMaxControlPoints = 32;
 constexpr uint32_t kArcEntries = 64;  // intervals of the arc-length table
 

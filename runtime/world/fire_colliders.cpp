@@ -13,8 +13,6 @@ using components::checkValues;
 
 constexpr uint32_t kMaxFireColliders = 64;
 
-volume::vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
-
 float askHost(void* user, const float point[3], float normal[3]) noexcept {
     const auto& entry = *static_cast<const FireColliderEntry*>(user);
     return entry.distance(entry.distanceData, point, normal);
@@ -48,12 +46,12 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
                    uint32_t(FW_COLLIDER_DISTANCE));
     checkValues(def.position, 3, "FwFireColliderDef::position", -1e6f, 1e6f);
     shape.kind = volume::ColliderKind(def.kind);
-    shape.place = vecOf(def.position);
+    shape.place = volume::vecOf(def.position);
     bool keep = false;
     switch (shape.kind) {
         case volume::ColliderKind::Capsule:
             checkValues(def.end, 3, "FwFireColliderDef::end", -1e6f, 1e6f);
-            shape.extent = vecOf(def.end);
+            shape.extent = volume::vecOf(def.end);
             [[fallthrough]];
         case volume::ColliderKind::Sphere:
             checkValue(def.radius, "FwFireColliderDef::radius", 1e-4f, 1e5f);
@@ -62,12 +60,12 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
         case volume::ColliderKind::Box:
             checkValues(def.halfSize, 3, "FwFireColliderDef::halfSize", 1e-4f, 1e5f);
             checkValues(def.rotation, 4, "FwFireColliderDef::rotation", -1.01f, 1.01f);
-            shape.extent = vecOf(def.halfSize);
+            shape.extent = volume::vecOf(def.halfSize);
             for (int i = 0; i < 4; ++i) shape.rotation[i] = def.rotation[i];
             break;
         case volume::ColliderKind::Plane:
             checkValues(def.normal, 3, "FwFireColliderDef::normal", -1e6f, 1e6f);
-            shape.extent = vecOf(def.normal);
+            shape.extent = volume::vecOf(def.normal);
             break;
         case volume::ColliderKind::HeightField: {
             checkValue(def.cellSize, "FwFireColliderDef::cellSize", 1e-3f, 1e5f);
@@ -146,8 +144,8 @@ void World::listFireColliders() noexcept {
         if (!entry) continue;
         volume::Collider box;
         box.kind = volume::ColliderKind::Box;
-        box.place = vecOf(entry->pose.translation);
-        box.extent = vecOf(entry->halfSize) * entry->pose.scale;
+        box.place = volume::vecOf(entry->pose.translation);
+        box.extent = volume::vecOf(entry->halfSize) * entry->pose.scale;
         box.rotation = quaternion(entry->pose.rotation);
         fireShapes_.push_back(box);
     }

@@ -9,8 +9,6 @@ namespace {
 
 using components::VolumetricFire;
 
-volume::vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
-
 }  // namespace
 
 // A warmed-up frame finds its room.
@@ -152,7 +150,7 @@ void World::askVolumetricFires(const float point[3], FwFireAnswer& answer) {
     components::checkValues(point, 3, "point", -1e6f, 1e6f);
     if (!burning_.now().empty()) listFireColliders();  // as they stand now
     const components::FireAnswer found =
-        components::askFires(burning_.now(), profiles_, fireShapes_, vecOf(point));
+        components::askFires(burning_.now(), profiles_, fireShapes_, volume::vecOf(point));
     answer.inside = found.air.inside ? 1 : 0;
     answer.temperature = found.air.kelvin;
     answer.heatFlux = found.air.heatFlux;
@@ -166,8 +164,8 @@ void World::volumetricFirePush(const float centre[3], float radius, FwFirePush& 
     components::checkValues(centre, 3, "centre", -1e6f, 1e6f);
     components::checkValue(radius, "radius", 0.0f, 100.0f);
     if (!burning_.now().empty()) listFireColliders();
-    const volume::FlamePush found =
-        components::pushOfFires(burning_.now(), profiles_, fireShapes_, vecOf(centre), radius);
+    const volume::FlamePush found = components::pushOfFires(burning_.now(), profiles_, fireShapes_,
+                                                            volume::vecOf(centre), radius);
     for (int i = 0; i < 3; ++i) push.force[i] = found.force[i];
     push.ignitionPower = found.ignition;
 }

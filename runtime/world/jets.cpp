@@ -47,8 +47,6 @@ constexpr float kNano = 1e9f;         // of W and m^2
 constexpr float kNearPatch = 0.45f;   // m within which fuel sticks to fuel
 constexpr float kPastReach = 1.15f;   // a few particles come farther than most
 
-vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
-
 uint32_t millimetres(float m) noexcept { return uint32_t(std::lround(std::max(m, 0.0f) * 1000)); }
 
 float leastScale(const components::Pose& pose) noexcept {
@@ -91,7 +89,7 @@ bool within(const float from[3], const float way[3], const float low[3], const f
 float halfAngle(const FireEmitter& emitter) noexcept { return emitter.look.cone * 1.8f + 0.02f; }
 
 void jetWays(const FireEmitter& emitter, float (&ways)[kRays][3]) noexcept {
-    const vec3 along = vecOf(emitter.direction);
+    const vec3 along = volume::vecOf(emitter.direction);
     const vec3 across = std::abs(along.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
     vec3 r(along.y * across.z - along.z * across.y, along.z * across.x - along.x * across.z,
            along.x * across.y - along.y * across.x);
@@ -170,7 +168,7 @@ void World::listJetTargets(const float from[3], float reach) noexcept {
 // it went through, with what lies around it on the same side.
 float World::sweepJet(const float start[3], const float way[3], float most, JetHit& hit,
                       const JetGate* passed) noexcept {
-    const vec3 from = vecOf(start), along = vecOf(way);
+    const vec3 from = volume::vecOf(start), along = volume::vecOf(way);
     vec3 normal(-along);
     float nearest = sweepShapes(fireShapes_, from, along, most, normal);
     hit = {};

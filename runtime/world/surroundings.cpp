@@ -10,26 +10,23 @@
 namespace fw::world {
 namespace {
 
-constexpr float kAmbient = 293;      // K
-constexpr float kMostFlux = 150000;  // W/m^2
+constexpr float kAmbient = 293;  // K
 constexpr uint32_t kMostMaskSide = 4096;
-
-components::vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 
 components::SurroundingAir World::listSources() {
     components::SurroundingAir air;
-    air.up = vecOf(def_.up);
-    air.wind = vecOf(wind_);
+    air.up = volume::vecOf(def_.up);
+    air.wind = volume::vecOf(wind_);
     fireShapes_.reserve(kMaxFireShapes);
     listFireColliders();  // as they stand now
     air.walls = fireShapes_;
     sources_.clear();
     // A light stands a quarter of its flame above what burns (lights.comp).
     const auto add = [&](const FwLight& light) {
-        components::FireSource source = components::fireSource(vecOf(light.position), light.radius,
-                                                               0.001f * light.power, light.id);
+        components::FireSource source = components::fireSource(
+            volume::vecOf(light.position), light.radius, 0.001f * light.power, light.id);
         source.base = source.base - air.up * (0.25f * source.height);
         sources_.push_back(source);
     };
@@ -39,7 +36,7 @@ components::SurroundingAir World::listSources() {
         if (!entry || (*entry)->data.state.flames == 0) continue;
         const components::VolumetricFire& fire = (*entry)->data;
         components::FireSource source = components::fireSource(
-            vecOf(fire.position), 0.5f * fire.diameter, fire.state.power, 0x80000000u | i);
+            volume::vecOf(fire.position), 0.5f * fire.diameter, fire.state.power, 0x80000000u | i);
         source.exact = true;
         sources_.push_back(source);
     }
@@ -60,13 +57,13 @@ components::Surroundings World::surroundingsAt(const components::SurroundingAir&
     const components::FireAnswer fires =
         components::askFires(burning_.now(), profiles_, air.walls, point);
     at.excess = std::max(at.excess, fires.air.kelvin - kAmbient);
-    at.heatFlux = std::min(at.heatFlux + fires.air.heatFlux, kMostFlux);
+    at.heatFlux = std::min(at.heatFlux + fires.air.heatFlux, components::kMostHeatFlux);
     return at;
 }
 
 void World::askSurroundings(const float point[3], FwSurroundings& out) {
     components::checkValues(point, 3, "point", -1e6f, 1e6f);
-    const components::Surroundings at = surroundingsAt(listSources(), vecOf(point));
+    const components::Surroundings at = surroundingsAt(listSources(), volume::vecOf(point));
     out.heatFlux = at.heatFlux;
     out.temperature = kAmbient + at.excess;
     out.smoke = at.smoke;
@@ -82,7 +79,7 @@ float World::askSight(const float from[3], const float to[3]) {
     components::checkValues(from, 3, "from", -1e6f, 1e6f);
     components::checkValues(to, 3, "to", -1e6f, 1e6f);
     const components::SurroundingAir air = listSources();
-    return components::sightThrough(sources_, air, vecOf(from), vecOf(to));
+    return components::sightThrough(sources_, air, volume::vecOf(from), volume::vecOf(to));
 }
 
 void World::makeSafetyMask(const float corner[3], const float columnStep[3], const float rowStep[3],
@@ -97,8 +94,9 @@ void World::makeSafetyMask(const float corner[3], const float columnStep[3], con
     const components::SurroundingAir air = listSources();
     for (uint32_t row = 0; row < rows; ++row)
         for (uint32_t column = 0; column < columns; ++column) {
-            const components::vec3 point =
-                vecOf(corner) + vecOf(columnStep) * float(column) + vecOf(rowStep) * float(row);
+            const components::vec3 point = volume::vecOf(corner) +
+                                           volume::vecOf(columnStep) * float(column) +
+                                           volume::vecOf(rowStep) * float(row);
             const float danger = components::dangerOf(surroundingsAt(air, point));
             mask[size_t{row} * columns + column] =
                 static_cast<uint8_t>(std::min(127.0f * danger, 255.0f));
