@@ -27,12 +27,6 @@ float floatAt(std::span<const std::byte> bytes, size_t at) {
     return value;
 }
 
-uint64_t checksum(std::span<const std::byte> bytes) {
-    uint64_t hash = core::kFnvOffset;
-    for (std::byte b : bytes) hash = (hash ^ uint64_t(b)) * 1099511628211ull;
-    return hash;
-}
-
 void check(const char* name, double value, double low, double high) {
     if (!(value >= low && value <= high))
         core::fail(FW_ERROR_BAD_DATA, "the book's %s is %g; it must lie in [%g, %g].", name, value,
@@ -108,7 +102,7 @@ std::pmr::vector<std::byte> cookBook(const Book& book, std::pmr::memory_resource
     for (const Rect& r : book.rects) put(r.left, 2), put(r.low, 2), put(r.right, 2), put(r.high, 2);
     for (const uint8_t byte : book.texels) out.push_back(std::byte(byte));
     for (const uint8_t byte : book.motion) out.push_back(std::byte(byte));
-    const uint64_t sum = checksum(std::span(out).subspan(kSumEnd));
+    const uint64_t sum = core::hashBytes(std::span(out).subspan(kSumEnd));
     for (uint32_t k = 0; k < 8; ++k) out[8 + k] = std::byte(sum >> (8 * k));
     return out;
 }
@@ -140,7 +134,7 @@ void readBook(std::span<const std::byte> bytes, Book& book) {
         core::fail(FW_ERROR_BAD_DATA, "the .fwbook has %zu bytes; %u frames of %u x %u need %zu.",
                    bytes.size(), f.frames, f.width, f.height, expected);
     const uint64_t sum = wordAt(bytes, 8) | uint64_t(wordAt(bytes, 12)) << 32;
-    const uint64_t found = checksum(bytes.subspan(kSumEnd));
+    const uint64_t found = core::hashBytes(bytes.subspan(kSumEnd));
     if (sum != found)
         core::fail(FW_ERROR_BAD_DATA,
                    "the .fwbook's checksum is 0x%016llx; its content has 0x%016llx.",

@@ -1,5 +1,7 @@
-// Hashes: lowbias32 for counter-based random numbers, FNV-1a over words for state hashes.
+// Hashes: lowbias32 for counter-based random numbers, FNV-1a over words for state hashes and over
+// bytes for files.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -14,12 +16,18 @@ inline uint32_t hash32(uint32_t x) noexcept {  // "lowbias32", a public-domain i
 }
 
 constexpr uint64_t kFnvOffset = 1469598103934665603ull;
+constexpr uint64_t kFnvPrime = 1099511628211ull;
 
 inline uint64_t hashWords(std::span<const uint32_t> words, uint64_t hash = kFnvOffset) noexcept {
     for (uint32_t word : words) {
         hash ^= word;
-        hash *= 1099511628211ull;
+        hash *= kFnvPrime;
     }
+    return hash;
+}
+
+inline uint64_t hashBytes(std::span<const std::byte> bytes, uint64_t hash = kFnvOffset) noexcept {
+    for (const std::byte b : bytes) hash = (hash ^ uint64_t(b)) * kFnvPrime;
     return hash;
 }
 

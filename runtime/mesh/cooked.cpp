@@ -2,8 +2,8 @@
 //   header: u32 magic 'FWBD', u32 version, u64 key, u64 payload bytes, u64 FNV-1a of all the rest
 //   payload: the scalars, the counts, then every array, in the order of `transfer` below
 // The reader trusts nothing: a file with a right checksum but absurd indices is refused too.
-#include "core/error.h"
 #include "core/hash.h"
+#include "core/stream.h"
 #include "mesh/texels.h"
 
 #include <bit>
@@ -13,62 +13,15 @@
 namespace fw::mesh {
 namespace {
 
+using core::hashBytes;
+using core::Reader;
+using core::Writer;
+
 constexpr uint32_t kMagic = 0x44425746;  // "FWBD"
 constexpr uint32_t kVersion = 2;         // of the format
 constexpr uint32_t kBakeVersion = 2;     // of the algorithm: part of the key
 constexpr size_t kHeaderBytes = 32;
-constexpr uint64_t kFnvPrime = 1099511628211ull;
-
-uint64_t hashBytes(std::span<const std::byte> bytes, uint64_t hash = core::kFnvOffset) {
-    for (std::byte b : bytes) {
-        hash ^= uint64_t(b);
-        hash *= kFnvPrime;
-    }
-    return hash;
-}
-
-template <typename T>
-struct WordsOf {  // how many bits a number travels in
-    using Type = std::conditional_t<sizeof(T) == 8, uint64_t,
-                                    std::conditional_t<sizeof(T) == 4, uint32_t, uint16_t>>;
-};
-
-class Writer {
- public:
-    static constexpr bool kReads = false;
-    explicit Writer(std::pmr::vector<std::byte>& out) : out_(out) {}
-    template <typename T>
-    void number(const T& value) {
-        const auto word = std::bit_cast<typename WordsOf<T>::Type>(value);
-        for (size_t k = 0; k < sizeof(T); ++k) out_.push_back(std::byte(word >> (8 * k)));
-    }
-
- private:
-    std::pmr::vector<std::byte>& out_;
-};
-
-class Reader {
- public:
-    static constexpr bool kReads = true;
-    explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-    template <typename T>
-    void number(T& value) {
-        if (left() < sizeof(T))
-            core::fail(FW_ERROR_BAD_DATA, "The cooked mesh ends after %zu bytes of its payload.",
-                       bytes_.size());
-        typename WordsOf<T>::Type word = 0;
-        for (size_t k = 0; k < sizeof(T); ++k)
-            word =
-                decltype(word)(word | decltype(word)(decltype(word)(bytes_[at_ + k]) << (8 * k)));
-        at_ += sizeof(T);
-        value = std::bit_cast<T>(word);
-    }
-    [[nodiscard]] size_t left() const { return bytes_.size() - at_; }
-
- private:
-    std::span<const std::byte> bytes_;
-    size_t at_ = 0;
-};
+constexpr const char* kWhat = "cooked mesh";
 
 // One description of every record for both directions.
 template <typename Stream, typename T>
@@ -289,7 +242,7 @@ uint64_t cookedKey(std::span<const std::byte> bytes) {
     if (bytes.size() < kHeaderBytes)
         core::fail(FW_ERROR_BAD_DATA, "The cooked mesh has %zu bytes; its header alone has %zu.",
                    bytes.size(), kHeaderBytes);
-    Reader header(bytes.first(kHeaderBytes));
+    Reader header(bytes.first(kHeaderBytes), kWhat);
     uint32_t magic = 0, version = 0;
     uint64_t key = 0;
     header.number(magic);
@@ -308,7 +261,7 @@ uint64_t cookedKey(std::span<const std::byte> bytes) {
 
 BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory) {
     cookedKey(bytes);
-    Reader header(bytes.subspan(16));
+    Reader header(bytes.subspan(16), kWhat);
     uint64_t size = 0, checksum = 0;
     header.number(size);
     header.number(checksum);
@@ -326,7 +279,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
                    static_cast<unsigned long long>(checksum));
 
     BurnDomain domain(memory);
-    Reader reader(payload);
+    Reader reader(payload, kWhat);
     Counts counts;
     scalars(reader, domain, counts);
     checkScalars(domain);

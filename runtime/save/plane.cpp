@@ -1,7 +1,5 @@
 #include "save/plane.h"
 
-#include "save/stream.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -211,19 +209,6 @@ uint32_t folded(uint32_t difference) noexcept {  // signs to odd and even
 uint32_t unfolded(uint32_t value) noexcept { return (value >> 1) ^ (0u - (value & 1)); }
 
 }  // namespace
-
-uint64_t checksum(std::span<const std::byte> bytes) noexcept {
-    uint64_t hash = 1469598103934665603ull;
-    size_t at = 0;
-    for (; at + 8 <= bytes.size(); at += 8) {
-        uint64_t word = 0;
-        for (size_t k = 0; k < 8; ++k) word |= uint64_t(bytes[at + k]) << (8 * k);
-        hash = (hash ^ word) * 1099511628211ull;
-        hash ^= hash >> 29;
-    }
-    for (; at < bytes.size(); ++at) hash = (hash ^ uint64_t(bytes[at])) * 1099511628211ull;
-    return hash;
-}
 
 void writePlane(std::span<const uint32_t> values, uint32_t width, PlaneMask mask,
                 std::pmr::vector<std::byte>& out) {

@@ -171,13 +171,7 @@ uint32_t wordAt(std::span<const std::byte> bytes, size_t at) {
 
 // Of everything but the checksum itself.
 uint64_t checksum(std::span<const std::byte> bytes) {
-    uint64_t hash = core::kFnvOffset;
-    const auto add = [&](std::span<const std::byte> part) {
-        for (std::byte b : part) hash = (hash ^ uint64_t(b)) * 1099511628211ull;
-    };
-    add(bytes.first(16));
-    add(bytes.subspan(kHeaderBytes));
-    return hash;
+    return core::hashBytes(bytes.subspan(kHeaderBytes), core::hashBytes(bytes.first(16)));
 }
 
 }  // namespace

@@ -88,47 +88,49 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         const gpu::ObjectCounters before = object.counters;
         object.counters = now;
         object.countersFrame = readback.frameIndex;
-        object.mostIgnited = std::max(object.mostIgnited, now.ignited);
+        object.story.mostIgnited = std::max(object.story.mostIgnited, now.ignited);
         clamps += now.lateClamps;
         takeEnergy(object, readback.endTick);
         tellSpread(object, readback);
         float place[3];
-        if (now.burning > 0) object.lastBurning = readback.endTick;
+        if (now.burning > 0) object.story.lastBurning = readback.endTick;
 
         const bool freshFire = now.ignited > before.ignited || now.burning > 0;
-        if (!object.sawFire && now.ignited > 0 && freshFire) {
-            object.sawFire = true;
-            object.active = true;
-            const uint64_t tick = object.ignitionKnown ? object.firstIgnition : now.lastIgnition;
-            components::toWorld(object.data.pose, object.ignitionPoint, place);
+        if (!object.story.sawFire && now.ignited > 0 && freshFire) {
+            object.story.sawFire = true;
+            object.story.active = true;
+            const uint64_t tick =
+                object.story.ignitionKnown ? object.story.firstIgnition : now.lastIgnition;
+            components::toWorld(object.data.pose, object.story.ignitionPoint, place);
             raise(FW_EVENT_IGNITED, &object, 0, readback.frameIndex, place,
                   float(double(tick) / gpu::kTicksPerSecond));
         }
         // A few late arrivals come with any turn of the wind; only many of them are a limit.
         const uint32_t limit = std::max(kClampsToTell, now.ignited / 50);
-        if (now.lateClamps >= object.clampsTold + limit) {
-            components::toWorld(object.data.pose, object.ignitionPoint, place);
+        if (now.lateClamps >= object.story.clampsTold + limit) {
+            components::toWorld(object.data.pose, object.story.ignitionPoint, place);
             raise(FW_EVENT_FRONT_LIMITED, &object, 0, readback.frameIndex, place,
-                  float(now.lateClamps - object.clampsTold));
-            object.clampsTold = now.lateClamps;
+                  float(now.lateClamps - object.story.clampsTold));
+            object.story.clampsTold = now.lateClamps;
         }
         const bool settled = now.burning == 0 && now.frontTiles == 0 &&
-                             readback.endTick >= object.lastStimulus + kSettleTicks &&
+                             readback.endTick >= object.story.lastStimulus + kSettleTicks &&
                              readback.endTick >= uint64_t(now.lastIgnition) + kSettleTicks;
-        if (settled && object.active) {
-            object.active = false;
-            if (object.sawFire) {
+        if (settled && object.story.active) {
+            object.story.active = false;
+            if (object.story.sawFire) {
                 const bool byDousing =
-                    object.doused && object.lastDouse + 2 * kSettleTicks >= object.lastBurning;
+                    object.story.doused &&
+                    object.story.lastDouse + 2 * kSettleTicks >= object.story.lastBurning;
                 const float fraction =
-                    object.texels ? float(object.mostIgnited) / float(object.texels) : 0.0f;
-                components::toWorld(object.data.pose, object.ignitionPoint, place);
+                    object.texels ? float(object.story.mostIgnited) / float(object.texels) : 0.0f;
+                components::toWorld(object.data.pose, object.story.ignitionPoint, place);
                 raise(byDousing ? FW_EVENT_EXTINGUISHED : FW_EVENT_BURNT_OUT, &object, 0,
                       readback.frameIndex, place, fraction);
             }
-            object.sawFire = false;
-            object.ignitionKnown = false;
-            object.doused = false;
+            object.story.sawFire = false;
+            object.story.ignitionKnown = false;
+            object.story.doused = false;
         }
     }
     lateClamps_ = clamps;
@@ -138,14 +140,13 @@ void World::takeEnergy(Object& object, uint32_t endTick) noexcept {
     const gpu::ObjectCounters& now = object.counters;
     const uint64_t energy = uint64_t(now.energyHigh) << 32 | now.energyLow;
     const uint64_t steps = endTick / (gpu::kHeatSteps * gpu::kStepTicks);
-    if (steps == object.heatSteps) return;
-    const double seconds = double(steps - object.heatSteps) * gpu::kHeatSteps / 32;
-    object.power =
-        now.burning == 0
-            ? 0.0f
-            : float(double(energy - object.energy) / 1048576 / seconds / double(def_.paceFactor));
-    object.energy = energy;
-    object.heatSteps = steps;
+    if (steps == object.story.heatSteps) return;
+    const double seconds = double(steps - object.story.heatSteps) * gpu::kHeatSteps / 32;
+    object.story.power = now.burning == 0 ? 0.0f
+                                          : float(double(energy - object.story.energy) / 1048576 /
+                                                  seconds / double(def_.paceFactor));
+    object.story.energy = energy;
+    object.story.heatSteps = steps;
 }
 
 void World::takeAnswers(const gpu::Readback& readback) noexcept {

@@ -86,7 +86,7 @@ float World::burningAreaOf(const Object& object) noexcept {
 }
 
 float World::powerOf(const Object& object) noexcept {
-    if (components::hasHeat(object.data)) return object.power;
+    if (components::hasHeat(object.data)) return object.story.power;
     return burningAreaOf(object) *
            components::powerPerArea(object.data, meshes_.at(object.data.meshSlot)->texelsOf);
 }
@@ -96,15 +96,16 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
     state.frameIndex = object.countersFrame;
     if (!object.touched) state.frameIndex = readbackFrame_;
     state.texels = object.texels;
-    state.ignited = object.mostIgnited;
+    state.ignited = object.story.mostIgnited;
     state.burning = object.counters.burning;
     state.frontTiles = object.counters.frontTiles;
     state.refinedTriangles = object.counters.refined;
     state.burntFraction =
-        object.texels ? std::min(1.0f, float(object.mostIgnited) / float(object.texels)) : 0.0f;
+        object.texels ? std::min(1.0f, float(object.story.mostIgnited) / float(object.texels))
+                      : 0.0f;
     state.burningArea = burningAreaOf(object);
     state.power = powerOf(object);
-    if (components::hasHeat(object.data)) state.energy = double(object.energy) / 1048576;
+    if (components::hasHeat(object.data)) state.energy = double(object.story.energy) / 1048576;
 }
 
 Query World::makeQuery(FwBurnableMeshId id, const float position[3]) {

@@ -372,8 +372,8 @@ void World::commitRemote() noexcept {
 
 void World::tellSpread(Object& object, const gpu::Readback& readback) noexcept {
     const gpu::ObjectCounters& now = object.counters;
-    if (now.litTick != object.litTold) {
-        object.litTold = now.litTick;
+    if (now.litTick != object.story.litTold) {
+        object.story.litTold = now.litTick;
         ++object.changes;
         const uint32_t giver = gpu::giverOf(now.litBy);
         if (now.litTick != 0 && giver < objects_.slotCount() && objects_.at(giver)) {
@@ -386,12 +386,12 @@ void World::tellSpread(Object& object, const gpu::Readback& readback) noexcept {
                   float(double(now.litTick) / gpu::kTicksPerSecond), objects_.idOf(giver));
         }
     }
-    if (now.spots != object.spotsTold) {
+    if (now.spots != object.story.spotsTold) {
         float place[3];
         texelPosition(object, std::min(now.spotTexel, domainOf(object).texelCount() - 1), place);
         raise(FW_EVENT_SPOT_FIRE, &object, 0, readback.frameIndex, place,
-              float(now.spots - object.spotsTold));
-        object.spotsTold = now.spots;
+              float(now.spots - object.story.spotsTold));
+        object.story.spotsTold = now.spots;
         ++object.changes;
     }
 }

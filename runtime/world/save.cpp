@@ -330,32 +330,13 @@ void World::takeSave(const gpu::Readback& readback) noexcept {
             from = ends[next++];
             object.counters = image.counters;
             object.counters.refined = 0;
-            tellStory(**objects_.at(object.slot), object.story);
+            object.story = (*objects_.at(object.slot))->story;
         }
         writeSaved(saved, save_->bytes);
         save_->ready = true;
     } catch (...) {
         save_->failed = true;
     }
-}
-
-void World::tellStory(const Object& object, SavedStory& story) const noexcept {
-    story.active = object.active;
-    story.sawFire = object.sawFire;
-    story.doused = object.doused;
-    story.ignitionKnown = object.ignitionKnown;
-    story.lastStimulus = object.lastStimulus;
-    story.lastDouse = object.lastDouse;
-    story.lastBurning = object.lastBurning;
-    story.firstIgnition = object.firstIgnition;
-    std::copy_n(object.ignitionPoint, 3, story.ignitionPoint);
-    story.litTold = object.litTold;
-    story.spotsTold = object.spotsTold;
-    story.mostIgnited = object.mostIgnited;
-    story.clampsTold = object.clampsTold;
-    story.energy = object.energy;
-    story.heatSteps = object.heatSteps;
-    story.power = object.power;
 }
 
 // ---- loading -----------------------------------------------------------------------------------
@@ -710,28 +691,13 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
         object.reach = components::remoteReach(object.data, domain,
                                                meshes_.at(object.data.meshSlot)->texelsOf);
     }
-    const SavedStory& story = from.story;
-    object.active = story.active;
-    object.sawFire = story.sawFire;
-    object.doused = story.doused;
-    object.ignitionKnown = story.ignitionKnown;
-    object.lastStimulus = story.lastStimulus;
-    object.lastDouse = story.lastDouse;
-    object.lastBurning = story.lastBurning;
-    object.firstIgnition = story.firstIgnition;
-    std::copy_n(story.ignitionPoint, 3, object.ignitionPoint);
-    object.litTold = story.litTold;
-    object.spotsTold = story.spotsTold;
-    object.mostIgnited = story.mostIgnited;
-    object.clampsTold = story.clampsTold;
-    object.energy = story.energy;
-    object.heatSteps = story.heatSteps;
-    object.power = story.power;
+    object.story = from.story;
     object.counters = from.counters;
     if (!from.touched) return;
     touched_.push_back(&object);
-    if (object.ignitionKnown)
-        backend_.startBoundary(object.slot, object.ignitionPoint, uint32_t(object.firstIgnition));
+    if (object.story.ignitionKnown)
+        backend_.startBoundary(object.slot, object.story.ignitionPoint,
+                               uint32_t(object.story.firstIgnition));
 }
 
 void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emitter) noexcept {

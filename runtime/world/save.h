@@ -67,16 +67,6 @@ struct SavedPair {  // that touch, since when
     uint32_t slots[2] = {}, since = 0;
 };
 
-// What is told of an object's fire, as of its last readback.
-struct SavedStory {
-    bool active = false, sawFire = false, doused = false, ignitionKnown = false;
-    uint64_t lastStimulus = 0, lastDouse = 0, lastBurning = 0, firstIgnition = 0;
-    float ignitionPoint[3] = {};
-    uint32_t litTold = 0, spotsTold = 0, mostIgnited = 0, clampsTold = 0;
-    uint64_t energy = 0, heatSteps = 0;
-    float power = 0;
-};
-
 struct SavedObject {
     uint32_t slot = 0;
     uint64_t asset = 0;  // of its mesh, materials and rules
@@ -87,7 +77,7 @@ struct SavedObject {
     bool touched = false;              // the rest is of those alone
     std::array<fire::WindFilter, components::kMaterials> filters{};
     components::Pose latched;
-    SavedStory story;
+    Story story;  // as of its last readback
     gpu::ObjectCounters counters{};
     std::span<const std::byte> planes;  // of its image
 };

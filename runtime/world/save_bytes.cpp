@@ -1,6 +1,7 @@
 // Saves as bytes: one description of every record for both directions, and the planes of an object.
+#include "core/hash.h"
+#include "core/stream.h"
 #include "save/plane.h"
-#include "save/stream.h"
 #include "shared/heat.h"
 #include "world/save.h"
 
@@ -10,12 +11,27 @@
 namespace fw::world {
 namespace {
 
+using core::Reader;
+using core::Writer;
 using save::PlaneMask;
-using save::Reader;
-using save::Writer;
 
 constexpr uint32_t kMagic = 0x56535746u;  // "FWSV"
 constexpr size_t kHeaderBytes = 24;
+constexpr const char* kWhat = "save";
+
+// FNV-1a over 8 bytes at a time, the last few one by one: a save has many.
+uint64_t checksum(std::span<const std::byte> bytes) noexcept {
+    uint64_t hash = core::kFnvOffset;
+    size_t at = 0;
+    for (; at + 8 <= bytes.size(); at += 8) {
+        uint64_t word = 0;
+        for (size_t k = 0; k < 8; ++k) word |= uint64_t(bytes[at + k]) << (8 * k);
+        hash = (hash ^ word) * core::kFnvPrime;
+        hash ^= hash >> 29;
+    }
+    for (; at < bytes.size(); ++at) hash = (hash ^ uint64_t(bytes[at])) * core::kFnvPrime;
+    return hash;
+}
 
 // ---- records: `s` is a Writer and T const, or a Reader -----------------------------------------
 
@@ -50,7 +66,7 @@ template <typename S, Is<gpu::Blocker> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedFire> T>
 void put(S& s, T& value);
-template <typename S, Is<SavedStory> T>
+template <typename S, Is<Story> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedObject> T>
 void put(S& s, T& value);
@@ -160,7 +176,7 @@ template <typename S, Is<SavedFire> T>
 void put(S& s, T& f) {
     all(s, f.slot, f.flags, f.position, f.power, f.touches);
 }
-template <typename S, Is<SavedStory> T>
+template <typename S, Is<Story> T>
 void put(S& s, T& o) {
     all(s, o.active, o.sawFire, o.doused, o.ignitionKnown, o.lastStimulus, o.lastDouse,
         o.lastBurning, o.firstIgnition, o.ignitionPoint, o.litTold, o.spotsTold, o.mostIgnited,
@@ -361,7 +377,7 @@ void readImage(std::span<const std::byte> planes, const mesh::BurnDomain& domain
                uint32_t windowMost, std::span<const gpu::HeatMaterial> heat, PlaneScratch& scratch,
                ImageStore& store) {
     const uint32_t width = domain.width, texels = domain.texelCount(), tiles = domain.tileCount();
-    Reader from(planes);
+    Reader from(planes, kWhat);
     markReal(domain, scratch);
     scratch.values.resize(std::max(texels, tiles));
     scratch.sources.resize(texels);
@@ -420,7 +436,7 @@ void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out) {
     header.number(kMagic);
     header.number(kSaveVersion);
     header.number(uint64_t(out.size() - kHeaderBytes));
-    header.number(save::checksum(std::span(out).subspan(kHeaderBytes)));
+    header.number(checksum(std::span(out).subspan(kHeaderBytes)));
     std::copy(head.begin(), head.end(), out.begin());
 }
 
@@ -428,7 +444,7 @@ void readSaved(std::span<const std::byte> bytes, SavedWorld& saved) {
     if (bytes.size() < kHeaderBytes)
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes; its header alone has %zu.",
                    bytes.size(), kHeaderBytes);
-    Reader header(bytes.first(kHeaderBytes));
+    Reader header(bytes.first(kHeaderBytes), kWhat);
     uint32_t magic = 0, version = 0;
     uint64_t size = 0, told = 0;
     all(header, magic, version, size, told);
@@ -443,12 +459,12 @@ void readSaved(std::span<const std::byte> bytes, SavedWorld& saved) {
     if (size != content.size())
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes of content; its header says %llu.",
                    content.size(), static_cast<unsigned long long>(size));
-    const uint64_t found = save::checksum(content);
+    const uint64_t found = checksum(content);
     if (found != told)
         core::fail(FW_ERROR_BAD_DATA,
                    "The save's checksum is 0x%016llX; its header says 0x%016llX.",
                    static_cast<unsigned long long>(found), static_cast<unsigned long long>(told));
-    Reader reader(content);
+    Reader reader(content, kWhat);
     put(reader, saved);
     if (reader.left() != 0)
         core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the content of the save.", reader.left());

@@ -143,7 +143,7 @@ void World::planSteps(const ClockAdvance& time) {
     for (const Object* object : touched_)
         if (others) shift = std::max(shift, object->latch.substepShift);
     for (const Frame::LatchOf& entry : frame_.latches)
-        if (others || entry.object->active || entry.due)
+        if (others || entry.object->story.active || entry.due)
             shift = std::max({shift, entry.latch.substepShift, entry.object->latch.substepShift});
     for (uint32_t step = 0; step < time.steps; ++step) {
         frame_.steps[step].substepShift = shift;
@@ -223,7 +223,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     const auto touch = [&](Object& object) {
         if (object.touched) return;  // room for every object was found at its creation
         object.touched = true;
-        object.heatSteps = clock_.tick / (gpu::kHeatSteps * gpu::kStepTicks);
+        object.story.heatSteps = clock_.tick / (gpu::kHeatSteps * gpu::kStepTicks);
         touched_.insert(
             std::lower_bound(touched_.begin(), touched_.end(), &object,
                              [](const Object* a, const Object* b) { return a->slot < b->slot; }),
@@ -235,18 +235,18 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
         Object& object = **objects_.at(due.event.object);
         touch(object);
         ++object.changes;
-        object.active = true;
-        object.lastStimulus = std::max<uint64_t>(object.lastStimulus, due.event.tick);
+        object.story.active = true;
+        object.story.lastStimulus = std::max<uint64_t>(object.story.lastStimulus, due.event.tick);
         if (due.event.kind == FW_IGNITE) {
-            if (!object.ignitionKnown && !object.sawFire) {
-                object.ignitionKnown = true;
-                object.firstIgnition = due.event.tick;
-                texelPlace(object, due.event.texel, object.ignitionPoint);
-                backend_.startBoundary(object.slot, object.ignitionPoint, due.event.tick);
+            if (!object.story.ignitionKnown && !object.story.sawFire) {
+                object.story.ignitionKnown = true;
+                object.story.firstIgnition = due.event.tick;
+                texelPlace(object, due.event.texel, object.story.ignitionPoint);
+                backend_.startBoundary(object.slot, object.story.ignitionPoint, due.event.tick);
             }
         } else if (due.event.kind == FW_WET || due.event.kind == FW_EXTINGUISH) {
-            object.lastDouse = due.event.tick;
-            object.doused = true;
+            object.story.lastDouse = due.event.tick;
+            object.story.doused = true;
         }
     }
     for (uint32_t slot : frame_.burnMaps) {
@@ -269,7 +269,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
         lastStimulus_ = end;
     }
     for (const gpu::MaterialUpdate& update : frame_.updates)
-        (*objects_.at(update.object))->lastStimulus = end;
+        (*objects_.at(update.object))->story.lastStimulus = end;
     if (clock_.tick < Clock::kWarnTick && time.after.tick >= Clock::kWarnTick)
         log_.write(FW_LOG_WARNING, "A world has a day left: it simulates at most %llu s.",
                    static_cast<unsigned long long>(Clock::kLastTick / 4096));

@@ -59,6 +59,24 @@ struct Forecast {  // of an object that was asked when fire arrives
     bool pending = false;                      // that is on its way
 };
 
+// What happened to an object's fire, and what of it the host was told. In ticks.
+struct Story {
+    bool active = false;   // its front or flames may still move
+    bool sawFire = false;  // since the last IGNITED
+    bool doused = false, ignitionKnown = false;
+    uint64_t lastStimulus = 0;    // tick of the last event or latch sent
+    uint64_t lastDouse = 0;       // tick, 0: never
+    uint64_t lastBurning = 0;     // tick of the last readback with burning texels
+    uint64_t firstIgnition = 0;   // tick of the ignition that started this fire
+    float ignitionPoint[3] = {};  // m, object space
+    uint32_t litTold = 0;         // litTick of the last SPREAD_TO
+    uint32_t spotsTold = 0;
+    uint32_t mostIgnited = 0;
+    uint32_t clampsTold = 0;             // late clamps that an event has told
+    uint64_t energy = 0, heatSteps = 0;  // 2^-20 J after so many heat steps
+    float power = 0;                     // W, at pace 1; of objects with heat
+};
+
 struct Object {
     explicit Object(std::pmr::memory_resource* memory)
         : slowness(memory), map(memory), skin(memory), skinNormals(memory) {}
@@ -70,17 +88,9 @@ struct Object {
     uint32_t texels = 0;                  // that can burn
     uint64_t firstFrame = 0;              // readbacks of older frames speak of another object
     std::pmr::vector<uint16_t> slowness;  // per texel, Q7; empty: the mesh's own
-    // What happened, in ticks.
-    bool touched = false;               // an event ever addressed it: it filters wind and latches
-    bool active = false;                // its front or flames may still move
-    bool sawFire = false;               // since the last IGNITED
-    uint64_t lastStimulus = 0;          // tick of the last event or latch sent
-    uint32_t firstEvent = 0xFFFFFFFFu;  // tick of the first event ever
-    uint64_t lastDouse = 0;             // tick, 0: never
-    uint64_t lastBurning = 0;           // tick of the last readback with burning texels
-    uint64_t firstIgnition = 0;         // tick of the ignition that started this fire
-    bool doused = false, ignitionKnown = false;
-    float ignitionPoint[3] = {};  // m, object space
+    bool touched = false;                 // an event ever addressed it: it filters wind and latches
+    uint32_t firstEvent = 0xFFFFFFFFu;    // tick of the first event ever
+    Story story;
     // Fire at a distance: as others see it, latched every kRemoteLatchTicks.
     components::Governance governance;
     gpu::RemoteObject remote{};
@@ -89,15 +99,9 @@ struct Object {
     uint64_t planStamp = 0;      // of the plan whose latches hold it
     bool remoteDue = false;      // pose or def changed since its latch: it is in remote_.due
     bool remoteSent = true;      // the backend has the latched record
-    uint32_t litTold = 0;        // litTick of the last SPREAD_TO
-    uint32_t spotsTold = 0;
     // As of the last readback.
     gpu::ObjectCounters counters{};
-    uint32_t mostIgnited = 0;
-    uint32_t clampsTold = 0;  // late clamps that an event has told
     uint64_t countersFrame = 0;
-    uint64_t energy = 0, heatSteps = 0;  // 2^-20 J after so many heat steps
-    float power = 0;                     // W, at pace 1; of objects with heat
     BurnMapCopy map;
     core::Owned<Forecast> forecast;  // null: never asked for
     uint64_t changes = 0;            // of what its fire will do, that we know of
@@ -267,7 +271,7 @@ void checkWorldDef(const FwWorldDef& def);  // throws
 struct SavedWorld;
 struct SavedObject;
 struct SavedEmitter;
-struct SavedStory;
+struct Story;
 struct Save;
 
 class World {
@@ -562,7 +566,6 @@ class World {
     void noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
                      std::pmr::vector<SavedEmitter>& to) const;
     void takeSave(const gpu::Readback& readback) noexcept;
-    void tellStory(const Object& object, SavedStory& story) const noexcept;
     void checkSaved(const SavedWorld& saved);  // throws
     void applySaved(const SavedWorld& saved, std::span<const components::Latch> latches) noexcept;
     void applyObject(const SavedObject& from, const components::Latch& latch,

@@ -1,8 +1,8 @@
 // What saves are made of: planes that come back as they were, bytes that are refused where they are
 // damaged, and a file that no end of the process leaves half written.
 #include "common/save_file.h"
+#include "core/stream.h"
 #include "save/plane.h"
-#include "save/stream.h"
 
 #include <gtest/gtest.h>
 
@@ -92,12 +92,12 @@ TEST(SavedPlane, DamagedOnesEnd) {
 
 TEST(SavedBytes, AreCheckedAgainstWhatIsLeft) {
     Bytes bytes;
-    save::Writer writer(bytes);
+    core::Writer writer(bytes);
     writer.number(uint32_t(0x01020304));
     writer.number(-1.5f);
     writer.number(true);
     EXPECT_EQ(std::byte(4), bytes[0]);  // little-endian
-    save::Reader reader(bytes);
+    core::Reader reader(bytes, "save");
     uint32_t word = 0;
     float real = 0;
     bool flag = false;
@@ -106,7 +106,7 @@ TEST(SavedBytes, AreCheckedAgainstWhatIsLeft) {
     EXPECT_EQ(-1.5f, real);
     EXPECT_TRUE(flag);
     EXPECT_THROW(reader.number(word), core::Error);
-    save::Reader again(bytes);
+    core::Reader again(bytes, "save");
     EXPECT_THROW((void)again.count("things", 1), core::Error);
 }
 

@@ -1,5 +1,5 @@
-// Bytes of a save in a fixed order, little-endian. The reader trusts nothing: every number is
-// checked against what is left before it is used. Says nothing of worlds.
+// Bytes of a file in a fixed order, little-endian. The reader trusts nothing: every number is
+// checked against what is left before it is used, and refusals name what is read.
 #pragma once
 #include "core/error.h"
 
@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace fw::save {
+namespace fw::core {
 
 template <typename T>
 concept Number = std::is_arithmetic_v<T> && !std::is_same_v<T, bool> && sizeof(T) != 1;
@@ -39,7 +39,8 @@ class Writer {
 class Reader {
  public:
     static constexpr bool kReads = true;
-    explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    // `what` stands in messages: "save". It must outlive the reader.
+    Reader(std::span<const std::byte> bytes, const char* what) : bytes_(bytes), what_(what) {}
     template <Number T>
     void number(T& value) {
         const std::span<const std::byte> from = take(sizeof(T));
@@ -51,8 +52,8 @@ class Reader {
     void number(bool& value) {
         const uint32_t word = uint32_t(take(1)[0]);
         if (word > 1)
-            core::fail(FW_ERROR_BAD_DATA, "Byte %zu of the save is %u where a 0 or 1 is expected.",
-                       at_ - 1, word);
+            fail(FW_ERROR_BAD_DATA, "Byte %zu of the %s is %u where a 0 or 1 is expected.", at_ - 1,
+                 what_, word);
         value = word == 1;
     }
     // A count of things that need at least `bytesEach` bytes each.
@@ -60,14 +61,14 @@ class Reader {
         uint32_t value = 0;
         number(value);
         if (uint64_t(value) * bytesEach > left())
-            core::fail(FW_ERROR_BAD_DATA, "The save says that it has %u %s; %zu bytes are left.",
-                       value, name, left());
+            fail(FW_ERROR_BAD_DATA, "The %s says that it has %u %s; %zu bytes are left.", what_,
+                 value, name, left());
         return value;
     }
     std::span<const std::byte> take(size_t size) {
         if (left() < size)
-            core::fail(FW_ERROR_BAD_DATA, "The save ends after %zu bytes of its content.",
-                       bytes_.size());
+            fail(FW_ERROR_BAD_DATA, "The %s ends after %zu bytes of its content.", what_,
+                 bytes_.size());
         at_ += size;
         return bytes_.subspan(at_ - size, size);
     }
@@ -75,10 +76,8 @@ class Reader {
 
  private:
     std::span<const std::byte> bytes_;
+    const char* what_;
     size_t at_ = 0;
 };
 
-// FNV-1a over 8 bytes at a time, the last few one by one.
-[[nodiscard]] uint64_t checksum(std::span<const std::byte> bytes) noexcept;
-
-}  // namespace fw::save
+}  // namespace fw::core
