@@ -395,7 +395,10 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
     burnt += gone;
     if ((told & kHeatExtinguishes) != 0u) t = kOut;
     if ((told & kHeatIgnites) != 0u) t = now;
-    return wetState(t, heatClosed(x, m));
+    t = wetState(t, heatClosed(x, m));
+    // What is at rest again is so to the last bit: no trace of a fire long over is kept or sent.
+    if (flux == 0u && heatWork(x, t, m.ambient) == 0u) x.heat = m.ambient;
+    return t;
 }
 
 // The same for a tile where nothing but cold water is left, once in kDozes steps.
