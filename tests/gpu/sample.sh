@@ -53,7 +53,9 @@ if grep -E -q 'VUID-|UNASSIGNED-|SYNC-HAZARD|Validation (Error|Warning)' "$work/
     echo "$name: the validation layer complains"
     exit 1
 fi
-if [[ $mode == headless && -z $(find "$work/out" -name '*.png' -size +0 2>/dev/null) ]]; then
+# A server draws nothing: it leaves a save.
+[[ $name != 13_server || -s $work/out/server.fwsave ]] || { echo "$name left no save" && exit 1; }
+if [[ $mode == headless && $name != 13_server && -z $(find "$work/out" -name '*.png' -size +0 2>/dev/null) ]]; then
     echo "$name left no picture in --out"
     exit 1
 fi

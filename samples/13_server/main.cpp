@@ -1,0 +1,187 @@
+// A dedicated server: crates burn at 32 Hz on one core, by the same integers as on any GPU. One
+// line a second: how many burn, what it costs, and the hash of all of it, which a client compares
+// with its own. It links the library and nothing else.
+#include "yard.h"
+
+#include <flamewright/flamewright_debug.h>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace {
+
+constexpr uint32_t kStepsPerSecond = 32;
+constexpr float kStep = 1.0f / kStepsPerSecond;
+
+struct Wishes {
+    uint32_t crates = 100, steps = 20 * kStepsPerSecond, seed = 1;
+    bool fast = false;  // do not wait for the clock
+    std::string out;
+};
+
+constexpr const char* kUsage =
+    "usage: 13_server [--crates N] [--frames N] [--seconds N] [--seed N] [--fast] [--out DIR]\n"
+    "  --crates N   [1, 1000] how many burn; default 100\n"
+    "  --frames N   steps of 1/32 s; default 640\n"
+    "  --fast       as fast as it can instead of in real time\n"
+    "  --out DIR    leave DIR/server.fwsave at the end\n";
+
+uint32_t wholeOf(const char* name, const char* text, uint32_t low, uint32_t high) {
+    char* end = nullptr;
+    const unsigned long value = std::strtoul(text, &end, 10);
+    if (end == text || *end != 0 || value < low || value > high)
+        throw std::runtime_error(std::string(name) + " is \"" + text + "\"; it is a number in [" +
+                                 std::to_string(low) + ", " + std::to_string(high) + "]");
+    return uint32_t(value);
+}
+
+Wishes readArguments(int count, char** arguments) {
+    Wishes wishes;
+    for (int i = 1; i < count; ++i) {
+        const std::string name = arguments[i];
+        if (name == "--fast") {
+            wishes.fast = true;
+            continue;
+        }
+        if (name == "--headless") continue;  // as all samples: it never has a window
+        if (i + 1 == count) throw std::runtime_error(name + " has no value, or is not known");
+        const char* value = arguments[++i];
+        if (name == "--crates") {
+            wishes.crates = wholeOf("--crates", value, 1, 1000);
+        } else if (name == "--frames") {
+            wishes.steps = wholeOf("--frames", value, 1, 1000000);
+        } else if (name == "--seconds") {
+            wishes.steps = kStepsPerSecond * wholeOf("--seconds", value, 1, 30000);
+        } else if (name == "--seed") {
+            wishes.seed = wholeOf("--seed", value, 0, 0x7FFFFFFF);
+        } else if (name == "--out") {
+            wishes.out = value;
+        } else if (name != "--size") {
+            throw std::runtime_error(name + " is not known; --help lists the arguments");
+        }
+    }
+    return wishes;
+}
+
+void check(FwResult result, FwWorld* world) {
+    if (result == FW_OK) return;
+    char why[512] = "";
+    fwWorld_GetLastMessage(world, why, sizeof why);
+    throw std::runtime_error(std::string(fwResultName(result)) + ": " + why);
+}
+
+// The processor's time, of all threads of the process.
+double cpuSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
+
+// Every texel of every crate, as each machine of a game must have it.
+uint64_t hashOf(FwWorld* world, const Yard& yard) {
+    uint64_t all = 0;
+    for (const FwBurnableMeshId id : yard.crates) {
+        uint64_t one = 0;
+        check(fwDebug_RequestBurnMap(world, id), world);
+        check(fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, nullptr), world);
+        all = all * 0x9E3779B97F4A7C15ull + one;
+    }
+    return all;
+}
+
+void save(FwWorld* world, const std::string& folder) {
+    uint64_t size = 0;
+    check(fwWorld_RequestSave(world), world);
+    check(fwWorld_FetchSave(world, nullptr, &size), world);
+    std::string bytes(size, '\0');
+    check(fwWorld_FetchSave(world, bytes.data(), &size), world);
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path path = std::filesystem::path(folder) / "server.fwsave";
+    std::ofstream file(path, std::ios::binary);
+    if (!file.write(bytes.data(), std::streamsize(bytes.size())).flush())
+        throw std::runtime_error(path.string() + " cannot be written");
+    std::printf("%s: %zu bytes, with which a client joins late\n", path.c_str(), bytes.size());
+}
+
+void serve(FwWorld* world, const Yard& yard, const Wishes& wishes) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    double spent = 0, worst = 0, all = 0;  // s: of the second, its longest step, of the run
+    uint32_t lit = 0;
+    for (uint32_t step = 0; step < wishes.steps; ++step) {
+        // All of them are alight within two seconds.
+        for (; lit < yard.crates.size() && lit * 2 * kStepsPerSecond <= step * yard.crates.size();
+             ++lit)
+            lightCrate(world, yard, lit);
+        const double before = cpuSeconds();
+        check(fwWorld_Step(world, kStep), world);
+        const double took = cpuSeconds() - before;
+        spent += took, all += took;
+        worst = std::max(worst, took);
+        FwEvent events[64];
+        while (fwWorld_PollEvents(world, events, 64) == 64) {
+        }
+        if ((step + 1) % kStepsPerSecond == 0) {
+            const YardState state = stateOf(world, yard);
+            std::printf(
+                "%5.0f s: %3u burn, %3u burnt, %7.0f kW; load %4.1f %% of a core, longest "
+                "step %5.2f ms; hash %016llx\n",
+                double(step + 1) * kStep, state.burning, state.burnt, double(state.power) / 1000,
+                100 * spent, 1000 * worst, static_cast<unsigned long long>(hashOf(world, yard)));
+            std::fflush(stdout);
+            spent = worst = 0;
+        }
+        if (!wishes.fast)
+            std::this_thread::sleep_until(
+                start + std::chrono::duration_cast<Clock::duration>(
+                            std::chrono::duration<double>(double(step + 1) * double(kStep))));
+    }
+    std::printf("%u steps of %zu crates: %.2f ms of the processor each, %.1f %% of a core\n",
+                wishes.steps, yard.crates.size(), 1000 * all / wishes.steps,
+                100 * all / (wishes.steps * double(kStep)));
+}
+
+void run(const Wishes& wishes) {
+    FwContextDef contextDef = fwDefaultContextDef();
+    contextDef.backend = FW_BACKEND_CPU;
+    FwContext* context = nullptr;
+    FwErrorInfo error{};
+    if (fwCreateContext(&contextDef, &context, &error) != FW_OK)
+        throw std::runtime_error(error.message);
+    const struct Owner {
+        FwContext* context;
+        ~Owner() { fwDestroyContext(context); }
+    } owner{context};
+    FwWorldDef def = fwDefaultWorldDef();
+    def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
+    def.paceFactor = 10;
+    def.seed = wishes.seed;
+    def.wind[0] = 2;
+    FwWorld* world = nullptr;
+    if (fwCreateWorld(context, &def, &world) != FW_OK) {
+        char why[512] = "";
+        fwContext_GetLastMessage(context, why, sizeof why);
+        throw std::runtime_error(why);
+    }
+    const Yard yard = makeYard(world, wishes.crates);
+    serve(world, yard, wishes);
+    if (!wishes.out.empty()) save(world, wishes.out);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    for (int i = 1; i < count; ++i)
+        if (std::strcmp(arguments[i], "--help") == 0) return std::puts(kUsage), 0;
+    try {
+        run(readArguments(count, arguments));
+    } catch (const std::exception& failure) {
+        std::fprintf(stderr, "13_server: %s\n", failure.what());
+        return 1;
+    }
+    return 0;
+}

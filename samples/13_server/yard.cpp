@@ -1,0 +1,89 @@
+#include "yard.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace {
+
+constexpr float kHalf = 0.25f, kApart = 0.9f;  // m
+
+void check(FwResult result, FwWorld* world) {
+    if (result == FW_OK) return;
+    char why[512] = "";
+    fwWorld_GetLastMessage(world, why, sizeof why);
+    throw std::runtime_error(std::string(fwResultName(result)) + ": " + why);
+}
+
+// Six faces of four corners each, seen from outside.
+FwMeshId makeCrate(FwWorld* world) {
+    float positions[72];
+    uint32_t indices[36];
+    for (uint32_t v = 0; v < 24; ++v) {
+        const uint32_t face = v / 4, x = face / 2, y = (x + 1) % 3, z = (x + 2) % 3;
+        const float side = (face & 1) != 0 ? kHalf : -kHalf;
+        positions[v * 3 + x] = side;
+        positions[v * 3 + y] = ((v ^ v >> 1) & 1) != 0 ? side : -side;
+        positions[v * 3 + z] = (v & 2) != 0 ? kHalf : -kHalf;
+        positions[v * 3 + 1] += kHalf;
+    }
+    constexpr uint32_t kQuad[6] = {0, 1, 2, 0, 2, 3};
+    for (uint32_t i = 0; i < 36; ++i) indices[i] = i / 6 * 4 + kQuad[i % 6];
+    FwMeshDef def = fwDefaultMeshDef();
+    def.positions = positions;
+    def.vertexCount = 24;
+    def.indices = indices;
+    def.indexCount = 36;
+    def.texelsPerMetre = 64;
+    FwMeshId mesh{};
+    check(fwWorld_CreateMesh(world, &def, &mesh), world);
+    return mesh;
+}
+
+void placeOf(const Yard& yard, uint32_t crate, float (&place)[3]) {
+    place[0] = kApart * float(crate % yard.columns);
+    place[1] = 0;
+    place[2] = kApart * float(crate / yard.columns);
+}
+
+}  // namespace
+
+Yard makeYard(FwWorld* world, uint32_t crates) {
+    Yard yard;
+    yard.columns = uint32_t(std::ceil(std::sqrt(double(crates))));
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.mesh = makeCrate(world);
+    const FwMaterialDef pine = fwDefaultMaterialDef();
+    check(fwWorld_CreateMaterial(world, &pine, &def.materials[0]), world);
+    for (uint32_t i = 0; i < crates; ++i) {
+        float place[3];
+        placeOf(yard, i, place);
+        for (int c = 0; c < 3; ++c) def.transform[12 + c] = place[c];
+        def.userData = i;
+        check(fwWorld_CreateBurnableMesh(world, &def, &yard.crates.emplace_back()), world);
+    }
+    return yard;
+}
+
+void lightCrate(FwWorld* world, const Yard& yard, uint32_t crate) {
+    FwIgnitionDef match = fwDefaultIgnitionDef();
+    match.object = yard.crates[crate];
+    placeOf(yard, crate, match.position);
+    match.position[0] += kHalf;
+    match.position[1] += 0.06f;
+    match.radius = 0.06f;
+    check(fwWorld_Ignite(world, &match, nullptr), world);
+}
+
+YardState stateOf(FwWorld* world, const Yard& yard) {
+    YardState sum;
+    for (const FwBurnableMeshId id : yard.crates) {
+        FwObjectState state{};
+        state.structSize = sizeof state;
+        check(fwWorld_GetObjectState(world, id, &state), world);
+        sum.burning += state.burning > 0 ? 1 : 0;
+        sum.burnt += state.ignited > 0 && state.burning == 0 ? 1 : 0;
+        sum.power += state.power;
+    }
+    return sum;
+}

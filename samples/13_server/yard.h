@@ -1,0 +1,22 @@
+// A yard of wooden crates in rows, on any backend: what a server has to keep burning.
+#pragma once
+#include <flamewright/flamewright.h>
+#include <cstdint>
+#include <vector>
+
+struct Yard {
+    std::vector<FwBurnableMeshId> crates;
+    uint32_t columns = 0;
+};
+
+// Crates of half a metre, 0.9 m from middle to middle, on y = 0. Throws std::runtime_error with the
+// library's message.
+Yard makeYard(FwWorld* world, uint32_t crates);
+// A match at a crate's foot.
+void lightCrate(FwWorld* world, const Yard& yard, uint32_t crate);
+
+struct YardState {
+    uint32_t burning = 0, burnt = 0;  // crates
+    float power = 0;                  // W
+};
+YardState stateOf(FwWorld* world, const Yard& yard);

@@ -1,0 +1,120 @@
+// A yard of crates by the library as a host has it: what a step of a world costs a server without a
+// GPU, and on a device; and that what does not burn costs nothing.
+#include "13_server/yard.h"
+#include "bench/bench_device.h"
+
+#include <benchmark/benchmark.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace fw::test {
+namespace {
+
+constexpr float kStep = 1.0f / 32;
+constexpr int kWarm = 160, kSteps = 128;
+constexpr uint32_t kExchange =
+    FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
+
+class YardBench {
+ public:
+    YardBench(uint32_t backend, uint32_t flags, uint32_t burning, uint32_t idle) {
+        FwContextDef def = fwDefaultContextDef();
+        def.backend = backend;
+        FwErrorInfo error{};
+        if (fwCreateContext(&def, &context_, &error) != FW_OK)
+            throw std::runtime_error(error.message);
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.flags = flags;
+        worldDef.paceFactor = 10;
+        if (fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
+            throw std::runtime_error("the bench has no world");
+        yard_ = makeYard(world_, burning + idle);
+        for (uint32_t i = 0; i < burning; ++i) lightCrate(world_, yard_, i);
+    }
+    ~YardBench() { fwDestroyContext(context_); }
+    YardBench(const YardBench&) = delete;
+    YardBench& operator=(const YardBench&) = delete;
+
+    void step() {
+        const Clock::time_point start = Clock::now();
+        const double cpuStart = cpuSeconds();
+        if (fwWorld_Step(world_, kStep) != FW_OK) throw std::runtime_error("a step fails");
+        seconds.push_back(secondsSince(start));
+        cpu.push_back(cpuSeconds() - cpuStart);
+    }
+    void forget() { seconds.clear(), cpu.clear(); }
+    [[nodiscard]] uint32_t burning() { return stateOf(world_, yard_).burning; }
+
+    std::vector<double> seconds, cpu;
+
+ private:
+    FwContext* context_ = nullptr;
+    FwWorld* world_ = nullptr;
+    Yard yard_;
+};
+
+double mean(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return values.empty() ? 0 : sum / double(values.size());
+}
+
+void show(benchmark::State& state, YardBench& bench) {
+    size_t i = 0;
+    for (auto _ : state) state.SetIterationTime(bench.seconds[i++ % bench.seconds.size()]);
+    state.counters["mean_ms"] = mean(bench.seconds) * 1e3;
+    state.counters["cpu_ms"] = mean(bench.cpu) * 1e3;
+    state.counters["most_ms"] = *std::max_element(bench.seconds.begin(), bench.seconds.end()) * 1e3;
+    state.counters["burning"] = double(bench.burning());
+}
+
+void burning(benchmark::State& state, uint32_t backend, uint32_t crates) {
+    try {
+        YardBench bench(backend, kExchange, crates, 0);
+        for (int i = 0; i < kWarm + kSteps; ++i) {
+            if (i == kWarm) bench.forget();
+            bench.step();
+        }
+        show(state, bench);
+        state.counters["load"] = mean(bench.cpu) / double(kStep);
+    } catch (const std::exception& failure) {
+        state.SkipWithError(failure.what());
+    }
+}
+
+// Ten that burn, with and without a thousand beside them that do not; in turns.
+void idle(benchmark::State& state) {
+    try {
+        YardBench few(FW_BACKEND_VULKAN, 0, 10, 0), many(FW_BACKEND_VULKAN, 0, 10, 1000);
+        for (int i = 0; i < kWarm + kSteps; ++i)
+            for (YardBench* bench : {&few, &many}) {
+                if (i == kWarm) bench->forget();
+                bench->step();
+            }
+        show(state, many);
+        state.counters["ratio"] = median(many.seconds) / median(few.seconds);
+        state.counters["cpu_ratio"] = mean(many.cpu) / mean(few.cpu);
+    } catch (const std::exception& failure) {
+        state.SkipWithError(failure.what());
+    }
+}
+
+BENCHMARK_CAPTURE(burning, server, FW_BACKEND_CPU, 100)
+    ->Name("server/burning100_step")
+    ->UseManualTime()
+    ->Iterations(kSteps)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(burning, device, FW_BACKEND_VULKAN, 300)
+    ->Name("world/burning300_step")
+    ->UseManualTime()
+    ->Iterations(kSteps)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(idle)
+    ->Name("world/idle1000_step")
+    ->UseManualTime()
+    ->Iterations(kSteps)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace fw::test
