@@ -25,6 +25,7 @@ class CpuDevice final : public Device {
     }
     void prepare() override {}
     void step(gpu::Backend&, world::World& world, float deltaTime) override {
+        const edge::Stopwatch time(world);
         world.advance(world.lastFrame() + 1, deltaTime);
     }
     void renderOffscreen(gpu::Backend&, const FwOffscreenDef&) override {

@@ -5,6 +5,8 @@
 #include "gpu/backend.h"
 #include "world/world.h"
 
+#include <chrono>
+
 namespace fw::edge {
 
 class Device {
@@ -32,5 +34,21 @@ Device* createCpuDevice(core::Memory& memory);
 // `host` null: an own device.
 Device* createVulkanDevice(const FwVulkanHost* host, uint64_t gpuMemoryBudget, core::Memory& memory,
                            const core::Log& log);
+
+// Tells a world how long its host's thread was in a call that counts against the budget.
+class Stopwatch {
+ public:
+    explicit Stopwatch(world::World& world) noexcept : world_(world) {}
+    ~Stopwatch() {
+        world_.spend(std::chrono::duration<float, std::milli>(Clock::now() - from_).count());
+    }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+    using Clock = std::chrono::steady_clock;
+    world::World& world_;
+    Clock::time_point from_ = Clock::now();
+};
 
 }  // namespace fw::edge

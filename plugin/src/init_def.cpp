@@ -105,6 +105,8 @@ void defaults(FwFireColliderDef& def) noexcept {
     def.cellSize = 1;
 }
 
+void defaults(FwBudgetDef& def) noexcept { def.measuredMilliseconds = -1; }
+
 void defaults(FwFireEmitterDef& def) noexcept {
     set(def.direction, 0, 1, 0);
     def.power = 60;
@@ -179,6 +181,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwFireProfileDef);
         case FW_DEF_FLIPBOOK:
             return sizeof(FwFlipbookDef);
+        case FW_DEF_BUDGET:
+            return sizeof(FwBudgetDef);
         case FW_DEF_FIRE_COLLIDER:
             return sizeof(FwFireColliderDef);
         case FW_DEF_FIRE_TRACK:
@@ -232,6 +236,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_FLIPBOOK:
             write<FwFlipbookDef>(def);
+            return true;
+        case FW_DEF_BUDGET:
+            write<FwBudgetDef>(def);
             return true;
         case FW_DEF_FIRE_COLLIDER:
             write<FwFireColliderDef>(def);

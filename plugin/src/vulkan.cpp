@@ -387,6 +387,7 @@ void FW_CALL fwContext_NotifyDeviceLost(FwContext* context) {
 FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* givenFrame,
                                        const FwView* givenView) {
     return onWorld("fwWorld_RecordOutside", world, [&](world::World& w) {
+        const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(givenView);
@@ -406,7 +407,8 @@ FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* give
 FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* givenFrame,
                                       FwTargetId target, const FwView* givenView,
                                       const VkViewport* viewport) {
-    return onWorld("fwWorld_RecordInside", world, [&](world::World&) {
+    return onWorld("fwWorld_RecordInside", world, [&](world::World& w) {
+        const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(givenView);
@@ -430,7 +432,8 @@ FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld* world, FwBurnableMeshId id,
 FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* givenFrame,
                                          FwTargetId target, const FwView* givenView,
                                          const FwVulkanComposite* givenImages) {
-    return onWorld("fwWorld_RecordComposite", world, [&](world::World&) {
+    return onWorld("fwWorld_RecordComposite", world, [&](world::World& w) {
+        const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(givenView);

@@ -614,6 +614,23 @@ FwResult FW_CALL fwWorld_GetStats(FwWorld* world, FwWorldStats* stats) {
     });
 }
 
+FwResult FW_CALL fwWorld_SetBudget(FwWorld* world, const FwBudgetDef* def) {
+    return onWorld("fwWorld_SetBudget", world, [&](world::World& w) {
+        w.setBudget(edge::readDef(def, FW_DEF_BUDGET, "FwBudgetDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetBudgetState(FwWorld* world, FwBudgetState* state) {
+    return onWorld("fwWorld_GetBudgetState", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(state, "FwBudgetState");
+        FwBudgetState filled{};
+        w.budgetState(filled);
+        edge::writeInfo(state, size, filled);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_RequestSave(FwWorld* world) {
     return onWorld("fwWorld_RequestSave", world, [&](world::World& w) {
         w.requestSave();

@@ -118,6 +118,17 @@ struct RestoredObject {
     uint32_t window = 0, substepShift = 0;
 };
 
+// How much of what only shows a frame may have. Never of what burns: hashes are alike at all
+// levels.
+struct Detail {
+    uint32_t marchedHigh = 16;  // volumetric flames at most, with many samples a ray
+    uint32_t marched = 32;      // and at all; the others are cards
+    uint32_t volumeSteps = 64;  // samples of a ray at most; see FwWorldDef
+    float triangles = 1;        // share of FwWorldDef::maxRefinedTriangles
+
+    [[nodiscard]] bool operator==(const Detail&) const = default;
+};
+
 struct FramePlan {
     uint64_t frameIndex = 0;
     std::span<const StepPlan> steps;
@@ -131,6 +142,7 @@ struct FramePlan {
     const VolumeUpdate* volumes = nullptr;    // null: as before
     const EmitterUpdate* emitters = nullptr;  // null: none, or no time passes for them
     const FieldUpdate* fields = nullptr;      // null: none steps
+    Detail detail;                            // for looks only
 };
 
 struct BurnMap {
@@ -152,8 +164,9 @@ struct Readback {  // valid until the next call of nextReadback
     uint32_t runTiles = 0;                  // tiles run in the frame
     uint32_t burningTiles = 0;
     uint32_t flames = 0;
-    uint32_t hotTiles = 0;   // length of the hot list
-    uint32_t receivers = 0;  // objects that others may warm
+    uint32_t hotTiles = 0;    // length of the hot list
+    uint32_t receivers = 0;   // objects that others may warm
+    float milliseconds = -1;  // of the frame's passes on the device; < 0: not known
 };
 
 struct PassTime {

@@ -52,6 +52,7 @@ void World::collectReadbacks() {
         hotTiles_ = readback->hotTiles;
         receivers_ = readback->receivers;
         flames_ = readback->flames;
+        if (readback->milliseconds >= 0 && !budgetMeasured_) spent_.gpu = readback->milliseconds;
         takeCounters(*readback);
         takeAnswers(*readback);
         takeLights(*readback);

@@ -229,6 +229,27 @@ void World::stats(FwWorldStats& stats) noexcept {
     stats.texels = texels_;
 }
 
+void World::setBudget(const FwBudgetDef& def) {
+    components::checkValue(def.gpuMilliseconds, "FwBudgetDef::gpuMilliseconds", 0.0f, 1000.0f);
+    components::checkValue(def.cpuMilliseconds, "FwBudgetDef::cpuMilliseconds", 0.0f, 1000.0f);
+    components::checkValue(def.measuredMilliseconds, "FwBudgetDef::measuredMilliseconds", -1e5f,
+                           1e5f);
+    budget_ = {def.gpuMilliseconds, def.cpuMilliseconds};
+    budgetMeasured_ = def.measuredMilliseconds >= 0;
+    if (budgetMeasured_) spent_.gpu = def.measuredMilliseconds;
+}
+
+void World::budgetState(FwBudgetState& state) const noexcept {
+    const gpu::Detail detail = detailOf(governor_.level);
+    state.level = governor_.level;
+    state.levels = kDetailLevels;
+    state.marchedFires = detail.marched;
+    state.volumeSteps = std::min(detail.volumeSteps, def_.volumeSteps);
+    state.refinedTriangles = uint32_t(detail.triangles * float(def_.maxRefinedTriangles));
+    state.gpuMilliseconds = governor_.cost.gpu;
+    state.cpuMilliseconds = governor_.cost.cpu;
+}
+
 // ---- flamewright_debug.h ----------------------------------------------------------------------
 
 void World::requestBurnMap(FwBurnableMeshId id) {

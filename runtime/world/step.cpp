@@ -68,6 +68,9 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     if (frame_.emittersDue) plan.emitters = &frame_.emitters;
     if (frame_.fieldsDue) plan.fields = &frame_.fields;
     plan.tickFraction = float(double(time.after.fraction) / double(Clock::kStepUnits));
+    govern(budget_, spent_, governor_);
+    spent_.cpu = 0;
+    plan.detail = detailOf(governor_.level);
     backend_.run(plan);
 
     commitFrame(frameIndex, time, !skip);

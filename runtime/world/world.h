@@ -18,6 +18,7 @@
 #include "mesh/remote_tiles.h"
 #include "world/clock.h"
 #include "world/event_queue.h"
+#include "world/governor.h"
 
 #include <array>
 
@@ -363,6 +364,10 @@ class World {
     void makeSafetyMask(const float corner[3], const float columnStep[3], const float rowStep[3],
                         uint32_t columns, uint32_t rows, uint8_t* mask);
     void stats(FwWorldStats& stats) noexcept;
+    void setBudget(const FwBudgetDef& def);
+    void budgetState(FwBudgetState& state) const noexcept;
+    // ms that the host's thread was in a call of the frame that is about to be, or is.
+    void spend(float milliseconds) noexcept { spent_.cpu += milliseconds; }
 
     // save.cpp. A save comes with the readback of the next frame; load is at once, or throws and
     // has changed nothing.
@@ -609,7 +614,10 @@ class World {
     gpu::Backend& backend_;
     const core::Log& log_;
     FwWorldDef def_;
-    float wind_[3] = {};  // m/s, world
+    float wind_[3] = {};        // m/s, world
+    FrameCost budget_, spent_;  // gpu: as of the last readback
+    Governor governor_;
+    bool budgetMeasured_ = false;  // the host tells spent_.gpu
 
     core::HandlePool<FwMaterialId, FwMaterialDef> materials_;
     core::HandlePool<FwImageId, ImageEntry> images_;

@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(99, calls);  // every function of the three headers
+    EXPECT_EQ(101, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -50,6 +50,7 @@ const DefCase kDefs[] = {
     {"fire", FW_DEF_VOLUMETRIC_FIRE, sizeof(FwVolumetricFireDef)},
     {"flipbook", FW_DEF_FLIPBOOK, sizeof(FwFlipbookDef)},
     {"profile", FW_DEF_FIRE_PROFILE, sizeof(FwFireProfileDef)},
+    {"budget", FW_DEF_BUDGET, sizeof(FwBudgetDef)},
     {"collider", FW_DEF_FIRE_COLLIDER, sizeof(FwFireColliderDef)},
     {"track", FW_DEF_FIRE_TRACK, sizeof(FwFireTrackDef)},
     {"emitter", FW_DEF_FIRE_EMITTER, sizeof(FwFireEmitterDef)},
@@ -207,6 +208,9 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
             return fwWorld_CreateParticleField(w.world, def, &id);
         },
         worldMessage);
+    checkSizes<FwBudgetDef>(
+        "FwBudgetDef", fwDefaultBudgetDef(),
+        [&](const FwBudgetDef* def) { return fwWorld_SetBudget(w.world, def); }, worldMessage);
     checkSizes<FwFireColliderDef>(
         "FwFireColliderDef", fwDefaultFireColliderDef(),
         [&](const FwFireColliderDef* def) {

@@ -86,6 +86,8 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RemoveFireCollider(NULL, collider));
     REFUSES(fwWorld_AskVolumetricFires(NULL, NULL, NULL));
     REFUSES(fwWorld_GetVolumetricFirePush(NULL, NULL, 0.0f, NULL));
+    REFUSES(fwWorld_SetBudget(NULL, NULL));
+    REFUSES(fwWorld_GetBudgetState(NULL, NULL));
     REFUSES(fwWorld_AskSurroundings(NULL, NULL, NULL));
     REFUSES(fwWorld_AskSight(NULL, NULL, NULL, NULL));
     REFUSES(fwWorld_MakeSafetyMask(NULL, NULL, NULL, NULL, 1, 1, NULL));
@@ -143,6 +145,7 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultFireEmitterDef().structSize == sizeof(FwFireEmitterDef) ? 0 : 1;
     wrong += fwDefaultFlipbookDef().structSize == sizeof(FwFlipbookDef) ? 0 : 1;
     wrong += fwDefaultFireProfileDef().structSize == sizeof(FwFireProfileDef) ? 0 : 1;
+    wrong += fwDefaultBudgetDef().structSize == sizeof(FwBudgetDef) ? 0 : 1;
     wrong += fwDefaultFireColliderDef().structSize == sizeof(FwFireColliderDef) ? 0 : 1;
     wrong += fwDefaultFireTrackDef().structSize == sizeof(FwFireTrackDef) ? 0 : 1;
     wrong += fwDefaultParticleFieldDef().structSize == sizeof(FwParticleFieldDef) ? 0 : 1;

@@ -503,6 +503,10 @@ class Fuzz {
         if (result == FW_OK) {
             EXPECT_TRUE(seen >= 0.0f && seen <= 1.0f);
         }
+        FwBudgetDef budget = fwDefaultBudgetDef();
+        budget.gpuMilliseconds = random_.number();
+        budget.measuredMilliseconds = random_.number();
+        check(fwWorld_SetBudget(world_, &budget));
         std::array<uint8_t, 24> mask{};
         const uint32_t columns = random_.below(7), rows = random_.once(6) ? 5000 : random_.below(5);
         if (columns * rows <= mask.size() || rows > 4096)

@@ -97,7 +97,7 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
         for (const uint32_t place : places) sum += lives[place].tier == tier;
         return sum;
     };
-    const auto frame = [&] { gpu::chooseTiers(items, gpu::kMaxVolumeFlames, lives, places); };
+    const auto frame = [&] { gpu::chooseTiers(items, gpu::kMaxVolumeFlames, {}, lives, places); };
     frame();
     EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_HIGH));
     EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_LOW));
@@ -138,7 +138,7 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
     for (int k = 0; k < 40; ++k) frame();
     EXPECT_EQ(gpu::kLowSteps, lives[places[0]].steps);
     items[0].asked = FW_FIRE_TIER_IMPOSTOR;
-    for (int k = 0; k < 40; ++k) gpu::chooseTiers(items, 0, lives, places);
+    for (int k = 0; k < 40; ++k) gpu::chooseTiers(items, 0, {}, lives, places);
     EXPECT_TRUE(lives[places[0]].marched());
 }
 

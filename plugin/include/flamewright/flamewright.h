@@ -101,7 +101,7 @@ typedef enum FwDefType {
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
-    FW_DEF_FLIPBOOK = 21,
+    FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -1103,6 +1103,34 @@ typedef struct FwWorldStats {
                                       not counted. See FwWorldDef::maxRefinedTriangles */
 } FwWorldStats;
 FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [world] */
+
+/* What a frame may cost. While it costs more, detail falls in eight levels, and rises when there is room: how many
+ * volumetric flames have rays of their own and with how many samples, the largest on the screen last, and how many
+ * triangles refined meshes aim at. Fires are never deleted, and what burns is the same bit by bit at every level. A
+ * new load settles within 60 frames; a single slow frame changes nothing. */
+typedef struct FwBudgetDef {
+    uint32_t structSize, reserved;  /* 0 */
+    float gpuMilliseconds;     /* of all that is recorded for a frame, [0, 1000]; default 0: no limit */
+    float cpuMilliseconds;     /* of fwWorld_RecordOutside, RecordInside and RecordComposite of a frame (of fwWorld_Step
+                                  on the cpu backend), [0, 1000]; default 0: no limit */
+    float measuredMilliseconds;/* what the host measured of our part of the last frame on its GPU, [0, 1e5]; < 0, the
+                                  default: take the library's time stamps. Needed where the queue family has none */
+    uint32_t reserved1;        /* 0 */
+} FwBudgetDef;
+static inline FwBudgetDef fwDefaultBudgetDef(void) {
+    FwBudgetDef d; fwInitDef(FW_DEF_BUDGET, &d, (uint32_t)sizeof d); return d;
+}
+/* From the next frame on; cheap enough for each. Without limits, as at first, all detail comes back. [world] */
+FW_API FwResult FW_CALL fwWorld_SetBudget(FwWorld*, const FwBudgetDef* def);
+typedef struct FwBudgetState {
+    uint32_t structSize;
+    uint32_t level, levels;    /* 0: all detail; levels - 1: the least */
+    uint32_t marchedFires;     /* volumetric flames at most that have rays of their own */
+    uint32_t volumeSteps;      /* samples of a ray at most */
+    uint32_t refinedTriangles; /* that refined meshes aim to stay within */
+    float gpuMilliseconds, cpuMilliseconds; /* of a frame, smooth; 0: not known, or no limit is set */
+} FwBudgetState;
+FW_API FwResult FW_CALL fwWorld_GetBudgetState(FwWorld*, FwBudgetState* state); /* [world] */
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -69,6 +69,10 @@ template <>
     return fwDefaultFlipbookDef();
 }
 template <>
+[[nodiscard]] inline FwBudgetDef def<FwBudgetDef>() noexcept {
+    return fwDefaultBudgetDef();
+}
+template <>
 [[nodiscard]] inline FwFireColliderDef def<FwFireColliderDef>() noexcept {
     return fwDefaultFireColliderDef();
 }

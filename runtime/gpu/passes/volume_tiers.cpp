@@ -5,8 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr float kKeeps = 1.25f;     // as much larger counts what is marched already
-constexpr uint32_t kStepsTurn = 2;  // a frame, from many samples to few
+constexpr float kKeeps = 1.25f;  // as much larger counts what is marched already
 
 bool marches(uint32_t tier) noexcept {
     return tier == FW_FIRE_TIER_MARCH_HIGH || tier == FW_FIRE_TIER_MARCH_LOW;
@@ -27,8 +26,8 @@ uint32_t lifeOf(uint32_t key, TierLives& lives) noexcept {
 
 }  // namespace
 
-void chooseTiers(std::span<const TierItem> items, uint32_t cards, TierLives& lives,
-                 std::span<uint32_t> places) noexcept {
+void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
+                 TierLives& lives, std::span<uint32_t> places) noexcept {
     for (TierLife& life : lives) life.seen = false;
     // Those that stay first: a new one takes no place from them.
     for (const bool stays : {true, false}) {
@@ -66,10 +65,10 @@ void chooseTiers(std::span<const TierItem> items, uint32_t cards, TierLives& liv
         uint32_t tier = item.asked;
         uint32_t steps = kHighSteps;
         if (tier == FW_FIRE_TIER_AUTO) {
-            if (item.wide < border || rank >= kMarchedFlames) {
+            if (item.wide < border || rank >= limits.all) {
                 tier = FW_FIRE_TIER_IMPOSTOR;
             } else {
-                tier = rank < kMarchedHigh ? FW_FIRE_TIER_MARCH_HIGH : FW_FIRE_TIER_MARCH_LOW;
+                tier = rank < limits.high ? FW_FIRE_TIER_MARCH_HIGH : FW_FIRE_TIER_MARCH_LOW;
                 ++rank;
             }
         }

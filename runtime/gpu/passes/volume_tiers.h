@@ -12,6 +12,7 @@
 namespace fw::gpu {
 
 constexpr uint32_t kTierFrames = 16;  // of the way from one tier to the next
+constexpr uint32_t kStepsTurn = 2;    // a frame, from many samples to few
 constexpr uint32_t kMarchedHigh = 16, kMarchedFlames = 32;
 constexpr float kCardInside = 10.0f, kCardOutside = 13.0f;           // px across: below, above
 constexpr uint32_t kHighSteps = 32, kLowSteps = 16, kFewSteps = 12;  // VolumeDraw::mostSteps
@@ -43,9 +44,13 @@ struct TierLife {  // of a flame, as long as the view shows it; its place is its
 };
 using TierLives = std::array<TierLife, kMaxVolumeFlames>;
 
+struct MarchLimits {  // flames of FW_FIRE_TIER_AUTO
+    uint32_t high = kMarchedHigh, all = kMarchedFlames;
+};
+
 // One frame on. places[i]: the life of items[i]. `cards`: how many places have one; a flame beyond
 // them is marched.
-void chooseTiers(std::span<const TierItem> items, uint32_t cards, TierLives& lives,
-                 std::span<uint32_t> places) noexcept;
+void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
+                 TierLives& lives, std::span<uint32_t> places) noexcept;
 
 }  // namespace fw::gpu

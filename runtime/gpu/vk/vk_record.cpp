@@ -374,6 +374,10 @@ void VkBackend::State::run(const FramePlan& plan) {
     open.readback = needs.readback;
     std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(wind));
     tickFraction = plan.tickFraction;
+    detail = plan.detail;
+    march.steps = march.steps > detail.volumeSteps
+                      ? std::max(march.steps - kStepsTurn, detail.volumeSteps)
+                      : std::min(march.steps + kStepsTurn, detail.volumeSteps);
     crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
     // Sheets and springs step at a rate of their own; a hitch drops steps and never stretches one.
     const double ticks = double(plan.endTick) + double(plan.tickFraction) * kStepTicks;

@@ -277,8 +277,8 @@ void VkBackend::State::listRefined(bool all) {
         full += meshes[objects[i].mesh].refine[objects[i].refine.key].fullCount;
         push.objectEnd = i + 1;
     }
-    if (full > limits.maxRefinedTriangles)
-        push.budget = std::max(1u, limits.maxRefinedTriangles / kAimedOf * kAimed);
+    const auto most = uint32_t(detail.triangles * float(limits.maxRefinedTriangles));
+    if (full > most) push.budget = std::max(1u, most / kAimedOf * kAimed);
     push.full = refine.full ? 1 : 0;
     push.recede = kRefineRecede;
     push.emitJobs = uint32_t(refine.lists.size());

@@ -93,7 +93,7 @@ bool sameView(const FwView& a, const FwView& b) noexcept {
 
 VolumeScreen VkBackend::State::screenOf(const TargetKey& target, vec2 size) const noexcept {
     return {size, target.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs, limits.volumeCell,
-            limits.volumeSteps, uint32_t(target.encoding)};
+            volumeSteps(), uint32_t(target.encoding)};
 }
 
 void VkBackend::State::noteScreen(const FwView& view, const VolumeScreen& screen,
@@ -130,6 +130,7 @@ void setFade(const TierLife& life, bool now, float& from, float& to) noexcept {
 void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
     march.count = march.cardCount = march.slicedCount = march.order.count = 0;
     march.there = false;
+    march.screen.steps = volumeSteps();
     if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return;
     std::array<VolumeItem, kMaxVolumeFlames> items;
     const uint32_t count = orderVolumes(march.screen.slabs, items);
@@ -161,7 +162,8 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         else if (!slices && !cardFits(items[i]))
             asked[i].asked = FW_FIRE_TIER_MARCH_HIGH;  // around the eye
     }
-    chooseTiers({asked.data(), items.size()}, slots, march.lives, places);
+    chooseTiers({asked.data(), items.size()}, slots, {detail.marchedHigh, detail.marched},
+                march.lives, places);
     // A place may have gone to another flame.
     for (size_t i = 0; i < march.shapes.size(); ++i) {
         const TierLife& life = march.lives[i];

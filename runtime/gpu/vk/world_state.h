@@ -291,6 +291,7 @@ struct VkBackend::State {
     uint32_t links = 0, blockers = 0;      // of the last remote update
     float wind[3] = {};
     float tickFraction = 0;
+    Detail detail;          // as of the frame's plan
     uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoZPass
     uint64_t softStep = 0;  // number of the step that sheets and springs have come to
     uint32_t softWay = 0;   // which arms the next one minds
@@ -340,9 +341,10 @@ struct VkBackend::State {
         VolumeOrder order;  // of all of them
         TierLives lives;
         std::array<VolumeCardShape, kMaxVolumeFlames> shapes;  // by life
-        uint32_t slots = 0;     // cards that there is room for, before all else
-        uint32_t capacity = 0;  // of the plane when they were made
-        uint64_t passed = 0;    // frames
+        uint32_t slots = 0;                     // cards that there is room for, before all else
+        uint32_t capacity = 0;                  // of the plane when they were made
+        uint64_t passed = 0;                    // frames
+        uint32_t steps = Detail{}.volumeSteps;  // on their way to detail's
     } march;
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
@@ -423,6 +425,9 @@ struct VkBackend::State {
     uint32_t orderVolumes(uint32_t slabs,
                           std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
     // How a target of `size` px shows what is marched for it.
+    [[nodiscard]] uint32_t volumeSteps() const noexcept {
+        return std::min(limits.volumeSteps, march.steps);
+    }
     [[nodiscard]] VolumeScreen screenOf(const TargetKey& target, vec2 size) const noexcept;
     // A draw in `frame` shows `view` so.
     void noteScreen(const FwView& view, const VolumeScreen& screen, uint64_t frame) noexcept;

@@ -1,0 +1,105 @@
+#include "world/governor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+namespace {
+
+constexpr float kOver = 1.04f;      // of the budget: less is measurement
+constexpr float kAim = 0.97f;       // of the budget, when detail falls
+constexpr float kSmooth = 0.2f;     // share of a new measurement
+constexpr float kJump = 0.3f;       // a cost that is so far from the smooth one is another load ...
+constexpr float kSavesMost = 3.0f;  // of a single level
+
+float shareOf(const FrameCost& limit, const FrameCost& cost) noexcept {
+    return std::max(limit.gpu > 0 ? cost.gpu / limit.gpu : 0.0f,
+                    limit.cpu > 0 ? cost.cpu / limit.cpu : 0.0f);
+}
+
+float savesAt(const Governor& g, uint32_t level) noexcept {
+    return g.saves[level] > 0 ? g.saves[level] : g.guess;
+}
+
+// A mean at first, then a filter.
+void follow(float to, uint32_t seen, float& value) noexcept {
+    value += std::max(kSmooth, 1.0f / float(seen + 1)) * (to - value);
+}
+
+// What the levels between two saved each, as it turned out.
+void learn(float share, Governor& g) noexcept {
+    const uint32_t high = std::min(g.level, g.levelBefore), low = std::max(g.level, g.levelBefore);
+    g.levelBefore = g.level;
+    g.learnedAt = share;
+    if (high == low || !(share > 0) || !(g.shareBefore > 0)) return;
+    const float ratio = g.level == low ? g.shareBefore / share : share / g.shareBefore;
+    const float each = std::pow(std::max(ratio, 1.0f), 1.0f / float(low - high));
+    g.guess = std::min(each, kSavesMost);
+    for (uint32_t k = high + 1; k <= low; ++k) g.saves[k] = g.guess;
+}
+
+void turnTo(uint32_t level, float share, Governor& g) noexcept {
+    g.levelBefore = g.level;
+    g.shareBefore = share;
+    g.level = level;
+    g.wait = kDetailWait;
+    g.over = g.room = g.seen = 0;
+}
+
+}  // namespace
+
+gpu::Detail detailOf(uint32_t level) noexcept {
+    // Many samples first, which is grain; then how many flames have their own rays; triangles all
+    // along.
+    static constexpr std::array<gpu::Detail, kDetailLevels> kLevels = {{
+        {16, 32, 64, 1.0f},
+        {12, 32, 48, 0.85f},
+        {8, 24, 40, 0.7f},
+        {4, 16, 32, 0.55f},
+        {2, 8, 24, 0.4f},
+        {1, 4, 20, 0.3f},
+        {0, 2, 16, 0.2f},
+        {0, 1, 12, 0.125f},
+    }};
+    return kLevels[std::min(level, kDetailLevels - 1)];
+}
+
+void govern(const FrameCost& limit, const FrameCost& spent, Governor& g) noexcept {
+    if (g.wait > 0) {
+        --g.wait;
+        return;
+    }
+    const float now = shareOf(limit, spent);
+    follow(spent.gpu, g.seen, g.cost.gpu);
+    follow(spent.cpu, g.seen, g.cost.cpu);
+    const float share = shareOf(limit, g.cost);
+    g.overSum = now > kOver ? (g.over > 0 ? g.overSum : 0) + now : 0;
+    g.over = now > kOver ? g.over + 1 : 0;
+    if (g.seen < kDetailOverFrames) {
+        if (++g.seen < kDetailOverFrames) return;
+        learn(share, g);
+    }
+    // Another load: what was learned of the one before says nothing of it.
+    if (std::abs(share - g.learnedAt) > kJump * g.learnedAt) {
+        g.saves = {};
+        g.guess = kDetailGuess;
+        g.learnedAt = share;
+    }
+
+    if (g.over >= kDetailOverFrames && g.level + 1 < kDetailLevels) {
+        uint32_t level = g.level;
+        const float over = g.overSum / float(g.over);
+        float predicted = over;
+        while (predicted > kAim && level + 1 < kDetailLevels) predicted /= savesAt(g, ++level);
+        turnTo(level, over, g);
+        return;
+    }
+    uint32_t level = g.level;
+    float predicted = share;
+    while (level > 0 && predicted * savesAt(g, level) <= kDetailRoom)
+        predicted *= savesAt(g, level--);
+    g.room = level < g.level ? g.room + 1 : 0;
+    if (g.room >= kDetailRoomFrames) turnTo(level, share, g);
+}
+
+}  // namespace fw::world

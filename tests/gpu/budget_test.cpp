@@ -1,0 +1,158 @@
+// The budget: what burns is the same at every level of detail, and no fire goes away.
+#include "abi/fire_world.h"
+#include "abi/panels.h"
+#include "support/views.h"
+
+#include <cmath>
+#include <memory>
+
+namespace {
+
+using host::lastMessage;
+using host::Panels;
+
+FwBudgetState budgetOf(FwWorld* world) {
+    FwBudgetState state{};
+    state.structSize = sizeof state;
+    EXPECT_EQ(FW_OK, fwWorld_GetBudgetState(world, &state)) << lastMessage(world);
+    return state;
+}
+
+FwResult setBudget(FwWorld* world, float limit, float measured) {
+    FwBudgetDef def = fwDefaultBudgetDef();
+    def.gpuMilliseconds = limit;
+    def.measuredMilliseconds = measured;
+    return fwWorld_SetBudget(world, &def);
+}
+
+std::vector<std::byte> saved(Panels& panels) {
+    EXPECT_EQ(FW_OK, fwWorld_RequestSave(panels.world)) << lastMessage(panels.world);
+    uint64_t size = 0;
+    FwResult result = FW_NOT_READY;
+    for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+        panels.run(0.01, 0.01f);
+        result = fwWorld_FetchSave(panels.world, nullptr, &size);
+    }
+    EXPECT_EQ(FW_OK, result) << lastMessage(panels.world);
+    std::vector<std::byte> bytes(size);
+    EXPECT_EQ(FW_OK, fwWorld_FetchSave(panels.world, bytes.data(), &size));
+    return bytes;
+}
+
+class Budget : public testing::TestWithParam<bool> {
+ protected:
+    // A world of sheets that burn under six flames; null: there is no device.
+    std::unique_ptr<Panels> make() {
+        FwContext* context = nullptr;
+        if (GetParam()) {
+            FwErrorInfo info{};
+            const FwContextDef own = fwDefaultContextDef();
+            if (fwCreateContext(&own, &context, &info) != FW_OK) return nullptr;
+        }
+        FwWorldDef def = host::worldDef(FW_WORLD_CONTACT | FW_WORLD_EMBERS | FW_WORLD_RADIATION);
+        def.paceFactor = 10;
+        auto panels = std::make_unique<Panels>(def, 20, 64, context);
+        for (int i = 0; i < 6; ++i) (void)panels->add(0.45f * float(i), 0, 0);
+        panels->ignite(panels->ids[2], 1.0f, 0, 0.1f, 0.05f);
+        for (int i = 0; i < 6; ++i) {
+            FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
+            fire.position[0] = float(i) - 2.5f;
+            FwVolumetricFireId id{};
+            EXPECT_EQ(FW_OK, fwWorld_CreateVolumetricFire(panels->world, &fire, &id));
+        }
+        return panels;
+    }
+};
+
+TEST_P(Budget, WhatBurnsIsTheSameAtEveryLevel) {
+    const auto free = make();
+    if (!free) GTEST_SKIP() << "no Vulkan device";
+    const auto held = make();
+    ASSERT_EQ(FW_OK, setBudget(held->world, 2, 100));
+    free->run(4);
+    held->run(4);
+    const FwBudgetState least = budgetOf(held->world);
+    EXPECT_EQ(least.levels - 1, least.level);
+    EXPECT_EQ(1u, least.marchedFires);
+    EXPECT_LT(least.refinedTriangles, fwDefaultWorldDef().maxRefinedTriangles / 4);
+    EXPECT_EQ(0u, budgetOf(free->world).level);
+    EXPECT_EQ(saved(*free), saved(*held));
+
+    ASSERT_EQ(FW_OK, setBudget(held->world, 2, 0.1f));  // there is room again
+    held->run(4);
+    EXPECT_EQ(0u, budgetOf(held->world).level);
+    free->run(4);
+    EXPECT_EQ(saved(*free), saved(*held));
+}
+INSTANTIATE_TEST_SUITE_P(Backends, Budget, testing::Bool(),
+                         [](const auto& backend) { return backend.param ? "device" : "cpu"; });
+
+TEST(BudgetOnDevice, NoFireGoesAwayAndTheLightStays) {
+    double light[2] = {};
+    for (const bool held : {false, true}) {
+        FwContext* context = nullptr;
+        FwErrorInfo info{};
+        const FwContextDef own = fwDefaultContextDef();
+        if (fwCreateContext(&own, &context, &info) != FW_OK) GTEST_SKIP() << info.message;
+        Panels panels(fwDefaultWorldDef(), 20, 64, context);
+        for (int i = 0; i < 5; ++i) {
+            FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
+            fire.position[0] = 1.4f * float(i - 2);
+            FwVolumetricFireId id{};
+            ASSERT_EQ(FW_OK, fwWorld_CreateVolumetricFire(panels.world, &fire, &id));
+        }
+        ASSERT_EQ(FW_OK, setBudget(panels.world, held ? 2 : 0, 100));
+        std::vector<unsigned char> pixels(320 * 180 * 4);
+        FwOffscreenDef shot = fwDefaultOffscreenDef();
+        shot.width = 320, shot.height = 180;
+        shot.pixels = pixels.data();
+        shot.view = fw::test::viewAt({0, 1, 7}, {0, 0.8f, 0}, 320.0f / 180, 1.7f);
+        panels.run(2.5);
+        uint32_t shots = 0;
+        for (; shots < 30; ++shots) {  // tiers take their time, by frames
+            panels.run(1.0 / 32);
+            ASSERT_EQ(FW_OK, fwWorld_RenderOffscreen(panels.world, &shot))
+                << lastMessage(panels.world);
+            if (shots < 20) continue;
+            for (size_t i = 0; i < pixels.size(); i += 4)
+                light[held] += std::pow(double(pixels[i]) / 255, 2.2);
+        }
+        EXPECT_EQ(held ? 7u : 0u, budgetOf(panels.world).level);
+        // Each of the five shows in its own fifth of the picture.
+        for (uint32_t part = 0; part < 5; ++part) {
+            unsigned most = 0;
+            for (uint32_t y = 0; y < 180; ++y)
+                for (uint32_t x = part * 64; x < part * 64 + 64; ++x)
+                    most = std::max<unsigned>(most, pixels[(y * 320 + x) * 4]);
+            EXPECT_GT(most, 100u) << "fire " << part << (held ? " at least detail" : "");
+        }
+    }
+    EXPECT_NEAR(light[1] / light[0], 1, 0.08);
+    std::printf("light at the least detail: %.3f of all\n", light[1] / light[0]);
+}
+
+TEST(AbiBudget, RefusesWhatIsNoBudget) {
+    host::FireWorld w;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, setBudget(w.world, -1, -1));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, setBudget(w.world, 1001, -1));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("FwBudgetDef::gpuMilliseconds"));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, setBudget(w.world, 1, NAN));
+    EXPECT_EQ(FW_OK, setBudget(w.world, 1, -1));
+    FwBudgetState state{};
+    EXPECT_EQ(FW_ERROR_VERSION, fwWorld_GetBudgetState(w.world, &state));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetBudget(w.world, nullptr));
+}
+
+// The clock of the host's own thread, on the backend that has no other.
+TEST(AbiBudget, TheProcessorsTimeIsMeasured) {
+    host::FireWorld w;
+    FwBudgetDef def = fwDefaultBudgetDef();
+    def.cpuMilliseconds = 1e-6f;
+    ASSERT_EQ(FW_OK, fwWorld_SetBudget(w.world, &def));
+    w.run(3);
+    const FwBudgetState state = budgetOf(w.world);
+    EXPECT_GT(state.cpuMilliseconds, 0.0f);
+    EXPECT_EQ(state.levels - 1, state.level);
+}
+
+}  // namespace
