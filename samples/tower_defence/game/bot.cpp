@@ -1,0 +1,46 @@
+// See bot.h.
+#include "bot.h"
+
+namespace game {
+
+namespace {
+
+struct Wish {
+    int32_t plot;
+    TowerKind kind;
+    int32_t level;  // from 0
+};
+// In this order, as the coins allow. Plots are the village's, see battlefield.cpp.
+constexpr Wish kPlan[] = {
+    {0, TowerKind::kFlamethrower, 0}, {4, TowerKind::kFlamethrower, 0},
+    {2, TowerKind::kWaterCannon, 0},  {1, TowerKind::kEmberMortar, 0},
+    {0, TowerKind::kFlamethrower, 1}, {3, TowerKind::kWindFan, 0},
+    {7, TowerKind::kFlamethrower, 0}, {4, TowerKind::kFlamethrower, 1},
+    {6, TowerKind::kFlamethrower, 0}, {1, TowerKind::kEmberMortar, 1},
+    {5, TowerKind::kEmberMortar, 0},  {2, TowerKind::kWaterCannon, 1},
+    {0, TowerKind::kFlamethrower, 2}, {7, TowerKind::kFlamethrower, 1},
+    {6, TowerKind::kFlamethrower, 1}, {4, TowerKind::kFlamethrower, 2},
+};
+
+}  // namespace
+
+Order botsOrder(const State& state) {
+    for (const Wish& wish : kPlan) {
+        const Tower& tower = state.towers[size_t(wish.plot)];
+        if (tower.kind == TowerKind::kNone) {
+            if (state.coins < kTowers[size_t(wish.kind)].price[0]) break;
+            return {Order::Type::kPlace, wish.plot, wish.kind};
+        }
+        if (tower.level >= wish.level) continue;
+        if (state.coins < priceOf(tower)) break;
+        return {Order::Type::kUpgrade, wish.plot, wish.kind};
+    }
+    // Time is coins, once the first towers stand.
+    constexpr int32_t kHurry = 5 * kTicksPerSecond;
+    if (state.marched == 0 && state.untilWave > kHurry && state.born > 0 &&
+        state.untilWave < kBeforeWave - 2 * kTicksPerSecond)
+        return {Order::Type::kCallWave, 0, TowerKind::kNone};
+    return {};
+}
+
+}  // namespace game

@@ -1,0 +1,249 @@
+// The rules, on a straight road and with fires made by hand.
+#include <gtest/gtest.h>
+
+#include "bot.h"
+#include "game.h"
+
+namespace {
+
+using namespace game;
+using Type = Order::Type;
+
+// 80 m straight east; plots 4 m south of it, 8 m apart; houses 8 m north.
+Ground straight() {
+    Ground ground;
+    for (int32_t i = 0; i <= 320; ++i) ground.road.push_back({i * Ground::kRoadStep, 0});
+    for (size_t i = 0; i < kPlots; ++i) ground.plots[i] = {8000 + 8000 * int32_t(i), 4000};
+    for (size_t i = 0; i < kHouses; ++i) ground.houses[i] = {8000 * int32_t(i), -8000};
+    return ground;
+}
+
+struct Play {
+    Ground ground = straight();
+    State state = newGame(1);
+    Burning burning;
+    std::vector<Happening> happened;
+
+    void run(int32_t ticks) {
+        for (int32_t i = 0; i < ticks; ++i) tick(state, ground, burning, happened);
+    }
+    size_t count(Happening::Type type) const {
+        return size_t(std::count_if(happened.begin(), happened.end(),
+                                    [&](const Happening& h) { return h.type == type; }));
+    }
+    // A wave called at once, its first enemy on the road.
+    size_t first() {
+        EXPECT_EQ(give(state, ground, {Type::kCallWave, 0, {}}), nullptr);
+        run(1);
+        for (size_t i = 0; i < kEnemySlots; ++i)
+            if (state.enemies[i].phase == Phase::kMarches) return i;
+        ADD_FAILURE() << "nobody came";
+        return 0;
+    }
+};
+
+TEST(GameRules, OrdersCostWhatTheySayAndRefusalsChangeNothing) {
+    Play play;
+    const uint64_t before = hashOf(play.state);
+    for (const Order& order :
+         {Order{Type::kPlace, 99, TowerKind::kFlamethrower},
+          Order{Type::kPlace, -1, TowerKind::kFlamethrower},
+          Order{Type::kPlace, 0, TowerKind::kCount}, Order{Type::kPlace, 0, {}},
+          Order{Type::kUpgrade, 0, {}}, Order{Type::kSell, 0, {}}}) {
+        EXPECT_NE(give(play.state, play.ground, order), nullptr);
+        EXPECT_EQ(hashOf(play.state), before);
+    }
+    EXPECT_EQ(give(play.state, play.ground, {Type::kPlace, 0, TowerKind::kFlamethrower}), nullptr);
+    EXPECT_EQ(play.state.coins, kCoinsAtStart - 120);
+    EXPECT_STREQ(give(play.state, play.ground, {Type::kPlace, 0, TowerKind::kWindFan}),
+                 "there is a tower already");
+    EXPECT_EQ(give(play.state, play.ground, {Type::kUpgrade, 0, {}}), nullptr);
+    EXPECT_EQ(play.state.coins, kCoinsAtStart - 210);
+    EXPECT_STREQ(give(play.state, play.ground, {Type::kUpgrade, 0, {}}), "not enough coins");
+    EXPECT_EQ(give(play.state, play.ground, {Type::kSell, 0, {}}), nullptr);
+    EXPECT_EQ(play.state.coins, kCoinsAtStart - 210 + 147);
+    EXPECT_EQ(play.state.towers[0].kind, TowerKind::kNone);
+}
+
+TEST(GameRules, ThreeLevelsAndNoMore) {
+    Play play;
+    play.state.coins = 10000;
+    ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 3, TowerKind::kEmberMortar}), nullptr);
+    EXPECT_EQ(give(play.state, play.ground, {Type::kUpgrade, 3, {}}), nullptr);
+    EXPECT_EQ(give(play.state, play.ground, {Type::kUpgrade, 3, {}}), nullptr);
+    EXPECT_STREQ(give(play.state, play.ground, {Type::kUpgrade, 3, {}}),
+                 "it is as good as it gets");
+    EXPECT_EQ(priceOf(play.state.towers[3]), 0);
+}
+
+TEST(GameRules, AnEnemyFallsWhenEnoughOfItHasBurnt) {
+    Play play;
+    const size_t slot = play.first();
+    const EnemyRule& rule = kEnemies[size_t(kindOf(slot))];
+    play.burning.enemyAlight[slot] = true;
+    play.burning.enemyBurnt[slot] = rule.falls - 1;
+    play.run(5);
+    EXPECT_EQ(play.state.enemies[slot].phase, Phase::kMarches);
+    const int32_t coins = play.state.coins;
+    play.burning.enemyBurnt[slot] = rule.falls;
+    play.run(1);
+    EXPECT_EQ(play.state.enemies[slot].phase, Phase::kFalls);
+    EXPECT_EQ(play.state.coins, coins + rule.bounty);
+    EXPECT_EQ(play.count(Happening::Type::kFell), 1u);
+}
+
+TEST(GameRules, WhoComesToTheMillCostsLivesAndLosesTheGame) {
+    Play play;
+    int32_t guard = 100000;
+    while (play.state.outcome == Outcome::kPlaying && --guard) play.run(1);
+    EXPECT_EQ(play.state.outcome, Outcome::kLost);
+    EXPECT_EQ(play.state.lives, 0);
+    EXPECT_EQ(play.count(Happening::Type::kFell), 0u);
+    EXPECT_EQ(play.count(Happening::Type::kOver), 1u);
+    const uint64_t end = hashOf(play.state);
+    play.run(10);
+    EXPECT_EQ(hashOf(play.state), end);
+}
+
+TEST(GameRules, EveryWaveBringsWhoItNames) {
+    Play play;
+    play.burning.enemyBurnt.fill(1000);  // whoever comes falls at once
+    std::array<int32_t, kEnemyKinds> born{}, named{};
+    int32_t guard = 200000;
+    while (play.state.outcome == Outcome::kPlaying && --guard) play.run(1);
+    ASSERT_EQ(play.state.outcome, Outcome::kWon);
+    for (const Happening& h : play.happened)
+        if (h.type == Happening::Type::kBorn) ++born[size_t(kindOf(size_t(h.slot)))];
+    for (const Wave& wave : kWaves)
+        for (size_t k = 0; k < kEnemyKinds; ++k) named[k] += wave.count[k];
+    EXPECT_EQ(born, named);
+    EXPECT_EQ(play.state.lives, kLivesAtStart);
+}
+
+TEST(GameRules, FlamethrowersTurnToWhatDoesNotBurnYet) {
+    Play play;
+    play.state.coins = 1000;
+    ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 0, TowerKind::kFlamethrower}), nullptr);
+    const size_t ahead = play.first();
+    int32_t guard = 1000;
+    size_t behind = ahead;
+    while (--guard && play.state.enemies[ahead].along < 7000) play.run(1);
+    for (size_t i = 0; i < kEnemySlots; ++i)
+        if (i != ahead && play.state.enemies[i].phase == Phase::kMarches) behind = i;
+    ASSERT_NE(behind, ahead);
+    for (size_t i = 0; i < kEnemySlots; ++i)
+        if (i != ahead && i != behind) play.state.enemies[i] = {};
+    play.state.enemies[behind].along = 5000;
+    play.run(1);
+    EXPECT_EQ(play.state.towers[0].target, int32_t(ahead));
+    play.burning.enemyAlight[ahead] = true;
+    play.run(2);
+    EXPECT_EQ(play.state.towers[0].target, int32_t(behind));
+    play.burning.enemyAlight[behind] = true;  // all burn: the foremost again
+    play.run(2);
+    EXPECT_EQ(play.state.towers[0].target, int32_t(ahead));
+    EXPECT_GT(play.state.towers[0].streams, 0);
+}
+
+TEST(GameRules, EmbersComeDownWhereTheyWereAimedAndTheWindBlew) {
+    Play play;
+    ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 1, TowerKind::kEmberMortar}), nullptr);
+    play.first();
+    int32_t guard = 3000;
+    while (--guard && play.count(Happening::Type::kEmberLands) == 0) play.run(1);
+    ASSERT_EQ(play.count(Happening::Type::kEmberLands), 1u);
+    const Happening& landed = play.happened.back();
+    const auto shot =
+        std::find_if(play.happened.begin(), play.happened.end(),
+                     [](const Happening& h) { return h.type == Happening::Type::kShot; });
+    EXPECT_EQ(landed.place.x, shot->place.x);
+    EXPECT_EQ(landed.place.z, shot->place.z);
+    EXPECT_LT(landed.place.z, 700 - 2000 / 8 + 1);  // the wind blows north, over the road
+    EXPECT_EQ(landed.strength, 700);
+}
+
+TEST(GameRules, WaterGoesToTheHouseThatCanBeSaved) {
+    Play play;
+    ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 0, TowerKind::kWaterCannon}), nullptr);
+    play.run(50);
+    EXPECT_EQ(play.count(Happening::Type::kSprays), 0u);
+    play.burning.houseAlight[0] = play.burning.houseAlight[1] = true;
+    play.burning.houseBurnt[1] = 400;
+    play.run(200);
+    EXPECT_EQ(play.state.towers[0].target, 0);
+    EXPECT_GT(play.count(Happening::Type::kSprays), 10u);
+    for (const Happening& h : play.happened) {
+        if (h.type != Happening::Type::kSprays) continue;
+        EXPECT_LT(std::abs(h.place.x), 5000);
+        EXPECT_LT(std::abs(h.place.z + 8000), 5000);
+    }
+}
+
+TEST(GameRules, FansTurnTheWindAndHoldEnemiesUp) {
+    Play with, without;
+    ASSERT_EQ(give(with.state, with.ground, {Type::kPlace, 0, TowerKind::kWindFan}), nullptr);
+    const Point calm = windOf(without.state, without.ground),
+                blown = windOf(with.state, with.ground);
+    EXPECT_EQ(blown.x, calm.x);
+    EXPECT_EQ(blown.z, calm.z - 1200);  // towards the road
+    const size_t slot = with.first();
+    ASSERT_EQ(without.first(), slot);
+    with.run(400);
+    without.run(400);
+    EXPECT_LT(with.state.enemies[slot].along, without.state.enemies[slot].along - 500);
+}
+
+TEST(GameRules, HousesAreLostOnceAndCount) {
+    Play play;
+    const int32_t before = score(play.state);
+    play.burning.houseBurnt[4] = kHouseIsLost;
+    play.run(3);
+    EXPECT_EQ(play.count(Happening::Type::kHouseLost), 1u);
+    EXPECT_EQ(score(play.state), before - kScorePerHouse);
+    EXPECT_EQ(standing(play.state), 1000 - 500 / int32_t(kHouses));
+}
+
+// The bot's game with fires that follow a jet: the same twice, another with another seed.
+uint64_t botsGame(uint32_t seed, State* end) {
+    Play play;
+    play.state = newGame(seed);
+    while (play.state.outcome == Outcome::kPlaying && play.state.tick < 60000) {
+        give(play.state, play.ground, botsOrder(play.state));
+        for (const Happening& h : play.happened)
+            if (h.type == Happening::Type::kBorn)
+                play.burning.enemyBurnt[size_t(h.slot)] = play.burning.enemyAlight[size_t(h.slot)] =
+                    0;
+        play.happened.clear();
+        for (const Tower& tower : play.state.towers)
+            if (tower.streams > 0 && tower.target >= 0)
+                play.burning.enemyAlight[size_t(tower.target)] = true;
+        for (size_t i = 0; i < kEnemySlots; ++i)
+            if (play.burning.enemyAlight[i]) play.burning.enemyBurnt[i] += 5;
+        play.run(1);
+    }
+    *end = play.state;
+    return hashOf(play.state);
+}
+
+TEST(GameRules, TheBotWinsAndItsGameIsOneOfItsSeed) {
+    State end, again, other;
+    const uint64_t hash = botsGame(7, &end);
+    EXPECT_EQ(end.outcome, Outcome::kWon);
+    EXPECT_GT(end.felled, 40);
+    EXPECT_EQ(botsGame(7, &again), hash);
+    EXPECT_NE(botsGame(8, &other), hash);
+}
+
+TEST(GameRules, ACopyIsAPointToComeBackTo) {
+    Play play;
+    play.first();
+    play.run(300);
+    const State then = play.state;
+    play.run(500);
+    const uint64_t end = hashOf(play.state);
+    play.state = then;
+    play.run(500);
+    EXPECT_EQ(hashOf(play.state), end);
+}
+
+}  // namespace

@@ -1,0 +1,91 @@
+// The numbers of the game: enemies, towers, waves. All of them integers: millimetres, ticks of
+// 1/32 s, thousandths.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace game {
+
+constexpr int32_t kTicksPerSecond = 32;
+constexpr int32_t kLevels = 3;  // of a tower
+
+enum class EnemyKind : int32_t { kStrawMan, kYuleGoat, kLogKnight, kWickerGiant, kCount };
+constexpr size_t kEnemyKinds = size_t(EnemyKind::kCount);
+
+struct EnemyRule {
+    const char* name;
+    int32_t pace;    // mm a tick
+    int32_t falls;   // thousandths of it that have burnt when it falls
+    int32_t bounty;  // coins
+    int32_t lives;   // that it costs when it comes to the mill
+    bool panics;     // runs while it burns
+    int32_t most;    // of them at a time
+};
+constexpr std::array<EnemyRule, kEnemyKinds> kEnemies{{
+    {"straw man", 42, 300, 10, 1, true, 8},
+    {"yule goat", 55, 350, 12, 1, true, 4},
+    {"log knight", 24, 300, 25, 2, false, 4},
+    {"wicker giant", 19, 350, 80, 5, false, 1},
+}};
+constexpr size_t kEnemySlots =
+    size_t(kEnemies[0].most + kEnemies[1].most + kEnemies[2].most + kEnemies[3].most);
+
+enum class TowerKind : int32_t {
+    kNone,
+    kFlamethrower,
+    kEmberMortar,
+    kWaterCannon,
+    kWindFan,
+    kCount
+};
+constexpr size_t kTowerKinds = size_t(TowerKind::kCount);
+
+struct TowerRule {
+    const char* name;
+    std::array<int32_t, kLevels> price;     // coins, of each level beyond the one before
+    std::array<int32_t, kLevels> range;     // mm
+    std::array<int32_t, kLevels> strength;  // see below
+    int32_t nearest;                        // mm
+    int32_t reload;                         // ticks between two shots; 0: it streams
+};
+constexpr std::array<TowerRule, kTowerKinds> kTowers{{
+    {"nothing", {}, {}, {}, 0, 0},
+    // kW of its jet. The fuel sticks and burns on.
+    {"flamethrower", {120, 90, 120}, {8600, 9200, 9800}, {500, 700, 1000}, 1500, 0},
+    // mm: radius of the fire where its ember comes down, a little downwind of where it was aimed
+    {"ember mortar", {180, 130, 170}, {14000, 16000, 18000}, {700, 950, 1200}, 5000, 128},
+    // g of water on each square metre, eight times a second, where it strikes
+    {"water cannon", {100, 80, 100}, {15000, 17000, 19000}, {60, 110, 180}, 0, 4},
+    // mm/s added to the valley's wind; and thousandths of their pace that it takes from enemies
+    // near it, a fifth of this
+    {"wind fan", {90, 70, 90}, {6500, 7000, 7500}, {1200, 1900, 2600}, 0, 0},
+}};
+constexpr int32_t kRefund = 700;  // thousandths of what was paid
+
+struct Wave {
+    std::array<int32_t, kEnemyKinds> count;
+    int32_t gap;  // ticks from one enemy to the next
+};
+constexpr std::array<Wave, 8> kWaves{{
+    {{4, 0, 0, 0}, 72},
+    {{6, 2, 0, 0}, 60},
+    {{4, 4, 1, 0}, 60},
+    {{8, 2, 2, 0}, 52},
+    {{6, 4, 4, 0}, 48},
+    {{8, 4, 3, 0}, 40},
+    {{10, 6, 4, 0}, 36},
+    {{10, 6, 5, 1}, 36},
+}};
+constexpr int32_t kBeforeWave = 20 * kTicksPerSecond;  // ticks of peace; may be called off
+constexpr int32_t kCoinsAtStart = 320, kLivesAtStart = 20;
+constexpr int32_t kCoinsPerSecondEarly = 1;  // for calling a wave before its time
+constexpr int32_t kCoinsPerWave = 40;        // for each that is over
+
+// The score: what was felled, what of the village stands, who never came to the mill.
+constexpr int32_t kScorePerCoin = 10, kScorePerLife = 100, kScorePerHouse = 500,
+                  kScorePerWave = 200;
+constexpr int32_t kHouseIsLost = 500;  // thousandths burnt
+
+}  // namespace game
