@@ -436,7 +436,8 @@ void Stage::spreadLight(const StageFrame& frame) {
 }
 
 void Stage::drawPost(const StageFrame& frame, VkPipeline pipeline, VkRenderPass pass,
-                     VkFramebuffer framebuffer, VkExtent2D extent) {
+                     VkFramebuffer framebuffer, VkExtent2D extent,
+                     const std::function<void(VkCommandBuffer)>& over) {
     VkRenderPassBeginInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
     info.renderPass = pass;
@@ -451,6 +452,7 @@ void Stage::drawPost(const StageFrame& frame, VkPipeline pipeline, VkRenderPass 
     vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, postLayout_, 0, 1,
                             &postSet_, 0, nullptr);
     vkCmdDraw(frame.commands, 3, 1, 0, 0);
+    if (over) over(frame.commands);
     vkCmdEndRenderPass(frame.commands);
 }
 
@@ -468,7 +470,7 @@ void Stage::finish(const StageFrame& frame) {
                        &push);
     if (scenic) spreadLight(frame);
     drawPost(frame, postPipeline_, postPass_, outputFramebuffers_[window_ ? imageIndex_ : 0],
-             extent_);
+             extent_, overlay);
     if (!window_) {
         VkBufferImageCopy region{};
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};

@@ -73,7 +73,11 @@ class Stage {
     // Headless: every frame's picture, in order, some frames after it was recorded.
     std::function<void(uint32_t number, Picture&& picture)> onPicture;
 
+    // Inside the last pass, over the finished picture: display values, one attachment, no depth.
+    std::function<void(VkCommandBuffer commands)> overlay;
+
     StageRequest made;
+    VkRenderPass outputPass() const { return postPass_; }
     VkRenderPass scenePass = VK_NULL_HANDLE;
     VkFormat depthFormat = VK_FORMAT_UNDEFINED;
     // What a pipeline in the scene pass needs to agree with the stage.
@@ -107,7 +111,8 @@ class Stage {
     void collect(Slot& slot);
     void spreadLight(const StageFrame& frame);
     void drawPost(const StageFrame& frame, VkPipeline pipeline, VkRenderPass pass,
-                  VkFramebuffer framebuffer, VkExtent2D extent);
+                  VkFramebuffer framebuffer, VkExtent2D extent,
+                  const std::function<void(VkCommandBuffer)>& over = {});
 
     const VulkanHost& host_;
     double fps_;

@@ -149,12 +149,15 @@ bool Window::poll(Input& input) {
     if (left && pressed_) input.dragX = dx, input.dragY = dy;
     if (other) input.panX = dx, input.panY = dy;
     if (left && !pressed_) pressX_ = x, pressY_ = y;
+    int width = 1, height = 1;
+    glfwGetWindowSize(window_, &width, &height);
+    input.x = static_cast<float>(x / std::max(1, width));
+    input.y = static_cast<float>(y / std::max(1, height));
+    input.held = left;
     if (!left && pressed_ && std::hypot(x - pressX_, y - pressY_) < 4.0) {
-        int width = 1, height = 1;
-        glfwGetWindowSize(window_, &width, &height);
         input.click = true;
-        input.clickX = static_cast<float>(x / std::max(1, width));
-        input.clickY = static_cast<float>(y / std::max(1, height));
+        input.clickX = input.x;
+        input.clickY = input.y;
     }
     pressed_ = left;
     lastX_ = x;

@@ -20,6 +20,8 @@ struct Input {
     float turn = 0;                        // keys held, -1..1 (Q and E)
     bool click = false;                    // left button pressed and released without dragging
     float clickX = 0, clickY = 0;          // 0..1 of the window, from its top left
+    float x = 0, y = 0;                    // where the mouse is, as clickX and clickY
+    bool held = false;                     // left button is down
     std::vector<int> keys;  // pressed since, as GLFW key codes (letters are ASCII capitals)
 };
 

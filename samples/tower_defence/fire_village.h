@@ -1,14 +1,14 @@
 // Everything of the village that can burn, handed to the fire library through its public C ABI.
-// Keeps what a game adds: who lights whom, what is drawn by whom, and the fires as lights.
+// Who lights whom is the library's; here is what is drawn by whom, and the fires as lights.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
-#include "common/fire_host.h"
+#include "flamewright/flamewright.h"
+#include "light.h"
 #include "paint.h"
-#include "renderer.h"
 
 namespace tower {
 
@@ -19,58 +19,61 @@ struct Thing {            // one instance that can burn
     village::Vec3 low, high;  // m, model space
     bool lit = false;         // has caught; from then on the library draws it
     bool over = false;        // burnt out
-    bool moves = false;
-    float rest = 0;       // s until a flame is worth testing against it again
-    float dose = 0;       // kJ/m^2 taken up from neighbours
-    glm::vec3 origin{0};  // m, model space: where it first caught
-    float reach = 0.3f;   // m, how far flames lick from there to other parts
     FwObjectState state{};
+    int32_t burnt() const {  // thousandths
+        return state.texels ? int32_t(uint64_t{state.ignited} * 1000 / state.texels) : 0;
+    }
 };
+
+// Throws sample::Failure with the world's own words.
+void checkFire(FwWorld* world, FwResult result, const char* what);
 
 class FireVillage {
  public:
     // Cooks the meshes on all cores, then makes materials, pictures and objects. Throws
-    // sample::Failure.
-    FireVillage(sample::FireHost& fire, const village::Scene& scene, const PaintedVillage& painted,
-                uint32_t seed);
+    // sample::Failure. Without `painted`, for a world that nobody sees, no pictures.
+    FireVillage(FwContext* context, FwWorld* world, const village::Scene& scene,
+                const PaintedVillage* painted);
 
     std::vector<Thing> things;
     // The thing of an instance, or npos if that cannot burn.
     static constexpr size_t kNone = ~size_t{0};
     size_t thingOf(size_t instance) const { return thingOf_[instance]; }
 
-    // A ball of flame; false if no fuel of the thing is within reach.
-    bool ignite(size_t thing, glm::vec3 place, float radius);
+    // A ball of flame, or of water (g/m^2), against all that it touches.
+    void ignite(glm::vec3 place, float radius);
+    void wet(glm::vec3 place, float radius, float water);
     void move(size_t thing, const village::Frame& frame);
-    // Reads events and states, then lets burning things heat their neighbours. After Step or
-    // RecordOutside of the frame before.
-    void advance(float deltaTime, glm::vec3 wind);
+    // As if it had never burnt: another object in the old one's place.
+    void renew(size_t thing);
+    // Reads events and states. After Step or RecordOutside of the frame before.
+    void observe();
+    // What a world that has been loaded does not say: `lit` and `over` are as given.
+    void restore(std::span<const uint8_t> flags);
+    std::vector<uint8_t> flags() const;
     // The fires as the library reports them, strongest first. scale: intensity per watt.
     std::span<const PointLight> lights(float scale);
 
     uint32_t burning() const { return burning_; }
     uint32_t caught() const { return caught_; }
-    glm::vec3 fireCentre(const Thing& thing) const;  // m, world; about where it burns
 
  private:
     void makeMaterials();
-    void makeModel(size_t model, const village::Model& source, const PaintedModel& painted,
+    void makeModel(size_t model, const village::Model& source, const PaintedModel* painted,
                    const std::vector<uint8_t>& cooked);
     void makeThings(const village::Scene& scene);
-    void pollEvents();
-    void heatNeighbours(float deltaTime, glm::vec3 wind);
-    void throwBrands(uint32_t slot, glm::vec3 wind);
-    void landBrand(glm::vec3 place);
-    void lickOtherParts(uint32_t slot);
+    void createObject(Thing& thing);
+    void touch(uint32_t kind, glm::vec3 place, float radius, float water);
+    void check(FwResult result, const char* what) const { checkFire(world_, result, what); }
 
-    sample::FireHost& fire_;
+    FwContext* context_;
+    FwWorld* world_;
     FwMaterialId materials_[8]{};
     std::vector<FwMeshId> meshes_;  // by model; null where it cannot burn
     std::vector<FwImageId> images_;
     std::vector<size_t> thingOf_;  // by instance
+    std::vector<village::Instance> instances_;
     std::vector<PointLight> lights_;
-    uint32_t seed_;
-    float time_ = 0;  // s
     uint32_t burning_ = 0, caught_ = 0;
 };
 

@@ -7,6 +7,13 @@
 
 namespace tower {
 
+struct PointLight {
+    glm::vec3 place;     // m
+    float reach = 8;     // m, dark beyond
+    glm::vec3 color;     // linear, per unit distance
+    float size = 0.75f;  // m, radius of the source
+};
+
 struct Daylight {
     glm::vec3 toSun;  // unit
     glm::vec3 sun, sky, ground, haze;
@@ -15,6 +22,17 @@ struct Daylight {
     float emission;  // of fire against the scene's light
 };
 
+inline Daylight mix(const Daylight& a, const Daylight& b, float t) {
+    auto one = [t](float x, float y) { return x + (y - x) * t; };
+    return {glm::normalize(glm::mix(a.toSun, b.toSun, t)),
+            glm::mix(a.sun, b.sun, t),
+            glm::mix(a.sky, b.sky, t),
+            glm::mix(a.ground, b.ground, t),
+            glm::mix(a.haze, b.haze, t),
+            one(a.exposure, b.exposure),
+            one(a.windows, b.windows),
+            one(a.emission, b.emission)};
+}
 inline Daylight goldenHour() {
     return {glm::normalize(glm::vec3(-0.78f, 0.42f, 0.36f)),
             {6.2f, 3.35f, 1.42f},

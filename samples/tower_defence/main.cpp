@@ -1,5 +1,5 @@
-// The tower-defence slice: a village, a wave of straw men, one flamethrower tower, and the wind.
-// The main program only: options, the camera, and the order of a frame.
+// The tower-defence game: straw and wood march on the mill, and fire is the weapon and the danger.
+// The main program: options, and the order of a frame. The rules are game/game.h.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,25 +10,31 @@
 #include "common/fire_host.h"
 #include "common/progress.h"
 #include "common/stage.h"
-#include "game.h"
-#include "throwers.h"
+#include "game/bot.h"
+#include "hud.h"
+#include "overview.h"
+#include "renderer.h"
+#include "rewind.h"
+#include "scripted.h"
+#include "siege.h"
+#include "world_def.h"
 
 namespace {
 
 struct Choices {
-    std::string light = "golden", ground = "parallax";
-    float wind[3] = {-2.4f, 0.0f, -2.0f};  // m/s, from the sea behind the tower
-    float pace = 14.0f;                    // how much faster than real thatch the fire runs
-    bool antialias = false;
-    float throwers = 0;     // flamethrower towers more
-    bool holdFire = false;  // they stand there alone
+    std::string light = "waves", ground = "parallax", backend = "vulkan";
+    tower::ScriptedGame scripted;
+    float waves = 0;
+    bool bot = false, antialias = false, report = false;
 };
+
+constexpr const char* kLights[] = {"golden", "noon", "night"};
 
 tower::Daylight daylightOf(const std::string& name) {
     if (name == "golden") return tower::goldenHour();
     if (name == "noon") return tower::noon();
     if (name == "night") return tower::moonlight();
-    throw sample::Failure("--light is \"" + name + "\"; it takes golden, noon or night");
+    throw sample::Failure("--light is \"" + name + "\"; it takes golden, noon, night or waves");
 }
 
 tower::Ground groundOf(const std::string& name) {
@@ -37,37 +43,40 @@ tower::Ground groundOf(const std::string& name) {
     throw sample::Failure("--ground is \"" + name + "\"; it takes bump or parallax");
 }
 
-constexpr const char* kLights[] = {"golden", "noon", "night"};  // keys 1 to 3
+// The day goes on from wave to wave, by and by, unless the player or an option holds it.
+class Day {
+ public:
+    explicit Day(const std::string& name) : held_(name != "waves") {
+        if (held_) now_ = from_ = to_ = daylightOf(name);
+    }
+    void follow(int32_t wave, float deltaTime) {
+        constexpr float kDusk = 8;  // s
+        if (!held_ && wave / 2 != stage_) {
+            stage_ = wave / 2;
+            turn(stage_ % 3);
+        }
+        passed_ = std::min(1.0f, passed_ + deltaTime / kDusk);
+        now_ = passed_ < 1 ? tower::mix(from_, to_, passed_) : to_;
+    }
+    void next() {
+        held_ = true;
+        turn(light_ + 1);
+        passed_ = 1;
+    }
+    const tower::Daylight& light() const { return now_; }
 
-// The strategy camera: always the same way round, 45 degrees down; pans and zooms.
-struct Overview {
-    glm::vec2 pan{0, 0};  // m, x and z, within +-8
-    float zoom = 1;       // of the distance, [0.35, 1.3]
-
-    sample::Camera camera() const {
-        const glm::vec3 target(-1.5f + pan.x, 0.2f, -2.9f + pan.y);
-        sample::Camera camera;
-        camera.target = target;
-        camera.eye = target + zoom * glm::vec3(0.0f, 35.8f, 36.3f);
-        camera.fieldOfView = glm::radians(29.0f);
-        camera.nearPlane = 4.0f;
-        camera.farPlane = 150.0f;
-        return camera;
+ private:
+    void turn(int light) {
+        light_ = light % 3;
+        from_ = now_;
+        to_ = daylightOf(kLights[light_]);
+        passed_ = 0;
     }
-    void steer(const sample::Input& input, float deltaTime, VkExtent2D size) {
-        const float metres = 47.0f * zoom / std::max(1.0f, float(size.width));  // per pixel
-        pan.x += -metres * (input.dragX + input.panX) + 14 * zoom * deltaTime * input.moveRight;
-        pan.y +=
-            -1.4f * metres * (input.dragY + input.panY) - 14 * zoom * deltaTime * input.moveForward;
-        pan = glm::clamp(pan, glm::vec2(-8), glm::vec2(8));
-        zoom = std::clamp(zoom * std::pow(0.92f, input.wheel), 0.35f, 1.3f);
-    }
-    // Without a hand at the mouse: from the whole village slowly down to the fire.
-    void follow(float share) {
-        const float t = share * share * (3 - 2 * share);
-        pan = glm::mix(glm::vec2(0.3f, 0.6f), glm::vec2(-1.7f, 8.6f), t);
-        zoom = std::exp(std::log(1.0f) * (1 - t) + std::log(0.46f) * t);
-    }
+    bool held_;
+    int32_t stage_ = 0;
+    int light_ = 0;
+    float passed_ = 1;
+    tower::Daylight from_ = tower::goldenHour(), to_ = from_, now_ = from_;
 };
 
 FwView fireView(const sample::Camera& camera, const tower::Daylight& light,
@@ -98,8 +107,7 @@ std::vector<tower::PointLight> lampLights(const village::Scene& scene) {
     return lamps;
 }
 
-std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tower::Game& game,
-                                            const tower::Throwers& throwers,
+std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tower::Siege& siege,
                                             const std::vector<tower::PointLight>& lamps,
                                             const tower::Daylight& light) {
     constexpr size_t kMost = 10;
@@ -107,8 +115,8 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
     const bool dark = light.windows > 1;
     constexpr float kJetIntensity = 7.0f;
     const float firePerWatt = dark ? 4.5e-5f : 2e-5f;
-    std::vector<tower::PointLight> all = game.jetLights(kJetIntensity);
-    throwers.addLights(kJetIntensity, all);
+    std::vector<tower::PointLight> all;
+    siege.addLights(kJetIntensity, all);
     const auto burning = fires.lights(firePerWatt);
     all.insert(all.end(), burning.begin(), burning.end());
     if (dark) all.insert(all.end(), lamps.begin(), lamps.end());
@@ -119,15 +127,77 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
     return all;
 }
 
-int run(const sample::Options& options, const Choices& choices) {
-    tower::Daylight light = daylightOf(choices.light);
+tower::FireNumbers countFires(const tower::FireVillage& fires) {
+    tower::FireNumbers numbers{fires.burning(), fires.caught(), 0, 0};
+    for (const tower::Thing& thing : fires.things) {
+        numbers.megawatts += 1e-6f * thing.state.power;
+        numbers.squareMetres += thing.state.burningArea;
+    }
+    return numbers;
+}
+
+// Pictures begin in the middle of it: towers stand, and the third wave is on the road.
+game::State underWay(const game::Ground& ground, uint32_t seed) {
+    constexpr int32_t kWave = 3, kSeconds = 22;
+    game::State state = game::newGame(seed);
+    state.wave = kWave;
+    state.coins = 900;
+    while (true) {
+        const game::Order order = game::botsOrder(state);
+        if (order.type == game::Order::Type::kNone) break;
+        game::give(state, ground, order);
+    }
+    state.untilWave = 0;
+    std::vector<game::Happening> happened;
+    for (int32_t i = 0; i < kSeconds * game::kTicksPerSecond; ++i)
+        game::tick(state, ground, {}, happened);
+    return state;
+}
+
+// What the player hears of it, in words.
+const char* wordsFor(const game::Happening& happening) {
+    switch (happening.type) {
+        case game::Happening::Type::kGotThrough:
+            return "One has come to the mill!";
+        case game::Happening::Type::kHouseLost:
+            return "A house is lost";
+        case game::Happening::Type::kWaveBegins:
+            return "They come";
+        case game::Happening::Type::kWaveOver:
+            return "The wave is over";
+        default:
+            return nullptr;
+    }
+}
+
+const char* nameOf(game::Order::Type type) {
+    constexpr const char* kNames[] = {"nothing", "place", "upgrade", "sell", "call wave"};
+    return kNames[size_t(type)];
+}
+
+// Turns seconds into whole ticks.
+class Clock {
+ public:
+    int32_t ticksIn(float deltaTime, const tower::Player& player) {
+        if (player.paused) return 0;
+        constexpr int32_t kMost = 8;  // in a frame: the world drops what is beyond
+        due_ += deltaTime * float(player.speed) / tower::kTickSeconds;
+        const int32_t ticks = std::min(int32_t(due_), kMost);
+        due_ = std::min(due_ - float(ticks), 1.0f);
+        return ticks;
+    }
+
+ private:
+    float due_ = 0;
+};
+
+int play(const sample::Options& options, const Choices& choices) {
+    Day day(choices.light);
     constexpr double kStory = 10;  // s
     const uint32_t frames = sample::framesOf(options, kStory);
     sample::Progress startUp("painting the village", 2);
-    village::Scene scene = village::makeVillage(options.seed);
-    const auto turrets =
-        tower::placeThrowers(scene, static_cast<uint32_t>(std::lround(choices.throwers)));
-    const tower::PaintedVillage painted = tower::paintVillage(scene);
+    const tower::Battlefield field = tower::makeBattlefield(options.seed);
+    const tower::PaintedVillage painted = tower::paintVillage(field.scene);
     startUp.update(1);
 
     sample::ValidationLog validation;
@@ -135,69 +205,126 @@ int run(const sample::Options& options, const Choices& choices) {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: tower defence";
-        stageRequest.exposure = light.exposure;
+        stageRequest.exposure = day.light().exposure;
         stageRequest.vignette = 0.3f;
         stageRequest.bloom = 0.08f;
         if (choices.antialias) stageRequest.samples = VK_SAMPLE_COUNT_4_BIT;
-        FwWorldDef worldDef = fwDefaultWorldDef();
-        worldDef.paceFactor = choices.pace;
-        worldDef.seed = options.seed;
-        std::copy_n(choices.wind, 3, worldDef.wind);
+        const FwWorldDef worldDef = tower::villageWorld(options.seed, choices.scripted.pace);
         sample::FireHost fire(host, worldDef);
         sample::Stage stage(host, options, stageRequest, frames);
         fire.registerTarget(stage);
-        tower::Renderer renderer(host, stage, scene, painted, groundOf(choices.ground));
-        tower::FireVillage fires(fire, scene, painted, options.seed);
-        tower::Game game(scene, fires, options.seed,
-                         {choices.wind[0], choices.wind[1], choices.wind[2]});
-        constexpr float kThrowerPower = 700;  // kW
-        tower::Throwers throwers(fire, scene, turrets, choices.holdFire ? 0 : kThrowerPower);
-        const std::vector<tower::PointLight> lamps = lampLights(scene);
+        tower::Renderer renderer(host, stage, field.scene, painted, groundOf(choices.ground));
+        tower::FireVillage fires(fire.context, fire.world, field.scene, &painted);
+        tower::Siege siege(
+            fire.world, fires, field,
+            options.headless ? underWay(field.ground, options.seed) : game::newGame(options.seed));
+        tower::Rewind rewind(fire.world, siege);
+        tower::Hud hud(host, stage);
+        tower::Player player;
+        const std::vector<tower::PointLight> lamps = lampLights(field.scene);
         startUp.update(2);
         startUp.finish();
+        const bool bot = choices.bot || options.headless;
         if (!options.headless)
             std::printf(
-                "drag or arrow keys: pan; wheel: zoom; 1 2 3: golden hour, noon, night; Escape\n");
+                "1 to 4 and a click: place a tower; a click on it: U upgrades, X sells\n"
+                "Space: pause; F: fast-forward; R: ten seconds back; Enter: call the wave\n"
+                "drag or arrow keys: pan; wheel: zoom; N: the time of day; Escape: leave\n");
+        // For who drives the window from outside: what was done, a line each.
+        auto report = [&](const std::string& what) {
+            if (!choices.report) return;
+            std::printf("did: %s\n", what.c_str());
+            std::fflush(stdout);
+        };
 
         sample::FilmRequest film;
         film.name = "tower_defence";
         film.animationEvery = 3;
         sample::Filming filming(stage, options, film);
 
-        Overview overview;
+        tower::Overview overview;
+        Clock clock;
+        VkExtent2D extent{};
         const clock_t began = std::clock();
         sample::StageFrame frame;
         while (stage.next(frame)) {
+            if (frame.extent.width != extent.width || frame.extent.height != extent.height) {
+                extent = frame.extent;
+                report("size " + std::to_string(extent.width) + "x" +
+                       std::to_string(extent.height));
+            }
             if (options.headless)
                 overview.follow(frames > 1 ? float(frame.number) / float(frames - 1) : 0.0f);
             else
                 overview.steer(frame.input, frame.deltaTime, frame.extent);
-            for (const int key : frame.input.keys) {
-                if (key < '1' || key > '3') continue;
-                light = daylightOf(kLights[key - '1']);
-                stage.made.exposure = light.exposure;
-            }
-            game.advance(frame.deltaTime);
-            throwers.advance(frame.deltaTime, game.placed());
-            const glm::vec3 wind = game.wind();
-            fire.check(fwWorld_SetWind(fire.world, &wind[0]), "fwWorld_SetWind");
-
             const sample::Camera camera = overview.camera();
+
+            // The player, by hand or by plan.
+            tower::Wishes wishes = hud.show(frame, tower::Lens(camera, frame.extent), field,
+                                            siege.state(), countFires(fires), player);
+            auto say = [&](const std::string& what) {
+                player.said = what;
+                player.saidAt = frame.time;
+            };
+            if (bot) wishes.orders.push_back(game::botsOrder(siege.state()));
+            for (const game::Order& order : wishes.orders) {
+                if (order.type == game::Order::Type::kNone) continue;
+                const char* refused = siege.give(order);
+                if (refused) say(refused);
+                report(std::string(nameOf(order.type)) + " " + std::to_string(order.plot) +
+                       (refused ? std::string(": ") + refused : ""));
+            }
+            if (wishes.pause) {
+                player.paused = !player.paused;
+                report(player.paused ? "pause" : "go on");
+            }
+            if (wishes.faster) {
+                player.speed = player.speed == 4 ? 1 : player.speed * 2;
+                report("speed " + std::to_string(player.speed));
+            }
+            if (wishes.light) day.next();
+            if (wishes.rewind) {
+                const int32_t from = siege.state().tick;
+                if (rewind.goBack()) {
+                    say("Time went back");
+                    char line[160];
+                    std::snprintf(
+                        line, sizeof line,
+                        "rewind %d ticks in %.0f ms, %zu moments of %zu KB, saved in %.1f ms",
+                        from - siege.state().tick, 1e3 * rewind.loadSeconds, rewind.moments(),
+                        rewind.bytes() / 1024 / rewind.moments(), 1e3 * rewind.fetchSeconds);
+                    report(line);
+                } else {
+                    say("There is nothing to go back to yet");
+                }
+            }
+
+            // The game, then the world's step of as long, then the picture.
+            const int32_t ticks = clock.ticksIn(frame.deltaTime, player);
+            siege.advance(ticks);
+            for (const game::Happening& happening : siege.happened())
+                if (const char* words = wordsFor(happening)) say(words);
+            if (!options.headless && ticks > 0) rewind.remember();
+            day.follow(siege.state().wave, frame.deltaTime);
+            const tower::Daylight& light = day.light();
+            stage.made.exposure = light.exposure;
             const FwView view = fireView(camera, light, frame);
-            const auto lights = gatherLights(fires, game, throwers, lamps, light);
-            const auto& jet = game.flames(glm::normalize(camera.target - camera.eye));
-            renderer.prepare(frame, {camera, light, game.placed(), lights, jet});
-            fire.recordOutside(frame, view);
+            const auto lights = gatherLights(fires, siege, lamps, light);
+            sample::StageFrame step = frame;
+            step.deltaTime = float(ticks) * tower::kTickSeconds;
+            renderer.prepare(frame, {camera, light, siege.placed(), lights});
+            fire.recordOutside(step, view);
             stage.beginScene(frame);
             renderer.drawSolid(frame);
-            fire.recordInside(frame, view);
-            renderer.drawJet(frame);
+            fire.recordInside(step, view);
             stage.endScene(frame);
             stage.finish(frame);
         }
         vkDeviceWaitIdle(host.device);
+        report("quit");
 
         if (options.headless) {
+            const game::State& state = siege.state();
             sample::Summary summary;
             summary.title = "The village under attack (" + choices.light + ")";
             char perFrame[64];
@@ -208,11 +335,11 @@ int run(const sample::Options& options, const Choices& choices) {
                 {"size", std::to_string(options.width) + " x " + std::to_string(options.height) +
                              ", " + std::to_string(frames) + " frames"},
                 {"fire", std::to_string(fires.caught()) + " things caught, " +
-                             std::to_string(fires.burning()) + " still burn, " +
-                             std::to_string(game.felled()) + " enemies down"},
+                             std::to_string(fires.burning()) + " still burn"},
+                {"game", "wave " + std::to_string(state.wave + 1) + ", " +
+                             std::to_string(state.felled) + " enemies felled, score " +
+                             std::to_string(game::score(state))},
                 {"triangles", "at most " + std::to_string(renderer.mostTriangles()) + " in a view"},
-                {"throwers", std::to_string(turrets.size()) +
-                                 (choices.holdFire ? " that hold their fire" : "")},
                 {"time", perFrame},
                 {"processor",
                  std::to_string(int(1e3 * double(std::clock() - began) / CLOCKS_PER_SEC / frames)) +
@@ -221,6 +348,16 @@ int run(const sample::Options& options, const Choices& choices) {
         }
     }
     return validation.exitCode();
+}
+
+int run(const sample::Options& options, Choices choices) {
+    if (choices.backend != "vulkan" && choices.backend != "cpu")
+        throw sample::Failure("--backend is \"" + choices.backend + "\"; it takes vulkan or cpu");
+    if (!choices.bot || !options.headless) return play(options, choices);
+    choices.scripted.seed = options.seed;
+    choices.scripted.waves = int32_t(choices.waves);
+    choices.scripted.server = choices.backend == "cpu";
+    return tower::playScripted(choices.scripted);
 }
 
 }  // namespace
@@ -232,21 +369,26 @@ int main(int argc, char** argv) {
         options.height = 720;
         options.fps = 0;  // not said
         Choices choices;
-        sample::OptionParser parser("tower_defence", "a village under attack, and on fire");
-        parser.addText("--light", "NAME", "golden, noon or night", choices.light);
+        sample::OptionParser parser("tower_defence", "a village under attack, and on fire: a game");
+        parser.addText("--light", "NAME", "golden, noon, night, or waves: as they go by",
+                       choices.light);
         parser.addText("--ground", "NAME", "bump or parallax: how stones and grass stand out",
                        choices.ground);
-        parser.addVector("--wind", "m/s, x east, z towards the camera", choices.wind);
-        parser.addNumber("--pace", "how much faster than real thatch it burns", choices.pace, 0.1f,
-                         1000.0f);
-        parser.addNumber("--throwers", "flamethrower towers more, along the road", choices.throwers,
-                         0.0f, 200.0f);
-        parser.addFlag("--hold-fire", "those do not fire", choices.holdFire);
+        parser.addNumber("--pace", "how much faster than real thatch it burns",
+                         choices.scripted.pace, 0.1f, 1000.0f);
+        parser.addFlag("--bot",
+                       "a scripted player plays; with --headless: the game alone, no "
+                       "pictures, one line of result",
+                       choices.bot);
+        parser.addText("--backend", "NAME", "vulkan or cpu, of --bot --headless", choices.backend);
+        parser.addNumber("--waves", "of --bot --headless: ends after so many; 0: all",
+                         choices.waves, 0.0f, float(game::kWaves.size()));
+        parser.addFlag("--report", "says what was done, a line each", choices.report);
         parser.addFlag("--msaa", "four samples a pixel", choices.antialias);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.fps == 0) options.fps = options.headless ? 10.0 : 30.0;
         if (options.list) {
-            std::printf("one scene, in three lights: --light golden, noon or night\n");
+            std::printf("one game, in three lights: --light golden, noon or night\n");
             return 0;
         }
         return run(options, choices);

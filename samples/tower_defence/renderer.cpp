@@ -13,8 +13,6 @@ namespace tower {
 
 namespace {
 
-#include "jet.frag.h"
-#include "jet.vert.h"
 #include "land.frag.h"
 #include "village.frag.h"
 #include "village.vert.h"
@@ -22,7 +20,6 @@ namespace {
 using village::Vec3;
 
 constexpr uint32_t kMaxLights = 16;
-constexpr uint32_t kMaxParticles = 2048;
 
 struct FrameUniform {  // shaders/frame.glsl
     glm::mat4 viewProjection, shadowMatrix;
@@ -118,7 +115,7 @@ Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
 
 Renderer::~Renderer() {
     vkDeviceWaitIdle(host_.device);
-    for (VkPipeline p : {model_, groundPipeline_, roadPipeline_, waterPipeline_, jetPipeline_})
+    for (VkPipeline p : {model_, groundPipeline_, roadPipeline_, waterPipeline_})
         vkDestroyPipeline(host_.device, p, nullptr);
     for (Surface& s : surfaces_) {
         host_.destroy(s.color);
@@ -127,7 +124,6 @@ Renderer::~Renderer() {
     for (Slot& s : slots_) {
         host_.destroy(s.uniform);
         host_.destroy(s.instances);
-        host_.destroy(s.particles);
     }
     host_.destroy(vertices_);
     host_.destroy(indices_);
@@ -208,8 +204,6 @@ void Renderer::makeSlots(uint32_t count, size_t instances) {
         // one instance.
         slot.instances = host_.createBuffer((instances * 2 + 1) * sizeof(DrawnInstance),
                                             VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, true);
-        slot.particles = host_.createBuffer(kMaxParticles * sizeof(JetParticle),
-                                            VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, true);
         slot.set = sample::makeSet(host_, pool_, frameLayout_);
         sample::writeBuffer(host_, slot.set, 0, slot.uniform.buffer);
         sample::writeImage(host_, slot.set, 1, shadows_.sampler(), shadows_.view(),
@@ -240,19 +234,6 @@ void Renderer::makePipelines(const sample::Stage& stage, Ground ground) {
     }
     for (VkShaderModule shader : {request.vertex, plain, hollow})
         vkDestroyShaderModule(host_.device, shader, nullptr);
-
-    request.specialization = nullptr;
-    request.vertex = host_.createShader(kJetVert, sizeof kJetVert);
-    request.fragment = host_.createShader(kJetFrag, sizeof kJetFrag);
-    request.bindings = {{0, sizeof(JetParticle), VK_VERTEX_INPUT_RATE_INSTANCE}};
-    request.attributes = {{0, 0, VK_FORMAT_R32G32B32A32_SFLOAT, 0},
-                          {1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, 16},
-                          {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, 32}};
-    request.depthWrite = false;
-    request.blend = true;
-    jetPipeline_ = sample::makePipeline(host_, request);
-    vkDestroyShaderModule(host_.device, request.vertex, nullptr);
-    vkDestroyShaderModule(host_.device, request.fragment, nullptr);
 }
 
 // Whether a ball is seen at all.
@@ -282,7 +263,7 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
         const Vec3 c = p.frame.point(s.middle);
         const glm::vec3 middle(c.x, c.y, c.z);
         const float radius = s.radius * village::length(p.frame.x);
-        if (!inView(viewProjection, middle, radius)) {
+        if (!p.there || !inView(viewProjection, middle, radius)) {
             seen.push_back(kNot);
             continue;
         }
@@ -315,8 +296,10 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
     movingRuns_.clear();
     collect(solid_, true, [&](size_t i) { return seen[i] == kNear; });
     collect(solid_, false, [&](size_t i) { return seen[i] == kFar; });
-    collect(stillRuns_, false, [&](size_t i) { return !scene.placed[i].moves; });
-    collect(movingRuns_, false, [&](size_t i) { return scene.placed[i].moves; });
+    collect(stillRuns_, false,
+            [&](size_t i) { return scene.placed[i].there && !scene.placed[i].moves; });
+    collect(movingRuns_, false,
+            [&](size_t i) { return scene.placed[i].there && scene.placed[i].moves; });
 }
 
 void Renderer::upload(Slot& slot, const sample::StageFrame& frame, const SceneFrame& scene) {
@@ -341,10 +324,6 @@ void Renderer::upload(Slot& slot, const sample::StageFrame& frame, const SceneFr
         u.lightColors[i] = glm::vec4(scene.lights[i].color, scene.lights[i].size);
     }
     std::memcpy(slot.uniform.mapped, &u, sizeof u);
-    particleCount_ = uint32_t(std::min<size_t>(scene.particles.size(), kMaxParticles));
-    if (particleCount_)
-        std::memcpy(slot.particles.mapped, scene.particles.data(),
-                    particleCount_ * sizeof(JetParticle));
 }
 
 void Renderer::bindGeometry(VkCommandBuffer commands, const Slot& slot) const {
@@ -394,21 +373,6 @@ void Renderer::drawSolid(const sample::StageFrame& frame) {
     drawLand(water_);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, groundPipeline_);
     drawLand(ground_);
-}
-
-void Renderer::drawJet(const sample::StageFrame& frame) {
-    if (particleCount_ == 0) return;
-    const Slot& slot = slots_[frame.slot];
-    VkCommandBuffer commands = frame.commands;
-    const VkDeviceSize offset = 0;
-    const VkRect2D scissor{{0, 0}, frame.extent};
-    vkCmdSetViewport(commands, 0, 1, &frame.viewport);
-    vkCmdSetScissor(commands, 0, 1, &scissor);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, jetPipeline_);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &slot.set, 0,
-                            nullptr);
-    vkCmdBindVertexBuffers(commands, 0, 1, &slot.particles.buffer, &offset);
-    vkCmdDraw(commands, 6, particleCount_, 0, 0);
 }
 
 }  // namespace tower

@@ -9,25 +9,18 @@
 
 #include "common/camera.h"
 #include "common/stage.h"
-#include "jet.h"
 #include "light.h"
 #include "paint.h"
 #include "shadow_map.h"
 
 namespace tower {
 
-struct PointLight {
-    glm::vec3 place;     // m
-    float reach = 8;     // m, dark beyond
-    glm::vec3 color;     // linear, per unit distance
-    float size = 0.75f;  // m, radius of the source
-};
-
 // One instance as it is this frame.
 struct Placed {
     int model = 0;
     village::Frame frame;
     village::Vec3 tint{1, 1, 1};
+    bool there = true;   // false: neither seen nor shading
     bool drawn = true;   // false: another draws it; it still casts a shadow
     bool moves = false;  // casts its shadow anew in every frame
 };
@@ -39,8 +32,7 @@ struct SceneFrame {
     sample::Camera camera;
     Daylight daylight;
     std::span<const Placed> placed;
-    std::span<const PointLight> lights;      // the strongest first; at most 16 are used
-    std::span<const JetParticle> particles;  // back to front
+    std::span<const PointLight> lights;  // the strongest first; at most 16 are used
 };
 
 class Renderer {
@@ -55,8 +47,6 @@ class Renderer {
     void prepare(const sample::StageFrame& frame, const SceneFrame& scene);
     // Inside the stage's scene pass: everything solid.
     void drawSolid(const sample::StageFrame& frame);
-    // Inside the pass, last: the jet.
-    void drawJet(const sample::StageFrame& frame);
 
     // Of all frames so far: the most triangles in one view, the library's among them.
     uint32_t mostTriangles() const { return mostTriangles_; }
@@ -81,7 +71,7 @@ class Renderer {
         uint32_t first, count;
     };
     struct Slot {
-        sample::Buffer uniform, instances, particles;
+        sample::Buffer uniform, instances;
         VkDescriptorSet set = VK_NULL_HANDLE;
         VkExtent2D extent{};
     };
@@ -103,7 +93,7 @@ class Renderer {
     sample::Buffer vertices_, indices_;
     std::vector<Slot> slots_;
     std::vector<Run> solid_, stillRuns_, movingRuns_;
-    uint32_t particleCount_ = 0, mostTriangles_ = 0;
+    uint32_t mostTriangles_ = 0;
     glm::mat4 shadowClip_{1.0f};
     ShadowMap shadows_;
 
@@ -113,7 +103,6 @@ class Renderer {
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline model_ = VK_NULL_HANDLE, groundPipeline_ = VK_NULL_HANDLE;
     VkPipeline roadPipeline_ = VK_NULL_HANDLE, waterPipeline_ = VK_NULL_HANDLE;
-    VkPipeline jetPipeline_ = VK_NULL_HANDLE;
 };
 
 }  // namespace tower

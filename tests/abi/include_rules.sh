@@ -19,7 +19,7 @@ runtime/gpu|gpu/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/
 plugin/src|flamewright/|world/|components/|core/|gpu/backend.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
 plugin/include|flamewright/
 shaders/shared|shared/
-samples|flamewright/|common/|import/
+samples|flamewright/|common/|import/|shell/
 editor/import|flamewright/|import/
 editor/shell|common/|shell/
 editor/viewport|flamewright/|common/|import/|shell/|document/|viewport/

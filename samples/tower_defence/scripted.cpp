@@ -1,0 +1,68 @@
+// See scripted.h.
+#include "scripted.h"
+
+#include <cinttypes>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+
+#include "common/options.h"
+#include "game/bot.h"
+#include "siege.h"
+#include "world_def.h"
+
+namespace tower {
+
+int playScripted(const ScriptedGame& wanted) {
+    const Battlefield field = makeBattlefield(wanted.seed);
+    FwContextDef contextDef = fwDefaultContextDef();
+    contextDef.backend = wanted.server ? FW_BACKEND_CPU : FW_BACKEND_VULKAN;
+    FwContext* made = nullptr;
+    FwErrorInfo error{};
+    if (fwCreateContext(&contextDef, &made, &error) != FW_OK)
+        throw sample::Failure(std::string("fwCreateContext: ") + error.message);
+    const std::unique_ptr<FwContext, decltype(&fwDestroyContext)> context(made, &fwDestroyContext);
+    const FwWorldDef worldDef = villageWorld(wanted.seed, wanted.pace);
+    FwWorld* world = nullptr;
+    if (fwCreateWorld(context.get(), &worldDef, &world) != FW_OK)
+        throw sample::Failure("fwCreateWorld failed");
+    FireVillage fires(context.get(), world, field.scene, nullptr);
+    Siege siege(world, fires, field, game::newGame(wanted.seed));
+
+    // Four ticks a step: an eighth of a second, as often as fire goes from object to object.
+    constexpr int32_t kTicks = 4;
+    const std::clock_t began = std::clock();
+    uint32_t steps = 0;
+    const game::State& state = siege.state();
+    while (state.outcome == game::Outcome::kPlaying &&
+           (wanted.waves == 0 || state.wave < wanted.waves)) {
+        siege.give(game::botsOrder(state));
+        siege.advance(kTicks);
+        checkFire(world, fwWorld_Step(world, kTicks * kTickSeconds), "fwWorld_Step");
+        ++steps;
+        if (std::getenv("FW_TRACE") && steps % 40 == 0) {
+            std::fprintf(stderr,
+                         "%4d s wave %d coins %d lives %d felled %d burning %u standing %d |",
+                         state.tick / 32, state.wave, state.coins, state.lives, state.felled,
+                         fires.burning(), game::standing(state));
+            for (const auto& e : state.enemies)
+                if (e.phase == game::Phase::kMarches)
+                    std::fprintf(stderr, " %d:%d/%d", e.along / 1000, e.burnt, e.alight);
+            std::fprintf(stderr, " ms %.2f\n",
+                         1e3 * double(std::clock() - began) / CLOCKS_PER_SEC / steps);
+        }
+    }
+    const char* outcome = state.outcome == game::Outcome::kLost  ? "lost"
+                          : state.outcome == game::Outcome::kWon ? "won"
+                                                                 : "stopped";
+    std::printf(
+        "game: %s, score %d, lives %d, waves %d, felled %d, village %d of 1000, hash %016" PRIx64
+        "\n",
+        outcome, game::score(state), state.lives, state.wave, state.felled, game::standing(state),
+        game::hashOf(state));
+    std::fprintf(stderr, "%u steps, %.1f ms of processor time each\n", steps,
+                 1e3 * double(std::clock() - began) / CLOCKS_PER_SEC / steps);
+    return 0;
+}
+
+}  // namespace tower

@@ -1,0 +1,271 @@
+// See siege.h.
+#include "siege.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tower {
+
+using game::TowerKind;
+using village::Vec2;
+using village::Vec3;
+
+namespace {
+
+constexpr float kChest = 1.1f;          // m above the road: what jets aim at
+constexpr Vec3 kMuzzle{0, 2.6f, 1.1f};  // of the ember mortar, in its model's space
+constexpr Vec3 kSpout{0, 3.4f, 1.9f};   // of the water cannon
+constexpr float kSprayRadius = 1.4f;    // m
+constexpr float kSprayWide = 1.2f;      // m, of its sheet
+constexpr float kSprayLong = 11.0f;     // m
+constexpr float kRoof = 2.6f;           // m above the ground: where water is aimed at
+constexpr float kEmberPower = 40;       // kW
+constexpr float kEmberSeconds = 44 * kTickSeconds;
+
+glm::vec3 toGlm(Vec3 v) { return {v.x, v.y, v.z}; }
+
+glm::vec3 onGround(game::Point point, float above) {
+    const Vec2 place = metres(point);
+    return {place.x, village::groundHeight(place) + above, place.y};
+}
+
+// Out of the world's way: nothing burns down there.
+village::Frame away() { return village::translate(0, -300, 0); }
+
+}  // namespace
+
+Siege::Siege(FwWorld* world, FireVillage& fires, const Battlefield& field, const game::State& state)
+    : world_(world), fires_(fires), field_(field), state_(state) {
+    for (const village::Instance& instance : field.scene.instances) {
+        Placed placed;
+        placed.model = instance.model;
+        placed.frame = instance.frame;
+        placed.tint = instance.tint;
+        placed_.push_back(placed);
+    }
+    for (const auto& kinds : field.towers)
+        for (const size_t instance : kinds) placed_[instance].moves = true;
+    for (const size_t instance : field.enemies) {
+        placed_[instance].moves = true;
+        fires_.move(fires_.thingOf(instance), away());
+    }
+    makeEmitters();
+    moveEnemies();
+    aimTowers();
+}
+
+void Siege::makeEmitters() {
+    for (size_t plot = 0; plot < game::kPlots; ++plot) {
+        const glm::vec3 place = onGround(field_.ground.plots[plot], 3);
+        FwFireEmitterDef jet = fwDefaultFireEmitterDef();
+        jet.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES | FW_EMITTER_GROUND;
+        jet.seed = uint32_t(plot) + 1;
+        jet.power = float(game::kTowers[size_t(TowerKind::kFlamethrower)].strength.back());
+        jet.maxParticles = 140;
+        jet.rate = 85;
+        jet.smokeLife = 1.2f;
+        jet.behind = 0.3f;
+        jet.stick = 0.5f;
+        jet.stickTime = 4;
+        jet.ground = place.y - 3;
+        std::copy_n(&place[0], 3, jet.position);
+        check(fwWorld_CreateFireEmitter(world_, &jet, &jets_[plot]), "fwWorld_CreateFireEmitter");
+
+        FwFireEmitterDef ember = fwDefaultFireEmitterDef();
+        ember.seed = uint32_t(plot) + 100;
+        ember.power = kEmberPower;
+        ember.maxParticles = 60;
+        ember.inherit = 0.15f;
+        std::copy_n(&place[0], 3, ember.position);
+        check(fwWorld_CreateFireEmitter(world_, &ember, &embers_[plot]),
+              "fwWorld_CreateFireEmitter");
+
+        FwParticleFieldDef water = fwDefaultParticleFieldDef();
+        check(fwInitFieldPreset(&water, FW_FIELD_WATER), "fwInitFieldPreset");
+        water.seed = uint32_t(plot) + 1;
+        water.width = 32;
+        water.height = 64;
+        water.rise = 2.2f;  // along the sheet, which points where the water goes
+        water.life = 2.0f;
+        water.amount = 0;
+        water.source = FW_FIELD_SOURCE_BASE;
+        water.sourceSize = 0.5f;
+        water.open = FW_FIELD_OPEN_LEFT | FW_FIELD_OPEN_RIGHT | FW_FIELD_OPEN_TOP;
+        water.windResponse = 0;
+        water.size[0] = kSprayWide;
+        water.size[1] = kSprayLong;
+        std::copy_n(&place[0], 3, water.position);
+        check(fwWorld_CreateParticleField(world_, &water, &sprays_[plot]),
+              "fwWorld_CreateParticleField");
+    }
+}
+
+const char* Siege::give(const game::Order& order) {
+    const char* refused = game::give(state_, field_.ground, order);
+    if (!refused) aimTowers();
+    return refused;
+}
+
+game::Burning Siege::askBurning() const {
+    game::Burning burning;
+    for (size_t i = 0; i < game::kEnemySlots; ++i) {
+        const Thing& thing = fires_.things[fires_.thingOf(field_.enemies[i])];
+        burning.enemyBurnt[i] = thing.burnt();
+        burning.enemyAlight[i] = thing.state.burning > 0;
+    }
+    for (size_t i = 0; i < game::kHouses; ++i) {
+        const Thing& thing = fires_.things[fires_.thingOf(field_.houses[i])];
+        burning.houseBurnt[i] = thing.burnt();
+        burning.houseAlight[i] = thing.state.burning > 0;
+    }
+    return burning;
+}
+
+void Siege::carryOut(const game::Happening& happening) {
+    using Type = game::Happening::Type;
+    switch (happening.type) {
+        case Type::kBorn:
+            fires_.renew(fires_.thingOf(field_.enemies[size_t(happening.slot)]));
+            break;
+        case Type::kEmberLands:
+            fires_.ignite(onGround(happening.place, 0.6f), 0.001f * float(happening.strength));
+            break;
+        case Type::kSprays:
+            fires_.wet(onGround(happening.place, kRoof), kSprayRadius, float(happening.strength));
+            fires_.wet(onGround(happening.place, kRoof + 1.6f), kSprayRadius,
+                       float(happening.strength));
+            break;
+        default:
+            break;
+    }
+}
+
+void Siege::moveEnemies() {
+    for (size_t i = 0; i < game::kEnemySlots; ++i) {
+        const game::Enemy& enemy = state_.enemies[i];
+        const size_t thing = fires_.thingOf(field_.enemies[i]);
+        Placed& placed = placed_[field_.enemies[i]];
+        const bool was = placed.there;
+        placed.there = enemy.phase != game::Phase::kAway;
+        if (placed.there) {
+            // No two alike: a tenth about its size.
+            const float size = 0.95f + 0.0125f * float(enemy.born * 5 % 8);
+            placed.frame = enemyFrame(field_.ground, enemy, size);
+            fires_.move(thing, placed.frame);
+        } else if (was) {
+            fires_.move(thing, away());
+        }
+    }
+}
+
+void Siege::aimJet(size_t plot) {
+    const game::Tower& tower = state_.towers[plot];
+    const bool fires = tower.kind == TowerKind::kFlamethrower && tower.streams > 0;
+    const auto& rule = game::kTowers[size_t(TowerKind::kFlamethrower)];
+    check(fwWorld_SetFireEmitterPower(world_, jets_[plot],
+                                      fires ? float(rule.strength[size_t(tower.level)]) : 0),
+          "fwWorld_SetFireEmitterPower");
+    if (tower.kind != TowerKind::kFlamethrower) return;
+    const village::Frame frame = towerFrame(field_.ground.plots[plot], tower.aim);
+    const glm::vec3 nozzle = toGlm(frame.point(village::kNozzle));
+    // A stream falls on its way: aimed a little above.
+    const glm::vec3 way = onGround(tower.aim, kChest) - nozzle;
+    const float flat = std::sqrt(way.x * way.x + way.z * way.z);
+    const glm::vec3 direction(way.x, way.y + 0.02f * flat * flat, way.z);
+    check(fwWorld_MoveFireEmitter(world_, jets_[plot], &nozzle[0], &direction[0]),
+          "fwWorld_MoveFireEmitter");
+}
+
+void Siege::flyEmber(size_t plot) {
+    const game::Tower& tower = state_.towers[plot];
+    const bool flies = tower.kind == TowerKind::kEmberMortar && tower.flies > 0;
+    check(fwWorld_SetFireEmitterPower(world_, embers_[plot], flies ? kEmberPower : 0),
+          "fwWorld_SetFireEmitterPower");
+    if (!flies) return;
+    const village::Frame frame = towerFrame(field_.ground.plots[plot], tower.aim);
+    const glm::vec3 from = toGlm(frame.point(kMuzzle)), to = onGround(tower.falls, 0.5f);
+    const float t = 1 - float(tower.flies) * kTickSeconds / kEmberSeconds;
+    constexpr float kArc = 5.0f;  // m above the straight line
+    const glm::vec3 place = glm::mix(from, to, t) + glm::vec3(0, 4 * kArc * t * (1 - t), 0);
+    check(fwWorld_MoveFireEmitter(world_, embers_[plot], &place[0], nullptr),
+          "fwWorld_MoveFireEmitter");
+}
+
+// A sheet of water from the spout to where it comes down.
+void Siege::aimSpray(size_t plot) {
+    const game::Tower& tower = state_.towers[plot];
+    const bool sprays = tower.kind == TowerKind::kWaterCannon && tower.streams > 0;
+    check(fwWorld_SetParticleFieldAmount(world_, sprays_[plot], sprays ? 1.0f : 0.0f),
+          "fwWorld_SetParticleFieldAmount");
+    check(fwWorld_SetParticleFieldHidden(world_, sprays_[plot],
+                                         tower.kind != TowerKind::kWaterCannon),
+          "fwWorld_SetParticleFieldHidden");
+    if (tower.kind != TowerKind::kWaterCannon) return;
+    const village::Frame frame = towerFrame(field_.ground.plots[plot], tower.aim);
+    const glm::vec3 spout = toGlm(frame.point(kSpout));
+    const glm::vec3 way = glm::normalize(onGround(tower.aim, kRoof) - spout);
+    // The shortest turn from up to there; water never goes straight down.
+    const glm::vec4 turn = glm::normalize(glm::vec4(way.z, 0, -way.x, 1 + way.y));
+    check(fwWorld_MoveParticleField(world_, sprays_[plot], &spout[0], &turn[0]),
+          "fwWorld_MoveParticleField");
+}
+
+void Siege::aimTowers() {
+    for (size_t plot = 0; plot < game::kPlots; ++plot) {
+        const game::Tower& tower = state_.towers[plot];
+        for (size_t kind = 0; kind < game::kTowerKinds; ++kind) {
+            Placed& placed = placed_[field_.towers[plot][kind]];
+            const bool plinth = TowerKind(kind) == TowerKind::kNone;
+            placed.there =
+                plinth ? tower.kind == TowerKind::kNone || tower.kind == TowerKind::kFlamethrower
+                       : tower.kind == TowerKind(kind);
+            if (placed.there && !plinth)
+                placed.frame = towerFrame(field_.ground.plots[plot], tower.aim);
+        }
+        aimJet(plot);
+        flyEmber(plot);
+        aimSpray(plot);
+    }
+}
+
+void Siege::advance(int32_t ticks) {
+    happened_.clear();
+    if (ticks == 0) return;
+    fires_.observe();
+    const game::Burning burning = askBurning();
+    for (int32_t i = 0; i < ticks; ++i) game::tick(state_, field_.ground, burning, happened_);
+    for (const game::Happening& happening : happened_) carryOut(happening);
+    moveEnemies();
+    aimTowers();
+    const game::Point blows = game::windOf(state_, field_.ground);
+    const Vec2 wind = metres(blows);
+    const float metresPerSecond[3] = {wind.x, 0, wind.y};
+    check(fwWorld_SetWind(world_, metresPerSecond), "fwWorld_SetWind");
+    for (const Thing& thing : fires_.things) placed_[thing.instance].drawn = !thing.lit;
+}
+
+void Siege::comeBack(const Moment& moment) {
+    check(fwWorld_Load(world_, moment.world.data(), moment.world.size()), "fwWorld_Load");
+    state_ = moment.state;
+    fires_.restore(moment.flags);
+    happened_.clear();
+    moveEnemies();
+    aimTowers();
+    for (const Thing& thing : fires_.things) placed_[thing.instance].drawn = !thing.lit;
+}
+
+void Siege::addLights(float scale, std::vector<PointLight>& lights) const {
+    for (size_t plot = 0; plot < game::kPlots; ++plot) {
+        const game::Tower& tower = state_.towers[plot];
+        if (tower.kind != TowerKind::kFlamethrower || tower.streams == 0) continue;
+        const village::Frame frame = towerFrame(field_.ground.plots[plot], tower.aim);
+        const glm::vec3 nozzle = toGlm(frame.point(village::kNozzle));
+        PointLight light;
+        light.place = glm::mix(nozzle, onGround(tower.aim, kChest), 0.6f) + glm::vec3(0, 0.5f, 0);
+        light.color = glm::vec3(1.0f, 0.40f, 0.095f) * scale;
+        light.reach = 10;
+        lights.push_back(light);
+    }
+}
+
+}  // namespace tower

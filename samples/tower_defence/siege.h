@@ -1,0 +1,65 @@
+// The game coupled to a burning world: each tick the rules hear what burns, and the world gets the
+// jets, embers, water, wind and marching enemies that the rules ask for. The same on every backend.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "battlefield.h"
+#include "fire_village.h"
+#include "renderer.h"
+
+namespace tower {
+
+constexpr float kTickSeconds = 1.0f / float(game::kTicksPerSecond);
+
+class Siege {
+ public:
+    Siege(FwWorld* world, FireVillage& fires, const Battlefield& field, const game::State& state);
+
+    // Null: done. Else why not.
+    const char* give(const game::Order& order);
+    // Before the world's step of as many ticks.
+    void advance(int32_t ticks);
+
+    const game::State& state() const { return state_; }
+    // Of the last advance.
+    std::span<const game::Happening> happened() const { return happened_; }
+    std::span<const Placed> placed() const { return placed_; }
+    // The jets and embers, which the library's own lights name too weakly for a night.
+    void addLights(float scale, std::vector<PointLight>& lights) const;
+
+    // A point to come back to. `world` is the library's save of the moment after the step that
+    // follows the advance.
+    struct Moment {
+        game::State state;
+        std::vector<uint8_t> flags;  // FireVillage::flags
+        std::vector<uint8_t> world;
+    };
+    Moment moment() const { return {state_, fires_.flags(), {}}; }
+    void comeBack(const Moment& moment);
+
+ private:
+    void makeEmitters();
+    game::Burning askBurning() const;
+    void carryOut(const game::Happening& happening);
+    void moveEnemies();
+    void aimTowers();
+    void aimJet(size_t plot);
+    void flyEmber(size_t plot);
+    void aimSpray(size_t plot);
+    void check(FwResult result, const char* what) const { checkFire(world_, result, what); }
+
+    FwWorld* world_;
+    FireVillage& fires_;
+    const Battlefield& field_;
+    game::State state_;
+    std::vector<game::Happening> happened_;
+    std::vector<Placed> placed_;
+    // One of each for every plot, whatever stands there: a save wants a world of the same things.
+    std::array<FwFireEmitterId, game::kPlots> jets_{}, embers_{};
+    std::array<FwParticleFieldId, game::kPlots> sprays_{};
+};
+
+}  // namespace tower
