@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <functional>
 #include <string>
 
 #include "common/filming.h"
@@ -136,24 +137,6 @@ tower::FireNumbers countFires(const tower::FireVillage& fires) {
     return numbers;
 }
 
-// Pictures begin in the middle of it: towers stand, and the third wave is on the road.
-game::State underWay(const game::Ground& ground, uint32_t seed) {
-    constexpr int32_t kWave = 3, kSeconds = 22;
-    game::State state = game::newGame(seed);
-    state.wave = kWave;
-    state.coins = 900;
-    while (true) {
-        const game::Order order = game::botsOrder(state);
-        if (order.type == game::Order::Type::kNone) break;
-        game::give(state, ground, order);
-    }
-    state.untilWave = 0;
-    std::vector<game::Happening> happened;
-    for (int32_t i = 0; i < kSeconds * game::kTicksPerSecond; ++i)
-        game::tick(state, ground, {}, happened);
-    return state;
-}
-
 // What the player hears of it, in words.
 const char* wordsFor(const game::Happening& happening) {
     switch (happening.type) {
@@ -173,6 +156,19 @@ const char* wordsFor(const game::Happening& happening) {
 const char* nameOf(game::Order::Type type) {
     constexpr const char* kNames[] = {"nothing", "place", "upgrade", "sell", "call wave"};
     return kNames[size_t(type)];
+}
+
+// Where the plots are in the window, for a hand from outside.
+void reportPlots(const tower::Lens& lens, const tower::Battlefield& field,
+                 const std::function<void(const std::string&)>& report) {
+    for (size_t plot = 0; plot < game::kPlots; ++plot) {
+        const village::Vec2 p = tower::metres(field.ground.plots[plot]);
+        const glm::vec2 at = lens.project({p.x, village::groundHeight(p) + 0.6f, p.y});
+        report("plot " + std::to_string(plot) + " at " + std::to_string(std::lround(at.x)) + " " +
+               std::to_string(std::lround(at.y)));
+    }
+    report("size " + std::to_string(std::lround(lens.size.x)) + "x" +
+           std::to_string(std::lround(lens.size.y)));
 }
 
 // Turns seconds into whole ticks.
@@ -215,9 +211,9 @@ int play(const sample::Options& options, const Choices& choices) {
         fire.registerTarget(stage);
         tower::Renderer renderer(host, stage, field.scene, painted, groundOf(choices.ground));
         tower::FireVillage fires(fire.context, fire.world, field.scene, &painted);
-        tower::Siege siege(
-            fire.world, fires, field,
-            options.headless ? underWay(field.ground, options.seed) : game::newGame(options.seed));
+        tower::Siege siege(fire.world, fires, field,
+                           options.headless ? game::underWay(field.ground, options.seed)
+                                            : game::newGame(options.seed));
         tower::Rewind rewind(fire.world, siege);
         tower::Hud hud(host, stage);
         tower::Player player;
@@ -248,20 +244,21 @@ int play(const sample::Options& options, const Choices& choices) {
         const clock_t began = std::clock();
         sample::StageFrame frame;
         while (stage.next(frame)) {
-            if (frame.extent.width != extent.width || frame.extent.height != extent.height) {
-                extent = frame.extent;
-                report("size " + std::to_string(extent.width) + "x" +
-                       std::to_string(extent.height));
-            }
             if (options.headless)
                 overview.follow(frames > 1 ? float(frame.number) / float(frames - 1) : 0.0f);
             else
                 overview.steer(frame.input, frame.deltaTime, frame.extent);
             const sample::Camera camera = overview.camera();
 
+            const tower::Lens lens(camera, frame.extent);
+            if (frame.extent.width != extent.width || frame.extent.height != extent.height) {
+                extent = frame.extent;
+                reportPlots(lens, field, report);
+            }
+
             // The player, by hand or by plan.
-            tower::Wishes wishes = hud.show(frame, tower::Lens(camera, frame.extent), field,
-                                            siege.state(), countFires(fires), player);
+            tower::Wishes wishes =
+                hud.show(frame, lens, field, siege.state(), countFires(fires), player);
             auto say = [&](const std::string& what) {
                 player.said = what;
                 player.saidAt = frame.time;
@@ -296,12 +293,16 @@ int play(const sample::Options& options, const Choices& choices) {
                     report(line);
                 } else {
                     say("There is nothing to go back to yet");
+                    report("no rewind yet");
                 }
             }
 
             // The game, then the world's step of as long, then the picture.
             const int32_t ticks = clock.ticksIn(frame.deltaTime, player);
+            const int32_t second = siege.state().tick / game::kTicksPerSecond;
             siege.advance(ticks);
+            if (siege.state().tick / game::kTicksPerSecond != second)
+                report("second " + std::to_string(second + 1));
             for (const game::Happening& happening : siege.happened())
                 if (const char* words = wordsFor(happening)) say(words);
             if (!options.headless && ticks > 0) rewind.remember();

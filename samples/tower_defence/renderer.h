@@ -11,19 +11,10 @@
 #include "common/stage.h"
 #include "light.h"
 #include "paint.h"
+#include "placed.h"
 #include "shadow_map.h"
 
 namespace tower {
-
-// One instance as it is this frame.
-struct Placed {
-    int model = 0;
-    village::Frame frame;
-    village::Vec3 tint{1, 1, 1};
-    bool there = true;   // false: neither seen nor shading
-    bool drawn = true;   // false: another draws it; it still casts a shadow
-    bool moves = false;  // casts its shadow anew in every frame
-};
 
 // How the land's relief is drawn.
 enum class Ground { kBump, kParallax };

@@ -40,17 +40,6 @@ int playScripted(const ScriptedGame& wanted) {
         siege.advance(kTicks);
         checkFire(world, fwWorld_Step(world, kTicks * kTickSeconds), "fwWorld_Step");
         ++steps;
-        if (std::getenv("FW_TRACE") && steps % 40 == 0) {
-            std::fprintf(stderr,
-                         "%4d s wave %d coins %d lives %d felled %d burning %u standing %d |",
-                         state.tick / 32, state.wave, state.coins, state.lives, state.felled,
-                         fires.burning(), game::standing(state));
-            for (const auto& e : state.enemies)
-                if (e.phase == game::Phase::kMarches)
-                    std::fprintf(stderr, " %d:%d/%d", e.along / 1000, e.burnt, e.alight);
-            std::fprintf(stderr, " ms %.2f\n",
-                         1e3 * double(std::clock() - began) / CLOCKS_PER_SEC / steps);
-        }
     }
     const char* outcome = state.outcome == game::Outcome::kLost  ? "lost"
                           : state.outcome == game::Outcome::kWon ? "won"

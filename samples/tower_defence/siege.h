@@ -8,7 +8,7 @@
 
 #include "battlefield.h"
 #include "fire_village.h"
-#include "renderer.h"
+#include "placed.h"
 
 namespace tower {
 

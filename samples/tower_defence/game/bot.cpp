@@ -43,4 +43,20 @@ Order botsOrder(const State& state) {
     return {};
 }
 
+State underWay(const Ground& ground, uint32_t seed) {
+    constexpr int32_t kWave = 3, kSeconds = 22;
+    State state = newGame(seed);
+    state.wave = kWave;
+    state.coins = 900;
+    while (true) {
+        const Order order = botsOrder(state);
+        if (order.type == Order::Type::kNone) break;
+        give(state, ground, order);
+    }
+    state.untilWave = 0;
+    std::vector<Happening> happened;
+    for (int32_t i = 0; i < kSeconds * kTicksPerSecond; ++i) tick(state, ground, {}, happened);
+    return state;
+}
+
 }  // namespace game

@@ -24,10 +24,10 @@ struct EnemyRule {
     int32_t most;    // of them at a time
 };
 constexpr std::array<EnemyRule, kEnemyKinds> kEnemies{{
-    {"straw man", 42, 300, 10, 1, true, 8},
-    {"yule goat", 55, 350, 12, 1, true, 4},
-    {"log knight", 24, 300, 25, 2, false, 4},
-    {"wicker giant", 19, 350, 80, 5, false, 1},
+    {"straw man", 44, 450, 8, 1, true, 8},
+    {"yule goat", 60, 500, 9, 1, true, 4},
+    {"log knight", 26, 450, 18, 2, false, 4},
+    {"wicker giant", 21, 550, 60, 5, false, 1},
 }};
 constexpr size_t kEnemySlots =
     size_t(kEnemies[0].most + kEnemies[1].most + kEnemies[2].most + kEnemies[3].most);
@@ -68,15 +68,17 @@ struct Wave {
     std::array<int32_t, kEnemyKinds> count;
     int32_t gap;  // ticks from one enemy to the next
 };
-constexpr std::array<Wave, 8> kWaves{{
+constexpr std::array<Wave, 10> kWaves{{
     {{4, 0, 0, 0}, 72},
     {{6, 2, 0, 0}, 60},
-    {{4, 4, 1, 0}, 60},
-    {{8, 2, 2, 0}, 52},
-    {{6, 4, 4, 0}, 48},
-    {{8, 4, 3, 0}, 40},
-    {{10, 6, 4, 0}, 36},
-    {{10, 6, 5, 1}, 36},
+    {{5, 4, 1, 0}, 56},
+    {{8, 2, 3, 0}, 48},
+    {{8, 6, 2, 0}, 40},
+    {{6, 4, 5, 1}, 48},
+    {{14, 6, 0, 0}, 28},
+    {{8, 4, 8, 0}, 36},
+    {{14, 8, 4, 1}, 28},
+    {{16, 8, 8, 2}, 26},
 }};
 constexpr int32_t kBeforeWave = 20 * kTicksPerSecond;  // ticks of peace; may be called off
 constexpr int32_t kCoinsAtStart = 320, kLivesAtStart = 20;
