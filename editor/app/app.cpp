@@ -9,6 +9,7 @@
 
 #include "app/built_in.h"
 #include "app/flame_page.h"
+#include "app/paint_page.h"
 #include "shell/icons.h"
 
 namespace fwapp {
@@ -26,17 +27,28 @@ App::App(const sample::VulkanHost& hostGiven, FwContext* contextGiven, fwui::UiR
       ui(uiGiven),
       document(fwedit::newDocument()),
       live(hostGiven, contextGiven, uiGiven),
-      flame(std::make_unique<FlamePage>(hostGiven, contextGiven, uiGiven)) {
+      flame(std::make_unique<FlamePage>(hostGiven, contextGiven, uiGiven)),
+      paint(std::make_unique<PaintPage>()) {
     const std::string name = host.properties.deviceName;
     slow = host.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     flame->slow = slow;
     device = slow ? "CPU renderer" : name;
     loadUserState(user);
+    adoptDocument(*this, std::move(document));
     camera = document.scene.camera;
     actions = makeActions(*this);
 }
 
 App::~App() = default;
+
+void adoptDocument(App& app, fwedit::Document document) {
+    app.document = std::move(document);
+    app.document.surface = [&app](const fwedit::Scene&, ObjectId mesh) {
+        return app.live.surfaceOf(mesh).get();
+    };
+    *app.paint = {};
+    app.burnTimes = false;
+}
 
 void toast(App& app, Toast::Kind kind, const std::string& title, const std::string& text) {
     if (app.toasts.size() >= 3) app.toasts.erase(app.toasts.begin());
@@ -123,8 +135,12 @@ void frameSelection(App& app, bool all) {
     const glm::vec3 middle = 0.5f * (low + high);
     app.camera.target = {middle.x, middle.y, middle.z};
     const float radius = std::max(0.05f, 0.5f * glm::length(high - low));
-    app.camera.distance =
-        1.15f * radius / std::sin(0.5f * glm::radians(std::max(5.0f, app.camera.fieldOfView)));
+    // Of a picture that is higher than wide the width is what there is room in.
+    const VkExtent2D extent = app.live.target.extent();
+    const float aspect = extent.height > 0 ? float(extent.width) / float(extent.height) : 1.0f;
+    const float half = 0.5f * glm::radians(std::max(5.0f, app.camera.fieldOfView));
+    const float least = std::atan(std::tan(half) * std::min(1.0f, aspect));
+    app.camera.distance = 1.15f * radius / std::sin(least);
 }
 
 const char* iconOf(const fwedit::Scene& scene, Kind kind, ObjectId id) {
@@ -186,7 +202,7 @@ std::string sceneName(const App& app) {
 namespace {
 
 void showDocument(App& app, fwedit::Document document) {
-    app.document = std::move(document);
+    adoptDocument(app, std::move(document));
     app.live.forget();
     app.selection.clear();
     app.strip.clear();
@@ -393,7 +409,7 @@ std::vector<Action> makeActions(App& app) {
          nullptr,
          [at] {
              ifSaved(*at, [at] {
-                 at->document = fwedit::newDocument();
+                 adoptDocument(*at, fwedit::newDocument());
                  at->live.forget();
                  at->selection.clear();
                  at->page = Page::kWelcome;
@@ -483,6 +499,13 @@ std::vector<Action> makeActions(App& app) {
          {},
          scene,
          true},
+        {"Show burn times",
+         "View",
+         "O",
+         icons::timer,
+         [at] { at->burnTimes = !at->burnTimes; },
+         {},
+         scene},
         {"Larger interface", "View", "Ctrl+Plus", nullptr,
          [at] { at->user.interfaceSize = std::min(2.0f, at->user.interfaceSize + 0.25f); },
          [at] { return at->user.interfaceSize < 2; }, -2, true},
@@ -633,9 +656,26 @@ std::vector<Action> makeActions(App& app) {
 
         {"Select", "Tools", "Q", icons::select, [at] { at->tool = Tool::kSelect; }, {}, scene},
         {"Move", "Tools", "W", icons::move, [at] { at->tool = Tool::kMove; }, {}, scene},
+        {"Why does it not burn?",
+         "Tools",
+         "Y",
+         icons::question,
+         [at] {
+             at->tool = at->tool == Tool::kWhy ? Tool::kMove : Tool::kWhy;
+             if (at->tool != Tool::kWhy) at->live.why = {};
+         },
+         {},
+         scene},
 
         {"Scene", "Pages", "1", icons::local, [at] { at->page = Page::kScene; }, {}, opened},
-        {"Flame", "Pages", "2", icons::flame, [at] { at->page = Page::kFlame; }, {}, opened},
+        {"Paint on meshes",
+         "Pages",
+         "2",
+         icons::brush,
+         [at] { at->page = Page::kPaint; },
+         {},
+         opened},
+        {"Flame", "Pages", "3", icons::flame, [at] { at->page = Page::kFlame; }, {}, opened},
 
         {"Find anything", "Help", "Ctrl+P", icons::search,
          [at] {
@@ -647,6 +687,7 @@ std::vector<Action> makeActions(App& app) {
         {"Keys", "Help", "F1", icons::keyboard, [at] { at->keys = !at->keys; }},
         {"About Flamewright", "Help", "", icons::info, [at] { at->about = true; }},
     };
+    addPaintActions(app, list);
     addFlameActions(app, list);
     return list;
 }
@@ -706,6 +747,9 @@ void runKeys(App& app) {
             app.guard = false;
         } else if (app.placing) {
             app.placing = false;
+        } else if (app.tool == Tool::kWhy && app.page == Page::kScene) {
+            app.tool = Tool::kMove;
+            app.live.why = {};
         } else if (!io.WantTextInput && !ImGui::IsAnyItemActive()) {
             app.selection.clear();
         }
@@ -727,8 +771,8 @@ void runKeys(App& app) {
 
 void recordPages(App& app, const fwui::Frame& frame) {
     if (app.page == Page::kFlame) app.flame->record(frame, app.deltaTime);
-    if (app.page != Page::kScene) return;
-    const bool runs = app.playing && !app.live.preparing();
+    if (app.page != Page::kScene && app.page != Page::kPaint) return;
+    const bool runs = app.page == Page::kScene && app.playing && !app.live.preparing();
     app.live.record(frame, app.camera, runs ? app.deltaTime * app.speed : 0);
     if (app.live.milliseconds() <= 0) return;
     app.costs.push_back(float(app.live.milliseconds()));
@@ -737,7 +781,7 @@ void recordPages(App& app, const fwui::Frame& frame) {
 
 bool isLively(const App& app) {
     if (app.page == Page::kFlame && app.flame->lively()) return true;
-    if (app.page != Page::kScene) return false;
+    if (app.page != Page::kScene && app.page != Page::kPaint) return false;
     if (app.now - app.movedAt < 1) return true;  // until the sharp picture is there
     return app.playing || !app.live.settled() || app.live.preparing();
 }
@@ -753,6 +797,9 @@ void showApp(App& app) {
             break;
         case Page::kScene:
             showScene(app, app.screen);
+            break;
+        case Page::kPaint:
+            showPaint(app, app.screen);
             break;
         case Page::kFlame:
             showFlame(app, app.screen);

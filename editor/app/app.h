@@ -15,9 +15,10 @@
 namespace fwapp {
 
 struct FlamePage;
+struct PaintPage;
 
-enum class Page : int { kWelcome = -1, kScene = 0, kFlame = 1 };
-enum class Tool : int { kSelect, kMove };
+enum class Page : int { kWelcome = -1, kScene = 0, kPaint = 1, kFlame = 2 };
+enum class Tool : int { kSelect, kMove, kWhy };
 
 struct Toast {
     enum class Kind { kInfo, kWarning, kError } kind{};
@@ -60,6 +61,7 @@ struct App {
     fwedit::Document document;
     fwview::LiveScene live;
     std::unique_ptr<FlamePage> flame;
+    std::unique_ptr<PaintPage> paint;
     UserState user;
     std::string device;  // as people call it
     bool slow = false;   // a device of the CPU's: pictures that move are drawn smaller
@@ -73,6 +75,9 @@ struct App {
     fwedit::Camera camera;
     bool playing = false, looping = false;
     float speed = 1;
+    bool scrubbing = false;   // a hand holds the playhead
+    bool burnTimes = false;   // the map of burn times lies over the picture
+    double burnTimesAt = -1;  // s that it was coloured at
     double movedAt = -1e9;    // s, when the view last moved by hand
     bool showHelpers = true;  // marks, gizmo and outline over the picture
     int leftTab = 0;
@@ -116,6 +121,7 @@ ImU32 colorOf(const fwedit::Scene& scene, fwedit::Kind kind, fwedit::ObjectId id
 std::string clockText(double seconds, bool tenths = true);
 std::string sceneName(const App& app);
 
+void adoptDocument(App& app, fwedit::Document document);  // instead of the one before
 void openScene(App& app, const std::filesystem::path& file);
 void importMesh(App& app, const std::filesystem::path& file);
 void newScene(App& app);
@@ -134,6 +140,7 @@ void askFile(App& app, FileDialog dialog);
 // ---- pages and what lies over them; each draws itself
 void showWelcome(App& app, fwui::Rect rect);
 void showScene(App& app, fwui::Rect rect);
+void showPaint(App& app, fwui::Rect rect);
 void showFlame(App& app, fwui::Rect rect);
 void showTopBar(App& app, const fwui::Rect& rect);
 struct Hint {

@@ -70,6 +70,7 @@ void showTopBar(App& app, const Rect& rect) {
             const char *name, *icon;
         };
         constexpr Tab kTabs[] = {{Page::kScene, "Scene", icons::local},
+                                 {Page::kPaint, "Paint", icons::brush},
                                  {Page::kFlame, "Flame", icons::flame}};
         const float width = dp(92);
         const float first = std::floor(rect.midX() - width * float(std::size(kTabs)) * 0.5f);

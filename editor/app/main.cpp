@@ -13,6 +13,7 @@
 #include "app/app.h"
 #include "app/built_in.h"
 #include "app/flame_page.h"
+#include "app/paint_page.h"
 #include "common/fire_host.h"
 #include "common/options.h"
 #include "script/script.h"
@@ -174,7 +175,7 @@ class Program {
     void shoot() {
         constexpr float kStep = 1.0f / 30;
         for (int i = 0; i < 4; ++i) frame(kStep);
-        for (int i = 0; i < 2000 && app_->live.preparing(); ++i) {
+        for (int i = 0; i < 2000 && (app_->live.preparing() || app_->live.resting()); ++i) {
             frame(kStep);
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
@@ -195,6 +196,16 @@ class Program {
         };
         if (app.resultTime != reportedResult_) print("did: " + app.result);
         reportedResult_ = app.resultTime;
+        const std::string& why = app.live.why.answer.answer;
+        if (app.live.why.answered && why != reportedWhy_) print("why: " + (reportedWhy_ = why));
+        const bool paintable = app.page == fwapp::Page::kPaint && app.paint->surface;
+        if (paintable && !reportedPaintable_) print("ready to paint");
+        reportedPaintable_ = paintable;
+        if (app.live.previews()) {
+            const std::string shown = fwapp::clockText(app.live.time());
+            if (shown != reportedPreview_) print("preview of " + shown);
+            reportedPreview_ = shown;
+        }
         const bool ready = app.live.burn() && !app.live.preparing();
         if (ready && !reportedReady_) print("ready");
         reportedReady_ = ready;
@@ -234,6 +245,8 @@ class Program {
     float scale_ = 0;
     double reportedResult_ = -1e9, playedSeconds_ = 0;
     bool reportedReady_ = false;
+    std::string reportedWhy_, reportedPreview_;
+    bool reportedPaintable_ = false;
     int reportedSecond_ = 0;
     size_t reportedToasts_ = 0;
     uint32_t playedFrames_ = 0;
@@ -243,6 +256,7 @@ class Program {
 void openPage(fwapp::App& app, const Wishes& wishes) {
     auto asks = [&](const char* word) { return wishes.page.find(word) != std::string::npos; };
     if (asks("scene")) app.page = fwapp::Page::kScene;
+    if (asks("paint")) app.page = fwapp::Page::kPaint;
     if (asks("flame")) app.page = fwapp::Page::kFlame;
     if (asks("keys")) app.keys = true;
     if (asks("about")) app.about = true;
@@ -287,7 +301,7 @@ int main(int argc, char** argv) {
                                     "[FILE.fwscene | FILE.glb] | --script FILE [--headless]");
         parser.addText("--shot", "FILE.png", "with --headless: a picture of the window, then leave",
                        wishes.shot);
-        parser.addText("--page", "NAME", "welcome, scene or flame", wishes.page);
+        parser.addText("--page", "NAME", "welcome, scene, paint or flame", wishes.page);
         parser.addText("--scene", "NAME", "a scene of the welcome page, by its name",
                        wishes.builtIn);
         parser.addFlag("--report", "print what is done, line by line", wishes.report);

@@ -4,6 +4,7 @@
 
 #include "app/app.h"
 #include "app/inspector.h"
+#include "app/paint_page.h"
 #include "app/viewport_panel.h"
 #include "shell/icons.h"
 
@@ -70,7 +71,18 @@ void showTools(App& app, const Rect& rect) {
         if (toolButton(adder.action, {x, y}, look, adder.action)) act(adder.action);
         x += toolButtonWidth(look) + dp(4);
     }
-    const float right = rect.x1 - dp(8);
+    float right = rect.x1 - dp(8);
+    look = {.icon = icons::question, .label = "Why?"};
+    look.active = app.tool == Tool::kWhy;
+    right -= toolButtonWidth(look);
+    if (toolButton("why", {right, y}, look, "Ask a spot why it does not burn", "Y"))
+        act("Why does it not burn?");
+    look = {.icon = icons::timer, .label = "Burn times"};
+    look.active = app.burnTimes;
+    right -= toolButtonWidth(look) + dp(4);
+    if (right > x && toolButton("burn times", {right, y}, look, "When each spot caught", "O"))
+        act("Show burn times");
+    right -= dp(10);
     int light = int(app.document.scene.settings.daylight);
     if (right - dp(162) > x && segments("light", {right - dp(162), y + dp(2)}, dp(162, 24),
                                         {"Night", "Dusk", "Day"}, light))
@@ -405,10 +417,14 @@ void showTimeline(App& app, Rect rect) {
     bool held = false;
     hit("scrub", {scale.x0 - dp(6), ruler.y0}, {scale.x1 - scale.x0 + dp(12), bottom - ruler.y0},
         nullptr, &held);
+    const double wanted = scale.t(ImGui::GetIO().MousePos.x);
     if (held) {
         app.playing = false;
-        const double wanted = scale.t(ImGui::GetIO().MousePos.x);
-        if (std::fabs(wanted - app.live.time()) > 0.02) app.live.seek(wanted);
+        app.scrubbing = true;
+        if (std::fabs(wanted - app.live.time()) > 0.02) app.live.seek(wanted, true);
+    } else if (app.scrubbing) {
+        app.scrubbing = false;
+        app.live.seek(wanted);
     }
     drawText(list, fonts().small, rect.x0 + dp(10), events.midY(), colors::dim, "Events");
     if (rect.height() > dp(14)) {
@@ -425,10 +441,27 @@ void showTimeline(App& app, Rect rect) {
     endPanel();
 }
 
+// The map over the picture grows with the burn.
+void followBurnTimes(App& app) {
+    if (!app.burnTimes) {
+        if (!app.live.laidOver.empty()) app.live.redraw();
+        app.live.laidOver.clear();
+        app.burnTimesAt = -1;
+        return;
+    }
+    const double known = app.live.knownTime();
+    if (known == app.burnTimesAt) return;
+    app.burnTimesAt = known;
+    app.live.colorBurnTimes(kTimeMap);
+}
+
 }  // namespace
 
 void showScene(App& app, Rect rect) {
     app.live.follow(app.document);
+    app.live.shown = fwview::Shown::kBurn;
+    followBurnTimes(app);
+    app.paint->colored = false;  // the overlay is this page's now
     for (const std::string& line : app.live.takeReport())
         toast(app, Toast::Kind::kWarning, "Something was left out", line);
     if (app.camera.distance < 0 && app.live.burn() && !app.live.preparing()) {
@@ -438,7 +471,11 @@ void showScene(App& app, Rect rect) {
     showTopBar(app, rect.cutTop(dp(metrics::topBar)));
     showTools(app, rect.cutTop(dp(metrics::toolBar)));
     const Rect status = rect.cutBottom(dp(metrics::status));
-    if (app.placing) {
+    if (app.tool == Tool::kWhy && !app.placing) {
+        showStatus(
+            app, status,
+            {{"Click", "ask why"}, {"Alt+drag", "orbit"}, {"Space", "play"}, {"Esc", "done"}});
+    } else if (app.placing) {
         showStatus(app, status, {{"Click", "put it there"}, {"Esc", "leave it"}});
     } else if (app.selection.empty()) {
         showStatus(app, status,

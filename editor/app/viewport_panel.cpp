@@ -36,23 +36,6 @@ Hand& hand() {
     return one;
 }
 
-struct Picture {
-    Rect rect;
-    const FwView& view;
-    bool at(glm::vec3 position, ImVec2& pixel) const {
-        const glm::vec3 p = fwview::onPicture(view, position);
-        pixel = {rect.x0 + p.x * rect.width(), rect.y0 + p.y * rect.height()};
-        return p.z > 0;
-    }
-    glm::vec2 share(ImVec2 pixel) const {
-        return {(pixel.x - rect.x0) / rect.width(), (pixel.y - rect.y0) / rect.height()};
-    }
-    fwview::Ray ray(ImVec2 pixel) const {
-        const glm::vec2 p = share(pixel);
-        return fwview::rayThrough(view, p.x, p.y);
-    }
-};
-
 glm::vec3 asVec(fwedit::Vec3 v) { return {v[0], v[1], v[2]}; }
 
 glm::vec3 axisOf(int axis) {
@@ -275,65 +258,6 @@ void drawOutlines(App& app, ImDrawList* list, const Picture& picture) {
     }
 }
 
-// Three axes as they lie to the eye; a click on one looks along it.
-bool navigationBall(App& app, ImDrawList* list, const Picture& picture) {
-    const ImVec2 centre(picture.rect.x1 - dp(44), picture.rect.y0 + dp(46));
-    const float radius = dp(26);
-    const glm::mat4 view = glm::make_mat4(picture.view.view);
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const bool over = std::hypot(mouse.x - centre.x, mouse.y - centre.y) < radius + dp(9);
-    list->AddCircleFilled(centre, radius + dp(9), hex(0x151618, over ? 200 : 150), 48);
-    struct Ball {
-        int axis;
-        float sign, depth;
-        ImVec2 place;
-    };
-    std::array<Ball, 6> balls;
-    for (int i = 0; i < 6; ++i) {
-        const glm::vec3 p(view * glm::vec4((i < 3 ? 1.0f : -1.0f) * axisOf(i % 3), 0));
-        balls[size_t(i)] = {i % 3, i < 3 ? 1.0f : -1.0f, p.z, centre + ImVec2(p.x, -p.y) * radius};
-    }
-    std::sort(balls.begin(), balls.end(),
-              [](const Ball& a, const Ball& b) { return a.depth < b.depth; });
-    constexpr const char* kLetters[3] = {"X", "Y", "Z"};
-    const Ball* hot = nullptr;
-    for (const Ball& ball : balls) {
-        const ImU32 color = colors::axis[ball.axis];
-        if (ball.sign > 0) {
-            list->AddLine(centre, ball.place, color, dp(2));
-            list->AddCircleFilled(ball.place, dp(8), color, 24);
-            drawTextCentred(list, fonts().smallSemi, ball.place.x, ball.place.y, hex(0x101113),
-                            kLetters[ball.axis]);
-        } else {
-            list->AddCircleFilled(ball.place, dp(4), faded(color, 0.5f), 16);
-        }
-        if (std::hypot(mouse.x - ball.place.x, mouse.y - ball.place.y) < dp(9)) hot = &ball;
-    }
-    if (hot && ImGui::IsMouseClicked(0)) {
-        const float turned = hot->sign > 0 ? 0.0f : 180.0f;
-        if (hot->axis == 0) app.camera.yaw = 90 + turned;
-        if (hot->axis == 2) app.camera.yaw = turned;
-        app.camera.pitch = hot->axis == 1 ? 89 * hot->sign : 0;
-    }
-    return over;
-}
-
-void orbit(App& app, ImVec2 by) {
-    app.camera.yaw -= 0.4f * by.x / theme().scale;
-    app.camera.pitch = std::clamp(app.camera.pitch + 0.4f * by.y / theme().scale, -89.0f, 89.0f);
-}
-
-void pan(App& app, const Picture& picture, ImVec2 by) {
-    const glm::mat4 back = glm::inverse(glm::make_mat4(picture.view.view));
-    const float metres = metresAt(picture, asVec(app.camera.target), 1);
-    const glm::vec3 way = metres * (-by.x * glm::vec3(back[0]) + by.y * glm::vec3(back[1]));
-    for (int i = 0; i < 3; ++i) app.camera.target[size_t(i)] += way[i];
-}
-
-void zoom(App& app, float notches) {
-    app.camera.distance = std::clamp(app.camera.distance * std::pow(0.88f, notches), 0.01f, 1e4f);
-}
-
 void moveSelection(App& app, glm::vec3 by) {
     fwedit::Command command;
     command.verb = fwedit::Verb::Move;
@@ -442,6 +366,140 @@ void place(App& app, ImDrawList* list, const Picture& picture, ImVec2 mouse) {
     app.placing = false;
 }
 
+void askHere(App& app, const Picture& picture, ImVec2 mouse) {
+    const glm::vec2 p = picture.share(mouse);
+    const fwview::SurfaceHit hit = app.live.pick(p.x, p.y, false);
+    if (hit.hit) {
+        app.live.askWhy(hit.object, hit.position);
+    } else {
+        app.live.why = {};
+        toast(app, Toast::Kind::kInfo, "Click on a surface", "It says why it does not burn there");
+    }
+}
+
+// "Not lit" and the like: the answer without its numbers.
+std::string headOf(const std::string& answer) {
+    return answer.substr(0, answer.find_first_of(":,"));
+}
+
+// Beside the spot, never over it: right of it, left where there is no room.
+void showWhy(App& app, ImDrawList* list, const Picture& picture) {
+    fwview::WhyCard& why = app.live.why;
+    ImVec2 spot;
+    if (!why.open || !picture.at(why.position, spot)) return;
+    const fwedit::WhyAnswer& answer = why.answer;
+    const fwedit::Mesh* mesh = fwedit::findIn(app.document.scene.meshes, why.mesh);
+    const Rect& rect = picture.rect;
+    const float width = dp(296), inner = width - dp(28);
+    float causesHeight = 0;
+    for (const std::string& cause : answer.causes)
+        causesHeight += dp(8) + drawTextWrapped(nullptr, fonts().body, {0, 0}, inner - dp(22), 0,
+                                                cause.c_str());
+    const bool unlit = why.answered && (!answer.forecast.empty() || !answer.causes.empty());
+    const float height = dp(!why.answered ? 82 : unlit ? 172 : 118) + causesHeight;
+    const bool right = spot.x + dp(40) + width < rect.x1;
+    ImVec2 low(right ? spot.x + dp(40) : spot.x - dp(40) - width, spot.y - height * 0.4f);
+    low.x = std::floor(std::max(rect.x0 + dp(8), low.x));
+    low.y = std::floor(
+        std::clamp(low.y, rect.y0 + dp(8), std::max(rect.y0 + dp(8), rect.y1 - height - dp(8))));
+    const ImVec2 high = low + ImVec2(width, height);
+    list->AddLine(spot, {right ? low.x : high.x, std::clamp(spot.y, low.y + dp(8), high.y - dp(8))},
+                  colors::white, dp(1.5f));
+    list->AddCircleFilled(spot, dp(5), colors::white, 24);
+    list->AddCircle(spot, dp(10), hex(0x000000, 140), 32, dp(3.5f));
+    list->AddCircle(spot, dp(10), colors::white, 32, dp(1.5f));
+    hit("why card", low, high - low);
+    drawCard(list, low, high);
+    const float x = low.x + dp(14), end = high.x - dp(14);
+    float y = low.y;
+    drawIcon(list, fonts().icon20, {x + dp(8), y + dp(23)}, colors::accent, icons::question);
+    const std::string head = why.answered        ? headOf(answer.answer)
+                             : why.error.empty() ? std::string("Asking the fire")
+                                                 : std::string("No answer");
+    drawTextFit(list, fonts().heading, x + dp(24), y + dp(22), inner - dp(50), colors::title,
+                head.c_str());
+    if (iconButton("close why", {high.x - dp(18), y + dp(22)}, icons::close, colors::dim,
+                   "Close")) {
+        why = {};
+        return;
+    }
+    const std::string where = (mesh ? mesh->name : std::string("Nothing")) + ", at " +
+                              clockText(why.answered ? why.time : app.live.time());
+    drawTextFit(list, fonts().small, x, y + dp(44), inner, colors::dim, where.c_str());
+    drawRow(list, low.x + hairline(), high.x - hairline(), y + dp(58), colors::line);
+    y += dp(74);
+    if (!why.answered) {
+        if (!why.error.empty())
+            drawTextFit(list, fonts().body, x, y, inner, colors::text, why.error.c_str());
+        return;
+    }
+    char text[48];
+    if (!unlit) {
+        const size_t colon = answer.answer.find_first_of(":,");
+        const std::string rest =
+            colon == std::string::npos ? answer.answer : answer.answer.substr(colon + 2);
+        drawTextFit(list, fonts().body, x, y, inner, colors::text, rest.c_str());
+        y += dp(20);
+    } else {
+        drawText(list, fonts().body, x, y, colors::text, "Heat so far");
+        std::snprintf(text, sizeof text, "needs %.2f", double(answer.needs));
+        drawTextRight(list, fonts().body, end, y, colors::dim, text);
+        const float valueEnd = end - textSize(fonts().body, text).x - dp(6);
+        std::snprintf(text, sizeof text, "%.2f", double(answer.heat));
+        drawTextRight(list, fonts().semi, valueEnd, y, colors::title, text);
+        progressBar(list, {x, y + dp(12)}, inner, dp(8),
+                    std::min(1.0f, answer.heat / std::max(answer.needs, 0.01f)), colors::heat);
+        y += dp(36);
+        for (const std::string& cause : answer.causes) {
+            drawIcon(list, fonts().icon17, {x + dp(7), y + dp(4)}, colors::dim, icons::right);
+            y += dp(8) + drawTextWrapped(list, fonts().body, {x + dp(22), y - dp(4)},
+                                         inner - dp(22), colors::text, cause.c_str());
+        }
+        y += dp(4);
+        const bool comes = answer.arrivesIn < fwedit::kNeverLit;
+        drawIcon(list, fonts().icon17, {x + dp(7), y}, comes ? colors::ok : colors::dim,
+                 icons::timer);
+        drawTextFit(
+            list, fonts().small, x + dp(22), y, inner - dp(22), colors::title,
+            answer.forecast.empty() ? "It will not catch as things are" : answer.forecast.c_str());
+        y += dp(18);
+    }
+    y = high.y - dp(38);
+    const float third = std::floor((inner - dp(12)) / 3);
+    const bool comes = answer.arrivesIn < fwedit::kNeverLit;
+    float at = x;
+    if (comes) {
+        const double then = why.time + double(answer.arrivesIn);
+        if (button("why go", {at, y}, {third, dp(28)}, ("Go to " + clockText(then, false)).c_str()))
+            app.live.seek(then);
+        at += third + dp(6);
+    }
+    if (mesh && mesh->moisture > 0) {
+        if (button("why dry", {at, y}, {third, dp(28)}, "Dry it"))
+            performSet(app, mesh->id, "moisture", 0.0);
+        at += third + dp(6);
+    }
+    if (button("why paint", {at, y}, {third, dp(28)}, "Paint here")) {
+        select(app, why.mesh, false, false);
+        app.camera.target = {why.position.x, why.position.y, why.position.z};
+        app.page = Page::kPaint;
+    }
+}
+
+void drawTimeLegend(const App& app, ImDrawList* list, ImVec2 low) {
+    const ImVec2 high = low + dp(212, 56);
+    const double duration = double(app.document.scene.settings.duration);
+    drawBox(list, low, high, hex(0x151618, 215), 6);
+    drawText(list, fonts().smallSemi, low.x + dp(10), low.y + dp(13), colors::title,
+             app.live.knownTime() < 0 ? "Burn time: not known yet" : "Burn time");
+    drawMap(list, low + dp(10, 24), low + dp(202, 34), kTimeMap);
+    drawText(list, fonts().small, low.x + dp(10), low.y + dp(45), colors::text, "0:00");
+    drawTextCentred(list, fonts().small, low.x + dp(106), low.y + dp(45), colors::text,
+                    clockText(duration / 2, false).c_str());
+    drawTextRight(list, fonts().small, low.x + dp(202), low.y + dp(45), colors::text,
+                  clockText(duration, false).c_str());
+}
+
 // What a click means: the marker under it, else the surface, else nothing.
 void pickAt(App& app, const Picture& picture, const std::vector<Marker>& markers, ImVec2 mouse) {
     const ImGuiIO& io = ImGui::GetIO();
@@ -452,6 +510,7 @@ void pickAt(App& app, const Picture& picture, const std::vector<Marker>& markers
         select(app, marker->id, io.KeyShift, io.KeyCtrl);
         return;
     }
+    if (app.tool == Tool::kWhy) return askHere(app, picture, mouse);
     const glm::vec2 p = picture.share(mouse);
     select(app, app.live.pick(p.x, p.y, true).object, io.KeyShift, io.KeyCtrl);
 }
@@ -472,11 +531,85 @@ void pickBox(App& app, const Picture& picture, const std::vector<Marker>& marker
 
 }  // namespace
 
+bool Picture::at(glm::vec3 position, ImVec2& pixel) const {
+    const glm::vec3 p = fwview::onPicture(view, position);
+    pixel = {rect.x0 + p.x * rect.width(), rect.y0 + p.y * rect.height()};
+    return p.z > 0;
+}
+
+glm::vec2 Picture::share(ImVec2 pixel) const {
+    return {(pixel.x - rect.x0) / rect.width(), (pixel.y - rect.y0) / rect.height()};
+}
+
+fwview::Ray Picture::ray(ImVec2 pixel) const {
+    const glm::vec2 p = share(pixel);
+    return fwview::rayThrough(view, p.x, p.y);
+}
+
+bool navigationBall(App& app, ImDrawList* list, const Picture& picture) {
+    const ImVec2 centre(picture.rect.x1 - dp(44), picture.rect.y0 + dp(46));
+    const float radius = dp(26);
+    const glm::mat4 view = glm::make_mat4(picture.view.view);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const bool over = std::hypot(mouse.x - centre.x, mouse.y - centre.y) < radius + dp(9);
+    list->AddCircleFilled(centre, radius + dp(9), hex(0x151618, over ? 200 : 150), 48);
+    struct Ball {
+        int axis;
+        float sign, depth;
+        ImVec2 place;
+    };
+    std::array<Ball, 6> balls;
+    for (int i = 0; i < 6; ++i) {
+        const glm::vec3 p(view * glm::vec4((i < 3 ? 1.0f : -1.0f) * axisOf(i % 3), 0));
+        balls[size_t(i)] = {i % 3, i < 3 ? 1.0f : -1.0f, p.z, centre + ImVec2(p.x, -p.y) * radius};
+    }
+    std::sort(balls.begin(), balls.end(),
+              [](const Ball& a, const Ball& b) { return a.depth < b.depth; });
+    constexpr const char* kLetters[3] = {"X", "Y", "Z"};
+    const Ball* hot = nullptr;
+    for (const Ball& ball : balls) {
+        const ImU32 color = colors::axis[ball.axis];
+        if (ball.sign > 0) {
+            list->AddLine(centre, ball.place, color, dp(2));
+            list->AddCircleFilled(ball.place, dp(8), color, 24);
+            drawTextCentred(list, fonts().smallSemi, ball.place.x, ball.place.y, hex(0x101113),
+                            kLetters[ball.axis]);
+        } else {
+            list->AddCircleFilled(ball.place, dp(4), faded(color, 0.5f), 16);
+        }
+        if (std::hypot(mouse.x - ball.place.x, mouse.y - ball.place.y) < dp(9)) hot = &ball;
+    }
+    if (hot && ImGui::IsMouseClicked(0)) {
+        const float turned = hot->sign > 0 ? 0.0f : 180.0f;
+        if (hot->axis == 0) app.camera.yaw = 90 + turned;
+        if (hot->axis == 2) app.camera.yaw = turned;
+        app.camera.pitch = hot->axis == 1 ? 89 * hot->sign : 0;
+    }
+    return over;
+}
+
+void orbit(App& app, ImVec2 by) {
+    app.camera.yaw -= 0.4f * by.x / theme().scale;
+    app.camera.pitch = std::clamp(app.camera.pitch + 0.4f * by.y / theme().scale, -89.0f, 89.0f);
+}
+
+void pan(App& app, const Picture& picture, ImVec2 by) {
+    const glm::mat4 back = glm::inverse(glm::make_mat4(picture.view.view));
+    const float metres = metresAt(picture, asVec(app.camera.target), 1);
+    const glm::vec3 way = metres * (-by.x * glm::vec3(back[0]) + by.y * glm::vec3(back[1]));
+    for (int i = 0; i < 3; ++i) app.camera.target[size_t(i)] += way[i];
+}
+
+void zoom(App& app, float notches) {
+    app.camera.distance = std::clamp(app.camera.distance * std::pow(0.88f, notches), 0.01f, 1e4f);
+}
+
 void showViewport(App& app, const Rect& rect) {
     ImDrawList* list = beginPanel("##view", rect, colors::gap);
     constexpr double kStill = 0.3;  // s until what stood still is sharp again
     if (hand().busy != Busy::kNone || ImGui::GetIO().MouseWheel != 0) app.movedAt = app.now;
-    const bool moves = app.playing || app.live.seeking() || app.now - app.movedAt < kStill;
+    const bool moves =
+        app.playing || app.live.seeking() || app.live.previews() || app.now - app.movedAt < kStill;
     const float sharpness = app.slow && moves ? 0.5f : 1.0f;
     app.live.resize(uint32_t(std::max(8.0f, rect.width() * sharpness)),
                     uint32_t(std::max(8.0f, rect.height() * sharpness)));
@@ -584,6 +717,8 @@ void showViewport(App& app, const Rect& rect) {
         case Busy::kNone:
             break;
     }
+    if (app.burnTimes) drawTimeLegend(app, list, {rect.x0 + dp(12), rect.y1 - dp(68)});
+    showWhy(app, list, picture);
     if (app.live.preparing()) {
         float share = 0;
         const std::string stage = app.live.stage(share);

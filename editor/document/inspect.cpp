@@ -70,6 +70,12 @@ std::string clock(double seconds) {
     return std::to_string(minutes) + ":" + number("%04.1f", seconds - 60.0 * minutes);
 }
 
+const BurnMesh* madeOf(const Burn& burn, ObjectId id) {
+    for (const BurnMesh& mesh : burn.meshes)
+        if (mesh.id == id) return &mesh;
+    return nullptr;
+}
+
 // From which side a fire comes, as the camera sees it.
 std::string sideOf(const Scene& scene, const Vec3& at, const Vec3& fire) {
     const FwView view = viewOf(scene, 16, 9, 0);
@@ -125,43 +131,51 @@ std::vector<uint8_t> burnTimeMap(const ArrivalField& field, float duration) {
     return map;
 }
 
-bool askWhy(Burn& burn, const PaintImages& images, ObjectId meshId, Vec3 worldPosition,
-            WhyAnswer& answer, std::string& error) {
+bool beginWhy(Burn& burn, ObjectId meshId, Vec3 worldPosition, WhyQuestion& question,
+              std::string& error) {
     const Mesh* mesh = findIn(burn.scene.meshes, meshId);
-    const BurnMesh* made = nullptr;
-    for (const BurnMesh& one : burn.meshes)
-        if (one.id == meshId) made = &one;
+    const BurnMesh* made = madeOf(burn, meshId);
     if (!mesh || !made) {
         error = mesh ? "\"" + mesh->name + "\" is not in the burn" : "Click on a surface";
         return false;
     }
-    FwQueryId pointQuery{}, arrivalQuery{};
-    FwPointState point{};
-    point.structSize = sizeof point;
+    question = {};
+    question.mesh = meshId;
+    question.position = worldPosition;
+    const FwResult result =
+        fwWorld_RequestPoint(burn.world, made->object, worldPosition.data(), &question.pointQuery);
+    if (result < 0) error = worldProblem(burn, result);
+    return result >= 0;
+}
+
+FwResult pollWhy(Burn& burn, const PaintImages& images, WhyQuestion& question, WhyAnswer& answer,
+                 std::string& error) {
+    const ObjectId meshId = question.mesh;
+    const Vec3 worldPosition = question.position;
+    const Mesh* mesh = findIn(burn.scene.meshes, meshId);
+    const BurnMesh* made = madeOf(burn, meshId);
+    if (!mesh || !made) return FW_ERROR_INVALID_ARGUMENT;
+    FwPointState& point = question.point;
+    if (!question.pointKnown) {
+        point.structSize = sizeof point;
+        FwResult result = fwWorld_FetchPoint(burn.world, question.pointQuery, &point);
+        if (result == FW_NOT_READY) return result;
+        question.pointKnown = result >= 0;
+        if (result >= 0 && (point.kind == FW_POINT_UNBURNT || point.kind == FW_POINT_WET))
+            result = fwWorld_RequestArrival(burn.world, made->object, worldPosition.data(),
+                                            &question.arrivalQuery);
+        if (result < 0) {
+            error = worldProblem(burn, result);
+            return result;
+        }
+    }
     FwArrivalState arrival{};
     arrival.structSize = sizeof arrival;
     arrival.kind = FW_ARRIVAL_NEVER;
-    FwResult result =
-        fwWorld_RequestPoint(burn.world, made->object, worldPosition.data(), &pointQuery);
-    if (result >= 0) result = fwWorld_FetchPoint(burn.world, pointQuery, &point);
-    if (result < 0) {
-        error = worldProblem(burn, result);
-        return false;
-    }
     if (point.kind == FW_POINT_UNBURNT || point.kind == FW_POINT_WET) {
-        result =
-            fwWorld_RequestArrival(burn.world, made->object, worldPosition.data(), &arrivalQuery);
-        // The front is run ahead a piece a frame; a world that stands still is asked by steps of
-        // no length.
-        for (int i = 0; result >= 0 && i < 4000; ++i) {
-            result = fwWorld_FetchArrival(burn.world, arrivalQuery, &arrival);
-            if (result != FW_NOT_READY) break;
-            result = fwWorld_Step(burn.world, 0);
-        }
-        if (result < 0) {
-            error = worldProblem(burn, result);
-            return false;
-        }
+        const FwResult result = fwWorld_FetchArrival(burn.world, question.arrivalQuery, &arrival);
+        if (result < 0) error = worldProblem(burn, result);
+        if (result != FW_OK) return result;
     }
 
     // What the place is made of: slot and paint of the nearest texel.
@@ -197,10 +211,10 @@ bool askWhy(Burn& burn, const PaintImages& images, ObjectId meshId, Vec3 worldPo
         case FW_POINT_BURNING:
             answer.answer = "Burning for " + clock(double(point.age)) + ", fuel left " +
                             number("%.0f %%", 100.0 * double(point.fuel));
-            return true;
+            return FW_OK;
         case FW_POINT_BURNT:
             answer.answer = "Burnt: caught " + clock(double(point.age)) + " ago";
-            return true;
+            return FW_OK;
         case FW_POINT_EXTINGUISHED:
             answer.answer = "Put out: " + heat + wet;
             break;
@@ -256,7 +270,22 @@ bool askWhy(Burn& burn, const PaintImages& images, ObjectId meshId, Vec3 worldPo
     } else if (point.kind == FW_POINT_UNBURNT || point.kind == FW_POINT_WET) {
         answer.forecast = "As things are, no fire of its own object comes here";
     }
-    return true;
+    return FW_OK;
+}
+
+bool askWhy(Burn& burn, const PaintImages& images, ObjectId mesh, Vec3 worldPosition,
+            WhyAnswer& answer, std::string& error) {
+    WhyQuestion question;
+    if (!beginWhy(burn, mesh, worldPosition, question, error)) return false;
+    // The front is run ahead a piece a frame: a world that stands still is stepped by nothing.
+    constexpr int kMostSteps = 4000;
+    FwResult result = FW_NOT_READY;
+    for (int i = 0; i < kMostSteps && result == FW_NOT_READY; ++i) {
+        result = pollWhy(burn, images, question, answer, error);
+        if (result == FW_NOT_READY) fwWorld_Step(burn.world, 0);
+    }
+    if (result == FW_NOT_READY) error = "No answer came";
+    return result == FW_OK;
 }
 
 }  // namespace fwedit

@@ -43,7 +43,21 @@ struct WhyAnswer {
     float multiplier = 1;
     float arrivesIn = kNeverLit;  // s
 };
-// Of a world of the cpu backend that stands at a time (runBurn).
+struct WhyQuestion {  // to a burn, on its way
+    ObjectId mesh = 0;
+    Vec3 position{};  // m, world
+    FwQueryId pointQuery{}, arrivalQuery{};
+    FwPointState point{};
+    bool pointKnown = false;
+};
+// Begins a question; whoever records or steps the world then polls it after each frame, of no
+// length if it stands still. The context's message says what is wrong; the answer is there with
+// FW_OK, and FW_NOT_READY means later.
+bool beginWhy(Burn& burn, ObjectId mesh, Vec3 worldPosition, WhyQuestion& question,
+              std::string& error);
+FwResult pollWhy(Burn& burn, const PaintImages& images, WhyQuestion& question, WhyAnswer& answer,
+                 std::string& error);
+// The same at once, of a world of the cpu backend that stands at a time (runBurn).
 bool askWhy(Burn& burn, const PaintImages& images, ObjectId mesh, Vec3 worldPosition,
             WhyAnswer& answer, std::string& error);
 

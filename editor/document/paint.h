@@ -13,6 +13,11 @@
 
 namespace fwedit {
 
+struct Seam {  // an edge at which the unwrap is cut; its other side is another seam
+    std::array<float, 2> from{}, to{};  // texels
+    Vec3 fromPosition{}, toPosition{};  // m, object space
+};
+
 // Where the texels of a mesh's burn map are on it; from the bake, see paintSurfaceOf in burn.h.
 struct PaintSurface {
     uint32_t width = 0, height = 0;  // texels
@@ -23,6 +28,10 @@ struct PaintSurface {
     std::vector<uint32_t> piece;     // connected parts of the surface, across seams
     std::vector<uint8_t> material;   // slot
     float spacing = 0;               // m between texels
+    uint32_t islands = 0;
+    // What is drawn, three corners a triangle: position (m, object space), place (texels).
+    std::vector<float> corners;
+    std::vector<Seam> seams;
     // Texels by where they are, for the brush; see indexSurface.
     Vec3 low{};
     float cell = 0;  // m

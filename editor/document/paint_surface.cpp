@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <tuple>
 
 #include "document/world_parts.h"
 #include "flamewright/flamewright_debug.h"
@@ -151,6 +152,46 @@ void findIslands(PaintSurface& surface) {
         }
         ++islands;
     }
+    surface.islands = islands;
+}
+
+// Edges that only one triangle has in the map.
+void findSeams(PaintSurface& surface) {
+    using Place = std::array<int32_t, 2>;
+    struct Edge {
+        Place low, high;
+        uint32_t from, to;  // corners
+    };
+    const auto placeOf = [&](uint32_t corner) {
+        constexpr float kFine = 64;  // parts of a texel
+        const float* place = surface.corners.data() + size_t{corner} * 5 + 3;
+        return Place{static_cast<int32_t>(std::lround(place[0] * kFine)),
+                     static_cast<int32_t>(std::lround(place[1] * kFine))};
+    };
+    const auto count = static_cast<uint32_t>(surface.corners.size() / 5);
+    std::vector<Edge> edges;
+    edges.reserve(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+        const Place a = placeOf(i), b = placeOf(next);
+        edges.push_back({std::min(a, b), std::max(a, b), i, next});
+    }
+    const auto key = [](const Edge& edge) { return std::tie(edge.low, edge.high); };
+    std::sort(edges.begin(), edges.end(),
+              [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
+    for (size_t i = 0; i < edges.size();) {
+        size_t end = i + 1;
+        while (end < edges.size() && key(edges[end]) == key(edges[i])) ++end;
+        if (end == i + 1) {
+            const float* from = surface.corners.data() + size_t{edges[i].from} * 5;
+            const float* to = surface.corners.data() + size_t{edges[i].to} * 5;
+            surface.seams.push_back({{from[3], from[4]},
+                                     {to[3], to[4]},
+                                     {from[0], from[1], from[2]},
+                                     {to[0], to[1], to[2]}});
+        }
+        i = end;
+    }
 }
 
 }  // namespace
@@ -176,6 +217,10 @@ bool surfaceOfBake(FwContext* context, const std::vector<char>& bake, const Impo
     if (result >= 0)
         result = fwDebug_GetTexelPositions(burn.world, mesh, surface.positions.data(), flags.data(),
                                            texels, &count);
+    if (result >= 0) result = fwDebug_GetUnwrap(burn.world, mesh, nullptr, 0, &count);
+    surface.corners.resize(count * 5);
+    if (result >= 0)
+        result = fwDebug_GetUnwrap(burn.world, mesh, surface.corners.data(), count, &count);
     if (result < 0) {
         error = worldProblem(burn, result);
         return false;
@@ -217,6 +262,7 @@ bool surfaceOfBake(FwContext* context, const std::vector<char>& bake, const Impo
         surface.material[i] = slots[best];
     }
     findIslands(surface);
+    findSeams(surface);
     indexSurface(surface);
     return true;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
@@ -36,8 +37,9 @@ std::string lastMessage(FwWorld* world) {
 }
 
 // What a new world must be made for. Names, marks and the camera change no fire.
-fwedit::Scene withoutLabels(const fwedit::Scene& scene) {
+fwedit::Scene withoutLabels(const fwedit::Scene& scene, bool paints) {
     fwedit::Scene plain = scene;
+    if (paints) plain.layers.clear();
     plain.camera = {};
     plain.events.clear();
     plain.nextId = 0;
@@ -53,7 +55,11 @@ fwedit::Scene withoutLabels(const fwedit::Scene& scene) {
 }  // namespace
 
 LiveScene::LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::UiRenderer& ui)
-    : target(host, ui), host_(host), context_(context) {
+    : target(host, ui),
+      overlay(host, ui, target.overPass()),
+      host_(host),
+      context_(context),
+      burnt_(host, ui, target.overPass()) {
     assets_.cache = cacheFolder();
     assets_.progress = [this](const std::string& stage, float share) {
         const std::lock_guard lock(stageMutex_);
@@ -80,17 +86,30 @@ LiveScene::LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::U
 LiveScene::~LiveScene() {
     stop_ = true;
     if (work_.valid()) work_.wait();
+    if (restWork_.valid()) restWork_.wait();
     vkDeviceWaitIdle(host_.device);
     work_ = {};
+    restWork_ = {};
     burn_.reset();
+    rest_ = {};
     fwContext_UnregisterTarget(context_, targetId_);
 }
 
 void LiveScene::forget() {
     stop_ = true;
     if (work_.valid()) work_.get();
+    if (restWork_.valid()) restWork_.get();
     vkDeviceWaitIdle(host_.device);
     burn_.reset();
+    rest_ = {};
+    restWanted_ = false;
+    memory_.forget();
+    overlay.clear();
+    burnt_.clear();
+    laidOver.clear();
+    why = {};
+    preview_ = -1;
+    previewed_ = owesPaint_ = false;
     studio_.reset();
     studioKey_.clear();
     outlines_.clear();
@@ -101,19 +120,31 @@ void LiveScene::forget() {
     stale_ = true;
 }
 
-void LiveScene::follow(const fwedit::Document& document) {
-    if (work_.valid() && work_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-        adopt(work_.get());
+void LiveScene::follow(const fwedit::Document& document, bool paints) {
+    const auto done = [](const auto& work) {
+        return work.valid() && work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    };
+    if (done(work_)) adopt(work_.get());
+    if (done(restWork_)) adoptRest(restWork_.get());
     if (work_.valid()) return;
-    if (document.revision == seen_ && !restart_) return;
+    if (document.revision == seen_ && !restart_ && (paints || !owesPaint_)) {
+        startRest();
+        return;
+    }
     if (document.dragging) {
         moveDragged(document);
         return;
     }
+    if (restWork_.valid()) return;  // it has the assets
     seen_ = document.revision;
     stale_ = true;
-    const bool same = burn_ && withoutLabels(document.scene) == withoutLabels(scene_) &&
-                      document.images == images_;
+    const bool sameScene = withoutLabels(document.scene, paints) == withoutLabels(scene_, paints);
+    if (paints && burn_ && sameScene && !restart_) {
+        owesPaint_ = true;
+        return;
+    }
+    owesPaint_ = false;
+    const bool same = burn_ && sameScene && document.images == images_;
     scene_ = document.scene;
     images_ = document.images;
     if (same && !restart_) return;
@@ -140,7 +171,47 @@ void LiveScene::adopt(Made made) {
     vkDeviceWaitIdle(host_.device);
     report_.insert(report_.end(), made.burn->report.begin(), made.burn->report.end());
     burn_ = std::move(made.burn);
+    // The background has the assets; what it made is here.
+    burn_->surfaceOf = [this](const fwedit::Mesh& mesh) { return surfaceOf(mesh.id); };
+    why.asks = false;
+    memory_.begin(*burn_);
+    preview_ = -1;
+    previewed_ = false;
+    restWanted_ = true;
     setUpStudio();
+}
+
+// The same scene before the fire, and the texels of its meshes, once the burn itself is there.
+void LiveScene::startRest() {
+    if (!restWanted_ || restWork_.valid() || !burn_) return;
+    restWanted_ = false;
+    restWork_ = std::async(std::launch::async, [this, scene = burn_->scene, folder = folder_] {
+        Rest made;
+        std::string ignored;  // what is left out was told by the burn
+        made.burn = fwedit::createBurn(context_, scene, {}, folder, assets_, ignored);
+        if (!made.burn) return made;
+        for (const fwedit::BurnPart& part : made.burn->parts) {
+            for (const FwVolumetricFireId fire : part.fires)
+                fwWorld_SetVolumetricFireHidden(made.burn->world, fire, 1);
+            if (part.emitter.index1 != 0)
+                fwWorld_SetFireEmitterHidden(made.burn->world, part.emitter, 1);
+        }
+        for (const fwedit::Mesh& mesh : scene.meshes)
+            if (auto surface = fwedit::paintSurfaceOf(context_, mesh, folder, assets_, ignored))
+                made.surfaces[mesh.id] = std::move(surface);
+        return made;
+    });
+}
+
+void LiveScene::adoptRest(Rest made) {
+    vkDeviceWaitIdle(host_.device);
+    rest_ = std::move(made);
+    stale_ = true;
+}
+
+std::shared_ptr<const fwedit::PaintSurface> LiveScene::surfaceOf(fwedit::ObjectId mesh) const {
+    const auto found = rest_.surfaces.find(mesh);
+    return found == rest_.surfaces.end() ? nullptr : found->second;
 }
 
 // The backdrop stands below the meshes and catches their shadow.
@@ -208,23 +279,100 @@ void LiveScene::resize(uint32_t width, uint32_t height) {
     stale_ |= before.width != target.extent().width || before.height != target.extent().height;
 }
 
-void LiveScene::seek(double time) {
+void LiveScene::seek(double time, bool held) {
     wanted_ = std::max(0.0, time);
-    if (!burn_ || wanted_ + 1e-4 >= burn_->time) return;
-    restart_ = true;
+    previewed_ = false;
+    if (!burn_) return;
     stale_ = true;
+    if (held && rest_.burn && memory_.knows(wanted_)) {
+        preview_ = wanted_;
+        previewed_ = true;
+        preview();
+        return;
+    }
+    // Without a preview the last picture stays until the hand lets go.
+    if (held && wanted_ + 1e-4 < burn_->time) {
+        wanted_ = 0;
+        return;
+    }
+    if (wanted_ + 1e-4 < burn_->time && !goBack()) restart_ = true;
+}
+
+// To the last moment before the wished one that was kept.
+bool LiveScene::goBack() { return memory_.restore(*burn_, wanted_); }
+
+void LiveScene::preview() {
+    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
+        const auto surface = surfaceOf(mesh.id);
+        if (!surface || !memory_.agesAt(*burn_, mesh.id, *surface, preview_, values_)) continue;
+        burnt_.color(mesh.id, surface, values_, burntPalette(),
+                     {0, 0, surface->width, surface->height});
+    }
+}
+
+void LiveScene::colorBurnTimes(std::span<const fwui::MapStop> map) {
+    laidOver.clear();
+    if (!burn_) return;
+    const Palette palette = rampPalette(map, kOverlayOpacity);
+    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
+        const auto surface = surfaceOf(mesh.id);
+        if (!surface || !memory_.timesOf(*burn_, mesh.id, values_)) continue;
+        overlay.color(mesh.id, surface, values_, palette, {0, 0, surface->width, surface->height});
+        laidOver.push_back(mesh.id);
+    }
+    stale_ = true;
+}
+
+void LiveScene::askWhy(fwedit::ObjectId mesh, glm::vec3 position) {
+    why = {};
+    why.open = true;
+    why.mesh = mesh;
+    why.position = position;
+    followWhy();
+    stale_ = true;
+}
+
+void LiveScene::followWhy() {
+    constexpr double kAskAgain = 0.5;  // s of the fire
+    if (!why.open || !burn_ || previews()) return;
+    if (why.asks) {
+        const FwResult result =
+            fwedit::pollWhy(*burn_, images_, why.question, why.answer, why.error);
+        if (result == FW_NOT_READY) return;
+        why.asks = false;
+        why.answered = result == FW_OK;
+        return;
+    }
+    if (!why.error.empty()) return;
+    if (why.answered && std::fabs(burn_->time - why.time) < kAskAgain) return;
+    why.asks = fwedit::beginWhy(*burn_, why.mesh, {why.position.x, why.position.y, why.position.z},
+                                why.question, why.error);
+    why.time = burn_->time;
+}
+
+FwResult LiveScene::recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame) {
+    const FwResult result = fwWorld_RecordOutside(burn.world, &frame, &view);
+    if (result < 0) report_.push_back(lastMessage(burn.world));
+    return result;
 }
 
 void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime) {
     if (!burn_ || !studio_ || target.extent().width == 0) return;
+    if (preview_ >= 0 && !previewed_ && !seeking()) {
+        preview_ = -1;
+        stale_ = true;
+    }
+    const bool rests = shown == Shown::kRest || previews();
+    if (rests && !rest_.burn) return;
     const bool moved = !(camera == camera_);
     const bool hurries = seeking();
-    if (deltaTime <= 0 && !moved && !stale_ && !hurries) return;
+    if (deltaTime <= 0 && !moved && !stale_ && !hurries && !memory_.waits() && !why.asks) return;
     stale_ = false;
     camera_ = camera;
 
     fwedit::Scene seen;  // viewOf reads these alone
     seen.settings = scene_.settings;
+    if (shown == Shown::kRest) seen.settings.daylight = fwedit::DaylightDay;
     seen.camera = camera;
     std::string error;
     FwVulkanFrame described = fwDefaultVulkanFrame();
@@ -234,18 +382,31 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     float step = deltaTime;
     if (hurries) {
         step = std::min(float(wanted_ - burn_->time), kSeekStep * kSeekSteps);
-    } else if (!preparing()) {
+    } else if (!preparing() && !previews()) {
         wanted_ = 0;
     }
-    view = fwedit::viewOf(seen, target.extent().width, target.extent().height, burn_->time);
+    view = fwedit::viewOf(seen, target.extent().width, target.extent().height,
+                          rests ? 0.0 : burn_->time);
     if (step > 0 && !fwedit::feedBurn(*burn_, step, error)) report_.push_back(error);
     described.deltaTime = step;
 
+    FwResult outside = FW_OK;
+    memory_.beforeFrame(*burn_, step);
+    if (!rests || step > 0 || memory_.waits() || why.asks)
+        outside = recordOutside(*burn_, described);
+    memory_.afterFrame(*burn_);
+    burn_->scene.camera = camera;  // sides are said as the eye has them
+    followWhy();
+    fwedit::Burn& drawn = rests ? *rest_.burn : *burn_;
+    if (rests) {
+        described.deltaTime = 0;
+        outside = recordOutside(drawn, described);
+    }
     FwLight lights[8];
-    const uint32_t lightCount = fwWorld_GetLights(burn_->world, lights, 8);
-    const FwResult outside = fwWorld_RecordOutside(burn_->world, &described, &view);
-    if (outside < 0) report_.push_back(lastMessage(burn_->world));
+    const uint32_t lightCount = fwWorld_GetLights(drawn.world, lights, 8);
 
+    overlay.upload(frame);
+    burnt_.upload(frame);
     target.begin(frame);
     sample::StageFrame stage;
     stage.commands = frame.commands;
@@ -254,16 +415,32 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     const VkViewport viewport = target.viewport();
     if (outside == FW_OK) {
         const FwResult inside =
-            fwWorld_RecordInside(burn_->world, &described, targetId_, &view, &viewport);
-        if (inside < 0) report_.push_back(lastMessage(burn_->world));
+            fwWorld_RecordInside(drawn.world, &described, targetId_, &view, &viewport);
+        if (inside < 0) report_.push_back(lastMessage(drawn.world));
     }
     target.end(frame);
+    drawOverlays(frame);
 
     FwPassTime times[64];
-    const uint32_t count = std::min(fwDebug_GetPassTimes(burn_->world, times, 64), 64u);
+    const uint32_t count = std::min(fwDebug_GetPassTimes(drawn.world, times, 64), 64u);
     double sum = 0;
     for (uint32_t i = 0; i < count; ++i) sum += times[i].milliseconds;
     if (count > 0) milliseconds_ = sum;
+}
+
+void LiveScene::drawOverlays(const fwui::Frame& frame) {
+    if (!previews() && laidOver.empty()) return;
+    const glm::mat4 seen = glm::make_mat4(view.projection) * glm::make_mat4(view.view);
+    target.beginOver(frame);
+    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
+        const fwedit::Mesh* object = fwedit::findIn(scene_.meshes, mesh.id);
+        if (!object || object->hidden) continue;
+        const glm::mat4 clip = seen * poseOf(*object);
+        if (previews()) burnt_.draw(frame, mesh.id, clip, 1);
+        if (std::find(laidOver.begin(), laidOver.end(), mesh.id) != laidOver.end())
+            overlay.draw(frame, mesh.id, clip, 1);
+    }
+    target.endOver(frame);
 }
 
 std::string LiveScene::stage(float& share) const {

@@ -13,12 +13,30 @@
 #include <vector>
 
 #include "common/studio.h"
-#include "document/burn.h"
+#include "document/inspect.h"
+#include "viewport/burn_memory.h"
+#include "viewport/map_overlay.h"
 #include "viewport/outline.h"
 #include "viewport/scene_target.h"
 #include "viewport/surface_ray.h"
 
 namespace fwview {
+
+enum class Shown : uint32_t {
+    kBurn,
+    kRest  // as it is before anything burns, without flames: to paint on
+};
+
+// A spot of the surface and what the burn says of it.
+struct WhyCard {
+    bool open = false, answered = false, asks = false;
+    fwedit::ObjectId mesh = 0;
+    glm::vec3 position{0};  // m, world
+    double time = 0;        // s that the answer is of
+    fwedit::WhyQuestion question;
+    fwedit::WhyAnswer answer;
+    std::string error;
+};
 
 class LiveScene {
  public:
@@ -30,20 +48,30 @@ class LiveScene {
 
     // Once a frame, before the panels: takes a finished world over, starts the next if the document
     // has changed and no drag is under way; while one is, things move in the world that is there.
-    void follow(const fwedit::Document& document);
+    // `paints`: what only layers of paint change waits until the page of the burn is there again.
+    void follow(const fwedit::Document& document, bool paints = false);
     void forget();  // another document: nothing of the old one stays
-    // Goes to that time: forward by running on, back by starting anew and running on.
-    void seek(double time);
+    // Goes to that time: forward by running on, back from the nearest moment that was kept. While
+    // a hand holds it, a time that was simulated before is previewed at once; see BurnMemory.
+    void seek(double time, bool held = false);
     // Steps by `deltaTime` s (0: stands still) and draws, unless the picture would be the same.
     void record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime);
     // Nothing of what is seen would change: no frame is needed for its sake.
-    [[nodiscard]] bool settled() const { return !preparing() && !seeking() && !stale_; }
+    [[nodiscard]] bool settled() const {
+        return !preparing() && !seeking() && !stale_ && !memory_.waits() && overlay.settled() &&
+               !why.asks;
+    }
     // Pixels of the picture.
     void resize(uint32_t width, uint32_t height);
 
     [[nodiscard]] bool preparing() const { return work_.valid(); }
-    [[nodiscard]] bool seeking() const { return burn_ && burn_->time + 1e-4 < wanted_; }
-    [[nodiscard]] double time() const { return burn_ ? burn_->time : 0; }
+    // What painting and scrubbing need is not there yet.
+    [[nodiscard]] bool resting() const { return restWanted_ || restWork_.valid(); }
+    [[nodiscard]] bool seeking() const {
+        return burn_ && !previewed_ && burn_->time + 1e-4 < wanted_;
+    }
+    [[nodiscard]] bool previews() const { return preview_ >= 0; }
+    [[nodiscard]] double time() const { return previews() ? preview_ : burn_ ? burn_->time : 0; }
     [[nodiscard]] const fwedit::Burn* burn() const { return burn_.get(); }
     // What the background does, and how far it is, [0, 1].
     std::string stage(float& share) const;
@@ -52,12 +80,27 @@ class LiveScene {
     SurfaceHit pick(float x, float y, bool throughLocked) const;
     // The outline of a mesh as pairs of places in [0, 1] of a picture of so many pixels.
     void outlineOf(fwedit::ObjectId mesh, ImVec2 size, std::vector<glm::vec2>& lines);
+    // Asks the burn of a spot; the answer comes some frames later, and anew as the fire goes on.
+    void askWhy(fwedit::ObjectId mesh, glm::vec3 position);
+    // Texels to paint on; null: not made yet, or the mesh has none.
+    [[nodiscard]] std::shared_ptr<const fwedit::PaintSurface> surfaceOf(
+        fwedit::ObjectId mesh) const;
+    // The overlay has changed: the picture is to be drawn again.
+    void redraw() { stale_ = true; }
+    // s until when it is known when each texel caught; < 0: not yet.
+    [[nodiscard]] double knownTime() const { return rest_.burn ? memory_.known() : -1; }
+    // Colours the overlay by when each texel caught, as far as it was simulated.
+    void colorBurnTimes(std::span<const fwui::MapStop> map);
     bool bounds(glm::vec3& low, glm::vec3& high) const;    // of all meshes; false: there are none
     double milliseconds() const { return milliseconds_; }  // the device's, of the last frame
     std::vector<std::string> takeReport();                 // what was left out, for people
 
     SceneTarget target;
     FwView view{};  // of the last frame
+    Shown shown = Shown::kBurn;
+    WhyCard why;
+    MapOverlay overlay;
+    std::vector<fwedit::ObjectId> laidOver;  // meshes whose map of the overlay is on the picture
 
  private:
     struct Outline {  // as it was last asked for
@@ -70,7 +113,18 @@ class LiveScene {
         std::unique_ptr<fwedit::Burn> burn;
         std::string error;
     };
+    struct Rest {  // what painting and scrubbing need beside the burn
+        std::unique_ptr<fwedit::Burn> burn;
+        std::map<fwedit::ObjectId, std::shared_ptr<const fwedit::PaintSurface>> surfaces;
+    };
     void adopt(Made made);
+    void startRest();
+    void adoptRest(Rest made);
+    bool goBack();
+    void preview();
+    FwResult recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame);
+    void followWhy();
+    void drawOverlays(const fwui::Frame& frame);
     void setUpStudio();
     void moveDragged(const fwedit::Document& document);
 
@@ -81,6 +135,14 @@ class LiveScene {
     std::unique_ptr<fwedit::Burn> burn_;
     std::unique_ptr<sample::Studio> studio_;
     std::future<Made> work_;
+    Rest rest_;
+    std::future<Rest> restWork_;
+    bool restWanted_ = false;
+    BurnMemory memory_;
+    MapOverlay burnt_;        // of the preview
+    double preview_ = -1;     // s that are shown from memory; < 0: none
+    bool previewed_ = false;  // a hand holds the preview
+    bool owesPaint_ = false;
     std::atomic<bool> stop_{false};
     mutable std::mutex stageMutex_;
     std::string stage_;
@@ -95,6 +157,7 @@ class LiveScene {
     fwedit::Camera camera_;
     std::map<fwedit::ObjectId, Outline> outlines_;
     std::vector<std::string> report_;
+    std::vector<uint8_t> values_;  // by texel, of what is coloured
     double milliseconds_ = 0;
     std::string studioKey_;
 };

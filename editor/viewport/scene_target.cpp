@@ -29,6 +29,7 @@ SceneTarget::SceneTarget(const sample::VulkanHost& host, fwui::UiRenderer& ui)
     scenePass_ = makePass(kLight, true, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     spreadPass_ = makePass(kLight, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     shownPass_ = makePass(kDisplay, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    overPass_ = makePass(kDisplay, true, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, true);
     sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                   VK_SAMPLER_MIPMAP_MODE_NEAREST);
     constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
@@ -62,7 +63,7 @@ SceneTarget::~SceneTarget() {
     vkDestroyDescriptorPool(host_.device, pool_, nullptr);
     vkDestroyDescriptorSetLayout(host_.device, setLayout_, nullptr);
     vkDestroySampler(host_.device, sampler_, nullptr);
-    for (VkRenderPass pass : {scenePass_, spreadPass_, shownPass_})
+    for (VkRenderPass pass : {scenePass_, spreadPass_, shownPass_, overPass_})
         vkDestroyRenderPass(host_.device, pass, nullptr);
 }
 
@@ -71,7 +72,8 @@ sample::ScenePass SceneTarget::pass() const {
             fwui::Frames::kSlots};
 }
 
-VkRenderPass SceneTarget::makePass(VkFormat color, bool depth, VkImageLayout after) const {
+VkRenderPass SceneTarget::makePass(VkFormat color, bool depth, VkImageLayout after,
+                                   bool over) const {
     std::array<VkAttachmentDescription, 2> attachments{};
     attachments[0].format = color;
     attachments[0].samples = VK_SAMPLE_COUNT_1_BIT;
@@ -82,8 +84,12 @@ VkRenderPass SceneTarget::makePass(VkFormat color, bool depth, VkImageLayout aft
     attachments[0].finalLayout = after;
     attachments[1] = attachments[0];
     attachments[1].format = depthFormat_;
-    attachments[1].storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     attachments[1].finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    for (VkAttachmentDescription& attachment : attachments) {
+        if (!over) break;
+        attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+        attachment.initialLayout = attachment.finalLayout;
+    }
     const VkAttachmentReference colorPlace{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
     const VkAttachmentReference depthPlace{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
     VkSubpassDescription subpass{};
@@ -143,7 +149,7 @@ void SceneTarget::dropImages() {
     ui_.removeTexture(texture_);
     texture_ = nullptr;
     for (VkFramebuffer* framebuffer :
-         {&sceneFramebuffer_, &spreadFramebuffer_, &shownFramebuffer_}) {
+         {&sceneFramebuffer_, &spreadFramebuffer_, &shownFramebuffer_, &overFramebuffer_}) {
         vkDestroyFramebuffer(host_.device, *framebuffer, nullptr);
         *framebuffer = VK_NULL_HANDLE;
     }
@@ -188,6 +194,7 @@ void SceneTarget::resize(uint32_t width, uint32_t height) {
     spreadFramebuffer_ =
         makeFramebuffer(spreadPass_, {spread_.view}, quarter.width, quarter.height);
     shownFramebuffer_ = makeFramebuffer(shownPass_, {shown_.view}, width, height);
+    overFramebuffer_ = makeFramebuffer(overPass_, {shown_.view, depth_.view}, width, height);
     sample::writeImage(host_, set_, 0, sampler_, color_.view);
     sample::writeImage(host_, set_, 1, sampler_, spread_.view);
     texture_ = ui_.addTexture(shown_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
@@ -227,6 +234,20 @@ void SceneTarget::end(const fwui::Frame& frame) {
              {spread_.made.width, spread_.made.height});
     drawPost(frame, shownPipeline_, shownPass_, shownFramebuffer_, extent_);
 }
+
+void SceneTarget::beginOver(const fwui::Frame& frame) {
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = overPass_;
+    info.framebuffer = overFramebuffer_;
+    info.renderArea = {{0, 0}, extent_};
+    vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+    const VkViewport all = viewport();
+    vkCmdSetViewport(frame.commands, 0, 1, &all);
+    vkCmdSetScissor(frame.commands, 0, 1, &info.renderArea);
+}
+
+void SceneTarget::endOver(const fwui::Frame& frame) { vkCmdEndRenderPass(frame.commands); }
 
 // Halves the scene again and again, for the bloom to add up.
 void SceneTarget::spreadLight(const fwui::Frame& frame) {

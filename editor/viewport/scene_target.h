@@ -20,7 +20,11 @@ class SceneTarget {
     void resize(uint32_t width, uint32_t height);
     void begin(const fwui::Frame& frame);
     void end(const fwui::Frame& frame);
+    // After end: a pass over the display values, tested against the scene's depth.
+    void beginOver(const fwui::Frame& frame);
+    void endOver(const fwui::Frame& frame);
     [[nodiscard]] sample::ScenePass pass() const;
+    [[nodiscard]] VkRenderPass overPass() const { return overPass_; }
     [[nodiscard]] VkFormat depthFormat() const { return depthFormat_; }
     [[nodiscard]] void* texture() const { return texture_; }  // for ImGui
     [[nodiscard]] VkExtent2D extent() const { return extent_; }
@@ -31,7 +35,8 @@ class SceneTarget {
     float bloom = 0.06f, vignette = 0.1f;
 
  private:
-    VkRenderPass makePass(VkFormat color, bool depth, VkImageLayout after) const;
+    // Over: keeps what is there, depth included.
+    VkRenderPass makePass(VkFormat color, bool depth, VkImageLayout after, bool over = false) const;
     VkFramebuffer makeFramebuffer(VkRenderPass pass, std::initializer_list<VkImageView> views,
                                   uint32_t width, uint32_t height) const;
     void dropImages();
@@ -46,9 +51,9 @@ class SceneTarget {
     VkFormat depthFormat_ = VK_FORMAT_UNDEFINED;
     sample::Image color_, depth_, spread_, shown_;
     VkRenderPass scenePass_ = VK_NULL_HANDLE, spreadPass_ = VK_NULL_HANDLE,
-                 shownPass_ = VK_NULL_HANDLE;
+                 shownPass_ = VK_NULL_HANDLE, overPass_ = VK_NULL_HANDLE;
     VkFramebuffer sceneFramebuffer_ = VK_NULL_HANDLE, spreadFramebuffer_ = VK_NULL_HANDLE,
-                  shownFramebuffer_ = VK_NULL_HANDLE;
+                  shownFramebuffer_ = VK_NULL_HANDLE, overFramebuffer_ = VK_NULL_HANDLE;
     VkSampler sampler_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;

@@ -96,4 +96,19 @@ FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld* world, FwMeshId id, float* p
     });
 }
 
+FwResult FW_CALL fwDebug_GetUnwrap(FwWorld* world, FwMeshId id, float* corners,
+                                   uint64_t capacityCorners, uint64_t* count) {
+    return onWorld("fwDebug_GetUnwrap", world, [&](world::World& w) {
+        const mesh::BurnDomain& domain = w.domain(id);
+        const uint64_t given = std::min<uint64_t>(capacityCorners, domain.indices.size());
+        for (uint64_t i = 0; corners && i < given; ++i) {
+            const mesh::RenderVertex& vertex = domain.vertices[domain.indices[i]];
+            std::copy_n(vertex.position, 3, corners + 5 * i);
+            std::copy_n(vertex.atlasUv, 2, corners + 5 * i + 3);
+        }
+        if (count) *count = domain.indices.size();
+        return FW_OK;
+    });
+}
+
 }  // extern "C"

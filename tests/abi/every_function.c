@@ -130,6 +130,7 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwDebug_SetSwitches(NULL, 0));
     REFUSES(fwDebug_PushTexels(NULL, object, 0, NULL, 0));
     REFUSES(fwDebug_GetTexelPositions(NULL, mesh, NULL, NULL, 0, NULL));
+    REFUSES(fwDebug_GetUnwrap(NULL, mesh, NULL, 0, NULL));
 
     /* Every inline default, in C. */
     wrong += fwDefaultContextDef().abiVersion == FW_ABI_VERSION ? 0 : 1;

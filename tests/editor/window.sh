@@ -87,7 +87,7 @@ xdotool key ctrl+z
 await "did: Undone"
 xdotool key ctrl+shift+z
 await "did: Done again"
-xdotool key 2 mousemove 540 300 mousedown 1
+xdotool key 3 mousemove 540 300 mousedown 1
 xdotool mousemove 560 340 mousemove 560 400 mouseup 1
 await "did: Paint the flame"
 xdotool key 1 key ctrl+s key ctrl+a type "$work/first.fwscene"

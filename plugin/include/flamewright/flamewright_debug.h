@@ -38,6 +38,10 @@ FW_API FwResult FW_CALL fwDebug_SetSwitches(FwWorld*, uint32_t switches); /* [wo
 FW_API FwResult FW_CALL fwDebug_PushTexels(FwWorld*, FwBurnableMeshId id, uint32_t kind, const uint32_t* texels, uint32_t count);
 /* Rest positions (3 floats each, m, object space) and flags (1 = real) of the burn map. [world] */
 FW_API FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld*, FwMeshId id, float* positions, uint32_t* flags, uint64_t capacityTexels, uint64_t* count);
+/* The triangles that are drawn, and where each lies in the burn map: three corners a triangle, five floats a corner:
+ * rest position (m, object space) and place (texels; centres are at halves). Writes min(capacity, corners) corners;
+ * *count: all of them. [world] */
+FW_API FwResult FW_CALL fwDebug_GetUnwrap(FwWorld*, FwMeshId id, float* corners, uint64_t capacityCorners, uint64_t* count);
 
 #ifdef __cplusplus
 }

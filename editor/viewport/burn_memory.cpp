@@ -1,0 +1,165 @@
+// See burn_memory.h.
+#include "viewport/burn_memory.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flamewright/flamewright_debug.h"
+
+namespace fwview {
+namespace {
+
+constexpr uint32_t kFirstCode = 0xfffffff0u;  // of texels without an ignition tick
+constexpr double kTicksPerSecond = 4096;
+constexpr double kAskEvery = 1;                  // s of the fire between looks at its map
+constexpr double kLeastApart = 5, kMoments = 8;  // s; moments that are kept over a scene
+
+// How long a texel of each of a mesh's materials flames, in ticks.
+std::array<float, 8> flamingOf(const fwedit::Burn& burn, const fwedit::Mesh& mesh) {
+    std::array<float, 8> ticks{};
+    for (size_t slot = 0; slot < ticks.size(); ++slot) {
+        FwMaterialDef def = fwDefaultMaterialDef();
+        fwInitMaterialPreset(&def, mesh.materials[slot]);
+        const float thickness = mesh.thickness > 0 ? mesh.thickness : def.thickness;
+        float seconds = def.burnTime;
+        if (!(seconds > 0) && def.burningFlux > 0)
+            seconds = thickness * def.density / def.burningFlux;
+        seconds = std::clamp(seconds / std::max(burn.scene.settings.pace, 0.1f), 0.5f, 600.0f);
+        ticks[slot] = seconds * float(kTicksPerSecond);
+    }
+    return ticks;
+}
+
+}  // namespace
+
+const Palette& burntPalette() {
+    static const Palette palette = [] {
+        constexpr fwui::MapStop kStops[] = {{0, fwui::hex(0xFFE2A0)},
+                                            {0.04f, fwui::hex(0xFF9A3C)},
+                                            {0.2f, fwui::hex(0xB8400E)},
+                                            {0.6f, fwui::hex(0x4A1C10)},
+                                            {1, fwui::hex(0x1A1412)}};
+        Palette made{};
+        for (uint32_t i = 1; i < 256; ++i)
+            made[i] = premultiplied(fwui::sampleMap(kStops, float(i - 1) / 254), 0.9f);
+        return made;
+    }();
+    return palette;
+}
+
+void BurnMemory::begin(const fwedit::Burn& burn) {
+    forget();
+    FwWorldStats stats{};
+    stats.structSize = sizeof stats;
+    fwWorld_GetStats(burn.world, &stats);
+    start_ = stats.tick;
+}
+
+void BurnMemory::forget() { *this = {}; }
+
+void BurnMemory::beforeFrame(fwedit::Burn& burn, float step) {
+    longest_ = std::max(longest_, burn.time);
+    // Saves have their cost: few of them, and the first for nothing.
+    const double apart = std::max(kLeastApart, double(burn.scene.settings.duration) / kMoments);
+    const bool due = moments_.empty() || burn.time >= moments_.back().time + apart;
+    if (!saving_ && due && fwWorld_RequestSave(burn.world) >= 0) {
+        saving_ = true;
+        savingTime_ = burn.time;
+    }
+    behind_ = burn.time > known_ + 1e-4 && burn.time + 1e-4 >= longest_;
+    if (asked_ || !behind_ || (step > 0 && burn.time < known_ + kAskEvery)) return;
+    asked_ = true;
+    askedTime_ = burn.time;
+    for (const fwedit::BurnMesh& mesh : burn.meshes)
+        asked_ = asked_ && fwDebug_RequestBurnMap(burn.world, mesh.object) >= 0;
+    if (!asked_) known_ = burn.time;
+}
+
+void BurnMemory::afterFrame(fwedit::Burn& burn) {
+    if (asked_ && takeTicks(burn)) {
+        asked_ = false;
+        known_ = askedTime_;
+    }
+    behind_ = burn.time > known_ + 1e-4 && burn.time + 1e-4 >= longest_;
+    if (saving_) takeSave(burn);
+}
+
+bool BurnMemory::takeTicks(fwedit::Burn& burn) {
+    for (const fwedit::BurnMesh& mesh : burn.meshes) {
+        uint64_t count = 0, hash = 0, tick = 0;
+        std::vector<uint32_t>& ticks = ticks_[mesh.id];
+        if (ticks.empty()) {
+            FwMeshInfo info{};
+            info.structSize = sizeof info;
+            if (fwWorld_GetMeshInfo(burn.world, mesh.mesh, &info) < 0) continue;
+            ticks.assign(size_t{info.mapWidth} * info.mapHeight, ~0u);
+        }
+        if (fwDebug_FetchBurnMap(burn.world, mesh.object, ticks.data(), ticks.size(), &count, &hash,
+                                 &tick) == FW_NOT_READY)
+            return false;
+    }
+    return true;
+}
+
+void BurnMemory::takeSave(fwedit::Burn& burn) {
+    uint64_t size = 0;
+    const FwResult result = fwWorld_FetchSave(burn.world, nullptr, &size);
+    if (result == FW_NOT_READY) return;
+    saving_ = false;
+    Moment moment;
+    moment.time = savingTime_;
+    moment.bytes.resize(size);
+    if (result >= 0 && fwWorld_FetchSave(burn.world, moment.bytes.data(), &size) == FW_OK)
+        moments_.push_back(std::move(moment));
+}
+
+bool BurnMemory::restore(fwedit::Burn& burn, double time) {
+    const Moment* latest = nullptr;
+    for (const Moment& moment : moments_)
+        if (moment.time <= time + 1e-6) latest = &moment;
+    if (!latest || fwWorld_Load(burn.world, latest->bytes.data(), latest->bytes.size()) < 0)
+        return false;
+    burn.time = latest->time;
+    saving_ = false;
+    for (fwedit::BurnPart& part : burn.parts) part.lastFactor = -1;
+    return true;
+}
+
+bool BurnMemory::agesAt(const fwedit::Burn& burn, fwedit::ObjectId id,
+                        const fwedit::PaintSurface& surface, double time,
+                        std::vector<uint8_t>& values) const {
+    const auto found = ticks_.find(id);
+    const fwedit::Mesh* mesh = fwedit::findIn(burn.scene.meshes, id);
+    if (found == ticks_.end() || !mesh || found->second.size() != surface.real.size()) return false;
+    std::array<float, 8> share{};  // of its flaming that a tick is, in steps of a byte
+    const std::array<float, 8> flaming = flamingOf(burn, *mesh);
+    for (size_t slot = 0; slot < share.size(); ++slot) share[slot] = 253 / flaming[slot];
+    const auto now = int64_t(start_) + int64_t(std::llround(time * kTicksPerSecond));
+    values.resize(found->second.size());
+    for (size_t i = 0; i < values.size(); ++i) {
+        const uint32_t tick = found->second[i];
+        const int64_t age = now - int64_t{tick};
+        values[i] =
+            tick >= kFirstCode || age < 0
+                ? uint8_t{0}
+                : uint8_t(1 + std::min(254.0f, float(age) * share[surface.material[i] & 7]));
+    }
+    return true;
+}
+
+bool BurnMemory::timesOf(const fwedit::Burn& burn, fwedit::ObjectId id,
+                         std::vector<uint8_t>& values) const {
+    const auto found = ticks_.find(id);
+    if (found == ticks_.end()) return false;
+    const double step =
+        254 / (kTicksPerSecond * std::max(0.1, double(burn.scene.settings.duration)));
+    values.resize(found->second.size());
+    for (size_t i = 0; i < values.size(); ++i) {
+        const uint32_t tick = found->second[i];
+        const double at = double(int64_t{tick} - int64_t(start_)) * step;
+        values[i] = tick >= kFirstCode ? uint8_t{255} : uint8_t(std::clamp(at, 0.0, 254.0));
+    }
+    return true;
+}
+
+}  // namespace fwview
