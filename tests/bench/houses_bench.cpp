@@ -4,13 +4,16 @@
 //
 // Counters, a frame: step_ms: fire, lists, predictions. draw_ms: every second picture drawn once
 // more, when nothing has moved. refine_ms: what the first one costs beyond that. triangles: refined
-// ones, in the mean. plain_...: the same street without refinement, in turns; ratio: to that.
-// wall_ms: by the clock. refine_...: of the device's timers.
+// ones, in the mean; budget: what they may come to; refine_us_per_1000: refine_ms of a thousand of
+// them, by which a time becomes a budget (plugin/docs/integration.md). plain_...: the same street
+// without refinement, in turns; ratio: to that. wall_ms: by the clock. refine_...: of the device's
+// timers.
 #include "bench/bench_device.h"
 #include "support/houses.h"
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -109,6 +112,9 @@ void houses(benchmark::State& state) {
     state.counters["refine_ms"] = 1e3 * (sum.all - sum.step - sum.draw) / frames;
     state.counters["draw_ms"] = 1e3 * sum.draw / frames;
     state.counters["triangles"] = sum.triangles / frames;
+    state.counters["budget"] = kBudget;
+    state.counters["refine_us_per_1000"] =
+        1e9 * (sum.all - sum.step - sum.draw) / std::max(sum.triangles, 1.0);
     state.counters["wall_ms"] = 1e3 * sum.wall / frames;
     state.counters["plain_ms"] = 1e3 * bare.all / frames;
     state.counters["plain_draw_ms"] = 1e3 * bare.draw / frames;
