@@ -64,6 +64,7 @@ struct StepPlan {               // one fixed step of 1/32 s
     bool exchange = false;      // with `reduce`: fire at a distance, and who may go on burning
     bool governed = false;      // some object or the world limits its fire
     ExchangePush rules{};       // of the exchange; what places things in lists is the backend's
+    bool capped = false;        // and how many tiles may burn
     const RemoteUpdate* remote = nullptr;       // null: nothing changed
     std::span<const TexelEvent> events;         // sorted by (object, texel, order)
     std::span<const MaterialUpdate> materials;  // applied first; each object's tiles wake

@@ -304,6 +304,7 @@ void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
     step.rules = exchangeRules();
     step.exchange = step.reduce;
     step.governed = remote_.governed;
+    step.capped = remote_.capped;
     if (now % gpu::kExchangeTicks == 0) {
         latchRemote(now);
         frame_.remoteLatched = true;

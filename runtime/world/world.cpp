@@ -131,7 +131,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
     std::copy_n(def_.wind, 3, wind_);
     setFlags(def_.flags);
     remote_.governance = {def_.spreadChance, def_.maxHops, def_.maxBurningTiles, def_.timeToLive};
-    remote_.governed = def_.maxBurningTiles != 0 || def_.timeToLive > 0;
+    remote_.capped = def_.maxBurningTiles != 0;
+    remote_.governed = remote_.capped || def_.timeToLive > 0;
     frame_.steps.reserve(kMaxSteps);
     lights_.reserve(components::kMostLights);
     lightsBefore_.reserve(components::kMostLights);
@@ -392,7 +393,8 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     }
     ++mesh.users;
     remote_.due.push_back(object.slot);  // room was found above
-    remote_.governed |= object.governance.tilesMost != 0 || object.governance.life > 0;
+    remote_.capped |= object.governance.tilesMost != 0;
+    remote_.governed |= remote_.capped || object.governance.life > 0;
     texels_ += burnable;
     countImages(object.data, true);
     return id;

@@ -231,6 +231,7 @@ struct RemoteBook {
     bool governed = false;  // some object or the world limits its fire
     bool unsent = false;    // the backend does not know the latest
     bool blockersDue = false;
+    bool capped = false;    // and how many tiles may burn
     bool warms = false;                     // flags ever let fire shine or blow on others
     uint64_t fades = 0;                     // tick until which what they received is taken back
     std::pmr::vector<uint32_t> due;         // slots to latch

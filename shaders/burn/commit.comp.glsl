@@ -25,6 +25,11 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "lib/lists.glsl"
 
+// Is it not to catch, because enough tiles burn? Then it is left as it was, and due again.
+bool refused(uint slot) {
+    return (masks[slot].z | masks[slot].w) != 0u && !mayBurn(run[slot].x);
+}
+
 void commitTile(uint slot) {
     uvec4 tile = run[slot];
     uint worldTile = tile.x;
@@ -35,6 +40,11 @@ void commitTile(uint slot) {
         if (tileState[worldTile].wake != kNever) touchTile(parity, row, worldTile, 0u);
         return;
     }
+    for (bool capped = (push.switches & kSwitchCapped) != 0u; capped; capped = false)
+        if (refused(slot)) {
+            touchTile(parity, row, worldTile, kTileTouched);
+            return;
+        }
     uint object = tile.y;
     uint worldTileBase = objects[object].worldTileBase;
     uint local = worldTile - worldTileBase;
@@ -81,6 +91,8 @@ void commitRow(uint work) {
     uvec4 item = scratchQuads[work];
     uint at = objectBases(item.w).y + item.z;
     uint changed = item.y >> 8u;
+    for (bool capped = (push.switches & kSwitchCapped) != 0u; capped; capped = false)
+        if (refused(item.x >> 3u)) return;
     if (changed == 0u) return;
     do {
         uint i = at + uint(findLSB(changed));

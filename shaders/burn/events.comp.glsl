@@ -50,6 +50,8 @@ void applyRun(uint first) {
     uint last = first;
     bool heats = (objects[object].flags & kObjectHeat) != 0u;
     bool warms = false;
+    bool byFlame = false;  // lit by heat that came; what the host lights needs no leave
+    uvec2 has = uvec2(0u);
     if (heats) {
         uint heatAt = objects[object].heatBase + texel;
         uint kind = texels[objects[object].texelBase + texel].y >> 16u;
@@ -59,12 +61,13 @@ void applyRun(uint first) {
         do {
             uint kind_ = events[last].kind;
             bool lets = kind_ <= kEventGate || gatesLet(kind_);
+            uint was = now;
             if (lets) now = heatEvent(x, m, now, eventKind(events[last].kind), events[last].tick, push.now);
+            byFlame = isSource(was) ? byFlame : isSource(now) && eventKind(kind_) == kEventHeat;
             ++last;
         } while (last < push.count && events[last].object == object &&
                  events[last].texel == texel);
-        uvec2 has = packHeat(x);
-        heat[heatAt] = has;
+        has = packHeat(x);
         warms = has != had || now != before;
     } else {
         do {
@@ -76,6 +79,14 @@ void applyRun(uint first) {
     if (now == before && !warms) return;
 
     TexelPlace p = placeOfTexel(object, texel);
+    bool lights = isSource(now) && !isSource(before);
+    if (asksOnly()) {
+        if (lights && byFlame) askToBurn(p.worldTile);
+        else if (lights) nowBurns(object, p.worldTile, push.now + kStepTicks);
+        return;
+    }
+    if (lights && byFlame && !mayBurn(p.worldTile)) return;
+    if (heats) heat[objects[object].heatBase + texel] = has;
     if (warms) hotTouch(push.hotParity, p.worldTile);
     if (now == before) return;
     state[at] = now;

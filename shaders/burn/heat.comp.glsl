@@ -39,7 +39,8 @@ struct Burnt {
     float watts;
 };
 
-uint heatRow(TileRef tile, uint row, uvec2 comes, bool doze, inout Burnt burnt) {
+// `held`: it may not catch: what would stays as it is, and is looked at again.
+uint heatRow(TileRef tile, uint row, uvec2 comes, bool doze, bool held, inout Burnt burnt) {
     uint object = tile.object;
     uint texel = texelOf(object, tile.local, row * 8u);
     uint stateAt = objects[object].stateBase + texel;
@@ -74,7 +75,10 @@ uint heatRow(TileRef tile, uint row, uvec2 comes, bool doze, inout Burnt burnt) 
         else
             now = heatTexelStep(x, m, before, push.now, comes.x, comes.y != 0u,
                                 materials[material].air, chance, units);
-        if ((kind & kTexelReal) != 0u) {
+        bool lights = (kind & kTexelReal) != 0u && isSource(now) && !isSource(before);
+        bool writes = !asksOnly() && !(held && lights);
+        news |= lights && !writes ? 2u << 24u | (asksOnly() ? 1u << (i + 8u) : 0u) : 0u;
+        if ((kind & kTexelReal) != 0u && writes) {
             uint low, high;
             umulExtended(units, m.energy, high, low);
             burnt.high += high + (burnt.low + low < low ? 1u : 0u);
@@ -84,7 +88,7 @@ uint heatRow(TileRef tile, uint row, uvec2 comes, bool doze, inout Burnt burnt) 
             if (now != before) state[stateAt + i] = now;
             uint bit = 1u << i;
             news |= now != before ? bit : 0u;
-            news |= isSource(now) && !isSource(before) ? bit << 8u : 0u;
+            news |= lights ? bit << 8u : 0u;
             news |= isSource(before) && !isSource(now) ? bit << 16u : 0u;
             news |= heatWork(x, now, ambient) << 24u;
         }
@@ -109,6 +113,10 @@ void finishTile(uint worldTile, TileRef tile, uint thread, bool flux) {
         low += rowLow[thread + row];
         high += rowHigh[thread + row] + (low < rowLow[thread + row] ? 1u : 0u);
         watts += rowWatts[thread + row];
+    }
+    if (asksOnly()) {
+        if (lit != 0u) askToBurn(worldTile);
+        return;
     }
     if (work != 0u) {
         if ((work & 2u) != 0u) atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
@@ -150,9 +158,11 @@ void main() {
         uint flag = tileState[worldTile].flag;
         bool doze = (flag & kTileWarm) == 0u && !flux;
         bool runs = alive && (!doze || dozeEnds(tile.object, tile.local, push.now));
+        bool held = !mayBurn(worldTile);
+        if (asksOnly()) runs = runs && held;
         uint news = alive && !runs ? 1u << 24u : 0u;  // sleeps on
         Burnt burnt = Burnt(0u, 0u, 0.0);
-        if (runs) news = heatRow(tile, thread & 7u, comes, doze, burnt);
+        if (runs) news = heatRow(tile, thread & 7u, comes, doze, held, burnt);
         rowNews[thread] = news;
         rowLow[thread] = burnt.low;
         rowHigh[thread] = burnt.high;
@@ -160,7 +170,7 @@ void main() {
         barrier();
         if ((thread & 7u) == 0u && here) {
             if (alive) finishTile(worldTile, tile, thread, flux);
-            else atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
+            else if (!asksOnly()) atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
         }
         barrier();
     }

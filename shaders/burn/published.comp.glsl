@@ -20,18 +20,22 @@ layout(local_size_x = 64) in;
 // Four texels of a row at once: planes begin at whole tiles, rows are multiples of eight.
 layout(std430, set = 0, binding = FW_BIND_PUBLISHED) buffer PublishedRows { vec4 quads[]; };
 
-void light(uint object, int x, int y, uint at) {
+// False: its tile may not burn.
+bool light(uint object, int x, int y, uint at) {
     uint end = push.now + kStepTicks;
+    uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX +
+                     uint(x >> 3);
+    if (asksOnly() && !mayBurn(worldTile)) askToBurn(worldTile);
+    if (asksOnly() || !mayBurn(worldTile)) return false;
     state[at] = end;
     atomicAdd(objectCounters[object].ignited, 1u);
     atomicMax(objectCounters[object].lastIgnition, end);
-    uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX +
-                     uint(x >> 3);
     if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
         burnAppend(push.burnParity, worldTile);
         atomicAdd(objectCounters[object].burningTiles, 1u);
     }
     predictTouch(push.predictParity, worldTile);
+    return true;
 }
 
 // Eight texels of a row as the taps of their neighbours: left and right four.
@@ -74,9 +78,12 @@ void lightRow(uint object, int x, int y, int from, int to, int spread) {
     uint bits = left.x | left.y << 1u | left.z << 2u | left.w << 3u | right.x << 4u |
                 right.y << 5u | right.z << 6u | right.w << 7u;
     for (; bits != 0u; bits &= bits - 1u) {
-        int atX = x + findLSB(bits);
+        int column = findLSB(bits);
+        int atX = x + column;
         uint stateAt = objects[object].stateBase + uint(y) * objects[object].width + uint(atX);
-        if (isReceptive(state[stateAt])) light(object, atX, y, stateAt);
+        // What may not burn yet passes again in the next step.
+        if (isReceptive(state[stateAt]) && !light(object, atX, y, stateAt))
+            quads[to + column / 4][column % 4] = quads[from + column / 4][column % 4];
     }
 }
 

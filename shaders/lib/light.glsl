@@ -10,6 +10,8 @@ bool lightTexel(uint object, uint texel, uint tick, uint by) {
     if (!isReceptive(before)) return false;
     TexelPlace p = placeOfTexel(object, texel);
     if (!mayCatch(objectCounters[object].held, tileState[p.worldTile].flag)) return false;
+    if (asksOnly() && !mayBurn(p.worldTile)) askToBurn(p.worldTile);
+    if (asksOnly() || !mayBurn(p.worldTile)) return false;
     if (atomicCompSwap(state[at], before, tick) != before) return false;
     atomicAdd(objectCounters[object].ignited, 1u);
     nowBurns(object, p.worldTile, push.now);

@@ -63,6 +63,31 @@ void predictTouch(uint parity, uint worldTile) {
 }
 #endif
 
+#if defined(FW_USE_BURN_LISTS) && defined(FW_USE_PREDICT_LISTS) && defined(FW_USE_TILE_STATE)
+#include "shared/grant.h"
+// Where the tiles that burn are counted against a limit, none is lit that is not on the burn list.
+// A pass that lights runs twice: first it only asks for tiles, then it lights what `grant` put on the
+// list in between, and leaves all else as it was. Those that asked are listed where nothing else is
+// meanwhile: the predict list that the frame's prediction will write, and in the burn list that the
+// next reduction will, by world tile, the marks of those that did.
+const uint kAsked = 0xFFFFFFF0u;  // no world tile is that large
+const uint kAskedFits = 1u;       // + these: its object has room, the world has
+const uint kAskedMay = 2u;
+bool asksOnly() { return (push.switches & kSwitchAsks) != 0u; }
+bool mayBurn(uint worldTile) {
+    return (push.switches & kSwitchCapped) == 0u ||
+           (tileState[worldTile].flag & kTileBurning) != 0u;
+}
+void askToBurn(uint worldTile) {
+    uint had = push.burnParity == 0u ? atomicExchange(burnB[worldTile], kAsked)
+                                     : atomicExchange(burnA[worldTile], kAsked);
+    if (had == kAsked) return;
+    uint slot = atomicAdd(counters[kRowBurn + (push.burnParity ^ 1u)].workCount, 1u);
+    if (push.predictParity == 0u) predictB[slot] = worldTile;
+    else predictA[slot] = worldTile;
+}
+#endif
+
 #ifdef FW_USE_READERS
 // Local tile `k` of the eight beside tile (tileX, tileY), or kNoneTexel.
 uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {

@@ -228,12 +228,13 @@ class EveryPass : public GpuTest {
                 if (what.exchange) step.remote = &remote_;
             }
             if (what.exchange) {
-                step.exchange = step.governed = true;
+                step.exchange = step.governed = step.capped = true;
                 step.rules.flags = 15;
                 step.rules.warms = 1;
                 step.rules.upY = 4096;
                 step.rules.chance = gpu::kChanceOne;
-                step.rules.hopsMost = step.rules.lifeTicks = step.rules.tilesMost = gpu::kNoneTexel;
+                step.rules.hopsMost = step.rules.lifeTicks = gpu::kNoneTexel;
+                step.rules.tilesMost = 40;  // fewer than would burn
                 step.rules.brands = 0xFFFFFFFFu;
             }
             now_ += gpu::kStepTicks;

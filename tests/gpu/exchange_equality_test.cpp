@@ -206,6 +206,87 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
     std::printf("%u steps, %u of %zu objects alight\n", steps, mostCaught, both.ids.size());
 }
 
+// However fire comes to them, by front, heat, contact, ember, the as-published kernel or a flame
+// that blows on them: no more tiles burn than may, of an object and of the world, and both backends
+// choose the same.
+TEST_F(ExchangeEquality, NoMoreTilesBurnThanMay) {
+    if (!device_) return;
+    constexpr uint32_t kOfWorld = 30, kOfOne = 4;
+    FwWorldDef def = worldDef(15);
+    def.maxBurningTiles = kOfWorld;
+    def.maxParticles = 16384;
+    def.wind[0] = 1;
+    Both both(*device_, def);
+    std::mt19937 random(11);
+    const auto one = [&](float most) { return float(random() % 1000) / 1000 * most; };
+    const Mesh board = makePlane(0.5, 0.3), box = makeCube(0.25, 2);
+    const uint32_t presets[] = {FW_MATERIAL_PAPER, FW_MATERIAL_COTTON, FW_MATERIAL_DRY_LEAF,
+                                FW_MATERIAL_PLYWOOD};
+    const uint32_t flags[] = {0, 0, FW_BURNABLE_LITE, FW_BURNABLE_PUBLISHED};
+    for (int i = 0; i < 20; ++i) {
+        components::Governance governance;
+        if (i % 3 == 2) governance.tilesMost = kOfOne;
+        both.add(i % 3 == 0 ? box : board, presets[random() % 4], one(1.2f), one(0.4f), one(1.2f),
+                 one(6), flags[i % 4], 0, governance);
+    }
+    const auto light = [&](size_t i) {
+        both.each([&](world::World& w) {
+            const mesh::BurnDomain& domain = w.objectDomain(both.ids[i]);
+            for (uint32_t t = domain.texelCount() / 2; t < domain.texelCount(); ++t)
+                if (domain.real(t)) {
+                    w.pushTexels(both.ids[i], FW_IGNITE, {&t, 1});
+                    return;
+                }
+        });
+    };
+    for (const size_t i : {0, 1, 3, 5}) light(i);
+    // One that a flame blows on all the time, far from the others: what is lite it would light at
+    // once.
+    components::Governance few;
+    few.tilesMost = kOfOne;
+    both.add(board, FW_MATERIAL_PAPER, 3, 0.2f, 3, 0, 0, 0, few);
+    both.each([&](world::World& w) {
+        FwFireEmitterDef jet = fwDefaultFireEmitterDef();
+        jet.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES;
+        jet.power = 300;
+        jet.position[0] = 3.25f;
+        jet.position[1] = 0.35f;
+        jet.position[2] = 3.6f;
+        jet.direction[1] = 0;
+        jet.direction[2] = -1;
+        (void)w.createFireEmitter(jet);
+    });
+    both.cpu.setSwitches(FW_DEBUG_SHUFFLE);
+    uint32_t most = 0, full = 0, mostOfOne = 0;
+    for (uint32_t frame = 0; frame < rounds(480u, 240u); ++frame) {
+        both.step(1.0f / 32);
+        if (HasFatalFailure()) return;
+        uint32_t all = 0;
+        for (size_t i = 0; i < both.ids.size(); ++i) {
+            const uint32_t tiles = both.cpuBackend.counters(both.ids[i].index1 - 1).burningTiles;
+            all += tiles;
+            if (i % 3 != 2) continue;
+            ASSERT_LE(tiles, kOfOne) << "object " << i << ", frame " << frame;
+            mostOfOne = std::max(mostOfOne, tiles);
+        }
+        ASSERT_LE(all, kOfWorld) << "frame " << frame;
+        FwWorldStats stats{};
+        both.vk.stats(stats);
+        ASSERT_LE(stats.burningTiles, kOfWorld) << "frame " << frame;
+        most = std::max(most, all);
+        full += all == kOfWorld ? 1 : 0;
+        if (frame % 60 == 59) both.compare("after " + std::to_string(frame + 1) + " frames");
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_EQ(kOfWorld, most);
+    EXPECT_EQ(kOfOne, mostOfOne);
+    FwObjectState blown{};
+    both.cpu.objectState(both.ids.back(), blown);
+    EXPECT_GT(blown.ignited, 0u);
+    EXPECT_GT(full, 30u);  // often enough to be asked for more
+    EXPECT_GT(burning(both), 5u);
+}
+
 // With all of it on, among objects that come and go within reach of each other: nothing is asked of
 // the device or the heap once every pair has met.
 TEST_F(ExchangeEquality, SteadyFramesAskNothing) {

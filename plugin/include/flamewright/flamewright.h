@@ -195,9 +195,9 @@ typedef struct FwWorldDef {
     float spreadChance;         /* [0, 1], default 1: of each jump from object to object, decided once for
                                    a pair and a fire, and of each ember */
     uint32_t maxHops;           /* fire that came over this many jumps goes to no other object; 0: no limit */
-    uint32_t maxBurningTiles;   /* while as many tiles of 8 x 8 texels burn, none more catches but by
-                                   fwWorld_Ignite. Checked before each substep, and at exchanges: what
-                                   arrives in between may exceed it. 0: no limit */
+    uint32_t maxBurningTiles;   /* never more tiles of 8 x 8 texels burn, however fire spreads: chance says which
+                                   catch, alike on every backend, others wait. What fwWorld_Ignite, FW_FIRE_IGNITES
+                                   and a jet on FW_BURNABLE_LITE light at once burns beyond it. 0: no limit */
     float timeToLive;           /* s that the front of an object moves after the object caught; 0: no limit */
     /* How much of `from` a fire of its sees `to`, 0 to 1: asked when one of them moved, kept until then.
        Null: all. Called from the thread that steps the world; it must give the same answer to the same
@@ -416,7 +416,7 @@ typedef struct FwBurnableMeshDef {
     float spreadChance;               /* as in FwWorldDef, of this object: the chance of its fire to jump,
                                          times the world's; default 1 */
     uint32_t maxHops;                 /* 0: no limit */
-    uint32_t maxBurningTiles;         /* of this object; 0: no limit */
+    uint32_t maxBurningTiles;         /* of this object, as FwWorldDef's; 0: no limit */
     float timeToLive;                 /* s, 0: no limit */
     /* Of FW_BURNABLE_REFINE_PUBLISHED: its heat boundary at a radius r is where
      * r^2 = |sin(pi Theta / heatStep) + sin(pi Theta) + heatPsi |x - x0|^2|, Theta random. */

@@ -7,6 +7,7 @@
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_state.h"
 #include "mesh/remote_tiles.h"
+#include "shared/grant.h"
 
 #include <algorithm>
 #include <bit>
@@ -23,9 +24,9 @@ static_assert(kSwitchDense == FW_DEBUG_DENSE && kSwitchShuffle == FW_DEBUG_SHUFF
 
 namespace {
 
-constexpr const char* kTimerNames[kTimerCount] = {"wake",     "events", "heat",      "schedule",
-                                                  "arrival",  "commit", "published", "reduce",
-                                                  "exchange", "field"};
+constexpr const char* kTimerNames[kTimerCount] = {"wake",    "events",   "heat",   "schedule",
+                                                  "arrival", "grant",    "commit", "published",
+                                                  "reduce",  "exchange", "field"};
 
 class Stopwatch {
  public:
@@ -60,6 +61,8 @@ CpuBackend::State::State(std::pmr::memory_resource* memory_, uint32_t maxLights_
       burnList(memory_),
       hotList(memory_),
       hotOut(memory_),
+      asks(memory_),
+      asked(memory_),
       tileHeat(memory_),
       tileFire(memory_),
       results(memory_),
@@ -98,6 +101,33 @@ void CpuBackend::State::burning(uint32_t worldTile) noexcept {
     flag |= kTileBurning;
 }
 
+void CpuBackend::State::askToBurn(uint32_t worldTile) noexcept {
+    if (asked[worldTile] != 0) return;
+    asked[worldTile] = 1;
+    asks.push_back({0, 0, 0, worldTile});
+}
+
+void CpuBackend::State::grant(uint32_t tilesMost, uint32_t now) noexcept {
+    Stopwatch watch(*this, kTimerGrant);
+    for (uvec4& ask : asks) {
+        asked[ask.w] = 0;
+        ask.y = tiles[ask.w].object;
+        ask.z = ask.w - objects[ask.y]->record.worldTileBase;
+        ask.x = askOrder(ask.y, ask.z, now);
+    }
+    std::sort(asks.begin(), asks.end(), asksBefore);
+    for (const uvec4& ask : asks) {
+        const CpuObject& object = *objects[ask.y];
+        const bool limited = (object.remote.flags & kRemoteLive) != 0;
+        // What the host lit meanwhile burns without leave, and counts.
+        if ((tiles[ask.w].flag & kTileBurning) == 0 &&
+            roomFor(uint32_t(burnList.size()) + goneBurning, tilesMost) != 0 &&
+            (!limited || roomFor(object.counters.burningTiles, object.remote.tilesMost) != 0))
+            burning(ask.w);
+    }
+    asks.clear();
+}
+
 void CpuBackend::State::touchReaders(const CpuObject& object, uint32_t local,
                                      uint64_t mask) noexcept {
     const uint32_t base = object.record.worldTileBase;
@@ -123,17 +153,33 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             ++i;
         const auto events = step.events.subspan(begin, i - begin);
         uint32_t now = before;
+        HeatTexel heated{};
+        bool byFlame = false;  // lit by heat that came; what the host lights needs no leave
         if (!object.heat.empty())
-            now = heatEvents(object, step.events, events, step.now);
+            now = heatEvents(object, step.events, events, step.now, heated, byFlame);
         else
             for (const TexelEvent& event : events)
                 now = applyEvent(now, eventKind(event.kind), event.tick, step.now);
-        if (now == before) continue;
-        texel = now;
         const uint32_t x = first.texel % object.domain->width;
         const uint32_t y = first.texel / object.domain->width;
         const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
         const uint32_t worldTile = object.record.worldTileBase + local;
+        const bool lights = isSource(now) && !isSource(before);
+        if (asksOnly) {
+            if (lights && byFlame)
+                askToBurn(worldTile);
+            else if (lights)
+                burning(worldTile);
+            continue;
+        }
+        if (lights && byFlame && !mayBurn(worldTile)) continue;
+        if (!object.heat.empty()) {
+            const uvec2 had = object.heat[first.texel];
+            object.heat[first.texel] = packHeat(heated);
+            if (now != before || object.heat[first.texel] != had) hot(worldTile);
+        }
+        if (now == before) continue;
+        texel = now;
         if (isSource(now) != isSource(before)) object.counters.ignited += isSource(now) ? 1u : ~0u;
         if (isSource(now)) {
             object.counters.lastIgnition =
@@ -251,12 +297,21 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
             results[i] = mesh::runFrontTile(at, worldTile - base, end, floorTick, &scratch[i * 64]);
         }
     }
+    if (capped) {
+        for (size_t i = 0; i < runList.size(); ++i)
+            if (results[i].lit != 0 && !mayBurn(runList[i])) askToBurn(runList[i]);
+        grant(step.rules.tilesMost, step.now);
+    }
     Stopwatch watch(*this, kTimerCommit);
     for (size_t i = 0; i < runList.size(); ++i) {
         const uint32_t worldTile = runList[i];
         const FrontTile& result = results[i];
         TileState& tile = tiles[worldTile];
         tile.wake = result.wake;
+        if (result.lit != 0 && !mayBurn(worldTile)) {  // left as it was, and due again
+            touch(worldTile, kTileTouched);
+            continue;
+        }
         if (result.changed == 0) {
             if (result.wake != kNever) touch(worldTile, 0);
             continue;
@@ -300,6 +355,8 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
     // All or nothing: room first, then the size that says so.
     for (auto* entries : {&list, &listOut, &runList, &burnList, &hotList, &hotOut})
         entries->reserve(total);
+    asks.reserve(total);
+    asked.reserve(total);
     tileHeat.reserve(total);
     tileFire.reserve(total);
     burnTiles.reserve(total);
@@ -311,6 +368,7 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
     tiles.resize(total);
     tileHeat.resize(total);
     tileFire.resize(total);
+    asked.resize(total);
     return uint32_t(first);
 }
 
@@ -440,23 +498,26 @@ void CpuBackend::run(const FramePlan& plan) {
     s.timed.fill(0);
     for (const StepPlan& step : plan.steps) {
         if (step.remote) s.placeRemote(*step.remote);
+        s.capped = step.capped;
+        const uint32_t most = step.rules.tilesMost;
         if (!step.materials.empty()) {
             Stopwatch watch(s, kTimerWake);
             s.wake(step);
         }
         if (!step.events.empty()) {
             Stopwatch watch(s, kTimerEvents);
-            s.applyEvents(step);
+            s.askThen(most, step.now, [&] { s.applyEvents(step); });
         }
         if (step.heat && !s.hotList.empty()) {
             Stopwatch watch(s, kTimerHeat);
+            if (s.capped) s.askHeat(step.now), s.grant(most, step.now);
             s.heatStep(step.now);
         }
         if (!s.list.empty() || (s.switches & kSwitchDense) != 0)
             for (uint32_t k = 0; k < 1u << step.substepShift; ++k) s.iterate(step, k);
         if (s.publishedObjects != 0) {
             Stopwatch watch(s, kTimerPublished);
-            s.publishedStep(step.now);
+            s.askThen(most, step.now, [&] { s.publishedStep(step.now); });
         }
         if (step.reduce) {
             Stopwatch watch(s, kTimerReduce);
@@ -557,9 +618,9 @@ void CpuBackend::memoryRows(std::pmr::vector<MemoryRow>& out) {
                            object->heat.capacity() * sizeof(uvec2);
     }
     out.push_back(states);
-    const size_t perTile = sizeof(TileState) + 6 * sizeof(uint32_t) + sizeof(TileHeat) +
-                           sizeof(float) + sizeof(FrontTile) + 64 * sizeof(uint32_t) +
-                           sizeof(BurnTile);
+    const size_t perTile = sizeof(TileState) + 6 * sizeof(uint32_t) + sizeof(uvec4) +
+                           sizeof(uint8_t) + sizeof(TileHeat) + sizeof(float) + sizeof(FrontTile) +
+                           64 * sizeof(uint32_t) + sizeof(BurnTile);
     out.push_back({"cpu tiles and lists", s.tiles.size() * perTile, s.tiles.capacity() * perTile});
 }
 

@@ -41,8 +41,10 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
     sumSources();
     settleSources(rules);
     if (rules.warms != 0) warmAll(rules);
-    if ((rules.flags & kRemoteContact) != 0) contacts(rules);
-    if ((rules.flags & kRemoteEmbers) != 0) embers(rules);
+    askThen(rules.tilesMost, rules.now, [&] {
+        if ((rules.flags & kRemoteContact) != 0) contacts(rules);
+        if ((rules.flags & kRemoteEmbers) != 0) embers(rules);
+    });
 }
 
 void CpuBackend::State::sumSources() noexcept {
@@ -108,6 +110,8 @@ bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint
     const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
     const uint32_t worldTile = object.record.worldTileBase + local;
     if (!mayCatch(object.counters.held, tiles[worldTile].flag)) return false;
+    if (asksOnly && !mayBurn(worldTile)) askToBurn(worldTile);
+    if (asksOnly || !mayBurn(worldTile)) return false;
     object.state[texel] = tick;
     ++object.counters.ignited;
     object.counters.lastIgnition = std::max(object.counters.lastIgnition, now);

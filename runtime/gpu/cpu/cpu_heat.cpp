@@ -37,22 +37,18 @@ bool CpuBackend::State::gatesLet(std::span<const TexelEvent> batch, uint32_t kin
 }
 
 uint32_t CpuBackend::State::heatEvents(CpuObject& object, std::span<const TexelEvent> batch,
-                                       std::span<const TexelEvent> events, uint32_t now) noexcept {
+                                       std::span<const TexelEvent> events, uint32_t now,
+                                       HeatTexel& x, bool& byFlame) noexcept {
     const uint32_t texel = events[0].texel;
     const mesh::BurnDomain& domain = *object.domain;
     const HeatMaterial& m = object.heatMaterials[domain.texels[texel].materialFlags & 7];
-    const uvec2 had = object.heat[texel];
-    const uint32_t before = object.state[texel];
-    HeatTexel x = unpackHeat(had);
-    uint32_t after = before;
-    for (const TexelEvent& event : events)
-        if (event.kind <= kEventGate || gatesLet(batch, event.kind, now))
-            after = heatEvent(x, m, after, eventKind(event.kind), event.tick, now);
-    object.heat[texel] = packHeat(x);
-    if (after != before || object.heat[texel] != had) {
-        const uint32_t tile =
-            (texel / domain.width >> 3) * domain.tilesX + (texel % domain.width >> 3);
-        hot(object.record.worldTileBase + tile);
+    uint32_t after = object.state[texel];
+    x = unpackHeat(object.heat[texel]);
+    for (const TexelEvent& event : events) {
+        if (event.kind > kEventGate && !gatesLet(batch, event.kind, now)) continue;
+        const uint32_t was = after;
+        after = heatEvent(x, m, after, eventKind(event.kind), event.tick, now);
+        if (!isSource(was)) byFlame = isSource(after) && eventKind(event.kind) == kEventHeat;
     }
     return after;
 }
@@ -65,6 +61,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, bool doze, uint32_t now) no
     const uint32_t corner =
         (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
     const TileHeat comes = tileHeat[worldTile];
+    const bool held = !mayBurn(worldTile);
     const uint32_t ambient = object.heatMaterials[0].ambient;
     const uint32_t step = hash32(now);
     uint64_t energy = 0, changed = 0;
@@ -88,6 +85,10 @@ void CpuBackend::State::heatTile(uint32_t worldTile, bool doze, uint32_t now) no
                                   object.materials[kind & 7].air, chance, units);
             energy += uint64_t(units) * m.energy;
             watts += float(units) * m.watts;
+        }
+        if (held && isSource(after) && !isSource(before)) {  // as it was, and looked at again
+            work |= 2;
+            continue;
         }
         object.heat[texel] = packHeat(x);
         work |= heatWork(x, after, ambient);
@@ -115,6 +116,34 @@ void CpuBackend::State::heatTile(uint32_t worldTile, bool doze, uint32_t now) no
     }
     tile.lastChange = now;
     touchReaders(object, local, changed);
+}
+
+// Which tiles would catch in this heat step.
+void CpuBackend::State::askHeat(uint32_t now) noexcept {
+    const uint32_t step = hash32(now);
+    for (uint32_t worldTile : hotList) {
+        const TileState& tile = tiles[worldTile];
+        const CpuObject& object = *objects[tile.object];
+        const mesh::BurnDomain& domain = *object.domain;
+        const TileHeat comes = tileHeat[worldTile];
+        if (mayBurn(worldTile) || ((tile.flag & kTileWarm) == 0 && comes.flux == 0)) continue;
+        const uint32_t local = worldTile - object.record.worldTileBase;
+        const uint32_t corner =
+            (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+        bool lights = false;
+        for (uint32_t lane = 0; lane < 64 && !lights; ++lane) {
+            const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+            const uint32_t kind = domain.texels[texel].materialFlags;
+            const uint32_t before = object.state[texel];
+            if ((kind & kTexelReal) == 0 || isSource(before)) continue;
+            HeatTexel x = unpackHeat(object.heat[texel]);
+            uint32_t units = 0;
+            lights = isSource(heatTexelStep(
+                x, object.heatMaterials[kind & 7], before, now, comes.flux, comes.pilot != 0,
+                object.materials[kind & 7].air, heatChance(texel, step), units));
+        }
+        if (lights) askToBurn(worldTile);
+    }
 }
 
 void CpuBackend::State::heatStep(uint32_t now) noexcept {

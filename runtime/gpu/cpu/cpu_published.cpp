@@ -88,13 +88,18 @@ void CpuBackend::State::publishedStep(uint32_t now) noexcept {
             for (uint32_t x = 0; x < width; ++x) {
                 uint32_t& state = object.state[y * width + x];
                 if (crossing(from[x], to[x], spread[x]) >> 31 == 0 || !isReceptive(state)) continue;
+                const uint32_t worldTile =
+                    object.record.worldTileBase + (y >> 3) * object.domain->tilesX + (x >> 3);
+                if (asksOnly && !mayBurn(worldTile)) askToBurn(worldTile);
+                if (!mayBurn(worldTile)) to[x] = from[x];  // it passes again in the next step
+                if (asksOnly || !mayBurn(worldTile)) continue;
                 state = end;
                 ++object.counters.ignited;
                 object.counters.lastIgnition = std::max(object.counters.lastIgnition, end);
-                burning(object.record.worldTileBase + (y >> 3) * object.domain->tilesX + (x >> 3));
+                burning(worldTile);
             }
         }
-        object.publishedParity ^= 1u;
+        if (!asksOnly) object.publishedParity ^= 1u;
     }
 }
 

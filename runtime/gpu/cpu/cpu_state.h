@@ -78,6 +78,7 @@ enum Timer : uint32_t {
     kTimerHeat,
     kTimerSchedule,
     kTimerArrival,
+    kTimerGrant,
     kTimerCommit,
     kTimerPublished,
     kTimerReduce,
@@ -93,6 +94,14 @@ struct CpuBackend::State {
     void touch(uint32_t worldTile, uint32_t bits) noexcept;
     void touchReaders(const CpuObject& object, uint32_t local, uint64_t mask) noexcept;
     void burning(uint32_t worldTile) noexcept;
+    // Where the tiles that burn are counted against a limit, as shaders/lib/lists.glsl.
+    [[nodiscard]] bool mayBurn(uint32_t worldTile) const noexcept {
+        return !capped || (tiles[worldTile].flag & kTileBurning) != 0;
+    }
+    void askToBurn(uint32_t worldTile) noexcept;
+    void grant(uint32_t tilesMost, uint32_t now) noexcept;
+    template <class Light>
+    void askThen(uint32_t tilesMost, uint32_t now, const Light& light) noexcept;
     // Of objects with heat: something of the tile's temperature, water or flux changes from now on.
     void hot(uint32_t worldTile) noexcept;
     void applyEvents(const StepPlan& step) noexcept;
@@ -104,8 +113,9 @@ struct CpuBackend::State {
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
     bool gatesLet(std::span<const TexelEvent> batch, uint32_t kind, uint32_t now) const noexcept;
     uint32_t heatEvents(CpuObject& object, std::span<const TexelEvent> batch,
-                        std::span<const TexelEvent> events,
-                        uint32_t now) noexcept;  // cpu_heat.cpp: the texel's state after them
+                        std::span<const TexelEvent> events, uint32_t now, HeatTexel& x,
+                        bool& byFlame) noexcept;  // cpu_heat.cpp: the texel's state after them
+    void askHeat(uint32_t now) noexcept;
     void heatStep(uint32_t now) noexcept;
     void heatTile(uint32_t worldTile, bool doze, uint32_t now) noexcept;
     void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
@@ -147,6 +157,8 @@ struct CpuBackend::State {
     // By world tile. A tile is in a list at most once, so all lists have room for all tiles.
     std::pmr::vector<TileState> tiles;
     std::pmr::vector<uint32_t> list, listOut, runList, burnList, hotList, hotOut;
+    std::pmr::vector<uvec4> asks;     // askToBurn's: order, object, local tile, world tile
+    std::pmr::vector<uint8_t> asked;  // by world tile: it is among them
     std::pmr::vector<TileHeat> tileHeat;
     std::pmr::vector<float> tileFire;     // W in the last heat step
     std::pmr::vector<FrontTile> results;  // per due tile
@@ -159,7 +171,9 @@ struct CpuBackend::State {
     std::pmr::vector<ReadbackStore> readbacks;  // ring: [head, head + waiting)
     size_t head = 0, waiting = 0;
     uint32_t switches = 0;
-    uint32_t random = 1;  // of the shuffle switch
+    bool capped = false;    // of the step
+    bool asksOnly = false;  // what would be lit asks to burn, nothing else is done
+    uint32_t random = 1;    // of the shuffle switch
     uint64_t runTiles = 0;
     uint32_t publishedObjects = 0;
     // Fire at a distance.
@@ -181,5 +195,16 @@ struct CpuBackend::State {
     std::array<PassTime, kTimerCount> times{};
     uint32_t timesCount = 0;
 };
+
+template <class Light>
+void CpuBackend::State::askThen(uint32_t tilesMost, uint32_t now, const Light& light) noexcept {
+    if (capped) {
+        asksOnly = true;
+        light();
+        asksOnly = false;
+        grant(tilesMost, now);
+    }
+    light();
+}
 
 }  // namespace fw::gpu::cpu

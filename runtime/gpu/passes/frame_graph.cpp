@@ -2,6 +2,7 @@
 
 #include "gpu/backend.h"
 #include "gpu/vk/recorder.h"
+#include "shared/grant.h"
 #include "shared/particle.h"
 
 #include <algorithm>
@@ -15,19 +16,19 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,         &kRestorePass,         &kEventsPass,      &kHeatPass,
-    &kWakePass,          &kSchedulePass,        &kGatherPass,      &kArrivalPass,
-    &kArrivalRimPass,    &kCommitPass,          &kPublishedPass,   &kReduceClearPass,
-    &kReduceFrontPass,   &kReducePass,          &kFireCellsPass,   &kFireSourcesPass,
-    &kReceiversPass,     &kExchangePass,        &kContactsPass,    &kEmbersPass,
-    &kPredictGatherPass, &kPredictPass,         &kPredictRimPass,  &kSupportPass,
-    &kProbePass,         &kLightsPass,          &kFlameQuadsPass,  &kFlameSortPass,
-    &kRefineHeatPass,    &kRefineLevelsPass,    &kRefineScanPass,  &kRefineEmitPass,
-    &kRefinePlacePass,   &kRecedePass,          &kTiesPass,        &kSoftPass,
-    &kSpringsPass,       &kDrapePass,           &kSkinPass,        &kSootPass,
-    &kRefineCutPass,     &kRefinePublishedPass, &kVolumeProbePass, &kVolumeMarchPass,
-    &kParticlesPass,     &kParticleQuadsPass,   &kFieldPass,       &kFieldMaskPass,
-    &kFieldShowPass};
+    &kResetPass,       &kRestorePass,       &kEventsPass,          &kHeatPass,
+    &kWakePass,        &kSchedulePass,      &kGatherPass,          &kArrivalPass,
+    &kArrivalRimPass,  &kGrantPass,         &kCommitPass,          &kPublishedPass,
+    &kReduceClearPass, &kReduceFrontPass,   &kReducePass,          &kFireCellsPass,
+    &kFireSourcesPass, &kReceiversPass,     &kExchangePass,        &kContactsPass,
+    &kEmbersPass,      &kPredictGatherPass, &kPredictPass,         &kPredictRimPass,
+    &kSupportPass,     &kProbePass,         &kLightsPass,          &kFlameQuadsPass,
+    &kFlameSortPass,   &kRefineHeatPass,    &kRefineLevelsPass,    &kRefineScanPass,
+    &kRefineEmitPass,  &kRefinePlacePass,   &kRecedePass,          &kTiesPass,
+    &kSoftPass,        &kSpringsPass,       &kDrapePass,           &kSkinPass,
+    &kSootPass,        &kRefineCutPass,     &kRefinePublishedPass, &kVolumeProbePass,
+    &kVolumeMarchPass, &kParticlesPass,     &kParticleQuadsPass,   &kFieldPass,
+    &kFieldMaskPass,   &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -109,14 +110,16 @@ void recordReset(vk::FrameRecorder& recorder, uint32_t object, uint32_t tiles) {
 
 namespace {
 
-void recordExchange(vk::FrameRecorder& recorder, const FrameLists& lists, const StepRecord& step) {
+// `grant`: what asked to burn is let to with it.
+void recordExchange(vk::FrameRecorder& recorder, const FrameLists& lists, const StepRecord& step,
+                    const StepPush& grant) {
     ExchangePush push = step.rules;
     push.now = step.now + kStepTicks;
     push.burnParity = lists.burnParity;
     push.row = lists.row;
     push.parity = lists.parity;
     push.predictParity = lists.predictParity;
-    push.switches = step.switches;
+    push.switches = grant.switches;
     push.hotParity = lists.hotParity;
     push.count = step.objectSlots;
     zeroRow(recorder, kRowExchange);
@@ -126,13 +129,21 @@ void recordExchange(vk::FrameRecorder& recorder, const FrameLists& lists, const 
         recorder.dispatch(kReceiversPass, &push, std::max(groupsOf(push.count), 1u));
         recorder.dispatchRun(kExchangePass, &push, kRowExchange);
     }
-    if ((push.flags & kRemoteContact) && step.links) {
+    const bool touches = (push.flags & kRemoteContact) && step.links;
+    const bool throws = (push.flags & kRemoteEmbers) != 0;
+    const auto light = [&] {
         push.count = step.links;
-        recorder.dispatch(kContactsPass, &push, (step.links + 63) / 64);
+        if (touches) recorder.dispatch(kContactsPass, &push, (step.links + 63) / 64);
+        push.count = step.objectSlots;
+        if (throws) recorder.dispatch(kEmbersPass, &push, std::max(groupsOf(push.count), 1u));
+    };
+    if (step.capped && (touches || throws)) {
+        push.switches |= kSwitchAsks;
+        light();
+        push.switches &= ~kSwitchAsks;
+        recorder.dispatch(kGrantPass, &grant, 1);
     }
-    push.count = step.objectSlots;
-    if (push.flags & kRemoteEmbers)
-        recorder.dispatch(kEmbersPass, &push, std::max(groupsOf(push.count), 1u));
+    light();
 }
 
 }  // namespace
@@ -148,11 +159,22 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         push.burnParity = lists.burnParity;
         push.predictParity = lists.predictParity;
         push.hotParity = lists.hotParity;
-        push.switches = step.switches | (step.governed ? kSwitchGoverned : 0u);
+        push.switches = step.switches | (step.governed ? kSwitchGoverned : 0u) |
+                        (step.capped ? kSwitchCapped : 0u);
         push.tilesMost = step.rules.tilesMost;
         return push;
     };
     StepPush push = pushNow();
+    // What lights, with `push`; where tiles are limited it asks before.
+    const auto askThen = [&](const auto& light) {
+        if (step.capped) {
+            push.switches |= kSwitchAsks;
+            light();
+            push.switches &= ~kSwitchAsks;
+            recorder.dispatch(kGrantPass, &push, 1);
+        }
+        light();
+    };
     if (step.wakeGroups.count) {
         recorder.copyIn(step.wakeGroups.at, FW_BIND_WAKE_GROUPS, 0,
                         uint64_t(step.wakeGroups.count) * 8);
@@ -163,12 +185,12 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         recorder.copyIn(step.events.at, FW_BIND_EVENTS, 0,
                         uint64_t(step.events.count) * sizeof(TexelEvent));
         push.count = step.events.count;
-        recorder.dispatch(kEventsPass, &push, (push.count + 63) / 64);
+        askThen([&] { recorder.dispatch(kEventsPass, &push, (push.count + 63) / 64); });
     }
     if (step.heat) {
         push = pushNow();
         zeroRow(recorder, kRowHot + (lists.hotParity ^ 1));
-        recorder.dispatchList(kHeatPass, &push, kRowHot + lists.hotParity);
+        askThen([&] { recorder.dispatchList(kHeatPass, &push, kRowHot + lists.hotParity); });
         lists.hotParity ^= 1;
     }
     for (uint32_t k = 0; step.iterate && k < 1u << step.stepShift; ++k) {
@@ -182,16 +204,24 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         recorder.dispatchRun(kGatherPass, &push, lists.row);
         recorder.dispatchWork(kArrivalPass, &push, lists.row);
         recorder.dispatchRim(kArrivalRimPass, &push, lists.row);
+        if (step.capped) {
+            push.switches |= kSwitchAsks;
+            recorder.dispatch(kGrantPass, &push, 1);
+            push.switches &= ~kSwitchAsks;
+        }
         recorder.dispatchWork(kCommitPass, &push, lists.row);
         lists.row += 1;
         lists.parity ^= 1;
     }
-    for (const PublishedStep& object : step.published) {
-        push = pushNow();
-        push.object = object.object;
-        push.publishedParity = object.parity;
-        recorder.dispatch(kPublishedPass, &push, std::min(object.groups, kMaxGroups));
-    }
+    push = pushNow();
+    if (!step.published.empty())
+        askThen([&] {
+            for (const PublishedStep& object : step.published) {
+                push.object = object.object;
+                push.publishedParity = object.parity;
+                recorder.dispatch(kPublishedPass, &push, std::min(object.groups, kMaxGroups));
+            }
+        });
     if (!step.reduce) return;
     push = pushNow();
     push.now = step.now + kStepTicks;
@@ -201,7 +231,10 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
     recorder.dispatchList(kReduceFrontPass, &push, lists.row);
     recorder.dispatchList(kReducePass, &push, kRowBurn + lists.burnParity);
     lists.burnParity ^= 1;
-    if (step.exchange) recordExchange(recorder, lists, step);
+    if (!step.exchange) return;
+    push = pushNow();
+    push.now = step.now + kStepTicks;
+    recordExchange(recorder, lists, step, push);
 }
 
 void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick) {

@@ -21,14 +21,14 @@ class FrameRecorder;
 struct ParticlePush;  // shared/particle.h
 
 extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWakePass, kSchedulePass,
-    kGatherPass, kArrivalPass, kArrivalRimPass, kCommitPass, kPublishedPass, kReduceClearPass,
-    kReduceFrontPass, kReducePass, kFireCellsPass, kFireSourcesPass, kReceiversPass, kExchangePass,
-    kContactsPass, kEmbersPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass,
-    kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
-    kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
-    kRecedePass, kTiesPass, kSoftPass, kSpringsPass, kDrapePass, kSkinPass, kSootPass,
-    kVolumeProbePass, kVolumeMarchPass, kParticlesPass, kParticleQuadsPass, kFieldPass,
-    kFieldMaskPass, kFieldShowPass;
+    kGatherPass, kArrivalPass, kArrivalRimPass, kGrantPass, kCommitPass, kPublishedPass,
+    kReduceClearPass, kReduceFrontPass, kReducePass, kFireCellsPass, kFireSourcesPass,
+    kReceiversPass, kExchangePass, kContactsPass, kEmbersPass, kPredictGatherPass, kPredictPass,
+    kPredictRimPass, kSupportPass, kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass,
+    kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass, kRefinePlacePass,
+    kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass, kSpringsPass,
+    kDrapePass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass, kParticlesPass,
+    kParticleQuadsPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -79,7 +79,7 @@ struct StepRecord {
     Staged wakeGroups;  // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;
     std::span<const PublishedStep> published;
-    bool governed = false;
+    bool governed = false, capped = false;
     bool exchange = false;
     ExchangePush rules{};  // of the exchange, but for what the lists say
     uint32_t links = 0;    // contacts

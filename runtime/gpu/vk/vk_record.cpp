@@ -445,6 +445,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         step.exchange = step.reduce && planned.exchange;
         step.governed = planned.governed;
         step.rules = planned.rules;
+        step.capped = planned.capped;
         if (planned.remote) recordRemote(*this, *planned.remote, recorder, writer);
         step.links = links;
         step.rules.blockers = blockers;

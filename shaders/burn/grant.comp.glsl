@@ -1,0 +1,93 @@
+// Which of the tiles that asked to burn may: as many as there is room for in each object and in the
+// world, in an order of chance (`askOrder`). They join the burn list, and only what is on it is lit
+// afterwards. With the asks switch the front's due tiles that would catch ask here. One group.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_RUN readonly
+#define FW_USE_MASKS readonly
+#define FW_USE_COUNTERS coherent
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_BURN_LISTS coherent
+#define FW_USE_PREDICT_LISTS coherent
+#define FW_USE_REMOTE_OBJECTS
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+#include "lib/lists.glsl"
+
+uint asked(uint i) { return push.predictParity == 0u ? predictB[i] : predictA[i]; }
+uint markOf(uint worldTile) { return push.burnParity == 0u ? burnB[worldTile] : burnA[worldTile]; }
+void setMark(uint worldTile, uint mark) {
+    if (push.burnParity == 0u) burnB[worldTile] = mark;
+    else burnA[worldTile] = mark;
+}
+
+uvec4 orderOf(uint worldTile) {
+    TileRef tile = tileRef(worldTile);
+    return uvec4(askOrder(tile.object, tile.local, push.now), tile.object, tile.local, worldTile);
+}
+
+// How many of those with this mark come before; `alike`: of the same object.
+uint before(uvec4 own, uint count, uint mark, bool alike) {
+    uint sum = 0u;
+    for (uint i = 0u; i < count; ++i) {
+        uint other = asked(i);
+        if (markOf(other) < mark) continue;
+        uvec4 theirs = orderOf(other);
+        sum += (!alike || theirs.y == own.y) && asksBefore(theirs, own) ? 1u : 0u;
+    }
+    return sum;
+}
+
+void main() {
+    uint lane = gl_LocalInvocationID.x;
+    uint asks = kRowBurn + (push.burnParity ^ 1u);
+    uint due = (push.switches & kSwitchAsks) != 0u ? counters[push.row].runCount : 0u;
+    for (uint i = lane; i < due; i += 64u)
+        if ((masks[i].z | masks[i].w) != 0u && !mayBurn(run[i].x)) askToBurn(run[i].x);
+    memoryBarrierBuffer();
+    barrier();
+    uint count = counters[asks].workCount;
+    uint room = roomFor(counters[kRowBurn + push.burnParity].listCount, push.tilesMost);
+    // What the host lit meanwhile burns without leave.
+    for (uint i = lane; i < count; i += 64u)
+        if ((tileState[asked(i)].flag & kTileBurning) != 0u) setMark(asked(i), 0u);
+    memoryBarrierBuffer();
+    barrier();
+    for (uint i = lane; i < count; i += 64u) {
+        uvec4 own = orderOf(asked(i));
+        if (markOf(own.w) != kAsked) continue;
+        RemoteObject limits = remoteObjects[own.y];
+        uint most = (limits.flags & kRemoteLive) != 0u ? limits.tilesMost : kNoneTexel;
+        uint objectRoom = roomFor(objectCounters[own.y].burningTiles, most);
+        uint fits = 1u;
+        if (count > objectRoom) fits = before(own, count, kAsked, true) < objectRoom ? 1u : 0u;
+        // A mark of a lane that is done still counts as one that asked.
+        if (fits != 0u) setMark(own.w, kAsked + kAskedFits);
+    }
+    memoryBarrierBuffer();
+    barrier();
+    for (uint i = lane; i < count; i += 64u) {
+        uvec4 own = orderOf(asked(i));
+        if (markOf(own.w) != kAsked + kAskedFits) continue;
+        uint may = 1u;
+        if (count > room) may = before(own, count, kAsked + kAskedFits, false) < room ? 1u : 0u;
+        if (may != 0u) setMark(own.w, kAsked + kAskedMay);
+    }
+    memoryBarrierBuffer();
+    barrier();
+    for (uint i = lane; i < count; i += 64u) {
+        uint worldTile = asked(i);
+        uint mark = markOf(worldTile);
+        setMark(worldTile, 0u);
+        if (mark != kAsked + kAskedMay) continue;
+        atomicOr(tileState[worldTile].flag, kTileBurning);
+        burnAppend(push.burnParity, worldTile);
+        atomicAdd(objectCounters[tileState[worldTile].object].burningTiles, 1u);
+    }
+    barrier();
+    if (lane == 0u) counters[asks].workCount = 0u;
+}
