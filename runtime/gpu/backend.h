@@ -24,6 +24,7 @@ struct ObjectInit {
     std::span<const uint16_t> slowness;
     uint32_t images[kMaterialsPerObject] = {};  // base-colour image slot + 1, 0: none
     bool refine = false;  // createRefinement was called for its mesh and this depth
+    bool inner = false;   // createInnerSkin was: from inside it is drawn there
     uint32_t refineDepth = 0;
     float refinePixelsPerEdge = 8;
     // Refined by the published scheme; the model outlives the mesh.
@@ -63,8 +64,8 @@ struct StepPlan {               // one fixed step of 1/32 s
     bool heat = false;          // also a heat step: kHeatSteps steps at once, at its start
     bool exchange = false;      // with `reduce`: fire at a distance, and who may go on burning
     bool governed = false;      // some object or the world limits its fire
-    ExchangePush rules{};       // of the exchange; what places things in lists is the backend's
     bool capped = false;        // and how many tiles may burn
+    ExchangePush rules{};       // of the exchange; what places things in lists is the backend's
     const RemoteUpdate* remote = nullptr;       // null: nothing changed
     std::span<const TexelEvent> events;         // sorted by (object, texel, order)
     std::span<const MaterialUpdate> materials;  // applied first; each object's tiles wake
@@ -195,6 +196,9 @@ class Backend {
     virtual void createRefinement(uint32_t /*mesh*/, uint32_t /*depth*/, bool /*published*/,
                                   const mesh::BurnDomain&, const mesh::RefineModel&,
                                   std::span<const mesh::RefineHoles> /*materials*/) {}
+    // Where its vertices are on the inner skin, once a mesh. Looks only.
+    virtual void createInnerSkin(uint32_t /*mesh*/, const mesh::BurnDomain&,
+                                 std::span<const glm::vec3> /*places*/) {}
     virtual void createObject(uint32_t slot, const ObjectInit& init) = 0;
     virtual void destroyObject(uint32_t slot) noexcept = 0;
     // Pose, tint and flags; the rest of the record stays.

@@ -355,6 +355,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
             init.arp = arpSettings(def, *init.arpModel, object.data);
         }
     }
+    init.inner = innerSkin(mesh, init.mesh, object.data);
     gpu::DeformObject deform{};
     if (components::deforms(object.data) || (object.data.flags & FW_BURNABLE_SKINNED)) {
         if (!mesh.deform) {
@@ -427,6 +428,29 @@ void World::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
     backend_.createRefinement(slot, def.refineDepth, published, *mesh.domain, model, holes);
     if (published) mesh.arps[def.refineDepth] = std::move(arp);
     mesh.refinements |= bit;
+}
+
+// Whether an object is drawn on its mesh's inner skin from inside, which is made for the first who
+// is: as thick as its walls. What moves its vertices or cuts them has places of its own, and what
+// never opens has nothing to look through.
+bool World::innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object) {
+    constexpr uint32_t kOthers = FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES |
+                                 FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE |
+                                 FW_BURNABLE_REFINE_PUBLISHED;
+    if ((object.flags & kOthers) != 0 || components::deforms(object)) return false;
+    if (mesh.innerSkin == InnerSkin::unknown) {
+        float wall = 0;
+        for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
+            if (components::burns(object, i) &&
+                components::materialLook(object.materials[i].look).holeTime > 0)
+                wall = std::max(wall, object.materials[i].thickness);
+        if (!(wall > 0)) return false;
+        const std::pmr::vector<glm::vec3> places =
+            mesh::innerSkin(*mesh.domain, std::clamp(wall, 1e-4f, 0.5f), memory_);
+        if (!places.empty()) backend_.createInnerSkin(slot, *mesh.domain, places);
+        mesh.innerSkin = places.empty() ? InnerSkin::none : InnerSkin::there;
+    }
+    return mesh.innerSkin == InnerSkin::there;
 }
 
 // The boundary keeps up with the head of a fire that climbs.

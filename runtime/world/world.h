@@ -24,6 +24,7 @@
 
 namespace fw::world {
 
+enum class InnerSkin : uint8_t { unknown, none, there };
 struct MeshEntry {
     core::Owned<mesh::BurnDomain> domain;
     core::Owned<mesh::DeformModel> deform;                      // once an object deforms
@@ -32,7 +33,8 @@ struct MeshEntry {
     // A shape of another mesh, for objects whose scale is not uniform: lives while one uses it.
     uint32_t parentPlus1 = 0;  // its slot + 1; 0: a mesh of the host's
     float shape[3] = {1, 1, 1};
-    uint64_t hash = 0;         // of the domain, once a save asked; 0: not yet
+    uint64_t hash = 0;                         // of the domain, once a save asked; 0: not yet
+    InnerSkin innerSkin = InnerSkin::unknown;  // that the backend has
     uint32_t refinements = 0;  // bit per depth that the backend has; 16 higher: as published
     // By depth, once an object is refined by the published scheme.
     std::array<core::Owned<mesh::ArpModel>, gpu::kRefineDepth + 1> arps;
@@ -229,9 +231,9 @@ struct RemoteBook {
     uint32_t objectFlags = 0;  // and those that objects are created under
     components::Governance governance;
     bool governed = false;  // some object or the world limits its fire
+    bool capped = false;    // and how many tiles may burn
     bool unsent = false;    // the backend does not know the latest
     bool blockersDue = false;
-    bool capped = false;    // and how many tiles may burn
     bool warms = false;                     // flags ever let fire shine or blow on others
     uint64_t fades = 0;                     // tick until which what they received is taken back
     std::pmr::vector<uint32_t> due;         // slots to latch
@@ -605,6 +607,7 @@ class World {
     uint32_t shapedSlot(uint32_t slot, const float shape[3]);
     void releaseShape(uint32_t slot) noexcept;
     void countImages(const components::BurnableMesh& object, bool more) noexcept;
+    bool innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object);
     void refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
                     const components::BurnableMesh& object);
     mesh::ArpSettings arpSettings(const FwBurnableMeshDef& def, const mesh::ArpModel& model,

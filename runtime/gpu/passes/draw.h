@@ -45,15 +45,17 @@ struct DrawItem {
     uint32_t firstIndex = 0, indexCount = 0;
     int32_t vertexOffset = 0;
     uint32_t shown = kNoneTexel;  // first of its own shown vertices; kNoneTexel: the mesh's
-    uint32_t image = 0;           // base-colour image slot + 1, 0: none
-    uint32_t variant = 0;         // of the surface pass, from surfaceVariant
-    uint32_t coldVariant = ~0u;   // of its triangles where nothing shows; ~0: drawn as the others
-    float coldReach = 0;          // texels, of that variant
-    bool refined = false;         // its triangles are in the refinement's planes
-    bool cut = false;             // and holes are cut out of them
-    uint32_t inner = 0;           // from a vertex's place to that on the inner skin; 0: has none
-    bool consumed = false;        // those burnt through are left out, whole: nothing is cut
-    bool zPass = false;           // drawn after the others, as z_pass.cpp says
+    uint32_t inside =
+        kNoneTexel;              // first of its mesh's vertices on the inner skin; kNoneTexel: none
+    uint32_t image = 0;          // base-colour image slot + 1, 0: none
+    uint32_t variant = 0;        // of the surface pass, from surfaceVariant
+    uint32_t coldVariant = ~0u;  // of its triangles where nothing shows; ~0: drawn as the others
+    float coldReach = 0;         // texels, of that variant
+    bool refined = false;        // its triangles are in the refinement's planes
+    bool cut = false;            // and holes are cut out of them
+    uint32_t inner = 0;          // from a vertex's place to that on the inner skin; 0: has none
+    bool consumed = false;       // those burnt through are left out, whole: nothing is cut
+    bool zPass = false;          // drawn after the others, as z_pass.cpp says
     SurfaceDraw draw{};
 };
 
@@ -62,6 +64,8 @@ class DrawRecorder {
  public:
     // One indexed draw with its set 1; `push` has DrawPass::pushBytes.
     virtual void drawItem(const DrawItem& item, const void* push) = 0;
+    // The same, on its inner skin.
+    virtual void drawInside(const DrawItem& item, const void* push) = 0;
     // What is left of its triangles along holes.
     virtual void drawCut(const DrawItem& item, const void* push) = 0;
     // A VkDrawIndirectCommand at `offset` bytes of the resource.

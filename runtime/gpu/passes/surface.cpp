@@ -186,7 +186,10 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
             // What turns its back is seen from inside.
             if (behind != turned) draw.places += item.inner;
         }
-        recorder.drawItem(item, &draw);
+        if (burning && !item.refined && behind != turned && item.inside != kNoneTexel)
+            recorder.drawInside(item, &draw);
+        else
+            recorder.drawItem(item, &draw);
         if (!item.cut || cold) continue;
         draw.flags = (draw.flags & ~kDrawPlaced) | kDrawCut;
         recorder.drawCut(item, &draw);

@@ -60,9 +60,9 @@ void DrawnOrder::copyIndices(const mesh::BurnDomain& domain, std::byte* out) con
             std::memcpy(out, &numbers[domain.indices[corner + k]], 4);
     }
 }
-void DrawnOrder::copyVertices(const mesh::BurnDomain& domain, std::byte* out) const {
+void DrawnOrder::copyVertices(std::span<const mesh::RenderVertex> of, std::byte* out) const {
     for (const uint32_t old : vertices) {
-        std::memcpy(out, &domain.vertices[old], sizeof(mesh::RenderVertex));
+        std::memcpy(out, &of[old], sizeof(mesh::RenderVertex));
         out += sizeof(mesh::RenderVertex);
     }
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory_resource>
+#include <span>
 #include <vector>
 
 namespace fw::gpu::vk {
@@ -21,7 +22,7 @@ struct DrawnOrder {
 
     DrawnOrder(const mesh::BurnDomain& domain, std::pmr::memory_resource* memory);
     void copyIndices(const mesh::BurnDomain& domain, std::byte* out) const;
-    void copyVertices(const mesh::BurnDomain& domain, std::byte* out) const;
+    void copyVertices(std::span<const mesh::RenderVertex> of, std::byte* out) const;
 };
 
 }  // namespace fw::gpu::vk

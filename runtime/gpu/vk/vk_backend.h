@@ -75,6 +75,8 @@ class VkBackend final : public Backend {
 
     void createMesh(uint32_t slot, const mesh::BurnDomain& domain) override;
     void destroyMesh(uint32_t slot) noexcept override;
+    void createInnerSkin(uint32_t mesh, const mesh::BurnDomain& domain,
+                         std::span<const glm::vec3> places) override;
     void createRefinement(uint32_t mesh, uint32_t depth, bool published,
                           const mesh::BurnDomain& domain, const mesh::RefineModel& model,
                           std::span<const mesh::RefineHoles> materials) override;

@@ -23,10 +23,13 @@ class PassRecorder : public DrawRecorder {
           pass_(*drawPasses()[pass]),
           layout_(state.context.pipelines.draw(pass).layout) {}
 
-    void drawItem(const DrawItem& item, const void* push) override {
+    void drawItem(const DrawItem& item, const void* push) override { drawFrom(item, push, false); }
+    void drawInside(const DrawItem& item, const void* push) override { drawFrom(item, push, true); }
+    void drawFrom(const DrawItem& item, const void* push, bool inside) {
         const Table& vk = s_.device.table;
         bindFor(item, push);
-        if (item.shown != shown_) bindVertices(item);
+        const uint64_t shown = inside ? kInside | item.inside : item.shown;
+        if (shown != shown_) bindVertices(item, shown);
         if (item.refined != refined_) {
             vk.CmdBindIndexBuffer(
                 commands_,
@@ -34,7 +37,7 @@ class PassRecorder : public DrawRecorder {
                 VK_INDEX_TYPE_UINT32);
             refined_ = item.refined;
         }
-        const bool own = item.shown != kNoneTexel;
+        const bool own = shown != kNoneTexel;
         // One draw per call: several would need a feature.
         if (item.refined)
             vk.CmdDrawIndexedIndirect(
@@ -75,15 +78,17 @@ class PassRecorder : public DrawRecorder {
                                 pass_.pushBytes, push);
     }
     // Of ordinary items all is bound from the first vertex on, of one with shown vertices of its
-    // own both its ranges.
-    void bindVertices(const DrawItem& item) {
-        const bool own = item.shown != kNoneTexel;
-        const VkBuffer buffers[2] = {s_.drawVertices, own ? s_.drawShown : s_.drawVertices};
+    // own, or on its inner skin, both its ranges.
+    void bindVertices(const DrawItem& item, uint64_t shown) {
+        static_assert(sizeof(mesh::RenderVertex) == sizeof(ShownVertex));
+        const bool own = shown != kNoneTexel, inside = own && (shown & kInside) != 0;
+        const VkBuffer buffers[2] = {s_.drawVertices,
+                                     own && !inside ? s_.drawShown : s_.drawVertices};
         const VkDeviceSize offsets[2] = {
             own ? VkDeviceSize(item.vertexOffset) * sizeof(mesh::RenderVertex) : 0,
-            own ? VkDeviceSize(item.shown) * sizeof(ShownVertex) : 0};
+            own ? VkDeviceSize(shown & ~kInside) * sizeof(ShownVertex) : 0};
         s_.device.table.CmdBindVertexBuffers(commands_, 0, 2, buffers, offsets);
-        shown_ = item.shown;
+        shown_ = shown;
     }
     void drawIndirect(uint32_t resource, uint64_t offset) override {
         s_.device.table.CmdDrawIndirect(commands_, s_.planes.buffer(resource).handle, offset, 1, 0);
@@ -124,9 +129,10 @@ class PassRecorder : public DrawRecorder {
     const DrawPass& pass_;
     VkPipelineLayout layout_;
     VkDescriptorSet bound_ = VK_NULL_HANDLE;
-    bool refined_ = false;  // whose indices are bound
-    uint32_t shown_ = kNoneTexel;
-    static constexpr uint32_t kCuts = kNoneTexel - 1;  // as `shown`: cut vertices are bound
+    bool refined_ = false;                           // whose indices are bound
+    static constexpr uint64_t kInside = 1ull << 32;  // as `shown`, with the first on the inner skin
+    static constexpr uint64_t kCuts = kNoneTexel - 1;  // cut vertices are bound
+    uint64_t shown_ = kNoneTexel;
 };
 
 VkImageMemoryBarrier imageBarrier(const FwVulkanImage& image, bool depth, VkFormat format) {

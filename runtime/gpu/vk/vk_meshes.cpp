@@ -106,7 +106,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
             if (part.resource == kResourceIndices)
                 order.copyIndices(domain, upload.staging.mapped + from);
             else if (part.resource == kResourceVertices)
-                order.copyVertices(domain, upload.staging.mapped + from);
+                order.copyVertices(domain.vertices, upload.staging.mapped + from);
             else
                 std::memcpy(upload.staging.mapped + from, part.data, part.bytes);
             upload.regions[upload.regionCount++] = {part.resource, from, part.at, part.bytes};
@@ -122,6 +122,30 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     entry = fresh;
 }
 
+void VkBackend::createInnerSkin(uint32_t slot, const mesh::BurnDomain& domain,
+                                std::span<const glm::vec3> places) {
+    State& s = *state_;
+    std::pmr::vector<mesh::RenderVertex> vertices(domain.vertices, s.memory);
+    for (size_t i = 0; i < vertices.size(); ++i) {
+        std::copy_n(&places[i].x, 3, vertices[i].position);
+        vertices[i].material = 0;  // bound as shown vertices are, it is their lead
+    }
+    const DrawnOrder order(domain, s.memory);
+    RangeOf range{0, uint32_t(vertices.size())};
+    range.first = s.planes.allocate(kSpaceVertices, range.units, s.ring.newest());
+    try {
+        const uint64_t bytes = vertices.size() * sizeof(mesh::RenderVertex);
+        PendingUpload& upload = s.stage(bytes, "inner skin staging");
+        order.copyVertices(vertices, upload.staging.mapped);
+        upload.regions[upload.regionCount++] = {
+            kResourceVertices, 0, uint64_t(range.first) * sizeof(mesh::RenderVertex), bytes};
+    } catch (...) {
+        s.planes.release(kSpaceVertices, range.first, range.units);
+        throw;
+    }
+    s.meshes[slot].innerVertices = range;
+}
+
 void VkBackend::destroyMesh(uint32_t slot) noexcept {
     State& s = *state_;
     MeshEntry& entry = s.meshes[slot];
@@ -133,6 +157,8 @@ void VkBackend::destroyMesh(uint32_t slot) noexcept {
     s.planes.release(kSpaceReaders, entry.readers.first, entry.readers.units);
     s.planes.release(kSpaceVertices, entry.vertexRange.first, entry.vertexRange.units);
     s.planes.release(kSpaceIndices, entry.indexRange.first, entry.indexRange.units);
+    if (entry.innerVertices.units)
+        s.planes.release(kSpaceVertices, entry.innerVertices.first, entry.innerVertices.units);
     for (RefineMesh& one : entry.refine)
         if (one.live) one.release(s.planes);
     if (entry.nodes.units) s.planes.release(kSpaceNodes, entry.nodes.first, entry.nodes.units);

@@ -128,6 +128,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         s.planes.atLeast(kSpaceObjects, slot + 1, last);
         s.freeQuarantine();
         fresh.tiles = {s.planes.allocate(kSpaceObjectTiles, mesh.tiles, last), mesh.tiles};
+        fresh.inner = init.inner;
         if (init.refine) {
             fresh.refine.on = true;
             fresh.refine.key = refineKey(init.arpModel != nullptr, init.refineDepth);

@@ -146,6 +146,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                 item.indexCount = end - first;
                 item.vertexOffset = int32_t(mesh.vertexRange.first);
                 item.shown = object.shown.units ? object.shown.first : kNoneTexel;
+                item.inside = object.inner ? mesh.innerVertices.first : kNoneTexel;
                 item.image = object.images[m];
                 chooseVariants(s, object, item);
                 item.refined = object.refine.started;
@@ -444,8 +445,8 @@ void VkBackend::State::run(const FramePlan& plan) {
         step.heat = planned.heat && needs.heating;
         step.exchange = step.reduce && planned.exchange;
         step.governed = planned.governed;
-        step.rules = planned.rules;
         step.capped = planned.capped;
+        step.rules = planned.rules;
         if (planned.remote) recordRemote(*this, *planned.remote, recorder, writer);
         step.links = links;
         step.rules.blockers = blockers;

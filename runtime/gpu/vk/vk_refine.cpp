@@ -33,23 +33,6 @@ uint32_t materialOf(const mesh::BurnDomain& domain, const RefineTriangle& triang
     return std::min(domain.vertices[corner].material, kMaterialsPerObject - 1);
 }
 
-// Whether the mesh is around something, rather than a sheet: a twentieth of its bounds at least.
-bool hasInside(const mesh::BurnDomain& domain, const mesh::RefineModel& model) {
-    const glm::vec3 low(domain.boundsLow[0], domain.boundsLow[1], domain.boundsLow[2]),
-        high(domain.boundsHigh[0], domain.boundsHigh[1], domain.boundsHigh[2]);
-    const glm::vec3 middle = (low + high) * 0.5f, size = high - low;
-    double volume = 0;
-    for (const RefineTriangle& t : model.triangles) {
-        glm::vec3 p[3];
-        for (int k = 0; k < 3; ++k) {
-            const RefineSlot& s = model.slots[model.draws[t.corner[k]].slot];
-            p[k] = glm::vec3(s.x, s.y, s.z) - middle;
-        }
-        volume += double(glm::dot(p[0], glm::cross(p[1], p[2]))) / 6;
-    }
-    return volume > 0.05 * double(size.x * size.y * size.z) && volume > 0;
-}
-
 template <class T>
 void append(PendingUpload& upload, uint64_t& from, uint32_t resource, uint64_t first,
             std::span<const T> data) {
@@ -99,7 +82,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
         fresh.edgeLength += std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) / float(fresh.edgeCount);
     }
     fresh.openEdges = model.openEdges;
-    fresh.solid = hasInside(domain, model);
+    fresh.solid = mesh::hasInside(domain, model);
     for (const RefineTriangle& t : model.triangles) ++fresh.materialEnd[materialOf(domain, t)];
     for (uint32_t m = 1; m < kMaterialsPerObject; ++m)
         fresh.materialEnd[m] += fresh.materialEnd[m - 1];

@@ -91,6 +91,7 @@ struct MeshEntry {
     float edge = 0;       // m at scale 1: side of a square as large as two mean triangles
     float texelEdge = 0;  // texels, longest edge in the map
     const mesh::BurnDomain* domain = nullptr;
+    RangeOf innerVertices;      // of the vertices on the inner skin, once an object shows it
     RangeOf nodes, coats;       // once an object deforms
     RangeOf skin, skinSources;  // once one is skinned
 };
@@ -100,6 +101,7 @@ struct ObjectEntry {
     bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
     bool resetDue = false;
     bool drawable = false;   // a recorded frame holds it
+    bool inner = false;      // what faces away is drawn on the mesh's inner skin
     bool touched = false;    // some event reached it: it may burn, or be wet
     bool doused = false;     // one of them was not fire
     bool warmed = false;     // others' fires sent heat to it

@@ -5,6 +5,8 @@
 #include "mesh/burn_domain.h"
 #include "shared/refine.h"
 
+#include <glm/vec3.hpp>
+
 namespace fw::mesh {
 
 struct RefineOptions {
@@ -13,6 +15,8 @@ struct RefineOptions {
     uint32_t depth = 5;      // 0..5, deepest level
     float splitTexels = 48;  // longer edges are halved at the bake, up to five times; 0: none
     uint32_t maxTriangles = 1u << 16;  // after that splitting; splitTexels is doubled to keep it
+    float altitudeShare =
+        0.5f;  // of the least altitude of the triangles around: no vertex recedes further
     bool twoWalls = true;  // walls nearer than 2 * wall burn through together; false: each alone
 };
 
@@ -53,6 +57,16 @@ struct RefineModel {
 // slots) and std::bad_alloc.
 RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
                        std::pmr::memory_resource* memory);
+
+// Whether the mesh is around something, rather than a sheet: a twentieth of its bounds at least.
+bool hasInside(const BurnDomain& domain, const RefineModel& model) noexcept;
+
+// Where the domain's vertices are on the inner skin of its walls: `wall` m in along every face (see
+// offsets.cpp), less where another wall is near. What is drawn from inside, unrefined. Empty: it
+// has no inside, or edges that are open, where no wall would join the two skins, or more than
+// 16384 triangles.
+std::pmr::vector<glm::vec3> innerSkin(const BurnDomain& domain, float wall,
+                                      std::pmr::memory_resource* memory);
 
 // A draw vertex in full: the corners' attributes mixed, the place at rest.
 RenderVertex refineRenderVertex(const BurnDomain& domain, const RefineModel& model, uint32_t draw);

@@ -13,7 +13,6 @@ namespace {
 constexpr double kSmoothCosine = 0.77;  // 40 degrees: flatter creases count as curved surface
 constexpr double kLongest = 2;          // of an offset
 constexpr double kDepthShare = 0.45;    // of the way to the wall behind
-constexpr double kAltitudeShare = 0.5;  // of the lowest altitude of the triangles around
 constexpr double kReachUnit = 1e-5;     // m
 
 // Faces at a vertex, summed up.
@@ -110,7 +109,8 @@ class Offsets {
         for (uint32_t p = 0; p < coarse_.points.size(); ++p) {
             if (faces[p].count > 0) offset_[p] = mitre(faces[p]);
             const double length = glm::length(offset_[p]);
-            reach_[p] = std::min(double(options_.wall), kAltitudeShare * altitude[p]);
+            reach_[p] =
+                std::min(double(options_.wall), double(options_.altitudeShare) * altitude[p]);
             if (length > 1e-9)  // the way gone is reach * length
                 reach_[p] =
                     std::min(reach_[p],
