@@ -309,6 +309,8 @@ void FireVillage::restore(std::span<const uint8_t> flags) {
         thing.state = {};
         check(fwWorld_SetHidden(world_, thing.id, !thing.lit), "fwWorld_SetHidden");
     }
+    caught_ = uint32_t(
+        std::count_if(things.begin(), things.end(), [](const Thing& thing) { return thing.lit; }));
     observe();
 }
 

@@ -25,7 +25,8 @@ constexpr ImU32 kTimber = hex(0x1B130E, 222), kTimberLit = hex(0x33241A, 235),
                 kBrass = hex(0x9E7847);
 constexpr ImU32 kInk = hex(0xF5E6C7), kDim = hex(0xB39E85), kGold = hex(0xFFC74D),
                 kRed = hex(0xE64024);
-constexpr ImU32 kGreen = hex(0xA9CC52), kOrange = hex(0xFF8026), kTrack = hex(0x0F0A08);
+constexpr ImU32 kGreen = hex(0xA9CC52), kOrange = hex(0xFF8026), kTrack = hex(0x0F0A08),
+                kUnlit = hex(0x4D4035);
 constexpr ImU32 kAccents[game::kTowerKinds] = {kBrass, hex(0xF25C24), hex(0xE6A333), hex(0x4D9EF2),
                                                hex(0x6BD6C2)};
 constexpr const char* kIcons[game::kTowerKinds] = {"", fwui::icons::flame, fwui::icons::brand,
@@ -183,12 +184,14 @@ void Board::wave() {
                                  ? std::string("they come")
                                  : text("next in 0:%02d", state.untilWave / game::kTicksPerSecond);
     fwui::drawTextRight(list, fonts().small, r.x1 - dp(12), r.y0 + dp(18), kDim, next.c_str());
+    const float apart = (r.width() - dp(24)) / float(waves);
     for (int32_t i = 0; i < waves; ++i) {
-        const float x = r.x0 + dp(14) + dp(24.5f) * float(i);
-        list->AddRectFilled({x, r.y0 + dp(34)}, {x + dp(19), r.y0 + dp(40)},
-                            i < state.wave                         ? kGold
-                            : i == state.wave && state.marched > 0 ? kRed
-                                                                   : hex(0x4D4035),
+        const float x = r.x0 + dp(14) + apart * float(i);
+        const bool comes = i == state.wave && state.marched > 0;
+        list->AddRectFilled({x, r.y0 + dp(34)}, {x + apart - dp(5), r.y0 + dp(40)},
+                            i < state.wave ? kGold
+                            : comes        ? kRed
+                                           : kUnlit,
                             dp(3));
     }
 }
@@ -303,7 +306,7 @@ void Board::plotMenu() {
     for (int32_t i = 0; i < game::kLevels; ++i)
         list->AddCircleFilled(
             {r.x1 - dp(16) - dp(13) * float(game::kLevels - 1 - i), r.y0 + dp(15)}, dp(4),
-            i <= tower.level ? kGold : hex(0x4D4035));
+            i <= tower.level ? kGold : kUnlit);
     auto choice = [&](float x0, const char* name, const std::string& words, bool may) {
         const Rect b{r.x0 + dp(x0), r.y0 + dp(32), r.x0 + dp(x0 + 76), r.y1 - dp(8)};
         fwui::drawBox(list, b.low(), b.high(), kTimberLit, 5, kBrass);

@@ -384,6 +384,8 @@ int main(int argc, char** argv) {
         parser.addText("--backend", "NAME", "vulkan or cpu, of --bot --headless", choices.backend);
         parser.addNumber("--waves", "of --bot --headless: ends after so many; 0: all",
                          choices.waves, 0.0f, float(game::kWaves.size()));
+        parser.addFlag("--rewind", "of --bot --headless: goes ten seconds back once, and plays on",
+                       choices.scripted.rewind);
         parser.addFlag("--report", "says what was done, a line each", choices.report);
         parser.addFlag("--msaa", "four samples a pixel", choices.antialias);
         if (!parser.parse(argc, argv, options)) return 0;

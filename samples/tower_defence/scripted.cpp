@@ -8,6 +8,7 @@
 
 #include "common/options.h"
 #include "game/bot.h"
+#include "rewind.h"
 #include "siege.h"
 #include "world_def.h"
 
@@ -31,6 +32,10 @@ int playScripted(const ScriptedGame& wanted) {
 
     // Four ticks a step: an eighth of a second, as often as fire goes from object to object.
     constexpr int32_t kTicks = 4;
+    // Late enough that things burn, enemies have fallen and others have taken their places.
+    constexpr int32_t kGoesBackAt = 18 * game::kTicksPerSecond;
+    Rewind rewind(world, siege);
+    bool goesBack = wanted.rewind;
     const std::clock_t began = std::clock();
     uint32_t steps = 0;
     const game::State& state = siege.state();
@@ -38,9 +43,20 @@ int playScripted(const ScriptedGame& wanted) {
            (wanted.waves == 0 || state.wave < wanted.waves)) {
         siege.give(game::botsOrder(state));
         siege.advance(kTicks);
+        if (wanted.rewind) rewind.remember();
         checkFire(world, fwWorld_Step(world, kTicks * kTickSeconds), "fwWorld_Step");
         ++steps;
+        if (goesBack && state.tick >= kGoesBackAt) {
+            goesBack = false;
+            const int32_t from = state.tick;
+            rewind.goBack();
+            std::fprintf(stderr, "rewind: %d ticks, %.1f ms, %zu KB a moment, saved in %.1f ms\n",
+                         from - state.tick, 1e3 * rewind.loadSeconds,
+                         rewind.bytes() / rewind.moments() / 1024, 1e3 * rewind.fetchSeconds);
+        }
     }
+    if (wanted.rewind && goesBack)
+        throw sample::Failure("the game was over before it could be rewound");
     const char* outcome = state.outcome == game::Outcome::kLost  ? "lost"
                           : state.outcome == game::Outcome::kWon ? "won"
                                                                  : "stopped";

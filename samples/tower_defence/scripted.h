@@ -9,6 +9,7 @@ struct ScriptedGame {
     uint32_t seed = 1;
     int32_t waves = 0;    // ends after so many; 0: all
     bool server = false;  // on the cpu backend, without a device
+    bool rewind = false;  // goes ten seconds back once, and plays on
     float pace = 14;      // as FwWorldDef::paceFactor
 };
 

@@ -194,13 +194,14 @@ void Siege::flyEmber(size_t plot) {
 // A sheet of water from the spout to where it comes down.
 void Siege::aimSpray(size_t plot) {
     const game::Tower& tower = state_.towers[plot];
-    const bool sprays = tower.kind == TowerKind::kWaterCannon && tower.streams > 0;
+    const bool cannon = tower.kind == TowerKind::kWaterCannon;
+    const bool sprays = cannon && tower.streams > 0;
     check(fwWorld_SetParticleFieldAmount(world_, sprays_[plot], sprays ? 1.0f : 0.0f),
           "fwWorld_SetParticleFieldAmount");
     check(fwWorld_SetParticleFieldHidden(world_, sprays_[plot],
-                                         tower.kind != TowerKind::kWaterCannon),
+                                         !cannon || (tower.target < 0 && !sprays)),
           "fwWorld_SetParticleFieldHidden");
-    if (tower.kind != TowerKind::kWaterCannon) return;
+    if (!cannon) return;
     const village::Frame frame = towerFrame(field_.ground.plots[plot], tower.aim);
     const glm::vec3 spout = toGlm(frame.point(kSpout));
     const glm::vec3 way = glm::normalize(onGround(tower.aim, kRoof) - spout);

@@ -37,7 +37,7 @@ Order botsOrder(const State& state) {
     }
     // Time is coins, once the first towers stand.
     constexpr int32_t kHurry = 5 * kTicksPerSecond;
-    if (state.marched == 0 && state.untilWave > kHurry && state.born > 0 &&
+    if (state.marched == 0 && state.untilWave > kHurry &&
         state.untilWave < kBeforeWave - 2 * kTicksPerSecond)
         return {Order::Type::kCallWave, 0, TowerKind::kNone};
     return {};
