@@ -656,6 +656,8 @@ std::vector<Action> makeActions(App& app) {
 
         {"Select", "Tools", "Q", icons::select, [at] { at->tool = Tool::kSelect; }, {}, scene},
         {"Move", "Tools", "W", icons::move, [at] { at->tool = Tool::kMove; }, {}, scene},
+        {"Rotate", "Tools", "E", icons::rotate, [at] { at->tool = Tool::kRotate; }, {}, scene},
+        {"Scale", "Tools", "R", icons::scale, [at] { at->tool = Tool::kScale; }, {}, scene},
         {"Why does it not burn?",
          "Tools",
          "Y",

@@ -18,7 +18,7 @@ struct FlamePage;
 struct PaintPage;
 
 enum class Page : int { kWelcome = -1, kScene = 0, kPaint = 1, kFlame = 2 };
-enum class Tool : int { kSelect, kMove, kWhy };
+enum class Tool : int { kSelect, kMove, kRotate, kScale, kWhy };
 
 struct Toast {
     enum class Kind { kInfo, kWarning, kError } kind{};

@@ -49,23 +49,35 @@ void profileOf(const ProfilePaint& paint, fw::volume::Profile& profile) {
                              profile);
 }
 
+// Soot glows from 1000 K on; below, the temperature says how much clean gas burns.
+float glowAt(const ProfilePaint& paint, size_t i) {
+    return paint.kelvin[i] < 1000 ? paint.kelvin[i] / 1000 : 4 * paint.soot[i];
+}
+
+// By which a flame with little soot is brought to where it can be seen in a small picture.
+float exposureOf(const ProfilePaint& paint) {
+    constexpr float kBright = 0.9f, kMostExposure = 40;
+    float most = 0;
+    for (size_t i = 0; i < paint.kelvin.size(); ++i) most = std::max(most, glowAt(paint, i));
+    return most > 0 ? std::clamp(kBright / most, 1.0f, kMostExposure) : 1.0f;
+}
+
 // How a texel looks on the canvas: its glow, as much as there is to glow.
-ImU32 colorAt(const ProfilePaint& paint, ProfilePlane plane, size_t i) {
+ImU32 colorAt(const ProfilePaint& paint, ProfilePlane plane, size_t i, float exposure) {
     constexpr ImU32 kEmpty = hex(0x0C0D0F);
     if (plane == ProfilePlane::kSoot)
         return mix(kEmpty, hex(0xE8E4DA), std::sqrt(std::min(1.0f, paint.soot[i] / kMostSoot)));
     const float celsius = paint.kelvin[i] - kZeroCelsius;
-    // Soot glows from 1000 K on; below, the temperature says how much clean gas burns.
-    const float burns = paint.kelvin[i] < 1000 ? paint.kelvin[i] / 1000 : 4 * paint.soot[i];
-    const float there = std::clamp(burns, 0.0f, 1.0f);
+    const float there = std::clamp(exposure * glowAt(paint, i), 0.0f, 1.0f);
     const ImU32 glow = sampleMap(kHeatMap, (celsius - kCoolest) / (kHottest - kCoolest));
     return mix(kEmpty, glow, there);
 }
 
-void fillPixels(const ProfilePaint& paint, ProfilePlane plane, uint8_t* rgba) {
+void fillPixels(const ProfilePaint& paint, ProfilePlane plane, uint8_t* rgba, float exposure = 1) {
     for (int y = 0; y < ProfilePaint::kHeight; ++y) {
         for (int x = 0; x < ProfilePaint::kWidth; ++x) {
-            const ImU32 color = colorAt(paint, plane, size_t(y * ProfilePaint::kWidth + x));
+            const ImU32 color =
+                colorAt(paint, plane, size_t(y * ProfilePaint::kWidth + x), exposure);
             const int row = ProfilePaint::kHeight - 1 - y;
             std::memcpy(rgba + 4 * size_t(row * ProfilePaint::kWidth + x), &color, 4);
         }
@@ -195,7 +207,8 @@ void FlamePage::open() {
     canvas = std::make_unique<FlameCanvas>(host, ui);
     for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i) {
         std::vector<uint8_t> half(FlameCanvas::kBytes), whole(2 * FlameCanvas::kBytes);
-        fillPixels(presetPaint(i), ProfilePlane::kTemperature, half.data());
+        const ProfilePaint standard = presetPaint(i);
+        fillPixels(standard, ProfilePlane::kTemperature, half.data(), exposureOf(standard));
         constexpr size_t kWidth = ProfilePaint::kWidth;
         for (size_t y = 0; y < size_t(ProfilePaint::kHeight); ++y) {
             for (size_t x = 0; x < kWidth; ++x) {

@@ -2,6 +2,8 @@
 #include "app/inspector.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "flamewright/flamewright.h"
@@ -238,6 +240,107 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
     }
 }
 
+// A factor over the scene's time as a line with points: drag one, double-click for a new one, right
+// click takes it away.
+void showKeys(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& field) {
+    fwedit::Value value;
+    if (!fwedit::getField(app.document.scene, kind, id, field.key, value)) return;
+    const auto list = std::get<std::vector<double>>(value);
+    fwedit::Keys keys;
+    for (size_t i = 0; i + 1 < list.size(); i += 2)
+        keys.push_back({float(list[i]), float(list[i + 1])});
+    constexpr float kHeight = 72;
+    const float duration = std::max(0.1f, app.document.scene.settings.duration);
+    float most = 2;
+    for (const fwedit::Key& key : keys) most = std::max(most, key.value);
+    const ImVec2 low(rows.x0, rows.y + dp(18)), high(rows.x1, rows.y + dp(18 + kHeight));
+    const auto place = [&](const fwedit::Key& key) {
+        return ImVec2(low.x + (high.x - low.x) * std::min(1.0f, key.time / duration),
+                      high.y - dp(6) - (high.y - low.y - dp(12)) * key.value / most);
+    };
+    const auto keyAt = [&](ImVec2 at) {
+        fwedit::Key key;
+        key.time = duration * std::clamp((at.x - low.x) / (high.x - low.x), 0.0f, 1.0f);
+        key.value =
+            most * std::clamp((high.y - dp(6) - at.y) / (high.y - low.y - dp(12)), 0.0f, 1.0f);
+        key.time = std::round(key.time * 100) / 100;
+        key.value = std::round(key.value * 100) / 100;
+        return key;
+    };
+    const auto performKey = [&](fwedit::Verb verb, const fwedit::Key& key) {
+        fwedit::Command command;
+        command.verb = verb;
+        command.targets = {id};
+        command.key = key;
+        return perform(app, command);
+    };
+    ImDrawList* draw = rows.list;
+    drawText(draw, fonts().body, rows.x0, rows.y + dp(8), colors::dim, field.label);
+    const auto now = float(app.live.time());
+    const bool keyed = std::any_of(keys.begin(), keys.end(), [&](const fwedit::Key& key) {
+        return std::fabs(key.time - now) < 0.011f;
+    });
+    if (iconButton("key", {rows.x1 - dp(8), rows.y + dp(8)}, icons::add,
+                   keyed ? colors::off : colors::text, "Key this moment") &&
+        !keyed)
+        performKey(fwedit::Verb::Key, {now, fwedit::valueAt(keys, now)});
+    drawBox(draw, low, high, colors::well, 4);
+    const float one = high.y - dp(6) - (high.y - low.y - dp(12)) / most;
+    drawRow(draw, low.x, high.x, one, hex(0xFFFFFF, 26));
+    drawText(draw, fonts().small, low.x + dp(4), one - dp(8), colors::off, "1×");
+    bool held = false, hovered = false;
+    hit("keys", low, high - low, &hovered, &held);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    static float heldTime = -1;  // of the key under the one mouse
+    int near = -1;
+    for (size_t i = 0; i < keys.size(); ++i) {
+        const ImVec2 at = place(keys[i]);
+        if (std::hypot(at.x - mouse.x, at.y - mouse.y) < dp(8)) near = int(i);
+    }
+    ImVec2 last(low.x, place({0, fwedit::valueAt(keys, 0)}).y);
+    for (const fwedit::Key& key : keys) {
+        draw->AddLine(last, place(key), colors::heat, dp(1.5f));
+        last = place(key);
+    }
+    draw->AddLine(last, {high.x, last.y}, colors::heat, dp(1.5f));
+    for (size_t i = 0; i < keys.size(); ++i) {
+        const ImVec2 at = place(keys[i]);
+        const bool lit = hovered && near == int(i);
+        draw->AddCircleFilled(at, dp(lit ? 5 : 4), lit ? colors::white : colors::heat, 16);
+    }
+    const float head = low.x + (high.x - low.x) * std::min(1.0f, now / duration);
+    drawColumn(draw, head, low.y, high.y, colors::accent);
+    if (hovered && near >= 0 && ImGui::IsMouseClicked(1)) {
+        performKey(fwedit::Verb::Unkey, keys[size_t(near)]);
+    } else if (hovered && near < 0 && ImGui::IsMouseDoubleClicked(0)) {
+        performKey(fwedit::Verb::Key, keyAt(mouse));
+    } else if (hovered && near >= 0 && ImGui::IsMouseClicked(0)) {
+        heldTime = keys[size_t(near)].time;
+    }
+    if (held && heldTime >= 0) {
+        const fwedit::Key to = keyAt(mouse);
+        const auto found = std::find_if(
+            keys.begin(), keys.end(), [&](const fwedit::Key& key) { return key.time == heldTime; });
+        if (found != keys.end() && !(*found == to)) {
+            if (!app.document.dragging) fwedit::beginDrag(app.document);
+            performKey(fwedit::Verb::Unkey, *found);
+            performKey(fwedit::Verb::Key, to);
+            heldTime = to.time;
+        }
+        char text[48];
+        std::snprintf(text, sizeof text, "%s, %.2f×", clockText(double(to.time)).c_str(),
+                      double(to.value));
+        drawChip(draw, {mouse.x, low.y - dp(8)}, text);
+    } else if (heldTime >= 0) {
+        heldTime = -1;
+        if (app.document.dragging) fwedit::endDrag(app.document);
+    }
+    if (keys.empty())
+        drawTextCentred(draw, fonts().small, (low.x + high.x) * 0.5f, high.y - dp(14), colors::dim,
+                        "Double-click to add a point");
+    rows.y = high.y + dp(8);
+}
+
 enum class Part { kPlace, kMain, kTime, kMore };
 
 Part partOf(Kind kind, const char* key) {
@@ -252,7 +355,7 @@ Part partOf(Kind kind, const char* key) {
     }
     if (is({"position", "rotation", "scale", "sticks_to", "direction", "extent"}))
         return Part::kPlace;
-    if (is({"start", "duration", "time"})) return Part::kTime;
+    if (is({"start", "duration", "time", "keys"})) return Part::kTime;
     if (kind == Kind::Mesh && !is({"file", "materials", "moisture", "thickness"}))
         return Part::kMore;
     if (kind == Kind::Flame && is({"density", "blue", "smoke", "tint", "tint_weight", "ignites"}))
@@ -275,7 +378,7 @@ bool isIdle(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key)
             return shape != fwedit::SourceLine && shape != fwedit::SourceFlamethrower &&
                    shape != fwedit::SourceDisc;
         if (is("output")) return shape == fwedit::SourceMatch;
-        if (is("duration")) return shape == fwedit::SourceMatch;
+        if (is("duration") || is("keys")) return shape == fwedit::SourceMatch;
     }
     if (kind == Kind::Emitter) {
         const fwedit::Emitter* emitter = fwedit::findIn(scene.emitters, id);
@@ -337,7 +440,11 @@ void showParts(App& app, Rows& rows, Kind kind, ObjectId id) {
         for (const FieldInfo& field : fwedit::fieldsOf(kind)) {
             if (partOf(kind, field.key) != heading.part) continue;
             if (isIdle(app.document.scene, kind, id, field.key)) continue;
-            showField(app, rows, kind, id, field);
+            if (field.type == FieldType::KeyList) {
+                showKeys(app, rows, kind, id, field);
+            } else {
+                showField(app, rows, kind, id, field);
+            }
         }
         rows.y += dp(4);
     }

@@ -148,6 +148,10 @@ class Program {
                 continue;
             }
             const bool drawn = frame(float(std::min(passed, 0.25)));
+            if (wishes_.report && app_->live.previews()) {
+                vkDeviceWaitIdle(host_.device);  // what a hand waits for, the device's part too
+                previewTime_ = std::chrono::duration<double>(Clock::now() - now).count();
+            }
             if (wishes_.report) report();
             if (!drawn) glfwWaitEventsTimeout(0.05);
             cursors.show(window);
@@ -197,13 +201,16 @@ class Program {
         if (app.resultTime != reportedResult_) print("did: " + app.result);
         reportedResult_ = app.resultTime;
         const std::string& why = app.live.why.answer.answer;
+        if (!app.live.why.answered) reportedWhy_.clear();
         if (app.live.why.answered && why != reportedWhy_) print("why: " + (reportedWhy_ = why));
         const bool paintable = app.page == fwapp::Page::kPaint && app.paint->surface;
         if (paintable && !reportedPaintable_) print("ready to paint");
         reportedPaintable_ = paintable;
         if (app.live.previews()) {
             const std::string shown = fwapp::clockText(app.live.time());
-            if (shown != reportedPreview_) print("preview of " + shown);
+            if (shown != reportedPreview_)
+                print("preview of " + shown + ", " + std::to_string(int(1000 * previewTime_)) +
+                      " ms");
             reportedPreview_ = shown;
         }
         const bool ready = app.live.burn() && !app.live.preparing();
@@ -247,6 +254,7 @@ class Program {
     bool reportedReady_ = false;
     std::string reportedWhy_, reportedPreview_;
     bool reportedPaintable_ = false;
+    double previewTime_ = 0;  // s
     int reportedSecond_ = 0;
     size_t reportedToasts_ = 0;
     uint32_t playedFrames_ = 0;

@@ -36,10 +36,18 @@ void showTools(App& app, const Rect& rect) {
     look.active = app.tool == Tool::kMove;
     if (toolButton("move", {x, y}, look, "Move", "W")) act("Move");
     x += dp(30);
+    look = {.icon = icons::rotate};
+    look.active = app.tool == Tool::kRotate;
+    if (toolButton("rotate", {x, y}, look, "Rotate", "E")) act("Rotate");
+    x += dp(30);
+    look = {.icon = icons::scale};
+    look.active = app.tool == Tool::kScale;
+    if (toolButton("scale", {x, y}, look, "Scale", "R")) act("Scale");
+    x += dp(30);
     separator(list, x, rect);
-    look = {.icon = icons::snap, .label = "Snap to 5 cm"};
+    look = {.icon = icons::snap, .label = "Snap"};
     look.active = app.snapping;
-    if (toolButton("snap", {x, y}, look, "Snap while moving", "hold Ctrl"))
+    if (toolButton("snap", {x, y}, look, "Snap to 5 cm, 15° and 10 %", "hold Ctrl"))
         app.snapping = !app.snapping;
     x += toolButtonWidth(look);
     separator(list, x, rect);

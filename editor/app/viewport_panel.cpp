@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "shell/icons.h"
@@ -22,10 +24,13 @@ constexpr float kArm = 74;          // dp, of the gizmo's arrows
 constexpr float kSnapStep = 0.05f;  // m
 
 // What the mouse is busy with from press to release.
-enum class Busy { kNone, kOrbit, kPan, kAxis, kPlane, kBox, kClick };
+enum class Busy { kNone, kOrbit, kPan, kAxis, kPlane, kBox, kClick, kTurn, kStretch };
 struct Hand {
     Busy busy = Busy::kNone;
-    int axis = 0;  // of kAxis: along it; of kPlane: across it
+    int axis =
+        0;  // of kAxis, kStretch: along it (3: all alike); of kPlane: across it; of kTurn: about
+    std::vector<std::pair<ObjectId, fwedit::Vec3>> before;  // what turns and stretches, as it was
+    float done = 0;                                         // degrees, or the factor less one
     ImVec2 press{};
     glm::vec3 from{0};  // where the selection was
     glm::vec3 grip{0};  // where it was taken
@@ -173,6 +178,128 @@ void drawGizmo(ImDrawList* list, const Gizmo& gizmo, int hot) {
     list->AddCircleFilled(gizmo.origin, dp(4), colors::white, 20);
 }
 
+// Rings about the axes, or arms that end in boxes with one for all of them in the middle.
+struct Handles {
+    bool there = false;
+    float arm = 0;  // m
+    ImVec2 origin{}, tips[3];
+    std::array<std::array<ImVec2, 48>, 3> rings;
+};
+
+Handles makeHandles(const Picture& picture, glm::vec3 pivot) {
+    Handles handles;
+    if (!picture.at(pivot, handles.origin)) return handles;
+    handles.there = true;
+    handles.arm = metresAt(picture, pivot, dp(kArm));
+    for (int i = 0; i < 3; ++i) {
+        picture.at(pivot + handles.arm * axisOf(i), handles.tips[i]);
+        auto& ring = handles.rings[size_t(i)];
+        for (size_t k = 0; k < ring.size(); ++k) {
+            const float angle = float(k) * 6.2831853f / float(ring.size());
+            picture.at(pivot + handles.arm * (std::cos(angle) * axisOf((i + 1) % 3) +
+                                              std::sin(angle) * axisOf((i + 2) % 3)),
+                       ring[k]);
+        }
+    }
+    return handles;
+}
+
+// -1: none; 0..2 an axis, 3 the middle (of stretching).
+int underMouse(const Handles& handles, bool turns, ImVec2 mouse) {
+    if (!handles.there) return -1;
+    int best = -1;
+    float nearest = dp(kGrab);
+    for (int i = 0; i < 3; ++i) {
+        float distance = 1e9f;
+        if (turns) {
+            const auto& ring = handles.rings[size_t(i)];
+            for (size_t k = 0; k < ring.size(); ++k)
+                distance =
+                    std::min(distance, distanceTo(mouse, ring[k], ring[(k + 1) % ring.size()]));
+        } else {
+            distance = distanceTo(mouse, handles.origin, handles.tips[i]);
+        }
+        if (distance >= nearest) continue;
+        nearest = distance;
+        best = i;
+    }
+    const bool middle =
+        std::hypot(mouse.x - handles.origin.x, mouse.y - handles.origin.y) < dp(kGrab);
+    return !turns && middle ? 3 : best;
+}
+
+void drawHandles(ImDrawList* list, const Handles& handles, bool turns, int hot) {
+    if (!handles.there) return;
+    const auto box = [&](ImVec2 at, ImU32 color, float half) {
+        list->AddRectFilled(at - dp(half + 1, half + 1), at + dp(half + 1, half + 1),
+                            IM_COL32(0, 0, 0, 120));
+        list->AddRectFilled(at - dp(half, half), at + dp(half, half), color);
+    };
+    for (int i = 0; i < 3; ++i) {
+        const ImU32 color = hot == i ? colors::white : colors::axis[i];
+        const float width = dp(hot == i ? 3.5f : 2.5f);
+        if (turns) {
+            const auto& ring = handles.rings[size_t(i)];
+            list->AddPolyline(ring.data(), int(ring.size()), IM_COL32(0, 0, 0, 110),
+                              ImDrawFlags_Closed, width + dp(2));
+            list->AddPolyline(ring.data(), int(ring.size()), color, ImDrawFlags_Closed, width);
+        } else {
+            list->AddLine(handles.origin, handles.tips[i], IM_COL32(0, 0, 0, 120), width + dp(2));
+            list->AddLine(handles.origin, handles.tips[i], color, width);
+            box(handles.tips[i], color, 5);
+        }
+    }
+    if (!turns) box(handles.origin, hot == 3 ? colors::white : colors::text, 6);
+}
+
+// What of the selection can turn: the key of the field, null for the rest.
+const char* turnField(Kind kind) {
+    if (kind == Kind::Mesh || kind == Kind::Collider) return "rotation";
+    if (kind == Kind::Source || kind == Kind::Emitter) return "direction";
+    return nullptr;
+}
+
+const char* stretchField(Kind kind) {
+    if (kind == Kind::Mesh) return "scale";
+    if (kind == Kind::Collider) return "half_size";
+    return nullptr;
+}
+
+std::vector<std::pair<ObjectId, fwedit::Vec3>> vectorsOf(const App& app, bool turns) {
+    std::vector<std::pair<ObjectId, fwedit::Vec3>> found;
+    for (const ObjectId id : app.selection) {
+        Kind kind{};
+        const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
+        const char* key = turns ? turnField(kind) : stretchField(kind);
+        fwedit::Value value;
+        if (!object || object->locked || !key ||
+            !fwedit::getField(app.document.scene, kind, id, key, value))
+            continue;
+        const auto& list = std::get<std::vector<double>>(value);
+        found.push_back({id, {float(list[0]), float(list[1]), float(list[2])}});
+    }
+    return found;
+}
+
+// Degrees about x, then y, then z, of a turn about a world axis after what was.
+fwedit::Vec3 turnedAngles(const fwedit::Vec3& before, int axis, float degrees) {
+    fwedit::Mesh mesh;
+    mesh.rotation = before;
+    const auto values = fwedit::transformOf(mesh);
+    const glm::mat4 turn = glm::rotate(glm::mat4(1), glm::radians(degrees), axisOf(axis));
+    const glm::mat4 m = turn * glm::make_mat4(values.data());
+    const float level = std::hypot(m[0][0], m[0][1]);
+    glm::vec3 angles(0, std::atan2(-m[0][2], level), 0);
+    if (level > 1e-5f) {
+        angles.x = std::atan2(m[1][2], m[2][2]);
+        angles.z = std::atan2(m[0][1], m[0][0]);
+    } else {
+        angles.x = std::atan2(-m[2][1], m[1][1]);  // z and x are one turn there
+    }
+    angles = glm::degrees(angles);
+    return {angles.x, angles.y, angles.z};
+}
+
 struct Marker {
     ObjectId id;
     Kind kind;
@@ -312,6 +439,66 @@ void drag(App& app, const Picture& picture, ImDrawList* list) {
                       formatNumber(glm::length(state.moved), "%.2f").c_str());
     }
     drawChip(list, io.MousePos + dp(0, -26), text);
+    if (ImGui::IsKeyPressed(256, false) || io.MouseDown[1]) {
+        fwedit::cancelDrag(app.document);
+        state.busy = Busy::kNone;
+    }
+}
+
+// A turn about an axis, or a stretch along one, since the press.
+void turnOrStretch(App& app, const Picture& picture, ImDrawList* list) {
+    Hand& state = hand();
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool turns = state.busy == Busy::kTurn;
+    const fwview::Ray ray = picture.ray(io.MousePos);
+    float amount = state.done;
+    glm::vec3 at(0);
+    if (turns) {
+        const glm::vec3 axis = axisOf(state.axis);
+        if (onPlane(ray, state.from, axis, at)) {
+            const glm::vec3 a = state.grip - state.from, b = at - state.from;
+            amount = glm::degrees(std::atan2(glm::dot(glm::cross(a, b), axis), glm::dot(a, b)));
+        }
+    } else if (state.axis == 3) {
+        amount = (io.MousePos.x - state.press.x - (io.MousePos.y - state.press.y)) / dp(100);
+    } else if (alongAxis(ray, state.from, axisOf(state.axis), at)) {
+        const float whole = state.grip[state.axis] - state.from[state.axis];
+        if (std::fabs(whole) > 1e-6f)
+            amount = (at[state.axis] - state.from[state.axis]) / whole - 1;
+    }
+    if (io.KeyShift) amount *= 0.1f;
+    constexpr float kSnapTurn = 15, kSnapStretch = 0.1f;  // degrees, share
+    if (io.KeyCtrl != app.snapping) {
+        const float step = turns ? kSnapTurn : kSnapStretch;
+        amount = std::round(amount / step) * step;
+    }
+    if (!turns) amount = std::max(amount, -0.95f);
+    if (std::fabs(amount - state.done) > 1e-5f) {
+        if (!app.document.dragging) fwedit::beginDrag(app.document);
+        state.done = amount;
+        for (const auto& [id, before] : state.before) {
+            Kind kind{};
+            if (!fwedit::findObject(app.document.scene, id, &kind)) continue;
+            fwedit::Vec3 now = before;
+            const char* key = turns ? turnField(kind) : stretchField(kind);
+            if (turns && !std::strcmp(key, "direction")) {
+                const glm::mat4 turn =
+                    glm::rotate(glm::mat4(1), glm::radians(amount), axisOf(state.axis));
+                const glm::vec3 way(turn * glm::vec4(asVec(before), 0));
+                now = {way.x, way.y, way.z};
+            } else if (turns) {
+                now = turnedAngles(before, state.axis, amount);
+            } else {
+                for (int i = 0; i < 3; ++i)
+                    if (state.axis == 3 || state.axis == i) now[size_t(i)] *= 1 + amount;
+            }
+            performSet(app, id, key,
+                       std::vector<double>{double(now[0]), double(now[1]), double(now[2])});
+        }
+    }
+    const std::string text = turns ? formatNumber(amount, "%.0f") + "°"
+                                   : formatNumber(100 * (1 + amount), "%.0f") + " %";
+    drawChip(list, io.MousePos + dp(0, -26), text.c_str());
     if (ImGui::IsKeyPressed(256, false) || io.MouseDown[1]) {
         fwedit::cancelDrag(app.document);
         state.busy = Busy::kNone;
@@ -638,17 +825,25 @@ void showViewport(App& app, const Rect& rect) {
 
     list->PushClipRect(rect.low(), rect.high(), true);
     Gizmo gizmo;
+    Handles handles;
     glm::vec3 pivot(0);
+    const bool turns = app.tool == Tool::kRotate;
     if (app.showHelpers) {
         drawOutlines(app, list, picture);
         drawMarkers(app, list, picture, markers);
         if (app.tool == Tool::kMove && !app.placing && pivotOf(app, pivot))
             gizmo = makeGizmo(picture, pivot);
+        if ((turns || app.tool == Tool::kScale) && !app.placing && !vectorsOf(app, turns).empty() &&
+            pivotOf(app, pivot))
+            handles = makeHandles(picture, pivot);
     }
     const bool overBall = navigationBall(app, list, picture);
-    const int hot = hovered && !overBall && !io.KeyAlt && state.busy == Busy::kNone
-                        ? underMouse(gizmo, mouse)
-                        : -1;
+    const int hot =
+        hovered && !overBall && !io.KeyAlt && state.busy == Busy::kNone
+            ? handles.there ? underMouse(handles, turns, mouse) : underMouse(gizmo, mouse)
+            : -1;
+    const bool holds = state.busy == Busy::kTurn || state.busy == Busy::kStretch;
+    drawHandles(list, handles, turns, holds ? state.axis : hot);
     drawGizmo(list, gizmo,
               state.busy == Busy::kAxis    ? state.axis
               : state.busy == Busy::kPlane ? 3 + state.axis
@@ -663,6 +858,18 @@ void showViewport(App& app, const Rect& rect) {
         if (ImGui::IsMouseClicked(0)) {
             if (io.KeyAlt) {
                 state.busy = Busy::kOrbit;
+            } else if (!app.placing && hot >= 0 && handles.there) {
+                state.axis = hot;
+                state.busy = turns ? Busy::kTurn : Busy::kStretch;
+                state.from = state.grip = pivot;
+                state.done = 0;
+                state.before = vectorsOf(app, turns);
+                const fwview::Ray ray = picture.ray(mouse);
+                if (turns) {
+                    onPlane(ray, pivot, axisOf(hot), state.grip);
+                } else if (hot < 3) {
+                    alongAxis(ray, pivot, axisOf(hot), state.grip);
+                }
             } else if (!app.placing && hot >= 0) {
                 state.axis = hot % 3;
                 state.busy = hot < 3 ? Busy::kAxis : Busy::kPlane;
@@ -689,6 +896,14 @@ void showViewport(App& app, const Rect& rect) {
         case Busy::kPan:
             pan(app, picture, io.MouseDelta);
             if (!io.MouseDown[2]) state.busy = Busy::kNone;
+            break;
+        case Busy::kTurn:
+        case Busy::kStretch:
+            turnOrStretch(app, picture, list);
+            if (!io.MouseDown[0]) {
+                endMove(app);
+                state.busy = Busy::kNone;
+            }
             break;
         case Busy::kAxis:
         case Busy::kPlane:

@@ -14,8 +14,9 @@ constexpr double kTicksPerSecond = 4096;
 constexpr double kAskEvery = 1;                  // s of the fire between looks at its map
 constexpr double kLeastApart = 5, kMoments = 8;  // s; moments that are kept over a scene
 
-// How long a texel of each of a mesh's materials flames, in ticks.
-std::array<float, 8> flamingOf(const fwedit::Burn& burn, const fwedit::Mesh& mesh) {
+// How long a texel of each of a mesh's materials glows until it looks charred, in ticks. Thick fuel
+// flames for long, under a crust that is black soon.
+std::array<float, 8> glowingOf(const fwedit::Burn& burn, const fwedit::Mesh& mesh) {
     std::array<float, 8> ticks{};
     for (size_t slot = 0; slot < ticks.size(); ++slot) {
         FwMaterialDef def = fwDefaultMaterialDef();
@@ -24,7 +25,9 @@ std::array<float, 8> flamingOf(const fwedit::Burn& burn, const fwedit::Mesh& mes
         float seconds = def.burnTime;
         if (!(seconds > 0) && def.burningFlux > 0)
             seconds = thickness * def.density / def.burningFlux;
-        seconds = std::clamp(seconds / std::max(burn.scene.settings.pace, 0.1f), 0.5f, 600.0f);
+        constexpr float kCharring = 24;  // s at pace 1
+        seconds = std::min(seconds, kCharring);
+        seconds = std::max(seconds / std::max(burn.scene.settings.pace, 0.1f), 0.2f);
         ticks[slot] = seconds * float(kTicksPerSecond);
     }
     return ticks;
@@ -131,9 +134,9 @@ bool BurnMemory::agesAt(const fwedit::Burn& burn, fwedit::ObjectId id,
     const auto found = ticks_.find(id);
     const fwedit::Mesh* mesh = fwedit::findIn(burn.scene.meshes, id);
     if (found == ticks_.end() || !mesh || found->second.size() != surface.real.size()) return false;
-    std::array<float, 8> share{};  // of its flaming that a tick is, in steps of a byte
-    const std::array<float, 8> flaming = flamingOf(burn, *mesh);
-    for (size_t slot = 0; slot < share.size(); ++slot) share[slot] = 253 / flaming[slot];
+    std::array<float, 8> share{};  // of its glow that a tick is, in steps of a byte
+    const std::array<float, 8> glowing = glowingOf(burn, *mesh);
+    for (size_t slot = 0; slot < share.size(); ++slot) share[slot] = 253 / glowing[slot];
     const auto now = int64_t(start_) + int64_t(std::llround(time * kTicksPerSecond));
     values.resize(found->second.size());
     for (size_t i = 0; i < values.size(); ++i) {

@@ -1,8 +1,8 @@
 // What a live burn remembers of itself, so that a hand can scrub in it both ways: when each texel
 // caught, and now and then the whole world as bytes.
 //
-// A preview at a time is made of the first alone: what has caught by then glows for as long as its
-// material flames, and is charred after that. It is exact in where the fire has been. It leaves out
+// A preview at a time is made of the first alone: what has caught by then glows while its material
+// chars, and is black after that. It is exact in where the fire has been. It leaves out
 // flames, smoke and light, what a second material or water did to how long a texel burns, holes,
 // what bent or fell, and wetness; those come with the exact picture, run on from the last kept
 // moment once the hand lets go.
@@ -32,7 +32,7 @@ class BurnMemory {
     // Puts the world back to the latest kept moment until `time`. False: there is none.
     bool restore(fwedit::Burn& burn, double time);
 
-    // By texel: 0 not lit by then, 1 to 254 how much of its flaming is over, 255 charred.
+    // By texel: 0 not lit by then, 1 to 254 how much of its glow is over, 255 charred.
     bool agesAt(const fwedit::Burn& burn, fwedit::ObjectId mesh,
                 const fwedit::PaintSurface& surface, double time,
                 std::vector<uint8_t>& values) const;

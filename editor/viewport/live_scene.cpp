@@ -341,6 +341,7 @@ void LiveScene::followWhy() {
         if (result == FW_NOT_READY) return;
         why.asks = false;
         why.answered = result == FW_OK;
+        stale_ = true;  // the card is drawn with the next frame
         return;
     }
     if (!why.error.empty()) return;
@@ -367,6 +368,7 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     const bool moved = !(camera == camera_);
     const bool hurries = seeking();
     if (deltaTime <= 0 && !moved && !stale_ && !hurries && !memory_.waits() && !why.asks) return;
+    const bool fresh = stale_;
     stale_ = false;
     camera_ = camera;
 
@@ -397,6 +399,8 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     memory_.afterFrame(*burn_);
     burn_->scene.camera = camera;  // sides are said as the eye has them
     followWhy();
+    // A preview stays as it is while the burn behind it runs on to its time.
+    if (previews() && hurries && !moved && !fresh) return;
     fwedit::Burn& drawn = rests ? *rest_.burn : *burn_;
     if (rests) {
         described.deltaTime = 0;

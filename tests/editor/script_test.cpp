@@ -185,6 +185,44 @@ TEST(EditorBurn, APaintedBeltHoldsTheFireOnBothSidesOfEverySeam) {
     yard.run("undo\nplay 20\nexpect lit Board above 0.9\n");
 }
 
+TEST(EditorBurn, TheUnwrapLiesWhereItsTexelsAre) {
+    Yard yard;
+    yard.run(kBoard);
+    std::string error;
+    const auto surface = paintSurfaceOf(yard.host->cpu(error), yard.host->document.scene.meshes[0],
+                                        yard.folder, yard.host->assets, error);
+    ASSERT_TRUE(surface) << error;
+    ASSERT_FALSE(surface->corners.empty());
+    ASSERT_EQ(0u, surface->corners.size() % 15);
+    // The texel at the middle of each triangle that is larger than a texel is at its middle.
+    size_t large = 0;
+    for (size_t t = 0; t < surface->corners.size(); t += 15) {
+        const float* c = &surface->corners[t];
+        float middle[5];
+        for (size_t k = 0; k < 5; ++k) middle[k] = (c[k] + c[5 + k] + c[10 + k]) / 3;
+        const float area =
+            std::abs((c[8] - c[3]) * (c[14] - c[4]) - (c[13] - c[3]) * (c[9] - c[4]));
+        if (area < 50) continue;
+        ++large;
+        const size_t texel = size_t(middle[4]) * surface->width + size_t(middle[3]);
+        ASSERT_LT(texel, surface->real.size());
+        ASSERT_TRUE(surface->real[texel]);
+        for (size_t k = 0; k < 3; ++k)
+            EXPECT_NEAR(middle[k], surface->positions[texel * 3 + k], 1.1f * surface->spacing);
+    }
+    EXPECT_GT(large, 4u);
+    // The board is closed: where the unwrap is cut, it is cut on both sides.
+    ASSERT_FALSE(surface->seams.empty());
+    for (const Seam& seam : surface->seams) {
+        const auto other =
+            std::find_if(surface->seams.begin(), surface->seams.end(), [&](const Seam& one) {
+                return &one != &seam && one.fromPosition == seam.toPosition &&
+                       one.toPosition == seam.fromPosition;
+            });
+        EXPECT_NE(surface->seams.end(), other);
+    }
+}
+
 TEST(EditorBurn, TheSurfaceToPaintOnKnowsIslandsPiecesAndNormals) {
     Yard yard;
     yard.run(kBoard);

@@ -1,8 +1,8 @@
 #!/bin/bash
 # Drives the editor as a hand does, with real keys and clicks in a window: imports a glTF, places a
-# heat source on it, plays, undoes and does again, paints a flame, saves, and opens what was saved;
-# the scene is the same to the byte. Under the validation layer, synchronization checks included.
-# Usage: window.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
+# heat source on it, plays, scrubs back, undoes and does again, paints on the mesh, asks why a spot
+# does not burn, paints a flame, saves, and opens what was saved; the scene is the same to the byte.
+# Under the validation layer, synchronization checks included.
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/flamewright-editor"
 [[ -x $binary ]] || { echo "flamewright-editor is not built" && exit 77; }
@@ -87,7 +87,26 @@ xdotool key ctrl+z
 await "did: Undone"
 xdotool key ctrl+shift+z
 await "did: Done again"
-xdotool key 3 mousemove 540 300 mousedown 1
+# Back by hand: the preview follows while the button is down, and time goes on from there.
+xdotool mousemove 100 598 mousedown 1
+await "preview of"
+xdotool mousemove 96 598 mouseup 1
+# A stroke over the mesh is one step, and undone as one.
+xdotool key 2
+await "ready to paint"
+xdotool key f mousemove 440 380 mousedown 1
+xdotool mousemove 446 390 mousemove 452 400 mousemove 460 420 mouseup 1
+await "did: Paint burn multiplier on"
+xdotool key ctrl+z
+await "did: Undone"
+xdotool key ctrl+shift+z
+await "did: Done again"
+# Why a spot does not burn.
+xdotool key 1
+await ready
+xdotool key y mousemove 560 330 click 1
+await "why: "
+xdotool key Escape key 3 mousemove 540 300 mousedown 1
 xdotool mousemove 560 340 mousemove 560 400 mouseup 1
 await "did: Paint the flame"
 xdotool key 1 key ctrl+s key ctrl+a type "$work/first.fwscene"
