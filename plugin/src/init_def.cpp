@@ -132,6 +132,7 @@ void defaults(FwView& def) noexcept {
     set(def.ambientSky, 0.35f, 0.42f, 0.55f);
     set(def.ambientGround, 0.14f, 0.12f, 0.10f);
     def.exposure = 1;
+    def.haze = 1;
     def.emissionScale = 1;
 }
 

@@ -38,7 +38,8 @@ void checkView(const FwView& view, const char* name) {
     checkRange(&view.exposure, 1, name, "exposure", 1e-6f, 1e6f);
     checkRange(&view.emissionScale, 1, name, "emissionScale", 0.0f, 1e6f);
     checkRange(&view.time, 1, name, "time", -1e9f, 1e9f);
-    checkRange(view.reserved, 3, name, "reserved", 0.0f, 0.0f);
+    checkRange(&view.haze, 1, name, "haze", 0.0f, 8.0f);
+    checkRange(view.reserved, 2, name, "reserved", 0.0f, 0.0f);
 }
 
 }  // namespace fw::edge

@@ -178,6 +178,9 @@ FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanFrame::flags is 0x%x; the known flags are 0x%x.", frame.flags, kKnown);
     checkPointer(frame.commandBuffer, "FwVulkanFrame::commandBuffer");
+    if (frame.reserved != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::reserved is %u; it is zero.",
+                   frame.reserved);
     if (frame.frameIndex == 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::frameIndex is 0; it starts at 1.");
     if (frame.flags & FW_FRAME_SLOT_PACING) {
@@ -214,9 +217,16 @@ void checkTarget(const FwVulkanTargetDef& def) {
                        high);
     };
     constexpr uint32_t kNothing = FW_TARGET_NO_FLAMES | FW_TARGET_NO_SURFACES;
-    if (def.flags & ~(uint32_t(FW_TARGET_COMPOSITE) | kNothing))
+    constexpr uint32_t kKnown = FW_TARGET_COMPOSITE | kNothing | FW_TARGET_HAZE;
+    if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x7.", def.flags);
+                   "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
+                   kKnown);
+    if ((def.flags & FW_TARGET_HAZE) && def.depthMode != FW_DEPTH_SAMPLED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::flags has FW_TARGET_HAZE and depthMode is %u; haze needs "
+                   "FW_DEPTH_SAMPLED (3), or foreground would smear into it.",
+                   def.depthMode);
     if ((def.flags & kNothing) == kNothing)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::flags is 0x%x; FW_TARGET_NO_FLAMES and "

@@ -54,12 +54,13 @@ FwFireProfileId loadProfile(sample::FireHost& fire, const std::string& path) {
 }
 
 int run(const sample::Options& options, float seconds, const sample::FireLook& look, float wind,
-        const std::string& profilePath) {
+        float haze, const std::string& profilePath) {
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: volumetric fires";
+        stageRequest.lendScene = true;  // heat bends what is behind it
         sample::Stage stage(host, options, stageRequest, sample::framesOf(options, seconds));
         sample::Studio studio(host, stage, {0, 0, 0}, 1.6f);
         for (size_t i = 0; i < std::size(kExhibits); ++i) {
@@ -89,6 +90,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         }
 
         FwView view = fwDefaultView();
+        view.haze = haze;
         look.lightUp(view, 0.012f, 2.0f);
         sample::OrbitCamera orbit;
         orbit.target = {0, 0.47f, 0};
@@ -142,12 +144,13 @@ int main(int argc, char** argv) {
         options.fps = 30.0;
         options.width = 1280;
         options.height = 300;
-        float seconds = 2, wind = 0;
+        float seconds = 2, wind = 0, haze = 1;
         std::string profile;
         sample::FireLook look;
         sample::OptionParser parser("07_volumetric_fire", "volumetric fires of nine kinds");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--wind", "m/s, to the right", wind, -20.0f, 20.0f);
+        parser.addNumber("--haze", "how far heat bends what is behind it", haze, 0.0f, 8.0f);
         parser.addText("--profile", "FILE", "what burns where, a .fwprofile for all nine", profile);
         look.addTo(parser);
         if (!parser.parse(argc, argv, options)) return 0;
@@ -156,6 +159,6 @@ int main(int argc, char** argv) {
                 std::printf("%s\n", fwFirePresetName(exhibit.preset));
             return 0;
         }
-        return run(options, seconds, look, wind, profile);
+        return run(options, seconds, look, wind, haze, profile);
     });
 }

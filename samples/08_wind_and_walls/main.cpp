@@ -44,12 +44,14 @@ glm::vec3 torchAt(double seconds) {
             0.10f + 0.16f * static_cast<float>(std::cos(a))};
 }
 
-int run(const sample::Options& options, float seconds, const sample::FireLook& look, float gust) {
+int run(const sample::Options& options, float seconds, const sample::FireLook& look, float gust,
+        float haze) {
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: wind and walls";
+        stageRequest.lendScene = true;  // heat bends what is behind it
         sample::Stage stage(host, options, stageRequest, sample::framesOf(options, seconds));
         sample::Studio studio(host, stage, {0, 0, 0}, 1.6f);
         for (const Box& box : kStones) studio.addBlock(box.center, box.half);
@@ -96,6 +98,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         }
 
         FwView view = fwDefaultView();
+        view.haze = haze;
         look.lightUp(view, 0.02f, 1.6f);
         sample::OrbitCamera orbit;
         orbit.target = {0.35f, 0.55f, 0};
@@ -166,18 +169,19 @@ int main(int argc, char** argv) {
         options.fps = 30.0;
         options.width = 1280;
         options.height = 400;
-        float seconds = 4, gust = 4;
+        float seconds = 4, gust = 4, haze = 1;
         sample::FireLook look;
         sample::OptionParser parser(
             "08_wind_and_walls", "fires in a gust, under a ceiling, at a wall, and carried along");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--gust", "m/s, to the right", gust, -20.0f, 20.0f);
+        parser.addNumber("--haze", "how far heat bends what is behind it", haze, 0.0f, 8.0f);
         look.addTo(parser);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("open\nceiling\nwall\ntorch\n");
             return 0;
         }
-        return run(options, seconds, look, gust);
+        return run(options, seconds, look, gust, haze);
     });
 }

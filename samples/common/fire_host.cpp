@@ -78,13 +78,17 @@ FireHost::~FireHost() {
 void FireHost::registerTarget(const Stage& stage) {
     if (target.index1 != 0) check(fwContext_UnregisterTarget(context, target), "unregister");
     FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-    def.renderPass = stage.scenePass;
+    if (!stage.made.lendScene) def.renderPass = stage.scenePass;
     def.subpass = 0;
     def.colorFormat = stage.made.colorFormat;
     def.depthFormat = stage.depthFormat;
     def.samples = static_cast<uint32_t>(stage.made.samples);
     def.colorAttachmentCount = 1;
     def.depthMode = FW_DEPTH_TEST;
+    if (stage.made.lendScene) {
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_HAZE;
+        def.depthMode = FW_DEPTH_SAMPLED;
+    }
     def.reversedDepth = stage.made.reversedDepth ? 1u : 0u;
     def.encoding = FW_OUTPUT_DISPLAY_UNORM;
     if (stage.made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB) def.encoding = FW_OUTPUT_SRGB_VIEW;
@@ -122,6 +126,30 @@ void FireHost::recordInside(const StageFrame& frame, const FwView& view,
     const FwVulkanFrame described = describe(frame, secondary);
     const FwResult result = fwWorld_RecordInside(world, &described, target, &view, &frame.viewport);
     if (result != FW_NOT_READY) check(result, "fwWorld_RecordInside");
+}
+
+void FireHost::recordOver(const StageFrame& frame, const FwView& view, const LentScene& scene) {
+    FwVulkanFrame described = describe(frame, VK_NULL_HANDLE);
+    described.sampledColor = scene.copy;
+    described.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    FwVulkanComposite images = fwDefaultVulkanComposite();
+    images.width = frame.extent.width;
+    images.height = frame.extent.height;
+    images.color.image = scene.color;
+    images.color.view = scene.colorView;
+    images.color.layoutBefore = images.color.layoutAfter = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    images.color.stageBefore = images.color.stageAfter = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    images.color.accessBefore = images.color.accessAfter = VK_ACCESS_TRANSFER_READ_BIT;
+    images.depth.image = scene.depth;
+    images.depth.view = scene.depthView;
+    images.depth.layoutBefore = images.depth.layoutAfter =
+        VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    images.depth.stageBefore = images.depth.stageAfter =
+        VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+    images.depth.accessBefore = images.depth.accessAfter =
+        VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    const FwResult result = fwWorld_RecordComposite(world, &described, target, &view, &images);
+    if (result != FW_NOT_READY) check(result, "fwWorld_RecordComposite");
 }
 
 void FireHost::check(FwResult result, const char* what) const {

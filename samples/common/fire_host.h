@@ -28,7 +28,8 @@ class FireHost {
     FireHost(const FireHost&) = delete;
     FireHost& operator=(const FireHost&) = delete;
 
-    // Tells the plugin about the stage's scene pass. Once, and again if the pass changes.
+    // Tells the plugin about the stage's scene pass, or where the stage lends its scene about the
+    // pass that we make over it. Once, and again if the pass changes.
     void registerTarget(const Stage& stage);
     // Outside any pass, before it, once per frame: simulates. `secondary` may be null.
     void recordOutside(const StageFrame& frame, const FwView& view,
@@ -36,6 +37,9 @@ class FireHost {
     // Inside the scene pass: draws.
     void recordInside(const StageFrame& frame, const FwView& view,
                       VkCommandBuffer secondary = VK_NULL_HANDLE);
+    // After the scene pass instead of recordInside, where the stage lends its scene: flames and
+    // heat haze over it.
+    void recordOver(const StageFrame& frame, const FwView& view, const LentScene& scene);
     // Throws Failure("<what>: <why>") unless result is FW_OK.
     void check(FwResult result, const char* what) const;
 

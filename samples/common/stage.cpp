@@ -104,7 +104,8 @@ void Stage::makePasses() {
         multisampled ? VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL : afterScene;
     attachments[1] = attachments[0];
     attachments[1].format = depthFormat;
-    attachments[1].storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    attachments[1].storeOp =
+        made.lendScene ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
     attachments[1].finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
     attachments[2] = attachments[0];
     attachments[2].samples = VK_SAMPLE_COUNT_1_BIT;
@@ -226,10 +227,16 @@ void Stage::makeTargets() {
         request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
         multisampled_ = host_.createImage(request);
     }
+    if (made.lendScene) {
+        request.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        copy_ = host_.createImage(request);
+    }
     request.format = depthFormat;
     request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    if (made.lendScene) request.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
     request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    if (depthFormat == VK_FORMAT_D24_UNORM_S8_UINT) request.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
+    if (depthFormat == VK_FORMAT_D24_UNORM_S8_UINT && !made.lendScene)
+        request.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
     depth_ = host_.createImage(request);
 
     const std::array<VkImageView, 3> views = {
@@ -304,7 +311,7 @@ void Stage::dropTargets() {
     outputFramebuffers_.clear();
     vkDestroyFramebuffer(host_.device, sceneFramebuffer_, nullptr);
     vkDestroyFramebuffer(host_.device, bloomFramebuffer_, nullptr);
-    for (Image* image : {&color_, &multisampled_, &depth_, &bloom_, &output_}) {
+    for (Image* image : {&color_, &multisampled_, &depth_, &copy_, &bloom_, &output_}) {
         host_.destroy(*image);
     }
     for (Slot& slot : slots_) host_.destroy(slot.readback);
@@ -404,6 +411,22 @@ void Stage::beginScene(const StageFrame& frame, bool secondaries) {
 }
 
 void Stage::endScene(const StageFrame& frame) { vkCmdEndRenderPass(frame.commands); }
+
+LentScene Stage::lendScene(const StageFrame& frame) {
+    imageBarrier(frame.commands, copy_.image, VK_IMAGE_LAYOUT_UNDEFINED,
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0,
+                 VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+    VkImageCopy region{};
+    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.extent = {extent_.width, extent_.height, 1};
+    vkCmdCopyImage(frame.commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, copy_.image,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    imageBarrier(frame.commands, copy_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                 VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                 VK_ACCESS_SHADER_READ_BIT);
+    return {color_.image, color_.firstMip, depth_.image, depth_.view, copy_.view};
+}
 
 // Halves the scene again and again; the last pass adds the small ones back as bloom.
 void Stage::spreadLight(const StageFrame& frame) {

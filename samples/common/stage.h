@@ -24,6 +24,16 @@ struct StageRequest {
     float bloom = 0.06f;     // [0, 1] share of light spread around; RGBA16F only
     float exposure = 1.0f;   // multiplies RGBA16F before the film curve
     float vignette = 0.15f;  // [0, 1]
+    bool lendScene = false;  // lendScene() may be called; RGBA16F and one sample only
+};
+
+// The scene after its pass, for who draws over it in a pass of its own.
+struct LentScene {
+    VkImage color = VK_NULL_HANDLE;  // TRANSFER_SRC_OPTIMAL, before and after
+    VkImageView colorView = VK_NULL_HANDLE;
+    VkImage depth = VK_NULL_HANDLE;  // DEPTH_STENCIL_ATTACHMENT_OPTIMAL, before and after
+    VkImageView depthView = VK_NULL_HANDLE;
+    VkImageView copy = VK_NULL_HANDLE;  // of the colour, SHADER_READ_ONLY_OPTIMAL
 };
 
 // A scene pass, for what draws in it.
@@ -63,6 +73,8 @@ class Stage {
     // The scene pass: colour and depth cleared, viewport and scissor set (unless `secondaries`).
     void beginScene(const StageFrame& frame, bool secondaries = false);
     void endScene(const StageFrame& frame);
+    // After endScene. Copies its colour.
+    LentScene lendScene(const StageFrame& frame);
     // Tone maps, submits, and presents or reads back.
     void finish(const StageFrame& frame);
 
@@ -125,7 +137,7 @@ class Stage {
     uint32_t number_ = 0;
     double time_ = 0, lastClock_ = 0;
 
-    Image color_, multisampled_, depth_, bloom_, output_;
+    Image color_, multisampled_, depth_, copy_, bloom_, output_;
     VkFormat outputFormat_ = VK_FORMAT_R8G8B8A8_UNORM;
     VkFramebuffer sceneFramebuffer_ = VK_NULL_HANDLE, bloomFramebuffer_ = VK_NULL_HANDLE;
     std::vector<VkFramebuffer> outputFramebuffers_;

@@ -189,8 +189,8 @@ FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(v
     second += w * g + dot(g, f) * dw;
 }
 
-// Eddies: divergence-free, and limited so that none throws fire far from the flame.
-FW_SHARED_FN vec3 flameCurl(vec3 x) {
+// Slopes of two noises at once, per cell.
+FW_SHARED_FN void flameSlopes(vec3 x, FW_INOUT(vec3) first, FW_INOUT(vec3) second) {
     vec3 cell = floor(x);
     vec3 f = x - cell;
     vec3 g = f - vec3(1.0f);
@@ -215,7 +215,15 @@ FW_SHARED_FN vec3 flameCurl(vec3 x) {
     flameCornerCurl(i1 ^ j ^ k1, vec3(g.x, f.y, g.z), u.x * byX.z, vec3(dx.z, -dy.w, dz.y), a, b);
     flameCornerCurl(i ^ j1 ^ k1, vec3(f.x, g.y, g.z), v.x * byX.w, vec3(-dx.w, dy.z, dz.z), a, b);
     flameCornerCurl(i1 ^ j1 ^ k1, g, u.x * byX.w, vec3(dx.w, dy.w, dz.w), a, b);
-    vec3 w = cross((1.15f / 2147483648.0f) * a, (1.15f / 2147483648.0f) * b);
+    first = (1.15f / 2147483648.0f) * a;
+    second = (1.15f / 2147483648.0f) * b;
+}
+
+// Eddies: divergence-free, and limited so that none throws fire far from the flame.
+FW_SHARED_FN vec3 flameCurl(vec3 x) {
+    vec3 a; vec3 b;
+    flameSlopes(x, a, b);
+    vec3 w = cross(a, b);
     return w / (1.0f + 0.6f * length(w));
 }
 
@@ -364,12 +372,17 @@ FW_SHARED_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profi
     return m;
 }
 
+// m, half width of the plume above a flame.
+FW_SHARED_FN float flamePlumeWide(FlameRecord f, float s) {
+    return 0.45f * f.low.w + 0.16f * max(s - 0.6f * f.high.w, 0.0f);
+}
+
 // Smoke above a flame: billows in a plume that widens. x: 1/m; y: how bright it takes light, [0, 1].
 FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     float y = at.s / f.high.w;
     if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return vec2(0.0f, 0.5f);
     float diameter = f.low.w;
-    float wide = 0.45f * diameter + 0.16f * max(at.s - 0.6f * f.high.w, 0.0f);
+    float wide = flamePlumeWide(f, at.s);
     float body = exp(-1.2f * dot(at.p, at.p) / (wide * wide));
     if (body < 0.01f) return vec2(0.0f, 0.5f);
     float scale = 0.55f * diameter * (0.7f + 0.35f * y);  // lateral only: along, it would shear
@@ -397,7 +410,7 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
 FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius, float widened) {
     float reach = kFlameReach * (1.0f + f.puff) * radius;
     if (f.smoke <= 0.0f || s1 < 0.6f * f.high.w || s0 > f.smokeTop * f.high.w) return reach;
-    return max(reach, widened * 1.96f * (0.45f * f.low.w + 0.16f * max(s1 - 0.6f * f.high.w, 0.0f)));
+    return max(reach, widened * 1.96f * flamePlumeWide(f, s1));
 }
 
 struct FlameSun {         // as a ray's smoke takes it
@@ -428,7 +441,7 @@ FW_SHARED_CONST float kSmokeBell = 2.4f;  // of its density: the body's own with
 FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
     float y = at.s / f.high.w;
     if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return 0.0f;
-    float wide = 0.45f * f.low.w + 0.16f * max(at.s - 0.6f * f.high.w, 0.0f);
+    float wide = flamePlumeWide(f, at.s);
     float thin = 0.45f * f.low.w / wide;
     float most = 0.85f * f.smoke * f.air.w * thin * thin * smoothstep(0.6f, 1.7f, y) *
                  (1.0f - smoothstep(0.7f * f.smokeTop, f.smokeTop, y));

@@ -130,7 +130,16 @@ struct VolumeSlices {
     uint reserved0; uint reserved1; uint reserved2;
 };
 FW_SHARED_SIZE(VolumeSlices, 48)
-FW_SHARED_CONST uint kVolumeSlices = 64u;       // most of a flame
+FW_SHARED_CONST uint kVolumeSlices = 96u;       // most of a flame
+
+// Push constants of the haze over a flame.
+struct VolumeHaze {
+    vec4 rect;            // as VolumeDraw's, of the hot column
+    vec4 rayX; vec4 rayY; vec4 rayO; vec4 clip;
+    float strength;       // [0, 8]
+    uint reserved0; uint reserved1; uint reserved2;
+};
+FW_SHARED_SIZE(VolumeHaze, 96)
 
 // Whether a pixel shows what has the thresholds in [from, to) of [0, 1): two that share them lie in a
 // fine pattern side by side, where laid over each other both would be too faint. Bayer's order.

@@ -78,7 +78,7 @@ void main() {
             vec3 x = from + direction * mix(spans.z, spans.w, 0.125 * (k + 0.5));
             FlamePlace at = flamePlaceNear(tube.pieces, x);
             float y = at.s / f.high.w;
-            float wide = 0.45 * f.low.w + 0.16 * max(at.s - 0.6 * f.high.w, 0.0);
+            float wide = flamePlumeWide(f, at.s);
             smokes = smokes || (spans.z < spans.w && y > 0.6 && y < f.smokeTop && dot(at.p, at.p) < 3.2 * wide * wide);
             k += 1.0;
         } while (k < 8.0);

@@ -95,12 +95,18 @@ class EveryPass : public GpuTest {
         def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show
         def.depthFormat = VK_FORMAT_D32_SFLOAT;
         target_ = rig_->context.registerTarget(def);
+        def.flags |= FW_TARGET_HAZE;
+        def.depthMode = FW_DEPTH_SAMPLED;
+        hazeTarget_ = rig_->context.registerTarget(def);
+        behind_ = device_->makeImage(def.colorFormat, {kSide, kSide}, 1,
+                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         color_ = device_->makeImage(
             def.colorFormat, {kSide, kSide}, 1,
             VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-        depth_ = device_->makeImage(
-            def.depthFormat, {kSide, kSide}, 1,
-            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        depth_ =
+            device_->makeImage(def.depthFormat, {kSide, kSide}, 1,
+                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         const float eye[3] = {0.9f, 0.7f, 1.1f}, at[3] = {0, 0, 0};
         rig_->view = testView(eye, at, 40, 1, false);
         if (published) makeVertices();
@@ -281,20 +287,20 @@ class EveryPass : public GpuTest {
 
     void draw(const FwVulkanFrame& frame) {
         const VkCommandBuffer commands = frame.commandBuffer;
-        VkImageMemoryBarrier barriers[2]{};
-        for (uint32_t i = 0; i < 2; ++i) {
+        VkImageMemoryBarrier barriers[3]{};
+        for (uint32_t i = 0; i < 3; ++i) {
             barriers[i].sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
             barriers[i].dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
             barriers[i].newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
             barriers[i].srcQueueFamilyIndex = barriers[i].dstQueueFamilyIndex =
                 VK_QUEUE_FAMILY_IGNORED;
-            barriers[i].image = i ? depth_.image : color_.image;
+            barriers[i].image = i == 0 ? color_.image : i == 1 ? depth_.image : behind_.image;
             barriers[i].subresourceRange = {
-                VkImageAspectFlags(i ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1,
-                0, 1};
+                VkImageAspectFlags(i == 1 ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
+                0, 1, 0, 1};
         }
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 2,
+                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 3,
                              barriers);
         const VkClearColorValue black{};
         const VkClearDepthStencilValue far{1, 0};
@@ -302,6 +308,15 @@ class EveryPass : public GpuTest {
                              1, &barriers[0].subresourceRange);
         vkCmdClearDepthStencilImage(commands, depth_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                     &far, 1, &barriers[1].subresourceRange);
+        vkCmdClearColorImage(commands, behind_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &black,
+                             1, &barriers[2].subresourceRange);
+        barriers[2].srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        barriers[2].dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+        barriers[2].oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        barriers[2].newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                             &barriers[2]);
         FwVulkanComposite images = fwDefaultVulkanComposite();
         images.width = images.height = kSide;
         for (FwVulkanImage* image : {&images.color, &images.depth}) {
@@ -316,6 +331,10 @@ class EveryPass : public GpuTest {
         FwView view = rig_->view;
         if (index_ % 2) view.exposure *= 0.99f;  // another than that of the outside part
         EXPECT_TRUE(rig_->backend.recordComposite(frame, target_, view, images));
+        FwVulkanFrame lends = frame;
+        lends.sampledColor = behind_.view;
+        lends.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        EXPECT_TRUE(rig_->backend.recordComposite(lends, hazeTarget_, view, images));
     }
 
     // Flames and particles show flipbooks from now on.
@@ -413,8 +432,8 @@ class EveryPass : public GpuTest {
 
     std::unique_ptr<VkRig> rig_;
     const BurnScene* scene_ = nullptr;
-    FwTargetId target_{};
-    TestImage color_, depth_;
+    FwTargetId target_{}, hazeTarget_{};
+    TestImage color_, depth_, behind_;
     TestBuffer vertices_;
     std::set<std::string> passes_;  // that took time
     gpu::RemoteUpdate::Placed placed_{};

@@ -292,6 +292,13 @@ TEST_F(HostDraw, TargetsAreChecked) {
             d.depthSamples = 16;
         },
         "depthSamples is 16");
+    refused([](auto& d) { d.flags = 16; }, "flags is 16");
+    refused(
+        [](auto& d) {
+            d.flags = FW_TARGET_HAZE;
+            d.depthMode = FW_DEPTH_TEST;
+        },
+        "FW_TARGET_HAZE needs depthMode FW_DEPTH_SAMPLED");
     if (!device_->options.independentBlend)
         refused([](auto& d) { d.colorAttachmentCount = 2; },
                 "FwVulkanTargetDef::colorAttachmentCount is 2; more than 1 needs the feature "

@@ -908,7 +908,9 @@ typedef struct FwView { /* what a camera and its light are; all lengths m */
     float exposure;                   /* pre-exposure multiplied into linear output, > 0, default 1 */
     float emissionScale;              /* of glow and flames against the scene's light, default 1 */
     float time;                       /* s, for flicker and breathing only */
-    float reserved[3];
+    float haze;                       /* how far heat haze bends what is behind a fire, where a target has it
+                                         (FW_TARGET_HAZE): [0, 8], default 1, 0 none */
+    float reserved[2];
 } FwView;
 static inline FwView fwDefaultView(void) {
     FwView d; fwInitDef(FW_DEF_VIEW, &d, (uint32_t)sizeof d); return d;

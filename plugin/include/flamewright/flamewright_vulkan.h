@@ -93,6 +93,8 @@ typedef enum FwTargetFlags {
     FW_TARGET_COMPOSITE = 1, /* for fwWorld_RecordComposite: we make the pass */
     FW_TARGET_NO_FLAMES = 2, /* surfaces alone */
     FW_TARGET_NO_SURFACES = 4, /* flames and smoke alone */
+    FW_TARGET_HAZE = 8,      /* with FW_DEPTH_SAMPLED alone: hot gas in and above volumetric fires bends what is
+                                behind it, in frames that lend FwVulkanFrame::sampledColor */
     FW_TARGET_FLAGS_FORCE32 = 0x7fffffff
 } FwTargetFlags;
 static inline FwVulkanTargetDef fwDefaultVulkanTargetDef(void) {
@@ -118,6 +120,13 @@ typedef struct FwVulkanFrame {
     VkImageLayout sampledDepthLayout; /* of the next while we draw: GENERAL or one of the READ_ONLY ones */
     VkImageView sampledDepth;        /* RecordInside on a target with FW_DEPTH_SAMPLED, where it is needed:
                                         its depth aspect alone, ready for our fragment shaders */
+    VkImageView sampledColor;        /* optional, RecordInside and RecordComposite on a target with FW_TARGET_HAZE: a
+                                        copy of what the target holds as we draw, of its size and with its encoding,
+                                        one sample, ready for our fragment shaders. Null: no haze. Haze goes over the
+                                        target before all flames; only fires that are marched with all their samples
+                                        (FW_FIRE_TIER_MARCH_HIGH) have it */
+    VkImageLayout sampledColorLayout; /* of it: GENERAL or SHADER_READ_ONLY_OPTIMAL */
+    uint32_t reserved;               /* 0 */
 } FwVulkanFrame;
 static inline FwVulkanFrame fwDefaultVulkanFrame(void) {
     FwVulkanFrame d; fwInitDef(FW_DEF_VULKAN_FRAME, &d, (uint32_t)sizeof d); return d;

@@ -168,8 +168,14 @@ struct VolumeCardShape {  // what is in a card's words
     float cell = 0;      // m
     uint32_t tilesX = 0, tilesY = 0, encoding = 0;
 };
+// What a flame's card shows goes over, pixel by pixel, from one march of it to the next.
+struct VolumeCardPair {
+    std::array<VolumeCardShape, 2> shapes;
+    uint32_t newest = 0;  // of them
+    uint32_t over = 1;    // frames from when it was marched until it shows alone
+};
 bool cardFits(const VolumeItem& item) noexcept;
-// How the card in `slot` is marched, from where it is seen now.
+// How the card in `slot`, a half of a pair, is marched, from where it is seen now.
 void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
              uint32_t slot, VolumeCardShape& card, MarchedVolume& out) noexcept;
 // False: it is behind the eye.
@@ -188,6 +194,21 @@ SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept;
 // Farthest first.
 void recordVolumeSlices(DrawRecorder& recorder, std::span<const SlicedVolume> volumes);
 
+extern const DrawPass kVolumeHazePass;
+struct HazedVolume {  // one whose heat bends what is seen behind it
+    uint32_t flame = 0;
+    float away = 0;  // m along the view
+    VolumeHaze draw{};
+};
+// Of the column of hot gas in and above a flame.
+void volumeHazeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
+                      vec4& high);
+// False: the view shows none of it.
+bool layVolumeHaze(const ViewParams& view, const vec4& low, const vec4& high, float strength,
+                   VolumeHaze& out) noexcept;
+// Farthest first.
+void recordVolumeHazes(DrawRecorder& recorder, std::span<const HazedVolume> volumes);
+
 // Volumetric flames of all kinds as a view draws them, farthest first: runs of neighbours that one
 // pass draws, each run behind the last one of its pass.
 struct VolumeRun {
@@ -195,7 +216,7 @@ struct VolumeRun {
     uint32_t first = 0, count = 0;
 };
 struct VolumeOrder {
-    std::array<VolumeRun, 2 * kMaxVolumeFlames> runs;  // a flame that turns is in two
+    std::array<VolumeRun, 3 * kMaxVolumeFlames> runs;  // a flame that turns may be in three
     uint32_t count = 0;
     // The next flame is `index` of its pass.
     void add(const DrawPass& pass, uint32_t index) noexcept {

@@ -42,28 +42,30 @@ constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[32], &kSurfacePasses[33],  &kSurfacePasses[34],  &kZPass,
     &kFlamesPass,        &kVolumePass,         &kVolumeCardPass,     &kVolumeCompositePass,
     &kVolumeSlicesPass,  &kFieldDrawPasses[0], &kFieldDrawPasses[1], &kFieldDrawPasses[2],
-    &kBookFlamesPass};
+    &kBookFlamesPass,    &kVolumeHazePass};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
 constexpr uint32_t kNumberOfVolumes = kNumberOfZPass + 2;
 constexpr uint32_t kNumberOfFields = kNumberOfZPass + 6;
 constexpr uint32_t kNumberOfBookFlames = kNumberOfFields + kFieldVariants;
-static_assert(std::size(kDrawPasses) == kNumberOfBookFlames + 1);
+constexpr uint32_t kNumberOfHaze = kNumberOfBookFlames + 1;
+static_assert(std::size(kDrawPasses) == kNumberOfHaze + 1);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first. The variants of
 // fields are one step, in which they are drawn as they lie behind each other, and so are volumetric
-// flames of all tiers.
+// flames of all tiers. Haze bends what is solid alone.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 5> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 6> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
     }
     steps[kSurfaceVariants] = {kNumberOfZPass, true};
-    steps[2 * kSurfaceVariants + 1] = {kNumberOfFields, false};
-    steps[2 * kSurfaceVariants + 2] = {kNumberOfZPass + 1, false};
-    steps[2 * kSurfaceVariants + 3] = {kNumberOfBookFlames, false};
-    steps[2 * kSurfaceVariants + 4] = {kNumberOfVolumes, false};
+    steps[2 * kSurfaceVariants + 1] = {kNumberOfHaze, false};
+    steps[2 * kSurfaceVariants + 2] = {kNumberOfFields, false};
+    steps[2 * kSurfaceVariants + 3] = {kNumberOfZPass + 1, false};
+    steps[2 * kSurfaceVariants + 4] = {kNumberOfBookFlames, false};
+    steps[2 * kSurfaceVariants + 5] = {kNumberOfVolumes, false};
     return steps;
 }();
 
@@ -337,6 +339,8 @@ void recordVolumeRun(const VolumeRun& run, DrawRecorder& recorder, const DrawLis
         recordVolumeCards(recorder, list.cards.subspan(run.first, run.count));
     else if (run.pass == &kVolumeSlicesPass)
         recordVolumeSlices(recorder, list.sliced.subspan(run.first, run.count));
+    else if (run.pass == &kVolumeHazePass)
+        recordVolumeHazes(recorder, list.hazes.subspan(run.first, run.count));
     else
         recordVolumeComposite(recorder, list.marched.subspan(run.first, run.count));
 }
@@ -347,6 +351,7 @@ bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (step.pass == kNumberOfFields) return !list.fields.empty();
     if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames && !list.books;
     if (step.pass == kNumberOfBookFlames) return list.flames && list.books;
+    if (step.pass == kNumberOfHaze) return !list.hazes.empty();
     return !list.volumeRuns.empty();
 }
 

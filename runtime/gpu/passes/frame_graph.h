@@ -129,6 +129,7 @@ struct DrawList {                                      // what a view may show
     std::span<const VolumeCard> cards{};
     std::span<const SlicedVolume> sliced{};
     std::span<const VolumeRun> volumeRuns{};  // of these four
+    std::span<const HazedVolume> hazes{};
 };
 // False: it would draw nothing, do not bind it.
 bool drawStepDraws(const DrawStep& step, const DrawList& list);

@@ -66,13 +66,13 @@ enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone };
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
 // 2 DrawPass::variant.
 // Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none), of `book
-// flames` the flipbooks (sampler2D); 2
+// flames` the flipbooks, of `volume haze` the scene's colour that the host lends (sampler2D); 2
 // binding 0 the look textures, of `volume` the fire profiles (sampler2DArray); 3, with softShader
 // alone, binding 0 the depth that the host lends (sampler2D or sampler2DMS).
 struct DrawPass {
     const char* name;
     const char* vertexShader;
-    const char* fragmentShader;  // null: with Blend::depthAlone
+    const char* fragmentShader;  // null: with Blend::depthAlone, or where softShader alone draws
     std::span<const Use> uses;   // drawRead, uniformView, indirect; set 0
     VertexInput vertexInput;
     Blend blend;

@@ -39,12 +39,13 @@ struct FrameInFlight {
     FrameTimers timers;
     std::array<VkFramebuffer, 8> framebuffers{};  // of its composites
     uint32_t framebufferCount = 0;
-    // Sets for the depth that hosts lend: made together when the first is needed, rewritten for
-    // each use in a frame.
-    static constexpr uint32_t kDepthSets = 8;
-    VkDescriptorPool depthPool = VK_NULL_HANDLE;
-    std::array<VkDescriptorSet, kDepthSets> depthSets{};
-    uint32_t depthSetCount = 0;  // used
+    // Sets for the depth and the colour that hosts lend: made together when the first is needed,
+    // rewritten for each use in a frame.
+    static constexpr uint32_t kLentDraws = 8;
+    static constexpr uint32_t kLentSets = 2 * kLentDraws;
+    VkDescriptorPool lentPool = VK_NULL_HANDLE;
+    std::array<VkDescriptorSet, kLentSets> lentSets{};
+    uint32_t lentSetCount = 0;  // used
 };
 
 class FrameRing {

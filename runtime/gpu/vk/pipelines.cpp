@@ -25,7 +25,10 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     };
     TargetKey key;
     key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
-    if (def.flags & ~7u) bad("flags", def.flags, "bits 0 to 2 are known");
+    if (def.flags & ~15u) bad("flags", def.flags, "bits 0 to 3 are known");
+    key.haze = (def.flags & FW_TARGET_HAZE) != 0;
+    if (key.haze && def.depthMode != FW_DEPTH_SAMPLED)
+        bad("flags", def.flags, "FW_TARGET_HAZE needs depthMode FW_DEPTH_SAMPLED");
     key.surfaces = !(def.flags & FW_TARGET_NO_SURFACES) && def.depthMode != FW_DEPTH_SAMPLED;
     key.flames = !(def.flags & FW_TARGET_NO_FLAMES);
     if (key.composite && def.renderPass)
@@ -477,7 +480,8 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
         Modules modules(*this);
         for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
             const bool surface = drawPasses()[pass]->vertexInput == VertexInput::mesh;
-            const bool drawn = surface ? key.surfaces : key.flames;
+            const bool haze = drawPasses()[pass] == &kVolumeHazePass;
+            const bool drawn = surface ? key.surfaces : key.flames && (!haze || key.haze);
             target->pipelines.push_back(drawn ? makeDraw(pass, key, renderPass, modules)
                                               : VK_NULL_HANDLE);
         }

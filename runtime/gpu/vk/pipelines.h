@@ -26,7 +26,7 @@ struct TargetKey {
     uint32_t depthSamples = 1;  // of a sampled depth
     FwDepthMode depthMode = FW_DEPTH_NONE;
     bool surfaces = true, flames = true;
-    bool reversedDepth = false, composite = false;
+    bool reversedDepth = false, composite = false, haze = false;
     FwOutputEncoding encoding = FW_OUTPUT_LINEAR;
     [[nodiscard]] bool samplesDepth() const noexcept { return depthMode == FW_DEPTH_SAMPLED; }
     [[nodiscard]] bool attachesDepth() const noexcept {

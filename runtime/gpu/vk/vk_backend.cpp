@@ -116,7 +116,7 @@ VkBackend::State::~State() {
         deviceMemory.destroy(slot.readback);
         slot.timers.destroy(device);
         ring.dropFramebuffers(slot);
-        vk.DestroyDescriptorPool(device.handle, slot.depthPool, callbacks);
+        vk.DestroyDescriptorPool(device.handle, slot.lentPool, callbacks);
     }
     destroyFramebuffers();
     deviceMemory.destroy(views);

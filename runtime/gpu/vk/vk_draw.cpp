@@ -150,6 +150,18 @@ VkImageMemoryBarrier imageBarrier(const FwVulkanImage& image, bool depth, VkForm
     return barrier;
 }
 
+// Haze is drawn where a frame lends its colour, so none is no fault.
+void checkLentColor(const Target& target, const FwVulkanFrame& frame) {
+    if (!target.key.haze || !frame.sampledColor ||
+        frame.sampledColorLayout == VK_IMAGE_LAYOUT_GENERAL ||
+        frame.sampledColorLayout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)
+        return;
+    core::fail(FW_ERROR_INVALID_ARGUMENT,
+               "FwVulkanFrame::sampledColorLayout is %d; our shaders read colour that is in "
+               "GENERAL (1) or SHADER_READ_ONLY_OPTIMAL (5).",
+               int(frame.sampledColorLayout));
+}
+
 constexpr float kAnyHeight = 1000;  // px
 
 constexpr VkAccessFlags kColorAccess =
@@ -163,7 +175,7 @@ constexpr VkPipelineStageFlags kDepthStages =
 
 void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
                                    const Target& target, const FwView& view,
-                                   const VkViewport& viewport, VkDescriptorSet depth) {
+                                   const VkViewport& viewport, const Lent& lent) {
     if ((!drawVertices && emitterGroups == 0) || !lookTextures.live || !limits.looks.viewParams)
         return;
     const Table& vk = device.table;
@@ -179,6 +191,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     std::array<VolumeItem, kMaxVolumeFlames> items;
     std::array<SlicedVolume, kMaxVolumeFlames> sliced;
     VolumeOrder order;
+    std::array<HazedVolume, kMaxVolumeFlames> hazes;
     std::array<FieldItem, kMaxFields> fieldItems;
     DrawList list{drawItems,
                   !burnEmpty || emitterGroups > 0,
@@ -216,6 +229,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             list.sliced = {sliced.data(), cut};
             list.volumeRuns = {order.runs.data(), order.count};
         }
+        if (lent.color) list.hazes = {hazes.data(), orderHazes(made, view.haze, hazes)};
     }
     for (const DrawStep& step : drawSteps()) {
         const uint32_t i = step.pass;
@@ -224,12 +238,18 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         if (!target.pipelines[i] || !drawStepDraws(step, list)) continue;
         if ((crossing & kSwitchNoZPass) && &pass == &kZPass) continue;
         if (&pass == &kVolumePass) {
-            recordVolumeDraws(slot, commands, target, list, viewOffset, depth);
+            for (const VolumeRun& run : list.volumeRuns)
+                recordVolumeDraws(slot, commands, target, list, run, viewOffset, lent);
+            continue;
+        }
+        if (&pass == &kVolumeHazePass) {
+            const VolumeRun run{&pass, 0, uint32_t(list.hazes.size())};
+            recordVolumeDraws(slot, commands, target, list, run, viewOffset, lent);
             continue;
         }
         slot.timers.begin(device, commands, pass.name);
         if (&pass == &kFieldDrawPasses[0]) {
-            recordFieldDraws(commands, target, i, list.fields, viewOffset, depth);
+            recordFieldDraws(commands, target, i, list.fields, viewOffset, lent.depth);
             slot.timers.end(device, commands);
             continue;
         }
@@ -245,9 +265,9 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         if (&pass == &kBookFlamesPass)
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 1,
                                      &books.set.set, 0, nullptr);
-        if (depth)
+        if (lent.depth)
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
-                                     &depth, 0, nullptr);
+                                     &lent.depth, 0, nullptr);
         if (surface) {
             const VkDeviceSize zeros[2] = {};
             const VkBuffer vertices[2] = {drawVertices, drawVertices};
@@ -262,29 +282,28 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
 
 void VkBackend::State::recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands,
                                          const Target& target, const DrawList& list,
-                                         uint32_t viewOffset, VkDescriptorSet depth) {
+                                         const VolumeRun& run, uint32_t viewOffset,
+                                         const Lent& lent) {
     const Table& vk = device.table;
-    for (const VolumeRun& run : list.volumeRuns) {
-        const size_t number = passNumber(*run.pass);
-        if (!target.pipelines[number]) continue;
-        slot.timers.begin(device, commands, run.pass->name);
-        const VkPipelineLayout layout = context.pipelines.draw(number).layout;
-        vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
-        // Who sees one flame at a time binds its set 0 for each.
-        const bool each = run.pass == &kVolumePass || run.pass == &kVolumeSlicesPass;
-        const VkDescriptorSet set = sets.draw(number);
-        if (!each)
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
-                                     0, nullptr);
-        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
-                                 each ? &profiles.set.set : &lookTextures.set.set, 0, nullptr);
-        if (depth)
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
-                                     &depth, 0, nullptr);
-        PassRecorder recorder(*this, commands, number, viewOffset);
-        recordVolumeRun(run, recorder, list);
-        slot.timers.end(device, commands);
-    }
+    const size_t number = passNumber(*run.pass);
+    if (!target.pipelines[number]) return;
+    slot.timers.begin(device, commands, run.pass->name);
+    const VkPipelineLayout layout = context.pipelines.draw(number).layout;
+    const auto bind = [&](uint32_t place, const VkDescriptorSet& set) {
+        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, place, 1, &set,
+                                 0, nullptr);
+    };
+    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
+    // Who sees one flame at a time binds its set 0 for each.
+    const bool haze = run.pass == &kVolumeHazePass;
+    const bool each = haze || run.pass == &kVolumePass || run.pass == &kVolumeSlicesPass;
+    if (!each) bind(0, sets.draw(number));
+    if (haze) bind(1, lent.color);
+    bind(2, each ? profiles.set.set : lookTextures.set.set);
+    if (lent.depth) bind(3, lent.depth);
+    PassRecorder recorder(*this, commands, number, viewOffset);
+    recordVolumeRun(run, recorder, list);
+    slot.timers.end(device, commands);
 }
 
 // Whether triangles that are counter-clockwise from outside count as backs in a view: hosts' views
@@ -301,11 +320,11 @@ bool VkBackend::State::turnsFaces(const FwView& view, const VkViewport& viewport
 }
 
 // Hosts' views come and go: a set is written for each use, never kept with a view.
-VkDescriptorSet VkBackend::State::depthSetFor(FrameInFlight& slot, VkImageView view,
-                                              VkImageLayout layout) {
+VkDescriptorSet VkBackend::State::lentSetFor(FrameInFlight& slot, VkImageView view,
+                                             VkImageLayout layout) {
     const Table& vk = device.table;
-    constexpr uint32_t kSets = FrameInFlight::kDepthSets;
-    if (!slot.depthPool) {
+    constexpr uint32_t kSets = FrameInFlight::kLentSets;
+    if (!slot.lentPool) {
         const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kSets};
         auto info =
             typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
@@ -324,19 +343,19 @@ VkDescriptorSet VkBackend::State::depthSetFor(FrameInFlight& slot, VkImageView v
         allocate.descriptorSetCount = kSets;
         allocate.pSetLayouts = layouts.data();
         const VkResult result =
-            vk.AllocateDescriptorSets(device.handle, &allocate, slot.depthSets.data());
+            vk.AllocateDescriptorSets(device.handle, &allocate, slot.lentSets.data());
         if (result != VK_SUCCESS) {
             vk.DestroyDescriptorPool(device.handle, pool, device.allocationCallbacks);
             device.check(result, "vkAllocateDescriptorSets");
         }
-        slot.depthPool = pool;
+        slot.lentPool = pool;
     }
-    if (slot.depthSetCount == kSets)
+    if (slot.lentSetCount == kSets)
         core::fail(
             FW_ERROR_INVALID_ARGUMENT,
             "A frame is drawn more than %u times against a sampled depth; that is the limit.",
-            kSets);
-    const VkDescriptorSet set = slot.depthSets[slot.depthSetCount++];
+            FrameInFlight::kLentDraws);
+    const VkDescriptorSet set = slot.lentSets[slot.lentSetCount++];
     const VkDescriptorImageInfo image{context.pipelines.depthSampler(), view, layout};
     auto write = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
     write.dstSet = set;
@@ -345,6 +364,18 @@ VkDescriptorSet VkBackend::State::depthSetFor(FrameInFlight& slot, VkImageView v
     write.pImageInfo = &image;
     vk.UpdateDescriptorSets(device.handle, 1, &write, 0, nullptr);
     return set;
+}
+
+// What the target's passes read of what the host lends; throws where that cannot be.
+VkBackend::State::Lent VkBackend::State::lentFor(FrameInFlight& slot, const Target& target,
+                                                 const FwVulkanFrame& frame, VkImageView depth,
+                                                 VkImageLayout depthLayout) {
+    Lent lent;
+    if (!target.key.samplesDepth()) return lent;
+    lent.depth = lentSetFor(slot, depth, depthLayout);
+    if (target.key.haze && frame.sampledColor)
+        lent.color = lentSetFor(slot, frame.sampledColor, frame.sampledColorLayout);
+    return lent;
 }
 
 bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, const FwView& view,
@@ -375,12 +406,11 @@ bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, co
                        "and 1.",
                        double(viewport.minDepth), double(viewport.maxDepth));
     }
+    checkLentColor(target, frame);
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
-    VkDescriptorSet depth = VK_NULL_HANDLE;
-    if (target.key.samplesDepth())
-        depth = s.depthSetFor(slot, frame.sampledDepth, frame.sampledDepthLayout);
-    s.recordDraws(slot, frame.commandBuffer, target, view, viewport, depth);
+    s.recordDraws(slot, frame.commandBuffer, target, view, viewport,
+                  s.lentFor(slot, target, frame, frame.sampledDepth, frame.sampledDepthLayout));
     return true;
 }
 
@@ -408,13 +438,12 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanComposite::depth.layoutBefore is VK_IMAGE_LAYOUT_UNDEFINED; the image "
                    "would lose the depth that is to be sampled.");
+    checkLentColor(target, frame);
     if (images.width == 0 || images.height == 0) return true;
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
-    VkDescriptorSet depth = VK_NULL_HANDLE;
-    if (target.key.samplesDepth())
-        depth =
-            s.depthSetFor(slot, images.depth.view, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+    const State::Lent lent = s.lentFor(slot, target, frame, images.depth.view,
+                                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
     const VkFramebuffer framebuffer = s.framebufferFor(slot, target, targetId, images);
 
     const Table& vk = s.device.table;
@@ -457,7 +486,7 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     begin.renderArea.extent = {images.width, images.height};
     vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
     const VkViewport viewport{0, 0, float(images.width), float(images.height), 0, 1};
-    s.recordDraws(slot, commands, target, view, viewport, depth);
+    s.recordDraws(slot, commands, target, view, viewport, lent);
     vk.CmdEndRenderPass(commands);
     vk.CmdPipelineBarrier(commands, ours, after, 0, 0, nullptr, 0, nullptr, count, out.data());
     return true;

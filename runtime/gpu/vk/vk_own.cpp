@@ -189,7 +189,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         begin.pClearValues = clears.data();
         vk.CmdBeginRenderPass(own.commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
         const VkViewport viewport{0, 0, float(def.width), float(def.height), 0, 1};
-        recordDraws(slot, own.commands, target, def.view, viewport);
+        recordDraws(slot, own.commands, target, def.view, viewport, {});
         vk.CmdEndRenderPass(own.commands);
         auto toCopy = typed<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
         toCopy.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;

@@ -10,7 +10,8 @@ namespace fw::gpu::vk {
 
 constexpr uint32_t kLeastCards = 32;     // that there is room for
 constexpr uint32_t kCardsPerFrame = 12;  // are marched anew, or all that must be
-constexpr float kCardTurn = 0.985f;      // cosine of what a card is seen from aside: 10 degrees
+constexpr uint32_t kPairWords = 2 * kCardWords;
+constexpr float kCardTurn = 0.985f;  // cosine of what a card is seen from aside: 10 degrees
 
 static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
 
@@ -39,8 +40,11 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
                                         volumeIntervals(flame.nodes, kFlameNodes),
                                         vec3(flame.nodes[0].centre),
                                         record.key,
-                                        record.tier};
+                                        record.tier,
+                                        {},
+                                        {}};
         volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
+        volumeHazeBounds(record, flame.nodes, kFlameNodes, box.hazeLow, box.hazeHigh);
         s.volumes.push_back(box);
     }
     if (flames.empty()) return;
@@ -109,7 +113,7 @@ void VkBackend::State::makeMarchRoom(uint32_t flames, uint64_t last) {
     if (!profiles.live) return;
     while (march.slots < flames) march.slots = std::max(2 * march.slots, kLeastCards);
     try {
-        planes.atLeast(kSpaceVolumeRays, march.slots * kCardWords + volumeRayWords(march.screen),
+        planes.atLeast(kSpaceVolumeRays, march.slots * kPairWords + volumeRayWords(march.screen),
                        last);
     } catch (const core::Error& error) {
         if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
@@ -117,6 +121,17 @@ void VkBackend::State::makeMarchRoom(uint32_t flames, uint64_t last) {
 }
 
 namespace {
+
+// [0, 1]: of a flame that is not marched for the view.
+float hazeAlone(uint32_t tier) noexcept {
+    return tier == FW_FIRE_TIER_AUTO || tier == FW_FIRE_TIER_MARCH_HIGH ? 1.0f : 0.0f;
+}
+
+float hazeOf(const TierLife& life) noexcept {
+    if (!life.marchedNow()) return 0.0f;
+    const float high = float(life.steps - kLowSteps) / float(kHighSteps - kLowSteps);
+    return high * (life.turned < kTierFrames ? life.part() : 1.0f);
+}
 
 // Samples of a flame, and as which pixels it shows them.
 void setFade(const TierLife& life, bool now, float& from, float& to) noexcept {
@@ -126,6 +141,25 @@ void setFade(const TierLife& life, bool now, float& from, float& to) noexcept {
 }
 
 }  // namespace
+
+uint32_t VkBackend::State::orderHazes(
+    bool marched, float strength, std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept {
+    if (!profiles.live) return 0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < volumes.size(); ++i) {
+        const VolumeBox& box = volumes[i];
+        const float share = marched ? march.haze[i] : hazeAlone(box.tier);
+        HazedVolume& one = out[count];
+        if (!layVolumeHaze(seen, box.hazeLow, box.hazeHigh, share * strength, one.draw)) continue;
+        one.flame = i;
+        one.away = glm::dot(vec3(seen.forward), box.base - vec3(seen.eye));
+        ++count;
+    }
+    std::sort(out.begin(), out.begin() + count, [](const HazedVolume& a, const HazedVolume& b) {
+        return a.away != b.away ? a.away > b.away : a.flame < b.flame;
+    });
+    return count;
+}
 
 void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
     march.count = march.cardCount = march.slicedCount = march.order.count = 0;
@@ -138,17 +172,38 @@ void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
     layMarch({items.data(), count}, recorder);
 }
 
+void VkBackend::State::showPair(const VolumeItem& item, uint32_t place) noexcept {
+    const TierLife& life = march.lives[place];
+    const VolumeCardPair& pair = march.pairs[place];
+    float from = 0.0f, to = 1.0f;
+    setFade(life, life.tier == FW_FIRE_TIER_IMPOSTOR, from, to);
+    const uint32_t older = pair.newest ^ 1u;
+    const float part = float(march.passed - pair.shapes[pair.newest].frame + 1) / float(pair.over);
+    const float border = pair.shapes[older].there ? from + std::min(part, 1.0f) * (to - from) : to;
+    const auto show = [&](uint32_t half, float first, float last) {
+        VolumeCard& card = march.cards[march.cardCount];
+        if (!(first < last) ||
+            !showCard(seen, item, march.screen, 2 * place + half, pair.shapes[half], card))
+            return;
+        card.from = first, card.to = last;
+        march.order.add(kVolumeCardPass, march.cardCount++);
+    };
+    show(pair.newest, from, border);
+    show(older, border, to);
+}
+
 void VkBackend::State::layMarch(std::span<const VolumeItem> items,
                                 FrameRecorder& recorder) noexcept {
     const uint32_t capacity = planes.capacity(kSpaceVolumeRays);
     if (capacity != march.capacity)
-        for (VolumeCardShape& shape : march.shapes) shape.there = false;
+        for (VolumeCardPair& pair : march.pairs)
+            for (VolumeCardShape& shape : pair.shapes) shape.there = false;
     march.capacity = capacity;
     ++march.passed;
     // Where memory is short there are none.
     const uint32_t rays = volumeRayWords(march.screen);
     const uint32_t slots =
-        uint64_t{march.slots} * kCardWords + rays / 4 <= capacity ? march.slots : 0;
+        uint64_t{march.slots} * kPairWords + rays / 4 <= capacity ? march.slots : 0;
     std::array<TierItem, kMaxVolumeFlames> asked;
     std::array<uint32_t, kMaxVolumeFlames> places{};
     for (size_t i = 0; i < items.size(); ++i) {
@@ -165,11 +220,12 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
     chooseTiers({asked.data(), items.size()}, slots, {detail.marchedHigh, detail.marched},
                 march.lives, places);
     // A place may have gone to another flame.
-    for (size_t i = 0; i < march.shapes.size(); ++i) {
+    for (size_t i = 0; i < march.pairs.size(); ++i) {
         const TierLife& life = march.lives[i];
-        VolumeCardShape& shape = march.shapes[i];
-        shape.there =
-            shape.there && life.used && shape.key == life.key && life.shows(FW_FIRE_TIER_IMPOSTOR);
+        for (VolumeCardShape& shape : march.pairs[i].shapes)
+            shape.there = shape.there && life.used && shape.key == life.key &&
+                          shape.encoding == march.screen.encoding &&
+                          life.shows(FW_FIRE_TIER_IMPOSTOR);
     }
 
     std::array<VolumeItem, kMaxVolumeFlames> marched;
@@ -182,7 +238,7 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         lives[count++] = places[i];
     }
     // `seen` is a view of one pixel.
-    const uint32_t first = slots * kCardWords;
+    const uint32_t first = slots * kPairWords;
     const uint32_t end =
         count == 0
             ? first
@@ -195,6 +251,13 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         setFade(life, life.marchedNow(), composite.from, composite.to);
     }
 
+    // What is marched with all its samples has haze; it goes with them, little by little.
+    // Of a flame beside the view its column may be in it.
+    for (size_t i = 0; i < volumes.size(); ++i) march.haze[i] = hazeAlone(volumes[i].tier);
+    for (size_t i = 0; i < items.size(); ++i)
+        if (places[i] != kMaxVolumeFlames)
+            march.haze[items[i].flame] = hazeOf(march.lives[places[i]]);
+
     // Those that have none, and of the others the oldest.
     std::array<uint32_t, kMaxVolumeFlames> due;
     uint32_t dues = 0;
@@ -202,10 +265,10 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         if (places[i] != kMaxVolumeFlames && march.lives[places[i]].shows(FW_FIRE_TIER_IMPOSTOR))
             due[dues++] = i;
     const auto age = [&](uint32_t i) {
-        const VolumeCardShape& shape = march.shapes[places[i]];
+        const VolumeCardPair& pair = march.pairs[places[i]];
+        const VolumeCardShape& shape = pair.shapes[pair.newest];
         const vec3 direction = glm::normalize(items[i].middle - vec3(seen.eye));
-        const bool good = shape.there && shape.encoding == march.screen.encoding &&
-                          glm::dot(direction, shape.direction) > kCardTurn;
+        const bool good = shape.there && glm::dot(direction, shape.direction) > kCardTurn;
         return good ? march.passed - shape.frame : ~uint64_t{0};
     };
     std::sort(due.begin(), due.begin() + dues, [&](uint32_t a, uint32_t b) {
@@ -217,9 +280,13 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         const uint32_t i = due[k];
         if (k >= kCardsPerFrame && age(i) != ~uint64_t{0}) break;
         MarchedVolume& one = march.items[count + cards];
-        layCard(seen, items[i], march.screen, places[i], march.shapes[places[i]], one);
-        march.shapes[places[i]].key = march.lives[places[i]].key;
-        march.shapes[places[i]].frame = march.passed;
+        VolumeCardPair& pair = march.pairs[places[i]];
+        if (pair.shapes[pair.newest].there) pair.newest ^= 1u;
+        pair.over = (dues + kCardsPerFrame - 1) / kCardsPerFrame;
+        VolumeCardShape& shape = pair.shapes[pair.newest];
+        layCard(seen, items[i], march.screen, 2 * places[i] + pair.newest, shape, one);
+        shape.key = march.lives[places[i]].key;
+        shape.frame = march.passed;
         one.march.flame = uint32_t(volumes.size()) + one.flame;
         ++cards;
     }
@@ -234,12 +301,7 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
             setFade(life, life.tier == FW_FIRE_TIER_SLICES, one.draw.from, one.draw.to);
             march.order.add(kVolumeSlicesPass, march.slicedCount++);
         }
-        VolumeCard& card = march.cards[march.cardCount];
-        if (!life.shows(FW_FIRE_TIER_IMPOSTOR) ||
-            !showCard(seen, items[i], march.screen, places[i], march.shapes[places[i]], card))
-            continue;
-        setFade(life, life.tier == FW_FIRE_TIER_IMPOSTOR, card.from, card.to);
-        march.order.add(kVolumeCardPass, march.cardCount++);
+        if (life.shows(FW_FIRE_TIER_IMPOSTOR)) showPair(items[i], places[i]);
     }
     march.made = march.screen;
     march.view = outside;

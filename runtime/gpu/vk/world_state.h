@@ -315,6 +315,7 @@ struct VkBackend::State {
         uint32_t intervals = 1;        // see VolumeDraw
         vec3 base{};                   // where it stands
         uint32_t key = 0, tier = 0;
+        vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
@@ -337,16 +338,17 @@ struct VkBackend::State {
         std::array<MarchedVolume, 2 * kMaxVolumeFlames>
             items;  // cards that are marched behind them
         uint32_t cardCount = 0;
-        std::array<VolumeCard, kMaxVolumeFlames> cards;
+        std::array<VolumeCard, 2 * kMaxVolumeFlames> cards;
         uint32_t slicedCount = 0;
         std::array<SlicedVolume, kMaxVolumeFlames> sliced;
         VolumeOrder order;  // of all of them
         TierLives lives;
-        std::array<VolumeCardShape, kMaxVolumeFlames> shapes;  // by life
-        uint32_t slots = 0;                     // cards that there is room for, before all else
-        uint32_t capacity = 0;                  // of the plane when they were made
-        uint64_t passed = 0;                    // frames
-        uint32_t steps = Detail{}.volumeSteps;  // on their way to detail's
+        std::array<VolumeCardPair, kMaxVolumeFlames> pairs;  // by life
+        uint32_t slots = 0;                        // pairs that there is room for, before all else
+        uint32_t capacity = 0;                     // of the plane when they were made
+        uint64_t passed = 0;                       // frames
+        std::array<float, kMaxVolumeFlames> haze;  // by flame, [0, 1]: how much of it shows
+        uint32_t steps = Detail{}.volumeSteps;     // on their way to detail's
     } march;
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
@@ -437,9 +439,14 @@ struct VkBackend::State {
     void makeMarchRoom(uint32_t flames, uint64_t last);
     void marchVolumes(FrameRecorder& recorder) noexcept;
     void layMarch(std::span<const VolumeItem> items, FrameRecorder& recorder) noexcept;
+    // What a flame's card shows, of the last two marches of it.
+    void showPair(const VolumeItem& item, uint32_t place) noexcept;
     // Whether what is marched is for a view on a screen; else they are to be marched as they are
     // drawn.
     [[nodiscard]] bool marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept;
+    // What bends what is behind it in the view that was last pushed, farthest first; how many.
+    uint32_t orderHazes(bool marched, float strength,
+                        std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept;
     // vk_emitters.cpp
     [[nodiscard]] uint32_t tileQuads() const noexcept;
     void makeEmitterRoom(const EmitterUpdate& update, uint64_t last);
@@ -450,15 +457,20 @@ struct VkBackend::State {
                           std::span<const FieldItem> items, uint32_t viewOffset,
                           VkDescriptorSet depth) noexcept;
     // vk_draw.cpp
-    // `depth`: a set with the depth that the target samples, or null.
-    // Volumetric flames of all tiers, in their order.
+    struct Lent {  // sets with what the host lends of its scene, or null
+        VkDescriptorSet depth = VK_NULL_HANDLE;
+        VkDescriptorSet color = VK_NULL_HANDLE;  // haze is drawn
+    };
+    // Neighbours of volumetric flames that one pass draws; or all haze.
     void recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                           const DrawList& list, uint32_t viewOffset, VkDescriptorSet depth);
+                           const DrawList& list, const VolumeRun& run, uint32_t viewOffset,
+                           const Lent& lent);
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                     const FwView& view, const VkViewport& viewport,
-                     VkDescriptorSet depth = VK_NULL_HANDLE);
+                     const FwView& view, const VkViewport& viewport, const Lent& lent);
+    Lent lentFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,
+                 VkImageView depth, VkImageLayout depthLayout);
     [[nodiscard]] bool turnsFaces(const FwView& view, const VkViewport& viewport) const noexcept;
-    VkDescriptorSet depthSetFor(FrameInFlight& slot, VkImageView view, VkImageLayout layout);
+    VkDescriptorSet lentSetFor(FrameInFlight& slot, VkImageView view, VkImageLayout layout);
     VkFramebuffer framebufferFor(FrameInFlight& slot, const Target& target, FwTargetId targetId,
                                  const FwVulkanComposite& images);
     // Of targets that are gone, and of `forget`; what the device may still use goes later.

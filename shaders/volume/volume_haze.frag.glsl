@@ -1,0 +1,59 @@
+#version 450
+// Heat haze: the host's scene as it is seen through a volumetric flame's hot column. A pixel shows what
+// its bent ray meets; of that nothing that stands before the column, so no foreground smears into it.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/look.h"
+#include "shared/volume_draw.h"
+#include "shared/volume_haze.h"
+
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(set = 1, binding = 0) uniform sampler2D sceneColor;
+layout(push_constant) uniform Push { VolumeHaze draw; };
+
+layout(location = 0) in vec3 inRay;
+layout(location = 1) in vec4 inBend;
+
+layout(location = 0) out vec4 outColor;
+
+#include "volume/scene_depth.glsl"
+
+const float kFarthest = 1000.0;  // m behind the column: what is farther moves no more
+const float kSeen = 0.25;        // px of shift from which a pixel is all bent
+
+// px of the view.
+vec2 pixelOf(vec3 fromEye) {
+    vec4 clip = fromEye.x * view.clip0 + fromEye.y * view.clip1 + fromEye.z * view.clip2 + view.clip3;
+    return 0.5 * clip.xy / clip.w * view.viewport.zw;
+}
+
+void main() {
+    outColor = vec4(0.0);
+    bool perspective = view.forward.w > 0.5;
+    vec3 start = perspective ? vec3(0.0) : inRay;
+    vec3 way = perspective ? inRay : view.forward.xyz;
+    float perDepth = length(way), away = inBend.w;
+    float behind = min(depthOfScene(draw.clip) * perDepth - away, kFarthest);
+    if (behind <= 0.0 || away <= 0.0) return;
+    vec3 seen = start + way * ((away + behind) / perDepth);
+    vec2 shift = pixelOf(seen + inBend.xyz * behind) - pixelOf(seen);
+    float pixels = length(shift);
+    shift *= min(kHazePixels / max(pixels, 1e-6), 1.0);
+
+    // The four around it, but none that stands before the column.
+    vec2 corner = min(view.viewport.xy, view.viewport.xy + view.viewport.zw);
+    ivec2 low = ivec2(max(corner, vec2(0.0)));
+    ivec2 high = min(ivec2(corner + abs(view.viewport.zw)), textureSize(sceneColor, 0)) - 1;
+    vec2 place = gl_FragCoord.xy + shift - 0.5, whole = floor(place), part = place - whole;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; ++i) {
+        ivec2 side = ivec2(i & 1, i >> 1);
+        ivec2 texel = clamp(ivec2(whole) + side, low, high);
+        vec2 weights = mix(1.0 - part, part, vec2(side));
+        float weight = weights.x * weights.y;
+        weight = depthOfSceneAt(draw.clip, texel) * perDepth > away ? weight : 0.0;
+        sum += weight * vec4(texelFetch(sceneColor, texel, 0).rgb, 1.0);
+    }
+    float shown = sum.a > 1e-3 ? min(pixels / kSeen, 1.0) : 0.0;
+    outColor = vec4(sum.rgb / max(sum.a, 1e-3) * shown, shown);
+}

@@ -1,0 +1,79 @@
+#version 450
+// The part of the view that a volumetric flame's hot column covers, as a grid: eddies are wider than its
+// cells, so what they bend is known at corners, and a pixel has it from there.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/burn.h"
+#include "shared/look.h"
+#include "shared/volume_flame.h"
+#include "shared/volume_haze.h"
+
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
+layout(push_constant) uniform Push { VolumeHaze draw; };
+
+layout(location = 0) out vec3 outRay;   // m, see VolumeDraw
+layout(location = 1) out vec4 outBend;  // how it is bent, per m behind the column; m along the ray to that
+
+#define FW_FLAME_NODE(i) flame.nodes[i]
+#include "shared/volume_march.h"
+
+struct Passing {  // where a ray passes the column's axis
+    FlamePlace at;
+    float away;   // m along the ray
+    vec3 side, along;
+};
+
+// By distance in half widths of the plume: of a curve that comes back the part that covers more.
+Passing passAxis(FlameRecord f, vec3 from, vec3 direction) {
+    float least = 1e30, part = 0.0;
+    uint piece = 0u;
+    FW_UNROLL
+    for (uint k = 0u; k < kFlamePieces; ++k) {
+        vec4 a = FW_FLAME_NODE(flameNodeOf(k)).centre, b = FW_FLAME_NODE(flameNodeOf(k + 1u)).centre;
+        float s = FW_FLAME_NODE(flameNodeOf(k)).along.w;
+        float long_ = FW_FLAME_NODE(flameNodeOf(k + 1u)).along.w - s;
+        vec3 way = b.xyz - a.xyz, to = a.xyz - from;
+        to -= direction * dot(to, direction);
+        way -= direction * dot(way, direction);
+        // The last piece goes straight on to where the column ends.
+        float most = k + 1u < kFlamePieces ? 1.0 : max((kHazeTop * f.high.w - s) / max(long_, 1e-6), 1.0);
+        float u = clamp(-dot(to, way) / max(dot(way, way), 1e-9), 0.0, most);
+        vec3 off = to + u * way;
+        float wide = flamePlumeWide(f, s + u * long_);
+        float cost = dot(off, off) / (wide * wide);
+        part = cost < least ? u : part;
+        piece = cost < least ? k : piece;
+        least = min(least, cost);
+    }
+    FlameNode a = FW_FLAME_NODE(flameNodeOf(piece)), b = FW_FLAME_NODE(flameNodeOf(piece + 1u));
+    Passing pass;
+    pass.side = mix(a.side.xyz, b.side.xyz, min(part, 1.0));
+    pass.along = mix(a.along.xyz, b.along.xyz, min(part, 1.0));
+    vec3 to = mix(a.centre.xyz, b.centre.xyz, part) - from;
+    pass.away = dot(to, direction);
+    vec3 off = direction * pass.away - to;
+    pass.at = FlamePlace(vec2(dot(off, pass.side), dot(off, cross(pass.along, pass.side))),
+                         mix(a.along.w, b.along.w, part), 0.0);
+    return pass;
+}
+
+void main() {
+    uint quad = uint(gl_VertexIndex) / 6u, corner = uint(gl_VertexIndex) % 6u;
+    corner = corner < 3u ? corner : 6u - corner;  // 0 1 2, 3 2 1
+    vec2 cell = vec2(quad % kHazeColumns + (corner & 1u), quad / kHazeColumns + (corner >> 1u));
+    vec2 place = mix(draw.rect.xy, draw.rect.zw, cell / vec2(kHazeColumns, kHazeRows));
+    gl_Position = vec4(place, 0.0, 1.0);
+    outRay = draw.rayO.xyz + place.x * draw.rayX.xyz + place.y * draw.rayY.xyz;
+
+    FlameRecord f = flame.record;
+    bool perspective = view.forward.w > 0.5;
+    vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : outRay);
+    vec3 direction = normalize(perspective ? outRay : view.forward.xyz);
+    Passing pass = passAxis(f, from, direction);
+    vec3 haze = flameHaze(f, pass.at);
+    vec3 bend = haze.x * pass.side + haze.y * pass.along + haze.z * cross(pass.along, pass.side);
+    bend -= direction * dot(bend, direction);
+    // Around the eye the column has no one place.
+    bend *= draw.strength * clamp(pass.away / flamePlumeWide(f, pass.at.s), 0.0, 1.0);
+    outBend = vec4(bend, pass.away);
+}
