@@ -102,7 +102,7 @@ void main() {
         uvec2 cell = first + uvec2(k % side, k / side);
         vec2 off = (vec2(k % side, k / side) + 0.5 + (side > 1u ? volumeShift(cell.x, cell.y) : vec2(0.0))) /
                        float(side) - 0.5;
-        float jitter = side > 1u ? volumePhase(cell.x, cell.y, view.ambientSky.w)
+        float jitter = side > 1u ? volumePhase(cell.x, cell.y)
                                  : volumeJitter(gl_FragCoord.x, gl_FragCoord.y, view.ambientSky.w);
         sum += shownAlong(f, off, jitter);
         k += 1u;

@@ -83,7 +83,7 @@ void main() {
     vec3 white = flameWhite(f, view.sunColor.w);
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
     FlameSun sun = raySun(direction, white);
-    float phase = volumePhase(place.x, place.y, view.ambientSky.w);
+    float phase = volumePhase(place.x, place.y);
     float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
     RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,

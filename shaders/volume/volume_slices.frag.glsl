@@ -45,7 +45,7 @@ void main() {
     float stride = draw.spacing * perDepth;
     float pixel = view.eye.w * (perspective ? inDepth : 1.0);
     // Somewhere in the slice's part, another place for each pixel of four: no layers show.
-    float later = draw.spacing * (volumePhase(uint(gl_FragCoord.x), uint(gl_FragCoord.y), view.ambientSky.w) - 0.5);
+    float later = draw.spacing * (volumePhase(uint(gl_FragCoord.x), uint(gl_FragCoord.y)) - 0.5);
     vec4 place = inPlace + later * inSlope;
     FlamePlace at;
     at.p = place.xy;
@@ -64,4 +64,9 @@ void main() {
 #endif
     FlameRay one = flameStep(FlameRay(vec3(0.0), vec3(1.0)), m, light, stride * part);
     outColor = flameShown(one, vec3(0.0), white * view.sunDirection.w, kEncoding);
+    // It hides what is behind it by one number for all colours: by what it takes of light like its own,
+    // for that is what is behind it most of all.
+    vec3 lit = vec3(0.2126, 0.7152, 0.0722) * one.radiance;
+    float all = lit.r + lit.g + lit.b;
+    if (all > 1e-9) outColor.a = 1.0 - dot(one.through, lit / all);
 }

@@ -167,7 +167,7 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         march.flame = one.flame;
         // Flames of few cells are probed more closely, or rays go past them.
         const float wide = volumeWide(draw, screen) / cell;
-        march.apart = wide < 8.0f ? 1 : wide < 20.0f ? 2 : 4;
+        march.apart = wide < 8.0f ? 1 : wide < 48.0f ? 2 : 4;
         march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
         VolumeComposite& composite = one.composite;
         composite.place =
