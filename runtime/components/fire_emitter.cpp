@@ -15,7 +15,6 @@ using gpu::vec3;
 using gpu::vec4;
 
 constexpr float kMostPower = 1e5f;   // kW
-constexpr float kTeleport = 100;     // m/s: what is faster was put there, it did not fly
 constexpr float kStuckRates = 1.2f;  // most births where fuel sticks, of those of the stream
 
 float length3(const float v[3]) noexcept {
@@ -194,7 +193,7 @@ float emitterLasts(const FireEmitter& emitter) {
     const FwFireEmitterDef& def = emitter.def;
     const float fire = emitter.look.life * (1 + 1.55f * def.lifeVariance);
     const bool smokes = def.smoke > 0 && !(def.flags & FW_EMITTER_NO_SMOKE);
-    return fire * std::max(smokes ? 1 + def.smokeLife : 1.0f, def.sparks > 0 ? 1.3f : 1.0f);
+    return fire * (smokes ? 1 + def.smokeLife : 1.0f);
 }
 
 uint32_t emitterNeeds(const FireEmitter& emitter) {
@@ -295,7 +294,7 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     record.turbulence = {look.eddies, look.eddyScale, look.eddyDrift, look.wander};
     record.size = {look.size0, look.grow, look.swell, look.stretch};
     record.life = {look.life, def.lifeVariance, def.smokeLife, smokes ? def.smoke : 0.0f};
-    record.heat = {look.kelvin0, look.kelvin1, def.smokeDensity, def.sparks};
+    record.heat = {look.kelvin0, look.kelvin1, def.smokeDensity, 0};
     record.first = emitter.first;
     record.ring = emitter.ring;
     record.head = births.head;

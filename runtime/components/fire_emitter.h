@@ -53,7 +53,18 @@ struct EmitterAir {
 
 struct EmitterBooks {
     uint32_t fire = 0, other = 0;  // as ParticleEmitter has them
+    uint32_t spark = 0;            // as SparkSource
 };
+
+// Where it was and how many sparks a second it threw there, at steps of the clock, the last first.
+constexpr uint32_t kSparkNotes = 11;
+struct SparkHistory {
+    std::array<std::array<float, 4>, kSparkNotes> notes{};  // m, 1/s
+    int64_t step = 0;                                       // of the last
+    bool begun = false;
+};
+
+constexpr float kTeleport = 100;  // m/s: what is faster was put there, it did not fly
 
 struct FireEmitter {
     FwFireEmitterDef def{};
@@ -81,6 +92,7 @@ struct FireEmitter {
         uint32_t head = 0, filled = 0, serial = 0;
         double last = -1e9;  // s of the last birth
         bool placed = false;
+        SparkHistory sparks;
     } births, next;
 };
 

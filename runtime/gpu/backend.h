@@ -82,12 +82,16 @@ struct VolumeUpdate {  // the volumetric flames that draws show from this frame 
 };
 
 struct ParticleEmitter;  // shared/particle.h
+struct SparkSource;      // shared/spark.h
 struct EmitterUpdate {   // fire emitters in this frame; looks only
     const ParticleEmitter* records = nullptr;
     uint32_t count = 0;
-    std::span<const uvec2> groups;  // record, first of kParticleGroup slots of its ring
-    uint32_t particleEnd = 0;       // behind the last particle of any of them
-    uint32_t particles = 0;         // of all rings
+    std::span<const uvec2> groups;        // record, first of kParticleGroup slots of its ring
+    uint32_t particleEnd = 0;             // behind the last particle of any of them
+    uint32_t particles = 0;               // of all rings
+    const SparkSource* sparks = nullptr;  // those of them that throw some
+    uint32_t sparkCount = 0;
+    uint32_t sparkQuads = 0;  // of all of those, at most
 };
 struct FieldRun {                  // a step of a particle field
     uint32_t field = 0, step = 0;  // slot; its number, from 0

@@ -105,7 +105,7 @@ components::EmitterBooks World::emitterBooks(const FwFireEmitterDef& def) {
         if (const uint32_t b =
                 bookByte(def.smokeBooks[i], "FwFireEmitterDef::smokeBooks", book::Kind::Smoke))
             books.other |= b << (8 * at++);
-    books.other |= bookByte(def.sparkBook, "FwFireEmitterDef::sparkBook", book::Kind::Spark) << 16;
+    books.spark = bookByte(def.sparkBook, "FwFireEmitterDef::sparkBook", book::Kind::Spark);
     return books;
 }
 

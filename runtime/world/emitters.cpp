@@ -2,7 +2,8 @@
 // nothing here is done for each particle.
 #include "world/world.h"
 
-#include "shared/particle.h"
+#include "components/sparks.h"
+#include "shared/spark.h"
 
 #include <algorithm>
 
@@ -56,7 +57,10 @@ FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
         needed += (ring.second + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
     if (groups < needed) emitterGroups_.reserve(std::max(needed, 2 * groups));
     const size_t records = emitterRecords_.capacity(), live = emitters_.live() + 1;
-    if (records < live) emitterRecords_.reserve(std::max(live, 2 * records));
+    if (records < live) {
+        emitterRecords_.reserve(std::max(live, 2 * records));
+        sparkSources_.reserve(std::max(live, 2 * records));
+    }
     findFireRoom(0);  // of shapes that jets are swept through
     if (components::isSwept(def)) {
         const size_t rays = (emitters_.live() + 1) * components::kJetRays;
@@ -106,7 +110,8 @@ float World::burningShare(const FireEmitter& emitter) noexcept {
 void World::planEmitters(float seconds) noexcept {
     emitterRecords_.clear();
     emitterGroups_.clear();
-    uint32_t end = 0, particles = 0;
+    sparkSources_.clear();
+    uint32_t end = 0, particles = 0, sparks = 0;
     const components::EmitterAir air = emitterAir(seconds);
     bool listed = false;
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
@@ -119,7 +124,14 @@ void World::planEmitters(float seconds) noexcept {
             listed = true;
             shieldJet(*emitter, air.now);
         }
-        if (!emitter || !components::advanceEmitter(*emitter, air, seconds, record)) continue;
+        if (!emitter) continue;
+        const bool shows = components::advanceEmitter(*emitter, air, seconds, record);
+        gpu::SparkSource source;
+        if (components::advanceSparks(*emitter, air, seconds, source)) {
+            sparkSources_.push_back(source);
+            sparks += components::sparkQuads(source);
+        }
+        if (!shows) continue;
         for (uint32_t first = 0; first < record.ring; first += gpu::kParticleGroup)
             emitterGroups_.push_back({uint32_t(emitterRecords_.size()), first});
         emitterRecords_.push_back(record);
@@ -132,11 +144,14 @@ void World::planEmitters(float seconds) noexcept {
     update.groups = emitterGroups_;
     update.particleEnd = end;
     update.particles = particles;
-    frame_.emittersDue = !emitterRecords_.empty() || emittersShown_;
+    update.sparks = sparkSources_.data();
+    update.sparkCount = uint32_t(sparkSources_.size());
+    update.sparkQuads = sparks;
+    frame_.emittersDue = showEmitters() || emittersShown_;
 }
 
 void World::commitEmitters(float seconds) noexcept {
-    emittersShown_ = !emitterRecords_.empty();
+    emittersShown_ = showEmitters();
     emitterTime_ += double(seconds);
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
         if (FireEmitter* emitter = emitters_.at(i)) components::commitEmitter(*emitter);

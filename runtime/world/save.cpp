@@ -3,6 +3,7 @@
 // before anything changes; the backend goes first, since it alone may still fail.
 #include "world/save.h"
 
+#include "components/sparks.h"
 #include "core/hash.h"
 #include "shared/field_draw.h"
 #include "shared/heat.h"
@@ -637,6 +638,7 @@ void World::applySaved(const SavedWorld& saved,
             touch.lit = from.touches[k].flag;
         }
     }
+    emitterTime_ = double(clock_.tick) / double(gpu::kTicksPerSecond);
     for (const SavedEmitter& from : saved.emitters) applyEmitter(from, *emitters_.at(from.slot));
     for (const SavedField& from : saved.fields) {
         Field& field = **fields_.at(from.slot);
@@ -704,6 +706,9 @@ void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emit
     std::copy_n(from.position, 3, emitter.position);
     std::copy_n(from.direction, 3, emitter.direction);
     if (emitter.def.power != from.power) components::setEmitterPower(emitter, from.power);
+    emitter.births = {};  // what flew belongs to another time
+    emitter.lastShields = {};
+    components::settleSparks(emitter, emitterTime_);
     emitter.swept = 0;
     for (size_t k = 0; k < from.touches.size(); ++k) {
         components::JetTouch& touch = emitter.touches[k];

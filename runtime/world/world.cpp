@@ -6,7 +6,7 @@
 #include "components/look_table.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
-#include "shared/particle.h"
+#include "shared/spark.h"
 #include "world/mesh_input.h"
 #include "world/save.h"
 
@@ -108,6 +108,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       emitterRecords_(memory),
       emitterGroups_(memory),
       emitterRings_(memory),
+      sparkSources_(memory),
       remote_(memory),
       imageUsers_(memory),
       touched_(memory),

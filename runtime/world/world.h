@@ -469,6 +469,9 @@ class World {
     void commitFires() noexcept;
     // emitters.cpp
     [[nodiscard]] components::EmitterAir emitterAir(float ahead) const noexcept;
+    [[nodiscard]] bool showEmitters() const noexcept {  // in the planned frame
+        return !emitterRecords_.empty() || !sparkSources_.empty();
+    }
     [[nodiscard]] float burningAreaOf(const Object& object) noexcept;  // m^2
     [[nodiscard]] float powerOf(const Object& object) noexcept;        // W
     [[nodiscard]] float burningShare(const components::FireEmitter& emitter) noexcept;
@@ -648,6 +651,7 @@ class World {
     std::pmr::vector<std::pair<uint32_t, uint32_t>> emitterRings_;  // scratch: first, ring
     uint32_t emittersMade_ = 0;                                     // since ever
     double emitterTime_ = 0;                                        // s
+    std::pmr::vector<gpu::SparkSource> sparkSources_;               // of a frame
     bool emittersShown_ = false;                                    // the backend has some
     uint32_t fieldsMade_ = 0;                                       // since ever
     uint32_t fieldsShown_ = 0;                                      // that the backend draws

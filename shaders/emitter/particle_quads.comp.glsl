@@ -56,7 +56,7 @@ void show(inout FlameQuad quad, uint book, float life, float age, float own) {
     quad.kind |= book << kQuadBook;
 }
 
-// A quad of fire or a spark, one of smoke, both or none.
+// A quad of fire, one of smoke, both or none.
 void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     bool perspective = view.forward.w > 0.5;
     float age = p.placeAge.w, a = age / t.life;
@@ -82,43 +82,29 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     float near = smoothstep(kNearFade, kNearFade + 0.8, far) *
                  (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
     bool drawn = near > 0.0;
-    bool spark = t.spark > 0.5;
 
     FlameQuad quad;
     vec3 along = right * axis.x + above * axis.y;
     // A fire's foot is where it is born; nothing reaches into the ground.
     bool jet = (e.flags & kEmitterJet) != 0u;
-    place += e.up.xyz * (jet || spark ? 0.0 : 0.35 * size * (1.0 - smoothstep(0.0, 0.5, a)));
+    place += e.up.xyz * (jet ? 0.0 : 0.35 * size * (1.0 - smoothstep(0.0, 0.5, a)));
     float height = dot(place, e.up.xyz) - e.carried.w;
     float root = sqrt(sqrt(stretch));
     float tall = size * root * root * root, wide = 0.5 * size / root;
     float upright = abs(dot(along, e.up.xyz));
     float low = mix(0.7 * wide, 0.42 * tall, upright);
-    place += e.up.xyz * ((e.flags & kEmitterGround) != 0u && !spark ? max(0.0, low - height)
-                                                                     : 0.0);
+    place += e.up.xyz * ((e.flags & kEmitterGround) != 0u ? max(0.0, low - height) : 0.0);
     float opacity = particleFire(a, t.own) * near;
-    if (spark) {
-        // A streak of a fiftieth of a second; what is too thin for a pixel is dimmer instead.
-        float pixel = view.eye.w * max(far, 0.05);
-        float thick = 0.004 + 0.004 * t.other;
-        // A book's streak fills a third of its page.
-        if ((e.otherBooks >> 16u & 0xFFu) != 0u) thick *= 3.0;
-        along = speed > 1e-3 ? v / max(length(v), 1e-3) : above;
-        wide = max(thick, 0.7 * pixel);
-        tall = length(v) * 0.02 + 2.0 * wide;
-        opacity = thick / wide * (1.0 - smoothstep(0.6, 1.0, a)) * near;
-    }
     quad.axisWidth = vec4(along, wide);
     quad.baseHeight = vec4(place - along * (0.5 * tall), tall);
     quad.opacity = opacity;
     // What is whole has no shape yet.
     quad.phase = min(0.10 + max(a, 0.0) * (0.75 + 0.3 * t.other), 0.98);
-    quad.kelvin = spark ? 1850.0 - 650.0 * a : particleKelvin(e, a, t.own);
-    quad.kind = (seed & 0xFFFFu) << 2u | (spark ? kQuadSpark : kQuadFire);
-    uint book = spark ? e.otherBooks >> 16u & 0xFFu : particleBook(e.books, 3u, seed);
+    quad.kelvin = particleKelvin(e, a, t.own);
+    quad.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadFire;
     // A book begins as a ball without shape too.
-    float shown = spark ? a : 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
-    show(quad, book, shown, age, t.own);
+    float shown = 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
+    show(quad, particleBook(e.books, 3u, seed), shown, age, t.own);
     bool fire = drawn && opacity > 0.004 && a < 1.0;
     FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
@@ -127,8 +113,8 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     smoke.opacity = particleSmoke(e, a) * t.smoke * near;
     smoke.phase = 0.10 * age + 5.0 * t.other;
     smoke.kelvin = lit;
-    smoke.kind = (seed & 0xFFFFu) << 2u | kQuadSmoke;
-    show(smoke, particleBook(e.otherBooks & 0xFFFFu, 2u, seed),
+    smoke.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke;
+    show(smoke, particleBook(e.otherBooks, 2u, seed),
          (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 

@@ -95,6 +95,7 @@
 #define FW_BIND_FIELD_RUNS 115      // uvec2[]: field slot, number of the step; of steps also the unit << 16
 #define FW_BIND_FIELD_SHOWN 116     // uint[]: what a cell shows in this frame (per field), see field_draw.h
 #define FW_BIND_FIELD_DRAWS 117     // FieldDraw[]: fields that are shown
+#define FW_BIND_SPARKS 119           // SparkSource[]: who throws sparks in the frame, see spark.h
 #define FW_BIND_EMITTERS 120         // ParticleEmitter[]: fire emitters of the frame, see particle.h
 #define FW_BIND_EMITTER_GROUPS 121   // uvec2[]: emitter, first slot of its ring that a group works on
 #define FW_BIND_PARTICLES 122        // Particle[]: rings of emitters

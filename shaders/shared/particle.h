@@ -1,6 +1,6 @@
 // Particles of fire emitters: what an emitter tells of a frame, how one of its particles is born,
-// moves, ages from fire to smoke and is shown. Looks alone. SI units, kelvin.
-// GLSL too, and laid out by hand.
+// moves, ages from fire to smoke and is shown. Sparks are in spark.h. Looks alone. SI units,
+// kelvin. GLSL too, and laid out by hand.
 // clang-format off
 #ifndef FW_SHARED_PARTICLE_H
 #define FW_SHARED_PARTICLE_H
@@ -55,7 +55,7 @@ struct ParticleEmitter {  // one frame of one emitter
     vec4 turbulence; // m/s, 1/m, m/s that eddies travel along `direction`, rad wander of a stream
     vec4 size;       // m width at birth, m per m of path, m per s, length over width at birth
     vec4 life;       // s, its variance, smoke's life in fire's, share that leave smoke
-    vec4 heat;       // K at birth, K at the end, how thick smoke is, share that are sparks
+    vec4 heat;       // K at birth, K at the end, how thick smoke is, unused
     uint first;      // particle
     uint ring;       // of them, at most
     uint head;       // of the next one that will be born, in the ring
@@ -69,7 +69,7 @@ struct ParticleEmitter {  // one frame of one emitter
     uint steps;      // of this frame
     uint shieldCount;
     uint books;      // that show fire, and
-    uint otherBooks; // smoke (two) and sparks: bytes, book + 1; 0: there are no more
+    uint otherBooks; // smoke (two): bytes, book + 1; 0: there are no more
     uint object;     // slot + 1 of the burning mesh whose flaming tiles it is born on; 0: of none
     uint reserved0;
     vec4 waves0;     // rad, rad, share: how a stream swings and pulses, at the frame's start
@@ -194,7 +194,6 @@ FW_SHARED_FN uint particleBook(uint bytes, uint most, uint seed) {
 struct ParticleTraits {
     float life;     // s of fire
     float all;      // s, with its smoke
-    float spark;    // 1: a spark
     float smoke;    // how thick its smoke is; 0: it leaves none
     float own;      // [0, 1)
     float other;    // [0, 1)
@@ -202,14 +201,12 @@ struct ParticleTraits {
 FW_SHARED_FN ParticleTraits particleTraits(ParticleEmitter e, uint seed) {
     ParticleTraits t;
     float f = particleHash(seed + 4u), f2 = f * f;
-    t.spark = particleHash(seed + 11u) < e.heat.w ? 1.0f : 0.0f;
     // A few live long.
-    t.life = e.life.x * (1.0f + e.life.y * (1.2f * f + 1.2f * f2 * f2 - 0.85f)) *
-             mix(1.0f, 1.3f, t.spark);
+    t.life = e.life.x * (1.0f + e.life.y * (1.2f * f + 1.2f * f2 * f2 - 0.85f));
     t.own = particleHash(seed + 5u);
     t.other = particleHash(seed + 8u);
     float keep = e.life.w;
-    t.smoke = t.spark > 0.5f ? 0.0f : particleUnit((keep - t.other) * 20.0f) * e.heat.z;
+    t.smoke = particleUnit((keep - t.other) * 20.0f) * e.heat.z;
     t.all = t.smoke > 0.0f ? t.life * (1.0f + e.life.z) : t.life;
     return t;
 }
@@ -232,12 +229,7 @@ FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
     vec3 at = mix(vec3(e.place.x, e.place.y, e.place.z), vec3(e.from.x, e.from.y, e.from.z), back);
     at += (r * cos(turn) + u * sin(turn)) * disc + vec3(e.half_.x, e.half_.y, e.half_.z) * along;
     float pulse = 1.0f + waves.z + 0.08f * particleGauss(seed + 3u);
-    float spark = particleHash(seed + 11u) < e.heat.w ? 1.0f : 0.0f;
     vec3 v = normalize(d + r * a + u * b) * (e.half_.w * pulse);
-    // Sparks are thrown about.
-    vec3 thrown = vec3(particleGauss(seed + 12u), particleGauss(seed + 13u),
-                       particleGauss(seed + 14u));
-    v += (thrown * (0.22f * e.half_.w + 0.5f)) * spark;
     Particle p;
     p.placeAge = vec4(at, 0.0f);
     p.speedPath = vec4(v + vec3(e.carried.x, e.carried.y, e.carried.z), 0.0f);
@@ -302,10 +294,8 @@ FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle
     float tau = mix(e.motion.x, e.motion.y, torn) * (0.7f + 0.6f * t.own);
     tau = a > 1.0f ? 0.5f : tau;
     float lift = mix(e.motion.w, e.motion.z, torn) * (a > 1.0f ? 0.4f : 1.0f);
-    tau = mix(tau, 0.35f + 0.6f * t.own, t.spark);
-    lift = mix(lift, 1.5f - 5.0f * t.other, t.spark);
     vec3 push = up * lift;
-    float struck = p.hit.w >= 0.0f ? 1.0f - t.spark : 0.0f;
+    float struck = p.hit.w >= 0.0f ? 1.0f : 0.0f;
     // Along what it struck: pressed flat, drawn out, and rising as a wall lets it.
     float flat_ = dot(up, n) > 0.5f ? smoothstep(0.1f, 0.5f, p.hit.w) * 1.2f : 0.0f;
     vec3 along = (up - n * dot(up, n)) * (e.motion.z * 0.8f) + n * (e.motion.z * flat_);
@@ -314,8 +304,7 @@ FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle
     float keep = exp(-dt / max(tau, 0.02f));
     vec3 settled = wind + push * tau;
     vec3 next = settled + (v - settled) * keep;
-    float amp = e.turbulence.x * mix(smoothstep(0.08f, 0.7f, a) * (a > 1.0f ? 0.55f : 1.0f), 0.8f,
-                                     t.spark);
+    float amp = e.turbulence.x * smoothstep(0.08f, 0.7f, a) * (a > 1.0f ? 0.55f : 1.0f);
     vec3 d = vec3(e.direction.x, e.direction.y, e.direction.z);
     vec3 c = particleEddies((at - d * (e.turbulence.z * now)) * e.turbulence.y);
     c -= n * (min(0.0f, dot(c, n)) * struck);
@@ -343,12 +332,10 @@ FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Partic
     float out_ = min(into * (0.25f + 0.65f * sqrt(t.other)) +
                      0.28f * length(along) * (0.3f + t.other), 4.5f);
     vec3 sheet = along * 0.75f + side * out_ + n * (into * (0.03f + 0.10f * t.own));
-    vec3 bounce = along * 0.7f + n * (into * 0.3f);
-    v = t.spark > 0.5f ? bounce : (first ? sheet : along + n * 0.2f);
-    float off = t.spark > 0.5f ? 0.01f : min(0.30f * size, 0.35f);
-    float age = (first && t.spark < 0.5f)
-                    ? clamp(p.placeAge.w, 0.22f * t.life, max(0.38f * t.life, 0.0f))
-                    : p.placeAge.w;
+    v = first ? sheet : along + n * 0.2f;
+    float off = min(0.30f * size, 0.35f);
+    float age = first ? clamp(p.placeAge.w, 0.22f * t.life, max(0.38f * t.life, 0.0f))
+                      : p.placeAge.w;
     p.placeAge = vec4(c + n * off, p.placeAge.w > t.life ? p.placeAge.w : age);
     p.speedPath = vec4(v, p.speedPath.w + (first ? 0.5f : 0.0f));
     p.hit = vec4(n, first ? 0.0f : p.hit.w);

@@ -5,9 +5,11 @@
 #include "book/picture.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
+#include "components/sparks.h"
 #include "components/volumetric_fire.h"
 #include "gpu/passes/frame_graph.h"
 #include "shared/front.h"
+#include "shared/spark.h"
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
 
@@ -124,7 +126,7 @@ class EveryPass : public GpuTest {
         jet.flags = FW_EMITTER_JET | FW_EMITTER_GROUND;
         jet.power = 20;
         jet.ground = -0.3f;
-        jet.sparks = 0.2f;
+        jet.sparks = 1;
         emitter_ = std::make_unique<ParticleReference>(jet);
         if (!published) {
             makeField(0, field::FieldPreset::Fire, 0);
@@ -258,11 +260,20 @@ class EveryPass : public GpuTest {
         plan.volumes = &volumes;
         const gpu::uvec2 group(0, 0);
         gpu::EmitterUpdate emitters;
+        gpu::SparkSource sparks[2];
         if (emitter_->step(0.2f)) {
             emitters.records = &emitter_->record;
             emitters.count = 1;
             emitters.groups = {&group, 1};
             emitters.particleEnd = emitters.particles = emitter_->record.ring;
+            components::settleSparks(emitter_->emitter, emitter_->air.now);
+            ASSERT_TRUE(
+                components::advanceSparks(emitter_->emitter, emitter_->air, 0.2f, sparks[0]));
+            sparks[1] = sparks[0];
+            sparks[1].object = 1;  // those of its tiles, too
+            emitters.sparks = sparks;
+            emitters.sparkCount = 2;
+            emitters.sparkQuads = 20;  // fewer than there are
         }
         plan.emitters = &emitters;
         std::vector<gpu::FieldRun> runs;

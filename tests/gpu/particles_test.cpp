@@ -6,11 +6,14 @@
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
 #include "support/pass_rig.h"
+#include "support/spark_reference.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <map>
 
 namespace fw::test {
 namespace {
@@ -291,6 +294,136 @@ TEST_F(ParticlePass, MoreThanThereIsRoomForAreNotDrawnAndNothingBreaks) {
     expectAll(kTiles);
     const std::vector<float> d = depths();
     for (size_t i = 1; i < d.size(); ++i) ASSERT_GE(d[i - 1], d[i] * (1 - 1.0f / 2000)) << i;
+}
+
+class SparkPass : public GpuTest {
+ protected:
+    void SetUp() override {
+        GpuTest::SetUp();
+        if (!device_) return;
+        static constexpr uint32_t kBindings[] = {FW_BIND_SPARKS,    FW_BIND_FLAMES,
+                                                 FW_BIND_DRAW_ARGS, FW_BIND_VIEW,
+                                                 FW_BIND_COUNTERS,  FW_BIND_BURN_TILES};
+        static constexpr uint32_t kUniforms[] = {FW_BIND_VIEW};
+        rig_ = std::make_unique<PassRig>(*device_, kBindings, uint32_t(sizeof(gpu::SparkPush)),
+                                         std::span<const uint32_t>{}, kUniforms);
+        rig_->make(FW_BIND_SPARKS, sizeof(gpu::SparkSource));
+        rig_->make(FW_BIND_FLAMES, kQuads * sizeof(gpu::FlameQuad));
+        rig_->make(FW_BIND_DRAW_ARGS, gpu::kFlameOrder * 4);
+        rig_->make(FW_BIND_COUNTERS, sizeof(gpu::IterationCounters));
+        rig_->make(FW_BIND_BURN_TILES, kBurnTiles * sizeof(gpu::BurnTile));
+        const float eye[3] = {0, 2, 9}, at[3] = {0, 1, 0};
+        const FwView view = testView(eye, at, 50, 1, false);
+        gpu::ViewInput input;
+        input.view = &view;
+        input.viewport[2] = input.viewport[3] = 512;
+        gpu::ViewParams params{};
+        testLooks().viewParams(input, params);
+        rig_->make(FW_BIND_VIEW, sizeof params, &params);
+        pass_ = rig_->add("sparks.comp");
+    }
+    void TearDown() override {
+        rig_.reset();
+        GpuTest::TearDown();
+    }
+    // Quads of a frame by their seed's bits; who shares those is left out.
+    std::map<uint32_t, gpu::FlameQuad> shown(const gpu::SparkSource& source) {
+        rig_->of<gpu::SparkSource>(FW_BIND_SPARKS)[0] = source;
+        const auto arguments = rig_->of<uint32_t>(FW_BIND_DRAW_ARGS);
+        std::fill_n(arguments.begin(), gpu::kFlameOrder, 0u);
+        const gpu::SparkPush push{kQuads, 0, 0, 0};
+        device_->run([&](VkCommandBuffer commands) {
+            rig_->begin(commands);
+            rig_->dispatch(commands, pass_, &push, gpu::kSparkGroups);
+        });
+        std::map<uint32_t, gpu::FlameQuad> out;
+        std::map<uint32_t, int> met;
+        count_ = arguments[gpu::kFlameParticles];
+        for (uint32_t i = 0; i < std::min(count_, kQuads); ++i) {
+            const gpu::FlameQuad& quad = rig_->of<gpu::FlameQuad>(FW_BIND_FLAMES)[i];
+            EXPECT_EQ(gpu::kQuadSpark, quad.kind & 3u);
+            out[quad.kind >> gpu::kQuadSeed] = quad;
+            ++met[quad.kind >> gpu::kQuadSeed];
+        }
+        for (const auto& one : met)
+            if (one.second > 1) out.erase(one.first);
+        return out;
+    }
+    static vec3 placeOf(const gpu::FlameQuad& quad) {
+        return vec3(quad.baseHeight) +
+               vec3(quad.axisWidth) * (quad.baseHeight.w - quad.axisWidth.w);
+    }
+
+    static constexpr uint32_t kQuads = 4096;
+    std::unique_ptr<PassRig> rig_;
+    uint32_t pass_ = 0, count_ = 0;
+};
+
+// Where the library has them; and a moment that comes again shows the same, whatever was between.
+TEST_F(SparkPass, ShowsThoseOfTheClockAgainAndAgain) {
+    if (!device_) return;
+    SparkRig rig(200);
+    for (int i = 0; i < 150; ++i) ASSERT_TRUE(rig.step(1 / 30.0f));
+    const gpu::SparkSource then = rig.record;
+    const std::vector<Spark> wanted = rig.sparks();
+    const auto first = shown(then);
+    size_t found = 0;
+    for (const Spark& one : wanted) {
+        const auto at = first.find(one.now.seed & 0xFFFFu);
+        if (at == first.end()) continue;  // too far gone to show
+        ++found;
+        // A bounce a moment earlier or later is at most that far away.
+        EXPECT_LT(glm::length(placeOf(at->second) - one.place), 0.03f) << one.slot;
+        EXPECT_GT(placeOf(at->second).y, 0.5f);
+    }
+    EXPECT_LT(150u, found);
+    ASSERT_TRUE(rig.step(0.7f));
+    const auto other = shown(rig.record);
+    const auto again = shown(then);
+    ASSERT_EQ(first.size(), again.size());
+    for (const auto& [seed, quad] : first)
+        EXPECT_EQ(0, std::memcmp(&quad, &again.at(seed), sizeof quad));
+    size_t moved = 0;
+    for (const auto& [seed, quad] : first)
+        moved += !other.count(seed) || placeOf(other.at(seed)) != placeOf(quad);
+    EXPECT_EQ(moved, first.size());
+}
+
+// Of two meshes' tiles only its own, and each as often as it has power.
+TEST_F(SparkPass, AreThrownByTheTilesOfTheirMeshByPower) {
+    if (!device_) return;
+    SparkRig rig(100);
+    ASSERT_TRUE(rig.step(3));
+    gpu::SparkSource source = rig.record;
+    source.object = 5;
+    for (gpu::vec4& key : source.keys) key.w = 1;
+    source.up.w = -1;  // the ground is deep
+    const auto tiles = rig_->of<gpu::BurnTile>(FW_BIND_BURN_TILES);
+    for (uint32_t i = 0; i < kBurnTiles; ++i) {
+        tiles[i] = {};
+        tiles[i].object = i % 2 ? 4 : 2;
+        tiles[i].tile = i;
+        tiles[i].positionArea = {100.0f * float(i), 1, 0, 0.01f};
+        tiles[i].normalPower = {0, 0, 1, i % 4 == 1 ? 900.0f : 300.0f};
+    }
+    rig_->of<gpu::IterationCounters>(FW_BIND_COUNTERS)[0].runCount = kBurnTiles;
+    uint32_t weak = 0, strong = 0, elsewhere = 0;
+    for (uint32_t turn = 0; turn < 40; ++turn) {
+        source.turn = turn;
+        source.part = 0.618f * float(turn) - std::floor(0.618f * float(turn));
+        for (const auto& [seed, quad] : shown(source)) {
+            const auto tile = uint32_t(std::max(placeOf(quad).x + 50, 0.0f) / 100);
+            ++(tile % 2 == 0 ? elsewhere : tile % 4 == 1 ? strong : weak);
+        }
+    }
+    std::printf("[   FIGURE ] sparks of strong tiles %u, of weak ones %u, of others %u\n", strong,
+                weak, elsewhere);
+    EXPECT_EQ(0u, elsewhere);
+    EXPECT_LT(100u, weak);
+    EXPECT_NEAR(double(strong) / weak, 3, 0.6);
+    rig_->of<gpu::IterationCounters>(FW_BIND_COUNTERS)[0].runCount = 0;
+    (void)shown(source);
+    EXPECT_EQ(0u, count_);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ Cloud fireOf(const ParticleReference& jet) {
     Cloud cloud;
     for (uint32_t i = 0; i < jet.record.ring; ++i) {
         const gpu::ParticleTraits t = jet.traits(i);
-        if (!jet.alive(i) || jet.particles[i].placeAge.w > t.life || t.spark > 0.5f) continue;
+        if (!jet.alive(i) || jet.particles[i].placeAge.w > t.life) continue;
         cloud.mean += jet.place(i);
         cloud.reach = std::max(cloud.reach, jet.place(i).x);
         cloud.count += 1;
@@ -74,7 +74,7 @@ TEST(Particles, AreTheSameStreamAtAnyFrameRate) {
         // No gap in the young part of the stream, where it is narrow.
         std::vector<float> along;
         for (uint32_t i = 0; i < jet.record.ring; ++i)
-            if (jet.alive(i) && jet.particles[i].placeAge.w < 0.25f && jet.traits(i).spark < 0.5f)
+            if (jet.alive(i) && jet.particles[i].placeAge.w < 0.25f)
                 along.push_back(jet.place(i).x);
         std::sort(along.begin(), along.end());
         ASSERT_LT(30u, along.size());

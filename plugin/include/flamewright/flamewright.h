@@ -738,7 +738,9 @@ typedef struct FwFireEmitterDef {
     float smoke;                /* share of the particles that turn to smoke, [0, 1], default 0.32 */
     float smokeLife;            /* in lives of the fire, [0, 20], default 2.2 */
     float smokeDensity;         /* factor, [0, 4], default 1 */
-    float sparks;               /* share of the particles that are sparks, [0, 1], default 0.04 */
+    float sparks;               /* sparks and embers a second for each kW, [0, 1], default 0.04; 2048 at a time are
+                                   the most. They fly up to 2.5 s, bounce off the ground and a jet's wall, rest and go
+                                   out; of FW_EMITTER_MESH each tile throws its own */
     float temperature;          /* K at birth, [0, 2500] */
     float ground;               /* m along up, with FW_EMITTER_GROUND; default 0 */
     uint32_t maxParticles;      /* [0, 1048576], 0: as many as it needs at this power. The oldest make room */

@@ -3,7 +3,7 @@
 #include "gpu/backend.h"
 #include "gpu/vk/recorder.h"
 #include "shared/grant.h"
-#include "shared/particle.h"
+#include "shared/spark.h"
 
 #include <algorithm>
 #include <array>
@@ -27,8 +27,8 @@ constexpr const ComputePass* kComputePasses[] = {
     &kRefineEmitPass,  &kRefinePlacePass,   &kRecedePass,          &kTiesPass,
     &kSoftPass,        &kSpringsPass,       &kDrapePass,           &kSkinPass,
     &kSootPass,        &kRefineCutPass,     &kRefinePublishedPass, &kVolumeProbePass,
-    &kVolumeMarchPass, &kParticlesPass,     &kParticleQuadsPass,   &kFieldPass,
-    &kFieldMaskPass,   &kFieldShowPass};
+    &kVolumeMarchPass, &kParticlesPass,     &kParticleQuadsPass,   &kSparksPass,
+    &kFieldPass,       &kFieldMaskPass,     &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -375,10 +375,16 @@ void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint
     recorder.dispatch(kParticlesPass, &push, std::min(groups, kMaxGroups));
 }
 
-void recordParticleQuads(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,
-                         bool alone) {
-    if (alone) recorder.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
+void recordNoQuads(vk::FrameRecorder& recorder) {
+    recorder.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
+}
+
+void recordParticleQuads(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups) {
     recorder.dispatch(kParticleQuadsPass, &push, std::min(groups, kMaxGroups));
+}
+
+void recordSparks(vk::FrameRecorder& recorder, const SparkPush& push, uint32_t sources) {
+    recorder.dispatch(kSparksPass, &push, sources * kSparkGroups);
 }
 
 void recordFlameSort(vk::FrameRecorder& recorder, const SortPush& push) {

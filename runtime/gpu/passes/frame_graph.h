@@ -19,6 +19,7 @@ class FrameRecorder;
 }
 
 struct ParticlePush;  // shared/particle.h
+struct SparkPush;     // shared/spark.h
 
 extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWakePass, kSchedulePass,
     kGatherPass, kArrivalPass, kArrivalRimPass, kGrantPass, kCommitPass, kPublishedPass,
@@ -28,7 +29,7 @@ extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWake
     kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass, kRefinePlacePass,
     kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass, kSpringsPass,
     kDrapePass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass, kParticlesPass,
-    kParticleQuadsPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
+    kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -144,9 +145,10 @@ void recordFlameQuads(vk::FrameRecorder& recorder, const FrameLists& lists, uint
 
 // Of emitters' particles, which move once a frame.
 void recordParticles(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups);
-// And quads of theirs; `alone`: there are no others.
-void recordParticleQuads(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups,
-                         bool alone);
+// Before the quads of a view of which burning meshes have none.
+void recordNoQuads(vk::FrameRecorder& recorder);
+void recordParticleQuads(vk::FrameRecorder& recorder, const ParticlePush& push, uint32_t groups);
+void recordSparks(vk::FrameRecorder& recorder, const SparkPush& push, uint32_t sources);
 // The order of all quads.
 void recordFlameSort(vk::FrameRecorder& recorder, const SortPush& push);
 

@@ -1,7 +1,7 @@
-// Particles of all fire emitters: births and motion; and the quads that show them to the frame's
-// view, drawn with the flames of burning meshes: one order, one draw.
+// Particles of all fire emitters: births and motion; and the quads that show them, and sparks, to
+// the frame's view, drawn with the flames of burning meshes: one order, one draw.
 #include "gpu/passes/frame_graph.h"
-#include "shared/particle.h"
+#include "shared/spark.h"
 
 namespace fw::gpu {
 namespace {
@@ -18,10 +18,17 @@ constexpr Use kQuadUses[] = {
     {FW_BIND_BOOKS, Access::read},
 };
 
+constexpr Use kSparkUses[] = {
+    {FW_BIND_SPARKS, Access::read},     {FW_BIND_COUNTERS, Access::read},
+    {FW_BIND_BURN_TILES, Access::read}, {FW_BIND_FLAMES, Access::write},
+    {FW_BIND_DRAW_ARGS, Access::write}, {FW_BIND_VIEW, Access::uniformView},
+};
+
 }  // namespace
 
 const ComputePass kParticlesPass{"particles", "particles.comp", kUses, sizeof(ParticlePush)};
 const ComputePass kParticleQuadsPass{"particle quads", "particle_quads.comp", kQuadUses,
                                      sizeof(ParticlePush)};
+const ComputePass kSparksPass{"sparks", "sparks.comp", kSparkUses, sizeof(SparkPush)};
 
 }  // namespace fw::gpu

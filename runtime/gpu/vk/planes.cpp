@@ -7,8 +7,8 @@
 #include "shared/field.h"
 #include "shared/field_draw.h"
 #include "shared/look.h"
-#include "shared/particle.h"
 #include "shared/refine.h"
+#include "shared/spark.h"
 #include "shared/volume_draw.h"
 
 #include <algorithm>
@@ -104,6 +104,8 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_EMITTERS, kSpaceEmitters, sizeof(ParticleEmitter), false, kComponentFlames, "emitters",
      0},
     {FW_BIND_EMITTER_GROUPS, kSpaceEmitterGroups, 8, false, kComponentFlames, "emitter groups", 0},
+    {FW_BIND_SPARKS, kSpaceSparks, sizeof(SparkSource), false, kComponentFlames, "spark sources",
+     0},
     {FW_BIND_PARTICLES, kSpaceParticles, sizeof(ParticleWords), true, kComponentFlames, "particles",
      0},
     {FW_BIND_BOOKS, kSpaceFixed, 4 * kBookWords, true, kComponentFlames, "flipbooks", 0},
@@ -160,7 +162,7 @@ constexpr uint32_t kInitialUnits[kSpaceCount] = {
     1024, 4096, 256,  256, 1,    1,    1,    1,     1,
     1,    1,    1,    1,   1,    1,    1,    1,     1024,
     1,    1,    1,    4,   1,    1,    1,    1,     1,
-    1,    1,    1,    1};
+    1,    1,    1,    1,   1};
 
 }  // namespace
 

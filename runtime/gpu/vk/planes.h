@@ -57,6 +57,7 @@ enum Space : uint32_t {
     kSpaceVolumeRays,       // words, of a view
     kSpaceEmitters,         // fire emitters, per frame
     kSpaceEmitterGroups,    // per frame
+    kSpaceSparks,           // who throws sparks, per frame
     kSpaceParticles,        // of all emitters
     kSpaceFlames,           // quads of flames and particles, per frame
     kSpaceFields,           // field slots

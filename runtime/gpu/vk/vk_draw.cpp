@@ -176,7 +176,7 @@ constexpr VkPipelineStageFlags kDepthStages =
 void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
                                    const Target& target, const FwView& view,
                                    const VkViewport& viewport, const Lent& lent) {
-    if ((!drawVertices && emitterGroups == 0) || !lookTextures.live || !limits.looks.viewParams)
+    if ((!drawVertices && !showsEmitters()) || !lookTextures.live || !limits.looks.viewParams)
         return;
     const Table& vk = device.table;
     const uint32_t viewOffset = pushView(slot, view, viewport);
@@ -194,7 +194,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     std::array<HazedVolume, kMaxVolumeFlames> hazes;
     std::array<FieldItem, kMaxFields> fieldItems;
     DrawList list{drawItems,
-                  !burnEmpty || emitterGroups > 0,
+                  !burnEmpty || showsEmitters(),
                   books.live,
                   {},
                   {},

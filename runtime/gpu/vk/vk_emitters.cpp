@@ -1,7 +1,7 @@
 // Fire emitters on their way to the device, and room for their particles and quads.
 #include "core/error.h"
 #include "gpu/vk/frame_needs.h"
-#include "shared/particle.h"
+#include "shared/spark.h"
 
 #include <algorithm>
 
@@ -13,17 +13,25 @@ uint32_t VkBackend::State::tileQuads() const noexcept {
 
 // Some particles show twice while fire turns to smoke; who finds no quad is not seen.
 void VkBackend::State::makeEmitterRoom(const EmitterUpdate& update, uint64_t last) {
-    if (update.count == 0) return;
+    if (update.count == 0 && update.sparkCount == 0) return;
     planes.atLeast(kSpaceParticles, update.particleEnd, last);
     planes.atLeast(kSpaceEmitters, update.count, last);
     planes.atLeast(kSpaceEmitterGroups, uint32_t(update.groups.size()), last);
-    const uint32_t tiles = tileQuads(), wished = update.particles + update.particles / 4 + 16;
+    planes.atLeast(kSpaceSparks, update.sparkCount, last);
+    const uint32_t tiles = tileQuads();
+    const uint32_t wished = update.particles + update.particles / 4 + 16 + update.sparkQuads;
     planes.atLeast(kSpaceFlames, quadUnits(std::min(tiles + wished, kMostQuads)), last);
 }
 
 void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecorder& recorder,
                     UploadWriter& writer) {
     s.emitterGroups = uint32_t(update.groups.size());
+    s.sparkSources = update.sparkCount;
+    if (update.sparkCount > 0) {
+        const std::span<const SparkSource> sparks(update.sparks, update.sparkCount);
+        const Staged at = writer.write(sparks);
+        recorder.copyIn(at.at, FW_BIND_SPARKS, 0, sparks.size_bytes());
+    }
     if (update.count == 0) return;
     const std::span<const ParticleEmitter> emitters(update.records, update.count);
     const Staged records = writer.write(emitters);

@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/vk/frame_needs.h"
-#include "shared/particle.h"
+#include "shared/spark.h"
 
 #include <algorithm>
 
@@ -169,15 +169,16 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     }
     if (plan.emitters)
         needs.uploadBytes += uploaded(plan.emitters->count * sizeof(ParticleEmitter)) +
-                             uploaded(plan.emitters->groups.size_bytes());
+                             uploaded(plan.emitters->groups.size_bytes()) +
+                             uploaded(plan.emitters->sparkCount * sizeof(SparkSource));
     addFieldNeeds(s, plan, needs);
     const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
                  refineBytes > 0 || forgets || plan.volumes || plan.emitters ||
-                 (s.emitterGroups > 0 && !s.open.unseen) ||
-                 (!s.volumes.empty() && !s.open.unseen) || needs.placing || s.recordsDirty ||
-                 s.fieldsDirty || needs.fieldsShow || !s.uploads.empty() || s.planes.movesPending();
+                 (s.showsEmitters() && !s.open.unseen) || (!s.volumes.empty() && !s.open.unseen) ||
+                 needs.placing || s.recordsDirty || s.fieldsDirty || needs.fieldsShow ||
+                 !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
 

@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/vk/frame_needs.h"
-#include "shared/particle.h"
+#include "shared/spark.h"
 
 #include <algorithm>
 #include <cmath>
@@ -515,7 +515,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
     FrameInFlight& slot = *open.slot;
     RecordTarget target = recordTarget(slot, open.commands);
     const bool marches = view && !volumes.empty();
-    const bool particles = emitterGroups > 0;
+    const bool particles = showsEmitters();
     const bool fieldsShow = view && !fieldDraws.empty();
     if ((!burnEmpty || marches || particles || fieldsShow) && limits.looks.viewParams) {
         // A step of an own device has no view: lights alone, which flicker with simulated time.
@@ -536,8 +536,11 @@ void VkBackend::State::closeFrame(const FwView* view) {
             push.quads = room.particles;
             push.firstQuad = room.tiles;
             push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
-            if (emittersMove) recordParticles(looks, push, emitterGroups);
-            if (view) recordParticleQuads(looks, push, emitterGroups, burnEmpty);
+            if (emittersMove && emitterGroups > 0) recordParticles(looks, push, emitterGroups);
+            if (view && burnEmpty) recordNoQuads(looks);
+            if (view && emitterGroups > 0) recordParticleQuads(looks, push, emitterGroups);
+            if (view && sparkSources > 0)
+                recordSparks(looks, {push.quads, push.firstQuad, push.burnRow, 0}, sparkSources);
         }
         if (view && (!burnEmpty || particles)) recordFlameSort(looks, room);
         if (marches) marchVolumes(looks);

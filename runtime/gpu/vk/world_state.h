@@ -319,6 +319,7 @@ struct VkBackend::State {
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
+    uint32_t sparkSources = 0;            // that throw sparks
     bool emittersMove = false;            // in the open frame
     uint32_t flameBooks = 0;              // as setFlameBooks has them
     std::pmr::vector<FieldEntry> fields;
@@ -449,6 +450,9 @@ struct VkBackend::State {
                         std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept;
     // vk_emitters.cpp
     [[nodiscard]] uint32_t tileQuads() const noexcept;
+    [[nodiscard]] bool showsEmitters() const noexcept {
+        return emitterGroups > 0 || sparkSources > 0;
+    }
     void makeEmitterRoom(const EmitterUpdate& update, uint64_t last);
     [[nodiscard]] SortPush quadRoom() const noexcept;
     // vk_field.cpp

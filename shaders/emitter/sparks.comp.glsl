@@ -1,0 +1,126 @@
+// Sparks and embers of all sources to quads of the frame's view: of a source's slots, or of the slots
+// of the burning tiles that feed it. Nothing is kept: see shared/spark.h.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_COUNTERS readonly
+#define FW_USE_BURN_TILES readonly
+#include "lib/buffers.glsl"
+#include "shared/book.h"
+#include "shared/burn.h"
+#include "shared/look.h"
+#include "shared/spark.h"
+layout(std430, set = 0, binding = FW_BIND_SPARKS) readonly buffer SparksBuffer {
+    SparkSource sources[];
+};
+layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer {
+    FlameQuad flameQuad[];
+};
+layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
+layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(push_constant) uniform Push { SparkPush push; };
+
+const float kNearFade = 0.3;  // m before the eye
+
+// Of a source's record all but its way and its walls.
+SparkSource sourceOf(uint i) {
+    SparkSource s;
+    s.direction = sources[i].direction;
+    s.half_ = sources[i].half_;
+    s.up = sources[i].up;
+    s.wind = sources[i].wind;
+    s.wallNormal.w = sources[i].wallNormal.w;
+    s.radius = sources[i].radius;
+    s.part = sources[i].part;
+    s.keyAge = sources[i].keyAge;
+    s.kelvin = sources[i].kelvin;
+    s.turn = sources[i].turn;
+    s.seed = sources[i].seed;
+    s.slots = sources[i].slots;
+    s.flags = sources[i].flags;
+    s.book = sources[i].book;
+    s.object = sources[i].object;
+    return s;
+}
+SparkBounds boundsOf(SparkSource s, uint i) {
+    SparkBounds b;
+    b.ground = vec4(s.up.xyz, (s.flags & kSparkGround) != 0u ? s.up.w : -1e9);
+    b.wall = (s.flags & kSparkWall) != 0u ? sources[i].wall : vec4(0.0);
+    b.normal = sources[i].wallNormal.xyz;
+    return b;
+}
+
+void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, vec3 carried,
+          float strength) {
+    SparkKind kind = sparkKind(slot.seed);
+    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, way, carried), bounds, s.up.xyz,
+                            slot.age);
+    vec3 place = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age);
+    vec3 before = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age - kSparkShutter);
+    float a = slot.age / kind.life;
+    vec3 toEye = view.eye.xyz - place, streak = place - before;
+    float far = view.forward.w > 0.5 ? dot(-toEye, view.forward.xyz) : 1e3;
+    // What is too thin for a pixel is dimmer instead. A book's streak fills a third of its page.
+    float thick = kind.width * (s.book != 0u ? 3.0 : 1.0);
+    float wide = max(thick, 0.7 * view.eye.w * max(far, 0.05));
+    float length_ = length(streak);
+    FlameQuad quad;
+    vec3 along = length_ > 1e-4 ? streak / length_ : view.up.xyz;
+    float tall = length_ + 2.0 * wide;
+    quad.axisWidth = vec4(along, wide);
+    quad.baseHeight = vec4(place + along * (wide - tall), tall);
+    quad.opacity = thick / wide * sparkFades(a) * strength *
+                   smoothstep(kNearFade, kNearFade + 0.8, far);
+    quad.phase = s.book != 0u ? bookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
+    quad.kelvin = sparkKelvin(s.kelvin, kind, slot.seed, a);
+    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadBook | kQuadSpark;
+    if (a >= 1.0 || quad.opacity <= 0.004) return;
+    uint first = atomicAdd(drawArgs[kFlameParticles], 1u);
+    if (first < push.quads) flameQuad[push.firstQuad + first] = quad;
+}
+
+void showOwn(SparkSource s, SparkBounds bounds, uint source, uint slot) {
+    SparkSlot now = sparkSlot(s.seed, slot, s.turn, s.part);
+    float at = sparkKey(s.keyAge, now.age);
+    uint i = uint(at), moved = max(i, 1u);
+    vec4 key = mix(sources[source].keys[i], sources[source].keys[i + 1u], at - float(i));
+    if (sparkChance(key.w, slot, now.seed) <= 0.0) return;
+    vec3 carried = (sources[source].keys[moved].xyz - sources[source].keys[min(moved + 1u, kSparkKeys - 1u)].xyz) *
+                   (s.wallNormal.w / kSparkKeyStep);
+    show(s, bounds, now, key.xyz + sparkOff(s.direction.xyz, s.radius, s.half_.xyz, now.seed),
+         s.direction.xyz, carried, 1.0);
+}
+
+// Of a tile's power as it is now: a spark does not remember it. So it fades in and out with it.
+void showOfTile(SparkSource s, SparkBounds bounds, float rate, BurnTile tile) {
+    uint seed = particleSeed(s.seed + tile.tile, tile.object);
+    float mean = rate * tile.normalPower.w * 1e-3;
+    uint slots = min(uint(ceil(mean * kSparkTurn)), kTileSparks);
+    vec3 normal = normalize(tile.normalPower.xyz + s.up.xyz * 1e-3);
+    for (uint k = 0u; k < slots; ++k) {
+        SparkSlot now = sparkSlot(seed, k, s.turn, s.part);
+        float chance = sparkChance(mean, k, now.seed);
+        float fades = 0.2 * min(mean * kSparkTurn, 1.0);
+        vec3 at = tile.positionArea.xyz + normal * 0.01 +
+                  sparkOff(normal, 0.8 * sqrt(tile.positionArea.w), vec3(0.0), now.seed);
+        if (chance > 0.0)
+            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0),
+                 clamp(chance / fades, 0.0, 1.0));
+    }
+}
+
+void main() {
+    uint source = gl_WorkGroupID.x / kSparkGroups;
+    uint first = gl_WorkGroupID.x % kSparkGroups * 64u + gl_LocalInvocationID.x;
+    SparkSource s = sourceOf(source);
+    SparkBounds bounds = boundsOf(s, source);
+    uint count = push.burnRow == kNoBurnRow ? 0u : counters[push.burnRow].runCount;
+    if (s.object == 0u) {
+        for (uint slot = first; slot < s.slots; slot += kSparkGroups * 64u)
+            showOwn(s, bounds, source, slot);
+    } else {
+        for (uint i = first; i < count; i += kSparkGroups * 64u)
+            if (burnTiles[i].object + 1u == s.object)
+                showOfTile(s, bounds, sources[source].keys[0].w, burnTiles[i]);
+    }
+}

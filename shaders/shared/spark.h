@@ -1,0 +1,239 @@
+// Sparks and embers of fire emitters: each is a function of the clock, of its number and of what
+// its source says of a frame. Nothing is kept of one, so any moment may be shown without those
+// before it. Looks alone. SI units, kelvin. GLSL too, and laid out by hand.
+// clang-format off
+#ifndef FW_SHARED_SPARK_H
+#define FW_SHARED_SPARK_H
+#include "shared/particle.h"
+
+FW_SHARED_BEGIN
+
+// A slot throws one spark after another, each in a turn of its own length: none lives longer.
+FW_SHARED_CONST float kSparkTurn = 2.5f;     // s
+FW_SHARED_CONST uint kSparkKeys = 12u;       // of a source's way: a turn, and the running step
+FW_SHARED_CONST float kSparkKeyStep = 0.25f; // s
+FW_SHARED_CONST uint kMostSparks = 2048u;    // slots of a source
+FW_SHARED_CONST uint kTileSparks = 8u;       // slots of a burning tile
+FW_SHARED_CONST uint kMostTileSparks = 1024u; // quads of all burning tiles of a source
+FW_SHARED_CONST uint kSparkGroups = 4u;      // of 64 threads, for each source
+FW_SHARED_CONST uint kSparkLegs = 3u;        // a flight, and two bounces
+FW_SHARED_CONST uint kSparkLooks = 8u;       // places of a leg where it is asked for what it meets
+FW_SHARED_CONST uint kSparkHalvings = 8u;    // and halvings of where it does
+FW_SHARED_CONST float kSparkShutter = 0.02f; // s that a streak shows
+FW_SHARED_CONST float kSparkClear = 0.005f;  // m: nothing comes nearer to what it bounces off
+FW_SHARED_CONST float kSparkBehind = 6.0f;    // m that one may be in a wall between two looks
+FW_SHARED_CONST float kSparkPlume = 1.7f;    // in drag times: how long the plume carries one up
+
+// SparkSource::flags
+FW_SHARED_CONST uint kSparkGround = 1u;
+FW_SHARED_CONST uint kSparkWall = 2u;
+
+struct SparkSource {  // one frame of an emitter
+    vec4 keys[12];    // m, world: where it was, now first, then at the clock's steps; w: sparks a second
+                      // there and then; of burning tiles, for each kW of them
+    vec4 direction;   // unit; w: rad, sigma of its cone
+    vec4 half_;       // m: from the middle of its line to an end; w: m/s
+    vec4 up;          // unit; w: m along up, the ground
+    vec4 wind;        // m/s; w: m/s up, of its plume
+    vec4 wall;        // m, world: a disc that stops them, and its radius
+    vec4 wallNormal;  // unit; w: share of its own motion that sparks get
+    float radius;     // m, of its disc
+    float part;       // of the running turn, [0, 1)
+    float keyAge;     // s since keys[1]
+    float kelvin;     // of a spark at birth
+    uint turn;
+    uint seed;
+    uint slots;
+    uint flags;
+    uint book;        // + 1; 0: none
+    uint object;      // slot + 1 of the burning mesh whose tiles throw them; 0: it does itself
+    uint reserved0; uint reserved1;
+};
+FW_SHARED_SIZE(SparkSource, 336)
+
+struct SparkPush {
+    uint quads;      // that may be shown
+    uint firstQuad;  // of them
+    uint burnRow;    // as ParticlePush
+    uint reserved;
+};
+FW_SHARED_SIZE(SparkPush, 16)
+
+struct SparkSlot {  // what a slot shows now
+    uint seed;
+    float age;      // s
+};
+FW_SHARED_FN SparkSlot sparkSlot(uint seed, uint slot, uint turn, float part) {
+    uint own = particleSeed(seed, slot);
+    float x = part + particleHash(own);
+    SparkSlot s;
+    s.age = (x >= 1.0f ? x - 1.0f : x) * kSparkTurn;
+    s.seed = particleBits(own + (turn + (x >= 1.0f ? 1u : 0u)) * 2654435761u);
+    return s;
+}
+// How surely there is one, > 0: there is. Slots 0, 1, 2 ... are there until so many are as the rate is
+// worth, and the last with the chance of what is left: the mean is the rate, exactly.
+FW_SHARED_FN float sparkChance(float rate, uint slot, uint seed) {
+    return rate * kSparkTurn - float(slot) - particleHash(seed + 1u);
+}
+// Between which keys it was `age` s ago: whole part and how far on.
+FW_SHARED_FN float sparkKey(float keyAge, float age) {
+    return min(age < keyAge ? age / max(keyAge, 1e-4f) : 1.0f + (age - keyAge) / kSparkKeyStep,
+               float(kSparkKeys) - 1.001f);
+}
+
+struct SparkKind {  // of one, by its seed alone
+    float life;     // s
+    float width;    // m
+    float tau;      // s of drag
+    float fall;     // m/s^2 down; < 0: it is carried up
+    float ember;    // 1: a glowing flake, slow and long
+};
+FW_SHARED_FN SparkKind sparkKind(uint seed) {
+    SparkKind s;
+    float own = particleHash(seed + 2u), other = particleHash(seed + 3u);
+    s.ember = particleHash(seed + 4u) < 0.25f ? 1.0f : 0.0f;
+    s.life = mix(0.5f + 1.1f * own * own, 1.3f + 1.15f * own, s.ember);
+    s.width = mix(0.004f + 0.004f * other, 0.007f + 0.006f * other, s.ember);
+    s.tau = 0.35f + 0.6f * own;
+    s.fall = mix(5.0f * other - 1.2f, 2.0f + 4.0f * other, s.ember);
+    return s;
+}
+
+struct SparkLeg {  // of its flight, from one thing that it meets to the next
+    vec3 from;     // m
+    vec3 speed;    // m/s
+    vec3 settled;  // m/s: as fast as it would fall and drift in the end
+    float plume;   // m/s up that the plume still gives
+    float began;   // s of its age
+    float ends;
+};
+// `t` s into the leg. Drag is linear, the plume dies down: both are exponentials.
+FW_SHARED_FN vec3 sparkArc(SparkLeg leg, vec3 up, float tau, float t) {
+    float slow = tau * kSparkPlume;
+    vec3 carried = up * (leg.plume / (1.0f - 1.0f / kSparkPlume));
+    return leg.from + leg.settled * t +
+           (leg.speed - leg.settled - carried) * (tau * (1.0f - exp(-t / tau))) +
+           carried * (slow * (1.0f - exp(-t / slow)));
+}
+FW_SHARED_FN vec3 sparkArcSpeed(SparkLeg leg, vec3 up, float tau, float t) {
+    vec3 carried = up * (leg.plume / (1.0f - 1.0f / kSparkPlume));
+    return leg.settled + (leg.speed - leg.settled - carried) * exp(-t / tau) +
+           carried * exp(-t / (tau * kSparkPlume));
+}
+
+// What stops sparks of a source: w of each the distance from it, of none a large one.
+struct SparkBounds {
+    vec4 ground;  // unit normal, m along it
+    vec4 wall;    // m, middle of the disc, and its radius; 0: none
+    vec3 normal;
+};
+FW_SHARED_FN float sparkAbove(SparkBounds b, vec3 p) {
+    return dot(p, vec3(b.ground.x, b.ground.y, b.ground.z)) - b.ground.w;
+}
+FW_SHARED_FN float sparkBefore(SparkBounds b, vec3 p) {
+    vec3 d = p - vec3(b.wall.x, b.wall.y, b.wall.z);
+    float before = dot(d, b.normal);
+    vec3 aside = d - b.normal * before;
+    // What is far behind it came by another way.
+    return dot(aside, aside) < b.wall.w * b.wall.w && before > -kSparkBehind ? before : 1e9f;
+}
+FW_SHARED_FN float sparkClearance(SparkBounds b, vec3 p) { return min(sparkAbove(b, p), sparkBefore(b, p)); }
+
+// s into the leg until it meets something; `most`: nothing until then. Looked for at the same places
+// whatever moment is shown, so that a bounce stays where it is; at first, while it is fast, often.
+FW_SHARED_FN float sparkMeets(SparkLeg leg, SparkBounds b, vec3 up, float tau, float most) {
+    float low = most, high = most;
+    bool met = false;
+    for (uint i = 0u; i < kSparkLooks; ++i) {
+        float before = float(i) / float(kSparkLooks), t = float(i + 1u) / float(kSparkLooks);
+        before *= before * most;
+        t *= t * most;
+        bool meets = !met && sparkClearance(b, sparkArc(leg, up, tau, t)) < kSparkClear;
+        low = meets ? before : low;
+        high = meets ? t : high;
+        met = met || meets;
+    }
+    for (uint i = 0u; i < kSparkHalvings; ++i) {
+        float t = 0.5f * (low + high);
+        bool inside = sparkClearance(b, sparkArc(leg, up, tau, t)) < kSparkClear;
+        low = inside ? low : t;
+        high = inside ? t : high;
+    }
+    return met ? min(low, most * 0.9999f) : most;
+}
+
+// The leg that it flies at `age`. One that met something for the last time lies still.
+FW_SHARED_FN SparkLeg sparkLeg(SparkKind kind, SparkLeg born, SparkBounds b, vec3 up, float age) {
+    SparkLeg leg = born;
+    leg.ends = kind.life;
+    for (uint i = 0u; i < kSparkLegs; ++i) {
+        float left = kind.life - leg.began;
+        float met = sparkMeets(leg, b, up, kind.tau, left);
+        bool on = met < left && age >= leg.began + met;
+        vec3 at = sparkArc(leg, up, kind.tau, met), v = sparkArcSpeed(leg, up, kind.tau, met);
+        vec3 n = sparkBefore(b, at) < sparkAbove(b, at) ? b.normal
+                                                        : vec3(b.ground.x, b.ground.y, b.ground.z);
+        float into = min(dot(v, n), 0.0f);
+        vec3 bounced = (v - n * into) * 0.55f - n * (into * 0.38f);
+        bool rests = i + 1u == kSparkLegs || -into < 0.4f;
+        if (on) {
+            leg.from = at;
+            leg.began = leg.began + met;
+            leg.plume = 0.0f;
+            leg.speed = rests ? vec3(0.0f) : bounced;
+            if (rests) leg.settled = vec3(0.0f);
+        } else {
+            leg.ends = min(leg.ends, leg.began + met);
+        }
+    }
+    return leg;
+}
+
+// m: where it is at `age`, which its leg holds. Eddies shake it, but into nothing.
+FW_SHARED_FN vec3 sparkPlace(SparkLeg leg, SparkKind kind, SparkBounds b, vec3 up, uint seed, float age) {
+    float t = clamp(age, leg.began, leg.ends) - leg.began;
+    vec3 p = sparkArc(leg, up, kind.tau, t);
+    float clear = sparkClearance(b, p), turns = 6.0f + 8.0f * particleHash(seed + 5u);
+    float first = 6.2831853f * particleHash(seed + 6u), second = 6.2831853f * particleHash(seed + 7u);
+    float shaken = 0.09f * smoothstep(0.0f, 0.7f, age) * particleUnit((clear - kSparkClear) * 4.0f);
+    vec3 across = particleAcross(up), aside = cross(across, up);
+    p += (across * sin(turns * age + first) + aside * cos(0.83f * turns * age + second) +
+          up * (0.6f * sin(1.31f * turns * age + second))) * shaken;
+    // What the look at few places, and halving, left.
+    float sunk = max(kSparkClear - sparkAbove(b, p), 0.0f);
+    return p + vec3(b.ground.x, b.ground.y, b.ground.z) * sunk;
+}
+
+// As it is born at `at`, of what moves as fast as `carried`.
+FW_SHARED_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 at, vec3 way, vec3 carried) {
+    vec3 up = vec3(s.up.x, s.up.y, s.up.z), wind = vec3(s.wind.x, s.wind.y, s.wind.z);
+    vec3 r = particleAcross(way), u = cross(r, way);
+    float a = particleGauss(seed + 8u) * s.direction.w, b = particleGauss(seed + 9u) * s.direction.w;
+    vec3 thrown = vec3(particleGauss(seed + 10u), particleGauss(seed + 11u), particleGauss(seed + 12u));
+    SparkLeg leg;
+    leg.from = at;
+    leg.speed = normalize(way + r * a + u * b) * s.half_.w * (0.7f + 0.6f * particleHash(seed + 13u)) +
+                thrown * (0.22f * s.half_.w + 0.4f) + carried;
+    leg.settled = wind - up * (kind.fall * kind.tau);
+    leg.plume = s.wind.w * (0.5f + 0.7f * particleHash(seed + 14u)) * mix(1.0f, 0.8f, kind.ember);
+    leg.began = 0.0f;
+    leg.ends = kind.life;
+    return leg;
+}
+// m: where on the source, off its middle.
+FW_SHARED_FN vec3 sparkOff(vec3 way, float radius, vec3 half_, uint seed) {
+    vec3 r = particleAcross(way), u = cross(r, way);
+    float disc = radius * sqrt(particleHash(seed + 15u)), turn = 6.2831853f * particleHash(seed + 16u);
+    return (r * cos(turn) + u * sin(turn)) * disc + half_ * (2.0f * particleHash(seed + 17u) - 1.0f);
+}
+
+// K, and how much of it shows, at `a` of its life.
+FW_SHARED_FN float sparkKelvin(float kelvin, SparkKind kind, uint seed, float a) {
+    float gust = sin(19.0f * a * kind.life + 6.2831853f * particleHash(seed + 18u));
+    return mix(kelvin - 650.0f * a, kelvin - 330.0f - 480.0f * a + 60.0f * gust, kind.ember);
+}
+FW_SHARED_FN float sparkFades(float a) { return 1.0f - smoothstep(0.6f, 1.0f, a); }
+
+FW_SHARED_END
+#endif
