@@ -12,7 +12,7 @@ namespace fw::book {
 namespace {
 
 struct Block {
-    uint32_t book = 0;
+    uint32_t book = 0, level = 0;
     bool motion = false;
     uint32_t columns = 1, width = 0, height = 0;  // texels
     uint32_t x = 0, y = 0;
@@ -20,12 +20,40 @@ struct Block {
 
 constexpr uint32_t kBorder = 1;  // texels of nothing around a frame
 
-Block blockOf(const Facts& f, uint32_t book, bool motion, uint32_t columns) {
+Block blockOf(const Facts& f, uint32_t book, uint32_t level, bool motion, uint32_t columns) {
     const uint32_t rows = (f.frames + columns - 1) / columns;
-    Block block{book, motion, columns, 0, 0, 0, 0};
-    block.width = columns * (motion ? f.motionWidth : f.width + 2 * kBorder);
-    block.height = rows * (motion ? f.motionHeight : f.height + 2 * kBorder);
+    Block block{book, level, motion, columns, 0, 0, 0, 0};
+    block.width = columns * (motion ? f.motionWidth : (f.width >> level) + 2 * kBorder);
+    block.height = rows * (motion ? f.motionHeight : (f.height >> level) + 2 * kBorder);
     return block;
+}
+
+// Whether frames have one: each texel is the mean of four.
+bool hasLevel(const Facts& f, uint32_t level) {
+    constexpr uint32_t kLeast = 4;  // texels
+    const uint32_t parts = (1u << level) - 1;
+    return ((f.width | f.height) & parts) == 0 && std::min(f.width, f.height) >> level >= kLeast;
+}
+
+// All frames at half the size. Temperatures count by what glows.
+std::pmr::vector<uint8_t> halved(std::span<const uint8_t> from, uint32_t width, uint32_t height,
+                                 uint32_t frames, std::pmr::memory_resource* memory) {
+    const uint32_t w = width / 2, h = height / 2;
+    std::pmr::vector<uint8_t> out(size_t(4) * w * h * frames, memory);
+    for (uint32_t row = 0; row < h * frames; ++row)
+        for (uint32_t x = 0; x < w; ++x) {
+            uint32_t sums[4] = {}, kelvin = 0;
+            for (uint32_t k = 0; k < 4; ++k) {
+                const size_t at = size_t(width) * (2 * row + k / 2) + 2 * x + k % 2;
+                const uint8_t* texel = from.data() + 4 * at;
+                for (uint32_t c = 0; c < 4; ++c) sums[c] += texel[c];
+                kelvin += uint32_t(texel[0]) * texel[1];
+            }
+            uint8_t* texel = out.data() + 4 * (size_t(w) * row + x);
+            for (uint32_t c = 0; c < 4; ++c) texel[c] = uint8_t((sums[c] + 2) / 4);
+            if (sums[1] > 0) texel[0] = uint8_t((kelvin + sums[1] / 2) / sums[1]);
+        }
+    return out;
 }
 
 // As high as the shelves come in a picture so wide.
@@ -43,8 +71,8 @@ uint32_t shelve(std::span<Block> blocks, uint32_t width) {
 void copyFrames(const Facts& f, const Block& block, std::span<const uint8_t> from,
                 Picture& picture) {
     const uint32_t border = block.motion ? 0 : kBorder, bytes = block.motion ? 2 : 4;
-    const uint32_t w = block.motion ? f.motionWidth : f.width,
-                   h = block.motion ? f.motionHeight : f.height;
+    const uint32_t w = block.motion ? f.motionWidth : f.width >> block.level,
+                   h = block.motion ? f.motionHeight : f.height >> block.level;
     for (uint32_t frame = 0; frame < f.frames; ++frame) {
         const uint32_t x = block.x + frame % block.columns * (w + 2 * border) + border;
         const uint32_t y = block.y + frame / block.columns * (h + 2 * border) + border;
@@ -68,8 +96,9 @@ Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* 
         const double square = std::sqrt(double(f.frames) * (f.height + 2) / cell);
         const uint32_t columns =
             std::clamp(uint32_t(std::ceil(square)), 1u, std::min(f.frames, kMostPicture / cell));
-        blocks.push_back(blockOf(f, i, false, columns));
-        blocks.push_back(blockOf(f, i, true, columns));
+        for (uint32_t level = 0; level < gpu::kBookLevels && hasLevel(f, level); ++level)
+            blocks.push_back(blockOf(f, i, level, false, columns));
+        blocks.push_back(blockOf(f, i, 0, true, columns));
     }
     std::stable_sort(blocks.begin(), blocks.end(),
                      [](const Block& a, const Block& b) { return a.height > b.height; });
@@ -91,13 +120,24 @@ Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* 
     for (const Block& block : blocks) {
         const Book& book = *books[block.book];
         const Facts& f = book.facts;
-        copyFrames(f, block, block.motion ? book.motion : book.texels, picture);
+        if (block.motion) {
+            copyFrames(f, block, book.motion, picture);
+        } else if (block.level == 0) {
+            copyFrames(f, block, book.texels, picture);
+        } else {
+            std::pmr::vector<uint8_t> smaller(memory);
+            for (uint32_t level = 0; level < block.level; ++level)
+                smaller = halved(level ? std::span<const uint8_t>(smaller) : book.texels,
+                                 f.width >> level, f.height >> level, f.frames, memory);
+            copyFrames(f, block, smaller, picture);
+        }
         gpu::BookRecord record{};
         uint32_t* words = picture.words.data() + size_t(block.book) * gpu::kBookRecordWords;
         std::memcpy(&record, words, sizeof record);
         const uint32_t border = block.motion ? 0 : kBorder;
         const uint32_t at = (block.x + border) | (block.y + border) << 16;
-        (block.motion ? record.motionAt : record.at) = at;
+        uint32_t* const levels[] = {&record.at, &record.at1, &record.at2, &record.at3};
+        *(block.motion ? &record.motionAt : levels[block.level]) = at;
         record.size = f.width | f.height << 16;
         record.motionSize = f.motionWidth | f.motionHeight << 16;
         record.frames = f.frames;

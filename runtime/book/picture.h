@@ -1,4 +1,5 @@
-// All flipbooks of a world as a device has them: one picture of their frames and motion, and the
+// All flipbooks of a world as a device has them: one picture of their frames, of those at smaller
+// sizes, which is what far ones show, and of motion; and the
 // words that say where each lies (shared/book.h).
 #pragma once
 #include "book/book.h"

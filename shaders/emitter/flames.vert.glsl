@@ -43,17 +43,26 @@ BookRecord bookOf(uint i) {
 }
 vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u)); }
 
-// What the fragments read of a quad's book; of its corner, the one of what it shows.
-vec2 openBook(FlameQuad quad, vec2 place) {
+// What the fragments read of a quad's book; of its corner, the one of what it shows. `pixels`: across.
+vec2 openBook(FlameQuad quad, vec2 place, float pixels) {
     uint book = (quad.kind >> kQuadBook) - 1u;
     BookRecord b = bookOf(book);
     BookPlace p = bookPlace(quad.phase, b.frames, (b.flags & kBookLoops) != 0u);
+    vec2 texels = halves(b.size);
+    uint level = bookLevel(texels.x, pixels, float(quad.kind >> kQuadSeed & 0xFFu) / 256.0);
+    uint smaller = books[book * kBookRecordWords + kBookLevelWord + level];
+    level = level > 0u && smaller != 0u ? level : 0u;
+    b.at = level > 0u ? smaller : b.at;
+    b.size = (b.size & 0xFFFFu) >> level | b.size >> (16u + level) << 16u;
     outFrames = vec4(vec2(bookCell(b, p.before)), vec2(bookCell(b, p.after)));
     outMotions = vec4(vec2(bookMotionCell(b, p.before)), vec2(bookMotionCell(b, p.after)));
     outSizes = vec4(halves(b.size), halves(b.motionSize));
     outBetween = vec2(p.part, b.motionMost);
     uint rect = kBookRects + 2u * (book * kMostBookFrames + p.before);
-    vec2 low = halves(books[rect]) / outSizes.xy, high = halves(books[rect + 1u]) / outSizes.xy;
+    // A texel of a smaller level reaches beyond what there is of larger ones.
+    vec2 wider = vec2(float((1u << level) - 1u)) / texels;
+    vec2 low = max(halves(books[rect]) / texels - wider, vec2(0.0));
+    vec2 high = min(halves(books[rect + 1u]) / texels + wider, vec2(1.0));
     bool mirrored = (quad.kind >> kQuadSeed & 1u) != 0u;
     float x = place.x > 0.0 != mirrored ? high.x : low.x;
     return vec2((2.0 * x - 1.0) * (mirrored ? -1.0 : 1.0), place.y > 0.5 ? high.y : low.y);
@@ -68,13 +77,15 @@ void main() {
     if (vertex == 3u) place = vec2(-1.0, 1.0);
     if (vertex == 4u) place = vec2(1.0, 0.0);
     if (vertex == 5u) place = vec2(1.0, 1.0);
+    vec3 foot = quad.baseHeight.xyz - view.eye.xyz;
+    vec3 middle = foot + quad.axisWidth.xyz * (0.5 * quad.baseHeight.w);
 #ifdef FW_BOOKS
     outFrames = outMotions = outSizes = vec4(0.0);
     outBetween = vec2(0.0);
-    if (quad.kind >> kQuadBook != 0u) place = openBook(quad, place);
+    float away = view.forward.w > 0.5 ? max(dot(middle, view.forward.xyz), 0.01) : 1.0;
+    float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
+    if (quad.kind >> kQuadBook != 0u) place = openBook(quad, place, pixels);
 #endif
-    vec3 foot = quad.baseHeight.xyz - view.eye.xyz;
-    vec3 middle = foot + quad.axisWidth.xyz * (0.5 * quad.baseHeight.w);
     vec3 toEye = view.forward.w > 0.5 ? -normalize(middle) : -view.forward.xyz;
     vec3 axis = quad.axisWidth.xyz;
     float along = abs(dot(axis, toEye));

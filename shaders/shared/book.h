@@ -6,10 +6,17 @@
 #define FW_SHARED_BOOK_H
 #include "shared/types.h"
 
+#ifdef __cplusplus
+#include <cmath>
+#endif
+
 FW_SHARED_BEGIN
 #ifdef __cplusplus
 using glm::clamp;
 using glm::floor;
+using glm::max;
+using glm::min;
+using std::log2;
 using glm::mix;
 #endif
 
@@ -35,10 +42,19 @@ struct BookRecord {
     uint flags;
     float motionMost;    // uv per frame of a full motion texel
     float seconds;       // a turn
-    uint reserved0; uint reserved1; uint reserved2; uint reserved3; uint reserved4; uint reserved5;
-    uint reserved6;
+    uint at1; uint at2; uint at3;  // as `at`, of the frames at half the size, a quarter, an eighth;
+                                   // 0: there are none
+    uint reserved0; uint reserved1; uint reserved2; uint reserved3;
 };
 FW_SHARED_SIZE(BookRecord, 64)
+FW_SHARED_CONST uint kBookLevels = 4u;
+FW_SHARED_CONST uint kBookLevelWord = 8u;  // of the record: `at1` is the next one
+// Level that a quad of so many pixels shows of frames of so many texels. `own`, [0, 1), of the quad:
+// not all of a fire change at once as the eye goes away.
+FW_SHARED_FN uint bookLevel(float texels, float pixels, float own) {
+    float off = log2(max(texels / max(pixels, 1e-3f), 1.0f)) + 0.25f + 0.5f * own;
+    return uint(min(off, float(kBookLevels - 1u)));
+}
 // Between frames of the picture lies a texel of nothing, so that what is read beyond a border is that.
 FW_SHARED_FN uvec2 bookCell(BookRecord b, uint frame) {
     return uvec2((b.at & 0xFFFFu) + frame % b.columns * ((b.size & 0xFFFFu) + 2u),

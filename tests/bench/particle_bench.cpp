@@ -26,7 +26,7 @@ class Sparks {
  public:
     Sparks(const Sparks&) = delete;
     Sparks& operator=(const Sparks&) = delete;
-    explicit Sparks(uint32_t particles, float away)
+    explicit Sparks(uint32_t particles, float away, bool books = false)
         : particles_(particles), pixels_(1280 * 720 * 4) {
         const FwContextDef contextDef = fwDefaultContextDef();
         FwWorldDef worldDef = fwDefaultWorldDef();
@@ -48,6 +48,15 @@ class Sparks {
         def.rate = float(particles) * 1.2f;  // all of them live, always
         def.lifeVariance = 0;
         def.smoke = 0.3f;
+        const auto open = [&](uint32_t preset, FwFlipbookId& book) {
+            FwFlipbookDef bookDef = fwDefaultFlipbookDef();
+            bookDef.preset = preset;
+            return fwWorld_CreateFlipbook(world_, &bookDef, &book) == FW_OK;
+        };
+        if (books && !(open(FW_FLIPBOOK_FLAME, def.fireBooks[0]) &&
+                       open(FW_FLIPBOOK_ROLL, def.fireBooks[1]) &&
+                       open(FW_FLIPBOOK_SMOKE, def.smokeBooks[0])))
+            return;
         if (fwWorld_CreateFireEmitter(world_, &def, &emitter_) != FW_OK) return;
         for (int i = 0; i < 100; ++i) fwWorld_Step(world_, 1.0f / 60);
         glm::mat4 projection(0.0f);
@@ -116,8 +125,8 @@ void simulate(benchmark::State& state, uint32_t particles) {
     state.counters["per_ns"] = 1e9 * least / double(particles);
 }
 
-void drawQuads(benchmark::State& state, uint32_t particles, float away) {
-    Sparks sparks(particles, away);
+void drawQuads(benchmark::State& state, uint32_t particles, float away, bool books) {
+    Sparks sparks(particles, away, books);
     if (!sparks.works()) return state.SkipWithError("no device");
     double cpu = 0, least = 1e9;
     const auto both = [&] {
@@ -156,7 +165,8 @@ void sortQuads(benchmark::State& state, uint32_t particles) {
         ->Iterations(15)
 FW_PARTICLE_ROW(simulate, sim10k, "particles/sim/10k", 10000);
 FW_PARTICLE_ROW(simulate, sim100k, "particles/sim/100k", 100000);
-FW_PARTICLE_ROW(drawQuads, draw2k, "particles/draw/2k", 2000, 60.0f);
+FW_PARTICLE_ROW(drawQuads, draw2k, "particles/draw/2k", 2000, 60.0f, false);
+FW_PARTICLE_ROW(drawQuads, draw2kBooks, "particles/draw/2k_books", 2000, 60.0f, true);
 FW_PARTICLE_ROW(sortQuads, sort10k, "particles/sort/10k", 10000);
 
 }  // namespace

@@ -208,6 +208,52 @@ TEST(Flipbook, APictureHoldsAllBooks) {
     }
 }
 
+// Of each level a texel is the mean of four of the one before, all around is nothing, and no two
+// frames or levels share a texel: what is read at any of them is of its own frame.
+TEST(Flipbook, SmallerLevelsAreTheMeanAndDoNotBleed) {
+    book::Book one(memory());
+    book::readBook(book::ownBook(FW_FLIPBOOK_FLAME, memory()), one);
+    const book::Book* const laid[] = {&one};
+    const book::Picture picture = book::layBooks(laid, memory());
+    gpu::BookRecord record;
+    std::memcpy(&record, picture.words.data(), sizeof record);
+    const uint32_t ats[] = {record.at, record.at1, record.at2, record.at3};
+    const auto texel = [&](uint32_t x, uint32_t y) {
+        return &picture.texels[4 * (size_t(y) * picture.width + x)];
+    };
+    for (uint32_t level = 1; level < gpu::kBookLevels; ++level) {
+        gpu::BookRecord big = record, small = record;
+        big.at = ats[level - 1];
+        small.at = ats[level];
+        ASSERT_NE(0u, small.at) << level;
+        big.size = (one.facts.width >> (level - 1)) | (one.facts.height >> (level - 1)) << 16;
+        small.size = (one.facts.width >> level) | (one.facts.height >> level) << 16;
+        const uint32_t w = small.size & 0xFFFF, h = small.size >> 16;
+        for (uint32_t frame = 0; frame < one.facts.frames; ++frame) {
+            const gpu::uvec2 from = gpu::bookCell(big, frame), at = gpu::bookCell(small, frame);
+            for (uint32_t y = 0; y < h; ++y)
+                for (uint32_t x = 0; x < w; ++x)
+                    for (uint32_t c = 1; c < 4; ++c) {
+                        double mean = 0;
+                        for (uint32_t k = 0; k < 4; ++k)
+                            mean += texel(from.x + 2 * x + k % 2, from.y + 2 * y + k / 2)[c] / 4.0;
+                        ASSERT_NEAR(mean, texel(at.x + x, at.y + y)[c], 0.51);
+                    }
+            for (uint32_t y = 0; y < h + 2; ++y)
+                for (uint32_t x = 0; x < w + 2; ++x)
+                    if (x == 0 || y == 0 || x == w + 1 || y == h + 1) {
+                        ASSERT_EQ(0, texel(at.x + x - 1, at.y + y - 1)[2]) << level << " " << frame;
+                    }
+        }
+    }
+    // As many texels as pixels, or fewer: all of them; then a level for each half.
+    EXPECT_EQ(0u, gpu::bookLevel(64, 128, 0.99f));
+    EXPECT_EQ(0u, gpu::bookLevel(64, 64, 0.99f));
+    EXPECT_EQ(1u, gpu::bookLevel(64, 32, 0.0f));
+    EXPECT_EQ(1u, gpu::bookLevel(64, 32, 0.99f));
+    EXPECT_EQ(3u, gpu::bookLevel(64, 0.1f, 0.0f));
+}
+
 TEST(Flipbook, TooManyBooksAreRefusedByTheirRows) {
     book::Book huge(memory());
     huge.facts.width = huge.facts.height = 512;
