@@ -250,6 +250,9 @@ class Backend {
 
     virtual std::span<const PassTime> passTimes() = 0;
     virtual void memoryRows(std::pmr::vector<MemoryRow>& out) = 0;
+
+    // Whether it draws: what only looks want is worth making.
+    [[nodiscard]] virtual bool draws() const noexcept { return false; }
 };
 
 }  // namespace fw::gpu

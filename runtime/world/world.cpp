@@ -438,7 +438,8 @@ bool World::innerSkin(MeshEntry& mesh, uint32_t slot, const components::Burnable
     constexpr uint32_t kOthers = FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES |
                                  FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE |
                                  FW_BURNABLE_REFINE_PUBLISHED;
-    if ((object.flags & kOthers) != 0 || components::deforms(object)) return false;
+    if ((object.flags & kOthers) != 0 || components::deforms(object) || !backend_.draws())
+        return false;
     if (mesh.innerSkin == InnerSkin::unknown) {
         float wall = 0;
         for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)

@@ -75,6 +75,7 @@ class VkBackend final : public Backend {
 
     void createMesh(uint32_t slot, const mesh::BurnDomain& domain) override;
     void destroyMesh(uint32_t slot) noexcept override;
+    [[nodiscard]] bool draws() const noexcept override { return true; }
     void createInnerSkin(uint32_t mesh, const mesh::BurnDomain& domain,
                          std::span<const glm::vec3> places) override;
     void createRefinement(uint32_t mesh, uint32_t depth, bool published,
