@@ -374,10 +374,7 @@ Hud::Hud(const sample::VulkanHost& host, sample::Stage& stage) : stage_(stage) {
     ImGui::GetIO().IniFilename = nullptr;
     renderer_ =
         std::make_unique<fwui::UiRenderer>(host, stage.outputPass(), stage.made.framesInFlight);
-    std::string error;
-    if (!fwui::loadFonts(error)) throw sample::Failure(error);
-    fwui::applyStyle();
-    renderer_->uploadFonts();
+    fwui::theme().scale = 0;  // of no window yet
     stage.overlay = [this](VkCommandBuffer commands) {
         renderer_->draw(commands, slot_, *ImGui::GetDrawData());
     };
@@ -387,6 +384,17 @@ Hud::~Hud() {
     stage_.overlay = {};
     renderer_.reset();
     ImGui::DestroyContext();
+}
+
+// As wide as the window allows: laid out for 1280 pixels, legible down to some 700.
+void Hud::fit(VkExtent2D extent) {
+    const float scale = std::clamp(float(extent.width) / 1280, 0.6f, 3.0f);
+    if (scale == fwui::theme().scale) return;
+    fwui::theme().scale = scale;
+    std::string error;
+    if (!fwui::loadFonts(error)) throw sample::Failure(error);
+    fwui::applyStyle();
+    renderer_->uploadFonts();
 }
 
 void Hud::takeInput(const sample::StageFrame& frame) {
@@ -400,6 +408,7 @@ void Hud::takeInput(const sample::StageFrame& frame) {
 Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
                  const game::State& state, const FireNumbers& fires, Player& player) {
     slot_ = frame.slot;
+    fit(frame.extent);
     takeInput(frame);
     ImGui::NewFrame();
     ImGui::SetNextWindowPos({0, 0});

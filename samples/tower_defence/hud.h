@@ -47,6 +47,7 @@ class Hud {
                 const game::State& state, const FireNumbers& fires, Player& player);
 
  private:
+    void fit(VkExtent2D extent);
     void takeInput(const sample::StageFrame& frame);
 
     std::unique_ptr<fwui::UiRenderer> renderer_;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kChest = 1.1f;          // m above the road: what jets aim at
 constexpr Vec3 kMuzzle{0, 2.6f, 1.1f};  // of the ember mortar, in its model's space
-constexpr Vec3 kSpout{0, 3.4f, 1.9f};   // of the water cannon
+constexpr Vec3 kSpout{0, 2.42f, 2.4f};  // of the water cannon
 constexpr float kSprayRadius = 1.4f;    // m
 constexpr float kSprayWide = 1.2f;      // m, of its sheet
 constexpr float kSprayLong = 11.0f;     // m

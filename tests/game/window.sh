@@ -54,9 +54,9 @@ picture() {
 plot_place() { sed -n "s/^did: plot $1 at //p" "$work/log" | tail -1; }
 
 : >"$work/log"
-"$binary" --validate --report --size 640x360 >"$work/log" 2>&1 &
+"$binary" --validate --report --size 720x405 >"$work/log" 2>&1 &
 game=$!
-await "did: size 640x360"
+await "did: size 720x405"
 window=$(xdotool search --name Flamewright | head -1)
 xdotool windowmove "$window" 0 0
 xdotool windowfocus "$window"
