@@ -785,7 +785,7 @@ bool isLively(const App& app) {
     if (app.page == Page::kFlame && app.flame->lively()) return true;
     if (app.page != Page::kScene && app.page != Page::kPaint) return false;
     if (app.now - app.movedAt < 1) return true;  // until the sharp picture is there
-    return app.playing || !app.live.settled() || app.live.preparing();
+    return app.playing || !app.live.settled() || app.live.preparing() || app.live.resting();
 }
 
 void showApp(App& app) {

@@ -578,12 +578,16 @@ void showWhy(App& app, ImDrawList* list, const Picture& picture) {
     const fwedit::Mesh* mesh = fwedit::findIn(app.document.scene.meshes, why.mesh);
     const Rect& rect = picture.rect;
     const float width = dp(296), inner = width - dp(28);
-    float causesHeight = 0;
+    float textHeight = 0;
     for (const std::string& cause : answer.causes)
-        causesHeight += dp(8) + drawTextWrapped(nullptr, fonts().body, {0, 0}, inner - dp(22), 0,
-                                                cause.c_str());
+        textHeight += dp(8) + drawTextWrapped(nullptr, fonts().body, {0, 0}, inner - dp(22), 0,
+                                              cause.c_str());
+    const std::string forecast =
+        answer.forecast.empty() ? "It will not catch as things are" : answer.forecast;
+    textHeight +=
+        drawTextWrapped(nullptr, fonts().body, {0, 0}, inner - dp(22), 0, forecast.c_str());
     const bool unlit = why.answered && (!answer.forecast.empty() || !answer.causes.empty());
-    const float height = dp(!why.answered ? 82 : unlit ? 172 : 118) + causesHeight;
+    const float height = unlit ? dp(164) + textHeight : dp(why.answered ? 134 : 82);
     const bool right = spot.x + dp(40) + width < rect.x1;
     ImVec2 low(right ? spot.x + dp(40) : spot.x - dp(40) - width, spot.y - height * 0.4f);
     low.x = std::floor(std::max(rect.x0 + dp(8), low.x));
@@ -646,10 +650,8 @@ void showWhy(App& app, ImDrawList* list, const Picture& picture) {
         const bool comes = answer.arrivesIn < fwedit::kNeverLit;
         drawIcon(list, fonts().icon17, {x + dp(7), y}, comes ? colors::ok : colors::dim,
                  icons::timer);
-        drawTextFit(
-            list, fonts().small, x + dp(22), y, inner - dp(22), colors::title,
-            answer.forecast.empty() ? "It will not catch as things are" : answer.forecast.c_str());
-        y += dp(18);
+        drawTextWrapped(list, fonts().body, {x + dp(22), y - dp(8)}, inner - dp(22), colors::title,
+                        forecast.c_str());
     }
     y = high.y - dp(38);
     const float third = std::floor((inner - dp(12)) / 3);

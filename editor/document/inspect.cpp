@@ -268,7 +268,7 @@ FwResult pollWhy(Burn& burn, const PaintImages& images, WhyQuestion& question, W
         if (nearest < FLT_MAX) answer.forecast += " " + sideOf(burn.scene, worldPosition, fire);
         answer.answer += ", a" + answer.forecast.substr(1);
     } else if (point.kind == FW_POINT_UNBURNT || point.kind == FW_POINT_WET) {
-        answer.forecast = "As things are, no fire of its own object comes here";
+        answer.forecast = "As things are, no fire comes here along the mesh";
     }
     return FW_OK;
 }

@@ -3,6 +3,7 @@
 # heat source on it, plays, scrubs back, undoes and does again, paints on the mesh, asks why a spot
 # does not burn, paints a flame, saves, and opens what was saved; the scene is the same to the byte.
 # Under the validation layer, synchronization checks included.
+# Usage: window.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/flamewright-editor"
 [[ -x $binary ]] || { echo "flamewright-editor is not built" && exit 77; }
@@ -83,14 +84,14 @@ await "did: Add heat source"
 xdotool key space
 await "burn at 1 s"
 xdotool key space
-xdotool key ctrl+z
-await "did: Undone"
-xdotool key ctrl+shift+z
-await "did: Done again"
 # Back by hand: the preview follows while the button is down, and time goes on from there.
 xdotool mousemove 100 598 mousedown 1
 await "preview of"
 xdotool mousemove 96 598 mouseup 1
+xdotool key ctrl+z
+await "did: Undone"
+xdotool key ctrl+shift+z
+await "did: Done again"
 # A stroke over the mesh is one step, and undone as one.
 xdotool key 2
 await "ready to paint"
