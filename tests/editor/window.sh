@@ -105,7 +105,7 @@ await "did: Done again"
 # Why a spot does not burn.
 xdotool key 1
 await ready
-xdotool key y mousemove 560 330 click 1
+xdotool key y mousemove 600 316 click 1
 await "why: "
 xdotool key Escape key 3 mousemove 540 300 mousedown 1
 xdotool mousemove 560 340 mousemove 560 400 mouseup 1
