@@ -21,11 +21,12 @@ struct Passing {  // where a ray passes the column's axis
     FlamePlace at;
     float away;   // m along the ray
     vec3 side, along;
+    float open;   // [0, 1]: 0 beyond where a wall or a ceiling holds the gas up
 };
 
 // By distance in half widths of the plume: of a curve that comes back the part that covers more.
 Passing passAxis(FlameRecord f, vec3 from, vec3 direction) {
-    float least = 1e30, part = 0.0;
+    float least = 1e30, part = 0.0, open = 1.0, openThere = 1.0;
     uint piece = 0u;
     FW_UNROLL
     for (uint k = 0u; k < kFlamePieces; ++k) {
@@ -40,13 +41,16 @@ Passing passAxis(FlameRecord f, vec3 from, vec3 direction) {
         float u = clamp(-dot(to, way) / max(dot(way, way), 1e-9), 0.0, most);
         vec3 off = to + u * way;
         float wide = flamePlumeWide(f, s + u * long_);
+        open = min(open, 1.0 - FW_FLAME_NODE(flameNodeOf(k + 1u)).squeeze.w / 0.9);
         float cost = dot(off, off) / (wide * wide);
         part = cost < least ? u : part;
         piece = cost < least ? k : piece;
+        openThere = cost < least ? open : openThere;
         least = min(least, cost);
     }
     FlameNode a = FW_FLAME_NODE(flameNodeOf(piece)), b = FW_FLAME_NODE(flameNodeOf(piece + 1u));
     Passing pass;
+    pass.open = max(openThere, 0.0);
     pass.side = mix(a.side.xyz, b.side.xyz, min(part, 1.0));
     pass.along = mix(a.along.xyz, b.along.xyz, min(part, 1.0));
     vec3 to = mix(a.centre.xyz, b.centre.xyz, part) - from;
@@ -74,6 +78,6 @@ void main() {
     vec3 bend = haze.x * pass.side + haze.y * pass.along + haze.z * cross(pass.along, pass.side);
     bend -= direction * dot(bend, direction);
     // Around the eye the column has no one place.
-    bend *= draw.strength * clamp(pass.away / flamePlumeWide(f, pass.at.s), 0.0, 1.0);
+    bend *= draw.strength * pass.open * clamp(pass.away / flamePlumeWide(f, pass.at.s), 0.0, 1.0);
     outBend = vec4(bend, pass.away);
 }
