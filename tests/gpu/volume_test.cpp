@@ -1,7 +1,11 @@
 // Volumetric flames on a device against the same maths marched on the CPU, ray by ray; and what a
 // world with fires asks of the device and the heap.
+#include "book/own.h"
+#include "book/picture.h"
+#include "components/particle_field.h"
 #include "components/volumetric_fire.h"
 #include "support/burn_scene.h"
+#include "support/particle_reference.h"
 #include "support/world_defs.h"
 #include "volume/march.h"
 #include "world/world.h"
@@ -114,6 +118,8 @@ class Volume : public GpuTest {
         plan.frameIndex = ++index_;
         plan.endTick = uint32_t(index_ * gpu::kStepTicks);
         plan.volumes = &update;
+        if (emitters_) plan.emitters = emitters_;
+        if (fields_) plan.fields = fields_;
         const float behind =
             far > 0 ? -rig_->view.projection[10] + rig_->view.projection[14] / far : 1.0f;
         rig_->alsoRecord = [&](const FwVulkanFrame& frame) { record(frame, target, mode, behind); };
@@ -484,6 +490,8 @@ class Volume : public GpuTest {
 
     std::unique_ptr<VkRig> rig_;
     bool other_ = false;  // the view that is drawn is not that of the outside part
+    const gpu::EmitterUpdate* emitters_ = nullptr;  // beside the flames
+    const gpu::FieldUpdate* fields_ = nullptr;
     TestImage color_, depth_, behind_;
     TestBuffer read_, scenes_, backdrops_;
     std::vector<float> scene_;    // m along the view, of each pixel; empty: flat
@@ -877,6 +885,127 @@ TEST_F(Volume, TiersAreTheSameFlame) {
             EXPECT_LT(worstSize, 0.03f) << components::firePresetName(preset) << " " << tier;
         }
     }
+}
+
+// The same fire near, further away and far: as a volume, as particles that show flipbooks, and as a
+// field on a card. How bright what it covers is, and of which colour, is not the tier's.
+TEST_F(Volume, ThreeTiersOneLook) {
+    if (!device_) return;
+    makeRig();
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+    std::vector<book::Book> books;
+    const uint32_t presets[] = {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_ROLL, FW_FLIPBOOK_PUFF};
+    for (const uint32_t preset : presets) {
+        books.emplace_back(memory);
+        book::readBook(book::ownBook(preset, memory), books.back());
+    }
+    const book::Book* const laid[] = {&books[0], &books[1], &books[2]};
+    const book::Picture pages = book::layBooks(laid, memory);
+    rig_->backend.setBooks(pages.width, pages.height, std::as_bytes(std::span(pages.texels)),
+                           pages.words);
+    constexpr int kMoments = 24;
+    constexpr const char* kNames[] = {"volume", "flipbooks", "field"};
+    struct Seen {  // means over three powers
+        float light = 0, radiance = 0, green = 0, up = 0;
+    } fires[3];
+    for (const float power : {30.0f, 100.0f, 400.0f}) {
+        const float tall = 0.235f * std::pow(power, 0.4f);
+        const float eye[3] = {0, 0.6f * tall, 6 * tall}, at[3] = {0, 0.6f * tall, 0};
+        look(eye, at, 22);
+        std::vector<vec4> shown[3];
+        for (auto& one : shown) one.assign(kSide * kSide, vec4(0.0f));
+        const auto add = [](std::vector<vec4>& sum, const std::vector<vec4>& picture) {
+            for (size_t k = 0; k < sum.size(); ++k) sum[k] += picture[k] / float(kMoments);
+        };
+        FwVolumetricFireDef volumetric = fwDefaultVolumetricFireDef();
+        components::setFirePreset(volumetric, FW_FIRE_CAMP);
+        volumetric.flags = FW_FIRE_NO_SMOKE;
+        volumetric.power = power;
+        volumetric.diameter = 0.45f * tall;
+        volumetric.tier = FW_FIRE_TIER_MARCH_HIGH;
+        for (int i = 0; i < kMoments; ++i) {
+            volumetric.seed = 7 + uint32_t(i);
+            gpu::VolumeFlame flame = flameAlone(volumetric, 2);
+            flame.record.key = ++key_;
+            add(shown[0], draw({&flame, 1}, FW_DEPTH_TEST));
+        }
+
+        FwFireEmitterDef particles = fwDefaultFireEmitterDef();
+        particles.shape = FW_EMITTER_DISC;
+        particles.radius = 0.225f * tall;
+        particles.power = power;
+        particles.flags = FW_EMITTER_NO_SMOKE;
+        particles.sparks = 0;
+        ParticleReference emitter(particles);
+        emitter.emitter.books.fire = 1u | 2u << 8 | 3u << 16;
+        gpu::EmitterUpdate update;
+        std::vector<gpu::uvec2> groups;
+        for (uint32_t first = 0; first < emitter.emitter.ring; first += gpu::kParticleGroup)
+            groups.emplace_back(0, first);
+        update.groups = groups;
+        update.count = 1;
+        update.records = &emitter.record;
+        update.particleEnd = update.particles = emitter.emitter.ring;
+        emitters_ = &update;
+        constexpr int kWarm = 60;
+        for (int i = 0; i < kWarm + kMoments; ++i) {
+            ASSERT_TRUE(emitter.step(i < kWarm ? 1 / 30.0f : 0.2f) || i < 3);
+            const std::vector<vec4> picture = drawOnce({}, FW_DEPTH_TEST, 0);
+            if (i >= kWarm) add(shown[1], picture);
+        }
+        emitters_ = nullptr;
+
+        FwParticleFieldDef far = fwDefaultParticleFieldDef();
+        components::setFieldPreset(far, uint32_t(field::FieldPreset::Fire));
+        components::ParticleField field(memory);
+        far.size[0] = tall;
+        far.size[1] = 1.35f * tall;
+        components::makeParticleField(far, 1, field);
+        const float calm[3] = {0, 0, 0};
+        rig_->backend.createField(0, components::rulesOf(field, calm), field.masks);
+        for (uint32_t i = 0; i < 60 + 4 * kMoments; ++i) {
+            const gpu::FieldRun run{0, i};
+            const uint32_t round = 1, slot = 0;
+            const double ticks = double(gpu::kTicksPerSecond) / 24 * (i + 1);
+            const gpu::FieldDraw drawn = components::fieldDraw(field, ticks, i + 1, ticks);
+            gpu::FieldUpdate fields;
+            fields.runs = {&run, 1};
+            fields.rounds = {&round, 1};
+            fields.draws = &drawn;
+            fields.drawn = {&slot, 1};
+            fields_ = &fields;
+            const std::vector<vec4> picture = drawOnce({}, FW_DEPTH_TEST, 0);
+            if (i >= 60 && i % 4 == 0) add(shown[2], picture);
+        }
+        fields_ = nullptr;
+        rig_->backend.destroyField(0);
+        for (int i = 0; i < 3; ++i) {
+            Seen& seen = fires[i];
+            const vec4 m = meanOf(shown[i]);
+            const float light = glm::dot(m, kSeen);
+            float up = 0;  // px, where its light is
+            for (uint32_t k = 0; k < kSide * kSide; ++k)
+                up += glm::dot(shown[i][k], kSeen) / (light * kSide * kSide) *
+                      (float(kSide - 1 - k / kSide) + 0.5f);
+            seen.light += light;
+            seen.radiance += light / m.w / 3;
+            seen.green += m.y / m.x / 3;
+            seen.up += up / 3;
+            std::printf(
+                "[   FIGURE ] %g kW, %s: light %.4f, radiance of what it covers %.3f, at "
+                "%.2f px, green %.3f of red\n",
+                double(power), kNames[i], double(light), double(light / m.w), double(up),
+                double(m.y / m.x));
+        }
+    }
+    // What is covered shines alike. Particles and fields cover more than the volume does: they are
+    // laid for what is seen at a distance, its wisps and all.
+    for (int i = 1; i < 3; ++i) {
+        EXPECT_NEAR(fires[i].radiance / fires[0].radiance, 1, 0.12) << kNames[i];
+        EXPECT_NEAR(fires[i].green / fires[0].green, 1, 0.12) << kNames[i];
+        EXPECT_NEAR(fires[i].up / fires[0].up, 1, 0.13) << kNames[i];
+    }
+    EXPECT_NEAR(fires[2].light / fires[1].light, 1, 0.08);
 }
 
 // Whatever tiers two flames are of, the near one is before the far one.
