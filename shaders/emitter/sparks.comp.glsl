@@ -74,7 +74,8 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, 
     quad.phase = s.book != 0u ? bookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
     quad.kelvin = sparkKelvin(s.kelvin, kind, slot.seed, a);
     quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadBook | kQuadSpark;
-    if (a >= 1.0 || quad.opacity <= 0.004) return;
+    // Close to the eye a thin thing is a wide one.
+    if (a >= 1.0 || quad.opacity <= 0.004 || !(length_ < 1.0) || wide > 0.03 * far) return;
     uint first = atomicAdd(drawArgs[kFlameParticles], 1u);
     if (first < push.quads) flameQuad[push.firstQuad + first] = quad;
 }

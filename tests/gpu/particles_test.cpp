@@ -368,6 +368,13 @@ TEST_F(SparkPass, ShowsThoseOfTheClockAgainAndAgain) {
     const std::vector<Spark> wanted = rig.sparks();
     const auto first = shown(then);
     size_t found = 0;
+    for (const auto& [seed, quad] : first) {
+        // A streak of a fiftieth of a second, as thin as a pixel.
+        EXPECT_LT(quad.axisWidth.w, 0.03f);
+        EXPECT_LT(quad.baseHeight.w, 0.6f);
+        EXPECT_LE(quad.opacity, 1.0f);
+        EXPECT_GT(quad.kelvin, 850.0f);
+    }
     for (const Spark& one : wanted) {
         const auto at = first.find(one.now.seed & 0xFFFFu);
         if (at == first.end()) continue;  // too far gone to show
