@@ -77,6 +77,15 @@ void main() {
     if (vertex == 3u) place = vec2(-1.0, 1.0);
     if (vertex == 4u) place = vec2(1.0, 0.0);
     if (vertex == 5u) place = vec2(1.0, 1.0);
+    // A spark too thin for a pixel is as wide as one, and dimmer instead.
+    if ((quad.kind & 3u) == kQuadSpark) {
+        float far = view.forward.w > 0.5 ? dot(quad.baseHeight.xyz - view.eye.xyz, view.forward.xyz) : 1.0;
+        float wide = max(quad.axisWidth.w, 0.7 * view.eye.w * max(far, 0.05));
+        float more = wide - quad.axisWidth.w;
+        quad.baseHeight += vec4(quad.axisWidth.xyz * -more, 2.0 * more);
+        quad.opacity *= quad.axisWidth.w / wide;
+        quad.axisWidth.w = wide;
+    }
     vec3 foot = quad.baseHeight.xyz - view.eye.xyz;
     vec3 middle = foot + quad.axisWidth.xyz * (0.5 * quad.baseHeight.w);
 #ifdef FW_BOOKS

@@ -60,22 +60,21 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, 
     float a = slot.age / kind.life;
     vec3 toEye = view.eye.xyz - place, streak = place - before;
     float far = view.forward.w > 0.5 ? dot(-toEye, view.forward.xyz) : 1e3;
-    // What is too thin for a pixel is dimmer instead. A book's streak fills a third of its page.
-    float thick = kind.width * (s.book != 0u ? 3.0 : 1.0);
-    float wide = max(thick, 0.7 * view.eye.w * max(far, 0.05));
+    // A book's streak fills a third of its page. How wide a pixel is the draw knows alone.
+    float wide = kind.width * (s.book != 0u ? 3.0 : 1.0);
     float length_ = length(streak);
     FlameQuad quad;
     vec3 along = length_ > 1e-4 ? streak / length_ : view.up.xyz;
     float tall = length_ + 2.0 * wide;
     quad.axisWidth = vec4(along, wide);
     quad.baseHeight = vec4(place + along * (wide - tall), tall);
-    quad.opacity = thick / wide * sparkFades(a) * strength *
+    quad.opacity = sparkFades(a) * strength *
                    smoothstep(kNearFade, kNearFade + 0.8, far);
     quad.phase = s.book != 0u ? bookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
     quad.kelvin = sparkKelvin(s.kelvin, kind, slot.seed, a);
     quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadBook | kQuadSpark;
     // Close to the eye a thin thing is a wide one.
-    if (a >= 1.0 || quad.opacity <= 0.004 || !(length_ < 1.0) || wide > 0.03 * far) return;
+    if (a >= 1.0 || quad.opacity <= 0.004 || wide > 0.03 * far) return;
     uint first = atomicAdd(drawArgs[kFlameParticles], 1u);
     if (first < push.quads) flameQuad[push.firstQuad + first] = quad;
 }
