@@ -183,6 +183,8 @@ void World::noteSaved(SavedWorld& to) {
     to.warms = remote_.warms;
     to.blockersDue = remote_.blockersDue;
     to.fades = remote_.fades;
+    to.idle = idle_;
+    to.lastStimulus = lastStimulus_;
     to.objects.clear();
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
         if (auto* owned = objects_.at(i)) noteObject(**owned, to.objects.emplace_back());
@@ -596,8 +598,9 @@ void World::applySaved(const SavedWorld& saved,
     events_.clear();
     lights_.clear();
     readbackTick_ = clock_.tick;
-    idle_ = false;
-    lastStimulus_ = clock_.tick;
+    // Awake it would see the wind from here on, and not from where its first fire begins.
+    idle_ = saved.idle;
+    lastStimulus_ = saved.lastStimulus;
     // Who is where.
     remote_.unsent = true;
     remote_.blockersDue = saved.blockersDue;

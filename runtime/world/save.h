@@ -103,6 +103,8 @@ struct SavedWorld {
     uint32_t flags = 0;
     bool warms = false, blockersDue = false;
     uint64_t fades = 0;
+    bool idle = true;  // nothing burns, and nobody has to hear of who moves
+    uint64_t lastStimulus = 0;
     std::pmr::vector<SavedObject> objects;
     std::pmr::vector<PendingTexel> pending;
     std::pmr::vector<SavedTag> tags;
@@ -148,7 +150,7 @@ struct Save {  // on its way, and the last one
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 1;
+constexpr uint32_t kSaveVersion = 2;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
 

@@ -265,7 +265,7 @@ template <typename S, Is<SavedWorld> T>
 void put(S& s, T& w) {
     all(s, w.pace, w.up, w.spreadChance, w.timeToLive, w.seed, w.maxHops, w.maxBurningTiles);
     all(s, w.clock.tick, w.clock.fraction, w.steps, w.droppedSteps, w.order, w.wind, w.flags,
-        w.warms, w.blockersDue, w.fades);
+        w.warms, w.blockersDue, w.fades, w.idle, w.lastStimulus);
     list(s, w.objects, "burnable meshes", 64);
     list(s, w.pending, "events that wait", 32);
     list(s, w.tags, "tags", 12);

@@ -1,6 +1,7 @@
 // Saves: a world that is saved and loaded goes on bit by bit as the one that was not, on the same
 // backend or on another; what cannot be loaded is refused and changes nothing.
 #include "abi_support.h"
+#include "panels.h"
 
 #include <algorithm>
 #include <functional>
@@ -235,6 +236,36 @@ void goesBack(uint32_t backend) {
 }
 TEST(Save, GoesBackInTheSameWorld) { goesBack(FW_BACKEND_CPU); }
 TEST(Save, GoesBackInTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
+
+// A world that sleeps stays asleep: the wind of its first fire begins with that fire, and not where
+// the save was loaded.
+TEST(Save, WhereNothingBurnsYetTheFirstFireIsAlike) {
+    uint64_t hashes[2] = {};
+    for (const bool loads : {false, true}) {
+        FwWorldDef def = worldDef(FW_WORLD_CONTACT | FW_WORLD_EMBERS | FW_WORLD_RADIATION);
+        def.paceFactor = 8;
+        Panels panels(def);
+        for (int i = 0; i < 8; ++i) (void)panels.add(0.43f * float(i % 4), 0, 0.23f * float(i / 4));
+        for (uint32_t frame = 0; frame < 320; ++frame) {
+            const float wind[3] = {4 * std::cos(0.02f * float(frame)), 0, 3};
+            EXPECT_EQ(FW_OK, fwWorld_SetWind(panels.world, wind));
+            FwBurnableMeshDef at = panels.def(1.72f, 0.001f * float(frame), 0);
+            EXPECT_EQ(FW_OK, fwWorld_SetTransform(panels.world, panels.ids[7], at.transform));
+            if (frame == 80) panels.ignite(panels.ids[0], 0.2f, 0, 0.1f, 0.05f);
+            panels.run(1.0 / 32);
+            if (!loads || frame != 41) continue;
+            EXPECT_EQ(FW_OK, fwWorld_RequestSave(panels.world));
+            uint64_t size = 0;
+            EXPECT_EQ(FW_OK, fwWorld_FetchSave(panels.world, nullptr, &size));
+            Bytes bytes(size);
+            EXPECT_EQ(FW_OK, fwWorld_FetchSave(panels.world, bytes.data(), &size));
+            EXPECT_EQ(FW_OK, fwWorld_Load(panels.world, bytes.data(), size));
+        }
+        EXPECT_GT(panels.alight(), 2u);
+        hashes[loads] = panels.hash();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
 
 // The device goes at some frame. The last save that was fetched, or that is still in the lost
 // world, is the mirror: on another device, or on none, the fire is as it was then, and goes on.
