@@ -634,7 +634,6 @@ FwResult FW_CALL fwWorld_GetBudgetState(FwWorld* world, FwBudgetState* state) {
 FwResult FW_CALL fwWorld_RequestSave(FwWorld* world) {
     return onWorld("fwWorld_RequestSave", world, [&](world::World& w) {
         w.requestSave();
-        answerAtOnce(world);
         return FW_OK;
     });
 }

@@ -96,6 +96,7 @@ uint64_t hashOf(FwWorld* world, const Yard& yard) {
 void save(FwWorld* world, const std::string& folder) {
     uint64_t size = 0;
     check(fwWorld_RequestSave(world), world);
+    check(fwWorld_Step(world, 0), world);  // a save is of the next frame, be it of no time
     check(fwWorld_FetchSave(world, nullptr, &size), world);
     std::string bytes(size, '\0');
     check(fwWorld_FetchSave(world, bytes.data(), &size), world);

@@ -256,6 +256,8 @@ TEST(Save, WhereNothingBurnsYetTheFirstFireIsAlike) {
             if (!loads || frame != 41) continue;
             EXPECT_EQ(FW_OK, fwWorld_RequestSave(panels.world));
             uint64_t size = 0;
+            EXPECT_EQ(FW_NOT_READY, fwWorld_FetchSave(panels.world, nullptr, &size));
+            EXPECT_EQ(FW_OK, fwWorld_Step(panels.world, 0));  // that frame
             EXPECT_EQ(FW_OK, fwWorld_FetchSave(panels.world, nullptr, &size));
             Bytes bytes(size);
             EXPECT_EQ(FW_OK, fwWorld_FetchSave(panels.world, bytes.data(), &size));

@@ -237,6 +237,7 @@ class Fuzz {
     void useSaves() {
         const FwResult asked = fwWorld_RequestSave(world_);
         check(asked);
+        check(fwWorld_Step(world_, 0));
         uint64_t size = 0;
         if (asked == FW_OK && fwWorld_FetchSave(world_, nullptr, &size) == FW_OK) {
             std::vector<unsigned char> bytes(size);

@@ -1,7 +1,7 @@
 #!/bin/bash
 # A game that a scripted player plays, with nobody watching: the result on the cpu backend and on
-# the device is the same line, hash included, and another seed makes another game. One
-# that goes ten seconds back on its way plays on to its end, too.
+# the device is the same line, hash included, and another seed makes another game. One that goes ten
+# seconds back on its way ends with the same line, too.
 # Usage: bot.sh, with the build folder in FW_BUILD_FOLDER.
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/samples/tower_defence/tower_defence"
@@ -21,3 +21,4 @@ over='game: stopped,.*waves 1, felled [1-9].*hash [0-9a-f]{16}'
 # Ten seconds, and at most the two between moments.
 [[ $back =~ rewind:\ (3[2-9][0-9])\ ticks && $back =~ $over ]] ||
     { echo "it did not go ten seconds back and play on to the end of the wave" && exit 1; }
+[[ $back == *"$cpu"* ]] || { echo "what came after the ten seconds is another game" && exit 1; }

@@ -1029,8 +1029,8 @@ FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArriva
 
 /* ---- saves: a world mid-burn as bytes -------------------------------------------------------------------- */
 
-/* Wishes a save of the world as it is after the next frame; with a device the bytes come some frames later, and
- * nothing waits for them. One at a time: a second wish begins anew. In a save: every texel's state, temperature, fuel
+/* Wishes a save of the world as it is after the next frame, be it of no time; with a device the bytes come some frames
+ * later, and nothing waits for them. One at a time: a second wish begins anew. In a save: every texel's state, temperature, fuel
  * and water; counters, clocks, wind, flags and what the wind's filters hold; transforms of objects and blockers; events
  * that wait, tags, contacts; what jets have in the air, what fires and jets are about to light, cells of fields that
  * wet. Not in it: what only shows (particles, flames, soot, sheets in motion), queries, events not yet polled, hidden,
