@@ -11,13 +11,8 @@ if [[ ! -x $binary ]]; then
     exit 77
 fi
 
-work=$(mktemp -d)
-server=
-cleanup() {
-    [[ -z $server ]] || kill "$server" 2>/dev/null || true
-    rm -rf "$work"
-}
-trap cleanup EXIT
+# shellcheck source=../support/window.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../support/window.sh"
 
 export VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation
 export VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT
@@ -33,16 +28,7 @@ if [[ $mode == headless ]]; then
     unset DISPLAY WAYLAND_DISPLAY
     arguments+=(--headless)
 else
-    command -v Xvfb >/dev/null || { echo "Xvfb is not here (package xvfb)" && exit 77; }
-    Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$work/display" 2>"$work/xvfb.log" &
-    server=$!
-    for _ in $(seq 100); do
-        [[ -s $work/display ]] && break
-        sleep 0.1
-    done
-    [[ -s $work/display ]] || { cat "$work/xvfb.log" && echo "Xvfb does not start" && exit 1; }
-    DISPLAY=:$(cat "$work/display")
-    export DISPLAY
+    open_display
 fi
 
 status=0

@@ -2,7 +2,7 @@
 # A game that a scripted player plays, with nobody watching: the result on the cpu backend and on
 # the device is the same line, hash included, and another seed makes another game. One that goes ten
 # seconds back on its way ends with the same line, too.
-# Usage: bot.sh, with the build folder in FW_BUILD_FOLDER.
+# Usage: game_bot.sh, with the build folder in FW_BUILD_FOLDER.
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/samples/tower_defence/tower_defence"
 [[ -x $binary ]] || { echo "tower_defence is not built" && exit 77; }

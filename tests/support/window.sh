@@ -1,0 +1,84 @@
+# Sourced by tests that run a program in a window, on a display of their own, and drive it with real
+# keys and clicks. Not run by itself.
+# shellcheck shell=bash
+
+work=$(mktemp -d)
+server= program=
+cleanup() {
+    [[ -z $program ]] || kill "$program" 2>/dev/null || true
+    [[ -z $server ]] || kill "$server" 2>/dev/null || true
+    rm -rf "$work"
+}
+trap cleanup EXIT
+
+# need TOOL...: leaves with 77 where one is not installed.
+need() {
+    local tool
+    for tool in "$@"; do
+        command -v "$tool" >/dev/null || { echo "$tool is not here" && exit 77; }
+    done
+}
+
+# A screen of 1280 x 720 that nobody sees; DISPLAY names it.
+open_display() {
+    need Xvfb
+    Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$work/display" 2>"$work/xvfb.log" &
+    server=$!
+    for _ in $(seq 100); do
+        [[ -s $work/display ]] && break
+        sleep 0.1
+    done
+    [[ -s $work/display ]] || { cat "$work/xvfb.log" && echo "Xvfb does not start" && exit 1; }
+    DISPLAY=:$(cat "$work/display")
+    export DISPLAY
+}
+
+# start PROGRAM ARGUMENT...: until its window is there, in the corner, and hears keys. What it does it
+# reports to $work/log, as do the validation layers.
+start() {
+    : >"$work/log"
+    seen=0
+    "$1" --validate --report "${@:2}" >"$work/log" 2>&1 &
+    program=$!
+    for _ in $(seq 600); do
+        xdotool search --name Flamewright >"$work/window" 2>/dev/null && break
+        sleep 0.1
+    done
+    window=$(head -1 "$work/window")
+    xdotool windowmove "$window" 0 0
+    xdotool windowfocus "$window"
+}
+
+# await EXPRESSION: until a line of the report matches; what came before is forgotten.
+await() {
+    for _ in $(seq 1800); do
+        if tail -n +$((seen + 1)) "$work/log" | grep -q -E -- "$1"; then
+            seen=$(wc -l <"$work/log")
+            return
+        fi
+        kill -0 "$program" 2>/dev/null || break
+        sleep 0.1
+    done
+    cat "$work/log"
+    echo "it never said: $1"
+    exit 1
+}
+
+# leave KEY: the program ends by it, in peace with the validation layers.
+leave() {
+    xdotool key "$1"
+    local status=0
+    wait "$program" || status=$?
+    program=
+    cat "$work/log"
+    [[ $status -eq 0 ]] || { echo "it left with status $status" && exit 1; }
+    if grep -E -q 'VUID-|UNASSIGNED-|SYNC-HAZARD|validation:' "$work/log"; then
+        echo "the validation layer complains" && exit 1
+    fi
+}
+
+# picture NAME: a screenshot into the folder FW_KEEP_PICTURES, if there is one (ImageMagick).
+picture() {
+    [[ -n ${FW_KEEP_PICTURES:-} ]] || return 0
+    import -window root "$FW_KEEP_PICTURES/$1.png" || true
+}
