@@ -154,11 +154,10 @@ FW_SHARED_FN bool volumeTurned(uint x, uint y, float from, float to) {
 // [0, 1): where in its steps a cell's samples lie: each of four in a square has its own quarter. One above
 // the other are half a step apart: a tongue is upright and may be one cell wide, and where all its cells
 // began near each other it would be seen now and not a little higher, as dashes.
-// Before the middle in the mean: of a thick step what is nearer is seen more.
 // The same in all frames: what they show differs by what moves alone, and none needs those before it.
 FW_SHARED_FN float volumePhase(uint x, uint y) {
     uint quarter = (x & 1u) | (2u * (y & 1u));
-    return 0.045f + 0.25f * float(quarter);
+    return 0.085f + 0.25f * float(quarter);
 }
 
 // Cells [-0.5, 0.5] off its middle that a cell's ray goes where many cells are a pixel: a flame of few

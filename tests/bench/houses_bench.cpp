@@ -123,6 +123,49 @@ void houses(benchmark::State& state) {
         if (name.starts_with("refine")) state.counters[name] = ms / frames;
 }
 
+// The street with a budget of three fifths of what its frames take: how soon its detail settles,
+// and what is left of time and triangles then. By the device's timers.
+void budget(benchmark::State& state) {
+    constexpr int kFree = 40;
+    Street street;
+    if (const char* why = street.make(true)) return state.SkipWithError(why);
+    FwBudgetState at{};
+    at.structSize = sizeof at;
+    const auto frame = [&] {
+        fwWorld_Step(street.village.world, kFrameTime);
+        street.draw();
+        fwWorld_GetBudgetState(street.village.world, &at);
+    };
+    for (int i = 0; i < kFree; ++i) frame();
+    const float free = at.gpuMilliseconds;
+    const uint32_t triangles = street.village.stats().refinedTriangles;
+    FwBudgetDef def = fwDefaultBudgetDef();
+    def.gpuMilliseconds = 0.6f * free;
+    fwWorld_SetBudget(street.village.world, &def);
+    int settled = 0, frames = 0;
+    for (auto _ : state) {
+        const uint32_t before = at.level;
+        const double start = cpuSeconds();
+        frame();
+        state.SetIterationTime(cpuSeconds() - start);
+        ++frames;
+        if (at.level != before) settled = frames;
+    }
+    state.counters["free_ms"] = double(free);
+    state.counters["budget_ms"] = double(def.gpuMilliseconds);
+    state.counters["held_ms"] = double(at.gpuMilliseconds);
+    state.counters["level"] = at.level;
+    state.counters["settled_after"] = settled;
+    state.counters["triangles_free"] = triangles;
+    state.counters["triangles"] = street.village.stats().refinedTriangles;
+}
+
+BENCHMARK(budget)
+    ->Name("houses100/budget")
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(140);
+
 BENCHMARK(houses)
     ->Name("houses100/frame")
     ->Unit(benchmark::kMillisecond)

@@ -106,7 +106,7 @@ TEST(BudgetOnDevice, NoFireGoesAwayAndTheLightStays) {
         FwOffscreenDef shot = fwDefaultOffscreenDef();
         shot.width = 320, shot.height = 180;
         shot.pixels = pixels.data();
-        shot.view = fw::test::viewAt({0, 1, 7}, {0, 0.8f, 0}, 320.0f / 180, 1.7f);
+        shot.view = fw::test::viewAt({0, 1, 9}, {0, 0.8f, 0}, 320.0f / 180, 4.57f);
         panels.run(2.5);
         uint32_t shots = 0;
         for (; shots < 30; ++shots) {  // tiers take their time, by frames

@@ -1132,7 +1132,7 @@ typedef struct FwBudgetState {
     uint32_t marchedFires;     /* volumetric flames at most that have rays of their own */
     uint32_t volumeSteps;      /* samples of a ray at most */
     uint32_t refinedTriangles; /* that refined meshes aim to stay within */
-    float gpuMilliseconds, cpuMilliseconds; /* of a frame, smooth; 0: not known, or no limit is set */
+    float gpuMilliseconds, cpuMilliseconds; /* of a frame, smooth; 0: not known */
 } FwBudgetState;
 FW_API FwResult FW_CALL fwWorld_GetBudgetState(FwWorld*, FwBudgetState* state); /* [world] */
 

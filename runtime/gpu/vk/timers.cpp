@@ -77,4 +77,15 @@ void FrameTimers::read(const Device& device, uint64_t frameIndex, std::pmr::vect
     }
 }
 
+float sumOf(std::span<const PassTime> times, uint64_t frameIndex) noexcept {
+    double sum = 0;
+    bool any = false;
+    for (const PassTime& time : times) {
+        if (time.frameIndex != frameIndex) continue;
+        sum += time.milliseconds;
+        any = true;
+    }
+    return any ? float(sum) : -1.0f;
+}
+
 }  // namespace fw::gpu::vk

@@ -36,4 +36,7 @@ class FrameTimers {
     bool open_ = false, armed_ = false;
 };
 
+// ms of the frame's passes in `times`; < 0: they are of another frame.
+[[nodiscard]] float sumOf(std::span<const PassTime> times, uint64_t frameIndex) noexcept;
+
 }  // namespace fw::gpu::vk

@@ -168,6 +168,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         // view.
         FramePlan plan;
         plan.frameIndex = 0;  // nobody waits for its readback
+        plan.detail = detail;
         plan.endTick = shownTick;
         for (int i = 0; i < 3; ++i) plan.wind[i] = wind[i];
         plan.tickFraction = tickFraction;
@@ -220,6 +221,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
     }
     submitOwn();
     ring.slotFor(ringFrame).timers.read(device, 0, times);
+    pictureTime = std::max(sumOf(times, 0), 0.0f);
     std::memcpy(def.pixels, own.pixels.mapped, size_t(def.width) * def.height * 4);
 }
 

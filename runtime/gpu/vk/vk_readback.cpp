@@ -3,23 +3,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace fw::gpu::vk {
-namespace {
-
-// ms of a frame's passes, < 0 where they are not known.
-float spentOn(std::span<const PassTime> times, uint64_t frameIndex) noexcept {
-    double sum = 0;
-    bool any = false;
-    for (const PassTime& time : times) {
-        if (time.frameIndex != frameIndex) continue;
-        sum += time.milliseconds;
-        any = true;
-    }
-    return any ? float(sum) : -1.0f;
-}
-
-}  // namespace
 
 void VkBackend::State::pushPending(const PendingReadback& one) noexcept {
     const auto size = uint32_t(pending.size());
@@ -154,7 +140,8 @@ const Readback* VkBackend::State::nextReadback() {
         pendingFirst = (pendingFirst + 1) % uint32_t(pending.size());
         --pendingCount;
         if (stolen) continue;
-        given.milliseconds = spentOn(times, one.frameIndex);
+        given.milliseconds = sumOf(times, one.frameIndex);
+        if (given.milliseconds >= 0) given.milliseconds += std::exchange(pictureTime, 0.0f);
         given.frameIndex = one.frameIndex;
         given.endTick = one.endTick;
         given.objects = givenObjects;

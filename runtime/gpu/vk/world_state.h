@@ -381,6 +381,7 @@ struct VkBackend::State {
     std::pmr::vector<BurnLight> givenLights;
     std::pmr::vector<FieldCounters> givenFields;
     std::pmr::vector<PassTime> times;
+    float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
     std::array<KeptFramebuffer, 16> framebuffers{};
     OwnDevice own;
 
