@@ -14,7 +14,6 @@ namespace {
 using gpu::vec3;
 using gpu::vec4;
 
-constexpr float kMostPower = 1e5f;   // kW
 constexpr float kStuckRates = 1.2f;  // most births where fuel sticks, of those of the stream
 
 float length3(const float v[3]) noexcept {

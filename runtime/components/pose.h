@@ -26,6 +26,8 @@ void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
 // Directions: rotation only.
 void directionToObject(const Pose& pose, const float vector[3], float (&out)[3]) noexcept;
 
+constexpr float kMostPower = 1e5f;  // kW, of a fire
+
 // Throws unless all `count` values are finite and within [low, high]: "field[i] is v; ...".
 void checkValues(const float* values, unsigned count, const char* field, float low, float high);
 void checkValue(float value, const char* field, float low, float high);

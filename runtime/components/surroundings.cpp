@@ -1,5 +1,6 @@
 #include "components/surroundings.h"
 
+#include "components/lights.h"
 #include "volume/look.h"
 
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace {
 constexpr float kRadiant = 0.3f;      // of a fire's power
 constexpr float kConvection = 25.0f;  // W/(m^2 K), of hot gas on a body
 constexpr float kLeastFlux = 20.0f;   // W/m^2: below it no wall is asked for
-constexpr float kSphere = 12.56637f;
 // Soot of a kJ of wood, g: 0.015 of its fuel at 15 kJ/g. Its cross-section, m^2/g.
 constexpr float kSootPerKilojoule = 0.015f / 15.0f, kSmokeArea = 8.7f;
 constexpr float kLeastSmoke = 1e-5f;  // 1/m

@@ -14,8 +14,6 @@ namespace {
 
 using gpu::vec3;
 
-constexpr float kMostPower = 1e5f;  // kW
-
 void checkPoint(const FwFirePoint& point, const char* name, uint32_t index) {
     char field[96];
     std::snprintf(field, sizeof field, "%s[%u].position", name, index);

@@ -12,11 +12,11 @@ constexpr double kLeastSkin = 0.0002;  // m
 constexpr float kSheet = 0.002f;       // m: a sheet of at most this is as warm inside as outside
 constexpr double kKelvin = 16;         // units per K
 
-uint32_t fixed(double value, double unit, double most = 4294967295.0) {
+}  // namespace
+
+uint32_t fixed(double value, double unit, double most) noexcept {
     return uint32_t(std::llround(std::clamp(value * unit, 0.0, most)));
 }
-
-}  // namespace
 
 gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float ambient) noexcept {
     const double volumetric = double(facts.density) * double(facts.specificHeat);  // J/m^3/K

@@ -42,6 +42,9 @@ gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float amb
 
 constexpr float kAmbient = 293;  // K
 
+// A value in steps of 1 / unit, from 0 to `most` of them.
+uint32_t fixed(double value, double unit, double most = 4294967295.0) noexcept;
+
 struct HeatPlace {        // what else decides of a material on one object
     float texelArea = 0;  // m^2, world
     float pace = 1;       // as SpreadFacts

@@ -50,10 +50,6 @@ constexpr Limit kLimits[] = {
     {"curl", &FwMaterialDef::curl, 0, 200},
 };
 
-uint32_t fixed(double value, double unit, double high) {
-    return uint32_t(std::lround(std::clamp(value * unit, 0.0, high)));
-}
-
 uint32_t durationTicks(double seconds) {
     return uint32_t(std::clamp(seconds * kTicks, 1.0, double(kMaxBurnTicks)));
 }

@@ -10,7 +10,6 @@
 namespace fw::mesh {
 namespace {
 
-constexpr double kLongestLink = 8000;    // units; the front's squares hold 8191
 constexpr double kUnitsPerTexel = 1024;  // finer positions would only make links overflow
 
 // Positions, normals, flags: what the simulation reads of each texel.

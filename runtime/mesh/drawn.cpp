@@ -11,11 +11,6 @@ namespace {
 constexpr double kCreaseCosine = 0.5;  // 60 degrees
 constexpr int kChainLimit = 256;
 
-uint32_t rootOf(std::pmr::vector<uint32_t>& parent, uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 // Normal of every corner: shared over edges that bend less than the crease angle.
 void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normals,
                     std::pmr::memory_resource* memory) {

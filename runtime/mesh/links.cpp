@@ -15,7 +15,7 @@ constexpr int kWeakSteps = 4;    // likewise, once the crossings below are used 
 constexpr int64_t kWalkBudget = 1 << 25, kWalkPerTexel = 8;
 constexpr int kDeafRounds = 64;       // of looking for texels that read nobody
 constexpr int kReaches = 3;           // a chart too small to own a texel is stepped over
-constexpr int kSearch = 3;            // texels around a landing place that owns none
+constexpr int kLandingSearch = 3;     // texels around a landing place that owns none
 constexpr double kStepLimit = 3;      // texel sides: a longer Jacobian step is cut
 constexpr double kFoldedSlack = 1.5;  // texel sides: a link longer than 2 steps + this is refused
 constexpr double kAimLow = 1, kAimHigh = 1.5;  // texel sides: how far from a texel its aims lie
@@ -282,7 +282,7 @@ class Linker {
         const glm::dvec3 point = positionAt(t, walk.weights) - surface_.low;
         uint32_t best = kNone;
         double nearest = 36 * grid_.side * grid_.side;
-        for (int r = 1; r <= kSearch && best == kNone; ++r)
+        for (int r = 1; r <= kLandingSearch && best == kNone; ++r)
             for (int dy = -r; dy <= r; ++dy)
                 for (int dx = -r; dx <= r; ++dx) {
                     if (!grid_.inside(x + dx, y + dy)) continue;

@@ -57,7 +57,7 @@ uint32_t cellAt(const uint32_t (&middle)[3], const Grid& grid) noexcept {
     return cell;
 }
 
-uint32_t packNormal(const int64_t (&sum)[3]) noexcept {
+uint32_t packSum(const int64_t (&sum)[3]) noexcept {
     double size = 0;
     for (const int64_t s : sum) size += double(s) * double(s);
     if (!(size > 0)) return 0;
@@ -136,7 +136,7 @@ uint32_t remoteTiles(const BurnDomain& domain, std::pmr::vector<gpu::RemoteTile>
                 uint32_t(std::max_element(std::begin(sum.materials), std::end(sum.materials)) -
                          std::begin(sum.materials));
             made = {middle[0] | middle[1] << 16, middle[2] | number << 16 | most << 24,
-                    packNormal(sum.normal), sum.texels};
+                    packSum(sum.normal), sum.texels};
         }
         out[tile] = made;
     }

@@ -10,8 +10,6 @@
 namespace fw::mesh {
 namespace {
 
-constexpr double kLongestLink = 8000;  // units, as the bake
-
 glm::dvec3 unpackNormal(uint32_t packed) {
     const auto n = gpu::decodeNormal(packed);
     return glm::dvec3(n.x, n.y, n.z) / 16384.0;

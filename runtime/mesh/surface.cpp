@@ -88,11 +88,6 @@ Fit fitOf(const Surface& surface, const EdgeUse& a, const EdgeUse& b, bool uvMea
     return {uvMeaningful && sides && near(ta.uv[a.edge], start) && near(ta.uv[a1], end), opposite};
 }
 
-uint32_t rootOf(std::pmr::vector<uint32_t>& parent, uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 }  // namespace
 
 RowSpan rowsOf(const Triangle& t, int height) {

@@ -10,6 +10,19 @@
 
 namespace fw::mesh {
 
+// Of the way from a point of the outer skin to where the inner one lies, per metre of thickness:
+// how long it may be where the surface bends, and how much of the way to the wall behind it may
+// take.
+constexpr double kLongestOffset = 2;
+constexpr double kDepthShare = 0.45;
+
+// The one that stands for all that are joined with `i` (union-find; parents are shortened on the
+// way).
+inline uint32_t rootOf(std::span<uint32_t> parent, uint32_t i) noexcept {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
 struct Triangle {
     uint32_t source = 0;                            // triangle of the input
     uint32_t corner[3] = {};                        // vertices of the input

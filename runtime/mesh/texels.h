@@ -5,6 +5,8 @@
 
 namespace fw::mesh {
 
+constexpr double kLongestLink = 8000;  // units; the front's squares hold 8191
+
 struct TexelGrid {
     explicit TexelGrid(std::pmr::memory_resource* memory)
         : owner(memory),

@@ -15,7 +15,7 @@ constexpr float kBelow = 0.1f;         // m below ground that is still counted a
 constexpr float kSkin = 1e-3f;         // m, of what a ray may touch
 constexpr uint32_t kMostFeeler = 48u;  // steps along a ray that has to be felt
 
-vec3 unitOr(vec3 v, vec3 fallback) noexcept {
+vec3 normalOr(vec3 v, vec3 fallback) noexcept {
     const float l = glm::length(v);
     return l > 1e-9f && std::isfinite(l) ? v / l : fallback;
 }
@@ -33,7 +33,7 @@ Surface ofBox(const Collider& c, vec3 point) noexcept {
     const float deepest = std::max({q.x, q.y, q.z});
     if (deepest > 0.0f) {
         const vec3 out = glm::max(q, vec3(0.0f));
-        return {glm::length(out), turned(c.rotation, unitOr(out * sign, vec3(0, 1, 0)))};
+        return {glm::length(out), turned(c.rotation, normalOr(out * sign, vec3(0, 1, 0)))};
     }
     const int axis = q.x >= q.y && q.x >= q.z ? 0 : q.y >= q.z ? 1 : 2;
     vec3 normal(0.0f);
@@ -53,7 +53,7 @@ Surface ofHeights(const Collider& c, vec3 point) noexcept {
     const float height = glm::mix(glm::mix(h00, h10, fu), glm::mix(h01, h11, fu), fv);
     const float dx = glm::mix(h10 - h00, h11 - h01, fv) / c.radius;
     const float dz = glm::mix(h01 - h00, h11 - h10, fu) / c.radius;
-    const vec3 normal = unitOr(vec3(-dx, 1.0f, -dz), vec3(0, 1, 0));
+    const vec3 normal = normalOr(vec3(-dx, 1.0f, -dz), vec3(0, 1, 0));
     const float distance = (point.y - c.place.y - height) * normal.y;
     if (!std::isfinite(distance)) return {};
     return {distance, normal};
@@ -144,7 +144,7 @@ Surface surfaceOf(const Collider& c, vec3 point) noexcept {
     switch (c.kind) {
         case ColliderKind::Sphere: {
             const vec3 out = point - c.place;
-            return {glm::length(out) - c.radius, unitOr(out, vec3(0, 1, 0))};
+            return {glm::length(out) - c.radius, normalOr(out, vec3(0, 1, 0))};
         }
         case ColliderKind::Capsule: {
             const vec3 axis = c.extent - c.place;
@@ -152,12 +152,12 @@ Surface surfaceOf(const Collider& c, vec3 point) noexcept {
             const float t =
                 l2 > 0.0f ? std::clamp(glm::dot(point - c.place, axis) / l2, 0.0f, 1.0f) : 0.0f;
             const vec3 out = point - (c.place + t * axis);
-            return {glm::length(out) - c.radius, unitOr(out, vec3(0, 1, 0))};
+            return {glm::length(out) - c.radius, normalOr(out, vec3(0, 1, 0))};
         }
         case ColliderKind::Box:
             return ofBox(c, point);
         case ColliderKind::Plane: {
-            const vec3 n = unitOr(c.extent, vec3(0, 1, 0));
+            const vec3 n = normalOr(c.extent, vec3(0, 1, 0));
             return {glm::dot(point - c.place, n), n};
         }
         case ColliderKind::HeightField:
@@ -169,7 +169,7 @@ Surface surfaceOf(const Collider& c, vec3 point) noexcept {
             const float d = c.distance(c.user, p, n);
             const vec3 normal(n[0], n[1], n[2]);
             if (!std::isfinite(d) || !std::isfinite(n[0] + n[1] + n[2])) return {};
-            return {d, unitOr(normal, vec3(0, 1, 0))};
+            return {d, normalOr(normal, vec3(0, 1, 0))};
         }
     }
     return {};
@@ -237,7 +237,7 @@ void squeezeNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode>
         const float squeeze = std::clamp(1.0f - s.distance / radius, 0.0f, 1.0f) * most;
         if (squeeze <= 0.0f) continue;
         const float widen = std::min(1.0f / std::sqrt(1.0f - squeeze), kMostWiden);
-        node.squeeze = vec4(unitOr(across, vec3(0, 1, 0)), squeeze);
+        node.squeeze = vec4(normalOr(across, vec3(0, 1, 0)), squeeze);
         node.side.w = widen;
         node.centre.w = radius * widen;
     }

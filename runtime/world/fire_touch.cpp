@@ -1,6 +1,7 @@
 // What volumetric fires light: burnable meshes that are within the flame for as long as their
 // material takes to catch. By the host's numbers alone, not by the flames that are seen: the same
 // on every backend, and no pixel of it can change what burns.
+#include "fire/heat.h"
 #include "shared/exchange.h"
 #include "world/world.h"
 
@@ -13,7 +14,6 @@ namespace {
 using components::VolumetricFire;
 
 constexpr double kFlux = 35000;        // W/m^2 that a flame gives to what it covers
-constexpr double kAmbient = 293;       // K
 constexpr uint64_t kAgain = 3 * 4096;  // ticks until what it covers is lit once more
 constexpr uint32_t kAxisBalls = 4;     // along a flame
 constexpr float kLeastReach = 0.02f;   // m, of a ball
@@ -61,7 +61,7 @@ bool moved(const float a[3], const float b[3], float far) noexcept {
 }  // namespace
 
 uint64_t ticksToCatch(const FwMaterialDef& m, float moisture, float pace, double flux) noexcept {
-    const double rise = std::max(double(m.ignitionTemperature) - kAmbient, 1.0) / flux;
+    const double rise = std::max(double(m.ignitionTemperature - fire::kAmbient), 1.0) / flux;
     const double store = double(m.density) * double(m.specificHeat);
     const double thick = 0.785398 * double(m.conductivity) * store * rise * rise;
     const double thin = store * double(m.thickness) * rise;

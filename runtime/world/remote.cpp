@@ -1,6 +1,7 @@
 // Who is where, as others see it: poses become integers at fixed ticks, neighbours and contacts are
 // found when something moved, and all of it goes to the backend with the step that begins there.
 // What fire does with it is the backend's.
+#include "fire/heat.h"
 #include "mesh/remote_tiles.h"
 #include "world/world.h"
 
@@ -20,7 +21,6 @@ static_assert(FW_WORLD_RADIATION == gpu::kRemoteRadiation && FW_WORLD_PLUME == g
 
 constexpr double kGapSpeed = 0.05;        // m/s at which flames lick across a gap
 constexpr double kBrandsPerJoule = 2e-6;  // embers that matter
-constexpr uint32_t kAmbient = 293 * 16;   // 1/16 K
 constexpr uint32_t kMaxNeighbourSlot = 0xFFFFFFu;
 
 mesh::Box boxOf(const gpu::RemoteObject& o) noexcept {
@@ -103,7 +103,7 @@ gpu::ExchangePush World::exchangeRules() const noexcept {
     rules.tilesMost = components::limitOf(remote_.governance.tilesMost);
     rules.lifeTicks = components::lifeTicksOf(remote_.governance.life);
     rules.seed = def_.seed;
-    rules.ambient = kAmbient;
+    rules.ambient = uint32_t(fire::kAmbient) * 16;  // 1/16 K
     const double perExchange = kBrandsPerJoule * double(def_.paceFactor) *
                                double(gpu::kExchangeTicks) / double(gpu::kTicksPerSecond);
     rules.brands = uint32_t(std::min(perExchange / 16 * 4294967296.0, 4e9));

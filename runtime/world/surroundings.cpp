@@ -2,6 +2,7 @@
 // themselves, what burns on meshes and streams are fires at the places of their lights.
 #include "components/surroundings.h"
 #include "components/pose.h"
+#include "fire/heat.h"
 #include "world/world.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 namespace fw::world {
 namespace {
 
-constexpr float kAmbient = 293;  // K
 constexpr uint32_t kMostMaskSide = 4096;
 
 }  // namespace
@@ -56,7 +56,7 @@ components::Surroundings World::surroundingsAt(const components::SurroundingAir&
     if (burning_.now().empty()) return at;
     const components::FireAnswer fires =
         components::askFires(burning_.now(), profiles_, air.walls, point);
-    at.excess = std::max(at.excess, fires.air.kelvin - kAmbient);
+    at.excess = std::max(at.excess, fires.air.kelvin - fire::kAmbient);
     at.heatFlux = std::min(at.heatFlux + fires.air.heatFlux, components::kMostHeatFlux);
     return at;
 }
@@ -65,7 +65,7 @@ void World::askSurroundings(const float point[3], FwSurroundings& out) {
     components::checkValues(point, 3, "point", -1e6f, 1e6f);
     const components::Surroundings at = surroundingsAt(listSources(), volume::vecOf(point));
     out.heatFlux = at.heatFlux;
-    out.temperature = kAmbient + at.excess;
+    out.temperature = fire::kAmbient + at.excess;
     out.smoke = at.smoke;
     out.danger = components::dangerOf(at);
     out.nearest = at.nearest;

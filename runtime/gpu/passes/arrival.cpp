@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kArrivalUses[] = {
     {FW_BIND_COUNTERS, Access::indirect}, {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_MATERIALS, Access::read},    {FW_BIND_TEXELS, Access::read},
     {FW_BIND_NORMALS, Access::read},      {FW_BIND_SLOWNESS, Access::read},
@@ -17,6 +17,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kArrivalPass{"arrival", "arrival.comp", kUses, sizeof(StepPush)};
+const ComputePass kArrivalPass{"arrival", "arrival.comp", kArrivalUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

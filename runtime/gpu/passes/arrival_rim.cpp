@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kArrivalRimUses[] = {
     {FW_BIND_COUNTERS, Access::indirect}, {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_MATERIALS, Access::read},    {FW_BIND_TEXELS, Access::read},
     {FW_BIND_NORMALS, Access::read},      {FW_BIND_SLOWNESS, Access::read},
@@ -17,6 +17,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kArrivalRimPass{"arrival_rim", "arrival_rim.comp", kUses, sizeof(StepPush)};
+const ComputePass kArrivalRimPass{"arrival_rim", "arrival_rim.comp", kArrivalRimUses,
+                                  sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kCommitUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},    {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_TILES, Access::read},           {FW_BIND_READERS, Access::read},
     {FW_BIND_STATE, Access::write},          {FW_BIND_PENDING, Access::read},
@@ -19,6 +19,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kCommitPass{"commit", "commit.comp", kUses, sizeof(StepPush)};
+const ComputePass kCommitPass{"commit", "commit.comp", kCommitUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kContactsUses[] = {
     {FW_BIND_OBJECTS, Access::read},          {FW_BIND_TILES, Access::read},
     {FW_BIND_READERS, Access::read},          {FW_BIND_STATE, Access::write},
     {FW_BIND_TILE_STATE, Access::write},      {FW_BIND_LIST_A, Access::write},
@@ -20,6 +20,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kContactsPass{"contacts", "contacts.comp", kUses, sizeof(ExchangePush)};
+const ComputePass kContactsPass{"contacts", "contacts.comp", kContactsUses, sizeof(ExchangePush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kDrapeUses[] = {
     {FW_BIND_DEFORM_OBJECTS, Access::read},
     {FW_BIND_DEFORM_GROUPS, Access::read},
     {FW_BIND_DEFORM_COATS, Access::readTexels},
@@ -14,6 +14,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kDrapePass{"drape", "drape.comp", kUses, sizeof(DeformPush), "drape_texels.comp"};
+const ComputePass kDrapePass{"drape", "drape.comp", kDrapeUses, sizeof(DeformPush),
+                             "drape_texels.comp"};
 
 }  // namespace fw::gpu

@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kEmbersUses[] = {
     {FW_BIND_OBJECTS, Access::read},          {FW_BIND_TILES, Access::read},
     {FW_BIND_READERS, Access::read},          {FW_BIND_STATE, Access::write},
     {FW_BIND_TILE_STATE, Access::write},      {FW_BIND_LIST_A, Access::write},
@@ -20,6 +20,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kEmbersPass{"embers", "embers.comp", kUses, sizeof(ExchangePush)};
+const ComputePass kEmbersPass{"embers", "embers.comp", kEmbersUses, sizeof(ExchangePush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kEventsUses[] = {
     {FW_BIND_OBJECTS, Access::read},         {FW_BIND_TILES, Access::read},
     {FW_BIND_READERS, Access::read},         {FW_BIND_STATE, Access::write},
     {FW_BIND_TILE_STATE, Access::write},     {FW_BIND_LIST_A, Access::write},
@@ -19,6 +19,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kEventsPass{"events", "events.comp", kUses, sizeof(StepPush)};
+const ComputePass kEventsPass{"events", "events.comp", kEventsUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

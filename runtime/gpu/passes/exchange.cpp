@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kExchangeUses[] = {
     {FW_BIND_COUNTERS, Access::indirect}, {FW_BIND_COUNTERS, Access::write},
     {FW_BIND_OBJECTS, Access::read},      {FW_BIND_OBJECT_COUNTERS, Access::write},
     {FW_BIND_TILE_STATE, Access::write},  {FW_BIND_TILE_HEAT, Access::write},
@@ -16,6 +16,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kExchangePass{"exchange", "exchange.comp", kUses, sizeof(ExchangePush)};
+const ComputePass kExchangePass{"exchange", "exchange.comp", kExchangeUses, sizeof(ExchangePush)};
 
 }  // namespace fw::gpu

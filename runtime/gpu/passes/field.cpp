@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kFieldUses[] = {
     {FW_BIND_FIELDS, Access::read},       {FW_BIND_FIELD_RUNS, Access::read},
     {FW_BIND_FIELD_MASKS, Access::read},  {FW_BIND_FIELD_CELLS, Access::readTexels},
     {FW_BIND_FIELD_CELLS, Access::write}, {FW_BIND_FIELD_COUNTERS, Access::write},
@@ -13,6 +13,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kFieldPass{"field", "field.comp", kUses, sizeof(FieldPush), "field_texels.comp"};
+const ComputePass kFieldPass{"field", "field.comp", kFieldUses, sizeof(FieldPush),
+                             "field_texels.comp"};
 
 }  // namespace fw::gpu

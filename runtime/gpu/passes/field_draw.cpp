@@ -8,7 +8,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kFieldDrawUses[] = {
     {FW_BIND_VIEW, Access::uniformView},
     {FW_BIND_FIELD_SHOWN, Access::drawRead},
     {FW_BIND_FIELD_DRAWS, Access::drawRead},
@@ -18,7 +18,7 @@ constexpr DrawPass variant(uint32_t number) {
     return {.name = "field draw",
             .vertexShader = "field_draw.vert",
             .fragmentShader = "field_draw.frag",
-            .uses = kUses,
+            .uses = kFieldDrawUses,
             .vertexInput = VertexInput::none,
             .blend = Blend::premultiplied,
             .writeDepth = false,

@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kFieldMaskUses[] = {
     {FW_BIND_FIELDS, Access::read},          {FW_BIND_FIELD_RUNS, Access::read},
     {FW_BIND_FIELD_CELLS, Access::write},    {FW_BIND_FIELD_MASKS, Access::read},
     {FW_BIND_FIELD_COUNTERS, Access::write},
@@ -13,6 +13,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kFieldMaskPass{"field mask", "field_mask.comp", kUses, sizeof(FieldPush)};
+const ComputePass kFieldMaskPass{"field mask", "field_mask.comp", kFieldMaskUses,
+                                 sizeof(FieldPush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kFieldShowUses[] = {
     {FW_BIND_FIELD_DRAWS, Access::read},
     {FW_BIND_FIELD_CELLS, Access::read},
     {FW_BIND_FIELD_SHOWN, Access::write},
@@ -13,6 +13,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kFieldShowPass{"field show", "field_show.comp", kUses, 0};
+const ComputePass kFieldShowPass{"field show", "field_show.comp", kFieldShowUses, 0};
 
 }  // namespace fw::gpu

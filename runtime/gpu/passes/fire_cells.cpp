@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kFireCellsUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},   {FW_BIND_COUNTERS, Access::read},
     {FW_BIND_OBJECTS, Access::read},        {FW_BIND_BURN_TILES, Access::read},
     {FW_BIND_REMOTE_OBJECTS, Access::read}, {FW_BIND_REMOTE_TILES, Access::read},
@@ -14,6 +14,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kFireCellsPass{"fire cells", "fire_cells.comp", kUses, sizeof(ExchangePush)};
+const ComputePass kFireCellsPass{"fire cells", "fire_cells.comp", kFireCellsUses,
+                                 sizeof(ExchangePush)};
 
 }  // namespace fw::gpu

@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kFireSourcesUses[] = {
     {FW_BIND_COUNTERS, Access::read},       {FW_BIND_OBJECT_COUNTERS, Access::write},
     {FW_BIND_REMOTE_OBJECTS, Access::read}, {FW_BIND_SOURCES, Access::write},
     {FW_BIND_NEIGHBOURS, Access::read},
@@ -13,7 +13,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kFireSourcesPass{"fire sources", "fire_sources.comp", kUses,
+const ComputePass kFireSourcesPass{"fire sources", "fire_sources.comp", kFireSourcesUses,
                                    sizeof(ExchangePush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kGatherUses[] = {
     {FW_BIND_COUNTERS, Access::indirect}, {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_TILES, Access::read},        {FW_BIND_STATE, Access::read},
     {FW_BIND_TILE_STATE, Access::write},  {FW_BIND_RUN, Access::read},
@@ -15,6 +15,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kGatherPass{"gather", "gather.comp", kUses, sizeof(StepPush)};
+const ComputePass kGatherPass{"gather", "gather.comp", kGatherUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kGrantUses[] = {
     {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_TILE_STATE, Access::write},
     {FW_BIND_RUN, Access::read},
@@ -20,6 +20,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kGrantPass{"grant", "grant.comp", kUses, sizeof(StepPush)};
+const ComputePass kGrantPass{"grant", "grant.comp", kGrantUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

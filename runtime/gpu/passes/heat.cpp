@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kHeatUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},    {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_MATERIALS, Access::read},       {FW_BIND_TEXELS, Access::read},
     {FW_BIND_TILES, Access::read},           {FW_BIND_READERS, Access::read},
@@ -20,6 +20,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kHeatPass{"heat", "heat.comp", kUses, sizeof(StepPush)};
+const ComputePass kHeatPass{"heat", "heat.comp", kHeatUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

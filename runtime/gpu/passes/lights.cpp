@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kLightsUses[] = {
     {FW_BIND_OBJECTS, Access::read},      {FW_BIND_MATERIALS, Access::read},
     {FW_BIND_LOOKS, Access::read},        {FW_BIND_COUNTERS, Access::read},
     {FW_BIND_BURN_TILES, Access::read},   {FW_BIND_LIGHTS, Access::write},
@@ -14,6 +14,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kLightsPass{"lights", "lights.comp", kUses, sizeof(StepPush)};
+const ComputePass kLightsPass{"lights", "lights.comp", kLightsUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -6,7 +6,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kParticlesUses[] = {
     {FW_BIND_EMITTERS, Access::read},   {FW_BIND_EMITTER_GROUPS, Access::read},
     {FW_BIND_PARTICLES, Access::write}, {FW_BIND_COUNTERS, Access::read},
     {FW_BIND_BURN_TILES, Access::read},
@@ -26,7 +26,8 @@ constexpr Use kSparkUses[] = {
 
 }  // namespace
 
-const ComputePass kParticlesPass{"particles", "particles.comp", kUses, sizeof(ParticlePush)};
+const ComputePass kParticlesPass{"particles", "particles.comp", kParticlesUses,
+                                 sizeof(ParticlePush)};
 const ComputePass kParticleQuadsPass{"particle quads", "particle_quads.comp", kQuadUses,
                                      sizeof(ParticlePush)};
 const ComputePass kSparksPass{"sparks", "sparks.comp", kSparkUses, sizeof(SparkPush)};

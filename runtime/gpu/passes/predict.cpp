@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kPredictUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},    {FW_BIND_SCRATCH, Access::read},
     {FW_BIND_OBJECTS, Access::read},         {FW_BIND_MATERIALS, Access::read},
     {FW_BIND_TEXELS, Access::read},          {FW_BIND_NORMALS, Access::read},
@@ -17,6 +17,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kPredictPass{"predict", "predict.comp", kUses, sizeof(StepPush)};
+const ComputePass kPredictPass{"predict", "predict.comp", kPredictUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

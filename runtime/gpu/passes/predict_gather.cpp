@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kPredictGatherUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},    {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_READERS, Access::read},         {FW_BIND_TILES, Access::read},
     {FW_BIND_STATE, Access::read},           {FW_BIND_TILE_STATE, Access::write},
@@ -15,7 +15,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kPredictGatherPass{"predict_gather", "predict_gather.comp", kUses,
+const ComputePass kPredictGatherPass{"predict_gather", "predict_gather.comp", kPredictGatherUses,
                                      sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kPredictRimUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},    {FW_BIND_SCRATCH, Access::read},
     {FW_BIND_OBJECTS, Access::read},         {FW_BIND_MATERIALS, Access::read},
     {FW_BIND_TEXELS, Access::read},          {FW_BIND_NORMALS, Access::read},
@@ -18,6 +18,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kPredictRimPass{"predict_rim", "predict_rim.comp", kUses, sizeof(StepPush)};
+const ComputePass kPredictRimPass{"predict_rim", "predict_rim.comp", kPredictRimUses,
+                                  sizeof(StepPush)};
 
 }  // namespace fw::gpu

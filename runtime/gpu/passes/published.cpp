@@ -6,7 +6,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kPublishedUses[] = {
     {FW_BIND_OBJECTS, Access::read},          {FW_BIND_STATE, Access::write},
     {FW_BIND_TILE_STATE, Access::write},      {FW_BIND_COUNTERS, Access::write},
     {FW_BIND_OBJECT_COUNTERS, Access::write}, {FW_BIND_BURN_A, Access::write},
@@ -16,7 +16,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kPublishedPass{"published", "published.comp", kUses, sizeof(StepPush)};
+const ComputePass kPublishedPass{"published", "published.comp", kPublishedUses, sizeof(StepPush)};
 
 uint32_t publishedGroups(const BurnObject& object) {
     const uint32_t blocks = object.width / kPublishedBlockX *

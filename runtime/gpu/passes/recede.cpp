@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRecedeUses[] = {
     {FW_BIND_DEFORM_OBJECTS, Access::read},     {FW_BIND_DEFORM_GROUPS, Access::read},
     {FW_BIND_DEFORM_NODES, Access::readTexels}, {FW_BIND_STATE, Access::read},
     {FW_BIND_SHOWN, Access::readTexels},        {FW_BIND_SHOWN, Access::write},
@@ -13,7 +13,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRecedePass{"recede", "recede.comp", kUses, sizeof(DeformPush),
+const ComputePass kRecedePass{"recede", "recede.comp", kRecedeUses, sizeof(DeformPush),
                               "recede_texels.comp"};
 
 }  // namespace fw::gpu

@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kReceiversUses[] = {
     {FW_BIND_COUNTERS, Access::write},        {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_OBJECT_COUNTERS, Access::write}, {FW_BIND_REMOTE_OBJECTS, Access::read},
     {FW_BIND_SOURCES, Access::read},          {FW_BIND_NEIGHBOURS, Access::read},
@@ -14,6 +14,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kReceiversPass{"receivers", "receivers.comp", kUses, sizeof(ExchangePush)};
+const ComputePass kReceiversPass{"receivers", "receivers.comp", kReceiversUses,
+                                 sizeof(ExchangePush)};
 
 }  // namespace fw::gpu

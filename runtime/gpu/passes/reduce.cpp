@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kReduceUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},
     {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_MATERIALS, Access::read},
@@ -25,6 +25,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kReducePass{"reduce", "reduce.comp", kUses, sizeof(StepPush)};
+const ComputePass kReducePass{"reduce", "reduce.comp", kReduceUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kReduceClearUses[] = {
     {FW_BIND_OBJECT_COUNTERS, Access::write},
     {FW_BIND_REMOTE_OBJECTS, Access::read},
     {FW_BIND_SOURCES, Access::write},
@@ -12,6 +12,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kReduceClearPass{"reduce_clear", "reduce_clear.comp", kUses, sizeof(StepPush)};
+const ComputePass kReduceClearPass{"reduce_clear", "reduce_clear.comp", kReduceClearUses,
+                                   sizeof(StepPush)};
 
 }  // namespace fw::gpu

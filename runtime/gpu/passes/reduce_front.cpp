@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kReduceFrontUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},     {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_TILE_STATE, Access::read},       {FW_BIND_LIST_A, Access::read},
     {FW_BIND_LIST_B, Access::read},           {FW_BIND_COUNTERS, Access::read},
@@ -13,6 +13,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kReduceFrontPass{"reduce_front", "reduce_front.comp", kUses, sizeof(StepPush)};
+const ComputePass kReduceFrontPass{"reduce_front", "reduce_front.comp", kReduceFrontUses,
+                                   sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRefineCutUses[] = {
     {FW_BIND_REFINE_WORK, Access::indirect},   {FW_BIND_REFINE_WORK, Access::write},
     {FW_BIND_REFINE_OBJECTS, Access::read},    {FW_BIND_REFINE_WORDS, Access::read},
     {FW_BIND_REFINE_TRIANGLES, Access::read},  {FW_BIND_REFINE_SLOTS, Access::read},
@@ -17,6 +17,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRefineCutPass{"refine_cut", "refine_cut.comp", kUses, sizeof(RefinePush)};
+const ComputePass kRefineCutPass{"refine_cut", "refine_cut.comp", kRefineCutUses,
+                                 sizeof(RefinePush)};
 
 }  // namespace fw::gpu

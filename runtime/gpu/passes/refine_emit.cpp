@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRefineEmitUses[] = {
     {FW_BIND_REFINE_WORK, Access::indirect},  {FW_BIND_REFINE_WORK, Access::read},
     {FW_BIND_REFINE_OBJECTS, Access::read},   {FW_BIND_REFINE_WORDS, Access::read},
     {FW_BIND_REFINE_TRIANGLES, Access::read}, {FW_BIND_REFINE_LEVELS, Access::read},
@@ -14,6 +14,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRefineEmitPass{"refine_emit", "refine_emit.comp", kUses, sizeof(RefinePush)};
+const ComputePass kRefineEmitPass{"refine_emit", "refine_emit.comp", kRefineEmitUses,
+                                  sizeof(RefinePush)};
 
 }  // namespace fw::gpu

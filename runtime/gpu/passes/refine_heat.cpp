@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRefineHeatUses[] = {
     {FW_BIND_COUNTERS, Access::indirect}, {FW_BIND_COUNTERS, Access::read},
     {FW_BIND_OBJECTS, Access::read},      {FW_BIND_TILE_STATE, Access::read},
     {FW_BIND_LIST_A, Access::read},       {FW_BIND_LIST_B, Access::read},
@@ -16,6 +16,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRefineHeatPass{"refine_heat", "refine_heat.comp", kUses, sizeof(RefinePush)};
+const ComputePass kRefineHeatPass{"refine_heat", "refine_heat.comp", kRefineHeatUses,
+                                  sizeof(RefinePush)};
 
 }  // namespace fw::gpu

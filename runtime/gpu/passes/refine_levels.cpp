@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRefineLevelsUses[] = {
     {FW_BIND_REFINE_WORK, Access::write},     {FW_BIND_REFINE_OBJECTS, Access::read},
     {FW_BIND_REFINE_TRIANGLES, Access::read}, {FW_BIND_REFINE_EDGES, Access::read},
     {FW_BIND_REFINE_SLOTS, Access::read},     {FW_BIND_REFINE_HEAT, Access::write},
@@ -14,7 +14,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRefineLevelsPass{"refine_levels", "refine_levels.comp", kUses,
+const ComputePass kRefineLevelsPass{"refine_levels", "refine_levels.comp", kRefineLevelsUses,
                                     sizeof(RefinePush)};
 
 }  // namespace fw::gpu

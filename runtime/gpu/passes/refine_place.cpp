@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRefinePlaceUses[] = {
     {FW_BIND_REFINE_WORK, Access::indirect}, {FW_BIND_REFINE_WORK, Access::read},
     {FW_BIND_REFINE_OBJECTS, Access::read},  {FW_BIND_REFINE_TRIANGLES, Access::read},
     {FW_BIND_REFINE_EDGES, Access::read},    {FW_BIND_REFINE_SLOTS, Access::read},
@@ -16,6 +16,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRefinePlacePass{"refine_place", "refine_place.comp", kUses, sizeof(RefinePush)};
+const ComputePass kRefinePlacePass{"refine_place", "refine_place.comp", kRefinePlaceUses,
+                                   sizeof(RefinePush)};
 
 }  // namespace fw::gpu

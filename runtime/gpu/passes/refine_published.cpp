@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRefinePublishedUses[] = {
     {FW_BIND_ARP_GROUPS, Access::read},       {FW_BIND_ARP_LIST, Access::read},
     {FW_BIND_REFINE_OBJECTS, Access::read},   {FW_BIND_REFINE_TRIANGLES, Access::read},
     {FW_BIND_REFINE_SLOTS, Access::read},     {FW_BIND_VERTICES, Access::read},
@@ -14,7 +14,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRefinePublishedPass{"refine_published", "refine_published.comp", kUses,
-                                       sizeof(ArpPush)};
+const ComputePass kRefinePublishedPass{"refine_published", "refine_published.comp",
+                                       kRefinePublishedUses, sizeof(ArpPush)};
 
 }  // namespace fw::gpu

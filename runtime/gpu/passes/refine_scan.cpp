@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRefineScanUses[] = {
     {FW_BIND_REFINE_WORK, Access::write},     {FW_BIND_REFINE_OBJECTS, Access::read},
     {FW_BIND_REFINE_LEVELS, Access::write},   {FW_BIND_REFINE_DRAWS, Access::write},
     {FW_BIND_OBJECT_COUNTERS, Access::write},
@@ -13,6 +13,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRefineScanPass{"refine_scan", "refine_scan.comp", kUses, sizeof(RefinePush)};
+const ComputePass kRefineScanPass{"refine_scan", "refine_scan.comp", kRefineScanUses,
+                                  sizeof(RefinePush)};
 
 }  // namespace fw::gpu

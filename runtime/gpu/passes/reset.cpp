@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kResetUses[] = {
     {FW_BIND_OBJECTS, Access::read},        {FW_BIND_MATERIALS, Access::read},
     {FW_BIND_TEXELS, Access::read},         {FW_BIND_NORMALS, Access::read},
     {FW_BIND_SLOWNESS, Access::read},       {FW_BIND_STATE, Access::write},
@@ -16,6 +16,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kResetPass{"reset", "reset.comp", kUses, sizeof(StepPush)};
+const ComputePass kResetPass{"reset", "reset.comp", kResetUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kRestoreUses[] = {
     {FW_BIND_OBJECTS, Access::read},         {FW_BIND_TILE_STATE, Access::write},
     {FW_BIND_LIST_A, Access::write},         {FW_BIND_LIST_B, Access::write},
     {FW_BIND_COUNTERS, Access::write},       {FW_BIND_BURN_A, Access::write},
@@ -14,6 +14,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kRestorePass{"restore", "restore.comp", kUses, sizeof(StepPush)};
+const ComputePass kRestorePass{"restore", "restore.comp", kRestoreUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

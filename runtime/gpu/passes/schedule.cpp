@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kScheduleUses[] = {
     {FW_BIND_COUNTERS, Access::indirect},
     {FW_BIND_OBJECTS, Access::read},
     {FW_BIND_TILE_STATE, Access::write},
@@ -20,6 +20,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kSchedulePass{"schedule", "schedule.comp", kUses, sizeof(StepPush)};
+const ComputePass kSchedulePass{"schedule", "schedule.comp", kScheduleUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kSkinUses[] = {
     {FW_BIND_SKIN_SOURCES, Access::read},
     {FW_BIND_SKIN_GIVEN, Access::read},
     {FW_BIND_SHOWN, Access::write},
@@ -12,6 +12,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kSkinPass{"skin", "skin.comp", kUses, sizeof(SkinPush)};
+const ComputePass kSkinPass{"skin", "skin.comp", kSkinUses, sizeof(SkinPush)};
 
 }  // namespace fw::gpu

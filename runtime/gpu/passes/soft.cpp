@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kSoftUses[] = {
     {FW_BIND_DEFORM_OBJECTS, Access::read}, {FW_BIND_DEFORM_GROUPS, Access::read},
     {FW_BIND_OBJECTS, Access::read},        {FW_BIND_DEFORM_NODES, Access::readTexels},
     {FW_BIND_SHOWN, Access::readTexels},    {FW_BIND_SHOWN, Access::write},
@@ -13,6 +13,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kSoftPass{"soft", "soft.comp", kUses, sizeof(DeformPush), "soft_texels.comp"};
+const ComputePass kSoftPass{"soft", "soft.comp", kSoftUses, sizeof(DeformPush), "soft_texels.comp"};
 
 }  // namespace fw::gpu

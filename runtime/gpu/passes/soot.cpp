@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kSootUses[] = {
     {FW_BIND_OBJECTS, Access::read},     {FW_BIND_TEXELS, Access::read},
     {FW_BIND_TILE_STATE, Access::write}, {FW_BIND_PREDICT, Access::read},
     {FW_BIND_GRADIENT, Access::write},   {FW_BIND_SKIN_TEXELS, Access::read},
@@ -14,6 +14,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kSootPass{"soot", "soot.comp", kUses, sizeof(StepPush)};
+const ComputePass kSootPass{"soot", "soot.comp", kSootUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

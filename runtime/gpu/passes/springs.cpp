@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kSpringsUses[] = {
     {FW_BIND_DEFORM_OBJECTS, Access::read},
     {FW_BIND_DEFORM_GROUPS, Access::read},
     {FW_BIND_DEFORM_NODES, Access::readTexels},
@@ -16,7 +16,7 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kSpringsPass{"springs", "springs.comp", kUses, sizeof(DeformPush),
+const ComputePass kSpringsPass{"springs", "springs.comp", kSpringsUses, sizeof(DeformPush),
                                "springs_texels.comp"};
 
 }  // namespace fw::gpu

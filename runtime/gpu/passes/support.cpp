@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kSupportUses[] = {
     {FW_BIND_OBJECTS, Access::read},  {FW_BIND_MATERIALS, Access::read},
     {FW_BIND_TEXELS, Access::read},   {FW_BIND_READERS, Access::read},
     {FW_BIND_TILES, Access::read},    {FW_BIND_STATE, Access::read},
@@ -13,6 +13,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kSupportPass{"support", "support.comp", kUses, sizeof(StepPush)};
+const ComputePass kSupportPass{"support", "support.comp", kSupportUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kSurfaceUses[] = {
     {FW_BIND_PREDICT, Access::drawRead},
     {FW_BIND_GRADIENT, Access::drawRead},
     {FW_BIND_LIGHTS, Access::drawUniform},
@@ -24,7 +24,7 @@ constexpr DrawPass variant(uint32_t features, Cull cull) {
     return {"surface",
             "surface.vert",
             "surface.frag",
-            kUses,
+            kSurfaceUses,
             VertexInput::mesh,
             Blend::opaque,
             true,

@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kTiesUses[] = {
     {FW_BIND_DEFORM_OBJECTS, Access::read},
     {FW_BIND_DEFORM_GROUPS, Access::read},
     {FW_BIND_DEFORM_NODES, Access::readTexels},
@@ -14,6 +14,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kTiesPass{"ties", "ties.comp", kUses, sizeof(DeformPush), "ties_texels.comp"};
+const ComputePass kTiesPass{"ties", "ties.comp", kTiesUses, sizeof(DeformPush), "ties_texels.comp"};
 
 }  // namespace fw::gpu

@@ -11,7 +11,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kVolumeUses[] = {
     {FW_BIND_VIEW, Access::uniformView},
     {FW_BIND_VOLUMES, Access::drawEach},
 };
@@ -32,7 +32,7 @@ float along(const vec3& direction, const ViewParams& view, int component) {
 const DrawPass kVolumePass{.name = "volume",
                            .vertexShader = "volume.vert",
                            .fragmentShader = "volume.frag",
-                           .uses = kUses,
+                           .uses = kVolumeUses,
                            .vertexInput = VertexInput::none,
                            .blend = Blend::premultiplied,
                            .writeDepth = false,

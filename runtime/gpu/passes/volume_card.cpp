@@ -9,11 +9,11 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawTexels}};
+constexpr Use kVolumeCardUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawTexels}};
 
-constexpr float kCellsAcross = 24.0f;  // of a flame's diameter, where its smoke leaves as many
-constexpr float kFinest = 0.25f;       // as volume_march's
-constexpr float kGrows = 1.15f;        // cells, until they are few enough
+constexpr float kCardCells = 24.0f;   // of a flame's diameter, where its smoke leaves as many
+constexpr float kCardFinest = 0.25f;  // as volume_march's
+constexpr float kGrows = 1.15f;       // cells, until they are few enough
 
 // m per unit of the view at so many m along it.
 vec2 metresAt(const VolumeDraw& draw, float depth) {
@@ -28,22 +28,22 @@ vec3 placeOf(const ViewParams& view, vec3 point) {
     return {clip.x / clip.w, clip.y / clip.w, glm::dot(from, vec3(view.forward))};
 }
 
-constexpr const char* kTexelShaders[] = {"volume_card_texels.frag", "volume_card_texels_soft.frag",
-                                         "volume_card_texels_soft_ms.frag"};
+constexpr const char* kCardTexelShaders[] = {
+    "volume_card_texels.frag", "volume_card_texels_soft.frag", "volume_card_texels_soft_ms.frag"};
 
 }  // namespace
 
 const DrawPass kVolumeCardPass{.name = "volume card",
                                .vertexShader = "volume_card.vert",
                                .fragmentShader = "volume_card.frag",
-                               .uses = kUses,
+                               .uses = kVolumeCardUses,
                                .vertexInput = VertexInput::none,
                                .blend = Blend::premultiplied,
                                .writeDepth = false,
                                .pushBytes = sizeof(VolumeCard),
                                .softShader = "volume_card_soft.frag",
                                .softShaderMultisampled = "volume_card_soft_ms.frag",
-                               .texelShaders = kTexelShaders};
+                               .texelShaders = kCardTexelShaders};
 
 bool cardFits(const VolumeItem& item) noexcept {
     return item.whole.x < item.whole.z && item.whole.y < item.whole.w && item.draw.front > 0.0f;
@@ -55,7 +55,7 @@ void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen&
     const vec3 at = placeOf(view, item.middle);
     const vec2 metres = metresAt(draw, at.z);
     const vec2 size = metres * vec2(item.whole.z - item.whole.x, item.whole.w - item.whole.y);
-    float cell = draw.wide / kCellsAcross;
+    float cell = draw.wide / kCardCells;
     const auto tiles = [&](float length) {
         return std::max(std::ceil(length / (cell * float(kVolumeTile))), 1.0f);
     };
@@ -75,7 +75,7 @@ void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen&
     out.composite = {};
     VolumeMarch& march = out.march;
     march.rayX = vec4(perCell.x * vec3(draw.rayX), 0.0f);
-    march.rayX.w = kFinest * glm::length(vec3(march.rayX));
+    march.rayX.w = kCardFinest * glm::length(vec3(march.rayX));
     march.turns = uint32_t(std::clamp(
         std::ceil(2.0f * draw.deep * float(draw.slabs) / draw.spacing), 1.0f, float(screen.steps)));
     march.rayY =

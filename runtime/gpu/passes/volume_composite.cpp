@@ -7,27 +7,27 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawRead},
-                         {FW_BIND_VOLUME_RAYS, Access::drawTexels},
-                         {FW_BIND_VOLUME_WORK, Access::indirect}};
+constexpr Use kVolumeCompositeUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawRead},
+                                        {FW_BIND_VOLUME_RAYS, Access::drawTexels},
+                                        {FW_BIND_VOLUME_WORK, Access::indirect}};
 
-constexpr const char* kTexelShaders[] = {"volume_composite_texels.frag",
-                                         "volume_composite_texels_soft.frag",
-                                         "volume_composite_texels_soft_ms.frag"};
+constexpr const char* kCompositeTexelShaders[] = {"volume_composite_texels.frag",
+                                                  "volume_composite_texels_soft.frag",
+                                                  "volume_composite_texels_soft_ms.frag"};
 
 }  // namespace
 
 const DrawPass kVolumeCompositePass{.name = "volume composite",
                                     .vertexShader = "volume_composite.vert",
                                     .fragmentShader = "volume_composite.frag",
-                                    .uses = kUses,
+                                    .uses = kVolumeCompositeUses,
                                     .vertexInput = VertexInput::none,
                                     .blend = Blend::premultiplied,
                                     .writeDepth = false,
                                     .pushBytes = sizeof(VolumeComposite),
                                     .softShader = "volume_composite_soft.frag",
                                     .softShaderMultisampled = "volume_composite_soft_ms.frag",
-                                    .texelShaders = kTexelShaders};
+                                    .texelShaders = kCompositeTexelShaders};
 
 void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes) {
     for (const MarchedVolume& one : volumes)

@@ -8,7 +8,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kVolumeHazeUses[] = {
     {FW_BIND_VIEW, Access::uniformView},
     {FW_BIND_VOLUMES, Access::drawEach},
 };
@@ -18,7 +18,7 @@ constexpr Use kUses[] = {
 const DrawPass kVolumeHazePass{.name = "volume haze",
                                .vertexShader = "volume_haze.vert",
                                .fragmentShader = nullptr,
-                               .uses = kUses,
+                               .uses = kVolumeHazeUses,
                                .vertexInput = VertexInput::none,
                                .blend = Blend::premultiplied,
                                .writeDepth = false,

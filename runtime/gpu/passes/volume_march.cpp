@@ -9,7 +9,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kVolumeMarchUses[] = {
     {FW_BIND_VIEW, Access::uniformView},
     {FW_BIND_VOLUMES, Access::each},
     {FW_BIND_VOLUME_WORK, Access::indirect},
@@ -101,7 +101,7 @@ uint64_t tilesOfAll(std::span<const VolumeItem> items, const VolumeScreen& scree
 }  // namespace
 
 const ComputePass kVolumeMarchPass{
-    "volume march", "volume_march.comp", kUses, sizeof(VolumeMarch), nullptr, true};
+    "volume march", "volume_march.comp", kVolumeMarchUses, sizeof(VolumeMarch), nullptr, true};
 
 float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept {
     const float pixel = 2.0f / screen.size.x * glm::length(vec3(draw.rayX)) * awayOf(draw);

@@ -5,7 +5,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kVolumeProbeUses[] = {
     {FW_BIND_VIEW, Access::uniformView},
     {FW_BIND_VOLUMES, Access::each},
     {FW_BIND_VOLUME_RAYS, Access::write},
@@ -15,6 +15,6 @@ constexpr Use kUses[] = {
 }  // namespace
 
 const ComputePass kVolumeProbePass{
-    "volume probe", "volume_probe.comp", kUses, sizeof(VolumeMarch), nullptr, true};
+    "volume probe", "volume_probe.comp", kVolumeProbeUses, sizeof(VolumeMarch), nullptr, true};
 
 }  // namespace fw::gpu

@@ -11,7 +11,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kVolumeSlicesUses[] = {
     {FW_BIND_VIEW, Access::uniformView},
     {FW_BIND_VOLUMES, Access::drawEach},
 };
@@ -24,7 +24,7 @@ constexpr float kApart = 0.5f;    // of VolumeDraw::spacing: sheets are closer t
 const DrawPass kVolumeSlicesPass{.name = "volume slices",
                                  .vertexShader = "volume_slices.vert",
                                  .fragmentShader = "volume_slices.frag",
-                                 .uses = kUses,
+                                 .uses = kVolumeSlicesUses,
                                  .vertexInput = VertexInput::none,
                                  .blend = Blend::premultiplied,
                                  .writeDepth = false,

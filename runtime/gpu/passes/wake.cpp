@@ -4,7 +4,7 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {
+constexpr Use kWakeUses[] = {
     {FW_BIND_OBJECTS, Access::read},         {FW_BIND_TILE_STATE, Access::write},
     {FW_BIND_LIST_A, Access::write},         {FW_BIND_LIST_B, Access::write},
     {FW_BIND_COUNTERS, Access::write},       {FW_BIND_WAKE_GROUPS, Access::read},
@@ -13,6 +13,6 @@ constexpr Use kUses[] = {
 
 }  // namespace
 
-const ComputePass kWakePass{"wake", "wake.comp", kUses, sizeof(StepPush)};
+const ComputePass kWakePass{"wake", "wake.comp", kWakeUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

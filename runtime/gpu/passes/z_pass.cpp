@@ -6,14 +6,14 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kUses[] = {{FW_BIND_VIEW, Access::uniformView}};
+constexpr Use kZPassUses[] = {{FW_BIND_VIEW, Access::uniformView}};
 
 }  // namespace
 
 const DrawPass kZPass{.name = "z pass",
                       .vertexShader = "z_pass.vert",
                       .fragmentShader = nullptr,
-                      .uses = kUses,
+                      .uses = kZPassUses,
                       .vertexInput = VertexInput::mesh,
                       .blend = Blend::depthAlone,
                       .writeDepth = true,

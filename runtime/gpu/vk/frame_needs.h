@@ -10,10 +10,6 @@ namespace fw::gpu::vk {
 
 constexpr uint64_t kUploadAlignment = 16;  // bytes
 
-constexpr uint64_t alignUp(uint64_t value, uint64_t alignment) noexcept {
-    return (value + alignment - 1) / alignment * alignment;
-}
-
 constexpr uint64_t uploaded(uint64_t bytes) noexcept { return alignUp(bytes, kUploadAlignment); }
 
 // Linear writes into the frame's upload buffer.

@@ -12,10 +12,6 @@ constexpr const char* kComponentNames[kComponentCount] = {
     "meshes", "objects", "lists",   "predict",  "heat",   "refine",
     "flames", "images",  "staging", "readback", "targets"};
 
-VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) noexcept {
-    return (value + alignment - 1) / alignment * alignment;
-}
-
 }  // namespace
 
 DeviceMemory::~DeviceMemory() {

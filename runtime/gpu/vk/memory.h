@@ -8,6 +8,10 @@
 
 namespace fw::gpu::vk {
 
+constexpr uint64_t alignUp(uint64_t value, uint64_t alignment) noexcept {
+    return (value + alignment - 1) / alignment * alignment;
+}
+
 enum class MemoryKind : uint8_t {
     device,    // only the GPU reads and writes
     upload,    // written by the CPU, coherent

@@ -17,7 +17,7 @@ bool recedes(const ObjectEntry& object, uint32_t group) noexcept {
 
 constexpr uint64_t kSettleTicks = 12 * kTicksPerSecond;  // that a sheet may swing
 
-uint32_t groupsOf(uint32_t items) noexcept { return (items + kDeformGroup - 1) / kDeformGroup; }
+uint32_t deformGroups(uint32_t items) noexcept { return (items + kDeformGroup - 1) / kDeformGroup; }
 
 // Does it still move, as far as is known? What burns does, until the last texel that caught has
 // burnt out.
@@ -90,7 +90,7 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
     object.deformWoke = !object.deformsNow;
     object.deformsNow = deforms(s, slot, endTick);
     if (object.deformsNow) {
-        const uint32_t groups = groupsOf(object.deform.nodeCount);
+        const uint32_t groups = deformGroups(object.deform.nodeCount);
         for (uint32_t group = 0; group < groups; ++group)
             needs.nodeGroups += recedes(object, group) ? 1 : 0;
         if (object.deform.flags & kDeformShell) {
@@ -98,7 +98,7 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
             needs.sheetsBegin |= object.deformReset || object.deformWoke;
         }
         if (object.deform.flags & kDeformSprings) needs.springGroups += groups;
-        needs.vertexGroups += groupsOf(object.deform.vertexCount);
+        needs.vertexGroups += deformGroups(object.deform.vertexCount);
     }
     const Skin* moved = object.skinPlus1 ? &s.skins[object.skinPlus1 - 1] : nullptr;
     if (moved && (moved->dirty || moved->givenDue)) {
@@ -107,7 +107,7 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
         if (skin.dirty) needs.uploadBytes += uploaded(skin.shown.size() * sizeof(ShownVertex));
         // Normals that the host does not give follow the triangles.
         object.deformsNow = !skin.normals;
-        if (object.deformsNow) needs.vertexGroups += groupsOf(object.deform.vertexCount);
+        if (object.deformsNow) needs.vertexGroups += deformGroups(object.deform.vertexCount);
     }
 }
 

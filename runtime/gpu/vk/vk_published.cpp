@@ -9,8 +9,6 @@
 namespace fw::gpu::vk {
 namespace {
 
-uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
-
 // Groups of its list, at most.
 uint32_t mostGroups(const ObjectEntry& object) { return object.refine.arpList.units / 64; }
 

@@ -26,9 +26,7 @@ constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
 // Of the budget, what levels aim at: they are on their way for a moment, and some objects wait.
 constexpr uint32_t kAimed = 15, kAimedOf = 16;
 
-uint32_t groupsOf(uint32_t count) { return (count + 63) / 64; }
-
-uint32_t materialOf(const mesh::BurnDomain& domain, const RefineTriangle& triangle) {
+uint32_t drawnMaterialOf(const mesh::BurnDomain& domain, const RefineTriangle& triangle) {
     const uint32_t corner = domain.indices[size_t(triangle.source) * 3];
     return std::min(domain.vertices[corner].material, kMaterialsPerObject - 1);
 }
@@ -83,7 +81,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
     }
     fresh.openEdges = model.openEdges;
     fresh.solid = mesh::hasInside(domain, model);
-    for (const RefineTriangle& t : model.triangles) ++fresh.materialEnd[materialOf(domain, t)];
+    for (const RefineTriangle& t : model.triangles) ++fresh.materialEnd[drawnMaterialOf(domain, t)];
     for (uint32_t m = 1; m < kMaterialsPerObject; ++m)
         fresh.materialEnd[m] += fresh.materialEnd[m - 1];
 

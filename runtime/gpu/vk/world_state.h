@@ -77,6 +77,9 @@ struct ArpUse {
     mesh::ArpState state;
 };
 
+// Groups of 64 that hold so many.
+constexpr uint32_t groupsOf(uint32_t items) noexcept { return (items + 63) / 64; }
+
 constexpr uint32_t refineKey(bool published, uint32_t depth) noexcept {
     return published ? kRefineDepth + 1 + depth : depth;
 }

@@ -2,6 +2,7 @@
 
 #include "mesh/bake.h"
 #include "mesh/deform/arms.h"
+#include "mesh/surface.h"
 
 #include <algorithm>
 #include <bit>
@@ -18,8 +19,6 @@ using gpu::DeformNode;
 using gpu::kDeformRing;
 using gpu::kDeformTexels;
 
-constexpr double kLongest = 2;          // of an offset
-constexpr double kDepthShare = 0.45;    // of the way to the wall behind
 constexpr double kAltitudeShare = 0.5;  // of the lowest altitude of the triangles around
 constexpr double kNoWall = 1e30;
 constexpr size_t kMostSteps = 256;  // around one node; of more triangles than that the first
@@ -246,7 +245,7 @@ class Builder {
         const double little = 1e-3 * weights;
         glm::dvec3 o = glm::inverse(squares + glm::dmat3(little)) * (guess * little - sum);
         const double length = glm::length(o);
-        if (length > kLongest) o *= kLongest / length;
+        if (length > kLongestOffset) o *= kLongestOffset / length;
         node.outX = float(o.x);
         node.outY = float(o.y);
         node.outZ = float(o.z);

@@ -11,8 +11,6 @@ namespace fw::mesh {
 namespace {
 
 constexpr double kSmoothCosine = 0.77;  // 40 degrees: flatter creases count as curved surface
-constexpr double kLongest = 2;          // of an offset
-constexpr double kDepthShare = 0.45;    // of the way to the wall behind
 constexpr double kReachUnit = 1e-5;     // m
 
 // Faces at a vertex, summed up.
@@ -36,7 +34,7 @@ glm::dvec3 mitre(const Faces& faces) {
     const double weight = 1e-3 * faces.count;
     glm::dvec3 o = glm::inverse(faces.squares + glm::dmat3(weight)) * (guess * weight - faces.sum);
     const double length = glm::length(o);
-    return length > kLongest ? o * (kLongest / length) : o;
+    return length > kLongestOffset ? o * (kLongestOffset / length) : o;
 }
 
 double leastAltitude(const CoarseMesh& coarse, const CoarseTriangle& t, double area) {
@@ -49,7 +47,7 @@ double leastAltitude(const CoarseMesh& coarse, const CoarseTriangle& t, double a
 
 uint32_t packOffset(glm::dvec3 o) {
     const auto field = [](double v, int one) {
-        return uint32_t(std::clamp(int(std::floor(v / kLongest * one + 0.5)), -one, one));
+        return uint32_t(std::clamp(int(std::floor(v / kLongestOffset * one + 0.5)), -one, one));
     };
     return (field(o.x, 1023) & 0x7FFu) | (field(o.y, 1023) & 0x7FFu) << 11 |
            (field(o.z, 511) & 0x3FFu) << 22;

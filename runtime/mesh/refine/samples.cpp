@@ -7,7 +7,7 @@ namespace fw::mesh {
 namespace {
 
 constexpr double kReachCells = 1.5;  // of an edge: the row beside it must not move before it splits
-constexpr int kSearch = 4;           // texels, where none of the four around is the chart's own
+constexpr int kCellSearch = 4;       // texels, where none of the four around is the chart's own
 
 class Charts {
  public:
@@ -72,8 +72,8 @@ void sample(const BurnDomain& domain, const Charts& charts, uint32_t slotIndex,
     } else {
         texel = kNone;
         double least = 1e30;
-        for (int v = y - kSearch; v <= y + 1 + kSearch; ++v)
-            for (int u = x - kSearch; u <= x + 1 + kSearch; ++u) {
+        for (int v = y - kCellSearch; v <= y + 1 + kCellSearch; ++v)
+            for (int u = x - kCellSearch; u <= x + 1 + kCellSearch; ++u) {
                 const double d = std::hypot(u + 0.5 - uv.x, v + 0.5 - uv.y);
                 if (d >= least || !charts.at(u, v, chart)) continue;
                 least = d;
