@@ -1,5 +1,6 @@
 // What a game sees of a fire: events, states, points, tags, dousing, time. On the cpu backend.
 #include "abi/abi_support.h"
+#include "support/sanitized.h"
 
 #include <algorithm>
 
@@ -401,9 +402,9 @@ TEST(AbiTime, TooMuchTimeIsDroppedAndTold) {
 }
 
 TEST(AbiTime, TwelveDaysAreTheLimitAndItSaysSo) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "thirty million idle steps take too long under a sanitizer";
-#endif
+    if (fw::test::kSanitized) {
+        GTEST_SKIP() << "thirty million idle steps take too long under a sanitizer";
+    }
     FwWorldDef def = fwDefaultWorldDef();
     def.maxStepsPerFrame = 64;
     SheetWorld w(host::evenMaterial(kRate, 4), 0.25f, 0.25f, 32, def);

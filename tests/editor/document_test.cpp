@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "document/text.h"
+#include "support/sanitized.h"
 
 namespace {
 
@@ -356,7 +357,7 @@ TEST(EditorUndo, AThousandRandomStepsGoBackAndForthToTheByte) {
         const std::string start = everythingOf(document);
         std::vector<std::string> after = {start};
         int tries = 0;
-        while (document.steps.size() <= 1000) {
+        while (document.steps.size() <= fw::test::rounds<size_t>(1000, 200)) {
             ASSERT_LT(++tries, 20000);
             std::string message;
             const size_t before = document.steps.size();
@@ -516,7 +517,7 @@ TEST(EditorFile, AHundredKillsAtAnyMomentLeaveAWholeFile) {
             ASSERT_EQ(std::lround(0.1 * (step % 10) * 128), back.images.at(2).at(3, 3));
         }
     }
-    EXPECT_GT(saves, 20u);
+    EXPECT_GT(saves, fw::test::rounds(20u, 8u));
 }
 
 TEST(EditorCommands, SpoiltLinesAreRefusedInWords) {
@@ -620,7 +621,7 @@ TEST(EditorFile, TenThousandSpoiltScenesAreRefusedOrMended) {
                                     "\"\"", "[]",      "{}",    "true",
                                     "NaN",  "[[[1]]]", "0.5",   "\\u0000"};
     int refused = 0, mended = 0;
-    for (int i = 0; i < 10000; ++i) {
+    for (int i = 0; i < fw::test::rounds(10000, 3000); ++i) {
         std::string text = whole;
         for (uint32_t times = 1 + random() % 4; times > 0; --times) {
             if (text.empty()) break;
@@ -664,8 +665,8 @@ TEST(EditorFile, TenThousandSpoiltScenesAreRefusedOrMended) {
         ASSERT_TRUE(repairs.empty()) << repairs[0];
         ASSERT_EQ(printed, printScene(again));
     }
-    EXPECT_GT(refused, 1000);
-    EXPECT_GT(mended, 500);
+    EXPECT_GT(refused, fw::test::rounds(1000, 300));
+    EXPECT_GT(mended, fw::test::rounds(500, 150));
 }
 
 TEST(EditorScene, WhatSticksMovesAlongAndStaysWhenItsHolderGoes) {

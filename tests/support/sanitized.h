@@ -4,7 +4,8 @@
 
 namespace fw::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// By tests/CMakeLists.txt: the compiler's own macros say how the test is compiled, not the library.
+#ifdef FW_SANITIZED
 constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;

@@ -1,5 +1,6 @@
 // Entry point of every GoogleTest suite. Writes one line per test to the file named by
 // FLAMEWRIGHT_TEST_RESULTS, at once, so that tests/run can count even when a test crashes.
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,9 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#if defined(__SANITIZE_ADDRESS__)
-#include <dlfcn.h>
-#endif
+#include "support/sanitized.h"
 
 namespace {
 
@@ -58,12 +57,12 @@ class ResultFile : public ::testing::EmptyTestEventListener {
 }  // namespace
 
 int main(int argc, char** argv) {
-#if defined(__SANITIZE_ADDRESS__)
     // The loader unloads driver and layers with the last instance. What they keep until exit would
     // then look like leaks without a name, so they stay; where they are not installed, nothing is.
-    for (const char* name : {"libVkLayer_khronos_validation.so", "libvulkan_lvp.so"})
-        (void)dlopen(name, RTLD_LAZY | RTLD_NODELETE);
-#endif
+    if constexpr (fw::test::kSanitized) {
+        for (const char* name : {"libVkLayer_khronos_validation.so", "libvulkan_lvp.so"})
+            (void)dlopen(name, RTLD_LAZY | RTLD_NODELETE);
+    }
     ::testing::InitGoogleMock(&argc, argv);
     if (const char* path = std::getenv("FLAMEWRIGHT_TEST_RESULTS")) {
         std::FILE* file = std::fopen(path, "a");
