@@ -35,6 +35,20 @@ FwResult ask(const char* function, FwWorld* world,
     });
 }
 
+// Fills a struct of the caller's by a member of the world; `what`: whose state it is, if not the
+// world's.
+template <class Info, class Member, class... What>
+FwResult fill(const char* function, FwWorld* world, Info* info, const char* name, Member member,
+              What... what) {
+    return onWorld(function, world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(info, name);
+        Info filled{};
+        (w.*member)(what..., filled);
+        edge::writeInfo(info, size, filled);
+        return FW_OK;
+    });
+}
+
 template <class State>
 FwResult answer(const char* function, FwWorld* world,
                 bool (world::World::*fetch)(FwQueryId, State&), FwQueryId query, State* state,
@@ -180,13 +194,7 @@ FwResult FW_CALL fwWorld_DestroyMesh(FwWorld* world, FwMeshId id) {
 }
 
 FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld* world, FwMeshId id, FwMeshInfo* info) {
-    return onWorld("fwWorld_GetMeshInfo", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(info, "FwMeshInfo");
-        FwMeshInfo filled{};
-        w.meshInfo(id, filled);
-        edge::writeInfo(info, size, filled);
-        return FW_OK;
-    });
+    return fill("fwWorld_GetMeshInfo", world, info, "FwMeshInfo", &world::World::meshInfo, id);
 }
 
 // ---- burnable meshes --------------------------------------------------------------------------
@@ -283,13 +291,8 @@ FwResult FW_CALL fwWorld_SetVolumetricFireTier(FwWorld* world, FwVolumetricFireI
 
 FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld* world, FwVolumetricFireId id,
                                                 FwVolumetricFireState* state) {
-    return onWorld("fwWorld_GetVolumetricFireState", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(state, "FwVolumetricFireState");
-        FwVolumetricFireState filled{};
-        w.volumetricFireState(id, filled);
-        edge::writeInfo(state, size, filled);
-        return FW_OK;
-    });
+    return fill("fwWorld_GetVolumetricFireState", world, state, "FwVolumetricFireState",
+                &world::World::volumetricFireState, id);
 }
 
 FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFireId id,
@@ -340,13 +343,8 @@ FwResult FW_CALL fwWorld_SetFireEmitterHidden(FwWorld* world, FwFireEmitterId id
 
 FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld* world, FwFireEmitterId id,
                                              FwFireEmitterState* state) {
-    return onWorld("fwWorld_GetFireEmitterState", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(state, "FwFireEmitterState");
-        FwFireEmitterState filled{};
-        w.fireEmitterState(id, filled);
-        edge::writeInfo(state, size, filled);
-        return FW_OK;
-    });
+    return fill("fwWorld_GetFireEmitterState", world, state, "FwFireEmitterState",
+                &world::World::fireEmitterState, id);
 }
 
 FwResult FW_CALL fwWorld_CreateFireProfile(FwWorld* world, const FwFireProfileDef* given,
@@ -464,13 +462,8 @@ FwResult FW_CALL fwWorld_PaintParticleField(FwWorld* world, FwParticleFieldId id
 
 FwResult FW_CALL fwWorld_GetParticleFieldState(FwWorld* world, FwParticleFieldId id,
                                                FwParticleFieldState* state) {
-    return onWorld("fwWorld_GetParticleFieldState", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(state, "FwParticleFieldState");
-        FwParticleFieldState filled{};
-        w.particleFieldState(id, filled);
-        edge::writeInfo(state, size, filled);
-        return FW_OK;
-    });
+    return fill("fwWorld_GetParticleFieldState", world, state, "FwParticleFieldState",
+                &world::World::particleFieldState, id);
 }
 
 FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
@@ -529,13 +522,8 @@ FwResult FW_CALL fwWorld_TagPoint(FwWorld* world, FwBurnableMeshId id, const flo
 }
 
 FwResult FW_CALL fwWorld_GetObjectState(FwWorld* world, FwBurnableMeshId id, FwObjectState* state) {
-    return onWorld("fwWorld_GetObjectState", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(state, "FwObjectState");
-        FwObjectState filled{};
-        w.objectState(id, filled);
-        edge::writeInfo(state, size, filled);
-        return FW_OK;
-    });
+    return fill("fwWorld_GetObjectState", world, state, "FwObjectState", &world::World::objectState,
+                id);
 }
 
 FwResult FW_CALL fwWorld_RequestPoint(FwWorld* world, FwBurnableMeshId id, const float position[3],
@@ -605,13 +593,7 @@ FwResult FW_CALL fwWorld_MakeSafetyMask(FwWorld* world, const float corner[3],
 }
 
 FwResult FW_CALL fwWorld_GetStats(FwWorld* world, FwWorldStats* stats) {
-    return onWorld("fwWorld_GetStats", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(stats, "FwWorldStats");
-        FwWorldStats filled{};
-        w.stats(filled);
-        edge::writeInfo(stats, size, filled);
-        return FW_OK;
-    });
+    return fill("fwWorld_GetStats", world, stats, "FwWorldStats", &world::World::stats);
 }
 
 FwResult FW_CALL fwWorld_SetBudget(FwWorld* world, const FwBudgetDef* def) {
@@ -622,13 +604,8 @@ FwResult FW_CALL fwWorld_SetBudget(FwWorld* world, const FwBudgetDef* def) {
 }
 
 FwResult FW_CALL fwWorld_GetBudgetState(FwWorld* world, FwBudgetState* state) {
-    return onWorld("fwWorld_GetBudgetState", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(state, "FwBudgetState");
-        FwBudgetState filled{};
-        w.budgetState(filled);
-        edge::writeInfo(state, size, filled);
-        return FW_OK;
-    });
+    return fill("fwWorld_GetBudgetState", world, state, "FwBudgetState",
+                &world::World::budgetState);
 }
 
 FwResult FW_CALL fwWorld_RequestSave(FwWorld* world) {
