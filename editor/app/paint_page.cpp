@@ -84,7 +84,6 @@ std::string valueText(uint32_t kind, float value) {
     return text;
 }
 
-glm::vec3 asVec(Vec3 v) { return {v[0], v[1], v[2]}; }
 Vec3 asArray(glm::vec3 v) { return {v.x, v.y, v.z}; }
 
 glm::mat4 poseOf(const fwedit::Mesh& mesh) {

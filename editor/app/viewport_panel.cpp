@@ -41,8 +41,6 @@ Hand& hand() {
     return one;
 }
 
-glm::vec3 asVec(fwedit::Vec3 v) { return {v[0], v[1], v[2]}; }
-
 glm::vec3 axisOf(int axis) {
     glm::vec3 v(0);
     v[axis] = 1;

@@ -5,6 +5,8 @@
 
 namespace fwapp {
 
+inline glm::vec3 asVec(fwedit::Vec3 v) { return {v[0], v[1], v[2]}; }
+
 // A picture of the live scene on the screen.
 struct Picture {
     fwui::Rect rect;

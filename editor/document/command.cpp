@@ -423,7 +423,7 @@ bool parseCommand(const Scene& scene, std::string_view line, Command& command, s
 std::string printCommand(const Scene& scene, const Command& command) {
     std::string text = kVerbs[size_t(command.verb)];
     if (command.verb == Verb::Add) text += std::string(" ") + kindKey(command.kind);
-    if (command.verb == Verb::Import) text += join(" ", quoted(command.file));
+    if (command.verb == Verb::Import) text += join(" ", inQuotes(command.file));
     if (command.verb == Verb::Set && command.targets.empty())
         text += std::string(" ") + kindKey(command.kind);
     for (const ObjectId id : command.targets) text += join(" #", std::to_string(id));

@@ -639,7 +639,7 @@ std::string printValue(const Scene& scene, const FieldInfo& field, const Value& 
             return wordAt(field, *number);
         case FieldType::Text:
         case FieldType::File:
-            return quoted(std::get<std::string>(value));
+            return inQuotes(std::get<std::string>(value));
         case FieldType::Object:
             if (!findObject(scene, static_cast<ObjectId>(*number))) return "none";
             return join("#", std::to_string(static_cast<ObjectId>(*number)));

@@ -33,7 +33,7 @@ std::string printNumber(double value) {
     return {text, result.ptr};
 }
 
-std::string quoted(std::string_view text) {
+std::string inQuotes(std::string_view text) {
     std::string result = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') result += '\\';

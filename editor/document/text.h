@@ -18,7 +18,7 @@ std::string join(const Parts&... parts) {
 // Shortest decimal that reads back as the same float.
 std::string printNumber(double value);
 // "a \"b\"": in quotes, with \" and \\ within them.
-std::string quoted(std::string_view text);
+std::string inQuotes(std::string_view text);
 // Without control characters, as valid UTF-8, of at most `most` bytes.
 std::string cleanText(std::string_view text, size_t most);
 // A target's word: a name, or #id. 0: there is none.

@@ -17,7 +17,7 @@ constexpr uint32_t kCornerBytes = 5 * sizeof(float);
 // Towards the eye, so that a map lies on the very triangles that the plugin drew.
 constexpr float kDepthBias = -64, kDepthBiasSlope = -1.5f;
 
-struct Push {  // map_overlay.vert
+struct OverlayPush {  // map_overlay.vert
     glm::mat4 clip;
     glm::vec2 texel;
     float opacity;
@@ -90,7 +90,7 @@ MapOverlay::MapOverlay(const sample::VulkanHost& host, fwui::UiRenderer& ui, VkR
                         "vkCreateDescriptorPool");
     layout_ = sample::makeLayout(
         host, {setLayout_},
-        {VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)});
+        {VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(OverlayPush)});
     sample::PipelineRequest request;
     request.pass = pass;
     request.layout = layout_;
@@ -241,7 +241,8 @@ void MapOverlay::draw(const fwui::Frame& frame, fwedit::ObjectId mesh, const glm
     const auto found = maps_.find(mesh);
     if (found == maps_.end()) return;
     const Map& map = found->second;
-    const Push push{clip, {1 / float(map.surface->width), 1 / float(map.surface->height)}, opacity};
+    const OverlayPush push{
+        clip, {1 / float(map.surface->width), 1 / float(map.surface->height)}, opacity};
     vkCmdBindPipeline(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
     vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1,
                             &map.set, 0, nullptr);

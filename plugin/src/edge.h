@@ -81,6 +81,16 @@ inline constexpr uint32_t kLargestStruct = 64 * 1024;  // bytes: beyond it struc
 bool writeDefaults(uint32_t type, void* def) noexcept;
 size_t defSize(uint32_t type) noexcept;  // 0: unknown
 
+// A def of zeros but for its size and what `fill` sets, to where there is room for one.
+template <class Def, class Fill>
+void writeDef(void* out, Fill fill) noexcept {
+    Def def;
+    std::memset(&def, 0, sizeof def);
+    fill(def);
+    def.structSize = sizeof def;
+    std::memcpy(out, &def, sizeof def);
+}
+
 // Copies a def whose first word is structSize; what the host does not know keeps its default.
 template <class Def>
 Def readDef(const Def* given, uint32_t type, const char* name) {

@@ -145,11 +145,7 @@ void defaults(FwOffscreenDef& def) noexcept {
 
 template <class Def>
 void write(void* out) noexcept {
-    Def def;
-    std::memset(&def, 0, sizeof def);
-    defaults(def);
-    def.structSize = sizeof def;
-    std::memcpy(out, &def, sizeof def);
+    writeDef<Def>(out, [](Def& def) { defaults(def); });
 }
 
 }  // namespace

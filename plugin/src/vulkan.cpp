@@ -32,16 +32,6 @@ void defaults(FwVulkanWishes& def) noexcept { def.minimumApiVersion = VK_API_VER
 void defaults(FwVulkanComposite&) noexcept {}
 void defaults(FwVulkanVertices& def) noexcept { def.stride = 12; }
 
-template <class Def>
-bool write(void* out) noexcept {
-    Def def;
-    std::memset(&def, 0, sizeof def);
-    defaults(def);
-    def.structSize = sizeof def;
-    std::memcpy(out, &def, sizeof def);
-    return true;
-}
-
 // How things look, handed down to a backend that does not know the components.
 void fillViewParams(const gpu::ViewInput& input, gpu::ViewParams& out) {
     components::ViewInputs inputs;
@@ -323,17 +313,23 @@ size_t vulkanDefSize(uint32_t type) noexcept {
 bool writeVulkanDefaults(uint32_t type, void* def) noexcept {
     switch (type) {
         case FW_DEF_VULKAN_HOST:
-            return write<FwVulkanHost>(def);
+            writeDef<FwVulkanHost>(def, [](FwVulkanHost& one) { defaults(one); });
+            return true;
         case FW_DEF_VULKAN_TARGET:
-            return write<FwVulkanTargetDef>(def);
+            writeDef<FwVulkanTargetDef>(def, [](FwVulkanTargetDef& one) { defaults(one); });
+            return true;
         case FW_DEF_VULKAN_FRAME:
-            return write<FwVulkanFrame>(def);
+            writeDef<FwVulkanFrame>(def, [](FwVulkanFrame& one) { defaults(one); });
+            return true;
         case FW_DEF_VULKAN_WISHES:
-            return write<FwVulkanWishes>(def);
+            writeDef<FwVulkanWishes>(def, [](FwVulkanWishes& one) { defaults(one); });
+            return true;
         case FW_DEF_VULKAN_COMPOSITE:
-            return write<FwVulkanComposite>(def);
+            writeDef<FwVulkanComposite>(def, [](FwVulkanComposite& one) { defaults(one); });
+            return true;
         case FW_DEF_VULKAN_VERTICES:
-            return write<FwVulkanVertices>(def);
+            writeDef<FwVulkanVertices>(def, [](FwVulkanVertices& one) { defaults(one); });
+            return true;
         default:
             return false;
     }

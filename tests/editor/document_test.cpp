@@ -273,7 +273,7 @@ std::string randomLine(std::mt19937& random, const Scene& scene) {
                 return text + field.choices[pick(uint32_t(field.choices.size()))];
             case FieldType::Text:
             case FieldType::File:
-                return text + fwedit::quoted("n \"" + std::to_string(pick(9)) + "\\ ü");
+                return text + fwedit::inQuotes("n \"" + std::to_string(pick(9)) + "\\ ü");
             case FieldType::Object:
                 return text + (pick(3) ? target() : "none");
             case FieldType::Vector:

@@ -77,7 +77,7 @@ bool openInput(fwedit::ScriptHost& host, const ToolOptions& options, std::string
         return true;
     };
     const std::string kind = fs::path(options.input).extension().string();
-    const std::string file = fwedit::quoted(fs::absolute(options.input).string());
+    const std::string file = fwedit::inQuotes(fs::absolute(options.input).string());
     if (kind == ".glb" || kind == ".gltf")
         return fwedit::runScriptLine(host, "import " + file, error) &&
                fwedit::runScriptLine(host, "frame", error);
@@ -94,12 +94,12 @@ void showProgress(const ToolOptions& options, const std::string& what, double sh
 
 void JsonLine::key(const char* name) {
     if (!body_.empty()) body_ += ", ";
-    body_ += fwedit::quoted(name);
+    body_ += fwedit::inQuotes(name);
     body_ += ": ";
 }
 void JsonLine::text(const char* name, std::string_view value) {
     key(name);
-    body_ += fwedit::quoted(fwedit::cleanText(value, 1 << 20));
+    body_ += fwedit::inQuotes(fwedit::cleanText(value, 1 << 20));
 }
 void JsonLine::number(const char* name, double value) {
     key(name);
