@@ -234,6 +234,14 @@ TEST(AbiOwnDevice, RefusesWhatBelongsToALentOneAndBadPictures) {
     wrong = def;
     wrong.view.sunDirection[0] = 7;
     refuse("sunDirection[0]", wrong);
+    for (const float bad : {-1.0f, 8.5f, nan}) {
+        wrong = def;
+        wrong.view.haze = bad;
+        refuse("FwOffscreenDef::view.haze is ", wrong);
+    }
+    wrong = def;
+    wrong.view.reserved[0] = 1;
+    refuse("FwOffscreenDef::view.reserved[0] is 1", wrong);
     wrong = def;
     wrong.background[1] = nan;
     refuse("background[1]", wrong);

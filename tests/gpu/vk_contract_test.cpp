@@ -1,5 +1,6 @@
 // What the vk backend promises its host: no submit, wait, allocation or pipeline in a steady frame,
 // clear refusals, pools that grow under a fire, idle worlds that record nothing.
+#include "abi/abi_support.h"
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_backend.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <set>
 #include <span>
@@ -408,6 +410,56 @@ TEST_F(VkContract, BadHostsAreRefused) {
     };
     refused(host, "vkGetDeviceProcAddr");
     EXPECT_EQ(memory.bytes(), 0u);
+}
+
+// Through the library's own functions: what is wrong with a frame or a view is named, nothing is
+// recorded, and the next frame is as good as the first.
+TEST_F(VkContract, BadFramesAndViewsAreRefused) {
+    if (!device_) return;
+    const FwVulkanHost host = device_->host();
+    FwContextDef def = fwDefaultContextDef();
+    def.vulkan = &host;
+    FwContext* context = nullptr;
+    FwErrorInfo error{};
+    ASSERT_EQ(fwCreateContext(&def, &context, &error), FW_OK) << error.message;
+    ASSERT_EQ(fwContext_Prepare(context), FW_OK);
+    const FwWorldDef worldDef = fwDefaultWorldDef();
+    FwWorld* world = nullptr;
+    ASSERT_EQ(fwCreateWorld(context, &worldDef, &world), FW_OK) << ::host::lastMessage(context);
+    device_->run([&](VkCommandBuffer commands) {
+        FwVulkanFrame good = fwDefaultVulkanFrame();
+        good.commandBuffer = commands;
+        good.frameIndex = 1;
+        const FwView lit = fwDefaultView();
+        const auto refused = [&](const FwVulkanFrame& frame, const FwView& view,
+                                 const char* words) {
+            EXPECT_EQ(fwWorld_RecordOutside(world, &frame, &view), FW_ERROR_INVALID_ARGUMENT);
+            EXPECT_THAT(::host::lastMessage(world), HasSubstr(words));
+        };
+        for (const uint32_t bad : {1u, 0xFFFFFFFFu}) {
+            FwVulkanFrame frame = good;
+            frame.reserved = bad;
+            const std::string said =
+                "FwVulkanFrame::reserved is " + std::to_string(bad) + "; it is zero.";
+            refused(frame, lit, said.c_str());
+        }
+        for (const float bad : {-0.01f, 8.01f, std::nanf(""), HUGE_VALF}) {
+            FwView view = lit;
+            view.haze = bad;
+            refused(good, view, "FwView.haze is ");
+            view = lit;
+            view.reserved[1] = bad;
+            refused(good, view, "FwView.reserved[1] is ");
+        }
+        for (const float edge : {0.0f, 8.0f}) {
+            FwView view = lit;
+            view.haze = edge;
+            EXPECT_EQ(fwWorld_RecordOutside(world, &good, &view), FW_OK)
+                << ::host::lastMessage(world);
+            ++good.frameIndex;
+        }
+    });
+    fwDestroyContext(context);
 }
 
 // For the thread sanitizer as well: tests/run --tsan --suite gpu --filter VkThreads.
