@@ -50,6 +50,12 @@ layout(location = 0) out vec4 outColor;
 
 const float kFlameWhite = 2.4;  // of thin soot at 1600 K, in the host's units
 
+// Of a ball's soot at a temperature: what has not burnt away, and what of the light behind it takes.
+// Soot that cools burns, or is smoke, which has quads of its own. What were left of it would be dark
+// red contours on ground in the sun: dim itself, and in front of what is bright.
+float sootLeft(float kelvin) { return smoothstep(1120.0, 1400.0, kelvin); }
+float sootHides(float kelvin) { return 0.85 * smoothstep(1180.0, 1500.0, kelvin); }
+
 #ifdef FW_SOFT
 #include "lib/soft_depth.glsl"
 #endif
@@ -116,17 +122,19 @@ void main() {
                  110.0 * (n2.g - 0.45) - 60.0 * (1.0 - smoothstep(0.0, 0.2, y));
         hides = 0.75;
     } else {
-        // Torn from a ball to rags as it ages, hot inside, dark in its folds.
+        // Torn from a ball to rags as it ages, hot inside, dark in its folds; at last its edges are
+        // soft and its folds lost, or the least of it would be lines.
+        float late = smoothstep(0.45, 0.95, phase);
         float torn = 2.1 * (n1.r - 0.5) + 1.1 * (n2.r - 0.5) + 0.5 * (n2.g - 0.45);
         float deep = 0.92 - r * 1.05 + torn, least = mix(0.0, 0.72, phase);
         float sheet = (n2.r - 0.5) + 0.7 * (n2.b - 0.5) + 0.25 * (n1.b - 0.5);
         float fold = exp(-sheet * sheet / 0.014);
-        soot = smoothstep(0.0, 0.24, deep - least) * (1.0 - smoothstep(0.62, 0.97, r)) *
-               mix(1.0, 0.28 + 1.0 * fold, smoothstep(0.05, 0.40, phase));
+        soot = smoothstep(0.0, 0.24 + 0.26 * late, deep - least) * (1.0 - smoothstep(0.62, 0.97, r)) *
+               mix(1.0, 0.28 + 1.0 * fold, smoothstep(0.05, 0.40, phase) * (1.0 - 0.6 * late));
         kelvin = inState.z + 260.0 * (saturate((deep - least) * 0.9) - 0.35) + 90.0 * fold -
                  260.0 * (n2.g - 0.45) - 150.0 * (phase - 0.35);
-        // What is cool hides little: what is shown would turn grey, not red.
-        hides = 0.85 * smoothstep(1050.0, 1480.0, kelvin);
+        soot *= sootLeft(kelvin);
+        hides = sootHides(kelvin);
     }
 #ifdef FW_BOOKS
     bool booked = inKind >> kQuadBook != 0u;
@@ -135,8 +143,8 @@ void main() {
     if (booked) {
         soot = page.y;
         kelvin = inState.z + kBookSpan * (page.x - 0.5);
-        // Of all that it hides what is cool hides little, or it would turn grey and not red.
-        hides = 0.85 * page.z / max(page.y, 1e-4) * smoothstep(1050.0, 1400.0, kelvin);
+        soot *= sootLeft(kelvin);
+        hides = sootHides(kelvin) * page.z / max(page.y, 1e-4);
     }
 #endif
     color = sootRadiance(kelvin) * (kFlameWhite * view.sunColor.w * soot * opacity);
