@@ -14,6 +14,7 @@ namespace {
 using gpu::vec3;
 using gpu::vec4;
 
+constexpr float kAtOnce = 20.5f;     // particles that cover a fire with their sizes as written
 constexpr float kStuckRates = 1.2f;  // most births where fuel sticks, of those of the stream
 
 float length3(const float v[3]) noexcept {
@@ -79,17 +80,22 @@ EmitterLook emitterLook(const FwFireEmitterDef& def) {
         look.dragStream = look.dragTorn = orElse(def.drag, 0.75f * rise / 11);
         look.speed = orElse(def.speed, 0.22f * rise);
         look.cone = orElse(def.cone, 0.30f);
-        look.life = orElse(def.life, std::clamp(2.1f * height / (0.6f * rise), 0.35f, 3.0f));
-        look.rate = orElse(def.rate, 40 + 25 * std::sqrt(power / 100));
-        look.size0 = orElse(def.size0, 0.42f * look.diameter + 0.09f * tall);
-        const float size1 = orElse(def.size1, 0.42f * look.diameter + 0.38f * tall);
+        const float life = std::clamp(1.6f * height / (0.6f * rise), 0.25f, 3.0f);
+        const float rate = 50 + 10 * std::sqrt(power / 100);
+        look.life = orElse(def.life, life);
+        look.rate = orElse(def.rate, rate);
+        // The larger a fire the more there are at once, and the smaller for it: what they all
+        // cover, and with it their light, is a volumetric fire's of the same power.
+        const float fine = std::sqrt(kAtOnce / (rate * life));
+        look.size0 = orElse(def.size0, fine * (0.26f * look.diameter + 0.04f * tall));
+        const float size1 = orElse(def.size1, fine * (0.26f * look.diameter + 0.12f * tall));
         look.swell = std::max(size1 - look.size0, 0.0f) / look.life;
         look.eddies = 0.16f * rise * def.turbulence;
         look.eddyScale = 1.6f / std::max(0.45f * tall, 0.03f);
         look.eddyDrift = 0.5f * rise;
         look.stretch = 2.2f;
-        look.kelvin0 = 1570;
-        look.kelvin1 = 1350;
+        look.kelvin0 = 1522;
+        look.kelvin1 = 1302;
         look.reach = height;
     }
     if (def.temperature > 0) {
@@ -277,7 +283,9 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     const float none[3] = {};
     record.stuck.x = stuckRate / float(rate);
     record.from = with(from, seconds);
-    record.place = with(emitter.position, def.shape == FW_EMITTER_DISC   ? def.radius
+    // The quads of what is born at a disc's edge reach to it, not beyond.
+    const float disc = std::max(def.radius - 0.4f * look.size0, 0.5f * def.radius);
+    record.place = with(emitter.position, def.shape == FW_EMITTER_DISC   ? disc
                                           : (def.flags & FW_EMITTER_JET) ? 0.1f * look.size0
                                                                          : 0.2f * look.diameter);
     if (onMesh) record.place = record.from = vec4(0, 0, 0, 0);  // its tiles are the device's

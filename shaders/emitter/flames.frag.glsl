@@ -147,7 +147,8 @@ void main() {
         hides = sootHides(kelvin) * page.z / max(page.y, 1e-4);
     }
 #endif
-    color = sootRadiance(kelvin) * (kFlameWhite * view.sunColor.w * soot * opacity);
+    vec3 white = tongue ? vec3(1.0) : kFireWhite;
+    color = sootRadiance(kelvin) * white * (kFlameWhite * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     if (smoke) {
         float billow = (n1.r - 0.5) * 1.3 + (n2.g - 0.45) * 0.7;

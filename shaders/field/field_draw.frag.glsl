@@ -139,7 +139,7 @@ void main() {
         float soot = smoothstep(0.03, 0.62, d) * (0.25 + profile.y);
         float thick = 1.0 - exp(-1.5 * soot * (0.25 + d));
         float share1 = clamp(1.0 - body, 0.0, 1.0) * strength * edge;
-        color += sootRadiance(kelvin) * inTint.rgb * (kFieldWhite * view.sunColor.w * thick * share1);
+        color += sootRadiance(kelvin) * kFireWhite * inTint.rgb * (kFieldWhite * view.sunColor.w * thick * share1);
         alpha += 0.55 * thick * min(share1, 1.0);
     }
     if (kVariant >= 1u) {  // absorbs

@@ -2,6 +2,9 @@
 // Not a tone mapper for hosts that have their own: they get linear values. Soot: black_body.h.
 #include "shared/black_body.h"
 
+// Soot glows as a camera that is set for fire sees it: volumes, balls of fire and fields alike.
+const vec3 kFireWhite = vec3(1.0, 1.25, 1.6);
+
 // Luminance in cd/m^2 of glowing char, Wien's form; chromaticity linear in T. Valid 800..2500 K.
 // Cameras see embers more orange than they are: the chromaticity is that of a hotter body.
 const float kEmberHueShift = 250.0;

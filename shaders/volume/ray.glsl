@@ -60,9 +60,9 @@ FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
     return lookMedium(f, look);
 }
 
-// Soot glows as a camera that is set for fire sees it; tints are what they are.
+// Tints are what they are.
 vec3 flameWhite(FlameRecord f, float emissionScale) {
-    return mix(vec3(1.0, 1.25, 1.6), vec3(1.0), f.tint.w) * (kVolumeWhite * max(emissionScale, 1e-6));
+    return mix(kFireWhite, vec3(1.0), f.tint.w) * (kVolumeWhite * max(emissionScale, 1e-6));
 }
 
 vec3 flameAir(vec3 sky, vec3 ground, vec3 white) { return 0.5 * (sky + ground) / white; }
