@@ -50,35 +50,22 @@ void main() {
         // Charring stiffens what held its shape only loosely.
         float stiff = mix(bend, max(bend, 0.9), charred);
 
-        vec3 turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0), sum = vec3(0.0), nearSum = vec3(0.0);
+        vec3 turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0), nearSum = vec3(0.0);
         vec3 links = vec3(0.0), bending = vec3(0.0);
-        vec2 squares = vec2(0.0), nearSquares = vec2(0.0);  // of rest lengths, and how many
-        float rise = 0.0;  // of arms
-        uint turn = 0u, turns = nodeTurns(facts.y), all = turns + nodeArms(facts.y) * 2u;
-        do {  // the neighbours, arms, and those of the step before at last
-            bool arms = turn >= turns, echo = turn > turns;
-            uint quad = arms ? kNodeArms + (echo ? echoed : way) : kNodeNear + turn;
-            uvec4 two = deformNode(at + quad * sizes.y);
-            if (turn == turns) {
-                nearSum = sum;
-                nearSquares = squares;
-                sum = vec3(0.0);
-                squares = vec2(0.0);
-                rise = uintBitsToFloat(two.w);
-            }
+        vec2 nearSquares = vec2(0.0);  // of rest lengths, and how many
+        uint turn = 0u, turns = nodeTurns(facts.y);
+        do {  // the neighbours
+            uvec4 two = deformNode(at + (kNodeNear + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 uint k = turn * kDeformLinks + i;
                 float rest = unpackHalf2x16(two.z)[i];
-                uvec4 there = soft((echo ? seenAt : places) + (two[i] & kDeformNode));
+                uvec4 there = soft(places + (two[i] & kDeformNode));
                 vec3 y = placeOf(there), arm = y - x;
-                bool holds = (ties.x >> (arms ? kTiesArms + way * kDeformLinks + i : k) & 1u) != 0u;
-                // Who has parted from a node has no share in it: it is not whole, or has no arms.
-                uint share = echo ? (item.parity == 0u ? there.z : there.w) : there.w;
-                bending -= (echo ? rest > 0.0 : holds && !arms) ? shareOf(share) : vec3(0.0);
-                holds = holds && !echo && (!arms || dot(arm, arm) <= kArmTears * kArmTears * rest * rest);
-                sum += holds ? arm : vec3(0.0);
-                squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
-                if (arms) continue;
+                bool holds = (ties.x >> k & 1u) != 0u;
+                // Who has parted from a node has no share in it: it is not whole.
+                bending -= holds ? shareOf(there.w) : vec3(0.0);
+                nearSum += holds ? arm : vec3(0.0);
+                nearSquares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
                 turned += cross(before, arm);
                 if (k == 0u) first = arm;
                 before = arm;
@@ -88,10 +75,29 @@ void main() {
                 links += holds ? p : vec3(0.0);
                 reach = holds ? min(reach, wayOf(wayBits(there)) + rest) : reach;
             }
-        } while (++turn < all);
-        bool reaches = all != turns;
-        nearSum = reaches ? nearSum : sum;
-        nearSquares = reaches ? nearSquares : squares;
+        } while (++turn < turns);
+        // Not turns of the loop: software runs all of its text in each.
+        vec3 sum = vec3(0.0);
+        vec2 squares = vec2(0.0);
+        float rise = 0.0;
+        bool reaches = nodeArms(facts.y) != 0u;
+        if (reaches) {
+            uvec4 arms = deformNode(at + (kNodeArms + way) * sizes.y);
+            uvec4 echo = deformNode(at + (kNodeArms + echoed) * sizes.y);
+            rise = uintBitsToFloat(arms.w);
+            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
+                float rest = unpackHalf2x16(arms.z)[i];
+                vec3 arm = placeOf(soft(places + (arms[i] & kDeformNode))) - x;
+                bool holds = (ties.x >> (kTiesArms + way * kDeformLinks + i) & 1u) != 0u &&
+                             dot(arm, arm) <= kArmTears * kArmTears * rest * rest;
+                sum += holds ? arm : vec3(0.0);
+                squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
+                // What those of the step before asked for; who has no arms asks for nothing.
+                uvec4 there = soft(seenAt + (echo[i] & kDeformNode));
+                uint share = item.parity == 0u ? there.z : there.w;
+                bending -= unpackHalf2x16(echo.z)[i] > 0.0 ? shareOf(share) : vec3(0.0);
+            }
+        }
 
         if ((facts.y & kNodeClosed) != 0u) turned += cross(before, first);
         float size = length(turned);

@@ -99,8 +99,8 @@ void recordImages(VkBackend::State& s, FrameRecorder& recorder);
 void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameNeeds& needs);
 // Vertices as hosts have moved them.
 void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer);
-// What deforms in this frame, in the order of DeformRecord; `steps`: that it moves by.
-[[nodiscard]] Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer);
+// What deforms in this frame, in the order of DeformRecord.
+[[nodiscard]] Staged writeDeformGroups(VkBackend::State& s, UploadWriter& writer);
 
 // vk_field.cpp
 void addFieldNeeds(const VkBackend::State& s, const FramePlan& plan, FrameNeeds& needs);

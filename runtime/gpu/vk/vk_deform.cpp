@@ -8,11 +8,14 @@
 namespace fw::gpu::vk {
 namespace {
 
-// Does a group of its nodes learn in this frame what has burnt? Of a sheet, which moves by steps of
-// its own, every other one.
-bool recedes(const ObjectEntry& object, uint32_t group) noexcept {
-    return (object.deform.flags & kDeformShell) == 0 || object.deformReset || object.deformWoke ||
-           (group & 1) == (object.recedeOdd ? 1u : 0u);
+// Steps of a sheet in which each group of its nodes learns once what has burnt: fire takes seconds.
+constexpr uint32_t kRecedeSteps = 8;
+
+// Does a group of its nodes learn that in this frame? Of a sheet some do in each of its steps.
+bool recedes(const VkBackend::State& s, const ObjectEntry& object, uint32_t group) noexcept {
+    if ((object.deform.flags & kDeformShell) == 0 || object.deformReset || object.deformWoke)
+        return true;
+    return (group - s.softTaken) % kRecedeSteps < s.softSteps;
 }
 
 constexpr uint64_t kSettleTicks = 12 * kTicksPerSecond;  // that a sheet may swing
@@ -92,7 +95,7 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
     if (object.deformsNow) {
         const uint32_t groups = deformGroups(object.deform.nodeCount);
         for (uint32_t group = 0; group < groups; ++group)
-            needs.nodeGroups += recedes(object, group) ? 1 : 0;
+            needs.nodeGroups += recedes(s, object, group) ? 1 : 0;
         if (object.deform.flags & kDeformShell) {
             needs.sheetGroups += groups;
             needs.sheetsBegin |= object.deformReset || object.deformWoke;
@@ -126,7 +129,7 @@ void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& wri
     }
 }
 
-Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writer) {
+Staged writeDeformGroups(VkBackend::State& s, UploadWriter& writer) {
     Staged staged = writer.begin();
     const auto append = [&](const ObjectEntry& object, uint32_t items, bool recede = false) {
         const uint32_t marks = (object.deformReset ? kDeformReset : 0) |
@@ -134,7 +137,7 @@ Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writ
                                (object.deformWoke ? kDeformWoke : 0) |
                                ((s.crossing & kSwitchCrossing) ? kDeformCrosses : 0);
         for (uint32_t first = 0; first < items; first += kDeformGroup) {
-            if (recede && !recedes(object, first / kDeformGroup)) continue;
+            if (recede && !recedes(s, object, first / kDeformGroup)) continue;
             const WakeGroup group{object.deformer.first, first | marks};
             writer.append(staged, std::span<const WakeGroup>(&group, 1));
         }
@@ -148,8 +151,7 @@ Staged writeDeformGroups(VkBackend::State& s, uint32_t steps, UploadWriter& writ
         if (!object.deformsNow) continue;
         append(object, object.deform.vertexCount);
         object.deformReset = false;
-        object.recedeOdd = !object.recedeOdd;
-        if (object.soft.units) object.softOdd ^= (steps & 1) != 0;
+        if (object.soft.units) object.softOdd ^= (s.softSteps & 1) != 0;
     }
     writer.end();
     return staged;

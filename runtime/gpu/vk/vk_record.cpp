@@ -369,6 +369,12 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
 void VkBackend::State::run(const FramePlan& plan) {
     if (!open.open || open.ran)
         core::fail(FW_ERROR_INTERNAL, "A frame's plan is run once, after the frame is begun.");
+    // Sheets and springs step at a rate of their own; a hitch drops steps and never stretches one.
+    const double ticks = double(plan.endTick) + double(plan.tickFraction) * kStepTicks;
+    const auto softNow = uint64_t(ticks / kSoftTicks);
+    softSteps =
+        uint32_t(std::min<uint64_t>(softNow > softStep ? softNow - softStep : 0, kMostSoftSteps));
+    softStep = softNow;
     const FrameNeeds needs = needsOf(*this, plan);
     open.planFrame = plan.frameIndex;
     open.endTick = plan.endTick;
@@ -380,12 +386,6 @@ void VkBackend::State::run(const FramePlan& plan) {
                       ? std::max(march.steps - kStepsTurn, detail.volumeSteps)
                       : std::min(march.steps + kStepsTurn, detail.volumeSteps);
     crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
-    // Sheets and springs step at a rate of their own; a hitch drops steps and never stretches one.
-    const double ticks = double(plan.endTick) + double(plan.tickFraction) * kStepTicks;
-    const auto softNow = uint64_t(ticks / kSoftTicks);
-    const auto softSteps =
-        uint32_t(std::min<uint64_t>(softNow > softStep ? softNow - softStep : 0, kMostSoftSteps));
-    softStep = softNow;
     if (!needs.work) {
         open.ran = true;
         shownTick = plan.endTick;
@@ -489,10 +489,10 @@ void VkBackend::State::run(const FramePlan& plan) {
         deform.sheetGroups = needs.sheetGroups;
         deform.springGroups = needs.springGroups;
         deform.steps = softSteps;
-        deform.way = softWay;
+        deform.way = softTaken % kArmWays;
         deform.begins = needs.sheetsBegin;
         deform.vertexGroups = needs.vertexGroups;
-        deform.groups = writeDeformGroups(*this, softSteps, writer);
+        deform.groups = writeDeformGroups(*this, writer);
         deform.push.now = plan.endTick;
         deform.push.step = float(kSoftTicks) / float(kTicksPerSecond);
         deform.push.wind = {wind[0], wind[1], wind[2],
@@ -501,7 +501,7 @@ void VkBackend::State::run(const FramePlan& plan) {
                           tickFraction * float(kStepTicks)};
         recordDeform(recorder, deform);
     }
-    softWay = (softWay + softSteps) % kArmWays;
+    softTaken += softSteps;
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }
 

@@ -126,7 +126,6 @@ struct ObjectEntry {
     DeformObject deform{};
     bool deformDirty = false, deformReset = false;
     bool deformsNow = false;     // scratch of run
-    bool recedeOdd = false;      // which half of a sheet learns next what has burnt
     uint32_t deformTicks = 0;    // that something moves after the last texel caught
     uint64_t lastEvent = 0;      // tick
     bool softOdd = false;        // its places are the second ones
@@ -296,10 +295,11 @@ struct VkBackend::State {
     uint32_t links = 0, blockers = 0;      // of the last remote update
     float wind[3] = {};
     float tickFraction = 0;
-    Detail detail;          // as of the frame's plan
-    uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoZPass
-    uint64_t softStep = 0;  // number of the step that sheets and springs have come to
-    uint32_t softWay = 0;   // which arms the next one minds
+    Detail detail;           // as of the frame's plan
+    uint32_t crossing = 0;   // of kSwitchCrossing and kSwitchNoZPass
+    uint64_t softStep = 0;   // number of the step that sheets and springs have come to
+    uint32_t softSteps = 0;  // that they take in the frame
+    uint32_t softTaken = 0;  // that they took before
 
     // The frame that is open.
     struct Open {
