@@ -10,6 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
 
+#include "document/flame_curve.h"
 #include "document/world_parts.h"
 #include "import/content_hash.h"
 #include "import/float_picture.h"
@@ -19,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using fwimport::ImportedModel;
-
-constexpr double kWateringStep = 0.125;  // s
 
 // What the plugin's mesh is made of: materials of the file in its eight slots, and colours.
 struct Surfaces {
@@ -102,49 +101,6 @@ std::string contextMessage(FwContext* context) {
 
 bool goOn(const Assets& assets, const std::string& stage, float share) {
     return !assets.progress || assets.progress(stage, share);
-}
-
-// The cooked burn map: from memory, the folder, or baked now. Null: `error`.
-std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& mesh,
-                                                const ImportedModel& model, Assets& assets,
-                                                std::string& key, std::string& error) {
-    const Surfaces surfaces = surfacesOf(model);
-    const FwMeshDef def = meshDefOf(mesh, model, surfaces);
-    key = bakeKey(def, surfaces, model);
-    if (const auto found = assets.bakes.find(key); found != assets.bakes.end())
-        return found->second;
-    const fs::path file = assets.cache.empty() ? fs::path() : assets.cache / (key + ".fwburn");
-    auto bytes = std::make_shared<std::vector<char>>();
-    if (!file.empty()) {
-        std::ifstream stream(file, std::ios::binary);
-        bytes->assign(std::istreambuf_iterator<char>(stream), {});
-        if (!bytes->empty()) return assets.bakes[key] = bytes;
-    }
-    if (!goOn(assets, "Unwrapping " + mesh.name, 0)) {
-        error = "stopped";
-        return nullptr;
-    }
-    uint64_t size = 0;
-    if (fwCookMesh(context, &def, nullptr, &size) < 0) {
-        error = contextMessage(context);
-        return nullptr;
-    }
-    bytes->resize(size);
-    if (fwCookMesh(context, &def, bytes->data(), &size) < 0) {
-        error = contextMessage(context);
-        return nullptr;
-    }
-    goOn(assets, "Unwrapping " + mesh.name, 1);
-    if (!file.empty()) {
-        std::error_code ignored;
-        fs::create_directories(assets.cache, ignored);
-        const fs::path fresh = file.string() + ".new";
-        std::ofstream stream(fresh, std::ios::binary);
-        stream.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
-        stream.close();
-        if (stream) fs::rename(fresh, file, ignored);
-    }
-    return assets.bakes[key] = bytes;
 }
 
 bool createMesh(FwWorld* world, const std::vector<char>& bake, FwMeshId& id) {
@@ -232,38 +188,19 @@ std::string addMesh(Burn& burn, Shared& shared, const Mesh& mesh, const PaintIma
 }
 
 FwFireProfileId profileOf(Burn& burn, Shared& shared, const Flame& flame, const fs::path& folder) {
-    if (flame.profile.empty()) return {};
-    FwFireProfileId& id = shared.profiles[flame.profile];
+    if (!hasShape(flame)) return {};
+    // What is drawn by points is of that flame alone.
+    const std::string key = hasCurve(flame) ? "#" + std::to_string(flame.id) : flame.profile;
+    FwFireProfileId& id = shared.profiles[key];
     if (id.index1 != 0) return id;
-    const fs::path file = folder / flame.profile;
-    FwFireProfileDef def = fwDefaultFireProfileDef();
-    std::vector<char> cooked;
-    std::vector<float> texels;
-    if (file.extension() == ".fwprofile") {
-        std::ifstream stream(file, std::ios::binary);
-        cooked.assign(std::istreambuf_iterator<char>(stream), {});
-        def.cooked = cooked.data();
-        def.cookedSize = cooked.size();
-    } else {
-        fwimport::FloatPicture picture;
-        std::string error;
-        if (!fwimport::readPicture(file, picture, error) || picture.channels < 2) {
-            burn.report.push_back(
-                "The flame shape of \"" + flame.name + "\" is its preset's: " +
-                (error.empty() ? file.string() + " has no green channel" : error));
-            return {};
-        }
-        // Whole numbers span 0 to 3000 K and 0 to 2 of soot; the picture's lowest row is the base.
-        const float heat = picture.whole ? 3000.0f : 1.0f, soot = picture.whole ? 2.0f : 1.0f;
-        for (uint32_t y = picture.height; y-- > 0;)
-            for (uint32_t x = 0; x < picture.width; ++x) {
-                texels.push_back(std::clamp(picture.at(x, y, 0) * heat, 0.0f, 3000.0f));
-                texels.push_back(std::clamp(picture.at(x, y, 1) * soot, 0.0f, 2.0f));
-            }
-        def.width = picture.width;
-        def.height = picture.height;
-        def.texels = texels.data();
+    FlameShape shape;
+    std::string error;
+    if (!shapeOf(flame, folder, shape, error)) {
+        burn.report.push_back("The flame shape of \"" + flame.name +
+                              "\" is its preset's: " + error);
+        return {};
     }
+    const FwFireProfileDef def = profileDefOf(shape);
     const FwResult result = fwWorld_CreateFireProfile(burn.world, &def, &id);
     if (result < 0)
         burn.report.push_back("The flame shape of \"" + flame.name +
@@ -287,12 +224,6 @@ void giveBooks(Burn& burn, Shared& shared, FwFireEmitterDef& def) {
     def.sparkBook = bookOf(burn, shared, FW_FLIPBOOK_SPARK);
 }
 
-float peakOf(const Keys& keys) {
-    float peak = keys.empty() ? 1.0f : 0.0f;
-    for (const Key& key : keys) peak = std::max(peak, key.value);
-    return peak;
-}
-
 void addSource(Burn& burn, Shared& shared, const HeatSource& source) {
     BurnPart part;
     part.id = source.id;
@@ -300,7 +231,6 @@ void addSource(Burn& burn, Shared& shared, const HeatSource& source) {
     if (source.shape == SourceFlamethrower) {
         FwFireEmitterDef def = jetDefOf(burn.scene, source);
         giveBooks(burn, shared, def);
-        def.power = std::min(100000.0f, source.output * peakOf(source.keys));
         result = fwWorld_CreateFireEmitter(burn.world, &def, &part.emitter);
     } else if (source.shape == SourcePoint || source.shape == SourceDisc ||
                source.shape == SourceLine) {
@@ -333,7 +263,6 @@ void addEmitter(Burn& burn, Shared& shared, const Emitter& emitter) {
     BurnPart part;
     part.id = emitter.id;
     FwFireEmitterDef def = emitterDefOf(burn.scene, emitter);
-    def.power = std::min(100000.0f, emitter.power * peakOf(emitter.keys));
     if (emitter.books) giveBooks(burn, shared, def);
     for (const BurnMesh& mesh : burn.meshes)
         if (mesh.id == emitter.sticksTo) def.object = mesh.object;
@@ -438,7 +367,7 @@ void feedParts(Burn& burn, double time) {
         }
         if (factor == part.lastFactor) continue;
         part.lastFactor = factor;
-        const float now = std::min(100000.0f, share * power * factor);
+        const float now = std::min(kMostPower, share * power * factor);
         for (const FwVolumetricFireId fire : part.fires)
             fwWorld_SetVolumetricFirePower(burn.world, fire, now);
         if (part.emitter.index1 != 0) fwWorld_SetFireEmitterPower(burn.world, part.emitter, now);
@@ -471,6 +400,55 @@ std::shared_ptr<const ImportedModel> modelOf(const Mesh& mesh, const fs::path& f
     if (!fwimport::importGltf(path, *model, error)) return nullptr;
     return assets.models[key] = model;
 }
+
+std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& mesh,
+                                                const ImportedModel& model, Assets& assets,
+                                                std::string& key, std::string& error) {
+    const Surfaces surfaces = surfacesOf(model);
+    const FwMeshDef def = meshDefOf(mesh, model, surfaces);
+    key = bakeKey(def, surfaces, model);
+    if (const auto found = assets.bakes.find(key); found != assets.bakes.end())
+        return found->second;
+    const fs::path file = assets.cache.empty() ? fs::path() : assets.cache / (key + ".fwburn");
+    auto bytes = std::make_shared<std::vector<char>>();
+    if (!file.empty()) {
+        std::ifstream stream(file, std::ios::binary);
+        bytes->assign(std::istreambuf_iterator<char>(stream), {});
+        if (!bytes->empty()) return assets.bakes[key] = bytes;
+    }
+    if (!goOn(assets, "Unwrapping " + mesh.name, 0)) {
+        error = "stopped";
+        return nullptr;
+    }
+    uint64_t size = 0;
+    if (fwCookMesh(context, &def, nullptr, &size) < 0) {
+        error = contextMessage(context);
+        return nullptr;
+    }
+    bytes->resize(size);
+    if (fwCookMesh(context, &def, bytes->data(), &size) < 0) {
+        error = contextMessage(context);
+        return nullptr;
+    }
+    goOn(assets, "Unwrapping " + mesh.name, 1);
+    if (!file.empty()) {
+        std::error_code ignored;
+        fs::create_directories(assets.cache, ignored);
+        const fs::path fresh = file.string() + ".new";
+        std::ofstream stream(fresh, std::ios::binary);
+        stream.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
+        stream.close();
+        if (stream) fs::rename(fresh, file, ignored);
+    }
+    return assets.bakes[key] = bytes;
+}
+
+std::string bakeKeyOf(const Mesh& mesh, const ImportedModel& model) {
+    const Surfaces surfaces = surfacesOf(model);
+    return bakeKey(meshDefOf(mesh, model, surfaces), surfaces, model);
+}
+
+std::array<int32_t, 8> baseColorsOf(const ImportedModel& model) { return surfacesOf(model).images; }
 
 std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const PaintImages& images,
                                  const fs::path& folder, Assets& assets, std::string& error) {
@@ -509,8 +487,8 @@ bool feedBurn(Burn& burn, float deltaTime, std::string& error) {
         Vec3 wind = burn.scene.settings.wind;
         for (const Wind& gust : burn.scene.winds)
             for (size_t k = 0; k < 3; ++k)
-                wind[k] =
-                    std::clamp(wind[k] + gust.velocity[k] * factorOf(gust, from), -120.0f, 120.0f);
+                wind[k] = std::clamp(wind[k] + gust.velocity[k] * factorOf(gust, from), -kMostWind,
+                                     kMostWind);
         const FwResult result = fwWorld_SetWind(burn.world, wind.data());
         if (result < 0) {
             error = worldProblem(burn, result);
@@ -600,6 +578,49 @@ bool shootBurn(Burn& burn, uint32_t width, uint32_t height, std::vector<uint8_t>
     const FwResult result = fwWorld_RenderOffscreen(burn.world, &def);
     if (result < 0) error = worldProblem(burn, result);
     return result >= 0;
+}
+
+bool shapeOf(const Flame& flame, const fs::path& folder, FlameShape& shape, std::string& error) {
+    if (hasCurve(flame)) {
+        shape = {kShapeWidth, kShapeHeight, texelsOfCurve(curveOf(flame)), {}};
+        return true;
+    }
+    const fs::path file = folder / flame.profile;
+    if (file.extension() == ".fwprofile") {
+        std::ifstream stream(file, std::ios::binary);
+        shape.cooked.assign(std::istreambuf_iterator<char>(stream), {});
+        if (shape.cooked.empty()) error = file.string() + " cannot be read";
+        return !shape.cooked.empty();
+    }
+    fwimport::FloatPicture picture;
+    if (!fwimport::readPicture(file, picture, error)) return false;
+    if (picture.channels < 2) {
+        error = file.string() + " has no green channel";
+        return false;
+    }
+    shape.width = picture.width;
+    shape.height = picture.height;
+    // Whole numbers span 0 to 3000 K and 0 to 2 of soot; the picture's lowest row is the base.
+    const float heat = picture.whole ? 3000.0f : 1.0f, soot = picture.whole ? 2.0f : 1.0f;
+    for (uint32_t y = picture.height; y-- > 0;)
+        for (uint32_t x = 0; x < picture.width; ++x) {
+            shape.texels.push_back(std::clamp(picture.at(x, y, 0) * heat, 0.0f, 3000.0f));
+            shape.texels.push_back(std::clamp(picture.at(x, y, 1) * soot, 0.0f, 2.0f));
+        }
+    return true;
+}
+
+FwFireProfileDef profileDefOf(const FlameShape& shape) {
+    FwFireProfileDef def = fwDefaultFireProfileDef();
+    if (!shape.cooked.empty()) {
+        def.cooked = shape.cooked.data();
+        def.cookedSize = shape.cooked.size();
+    } else {
+        def.width = shape.width;
+        def.height = shape.height;
+        def.texels = shape.texels.data();
+    }
+    return def;
 }
 
 bool sceneBounds(const Scene& scene, const fs::path& folder, Assets& assets, Vec3& low,

@@ -74,6 +74,20 @@ FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time);
 bool shootBurn(Burn& burn, uint32_t width, uint32_t height, std::vector<uint8_t>& rgba,
                std::string& error);
 
+// What a flame has for a shape of its own: texels as FwFireProfileDef has them, or a cooked file.
+struct FlameShape {
+    uint32_t width = 0, height = 0;
+    std::vector<float> texels;
+    std::vector<char> cooked;
+};
+[[nodiscard]] inline bool hasShape(const Flame& flame) {
+    return !flame.profile.empty() || !flame.outline.empty() || !flame.stops.empty();
+}
+// False: `error` says what is wrong with its file.
+bool shapeOf(const Flame& flame, const std::filesystem::path& folder, FlameShape& shape,
+             std::string& error);
+FwFireProfileDef profileDefOf(const FlameShape& shape);  // points into it
+
 // The bounds of all meshes of the scene in world space; false: there are none.
 bool sceneBounds(const Scene& scene, const std::filesystem::path& folder, Assets& assets, Vec3& low,
                  Vec3& high);
@@ -81,6 +95,16 @@ bool sceneBounds(const Scene& scene, const std::filesystem::path& folder, Assets
 std::shared_ptr<const fwimport::ImportedModel> modelOf(const Mesh& mesh,
                                                        const std::filesystem::path& folder,
                                                        Assets& assets, std::string& error);
+// The cooked burn map: from memory, the cache, or baked now, and its key in Assets::bakes. Null:
+// `error`.
+std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& mesh,
+                                                const fwimport::ImportedModel& model,
+                                                Assets& assets, std::string& key,
+                                                std::string& error);
+// The key alone. Meshes with the same one have the same burn map.
+std::string bakeKeyOf(const Mesh& mesh, const fwimport::ImportedModel& model);
+// Of the model's images, by triangle material; -1: none.
+std::array<int32_t, 8> baseColorsOf(const fwimport::ImportedModel& model);
 // The texels to paint on: bakes if need be.
 std::shared_ptr<const PaintSurface> paintSurfaceOf(FwContext* context, const Mesh& mesh,
                                                    const std::filesystem::path& folder,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "document/flame_curve.h"
 #include "document/text.h"
 
 namespace fwedit {
@@ -35,7 +36,8 @@ struct Table {
     }
 };
 
-constexpr double kFar = 1e6;  // m; as far as the plugin takes positions
+constexpr double kFar = 1e6;           // m; as far as the plugin takes positions
+constexpr double kMostCelsius = 2700;  // of a flame
 
 template <typename T>
 Entry<T> flag(const char* key, const char* label, bool T::*member) {
@@ -73,6 +75,11 @@ Entry<T> vector(const char* key, const char* label, const char* unit, double low
 template <typename T>
 Entry<T> keys(const char* label, Keys T::*member) {
     return {{"keys", label, "", FieldType::KeyList, 0, 1e6, 2, {}}, member};
+}
+// Points of a line over [0, 1].
+template <typename T>
+Entry<T> points(const char* key, const char* label, double most, Keys T::*member) {
+    return {{key, label, "", FieldType::KeyList, 0, 1, 2, {}, 0, most}, member};
 }
 
 const std::vector<const char*>& materialWords() {
@@ -159,6 +166,8 @@ const Table<Flame>& tableOf() {
                     "magic_green", "dying_embers"},
                    &Flame::preset),
             words("profile", "Flame shape", FieldType::File, &Flame::profile),
+            points("outline", "Outline", double(kShapeReach), &Flame::outline),
+            points("stops", "Temperatures", kMostCelsius, &Flame::stops),
             vector("position", "Position", "m", -kFar, kFar, &Flame::position),
             number("diameter", "Width", "m", 0.002, 20, &Flame::diameter),
             number("power", "Output", "kW", 0, 100000, &Flame::power),
@@ -461,8 +470,9 @@ bool store(T& into, const Member<T>& member, const FieldInfo& info, const Value&
                 Keys made;
                 for (size_t i = 0; i < list.size(); i += 2)
                     made.push_back(
-                        {static_cast<float>(bounded(list[i], info, 0, 1e6, repair)),
-                         static_cast<float>(bounded(list[i + 1], info, -1000, 1000, repair))});
+                        {static_cast<float>(bounded(list[i], info, info.low, info.high, repair)),
+                         static_cast<float>(
+                             bounded(list[i + 1], info, info.least, info.most, repair))});
                 std::stable_sort(made.begin(), made.end(),
                                  [](const Key& a, const Key& b) { return a.time < b.time; });
                 // Of two keys at one time the later one counts.

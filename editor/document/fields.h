@@ -31,9 +31,10 @@ struct FieldInfo {
     const char* label = "";  // in inspectors and undo names: "Wind response"
     const char* unit = "";   // "kW", "m", "°"; empty: none
     FieldType type{};
-    double low = 0, high = 0;          // of each number
-    uint32_t width = 1;                // numbers in it; of Rows: in a row
-    std::vector<const char*> choices;  // words of a Choice, in the order of their numbers
+    double low = 0, high = 0;           // of each number
+    uint32_t width = 1;                 // numbers in it; of Rows: in a row
+    std::vector<const char*> choices;   // words of a Choice, in the order of their numbers
+    double least = -1000, most = 1000;  // of a KeyList's values; low and high are of its times
 };
 
 // Flags, numbers and choices are numbers; objects too, by id. Vectors, keys and rows are lists of

@@ -88,6 +88,109 @@ std::string sideOf(const Scene& scene, const Vec3& at, const Vec3& fire) {
     return seen[2] > 0 ? "from the front" : "from behind";
 }
 
+// What is known of a place, in words. `arrival`: null while it is worked out.
+void explain(Burn& burn, const PaintImages& images, const WhyQuestion& question,
+             const FwArrivalState* arrival, WhyAnswer& answer) {
+    const ObjectId meshId = question.mesh;
+    const Vec3 worldPosition = question.position;
+    const Mesh* mesh = findIn(burn.scene.meshes, meshId);
+    const FwPointState& point = question.point;
+    // What the place is made of: slot and paint of the nearest texel.
+    FwMaterialDef material = fwDefaultMaterialDef();
+    uint32_t preset = mesh->materials[0];
+    answer = {};
+    if (const auto surface = burn.surfaceOf(*mesh)) {
+        const size_t texel = nearestTexel(
+            *surface, positionWithin(burn.scene, meshId,
+                                     {point.position[0], point.position[1], point.position[2]}));
+        if (texel < surface->material.size())
+            preset = mesh->materials[surface->material[texel] & 7];
+        uint32_t width = 0, height = 0;
+        const std::vector<uint8_t> painted =
+            multiplierOf(burn.scene, images, meshId, width, height);
+        if (texel < painted.size() && width == surface->width)
+            answer.multiplier = static_cast<float>(painted[texel]) / 128;
+    }
+    fwInitMaterialPreset(&material, preset);
+
+    const float rise = material.ignitionTemperature - kAir;
+    answer.heat = rise > 0 ? std::clamp((point.temperature - kAir) / rise, 0.0f, 9.99f) : 0;
+    answer.needs = 1;
+    answer.wet =
+        material.waterHeld > 0 ? std::clamp(point.water / material.waterHeld, 0.0f, 1.0f) : 0;
+    if (arrival && arrival->kind == FW_ARRIVAL_AHEAD) answer.arrivesIn = arrival->seconds;
+
+    const std::string heat = "heat " + number("%.2f", double(answer.heat)) + " of " +
+                             number("%.2f", double(answer.needs));
+    const std::string wet =
+        answer.wet > 0.005f ? ", wet " + number("%.0f %%", 100.0 * double(answer.wet)) : "";
+    switch (point.kind) {
+        case FW_POINT_BURNING:
+            answer.answer = "Burning for " + clock(double(point.age)) + ", fuel left " +
+                            number("%.0f %%", 100.0 * double(point.fuel));
+            return;
+        case FW_POINT_BURNT:
+            answer.answer = "Burnt: caught " + clock(double(point.age)) + " ago";
+            return;
+        case FW_POINT_EXTINGUISHED:
+            answer.answer = "Put out: " + heat + wet;
+            break;
+        case FW_POINT_INERT:
+            answer.answer = "Never burns: " + heat + wet;
+            break;
+        default:
+            answer.answer = "Not lit: " + heat + wet;
+            break;
+    }
+    struct Cause {
+        float size;
+        std::string text;
+    };
+    std::vector<Cause> causes;
+    if (preset == FW_MATERIAL_NONCOMBUSTIBLE || point.kind == FW_POINT_INERT)
+        causes.push_back({3, answer.multiplier <= 0 ? "Burn multiplier is painted ×0: never burns"
+                                                    : "Its material does not burn"});
+    else if (answer.multiplier < 1)
+        causes.push_back({1 - answer.multiplier, "Burn multiplier slows it to ×" +
+                                                     number("%.2f", double(answer.multiplier))});
+    if (answer.wet > 0.005f)
+        causes.push_back({answer.wet, "Water on it: " + number("%.0f g/m²", double(point.water))});
+    const float damp = material.moisture + mesh->moisture;
+    if (material.extinctionMoisture > 0 && damp > 0.25f * material.extinctionMoisture)
+        causes.push_back(
+            {damp / material.extinctionMoisture,
+             "Moisture in it: " + number("%.0f %%", 100.0 * double(damp)) + " of " +
+                 number("%.0f %% that stop fire", 100.0 * double(material.extinctionMoisture))});
+    const FwWorldStats stats = statsOf(burn.world);
+    if (stats.burningObjects == 0) causes.push_back({2, "Nothing burns in the scene now"});
+    std::stable_sort(causes.begin(), causes.end(),
+                     [](const Cause& a, const Cause& b) { return a.size > b.size; });
+    for (Cause& cause : causes) answer.causes.push_back(std::move(cause.text));
+    if (answer.arrivesIn < kNeverLit) {
+        answer.forecast = "Arrives in " + clock(double(answer.arrivesIn));
+        FwLight lights[64];
+        const uint32_t count = std::min(fwWorld_GetLights(burn.world, lights, 64), 64u);
+        float nearest = FLT_MAX;
+        Vec3 fire{};
+        for (uint32_t i = 0; i < count; ++i) {
+            float square = 0;
+            for (size_t k = 0; k < 3; ++k) {
+                const float off = lights[i].position[k] - worldPosition[k];
+                square += off * off;
+            }
+            if (square >= nearest) continue;
+            nearest = square;
+            std::copy_n(lights[i].position, 3, fire.begin());
+        }
+        if (nearest < FLT_MAX) answer.forecast += " " + sideOf(burn.scene, worldPosition, fire);
+        answer.answer += ", a" + answer.forecast.substr(1);
+    } else if (question.asksArrival && !arrival) {
+        answer.forecast = "Working out when the fire comes";
+    } else if (question.asksArrival) {
+        answer.forecast = "As things are, no fire comes here along the mesh";
+    }
+}
+
 }  // namespace
 
 bool recordBurn(FwContext* cpu, const Scene& scene, const PaintImages& images,
@@ -150,127 +253,31 @@ bool beginWhy(Burn& burn, ObjectId meshId, Vec3 worldPosition, WhyQuestion& ques
 
 FwResult pollWhy(Burn& burn, const PaintImages& images, WhyQuestion& question, WhyAnswer& answer,
                  std::string& error) {
-    const ObjectId meshId = question.mesh;
-    const Vec3 worldPosition = question.position;
-    const Mesh* mesh = findIn(burn.scene.meshes, meshId);
-    const BurnMesh* made = madeOf(burn, meshId);
-    if (!mesh || !made) return FW_ERROR_INVALID_ARGUMENT;
+    const BurnMesh* made = madeOf(burn, question.mesh);
+    if (!made || !findIn(burn.scene.meshes, question.mesh)) return FW_ERROR_INVALID_ARGUMENT;
     FwPointState& point = question.point;
     if (!question.pointKnown) {
         point.structSize = sizeof point;
         FwResult result = fwWorld_FetchPoint(burn.world, question.pointQuery, &point);
         if (result == FW_NOT_READY) return result;
         question.pointKnown = result >= 0;
-        if (result >= 0 && (point.kind == FW_POINT_UNBURNT || point.kind == FW_POINT_WET))
-            result = fwWorld_RequestArrival(burn.world, made->object, worldPosition.data(),
+        question.asksArrival = point.kind == FW_POINT_UNBURNT || point.kind == FW_POINT_WET;
+        if (result >= 0 && question.asksArrival)
+            result = fwWorld_RequestArrival(burn.world, made->object, question.position.data(),
                                             &question.arrivalQuery);
         if (result < 0) {
             error = worldProblem(burn, result);
             return result;
         }
+        explain(burn, images, question, nullptr, answer);
     }
+    if (!question.asksArrival) return FW_OK;
     FwArrivalState arrival{};
     arrival.structSize = sizeof arrival;
-    arrival.kind = FW_ARRIVAL_NEVER;
-    if (point.kind == FW_POINT_UNBURNT || point.kind == FW_POINT_WET) {
-        const FwResult result = fwWorld_FetchArrival(burn.world, question.arrivalQuery, &arrival);
-        if (result < 0) error = worldProblem(burn, result);
-        if (result != FW_OK) return result;
-    }
-
-    // What the place is made of: slot and paint of the nearest texel.
-    FwMaterialDef material = fwDefaultMaterialDef();
-    uint32_t preset = mesh->materials[0];
-    answer = {};
-    if (const auto surface = burn.surfaceOf(*mesh)) {
-        const size_t texel = nearestTexel(
-            *surface, positionWithin(burn.scene, meshId,
-                                     {point.position[0], point.position[1], point.position[2]}));
-        if (texel < surface->material.size())
-            preset = mesh->materials[surface->material[texel] & 7];
-        uint32_t width = 0, height = 0;
-        const std::vector<uint8_t> painted =
-            multiplierOf(burn.scene, images, meshId, width, height);
-        if (texel < painted.size() && width == surface->width)
-            answer.multiplier = static_cast<float>(painted[texel]) / 128;
-    }
-    fwInitMaterialPreset(&material, preset);
-
-    const float rise = material.ignitionTemperature - kAir;
-    answer.heat = rise > 0 ? std::clamp((point.temperature - kAir) / rise, 0.0f, 9.99f) : 0;
-    answer.needs = 1;
-    answer.wet =
-        material.waterHeld > 0 ? std::clamp(point.water / material.waterHeld, 0.0f, 1.0f) : 0;
-    if (arrival.kind == FW_ARRIVAL_AHEAD) answer.arrivesIn = arrival.seconds;
-
-    const std::string heat = "heat " + number("%.2f", double(answer.heat)) + " of " +
-                             number("%.2f", double(answer.needs));
-    const std::string wet =
-        answer.wet > 0.005f ? ", wet " + number("%.0f %%", 100.0 * double(answer.wet)) : "";
-    switch (point.kind) {
-        case FW_POINT_BURNING:
-            answer.answer = "Burning for " + clock(double(point.age)) + ", fuel left " +
-                            number("%.0f %%", 100.0 * double(point.fuel));
-            return FW_OK;
-        case FW_POINT_BURNT:
-            answer.answer = "Burnt: caught " + clock(double(point.age)) + " ago";
-            return FW_OK;
-        case FW_POINT_EXTINGUISHED:
-            answer.answer = "Put out: " + heat + wet;
-            break;
-        case FW_POINT_INERT:
-            answer.answer = "Never burns: " + heat + wet;
-            break;
-        default:
-            answer.answer = "Not lit: " + heat + wet;
-            break;
-    }
-    struct Cause {
-        float size;
-        std::string text;
-    };
-    std::vector<Cause> causes;
-    if (preset == FW_MATERIAL_NONCOMBUSTIBLE || point.kind == FW_POINT_INERT)
-        causes.push_back({3, answer.multiplier <= 0 ? "Burn multiplier is painted ×0: never burns"
-                                                    : "Its material does not burn"});
-    else if (answer.multiplier < 1)
-        causes.push_back({1 - answer.multiplier, "Burn multiplier slows it to ×" +
-                                                     number("%.2f", double(answer.multiplier))});
-    if (answer.wet > 0.005f)
-        causes.push_back({answer.wet, "Water on it: " + number("%.0f g/m²", double(point.water))});
-    const float damp = material.moisture + mesh->moisture;
-    if (material.extinctionMoisture > 0 && damp > 0.25f * material.extinctionMoisture)
-        causes.push_back(
-            {damp / material.extinctionMoisture,
-             "Moisture in it: " + number("%.0f %%", 100.0 * double(damp)) + " of " +
-                 number("%.0f %% that stop fire", 100.0 * double(material.extinctionMoisture))});
-    const FwWorldStats stats = statsOf(burn.world);
-    if (stats.burningObjects == 0) causes.push_back({2, "Nothing burns in the scene now"});
-    std::stable_sort(causes.begin(), causes.end(),
-                     [](const Cause& a, const Cause& b) { return a.size > b.size; });
-    for (Cause& cause : causes) answer.causes.push_back(std::move(cause.text));
-    if (answer.arrivesIn < kNeverLit) {
-        answer.forecast = "Arrives in " + clock(double(answer.arrivesIn));
-        FwLight lights[64];
-        const uint32_t count = std::min(fwWorld_GetLights(burn.world, lights, 64), 64u);
-        float nearest = FLT_MAX;
-        Vec3 fire{};
-        for (uint32_t i = 0; i < count; ++i) {
-            float square = 0;
-            for (size_t k = 0; k < 3; ++k) {
-                const float off = lights[i].position[k] - worldPosition[k];
-                square += off * off;
-            }
-            if (square >= nearest) continue;
-            nearest = square;
-            std::copy_n(lights[i].position, 3, fire.begin());
-        }
-        if (nearest < FLT_MAX) answer.forecast += " " + sideOf(burn.scene, worldPosition, fire);
-        answer.answer += ", a" + answer.forecast.substr(1);
-    } else if (point.kind == FW_POINT_UNBURNT || point.kind == FW_POINT_WET) {
-        answer.forecast = "As things are, no fire comes here along the mesh";
-    }
-    return FW_OK;
+    const FwResult result = fwWorld_FetchArrival(burn.world, question.arrivalQuery, &arrival);
+    if (result < 0) error = worldProblem(burn, result);
+    if (result == FW_OK) explain(burn, images, question, &arrival, answer);
+    return result;
 }
 
 bool askWhy(Burn& burn, const PaintImages& images, ObjectId mesh, Vec3 worldPosition,

@@ -48,11 +48,12 @@ struct WhyQuestion {  // to a burn, on its way
     Vec3 position{};  // m, world
     FwQueryId pointQuery{}, arrivalQuery{};
     FwPointState point{};
-    bool pointKnown = false;
+    bool pointKnown = false, asksArrival = false;
 };
 // Begins a question; whoever records or steps the world then polls it after each frame, of no
 // length if it stands still. The context's message says what is wrong; the answer is there with
-// FW_OK, and FW_NOT_READY means later.
+// FW_OK, and FW_NOT_READY means later. Once pointKnown, all but the forecast is there already: that
+// runs the front ahead, which can take many frames.
 bool beginWhy(Burn& burn, ObjectId mesh, Vec3 worldPosition, WhyQuestion& question,
               std::string& error);
 FwResult pollWhy(Burn& burn, const PaintImages& images, WhyQuestion& question, WhyAnswer& answer,

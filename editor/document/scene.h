@@ -80,6 +80,7 @@ struct HeatSource : Object {  // heat, or against it water
 struct Flame : Object {     // a volumetric fire
     uint32_t preset = 0;    // FwFirePreset
     std::string profile;    // .fwprofile or picture, relative; empty: the preset's
+    Keys outline, stops;    // its shape by points instead, see flame_curve.h
     Vec3 position{};        // m, the middle of its base
     float diameter = 0.6f;  // m
     float power = 60;       // kW

@@ -12,6 +12,12 @@ constexpr float kSmallestFlame = 0.02f;  // m across
 
 void copy(float* to, const Vec3& from) { std::copy(from.begin(), from.end(), to); }
 
+float peakOf(const Keys& keys) {
+    float peak = keys.empty() ? 1.0f : 0.0f;
+    for (const Key& key : keys) peak = std::max(peak, key.value);
+    return peak;
+}
+
 Vec3 unit(const Vec3& v, const Vec3& otherwise) {
     const float length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     if (!(length > 1e-6f)) return otherwise;
@@ -72,7 +78,7 @@ FwFireEmitterDef jetDefOf(const Scene& scene, const HeatSource& source) {
     def.seed = source.id;
     copy(def.position, worldPosition(scene, source.id));
     copy(def.direction, unit(source.direction, {0, 1, 0}));
-    def.power = source.output;
+    def.power = std::min(kMostPower, source.output * peakOf(source.keys));
     return def;
 }
 
@@ -85,7 +91,7 @@ FwFireEmitterDef emitterDefOf(const Scene& scene, const Emitter& emitter) {
     copy(def.direction, unit(emitter.direction, {0, 1, 0}));
     copy(def.extent, emitter.extent);
     def.radius = emitter.radius;
-    def.power = emitter.power;
+    def.power = std::min(kMostPower, emitter.power * peakOf(emitter.keys));
     def.speed = emitter.speed;
     def.cone = emitter.cone;
     def.life = emitter.life;

@@ -5,10 +5,15 @@
 
 namespace fwedit {
 
+constexpr double kWateringStep = 0.125;  // s, between what rain and water add
+constexpr float kMostPower = 100000;     // kW, of a flame, an emitter
+constexpr float kMostWind = 120;         // m/s, of each of its parts
+
 // Empty if the result is fine, else the plugin's own words.
 std::string worldProblem(const Burn& burn, FwResult result);
 
 FwWorldDef worldDefOf(const Scene& scene);
+// Jets and emitters have room for the most that their keys ask for.
 FwFireEmitterDef jetDefOf(const Scene& scene, const HeatSource& source);
 FwFireEmitterDef emitterDefOf(const Scene& scene, const Emitter& emitter);
 FwVolumetricFireDef fireDefOf(const Scene& scene, const Flame& flame);

@@ -25,6 +25,22 @@ std::filesystem::path cacheFolder() {
     return {};
 }
 
+// Of the values of BurnMemory::agesAt: a front that glows, embers, char.
+const Palette& burntPalette() {
+    static const Palette palette = [] {
+        constexpr fwui::MapStop kStops[] = {{0, fwui::hex(0xFFE2A0)},
+                                            {0.04f, fwui::hex(0xFF9A3C)},
+                                            {0.2f, fwui::hex(0xB8400E)},
+                                            {0.6f, fwui::hex(0x4A1C10)},
+                                            {1, fwui::hex(0x1A1412)}};
+        Palette made{};
+        for (uint32_t i = 1; i < 256; ++i)
+            made[i] = premultiplied(fwui::sampleMap(kStops, float(i - 1) / 254), 0.9f);
+        return made;
+    }();
+    return palette;
+}
+
 glm::mat4 poseOf(const fwedit::Mesh& mesh) {
     const std::array<float, 16> values = fwedit::transformOf(mesh);
     return glm::make_mat4(values.data());
@@ -206,6 +222,8 @@ void LiveScene::startRest() {
 void LiveScene::adoptRest(Rest made) {
     vkDeviceWaitIdle(host_.device);
     rest_ = std::move(made);
+    // So that the first move of a hand waits for none of it.
+    for (const auto& [mesh, surface] : rest_.surfaces) burnt_.prepare(mesh, surface);
     stale_ = true;
 }
 
@@ -283,13 +301,14 @@ void LiveScene::seek(double time, bool held) {
     wanted_ = std::max(0.0, time);
     previewed_ = false;
     if (!burn_) return;
-    stale_ = true;
     if (held && rest_.burn && memory_.knows(wanted_)) {
+        (previews() ? laid_ : stale_) = true;
         preview_ = wanted_;
         previewed_ = true;
         preview();
         return;
     }
+    stale_ = true;
     // Without a preview the last picture stays until the hand lets go.
     if (held && wanted_ + 1e-4 < burn_->time) {
         wanted_ = 0;
@@ -336,12 +355,21 @@ void LiveScene::followWhy() {
     constexpr double kAskAgain = 0.5;  // s of the fire
     if (!why.open || !burn_ || previews()) return;
     if (why.asks) {
-        const FwResult result =
-            fwedit::pollWhy(*burn_, images_, why.question, why.answer, why.error);
+        ++whyFrames_;
+        // Asked anew, the old answer stands until the whole new one is there.
+        fwedit::WhyAnswer& answer = why.answered ? nextAnswer_ : why.answer;
+        const bool knew = why.question.pointKnown;
+        const FwResult result = fwedit::pollWhy(*burn_, images_, why.question, answer, why.error);
+        if (!why.answered && why.question.pointKnown && !knew) {
+            why.answered = result >= 0;
+            why.frames = whyFrames_;
+            stale_ = true;  // the card is drawn with the next frame
+        }
         if (result == FW_NOT_READY) return;
+        if (&answer == &nextAnswer_ && result == FW_OK) why.answer = nextAnswer_;
         why.asks = false;
         why.answered = result == FW_OK;
-        stale_ = true;  // the card is drawn with the next frame
+        stale_ = true;
         return;
     }
     if (!why.error.empty()) return;
@@ -349,12 +377,18 @@ void LiveScene::followWhy() {
     why.asks = fwedit::beginWhy(*burn_, why.mesh, {why.position.x, why.position.y, why.position.z},
                                 why.question, why.error);
     why.time = burn_->time;
+    whyFrames_ = 0;
 }
 
 FwResult LiveScene::recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame) {
     const FwResult result = fwWorld_RecordOutside(burn.world, &frame, &view);
     if (result < 0) report_.push_back(lastMessage(burn.world));
     return result;
+}
+
+// The picture below is the one that is kept: only what lies over it is to be drawn.
+bool LiveScene::canLayOver(bool moved) const {
+    return kept_ && laid_ && !stale_ && !moved && previews() && !seeking();
 }
 
 void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime) {
@@ -367,9 +401,10 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     if (rests && !rest_.burn) return;
     const bool moved = !(camera == camera_);
     const bool hurries = seeking();
-    if (deltaTime <= 0 && !moved && !stale_ && !hurries && !memory_.waits() && !why.asks) return;
-    const bool fresh = stale_;
-    stale_ = false;
+    if (deltaTime <= 0 && !moved && !stale_ && !laid_ && !hurries && !memory_.waits() && !why.asks)
+        return;
+    const bool fresh = stale_, laysOver = canLayOver(moved);
+    stale_ = laid_ = false;
     camera_ = camera;
 
     fwedit::Scene seen;  // viewOf reads these alone
@@ -401,6 +436,13 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     followWhy();
     // A preview stays as it is while the burn behind it runs on to its time.
     if (previews() && hurries && !moved && !fresh) return;
+    overlay.upload(frame);
+    burnt_.upload(frame);
+    if (laysOver) {
+        target.restore(frame);
+        drawOverlays(frame);
+        return;
+    }
     fwedit::Burn& drawn = rests ? *rest_.burn : *burn_;
     if (rests) {
         described.deltaTime = 0;
@@ -409,8 +451,6 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     FwLight lights[8];
     const uint32_t lightCount = fwWorld_GetLights(drawn.world, lights, 8);
 
-    overlay.upload(frame);
-    burnt_.upload(frame);
     target.begin(frame);
     sample::StageFrame stage;
     stage.commands = frame.commands;
@@ -423,6 +463,8 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
         if (inside < 0) report_.push_back(lastMessage(drawn.world));
     }
     target.end(frame);
+    kept_ = previews();
+    if (kept_) target.keep(frame);
     drawOverlays(frame);
 
     FwPassTime times[64];

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "common/studio.h"
+#include "document/burn_memory.h"
 #include "document/inspect.h"
-#include "viewport/burn_memory.h"
 #include "viewport/map_overlay.h"
 #include "viewport/outline.h"
 #include "viewport/scene_target.h"
@@ -30,6 +30,7 @@ enum class Shown : uint32_t {
 // A spot of the surface and what the burn says of it.
 struct WhyCard {
     bool open = false, answered = false, asks = false;
+    uint32_t frames = 0;  // from asking to the first answer
     fwedit::ObjectId mesh = 0;
     glm::vec3 position{0};  // m, world
     double time = 0;        // s that the answer is of
@@ -58,8 +59,8 @@ class LiveScene {
     void record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime);
     // Nothing of what is seen would change: no frame is needed for its sake.
     [[nodiscard]] bool settled() const {
-        return !preparing() && !seeking() && !stale_ && !memory_.waits() && overlay.settled() &&
-               !why.asks;
+        return !preparing() && !seeking() && !stale_ && !laid_ && !memory_.waits() &&
+               overlay.settled() && !why.asks;
     }
     // Pixels of the picture.
     void resize(uint32_t width, uint32_t height);
@@ -82,6 +83,7 @@ class LiveScene {
     void outlineOf(fwedit::ObjectId mesh, ImVec2 size, std::vector<glm::vec2>& lines);
     // Asks the burn of a spot; the answer comes some frames later, and anew as the fire goes on.
     void askWhy(fwedit::ObjectId mesh, glm::vec3 position);
+    [[nodiscard]] const std::filesystem::path& cache() const { return assets_.cache; }
     // Texels to paint on; null: not made yet, or the mesh has none.
     [[nodiscard]] std::shared_ptr<const fwedit::PaintSurface> surfaceOf(
         fwedit::ObjectId mesh) const;
@@ -122,6 +124,7 @@ class LiveScene {
     void adoptRest(Rest made);
     bool goBack();
     void preview();
+    [[nodiscard]] bool canLayOver(bool moved) const;
     FwResult recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame);
     void followWhy();
     void drawOverlays(const fwui::Frame& frame);
@@ -138,8 +141,10 @@ class LiveScene {
     Rest rest_;
     std::future<Rest> restWork_;
     bool restWanted_ = false;
-    BurnMemory memory_;
+    fwedit::BurnMemory memory_;
     MapOverlay burnt_;        // of the preview
+    bool laid_ = false;       // what lies over the preview has changed, and nothing else
+    bool kept_ = false;       // the target keeps the picture below it
     double preview_ = -1;     // s that are shown from memory; < 0: none
     bool previewed_ = false;  // a hand holds the preview
     bool owesPaint_ = false;
@@ -157,6 +162,8 @@ class LiveScene {
     fwedit::Camera camera_;
     std::map<fwedit::ObjectId, Outline> outlines_;
     std::vector<std::string> report_;
+    fwedit::WhyAnswer nextAnswer_;
+    uint32_t whyFrames_ = 0;       // since it was asked
     std::vector<uint8_t> values_;  // by texel, of what is coloured
     double milliseconds_ = 0;
     std::string studioKey_;

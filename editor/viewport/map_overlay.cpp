@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "common/pipeline.h"
-
 namespace fwview {
 namespace {
 
@@ -75,25 +73,13 @@ Palette rampPalette(std::span<const fwui::MapStop> map, float opacity) {
 }
 
 MapOverlay::MapOverlay(const sample::VulkanHost& host, fwui::UiRenderer& ui, VkRenderPass pass)
-    : host_(host), ui_(ui) {
-    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                  VK_SAMPLER_MIPMAP_MODE_NEAREST);
-    setLayout_ = sample::makeSetLayout(host, {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
-    VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kMost};
-    VkDescriptorPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    info.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
-    info.maxSets = kMost;
-    info.poolSizeCount = 1;
-    info.pPoolSizes = &size;
-    sample::checkVulkan(vkCreateDescriptorPool(host.device, &info, nullptr, &pool_),
-                        "vkCreateDescriptorPool");
-    layout_ = sample::makeLayout(
-        host, {setLayout_},
-        {VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(OverlayPush)});
+    : host_(host),
+      ui_(ui),
+      drawing_(
+          host, kMost, 1,
+          {VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(OverlayPush)}) {
     sample::PipelineRequest request;
     request.pass = pass;
-    request.layout = layout_;
     request.vertex = host.createShader(kMapOverlayVert, sizeof kMapOverlayVert);
     request.fragment = host.createShader(kMapOverlayFrag, sizeof kMapOverlayFrag);
     request.bindings = {{0, kCornerBytes, VK_VERTEX_INPUT_RATE_VERTEX}};
@@ -103,19 +89,12 @@ MapOverlay::MapOverlay(const sample::VulkanHost& host, fwui::UiRenderer& ui, VkR
     request.depthBias = kDepthBias;
     request.depthBiasSlope = kDepthBiasSlope;
     request.blend = true;
-    pipeline_ = sample::makePipeline(host, request);
+    pipeline_ = drawing_.pipeline(request);
     vkDestroyShaderModule(host.device, request.vertex, nullptr);
     vkDestroyShaderModule(host.device, request.fragment, nullptr);
 }
 
-MapOverlay::~MapOverlay() {
-    clear();
-    vkDestroyPipeline(host_.device, pipeline_, nullptr);
-    vkDestroyPipelineLayout(host_.device, layout_, nullptr);
-    vkDestroyDescriptorPool(host_.device, pool_, nullptr);
-    vkDestroyDescriptorSetLayout(host_.device, setLayout_, nullptr);
-    vkDestroySampler(host_.device, sampler_, nullptr);
-}
+MapOverlay::~MapOverlay() { clear(); }
 
 MapOverlay::Map MapOverlay::makeMap(const std::shared_ptr<const fwedit::PaintSurface>& surface) {
     Map map;
@@ -136,8 +115,8 @@ MapOverlay::Map MapOverlay::makeMap(const std::shared_ptr<const fwedit::PaintSur
                              VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0,
                              VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
     });
-    map.set = sample::makeSet(host_, pool_, setLayout_);
-    sample::writeImage(host_, map.set, 0, sampler_, map.image.view);
+    map.set = drawing_.newSet();
+    drawing_.write(map.set, 0, map.image.view);
     map.texture = ui_.addTexture(map.image.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     map.gutter = gutterOf(*surface);
     return map;
@@ -145,7 +124,7 @@ MapOverlay::Map MapOverlay::makeMap(const std::shared_ptr<const fwedit::PaintSur
 
 void MapOverlay::destroy(Map& map) {
     if (map.texture) ui_.removeTexture(map.texture);
-    vkFreeDescriptorSets(host_.device, pool_, 1, &map.set);
+    drawing_.freeSet(map.set);
     host_.destroy(map.corners);
     host_.destroy(map.image);
     for (sample::Buffer& buffer : map.staging) host_.destroy(buffer);
@@ -158,10 +137,8 @@ void MapOverlay::clear() {
     maps_.clear();
 }
 
-void MapOverlay::color(fwedit::ObjectId mesh,
-                       const std::shared_ptr<const fwedit::PaintSurface>& surface,
-                       std::span<const uint8_t> values, const Palette& palette,
-                       const fwedit::PaintedArea& area) {
+MapOverlay::Map* MapOverlay::mapOf(fwedit::ObjectId mesh,
+                                   const std::shared_ptr<const fwedit::PaintSurface>& surface) {
     auto found = maps_.find(mesh);
     if (found != maps_.end() && found->second.surface != surface) {
         vkDeviceWaitIdle(host_.device);
@@ -170,11 +147,25 @@ void MapOverlay::color(fwedit::ObjectId mesh,
         found = maps_.end();
     }
     if (found == maps_.end()) {
-        if (maps_.size() >= kMost || surface->corners.empty()) return;
+        if (maps_.size() >= kMost || surface->corners.empty()) return nullptr;
         found = maps_.emplace(mesh, makeMap(surface)).first;
         found->second.fresh = {0, 0, surface->width, surface->height};
     }
-    Map& map = found->second;
+    return &found->second;
+}
+
+void MapOverlay::prepare(fwedit::ObjectId mesh,
+                         const std::shared_ptr<const fwedit::PaintSurface>& surface) {
+    (void)mapOf(mesh, surface);
+}
+
+void MapOverlay::color(fwedit::ObjectId mesh,
+                       const std::shared_ptr<const fwedit::PaintSurface>& surface,
+                       std::span<const uint8_t> values, const Palette& palette,
+                       const fwedit::PaintedArea& area) {
+    Map* made = mapOf(mesh, surface);
+    if (!made) return;
+    Map& map = *made;
     const uint32_t width = surface->width, height = surface->height;
     const uint32_t x1 = std::min(area.x1, width), y1 = std::min(area.y1, height);
     for (uint32_t y = area.y0; y < y1; ++y)
@@ -244,9 +235,9 @@ void MapOverlay::draw(const fwui::Frame& frame, fwedit::ObjectId mesh, const glm
     const OverlayPush push{
         clip, {1 / float(map.surface->width), 1 / float(map.surface->height)}, opacity};
     vkCmdBindPipeline(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
-    vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1,
-                            &map.set, 0, nullptr);
-    vkCmdPushConstants(frame.commands, layout_,
+    vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawing_.layout(), 0,
+                            1, &map.set, 0, nullptr);
+    vkCmdPushConstants(frame.commands, drawing_.layout(),
                        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
                        &push);
     const VkDeviceSize start = 0;

@@ -14,6 +14,7 @@
 #include "shell/draw.h"
 #include "shell/frames.h"
 #include "shell/ui_renderer.h"
+#include "viewport/picture_drawing.h"
 
 namespace fwview {
 
@@ -31,6 +32,8 @@ class MapOverlay {
     MapOverlay(const MapOverlay&) = delete;
     MapOverlay& operator=(const MapOverlay&) = delete;
 
+    // Makes what a mesh's map needs before it is coloured, if it is not there.
+    void prepare(fwedit::ObjectId mesh, const std::shared_ptr<const fwedit::PaintSurface>& surface);
     // Colours a part of a mesh's map by values over all of it; they are seen with the next frame.
     void color(fwedit::ObjectId mesh, const std::shared_ptr<const fwedit::PaintSurface>& surface,
                std::span<const uint8_t> values, const Palette& palette,
@@ -59,13 +62,12 @@ class MapOverlay {
     };
     Map makeMap(const std::shared_ptr<const fwedit::PaintSurface>& surface);
     void destroy(Map& map);
+    // Null: there is no room for another.
+    Map* mapOf(fwedit::ObjectId mesh, const std::shared_ptr<const fwedit::PaintSurface>& surface);
 
     const sample::VulkanHost& host_;
     fwui::UiRenderer& ui_;
-    VkSampler sampler_ = VK_NULL_HANDLE;
-    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-    VkDescriptorPool pool_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    PictureDrawing drawing_;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
     std::map<fwedit::ObjectId, Map> maps_;
 };

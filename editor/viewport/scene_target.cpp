@@ -5,8 +5,6 @@
 #include <array>
 #include <vector>
 
-#include "common/pipeline.h"
-
 namespace fwview {
 namespace {
 
@@ -25,31 +23,26 @@ struct Push {  // post.frag
 }  // namespace
 
 SceneTarget::SceneTarget(const sample::VulkanHost& host, fwui::UiRenderer& ui)
-    : host_(host), ui_(ui), depthFormat_(host.depthFormat()) {
+    : host_(host),
+      ui_(ui),
+      depthFormat_(host.depthFormat()),
+      drawing_(host, 1, 2, {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)}) {
     scenePass_ = makePass(kLight, true, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     spreadPass_ = makePass(kLight, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     shownPass_ = makePass(kDisplay, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     overPass_ = makePass(kDisplay, true, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, true);
-    sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                  VK_SAMPLER_MIPMAP_MODE_NEAREST);
-    constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    setLayout_ = sample::makeSetLayout(host, {kImage, kImage});
-    pool_ = sample::makeSetPool(host, 1, 0, 2);
-    set_ = sample::makeSet(host, pool_, setLayout_);
-    layout_ =
-        sample::makeLayout(host, {setLayout_}, {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)});
+    set_ = drawing_.newSet();
 
     sample::PipelineRequest request;
-    request.layout = layout_;
     request.depthTest = request.depthWrite = false;
     request.vertex = host.createShader(kPostVert, sizeof kPostVert);
     request.pass = shownPass_;
     request.fragment = host.createShader(kPostFrag, sizeof kPostFrag);
-    shownPipeline_ = sample::makePipeline(host, request);
+    shownPipeline_ = drawing_.pipeline(request);
     vkDestroyShaderModule(host.device, request.fragment, nullptr);
     request.pass = spreadPass_;
     request.fragment = host.createShader(kBloomFrag, sizeof kBloomFrag);
-    spreadPipeline_ = sample::makePipeline(host, request);
+    spreadPipeline_ = drawing_.pipeline(request);
     vkDestroyShaderModule(host.device, request.fragment, nullptr);
     vkDestroyShaderModule(host.device, request.vertex, nullptr);
 }
@@ -57,12 +50,6 @@ SceneTarget::SceneTarget(const sample::VulkanHost& host, fwui::UiRenderer& ui)
 SceneTarget::~SceneTarget() {
     vkDeviceWaitIdle(host_.device);
     dropImages();
-    vkDestroyPipeline(host_.device, shownPipeline_, nullptr);
-    vkDestroyPipeline(host_.device, spreadPipeline_, nullptr);
-    vkDestroyPipelineLayout(host_.device, layout_, nullptr);
-    vkDestroyDescriptorPool(host_.device, pool_, nullptr);
-    vkDestroyDescriptorSetLayout(host_.device, setLayout_, nullptr);
-    vkDestroySampler(host_.device, sampler_, nullptr);
     for (VkRenderPass pass : {scenePass_, spreadPass_, shownPass_, overPass_})
         vkDestroyRenderPass(host_.device, pass, nullptr);
 }
@@ -153,7 +140,8 @@ void SceneTarget::dropImages() {
         vkDestroyFramebuffer(host_.device, *framebuffer, nullptr);
         *framebuffer = VK_NULL_HANDLE;
     }
-    for (sample::Image* image : {&color_, &depth_, &spread_, &shown_}) host_.destroy(*image);
+    for (sample::Image* image : {&color_, &depth_, &spread_, &shown_, &kept_})
+        host_.destroy(*image);
 }
 
 void SceneTarget::resize(uint32_t width, uint32_t height) {
@@ -176,8 +164,10 @@ void SceneTarget::resize(uint32_t width, uint32_t height) {
     color_ = host_.createImage(request);
     request.mips = 1;
     request.format = kDisplay;
-    request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                    VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     shown_ = host_.createImage(request);
+    kept_ = host_.createImage(request);
     request.format = depthFormat_;
     request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
@@ -195,8 +185,8 @@ void SceneTarget::resize(uint32_t width, uint32_t height) {
         makeFramebuffer(spreadPass_, {spread_.view}, quarter.width, quarter.height);
     shownFramebuffer_ = makeFramebuffer(shownPass_, {shown_.view}, width, height);
     overFramebuffer_ = makeFramebuffer(overPass_, {shown_.view, depth_.view}, width, height);
-    sample::writeImage(host_, set_, 0, sampler_, color_.view);
-    sample::writeImage(host_, set_, 1, sampler_, spread_.view);
+    drawing_.write(set_, 0, color_.view);
+    drawing_.write(set_, 1, spread_.view);
     texture_ = ui_.addTexture(shown_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     // Black until the first frame: what is shown before has a layout to be read in.
     host_.runNow([&](VkCommandBuffer commands) {
@@ -227,12 +217,57 @@ void SceneTarget::begin(const fwui::Frame& frame) {
 void SceneTarget::end(const fwui::Frame& frame) {
     vkCmdEndRenderPass(frame.commands);
     const Push push{0, 1, bloom, vignette, float(extent_.width) / float(extent_.height)};
-    vkCmdPushConstants(frame.commands, layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
-                       &push);
+    vkCmdPushConstants(frame.commands, drawing_.layout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                       sizeof push, &push);
     spreadLight(frame);
     drawPost(frame, spreadPipeline_, spreadPass_, spreadFramebuffer_,
              {spread_.made.width, spread_.made.height});
     drawPost(frame, shownPipeline_, shownPass_, shownFramebuffer_, extent_);
+}
+
+// `to` is left as it is sampled, or for copies if it is what is kept.
+void SceneTarget::copyPicture(const fwui::Frame& frame, const sample::Image& from,
+                              VkImageLayout before, const sample::Image& to) const {
+    const bool keeps = &to == &kept_;
+    const VkImageLayout sampled = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    constexpr VkPipelineStageFlags kDrawn = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
+                                            VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
+                                            VK_PIPELINE_STAGE_TRANSFER_BIT;
+    sample::imageBarrier(frame.commands, from.image, before, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                         kDrawn,
+                         VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+                         VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
+    sample::imageBarrier(frame.commands, to.image, VK_IMAGE_LAYOUT_UNDEFINED,
+                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, kDrawn,
+                         VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_ACCESS_TRANSFER_WRITE_BIT);
+    VkImageCopy copy{};
+    copy.srcSubresource = copy.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.extent = {extent_.width, extent_.height, 1};
+    vkCmdCopyImage(frame.commands, from.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.image,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    const sample::Image& shown = keeps ? from : to;
+    constexpr VkPipelineStageFlags kUsed =
+        VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+    sample::imageBarrier(
+        frame.commands, shown.image,
+        keeps ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        sampled, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, kUsed,
+        VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_READ_BIT |
+            VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT);
+    if (!keeps) return;
+    sample::imageBarrier(frame.commands, to.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_ACCESS_TRANSFER_READ_BIT);
+}
+
+void SceneTarget::keep(const fwui::Frame& frame) {
+    copyPicture(frame, shown_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kept_);
+}
+
+void SceneTarget::restore(const fwui::Frame& frame) {
+    copyPicture(frame, kept_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, shown_);
 }
 
 void SceneTarget::beginOver(const fwui::Frame& frame) {
@@ -288,8 +323,8 @@ void SceneTarget::drawPost(const fwui::Frame& frame, VkPipeline pipeline, VkRend
     vkCmdSetViewport(frame.commands, 0, 1, &all);
     vkCmdSetScissor(frame.commands, 0, 1, &info.renderArea);
     vkCmdBindPipeline(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-    vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_,
-                            0, nullptr);
+    vkCmdBindDescriptorSets(frame.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawing_.layout(), 0,
+                            1, &set_, 0, nullptr);
     vkCmdDraw(frame.commands, 3, 1, 0, 0);
     vkCmdEndRenderPass(frame.commands);
 }

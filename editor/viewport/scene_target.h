@@ -6,6 +6,7 @@
 #include "common/stage.h"
 #include "shell/frames.h"
 #include "shell/ui_renderer.h"
+#include "viewport/picture_drawing.h"
 
 namespace fwview {
 
@@ -20,7 +21,10 @@ class SceneTarget {
     void resize(uint32_t width, uint32_t height);
     void begin(const fwui::Frame& frame);
     void end(const fwui::Frame& frame);
-    // After end: a pass over the display values, tested against the scene's depth.
+    // After end: what it drew, for other frames to begin from instead of drawing the scene again.
+    void keep(const fwui::Frame& frame);
+    void restore(const fwui::Frame& frame);
+    // After end or restore: a pass over the display values, tested against the scene's depth.
     void beginOver(const fwui::Frame& frame);
     void endOver(const fwui::Frame& frame);
     [[nodiscard]] sample::ScenePass pass() const;
@@ -41,6 +45,8 @@ class SceneTarget {
                                   uint32_t width, uint32_t height) const;
     void dropImages();
     void spreadLight(const fwui::Frame& frame);
+    void copyPicture(const fwui::Frame& frame, const sample::Image& from, VkImageLayout before,
+                     const sample::Image& to) const;
     void drawPost(const fwui::Frame& frame, VkPipeline pipeline, VkRenderPass pass,
                   VkFramebuffer framebuffer, VkExtent2D extent);
 
@@ -49,16 +55,13 @@ class SceneTarget {
     VkExtent2D extent_{};
     uint32_t mips_ = 1;
     VkFormat depthFormat_ = VK_FORMAT_UNDEFINED;
-    sample::Image color_, depth_, spread_, shown_;
+    sample::Image color_, depth_, spread_, shown_, kept_;
     VkRenderPass scenePass_ = VK_NULL_HANDLE, spreadPass_ = VK_NULL_HANDLE,
                  shownPass_ = VK_NULL_HANDLE, overPass_ = VK_NULL_HANDLE;
     VkFramebuffer sceneFramebuffer_ = VK_NULL_HANDLE, spreadFramebuffer_ = VK_NULL_HANDLE,
                   shownFramebuffer_ = VK_NULL_HANDLE, overFramebuffer_ = VK_NULL_HANDLE;
-    VkSampler sampler_ = VK_NULL_HANDLE;
-    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    PictureDrawing drawing_;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline shownPipeline_ = VK_NULL_HANDLE, spreadPipeline_ = VK_NULL_HANDLE;
     void* texture_ = nullptr;
 };

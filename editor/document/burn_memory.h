@@ -13,42 +13,39 @@
 #include <vector>
 
 #include "document/burn.h"
-#include "viewport/map_overlay.h"
 
-namespace fwview {
+namespace fwedit {
 
 class BurnMemory {
  public:
-    void begin(const fwedit::Burn& burn);  // a world at time 0
+    void begin(const Burn& burn);  // a world at time 0
     void forget();
     // Around fwWorld_RecordOutside: wishes what is due, takes what has come. `step` s are fed.
-    void beforeFrame(fwedit::Burn& burn, float step);
-    void afterFrame(fwedit::Burn& burn);
+    void beforeFrame(Burn& burn, float step);
+    void afterFrame(Burn& burn);
     // Something that was wished comes with a later frame.
     [[nodiscard]] bool waits() const { return asked_ || behind_; }
     // The fire until then is known.
     [[nodiscard]] bool knows(double time) const { return !ticks_.empty() && time <= known_ + 0.1; }
     [[nodiscard]] double known() const { return known_; }
     // Puts the world back to the latest kept moment until `time`. False: there is none.
-    bool restore(fwedit::Burn& burn, double time);
+    bool restore(Burn& burn, double time);
 
     // By texel: 0 not lit by then, 1 to 254 how much of its glow is over, 255 charred.
-    bool agesAt(const fwedit::Burn& burn, fwedit::ObjectId mesh,
-                const fwedit::PaintSurface& surface, double time,
+    bool agesAt(const Burn& burn, ObjectId mesh, const PaintSurface& surface, double time,
                 std::vector<uint8_t>& values) const;
     // By texel: 0 to 254 when it caught, over the scene's length; 255 not yet.
-    bool timesOf(const fwedit::Burn& burn, fwedit::ObjectId mesh,
-                 std::vector<uint8_t>& values) const;
+    bool timesOf(const Burn& burn, ObjectId mesh, std::vector<uint8_t>& values) const;
 
  private:
     struct Moment {
         double time = 0;  // s
         std::vector<char> bytes;
     };
-    bool takeTicks(fwedit::Burn& burn);
-    void takeSave(fwedit::Burn& burn);
+    bool takeTicks(Burn& burn);
+    void takeSave(Burn& burn);
 
-    std::map<fwedit::ObjectId, std::vector<uint32_t>> ticks_;
+    std::map<ObjectId, std::vector<uint32_t>> ticks_;
     uint64_t start_ = 0;  // tick of time 0
     double known_ = -1;   // s that ticks_ are of
     double longest_ = 0;  // s that were simulated
@@ -57,7 +54,4 @@ class BurnMemory {
     std::vector<Moment> moments_;  // by time
 };
 
-// Of the values of agesAt: a front that glows, embers, char.
-const Palette& burntPalette();
-
-}  // namespace fwview
+}  // namespace fwedit

@@ -1,12 +1,12 @@
 // See burn_memory.h.
-#include "viewport/burn_memory.h"
+#include "document/burn_memory.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "flamewright/flamewright_debug.h"
 
-namespace fwview {
+namespace fwedit {
 namespace {
 
 constexpr uint32_t kFirstCode = 0xfffffff0u;  // of texels without an ignition tick
@@ -16,7 +16,7 @@ constexpr double kLeastApart = 5, kMoments = 8;  // s; moments that are kept ove
 
 // How long a texel of each of a mesh's materials glows until it looks charred, in ticks. Thick fuel
 // flames for long, under a crust that is black soon.
-std::array<float, 8> glowingOf(const fwedit::Burn& burn, const fwedit::Mesh& mesh) {
+std::array<float, 8> glowingOf(const Burn& burn, const Mesh& mesh) {
     std::array<float, 8> ticks{};
     for (size_t slot = 0; slot < ticks.size(); ++slot) {
         FwMaterialDef def = fwDefaultMaterialDef();
@@ -35,22 +35,7 @@ std::array<float, 8> glowingOf(const fwedit::Burn& burn, const fwedit::Mesh& mes
 
 }  // namespace
 
-const Palette& burntPalette() {
-    static const Palette palette = [] {
-        constexpr fwui::MapStop kStops[] = {{0, fwui::hex(0xFFE2A0)},
-                                            {0.04f, fwui::hex(0xFF9A3C)},
-                                            {0.2f, fwui::hex(0xB8400E)},
-                                            {0.6f, fwui::hex(0x4A1C10)},
-                                            {1, fwui::hex(0x1A1412)}};
-        Palette made{};
-        for (uint32_t i = 1; i < 256; ++i)
-            made[i] = premultiplied(fwui::sampleMap(kStops, float(i - 1) / 254), 0.9f);
-        return made;
-    }();
-    return palette;
-}
-
-void BurnMemory::begin(const fwedit::Burn& burn) {
+void BurnMemory::begin(const Burn& burn) {
     forget();
     FwWorldStats stats{};
     stats.structSize = sizeof stats;
@@ -60,7 +45,7 @@ void BurnMemory::begin(const fwedit::Burn& burn) {
 
 void BurnMemory::forget() { *this = {}; }
 
-void BurnMemory::beforeFrame(fwedit::Burn& burn, float step) {
+void BurnMemory::beforeFrame(Burn& burn, float step) {
     longest_ = std::max(longest_, burn.time);
     // Saves have their cost: few of them, and the first for nothing.
     const double apart = std::max(kLeastApart, double(burn.scene.settings.duration) / kMoments);
@@ -73,12 +58,12 @@ void BurnMemory::beforeFrame(fwedit::Burn& burn, float step) {
     if (asked_ || !behind_ || (step > 0 && burn.time < known_ + kAskEvery)) return;
     asked_ = true;
     askedTime_ = burn.time;
-    for (const fwedit::BurnMesh& mesh : burn.meshes)
+    for (const BurnMesh& mesh : burn.meshes)
         asked_ = asked_ && fwDebug_RequestBurnMap(burn.world, mesh.object) >= 0;
     if (!asked_) known_ = burn.time;
 }
 
-void BurnMemory::afterFrame(fwedit::Burn& burn) {
+void BurnMemory::afterFrame(Burn& burn) {
     if (asked_ && takeTicks(burn)) {
         asked_ = false;
         known_ = askedTime_;
@@ -87,8 +72,8 @@ void BurnMemory::afterFrame(fwedit::Burn& burn) {
     if (saving_) takeSave(burn);
 }
 
-bool BurnMemory::takeTicks(fwedit::Burn& burn) {
-    for (const fwedit::BurnMesh& mesh : burn.meshes) {
+bool BurnMemory::takeTicks(Burn& burn) {
+    for (const BurnMesh& mesh : burn.meshes) {
         uint64_t count = 0, hash = 0, tick = 0;
         std::vector<uint32_t>& ticks = ticks_[mesh.id];
         if (ticks.empty()) {
@@ -104,7 +89,7 @@ bool BurnMemory::takeTicks(fwedit::Burn& burn) {
     return true;
 }
 
-void BurnMemory::takeSave(fwedit::Burn& burn) {
+void BurnMemory::takeSave(Burn& burn) {
     uint64_t size = 0;
     const FwResult result = fwWorld_FetchSave(burn.world, nullptr, &size);
     if (result == FW_NOT_READY) return;
@@ -116,7 +101,7 @@ void BurnMemory::takeSave(fwedit::Burn& burn) {
         moments_.push_back(std::move(moment));
 }
 
-bool BurnMemory::restore(fwedit::Burn& burn, double time) {
+bool BurnMemory::restore(Burn& burn, double time) {
     const Moment* latest = nullptr;
     for (const Moment& moment : moments_)
         if (moment.time <= time + 1e-6) latest = &moment;
@@ -124,15 +109,14 @@ bool BurnMemory::restore(fwedit::Burn& burn, double time) {
         return false;
     burn.time = latest->time;
     saving_ = false;
-    for (fwedit::BurnPart& part : burn.parts) part.lastFactor = -1;
+    for (BurnPart& part : burn.parts) part.lastFactor = -1;
     return true;
 }
 
-bool BurnMemory::agesAt(const fwedit::Burn& burn, fwedit::ObjectId id,
-                        const fwedit::PaintSurface& surface, double time,
+bool BurnMemory::agesAt(const Burn& burn, ObjectId id, const PaintSurface& surface, double time,
                         std::vector<uint8_t>& values) const {
     const auto found = ticks_.find(id);
-    const fwedit::Mesh* mesh = fwedit::findIn(burn.scene.meshes, id);
+    const Mesh* mesh = findIn(burn.scene.meshes, id);
     if (found == ticks_.end() || !mesh || found->second.size() != surface.real.size()) return false;
     std::array<float, 8> share{};  // of its glow that a tick is, in steps of a byte
     const std::array<float, 8> glowing = glowingOf(burn, *mesh);
@@ -150,8 +134,7 @@ bool BurnMemory::agesAt(const fwedit::Burn& burn, fwedit::ObjectId id,
     return true;
 }
 
-bool BurnMemory::timesOf(const fwedit::Burn& burn, fwedit::ObjectId id,
-                         std::vector<uint8_t>& values) const {
+bool BurnMemory::timesOf(const Burn& burn, ObjectId id, std::vector<uint8_t>& values) const {
     const auto found = ticks_.find(id);
     if (found == ticks_.end()) return false;
     const double step =
@@ -165,4 +148,4 @@ bool BurnMemory::timesOf(const fwedit::Burn& burn, fwedit::ObjectId id,
     return true;
 }
 
-}  // namespace fwview
+}  // namespace fwedit
