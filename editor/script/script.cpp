@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "document/text.h"
-#include "import/float_picture.h"
+#include "script/output_lines.h"
 
 namespace fwedit {
 namespace {
@@ -74,17 +74,7 @@ bool play(ScriptHost& host, const Words& words, std::string& error) {
 bool shot(ScriptHost& host, const Words& words, std::string& error) {
     uint32_t width = 640, height = 360;
     if (!need(words, 2, 3, "shot FILE [WIDTHxHEIGHT]", error)) return false;
-    if (words.size() == 3) {
-        unsigned w = 0, h = 0;
-        char rest = 0;
-        if (std::sscanf(words[2].c_str(), "%ux%u%c", &w, &h, &rest) != 2 || w < 1 || h < 1 ||
-            w > 8192 || h > 8192) {
-            error = "\"" + words[2] + "\" is no size from 1x1 to 8192x8192";
-            return false;
-        }
-        width = w;
-        height = h;
-    }
+    if (words.size() == 3 && !parseSize(words[2], width, height, error)) return false;
     return writeShot(host, host.folder / words[1], width, height, error);
 }
 
@@ -282,8 +272,7 @@ bool runOwn(ScriptHost& host, const Words& words, const std::string& line, bool&
     if (verb == "report") return printReport(host, error);
     if (verb == "expect") return expect(host, words, error);
     if (verb == "refuse") return refuse(host, line, error);
-    known = false;
-    return false;
+    return runOutputLine(host, words, known, error);
 }
 
 }  // namespace
@@ -339,6 +328,19 @@ bool burnToPlayhead(ScriptHost& host, FwContext* context, std::string& error) {
     return runBurn(*host.burn, host.playhead, error);
 }
 
+bool parseSize(const std::string& word, uint32_t& width, uint32_t& height, std::string& error) {
+    unsigned w = 0, h = 0;
+    char rest = 0;
+    if (std::sscanf(word.c_str(), "%ux%u%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > 8192 ||
+        h > 8192) {
+        error = "\"" + word + "\" is no size from 1x1 to 8192x8192";
+        return false;
+    }
+    width = w;
+    height = h;
+    return true;
+}
+
 bool writeShot(ScriptHost& host, const fs::path& file, uint32_t width, uint32_t height,
                std::string& error) {
     FwContext* context = host.device(error);
@@ -346,18 +348,7 @@ bool writeShot(ScriptHost& host, const fs::path& file, uint32_t width, uint32_t 
     if (!context || !burnToPlayhead(host, context, error) ||
         !shootBurn(*host.burn, width, height, rgba, error))
         return false;
-    fwimport::FloatPicture picture;
-    picture.width = width;
-    picture.height = height;
-    picture.channels = 3;
-    picture.whole = true;
-    picture.names = {"R", "G", "B"};
-    for (size_t i = 0; i < rgba.size(); i += 4)
-        for (size_t c = 0; c < 3; ++c)
-            picture.values.push_back(static_cast<float>(rgba[i + c]) / 255.0f);
-    std::error_code ignored;
-    if (file.has_parent_path()) fs::create_directories(file.parent_path(), ignored);
-    return fwimport::writePicture(file, picture, error);
+    return writePixels(file, width, height, rgba, error);
 }
 
 bool frameScene(ScriptHost& host, std::string& error) {

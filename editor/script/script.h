@@ -7,6 +7,13 @@
 //   expect count source 2         expect "Torch" output 18       expect unsaved yes
 //   expect step "Move Torch"      expect same "yard.fwscene"     expect lit "Crate" above 0.2
 //   refuse set "Torch" shape round        a command that must not be possible
+// And what the scene is for (output/output.h):
+//   cook "game"                   all that a game loads, into a folder
+//   snippet "game/yard.c"         code that puts it together; .cpp: in C++
+//   filmstrip "strip.png" 8 320x180 4     pictures over the timeline, in columns
+//   turntable "turn" 24 640x360   pictures around it, at the playhead
+//   flipbook "fire.fwbook" "Campfire" 32 64   a flame as frames of so many texels
+//   bake "burn"                   when each spot of each mesh catches, as EXR
 #pragma once
 
 #include <filesystem>
@@ -34,7 +41,8 @@ struct ScriptHost {
     double playhead = 0;  // s
     BurnRecord record;
     uint64_t recordRevision = ~uint64_t{0};
-    std::function<void(const std::string&)> say;  // a line for whoever watches
+    std::function<void(const std::string&)> say;              // a line for whoever watches
+    std::function<bool(const std::string&, float)> progress;  // of what is written; false stops
 
     // Made when first needed. Null: `error`.
     FwContext* device(std::string& error);  // our own, for pictures
@@ -50,6 +58,8 @@ bool runScriptLine(ScriptHost& host, const std::string& line, std::string& error
 // Stops at the first line that does not work; `error` then begins with "file:line: ".
 bool runScript(ScriptHost& host, const std::filesystem::path& file, std::string& error);
 
+// "640x360". False: `error` says what it takes.
+bool parseSize(const std::string& word, uint32_t& width, uint32_t& height, std::string& error);
 // Creates or renews host.burn and runs it to the playhead.
 bool burnToPlayhead(ScriptHost& host, FwContext* context, std::string& error);
 bool writeShot(ScriptHost& host, const std::filesystem::path& file, uint32_t width, uint32_t height,

@@ -23,10 +23,11 @@ samples|flamewright/|common/|import/|shell/
 editor/import|flamewright/|import/
 editor/shell|common/|shell/
 editor/viewport|flamewright/|common/|import/|shell/|document/|viewport/
-editor/app|flamewright/|common/|import/|shell/|document/|script/|viewport/|app/|tools/|profile/|volume/|core/error.h
+editor/app|flamewright/|common/|import/|shell/|document/|output/|script/|viewport/|app/|tools/|profile/|volume/|core/error.h
 editor/document|flamewright/|import/|document/
-editor/script|flamewright/|import/|document/|script/
-editor/tools|flamewright/|import/|document/|script/|scene/|tools/|book/|core/|volume/|shared/
+editor/output|flamewright/|import/|document/|output/|tools/
+editor/script|flamewright/|import/|document/|output/|tools/|script/
+editor/tools|flamewright/|import/|document/|output/|script/|scene/|tools/|book/|core/|volume/|shared/
 '
 
 sources() {

@@ -1,14 +1,18 @@
 // Books of a volumetric flame: it burns for a turn and a bit, each frame keeps where its curve is,
 // and rays from the side go through it.
-#include "scene.h"
+#include "finish.h"
+#include "flame_book.h"
 
+#include "core/error.h"
 #include "volume/flame.h"
 #include "volume/march.h"
 
 #include "shared/black_body.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <mutex>
 #include <string>
 
 namespace fwtools {
@@ -27,6 +31,8 @@ constexpr Named kFlames[] = {
     {"bonfire", volume::FlamePreset::Bonfire, 1.6f, 1.6f},
 };
 
+constexpr uint32_t kLastPreset = uint32_t(volume::FlamePreset::Count) - 1;
+
 struct Moment {
     gpu::FlameRecord record;
     volume::FlameNodes nodes;
@@ -34,22 +40,22 @@ struct Moment {
 
 class FlameScene final : public Scene {
  public:
-    FlameScene(const BakeDef& def, const Named& named) : def_(def) {
-        const volume::FlamePresetDef preset = volume::presetDef(named.preset);
+    // `view`: of the frame, of the flame's height.
+    FlameScene(const BakeDef& def, const volume::FlamePresetDef& preset,
+               const volume::Profile& profile, vec2 view)
+        : def_(def), profile_(profile), diameter_(preset.diameter) {
         volume::FlameDef flame;
         flame.look = preset.look;
         flame.look.smoke = 0;  // smoke is a book of its own
         flame.power = preset.power;
         flame.diameter = preset.diameter;
         flame.seed = def.seed;
-        diameter_ = preset.diameter;
-        volume::paintLook(flame.look, profile_);
         const book::Facts& f = def.facts;
         faded_ = f.frames / 4;
         volume::Flame now;
         const volume::FlameAir air;
         volume::startFlame(now, flame, air);
-        size_ = vec2(named.width, named.height) * now.size.height;
+        size_ = view * now.size.height;
         for (uint32_t i = 0; i < f.frames + faded_; ++i) {
             moments_.push_back({now.record, now.nodes});
             volume::advanceFlame(now, air, double(f.seconds) / f.frames);
@@ -143,9 +149,72 @@ class FlameScene final : public Scene {
 }  // namespace
 
 std::unique_ptr<Scene> makeFlame(const BakeDef& def) {
-    for (const Named& named : kFlames)
-        if (def.scene == named.name) return std::make_unique<FlameScene>(def, named);
+    for (const Named& named : kFlames) {
+        if (def.scene != named.name) continue;
+        const volume::FlamePresetDef preset = volume::presetDef(named.preset);
+        volume::Profile profile;
+        volume::paintLook(preset.look, profile);
+        return std::make_unique<FlameScene>(def, preset, profile, vec2(named.width, named.height));
+    }
     return nullptr;
+}
+
+namespace {
+
+void readShape(const FlameBookDef& def, const volume::FlamePresetDef& preset,
+               volume::Profile& profile) {
+    if (!def.cooked.empty()) {
+        volume::readProfile(def.cooked, profile);
+    } else if (!def.texels.empty()) {
+        std::vector<float> planes[2];
+        for (size_t i = 0; i < def.texels.size(); ++i) planes[i % 2].push_back(def.texels[i]);
+        volume::paintProfile(planes[0], planes[1], def.width, def.height, profile);
+    } else {
+        volume::paintLook(preset.look, profile);
+    }
+}
+
+}  // namespace
+
+bool bakeFlameBook(const FlameBookDef& def, const std::function<bool(float)>& progress,
+                   std::vector<std::byte>& bytes, std::string& error) {
+    error.clear();
+    try {
+        volume::FlamePresetDef preset =
+            volume::presetDef(volume::FlamePreset(std::min(def.preset, kLastPreset)));
+        preset.power = def.power;
+        preset.diameter = def.diameter;
+        volume::Profile profile;
+        readShape(def, preset, profile);
+        BakeDef bake;
+        bake.seed = def.seed;
+        bake.samples = def.samples;
+        book::Facts& facts = bake.facts;
+        facts.frames = def.frames;
+        facts.width = facts.height = def.side;
+        facts.motionWidth = facts.motionHeight = std::max(def.side / 2, 4u);
+        facts.seconds = def.seconds;
+        const FlameScene scene(bake, preset, profile, vec2(1.6f));
+        std::vector<Frame> frames(scene.frames());
+        std::mutex mutex;
+        std::atomic<uint32_t> done{0};
+        std::atomic<bool> stopped{false};
+        inParallel(scene.frames(), def.threads, [&](uint32_t i) {
+            if (stopped) return;
+            scene.render(i, frames[i]);
+            const std::lock_guard<std::mutex> lock(mutex);
+            stopped = stopped || !progress(float(++done) / float(frames.size()));
+        });
+        if (stopped) return false;
+        const book::Book made =
+            finishBook(facts, frames, def.threads, std::pmr::get_default_resource());
+        const auto cooked = book::cookBook(made, std::pmr::get_default_resource());
+        bytes.assign(cooked.begin(), cooked.end());
+        return true;
+    } catch (const core::Error& failure) {
+        error = failure.message;
+        return false;
+    }
 }
 
 }  // namespace fwtools
