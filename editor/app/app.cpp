@@ -9,6 +9,7 @@
 
 #include "app/built_in.h"
 #include "app/flame_page.h"
+#include "app/output_page.h"
 #include "app/paint_page.h"
 #include "shell/icons.h"
 
@@ -28,7 +29,8 @@ App::App(const sample::VulkanHost& hostGiven, FwContext* contextGiven, fwui::UiR
       document(fwedit::newDocument()),
       live(hostGiven, contextGiven, uiGiven),
       flame(std::make_unique<FlamePage>(hostGiven, contextGiven, uiGiven)),
-      paint(std::make_unique<PaintPage>()) {
+      paint(std::make_unique<PaintPage>()),
+      output(std::make_unique<OutputPage>()) {
     const std::string name = host.properties.deviceName;
     slow = host.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     flame->slow = slow;
@@ -678,6 +680,7 @@ std::vector<Action> makeActions(App& app) {
          {},
          opened},
         {"Flame", "Pages", "3", icons::flame, [at] { at->page = Page::kFlame; }, {}, opened},
+        {"Export", "Pages", "4", icons::exportTo, [at] { at->page = Page::kOutput; }, {}, opened},
 
         {"Find anything", "Help", "Ctrl+P", icons::search,
          [at] {
@@ -691,6 +694,7 @@ std::vector<Action> makeActions(App& app) {
     };
     addPaintActions(app, list);
     addFlameActions(app, list);
+    addOutputActions(app, list);
     return list;
 }
 
@@ -783,6 +787,7 @@ void recordPages(App& app, const fwui::Frame& frame) {
 
 bool isLively(const App& app) {
     if (app.page == Page::kFlame && app.flame->lively()) return true;
+    if (app.output->lively()) return true;
     if (app.page != Page::kScene && app.page != Page::kPaint) return false;
     if (app.now - app.movedAt < 1) return true;  // until the sharp picture is there
     return app.playing || !app.live.settled() || app.live.preparing() || app.live.resting();
@@ -793,6 +798,7 @@ void showApp(App& app) {
     app.screen = {0, 0, size.x, size.y};
     ImGui::PushFont(fwui::fonts().body);
     runKeys(app);
+    followOutput(app);
     switch (app.page) {
         case Page::kWelcome:
             showWelcome(app, app.screen);
@@ -805,6 +811,9 @@ void showApp(App& app) {
             break;
         case Page::kFlame:
             showFlame(app, app.screen);
+            break;
+        case Page::kOutput:
+            showOutput(app, app.screen);
             break;
     }
     showOverlays(app);

@@ -15,9 +15,10 @@
 namespace fwapp {
 
 struct FlamePage;
+struct OutputPage;
 struct PaintPage;
 
-enum class Page : int { kWelcome = -1, kScene = 0, kPaint = 1, kFlame = 2 };
+enum class Page : int { kWelcome = -1, kScene = 0, kPaint = 1, kFlame = 2, kOutput = 3 };
 enum class Tool : int { kSelect, kMove, kRotate, kScale, kWhy };
 
 struct Toast {
@@ -62,6 +63,7 @@ struct App {
     fwview::LiveScene live;
     std::unique_ptr<FlamePage> flame;
     std::unique_ptr<PaintPage> paint;
+    std::unique_ptr<OutputPage> output;
     UserState user;
     std::string device;  // as people call it
     bool slow = false;   // a device of the CPU's: pictures that move are drawn smaller
@@ -142,6 +144,7 @@ void showWelcome(App& app, fwui::Rect rect);
 void showScene(App& app, fwui::Rect rect);
 void showPaint(App& app, fwui::Rect rect);
 void showFlame(App& app, fwui::Rect rect);
+void showOutput(App& app, fwui::Rect rect);
 void showTopBar(App& app, const fwui::Rect& rect);
 struct Hint {
     const char *keys, *what;

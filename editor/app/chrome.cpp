@@ -71,7 +71,8 @@ void showTopBar(App& app, const Rect& rect) {
         };
         constexpr Tab kTabs[] = {{Page::kScene, "Scene", icons::local},
                                  {Page::kPaint, "Paint", icons::brush},
-                                 {Page::kFlame, "Flame", icons::flame}};
+                                 {Page::kFlame, "Flame", icons::flame},
+                                 {Page::kOutput, "Export", icons::exportTo}};
         const float width = dp(92);
         const float first = std::floor(rect.midX() - width * float(std::size(kTabs)) * 0.5f);
         float at = first;

@@ -2,6 +2,7 @@
 #include "app/flame_page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -189,8 +190,8 @@ struct FlameCanvas {
 FlamePage::FlamePage(const sample::VulkanHost& hostGiven, FwContext* contextGiven,
                      fwui::UiRenderer& uiGiven)
     : host(hostGiven), context(contextGiven), ui(uiGiven) {
-    paint = presetPaint(0);
-    steps.push_back({"As it was opened", paint});
+    draft.paint = presetPaint(0);
+    steps.push_back({"As it was opened", draft});
 }
 
 FlamePage::~FlamePage() {
@@ -244,13 +245,15 @@ void FlamePage::open() {
 
 // The fires anew, of the profile as it is.
 void FlamePage::relight() {
-    fw::volume::Profile profile;
-    profileOf(paint, profile);
-    const auto cooked = fw::volume::cookProfile(profile, std::pmr::get_default_resource());
     vkDeviceWaitIdle(host.device);
+    studioSize = std::max(draft.diameter * 1.2f, 0.02f);
     for (int i = 0; i < 3; ++i) {
         View& view = views[i];
         if (!view.world) continue;
+        const FlameDraft& shown = compares && i == 1 ? other : draft;
+        fw::volume::Profile profile;
+        profileOf(shown.paint, profile);
+        const auto cooked = fw::volume::cookProfile(profile, std::pmr::get_default_resource());
         if (view.fire.index1 != 0) fwWorld_DestroyVolumetricFire(view.world, view.fire);
         if (view.profile.index1 != 0) fwWorld_DestroyFireProfile(view.world, view.profile);
         view.fire = {};
@@ -260,23 +263,26 @@ void FlamePage::relight() {
         profileDef.cookedSize = cooked.size();
         fwWorld_CreateFireProfile(view.world, &profileDef, &view.profile);
         FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
-        fwInitFirePreset(&def, preset);
+        fwInitFirePreset(&def, shown.preset);
         def.profile = view.profile;
-        def.diameter = diameter;
-        def.power = power;
-        def.turbulence = turbulence;
-        def.speed = speed;
+        def.diameter = shown.diameter;
+        def.power = shown.power;
+        def.turbulence = shown.turbulence;
+        def.speed = shown.speed;
         def.seed = 1;
         def.position[1] = 0.01f;
+        if (shown.ownColor) {
+            std::copy(std::begin(shown.color), std::end(shown.color), def.tint);
+            def.tintWeight = 1;
+        }
         fwWorld_CreateVolumetricFire(view.world, &def, &view.fire);
         const float blown[3] = {i == 2 ? wind : 0, 0, 0};
         fwWorld_SetWind(view.world, blown);
-        const float wide = std::max(diameter * 1.2f, 0.02f);
-        if (view.studio && wide == studioSize) continue;
+        if (view.studio && view.studioSize == studioSize) continue;
         view.studio =
-            std::make_unique<sample::Studio>(host, view.target->pass(), glm::vec3(0), wide);
+            std::make_unique<sample::Studio>(host, view.target->pass(), glm::vec3(0), studioSize);
+        view.studioSize = studioSize;
     }
-    studioSize = std::max(diameter * 1.2f, 0.02f);
     changed = false;
     relitAt = time;
 }
@@ -288,7 +294,7 @@ float FlamePage::height() const {
         fwWorld_GetVolumetricFireState(views[0].world, views[0].fire, &state) == FW_OK &&
         state.height > 0)
         return state.height;
-    return 2 * diameter;
+    return 2 * draft.diameter;
 }
 
 bool FlamePage::lively() const { return !paused || changed || drawnRevision != pictureRevision; }
@@ -296,7 +302,7 @@ bool FlamePage::lively() const { return !paused || changed || drawnRevision != p
 void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
     if (!opened) return;
     if (drawnRevision != pictureRevision) {
-        canvas->update(frame, paint, plane);
+        canvas->update(frame, draft.paint, plane);
         drawnRevision = pictureRevision;
     }
     time += double(deltaTime);
@@ -312,7 +318,7 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
         view.owed += deltaTime;
         if (!due || (paused && view.drawn == pictureRevision && view.seen)) continue;
         FwView camera = fwDefaultView();
-        sample::duskLight(camera, i == 0 ? 0.012f : i == 1 ? 2.0f : 0.1f);
+        sample::duskLight(camera, i == 0 || compares ? 0.012f : i == 1 ? 2.0f : 0.1f);
         sample::OrbitCamera orbit;
         orbit.target = {i == 2 ? 0.25f * tall : 0.0f, 0.55f * tall, 0};
         orbit.yaw = 0.3f;
@@ -320,7 +326,7 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
         orbit.fieldOfView = 0.5f;
         const VkExtent2D extent = view.target->extent();
         const float aspect = float(extent.width) / float(extent.height);
-        const float wide = std::max(1.5f * tall, 1.7f * diameter / std::max(0.2f, aspect));
+        const float wide = std::max(1.5f * tall, 1.7f * draft.diameter / std::max(0.2f, aspect));
         orbit.distance = 0.5f * wide / std::tan(0.5f * orbit.fieldOfView);
         sample::StageFrame stage;
         stage.commands = frame.commands;
@@ -348,9 +354,9 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
 }
 
 void FlamePage::keepStep(const char* name) {
-    if (steps[at].paint == paint) return;
+    if (steps[at].draft == draft) return;
     steps.resize(at + 1);
-    steps.push_back({name, paint});
+    steps.push_back({name, draft});
     ++at;
     changed = true;
     ++pictureRevision;
@@ -358,31 +364,136 @@ void FlamePage::keepStep(const char* name) {
 
 void FlamePage::undo() {
     if (at == 0) return;
-    paint = steps[--at].paint;
+    draft = steps[--at].draft;
+    chosen = {};
     changed = true;
     ++pictureRevision;
 }
 
 void FlamePage::redo() {
     if (at + 1 >= steps.size()) return;
-    paint = steps[++at].paint;
+    draft = steps[++at].draft;
+    chosen = {};
     changed = true;
     ++pictureRevision;
 }
 
 void FlamePage::usePreset(uint32_t which) {
-    preset = which;
-    paint = presetPaint(which);
+    draft.preset = which;
+    draft.paint = presetPaint(which);
+    draft.curves = draft.ownColor = false;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     fwInitFirePreset(&def, which);
-    diameter = def.diameter;
-    power = def.power;
+    draft.diameter = def.diameter;
+    draft.power = def.power;
     changed = true;
     keepStep("Start from a preset");
     ++pictureRevision;
 }
 
-void FlamePage::import(App& app, const fs::path& file) {
+void FlamePage::curveChanged() {
+    const std::vector<float> texels = fwedit::texelsOfCurve(draft.curve);
+    static_assert(fwedit::kShapeWidth == uint32_t(ProfilePaint::kWidth) &&
+                  fwedit::kShapeHeight == uint32_t(ProfilePaint::kHeight));
+    for (size_t i = 0; i < draft.paint.kelvin.size(); ++i) {
+        draft.paint.kelvin[i] = texels[2 * i];
+        draft.paint.soot[i] = texels[2 * i + 1];
+    }
+    changed = true;
+    ++pictureRevision;
+}
+
+void FlamePage::useCurves(bool curves) {
+    if (draft.curves == curves) return;
+    draft.curves = curves;
+    chosen = {};
+    if (curves) curveChanged();  // what was painted stays a step back
+    keepStep(curves ? "Shape the flame by points" : "Paint the flame by hand");
+}
+
+bool FlamePage::takeFrom(App& app, fwedit::ObjectId id) {
+    const fwedit::Flame* flame = fwedit::findIn(app.document.scene.flames, id);
+    if (!flame) return false;
+    if (fwedit::hasShape(*flame) && !fwedit::hasCurve(*flame)) {
+        if (!import(app, fwedit::baseFolder(app.document) / flame->profile)) return false;
+    } else if (!fwedit::hasCurve(*flame)) {
+        draft.paint = presetPaint(flame->preset);
+    }
+    draft.preset = flame->preset;
+    draft.diameter = flame->diameter;
+    draft.power = flame->power;
+    draft.turbulence = flame->turbulence;
+    draft.speed = flame->speed;
+    draft.ownColor = flame->tintWeight > 0;
+    if (draft.ownColor) std::copy(flame->tint.begin(), flame->tint.end(), draft.color);
+    draft.curves = fwedit::hasCurve(*flame);
+    if (draft.curves) {
+        draft.curve = fwedit::curveOf(*flame);
+        curveChanged();
+    }
+    keepStep("Take a flame from the scene");
+    say(app, "Took " + flame->name + " from the scene");
+    return true;
+}
+
+namespace {
+
+std::vector<double> numbersOf(const fwedit::Keys& keys) {
+    std::vector<double> numbers;
+    for (const fwedit::Key& key : keys)
+        numbers.insert(numbers.end(), {double(key.time), double(key.value)});
+    return numbers;
+}
+
+}  // namespace
+
+// As one step of the scene. `profile`: a file of what was painted; empty: it is made by points.
+void FlamePage::putInto(App& app, fwedit::ObjectId id, const std::string& profile) {
+    const bool byPoints = profile.empty();
+    std::vector<fwedit::Assignment> fields = {
+        {"profile", profile},
+        {"outline", byPoints ? numbersOf(draft.curve.outline) : std::vector<double>()},
+        {"stops", byPoints ? numbersOf(draft.curve.stops) : std::vector<double>()},
+        {"preset", double(draft.preset)},
+        {"diameter", double(draft.diameter)},
+        {"power", double(draft.power)},
+        {"turbulence", double(draft.turbulence)},
+        {"speed", double(draft.speed)},
+        {"tint_weight", draft.ownColor ? 1.0 : 0.0}};
+    if (draft.ownColor)
+        fields.push_back(
+            {"tint", std::vector<double>(std::begin(draft.color), std::end(draft.color))});
+    if (id == 0) {
+        addObject(app, fwedit::Kind::Flame, std::move(fields));
+        return;
+    }
+    fwedit::Command command;
+    command.verb = fwedit::Verb::Set;
+    command.kind = fwedit::Kind::Flame;
+    command.targets = {id};
+    command.fields = std::move(fields);
+    perform(app, command);
+}
+
+void FlamePage::compare(bool on) {
+    if (on && !hasOther) {
+        other = draft;
+        hasOther = true;
+    }
+    compares = on;
+    changed = true;
+}
+
+void FlamePage::swapWithOther() {
+    if (!hasOther) return;
+    std::swap(draft, other);
+    chosen = {};
+    keepStep("Swap A and B");
+    changed = true;
+    ++pictureRevision;
+}
+
+bool FlamePage::import(App& app, const fs::path& file) {
     fw::volume::Profile profile;
     std::string error;
     if (file.extension() == ".fwprofile") {
@@ -402,18 +513,20 @@ void FlamePage::import(App& app, const fs::path& file) {
     }
     if (!error.empty()) {
         toast(app, Toast::Kind::kError, file.filename().string() + " was not imported", error);
-        return;
+        return false;
     }
-    paint = paintOf(profile);
+    draft.paint = paintOf(profile);
+    draft.curves = false;
     keepStep("Import a flame shape");
     changed = true;
     ++pictureRevision;
     say(app, "Imported " + file.filename().string());
+    return true;
 }
 
 bool FlamePage::exportTo(App& app, const fs::path& file) {
     fw::volume::Profile profile;
-    profileOf(paint, profile);
+    profileOf(draft.paint, profile);
     std::string error;
     if (file.extension() == ".fwprofile") {
         const auto cooked = fw::volume::cookProfile(profile, std::pmr::get_default_resource());
@@ -436,6 +549,13 @@ void addFlameActions(App& app, std::vector<Action>& list) {
     auto pick = [at](ProfileTool tool) { return [at, tool] { at->flame->tool = tool; }; };
     auto resize = [at](float by) {
         return [at, by] { at->flame->size = std::clamp(at->flame->size * by, 1.0f, 100.0f); };
+    };
+    // The flame of the scene that is selected, else the first; 0: there is none.
+    auto target = [at] {
+        fwedit::ObjectId id = 0;
+        for (const fwedit::Flame& flame : at->document.scene.flames)
+            if (id == 0 || isSelected(*at, flame.id)) id = flame.id;
+        return id;
     };
     auto write = [at](const char* title, const char* act, const char* name,
                       std::vector<std::string> endings) {
@@ -500,34 +620,58 @@ void addFlameActions(App& app, std::vector<Action>& list) {
           "Flame",
           "",
           icons::firepit,
-          [at] {
+          [at, target] {
+              if (at->flame->draft.curves) {
+                  at->flame->putInto(*at, target(), "");
+                  at->page = Page::kScene;
+                  return;
+              }
               FileDialog dialog;
               dialog.saves = true;
               dialog.title = "Save the flame shape for the scene";
               dialog.act = "Save";
               dialog.name = "flame.fwprofile";
               dialog.endings = {".fwprofile"};
-              dialog.done = [at](fs::path file) {
+              dialog.done = [at, target](fs::path file) {
                   if (file.extension() != ".fwprofile") file += ".fwprofile";
                   if (!at->flame->exportTo(*at, file)) return;
-                  const fwedit::Scene& scene = at->document.scene;
-                  fwedit::ObjectId id = 0;
-                  for (const fwedit::Flame& flame : scene.flames)
-                      if (id == 0 || isSelected(*at, flame.id)) id = flame.id;
-                  if (id != 0) {
-                      performSet(*at, id, "profile", file.string());
-                  } else {
-                      addObject(*at, fwedit::Kind::Flame,
-                                {{"profile", file.string()},
-                                 {"diameter", double(at->flame->diameter)},
-                                 {"power", double(at->flame->power)}});
-                  }
+                  at->flame->putInto(*at, target(), file.string());
                   at->page = Page::kScene;
               };
               askFile(*at, dialog);
           },
           {},
-          page}});
+          page},
+         {"Take from the scene", "Flame", "", icons::link,
+          [at, target] { at->flame->takeFrom(*at, target()); },
+          [at] { return !at->document.scene.flames.empty(); }, page},
+         {"By points or by brush",
+          "Flame",
+          "P",
+          icons::curve,
+          [at] { at->flame->useCurves(!at->flame->draft.curves); },
+          {},
+          page},
+         {"Compare A and B",
+          "Flame",
+          "C",
+          icons::compare,
+          [at] { at->flame->compare(!at->flame->compares); },
+          {},
+          page},
+         {"Keep this as B",
+          "Flame",
+          "",
+          nullptr,
+          [at] {
+              at->flame->other = at->flame->draft;
+              at->flame->hasOther = at->flame->changed = true;
+              say(*at, "Kept as B");
+          },
+          {},
+          page},
+         {"Swap A and B", "Flame", "", nullptr, [at] { at->flame->swapWithOther(); },
+          [at] { return at->flame->hasOther; }, page}});
 }
 
 namespace {
@@ -537,6 +681,11 @@ void showFlameTools(App& app, const Rect& rect) {
     ImDrawList* list = beginPanel("##flame tools", rect, colors::header);
     const float y = rect.y0 + dp(5);
     float x = rect.x0 + dp(8);
+    int by = page.draft.curves ? 1 : 0;
+    if (segments("by", {x, y + dp(2)}, dp(140, 24), {"Brush", "Points"}, by))
+        page.useCurves(by == 1);
+    tip("Made by the brush or by points", "P");
+    x += dp(148);
     struct Item {
         ProfileTool tool;
         const char *icon, *name, *keys;
@@ -546,40 +695,89 @@ void showFlameTools(App& app, const Rect& rect) {
                                {ProfileTool::kSmooth, icons::smooth, "Smooth", "S"},
                                {ProfileTool::kPick, icons::pick, "Pick a value", "I"}};
     for (const Item& item : kTools) {
-        ToolLook look{.icon = item.icon};
-        look.active = page.tool == item.tool;
-        if (item.tool != ProfileTool::kPick) look.label = item.name;
-        if (item.tool == ProfileTool::kPick) look.label = "Pick";
+        if (page.draft.curves) break;
+        const ToolLook look{.icon = item.icon, .active = page.tool == item.tool};
         if (toolButton(item.name, {x, y}, look, item.name, item.keys)) page.tool = item.tool;
         x += toolButtonWidth(look) + dp(3);
     }
-    x += dp(6);
+    if (!page.draft.curves) x += dp(4);
     drawColumn(list, x, rect.y0 + dp(9), rect.y1 - dp(9), colors::edge);
     x += dp(8);
     int plane = int(page.plane);
-    if (segments("plane", {x, y + dp(2)}, dp(190, 24), {"Temperature", "Soot"}, plane)) {
+    if (segments("plane", {x, y + dp(2)}, dp(184, 24), {"Temperature", "Soot"}, plane)) {
         page.plane = ProfilePlane(plane);
         ++page.pictureRevision;
     }
+    x += dp(192);
+    int own = page.draft.ownColor ? 1 : 0;
+    if (segments("glow", {x, y + dp(2)}, dp(160, 24), {"Real glow", "Own colour"}, own)) {
+        page.draft.ownColor = own == 1;
+        page.keepStep(own == 1 ? "Own colour for the flame" : "Real glow for the flame");
+    }
     float right = rect.x1 - dp(8);
-    auto act = [&](const char* name, const char* icon, const char* label) {
-        const ToolLook look{.icon = icon, .label = label};
+    auto act = [&](const char* name, const char* icon, const char* label, bool active = false) {
+        const ToolLook look{.icon = icon, .label = label, .active = active};
         right -= toolButtonWidth(look);
-        if (toolButton(name, {right, y}, look, name)) findAction(app, name)->run();
+        const Action* action = findAction(app, name);
+        if (toolButton(name, {right, y}, look, name, *action->keys ? action->keys : nullptr))
+            action->run();
         right -= dp(4);
     };
     act("Use in the scene…", icons::firepit, "Use in scene");
+    act("Compare A and B", icons::compare, "Compare", page.compares);
     act("Export flame picture…", icons::exportTo, "Export");
-    act("Save flame shape…", icons::save, "Save");
-    act("Import flame shape…", icons::importFrom, "Import");
+    act("Save flame shape…", icons::save, nullptr);
+    act("Import flame shape…", icons::importFrom, nullptr);
     endPanel();
+}
+
+// Numbers of the point or the stop that is chosen.
+void showPoint(FlamePage& page, Rows& rows) {
+    if (!section(rows, "Chosen point", page.brushOpen)) return;
+    fwedit::FlameCurve& curve = page.draft.curve;
+    bool touched = false;
+    if (page.chosen.point >= 0 && size_t(page.chosen.point) < curve.outline.size()) {
+        fwedit::Key& point = curve.outline[size_t(page.chosen.point)];
+        const float tall = page.height(), radius = 0.5f * page.draft.diameter;
+        float height = point.time * tall, out = point.value * radius;
+        rows.label("Height");
+        char text[32];
+        std::snprintf(text, sizeof text, "%.2f m", double(height));
+        drawTextRight(rows.list, fonts().body, rows.x1 - dp(7), rows.midY(), colors::dim, text);
+        rows.next();
+        touched = numberRow(rows, "Radius", out,
+                            {.unit = "m",
+                             .format = "%.3f",
+                             .lowest = 0,
+                             .highest = fwedit::kShapeReach * radius}) != Edit::kNone;
+        point.value = out / radius;
+    } else if (page.chosen.stop >= 0 && size_t(page.chosen.stop) < curve.stops.size()) {
+        fwedit::Key& stop = curve.stops[size_t(page.chosen.stop)];
+        touched = numberRow(rows, "Temperature", stop.value,
+                            {.unit = "°C",
+                             .format = "%.0f",
+                             .lowest = 500,
+                             .highest = 2200,
+                             .snap = 10,
+                             .fill = colors::heat}) != Edit::kNone;
+    } else {
+        rows.y += drawTextWrapped(rows.list, fonts().small, {rows.x0, rows.y}, rows.x1 - rows.x0,
+                                  colors::dim,
+                                  "Click a point of the outline or a temperature below it.") +
+                  dp(4);
+    }
+    if (touched) page.curveChanged();
+    rows.y += dp(4);
 }
 
 void showFlameLeft(App& app, const Rect& rect) {
     FlamePage& page = *app.flame;
     ImDrawList* list = beginPanel("##flame left", rect, colors::panel, true);
     Rows rows{list, rect.x0 + dp(10), rect.x1 - dp(10), rect.y0 - ImGui::GetScrollY(), 88};
-    if (section(rows, "Brush", page.brushOpen)) {
+    bool touched = false;
+    if (page.draft.curves) {
+        showPoint(page, rows);
+    } else if (section(rows, "Brush", page.brushOpen)) {
         numberRow(rows, "Size", page.size,
                   {.unit = "cm", .format = "%.0f", .lowest = 1, .highest = 100});
         numberRow(rows, "Strength", page.strength,
@@ -599,12 +797,29 @@ void showFlameLeft(App& app, const Rect& rect) {
         }
         rows.y += dp(4);
     }
-    bool touched = false;
+    if (page.draft.ownColor && section(rows, "Colour", page.colorOpen)) {
+        constexpr const char* kParts[] = {"Red", "Green", "Blue"};
+        for (int i = 0; i < 3; ++i) {
+            float percent = 100 * page.draft.color[i];
+            if (numberRow(rows, kParts[i], percent,
+                          {.unit = "%", .format = "%.0f", .lowest = 0, .highest = 100}) ==
+                Edit::kNone)
+                continue;
+            page.draft.color[i] = 0.01f * percent;
+            touched = true;
+        }
+        const auto part = [&](int i) {
+            return unsigned(255 * std::sqrt(std::clamp(page.draft.color[i], 0.0f, 1.0f)));
+        };
+        drawBox(list, {rows.fieldX(), rows.y}, {rows.x1, rows.y + dp(16)},
+                IM_COL32(part(0), part(1), part(2), 255));
+        rows.next();
+    }
     if (section(rows, "Size of the flame", page.sizeOpen)) {
-        touched |= numberRow(rows, "Width", page.diameter,
+        touched |= numberRow(rows, "Width", page.draft.diameter,
                              {.unit = "m", .format = "%.2f", .lowest = 0.01f, .highest = 3}) !=
                    Edit::kNone;
-        touched |= numberRow(rows, "Output", page.power,
+        touched |= numberRow(rows, "Output", page.draft.power,
                              {.unit = "kW",
                               .format = "%.1f",
                               .lowest = 0.05f,
@@ -618,17 +833,216 @@ void showFlameLeft(App& app, const Rect& rect) {
     }
     if (section(rows, "Life", page.lifeOpen)) {
         touched |=
-            numberRow(rows, "Break-up", page.turbulence,
+            numberRow(rows, "Break-up", page.draft.turbulence,
                       {.unit = "×", .format = "%.2f", .lowest = 0, .highest = 3}) != Edit::kNone;
         touched |=
-            numberRow(rows, "Rise", page.speed,
+            numberRow(rows, "Rise", page.draft.speed,
                       {.unit = "×", .format = "%.2f", .lowest = 0, .highest = 4}) != Edit::kNone;
         touched |=
             numberRow(rows, "Wind", page.wind,
                       {.unit = "m/s", .format = "%.1f", .lowest = 0, .highest = 15}) != Edit::kNone;
     }
     if (touched) page.changed = true;
+    if (!ImGui::GetIO().MouseDown[0] && !page.gripped && !page.stroking &&
+        !ImGui::IsAnyItemActive())
+        page.keepStep("Numbers of the flame");
     endPanel();
+}
+
+// ---- by points
+
+constexpr float kGrip = 9;       // dp around a point
+constexpr float kApart = 0.02f;  // of their line, between two points
+
+// Where a point may lie between its neighbours; the ends of an outline stay at foot and tip.
+float between(const fwedit::Keys& keys, size_t i, float wanted, bool endsStay) {
+    if (endsStay && (i == 0 || i + 1 == keys.size())) return keys[i].time;
+    const float low = i == 0 ? 0 : keys[i - 1].time + kApart;
+    const float high = i + 1 == keys.size() ? 1 : keys[i + 1].time - kApart;
+    return std::clamp(wanted, std::min(low, high), std::max(low, high));
+}
+
+// A new point among the others, if there is room; its index, else -1.
+int addPoint(fwedit::Keys& keys, fwedit::Key point) {
+    size_t i = 0;
+    while (i < keys.size() && keys[i].time < point.time) ++i;
+    if ((i > 0 && point.time - keys[i - 1].time < kApart) ||
+        (i < keys.size() && keys[i].time - point.time < kApart))
+        return -1;
+    keys.insert(keys.begin() + long(i), point);
+    return int(i);
+}
+
+bool removePoint(fwedit::Keys& keys, int i, bool endsStay) {
+    const bool end = i == 0 || i + 1 == int(keys.size());
+    if (i < 0 || keys.size() <= 2 || (endsStay && end)) return false;
+    keys.erase(keys.begin() + i);
+    return true;
+}
+
+struct CanvasPlace {
+    ImVec2 low, high;
+    float axis;
+    Rect stops;  // the bar of temperatures
+    ImVec2 of(const fwedit::Key& point, float side = 1) const {
+        return {axis + side * (high.x - axis) * point.value / fwedit::kShapeReach,
+                high.y - (high.y - low.y) * point.time};
+    }
+    fwedit::Key outlineAt(ImVec2 place) const {
+        return {std::clamp((high.y - place.y) / (high.y - low.y), 0.0f, 1.0f),
+                std::clamp(std::fabs(place.x - axis) / (high.x - axis), 0.0f, 1.0f) *
+                    fwedit::kShapeReach};
+    }
+    float stopX(float at) const { return stops.x0 + stops.width() * at; }
+};
+
+void drawPoint(ImDrawList* list, ImVec2 at, bool chosen, bool hot) {
+    const float half = dp(hot || chosen ? 5 : 4);
+    list->AddRectFilled(at - ImVec2(half + dp(1), half + dp(1)),
+                        at + ImVec2(half + dp(1), half + dp(1)), IM_COL32(0, 0, 0, 190));
+    list->AddRectFilled(at - ImVec2(half, half), at + ImVec2(half, half),
+                        chosen ? colors::accent : colors::white);
+}
+
+void drawOutline(ImDrawList* list, const FlamePage& page, const CanvasPlace& place) {
+    constexpr int kParts = 96;
+    for (const float side : {-1.0f, 1.0f}) {
+        std::array<ImVec2, kParts + 1> line;
+        for (int i = 0; i <= kParts; ++i) {
+            const float height = float(i) / kParts;
+            line[size_t(i)] =
+                place.of({height, fwedit::radiusAt(page.draft.curve.outline, height)}, side);
+        }
+        list->AddPolyline(line.data(), int(line.size()), IM_COL32(0, 0, 0, 150), 0, dp(3.5f));
+        list->AddPolyline(line.data(), int(line.size()),
+                          side > 0 ? colors::white : hex(0xFFFFFF, 110), 0, dp(1.5f));
+    }
+}
+
+void drawStops(ImDrawList* list, const FlamePage& page, const CanvasPlace& place,
+               const FlamePage::Grip& hot) {
+    const Rect& bar = place.stops;
+    constexpr int kParts = 64;
+    const fwedit::Keys& stops = page.draft.curve.stops;
+    const auto colorOf = [&](float celsius) {
+        return sampleMap(kHeatMap, (celsius - kCoolest) / (kHottest - kCoolest));
+    };
+    for (int i = 0; i < kParts; ++i) {
+        const float a = float(i) / kParts, b = float(i + 1) / kParts;
+        const ImU32 left = colorOf(fwedit::valueAt(stops, a));
+        const ImU32 right = colorOf(fwedit::valueAt(stops, b));
+        list->AddRectFilledMultiColor({place.stopX(a), bar.y0}, {place.stopX(b), bar.y1}, left,
+                                      right, right, left);
+    }
+    drawText(list, fonts().small, bar.x0, bar.y0 - dp(9), colors::text, "Edge");
+    drawTextRight(list, fonts().small, bar.x1, bar.y0 - dp(9), colors::text, "Core, °C");
+    for (size_t i = 0; i < stops.size(); ++i) {
+        const float x = place.stopX(stops[i].time);
+        const bool chosen = page.chosen.stop == int(i);
+        const ImU32 rim = chosen               ? colors::accent
+                          : hot.stop == int(i) ? colors::white
+                                               : colors::dim;
+        list->AddTriangleFilled({x, bar.y1 - dp(1)}, {x - dp(7), bar.y1 + dp(7)},
+                                {x + dp(7), bar.y1 + dp(7)}, rim);
+        list->AddRectFilled({x - dp(7), bar.y1 + dp(7)}, {x + dp(7), bar.y1 + dp(17)}, rim);
+        list->AddRectFilled({x - dp(5), bar.y1 + dp(7)}, {x + dp(5), bar.y1 + dp(15)},
+                            colorOf(stops[i].value));
+        char text[16];
+        std::snprintf(text, sizeof text, "%.0f", double(stops[i].value));
+        drawTextCentred(list, fonts().small, x, bar.y1 + dp(26),
+                        chosen ? colors::title : colors::dim, text);
+    }
+}
+
+FlamePage::Grip under(const FlamePage& page, const CanvasPlace& place, ImVec2 mouse) {
+    FlamePage::Grip found;
+    float nearest = dp(kGrip);
+    const auto consider = [&](ImVec2 at, int point, int stop) {
+        const float away = std::hypot(at.x - mouse.x, at.y - mouse.y);
+        if (away >= nearest) return;
+        nearest = away;
+        found = {point, stop};
+    };
+    const fwedit::FlameCurve& curve = page.draft.curve;
+    for (size_t i = 0; i < curve.outline.size(); ++i) {
+        consider(place.of(curve.outline[i]), int(i), -1);
+        consider(place.of(curve.outline[i], -1), int(i), -1);
+    }
+    for (size_t i = 0; i < curve.stops.size(); ++i)
+        consider({place.stopX(curve.stops[i].time), place.stops.y1 + dp(9)}, -1, int(i));
+    return found;
+}
+
+// Points over the picture and stops below it: dragged, added by a double click, taken away by the
+// right button or Del.
+void editCurve(App& app, ImDrawList* list, const CanvasPlace& place) {
+    FlamePage& page = *app.flame;
+    fwedit::FlameCurve& curve = page.draft.curve;
+    const ImGuiIO& io = ImGui::GetIO();
+    bool overCanvas = false, overStops = false, heldCanvas = false, heldStops = false;
+    hit("points", place.low - dp(6, 6), place.high - place.low + dp(12, 12), &overCanvas,
+        &heldCanvas);
+    hit("stops", {place.stops.x0 - dp(8), place.stops.y0},
+        {place.stops.width() + dp(16), place.stops.height() + dp(34)}, &overStops, &heldStops);
+    const bool over = overCanvas || overStops;
+    const FlamePage::Grip hot = over ? under(page, place, io.MousePos) : FlamePage::Grip{};
+    if (over && ImGui::IsMouseDoubleClicked(0) && hot == FlamePage::Grip{}) {
+        if (overCanvas) page.chosen = {addPoint(curve.outline, place.outlineAt(io.MousePos)), -1};
+        if (overStops) {
+            const float at =
+                std::clamp((io.MousePos.x - place.stops.x0) / place.stops.width(), 0.0f, 1.0f);
+            page.chosen = {-1, addPoint(curve.stops, {at, fwedit::valueAt(curve.stops, at)})};
+        }
+        page.curveChanged();
+        page.keepStep(overCanvas ? "Add a point to the outline" : "Add a temperature");
+    } else if (over && ImGui::IsMouseClicked(0)) {
+        page.chosen = hot;
+        page.gripped = !(hot == FlamePage::Grip{});
+    }
+    const bool erases = (over && ImGui::IsMouseClicked(1)) ||
+                        (ImGui::IsKeyPressed(261, false) && !io.WantTextInput);
+    if (erases) {
+        const FlamePage::Grip which = io.MouseClicked[1] ? hot : page.chosen;
+        if (removePoint(curve.outline, which.point, true) ||
+            removePoint(curve.stops, which.stop, false)) {
+            page.chosen = {};
+            page.curveChanged();
+            page.keepStep("Take a point away");
+        }
+    }
+    if (page.gripped && (heldCanvas || heldStops)) {
+        const fwedit::FlameCurve before = curve;
+        if (page.chosen.point >= 0) {
+            const auto i = size_t(page.chosen.point);
+            const fwedit::Key wanted = place.outlineAt(io.MousePos);
+            curve.outline[i] = {between(curve.outline, i, wanted.time, true),
+                                std::max(0.01f, wanted.value)};
+        } else if (page.chosen.stop >= 0) {
+            const auto i = size_t(page.chosen.stop);
+            curve.stops[i].time = between(
+                curve.stops, i, (io.MousePos.x - place.stops.x0) / place.stops.width(), false);
+        }
+        if (!(before == curve)) {
+            page.curveChanged();
+            page.stroking = true;  // the preview follows now and then
+        }
+    } else if (page.gripped) {
+        page.gripped = page.stroking = false;
+        page.keepStep(page.chosen.point >= 0 ? "Outline point of the flame"
+                                             : "Temperature of the flame");
+        say(app, page.steps[page.at].name);
+    }
+    if (overStops && hot.stop >= 0 && io.MouseWheel != 0) {
+        float& celsius = curve.stops[size_t(hot.stop)].value;
+        celsius = std::clamp(celsius + 10 * io.MouseWheel, 500.0f, 2200.0f);
+        page.chosen = hot;
+        page.curveChanged();
+    }
+    drawOutline(list, page, place);
+    for (size_t i = 0; i < curve.outline.size(); ++i)
+        drawPoint(list, place.of(curve.outline[i]), page.chosen.point == int(i),
+                  hot.point == int(i));
+    drawStops(list, page, place, hot);
 }
 
 void showCanvas(App& app, const Rect& rect) {
@@ -644,7 +1058,7 @@ void showCanvas(App& app, const Rect& rect) {
         list->AddImage(page.canvas->texture, {axis, low.y}, high);
         list->AddImage(page.canvas->texture, low, {axis, high.y}, {1, 0}, {0, 1});
     }
-    const float metres = page.height(), radius = kReach * 0.5f * page.diameter;
+    const float metres = page.height(), radius = kReach * 0.5f * page.draft.diameter;
     for (int i = 0; i <= 6; ++i) {
         const float y = high.y - (high.y - low.y) * float(i) / 6;
         if (i > 0 && i < 6) drawRow(list, low.x, high.x, y, hex(0xFFFFFF, 14));
@@ -670,6 +1084,13 @@ void showCanvas(App& app, const Rect& rect) {
     drawTextCentred(list, fonts().small, axis, high.y + dp(27), colors::text,
                     "Distance from the middle, m");
 
+    if (page.draft.curves) {
+        const CanvasPlace place{
+            low, high, axis, {low.x, rect.y1 - dp(44), high.x, rect.y1 - dp(34)}};
+        editCurve(app, list, place);
+        endPanel();
+        return;
+    }
     // The legend of what is painted.
     const float mapY = rect.y1 - dp(34), mapX0 = low.x, mapX1 = high.x;
     if (page.plane == ProfilePlane::kTemperature) {
@@ -718,9 +1139,9 @@ void showCanvas(App& app, const Rect& rect) {
         const int x = std::clamp(int(std::fabs(dab.x)), 0, ProfilePaint::kWidth - 1);
         const int y = std::clamp(int(dab.y), 0, ProfilePaint::kHeight - 1);
         const size_t i = size_t(y * ProfilePaint::kWidth + x);
-        if (page.plane == ProfilePlane::kSoot) page.soot = page.paint.soot[i];
-        if (page.plane == ProfilePlane::kTemperature && page.paint.kelvin[i] > 0)
-            page.celsius = std::max(200.0f, page.paint.kelvin[i] - kZeroCelsius);
+        if (page.plane == ProfilePlane::kSoot) page.soot = page.draft.paint.soot[i];
+        if (page.plane == ProfilePlane::kTemperature && page.draft.paint.kelvin[i] > 0)
+            page.celsius = std::max(200.0f, page.draft.paint.kelvin[i] - kZeroCelsius);
     } else if (held) {
         // Along the way since the last frame, a third of a radius apart.
         const float fromX = page.stroking ? page.lastX : dab.x;
@@ -732,7 +1153,7 @@ void showCanvas(App& app, const Rect& rect) {
             for (int i = 1; i <= count; ++i) {
                 dab.x = fromX + (toX - fromX) * float(i) / float(count);
                 dab.y = fromY + (toY - fromY) * float(i) / float(count);
-                paintDab(page.paint, dab);
+                paintDab(page.draft.paint, dab);
             }
             page.changed = true;
             ++page.pictureRevision;
@@ -780,6 +1201,30 @@ void showCanvas(App& app, const Rect& rect) {
     endPanel();
 }
 
+void showView(FlamePage& page, ImDrawList* list, int i, const Rect& rect, const char* name,
+              const char* sign) {
+    FlamePage::View& view = page.views[i];
+    view.rect = rect;
+    if (view.target) {
+        const float share = page.slow ? 0.5f : 1.0f;
+        view.target->resize(uint32_t(std::max(8.0f, rect.width() * share)),
+                            uint32_t(std::max(8.0f, rect.height() * share)));
+        list->AddImage(view.target->texture(), rect.low(), rect.high());
+    }
+    const ImVec2 low = rect.low() + dp(8, 8);
+    const float width = textSize(fonts().body, name).x + dp(36);
+    drawBox(list, low, low + ImVec2(width, dp(24)), hex(0x151618, 215));
+    drawIcon(list, fonts().icon17, low + dp(14, 12), colors::text, sign);
+    drawText(list, fonts().body, low.x + dp(28), low.y + dp(12), colors::text, name);
+}
+
+// The draft and what was kept, alike in light and size of the picture.
+void showSides(FlamePage& page, ImDrawList* list, std::array<Rect, 2> rects) {
+    showView(page, list, 0, rects[0], "A, now", icons::moon);
+    showView(page, list, 1, rects[1], "B, kept", icons::moon);
+    page.views[2].rect = {};
+}
+
 void showPreview(App& app, Rect rect) {
     FlamePage& page = *app.flame;
     ImDrawList* list = beginPanel("##preview", rect, colors::gap);
@@ -791,8 +1236,14 @@ void showPreview(App& app, Rect rect) {
                    page.paused ? "Go on" : "Freeze"))
         page.paused = !page.paused;
     rect.y0 += dp(2);
-    const Rect night = rect.cutLeft(std::floor(rect.width() * 0.6f));
+    const Rect night =
+        rect.cutLeft(std::floor(rect.width() * (page.compares ? 0.5f : 0.6f)) - dp(1));
     rect.cutLeft(dp(2));
+    if (page.compares) {
+        showSides(page, list, {night, rect});
+        endPanel();
+        return;
+    }
     const Rect day = rect.cutTop(std::floor(rect.height() * 0.5f));
     rect.cutTop(dp(2));
     const Rect windy = rect;
@@ -801,21 +1252,7 @@ void showPreview(App& app, Rect rect) {
     std::snprintf(blown, sizeof blown, "Wind, %.0f m/s", double(page.wind));
     const char* names[3] = {"Night", "Day", blown};
     const char* signs[3] = {icons::moon, icons::sun, icons::wind};
-    for (int i = 0; i < 3; ++i) {
-        FlamePage::View& view = page.views[i];
-        view.rect = rects[i];
-        if (view.target) {
-            const float share = page.slow ? 0.5f : 1.0f;
-            view.target->resize(uint32_t(std::max(8.0f, rects[i].width() * share)),
-                                uint32_t(std::max(8.0f, rects[i].height() * share)));
-            list->AddImage(view.target->texture(), rects[i].low(), rects[i].high());
-        }
-        const ImVec2 low = rects[i].low() + dp(8, 8);
-        const float width = textSize(fonts().body, names[i]).x + dp(36);
-        drawBox(list, low, low + ImVec2(width, dp(24)), hex(0x151618, 215));
-        drawIcon(list, fonts().icon17, low + dp(14, 12), colors::text, signs[i]);
-        drawText(list, fonts().body, low.x + dp(28), low.y + dp(12), colors::text, names[i]);
-    }
+    for (int i = 0; i < 3; ++i) showView(page, list, i, rects[i], names[i], signs[i]);
     endPanel();
 }
 
@@ -826,15 +1263,26 @@ void showPresets(App& app, const Rect& rect) {
         drawText(list, fonts().semi, rect.x0 + dp(10), rect.y0 + dp(16), colors::title, "Flames");
     drawText(list, fonts().small, rect.x0 + dp(20) + head, rect.y0 + dp(16), colors::dim,
              "click to start from one");
+    const float end = rect.x1 - dp(216);
+    drawColumn(list, end, rect.y0 + dp(10), rect.y1 - dp(10), colors::line);
+    drawText(list, fonts().semi, end + dp(12), rect.y0 + dp(16), colors::title, "Compare");
+    drawTextRight(list, fonts().small, rect.x1 - dp(10), rect.y0 + dp(16), colors::dim,
+                  page.hasOther ? "C shows A beside B" : "B is not kept yet");
+    const float wide = dp(194);
+    if (button("keep", {end + dp(12), rect.y0 + dp(34)}, {wide, dp(28)}, "Keep this as B"))
+        findAction(app, "Keep this as B")->run();
+    if (page.hasOther &&
+        button("swap", {end + dp(12), rect.y0 + dp(68)}, {wide, dp(28)}, "Swap A and B"))
+        page.swapWithOther();
     float x = rect.x0 + dp(10);
     for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i) {
         const ImVec2 low(x, rect.y0 + dp(31)), high = low + dp(84, 58);
-        if (high.x > rect.x1 - dp(8)) break;
+        if (high.x > end - dp(8)) break;
         ImGui::PushID(int(i));
         bool hovered = false;
         if (hit("preset", low, {dp(84), dp(80)}, &hovered)) page.usePreset(i);
         ImGui::PopID();
-        const bool here = page.preset == i;
+        const bool here = page.draft.preset == i;
         drawBox(list, low, high, colors::well, 4);
         if (i < page.presetTextures.size())
             list->AddImageRounded(page.presetTextures[i], low + dp(14, 1), high - dp(14, 1), {0, 0},
@@ -853,12 +1301,20 @@ void showFlame(App& app, Rect rect) {
     if (!app.flame->opened) app.flame->open();
     showTopBar(app, rect.cutTop(dp(metrics::topBar)));
     showFlameTools(app, rect.cutTop(dp(metrics::toolBar)));
-    showStatus(app, rect.cutBottom(dp(metrics::status)),
-               {{"Drag", "paint"},
-                {"Ctrl", "take away"},
-                {"Shift", "smooth"},
-                {"Alt", "pick"},
-                {"[ ]", "size"}});
+    const Rect status = rect.cutBottom(dp(metrics::status));
+    if (app.flame->draft.curves)
+        showStatus(app, status,
+                   {{"Drag", "move a point"},
+                    {"Double click", "add one"},
+                    {"Right click", "take it away"},
+                    {"Wheel", "hotter, cooler"}});
+    else
+        showStatus(app, status,
+                   {{"Drag", "paint"},
+                    {"Ctrl", "take away"},
+                    {"Shift", "smooth"},
+                    {"Alt", "pick"},
+                    {"[ ]", "size"}});
     rect.y0 += dp(1);
     const Rect presets = rect.cutBottom(dp(116));
     rect.cutBottom(dp(2));

@@ -11,6 +11,7 @@
 
 #include "app/app.h"
 #include "common/studio.h"
+#include "document/flame_curve.h"
 #include "viewport/scene_target.h"
 
 namespace fwapp {
@@ -21,6 +22,19 @@ struct ProfilePaint {
     std::vector<float> kelvin = std::vector<float>(size_t(kWidth) * kHeight);  // [0, 3000]
     std::vector<float> soot = std::vector<float>(size_t(kWidth) * kHeight);    // [0, 2]
     bool operator==(const ProfilePaint&) const = default;
+};
+
+// A flame as it is being made, by the brush or by points.
+struct FlameDraft {
+    ProfilePaint paint;
+    bool curves = false;  // made of `curve`, which paints it
+    fwedit::FlameCurve curve = fwedit::standardCurve();
+    uint32_t preset = 0;
+    float diameter = 0.6f, power = 60;  // m, kW
+    float turbulence = 1, speed = 1;
+    bool ownColor = false;  // burns in `color` instead of a hot body's
+    float color[3] = {0.2f, 0.45f, 1};
+    bool operator==(const FlameDraft&) const = default;
 };
 
 enum class ProfileTool : int { kPaint, kErase, kSmooth, kPick };
@@ -44,9 +58,15 @@ struct FlamePage {
     FlamePage(const FlamePage&) = delete;
     FlamePage& operator=(const FlamePage&) = delete;
 
-    void import(App& app, const std::filesystem::path& file);
+    bool import(App& app, const std::filesystem::path& file);
     bool exportTo(App& app, const std::filesystem::path& file);
     void usePreset(uint32_t preset);
+    void useCurves(bool curves);                      // by points or by the brush
+    void curveChanged();                              // its points paint it anew
+    bool takeFrom(App& app, fwedit::ObjectId flame);  // a flame of the scene
+    void putInto(App& app, fwedit::ObjectId flame, const std::string& profile);
+    void compare(bool on);
+    void swapWithOther();
     void keepStep(const char* name);
     void undo();
     void redo();
@@ -66,30 +86,38 @@ struct FlamePage {
         float owed = 0;          // s that it has not been stepped
         uint64_t drawn = ~0ull;  // pictureRevision that it shows
         bool seen = false;
+        float studioSize = 0;  // m
     };
     struct Step {
         std::string name;
-        ProfilePaint paint;
+        FlameDraft draft;
+    };
+    // A point of the outline or a stop, by its index; -1: none.
+    struct Grip {
+        int point = -1, stop = -1;
+        bool operator==(const Grip&) const = default;
     };
 
     const sample::VulkanHost& host;
     FwContext* context;
     fwui::UiRenderer& ui;
     FwTargetId targetId{};
-    View views[3];  // night, day, wind
-    ProfilePaint paint;
+    View views[3];     // night, day, wind
+    FlameDraft draft;  // A
+    FlameDraft other;  // B, to compare with
+    bool hasOther = false, compares = false;
+    Grip chosen;  // of the curve
+    bool gripped = false;
     std::vector<Step> steps;
     size_t at = 0;
-    uint32_t preset = 0;
     ProfileTool tool = ProfileTool::kPaint;
     ProfilePlane plane = ProfilePlane::kTemperature;
     float size = 12, strength = 60, softness = 70;  // cm, %, %
     float celsius = 1380, soot = 0.8f;
-    float diameter = 0.6f, power = 60;  // m, kW: of the preview
-    float turbulence = 1, speed = 1, wind = 4;
+    float wind = 4;     // m/s, of the preview
     bool slow = false;  // see App::slow
     bool paused = false, stroking = false, changed = true, opened = false;
-    bool brushOpen = true, sizeOpen = true, lifeOpen = true;
+    bool brushOpen = true, sizeOpen = true, lifeOpen = true, colorOpen = true;
     double time = 0;
     uint64_t pictureRevision = 0, drawnRevision = ~0ull;
     std::string problem;  // why there is no picture

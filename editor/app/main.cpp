@@ -13,6 +13,7 @@
 #include "app/app.h"
 #include "app/built_in.h"
 #include "app/flame_page.h"
+#include "app/output_page.h"
 #include "app/paint_page.h"
 #include "common/fire_host.h"
 #include "common/options.h"
@@ -31,6 +32,7 @@ struct Wishes {
     float scale = 0;      // 0: as the monitor has it
     float seconds = 0;    // that the burn runs before the shot
     bool report = false;  // prints what happens, line by line
+    bool once = false;    // one frame, then leave: what a start takes
 };
 
 float monitorScale(GLFWwindow* window, VkExtent2D extent) {
@@ -175,11 +177,19 @@ class Program {
             std::printf("played at %.1f frames a second\n", playedFrames_ / playedSeconds_);
     }
 
+    // Without a window, one frame of it, as soon as it can be had.
+    void showOnce() {
+        frame(1.0f / 30);
+        vkDeviceWaitIdle(host_.device);
+    }
+
     // Without a window: the page that is asked for, once nothing is on its way any more.
     void shoot() {
         constexpr float kStep = 1.0f / 30;
         for (int i = 0; i < 4; ++i) frame(kStep);
-        for (int i = 0; i < 2000 && (app_->live.preparing() || app_->live.resting()); ++i) {
+        for (int i = 0;
+             i < 2000 && (app_->live.preparing() || app_->live.resting() || app_->output->lively());
+             ++i) {
             frame(kStep);
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
@@ -202,6 +212,8 @@ class Program {
         reportedResult_ = app.resultTime;
         const std::string& why = app.live.why.answer.answer;
         if (!app.live.why.answered) reportedWhy_.clear();
+        if (app.live.why.answered && reportedWhy_.empty())
+            print("answered after " + std::to_string(app.live.why.frames) + " frames");
         if (app.live.why.answered && why != reportedWhy_) print("why: " + (reportedWhy_ = why));
         const bool paintable = app.page == fwapp::Page::kPaint && app.paint->surface;
         if (paintable && !reportedPaintable_) print("ready to paint");
@@ -266,6 +278,9 @@ void openPage(fwapp::App& app, const Wishes& wishes) {
     if (asks("scene")) app.page = fwapp::Page::kScene;
     if (asks("paint")) app.page = fwapp::Page::kPaint;
     if (asks("flame")) app.page = fwapp::Page::kFlame;
+    if (asks("export")) app.page = fwapp::Page::kOutput;
+    if (asks("points")) app.flame->useCurves(true);
+    if (asks("compare")) app.flame->compare(true);
     if (asks("keys")) app.keys = true;
     if (asks("about")) app.about = true;
     if (asks("palette")) fwapp::findAction(app, "Find anything")->run();
@@ -286,7 +301,9 @@ int run(const sample::Options& options, const Wishes& wishes) {
         for (size_t i = 0; i < fwapp::builtIns().size(); ++i)
             if (wishes.builtIn == fwapp::builtIns()[i].name) fwapp::openBuiltIn(app, int(i));
         openPage(app, wishes);
-        if (options.headless) {
+        if (wishes.once) {
+            program.showOnce();
+        } else if (options.headless) {
             program.shoot();
         } else {
             program.run();
@@ -309,10 +326,11 @@ int main(int argc, char** argv) {
                                     "[FILE.fwscene | FILE.glb] | --script FILE [--headless]");
         parser.addText("--shot", "FILE.png", "with --headless: a picture of the window, then leave",
                        wishes.shot);
-        parser.addText("--page", "NAME", "welcome, scene, paint or flame", wishes.page);
+        parser.addText("--page", "NAME", "welcome, scene, paint, flame or export", wishes.page);
         parser.addText("--scene", "NAME", "a scene of the welcome page, by its name",
                        wishes.builtIn);
         parser.addFlag("--report", "print what is done, line by line", wishes.report);
+        parser.addFlag("--once", "with --headless: one frame, no picture, then leave", wishes.once);
         parser.addNumber("--scale", "size of the interface; 0: as the monitor has it", wishes.scale,
                          0, 4);
         parser.addNumber("--seconds", "how long the burn runs before the picture", wishes.seconds,

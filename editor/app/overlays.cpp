@@ -298,7 +298,7 @@ void showKeys(App& app) {
         return groups.back();
     };
     for (const char* place :
-         {"File", "Edit", "Pages", "Help", "Tools", "Scene", "View", "Time", "Flame"}) {
+         {"File", "Edit", "Pages", "Help", "Tools", "Scene", "View", "Time", "Flame", "Export"}) {
         for (const Action& action : app.actions) {
             if (std::strcmp(action.place, place) || !*action.keys) continue;
             Group& to = group(place);
