@@ -15,6 +15,9 @@
 
 namespace fwedit {
 
+constexpr double kTicksPerSecond = 4096;      // as fwDebug_ReadIgnition gives them
+constexpr uint32_t kFirstCode = 0xfffffff0u;  // from it on: texels without an ignition tick
+
 // Imported files and baked burn maps, kept from burn to burn. One per program.
 struct Assets {
     std::filesystem::path cache;  // folder of bakes; empty: none are kept

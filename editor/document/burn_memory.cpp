@@ -9,8 +9,6 @@
 namespace fwedit {
 namespace {
 
-constexpr uint32_t kFirstCode = 0xfffffff0u;  // of texels without an ignition tick
-constexpr double kTicksPerSecond = 4096;
 constexpr double kAskEvery = 1;                  // s of the fire between looks at its map
 constexpr double kLeastApart = 5, kMoments = 8;  // s; moments that are kept over a scene
 

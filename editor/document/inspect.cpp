@@ -12,8 +12,6 @@
 namespace fwedit {
 namespace {
 
-constexpr uint32_t kFirstCode = 0xfffffff0u;  // of texels without an ignition tick
-constexpr double kTicksPerSecond = 4096;
 constexpr float kAir = 293;  // K
 
 FwWorldStats statsOf(FwWorld* world) {

@@ -33,6 +33,13 @@ std::string printNumber(double value) {
     return {text, result.ptr};
 }
 
+bool need(const std::vector<std::string>& words, size_t least, size_t most, const char* form,
+          std::string& error) {
+    if (words.size() >= least && words.size() <= most) return true;
+    error = std::string("it takes: ") + form;
+    return false;
+}
+
 std::string inQuotes(std::string_view text) {
     std::string result = "\"";
     for (const char c : text) {

@@ -18,6 +18,9 @@ std::string join(const Parts&... parts) {
 // Shortest decimal that reads back as the same float.
 std::string printNumber(double value);
 // "a \"b\"": in quotes, with \" and \\ within them.
+// False, and what it takes in `error`, unless a line has at least and at most so many words.
+bool need(const std::vector<std::string>& words, size_t least, size_t most, const char* form,
+          std::string& error);
 std::string inQuotes(std::string_view text);
 // Without control characters, as valid UTF-8, of at most `most` bytes.
 std::string cleanText(std::string_view text, size_t most);

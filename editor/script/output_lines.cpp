@@ -13,12 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-bool need(const Words& words, size_t least, size_t most, const char* form, std::string& error) {
-    if (words.size() >= least && words.size() <= most) return true;
-    error = std::string("it takes: ") + form;
-    return false;
-}
-
 // A whole number of a line, if the line is so long.
 bool whole(const Words& words, size_t at, const char* name, uint32_t low, uint32_t high,
            uint32_t& value, std::string& error) {
@@ -128,8 +122,8 @@ bool bake(ScriptHost& host, const Words& words, std::string& error) {
 
 OutputInput outputOf(ScriptHost& host) {
     const Document& document = host.document;
-    return {document.scene, document.images, baseFolder(document),
-            document.file.stem().string(), host.assets};
+    return {document.scene, document.images, baseFolder(document), document.file.stem().string(),
+            host.assets};
 }
 
 bool runOutputLine(ScriptHost& host, const Words& words, bool& known, std::string& error) {

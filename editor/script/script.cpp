@@ -23,12 +23,6 @@ bool numberOf(const std::string& word, double& value) {
     return code == std::errc{} && at == end && std::isfinite(value);
 }
 
-bool need(const Words& words, size_t least, size_t most, const char* form, std::string& error) {
-    if (words.size() >= least && words.size() <= most) return true;
-    error = std::string("it takes: ") + form;
-    return false;
-}
-
 bool times(const Words& words, uint32_t& count, std::string& error) {
     double value = 1;
     if (!need(words, 1, 2, "a number of steps", error)) return false;

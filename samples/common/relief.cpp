@@ -24,8 +24,6 @@ struct Block {  // relief_block.glsl
     glm::vec4 firePlace[kMostFires], fireColor[kMostFires];
 };
 
-uint8_t toByte(float x) { return static_cast<uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f); }
-
 // Slopes along u and v, open sky, height. `steepest`: the slope that 1 stands for.
 std::vector<uint8_t> shapeOf(const ReliefModel& model, float& steepest) {
     const ReliefPicture& p = model.picture;

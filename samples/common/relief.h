@@ -2,6 +2,8 @@
 // its own depth, shadows and silhouettes. What lies in a relief may hide what the plugin draws.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -10,6 +12,11 @@
 #include "flamewright/flamewright.h"
 
 namespace sample {
+
+// A share in [0, 1] as a byte.
+inline uint8_t toByte(float x) {
+    return static_cast<uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
 
 struct ReliefPicture {
     uint32_t width = 0, height = 0;  // texels

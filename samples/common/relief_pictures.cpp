@@ -9,8 +9,6 @@
 namespace sample {
 namespace {
 
-uint8_t toByte(float x) { return static_cast<uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f); }
-
 void setColor(ReliefPicture& p, size_t at, glm::vec3 albedo, float roughness) {
     for (int c = 0; c < 3; ++c)
         p.color[at * 4 + static_cast<size_t>(c)] = toByte(std::sqrt(std::max(albedo[c], 0.0f)));

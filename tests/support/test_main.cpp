@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "support/sanitized.h"
+#include "sanitized.h"
 
 namespace {
 
