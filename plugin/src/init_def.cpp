@@ -64,6 +64,13 @@ void defaults(FwBurnableMeshDef& def) noexcept {
     def.spreadChance = 1;
 }
 
+void defaults(FwNetDef& def) noexcept {
+    def.packetBytes = 1200;
+    def.bytesPerSecond = 1u << 18;
+    def.interval = 1.0f / 16;
+    def.delay = 0.15f;
+}
+
 void defaults(FwBlockerDef& def) noexcept {
     identity(def.transform);
     set(def.halfSize, 0.5f, 0.5f, 0.5f);
@@ -180,6 +187,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwFlipbookDef);
         case FW_DEF_BUDGET:
             return sizeof(FwBudgetDef);
+        case FW_DEF_NET:
+            return sizeof(FwNetDef);
         case FW_DEF_FIRE_COLLIDER:
             return sizeof(FwFireColliderDef);
         case FW_DEF_FIRE_TRACK:
@@ -236,6 +245,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_BUDGET:
             write<FwBudgetDef>(def);
+            return true;
+        case FW_DEF_NET:
+            write<FwNetDef>(def);
             return true;
         case FW_DEF_FIRE_COLLIDER:
             write<FwFireColliderDef>(def);

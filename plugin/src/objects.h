@@ -2,6 +2,8 @@
 #pragma once
 #include "device.h"
 #include "edge.h"
+#include "net/client.h"
+#include "net/server.h"
 
 #include <mutex>
 #include <optional>
@@ -31,6 +33,9 @@ struct FwWorld {
     fw::edge::LastMessage message;
     fw::gpu::Backend* backend = nullptr;
     std::optional<fw::world::World> world;
+    // At most one of them, while the world is shared.
+    std::optional<fw::net::Server> server;
+    std::optional<fw::net::Client> client;
 };
 
 namespace fw::edge {
@@ -58,6 +63,12 @@ FwResult onWorld(const char* function, FwWorld* world, Body&& body) noexcept {
             world->context->log.write(FW_LOG_ERROR, "%s", text);
         },
         [&] { return body(*world->world); });
+}
+
+// Where answers need no frame of the host's, they are there when the call returns.
+inline void answerAtOnce(FwWorld* handle) {
+    Device& device = *handle->context->device;
+    if (device.answersAtOnce()) device.step(*handle->backend, *handle->world, 0.0f);
 }
 
 template <class T>

@@ -4,17 +4,12 @@
 #include <algorithm>
 
 using namespace fw;
+using edge::answerAtOnce;
 using edge::checkPointer;
 using edge::onContext;
 using edge::onWorld;
 
 namespace {
-
-// Where answers need no frame of the host's, they are there when the call returns.
-void answerAtOnce(FwWorld* handle) {
-    edge::Device& device = *handle->context->device;
-    if (device.answersAtOnce()) device.step(*handle->backend, *handle->world, 0.0f);
-}
 
 FwResult ask(const char* function, FwWorld* world,
              FwQueryId (world::World::*request)(FwBurnableMeshId, const float*),
@@ -64,6 +59,8 @@ FwResult answer(const char* function, FwWorld* world,
 
 void freeWorld(FwWorld* world) noexcept {
     FwContext* context = world->context;
+    world->server.reset();
+    world->client.reset();
     world->world.reset();
     if (world->backend) context->device->destroyBackend(world->backend);
     std::pmr::polymorphic_allocator<>(&context->memory).delete_object(world);

@@ -82,11 +82,22 @@ void World::destroyFireEmitter(FwFireEmitterId id) {
 }
 
 void World::moveFireEmitter(FwFireEmitterId id, const float position[3], const float* direction) {
-    components::moveFireEmitter(emitters_.get(id), position, direction);
+    FireEmitter& emitter = emitters_.get(id);
+    const bool burns = bool(emitter.stream);
+    if (burns) mayChange();
+    components::moveFireEmitter(emitter, position, direction);
+    if (!burns) return;
+    float numbers[6] = {position[0], position[1], position[2]};
+    if (direction) std::copy_n(direction, 3, numbers + 3);
+    noteMove(Deed::Kind::moveEmitter, id.index1 - 1, numbers, 6, direction ? 1 : 0);
 }
 
 void World::setFireEmitterPower(FwFireEmitterId id, float power) {
-    components::setEmitterPower(emitters_.get(id), power);
+    FireEmitter& emitter = emitters_.get(id);
+    const bool burns = bool(emitter.stream);
+    if (burns) mayChange();
+    components::setEmitterPower(emitter, power);
+    if (burns) noteMove(Deed::Kind::emitterPower, id.index1 - 1, &power, 1);
 }
 
 void World::setFireEmitterHidden(FwFireEmitterId id, bool hidden) {

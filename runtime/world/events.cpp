@@ -61,6 +61,7 @@ void World::collectReadbacks() {
             if (map.object >= objects_.slotCount()) continue;
             auto* owned = objects_.at(map.object);
             if (!owned || (*owned)->firstFrame > readback->frameIndex) continue;
+            if (journal_) noteHash(map, *readback);
             if ((*owned)->forecast && (*owned)->forecast->pending)
                 takeForecast(**owned, map, *readback);
             BurnMapCopy& copy = (*owned)->map;
@@ -72,7 +73,7 @@ void World::collectReadbacks() {
             copy.pending = false;
             copy.ready = true;
         }
-        takeSave(*readback);
+        takeSaves(*readback);
         if (frontTiles_ == 0 && burningTiles_ == 0 && hotTiles_ == 0 && receivers_ == 0 &&
             readback->endTick >= lastStimulus_ + kSettleTicks)
             idle_ = true;

@@ -44,14 +44,23 @@ void World::destroyParticleField(FwParticleFieldId id) {
 void World::moveParticleField(FwParticleFieldId id, const float position[3],
                               const float rotation[4]) {
     components::ParticleField& field = fields_.get(id)->data;
+    const bool wets = (field.flags & FW_FIELD_WETS) != 0;
+    if (wets) mayChange();
     components::setFieldPlace(field, position, rotation);
     backend_.setFieldRules(id.index1 - 1, components::rulesOf(field, wind_));
+    if (!wets) return;
+    float numbers[7] = {position[0], position[1], position[2]};
+    if (rotation) std::copy_n(rotation, 4, numbers + 3);
+    noteMove(Deed::Kind::moveField, id.index1 - 1, numbers, 7, rotation ? 1 : 0);
 }
 
 void World::setParticleFieldAmount(FwParticleFieldId id, float amount) {
     components::ParticleField& field = fields_.get(id)->data;
+    const bool wets = (field.flags & FW_FIELD_WETS) != 0;
+    if (wets) mayChange();
     components::setFieldAmount(field, amount);
     backend_.setFieldRules(id.index1 - 1, components::rulesOf(field, wind_));
+    if (wets) noteMove(Deed::Kind::fieldAmount, id.index1 - 1, &amount, 1);
 }
 
 void World::setParticleFieldHidden(FwParticleFieldId id, bool hidden) {

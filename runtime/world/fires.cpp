@@ -73,15 +73,21 @@ void World::destroyVolumetricFire(FwVolumetricFireId id) {
 
 void World::moveVolumetricFire(FwVolumetricFireId id, const float position[3]) {
     VolumetricFire& fire = fires_.get(id)->data;
+    const bool burns = (fire.flags & FW_FIRE_IGNITES) != 0;
+    if (burns) mayChange();
     components::setFirePosition(fire, position);
     foresee(fire);
+    if (burns) noteMove(Deed::Kind::moveFire, id.index1 - 1, position, 3);
 }
 
 void World::setVolumetricFirePower(FwVolumetricFireId id, float power) {
     VolumetricFire& fire = fires_.get(id)->data;
+    const bool burns = (fire.flags & FW_FIRE_IGNITES) != 0;
+    if (burns) mayChange();
     findFireRoom(components::mostParts(power, fire.diameter));
     components::setFirePower(fire, power);
     foresee(fire);
+    if (burns) noteMove(Deed::Kind::firePower, id.index1 - 1, &power, 1);
 }
 
 void World::setVolumetricFirePoints(FwVolumetricFireId id, const FwFirePoint* points,

@@ -42,6 +42,7 @@ uint64_t pairOf(uint32_t a, uint32_t b) noexcept { return uint64_t(a) << 32 | b;
 }  // namespace
 
 void World::setFlags(uint32_t given) {
+    mayChange();
     if (given & ~kWorldFlags)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "flags is 0x%x; the known flags are 0x%x.", given,
                    kWorldFlags);
@@ -53,6 +54,7 @@ void World::setFlags(uint32_t given) {
     if (remote_.flags & ~flags & kWarm)
         remote_.fades = clock_.tick + 2 * gpu::kExchangeTurns * gpu::kExchangeTicks;
     remote_.flags = flags;
+    note({Deed::Kind::flags, 0, 0, given, {}});
 }
 
 FwBlockerId World::addBlocker(const FwBlockerDef& def) {
@@ -74,10 +76,12 @@ FwBlockerId World::addBlocker(const FwBlockerDef& def) {
 }
 
 void World::moveBlocker(FwBlockerId id, const float transform[16]) {
+    mayChange();
     ++geometry_;
     BlockerEntry& entry = blockers_.get(id);
     entry.pose = components::makePose(transform, "transform");
     remote_.blockersDue = true;
+    notePose(Deed::Kind::moveBlocker, id.index1 - 1, transform);
 }
 
 void World::removeBlocker(FwBlockerId id) {

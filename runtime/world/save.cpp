@@ -69,6 +69,11 @@ void checkCount(size_t saved, size_t mine, const char* name) {
                    mine);
 }
 
+// With the next frame?
+bool startsSave(const core::Owned<Save>& save) noexcept {
+    return save && save->wished && !save->pending;
+}
+
 SavedTouch savedTouch(const FireTouch& touch) noexcept {
     SavedTouch saved;
     saved.object1 = touch.object.index1;
@@ -113,32 +118,34 @@ uint32_t World::windowOf(const Object& object) noexcept {
 
 // ---- saving ------------------------------------------------------------------------------------
 
-void World::requestSave() {
+void World::requestSave(SaveFor who) {
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
         if (auto* object = objects_.at(i);
             object && ((*object)->data.flags & FW_BURNABLE_PUBLISHED) && (*object)->touched)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be saved.",
                        i + 1);
-    if (!save_) save_ = core::Owned<Save>::make(memory_, memory_);
-    save_->wished = true;
-    save_->ready = false;
+    core::Owned<Save>& save = saves_[size_t(who)];
+    if (!save) save = core::Owned<Save>::make(memory_, memory_);
+    save->wished = true;
+    save->ready = false;
 }
 
-const std::pmr::vector<std::byte>* World::fetchSave() {
-    if (!save_ || (!save_->wished && !save_->pending && !save_->ready))
+const std::pmr::vector<std::byte>* World::fetchSave(SaveFor who) {
+    const core::Owned<Save>& save = saves_[size_t(who)];
+    if (!save || (!save->wished && !save->pending && !save->ready))
         core::fail(FW_ERROR_INVALID_ARGUMENT, "No save was asked for; request it first.");
-    if (save_->failed) {
-        save_->failed = false;
+    if (save->failed) {
+        save->failed = false;
         throw std::bad_alloc();
     }
-    return save_->ready && !save_->wished ? &save_->bytes : nullptr;
+    return save->ready && !save->wished ? &save->bytes : nullptr;
 }
 
 // Before a frame's plan: the objects that have something to save.
 void World::planSave() {
     frame_.images.clear();
-    if (!save_ || !save_->wished || save_->pending) return;
+    if (std::none_of(saves_.begin(), saves_.end(), startsSave)) return;
     frame_.images.reserve(objects_.slotCount());
     for (uint32_t i = 0; i < objects_.slotCount(); ++i) {
         auto* owned = objects_.at(i);
@@ -155,14 +162,21 @@ void World::planSave() {
 
 // After it was committed.
 void World::commitSave(uint64_t frameIndex) noexcept {
-    if (!save_ || !save_->wished || save_->pending) return;
-    save_->wished = false;
-    try {
-        noteSaved(save_->saved);
-        save_->pending = true;
-        save_->frameIndex = frameIndex;
-    } catch (...) {
-        save_->failed = true;
+    for (size_t who = 0; who < saves_.size(); ++who) {
+        if (!startsSave(saves_[who])) continue;
+        Save& save = *saves_[who];
+        save.wished = save.ready = false;
+        try {
+            noteSaved(save.saved);
+            save.pending = true;
+            save.frameIndex = frameIndex;
+        } catch (...) {
+            save.failed = true;
+        }
+        if (who != size_t(SaveFor::net) || !journal_) continue;
+        journal_->captured = true;
+        journal_->capturedAt = clock_.tick;
+        journal_->capturedBehind = journal_->deeds.size();
     }
 }
 
@@ -233,6 +247,9 @@ void World::noteSaved(SavedWorld& to) {
             saved.width = (*field)->data.def.width;
             saved.height = (*field)->data.def.height;
             saved.began = (*field)->began;
+            std::copy_n((*field)->data.position, 3, saved.position);
+            std::copy_n((*field)->data.rotation, 4, saved.rotation);
+            saved.amount = (*field)->data.def.look.amount;
             saved.wets = bool((*field)->cells);
             if (!saved.wets) continue;
             const field::Field& cells = *(*field)->cells;
@@ -297,49 +314,55 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
 }
 
 // With a readback, after the counters were taken.
-void World::takeSave(const gpu::Readback& readback) noexcept {
-    if (!save_ || !save_->pending || readback.frameIndex < save_->frameIndex) return;
-    save_->pending = false;
-    SavedWorld& saved = save_->saved;
+void World::takeSaves(const gpu::Readback& readback) noexcept {
+    for (core::Owned<Save>& save : saves_) {
+        if (!save || !save->pending || readback.frameIndex < save->frameIndex) continue;
+        save->pending = false;
+        try {
+            takeSave(*save, readback);
+        } catch (...) {
+            save->failed = true;
+        }
+    }
+}
+
+void World::takeSave(Save& save, const gpu::Readback& readback) {
+    SavedWorld& saved = save.saved;
     size_t touched = 0;
-    bool whole = readback.frameIndex == save_->frameIndex;
+    bool whole = readback.frameIndex == save.frameIndex;
     for (const SavedObject& object : saved.objects) {
         touched += object.touched ? 1 : 0;
         whole = whole && object.slot < objects_.slotCount() && objects_.at(object.slot);
     }
     // What came is of less than was noted: objects went since. The next frame tries again.
     if (!whole || touched != readback.images.size()) {
-        save_->wished = true;
+        save.wished = true;
         return;
     }
-    try {
-        save_->planes.clear();
-        std::pmr::vector<size_t> ends(memory_);
-        for (const gpu::ObjectImage& image : readback.images) {
-            const Object& object = **objects_.at(image.object);
-            writeImage(image, domainOf(object), readback.endTick, windowOf(object), save_->scratch,
-                       save_->planes);
-            ends.push_back(save_->planes.size());
-        }
-        size_t next = 0, from = 0;
-        for (SavedObject& object : saved.objects) {
-            if (!object.touched) continue;
-            const gpu::ObjectImage& image = readback.images[next];
-            if (image.object != object.slot) {
-                save_->wished = true;
-                return;
-            }
-            object.planes = std::span(save_->planes).subspan(from, ends[next] - from);
-            from = ends[next++];
-            object.counters = image.counters;
-            object.counters.refined = 0;
-            object.story = (*objects_.at(object.slot))->story;
-        }
-        writeSaved(saved, save_->bytes);
-        save_->ready = true;
-    } catch (...) {
-        save_->failed = true;
+    save.planes.clear();
+    std::pmr::vector<size_t> ends(memory_);
+    for (const gpu::ObjectImage& image : readback.images) {
+        const Object& object = **objects_.at(image.object);
+        writeImage(image, domainOf(object), readback.endTick, windowOf(object), save.scratch,
+                   save.planes);
+        ends.push_back(save.planes.size());
     }
+    size_t next = 0, from = 0;
+    for (SavedObject& object : saved.objects) {
+        if (!object.touched) continue;
+        const gpu::ObjectImage& image = readback.images[next];
+        if (image.object != object.slot) {
+            save.wished = true;
+            return;
+        }
+        object.planes = std::span(save.planes).subspan(from, ends[next] - from);
+        from = ends[next++];
+        object.counters = image.counters;
+        object.counters.refined = 0;
+        object.story = (*objects_.at(object.slot))->story;
+    }
+    writeSaved(saved, save.bytes);
+    save.ready = true;
 }
 
 // ---- loading -----------------------------------------------------------------------------------
@@ -504,10 +527,18 @@ void World::checkSaved(const SavedWorld& saved) {
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has particle field %u, which is none or another one here.",
                        field.slot + 1);
+        checkPlace(field.position, "a particle field");
+        float length = 0;
+        for (const float value : field.rotation) length += value * value;
+        if (!(std::abs(length - 1) <= 0.01f) || !(field.amount >= 0 && field.amount <= 4))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has particle field %u with amount %g and a rotation of length %g.",
+                       field.slot + 1, double(field.amount), double(length));
     }
 }
 
 void World::load(std::span<const std::byte> bytes) {
+    mayChange();
     SavedWorld saved(memory_);
     readSaved(bytes, saved);
     checkSaved(saved);
@@ -579,7 +610,6 @@ void World::applySaved(const SavedWorld& saved,
     droppedSteps_ = saved.droppedSteps;
     order_ = saved.order;
     std::copy_n(saved.wind, 3, wind_);
-    sendFieldRules();
     remote_.flags = saved.flags & kWaysOfFire;
     remote_.objectFlags = saved.flags & ~kWaysOfFire;
     remote_.warms = saved.warms;
@@ -587,9 +617,16 @@ void World::applySaved(const SavedWorld& saved,
     ++driveChanges_;
     ++geometry_;
     loadedFrame_ = lastFrame_;
-    if (save_ && save_->pending) {  // of the world that was
-        save_->pending = false;
-        save_->wished = true;
+    for (core::Owned<Save>& save : saves_) {
+        if (!save || !save->pending) continue;
+        save->pending = false;  // of the world that was
+        save->wished = true;
+    }
+    if (journal_) {
+        journal_->loaded = true;
+        journal_->captured = false;
+        journal_->deeds.clear();
+        journal_->hashes.clear();
     }
     // What was asked of frames before is asked anew.
     for (ProbeFrame& frame : probeFrames_) frame.frameIndex = 0;
@@ -648,6 +685,9 @@ void World::applySaved(const SavedWorld& saved,
         // The backend counts its own steps: what it shows goes on from where it is.
         const uint32_t ran = field.steps - field.shownBase;
         field.began = from.began;
+        std::copy_n(from.position, 3, field.data.position);
+        std::copy_n(from.rotation, 4, field.data.rotation);
+        field.data.def.look.amount = from.amount;
         field.steps = components::fieldSteps(field.data, clock_.tick - field.began);
         field.shownBase = field.steps - ran;
         if (!from.wets) continue;
@@ -656,6 +696,7 @@ void World::applySaved(const SavedWorld& saved,
         field.cells->died = from.died;
         field.cells->left = from.left;
     }
+    sendFieldRules();
 }
 
 void World::applyObject(const SavedObject& from, const components::Latch& latch,

@@ -42,6 +42,7 @@ struct SavedEmitter {
 struct SavedField {
     uint32_t slot = 0, width = 0, height = 0;
     uint64_t began = 0;
+    float position[3] = {}, rotation[4] = {}, amount = 0;
     bool wets = false;
     uint32_t step = 0;
     uint64_t emitted = 0, died = 0, left = 0;
@@ -150,7 +151,7 @@ struct Save {  // on its way, and the last one
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 2;
+constexpr uint32_t kSaveVersion = 3;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
 

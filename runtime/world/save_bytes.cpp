@@ -240,7 +240,7 @@ void put(S& s, T& e) {
 }
 template <typename S, Is<SavedField> T>
 void put(S& s, T& f) {
-    all(s, f.slot, f.width, f.height, f.began, f.wets);
+    all(s, f.slot, f.width, f.height, f.began, f.position, f.rotation, f.amount, f.wets);
     if (!f.wets) return;
     all(s, f.step, f.emitted, f.died, f.left);
     if constexpr (S::kReads) {
@@ -274,7 +274,7 @@ void put(S& s, T& w) {
     list(s, w.latchedBlockers, "latched blockers", 64);
     list(s, w.fires, "volumetric fires", 24);
     list(s, w.emitters, "fire emitters", 36);
-    list(s, w.fields, "particle fields", 20);
+    list(s, w.fields, "particle fields", 53);
 }
 
 // ---- planes ------------------------------------------------------------------------------------

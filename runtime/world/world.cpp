@@ -158,10 +158,12 @@ World::~World() {
 }
 
 void World::setWind(const float wind[3]) {
+    mayChange();
     checkValues(wind, 3, "wind", -120.0f, 120.0f);
     if (!std::equal(wind_, wind_ + 3, wind)) ++driveChanges_;
     std::copy_n(wind, 3, wind_);
     sendFieldRules();
+    noteMove(Deed::Kind::wind, 0, wind, 3);
 }
 
 // ---- materials and images ---------------------------------------------------------------------
@@ -504,6 +506,7 @@ void World::sendPose(const Object& object) noexcept {
 }
 
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
+    mayChange();
     Object& object = *objects_.get(id);
     const components::Pose before = object.data.pose;
     components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
@@ -516,6 +519,7 @@ void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
         remote_.due.push_back(object.slot);
     }
     sendPose(object);
+    notePose(Deed::Kind::pose, object.slot, transform);
 }
 
 uint32_t World::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {
@@ -628,22 +632,32 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
 }
 
 uint32_t World::ignite(const FwIgnitionDef& def) {
+    mayChange();
+    checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
+    return igniteAt(def, eventTick(def.delay));
+}
+
+uint32_t World::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
     checkLimit(def.kind, "FwIgnitionDef::kind", 0, FW_EXTINGUISH);
     checkValues(def.position, 3, "FwIgnitionDef::position", -1e6f, 1e6f);
     checkValue(def.radius, "FwIgnitionDef::radius", 0.0f, 1e6f);
-    checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
     checkValue(def.water, "FwIgnitionDef::water", 0.0f, def.kind == FW_WET ? 1023.0f : 0.0f);
     for (uint32_t i = 0; i < 2; ++i)
         if (def.reserved[i] != 0)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "FwIgnitionDef::reserved[%u] is %u; it is zero.",
                        i, def.reserved[i]);
-    const uint32_t tick = eventTick(def.delay);
     const size_t before = pending_.size();
     try {
-        if (def.object.index1 != 0) return igniteObject(*objects_.get(def.object), def, tick);
         uint32_t texels = 0;
-        for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+        if (def.object.index1 != 0) texels = igniteObject(*objects_.get(def.object), def, tick);
+        for (uint32_t i = 0; def.object.index1 == 0 && i < objects_.slotCount(); ++i)
             if (auto* object = objects_.at(i)) texels += igniteObject(**object, def, tick);
+        if (pending_.size() > before)
+            note({Deed::Kind::ignite,
+                  def.object.index1,
+                  tick,
+                  def.kind,
+                  {def.position[0], def.position[1], def.position[2], def.radius, def.water}});
         return texels;
     } catch (...) {
         pending_.resize(before);

@@ -19,10 +19,13 @@
 #include "world/clock.h"
 #include "world/event_queue.h"
 #include "world/governor.h"
+#include "world/journal.h"
 
 #include <array>
 
 namespace fw::world {
+
+enum class SaveFor : uint8_t { host, net, count };  // each has a save of its own
 
 enum class InnerSkin : uint8_t { unknown, none, there };
 struct MeshEntry {
@@ -374,9 +377,25 @@ class World {
 
     // save.cpp. A save comes with the readback of the next frame; load is at once, or throws and
     // has changed nothing.
-    void requestSave();
-    const std::pmr::vector<std::byte>* fetchSave();  // null: not ready
+    void requestSave(SaveFor who = SaveFor::host);
+    const std::pmr::vector<std::byte>* fetchSave(SaveFor who = SaveFor::host);  // null: not ready
     void load(std::span<const std::byte> bytes);
+
+    // journal.cpp
+    Journal& keepJournal(bool follows);  // from here on
+    void dropJournal() noexcept { journal_ = {}; }
+    // Another world's deed, before this one's next step. Throws where it is none for this world.
+    void perform(const Deed& deed);
+    void performLoad(std::span<const std::byte> bytes);  // of its save
+    [[nodiscard]] uint64_t tick() const noexcept { return clock_.tick; }
+    [[nodiscard]] double seconds() const noexcept;  // since its beginning
+    // s from the present to the beginning of a later tick.
+    [[nodiscard]] double secondsTo(uint64_t tick) const noexcept;
+    [[nodiscard]] uint32_t mostSteps() const noexcept { return def_.maxStepsPerFrame; }
+    // Of the rules, and of all that a save has to find here: worlds of one identity can follow
+    // each other.
+    [[nodiscard]] uint64_t identity() noexcept;
+    [[nodiscard]] const core::Log& log() const noexcept { return log_; }
 
     // flamewright_debug.h
     void requestBurnMap(FwBurnableMeshId id);
@@ -572,11 +591,20 @@ class World {
     [[nodiscard]] uint32_t windowOf(const Object& object) noexcept;
     void planSave();
     void commitSave(uint64_t frameIndex) noexcept;
+    void takeSaves(const gpu::Readback& readback) noexcept;
     void noteSaved(SavedWorld& to);
     void noteObject(Object& object, SavedObject& saved) noexcept;
     void noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
                      std::pmr::vector<SavedEmitter>& to) const;
-    void takeSave(const gpu::Readback& readback) noexcept;
+    void takeSave(Save& save, const gpu::Readback& readback);
+    // journal.cpp
+    void mayChange() const;  // throws where another machine's deeds alone count
+    void note(const Deed& deed) noexcept;
+    void noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
+                  uint32_t word = 0) noexcept;
+    void notePose(Deed::Kind kind, uint32_t slot, const float transform[16]) noexcept;
+    void planHashes(const ClockAdvance& time);
+    void noteHash(const gpu::BurnMap& map, const gpu::Readback& readback);
     void checkSaved(const SavedWorld& saved);  // throws
     void applySaved(const SavedWorld& saved, std::span<const components::Latch> latches) noexcept;
     void applyObject(const SavedObject& from, const components::Latch& latch,
@@ -603,6 +631,7 @@ class World {
     void findPendingRoom(size_t more);  // throws
     void addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                     std::span<const uint32_t> texels);
+    uint32_t igniteAt(const FwIgnitionDef& def, uint32_t tick);
     uint32_t eventTick(float delay) const;
     MeshEntry makeEntry(core::Owned<mesh::BurnDomain> domain) const;
     FwMeshId createEntry(MeshEntry entry);
@@ -685,7 +714,8 @@ class World {
     bool idle_ = true;
     uint32_t switches_ = 0;
     uint64_t planStamp_ = 0;
-    core::Owned<Save> save_;    // once one was asked for
+    std::array<core::Owned<Save>, size_t(SaveFor::count)> saves_;  // once one was asked for
+    core::Owned<Journal> journal_;  // null: nobody asks
     uint64_t loadedFrame_ = 0;  // readbacks up to this frame are of another past
 
     // As of the last readback.

@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(102, calls);  // every function of the three headers
+    EXPECT_EQ(113, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -51,6 +51,7 @@ const DefCase kDefs[] = {
     {"flipbook", FW_DEF_FLIPBOOK, sizeof(FwFlipbookDef)},
     {"profile", FW_DEF_FIRE_PROFILE, sizeof(FwFireProfileDef)},
     {"budget", FW_DEF_BUDGET, sizeof(FwBudgetDef)},
+    {"net", FW_DEF_NET, sizeof(FwNetDef)},
     {"collider", FW_DEF_FIRE_COLLIDER, sizeof(FwFireColliderDef)},
     {"track", FW_DEF_FIRE_TRACK, sizeof(FwFireTrackDef)},
     {"emitter", FW_DEF_FIRE_EMITTER, sizeof(FwFireEmitterDef)},
@@ -211,6 +212,19 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
     checkSizes<FwBudgetDef>(
         "FwBudgetDef", fwDefaultBudgetDef(),
         [&](const FwBudgetDef* def) { return fwWorld_SetBudget(w.world, def); }, worldMessage);
+    checkSizes<FwNetDef>(
+        "FwNetDef",
+        [] {
+            FwNetDef def = fwDefaultNetDef();
+            def.token = 1;
+            return def;
+        }(),
+        [&](const FwNetDef* def) {
+            const FwResult result = fwNet_Serve(w.world, def);
+            if (result == FW_OK) (void)fwNet_Leave(w.world);
+            return result;
+        },
+        worldMessage);
     checkSizes<FwFireColliderDef>(
         "FwFireColliderDef", fwDefaultFireColliderDef(),
         [&](const FwFireColliderDef* def) {

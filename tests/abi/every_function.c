@@ -26,6 +26,7 @@ int fwTestCallEverything(int* calls) {
     const FwFlipbookId book = {0, 0};
     const FwFireColliderId collider = {0, 0};
     const FwParticleFieldId field = {0, 0};
+    const FwPeerId peer = {0, 0};
 
     RUNS(fwResultName(FW_OK));
     RUNS(fwGetVersion());
@@ -114,6 +115,17 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RequestSave(NULL));
     REFUSES(fwWorld_FetchSave(NULL, NULL, NULL));
     REFUSES(fwWorld_Load(NULL, NULL, 0));
+    REFUSES(fwNet_Serve(NULL, NULL));
+    REFUSES(fwNet_Join(NULL, NULL));
+    REFUSES(fwNet_Leave(NULL));
+    REFUSES(fwNet_AddPeer(NULL, NULL));
+    REFUSES(fwNet_RemovePeer(NULL, peer));
+    REFUSES(fwNet_Update(NULL, 0.0f));
+    REFUSES(fwNet_Write(NULL, peer, NULL, NULL));
+    REFUSES(fwNet_Read(NULL, peer, NULL, 0));
+    REFUSES(fwNet_Tell(NULL, NULL, 0));
+    REFUSES(fwNet_TakeTurn(NULL, NULL));
+    REFUSES(fwNet_GetState(NULL, peer, NULL));
     REFUSES(fwWorld_GetStats(NULL, NULL));
 
     REFUSES(fwQueryVulkanWishes(NULL));
@@ -147,6 +159,7 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultFlipbookDef().structSize == sizeof(FwFlipbookDef) ? 0 : 1;
     wrong += fwDefaultFireProfileDef().structSize == sizeof(FwFireProfileDef) ? 0 : 1;
     wrong += fwDefaultBudgetDef().structSize == sizeof(FwBudgetDef) ? 0 : 1;
+    wrong += fwDefaultNetDef().structSize == sizeof(FwNetDef) ? 0 : 1;
     wrong += fwDefaultFireColliderDef().structSize == sizeof(FwFireColliderDef) ? 0 : 1;
     wrong += fwDefaultFireTrackDef().structSize == sizeof(FwFireTrackDef) ? 0 : 1;
     wrong += fwDefaultParticleFieldDef().structSize == sizeof(FwParticleFieldDef) ? 0 : 1;

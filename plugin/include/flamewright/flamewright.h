@@ -52,6 +52,7 @@ typedef struct FwFireColliderId { uint32_t index1, generation; } FwFireColliderI
 typedef struct FwFireEmitterId { uint32_t index1, generation; } FwFireEmitterId;
 typedef struct FwFlipbookId { uint32_t index1, generation; } FwFlipbookId;
 typedef struct FwParticleFieldId { uint32_t index1, generation; } FwParticleFieldId;
+typedef struct FwPeerId { uint32_t index1, generation; } FwPeerId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -101,7 +102,7 @@ typedef enum FwDefType {
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
-    FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22,
+    FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -1050,6 +1051,99 @@ FW_API FwResult FW_CALL fwWorld_FetchSave(FwWorld*, void* buffer, uint64_t* size
  * another world; the message says of what, with both values. Time is that of the save; frame indices go on growing.
  * Uploads with the next frame. [world] */
 FW_API FwResult FW_CALL fwWorld_Load(FwWorld*, const void* bytes, uint64_t size);
+
+/* ---- a network: one burn on many machines ------------------------------------------------------------------ */
+
+/* The server's world is the truth. Clients have worlds that are made of the same things in the same order (see fwWorld_Load);
+ * they get the server's state once, and from there on what its host does to the burn, with the step that it came before. As
+ * fire is integers, both then burn bit by bit alike; hashes of each object, every few seconds, show it, and a client that has
+ * gone astray, whyever, asks for the state again. The host moves the packets, by whatever way it has: they may be lost, come
+ * twice, late and in any order. A packet that is damaged, cut, or of another session or version is refused with a message
+ * and changes nothing; the checksum finds damage, not malice: encrypt where that is to be feared. Nothing here waits.
+ *
+ * Sent by itself is: fwWorld_Ignite, SetWind, SetFlags, SetTransform, MoveBlocker; of volumetric fires with FW_FIRE_IGNITES
+ * and jets with FW_EMITTER_IGNITES where they are and their power, of fields with FW_FIELD_WETS where they are and their
+ * amount. On a client these calls are refused, as fwWorld_Load is. What is made and destroyed, and all else that changes what
+ * burns (colliders, points of fires, painted fields, vertices), each host does by itself: told by fwNet_Tell, at the same step. */
+typedef struct FwNetDef {
+    uint32_t structSize, flags; /* flags: 0 */
+    uint32_t token;             /* [1, 2^32): a number of the host's by chance, another one each time: of the session, or of
+                                   this client. Packets of others are refused */
+    uint32_t packetBytes;       /* [512, 1400], default 1200: the most that a packet has */
+    uint32_t bytesPerSecond;    /* [4000, 100000000], default 262144: of a server, to each client at most */
+    float interval;             /* s between packets, [1/64, 1], default 1/16; more are sent where there is more to say */
+    float delay;                /* s, [0, 10], default 0.15: of a client, how far it stays behind the newest that it has heard
+                                   of. Below what packets need on their way, and again where one is lost, its fire stutters */
+    uint32_t reserved;          /* 0 */
+} FwNetDef;
+static inline FwNetDef fwDefaultNetDef(void) {
+    FwNetDef d; fwInitDef(FW_DEF_NET, &d, (uint32_t)sizeof d); return d;
+}
+/* The world is a server's from here on, or a client's, which begins with the server's state and moves no further than
+ * fwNet_TakeTurn says. On any backend. Refused while it is either already. [world] */
+FW_API FwResult FW_CALL fwNet_Serve(FwWorld*, const FwNetDef* def);
+FW_API FwResult FW_CALL fwNet_Join(FwWorld*, const FwNetDef* def); /* [world] */
+/* Neither any more; the world stays as it is. [world] */
+FW_API FwResult FW_CALL fwNet_Leave(FwWorld*);
+/* Of a server: somebody from whom packets come, at most 256 at a time. A client that comes back with another token is another
+ * peer. How long one has been silent says its state; dropping it is the host's. [world] */
+FW_API FwResult FW_CALL fwNet_AddPeer(FwWorld*, FwPeerId* id);
+FW_API FwResult FW_CALL fwNet_RemovePeer(FwWorld*, FwPeerId id); /* [world] */
+/* Once in each of the host's frames, after its steps: deltaTime s, [0, 10], of real time have passed. [world] */
+FW_API FwResult FW_CALL fwNet_Update(FwWorld*, float deltaTime);
+/* The next packet for a peer; of a client: for the server, with a null id. *size: room for FwNetDef::packetBytes, then what
+ * was written. FW_NOT_READY: there is none before the next fwNet_Update. [world] */
+FW_API FwResult FW_CALL fwNet_Write(FwWorld*, FwPeerId to, void* packet, uint32_t* size);
+/* A packet that came. FW_ERROR_BAD_DATA, FW_ERROR_VERSION: it is none of theirs. [world] */
+FW_API FwResult FW_CALL fwNet_Read(FwWorld*, FwPeerId from, const void* packet, uint32_t size);
+/* Of a server: bytes of the host's own, [0, 1024] and at most FwNetDef::packetBytes less 64, that each client gets between
+ * the same calls and before the same step as here, in order, none left out. Clients that join later do not get it: their
+ * host has to know by another way what has been made since. [world] */
+FW_API FwResult FW_CALL fwNet_Tell(FwWorld*, const void* message, uint32_t size);
+
+typedef enum FwNetTurnKind {
+    FW_TURN_WAIT = 0,    /* nothing more in this frame of the host's */
+    FW_TURN_STEP = 1,    /* move the world on by deltaTime, with fwWorld_Step or a recorded frame, then ask again */
+    FW_TURN_MESSAGE = 2, /* the server's host says so: do it now, then ask again */
+    FW_TURN_FORCE32 = 0x7fffffff
+} FwNetTurnKind;
+typedef struct FwNetTurn {
+    uint32_t structSize;
+    uint32_t kind;             /* FwNetTurnKind */
+    float deltaTime;           /* s */
+    uint32_t messageSize;      /* bytes */
+    unsigned char message[1024];
+} FwNetTurn;
+/* Of a client: what to do next, in a loop after fwNet_Update until FW_TURN_WAIT. A host that records one frame of the world's
+ * in each of its own takes one step each: the rest waits, and comes a little faster. [world] */
+FW_API FwResult FW_CALL fwNet_TakeTurn(FwWorld*, FwNetTurn* turn);
+
+typedef enum FwNetRole { FW_NET_NONE = 0, FW_NET_SERVER = 1, FW_NET_CLIENT = 2, FW_NET_ROLE_FORCE32 = 0x7fffffff } FwNetRole;
+typedef enum FwNetPhase {
+    FW_NET_CALLING = 0,   /* no answer yet */
+    FW_NET_REFUSED = 1,   /* the server's world is of other things, as the log says; it is asked again each second */
+    FW_NET_LOADING = 2,   /* the state is on its way */
+    FW_NET_FOLLOWING = 3,
+    FW_NET_PHASE_FORCE32 = 0x7fffffff
+} FwNetPhase;
+typedef struct FwNetState {
+    uint32_t structSize;
+    uint32_t role, phase;      /* FwNetRole; FwNetPhase: of a client, or of a server's peer */
+    uint32_t peers;
+    uint64_t step;             /* of 1/32 s, that this world has come to */
+    uint64_t heardStep;        /* that the other one has, as far as is known */
+    float behind;              /* s that the client is behind that */
+    float silent;              /* s since the last packet came */
+    uint32_t records;          /* that wait: for answers on a server, for their step on a client */
+    uint32_t states;           /* that were taken from the server; the first is how a client joins */
+    uint32_t strays;           /* of a client: how often it was found to differ */
+    uint32_t repairs;          /* of a client: of its states, those of which only tiles that differed came */
+    uint64_t hashes;           /* of a client: that were compared */
+    uint64_t bytesOut, bytesIn, packetsOut, packetsIn; /* without what the way adds */
+    uint64_t packetsIgnored;   /* that had come before, or came much too late */
+} FwNetState;
+/* Of a server: peer null: of all of them. [world] */
+FW_API FwResult FW_CALL fwNet_GetState(FwWorld*, FwPeerId peer, FwNetState* state);
 
 typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host's own lighting */
     float position[3];         /* m, world */

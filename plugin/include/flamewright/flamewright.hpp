@@ -73,6 +73,10 @@ template <>
     return fwDefaultBudgetDef();
 }
 template <>
+[[nodiscard]] inline FwNetDef def<FwNetDef>() noexcept {
+    return fwDefaultNetDef();
+}
+template <>
 [[nodiscard]] inline FwFireColliderDef def<FwFireColliderDef>() noexcept {
     return fwDefaultFireColliderDef();
 }

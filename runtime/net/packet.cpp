@@ -1,0 +1,64 @@
+#include "net/packet.h"
+
+#include "core/hash.h"
+
+namespace fw::net {
+namespace {
+
+constexpr uint32_t kMagic = 0x504E5746u;  // "FWNP"
+constexpr size_t kSumAt = 8;              // behind magic, version and kind
+
+// Of all bytes but the sum's own.
+uint32_t sumOf(std::span<const std::byte> packet) noexcept {
+    const uint64_t head = core::hashBytes(packet.first(kSumAt));
+    const uint64_t hash = core::hashBytes(packet.subspan(kSumAt + sizeof(uint32_t)), head);
+    return uint32_t(hash) ^ uint32_t(hash >> 32);
+}
+
+}  // namespace
+
+core::Writer beginPacket(std::pmr::vector<std::byte>& out, const PacketHead& head) {
+    out.clear();
+    core::Writer writer(out);
+    writer.number(kMagic);
+    writer.number(uint16_t(kPacketVersion));
+    writer.number(uint16_t(head.kind));
+    writer.number(uint32_t(0));
+    writer.number(head.session);
+    writer.number(head.client);
+    writer.number(head.sequence);
+    return writer;
+}
+
+void sealPacket(std::span<std::byte> packet) noexcept {
+    const uint32_t sum = sumOf(packet);
+    for (size_t k = 0; k < sizeof sum; ++k) packet[kSumAt + k] = std::byte(sum >> (8 * k));
+}
+
+PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
+    if (packet.size() < kPacketHead || packet.size() > kPacketMost)
+        core::fail(FW_ERROR_BAD_DATA, "The packet has %zu bytes; the limits are [%zu, %zu].",
+                   packet.size(), kPacketHead, kPacketMost);
+    uint32_t magic = 0, sum = 0;
+    uint16_t version = 0, kind = 0;
+    PacketHead head;
+    reader.number(magic), reader.number(version), reader.number(kind), reader.number(sum);
+    reader.number(head.session), reader.number(head.client), reader.number(head.sequence);
+    if (magic != kMagic)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The packet begins with 0x%08X; 0x%08X (\"FWNP\") is expected.", magic, kMagic);
+    if (version != kPacketVersion)
+        core::fail(FW_ERROR_VERSION, "The packet has version %u; this library has version %u.",
+                   uint32_t(version), kPacketVersion);
+    const uint32_t found = sumOf(packet);
+    if (sum != found)
+        core::fail(FW_ERROR_BAD_DATA, "The packet's checksum is 0x%08X; its head says 0x%08X.",
+                   found, sum);
+    if (kind >= uint16_t(PacketKind::count))
+        core::fail(FW_ERROR_BAD_DATA, "The packet is of kind %u; the limit is %u.", uint32_t(kind),
+                   uint32_t(PacketKind::count) - 1);
+    head.kind = PacketKind(kind);
+    return head;
+}
+
+}  // namespace fw::net

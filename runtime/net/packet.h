@@ -1,0 +1,74 @@
+// Packets between a server and its clients: a head that says of which session they are, a checksum
+// over all of it, and what one kind of them carries. What is damaged, cut, of another session or
+// came already is told from what is not before anything of it is used. A checksum finds damage; it
+// is no seal against those who know it: whoever needs that encrypts what a host sends.
+#pragma once
+#include "core/stream.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fw::net {
+
+enum class PacketKind : uint8_t {
+    hello,    // client: who is there?
+    welcome,  // server: of which world it is
+    status,   // client: what came, and what it wants
+    stream,   // server: records, and how far it is
+    chunk,    // server: a piece of a state
+    count
+};
+
+struct PacketHead {
+    PacketKind kind = PacketKind::count;
+    uint32_t session = 0;   // the server's token; 0: not known yet
+    uint32_t client = 0;    // the client's token
+    uint32_t sequence = 0;  // from 1 on, of all packets that went this way
+};
+
+constexpr uint32_t kPacketVersion = 1;
+constexpr size_t kPacketHead = 24;                        // bytes
+constexpr size_t kPacketLeast = 512, kPacketMost = 1400;  // that packets have at most
+
+// Begins a packet in `out`, whose room is kept.
+core::Writer beginPacket(std::pmr::vector<std::byte>& out, const PacketHead& head);
+// Once all is in it.
+void sealPacket(std::span<std::byte> packet) noexcept;
+// Throws where it is none; the reader goes on behind the head.
+PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader);
+
+// What of a sequence came already. Packets that are far behind the newest count as if they had.
+class SequenceWindow {
+ public:
+    [[nodiscard]] bool isNew(uint32_t sequence) const noexcept {
+        if (sequence > newest_) return sequence - newest_ <= kLeap;
+        const uint32_t behind = newest_ - sequence;
+        return sequence > 0 && behind < 64 && (seen_ >> behind & 1) == 0;
+    }
+    [[nodiscard]] bool isNewest(uint32_t sequence) const noexcept { return sequence > newest_; }
+    [[nodiscard]] uint32_t newest() const noexcept { return newest_; }
+    // Is it the newest? It is new.
+    bool take(uint32_t sequence) noexcept {
+        if (sequence <= newest_) {
+            seen_ |= uint64_t(1) << (newest_ - sequence);
+            return false;
+        }
+        const uint32_t ahead = sequence - newest_;
+        seen_ = ahead < 64 ? seen_ << ahead | 1 : 1;
+        newest_ = sequence;
+        return true;
+    }
+
+ private:
+    static constexpr uint32_t kLeap = 1u << 16;  // nobody loses so many at once
+    uint32_t newest_ = 0;
+    uint64_t seen_ = 0;  // bit i: newest_ - i
+};
+
+struct Traffic {  // one way and the other
+    uint64_t bytesOut = 0, bytesIn = 0, packetsOut = 0, packetsIn = 0;
+    uint64_t ignored = 0;  // that came again, or much too late
+};
+
+}  // namespace fw::net

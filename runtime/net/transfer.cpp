@@ -1,0 +1,100 @@
+#include "net/transfer.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace fw::net {
+namespace {
+
+constexpr double kResendAfter = 0.25;  // s
+constexpr double kNeverSent = -1e9;
+
+}  // namespace
+
+void writeChunk(core::Writer& writer, const ChunkHead& head, std::span<const std::byte> state) {
+    writer.number(head.state.id);
+    writer.number(head.state.step);
+    writer.number(head.state.record);
+    writer.number(head.state.size);
+    writer.number(head.index);
+    writer.number(head.bytes);
+    const size_t from = size_t(head.index) * head.bytes;
+    const auto piece = state.subspan(from, std::min<size_t>(head.bytes, state.size() - from));
+    writer.bytes().insert(writer.bytes().end(), piece.begin(), piece.end());
+}
+
+std::span<const std::byte> readChunk(core::Reader& reader, ChunkHead& head) {
+    reader.number(head.state.id);
+    reader.number(head.state.step);
+    reader.number(head.state.record);
+    reader.number(head.state.size);
+    reader.number(head.index);
+    reader.number(head.bytes);
+    const uint64_t from = uint64_t(head.index) * head.bytes;
+    if (head.state.id == 0 || head.state.size == 0 || head.state.size > kStateMost ||
+        head.bytes < kChunkLeast || from >= head.state.size ||
+        reader.left() != std::min<uint64_t>(head.bytes, head.state.size - from))
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The packet has piece %u, %zu of %u bytes, of a state of %u bytes.", head.index,
+                   reader.left(), uint32_t(head.bytes), head.state.size);
+    return reader.take(reader.left());
+}
+
+void ChunkSender::begin(uint32_t count) noexcept {
+    count_ = count;
+    base_ = 0;
+    came_ = 0;
+    sentAt_.fill(kNeverSent);
+}
+
+bool ChunkSender::acknowledge(uint32_t base, uint64_t came) noexcept {
+    if (base > count_ || base < base_) return base <= count_;  // an old one says less
+    const uint32_t rest = count_ - base;
+    if (rest < 64 && (came >> rest) != 0) return false;
+    for (uint32_t piece = base_; piece < std::min(base, base_ + kChunkWindow); ++piece)
+        sentAt_[piece % kChunkWindow] = kNeverSent;  // its place is another's now
+    came_ = base == base_ ? came_ | came : came;
+    base_ = base;
+    return true;
+}
+
+uint32_t ChunkSender::next(double now) const noexcept {
+    const uint32_t end = std::min(count_, base_ + kChunkWindow);
+    for (uint32_t piece = base_; piece < end; ++piece)
+        if ((came_ >> (piece - base_) & 1) == 0 &&
+            now - sentAt_[piece % kChunkWindow] >= kResendAfter)
+            return piece;
+    return count_;
+}
+
+void ChunkReceiver::forget() noexcept {
+    state_ = {};
+    count_ = base_ = 0;
+    came_ = 0;
+    bytes_.clear();
+}
+
+bool ChunkReceiver::take(const ChunkHead& head, std::span<const std::byte> piece) {
+    if (head.state.id < state_.id) return true;  // of one before
+    if (head.state.id > state_.id) {
+        forget();
+        state_ = head.state;
+        chunkBytes_ = head.bytes;
+        count_ = (head.state.size + head.bytes - 1) / head.bytes;
+    }
+    if (head.bytes != chunkBytes_ || head.state.size != state_.size ||
+        head.state.step != state_.step || head.state.record != state_.record)
+        return false;
+    if (head.index < base_ || head.index - base_ >= kChunkWindow) return true;
+    // Room grows with what comes, not with what is claimed.
+    const size_t from = size_t(head.index) * chunkBytes_;
+    if (bytes_.size() < from + piece.size()) bytes_.resize(from + piece.size());
+    std::copy(piece.begin(), piece.end(), bytes_.begin() + std::ptrdiff_t(from));
+    came_ |= uint64_t(1) << (head.index - base_);
+    const auto run = uint32_t(std::countr_one(came_));
+    base_ += run;
+    came_ = run < 64 ? came_ >> run : 0;
+    return true;
+}
+
+}  // namespace fw::net

@@ -1,0 +1,73 @@
+// A state on its way, piece by piece: what is lost is sent again, what comes twice is known.
+#pragma once
+#include "core/stream.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fw::net {
+
+constexpr uint32_t kChunkWindow = 64;                // pieces on their way at most
+constexpr uint32_t kStateMost = 256u * 1024 * 1024;  // bytes of a state
+constexpr size_t kChunkLeast = 256;                  // bytes of a piece
+
+struct StateHead {        // of a state
+    uint32_t id = 0;      // grows; 0: none
+    uint32_t step = 0;    // it is of this step's start
+    uint32_t record = 0;  // the first record behind it
+    uint32_t size = 0;    // bytes
+};
+struct ChunkHead {
+    StateHead state;
+    uint32_t index = 0;
+    uint16_t bytes = 0;  // of each piece but the last
+};
+constexpr size_t kChunkHead = 22;  // bytes
+
+void writeChunk(core::Writer& writer, const ChunkHead& head, std::span<const std::byte> state);
+// Throws where it can be none.
+std::span<const std::byte> readChunk(core::Reader& reader, ChunkHead& head);
+
+// The sender's side: which piece is next.
+class ChunkSender {
+ public:
+    void begin(uint32_t count) noexcept;
+    [[nodiscard]] bool active() const noexcept { return count_ != 0; }
+    void end() noexcept { count_ = 0; }
+    // All before `base` came, and those behind it that have a bit. False: there are none such.
+    bool acknowledge(uint32_t base, uint64_t came) noexcept;
+    // A piece to send at `now` s; count: none is due. One that is lost is due again.
+    [[nodiscard]] uint32_t next(double now) const noexcept;
+    void sent(uint32_t piece, double now) noexcept { sentAt_[piece % kChunkWindow] = now; }
+    [[nodiscard]] uint32_t count() const noexcept { return count_; }
+
+ private:
+    uint32_t count_ = 0, base_ = 0;
+    uint64_t came_ = 0;  // bit i: base_ + i
+    std::array<double, kChunkWindow> sentAt_{};
+};
+
+// The receiver's side.
+class ChunkReceiver {
+ public:
+    explicit ChunkReceiver(std::pmr::memory_resource* memory) : bytes_(memory) {}
+    void forget() noexcept;
+    // False: it is none of the state that the others are of.
+    bool take(const ChunkHead& head, std::span<const std::byte> piece);
+    [[nodiscard]] const StateHead& state() const noexcept { return state_; }
+    [[nodiscard]] bool whole() const noexcept { return state_.id != 0 && base_ == count_; }
+    [[nodiscard]] uint32_t base() const noexcept { return base_; }
+    [[nodiscard]] uint64_t came() const noexcept { return came_; }
+    [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }
+
+ private:
+    StateHead state_;
+    uint32_t count_ = 0, base_ = 0;
+    uint16_t chunkBytes_ = 0;
+    uint64_t came_ = 0;  // bit i: base_ + i
+    std::pmr::vector<std::byte> bytes_;
+};
+
+}  // namespace fw::net

@@ -1,0 +1,178 @@
+// Deeds as they are noted and done again, and hashes of objects in turn.
+#include "world/journal.h"
+
+#include "core/hash.h"
+#include "world/save.h"
+#include "world/world.h"
+
+#include <algorithm>
+
+namespace fw::world {
+namespace {
+
+// The id of what is in a slot; of what is not there an id that every call refuses.
+template <class Pool>
+auto idAt(const Pool& pool, uint32_t slot) {
+    return slot < pool.slotCount() ? pool.idOf(slot) : decltype(pool.idOf(0)){slot + 1, 0};
+}
+
+struct Performing {
+    explicit Performing(Journal& given) : journal(given) { journal.performs = true; }
+    ~Performing() { journal.performs = false; }
+    Performing(const Performing&) = delete;
+    Performing& operator=(const Performing&) = delete;
+    Journal& journal;
+};
+
+}  // namespace
+
+Journal& World::keepJournal(bool follows) {
+    journal_ = core::Owned<Journal>::make(memory_, memory_);
+    journal_->follows = follows;
+    journal_->until = clock_.tick;
+    return *journal_;
+}
+
+void World::mayChange() const {
+    if (journal_ && journal_->follows && !journal_->performs)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The world follows a server's: what burns in it is changed there.");
+}
+
+void World::note(const Deed& deed) noexcept {
+    if (!journal_ || journal_->follows) return;
+    try {
+        journal_->deeds.push_back({clock_.tick, deed});
+    } catch (...) {  // what is done is done: all others are told anew
+        journal_->lost = true;
+    }
+}
+
+void World::noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
+                     uint32_t word) noexcept {
+    if (!journal_) return;
+    Deed deed;
+    deed.kind = kind;
+    deed.slot = slot;
+    deed.word = word;
+    std::copy_n(numbers, count, deed.numbers.begin());
+    note(deed);
+}
+
+void World::notePose(Deed::Kind kind, uint32_t slot, const float transform[16]) noexcept {
+    float columns[12];
+    for (int c = 0; c < 4; ++c) std::copy_n(transform + 4 * c, 3, columns + 3 * c);
+    noteMove(kind, slot, columns, 12);
+}
+
+void World::performLoad(std::span<const std::byte> bytes) {
+    const Performing performing(*journal_);
+    load(bytes);
+}
+
+void World::perform(const Deed& deed) {
+    const Performing performing(*journal_);
+    const float* numbers = deed.numbers.data();
+    float transform[16] = {};
+    for (int c = 0; c < 4; ++c) std::copy_n(numbers + 3 * c, 3, transform + 4 * c);
+    transform[15] = 1;
+    switch (deed.kind) {
+        case Deed::Kind::wind:
+            return setWind(numbers);
+        case Deed::Kind::flags:
+            return setFlags(deed.word);
+        case Deed::Kind::pose:
+            return setTransform(idAt(objects_, deed.slot), transform);
+        case Deed::Kind::moveBlocker:
+            return moveBlocker(idAt(blockers_, deed.slot), transform);
+        case Deed::Kind::moveFire:
+            return moveVolumetricFire(idAt(fires_, deed.slot), numbers);
+        case Deed::Kind::firePower:
+            return setVolumetricFirePower(idAt(fires_, deed.slot), numbers[0]);
+        case Deed::Kind::moveEmitter:
+            return moveFireEmitter(idAt(emitters_, deed.slot), numbers,
+                                   deed.word != 0 ? numbers + 3 : nullptr);
+        case Deed::Kind::emitterPower:
+            return setFireEmitterPower(idAt(emitters_, deed.slot), numbers[0]);
+        case Deed::Kind::moveField:
+            return moveParticleField(idAt(fields_, deed.slot), numbers,
+                                     deed.word != 0 ? numbers + 3 : nullptr);
+        case Deed::Kind::fieldAmount:
+            return setParticleFieldAmount(idAt(fields_, deed.slot), numbers[0]);
+        case Deed::Kind::ignite: {
+            if (deed.tick < clock_.tick || deed.tick > Clock::kLastTick) break;
+            FwIgnitionDef def{};
+            def.structSize = sizeof def;
+            def.kind = deed.word;
+            if (deed.slot != 0) def.object = idAt(objects_, deed.slot - 1);
+            std::copy_n(numbers, 3, def.position);
+            def.radius = numbers[3];
+            def.water = numbers[4];
+            (void)igniteAt(def, deed.tick);
+            return;
+        }
+        case Deed::Kind::count:
+            break;
+    }
+    core::fail(FW_ERROR_BAD_DATA, "A deed of kind %u at tick %u is none.", uint32_t(deed.kind),
+               deed.tick);
+}
+
+double World::seconds() const noexcept {
+    return double(clock_.tick) / gpu::kTicksPerSecond +
+           double(clock_.fraction) / double(uint64_t(1) << Clock::kFractionBits);
+}
+
+double World::secondsTo(uint64_t tick) const noexcept {
+    constexpr double kUnit = 1.0 / double(uint64_t(1) << Clock::kFractionBits);
+    if (tick <= clock_.tick) return 0;
+    const uint64_t steps = (tick - clock_.tick) / gpu::kStepTicks;
+    return double(steps * Clock::kStepUnits - clock_.fraction) * kUnit;
+}
+
+uint64_t World::identity() noexcept {
+    const float rules[] = {def_.paceFactor, def_.up[0],        def_.up[1],
+                           def_.up[2],      def_.spreadChance, def_.timeToLive};
+    uint64_t hash = core::hashBytes(std::as_bytes(std::span(rules)));
+    const uint32_t counts[] = {kSaveVersion,         def_.seed,        def_.maxHops,
+                               def_.maxBurningTiles, objects_.live(),  blockers_.live(),
+                               fires_.live(),        emitters_.live(), fields_.live()};
+    hash = core::hashWords(counts, hash);
+    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
+        if (const auto* object = objects_.at(i)) {
+            const uint64_t asset = assetOf(**object);
+            const uint32_t words[] = {i, uint32_t(asset), uint32_t(asset >> 32)};
+            hash = core::hashWords(words, hash);
+        }
+    return hash;
+}
+
+// The objects whose turn it is are read back with a frame that ends there.
+void World::planHashes(const ClockAdvance& time) {
+    const uint64_t end = time.after.tick;
+    if (time.steps == 0 || end % kHashTicks != 0) return;
+    const uint32_t slots = objects_.slotCount(), rounds = hashRounds(slots);
+    for (auto slot = uint32_t(end / kHashTicks % rounds); slot < slots; slot += rounds)
+        if (objects_.at(slot) && std::find(frame_.burnMaps.begin(), frame_.burnMaps.end(), slot) ==
+                                     frame_.burnMaps.end())
+            frame_.burnMaps.push_back(slot);
+}
+
+void World::noteHash(const gpu::BurnMap& map, const gpu::Readback& readback) {
+    const uint64_t end = readback.endTick;
+    const uint32_t rounds = hashRounds(objects_.slotCount());
+    if (end % kHashTicks != 0 || map.object % rounds != end / kHashTicks % rounds) return;
+    // Once, however many frames end there.
+    const auto before = std::find_if(
+        journal_->hashes.rbegin(), journal_->hashes.rend(),
+        [&](const ObjectHash& one) { return one.slot == map.object || one.tick < end; });
+    if (before != journal_->hashes.rend() && before->tick == end) return;
+    uint64_t hash = core::hashWords(map.ticks);
+    for (const gpu::uvec2& texel : map.heat) {
+        const uint32_t words[2] = {texel.x, texel.y};
+        hash = core::hashWords(words, hash);
+    }
+    journal_->hashes.push_back({map.object, rounds, end, hash});
+}
+
+}  // namespace fw::world

@@ -1,0 +1,70 @@
+// What other machines have to know of a world: what its host did to the burn, in order, and hashes
+// of its objects at fixed steps. Kept while someone asks for it (net/), and taken from there.
+#pragma once
+#include "shared/burn.h"
+
+#include <array>
+#include <cstdint>
+#include <memory_resource>
+#include <vector>
+
+namespace fw::world {
+
+// A call of the host's that changes what burns. What it makes and destroys is none: each host does
+// that by itself.
+struct Deed {
+    enum class Kind : uint8_t {
+        wind,
+        flags,
+        ignite,
+        pose,
+        moveBlocker,
+        moveFire,
+        firePower,
+        moveEmitter,
+        emitterPower,
+        moveField,
+        fieldAmount,
+        count
+    };
+    Kind kind = Kind::count;
+    uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all
+    uint32_t tick = 0;  // ignite: when it takes effect
+    uint32_t word = 0;  // flags; ignite: FwIgnitionKind; moveEmitter: 1: with a direction
+    std::array<float, 12> numbers{};
+};
+
+constexpr uint32_t kHashSteps = 8;    // an object's turn is at multiples of these
+constexpr uint32_t kHashRounds = 16;  // each has its turn once in so many; in more, if it is more
+constexpr uint32_t kMostHashes = 64;  // of a round than these
+constexpr uint32_t kHashTicks = kHashSteps * gpu::kStepTicks;
+
+constexpr uint32_t hashRounds(uint32_t slots) noexcept {
+    const uint32_t needed = (slots + kMostHashes - 1) / kMostHashes;
+    return needed > kHashRounds ? needed : kHashRounds;
+}
+
+struct ObjectHash {
+    uint32_t slot = 0, stride = 1;  // the next of its round is so many slots on
+    uint64_t tick = 0, hash = 0;
+};
+
+struct Journal {
+    explicit Journal(std::pmr::memory_resource* memory) : deeds(memory), hashes(memory) {}
+    struct Entry {
+        uint64_t tick = 0;  // of the step that it came before
+        Deed deed;
+    };
+    std::pmr::vector<Entry> deeds;
+    std::pmr::vector<ObjectHash> hashes;
+    bool follows = false;     // another machine's deeds alone count
+    bool performs = false;    // one of them is being done
+    bool lost = false;        // memory ended, and with it the order of deeds
+    bool loaded = false;      // another past since
+    uint64_t capturedAt = 0;  // tick of the last capture, and deeds before it that wait here
+    size_t capturedBehind = 0;
+    bool captured = false;
+    uint64_t until = 0;  // with `follows`: the tick that frames may come to
+};
+
+}  // namespace fw::world

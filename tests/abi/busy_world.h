@@ -1,0 +1,185 @@
+// A world in which much goes on at once, by a script of its own: what tests of saves and of
+// networks burn.
+#pragma once
+#include "abi/abi_support.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace host {
+
+using Bytes = std::vector<unsigned char>;
+
+// Much goes on at once in it: boxes and boards of several materials that light each other, wind
+// that turns, water, a flamethrower, a fire that stands there, a field that wets, a wall, a tag.
+class BusyWorld {
+ public:
+    explicit BusyWorld(uint32_t backend, float pace = 12, uint32_t things = 10) {
+        FwContextDef contextDef = fwDefaultContextDef();
+        contextDef.backend = backend;
+        contextDef.callbacks = host.callbacks();
+        FwErrorInfo error{};
+        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        FwWorldDef def = fwDefaultWorldDef();
+        def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
+        def.paceFactor = pace;
+        def.seed = 5;
+        def.maxBurningTiles = 250;
+        ok(fwCreateWorld(context, &def, &world));
+        for (uint32_t i = 0; i < things; ++i) add(i);
+        FwFireEmitterDef jetDef = fwDefaultFireEmitterDef();
+        jetDef.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES;
+        put(jetDef.position, -1.2f, 0.15f, 0.1f);
+        put(jetDef.direction, 1, 0, 0.05f);
+        jetDef.power = 400;
+        ok(fwWorld_CreateFireEmitter(world, &jetDef, &jet));
+        FwVolumetricFireDef fireDef = fwDefaultVolumetricFireDef();
+        fireDef.flags |= FW_FIRE_IGNITES;
+        put(fireDef.position, 1.8f, 0, 0.55f);
+        ok(fwWorld_CreateVolumetricFire(world, &fireDef, &fire));
+        FwParticleFieldDef fieldDef = fwDefaultParticleFieldDef();
+        ok(fwInitFieldPreset(&fieldDef, FW_FIELD_WATER));
+        fieldDef.flags |= FW_FIELD_WETS;
+        put(fieldDef.position, 0.9f, 0.0f, 0.5f);
+        fieldDef.width = fieldDef.height = 32;
+        ok(fwWorld_CreateParticleField(world, &fieldDef, &field));
+        FwBlockerDef wall = fwDefaultBlockerDef();
+        place(wall.transform, 1.0f, 0.3f, 0.25f, 0);
+        put(wall.halfSize, 0.3f, 0.3f, 0.01f);
+        ok(fwWorld_AddBlocker(world, &wall, &blocker));
+    }
+    BusyWorld(const BusyWorld&) = delete;
+    BusyWorld& operator=(const BusyWorld&) = delete;
+    ~BusyWorld() {
+        fwDestroyContext(context);
+        EXPECT_EQ(0, host.blocks);
+    }
+
+    // What happens in a frame follows from its number alone. Rates of frames vary.
+    void run(uint32_t from, uint32_t to) {
+        for (uint32_t frame = from; frame < to; ++frame) {
+            act(frame);
+            ok(fwWorld_Step(world, timeOf(frame)));
+        }
+    }
+    static float timeOf(uint32_t frame) { return frame % 3 == 0 ? 1.0f / 60 : 1.0f / 24; }  // s
+    // Of every texel and what it holds, and of the tick.
+    uint64_t hash() {
+        uint64_t all = 0;
+        for (const FwBurnableMeshId id : ids) ok(fwDebug_RequestBurnMap(world, id));
+        for (const FwBurnableMeshId id : ids) {
+            uint64_t one = 0, tick = 0;
+            come([&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, &tick); });
+            all = all * 31 + one + tick;
+        }
+        return all;
+    }
+    Bytes save() {
+        ok(fwWorld_RequestSave(world));
+        uint64_t size = 0;
+        come([&] { return fwWorld_FetchSave(world, nullptr, &size); });
+        Bytes bytes(size);
+        ok(fwWorld_FetchSave(world, bytes.data(), &size));
+        return bytes;
+    }
+    FwResult load(const Bytes& bytes) {
+        const unsigned char none = 0;  // an empty vector has no address
+        return fwWorld_Load(world, bytes.empty() ? &none : bytes.data(), bytes.size());
+    }
+    uint32_t burning() {  // objects that caught
+        uint32_t caught = 0;
+        for (const FwBurnableMeshId id : ids) {
+            FwObjectState state{};
+            state.structSize = sizeof state;
+            ok(fwWorld_GetObjectState(world, id, &state));
+            caught += state.ignited > 0 ? 1 : 0;
+        }
+        return caught;
+    }
+
+    Host host;
+    FwContext* context = nullptr;
+    FwWorld* world = nullptr;
+    std::vector<FwBurnableMeshId> ids;
+    FwFireEmitterId jet{};
+    FwVolumetricFireId fire{};
+    FwParticleFieldId field{};
+    FwBlockerId blocker{};
+
+ private:
+    // With a device an answer comes with a frame, be it of no time.
+    void come(const std::function<FwResult()>& fetch) {
+        FwResult result = fetch();
+        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+            ok(fwWorld_Step(world, 0));
+            result = fetch();
+        }
+        ok(result);
+    }
+    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
+    static void put(float (&to)[3], float x, float y, float z) { to[0] = x, to[1] = y, to[2] = z; }
+    static void place(float (&at)[16], float x, float y, float z, float turn) {
+        std::fill(std::begin(at), std::end(at), 0.0f);
+        at[0] = at[10] = std::cos(turn);
+        at[8] = std::sin(turn);
+        at[2] = -at[8];
+        at[5] = at[15] = 1;
+        at[12] = x, at[13] = y, at[14] = z;
+    }
+    void add(uint32_t i) {
+        static const uint32_t kPresets[] = {FW_MATERIAL_PLYWOOD, FW_MATERIAL_PAPER,
+                                            FW_MATERIAL_COTTON, FW_MATERIAL_PINE,
+                                            FW_MATERIAL_DRY_LEAF};
+        const Sheet sheet(0.5f, 0.35f, 2);
+        const FwMeshDef meshDef = [&] {
+            FwMeshDef made = sheet.def(64);
+            made.noiseAmplitude = 0.15f;
+            return made;
+        }();
+        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+        ok(fwWorld_CreateMesh(world, &meshDef, &def.mesh));
+        FwMaterialDef material = fwDefaultMaterialDef();
+        ok(fwInitMaterialPreset(&material, kPresets[i % 5]));
+        ok(fwWorld_CreateMaterial(world, &material, &def.materials[0]));
+        if (i == 4) def.flags |= FW_BURNABLE_LITE;
+        place(def.transform, float(i % 5) * 0.45f, 0.12f * float(i % 3), float(i / 5) * 0.4f,
+              0.2f * float(i));
+        FwBurnableMeshId id{};
+        ok(fwWorld_CreateBurnableMesh(world, &def, &id));
+        ids.push_back(id);
+    }
+    void act(uint32_t frame) {
+        FwIgnitionDef ball = fwDefaultIgnitionDef();
+        uint32_t texels = 0;
+        if (frame == 2 || frame == 90) {
+            ball.radius = 0.15f;
+            ball.delay = frame == 90 ? 0.7f : 0.0f;
+            put(ball.position, frame == 2 ? 0.6f : 1.4f, 0.1f, 0.2f);
+            ok(fwWorld_Ignite(world, &ball, &texels));
+        }
+        if (frame == 60 || frame == 130) {
+            ball.kind = frame == 60 ? FW_WET : FW_EXTINGUISH;
+            ball.water = frame == 60 ? 80.0f : 0.0f;
+            ball.radius = 0.2f;
+            put(ball.position, 0.5f, 0.1f, 0.1f);
+            ok(fwWorld_Ignite(world, &ball, &texels));
+        }
+        if (frame % 25 == 7) {
+            const float wind[3] = {std::cos(float(frame)) * 3, 0, std::sin(float(frame)) * 3};
+            ok(fwWorld_SetWind(world, wind));
+        }
+        if (frame % 40 == 11) {
+            float at[16];
+            place(at, 0.9f + 0.01f * float(frame % 7), 0.1f, 0.5f, 0.1f * float(frame));
+            ok(fwWorld_SetTransform(world, ids[7 % ids.size()], at));
+        }
+        if (frame == 100) ok(fwWorld_SetFlags(world, FW_WORLD_RADIATION | FW_WORLD_CONTACT));
+        if (frame == 150)
+            ok(fwWorld_SetFlags(
+                world, FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS));
+    }
+};
+
+inline bool there(const BusyWorld& w) { return w.world != nullptr; }
+
+}  // namespace host
