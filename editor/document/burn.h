@@ -15,7 +15,7 @@
 
 namespace fwedit {
 
-constexpr double kTicksPerSecond = 4096;      // as fwDebug_ReadIgnition gives them
+constexpr double kTicksPerSecond = 4096;      // of fwDebug_FetchBurnMap
 constexpr uint32_t kFirstCode = 0xfffffff0u;  // from it on: texels without an ignition tick
 
 // Imported files and baked burn maps, kept from burn to burn. One per program.

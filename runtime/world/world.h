@@ -715,7 +715,7 @@ class World {
     uint32_t switches_ = 0;
     uint64_t planStamp_ = 0;
     std::array<core::Owned<Save>, size_t(SaveFor::count)> saves_;  // once one was asked for
-    core::Owned<Journal> journal_;  // null: nobody asks
+    core::Owned<Journal> journal_;                                 // null: nobody asks
     uint64_t loadedFrame_ = 0;  // readbacks up to this frame are of another past
 
     // As of the last readback.

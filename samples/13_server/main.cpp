@@ -1,9 +1,8 @@
 // A dedicated server: crates burn at 32 Hz on one core, by the same integers as on any GPU. One
 // line a second: how many burn, what it costs, and the hash of all of it, which a client compares
 // with its own. It links the library and nothing else.
-#include "yard.h"
+#include "common/yard.h"
 
-#include <flamewright/flamewright_debug.h>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -80,18 +79,6 @@ void check(FwResult result, FwWorld* world) {
 
 // The processor's time, of all threads of the process.
 double cpuSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
-
-// Every texel of every crate, as each machine of a game must have it.
-uint64_t hashOf(FwWorld* world, const Yard& yard) {
-    uint64_t all = 0;
-    for (const FwBurnableMeshId id : yard.crates) {
-        uint64_t one = 0;
-        check(fwDebug_RequestBurnMap(world, id), world);
-        check(fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, nullptr), world);
-        all = all * 0x9E3779B97F4A7C15ull + one;
-    }
-    return all;
-}
 
 void save(FwWorld* world, const std::string& folder) {
     uint64_t size = 0;

@@ -20,7 +20,7 @@ done < <(printf '%s\n' front/{dense,sparse3,published}/{128,256,512,1024} \
     scene/tower_defence/{none,throwers10,throwers100} game/frame particles/{sim/{10k,100k},draw/2k,sort/10k} \
     field/64x64x64 field/draw_{ground,fire,smoke,water} \
     server/burning100_step world/{burning300,idle1000}_step \
-    query/eta record/idle save/burnt1024 load/burnt1024 net/latejoin_bytes \
+    query/eta record/idle save/burnt1024 load/burnt1024 net/{latejoin,delta}_bytes \
     editor/{stroke,scrub/1024,open_bunny31k,start})
 twice=$(sort <<<"$listed" | uniq -d)
 [[ -z $twice ]] || { echo "rows of one name: $twice" && status=1; }

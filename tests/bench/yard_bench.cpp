@@ -1,6 +1,7 @@
 // A yard of crates by the library as a host has it: what a step of a world costs a server without a
-// GPU, and on a device; and that what does not burn costs nothing.
-#include "13_server/yard.h"
+// GPU, and on a device; what a client of it costs in bytes; and that what does not burn costs
+// nothing.
+#include "common/yard.h"
 #include "bench/bench_device.h"
 
 #include <benchmark/benchmark.h>
@@ -18,7 +19,8 @@ constexpr uint32_t kExchange =
 
 class YardBench {
  public:
-    YardBench(uint32_t backend, uint32_t flags, uint32_t burning, uint32_t idle) {
+    YardBench(uint32_t backend, uint32_t flags, uint32_t burning, uint32_t idle,
+              bool lights = true) {
         FwContextDef def = fwDefaultContextDef();
         def.backend = backend;
         FwErrorInfo error{};
@@ -30,7 +32,7 @@ class YardBench {
         if (fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
             throw std::runtime_error("the bench has no world");
         yard_ = makeYard(world_, burning + idle);
-        for (uint32_t i = 0; i < burning; ++i) lightCrate(world_, yard_, i);
+        for (uint32_t i = 0; lights && i < burning; ++i) lightCrate(world_, yard_, i);
     }
     ~YardBench() { fwDestroyContext(context_); }
     YardBench(const YardBench&) = delete;
@@ -43,6 +45,7 @@ class YardBench {
         seconds.push_back(secondsSince(start));
         cpu.push_back(cpuSeconds() - cpuStart);
     }
+    [[nodiscard]] FwWorld* world() const { return world_; }
     void forget() { seconds.clear(), cpu.clear(); }
     [[nodiscard]] uint32_t burning() { return stateOf(world_, yard_).burning; }
 
@@ -83,6 +86,70 @@ void burning(benchmark::State& state, uint32_t backend, uint32_t crates) {
     }
 }
 
+// What a client of a server with a yard that burns costs, on a way that loses a fifth: bytes a
+// second, both ways, once all are alight. Hosts do nothing then.
+void shared(benchmark::State& state, uint32_t crates) {
+    try {
+        YardBench server(FW_BACKEND_CPU, kExchange, crates, 0);
+        YardBench client(FW_BACKEND_CPU, kExchange, crates, 0, false);
+        FwNetDef def = fwDefaultNetDef();
+        def.token = 1;
+        FwPeerId peer{};
+        if (fwNet_Serve(server.world(), &def) != FW_OK ||
+            fwNet_Join(client.world(), &def) != FW_OK ||
+            fwNet_AddPeer(server.world(), &peer) != FW_OK)
+            throw std::runtime_error("the worlds cannot be shared");
+        uint32_t random = 1, lost = 0, packets = 0;
+        const auto carry = [&](FwWorld* from, FwPeerId to, FwWorld* target, FwPeerId sender) {
+            unsigned char room[1400];
+            for (uint32_t size = sizeof room; fwNet_Write(from, to, room, &size) == FW_OK;
+                 size = sizeof room) {
+                random = random * 1664525u + 1013904223u;
+                ++packets;
+                if ((random >> 16) % 5 == 0)
+                    ++lost;
+                else if (fwNet_Read(target, sender, room, size) != FW_OK)
+                    throw std::runtime_error("a packet is refused");
+            }
+        };
+        const auto step = [&] {
+            server.step();
+            (void)fwNet_Update(server.world(), kStep);
+            carry(server.world(), peer, client.world(), {});
+            (void)fwNet_Update(client.world(), kStep);
+            FwNetTurn turn{};
+            turn.structSize = sizeof turn;
+            while (fwNet_TakeTurn(client.world(), &turn) == FW_OK && turn.kind == FW_TURN_STEP)
+                if (fwWorld_Step(client.world(), turn.deltaTime) != FW_OK)
+                    throw std::runtime_error("a client's step fails");
+            carry(client.world(), {}, server.world(), peer);
+        };
+        const auto bytes = [&](FwWorld* world) {
+            FwNetState now{};
+            now.structSize = sizeof now;
+            (void)fwNet_GetState(world, {}, &now);
+            return now;
+        };
+        for (int i = 0; i < kWarm; ++i) step();
+        server.forget();
+        const FwNetState before = bytes(server.world()), beforeUp = bytes(client.world());
+        for (int i = 0; i < kSteps; ++i) step();
+        const FwNetState after = bytes(server.world()), afterUp = bytes(client.world());
+        const double seconds = double(kSteps) * double(kStep);
+        show(state, server);
+        state.counters["bytes_s"] = double(after.bytesOut - before.bytesOut) / seconds;
+        state.counters["up_bytes_s"] = double(afterUp.bytesOut - beforeUp.bytesOut) / seconds;
+        state.counters["packets_s"] = double(after.packetsOut - before.packetsOut) / seconds;
+        state.counters["lost"] = double(lost) / double(packets);
+        state.counters["hashes"] = double(afterUp.hashes);
+        state.counters["strays"] = double(afterUp.strays);
+        if (afterUp.phase != FW_NET_FOLLOWING || afterUp.strays != 0 || afterUp.hashes == 0)
+            throw std::runtime_error("the client does not burn as the server does");
+    } catch (const std::exception& failure) {
+        state.SkipWithError(failure.what());
+    }
+}
+
 // Ten that burn, with and without a thousand beside them that do not; in turns.
 void idle(benchmark::State& state) {
     try {
@@ -107,6 +174,11 @@ BENCHMARK_CAPTURE(burning, server, FW_BACKEND_CPU, 100)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(burning, device, FW_BACKEND_VULKAN, 300)
     ->Name("world/burning300_step")
+    ->UseManualTime()
+    ->Iterations(kSteps)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(shared, hundred, 100)
+    ->Name("net/delta_bytes")
     ->UseManualTime()
     ->Iterations(kSteps)
     ->Unit(benchmark::kMillisecond);

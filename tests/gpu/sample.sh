@@ -41,7 +41,11 @@ if grep -E -q 'VUID-|UNASSIGNED-|SYNC-HAZARD|Validation (Error|Warning)' "$work/
 fi
 # A server draws nothing: it leaves a save.
 [[ $name != 13_server || -s $work/out/server.fwsave ]] || { echo "$name left no save" && exit 1; }
-if [[ $mode == headless && $name != 13_server && -z $(find "$work/out" -name '*.png' -size +0 2>/dev/null) ]]; then
+# Nor do two processes with one fire: they leave their hashes.
+if [[ $name == 12_multiplayer ]]; then
+    cmp "$work/out/server.txt" "$work/out/client.txt" || { echo "$name left no hashes that are one" && exit 1; }
+fi
+if [[ $mode == headless && $name != 12_multiplayer && $name != 13_server && -z $(find "$work/out" -name '*.png' -size +0 2>/dev/null) ]]; then
     echo "$name left no picture in --out"
     exit 1
 fi

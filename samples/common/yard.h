@@ -12,6 +12,8 @@ struct Yard {
 // Crates of half a metre, 0.9 m from middle to middle, on y = 0. Throws std::runtime_error with the
 // library's message.
 Yard makeYard(FwWorld* world, uint32_t crates);
+// Where a crate stands: the middle of its foot, m.
+void placeOf(const Yard& yard, uint32_t crate, float (&place)[3]);
 // A match at a crate's foot.
 void lightCrate(FwWorld* world, const Yard& yard, uint32_t crate);
 
@@ -20,3 +22,5 @@ struct YardState {
     float power = 0;                  // W
 };
 YardState stateOf(FwWorld* world, const Yard& yard);
+// Of every texel of every crate, as each machine of a game must have it. On the cpu backend.
+uint64_t hashOf(FwWorld* world, const Yard& yard);

@@ -1,5 +1,6 @@
 #include "yard.h"
 
+#include <flamewright/flamewright_debug.h>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -40,13 +41,13 @@ FwMeshId makeCrate(FwWorld* world) {
     return mesh;
 }
 
+}  // namespace
+
 void placeOf(const Yard& yard, uint32_t crate, float (&place)[3]) {
     place[0] = kApart * float(crate % yard.columns);
     place[1] = 0;
     place[2] = kApart * float(crate / yard.columns);
 }
-
-}  // namespace
 
 Yard makeYard(FwWorld* world, uint32_t crates) {
     Yard yard;
@@ -86,4 +87,15 @@ YardState stateOf(FwWorld* world, const Yard& yard) {
         sum.power += state.power;
     }
     return sum;
+}
+
+uint64_t hashOf(FwWorld* world, const Yard& yard) {
+    uint64_t all = 0;
+    for (const FwBurnableMeshId id : yard.crates) {
+        uint64_t one = 0;
+        check(fwDebug_RequestBurnMap(world, id), world);
+        check(fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, nullptr), world);
+        all = all * 0x9E3779B97F4A7C15ull + one;
+    }
+    return all;
 }
