@@ -1,6 +1,7 @@
-// A heat step of the tiles on the hot list, 8 tiles a group and a thread per row: temperature, fuel
-// and water of each texel, and what becomes of its state in the front. Tiles at rest leave the list,
-// tiles with nothing but cold water left take a step in 32.
+// A heat step of the tiles on the hot list: temperature, fuel and water of each texel, and what
+// becomes of its state in the front. Tiles at rest leave the list. Most of the others are only warm,
+// or wet, and have their turn now and then: a group finds those of 64 that have, and runs them by
+// eight, a thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -28,6 +29,8 @@ layout(local_size_x = 64) in;
 #include "shared/heat.h"
 #include "lib/lists.glsl"
 
+shared uint running;
+shared uint runs[64];  // world tiles
 // What the rows of a tile tell: changed | lit << 8 | put out << 16 | work << 24, heat of what burnt.
 shared uint rowNews[64];
 shared uint rowLow[64];
@@ -39,8 +42,8 @@ struct Burnt {
     float watts;
 };
 
-// `held`: it may not catch: what would stays as it is, and is looked at again.
-uint heatRow(TileRef tile, uint row, uvec2 comes, bool doze, bool held, inout Burnt burnt) {
+// `turn`: see heatTurn. `held`: it may not catch: what would stays as it is, and is looked at again.
+uint heatRow(TileRef tile, uint row, uvec2 comes, uint turn, bool held, inout Burnt burnt) {
     uint object = tile.object;
     uint texel = texelOf(object, tile.local, row * 8u);
     uint stateAt = objects[object].stateBase + texel;
@@ -50,16 +53,21 @@ uint heatRow(TileRef tile, uint row, uvec2 comes, bool doze, bool held, inout Bu
     uvec4 ta = stateQuads[stateAt >> 2u];
     uvec4 tb = stateQuads[(stateAt >> 2u) + 1u];
     uint t[8] = uint[8](ta.x, ta.y, ta.z, ta.w, tb.x, tb.y, tb.z, tb.w);
-    uint todo = 0u;
+    uint todo = 0u, dozes = 0u, waits = 0u;
     FW_UNROLL for (int i = 0; i < 4; ++i) {
         uvec4 two = heatPairs[(heatAt >> 1u) + uint(i)];
-        todo |= heatWork(unpackHeat(two.xy), t[2 * i], ambient) != 0u ? 1u << uint(2 * i) : 0u;
-        todo |= heatWork(unpackHeat(two.zw), t[2 * i + 1], ambient) != 0u ? 2u << uint(2 * i) : 0u;
+        FW_UNROLL for (int k = 0; k < 2; ++k) {
+            HeatTexel x = unpackHeat(k == 0 ? two.xy : two.zw);
+            uint work = heatWork(x, t[2 * i + k], comes.x, ambient), bit = 1u << uint(2 * i + k);
+            todo |= (work & turn) != 0u ? bit : 0u;
+            dozes |= work == kWorkDozes ? bit : 0u;
+            waits |= (work & turn) == 0u ? work : 0u;
+        }
     }
-    todo = comes.x != 0u ? 0xFFu : todo;
-    uint news = 0u;
+    uint news = waits << 24u;
+    bool always = (turn & kWorkAlways) != 0u;
     uint step = hash32(push.now);
-    if (todo == 0u) return 0u;
+    if (todo == 0u) return news;
     do {
         uint i = uint(findLSB(todo));
         uint kind = texels[texelAt + i].y >> 16u;
@@ -70,14 +78,16 @@ uint heatRow(TileRef tile, uint row, uvec2 comes, bool doze, bool held, inout Bu
         uint now = before;
         uint chance = heatChance(texel + i, step);
         uint units = 0u;
-        if (doze)
+        if (!always && (dozes >> i & 1u) != 0u) {
             now = heatDozes(x, m, before, chance);
-        else
+        } else {
+            if (!always) m = heatOverRest(m);
             now = heatTexelStep(x, m, before, push.now, comes.x, comes.y != 0u,
                                 materials[material].air, chance, units);
+        }
         bool lights = (kind & kTexelReal) != 0u && isSource(now) && !isSource(before);
         bool writes = !asksOnly() && !(held && lights);
-        news |= lights && !writes ? 2u << 24u | (asksOnly() ? 1u << (i + 8u) : 0u) : 0u;
+        news |= lights && !writes ? kWorkAlways << 24u | (asksOnly() ? 1u << (i + 8u) : 0u) : 0u;
         if ((kind & kTexelReal) != 0u && writes) {
             uint low, high;
             umulExtended(units, m.energy, high, low);
@@ -90,17 +100,17 @@ uint heatRow(TileRef tile, uint row, uvec2 comes, bool doze, bool held, inout Bu
             news |= now != before ? bit : 0u;
             news |= lights ? bit << 8u : 0u;
             news |= isSource(before) && !isSource(now) ? bit << 16u : 0u;
-            news |= heatWork(x, now, ambient) << 24u;
+            news |= heatWork(x, now, comes.x, ambient) << 24u;
         }
         todo &= todo - 1u;
     } while (todo != 0u);
     return news;
 }
 
-void finishTile(uint worldTile, TileRef tile, uint thread, bool flux) {
+void finishTile(uint worldTile, TileRef tile, uint thread, uint flux, bool always) {
     uint object = tile.object;
     uvec2 changed = uvec2(0u);
-    uint lit = 0u, gone = 0u, work = flux ? 2u : 0u, low = 0u, high = 0u;
+    uint lit = 0u, gone = 0u, work = fluxWork(flux), low = 0u, high = 0u;
     float watts = 0.0;
     for (uint row = 0u; row < 8u; ++row) {
         uint news = rowNews[thread + row];
@@ -119,7 +129,9 @@ void finishTile(uint worldTile, TileRef tile, uint thread, bool flux) {
         return;
     }
     if (work != 0u) {
-        if ((work & 2u) != 0u) atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
+        // Only what is in its turn always can show anything.
+        bool warm = staysWarm(work, always, tile.local, push.now);
+        if (warm) atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
         else atomicAnd(tileState[worldTile].flag, ~kTileWarm);
         hotAppend(push.hotParity ^ 1u, worldTile);
     } else {
@@ -144,34 +156,52 @@ void finishTile(uint worldTile, TileRef tile, uint thread, bool flux) {
     touchReaders(object, tile.local, changed);
 }
 
+uint turnOf(uint worldTile, TileRef tile) {
+    bool warm = (tileState[worldTile].flag & kTileWarm) != 0u;
+    return heatTurn(warm, tile.object, tile.local, push.now);
+}
+
 void main() {
     uint count = counters[kRowHot + push.hotParity].listCount;
     uint thread = gl_LocalInvocationID.x;
-    for (uint base = gl_WorkGroupID.x * 8u; base < count; base += gl_NumWorkGroups.x * 8u) {
-        uint slot = base + (thread >> 3u);
-        uint worldTile = slot < count ? hotTile(push.hotParity, slot) : 0u;
-        TileRef tile = tileRef(worldTile);
-        bool here = slot < count;
-        bool alive = here && tile.alive && (objects[tile.object].flags & kObjectHeat) != 0u;
-        uvec2 comes = alive ? uvec2(tileHeat[worldTile].flux, tileHeat[worldTile].pilot) : uvec2(0u);
-        bool flux = comes.x != 0u;
-        uint flag = tileState[worldTile].flag;
-        bool doze = (flag & kTileWarm) == 0u && !flux;
-        bool runs = alive && (!doze || dozeEnds(tile.object, tile.local, push.now));
-        bool held = !mayBurn(worldTile);
-        if (asksOnly()) runs = runs && held;
-        uint news = alive && !runs ? 1u << 24u : 0u;  // sleeps on
-        Burnt burnt = Burnt(0u, 0u, 0.0);
-        if (runs) news = heatRow(tile, thread & 7u, comes, doze, held, burnt);
-        rowNews[thread] = news;
-        rowLow[thread] = burnt.low;
-        rowHigh[thread] = burnt.high;
-        rowWatts[thread] = burnt.watts;
+    for (uint base = gl_WorkGroupID.x * 64u; base < count; base += gl_NumWorkGroups.x * 64u) {
+        if (thread == 0u) running = 0u;
         barrier();
-        if ((thread & 7u) == 0u && here) {
-            if (alive) finishTile(worldTile, tile, thread, flux);
-            else if (!asksOnly()) atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
+        if (base + thread < count) {
+            uint worldTile = hotTile(push.hotParity, base + thread);
+            TileRef tile = tileRef(worldTile);
+            bool alive = tile.alive && (objects[tile.object].flags & kObjectHeat) != 0u;
+            if (!alive) {
+                if (!asksOnly())
+                    atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
+            } else if (turnOf(worldTile, tile) == 0u) {
+                if (!asksOnly()) hotAppend(push.hotParity ^ 1u, worldTile);  // sleeps on
+            } else if (!asksOnly() || !mayBurn(worldTile)) {
+                runs[atomicAdd(running, 1u)] = worldTile;
+            }
         }
         barrier();
+        uint all = running;
+        for (uint first = 0u; first < all; first += 8u) {
+            uint slot = first + (thread >> 3u);
+            bool here = slot < all;
+            uint worldTile = here ? runs[slot] : 0u;
+            TileRef tile = tileRef(worldTile);
+            uint turn = turnOf(worldTile, tile);
+            uvec2 comes =
+                here ? uvec2(tileHeat[worldTile].flux, tileHeat[worldTile].pilot) : uvec2(0u);
+            Burnt burnt = Burnt(0u, 0u, 0.0);
+            uint news = 0u;
+            if (here)
+                news = heatRow(tile, thread & 7u, comes, turn, !mayBurn(worldTile), burnt);
+            rowNews[thread] = news;
+            rowLow[thread] = burnt.low;
+            rowHigh[thread] = burnt.high;
+            rowWatts[thread] = burnt.watts;
+            barrier();
+            if (here && (thread & 7u) == 0u)
+                finishTile(worldTile, tile, thread, comes.x, (turn & kWorkAlways) != 0u);
+            barrier();
+        }
     }
 }

@@ -53,7 +53,7 @@ void warmTile(uint slot, uint local) {
     if (tileHeat[worldTile].flux == flux && tileHeat[worldTile].pilot == pilot) return;
     tileHeat[worldTile].flux = flux;
     tileHeat[worldTile].pilot = pilot;
-    hotTouch(push.hotParity, worldTile);
+    hotList(push.hotParity, worldTile, fluxWork(flux) == kWorkAlways ? kTileWarm : 0u);
 }
 
 void main() {

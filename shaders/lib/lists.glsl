@@ -40,15 +40,17 @@ void burnAppend(uint parity, uint worldTile) {
 #ifdef FW_USE_HOT_LISTS
 uint hotTile(uint parity, uint slot) { return parity == 0u ? hotLists[slot].x : hotLists[slot].y; }
 void hotAppend(uint parity, uint worldTile) {
-    uint slot = listSlot(kRowHot + parity, 8u);
+    uint slot = listSlot(kRowHot + parity, 64u);
     if (parity == 0u) hotLists[slot].x = worldTile;
     else hotLists[slot].y = worldTile;
 }
-// Of objects with heat only: something of the tile's temperature, water or flux changes from now on.
-void hotTouch(uint parity, uint worldTile) {
-    uint old = atomicOr(tileState[worldTile].flag, kTileHot | kTileWarm);
+// Of objects with heat only: something of the tile's temperature, water or flux changes from now on,
+// and it takes every step (kTileWarm), or its turns.
+void hotList(uint parity, uint worldTile, uint warm) {
+    uint old = atomicOr(tileState[worldTile].flag, kTileHot | warm);
     if ((old & kTileHot) == 0u) hotAppend(parity, worldTile);
 }
+void hotTouch(uint parity, uint worldTile) { hotList(parity, worldTile, kTileWarm); }
 #endif
 
 #ifdef FW_USE_PREDICT_LISTS

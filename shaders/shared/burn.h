@@ -143,7 +143,7 @@ FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
 FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
 FW_SHARED_CONST uint kTileAhead = 128u;      // `wake` may be another thing than a known arrival
 FW_SHARED_CONST uint kTileHot = 32u;         // in the hot list
-FW_SHARED_CONST uint kTileWarm = 64u;        // and not for cold water alone
+FW_SHARED_CONST uint kTileWarm = 64u;        // and takes every heat step, see heatTurn
 // Cosmetic, of `support`: facts of the tile's texels, what it found, and its distance to a hold.
 FW_SHARED_CONST uint kTileSidesShift = 8u;   // 4 bits: the tile beside goes on over that side
 FW_SHARED_CONST uint kTileSpent = 0x1000u;   // all its texels burn or have burnt
@@ -156,7 +156,7 @@ FW_SHARED_CONST uint kTileMarked = 0x200000u; // fire, heat, water or soot shows
 FW_SHARED_CONST uint kTileDistanceShift = 22u; // 10 bits
 
 // Rows of IterationCounters. The first are lists that live on; list*: indirect groups of 64 tiles
-// (burn) or of 8 (predict, hot).
+// (burn, hot) or of 8 (predict).
 FW_SHARED_CONST uint kRowBurn = 0u;          // + parity of the burn list; run*: its BurnTiles / 64
 FW_SHARED_CONST uint kRowPredict = 2u;       // + parity of the predict list
 FW_SHARED_CONST uint kRowHot = 4u;           // + parity of the hot list

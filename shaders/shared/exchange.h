@@ -14,7 +14,7 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST int kExchangeFar = 32767;       // mm, along each axis
 FW_SHARED_CONST uint kExchangeSteps = 4u;       // between two exchanges
 FW_SHARED_CONST uint kExchangeTicks = kExchangeSteps * kStepTicks;
-FW_SHARED_CONST uint kExchangeTurns = 8u;       // of a receiver's tiles, every so many'th each time
+FW_SHARED_CONST uint kExchangeTurns = kRests;   // of a receiver's tiles, every so many'th each time
 FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
 FW_SHARED_CONST uint kSourceGrid = 4u;          // an object's sources: cells along its longest side
 FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most, so

@@ -23,6 +23,11 @@ FW_SHARED_CONST uint kMoistMost = 255u;         // 1/128 kg/kg
 FW_SHARED_CONST uint kSoaksOut = 3u;            // steps under a film before a flame dies: one more
 FW_SHARED_CONST uint kLukewarm = 16u;           // 1/16 K off the ambient that still count as at rest
 FW_SHARED_CONST uint kDozes = 32u;              // steps between those of a tile with cold water only
+// Steps between those of a tile that is only warm: no flame, no water, too cold to char, and too
+// little comes to it to make it much warmer (wood needs 10 kW/m^2 to catch).
+FW_SHARED_CONST uint kRestsShift = 3u;
+FW_SHARED_CONST uint kRests = 1u << kRestsShift;
+FW_SHARED_CONST uint kRestFlux = 4096u;         // W/m^2: from here on it takes every step
 
 // HeatTexel::phase
 FW_SHARED_CONST uint kPhaseFresh = 0u;
@@ -361,12 +366,21 @@ FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
 // A draw of its own for every texel and step; `step`: a hash of the step's tick.
 FW_SHARED_FN uint heatChance(uint texel, uint step) { return hash32(texel * 0x9E3779B9u + step); }
 
-// Has a heat step anything to do here? (A flux from elsewhere apart.) 1: water; 2: all else.
-FW_SHARED_FN uint heatWork(FW_IN(HeatTexel) x, uint t, uint ambient) {
+// What heat steps have to do with a texel: nothing; or once in a while, as with cold water
+// (kWorkDozes) or what is only warm (kWorkRests); or in each of them (kWorkAlways).
+FW_SHARED_CONST uint kWorkDozes = 1u;
+FW_SHARED_CONST uint kWorkRests = 2u;
+FW_SHARED_CONST uint kWorkAlways = 4u;
+FW_SHARED_FN uint fluxWork(uint flux) {
+    return flux == 0u ? 0u : flux < kRestFlux ? kWorkRests : kWorkAlways;
+}
+FW_SHARED_FN uint heatWork(FW_IN(HeatTexel) x, uint t, uint flux, uint ambient) {
     uint off = x.heat > ambient ? x.heat - ambient : ambient - x.heat;
-    bool warm = off > kLukewarm || x.phase == kPhaseBurning ||
-                (isSource(t) && x.phase != kPhaseBurnt);
-    return (warm ? 2u : 0u) | (x.film != 0u ? 1u : 0u);
+    bool warm = off > kLukewarm || flux != 0u;
+    bool flames = x.phase == kPhaseBurning || (isSource(t) && x.phase != kPhaseBurnt);
+    if (flames || x.heat > kPyrolysisBegins || flux >= kRestFlux || (warm && x.film != 0u))
+        return kWorkAlways;
+    return x.film != 0u ? kWorkDozes : warm ? kWorkRests : 0u;
 }
 
 // One heat step at tick `now`, of a texel with state t; the new state comes back. burnt: fuel units.
@@ -397,21 +411,46 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
     if ((told & kHeatIgnites) != 0u) t = now;
     t = wetState(t, heatClosed(x, m));
     // What is at rest again is so to the last bit: no trace of a fire long over is kept or sent.
-    if (flux == 0u && heatWork(x, t, m.ambient) == 0u) x.heat = m.ambient;
+    if (heatWork(x, t, flux, m.ambient) == 0u) x.heat = m.ambient;
     return t;
 }
 
-// The same for a tile where nothing but cold water is left, once in kDozes steps.
+// The material over kRests steps at once: what does not burn takes one such as well.
+FW_SHARED_FN HeatMaterial heatOverRest(FW_IN(HeatMaterial) m) {
+    HeatMaterial long_ = m;
+    long_.inertia = m.inertia == 0u ? 0u : mostOf(m.inertia >> kRestsShift, 1u);
+    long_.capacityLeast = m.capacityLeast >> kRestsShift;
+    long_.capacityMost = m.capacityMost >> kRestsShift;
+    long_.filmFlux = mostOf(m.filmFlux >> kRestsShift, 1u);
+    long_.moistFlux = mostOf(m.moistFlux >> kRestsShift, 1u);
+    long_.airDries = m.airDries << kRestsShift;
+    return long_;
+}
+// The same for cold water, once in kDozes steps.
 FW_SHARED_FN uint heatDozes(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint chance) {
     uint dries = m.airDries * kDozes;
     uint dried = (dries >> 16u) + ((dries & 0xFFFFu) > (chance & 0xFFFFu) ? 1u : 0u);
     x.film -= leastOf(dried, x.film);
     return wetState(t, heatClosed(x, m));
 }
-// Is it the turn of such a tile?
+
+// Of which work a tile's texels take this step, all of it if it is warm. A tile rests from one of its
+// turns to the next, at which exchanges change what comes to it: none of the time is lost.
+FW_SHARED_FN bool restEnds(uint tile, uint now) {
+    uint turn = now / (kStepTicks * kHeatSteps) + 1u;
+    return ((turn - tile) & (kRests - 1u)) == 0u;
+}
 FW_SHARED_FN bool dozeEnds(uint object, uint tile, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + hash32(object * 0x9E3779B9u + tile);
     return (turn & (kDozes - 1u)) == 0u;
+}
+FW_SHARED_FN uint heatTurn(bool warm, uint object, uint tile, uint now) {
+    if (warm) return kWorkAlways | kWorkRests | kWorkDozes;
+    return (restEnds(tile, now) ? kWorkRests : 0u) | (dozeEnds(object, tile, now) ? kWorkDozes : 0u);
+}
+// Is a tile warm after a step that leaves `work`?
+FW_SHARED_FN bool staysWarm(uint work, bool warm, uint tile, uint now) {
+    return (work & kWorkAlways) != 0u || (warm && (work & kWorkRests) != 0u && !restEnds(tile, now));
 }
 
 FW_SHARED_END

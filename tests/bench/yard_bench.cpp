@@ -1,11 +1,13 @@
 // A yard of crates by the library as a host has it: what a step of a world costs a server without a
 // GPU, and on a device; what a client of it costs in bytes; and that what does not burn costs
 // nothing.
-#include "common/yard.h"
 #include "bench/bench_device.h"
+#include "common/yard.h"
+#include "flamewright/flamewright_debug.h"
 
 #include <benchmark/benchmark.h>
 
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -44,12 +46,17 @@ class YardBench {
         if (fwWorld_Step(world_, kStep) != FW_OK) throw std::runtime_error("a step fails");
         seconds.push_back(secondsSince(start));
         cpu.push_back(cpuSeconds() - cpuStart);
+        FwPassTime times[64];
+        const uint32_t count = fwDebug_GetPassTimes(world_, times, 64);
+        for (uint32_t i = 0; i < count && i < 64; ++i)
+            passes[times[i].name] += double(times[i].milliseconds);
     }
     [[nodiscard]] FwWorld* world() const { return world_; }
-    void forget() { seconds.clear(), cpu.clear(); }
+    void forget() { seconds.clear(), cpu.clear(), passes.clear(); }
     [[nodiscard]] uint32_t burning() { return stateOf(world_, yard_).burning; }
 
     std::vector<double> seconds, cpu;
+    std::map<std::string, double> passes;  // ms, since `forget`
 
  private:
     FwContext* context_ = nullptr;
@@ -70,6 +77,8 @@ void show(benchmark::State& state, YardBench& bench) {
     state.counters["cpu_ms"] = mean(bench.cpu) * 1e3;
     state.counters["most_ms"] = *std::max_element(bench.seconds.begin(), bench.seconds.end()) * 1e3;
     state.counters["burning"] = double(bench.burning());
+    for (const char* pass : {"heat", "exchange", "reduce"})
+        state.counters[pass] = bench.passes[pass] / double(bench.seconds.size());
 }
 
 void burning(benchmark::State& state, uint32_t backend, uint32_t crates) {

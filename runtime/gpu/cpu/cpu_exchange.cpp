@@ -210,7 +210,7 @@ void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
     TileHeat& comes = tileHeat[worldTile];
     if (comes.flux == flux && comes.pilot == pilot) return;
     comes = {flux, pilot};
-    hot(worldTile);
+    heatComes(worldTile, flux);
 }
 
 void CpuBackend::State::contacts(const ExchangePush& rules) noexcept {

@@ -53,7 +53,30 @@ uint32_t CpuBackend::State::heatEvents(CpuObject& object, std::span<const TexelE
     return after;
 }
 
-void CpuBackend::State::heatTile(uint32_t worldTile, bool doze, uint32_t now) noexcept {
+void CpuBackend::State::heatComes(uint32_t worldTile, uint32_t flux) noexcept {
+    uint32_t& flag = tiles[worldTile].flag;
+    if ((flag & kTileHot) == 0) hotList.push_back(worldTile);
+    flag |= kTileHot | (fluxWork(flux) == kWorkAlways ? kTileWarm : 0u);
+}
+
+uint32_t CpuBackend::State::heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept {
+    const TileState& tile = tiles[worldTile];
+    const uint32_t local = worldTile - objects[tile.object]->record.worldTileBase;
+    return heatTurn((tile.flag & kTileWarm) != 0, tile.object, local, now);
+}
+
+uint32_t CpuBackend::State::heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
+                                      bool always, const TileHeat& comes, uint32_t now,
+                                      HeatTexel& x, uint32_t& units) const noexcept {
+    const uint32_t kind = object.domain->texels[texel].materialFlags & 7;
+    const HeatMaterial& m = object.heatMaterials[kind];
+    const uint32_t before = object.state[texel], chance = heatChance(texel, hash32(now));
+    if (!always && work == kWorkDozes) return heatDozes(x, m, before, chance);
+    return heatTexelStep(x, always ? m : heatOverRest(m), before, now, comes.flux, comes.pilot != 0,
+                         object.materials[kind].air, chance, units);
+}
+
+void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept {
     TileState& tile = tiles[worldTile];
     CpuObject& object = *objects[tile.object];
     const mesh::BurnDomain& domain = *object.domain;
@@ -63,9 +86,9 @@ void CpuBackend::State::heatTile(uint32_t worldTile, bool doze, uint32_t now) no
     const TileHeat comes = tileHeat[worldTile];
     const bool held = !mayBurn(worldTile);
     const uint32_t ambient = object.heatMaterials[0].ambient;
-    const uint32_t step = hash32(now);
+    const bool always = (turn & kWorkAlways) != 0;
     uint64_t energy = 0, changed = 0;
-    uint32_t lit = 0, gone = 0, work = comes.flux != 0 ? 2 : 0;
+    uint32_t lit = 0, gone = 0, left = fluxWork(comes.flux);
     float watts = 0;
     for (uint32_t lane = 0; lane < 64; ++lane) {
         const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
@@ -73,33 +96,30 @@ void CpuBackend::State::heatTile(uint32_t worldTile, bool doze, uint32_t now) no
         if ((kind & kTexelReal) == 0) continue;
         const uint32_t before = object.state[texel];
         HeatTexel x = unpackHeat(object.heat[texel]);
-        if (comes.flux == 0 && heatWork(x, before, ambient) == 0) continue;
-        const HeatMaterial& m = object.heatMaterials[kind & 7];
-        const uint32_t chance = heatChance(texel, step);
-        uint32_t after = before;
-        if (doze) {
-            after = heatDozes(x, m, before, chance);
-        } else {
-            uint32_t units = 0;
-            after = heatTexelStep(x, m, before, now, comes.flux, comes.pilot != 0,
-                                  object.materials[kind & 7].air, chance, units);
-            energy += uint64_t(units) * m.energy;
-            watts += float(units) * m.watts;
-        }
-        if (held && isSource(after) && !isSource(before)) {  // as it was, and looked at again
-            work |= 2;
+        const uint32_t work = heatWork(x, before, comes.flux, ambient);
+        if ((work & turn) == 0) {
+            left |= work;
             continue;
         }
+        uint32_t units = 0;
+        const uint32_t after = heatTexel(object, texel, work, always, comes, now, x, units);
+        if (held && isSource(after) && !isSource(before)) {  // as it was, and looked at again
+            left |= kWorkAlways;
+            continue;
+        }
+        energy += uint64_t(units) * object.heatMaterials[kind & 7].energy;
+        watts += float(units) * object.heatMaterials[kind & 7].watts;
         object.heat[texel] = packHeat(x);
-        work |= heatWork(x, after, ambient);
+        left |= heatWork(x, after, comes.flux, ambient);
         if (after == before) continue;
         object.state[texel] = after;
         changed |= 1ull << lane;
         lit += isSource(after) && !isSource(before) ? 1 : 0;
         gone += isSource(before) && !isSource(after) ? 1 : 0;
     }
-    if (work != 0) {
-        tile.flag = (work & 2) != 0 ? tile.flag | kTileWarm : tile.flag & ~kTileWarm;
+    if (left != 0) {
+        const bool warm = staysWarm(left, always, local, now);
+        tile.flag = warm ? tile.flag | kTileWarm : tile.flag & ~kTileWarm;
         hotOut.push_back(worldTile);
     } else {
         tile.flag &= ~(kTileHot | kTileWarm);
@@ -120,27 +140,28 @@ void CpuBackend::State::heatTile(uint32_t worldTile, bool doze, uint32_t now) no
 
 // Which tiles would catch in this heat step.
 void CpuBackend::State::askHeat(uint32_t now) noexcept {
-    const uint32_t step = hash32(now);
     for (uint32_t worldTile : hotList) {
         const TileState& tile = tiles[worldTile];
         const CpuObject& object = *objects[tile.object];
         const mesh::BurnDomain& domain = *object.domain;
         const TileHeat comes = tileHeat[worldTile];
-        if (mayBurn(worldTile) || ((tile.flag & kTileWarm) == 0 && comes.flux == 0)) continue;
+        const uint32_t turn = heatTurnOf(worldTile, now);
+        if (turn == 0 || mayBurn(worldTile)) continue;
         const uint32_t local = worldTile - object.record.worldTileBase;
         const uint32_t corner =
             (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
         bool lights = false;
         for (uint32_t lane = 0; lane < 64 && !lights; ++lane) {
             const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
-            const uint32_t kind = domain.texels[texel].materialFlags;
             const uint32_t before = object.state[texel];
-            if ((kind & kTexelReal) == 0 || isSource(before)) continue;
+            if ((domain.texels[texel].materialFlags & kTexelReal) == 0 || isSource(before))
+                continue;
             HeatTexel x = unpackHeat(object.heat[texel]);
+            const uint32_t work = heatWork(x, before, comes.flux, object.heatMaterials[0].ambient);
+            if ((work & turn) == 0) continue;
             uint32_t units = 0;
-            lights = isSource(heatTexelStep(
-                x, object.heatMaterials[kind & 7], before, now, comes.flux, comes.pilot != 0,
-                object.materials[kind & 7].air, heatChance(texel, step), units));
+            lights = isSource(
+                heatTexel(object, texel, work, (turn & kWorkAlways) != 0, comes, now, x, units));
         }
         if (lights) askToBurn(worldTile);
     }
@@ -150,13 +171,11 @@ void CpuBackend::State::heatStep(uint32_t now) noexcept {
     if ((switches & kSwitchShuffle) != 0) shuffle(hotList);
     hotOut.clear();
     for (uint32_t worldTile : hotList) {
-        const TileState& tile = tiles[worldTile];
-        const CpuObject& object = *objects[tile.object];
-        const bool doze = (tile.flag & kTileWarm) == 0 && tileHeat[worldTile].flux == 0;
-        if (doze && !dozeEnds(tile.object, worldTile - object.record.worldTileBase, now))
+        const uint32_t turn = heatTurnOf(worldTile, now);
+        if (turn == 0)
             hotOut.push_back(worldTile);  // sleeps on
         else
-            heatTile(worldTile, doze, now);
+            heatTile(worldTile, turn, now);
     }
     hotList.swap(hotOut);
 }

@@ -104,6 +104,8 @@ struct CpuBackend::State {
     void askThen(uint32_t tilesMost, uint32_t now, const Light& light) noexcept;
     // Of objects with heat: something of the tile's temperature, water or flux changes from now on.
     void hot(uint32_t worldTile) noexcept;
+    // Another flux comes to it, at one of its turns.
+    void heatComes(uint32_t worldTile, uint32_t flux) noexcept;
     void applyEvents(const StepPlan& step) noexcept;
     void wake(const StepPlan& step) noexcept;
     void iterate(const StepPlan& step, uint32_t iteration) noexcept;
@@ -117,7 +119,12 @@ struct CpuBackend::State {
                         bool& byFlame) noexcept;  // cpu_heat.cpp: the texel's state after them
     void askHeat(uint32_t now) noexcept;
     void heatStep(uint32_t now) noexcept;
-    void heatTile(uint32_t worldTile, bool doze, uint32_t now) noexcept;
+    [[nodiscard]] uint32_t heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept;
+    void heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept;
+    // What a step makes of a texel with such work, `always` or in its turn; units: of its fuel.
+    [[nodiscard]] uint32_t heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
+                                     bool always, const TileHeat& comes, uint32_t now, HeatTexel& x,
+                                     uint32_t& units) const noexcept;
     void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
     void reduce(uint32_t now) noexcept;         // cpu_reduce.cpp
     // cpu_exchange.cpp
