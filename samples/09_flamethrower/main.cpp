@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/camera.h"
+#include "common/cube.h"
 #include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
@@ -68,7 +69,7 @@ const std::vector<Case>& cases() {
         {"thin wall",
          nozzle,
          ahead,
-         {0, 0, 0.8f},
+         {0, 0, 0.5f},  // no part of the stream goes beside it
          {{{1.6f, 0.9f, 0}, {0.07f, 0.9f, 1.1f}}, behind},
          false},
         {"the blocker burns",
@@ -85,34 +86,6 @@ const std::vector<Case>& cases() {
          true},
     };
     return all;
-}
-
-// Corners of a cube with sides of 1 m, face by face.
-FwMeshId makeCube(sample::FireHost& fire) {
-    std::vector<float> positions;
-    std::vector<uint32_t> indices;
-    for (int face = 0; face < 6; ++face) {
-        const int axis = face / 2, a = (axis + 1) % 3, b = (axis + 2) % 3;
-        const float side = face % 2 ? 0.5f : -0.5f;
-        const auto first = static_cast<uint32_t>(positions.size() / 3);
-        for (int i = 0; i < 4; ++i) {
-            float p[3];
-            p[axis] = side;
-            p[a] = (i == 1 || i == 2) == (face % 2 != 0) ? 0.5f : -0.5f;
-            p[b] = i >= 2 ? 0.5f : -0.5f;
-            positions.insert(positions.end(), p, p + 3);
-        }
-        for (const uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + i);
-    }
-    FwMeshDef def = fwDefaultMeshDef();
-    def.positions = positions.data();
-    def.vertexCount = static_cast<uint32_t>(positions.size() / 3);
-    def.indices = indices.data();
-    def.indexCount = static_cast<uint32_t>(indices.size());
-    def.texelsPerMetre = 40;
-    FwMeshId mesh{};
-    fire.check(fwWorld_CreateMesh(fire.world, &def, &mesh), "fwWorld_CreateMesh");
-    return mesh;
 }
 
 struct Range {  // the case that is on now
@@ -191,7 +164,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         worldDef.paceFactor = 12;
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
-        const FwMeshId cube = makeCube(fire);
+        const FwMeshId cube = sample::makeCube(fire);
         FwMaterialId materials[2]{};
         for (int i = 0; i < 2; ++i) {
             FwMaterialDef def = fwDefaultMaterialDef();

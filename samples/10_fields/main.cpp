@@ -1,9 +1,13 @@
 // Particle fields: fire, smoke and water, each at 64 x 64 and at 32 x 32 cells, on cards (behind,
-// on blocks) and on spheroids (in front). In a window: drag to turn, wheel to zoom.
+// on blocks) and on spheroids (in front). On the right two boards are lit alike: water runs down
+// one of them and puts it out. In a window: drag to turn, wheel to zoom.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iterator>
 
 #include "common/camera.h"
+#include "common/cube.h"
 #include "common/filming.h"
 #include "common/fire_host.h"
 #include "common/studio.h"
@@ -47,6 +51,71 @@ FwParticleFieldDef defOf(const Exhibit& exhibit, const sample::FireHost& fire) {
     return def;
 }
 
+// Two boards of straw that face the eye, as the water's card does, and when both are lit: before
+// the water has come down to the first one's fire.
+constexpr float kBoardX[] = {3.75f, 4.75f}, kBoardZ = -0.5f, kBoardSide = 0.8f,
+                kBoardThick = 0.09f;  // m
+constexpr float kBoardTurn = -0.26f;  // rad about y
+constexpr double kLitAfter = 0.4;     // s
+
+// `out` m before the middle of a board's foot.
+glm::vec3 beforeBoard(float x, float out) {
+    return {x + out * std::sin(kBoardTurn), 0, kBoardZ + out * std::cos(kBoardTurn)};
+}
+
+struct Boards {
+    FwBurnableMeshId boards[2]{};
+    bool lit = false;
+};
+
+Boards makeBoards(sample::FireHost& fire) {
+    Boards made;
+    FwMaterialDef straw = fwDefaultMaterialDef();
+    fire.check(fwInitMaterialPreset(&straw, FW_MATERIAL_THATCH), "fwInitMaterialPreset");
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.mesh = sample::makeCube(fire);
+    fire.check(fwWorld_CreateMaterial(fire.world, &straw, &def.materials[0]),
+               "fwWorld_CreateMaterial");
+    for (int i = 0; i < 2; ++i) {
+        const float across = std::cos(kBoardTurn), ahead = std::sin(kBoardTurn);
+        def.transform[0] = kBoardSide * across;
+        def.transform[2] = kBoardSide * -ahead;
+        def.transform[5] = 1.5f * kBoardSide;
+        def.transform[8] = kBoardThick * ahead;
+        def.transform[10] = kBoardThick * across;
+        def.transform[12] = kBoardX[i];
+        def.transform[13] = 0.75f * kBoardSide;
+        def.transform[14] = kBoardZ;
+        fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &made.boards[i]),
+                   "fwWorld_CreateBurnableMesh");
+    }
+    FwParticleFieldDef water = fwDefaultParticleFieldDef();
+    fire.check(fwInitFieldPreset(&water, FW_FIELD_WATER), "fwInitFieldPreset");
+    water.flags |= FW_FIELD_WETS;
+    const glm::vec3 place = beforeBoard(kBoardX[0], kBoardThick);
+    std::copy_n(&place[0], 3, water.position);
+    water.rotation[1] = std::sin(0.5f * kBoardTurn);
+    water.rotation[3] = std::cos(0.5f * kBoardTurn);
+    water.size[0] = 1.2f * kBoardSide;
+    water.size[1] = 1.6f * kBoardSide;
+    water.sourceSize = 1;
+    FwParticleFieldId id{};
+    fire.check(fwWorld_CreateParticleField(fire.world, &water, &id), "fwWorld_CreateParticleField");
+    return made;
+}
+
+void lightBoards(sample::FireHost& fire, Boards& boards) {
+    boards.lit = true;
+    for (const float x : kBoardX) {
+        FwIgnitionDef match = fwDefaultIgnitionDef();
+        const glm::vec3 place = beforeBoard(x, 0.5f * kBoardThick);
+        std::copy_n(&place[0], 3, match.position);
+        match.position[1] = 0.6f * kBoardSide;
+        match.radius = 0.08f;
+        fire.check(fwWorld_Ignite(fire.world, &match, nullptr), "fwWorld_Ignite");
+    }
+}
+
 int run(const sample::Options& options, float seconds, float dusk, float wind) {
     sample::ValidationLog validation;
     {
@@ -63,6 +132,7 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.seed = options.seed;
         worldDef.wind[0] = wind;
+        worldDef.paceFactor = 8;  // boards burn in seconds
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
         FwParticleFieldId fields[std::size(kExhibits)]{};
@@ -72,11 +142,13 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
                        "fwWorld_CreateParticleField");
         }
 
+        Boards boards = makeBoards(fire);
+
         FwView view = fwDefaultView();
         sample::duskLight(view, dusk);
         sample::OrbitCamera orbit;
-        orbit.target = {0, 0.95f, -0.2f};
-        orbit.distance = 7.6f;
+        orbit.target = {1.0f, 0.95f, -0.2f};
+        orbit.distance = 10.6f;
         orbit.yaw = 0.0f;
         orbit.pitch = glm::radians(9.0f);
         orbit.fieldOfView = 0.36f;
@@ -94,6 +166,7 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
             orbit.turn(frame.input.dragX, frame.input.dragY);
             orbit.zoom(frame.input.wheel);
             sample::setCamera(view, orbit.camera(), frame);
+            if (!boards.lit && frame.time >= kLitAfter) lightBoards(fire, boards);
             sample::showStudio(frame, stage, studio, fire, view);
         }
 
@@ -117,6 +190,15 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
                               static_cast<double>(state.bytes) / 1024.0);
                 summary.rows.emplace_back(name, line);
             }
+            for (int i = 0; i < 2; ++i) {
+                const FwObjectState state = fire.objectState(boards.boards[i]);
+                const bool dry = i == 1, caught = state.ignited > 0, burns = state.burning > 0;
+                summary.rows.emplace_back(dry ? "dry board" : "board under water",
+                                          std::string(!caught ? "did not catch"
+                                                      : burns ? "burns"
+                                                              : "caught and went out") +
+                                              (caught && burns == dry ? "" : ": WRONG"));
+            }
             filming.finish(summary, fire);
         }
     }
@@ -131,7 +213,7 @@ int main(int argc, char** argv) {
         options.fps = 30.0;
         options.width = 1280;
         options.height = 560;
-        float seconds = 3, dusk = 1.2f, wind = 0;
+        float seconds = 6, dusk = 1.2f, wind = 0;
         sample::OptionParser parser("10_fields", "particle fields: fire, smoke and water");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--daylight", "of the scene, 1: dusk", dusk, 0.0f, 10.0f);
