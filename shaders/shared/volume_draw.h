@@ -56,10 +56,13 @@ FW_SHARED_SIZE(VolumeWork, 32)
 
 // What is known of a flame's tiles, array by array. Zero before the probe. First of each is a word per tile: a bit
 // per slab that shows anything; behind them whether anything is in its first and last column, first and last row.
-FW_SHARED_CONST uint kVolumeBegins = 1u;        // all samples less the first that is worth a march
-FW_SHARED_CONST uint kVolumeEnds = 2u;          // one and the last of them and one; 0: the tile is worth none
-FW_SHARED_CONST uint kVolumeList = 3u;          // of tiles that are
-FW_SHARED_CONST uint kVolumeTileWords = 4u;
+FW_SHARED_CONST uint kVolumeListed = 1u;        // 1: the tile is worth a march
+FW_SHARED_CONST uint kVolumeList = 2u;          // of tiles that are
+FW_SHARED_CONST uint kVolumeQuarter = 4u;       // cells a side of a tile's quarter; of each, by volumeQuarter:
+FW_SHARED_CONST uint kVolumeBegins = 3u;        // all samples less the first that is worth a march
+FW_SHARED_CONST uint kVolumeEnds = 7u;          // one and the last of them and one; 0: none is
+FW_SHARED_CONST uint kVolumeTileWords = 12u;    // what a cell is begins after whole texels of these
+FW_SHARED_FN uint volumeQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }  // of quarters x, y
 
 // Push constants of probe and march. A cell is a few pixels wide, or of a small flame a part of one; its ray goes
 // through its middle (but see volumeShift): of cell x, y of the view, as above with rays from these. A flame's

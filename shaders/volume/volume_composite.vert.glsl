@@ -35,7 +35,7 @@ void main() {
             ivec2 near = at + ivec2(x, y);
             bool inside = near.x >= 0 && near.y >= 0 && near.x < int(draw.tilesX) && near.y < int(draw.tilesY);
             uint of = draw.flags + (inside ? uint(near.y) * draw.tilesX + uint(near.x) : tile);
-            bool is = inside && rays[of + kVolumeEnds * tiles] != 0u;
+            bool is = inside && rays[of + kVolumeListed * tiles] != 0u;
             uint there = rays[of], edges = there >> kVolumeSlabs;
             bool touches = (x == 0 || (edges & (x < 0 ? 2u : 1u)) != 0u) &&
                            (y == 0 || (edges & (y < 0 ? 8u : 4u)) != 0u);

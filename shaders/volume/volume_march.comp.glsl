@@ -60,16 +60,17 @@ void main() {
     uint tile = rays[march.tiles + kVolumeList * tiles + gl_WorkGroupID.x];
     uint slabs = march.slabs | zero, turns = march.turns | zero;
     uint all = slabs * turns;
+    // Those that go together are a quarter of the tile, or half of one: they turn as often.
+    uint lane = gl_LocalInvocationIndex;
+    uvec2 in_ = uvec2((lane & 3u) | ((lane >> 2u) & 4u), ((lane >> 2u) & 3u) | ((lane >> 3u) & 4u));
+    uint quarter = volumeQuarter(in_.x / kVolumeQuarter, in_.y / kVolumeQuarter);
     // Of all samples along the view those from `begin` to `end`.
-    uint begin = all - rays[march.tiles + kVolumeBegins * tiles + tile];
-    uint end = rays[march.tiles + kVolumeEnds * tiles + tile] - 1u;
+    uint begin = all - rays[march.tiles + (kVolumeBegins + quarter) * tiles + tile];
+    uint end = max(rays[march.tiles + (kVolumeEnds + quarter) * tiles + tile], 1u) - 1u;
     bool burns = begin < end;
     begin = burns ? begin : all / 2u;
     end = burns ? end : begin + 1u;
 
-    // Eight that go together are four by two.
-    uint lane = gl_LocalInvocationIndex;
-    uvec2 in_ = uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
     uvec2 place = uvec2(tile % march.tilesX, tile / march.tilesX) * kVolumeTile + in_;
     uint cell = place.y * (march.tilesX * kVolumeTile) + place.x;
     place += uvec2(march.originX, march.originY);
@@ -116,7 +117,7 @@ void main() {
         bits = shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
     }
     float size = 0.35 * stride, length_ = burns ? stride : 0.0;
-    // Every loop turns as often for all of a tile: those that end apart end late on a software device.
+    // Every loop turns as often for all of a quarter: those that end apart end late on a software device.
     do {
         uint to = min((s + 1u) * turns, end);
         vec3 where_ = vec3(0.0);

@@ -44,11 +44,11 @@ void main() {
     vec4 spans = flameSpans(f, from, direction);
     RayTube tube = rayTube(f, spans, from, direction, march.intervals | zero);
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
-    float all = float(march.turns * march.slabs);
+    float most = float(march.turns * march.slabs);
     bool burns = spans.x < spans.y && tube.chord.first < tube.chord.last;
     vec2 ends = tube.chord.from + tube.chord.gap * vec2(tube.chord.first, tube.chord.last);
-    float k = clamp(floor((ends.x - first) / stride), 0.0, all);
-    float last = burns ? clamp(ceil((ends.y - first) / stride), 0.0, all) : 0.0;
+    float k = clamp(floor((ends.x - first) / stride), 0.0, most);
+    float last = burns ? clamp(ceil((ends.y - first) / stride), 0.0, most) : 0.0;
     float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
     float nearest = 1e9, farthest = -1.0;
     while (k < last) {
@@ -85,20 +85,21 @@ void main() {
     }
 
     uvec2 at = probe * march.apart;
-    uvec2 tile = at / kVolumeTile;
+    ivec2 quarters = 2 * ivec2(march.tilesX, tilesY);
     bool fire = farthest >= 0.0;
-    uint end = 1u + (fire ? uint(min(farthest + 2.0, all)) : 0u);
-    uint begin = fire ? uint(all - max(nearest - 1.0, 0.0)) : 0u;
+    uint end = 1u + (fire ? uint(min(farthest + 2.0, most)) : 0u);
+    uint begin = fire ? uint(most - max(nearest - 1.0, 0.0)) : 0u;
     uint tiles = march.cells / (kVolumeTile * kVolumeTile);
-    if (tile.x < march.tilesX && tile.y < tilesY && (fire || smokes)) {
-        ivec2 aside = ivec2((at / (kVolumeTile / 2u)) & 1u) * 2 - 1;
-        for (uint j = 0u; j < 4u; ++j) {
-            ivec2 it = ivec2(tile) + aside * ivec2(j & 1u, j >> 1u);
-            if (it.x < 0 || it.y < 0 || it.x >= int(march.tilesX) || it.y >= int(tilesY)) continue;
-            uint t = uint(it.y) * march.tilesX + uint(it.x);
-            atomicMax(rays[march.tiles + kVolumeBegins * tiles + t], begin);
-            uint was = atomicMax(rays[march.tiles + kVolumeEnds * tiles + t], end);
-            if (was == 0u) {
+    if (all(lessThan(at, kVolumeQuarter * uvec2(quarters))) && (fire || smokes)) {
+        // For its own quarter of a tile and the eight around it.
+        for (uint j = 0u; j < 9u; ++j) {
+            ivec2 it = ivec2(at / kVolumeQuarter) + ivec2(j % 3u, j / 3u) - 1;
+            if (any(lessThan(it, ivec2(0))) || any(greaterThanEqual(it, quarters))) continue;
+            uint t = uint(it.y / 2) * march.tilesX + uint(it.x / 2);
+            uint quarter = volumeQuarter(uint(it.x), uint(it.y));
+            atomicMax(rays[march.tiles + (kVolumeBegins + quarter) * tiles + t], begin);
+            atomicMax(rays[march.tiles + (kVolumeEnds + quarter) * tiles + t], end);
+            if (atomicOr(rays[march.tiles + kVolumeListed * tiles + t], 1u) == 0u) {
                 uint place_ = atomicAdd(work[march.flame].groups, 1u);
                 rays[march.tiles + kVolumeList * tiles + place_] = t;
                 atomicAdd(work[march.flame].vertices, 6u * march.slabs);
