@@ -24,9 +24,11 @@ layout(depth_greater) out float gl_FragDepth;
 
 const float kPi = 3.14159265;
 float reliefLod;
+// Where layers are sought: a whole level, which is one read and not two, and coarser for shade.
+float soughtLod;
 
 float reliefDepth(vec2 at) {
-    return 1.0 - textureLod(shapeMap, at / push.picture.xy, reliefLod).a;
+    return 1.0 - textureLod(shapeMap, at / push.picture.xy, soughtLod).a;
 }
 #include "parallax.h"
 
@@ -51,6 +53,7 @@ void main() {
     vec2 at = inRelief.xy;
     vec2 pixel = max(abs(dFdx(at)), abs(dFdy(at))) / push.picture.xy * push.texels.xy;
     reliefLod = max(0.0, log2(max(pixel.x, pixel.y)) - 0.5);
+    soughtLod = floor(reliefLod + 0.5);
 
     float way = 0.0, depth = 0.0;
     if (kParallax) {
@@ -67,7 +70,7 @@ void main() {
         bool bottom;
         float crossed = length(ray.along / push.picture.xy * push.texels.xy) *
                         reliefEnd(ray, scale, bottom) * exp2(-reliefLod);
-        way = reliefHit(ray, scale, reliefLayers(ray.down, crossed, 6.0, 28.0));
+        way = reliefHit(ray, scale, reliefLayers(ray.down, crossed, 5.0, 20.0));
         if (way < 0.0) discard;
         at += ray.along * way;
         depth = reliefBelow(ray, way);
@@ -81,6 +84,7 @@ void main() {
     vec4 clip = block.viewProjection * vec4(position, 1.0);
     gl_FragDepth = max(clip.z / clip.w, gl_FragCoord.z);
 
+    soughtLod += 1.0;
     vec4 color = textureLod(colorMap, at / push.picture.xy, reliefLod);
     vec4 shape = textureLod(shapeMap, at / push.picture.xy, reliefLod);
     vec3 albedo = color.rgb * color.rgb;
@@ -106,7 +110,7 @@ void main() {
             float up = max(dot(toLight, n), 0.05);
             vec2 along = vec2(dot(toLight, u), dot(toLight, v));
             float crossed = length(along / push.picture.xy * push.texels.xy) * depth / up;
-            int layers = reliefLayers(up, crossed * exp2(-reliefLod), 4.0, 8.0);
+            int layers = reliefLayers(up, crossed * exp2(-soughtLod), 3.0, 6.0);
             // Nothing stands above what is on top.
             lit = reliefLit(at, along, up, depth, scale, softness, depth > 0.06 * scale ? layers : 0);
         }
