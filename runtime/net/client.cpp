@@ -8,6 +8,8 @@ namespace fw::net {
 namespace {
 
 constexpr double kStuckAfter = 3;            // s without a piece of a state
+constexpr double kTilesPatience = 6;         // s: then the whole state is asked for
+constexpr double kRepairTrust = 20;          // s: who is astray again by then needs all of it
 constexpr double kRetryAfter = 1;            // s
 constexpr size_t kMarks = 64;                // of how far the server was, that wait for records
 constexpr uint64_t kHashAge = 10ull * 4096;  // ticks that a hash waits for its like
@@ -22,6 +24,8 @@ Client::Client(const FwNetDef& def, world::World& world, std::pmr::memory_resour
       memory_(memory),
       journal_(world.keepJournal(true)),
       state_(memory),
+      own_(memory),
+      ownBlocks_(memory),
       waiting_(memory),
       marks_(memory),
       theirHashes_(memory),
@@ -104,10 +108,7 @@ void Client::readStream(core::Reader& reader, uint32_t sequence) {
                        records.left());
     }
     while (ready_ < waiting_.size() && !waiting_[ready_].empty()) ++ready_;
-    if (loads_ > 0 && anew == loads_ + 1 && !wishes_) {
-        wishes_ = true;
-        retryIn_ = 0;
-    }
+    if (loads_ > 0 && anew == loads_ + 1 && wish_ != Wish::state) wish(Wish::state);
     if (!counts || anew != 0) return;
     heard_ = std::max(heard_, mark.step);
     if (mark.step <= reached_) return;
@@ -125,7 +126,8 @@ void Client::settleMarks() noexcept {
 void Client::readPiece(core::Reader& reader) {
     ChunkHead head;
     const std::span<const std::byte> piece = readChunk(reader, head);
-    if (!wishes_ || !joined_ || retryIn_ > 0) return;
+    const Wish brings = head.state.id % 2 != 0 ? Wish::tiles : Wish::state;
+    if (wish_ != brings || !joined_ || retryIn_ > 0) return;
     const uint32_t base = state_.base();
     const uint64_t came = state_.came();
     if (!state_.take(head, piece)) return forgetState();
@@ -141,19 +143,52 @@ void Client::forgetState() noexcept {
     stuck_ = 0;
 }
 
-void Client::goAstray(const world::World& world, const char* why) {
-    if (wishes_) return;
-    wishes_ = true;
+void Client::wish(Wish what) noexcept {
+    wish_ = what;
     state_.forget();
+    retryIn_ = stuck_ = wishing_ = 0;
+    ownNumber_ = 0;
+    ownBlocks_.clear();
+    tilesDue_ = false;
+}
+
+void Client::goAstray(const world::World& world, const char* why, uint32_t slot) {
+    if (wish_ != Wish::nothing) return;
+    // Where tiles alone did not help, all of it is asked for.
+    const bool tiles = slot != kNoSlot && repaired_ > kRepairTrust;
+    wish(tiles ? Wish::tiles : Wish::state);
+    astraySlot_ = slot;
     ++strays_;
-    world.log().write(FW_LOG_WARNING, "%s The state is asked for anew.", why);
+    world.log().write(FW_LOG_WARNING, "%s %s asked for anew.", why,
+                      tiles ? "Its tiles are" : "The state is");
+}
+
+// The server saved its state where this world is now: what differs is found between two saves.
+void Client::takeOwn(world::World& world) {
+    if (wish_ != Wish::tiles || ownNumber_ == 0 || !ownBlocks_.empty()) return;
+    const std::pmr::vector<std::byte>* bytes = world.fetchSave(world::SaveFor::net);
+    if (!bytes) return;
+    own_.assign(bytes->begin(), bytes->end());
+    ownBlocks_ = world.hashBlocks(own_, astraySlot_);
+    if (ownBlocks_.empty()) wish(Wish::state);  // at rest here, and not there
+    tilesDue_ = true;
 }
 
 void Client::load(world::World& world) {
+    const bool tiles = state_.state().id % 2 != 0;
     try {
-        world.performLoad(state_.bytes());
+        if (tiles) {
+            std::pmr::vector<std::byte> merged(memory_);
+            if (state_.state().id / 2 != ownNumber_)
+                core::fail(FW_ERROR_BAD_DATA, "The tiles are of another state.");
+            world.mergeBlocks(own_, state_.bytes(), merged);
+            world.performLoad(merged);
+        } else {
+            world.performLoad(state_.bytes());
+        }
     } catch (const core::Error& error) {
         world.log().write(FW_LOG_WARNING, "The server's state cannot be taken: %s", error.message);
+        if (tiles) return wish(Wish::state);
         forgetState();
         refused_ = true;
         return;
@@ -162,8 +197,10 @@ void Client::load(world::World& world) {
     reached_ = heard_ = state_.state().step;
     streamsAfter_ = came_.newest();
     ++loads_;
-    state_.forget();
-    wishes_ = refused_ = false;
+    repairs_ += tiles ? 1 : 0;
+    repaired_ = tiles ? 0 : 1e9;
+    wish(Wish::nothing);
+    refused_ = false;
     waiting_.clear();
     ready_ = 0;
     marks_.clear();
@@ -187,13 +224,13 @@ void Client::compare(world::World& world) {
             });
         if (ours == ourHashes_.end()) return theirs.tick + kHashAge < now;
         ++compared_;
-        if (ours->hash != theirs.hash && alike && !wishes_) {
+        if (ours->hash != theirs.hash && alike && wish_ == Wish::nothing) {
             alike = false;
             char why[160];
             std::snprintf(why, sizeof why,
                           "Burnable mesh %u differs from the server's at tick %llu.",
                           theirs.slot + 1, static_cast<unsigned long long>(theirs.tick));
-            goAstray(world, why);
+            goAstray(world, why, theirs.slot);
         }
         return true;
     });
@@ -206,22 +243,30 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
     if (state_.whole()) load(world);
     if (loads_ == 0) return;
     compare(world);
+    takeOwn(world);
     const auto now = uint32_t(world.tick() / gpu::kStepTicks);
     while (ready_ > 0) {
         readRecord(waiting_.front(), record_);
         if (record_.step > now) break;
-        if (record_.step < now) goAstray(world, "A record of the server's comes too late.");
+        if (record_.step < now)
+            goAstray(world, "A record of the server's comes too late.", kNoSlot);
         if (record_.kind == RecordKind::deed) {
             try {
                 world.perform(record_.deed);
             } catch (const core::Error& error) {
-                goAstray(world, error.message);
+                goAstray(world, error.message, kNoSlot);
             }
         } else if (record_.kind == RecordKind::hashes) {
             for (uint32_t i = 0; i < record_.hashCount; ++i)
                 if (record_.hashes[i] != 0)
                     theirHashes_.push_back({record_.first + i * record_.stride, record_.stride,
                                             record_.tick, record_.hashes[i]});
+        } else if (record_.kind == RecordKind::capture) {
+            if (wish_ == Wish::tiles && ownNumber_ == 0) {
+                world.requestSave(world::SaveFor::net);
+                ownNumber_ = uint32_t(record_.tick);
+                turn.kind = FW_TURN_STEP;  // of no time: a save is of the next frame
+            }
         } else {
             turn.kind = FW_TURN_MESSAGE;
             turn.messageSize = uint32_t(record_.message.size());
@@ -231,7 +276,7 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
         waiting_.pop_front();
         --ready_;
         ++next_;
-        if (turn.kind == FW_TURN_MESSAGE) return;
+        if (turn.kind != FW_TURN_WAIT) return;
     }
     // As far as nothing has to be done and no hash is due.
     uint32_t until = std::min(reached_, (now / world::kHashSteps + 1) * world::kHashSteps);
@@ -256,13 +301,17 @@ void Client::update(world::World& world, float seconds) {
     silent_ += double(seconds);
     retryIn_ = std::max(retryIn_ - double(seconds), 0.0);
     stuck_ += double(seconds);
-    if (wishes_ && state_.state().id != 0 && stuck_ > kStuckAfter) forgetState();
+    wishing_ += double(seconds);
+    repaired_ += double(seconds);
+    if (wish_ == Wish::state && joined_ && stuck_ > kStuckAfter) forgetState();
+    if (wish_ == Wish::tiles && wishing_ > kTilesPatience) wish(Wish::state);
     untilDue_ -= double(seconds);
     if (untilDue_ <= 1e-4) {
         const double interval =
             joined_ ? double(def_.interval) : std::max(0.25, double(def_.interval));
         untilDue_ = std::max(untilDue_ + interval, 0.0);
         due_ = true;
+        tilesDue_ = !ownBlocks_.empty() && state_.state().id == 0;
     }
     if (welcome_ && !joined_) {
         welcome_ = false;
@@ -289,18 +338,24 @@ bool Client::write(world::World& world, std::span<std::byte> room, uint32_t& siz
     if (room.size() < def_.packetBytes)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "*size is %zu and a packet has up to %u bytes.",
                    room.size(), def_.packetBytes);
-    if (!due_) return false;
-    due_ = false;
-    const PacketKind kind = joined_ ? PacketKind::status : PacketKind::hello;
+    if (!due_ && !tilesDue_) return false;
+    const PacketKind kind = !joined_ ? PacketKind::hello
+                            : due_   ? PacketKind::status
+                                     : PacketKind::tiles;
+    (due_ ? due_ : tilesDue_) = false;
     core::Writer writer = beginPacket(packet_, {kind, joined_ ? session_ : 0, def_.token, ++sent_});
-    if (joined_) {
-        writer.number(wishes_ && retryIn_ <= 0);
+    if (kind == PacketKind::status) {
+        writer.number(uint16_t(retryIn_ <= 0 ? wish_ : Wish::nothing));
         writer.number(loads_);
         writer.number(next_ + ready_);
         writer.number(uint32_t(world.tick() / gpu::kStepTicks));
         writer.number(state_.state().id);
         writer.number(state_.base());
         writer.number(state_.came());
+    } else if (kind == PacketKind::tiles) {
+        writer.number(ownNumber_);
+        writer.number(astraySlot_);
+        for (const uint32_t hash : ownBlocks_) writer.number(hash);
     }
     sealPacket(packet_);
     std::copy(packet_.begin(), packet_.end(), room.begin());
@@ -330,6 +385,7 @@ void Client::fillState(world::World& world, FwNetState& state) const {
     state.states = loads_;
     state.hashes = compared_;
     state.strays = strays_;
+    state.repairs = repairs_;
 }
 
 }  // namespace fw::net

@@ -23,6 +23,7 @@ class Client {
     void fillState(world::World& world, FwNetState& state) const;
 
  private:
+    static constexpr uint32_t kNoSlot = 0xFFFFFFFFu;
     static constexpr uint32_t kAhead = 1u << 14;  // records that may wait
 
     using Bytes = std::pmr::vector<std::byte>;
@@ -33,9 +34,12 @@ class Client {
     void readStream(core::Reader& reader, uint32_t sequence);
     void readPiece(core::Reader& reader);
     void load(world::World& world);
+    void wish(Wish what) noexcept;
+    void takeOwn(world::World& world);
     void forgetState() noexcept;
     void compare(world::World& world);
-    void goAstray(const world::World& world, const char* why);
+    // slot: of the object that differs; kNoSlot: more than one may.
+    void goAstray(const world::World& world, const char* why, uint32_t slot);
     void settleMarks() noexcept;
 
     FwNetDef def_;
@@ -47,10 +51,18 @@ class Client {
     bool refused_ = false;  // and it is another one
     bool joined_ = false;   // it is this one
     uint64_t theirs_ = 0;   // the server's identity
-    bool wishes_ = true;    // a state
+    Wish wish_ = Wish::state;
     uint32_t loads_ = 0;
     uint32_t streamsAfter_ = 0;  // sequence
     ChunkReceiver state_;
+    // For tiles: the object, and this world's own save of where the server saved its.
+    uint32_t astraySlot_ = 0;
+    uint32_t ownNumber_ = 0;  // of the server's capture; 0: there is none yet
+    std::pmr::vector<std::byte> own_;
+    std::pmr::vector<uint32_t> ownBlocks_;
+    bool tilesDue_ = false;
+    double wishing_ = 0, repaired_ = 1e9;  // s since then
+    uint32_t repairs_ = 0;
     double stuck_ = 0;                // s since a piece of it came
     double retryIn_ = 0;              // s until a state is asked for again
     uint32_t next_ = 0;               // record to be done next

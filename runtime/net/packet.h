@@ -17,6 +17,7 @@ enum class PacketKind : uint8_t {
     status,   // client: what came, and what it wants
     stream,   // server: records, and how far it is
     chunk,    // server: a piece of a state
+    tiles,    // client: hashes of what it has of an object, for the parts that differ
     count
 };
 

@@ -51,6 +51,8 @@ void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
         writer.number(record.first);
         writer.number(record.stride);
         for (uint32_t i = 0; i < record.hashCount; ++i) writer.number(record.hashes[i]);
+    } else if (record.kind == RecordKind::capture) {
+        writer.number(record.tick);
     } else {
         out.insert(out.end(), record.message.begin(), record.message.end());
     }
@@ -80,6 +82,8 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
                        record.stride);
         record.hashCount = uint32_t(count);
         for (size_t i = 0; i < count; ++i) reader.number(record.hashes[i]);
+    } else if (record.kind == RecordKind::capture) {
+        reader.number(record.tick);
     } else {
         if (reader.left() > kMessageMost)
             core::fail(FW_ERROR_BAD_DATA, "The packet has a message of %zu bytes; the limit is %u.",

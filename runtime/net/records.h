@@ -1,5 +1,5 @@
 // What a server tells its clients in order, none left out: deeds, hashes of objects, the host's own
-// messages; each with the step before which it belongs.
+// messages, where a state was saved; each with the step before which it belongs.
 #pragma once
 #include "core/stream.h"
 #include "world/journal.h"
@@ -14,7 +14,13 @@ namespace fw::net {
 constexpr uint32_t kMessageMost = 1024;  // bytes of a host's message
 static_assert(kMessageMost == sizeof FwNetTurn::message);
 
-enum class RecordKind : uint8_t { deed, hashes, message, count };
+enum class RecordKind : uint8_t {
+    deed,
+    hashes,
+    message,
+    capture,  // the server saved its state here, as number `tick`
+    count
+};
 
 struct Record {
     RecordKind kind = RecordKind::count;

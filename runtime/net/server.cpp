@@ -46,7 +46,7 @@ FwPeerId Server::addPeer() {
     if (peers_.live() >= kMostPeers)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u peers are there; the limit is %u.", peers_.live(),
                    kMostPeers);
-    return peers_.create();
+    return peers_.create(memory_);
 }
 
 // ---- records ------------------------------------------------------------------------------------
@@ -79,10 +79,16 @@ void Server::drain(world::World& world) {
         loseAll();
     }
     const auto noteCapture = [&] {
-        noted_.step = uint32_t(journal_.capturedAt / gpu::kStepTicks);
-        noted_.record = log_.end();
         journal_.captured = false;
         captureNoted_ = capturing_;
+        if (!capturing_) return;
+        record_.kind = RecordKind::capture;
+        record_.step = uint32_t(journal_.capturedAt / gpu::kStepTicks);
+        record_.tick = ++captures_;
+        push(record_);
+        noted_.id = 2 * captures_;
+        noted_.step = record_.step;
+        noted_.record = log_.end();
     };
     for (size_t i = 0; i < journal_.deeds.size(); ++i) {
         if (journal_.captured && i == journal_.capturedBehind) noteCapture();
@@ -133,39 +139,41 @@ void Server::tell(world::World& world, std::span<const std::byte> message) {
 // ---- states -------------------------------------------------------------------------------------
 
 void Server::takeCapture(world::World& world) {
-    bool wished = false, given = false;
-    for (uint32_t i = 0; i < peers_.slotCount(); ++i)
-        if (const Peer* peer = peers_.at(i)) {
-            wished |= peer->wishes && !peer->chunks.active();
-            given |= peer->chunks.active();
-        }
+    const auto each = [&](const auto& visit) {
+        for (uint32_t i = 0; i < peers_.slotCount(); ++i)
+            if (Peer* peer = peers_.at(i)) visit(*peer);
+    };
+    bool wished = false, given = false, stale = false;
+    each([&](const Peer& peer) {
+        wished |= peer.wish == Wish::state && !peer.chunks.active();
+        stale |= peer.wish == Wish::tiles && peer.stale;
+        given |= peer.chunks.active() && peer.tilesHead.id == 0;
+    });
     if (capturing_ && captureNoted_)
         if (const std::pmr::vector<std::byte>* bytes = world.fetchSave(world::SaveFor::net)) {
             captured_.assign(bytes->begin(), bytes->end());
-            const uint32_t id = noted_.id + 1;
-            noted_.id = id;
             capture_ = noted_;
             capture_.size = uint32_t(captured_.size());
             capturedAt_ = now_;
             capturing_ = captureNoted_ = false;
-            for (uint32_t i = 0; i < peers_.slotCount(); ++i)  // of the one before
-                if (Peer* peer = peers_.at(i)) peer->chunks.end();
         }
     const bool old = now_ - capturedAt_ > kCaptureAge;
     if (capture_.id != 0 && old && !given) capture_.id = 0;
-    if (!wished) return;
-    if (capture_.id == 0) {
-        if (capturing_) return;
-        world.requestSave(world::SaveFor::net);
-        capturing_ = true;
-        captureNoted_ = false;
-        return;
+    if ((wished && capture_.id == 0) || (stale && !given)) {
+        if (!capturing_) {
+            world.requestSave(world::SaveFor::net);
+            capturing_ = true;
+            captureNoted_ = false;
+        }
+        if (!captureNoted_) each([](Peer& peer) { peer.stale = false; });
     }
-    if (old) return;  // when the others have theirs
-    const size_t each = def_.packetBytes - kPacketHead - kChunkHead;
-    for (uint32_t i = 0; i < peers_.slotCount(); ++i)
-        if (Peer* peer = peers_.at(i); peer && peer->wishes && !peer->chunks.active())
-            peer->chunks.begin(uint32_t((captured_.size() + each - 1) / each));
+    if (capture_.id == 0 || old || capturing_) return;
+    const size_t room = def_.packetBytes - kPacketHead - kChunkHead;
+    each([&](Peer& peer) {
+        if (peer.wish != Wish::state || peer.chunks.active()) return;
+        peer.tilesHead = {};
+        peer.chunks.begin(uint32_t((captured_.size() + room - 1) / room));
+    });
 }
 
 // Records that nobody needs any more go; who lets too many wait needs a state.
@@ -183,9 +191,12 @@ void Server::trim() noexcept {
     uint32_t needed = log_.end();
     if (capture_.id != 0) needed = std::min(needed, capture_.record);
     if (captureNoted_) needed = std::min(needed, noted_.record);
-    for (uint32_t i = 0; i < peers_.slotCount(); ++i)
-        if (const Peer* peer = peers_.at(i); peer && peer->streams)
-            needed = std::min(needed, peer->acknowledged);
+    for (uint32_t i = 0; i < peers_.slotCount(); ++i) {
+        const Peer* peer = peers_.at(i);
+        if (peer && peer->streams) needed = std::min(needed, peer->acknowledged);
+        if (peer && peer->chunks.active() && peer->tilesHead.id != 0)
+            needed = std::min(needed, std::max(peer->tilesHead.record, log_.begin()));
+    }
     if (needed > log_.begin()) log_.dropBefore(needed);
 }
 
@@ -256,7 +267,9 @@ bool Server::writeChunks(Peer& peer) {
     if (piece == peer.chunks.count()) return false;
     core::Writer writer = beginPacket(packet_, headOf(peer, PacketKind::chunk));
     const auto each = uint16_t(def_.packetBytes - kPacketHead - kChunkHead);
-    writeChunk(writer, {capture_, piece, each}, captured_);
+    const bool tiles = peer.tilesHead.id != 0;
+    writeChunk(writer, {tiles ? peer.tilesHead : capture_, piece, each},
+               tiles ? peer.tiles : captured_);
     peer.chunks.sent(piece, now_);
     return true;
 }
@@ -302,50 +315,79 @@ void Server::read(world::World& world, FwPeerId from, std::span<const std::byte>
                        reader.left(), head.session);
         peer.token = head.client;
         peer.welcome = true;
-    } else if (head.kind != PacketKind::status || head.session != def_.token || peer.token == 0) {
+    } else if ((head.kind != PacketKind::status && head.kind != PacketKind::tiles) ||
+               head.session != def_.token || peer.token == 0) {
         core::fail(FW_ERROR_BAD_DATA,
                    "The packet of kind %u is of session 0x%08X; a server takes a client's, of "
                    "session 0x%08X.",
                    uint32_t(head.kind), head.session, def_.token);
+    } else if (head.kind == PacketKind::tiles) {
+        readTiles(world, peer, reader);
     } else {
-        bool wishes = false;
-        uint32_t loads = 0, next = 0, step = 0, state = 0, base = 0;
-        uint64_t came = 0;
-        reader.number(wishes), reader.number(loads), reader.number(next), reader.number(step);
-        reader.number(state), reader.number(base), reader.number(came);
-        if (reader.left() != 0)
-            core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow a status in the packet.",
-                       reader.left());
-        drain(world);
-        if (next > log_.end())
-            core::fail(FW_ERROR_BAD_DATA, "The packet acknowledges record %u; there are %u.", next,
-                       log_.end());
-        if (peer.chunks.active() && state == capture_.id && !peer.chunks.acknowledge(base, came))
-            core::fail(FW_ERROR_BAD_DATA, "The packet acknowledges piece %u of a state of %u.",
-                       base, peer.chunks.count());
-        if (peer.came.take(head.sequence)) {  // older ones know less
-            if (loads != peer.loads) {        // it has another state, and goes on from there
-                peer.loads = loads;
-                peer.anew = false;
-                peer.cursor = next;
-                peer.chunks.end();
-            }
-            peer.anew |= loads > 0 && next < log_.begin();
-            peer.streams = loads > 0 && !peer.anew;
-            if (peer.streams) peer.acknowledged = next;
-            peer.step = step;
-            peer.wishes = wishes || peer.anew;
-            if (!peer.wishes) peer.chunks.end();
-        }
-        peer.silent = 0;
-        peer.traffic.bytesIn += packet.size();
-        ++peer.traffic.packetsIn;
-        return;
+        readStatus(world, peer, reader, head.sequence);
     }
     (void)peer.came.take(head.sequence);
     peer.silent = 0;
     peer.traffic.bytesIn += packet.size();
     ++peer.traffic.packetsIn;
+}
+
+void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, uint32_t sequence) {
+    uint16_t wish = 0;
+    uint32_t loads = 0, next = 0, step = 0, state = 0, base = 0;
+    uint64_t came = 0;
+    reader.number(wish), reader.number(loads), reader.number(next), reader.number(step);
+    reader.number(state), reader.number(base), reader.number(came);
+    if (reader.left() != 0 || wish >= uint16_t(Wish::count))
+        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow a status in the packet, with wish %u.",
+                   reader.left(), uint32_t(wish));
+    drain(world);
+    const uint32_t given = peer.tilesHead.id != 0 ? peer.tilesHead.id : capture_.id;
+    if (peer.chunks.active() && state == given && !peer.chunks.acknowledge(base, came))
+        core::fail(FW_ERROR_BAD_DATA, "The packet acknowledges piece %u of a state of %u.", base,
+                   peer.chunks.count());
+    if (!peer.came.isNewest(sequence)) return;  // it knows less
+    if (loads != peer.loads) {                  // it has another state, and goes on from there
+        peer.loads = loads;
+        peer.anew = false;
+        peer.cursor = std::min(next, log_.end());
+        peer.chunks.end();
+    }
+    // Of what never was, or is gone: it needs all of it anew.
+    peer.anew |= loads > 0 && (next < log_.begin() || next > log_.end());
+    peer.streams = loads > 0 && !peer.anew;
+    if (peer.streams) peer.acknowledged = next;
+    peer.step = step;
+    const Wish before = peer.wish;
+    peer.wish = Wish(wish);
+    if (peer.wish != before) {
+        peer.chunks.end();
+        peer.stale = peer.wish == Wish::tiles;
+    }
+}
+
+// It has a save of its own of the tick that the capture is of.
+void Server::readTiles(world::World& world, Peer& peer, core::Reader& reader) {
+    uint32_t number = 0, slot = 0;
+    reader.number(number), reader.number(slot);
+    std::array<uint32_t, world::kMostBlocks> hashes{};
+    const size_t count = reader.left() / sizeof(uint32_t);
+    if (count > hashes.size())
+        core::fail(FW_ERROR_BAD_DATA, "The packet has hashes of %zu blocks; the limit is %zu.",
+                   count, hashes.size());
+    for (size_t i = 0; i < count; ++i) reader.number(hashes[i]);
+    if (reader.left() != 0)
+        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the hashes in the packet.", reader.left());
+    if (peer.wish != Wish::tiles || capture_.id != 2 * number || number == 0 ||
+        peer.tilesOf == number)
+        return;  // not yet, not any more, or they are on their way
+    peer.tilesOf = number;
+    if (!world.writeBlocks(captured_, slot, std::span(hashes).first(count), peer.tiles)) return;
+    peer.tilesHead = capture_;
+    peer.tilesHead.id = capture_.id + 1;
+    peer.tilesHead.size = uint32_t(peer.tiles.size());
+    const size_t room = def_.packetBytes - kPacketHead - kChunkHead;
+    peer.chunks.begin(uint32_t((peer.tiles.size() + room - 1) / room));
 }
 
 void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {

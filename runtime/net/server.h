@@ -31,13 +31,14 @@ class Server {
  private:
     static constexpr uint32_t kMostPeers = 256;
     struct Peer {
+        explicit Peer(std::pmr::memory_resource* memory) : tiles(memory) {}
         uint32_t token = 0;  // its own; 0: it has not spoken
         SequenceWindow came;
         uint32_t sent = 0;                      // sequence of the last packet to it
         bool welcome = false;                   // it is due one
         bool streams = false;                   // it has a state that records go on from
         bool anew = false;                      // it needs one, as the server knows
-        bool wishes = false;                    // it needs one, as it says
+        Wish wish = Wish::nothing;              // what it needs, as it says
         bool due = false;                       // packets, in this turn
         uint32_t loads = 0;                     // states it has taken
         uint32_t acknowledged = 0, cursor = 0;  // records
@@ -45,7 +46,11 @@ class Server {
         double budget = 0;                      // bytes
         double untilDue = 0;                    // s
         double silent = 0;                      // s
-        ChunkSender chunks;
+        bool stale = false;   // its tiles are to be of a capture that is still to come
+        ChunkSender chunks;   // of the capture, or of its tiles
+        StateHead tilesHead;  // 0: of the capture
+        std::pmr::vector<std::byte> tiles;
+        uint32_t tilesOf = 0;  // number of the capture that it got tiles of
         Traffic traffic;
     };
 
@@ -53,6 +58,8 @@ class Server {
     void push(const Record& record);
     void loseAll() noexcept;
     void takeCapture(world::World& world);
+    void readStatus(world::World& world, Peer& peer, core::Reader& reader, uint32_t sequence);
+    void readTiles(world::World& world, Peer& peer, core::Reader& reader);
     void trim() noexcept;
     bool writeStream(Peer& peer);
     bool writeChunks(Peer& peer);
@@ -74,6 +81,7 @@ class Server {
     bool capturing_ = false;     // one is on its way
     bool captureNoted_ = false;  // it is of what is in `noted_`
     StateHead noted_;
+    uint32_t captures_ = 0;               // noted so far
     std::pmr::vector<std::byte> packet_;  // scratch
     Record record_;                       // scratch
 };

@@ -13,8 +13,11 @@ constexpr uint32_t kChunkWindow = 64;                // pieces on their way at m
 constexpr uint32_t kStateMost = 256u * 1024 * 1024;  // bytes of a state
 constexpr size_t kChunkLeast = 256;                  // bytes of a piece
 
+// What a client says that it needs.
+enum class Wish : uint16_t { nothing, state, tiles, count };
+
 struct StateHead {        // of a state
-    uint32_t id = 0;      // grows; 0: none
+    uint32_t id = 0;      // twice the number of the capture; and 1: tiles of it. 0: none
     uint32_t step = 0;    // it is of this step's start
     uint32_t record = 0;  // the first record behind it
     uint32_t size = 0;    // bytes

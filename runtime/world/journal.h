@@ -39,6 +39,8 @@ constexpr uint32_t kHashRounds = 16;  // each has its turn once in so many; in m
 constexpr uint32_t kMostHashes = 64;  // of a round than these
 constexpr uint32_t kHashTicks = kHashSteps * gpu::kStepTicks;
 
+constexpr uint32_t kMostBlocks = 100;  // of tiles, of an object: each has a hash
+
 constexpr uint32_t hashRounds(uint32_t slots) noexcept {
     const uint32_t needed = (slots + kMostHashes - 1) / kMostHashes;
     return needed > kHashRounds ? needed : kHashRounds;

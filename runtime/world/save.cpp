@@ -537,17 +537,36 @@ void World::checkSaved(const SavedWorld& saved) {
     }
 }
 
+SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
+                              components::Latch& latch) {
+    components::DriveInput drive = driveInput();
+    drive.wind = fire::windUnits(saved.wind);
+    const Object& object = **objects_.at(from.slot);
+    const mesh::BurnDomain& domain = domainOf(object);
+    components::BurnableMesh posed = object.data;
+    posed.pose = from.pose;
+    components::resetLatch(posed, drive, latch);
+    SavedRecords made;
+    if (!from.touched) return made;
+    latch.filters = from.filters;
+    latch.pose = from.latched;
+    made.records = components::makeRecords(posed, domain, drive, latch);
+    latch.sent = true;
+    made.heated = components::hasHeat(object.data);
+    if (made.heated) made.heat = components::makeHeatMaterials(posed, domain, def_.paceFactor);
+    uint32_t window = made.records.timing.window;
+    for (const gpu::BurnMaterial& material : made.records.materials)
+        window = std::max(window, material.windowMax);
+    made.window = std::min(window, 1u << 24) + 2 * gpu::kStepTicks;
+    return made;
+}
+
 void World::load(std::span<const std::byte> bytes) {
     mayChange();
     SavedWorld saved(memory_);
     readSaved(bytes, saved);
     checkSaved(saved);
     // The latches first: what the backend gets follows from them.
-    const auto drive = [&] {
-        components::DriveInput input = driveInput();
-        input.wind = fire::windUnits(saved.wind);
-        return input;
-    }();
     std::pmr::vector<components::Latch> latches(memory_);
     std::pmr::vector<ImageStore> stores(memory_);
     std::pmr::vector<gpu::RestoredObject> restored(memory_);
@@ -556,34 +575,17 @@ void World::load(std::span<const std::byte> bytes) {
     restored.reserve(saved.objects.size());
     PlaneScratch scratch(memory_);
     for (const SavedObject& from : saved.objects) {
-        const Object& object = **objects_.at(from.slot);
-        const mesh::BurnDomain& domain = domainOf(object);
-        components::BurnableMesh posed = object.data;
-        posed.pose = from.pose;
-        components::Latch& latch = latches.emplace_back();
-        components::resetLatch(posed, drive, latch);
+        const SavedRecords made = recordsOf(saved, from, latches.emplace_back());
         if (!from.touched) continue;
-        latch.filters = from.filters;
-        latch.pose = from.latched;
-        const components::Records records = components::makeRecords(posed, domain, drive, latch);
-        latch.sent = true;
-        std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat{};
-        const bool heated = components::hasHeat(object.data);
-        if (heated) heat = components::makeHeatMaterials(posed, domain, def_.paceFactor);
-        uint32_t window = records.timing.window;
-        for (const gpu::BurnMaterial& material : records.materials)
-            window = std::max(window, material.windowMax);
         ImageStore& store = stores.emplace_back(memory_);
-        readImage(from.planes, domain, uint32_t(saved.clock.tick),
-                  std::min(window, 1u << 24) + 2 * gpu::kStepTicks,
-                  std::span<const gpu::HeatMaterial>(heat).first(heated ? heat.size() : 0), scratch,
-                  store);
+        readImage(from.planes, domainOf(**objects_.at(from.slot)), uint32_t(saved.clock.tick),
+                  made.window, made.heatSpan(), scratch, store);
         gpu::RestoredObject& one = restored.emplace_back();
         one.image = {from.slot,   store.ticks,    store.heat,
                      store.tiles, store.tileHeat, from.counters};
-        std::copy(records.materials.begin(), records.materials.end(), one.materials);
-        one.window = records.timing.window;
-        one.substepShift = records.timing.substepShift;
+        std::copy(made.records.materials.begin(), made.records.materials.end(), one.materials);
+        one.window = made.records.timing.window;
+        one.substepShift = made.records.timing.substepShift;
     }
     while (remote_.pairs.size() < saved.pairs.size()) remote_.pairs.emplace_back(memory_);
     for (size_t i = 0; i < saved.pairs.size(); ++i) remote_.pairs[i].links.reserve(1);

@@ -140,6 +140,16 @@ void readImage(std::span<const std::byte> planes, const mesh::BurnDomain& domain
                uint32_t windowMost, std::span<const gpu::HeatMaterial> heat, PlaneScratch& scratch,
                ImageStore& store);
 
+struct SavedRecords {  // what a saved object's planes are read by
+    components::Records records;
+    uint32_t window = 0;  // ticks beyond which nobody asks when a tile last changed
+    bool heated = false;
+    std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat{};
+    [[nodiscard]] std::span<const gpu::HeatMaterial> heatSpan() const noexcept {
+        return std::span(heat).first(heated ? heat.size() : 0);
+    }
+};
+
 struct Save {  // on its way, and the last one
     explicit Save(std::pmr::memory_resource* memory)
         : saved(memory), scratch(memory), planes(memory), bytes(memory) {}

@@ -278,6 +278,9 @@ void checkWorldDef(const FwWorldDef& def);  // throws
 struct SavedWorld;
 struct SavedObject;
 struct SavedEmitter;
+struct SavedRecords;
+struct ImageStore;
+struct PlaneScratch;
 struct Story;
 struct Save;
 
@@ -384,6 +387,14 @@ class World {
     // journal.cpp
     Journal& keepJournal(bool follows);  // from here on
     void dropJournal() noexcept { journal_ = {}; }
+    // save_tiles.cpp. Of an object in a save, a hash for each block of its tiles; none: it is at
+    // rest there. The blocks whose hashes are not `theirs`, of a save of the same tick: as bytes
+    // (false: the object is at rest), and put into that other save.
+    std::pmr::vector<uint32_t> hashBlocks(std::span<const std::byte> save, uint32_t slot);
+    bool writeBlocks(std::span<const std::byte> save, uint32_t slot,
+                     std::span<const uint32_t> theirs, std::pmr::vector<std::byte>& out);
+    void mergeBlocks(std::span<const std::byte> save, std::span<const std::byte> theirs,
+                     std::pmr::vector<std::byte>& out);
     // Another world's deed, before this one's next step. Throws where it is none for this world.
     void perform(const Deed& deed);
     void performLoad(std::span<const std::byte> bytes);  // of its save
@@ -606,6 +617,11 @@ class World {
     void planHashes(const ClockAdvance& time);
     void noteHash(const gpu::BurnMap& map, const gpu::Readback& readback);
     void checkSaved(const SavedWorld& saved);  // throws
+    // Its latch, too, as it was.
+    SavedRecords recordsOf(const SavedWorld& saved, const SavedObject& from,
+                           components::Latch& latch);
+    bool readObject(std::span<const std::byte> save, uint32_t slot, SavedWorld& saved,
+                    ImageStore& store, PlaneScratch& scratch);
     void applySaved(const SavedWorld& saved, std::span<const components::Latch> latches) noexcept;
     void applyObject(const SavedObject& from, const components::Latch& latch,
                      Object& object) noexcept;

@@ -116,6 +116,8 @@ class NetSession {
                           << stateOf(server->world).step << ", " << state.records << " records, "
                           << state.states << " states, " << state.strays << " strays; "
                           << lastMessage(client->world->world);
+            for (const std::string& warning : client->world->host.warnings)
+                ADD_FAILURE() << warning;
         }
         return false;
     }

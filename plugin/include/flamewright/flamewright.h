@@ -1057,7 +1057,7 @@ FW_API FwResult FW_CALL fwWorld_Load(FwWorld*, const void* bytes, uint64_t size)
 /* The server's world is the truth. Clients have worlds that are made of the same things in the same order (see fwWorld_Load);
  * they get the server's state once, and from there on what its host does to the burn, with the step that it came before. As
  * fire is integers, both then burn bit by bit alike; hashes of each object, every few seconds, show it, and a client that has
- * gone astray, whyever, asks for the state again. The host moves the packets, by whatever way it has: they may be lost, come
+ * gone astray, whyever, gets the tiles that differ, or all again. The host moves the packets, by whatever way it has: they may be lost, come
  * twice, late and in any order. A packet that is damaged, cut, or of another session or version is refused with a message
  * and changes nothing; the checksum finds damage, not malice: encrypt where that is to be feared. Nothing here waits.
  *

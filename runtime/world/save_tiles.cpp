@@ -1,0 +1,210 @@
+// The parts of one object that differ between two saves of the same tick: blocks of tiles, found by
+// their hashes, sent as planes of their own, and put into the other save.
+#include "core/hash.h"
+#include "core/stream.h"
+#include "world/save.h"
+
+#include <algorithm>
+
+namespace fw::world {
+namespace {
+
+constexpr uint32_t kTileSide = 8;  // texels
+
+struct BlockGrid {
+    uint32_t side = 8;  // tiles
+    uint32_t across = 0, down = 0;
+    [[nodiscard]] uint32_t count() const noexcept { return across * down; }
+};
+
+BlockGrid gridOf(const mesh::BurnDomain& domain) noexcept {
+    BlockGrid grid;
+    for (;; grid.side *= 2) {
+        grid.across = (domain.tilesX + grid.side - 1) / grid.side;
+        grid.down = (domain.tilesY + grid.side - 1) / grid.side;
+        if (grid.count() <= kMostBlocks) return grid;
+    }
+}
+
+// Blocks below each other, as a map of their own. at(stripe index, map index, texels or tiles).
+template <class At>
+void eachCell(const BlockGrid& grid, std::span<const uint32_t> blocks, uint32_t cellsPerTile,
+              uint32_t width, uint32_t height, const At& at) {
+    const uint32_t side = grid.side * cellsPerTile;
+    size_t to = 0;
+    for (const uint32_t block : blocks) {
+        const uint32_t left = block % grid.across * side, top = block / grid.across * side;
+        for (uint32_t y = 0; y < side; ++y)
+            for (uint32_t x = 0; x < side; ++x, ++to)
+                if (left + x < width && top + y < height)
+                    at(to, size_t(top + y) * width + left + x);
+    }
+}
+
+mesh::BurnDomain stripeOf(const mesh::BurnDomain& domain, const BlockGrid& grid,
+                          std::span<const uint32_t> blocks, std::pmr::memory_resource* memory) {
+    mesh::BurnDomain stripe(memory);
+    stripe.tilesX = grid.side;
+    stripe.tilesY = grid.side * uint32_t(blocks.size());
+    stripe.width = stripe.tilesX * kTileSide;
+    stripe.height = stripe.tilesY * kTileSide;
+    stripe.texels.resize(stripe.texelCount());  // none of them real
+    eachCell(grid, blocks, kTileSide, domain.width, domain.height,
+             [&](size_t to, size_t from) { stripe.texels[to] = domain.texels[from]; });
+    return stripe;
+}
+
+ImageStore takeBlocks(const ImageStore& whole, const mesh::BurnDomain& domain,
+                      const BlockGrid& grid, std::span<const uint32_t> blocks,
+                      std::pmr::memory_resource* memory) {
+    ImageStore part(memory);
+    const size_t tiles = size_t(grid.side) * grid.side * blocks.size();
+    const size_t texels = tiles * kTileSide * kTileSide;
+    part.ticks.assign(texels, gpu::kInert);
+    part.heat.assign(whole.heat.empty() ? 0 : texels, gpu::uvec2(0, 0));
+    part.tiles.assign(tiles, gpu::TileState{gpu::kNever, 0, gpu::kFarPast, 0});
+    part.tileHeat.assign(tiles, gpu::TileHeat{});
+    eachCell(grid, blocks, kTileSide, domain.width, domain.height, [&](size_t to, size_t from) {
+        part.ticks[to] = whole.ticks[from];
+        if (!whole.heat.empty()) part.heat[to] = whole.heat[from];
+    });
+    eachCell(grid, blocks, 1, domain.tilesX, domain.tilesY, [&](size_t to, size_t from) {
+        part.tiles[to] = whole.tiles[from];
+        part.tileHeat[to] = whole.tileHeat[from];
+    });
+    return part;
+}
+
+gpu::ObjectImage imageOf(const ImageStore& store, const SavedObject& object) noexcept {
+    return {object.slot, store.ticks, store.heat, store.tiles, store.tileHeat, object.counters};
+}
+
+SavedObject* findObject(SavedWorld& saved, uint32_t slot) noexcept {
+    for (SavedObject& object : saved.objects)
+        if (object.slot == slot) return &object;
+    return nullptr;
+}
+
+std::pmr::vector<uint32_t> hashesOf(const ImageStore& store, const mesh::BurnDomain& domain,
+                                    std::pmr::memory_resource* memory) {
+    const BlockGrid grid = gridOf(domain);
+    std::pmr::vector<uint32_t> hashes(memory);
+    for (uint32_t block = 0; block < grid.count(); ++block) {
+        uint64_t hash = core::kFnvOffset;
+        const uint32_t one[] = {block};
+        eachCell(grid, one, kTileSide, domain.width, domain.height, [&](size_t, size_t from) {
+            const gpu::uvec2 heat = store.heat.empty() ? gpu::uvec2(0, 0) : store.heat[from];
+            const uint32_t words[] = {store.ticks[from], heat.x, heat.y};
+            hash = core::hashWords(words, hash);
+        });
+        eachCell(grid, one, 1, domain.tilesX, domain.tilesY, [&](size_t, size_t from) {
+            const uint32_t words[] = {store.tiles[from].flag & gpu::kTileKept,
+                                      store.tiles[from].lastChange, store.tileHeat[from].flux,
+                                      store.tileHeat[from].pilot};
+            hash = core::hashWords(words, hash);
+        });
+        hashes.push_back(uint32_t(hash) ^ uint32_t(hash >> 32));
+    }
+    return hashes;
+}
+
+}  // namespace
+
+// Reads an object's planes; false: it has none in this save.
+bool World::readObject(std::span<const std::byte> save, uint32_t slot, SavedWorld& saved,
+                       ImageStore& store, PlaneScratch& scratch) {
+    readSaved(save, saved);
+    checkSaved(saved);
+    const SavedObject* object = findObject(saved, slot);
+    if (!object || !object->touched) return false;
+    components::Latch latch;
+    const SavedRecords records = recordsOf(saved, *object, latch);
+    readImage(object->planes, domainOf(**objects_.at(slot)), uint32_t(saved.clock.tick),
+              records.window, records.heatSpan(), scratch, store);
+    return true;
+}
+
+std::pmr::vector<uint32_t> World::hashBlocks(std::span<const std::byte> save, uint32_t slot) {
+    SavedWorld saved(memory_);
+    ImageStore store(memory_);
+    PlaneScratch scratch(memory_);
+    if (!readObject(save, slot, saved, store, scratch)) return std::pmr::vector<uint32_t>(memory_);
+    return hashesOf(store, domainOf(**objects_.at(slot)), memory_);
+}
+
+bool World::writeBlocks(std::span<const std::byte> save, uint32_t slot,
+                        std::span<const uint32_t> theirs, std::pmr::vector<std::byte>& out) {
+    SavedWorld saved(memory_);
+    ImageStore store(memory_);
+    PlaneScratch scratch(memory_);
+    if (!readObject(save, slot, saved, store, scratch)) return false;
+    const mesh::BurnDomain& domain = domainOf(**objects_.at(slot));
+    const BlockGrid grid = gridOf(domain);
+    const std::pmr::vector<uint32_t> ours = hashesOf(store, domain, memory_);
+    if (theirs.size() != ours.size()) return false;
+    std::pmr::vector<uint32_t> blocks(memory_);
+    for (uint32_t i = 0; i < ours.size(); ++i)
+        if (ours[i] != theirs[i]) blocks.push_back(i);
+    SavedWorld part(memory_);
+    part.clock = saved.clock;
+    SavedObject& object = part.objects.emplace_back(*findObject(saved, slot));
+    components::Latch latch;
+    const uint32_t window = recordsOf(saved, object, latch).window;
+    std::pmr::vector<std::byte> planes(memory_);
+    core::Writer writer(planes);
+    writer.number(uint32_t(blocks.size()));
+    for (const uint32_t block : blocks) writer.number(block);
+    const mesh::BurnDomain stripe = stripeOf(domain, grid, blocks, memory_);
+    const ImageStore taken = takeBlocks(store, domain, grid, blocks, memory_);
+    writeImage(imageOf(taken, object), stripe, uint32_t(saved.clock.tick), window, scratch, planes);
+    object.planes = planes;
+    writeSaved(part, out);
+    return true;
+}
+
+void World::mergeBlocks(std::span<const std::byte> save, std::span<const std::byte> theirs,
+                        std::pmr::vector<std::byte>& out) {
+    SavedWorld part(memory_), saved(memory_);
+    readSaved(theirs, part);
+    ImageStore store(memory_), taken(memory_);
+    PlaneScratch scratch(memory_);
+    if (part.objects.size() != 1 ||
+        !readObject(save, part.objects[0].slot, saved, store, scratch) ||
+        part.clock.tick != saved.clock.tick || !part.objects[0].touched)
+        core::fail(FW_ERROR_BAD_DATA, "The tiles are of tick %llu and another state.",
+                   static_cast<unsigned long long>(part.clock.tick));
+    const SavedObject& from = part.objects[0];
+    const mesh::BurnDomain& domain = domainOf(**objects_.at(from.slot));
+    const BlockGrid grid = gridOf(domain);
+    core::Reader reader(from.planes, "state");
+    const uint32_t count = reader.count("blocks of tiles", sizeof(uint32_t));
+    std::pmr::vector<uint32_t> blocks(memory_);
+    for (uint32_t i = 0; i < count; ++i) {
+        reader.number(blocks.emplace_back());
+        if (blocks[i] >= grid.count() || (i > 0 && blocks[i] <= blocks[i - 1]))
+            core::fail(FW_ERROR_BAD_DATA, "The tiles are of block %u; there are %u.", blocks[i],
+                       grid.count());
+    }
+    SavedObject& object = *findObject(saved, from.slot);
+    object = from;
+    checkSaved(saved);
+    components::Latch latch;
+    const SavedRecords records = recordsOf(saved, object, latch);
+    const auto tick = uint32_t(saved.clock.tick);
+    readImage(reader.take(reader.left()), stripeOf(domain, grid, blocks, memory_), tick,
+              records.window, records.heatSpan(), scratch, taken);
+    eachCell(grid, blocks, kTileSide, domain.width, domain.height, [&](size_t at, size_t to) {
+        store.ticks[to] = taken.ticks[at];
+        if (!store.heat.empty()) store.heat[to] = taken.heat[at];
+    });
+    eachCell(grid, blocks, 1, domain.tilesX, domain.tilesY, [&](size_t at, size_t to) {
+        store.tiles[to] = taken.tiles[at];
+        store.tileHeat[to] = taken.tileHeat[at];
+    });
+    std::pmr::vector<std::byte> planes(memory_);
+    writeImage(imageOf(store, object), domain, tick, records.window, scratch, planes);
+    object.planes = planes;
+    writeSaved(saved, out);
+}
+
+}  // namespace fw::world
