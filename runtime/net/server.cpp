@@ -393,7 +393,6 @@ void Server::readTiles(world::World& world, Peer& peer, core::Reader& reader) {
 void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
     state.role = FW_NET_SERVER;
     state.step = world.tick() / gpu::kStepTicks;
-    state.records = log_.end() - log_.begin();
     const auto add = [&](const Peer& peer) {
         ++state.peers;
         state.bytesOut += peer.traffic.bytesOut;
@@ -402,6 +401,7 @@ void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
         state.packetsIn += peer.traffic.packetsIn;
         state.packetsIgnored += peer.traffic.ignored;
         state.states += peer.loads;
+        if (peer.streams) state.records = std::max(state.records, log_.end() - peer.acknowledged);
     };
     if (id.index1 != 0) {
         const Peer& peer = peers_.get(id);

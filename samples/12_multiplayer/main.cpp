@@ -221,7 +221,7 @@ class Server : public Side {
                 return from == client_ ? &peer_ : nullptr;
             });
             if (client_ != 0) send(peer_, client_, now);
-            if (!told.empty() && state().records == 0 && now - heard > 1) return true;
+            if (!told.empty() && state().records == 0) return true;
             if (step < wishes_.steps) heard = now;
             if (now - heard > kPatience) return false;
             std::this_thread::sleep_for(std::chrono::milliseconds(4));
