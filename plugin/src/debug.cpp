@@ -1,5 +1,4 @@
 // flamewright_debug.h: what editors, tests and benches look at.
-#include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "objects.h"
 
@@ -48,13 +47,7 @@ FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld* world, FwBurnableMeshId id, uint3
         if (ticks)
             std::copy_n(map->ticks.begin(), std::min<uint64_t>(capacity, map->ticks.size()), ticks);
         if (count) *count = map->ticks.size();
-        if (hash) {
-            *hash = core::hashWords(map->ticks);
-            for (const gpu::uvec2& texel : map->heat) {
-                const uint32_t words[2] = {texel.x, texel.y};
-                *hash = core::hashWords(words, *hash);
-            }
-        }
+        if (hash) *hash = world::hashState(map->ticks, map->heat);
         if (tick) *tick = map->tick;
         return FW_OK;
     });

@@ -26,6 +26,15 @@ struct Performing {
 
 }  // namespace
 
+uint64_t hashState(std::span<const uint32_t> ticks, std::span<const gpu::uvec2> heat) noexcept {
+    uint64_t hash = core::hashWords(ticks);
+    for (const gpu::uvec2& texel : heat) {
+        const uint32_t words[2] = {texel.x, texel.y};
+        hash = core::hashWords(words, hash);
+    }
+    return hash;
+}
+
 Journal& World::keepJournal(bool follows) {
     journal_ = core::Owned<Journal>::make(memory_, memory_);
     journal_->follows = follows;
@@ -167,12 +176,7 @@ void World::noteHash(const gpu::BurnMap& map, const gpu::Readback& readback) {
         journal_->hashes.rbegin(), journal_->hashes.rend(),
         [&](const ObjectHash& one) { return one.slot == map.object || one.tick < end; });
     if (before != journal_->hashes.rend() && before->tick == end) return;
-    uint64_t hash = core::hashWords(map.ticks);
-    for (const gpu::uvec2& texel : map.heat) {
-        const uint32_t words[2] = {texel.x, texel.y};
-        hash = core::hashWords(words, hash);
-    }
-    journal_->hashes.push_back({map.object, rounds, end, hash});
+    journal_->hashes.push_back({map.object, rounds, end, hashState(map.ticks, map.heat)});
 }
 
 }  // namespace fw::world

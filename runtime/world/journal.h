@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory_resource>
+#include <span>
 #include <vector>
 
 namespace fw::world {
@@ -45,6 +46,9 @@ constexpr uint32_t hashRounds(uint32_t slots) noexcept {
     const uint32_t needed = (slots + kMostHashes - 1) / kMostHashes;
     return needed > kHashRounds ? needed : kHashRounds;
 }
+
+// Of an object's whole state: its ticks, and its heat where it has some.
+uint64_t hashState(std::span<const uint32_t> ticks, std::span<const gpu::uvec2> heat) noexcept;
 
 struct ObjectHash {
     uint32_t slot = 0, stride = 1;  // the next of its round is so many slots on
