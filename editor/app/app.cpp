@@ -761,9 +761,9 @@ void runKeys(App& app) {
         }
         return;
     }
-    const bool covered = app.files.open || app.palette || app.guard || app.about;
-    if (covered) return;
+    // A slow frame may hear of several keys: a page's and then one of that page.
     for (const Action& action : app.actions) {
+        if (app.files.open || app.palette || app.guard || app.about) return;
         if (!*action.keys || !keysPressed(action.keys)) continue;
         if (io.WantTextInput && !io.KeyCtrl && std::strcmp(action.keys, "F1")) continue;
         if (app.keys && std::strcmp(action.keys, "F1")) continue;
@@ -771,7 +771,6 @@ void runKeys(App& app) {
         if (action.page >= -1 && action.page != int(app.page)) continue;
         if (action.enabled && !action.enabled()) continue;
         action.run();
-        return;
     }
 }
 

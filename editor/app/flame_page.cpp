@@ -1298,7 +1298,10 @@ void showPresets(App& app, const Rect& rect) {
 }  // namespace
 
 void showFlame(App& app, Rect rect) {
-    if (!app.flame->opened) app.flame->open();
+    if (!app.flame->opened) {
+        app.live.awaitPipelines();
+        app.flame->open();
+    }
     showTopBar(app, rect.cutTop(dp(metrics::topBar)));
     showFlameTools(app, rect.cutTop(dp(metrics::toolBar)));
     const Rect status = rect.cutBottom(dp(metrics::status));

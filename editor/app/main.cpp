@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <sstream>
 #include <string_view>
 #include <thread>
 
@@ -32,6 +34,7 @@ struct Wishes {
     float scale = 0;      // 0: as the monitor has it
     float seconds = 0;    // that the burn runs before the shot
     bool report = false;  // prints what happens, line by line
+    std::string lines;    // commands before the picture, ; between them
     bool once = false;    // one frame, then leave: what a start takes
 };
 
@@ -181,11 +184,13 @@ class Program {
     void showOnce() {
         frame(1.0f / 30);
         vkDeviceWaitIdle(host_.device);
+        std::_Exit(0);  // what else the start has begun is not waited for
     }
 
     // Without a window: the page that is asked for, once nothing is on its way any more.
     void shoot() {
         constexpr float kStep = 1.0f / 30;
+        app_->live.awaitPipelines();
         for (int i = 0; i < 4; ++i) frame(kStep);
         for (int i = 0;
              i < 2000 && (app_->live.preparing() || app_->live.resting() || app_->output->lively());
@@ -193,6 +198,7 @@ class Program {
             frame(kStep);
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
+        runLines();
         app_->playing = wishes_.seconds > 0;
         for (float t = 0; t < wishes_.seconds; t += kStep) frame(kStep);
         app_->playing = false;
@@ -201,6 +207,16 @@ class Program {
     }
 
  private:
+    // See document/command.h.
+    void runLines() {
+        std::istringstream lines(wishes_.lines);
+        std::string message;
+        for (std::string line; std::getline(lines, line, ';');)
+            if (!fwedit::runLine(app_->document, line, message))
+                throw sample::Failure("\"" + line + "\": " + message);
+        for (int i = 0; i < 3 && !wishes_.lines.empty(); ++i) frame(1.0f / 30);
+    }
+
     // For whoever drives the program from outside: what was done, and when there is a picture.
     void report() {
         const fwapp::App& app = *app_;
@@ -213,7 +229,7 @@ class Program {
         const std::string& why = app.live.why.answer.answer;
         if (!app.live.why.answered) reportedWhy_.clear();
         if (app.live.why.answered && reportedWhy_.empty())
-            print("answered after " + std::to_string(app.live.why.frames) + " frames");
+            print("answered " + std::to_string(app.live.why.frames) + " frames later");
         if (app.live.why.answered && why != reportedWhy_) print("why: " + (reportedWhy_ = why));
         const bool paintable = app.page == fwapp::Page::kPaint && app.paint->surface;
         if (paintable && !reportedPaintable_) print("ready to paint");
@@ -329,6 +345,8 @@ int main(int argc, char** argv) {
         parser.addText("--page", "NAME", "welcome, scene, paint, flame or export", wishes.page);
         parser.addText("--scene", "NAME", "a scene of the welcome page, by its name",
                        wishes.builtIn);
+        parser.addText("--do", "LINES", "with --shot: commands before it, ; between them",
+                       wishes.lines);
         parser.addFlag("--report", "print what is done, line by line", wishes.report);
         parser.addFlag("--once", "with --headless: one frame, no picture, then leave", wishes.once);
         parser.addNumber("--scale", "size of the interface; 0: as the monitor has it", wishes.scale,

@@ -381,10 +381,10 @@ void showResults(App& app, const Rect& rect) {
     ImDrawList* list = beginPanel("##results", rect);
     const float x = rect.x0 + dp(10), right = rect.x1 - dp(10), half = rect.x0 + dp(430);
     drawText(list, fonts().semi, x, rect.y0 + dp(18), colors::title, "Into the folder");
-    std::string folder = folderOf(app).string();
+    std::string folder = homely(folderOf(app));
     if (textField("folder", {x, rect.y0 + dp(32)}, {half - x - dp(20), dp(28)}, folder,
                   "A folder; it is made if it is not there", icons::open))
-        page.folder = folder;
+        page.folder = fromHomely(folder);
     drawColumn(list, half - dp(8), rect.y0 + dp(10), rect.y1 - dp(10), colors::line);
     if (page.writes()) {
         std::string stage;

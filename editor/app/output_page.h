@@ -35,8 +35,8 @@ struct OutputPage {
         float share = 0;
     };
 
-    std::string folder;  // where it all goes; empty: beside the scene
-    int language = 0;    // SnippetLanguage that is shown
+    std::filesystem::path folder;  // where it all goes; empty: beside the scene
+    int language = 0;              // SnippetLanguage that is shown
     fwedit::FlipbookDef book;
     fwedit::FilmstripDef strip;
     fwedit::TurntableDef turn;

@@ -13,14 +13,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string homely(const fs::path& folder) {
-    const std::string text = folder.string();
-    const char* given = std::getenv("HOME");
-    const std::string home = given ? given : "";
-    if (home.empty() || !text.starts_with(home)) return text;
-    return std::string("~").append(text, home.size());
-}
-
 std::string ago(const fs::path& file) {
     std::error_code failed;
     const auto written = fs::last_write_time(file, failed);

@@ -26,6 +26,19 @@ void writeText(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
+std::string homely(const fs::path& path) {
+    const std::string text = path.string();
+    const char* given = std::getenv("HOME");
+    const std::string home = given ? given : "";
+    if (home.empty() || !text.starts_with(home + "/")) return text;
+    return std::string("~").append(text, home.size());
+}
+
+fs::path fromHomely(const std::string& text) {
+    const char* home = std::getenv("HOME");
+    return home && text.starts_with("~/") ? fs::path(home) / text.substr(2) : fs::path(text);
+}
+
 fs::path stateFolder() {
     fs::path folder;
     if (const char* given = std::getenv("XDG_STATE_HOME"); given && *given) {

@@ -15,6 +15,10 @@ struct UserState {
     std::filesystem::path lastFolder;
 };
 
+// A path as people write it, with ~ for their home, and back.
+std::string homely(const std::filesystem::path& path);
+std::filesystem::path fromHomely(const std::string& text);
+
 std::filesystem::path stateFolder();  // created if need be; empty: there is none
 void loadUserState(UserState& state);
 void saveUserState(const UserState& state);

@@ -30,9 +30,7 @@ float pixelsPerUnit(GLFWwindow* window) {
 
 bool isModifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
 
-InputEvent pointerEvent(GLFWwindow* window, Type type) {
-    double x = 0, y = 0;
-    glfwGetCursorPos(window, &x, &y);
+InputEvent pointerEvent(GLFWwindow* window, Type type, double x, double y) {
     const float scale = pixelsPerUnit(window);
     InputEvent event;
     event.type = type;
@@ -47,12 +45,17 @@ void InputQueue::listen(GLFWwindow* window) {
     static_cast<sample::Window*>(glfwGetWindowUserPointer(window))->guest = this;
     glfwSetInputMode(window, GLFW_STICKY_KEYS, GLFW_FALSE);
     glfwSetInputMode(window, GLFW_STICKY_MOUSE_BUTTONS, GLFW_FALSE);
-    glfwSetCursorPosCallback(window, [](GLFWwindow* at, double, double) {
-        queueOf(at).push(pointerEvent(at, Type::kMove));
+    glfwGetCursorPos(window, &pointerX, &pointerY);
+    glfwSetCursorPosCallback(window, [](GLFWwindow* at, double x, double y) {
+        queueOf(at).pointerX = x;
+        queueOf(at).pointerY = y;
+        queueOf(at).push(pointerEvent(at, Type::kMove, x, y));
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* at, int button, int action, int) {
         if (button < 0 || button > 2) return;
-        InputEvent event = pointerEvent(at, Type::kButton);
+        // Where it was then, not where it is by the time that a slow frame comes to hear of it.
+        InputEvent event =
+            pointerEvent(at, Type::kButton, queueOf(at).pointerX, queueOf(at).pointerY);
         event.code = button;
         event.down = action == GLFW_PRESS;
         queueOf(at).push(event);

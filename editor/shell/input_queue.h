@@ -31,6 +31,7 @@ class InputQueue {
     [[nodiscard]] bool empty() const { return events_.empty() && dropped.empty(); }
 
     std::vector<std::filesystem::path> dropped;  // files, taken and cleared by the owner
+    double pointerX = 0, pointerY = 0;           // GLFW's, as of the last event
     bool exposed = false;                        // the window wants to be drawn again
 
  private:

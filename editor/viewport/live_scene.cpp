@@ -91,16 +91,24 @@ LiveScene::LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::U
     def.colorAttachmentCount = 1;
     def.depthMode = FW_DEPTH_TEST;
     def.encoding = FW_OUTPUT_LINEAR;
-    if (fwContext_RegisterTarget(context, &def, &targetId_) != FW_OK ||
-        fwContext_Prepare(context) != FW_OK) {
+    const auto check = [context](FwResult result) {
+        if (result == FW_OK) return;
         char text[512] = "";
         fwContext_GetLastMessage(context, text, sizeof text);
         throw sample::Failure(std::string("The viewport cannot be drawn: ") + text);
-    }
+    };
+    check(fwContext_RegisterTarget(context, &def, &targetId_));
+    pipelines_ =
+        std::async(std::launch::async, [context, check] { check(fwContext_Prepare(context)); });
+}
+
+void LiveScene::awaitPipelines() {
+    if (pipelines_.valid()) pipelines_.get();  // throws as the constructor does
 }
 
 LiveScene::~LiveScene() {
     stop_ = true;
+    if (pipelines_.valid()) pipelines_.wait();
     if (work_.valid()) work_.wait();
     if (restWork_.valid()) restWork_.wait();
     vkDeviceWaitIdle(host_.device);
@@ -140,6 +148,8 @@ void LiveScene::follow(const fwedit::Document& document, bool paints) {
     const auto done = [](const auto& work) {
         return work.valid() && work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     };
+    if (pipelines_.valid() && !done(pipelines_)) return;
+    awaitPipelines();
     if (done(work_)) adopt(work_.get());
     if (done(restWork_)) adoptRest(restWork_.get());
     if (work_.valid()) return;
@@ -224,6 +234,7 @@ void LiveScene::adoptRest(Rest made) {
     rest_ = std::move(made);
     // So that the first move of a hand waits for none of it.
     for (const auto& [mesh, surface] : rest_.surfaces) burnt_.prepare(mesh, surface);
+    restFresh_ = rest_.burn != nullptr;
     stale_ = true;
 }
 
@@ -362,7 +373,7 @@ void LiveScene::followWhy() {
         const FwResult result = fwedit::pollWhy(*burn_, images_, why.question, answer, why.error);
         if (!why.answered && why.question.pointKnown && !knew) {
             why.answered = result >= 0;
-            why.frames = whyFrames_;
+            why.frames = whyFrames_ - 1;
             stale_ = true;  // the card is drawn with the next frame
         }
         if (result == FW_NOT_READY) return;
@@ -432,6 +443,12 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     if (!rests || step > 0 || memory_.waits() || why.asks)
         outside = recordOutside(*burn_, described);
     memory_.afterFrame(*burn_);
+    if (restFresh_ && rest_.burn && !rests) {
+        FwVulkanFrame still = described;
+        still.deltaTime = 0;
+        recordOutside(*rest_.burn, still);
+    }
+    restFresh_ = false;
     burn_->scene.camera = camera;  // sides are said as the eye has them
     followWhy();
     // A preview stays as it is while the burn behind it runs on to its time.

@@ -30,7 +30,7 @@ enum class Shown : uint32_t {
 // A spot of the surface and what the burn says of it.
 struct WhyCard {
     bool open = false, answered = false, asks = false;
-    uint32_t frames = 0;  // from asking to the first answer
+    uint32_t frames = 0;  // after the one it was asked in, until it was answered
     fwedit::ObjectId mesh = 0;
     glm::vec3 position{0};  // m, world
     double time = 0;        // s that the answer is of
@@ -65,7 +65,9 @@ class LiveScene {
     // Pixels of the picture.
     void resize(uint32_t width, uint32_t height);
 
-    [[nodiscard]] bool preparing() const { return work_.valid(); }
+    [[nodiscard]] bool preparing() const { return work_.valid() || pipelines_.valid(); }
+    // The context's pipelines are built while the first page is looked at; waits for them.
+    void awaitPipelines();
     // What painting and scrubbing need is not there yet.
     [[nodiscard]] bool resting() const { return restWanted_ || restWork_.valid(); }
     [[nodiscard]] bool seeking() const {
@@ -137,10 +139,12 @@ class LiveScene {
     fwedit::Assets assets_;
     std::unique_ptr<fwedit::Burn> burn_;
     std::unique_ptr<sample::Studio> studio_;
+    std::future<void> pipelines_;  // on their way; nothing of the plugin is shown before
     std::future<Made> work_;
     Rest rest_;
     std::future<Rest> restWork_;
     bool restWanted_ = false;
+    bool restFresh_ = false;  // nothing of it was recorded yet
     fwedit::BurnMemory memory_;
     MapOverlay burnt_;        // of the preview
     bool laid_ = false;       // what lies over the preview has changed, and nothing else

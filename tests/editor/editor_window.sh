@@ -1,7 +1,8 @@
 #!/bin/bash
 # Drives the editor as a hand does, with real keys and clicks in a window: imports a glTF, places a
-# heat source on it, plays, scrubs back, undoes and does again, paints on the mesh, paints a flame,
-# saves, and opens what was saved; the scene is the same to the byte.
+# heat source on it, plays, scrubs back, undoes and does again, paints on the mesh, paints a flame and
+# draws it by points, asks why, saves, writes the game's files, and opens what was saved; the scene is
+# the same to the byte.
 # Under the validation layer, synchronization checks included.
 # Usage: editor_window.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
 set -euo pipefail
@@ -49,9 +50,26 @@ await "did: Done again"
 xdotool key 3 mousemove 540 300 mousedown 1
 xdotool mousemove 560 340 mousemove 560 400 mouseup 1
 await "did: Paint the flame"
-xdotool key 1 key ctrl+s key ctrl+a type "$work/first.fwscene"
+# By points: the outline is dragged, and that is a step.
+xdotool key p mousemove 645 443 mousedown 1
+xdotool mousemove 630 440 mousemove 612 432 mouseup 1
+await "did: Outline point of the flame"
+# Why does it not burn there? All but the forecast is answered at once.
+xdotool key 1
+await ready
+xdotool key y mousemove 540 300 click 1
+await "answered [0-2] frames later"
+xdotool key Escape
+xdotool key ctrl+s key ctrl+a type "$work/first.fwscene"
 xdotool key Return
 await "did: Saved first.fwscene"
+xdotool key 4 key ctrl+e
+await "did: Wrote [0-9]+ files"
+for file in first.c first.cpp; do
+    [[ -s $work/first_game/$file ]] || { ls -R "$work" && echo "the code is not there" && exit 1; }
+done
+cc -std=c11 -Wall -Wextra -Werror -fsyntax-only -I"$(dirname "${BASH_SOURCE[0]}")/../../plugin/include" \
+    "$work/first_game/first.c"
 leave ctrl+q
 grep -q '"shape": "point"' "$work/first.fwscene" || grep -q '"point"' "$work/first.fwscene" ||
     { cat "$work/first.fwscene" && echo "the heat source is not in the file" && exit 1; }
