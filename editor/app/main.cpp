@@ -79,7 +79,7 @@ class Program {
                                     GLFW_DONT_CARE);
         }
         fwui::mapKeys(frames_.window ? frames_.window->handle() : nullptr);
-        context_ = sample::createContext(host);
+        context_ = sample::createContext(host, false);  // the viewport does, beside the first page
         app_ = std::make_unique<fwapp::App>(host, context_, *ui_);
         rescale();
     }

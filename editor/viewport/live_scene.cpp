@@ -91,19 +91,18 @@ LiveScene::LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::U
     def.colorAttachmentCount = 1;
     def.depthMode = FW_DEPTH_TEST;
     def.encoding = FW_OUTPUT_LINEAR;
-    const auto check = [context](FwResult result) {
-        if (result == FW_OK) return;
+    pipelines_ = std::async(std::launch::async, [this, context, def] {
+        if (fwContext_RegisterTarget(context, &def, &targetId_) == FW_OK &&
+            fwContext_Prepare(context) == FW_OK)
+            return;
         char text[512] = "";
         fwContext_GetLastMessage(context, text, sizeof text);
         throw sample::Failure(std::string("The viewport cannot be drawn: ") + text);
-    };
-    check(fwContext_RegisterTarget(context, &def, &targetId_));
-    pipelines_ =
-        std::async(std::launch::async, [context, check] { check(fwContext_Prepare(context)); });
+    });
 }
 
 void LiveScene::awaitPipelines() {
-    if (pipelines_.valid()) pipelines_.get();  // throws as the constructor does
+    if (pipelines_.valid()) pipelines_.get();  // throws if they cannot be made
 }
 
 LiveScene::~LiveScene() {

@@ -27,7 +27,7 @@ void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool
     view.time = static_cast<float>(frame.time);
 }
 
-FwContext* createContext(const VulkanHost& host) {
+FwContext* createContext(const VulkanHost& host, bool prepares) {
     // The device goes over as it was made. What is not said here counts as not enabled.
     FwVulkanHost lent = fwDefaultVulkanHost();
     lent.apiVersion = host.made.apiVersion;
@@ -51,7 +51,7 @@ FwContext* createContext(const VulkanHost& host) {
     if (fwCreateContext(&def, &context, &error) != FW_OK) {
         throw Failure(std::string("fwCreateContext: ") + error.message);
     }
-    if (fwContext_Prepare(context) != FW_OK) {  // a loading screen's work
+    if (prepares && fwContext_Prepare(context) != FW_OK) {  // a loading screen's work
         char text[512] = "";
         fwContext_GetLastMessage(context, text, sizeof text);
         fwDestroyContext(context);

@@ -16,9 +16,10 @@ namespace sample {
 // Where the frame is seen from, and when.
 void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool reversed = false);
 
-// Lends the host's device and builds the pipelines. Throws Failure with the reason. The caller
-// destroys the context, after a wait for the device.
-FwContext* createContext(const VulkanHost& host);
+// Lends the host's device and builds the pipelines, or leaves them to the caller, who prepares the
+// context then. Throws Failure with the reason. The caller destroys the context, after a wait for
+// the device.
+FwContext* createContext(const VulkanHost& host, bool prepares = true);
 
 class FireHost {
  public:
