@@ -16,6 +16,7 @@
 
 namespace fw::world {
 namespace {
+constexpr float kWallUnit = 1e-5f;  // m, of MeshEntry::innerWall
 
 using components::checkValue;
 using components::checkValues;
@@ -367,6 +368,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
             mesh.deform = std::move(model);
         }
         deform = components::makeDeform(def, object.data, records);
+        if (init.inner) deform.wall = float(mesh.innerWall) * kWallUnit;
         init.deformModel = mesh.deform.get();
         init.deform = &deform;
     }
@@ -434,14 +436,14 @@ void World::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
 }
 
 // Whether an object is drawn on its mesh's inner skin from inside, which is made for the first who
-// is: as thick as its walls. What moves its vertices or cuts them has places of its own, and what
-// never opens has nothing to look through.
+// is: as thick as its walls. What is cut has places of its own, so has what moves its vertices but
+// for what recedes, and what never opens has nothing to look through.
 bool World::innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object) {
     constexpr uint32_t kOthers = FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES |
                                  FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE |
-                                 FW_BURNABLE_REFINE_PUBLISHED;
-    if ((object.flags & kOthers) != 0 || components::deforms(object) || !backend_.draws())
-        return false;
+                                 FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_Z_PASS;
+    const bool moves = components::deforms(object) && (object.flags & FW_BURNABLE_RECEDE) == 0;
+    if ((object.flags & kOthers) != 0 || moves || !backend_.draws()) return false;
     if (mesh.innerSkin == InnerSkin::unknown) {
         float wall = 0;
         for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
@@ -449,8 +451,9 @@ bool World::innerSkin(MeshEntry& mesh, uint32_t slot, const components::Burnable
                 components::materialLook(object.materials[i].look).holeTime > 0)
                 wall = std::max(wall, object.materials[i].thickness);
         if (!(wall > 0)) return false;
-        const std::pmr::vector<glm::vec3> places =
-            mesh::innerSkin(*mesh.domain, std::clamp(wall, 1e-4f, 0.5f), memory_);
+        wall = std::clamp(wall, 1e-4f, 0.5f);
+        const std::pmr::vector<glm::vec3> places = mesh::innerSkin(*mesh.domain, wall, memory_);
+        mesh.innerWall = uint16_t(wall / kWallUnit);
         if (!places.empty()) backend_.createInnerSkin(slot, *mesh.domain, places);
         mesh.innerSkin = places.empty() ? InnerSkin::none : InnerSkin::there;
     }

@@ -54,7 +54,8 @@ void main() {
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
         if (!moves) {
             vec4 out_ = uintBitsToFloat(deformNode(at + kNodeOut * sizes.y));
-            place += out_.xyz * recession(burnt, depth, item.crosses ? 1e9 : out_.w);
+            kept = recession(burnt, depth, item.crosses ? 1e9 : out_.w);
+            place += out_.xyz * kept;
         }
         // Places of others are the solver's: here it learns what burnt, and at first where things rest.
         if (moves) {

@@ -107,7 +107,8 @@ struct ShownVertex {      // what is drawn instead of a mesh::RenderVertex's pos
     float x; float y; float z;   // m, object space
     uint normal;                 // signed 11:11:10
     float burnt;                 // [0, 1] mean over the node's texels; never falls
-    float lost; float kept;      // m, of a spring node: in each step, and for later ones
+    float lost; float kept;      // m, of a spring node: in each step, and for later ones; kept: of
+                                 // a solid, that it has receded
     float behind;                // s of look time that the wall behind has burnt for
     float reserved[3];
     float lead;                  // s of look time that holes come earlier here
@@ -140,7 +141,9 @@ struct DeformObject {     // per object slot
     float scale;          // m in the world of 1 m
     float springs;        // 1/s^2, stiffness over mass of the published model
     uint softBase;        // into the soft nodes
-    float reserved0; float reserved1; float reserved2;
+    uint innerFirst;      // of its vertices on the inner skin, into the vertices; see `wall`
+    float wall;           // m, how far that is under the surface; 0: it has none
+    float reserved0;
     DeformMaterial materials[8];
     vec4 pins[16];        // from xyz, radius; to xyz, 0: object space, m
 };
@@ -206,6 +209,9 @@ FW_SHARED_FN float burntShare(uint t, uint now, float more, uint charTicks) {
 FW_SHARED_FN float recession(float burnt, float depth, float limit) {
     return leastF(burnt * depth, limit);
 }
+
+// How near the inner skin comes to the surface when all of a wall has receded.
+FW_SHARED_CONST float kThinnestWall = 0.15f;  // of it
 
 // The rest normal `n`, turned as its faces turned from `a` to `b`; all unit.
 FW_SHARED_FN vec3 turnedNormal(vec3 n, vec3 a, vec3 b) {

@@ -25,7 +25,7 @@ void deform(benchmark::State& state, const char* file, uint32_t flags) {
     scene.light();
     plain.light();
     constexpr float kFrame = 1.0f / 60;
-    constexpr const char* kPasses[] = {"recede", "ties", "soft", "springs", "drape"};
+    constexpr const char* kPasses[] = {"recede", "ties", "soft", "springs", "drape", "inner"};
     double spent[std::size(kPasses)] = {};  // ms
     const auto passes = [&] {
         FwPassTime times[64];

@@ -475,6 +475,14 @@ TEST_F(Golden, BurntOpenBox) {
     EXPECT_TRUE(matchesGolden("open_box", burnAndDraw(world, 16, view, false), kTolerance));
 }
 
+// What recedes has the same walls, thinner where they burn: behind a hole is what is left of one.
+TEST_F(Golden, BurntBoxThatRecedes) {
+    FwWorld* world = makeWorld(60);
+    addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true, FW_BURNABLE_RECEDE);
+    const FwView view = makeView({-0.8f, 0.55f, 1.5f}, false, false);
+    EXPECT_TRUE(matchesGolden("receding_box", burnAndDraw(world, 16, view, false), kTolerance));
+}
+
 // Refined, walls have their thickness: an inner skin behind holes and along the open border.
 TEST_F(Golden, InsideOfARefinedBox) {
     FwWorld* world = makeWorld(60);

@@ -2,6 +2,7 @@
 // step. Floats, and devices keep bends and burnt shares in fewer bits: near, to a written distance.
 #include "mesh/bake.h"
 #include "mesh/deform/solver.h"
+#include "mesh/refine/model.h"
 #include "support/meshes.h"
 #include "support/pass_rig.h"
 
@@ -14,8 +15,9 @@ namespace {
 using gpu::vec3;
 
 constexpr uint32_t kBindings[] = {
-    FW_BIND_STATE,        FW_BIND_OBJECTS,      FW_BIND_DEFORM_OBJECTS, FW_BIND_DEFORM_GROUPS,
-    FW_BIND_DEFORM_NODES, FW_BIND_DEFORM_COATS, FW_BIND_SHOWN,          FW_BIND_SOFT};
+    FW_BIND_STATE,         FW_BIND_OBJECTS,      FW_BIND_DEFORM_OBJECTS,
+    FW_BIND_DEFORM_GROUPS, FW_BIND_DEFORM_NODES, FW_BIND_DEFORM_COATS,
+    FW_BIND_SHOWN,         FW_BIND_SOFT,         FW_BIND_VERTICES};
 constexpr uint32_t kTexels[] = {FW_BIND_DEFORM_NODES, FW_BIND_DEFORM_COATS, FW_BIND_SHOWN,
                                 FW_BIND_SOFT};
 constexpr float kStep = float(gpu::kSoftTicks) / float(gpu::kTicksPerSecond);
@@ -57,9 +59,18 @@ struct Pair {
         rig.make(FW_BIND_DEFORM_GROUPS, groups * 8);
         rig.make(FW_BIND_DEFORM_NODES, nodes.size() * sizeof nodes[0], nodes.data());
         rig.make(FW_BIND_DEFORM_COATS, coats.size() * sizeof coats[0], coats.data());
-        rig.make(FW_BIND_SHOWN, domain.vertices.size() * sizeof(gpu::ShownVertex));
+        // The second ones are on the inner skin, if it has one.
+        rig.make(FW_BIND_SHOWN, 2 * domain.vertices.size() * sizeof(gpu::ShownVertex));
+        skin = domain.vertices;
+        if (object.wall > 0) {
+            const auto places =
+                mesh::innerSkin(domain, object.wall, std::pmr::new_delete_resource());
+            for (size_t i = 0; i < places.size(); ++i)
+                std::copy_n(&places[i].x, 3, skin[i].position);
+        }
+        rig.make(FW_BIND_VERTICES, skin.size() * sizeof skin[0], skin.data());
         rig.make(FW_BIND_SOFT, nodes.size() * 16 * gpu::kSoftQuads);
-        for (const std::string pass : {"recede", "ties", "soft", "springs", "drape"})
+        for (const std::string pass : {"recede", "ties", "soft", "springs", "drape", "inner"})
             rig.add((pass + (words ? ".comp" : "_texels.comp")).c_str());
         push.up = {0, 1, 0, 0};
         push.step = kStep;
@@ -94,6 +105,7 @@ struct Pair {
             }
             push.parity = 0;
             rig.dispatch(commands, 4, &push, groups);
+            if (object.wall > 0) rig.dispatch(commands, 5, &push, groups);
         });
         if (soft && (steps & 1)) odd = !odd;
 
@@ -157,7 +169,7 @@ struct Pair {
     };
     [[nodiscard]] Apart apart() const {
         Apart worst;
-        const auto shown = rig.of<gpu::ShownVertex>(FW_BIND_SHOWN);
+        const auto shown = rig.of<gpu::ShownVertex>(FW_BIND_SHOWN).first(domain.vertices.size());
         for (size_t i = 0; i < shown.size(); ++i) {
             const gpu::ShownVertex &a = shown[i], &b = state.shown[i];
             const auto* rest = domain.vertices[i].position;
@@ -182,6 +194,7 @@ struct Pair {
     mesh::DeformState state;
     gpu::DeformObject object;
     std::vector<uint32_t> states;
+    std::pmr::vector<mesh::RenderVertex> skin;
     PassRig rig;
     gpu::DeformPush push{};
     mesh::SheetDrive drive;
@@ -234,6 +247,39 @@ TEST_F(DeformEquality, ReceedingSolids) {
     EXPECT_GT(pair.apart().moved, 0.003);
     EXPECT_LT(0, std::count_if(pair.model.nodes.begin(), pair.model.nodes.end(),
                                [](const auto& n) { return n.opposite != mesh::kNone; }));
+}
+
+// The inner skin of what recedes stays where it is while there is a wall before it, never comes
+// before what is left of that, and holes open in both at once.
+TEST_F(DeformEquality, InnerSkinsOfReceedingSolids) {
+    constexpr float kWall = 0.004f;
+    gpu::DeformObject made = object(gpu::kDeformRecede);
+    made.wall = kWall;
+    for (gpu::DeformMaterial& m : made.materials) m.depth = kWall;  // all of it goes
+    Pair pair(*device_, makeCube(kSide, 10, true), made);
+    pair.burn([&](uint32_t texel) { return (texel * 37u) % 9000u; });
+    size_t still = 0, gone = 0;
+    for (uint32_t now = 100; now < 60000; now += 9000) {
+        pair.frame(now, 0);
+        const size_t count = pair.domain.vertices.size();
+        const auto shown = pair.rig.of<gpu::ShownVertex>(FW_BIND_SHOWN);
+        for (size_t i = 0; i < count; ++i) {
+            const gpu::ShownVertex &out = shown[i], &in = shown[count + i];
+            const vec3 outside(out.x, out.y, out.z), inside(in.x, in.y, in.z);
+            const vec3 depth = outside - inside, normal = gpu::unpackDirection(out.normal);
+            ASSERT_GT(gpu::dot(depth, normal), 0.5f * gpu::kThinnestWall * kWall)
+                << now << ' ' << i;
+            ASSERT_EQ(out.lead, in.lead);
+            ASSERT_EQ(out.normal, in.normal);
+            const float* place = pair.skin[i].position;
+            const bool stays = gpu::length(inside - vec3(place[0], place[1], place[2])) < 1e-7f;
+            const float burnt = shown[pair.model.coats[i].node].burnt;
+            ASSERT_TRUE(stays || burnt > 1 - 2.01f * gpu::kThinnestWall) << now << ' ' << i;
+            (stays ? still : gone) += 1;
+        }
+    }
+    EXPECT_GT(still, 100u);
+    EXPECT_GT(gone, 100u);
 }
 
 // A sheet that hangs, blows, chars, curls and tears for ten seconds. It flaps, and so doubles any

@@ -57,6 +57,7 @@ class EveryPass : public GpuTest {
             object.deform.flags = gpu::kDeformRecede;
             for (gpu::DeformMaterial& m : object.deform.materials)
                 m = gpu::DeformMaterial{4096, 0.01f, 0, 0, 8192, 2, 0, 0};
+            object.deform.wall = 0.05f;  // it has an inner skin
         }
         scene.objects.push_back(object);
         if (published) {  // and one that is refined so too
@@ -67,6 +68,7 @@ class EveryPass : public GpuTest {
             return scene;
         }
         object.deform.flags = gpu::kDeformShell;
+        object.deform.wall = 0;
         object.deform.pinCount = 1;
         object.deform.pins[0] = {0.25f, 0.25f, 0.25f, 0.1f};
         object.deform.pins[1] = {-0.25f, 0.25f, 0.25f, 0};

@@ -151,13 +151,22 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     if (object.deform.flags || (object.flags & gpu::kObjectSkinned)) {
         init.deformModel = &models[object.mesh];
         init.deform = &object.deform;
+        init.inner = object.deform.wall > 0;
     }
     return init;
 }
 
 void BurnScene::create(gpu::Backend& backend) const {
     for (uint32_t i = 0; i < domains.size(); ++i) backend.createMesh(i, domains[i]);
-    std::vector<bool> refined(domains.size());
+    std::vector<bool> refined(domains.size()), hollow(domains.size());
+    for (const SceneObject& object : objects) {
+        if (object.deform.wall <= 0 || hollow[object.mesh]) continue;
+        std::vector<glm::vec3> places;  // around its origin
+        for (const mesh::RenderVertex& v : domains[object.mesh].vertices)
+            places.push_back(0.8f * glm::vec3(v.position[0], v.position[1], v.position[2]));
+        backend.createInnerSkin(object.mesh, domains[object.mesh], places);
+        hollow[object.mesh] = true;
+    }
     for (const SceneObject& object : objects) {
         if (!object.refine || refined[object.mesh]) continue;
         mesh::RefineOptions options;

@@ -47,6 +47,7 @@ struct DrawItem {
     uint32_t shown = kNoneTexel;  // first of its own shown vertices; kNoneTexel: the mesh's
     uint32_t inside =
         kNoneTexel;              // first of its mesh's vertices on the inner skin; kNoneTexel: none
+    bool insideShown = false;    // of its own shown vertices there
     uint32_t image = 0;          // base-colour image slot + 1, 0: none
     uint32_t variant = 0;        // of the surface pass, from surfaceVariant
     uint32_t coldVariant = ~0u;  // of its triangles where nothing shows; ~0: drawn as the others

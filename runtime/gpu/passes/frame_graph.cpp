@@ -16,19 +16,19 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,       &kRestorePass,       &kEventsPass,          &kHeatPass,
-    &kWakePass,        &kSchedulePass,      &kGatherPass,          &kArrivalPass,
-    &kArrivalRimPass,  &kGrantPass,         &kCommitPass,          &kPublishedPass,
-    &kReduceClearPass, &kReduceFrontPass,   &kReducePass,          &kFireCellsPass,
-    &kFireSourcesPass, &kReceiversPass,     &kExchangePass,        &kContactsPass,
-    &kEmbersPass,      &kPredictGatherPass, &kPredictPass,         &kPredictRimPass,
-    &kSupportPass,     &kProbePass,         &kLightsPass,          &kFlameQuadsPass,
-    &kFlameSortPass,   &kRefineHeatPass,    &kRefineLevelsPass,    &kRefineScanPass,
-    &kRefineEmitPass,  &kRefinePlacePass,   &kRecedePass,          &kTiesPass,
-    &kSoftPass,        &kSpringsPass,       &kDrapePass,           &kSkinPass,
-    &kSootPass,        &kRefineCutPass,     &kRefinePublishedPass, &kVolumeProbePass,
-    &kVolumeMarchPass, &kParticlesPass,     &kParticleQuadsPass,   &kSparksPass,
-    &kFieldPass,       &kFieldMaskPass,     &kFieldShowPass};
+    &kResetPass,       &kRestorePass,       &kEventsPass,       &kHeatPass,
+    &kWakePass,        &kSchedulePass,      &kGatherPass,       &kArrivalPass,
+    &kArrivalRimPass,  &kGrantPass,         &kCommitPass,       &kPublishedPass,
+    &kReduceClearPass, &kReduceFrontPass,   &kReducePass,       &kFireCellsPass,
+    &kFireSourcesPass, &kReceiversPass,     &kExchangePass,     &kContactsPass,
+    &kEmbersPass,      &kPredictGatherPass, &kPredictPass,      &kPredictRimPass,
+    &kSupportPass,     &kProbePass,         &kLightsPass,       &kFlameQuadsPass,
+    &kFlameSortPass,   &kRefineHeatPass,    &kRefineLevelsPass, &kRefineScanPass,
+    &kRefineEmitPass,  &kRefinePlacePass,   &kRecedePass,       &kTiesPass,
+    &kSoftPass,        &kSpringsPass,       &kDrapePass,        &kInnerPass,
+    &kSkinPass,        &kSootPass,          &kRefineCutPass,    &kRefinePublishedPass,
+    &kVolumeProbePass, &kVolumeMarchPass,   &kParticlesPass,    &kParticleQuadsPass,
+    &kSparksPass,      &kFieldPass,         &kFieldMaskPass,    &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -295,7 +295,9 @@ void recordDeform(vk::FrameRecorder& recorder, const DeformRecord& deform) {
         dispatch(kSoftPass, sheets, deform.sheetGroups, (i & 1) | way << 1);
         dispatch(kSpringsPass, springs, deform.springGroups, i & 1);
     }
-    dispatch(kDrapePass, springs + deform.springGroups, deform.vertexGroups, 0);
+    const uint32_t vertices = springs + deform.springGroups;
+    dispatch(kDrapePass, vertices, deform.vertexGroups, 0);
+    dispatch(kInnerPass, vertices + deform.vertexGroups, deform.innerGroups, 0);
 }
 
 void recordFields(vk::FrameRecorder& recorder, const FieldsRecord& fields) {

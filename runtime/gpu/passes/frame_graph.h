@@ -28,8 +28,8 @@ extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWake
     kPredictRimPass, kSupportPass, kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass,
     kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass, kRefinePlacePass,
     kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass, kSpringsPass,
-    kDrapePass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass, kParticlesPass,
-    kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
+    kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass,
+    kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -61,9 +61,10 @@ struct DeformRecord {
     DeformPush push{};
     Staged groups;
     uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;
-    uint32_t steps = 0;   // of sheets and springs
-    uint32_t way = 0;     // of the first: which arms it minds
-    bool begins = false;  // some sheet did not move in the frame before
+    uint32_t innerGroups = 0;  // of vertices with an inner skin
+    uint32_t steps = 0;        // of sheets and springs
+    uint32_t way = 0;          // of the first: which arms it minds
+    bool begins = false;       // some sheet did not move in the frame before
 };
 
 struct PublishedStep {  // one object in as-published mode

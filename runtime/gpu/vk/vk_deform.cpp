@@ -8,14 +8,13 @@
 namespace fw::gpu::vk {
 namespace {
 
-// Steps of a sheet in which each group of its nodes learns once what has burnt: fire takes seconds.
-constexpr uint32_t kRecedeSteps = 8;
-
-// Does a group of its nodes learn that in this frame? Of a sheet some do in each of its steps.
+// Does a group of its nodes learn in this frame what has burnt? Of a sheet, which moves by steps of
+// its own, every other one; every fourth one where frames are short: fire takes seconds.
 bool recedes(const VkBackend::State& s, const ObjectEntry& object, uint32_t group) noexcept {
-    if ((object.deform.flags & kDeformShell) == 0 || object.deformReset || object.deformWoke)
-        return true;
-    return (group - s.softTaken) % kRecedeSteps < s.softSteps;
+    constexpr uint32_t kLongFrame = 4;  // steps
+    const uint32_t turns = s.softSteps < kLongFrame ? 4 : 2;
+    return (object.deform.flags & kDeformShell) == 0 || object.deformReset || object.deformWoke ||
+           (group - object.recedeTurn) % turns == 0;
 }
 
 constexpr uint64_t kSettleTicks = 12 * kTicksPerSecond;  // that a sheet may swing
@@ -102,6 +101,7 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
         }
         if (object.deform.flags & kDeformSprings) needs.springGroups += groups;
         needs.vertexGroups += deformGroups(object.deform.vertexCount);
+        if (object.inner) needs.innerGroups += deformGroups(object.deform.vertexCount);
     }
     const Skin* moved = object.skinPlus1 ? &s.skins[object.skinPlus1 - 1] : nullptr;
     if (moved && (moved->dirty || moved->givenDue)) {
@@ -147,10 +147,13 @@ Staged writeDeformGroups(VkBackend::State& s, UploadWriter& writer) {
             if (object.deformsNow && !object.skinPlus1 &&
                 (tier == ~0u || (object.deform.flags & tier)))
                 append(object, object.deform.nodeCount, tier == ~0u);
+    for (const ObjectEntry& object : s.objects)
+        if (object.deformsNow) append(object, object.deform.vertexCount);
     for (ObjectEntry& object : s.objects) {
         if (!object.deformsNow) continue;
-        append(object, object.deform.vertexCount);
+        if (object.inner) append(object, object.deform.vertexCount);
         object.deformReset = false;
+        ++object.recedeTurn;
         if (object.soft.units) object.softOdd ^= (s.softSteps & 1) != 0;
     }
     writer.end();

@@ -28,7 +28,9 @@ class PassRecorder : public DrawRecorder {
     void drawFrom(const DrawItem& item, const void* push, bool inside) {
         const Table& vk = s_.device.table;
         bindFor(item, push);
-        const uint64_t shown = inside ? kInside | item.inside : item.shown;
+        const uint64_t shown = !inside            ? item.shown
+                               : item.insideShown ? item.inside
+                                                  : kInside | item.inside;
         if (shown != shown_) bindVertices(item, shown);
         if (item.refined != refined_) {
             vk.CmdBindIndexBuffer(

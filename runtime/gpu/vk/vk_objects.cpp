@@ -161,7 +161,9 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             const auto count = uint32_t(model.nodes.size());
             if (init.deform->flags & (kDeformShell | kDeformSprings))
                 fresh.soft = {s.planes.allocate(kSpaceSoft, count, last), count};
-            fresh.shown = {s.planes.allocate(kSpaceShown, mesh.vertices, last), mesh.vertices};
+            // And once more for the inner skin.
+            const uint32_t shown = mesh.vertices * (init.inner ? 2 : 1);
+            fresh.shown = {s.planes.allocate(kSpaceShown, shown, last), shown};
             if (nodes.units == 0) {
                 nodes = {s.planes.allocate(kSpaceNodes, count, last), count};
                 coats = {s.planes.allocate(kSpaceCoats, mesh.vertices, last), mesh.vertices};
@@ -233,6 +235,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.deform.vertexCount = mesh.vertices;
         fresh.deform.shownBase = fresh.shown.first;
         fresh.deform.softBase = fresh.soft.first;
+        fresh.deform.innerFirst = mesh.innerVertices.first;
         fresh.deform.stateBase = r.stateBase;
         fresh.deform.slot = slot;
         fresh.deform.scale = length(vec3(r.worldRow0));

@@ -146,7 +146,10 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                 item.indexCount = end - first;
                 item.vertexOffset = int32_t(mesh.vertexRange.first);
                 item.shown = object.shown.units ? object.shown.first : kNoneTexel;
-                item.inside = object.inner ? mesh.innerVertices.first : kNoneTexel;
+                item.insideShown = object.inner && object.shown.units;
+                if (object.inner)
+                    item.inside = item.insideShown ? object.shown.first + mesh.vertices
+                                                   : mesh.innerVertices.first;
                 item.image = object.images[m];
                 chooseVariants(s, object, item);
                 item.refined = object.refine.started;
@@ -489,9 +492,10 @@ void VkBackend::State::run(const FramePlan& plan) {
         deform.sheetGroups = needs.sheetGroups;
         deform.springGroups = needs.springGroups;
         deform.steps = softSteps;
-        deform.way = softTaken % kArmWays;
+        deform.way = softWay;
         deform.begins = needs.sheetsBegin;
         deform.vertexGroups = needs.vertexGroups;
+        deform.innerGroups = needs.innerGroups;
         deform.groups = writeDeformGroups(*this, writer);
         deform.push.now = plan.endTick;
         deform.push.step = float(kSoftTicks) / float(kTicksPerSecond);
@@ -501,7 +505,7 @@ void VkBackend::State::run(const FramePlan& plan) {
                           tickFraction * float(kStepTicks)};
         recordDeform(recorder, deform);
     }
-    softTaken += softSteps;
+    softWay = (softWay + softSteps) % kArmWays;
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }
 

@@ -126,6 +126,7 @@ struct ObjectEntry {
     DeformObject deform{};
     bool deformDirty = false, deformReset = false;
     bool deformsNow = false;     // scratch of run
+    uint32_t recedeTurn = 0;     // which groups of a sheet learn next what has burnt
     uint32_t deformTicks = 0;    // that something moves after the last texel caught
     uint64_t lastEvent = 0;      // tick
     bool softOdd = false;        // its places are the second ones
@@ -299,7 +300,7 @@ struct VkBackend::State {
     uint32_t crossing = 0;   // of kSwitchCrossing and kSwitchNoZPass
     uint64_t softStep = 0;   // number of the step that sheets and springs have come to
     uint32_t softSteps = 0;  // that they take in the frame
-    uint32_t softTaken = 0;  // that they took before
+    uint32_t softWay = 0;    // which arms the next one minds
 
     // The frame that is open.
     struct Open {

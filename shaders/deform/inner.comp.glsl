@@ -1,0 +1,37 @@
+// The inner skin of what recedes: drawn vertices as they are seen from inside. It stays where it is
+// while the wall before it burns away, and goes back with it where hardly any is left. Holes open in
+// both skins at once. kDeformGroup vertices of one object a group.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_DEFORM_COATS
+#define FW_USE_SHOWN
+#include "lib/deform_buffers.glsl"
+FW_BUFFER(FW_BIND_VERTICES, readonly, MeshVerticesBuffer, uvec4, meshVertices);
+
+void main() {
+    DeformItem item = deformItem();
+    uvec4 sizes = deformObjects[item.object];
+    uint shownBase = deformObjects[item.object + 1u].x;
+    uvec4 facts3 = deformObjects[item.object + 3u];
+    uint innerFirst = facts3.y;
+    float wall = uintBitsToFloat(facts3.z), thinnest = kThinnestWall * wall;
+
+    uint last = min(item.end, sizes.w);
+    uint number = item.number;
+    if (number >= last) return;
+    do {
+        uint node = shownBase + deformCoat(sizes.z * kDeformCoatQuads + number).x;
+        uint self = shownBase + number, inner = self + sizes.w;
+        vec4 outside = shown(self * kShownQuads);
+        float receded = shown(node * kShownQuads + 1u).z;
+        float lead = shown(self * kShownQuads + 2u).w;
+        vec3 inside = uintBitsToFloat(meshVertices[(innerFirst + number) * kShownQuads].xyz);
+        // A record of a vertex is as long as one of what is shown.
+        vec3 thin = outside.xyz - unpackDirection(floatBitsToUint(outside.w)) * thinnest;
+        vec3 place = mix(thin, inside, unitF((wall - receded) / thinnest - 1.0));
+        shownOut[inner * kShownQuads] = floatBitsToUint(vec4(place, outside.w));
+        shownOut[inner * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, lead));
+        number += 64u;
+    } while (number < last);
+}
