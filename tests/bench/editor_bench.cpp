@@ -1,6 +1,6 @@
 // What an artist's hand waits for, without the window: a dab of the brush on a map of 1024^2, a
-// scrub to any time, a scene with a bunny of 31,000 triangles opened with its bake in the cache; and
-// the program from its start to its first frame.
+// scrub to any time, a scene with a bunny of 31,000 triangles opened with its bake in the cache;
+// and the program from its start to its first frame.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
