@@ -377,7 +377,8 @@ typedef enum FwBurnableFlags {
                                    a host lights (what another object lights stays coarse); burnt
                                    triangles vanish whole. It cracks where levels meet, and has no
                                    budget. Same fire, same mesh */
-    FW_BURNABLE_RECEDE = 128,   /* what we draw recedes as it is consumed; for solids */
+    FW_BURNABLE_RECEDE = 128,   /* what we draw recedes as it is consumed; for solids. Closed ones of up to
+                                   65536 triangles show walls behind holes, as they do without it */
     FW_BURNABLE_SHELL = 256,    /* a thin sheet: hangs, flutters, curls and shrinks as it chars, tears;
                                    see pins. Cosmetic: fire spreads and is found where it rests */
     FW_BURNABLE_SPRINGS = 512,  /* deformed by the published mass-spring model, for comparison */

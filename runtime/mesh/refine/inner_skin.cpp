@@ -6,7 +6,7 @@
 namespace fw::mesh {
 namespace {
 
-constexpr size_t kMostTriangles = 1u << 16;  // some 4 us of a host's creation call each
+constexpr size_t kMostTriangles = 1u << 16;  // some 4 us each of the first creation call
 // Nothing recedes here, so triangles smaller than the wall is thick may move by more than they are
 // high: they keep their shape where the surface is nearly flat.
 constexpr float kAltitudes = 8;
