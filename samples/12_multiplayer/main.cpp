@@ -119,12 +119,7 @@ class Side {
  protected:
     using Clock = std::chrono::steady_clock;
 
-    void check(FwResult result) const {
-        if (result >= 0) return;
-        char why[512] = "";
-        fwWorld_GetLastMessage(world_, why, sizeof why);
-        throw std::runtime_error(std::string(fwResultName(result)) + ": " + why);
-    }
+    void check(FwResult result) const { ::check(result, world_); }
     [[nodiscard]] double seconds() const {
         return std::chrono::duration<double>(Clock::now() - start_).count();
     }

@@ -70,13 +70,6 @@ Wishes readArguments(int count, char** arguments) {
     return wishes;
 }
 
-void check(FwResult result, FwWorld* world) {
-    if (result == FW_OK) return;
-    char why[512] = "";
-    fwWorld_GetLastMessage(world, why, sizeof why);
-    throw std::runtime_error(std::string(fwResultName(result)) + ": " + why);
-}
-
 // The processor's time, of all threads of the process.
 double cpuSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 

@@ -9,13 +9,6 @@ namespace {
 
 constexpr float kHalf = 0.25f, kApart = 0.9f;  // m
 
-void check(FwResult result, FwWorld* world) {
-    if (result == FW_OK) return;
-    char why[512] = "";
-    fwWorld_GetLastMessage(world, why, sizeof why);
-    throw std::runtime_error(std::string(fwResultName(result)) + ": " + why);
-}
-
 // Six faces of four corners each, seen from outside.
 FwMeshId makeCrate(FwWorld* world) {
     float positions[72];
@@ -42,6 +35,13 @@ FwMeshId makeCrate(FwWorld* world) {
 }
 
 }  // namespace
+
+void check(FwResult result, FwWorld* world) {
+    if (result >= 0) return;
+    char why[512] = "";
+    fwWorld_GetLastMessage(world, why, sizeof why);
+    throw std::runtime_error(std::string(fwResultName(result)) + ": " + why);
+}
 
 void placeOf(const Yard& yard, uint32_t crate, float (&place)[3]) {
     place[0] = kApart * float(crate % yard.columns);

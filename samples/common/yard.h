@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+// Throws std::runtime_error with the library's message if the result is an error.
+void check(FwResult result, FwWorld* world);
+
 struct Yard {
     std::vector<FwBurnableMeshId> crates;
     uint32_t columns = 0;
