@@ -43,15 +43,6 @@ constexpr const char* kUsage =
     "  --out DIR    leave DIR/server.txt and DIR/client.txt: step and hash\n"
     "  --port P     be the client of the server at this port (it starts its own)\n";
 
-uint32_t wholeOf(const std::string& name, const char* text, uint32_t low, uint32_t high) {
-    char* end = nullptr;
-    const unsigned long value = std::strtoul(text, &end, 10);
-    if (end == text || *end != 0 || value < low || value > high)
-        throw std::runtime_error(name + " is \"" + text + "\"; it is a number in [" +
-                                 std::to_string(low) + ", " + std::to_string(high) + "]");
-    return uint32_t(value);
-}
-
 Wishes readArguments(int count, char** arguments) {
     Wishes wishes;
     for (int i = 1; i < count; ++i) {

@@ -33,15 +33,6 @@ constexpr const char* kUsage =
     "  --fast       as fast as it can instead of in real time\n"
     "  --out DIR    leave DIR/server.fwsave at the end\n";
 
-uint32_t wholeOf(const char* name, const char* text, uint32_t low, uint32_t high) {
-    char* end = nullptr;
-    const unsigned long value = std::strtoul(text, &end, 10);
-    if (end == text || *end != 0 || value < low || value > high)
-        throw std::runtime_error(std::string(name) + " is \"" + text + "\"; it is a number in [" +
-                                 std::to_string(low) + ", " + std::to_string(high) + "]");
-    return uint32_t(value);
-}
-
 Wishes readArguments(int count, char** arguments) {
     Wishes wishes;
     for (int i = 1; i < count; ++i) {

@@ -2,6 +2,7 @@
 
 #include <flamewright/flamewright_debug.h>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 
@@ -35,6 +36,15 @@ FwMeshId makeCrate(FwWorld* world) {
 }
 
 }  // namespace
+
+uint32_t wholeOf(const std::string& name, const char* text, uint32_t low, uint32_t high) {
+    char* end = nullptr;
+    const unsigned long value = std::strtoul(text, &end, 10);
+    if (end == text || *end != 0 || value < low || value > high)
+        throw std::runtime_error(name + " is \"" + text + "\"; it is a number in [" +
+                                 std::to_string(low) + ", " + std::to_string(high) + "]");
+    return uint32_t(value);
+}
 
 void check(FwResult result, FwWorld* world) {
     if (result >= 0) return;

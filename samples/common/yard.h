@@ -2,10 +2,15 @@
 #pragma once
 #include <flamewright/flamewright.h>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 // Throws std::runtime_error with the library's message if the result is an error.
 void check(FwResult result, FwWorld* world);
+
+// An argument that is a whole number in [low, high]; throws std::runtime_error with its name
+// otherwise.
+uint32_t wholeOf(const std::string& name, const char* text, uint32_t low, uint32_t high);
 
 struct Yard {
     std::vector<FwBurnableMeshId> crates;
