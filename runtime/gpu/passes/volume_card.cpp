@@ -2,6 +2,7 @@
 // whatever its size on the screen, and for some frames shown as it was, facing the camera, where
 // and as large as it is now.
 #include "gpu/passes/draw.h"
+#include "gpu/passes/volume_tiers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,8 @@ namespace {
 
 constexpr Use kVolumeCardUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawTexels}};
 
-constexpr float kCardCells = 24.0f;   // of a flame's diameter, where its smoke leaves as many
-constexpr float kCardFinest = 0.25f;  // as volume_march's
-constexpr float kGrows = 1.15f;       // cells, until they are few enough
+constexpr float kCardCells = 24.0f;  // of a flame's diameter, where its smoke leaves as many
+constexpr float kGrows = 1.15f;      // cells, until they are few enough
 
 // m per unit of the view at so many m along it.
 vec2 metresAt(const VolumeDraw& draw, float depth) {
@@ -75,7 +75,7 @@ void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen&
     out.composite = {};
     VolumeMarch& march = out.march;
     march.rayX = vec4(perCell.x * vec3(draw.rayX), 0.0f);
-    march.rayX.w = kCardFinest * glm::length(vec3(march.rayX));
+    march.rayX.w = kFinestDetail * glm::length(vec3(march.rayX));
     march.turns = uint32_t(std::clamp(
         std::ceil(2.0f * draw.deep * float(draw.slabs) / draw.spacing), 1.0f, float(screen.steps)));
     march.rayY =

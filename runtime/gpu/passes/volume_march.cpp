@@ -2,6 +2,7 @@
 // pixels, or of a part of one where the flame is small, kept in slabs, of the tiles that
 // volume_probe finds worth it. Memory is bounded: what does not fit is marched in larger cells.
 #include "gpu/passes/frame_graph.h"
+#include "gpu/passes/volume_tiers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +22,6 @@ constexpr uint32_t kMostPerPixel = 8;  // cells a side: a tile
 // A flame is as wide as so many cells, or sheets and tongues fall between rays: its light would
 // depend on where cells lie.
 constexpr float kCellsAcross = 16.0f;
-// Detail as fine as this part of a cell is still sampled: what a pixel averages is many cells, and
-// to leave sheets out costs light where to sample them costs none.
-constexpr float kFinest = 0.25f;
 constexpr float kAllDetail = 96.0f;    // px across a flame from which its samples are as it says
 constexpr float kSmallSpacing = 0.5f;  // of small ones, of those
 constexpr float kSamplesPerStep = 2.75f;
@@ -149,7 +147,7 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         MarchedVolume& one = out[i];
         one.flame = items[i].flame;
         VolumeMarch& march = one.march;
-        march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell * kFinest);
+        march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell * kFinestDetail);
         march.turns = turnsOf(draw, screen);
         march.rayY = vec4(perCell.y * vec3(draw.rayY), draw.deep / float(march.turns));
         march.rayO = vec4(vec3(draw.rayO) + (0.5f * perCell.x - 1.0f) * vec3(draw.rayX) +

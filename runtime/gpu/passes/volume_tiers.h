@@ -14,7 +14,10 @@ namespace fw::gpu {
 constexpr uint32_t kTierFrames = 16;  // of the way from one tier to the next
 constexpr uint32_t kStepsTurn = 2;    // a frame, from many samples to few
 constexpr uint32_t kMarchedHigh = 16, kMarchedFlames = 32;
-constexpr float kCardInside = 10.0f, kCardOutside = 13.0f;           // px across: below, above
+constexpr float kCardInside = 10.0f, kCardOutside = 13.0f;  // px across: below, above
+// Of a cell: detail as fine as this is still sampled. What a pixel averages is many cells, and to
+// leave sheets out costs light where to sample them costs none.
+constexpr float kFinestDetail = 0.25f;
 constexpr uint32_t kHighSteps = 32, kLowSteps = 16, kFewSteps = 12;  // VolumeDraw::mostSteps
 
 struct TierItem {        // a flame that a view shows
