@@ -377,11 +377,7 @@ void Client::fillState(world::World& world, FwNetState& state) const {
     state.silent = float(silent_);
     state.records = uint32_t(waiting_.size());
     state.peers = joined_ ? 1 : 0;
-    state.bytesOut = traffic_.bytesOut;
-    state.bytesIn = traffic_.bytesIn;
-    state.packetsOut = traffic_.packetsOut;
-    state.packetsIn = traffic_.packetsIn;
-    state.packetsIgnored = traffic_.ignored;
+    addTraffic(traffic_, state);
     state.states = loads_;
     state.hashes = compared_;
     state.strays = strays_;

@@ -61,4 +61,12 @@ PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
     return head;
 }
 
+void addTraffic(const Traffic& traffic, FwNetState& state) noexcept {
+    state.bytesOut += traffic.bytesOut;
+    state.bytesIn += traffic.bytesIn;
+    state.packetsOut += traffic.packetsOut;
+    state.packetsIn += traffic.packetsIn;
+    state.packetsIgnored += traffic.ignored;
+}
+
 }  // namespace fw::net

@@ -4,6 +4,7 @@
 // is no seal against those who know it: whoever needs that encrypts what a host sends.
 #pragma once
 #include "core/stream.h"
+#include "flamewright/flamewright.h"
 
 #include <cstdint>
 #include <span>
@@ -71,5 +72,6 @@ struct Traffic {  // one way and the other
     uint64_t bytesOut = 0, bytesIn = 0, packetsOut = 0, packetsIn = 0;
     uint64_t ignored = 0;  // that came again, or much too late
 };
+void addTraffic(const Traffic& traffic, FwNetState& state) noexcept;
 
 }  // namespace fw::net

@@ -395,11 +395,7 @@ void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
     state.step = world.tick() / gpu::kStepTicks;
     const auto add = [&](const Peer& peer) {
         ++state.peers;
-        state.bytesOut += peer.traffic.bytesOut;
-        state.bytesIn += peer.traffic.bytesIn;
-        state.packetsOut += peer.traffic.packetsOut;
-        state.packetsIn += peer.traffic.packetsIn;
-        state.packetsIgnored += peer.traffic.ignored;
+        addTraffic(peer.traffic, state);
         state.states += peer.loads;
         if (peer.streams) state.records = std::max(state.records, log_.end() - peer.acknowledged);
     };

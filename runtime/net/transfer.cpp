@@ -9,27 +9,28 @@ namespace {
 constexpr double kResendAfter = 0.25;  // s
 constexpr double kNeverSent = -1e9;
 
+// A head's fields, written or read: the order is that of the packet.
+template <class Stream, class Head>
+void eachOf(Stream& stream, Head& head) {
+    stream.number(head.state.id);
+    stream.number(head.state.step);
+    stream.number(head.state.record);
+    stream.number(head.state.size);
+    stream.number(head.index);
+    stream.number(head.bytes);
+}
+
 }  // namespace
 
 void writeChunk(core::Writer& writer, const ChunkHead& head, std::span<const std::byte> state) {
-    writer.number(head.state.id);
-    writer.number(head.state.step);
-    writer.number(head.state.record);
-    writer.number(head.state.size);
-    writer.number(head.index);
-    writer.number(head.bytes);
+    eachOf(writer, head);
     const size_t from = size_t(head.index) * head.bytes;
     const auto piece = state.subspan(from, std::min<size_t>(head.bytes, state.size() - from));
     writer.bytes().insert(writer.bytes().end(), piece.begin(), piece.end());
 }
 
 std::span<const std::byte> readChunk(core::Reader& reader, ChunkHead& head) {
-    reader.number(head.state.id);
-    reader.number(head.state.step);
-    reader.number(head.state.record);
-    reader.number(head.state.size);
-    reader.number(head.index);
-    reader.number(head.bytes);
+    eachOf(reader, head);
     const uint64_t from = uint64_t(head.index) * head.bytes;
     if (head.state.id == 0 || head.state.size == 0 || head.state.size > kStateMost ||
         head.bytes < kChunkLeast || from >= head.state.size ||

@@ -77,6 +77,13 @@ class NetSession {
         EXPECT_EQ(FW_OK, fwNet_AddPeer(server->world, &client.peer)) << lastMessage(server->world);
         return client;
     }
+    // Steps of the server's, and what goes to and fro meanwhile.
+    void run(int steps) {
+        for (int i = 0; i < steps; ++i) {
+            server->run(1.0 / 32);
+            pass(1.0 / 32);
+        }
+    }
     // After the server's host has done its part: `seconds` pass.
     void pass(double seconds) {
         EXPECT_EQ(FW_OK, fwNet_Update(server->world, float(seconds)));

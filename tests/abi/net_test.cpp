@@ -89,22 +89,16 @@ TEST(Net, APartThatIsPutOutIsOut) {
     NetSession<Sheets> session(std::make_unique<Sheets>());
     SheetWorld& client = *session.join(std::make_unique<Sheets>()).world;
     SheetWorld& server = *session.server;
-    const auto run = [&](int steps) {
-        for (int i = 0; i < steps; ++i) {
-            server.run(1.0 / 32);
-            session.pass(1.0 / 32);
-        }
-    };
     server.ball(FW_IGNITE, 0.5f, 0, 0.12f, 0.02f);
-    run(96);
+    session.run(96);
     server.ball(FW_EXTINGUISH, 0.45f, 0, 0.12f, 0.05f);
     server.ball(FW_WET, 0.6f, 0, 0.2f, 0.04f);
-    run(8);
+    session.run(8);
     session.expectEqual("soon after");
     EXPECT_EQ(uint32_t(FW_POINT_EXTINGUISHED), client.point(0.45f, 0, 0.12f).kind);
     EXPECT_EQ(uint32_t(FW_POINT_BURNING), client.point(0.53f, 0, 0.12f).kind);
     EXPECT_EQ(server.state().ignited, client.state().ignited);
-    run(96);
+    session.run(96);
     session.expectEqual("when it burns on");
 }
 
@@ -137,29 +131,23 @@ TEST(Net, TilesThatDifferAreEnough) {
     NetSession<Sheets> session(std::make_unique<Sheets>());
     SheetWorld& client = *session.join(std::make_unique<Sheets>()).world;
     SheetWorld& server = *session.server;
-    const auto run = [&](int steps) {
-        for (int i = 0; i < steps; ++i) {
-            server.run(1.0 / 32);
-            session.pass(1.0 / 32);
-        }
-    };
     const auto in = [&] { return NetSession<Sheets>::stateOf(client.world).bytesIn; };
     server.ball(FW_IGNITE, 0.2f, 0, 0.12f, 0.05f);
-    run(160);
+    session.run(160);
     session.expectEqual("before");
     uint64_t whole = 0;
     EXPECT_EQ(FW_OK, fwWorld_RequestSave(server.world));
     EXPECT_EQ(FW_OK, fwWorld_Step(server.world, 0));
     EXPECT_EQ(FW_OK, fwWorld_FetchSave(server.world, nullptr, &whole));
     const uint64_t calm = in();
-    run(128);
+    session.run(128);
     const uint64_t before = in();
     uint64_t count = 0;
     EXPECT_EQ(FW_OK,
               fwDebug_GetTexelPositions(client.world, client.mesh, nullptr, nullptr, 0, &count));
     const auto middle = uint32_t(count / 2 + 400);  // to the right in a row of the middle
     EXPECT_EQ(FW_OK, fwDebug_PushTexels(client.world, client.object, FW_IGNITE, &middle, 1));
-    run(192);
+    session.run(192);
     const FwNetState state = NetSession<Sheets>::stateOf(client.world);
     EXPECT_EQ(1u, state.strays);
     EXPECT_EQ(2u, state.states);
