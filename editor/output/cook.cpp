@@ -4,8 +4,6 @@
 #include <set>
 #include <span>
 
-#include "document/inspect.h"
-#include "import/float_picture.h"
 #include "output/output.h"
 #include "tools/whole_file.h"
 
@@ -181,6 +179,17 @@ bool cookScene(const OutputInput& input, const OutputPlan& plan, FwContext* cpu,
     return goOn(progress, "Done", all, all, error);
 }
 
+fwimport::FloatPicture arrivalPicture(const ArrivalField& field) {
+    fwimport::FloatPicture picture;
+    picture.width = field.width;
+    picture.height = field.height;
+    picture.channels = 1;
+    picture.names = {"Y"};
+    for (const float seconds : field.seconds)
+        picture.values.push_back(seconds < kNeverLit ? seconds : -1.0f);
+    return picture;
+}
+
 bool writeArrivals(const OutputInput& input, FwContext* cpu, const fs::path& out,
                    const OutputProgress& progress, std::vector<fs::path>& files,
                    std::string& error) {
@@ -204,15 +213,8 @@ bool writeArrivals(const OutputInput& input, FwContext* cpu, const fs::path& out
     std::error_code ignored;
     fs::create_directories(out, ignored);
     for (const ArrivalField& field : record.fields) {
-        fwimport::FloatPicture picture;
-        picture.width = field.width;
-        picture.height = field.height;
-        picture.channels = 1;
-        picture.names = {"Y"};
-        for (const float seconds : field.seconds)
-            picture.values.push_back(seconds < kNeverLit ? seconds : -1.0f);
         const fs::path file = out / (plan.identifiers[field.mesh] + "_arrival.exr");
-        if (!fwimport::writePicture(file, picture, error)) return false;
+        if (!fwimport::writePicture(file, arrivalPicture(field), error)) return false;
         files.push_back(file);
     }
     return true;

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "document/burn.h"
+#include "document/inspect.h"
+#include "import/float_picture.h"
 
 namespace fwedit {
 
@@ -60,6 +62,8 @@ enum class SnippetLanguage { C, Cpp };
 // Source that compiles by itself, with the plugin's header, and makes the scene of its files.
 std::string snippetOf(const Scene& scene, const OutputPlan& plan, SnippetLanguage language);
 
+// Seconds at which each texel catches, -1: never.
+fwimport::FloatPicture arrivalPicture(const ArrivalField& field);
 // When each texel catches: MESH_arrival.exr for each mesh, s, -1 never.
 bool writeArrivals(const OutputInput& input, FwContext* cpu, const std::filesystem::path& out,
                    const OutputProgress& progress, std::vector<std::filesystem::path>& files,

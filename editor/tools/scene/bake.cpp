@@ -1,8 +1,9 @@
 // fw-bake: a scene's whole burn, run once: when each spot catches, and what happens when.
+#include <algorithm>
 #include <cstdio>
 
 #include "document/text.h"
-#include "import/float_picture.h"
+#include "output/output.h"
 #include "scene/tool.h"
 
 namespace {
@@ -64,16 +65,9 @@ int main(int count, char** words) {
         if (!mine(options, i)) continue;
         const ArrivalField& field = record.fields[i];
         const Mesh& mesh = *findIn(scene.meshes, field.mesh);
-        fwimport::FloatPicture picture;
-        picture.width = field.width;
-        picture.height = field.height;
-        picture.channels = 1;
-        picture.names = {"Y"};
-        size_t lit = 0;
-        for (const float seconds : field.seconds) {
-            lit += seconds < kNeverLit;
-            picture.values.push_back(seconds < kNeverLit ? seconds : -1.0f);
-        }
+        const fwimport::FloatPicture picture = arrivalPicture(field);
+        const auto lit =
+            std::ranges::count_if(field.seconds, [](float at) { return at < kNeverLit; });
         const fs::path file =
             options.out / (std::to_string(mesh.id) + "_" + fs::path(mesh.name).filename().string() +
                            "_arrival.exr");
