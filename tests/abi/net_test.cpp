@@ -370,7 +370,7 @@ TEST(Net, TenThousandFuzzedPacketsChangeNothing) {
 }
 
 // The sum in a packet's head, so that what is behind it is looked at.
-void sign(Bytes& packet) {
+void signPacket(Bytes& packet) {
     uint64_t hash = 1469598103934665603ull;
     for (size_t i = 0; i < packet.size(); ++i)
         if (i < 8 || i >= 12) hash = (hash ^ packet[i]) * 1099511628211ull;
@@ -394,7 +394,7 @@ TEST(Net, DamageThatIsNotFoundAtOnceHeals) {
                     packet
                         .bytes[24 + random() % std::min<size_t>(room, random() % 2 ? 40 : room)] ^=
                         (unsigned char)(1u << (random() % 8));
-                sign(packet.bytes);
+                signPacket(packet.bytes);
                 ++spoilt;
             }
         };

@@ -167,7 +167,7 @@ TEST(Save, RefusesWhatIsNotTheWorlds) {
 }
 
 // The sum that a save's header has, so that what is behind it is looked at.
-void sign(Bytes& bytes) {
+void signSave(Bytes& bytes) {
     uint64_t hash = 1469598103934665603ull;
     size_t at = 24;
     for (; at + 8 <= bytes.size(); at += 8) {
@@ -203,7 +203,7 @@ TEST(Save, DamagedOnesNeverCrash) {
             const uint32_t at = 24 + next(next(2) ? most : std::min(most, 900u));
             wrong[at] = kind == 1 ? 0xFF : (unsigned char)(wrong[at] ^ (1u << next(8)));
         }
-        sign(wrong);
+        signSave(wrong);
         const FwResult result = w.load(wrong);
         if (result != FW_OK) {
             EXPECT_EQ(FW_ERROR_BAD_DATA, result) << lastMessage(w.world);

@@ -8,7 +8,7 @@
 
 #include <map>
 
-namespace fw::test {
+namespace fw::test::front_cpu_bench {
 namespace {
 
 const mesh::BurnDomain& planeDomain(double width, double height) {
@@ -97,4 +97,4 @@ BENCHMARK_CAPTURE(smallFire, large, 1024.0)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::front_cpu_bench

@@ -18,7 +18,7 @@
 #include <map>
 #include <string>
 
-namespace fw::test {
+namespace fw::test::front_vk_bench {
 namespace {
 
 // A flat map of `side` x `side` texels; all of it real.
@@ -548,4 +548,4 @@ BENCHMARK(recordIdle)
     ->Iterations(200);
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::front_vk_bench

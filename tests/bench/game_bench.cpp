@@ -15,6 +15,7 @@
 #include <memory>
 #include <vector>
 
+namespace fw::test::game_bench {
 namespace {
 
 using fw::test::cpuSeconds;
@@ -80,3 +81,4 @@ BENCHMARK(gameFrame)
     ->Iterations(24);
 
 }  // namespace
+}  // namespace fw::test::game_bench

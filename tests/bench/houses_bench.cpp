@@ -17,7 +17,7 @@
 #include <map>
 #include <string>
 
-namespace fw::test {
+namespace fw::test::houses_bench {
 namespace {
 
 constexpr uint32_t kWidth = 640, kHeight = 360, kBudget = 60000;
@@ -173,4 +173,4 @@ BENCHMARK(houses)
     ->Iterations(kFrames);
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::houses_bench

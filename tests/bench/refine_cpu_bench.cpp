@@ -13,7 +13,7 @@
 #include <ctime>
 #include <memory>
 
-namespace fw::test {
+namespace fw::test::refine_cpu_bench {
 namespace {
 
 // Of this thread alone: frames are short, and a machine has other things to do.
@@ -122,22 +122,22 @@ void refine(benchmark::State& state, const Model& model, double lit, bool adapti
     state.counters["ratio_still"] = carefulSeconds / adaptiveSeconds;
 }
 
-#define FW_REFINE_ROW(row, model, lit, adaptive)                      \
+#define FW_REFINE_CPU_ROW(row, model, lit, adaptive)                  \
     BENCHMARK_CAPTURE(refine, row##_##model, k##model, lit, adaptive) \
         ->Name("refine_cpu/" #row "/" #model)                         \
         ->UseManualTime()                                             \
         ->Unit(benchmark::kMillisecond)
 
-FW_REFINE_ROW(full, 10k, 0.25, false);
-FW_REFINE_ROW(adaptive, 10k, 0.25, true);
-FW_REFINE_ROW(full, 15k, 0.25, false);
-FW_REFINE_ROW(adaptive, 15k, 0.25, true);
-FW_REFINE_ROW(full, 20k, 0.25, false);
-FW_REFINE_ROW(adaptive, 20k, 0.25, true);
-FW_REFINE_ROW(full, 50k, 0.25, false);
-FW_REFINE_ROW(adaptive, 50k, 0.25, true);
-FW_REFINE_ROW(full_lit5, 20k, 0.05, false);
-FW_REFINE_ROW(adaptive_lit5, 20k, 0.05, true);
+FW_REFINE_CPU_ROW(full, 10k, 0.25, false);
+FW_REFINE_CPU_ROW(adaptive, 10k, 0.25, true);
+FW_REFINE_CPU_ROW(full, 15k, 0.25, false);
+FW_REFINE_CPU_ROW(adaptive, 15k, 0.25, true);
+FW_REFINE_CPU_ROW(full, 20k, 0.25, false);
+FW_REFINE_CPU_ROW(adaptive, 20k, 0.25, true);
+FW_REFINE_CPU_ROW(full, 50k, 0.25, false);
+FW_REFINE_CPU_ROW(adaptive, 50k, 0.25, true);
+FW_REFINE_CPU_ROW(full_lit5, 20k, 0.05, false);
+FW_REFINE_CPU_ROW(adaptive_lit5, 20k, 0.05, true);
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::refine_cpu_bench

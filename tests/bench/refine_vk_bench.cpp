@@ -27,7 +27,7 @@
 #include <utility>
 #include <vector>
 
-namespace fw::test {
+namespace fw::test::refine_vk_bench {
 namespace {
 
 struct Model {
@@ -259,4 +259,4 @@ FW_REFINE_ROW(full_burnt, 20k, 2.0f, How::full);
 FW_REFINE_ROW(adaptive_burnt, 20k, 2.0f, How::adaptive);
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::refine_vk_bench

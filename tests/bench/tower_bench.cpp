@@ -19,6 +19,7 @@
 #include <cstring>
 #include <vector>
 
+namespace fw::test::tower_bench {
 namespace {
 
 using fw::test::cpuSeconds;
@@ -228,3 +229,4 @@ FW_TOWER_ROW(throwers10, 10);
 FW_TOWER_ROW(throwers100, 100);
 
 }  // namespace
+}  // namespace fw::test::tower_bench

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace fw::test {
+namespace fw::test::yard_bench {
 namespace {
 
 constexpr float kStep = 1.0f / 32;
@@ -198,4 +198,4 @@ BENCHMARK(idle)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::yard_bench

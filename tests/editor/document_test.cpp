@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "document/text.h"
+#include "editor/text_of.h"
 #include "support/sanitized.h"
 
 namespace {
@@ -33,11 +34,6 @@ struct Folder {
     }
     ~Folder() { fs::remove_all(path); }
 };
-
-std::string textOf(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {(std::istreambuf_iterator<char>(stream)), {}};
-}
 
 void mustRun(Document& document, const std::string& line) {
     std::string message;

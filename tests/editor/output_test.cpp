@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 
+#include "editor/text_of.h"
 #include "editor/yard.h"
 #include "flamewright/flamewright_debug.h"
 #include "import/float_picture.h"
@@ -43,11 +44,6 @@ constexpr const char* kEverything =
     "add wind velocity 0 0 1\n"
     "add collider box name=Wall position 0 0 5 rotation 10 20 30\n"
     "add collider floor position 0 -0.1 0\n";
-
-std::string textOf(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // Runs it; what it printed. A status other than 0 fails.
 std::string runCommand(const std::string& command) {

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-namespace fw::test {
+namespace fw::test::browning_test {
 namespace {
 
 constexpr uint32_t kWidth = 200, kHeight = 160;  // px
@@ -110,4 +110,4 @@ TEST_F(Browning, WhatGoesOutAtOnceIsOnlyScorched) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::browning_test

@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-namespace fw::test {
+namespace fw::test::crossing_test {
 namespace {
 
 constexpr uint32_t kSide = 96;  // px, of 0.3 m
@@ -109,4 +109,4 @@ TEST_F(Crossing, SpringsNeedTheZPass) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::crossing_test

@@ -2,7 +2,7 @@
 // and what is above must go long before it is consumed; with something unburnt above, it must stay.
 #include "support/own_world.h"
 
-namespace fw::test {
+namespace fw::test::falling_test {
 namespace {
 
 constexpr uint32_t kWidth = 64, kHeight = 256;  // px: a strip of 0.15 x 1.2 m fills the height
@@ -48,4 +48,4 @@ TEST_F(Falling, WhatNothingHoldsFallsToAsh) {
 TEST_F(Falling, WhatIsHeldStays) { EXPECT_GT(upperPart(true, 13.0f), 0.4); }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::falling_test

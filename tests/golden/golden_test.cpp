@@ -12,7 +12,7 @@
 #include <array>
 #include <cstring>
 
-namespace fw::test {
+namespace fw::test::golden_test {
 namespace {
 
 constexpr uint32_t kWidth = 320, kHeight = 180;
@@ -542,4 +542,4 @@ TEST(GoldenImage, RoundTripAndDifference) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::golden_test

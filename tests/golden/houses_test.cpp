@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <ctime>
 
-namespace fw::test {
+namespace fw::test::houses_test {
 namespace {
 
 constexpr uint32_t kWidth = 320, kHeight = 180, kBlock = 12;  // px
@@ -132,4 +132,4 @@ TEST_F(Houses, AHundredBurnWithinTheBudgetAndNothingPops) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::houses_test

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace fw::test {
+namespace fw::test::motion_test {
 namespace {
 
 constexpr uint32_t kWidth = 256, kHeight = 144, kSamples = 4;  // kSamples^2 per pixel
@@ -220,4 +220,4 @@ TEST_F(Motion, Bunny) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::motion_test

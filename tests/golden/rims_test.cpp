@@ -7,7 +7,7 @@
 
 #include <cstdlib>
 
-namespace fw::test {
+namespace fw::test::rims_test {
 namespace {
 
 constexpr uint32_t kWidth = 320, kHeight = 240;
@@ -97,4 +97,4 @@ TEST_F(Rims, NearAndFarAgreeWhereTheySwitch) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::rims_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace fw::test {
+namespace fw::test::book_picture_test {
 namespace {
 
 using gpu::vec2;
@@ -216,4 +216,4 @@ TEST_F(BookPicture, BooksComeAndGo) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::book_picture_test

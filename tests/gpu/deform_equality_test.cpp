@@ -9,7 +9,7 @@
 #include <bit>
 #include <string>
 
-namespace fw::test {
+namespace fw::test::deform_equality_test {
 namespace {
 
 using gpu::vec3;
@@ -371,4 +371,4 @@ TEST_F(DeformEquality, PublishedSprings) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::deform_equality_test

@@ -17,7 +17,7 @@
 #include <set>
 #include <string_view>
 
-namespace fw::test {
+namespace fw::test::every_pass_test {
 namespace {
 
 constexpr uint32_t kSide = 48;  // px
@@ -475,8 +475,8 @@ TEST_F(EveryPass, StaysInsideItsBuffersAsPublished) {
 TEST_F(EveryPass, AnAccessPastAnEndIsReported) {
     if (!device_) return;
     if (!gpuAssisted()) GTEST_SKIP() << "only GPU-assisted validation sees it (--gpu-assisted)";
-    for (const uint32_t binding : {kNoBinding, uint32_t(FW_BIND_STATE), uint32_t(FW_BIND_PREDICT),
-                                   uint32_t(FW_BIND_TILE_STATE)}) {
+    // That nothing is told of buffers of their full length the tests above have shown.
+    for (const uint32_t binding : {FW_BIND_STATE, FW_BIND_PREDICT, FW_BIND_TILE_STATE}) {
         rig_.reset();
         device_.reset();
         makeDevice({});
@@ -488,11 +488,11 @@ TEST_F(EveryPass, AnAccessPastAnEndIsReported) {
         const bool seen = std::any_of(told.begin(), told.end(), [](const std::string& message) {
             return message.find("access out of bounds") != std::string::npos;
         });
-        EXPECT_EQ(seen, binding != kNoBinding) << "binding " << binding;
+        EXPECT_TRUE(seen) << "binding " << binding;
         for (const std::string& message : told)
             if (!seen) ADD_FAILURE() << message;
     }
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::every_pass_test

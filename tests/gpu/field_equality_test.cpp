@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace fw::test {
+namespace fw::test::field_equality_test {
 namespace {
 
 using field::Field;
@@ -176,4 +176,4 @@ INSTANTIATE_TEST_SUITE_P(Words, FieldEqualityBy, ::testing::Values(false));
 INSTANTIATE_TEST_SUITE_P(Texels, FieldEqualityBy, ::testing::Values(true));
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::field_equality_test

@@ -4,7 +4,7 @@
 #include "support/pass_rig.h"
 #include "support/refine_scene.h"
 
-namespace fw::test {
+namespace fw::test::refine_published_test {
 namespace {
 
 constexpr uint32_t kBindings[] = {
@@ -125,4 +125,4 @@ TEST_F(RefinePublishedEquality, TrianglesAndPlacesAreTheLibrarys) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::refine_published_test

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <functional>
 
-namespace fw::test {
+namespace fw::test::volume_test {
 namespace {
 
 constexpr uint32_t kSide = 40;  // px
@@ -1341,4 +1341,4 @@ TEST_F(Volume, SteadyFramesAskNothing) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::volume_test

@@ -13,7 +13,7 @@
 #include <map>
 #include <numbers>
 
-namespace fw::test {
+namespace fw::test::replay_test {
 namespace {
 
 constexpr float kStepSeconds = 1.0f / 32;
@@ -371,4 +371,4 @@ TEST(ReplayNotices, ALogThatIsNone) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::replay_test

@@ -17,7 +17,7 @@ using mesh::DeformState;
 using mesh::SheetDrive;
 
 constexpr double kPaper = 0.2;  // m
-constexpr float kStep = float(gpu::kSoftTicks) / 4096;
+constexpr float kSheetStep = float(gpu::kSoftTicks) / 4096;
 
 gpu::DeformObject paper(float curl, float shrink = 0) {
     gpu::DeformObject object{};
@@ -194,7 +194,8 @@ Curl curlOf(float step, float curl) {
 }
 
 TEST(DeformSheet, CharredPaperCurlsAndTheStepDoesNotMatter) {
-    const Curl flat = curlOf(kStep, 0), curled = curlOf(kStep, 60), finer = curlOf(kStep / 2, 60);
+    const Curl flat = curlOf(kSheetStep, 0), curled = curlOf(kSheetStep, 60),
+               finer = curlOf(kSheetStep / 2, 60);
     std::printf(
         "[   FIGURE ] of %.2f m: nearer by %.4f, %.4f m at most; at half the step %.4f, %.4f\n",
         kPaper, curled.nearer, curled.most, finer.nearer, finer.most);
@@ -271,7 +272,7 @@ double bendsInWind(int cells, float stiffness, bool arms) {
     const int reach = cells / 4;
     double sum = 0, known = 0;
     for (int step = 0; step < 640; ++step) {
-        s.drive.time = float(step) * kStep;
+        s.drive.time = float(step) * kSheetStep;
         s.run(1);
         if (step < 128 || step % 16) continue;
         for (int y = reach; y + reach <= cells; ++y)
@@ -372,13 +373,13 @@ double springSpread(float share) {
     mesh::resetDeform(model, state);
     gpu::DeformObject object{};
     mesh::resetSoft(model, object, state);
-    object.springs = gpu::springsAt(share, kStep, 2) / gpu::kSpringShare;
+    object.springs = gpu::springsAt(share, kSheetStep, 2) / gpu::kSpringShare;
     std::mt19937 random(3);
     std::uniform_real_distribution<float> off(-1e-5f, 1e-5f);
     for (uint32_t i = 0; i < kNodes; ++i) state.soft[i].place[0].x += off(random);
     double worst = 0;
     for (int i = 0; i < 10000; ++i) {
-        mesh::springStep(model, object, kStep, {}, 0, state);
+        mesh::springStep(model, object, kSheetStep, {}, 0, state);
         if (i % 100) continue;
         for (uint32_t n = 0; n < kNodes; ++n)
             worst = std::max(worst, double(std::fabs(state.shown[n].x - model.nodes[n].x)));
@@ -400,11 +401,11 @@ TEST(DeformSprings, DecayPushesInwardsByWhatIsLost) {
     DeformState state(std::pmr::new_delete_resource());
     mesh::resetDeform(model, state);
     gpu::DeformObject object{};
-    object.springs = gpu::springsAt(0.7f, kStep, 16);
+    object.springs = gpu::springsAt(0.7f, kSheetStep, 16);
     mesh::resetSoft(model, object, state);
     const std::vector<float> lost(model.nodes.size(), 1e-5f);
     for (int i = 0; i < 128; ++i)
-        mesh::springStep(model, object, kStep, lost, gpu::kSpringDamping, state);
+        mesh::springStep(model, object, kSheetStep, lost, gpu::kSpringDamping, state);
     double sum = 0;
     for (const gpu::DeformNode& node : model.nodes) {
         const gpu::ShownVertex& v = state.shown[node.vertex];

@@ -10,7 +10,7 @@
 #include <ctime>
 #include <numbers>
 
-namespace fw::test {
+namespace fw::test::front_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -532,4 +532,4 @@ TEST(Front, P14_SmallFireOnLargeMap) {
 }
 
 }  // namespace
-}  // namespace fw::test
+}  // namespace fw::test::front_test

@@ -11,7 +11,7 @@
 namespace fw::test {
 namespace {
 
-constexpr double kStep = 1.0 / 32;
+constexpr double kHeatStep = 1.0 / 32;
 
 struct Story {
     gpu::HeatTexel texel;
@@ -30,7 +30,7 @@ struct Story {
     }
 };
 
-Story storyOf(const fire::HeatFacts& facts, double seconds = kStep, float ambient = 293) {
+Story storyOf(const fire::HeatFacts& facts, double seconds = kHeatStep, float ambient = 293) {
     return {fire::heatAtRest(ambient, 0), fire::heatMaterial(facts, seconds, ambient)};
 }
 
@@ -62,7 +62,7 @@ double charDepth(float density, double seconds) {
 }
 
 TEST(Heat, P10_CharDepthOfAnHour) {
-    for (const double seconds : {kStep, 30 * kStep}) {  // pace 1 and pace 30
+    for (const double seconds : {kHeatStep, 30 * kHeatStep}) {  // pace 1 and pace 30
         const double soft = charDepth(450, seconds), hard = charDepth(660, seconds);
         std::printf("char after an hour, step %.3f s: softwood %.1f mm, hardwood %.1f mm\n",
                     seconds, soft, hard);
@@ -78,7 +78,7 @@ TEST(Heat, P11_TimeToIgnite) {
     for (const double flux : {20e3, 30e3, 50e3}) {
         const double inertia = double(thick.conductivity) * 450 * 2500;
         const double exact = std::numbers::pi / 4 * inertia * (330 / flux) * (330 / flux);
-        const double found = secondsToIgnite(thick, uint32_t(flux), kStep);
+        const double found = secondsToIgnite(thick, uint32_t(flux), kHeatStep);
         std::printf("thick wood at %.0f kW/m^2: %.1f s, half-space %.1f s\n", flux / 1000, found,
                     exact);
         EXPECT_NEAR(found, exact, 0.05 * exact);
@@ -91,9 +91,9 @@ TEST(Heat, P11_TimeToIgnite) {
     paper.ignition = 293 + 330;
     for (const double flux : {20e3, 30e3, 50e3}) {
         const double exact = 120 * 330 / flux;
-        const double found = secondsToIgnite(paper, uint32_t(flux), kStep);
+        const double found = secondsToIgnite(paper, uint32_t(flux), kHeatStep);
         std::printf("paper at %.0f kW/m^2: %.2f s, exactly %.2f s\n", flux / 1000, found, exact);
-        EXPECT_NEAR(found, exact, 0.05 * exact + kStep);
+        EXPECT_NEAR(found, exact, 0.05 * exact + kHeatStep);
     }
 }
 
@@ -103,7 +103,7 @@ TEST(Heat, P12_WhatBurnsAddsUp) {
     facts.thickness = 0.002f;
     uint64_t cells[16] = {}, texels = 0;
     for (uint32_t i = 0; i < 256; ++i) {
-        Story story = storyOf(facts, 4 * kStep);
+        Story story = storyOf(facts, 4 * kHeatStep);
         story.texelIndex = i;
         const uint64_t worth = 1 + random() % 5000;  // mJ a unit
         const uint32_t before = story.texel.fuel;
@@ -174,7 +174,7 @@ TEST(Heat, P13_EvaporationTakesItsHeat) {
         const double net =
             230.0 / 256 * (40000 - 5.670374e-8 * (std::pow(373.125, 4) - std::pow(293, 4))) -
             15 * (373.125 - 293);
-        joules += net * story.step * kStep;
+        joules += net * story.step * kHeatStep;
         grams += double(story.evaporated);
         EXPECT_EQ(story.evaporated, 200u);
     }
@@ -189,7 +189,7 @@ TEST(Heat, MoistureDelaysIgnitionAndDampWoodDoesNotCatch) {
         Story story = storyOf(wood);
         story.texel = fire::heatAtRest(293, moisture);
         while (!(story.run(30000) & gpu::kHeatIgnites)) ASSERT_LT(story.step, 32u * 600);
-        const double seconds = story.step * kStep;
+        const double seconds = story.step * kHeatStep;
         std::printf("wood of moisture %.2f at 30 kW/m^2: %.1f s\n", double(moisture), seconds);
         EXPECT_GT(seconds, before * 1.1);
         before = seconds;
@@ -222,7 +222,7 @@ TEST(Heat, ChanceNeitherMakesNorLosesHeat) {
         for (int k = 0; k < kSteps; ++k) story.run(1000);
         rise += story.texel.heat / 16.0 - 293;
     }
-    const double exact = 1000.0 * kSteps * kStep / (0.05 * 700 * 2500);
+    const double exact = 1000.0 * kSteps * kHeatStep / (0.05 * 700 * 2500);
     EXPECT_NEAR(rise / kTexels, exact, 0.02 * exact);
 }
 
@@ -292,7 +292,7 @@ TEST(Heat, NoInputLeadsOutOfRange) {
         facts.pyrolysis = upTo(1);
         facts.charFloor = upTo(1);
         facts.filmMost = upTo(1023);
-        const double seconds = kStep / 128 * std::pow(2.0, double(random() % 18));
+        const double seconds = kHeatStep / 128 * std::pow(2.0, double(random() % 18));
         Story story = storyOf(facts, seconds, upTo(1000));
         story.texelIndex = random();
         story.texel = gpu::unpackHeat({random(), random()});

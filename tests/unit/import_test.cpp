@@ -88,7 +88,7 @@ struct Quad {
 }
 
 // The message of a refusal; a test fails on one that succeeds, and on a model that was touched.
-std::string refusal(const std::vector<uint8_t>& bytes) {
+std::string importRefusal(const std::vector<uint8_t>& bytes) {
     ImportedModel model;
     model.indices = {7};
     std::string error;
@@ -160,7 +160,7 @@ TEST(Import, WronglyTypedFieldsAreNamed) {
                   R"({"KHR_texture_transform":{"offset":[0]}}}}})"),
          "KHR_texture_transform.offset is an array of 1; it takes 2 numbers"},
     };
-    for (const auto& one : cases) EXPECT_THAT(refusal(one.quad.bytes()), HasSubstr(one.says));
+    for (const auto& one : cases) EXPECT_THAT(importRefusal(one.quad.bytes()), HasSubstr(one.says));
     // What is not read may be anything, and so may the host's own.
     Quad odd;
     odd.node = R"({"mesh":0,"weights":"w","extras":{"nodes":[{"mesh":"a \"[{ quoted\""}]}})";
@@ -243,7 +243,7 @@ TEST(Import, SparseValuesReplace) {
         R"("values":{"bufferView":3,"byteOffset":0}})";
     quad.positionAccessor =
         R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)" + beyond + "}";
-    EXPECT_THAT(refusal(quad.bytes()), HasSubstr("sparse.indices[0] is 16256"));
+    EXPECT_THAT(importRefusal(quad.bytes()), HasSubstr("sparse.indices[0] is 16256"));
 }
 
 TEST(Import, ColoursAndQuantizedUvs) {
@@ -343,26 +343,27 @@ TEST(Import, RefusalsNameTheThing) {
     for (const Case& entry : cases) {
         Quad quad;
         entry.spoil(quad);
-        EXPECT_THAT(refusal(quad.bytes()), HasSubstr(entry.expected));
+        EXPECT_THAT(importRefusal(quad.bytes()), HasSubstr(entry.expected));
     }
 }
 
 TEST(Import, ContainersGoneWrong) {
     const std::vector<uint8_t> good = Quad().bytes();
-    EXPECT_THAT(refusal({}), HasSubstr("empty"));
-    EXPECT_THAT(refusal({'g', 'l', 'T', 'F'}), HasSubstr("need 20"));
-    EXPECT_THAT(refusal({'h', 'e', 'l', 'l', 'o'}), HasSubstr("test.glb"));
+    EXPECT_THAT(importRefusal({}), HasSubstr("empty"));
+    EXPECT_THAT(importRefusal({'g', 'l', 'T', 'F'}), HasSubstr("need 20"));
+    EXPECT_THAT(importRefusal({'h', 'e', 'l', 'l', 'o'}), HasSubstr("test.glb"));
     std::vector<uint8_t> bad = good;
     bad[4] = 1;
-    EXPECT_THAT(refusal(bad), HasSubstr("version is 1"));
+    EXPECT_THAT(importRefusal(bad), HasSubstr("version is 1"));
     bad = good;
     bad[15] = 0x7f;
-    EXPECT_THAT(refusal(bad), HasSubstr("JSON chunk"));
+    EXPECT_THAT(importRefusal(bad), HasSubstr("JSON chunk"));
     bad = good;
     bad.resize(good.size() - 8);
-    EXPECT_THAT(refusal(bad), HasSubstr("the file has"));
+    EXPECT_THAT(importRefusal(bad), HasSubstr("the file has"));
     const std::string deep = std::string(100000, '[');
-    EXPECT_THAT(refusal(std::vector<uint8_t>(deep.begin(), deep.end())), HasSubstr("nests deeper"));
+    EXPECT_THAT(importRefusal(std::vector<uint8_t>(deep.begin(), deep.end())),
+                HasSubstr("nests deeper"));
     ImportedModel model;
     std::string error;
     EXPECT_FALSE(fwimport::importGltf("/nowhere/at/all.glb", model, error));

@@ -15,11 +15,11 @@ namespace {
 using fw::test::kSanitized;
 using namespace fw::volume;
 
-struct Burning {
+struct BurningFlame {
     Flame flame;
     FlameAir air;
     Profile profile;
-    explicit Burning(const FlameDef& def) {
+    explicit BurningFlame(const FlameDef& def) {
         startFlame(flame, def, air);
         paintLook(def.look, profile);
     }
@@ -33,7 +33,7 @@ FlameDef defOf(FlamePreset preset, float power, float diameter) {
 }
 
 // m, highest row in which any ray from the side sees flame.
-float tip(const Burning& b) {
+float tip(const BurningFlame& b) {
     const float height = b.flame.size.height, radius = 0.65f * b.flame.size.diameter;
     const float away = 10.0f * height;
     MarchRules rules;
@@ -51,7 +51,7 @@ float tip(const Burning& b) {
     return 0.0f;
 }
 
-float meanTip(Burning& b, int frames, double seconds) {
+float meanTip(BurningFlame& b, int frames, double seconds) {
     double sum = 0;
     for (int k = 0; k < frames; ++k) {
         for (int s = 0; s < 4; ++s) advanceFlame(b.flame, b.air, 0.25 * seconds / frames);
@@ -72,7 +72,7 @@ TEST(VolumeHeight, T4_2_MeanVisibleHeightIsHeskestads) {
                 EXPECT_FLOAT_EQ(law, flameHeight(q, d));
             }
             const FlamePreset preset = d <= 0.1f ? FlamePreset::Torch : FlamePreset::CampFire;
-            Burning b(defOf(preset, parts[0].power, parts[0].diameter));
+            BurningFlame b(defOf(preset, parts[0].power, parts[0].diameter));
             const float ratio = meanTip(b, 60, 20.0) / law;
             EXPECT_NEAR(ratio, 1.0f, 0.10f) << q << " kW on " << d << " m, of " << n << " flames";
         }
@@ -83,7 +83,7 @@ TEST(VolumeHeight, T4_2_PresetsAtTheirOwnSize) {
                                      FlamePreset::Bonfire, FlamePreset::HouseFire}) {
         if (kSanitized && preset != FlamePreset::CampFire) continue;
         const FlamePresetDef d = presetDef(preset);
-        Burning b(defOf(preset, d.power, d.diameter));
+        BurningFlame b(defOf(preset, d.power, d.diameter));
         EXPECT_NEAR(meanTip(b, 60, 20.0) / flameHeight(d.power, d.diameter), 1.0f, 0.10f)
             << presetName(preset);
     }
@@ -117,7 +117,7 @@ TEST(VolumeHeight, WideWeakFiresAreManySmallFlames) {
 
 TEST(VolumeHeight, T4_3_CentrelineSpeedIsMcCaffreys) {
     for (const auto& [q, d] : {std::pair{5.0f, 0.13f}, {60.0f, 0.6f}, {600.0f, 1.3f}}) {
-        Burning b(defOf(FlamePreset::CampFire, q, d));
+        BurningFlame b(defOf(FlamePreset::CampFire, q, d));
         const float height = b.flame.size.height;
         for (const float part : {0.3f, 0.6f, 1.0f}) {
             double sum = 0;
@@ -145,7 +145,7 @@ TEST(VolumeHeight, T4_3_CentrelineSpeedIsMcCaffreys) {
 }
 
 // Light of the whole flame, were it thin.
-double luminousPower(const Burning& b) {
+double luminousPower(const BurningFlame& b) {
     const Flame& f = b.flame;
     double sum = 0;
     const float top = f.record.high.w * fw::gpu::kFlameTop;
@@ -169,7 +169,7 @@ double luminousPower(const Burning& b) {
 TEST(VolumeHeight, T4_4_PuffsAtCetegensFrequency) {
     for (const auto& [q, d] : {std::pair{15.0f, 0.2f}, {60.0f, 0.6f}, {600.0f, 1.3f}}) {
         if (kSanitized && q > 15) continue;
-        Burning b(defOf(FlamePreset::CampFire, q, d));
+        BurningFlame b(defOf(FlamePreset::CampFire, q, d));
         const double law = double(puffFrequency(d)), rate = 10.0 * law;
         constexpr int kFrames = 400;
         std::vector<double> power(kFrames);
