@@ -16,7 +16,6 @@
 
 namespace fw::world {
 namespace {
-constexpr float kWallUnit = 1e-5f;  // m, of MeshEntry::innerWall
 
 using components::checkValue;
 using components::checkValues;
@@ -368,7 +367,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
             mesh.deform = std::move(model);
         }
         deform = components::makeDeform(def, object.data, records);
-        if (init.inner) deform.wall = float(mesh.innerWall) * kWallUnit;
+        if (init.inner) deform.wall = mesh.innerWall;
         init.deformModel = mesh.deform.get();
         init.deform = &deform;
     }
@@ -453,7 +452,7 @@ bool World::innerSkin(MeshEntry& mesh, uint32_t slot, const components::Burnable
         if (!(wall > 0)) return false;
         wall = std::clamp(wall, 1e-4f, 0.5f);
         const std::pmr::vector<glm::vec3> places = mesh::innerSkin(*mesh.domain, wall, memory_);
-        mesh.innerWall = uint16_t(wall / kWallUnit);
+        mesh.innerWall = wall;
         if (!places.empty()) backend_.createInnerSkin(slot, *mesh.domain, places);
         mesh.innerSkin = places.empty() ? InnerSkin::none : InnerSkin::there;
     }

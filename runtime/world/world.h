@@ -38,7 +38,7 @@ struct MeshEntry {
     float shape[3] = {1, 1, 1};
     uint64_t hash = 0;                         // of the domain, once a save asked; 0: not yet
     InnerSkin innerSkin = InnerSkin::unknown;  // that the backend has
-    uint16_t innerWall = 0;                    // 1/100 mm, how deep that is
+    float innerWall = 0;                       // m, how deep that is
     uint32_t refinements = 0;  // bit per depth that the backend has; 16 higher: as published
     // By depth, once an object is refined by the published scheme.
     std::array<core::Owned<mesh::ArpModel>, gpu::kRefineDepth + 1> arps;
