@@ -313,7 +313,7 @@ int play(const sample::Options& options, const Choices& choices) {
             const auto lights = gatherLights(fires, siege, lamps, light);
             sample::StageFrame step = frame;
             step.deltaTime = float(ticks) * tower::kTickSeconds;
-            renderer.prepare(frame, {camera, light, siege.placed(), lights});
+            renderer.prepare(frame, {camera, light, siege.placed(), lights, siege.wind()});
             fire.recordOutside(step, view);
             stage.beginScene(frame);
             renderer.drawSolid(frame);

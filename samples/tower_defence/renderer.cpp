@@ -23,12 +23,12 @@ constexpr uint32_t kMaxLights = 16;
 
 struct FrameUniform {  // shaders/frame.glsl
     glm::mat4 viewProjection, shadowMatrix;
-    glm::vec4 eye, toSun, sun, sky, ground, haze, cameraRight, cameraUp;
+    glm::vec4 eye, toSun, sun, sky, ground, haze, cameraRight, cameraUp, wind;
     glm::vec4 lightPlaces[kMaxLights], lightColors[kMaxLights];
 };
 
 struct DrawnVertex {
-    float position[3], normal[3], uv[2], traits[3];
+    float position[3], normal[3], uv[2], traits[4];
 };
 
 struct DrawnInstance {
@@ -42,7 +42,8 @@ DrawnVertex drawnVertex(const village::Vertex& v, float openSky) {
     return {{v.position.x, v.position.y, v.position.z},
             {v.normal.x, v.normal.y, v.normal.z},
             {v.uv.x, v.uv.y},
-            {openSky, v.texture == village::Texture::kGlow ? v.glow : 0.0f, soft ? 1.0f : 0.0f}};
+            {openSky, v.texture == village::Texture::kGlow ? v.glow : 0.0f, soft ? 1.0f : 0.0f,
+             v.sway}};
 }
 
 DrawnInstance drawnInstance(const village::Frame& f, Vec3 tint) {
@@ -59,7 +60,7 @@ const std::vector<VkVertexInputAttributeDescription> kAttributes = {
     {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(DrawnVertex, position)},
     {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(DrawnVertex, normal)},
     {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(DrawnVertex, uv)},
-    {3, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(DrawnVertex, traits)},
+    {3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(DrawnVertex, traits)},
     {4, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 0},
     {5, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16},
     {6, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 32},
@@ -319,6 +320,7 @@ void Renderer::upload(Slot& slot, const sample::StageFrame& frame, const SceneFr
     u.haze = glm::vec4(scene.daylight.haze, 0);
     u.cameraRight = glm::vec4(view[0][0], view[1][0], view[2][0], scene.daylight.emission);
     u.cameraUp = glm::vec4(view[0][1], view[1][1], view[2][1], float(frame.time));
+    u.wind = glm::vec4(scene.wind.velocity, scene.wind.blown);
     for (size_t i = 0; i < lights; ++i) {
         u.lightPlaces[i] = glm::vec4(scene.lights[i].place, scene.lights[i].reach);
         u.lightColors[i] = glm::vec4(scene.lights[i].color, scene.lights[i].size);

@@ -13,6 +13,7 @@
 #include "paint.h"
 #include "placed.h"
 #include "shadow_map.h"
+#include "wind.h"
 
 namespace tower {
 
@@ -24,6 +25,7 @@ struct SceneFrame {
     Daylight daylight;
     std::span<const Placed> placed;
     std::span<const PointLight> lights;  // the strongest first; at most 16 are used
+    Wind wind;                           // what grass, leaves and cloth yield to
 };
 
 class Renderer {

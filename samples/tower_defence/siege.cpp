@@ -240,6 +240,8 @@ void Siege::advance(int32_t ticks) {
     aimTowers();
     const game::Point blows = game::windOf(state_, field_.ground);
     const Vec2 wind = metres(blows);
+    wind_.velocity = {wind.x, wind.y};
+    wind_.blown += wind_.velocity * (float(ticks) * kTickSeconds);
     const float metresPerSecond[3] = {wind.x, 0, wind.y};
     check(fwWorld_SetWind(world_, metresPerSecond), "fwWorld_SetWind");
     for (const Thing& thing : fires_.things) placed_[thing.instance].drawn = !thing.lit;
@@ -248,6 +250,7 @@ void Siege::advance(int32_t ticks) {
 void Siege::comeBack(const Moment& moment) {
     check(fwWorld_Load(world_, moment.world.data(), moment.world.size()), "fwWorld_Load");
     state_ = moment.state;
+    wind_ = moment.wind;
     fires_.restore(moment.flags);
     happened_.clear();
     moveEnemies();

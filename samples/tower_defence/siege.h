@@ -9,6 +9,7 @@
 #include "battlefield.h"
 #include "fire_village.h"
 #include "placed.h"
+#include "wind.h"
 
 namespace tower {
 
@@ -27,6 +28,7 @@ class Siege {
     // Of the last advance.
     std::span<const game::Happening> happened() const { return happened_; }
     std::span<const Placed> placed() const { return placed_; }
+    const Wind& wind() const { return wind_; }
     // The jets and embers, which the library's own lights name too weakly for a night.
     void addLights(float scale, std::vector<PointLight>& lights) const;
 
@@ -36,8 +38,9 @@ class Siege {
         game::State state;
         std::vector<uint8_t> flags;  // FireVillage::flags
         std::vector<uint8_t> world;
+        Wind wind;
     };
-    Moment moment() const { return {state_, fires_.flags(), {}}; }
+    Moment moment() const { return {state_, fires_.flags(), {}, wind_}; }
     void comeBack(const Moment& moment);
 
  private:
@@ -57,6 +60,7 @@ class Siege {
     game::State state_;
     std::vector<game::Happening> happened_;
     std::vector<Placed> placed_;
+    Wind wind_;
     // One of each for every plot, whatever stands there: a save wants a world of the same things.
     std::array<FwFireEmitterId, game::kPlots> jets_{}, embers_{};
     std::array<FwParticleFieldId, game::kPlots> sprays_{};

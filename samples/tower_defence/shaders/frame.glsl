@@ -13,6 +13,7 @@ layout(set = 0, binding = 0) uniform Frame {
     vec4 haze;
     vec4 cameraRight;    // of the billboards; w: emission of the jet against the scene's light
     vec4 cameraUp;       // w: time, s
+    vec4 wind;           // m/s along x and z; zw: m, how far it has carried its gusts
     vec4 lightPlaces[kMaxLights];  // w: reach, m
     vec4 lightColors[kMaxLights];  // w: radius of the source, m
 } frame;

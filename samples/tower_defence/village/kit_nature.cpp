@@ -40,6 +40,7 @@ Model makeWattle(uint32_t seed) {
 
 // A leaning trunk of the given height with limbs; leaves are the caller's, unless it is bare.
 static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float reach, bool bare) {
+    b.sway.yield = bare ? 0 : 0.0008f;  // the whole tree, or its crown would part from it
     b.use(Texture::kBark, Material::kWood, palette::kOldWood * 0.75f);
     const float lean = b.random(-0.25f, 0.25f);
     b.tube({{0, -0.3f, 0},
@@ -91,6 +92,7 @@ Model makeDeadTree(uint32_t seed) {
 
 Model makeBush(uint32_t seed) {
     MeshBuilder b("bush", seed, 128);
+    b.sway.yield = 0.03f;
     useLeaf(b, palette::kLeafOak);
     b.blob({0, 0.4f, 0}, {0.75f, 0.6f, 0.65f}, 6, 3, 0.18f);
     b.tint = palette::kLeafOak * 1.3f;
@@ -100,6 +102,7 @@ Model makeBush(uint32_t seed) {
 
 // Where leaves hide all but its foot.
 static void addPlainTrunk(MeshBuilder& b) {
+    b.sway.yield = 0.0008f;
     b.use(Texture::kBark, Material::kWood, palette::kOldWood * 0.75f);
     b.beam({0, -0.3f, 0}, {0, 2.6f, 0}, 0.4f, 0.4f, 0.5f, kSidesOnly);
 }
@@ -189,6 +192,7 @@ static void useBlades(MeshBuilder& b, Material material, Vec3 tint) {
 
 Model makeDryGrass(uint32_t seed) {
     MeshBuilder b("dry grass", seed, 64);
+    b.sway.yield = 0.09f;
     useBlades(b, Material::kStraw, {0.46f, 0.33f, 0.11f});
     b.blades({0, 0, 0}, 4, 0.55f, 0.17f, 0.42f);
     b.fine = true;
@@ -199,6 +203,7 @@ Model makeDryGrass(uint32_t seed) {
 // A strip of two metres along x.
 Model makeWheat(uint32_t seed) {
     MeshBuilder b("wheat", seed, 64);
+    b.sway.yield = 0.035f;
     const Vec3 tint{0.60f, 0.40f, 0.10f};
     useBlades(b, Material::kStraw, tint);
     for (int i = 0; i < 5; ++i) {
@@ -215,6 +220,7 @@ Model makeWheat(uint32_t seed) {
 
 Model makeReeds(uint32_t seed) {
     MeshBuilder b("reeds", seed, 64);
+    b.sway.yield = 0.02f;
     useBlades(b, Material::kLeaf, {0.12f, 0.17f, 0.05f});
     b.blades({0, 0, 0}, 7, 1.3f, 0.09f, 0.3f);
     return b.finish();
@@ -222,6 +228,7 @@ Model makeReeds(uint32_t seed) {
 
 Model makeFlowers(uint32_t seed) {
     MeshBuilder b("flowers", seed, 64);
+    b.sway.yield = 0.12f;
     useBlades(b, Material::kLeaf, {0.10f, 0.16f, 0.04f});
     b.blades({0, 0, 0}, 5, 0.3f, 0.18f, 0.42f);
     for (int i = 0; i < 3; ++i) {

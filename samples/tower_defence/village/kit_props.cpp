@@ -152,11 +152,13 @@ Model makeGateArch(uint32_t seed) {
         b.beam({2.1f * k, -0.3f, 0}, {1.95f * k, 4.2f, 0}, 0.42f, 0.42f, 0.8f);
         b.beam({2.05f * k, 3.0f, 0}, {1.2f * k, 3.85f, 0}, 0.2f, 0.2f);
         b.use(Texture::kCloth, Material::kCloth, palette::kCrimson);
+        b.sway = {3.4f, 0.02f};
         b.grid(2, 4, 0.7f, 1.6f, [&](float u, float v) {
             return Vec3{1.65f * k + 0.7f * (u - 0.5f),
                         3.4f - 1.7f * (1 - v) + 0.25f * (1 - v) * (u - 0.5f) * k,
                         0.3f + 0.12f * std::sin(4 * v + k)};
         });
+        b.sway = {};
         useTimber(b, palette::kOldWood * 0.8f);
     }
     b.beam({-2.9f, 3.95f, 0}, {2.9f, 4.1f, 0}, 0.4f, 0.4f);

@@ -11,12 +11,14 @@ static void addPlinth(MeshBuilder& b, Vec3 accent) {
     for (int i = 0; i < 4; ++i) {
         b.frame = rotateY(kPi / 2 * i + kPi / 4);
         b.use(Texture::kCloth, Material::kCloth, accent);
+        b.sway = {1.15f, 0.04f};
         b.grid(2, 2, 0.7f, 0.95f, [&](float u, float v) {
             float w = v < 0.2f ? 0.65f : 1;
             return Vec3{0.7f * (u - 0.5f) * w,
                         1.15f - (v < 0.01f && std::fabs(u - 0.5f) < 0.1f ? 1.02f : 0.85f) * (1 - v),
                         1.56f + 0.22f * (1 - v)};
         });
+        b.sway = {};
         b.use(Texture::kMetal, Material::kMetal, palette::kBrass);
         b.fine = true;
         b.box({0, 1.1f, 1.5f}, {0.8f, 0.09f, 0.12f}, 1, {0, 1, 0}, kOpenBelowAndBehind);

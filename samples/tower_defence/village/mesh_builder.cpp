@@ -38,6 +38,7 @@ void MeshBuilder::addTriangle(Vec3 a, Vec3 b, Vec3 c, Vec2 uvA, Vec2 uvB, Vec2 u
         vertex.uv = uv;
         vertex.tint = tint;
         vertex.glow = glow_;
+        vertex.sway = sway.yield * (position.y - sway.root) * (position.y - sway.root);
         vertex.texture = texture_;
         vertex.material = material_;
         corners_.push_back({vertex, chart, group_, crease, fine});

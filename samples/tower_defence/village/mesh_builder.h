@@ -33,6 +33,12 @@ class MeshBuilder {
     float crease = 0.6f;  // cosine below which an edge stays hard
     uint32_t seed;        // every random draw moves it on
     bool fine = false;    // what follows is left out from afar
+    // How it yields to the wind: with the square of its height above where it stands, or of its
+    // depth under where it hangs.
+    struct Sway {
+        float root = 0;   // m, model space
+        float yield = 0;  // m, 1 m from the root, in a wind of 1 m/s
+    } sway;
 
     void use(Texture texture, Material material, Vec3 newTint, float glow = 0);
     float random();                       // [0, 1]

@@ -48,6 +48,7 @@ struct Vertex {
                                           // uv * atlasSide = metres, V along the grain
     Vec3 tint;                            // linear Rec.709 albedo
     float glow = 0;                       // 0 none, <= 1.5 a lit window, > 1.5 coals
+    float sway = 0;                       // m that it yields to a wind of 1 m/s
     Texture texture = Texture::kPlank;    // the look
     Material material = Material::kWood;  // the same at all three corners of a triangle
 };
