@@ -41,20 +41,35 @@ Surface ofBox(const Collider& c, vec3 point) noexcept {
     return {deepest, turned(c.rotation, normal)};
 }
 
+struct Slope {                         // of a height field at a place, or at its border
+    float height = 0, dx = 0, dz = 0;  // m above the field's place; m per m
+    bool within = false;
+};
+Slope slopeOf(const Collider& c, float x, float z) noexcept {
+    Slope slope;
+    float u = (x - c.place.x) / c.radius, v = (z - c.place.z) / c.radius;
+    if (!c.heights || c.columns < 2 || c.rows < 2 || !std::isfinite(u) || !std::isfinite(v))
+        return slope;
+    const float most[2] = {float(c.columns - 1), float(c.rows - 1)};
+    slope.within = u >= 0.0f && v >= 0.0f && u <= most[0] && v <= most[1];
+    u = std::clamp(u, 0.0f, most[0]), v = std::clamp(v, 0.0f, most[1]);
+    const uint32_t i = std::min(uint32_t(u), c.columns - 2), k = std::min(uint32_t(v), c.rows - 2);
+    const auto at = [&](uint32_t x1, uint32_t z1) {
+        return c.heights[size_t(z1) * c.columns + x1];
+    };
+    const float fu = u - float(i), fv = v - float(k);
+    const float h00 = at(i, k), h10 = at(i + 1, k), h01 = at(i, k + 1), h11 = at(i + 1, k + 1);
+    slope.height = glm::mix(glm::mix(h00, h10, fu), glm::mix(h01, h11, fu), fv);
+    slope.dx = glm::mix(h10 - h00, h11 - h01, fv) / c.radius;
+    slope.dz = glm::mix(h01 - h00, h11 - h10, fu) / c.radius;
+    return slope;
+}
+
 Surface ofHeights(const Collider& c, vec3 point) noexcept {
-    const float u = (point.x - c.place.x) / c.radius, v = (point.z - c.place.z) / c.radius;
-    if (!c.heights || c.columns < 2 || c.rows < 2 || !(u >= 0.0f) || !(v >= 0.0f) ||
-        u > float(c.columns - 1) || v > float(c.rows - 1))
-        return {};
-    const uint32_t x = std::min(uint32_t(u), c.columns - 2), z = std::min(uint32_t(v), c.rows - 2);
-    const auto at = [&](uint32_t i, uint32_t j) { return c.heights[size_t(j) * c.columns + i]; };
-    const float fu = u - float(x), fv = v - float(z);
-    const float h00 = at(x, z), h10 = at(x + 1, z), h01 = at(x, z + 1), h11 = at(x + 1, z + 1);
-    const float height = glm::mix(glm::mix(h00, h10, fu), glm::mix(h01, h11, fu), fv);
-    const float dx = glm::mix(h10 - h00, h11 - h01, fv) / c.radius;
-    const float dz = glm::mix(h01 - h00, h11 - h10, fu) / c.radius;
-    const vec3 normal = normalOr(vec3(-dx, 1.0f, -dz), vec3(0, 1, 0));
-    const float distance = (point.y - c.place.y - height) * normal.y;
+    const Slope slope = slopeOf(c, point.x, point.z);
+    if (!slope.within) return {};
+    const vec3 normal = normalOr(vec3(-slope.dx, 1.0f, -slope.dz), vec3(0, 1, 0));
+    const float distance = (point.y - c.place.y - slope.height) * normal.y;
     if (!std::isfinite(distance)) return {};
     return {distance, normal};
 }
@@ -173,6 +188,12 @@ Surface surfaceOf(const Collider& c, vec3 point) noexcept {
         }
     }
     return {};
+}
+
+bool heightOf(const Collider& field, float x, float z, float& height) noexcept {
+    const Slope slope = slopeOf(field, x, z);
+    height = field.place.y + slope.height;
+    return slope.within;
 }
 
 Surface nearestSurface(std::span<const Collider> colliders, vec3 point) noexcept {

@@ -26,6 +26,8 @@ struct Surface {
     vec3 normal{0.0f, 1.0f, 0.0f};  // unit, outward
 };
 Surface surfaceOf(const Collider& collider, vec3 point) noexcept;
+// m, world: of a height field, at its border beyond it. False: x and z are beyond it.
+bool heightOf(const Collider& field, float x, float z, float& height) noexcept;
 // Of all of them the nearest; far away if there are none.
 Surface nearestSurface(std::span<const Collider> colliders, vec3 point) noexcept;
 

@@ -118,6 +118,36 @@ float World::burningShare(const FireEmitter& emitter) noexcept {
     return std::clamp(powerOf(**object) / (1000 * emitter.def.power), 0.0f, 1.0f);
 }
 
+// Of the host's height fields what lies about a source of sparks. In cells of the world: where it
+// stands in them changes nothing.
+void World::layGround(gpu::SparkSource& source) const noexcept {
+    constexpr float kSide = gpu::kSparkCellSide;
+    constexpr uint32_t kCells = gpu::kSparkCells, kCorners = kCells + 1;
+    float low[2];
+    for (int i = 0; i < 2; ++i)
+        low[i] = std::floor(source.keys[0][2 * i] / kSide + 0.5f) * kSide - 0.5f * kCells * kSide;
+    float heights[kCorners * kCorners] = {};
+    bool any = false;
+    for (uint32_t slot = 0; slot < fireColliders_.slotCount(); ++slot) {
+        const auto* entry = fireColliders_.at(slot);
+        if (!entry || (*entry)->shape.kind != volume::ColliderKind::HeightField) continue;
+        const volume::Collider& field = (*entry)->shape;
+        float height = 0;
+        if (!volume::heightOf(field, source.keys[0].x, source.keys[0].z, height)) continue;
+        for (uint32_t i = 0; i < kCorners * kCorners; ++i) {
+            (void)volume::heightOf(field, low[0] + float(i % kCorners) * kSide,
+                                   low[1] + float(i / kCorners) * kSide, height);
+            heights[i] = any ? std::max(heights[i], height) : height;
+        }
+        any = true;
+    }
+    source.grid = {low[0], low[1], kSide, any ? 1.0f : 0.0f};
+    for (uint32_t i = 0; any && i < kCells * kCells; ++i) {
+        const float* corner = &heights[i / kCells * kCorners + i % kCells];
+        source.cells[i] = {corner[0], corner[1], corner[kCorners], corner[kCorners + 1]};
+    }
+}
+
 void World::planEmitters(float seconds) noexcept {
     emitterRecords_.clear();
     emitterGroups_.clear();
@@ -139,6 +169,7 @@ void World::planEmitters(float seconds) noexcept {
         const bool shows = components::advanceEmitter(*emitter, air, seconds, record);
         gpu::SparkSource source;
         if (components::advanceSparks(*emitter, air, seconds, source)) {
+            if (!(emitter->def.flags & FW_EMITTER_NO_COLLISION)) layGround(source);
             sparkSources_.push_back(source);
             sparks += components::sparkQuads(source);
         }

@@ -512,6 +512,7 @@ class World {
     components::EmitterBooks emitterBooks(const FwFireEmitterDef& def);
     void countBookUsers(const FwFireEmitterDef& def, int by) noexcept;
     uint32_t emitterRoom(uint32_t particles);
+    void layGround(gpu::SparkSource& source) const noexcept;
     void planEmitters(float seconds) noexcept;
     void commitEmitters(float seconds) noexcept;
     // fields.cpp

@@ -12,9 +12,7 @@ layout(std430, set = 0, binding = FW_BIND_EMITTERS) readonly buffer EmittersBuff
 layout(std430, set = 0, binding = FW_BIND_EMITTER_GROUPS) readonly buffer GroupsBuffer {
     uvec2 groups[];  // emitter, first slot of its ring
 };
-layout(std430, set = 0, binding = FW_BIND_PARTICLES) readonly buffer ParticlesBuffer {
-    ParticleWords particles[];
-};
+#include "emitter/kept.glsl"
 layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer {
     FlameQuad flameQuad[];
 };
@@ -132,16 +130,14 @@ void main() {
     if ((e.flags & kEmitterHidden) != 0u) return;
     bool stops = (e.flags & (kEmitterGround | kEmitterJet)) != 0u, grows = e.size.y > 0.0;
     uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
-    for (uint turn = 0u; turn < turns; ++turn) {
+    // It asks at its end: a software device would go through it once more with nobody in it.
+    uint turn = 0u;
+    do {
         uint slot = group.y + turn * 64u + gl_LocalInvocationID.x;
         uint births = particleBirths(e.head, e.ring, slot);
-        if (slot >= e.ring || births >= e.filled) continue;
-        uint seed = particleSeed(e.seed, e.serial - 1u - births), at = e.first + slot;
+        uint seed = particleSeed(e.seed, e.serial - 1u - births);
         ParticleTraits t = particleTraits(e, seed);
-        ParticleWords kept = particles[at];
-        if (!stops) kept.hit = kNoHit << 16u;
-        if (!grows) kept.path = 0.0;
-        Particle p = particleUnpacked(kept);
-        if (p.placeAge.w < t.all) makeQuads(e, t, p, seed);
-    }
+        Particle p = particleUnpacked(keptAt(e.first + min(slot, e.ring - 1u), stops, grows));
+        if (slot < e.ring && births < e.filled && p.placeAge.w < t.all) makeQuads(e, t, p, seed);
+    } while (++turn < turns);
 }

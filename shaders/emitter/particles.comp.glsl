@@ -1,7 +1,7 @@
 // Particles of all emitters: births and one frame of motion. A group works on a part of one
-// emitter's ring. A software device runs what stands in a loop at least once in a group, what stands
-// in an `if` for every particle: so births have a loop of their own, over the few turns that have
-// any.
+// emitter's ring. A software device runs what stands in an `if` for every particle, and a loop that
+// asks at its start once more with nobody in it: so births have a loop of their own, over the few
+// turns that have any, and so has what meets something on its way; the others ask at their end.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -16,9 +16,8 @@ layout(std430, set = 0, binding = FW_BIND_EMITTERS) readonly buffer EmittersBuff
 layout(std430, set = 0, binding = FW_BIND_EMITTER_GROUPS) readonly buffer GroupsBuffer {
     uvec2 groups[];  // emitter, first slot of its ring
 };
-layout(std430, set = 0, binding = FW_BIND_PARTICLES) buffer ParticlesBuffer {
-    ParticleWords particles[];
-};
+#define FW_MOVES
+#include "emitter/kept.glsl"
 layout(push_constant) uniform Push { ParticlePush push; };
 
 // Of an emitter's record what every particle needs. A software device loads each word for each lane:
@@ -96,13 +95,18 @@ Particle bornNow(ParticleEmitter e, uint i, uint seed, float lived) {
     return p;
 }
 
-void keep(uint at, Particle p, bool stops, bool grows) {
+// What nothing stops has no hit, what does not grow on its way needs none of it.
+bool stops(ParticleEmitter e) { return (e.flags & (kEmitterGround | kEmitterJet)) != 0u; }
+bool grows(ParticleEmitter e) { return e.size.y > 0.0; }
+
+// `hit`: what it struck may be news.
+void keep(ParticleEmitter e, uint at, Particle p, bool hit) {
     ParticleWords kept = particlePacked(p);
     particles[at].placeAge = kept.placeAge;
     particles[at].speed0 = kept.speed0;
     particles[at].speed1 = kept.speed1;
-    if (stops) particles[at].hit = kept.hit;
-    if (grows) particles[at].path = kept.path;
+    if (stops(e) && hit) particles[at].hit = kept.hit;
+    if (grows(e)) particles[at].path = kept.path;
 }
 
 // s before the frame's end that a fresh one is born, and that any other moves.
@@ -110,12 +114,71 @@ float livedOf(ParticleEmitter e, uint births) {
     return births < e.fresh ? e.age + e.apart * float(births) : e.from.w;
 }
 
+struct Flight {  // a particle's frame
+    ParticleTraits traits;
+    Particle p;
+    uint seed;
+    uint at;     // where it is kept
+    bool there;
+    float now;   // s, cosmetic
+    float dt;    // s of each step
+};
+
+Flight flightOf(ParticleEmitter e, uint slot) {
+    Flight f;
+    uint births = particleBirths(e.head, e.ring, slot);
+    f.there = slot < e.ring && births < e.filled;
+    f.at = e.first + min(slot, e.ring - 1u);
+    f.seed = particleSeed(e.seed, e.serial - 1u - births);
+    f.traits = particleTraits(e, f.seed);
+    f.p = particleUnpacked(keptAt(f.at, stops(e), grows(e)));
+    float lived = livedOf(e, births);
+    f.now = e.wind.w - lived;
+    f.dt = lived / float(max(e.steps, 1u));
+    return f;
+}
+
+// One step of its flight as if nothing were in its way. True: it came down to the ground.
+bool fliesFreely(ParticleEmitter e, inout Flight f) {
+    f.p = particleStep(e, f.traits, f.p, f.now, f.dt);
+    f.now += f.dt;
+    float above = particleAbove(e, f.p);
+    float size = particleSize(e, f.traits, f.p.placeAge.w, f.p.speedPath.w, f.traits.own);
+    bool lands = particleLands(e, f.p, size, above);
+    f.p.placeAge.xyz += e.up.xyz * particleSunk(e, above);
+    return lands;
+}
+
+// One step, in which what is in its way, of its jet's shields (of emitter `i`) or the ground, stops it.
+void flies(ParticleEmitter e, uint i, inout Flight f) {
+    vec3 from = f.p.placeAge.xyz;
+    f.p = particleStep(e, f.traits, f.p, f.now, f.dt);
+    f.now += f.dt;
+    float size = particleSize(e, f.traits, f.p.placeAge.w, f.p.speedPath.w, f.traits.own);
+    float reach = f.p.hit.w < 0.0 ? min(0.12 * size, 0.12) : 0.0, least = 2.0;
+    vec4 disc = vec4(0.0);
+    vec3 normal = e.up.xyz;
+    uint k = 0u;
+    do {
+        vec4 middle = emitters[i].shields[2u * k];
+        vec3 n = emitters[i].shields[2u * k + 1u].xyz;
+        float share = particleMeets(from, f.p.placeAge.xyz, middle, n, reach);
+        bool first = k < e.shieldCount && share < least;
+        least = first ? share : least;
+        disc = first ? middle : disc;
+        normal = first ? n : normal;
+    } while (++k < e.shieldCount);
+    float above = particleAbove(e, f.p);
+    if (least <= 1.0 || particleLands(e, f.p, size, above))
+        f.p = particleMet(e, f.traits, f.p, f.seed, from, least, disc, normal, size, above);
+    else
+        f.p.placeAge.xyz += e.up.xyz * particleSunk(e, above);
+}
+
 void main() {
     uvec2 group = groups[gl_WorkGroupID.x];
     ParticleEmitter e = emitterOf(group.x);
     uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
-    // What nothing stops has no hit, what does not grow on its way needs none of it.
-    bool stops = (e.flags & (kEmitterGround | kEmitterJet)) != 0u, grows = e.size.y > 0.0;
     // Births lie in a row that ends before the ring's head and may begin at its end. Turns with any:
     // a thread gives birth to those that it then moves.
     uint end = group.y + turns * 64u;
@@ -124,54 +187,38 @@ void main() {
     uint lowTurn = (low - group.y) / 64u, wrappedTurn = (wrapped - group.y) / 64u;
     uint lows = low < high ? (high - group.y + 63u) / 64u - lowTurn : 0u;
     uint tops = wrapped < top ? turns - wrappedTurn : 0u;
+    uint own = group.y + gl_LocalInvocationID.x;  // the first of this thread's slots
     for (uint i = 0u; i < lows + tops; ++i) {
         uint turn = i < lows ? lowTurn + i : wrappedTurn + i - lows;
-        uint slot = group.y + turn * 64u + gl_LocalInvocationID.x;
+        uint slot = own + turn * 64u;
         uint births = particleBirths(e.head, e.ring, slot);
         if (slot < e.ring && births < e.fresh) {
             uint seed = particleSeed(e.seed, e.serial - 1u - births);
-            keep(e.first + slot, bornNow(e, group.x, seed, livedOf(e, births)), stops, grows);
+            keep(e, e.first + slot, bornNow(e, group.x, seed, livedOf(e, births)), true);
         }
     }
-    for (uint turn = 0u; turn < turns; ++turn) {
-        uint slot = group.y + turn * 64u + gl_LocalInvocationID.x;
-        uint births = particleBirths(e.head, e.ring, slot);
-        bool there = slot < e.ring && births < e.filled;
-        uint at = e.first + min(slot, e.ring - 1u);
-        uint seed = particleSeed(e.seed, e.serial - 1u - births);
-        ParticleTraits t = particleTraits(e, seed);
-        ParticleWords kept;
-        kept.placeAge = particles[at].placeAge;
-        kept.speed0 = particles[at].speed0;
-        kept.speed1 = particles[at].speed1;
-        kept.hit = stops ? particles[at].hit : kNoHit << 16u;
-        kept.path = grows ? particles[at].path : 0.0;
-        Particle p = particleUnpacked(kept);
-        float lived = livedOf(e, births);
-        float dt = lived / float(max(e.steps, 1u)), now = e.wind.w - lived;
-        for (uint i = 0u; i < e.steps; ++i) {
-            vec3 from = p.placeAge.xyz;
-            p = particleStep(e, t, p, now, dt);
-            float size = particleSize(e, t, p.placeAge.w, p.speedPath.w, t.own), least = 2.0;
-            float reach = p.hit.w < 0.0 ? min(0.12 * size, 0.12) : 0.0;
-            vec4 disc = vec4(0.0);
-            vec3 normal = e.up.xyz;
-            for (uint k = 0u; k < e.shieldCount; ++k) {
-                vec4 middle = emitters[group.x].shields[2u * k];
-                vec3 n = emitters[group.x].shields[2u * k + 1u].xyz;
-                float f = particleMeets(from, p.placeAge.xyz, middle, n, reach);
-                bool first = f < least;
-                least = first ? f : least;
-                disc = first ? middle : disc;
-                normal = first ? n : normal;
-            }
-            float above = particleAbove(e, p);
-            if (least <= 1.0 || particleLands(e, p, size, above))
-                p = particleMet(e, t, p, seed, from, least, disc, normal, size, above);
-            else
-                p.placeAge.xyz += e.up.xyz * particleSunk(e, above);
-            now += dt;
-        }
-        if (there) keep(at, p, stops, grows);
+    memoryBarrier();  // what is written by words may be read by texels
+    // Particles of a jet before something are asked for what is in their way, others where they come
+    // to the ground: those are few, and one bit for each turn of this thread says which.
+    bool jet = e.shieldCount > 0u;
+    uint met = 0u, turn = jet ? turns - 1u : 0u;
+    do {
+        Flight f = flightOf(e, own + turn * 64u);
+        bool stopped = jet;
+        uint i = 0u;
+        do {
+            stopped = fliesFreely(e, f) || stopped;
+        } while (++i < e.steps);
+        if (f.there && !stopped) keep(e, f.at, f.p, f.p.hit.w >= 0.0);
+        met |= f.there && stopped ? 1u << turn : 0u;
+    } while (++turn < turns);
+    if (jet) met = (1u << turns) - 1u;
+    for (; met != 0u; met &= met - 1u) {
+        Flight f = flightOf(e, own + uint(findLSB(met)) * 64u);
+        uint i = 0u;
+        do {
+            flies(e, group.x, f);
+        } while (++i < e.steps);
+        if (f.there) keep(e, f.at, f.p, true);
     }
 }

@@ -20,6 +20,15 @@ layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint dr
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(push_constant) uniform Push { SparkPush push; };
 
+#ifdef FW_TEXELS
+layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + FW_BIND_SPARKS) readonly uniform uimageBuffer sourcesIn;
+vec4 sparkCell(SparkBounds b, uint i) {
+    return uintBitsToFloat(imageLoad(sourcesIn, int(b.source * kSparkSourceQuads + kSparkCellQuad + i)));
+}
+#else
+vec4 sparkCell(SparkBounds b, uint i) { return sources[b.source].cells[i]; }
+#endif
+
 const float kNearFade = 0.3;  // m before the eye
 
 // Of a source's record all but its way and its walls.
@@ -47,6 +56,8 @@ SparkBounds boundsOf(SparkSource s, uint i) {
     b.ground = vec4(s.up.xyz, (s.flags & kSparkGround) != 0u ? s.up.w : -1e9);
     b.wall = (s.flags & kSparkWall) != 0u ? sources[i].wall : vec4(0.0);
     b.normal = sources[i].wallNormal.xyz;
+    b.grid = sources[i].grid;
+    b.source = i;
     return b;
 }
 

@@ -48,8 +48,15 @@ struct SparkSource {  // one frame of an emitter
     uint book;        // + 1; 0: none
     uint object;      // slot + 1 of the burning mesh whose tiles throw them; 0: it does itself
     uint reserved0; uint reserved1;
+    vec4 grid;        // m: x and z where its cells begin, side of one; w: 1: there are any
+    vec4 cells[64];   // m: heights of the host's field about it, at the corners of each cell, rows
+                      // along x: two at its z, and two at the next
 };
-FW_SHARED_SIZE(SparkSource, 336)
+FW_SHARED_SIZE(SparkSource, 1376)
+FW_SHARED_CONST uint kSparkSourceQuads = 86u;  // its size in words of four, and
+FW_SHARED_CONST uint kSparkCellQuad = 22u;     // where among them its cells begin
+FW_SHARED_CONST uint kSparkCells = 8u;         // of a row
+FW_SHARED_CONST float kSparkCellSide = 1.0f;   // m
 
 struct SparkPush {
     uint quads;      // that may be shown
@@ -122,14 +129,37 @@ FW_SHARED_FN vec3 sparkArcSpeed(SparkLeg leg, vec3 up, float tau, float t) {
            carried * exp(-t / (tau * kSparkPlume));
 }
 
-// What stops sparks of a source: w of each the distance from it, of none a large one.
+// What stops sparks of a source.
 struct SparkBounds {
     vec4 ground;  // unit normal, m along it
     vec4 wall;    // m, middle of the disc, and its radius; 0: none
     vec3 normal;
+    vec4 grid;    // as the source's
+#ifdef __cplusplus
+    const vec4* cells = nullptr;
+#else
+    uint source;
+#endif
 };
-FW_SHARED_FN float sparkAbove(SparkBounds b, vec3 p) {
-    return dot(p, vec3(b.ground.x, b.ground.y, b.ground.z)) - b.ground.w;
+#ifdef __cplusplus
+FW_SHARED_FN vec4 sparkCell(SparkBounds b, uint i) { return b.cells ? b.cells[i] : vec4(0.0f); }
+#else
+vec4 sparkCell(SparkBounds b, uint i);  // whoever includes this has them
+#endif
+// Of the ground nearest to it, plane or field: unit normal; w: m that it is above it.
+FW_SHARED_FN vec4 sparkGround(SparkBounds b, vec3 p) {
+    float above = dot(p, vec3(b.ground.x, b.ground.y, b.ground.z)) - b.ground.w;
+    float side = max(b.grid.z, 1e-3f), most = float(kSparkCells) - 1e-3f;
+    float x = clamp((p.x - b.grid.x) / side, 0.0f, most), z = clamp((p.z - b.grid.y) / side, 0.0f, most);
+    vec4 cell = sparkCell(b, uint(z) * kSparkCells + uint(x));
+    x -= floor(x);
+    z -= floor(z);
+    float here = mix(cell.x, cell.y, x), next = mix(cell.z, cell.w, x);
+    vec3 n = normalize(vec3(mix(cell.x - cell.y, cell.z - cell.w, z), side, here - next));
+    float over = (p.y - mix(here, next, z)) * n.y;
+    return b.grid.w > 0.5f && over < above
+               ? vec4(n, over)
+               : vec4(b.ground.x, b.ground.y, b.ground.z, above);
 }
 FW_SHARED_FN float sparkBefore(SparkBounds b, vec3 p) {
     vec3 d = p - vec3(b.wall.x, b.wall.y, b.wall.z);
@@ -138,7 +168,7 @@ FW_SHARED_FN float sparkBefore(SparkBounds b, vec3 p) {
     // What is far behind it came by another way.
     return dot(aside, aside) < b.wall.w * b.wall.w && before > -kSparkBehind ? before : 1e9f;
 }
-FW_SHARED_FN float sparkClearance(SparkBounds b, vec3 p) { return min(sparkAbove(b, p), sparkBefore(b, p)); }
+FW_SHARED_FN float sparkClearance(SparkBounds b, vec3 p) { return min(sparkGround(b, p).w, sparkBefore(b, p)); }
 
 // s into the leg until it meets something; `most`: nothing until then. Looked for at the same places
 // whatever moment is shown, so that a bounce stays where it is; at first, while it is fast, often.
@@ -172,8 +202,8 @@ FW_SHARED_FN SparkLeg sparkLeg(SparkKind kind, SparkLeg born, SparkBounds b, vec
         float met = sparkMeets(leg, b, up, kind.tau, left);
         bool on = met < left && age >= leg.began + met;
         vec3 at = sparkArc(leg, up, kind.tau, met), v = sparkArcSpeed(leg, up, kind.tau, met);
-        vec3 n = sparkBefore(b, at) < sparkAbove(b, at) ? b.normal
-                                                        : vec3(b.ground.x, b.ground.y, b.ground.z);
+        vec4 ground = sparkGround(b, at);
+        vec3 n = sparkBefore(b, at) < ground.w ? b.normal : vec3(ground.x, ground.y, ground.z);
         float into = min(dot(v, n), 0.0f);
         vec3 bounced = (v - n * into) * 0.55f - n * (into * 0.38f);
         bool rests = i + 1u == kSparkLegs || -into < 0.4f;
@@ -201,8 +231,8 @@ FW_SHARED_FN vec3 sparkPlace(SparkLeg leg, SparkKind kind, SparkBounds b, vec3 u
     p += (across * sin(turns * age + first) + aside * cos(0.83f * turns * age + second) +
           up * (0.6f * sin(1.31f * turns * age + second))) * shaken;
     // What the look at few places, and halving, left.
-    float sunk = max(kSparkClear - sparkAbove(b, p), 0.0f);
-    return p + vec3(b.ground.x, b.ground.y, b.ground.z) * sunk;
+    vec4 ground = sparkGround(b, p);
+    return p + vec3(ground.x, ground.y, ground.z) * max(kSparkClear - ground.w, 0.0f);
 }
 
 // As it is born at `at`, of what moves as fast as `carried`.

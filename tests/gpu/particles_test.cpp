@@ -25,14 +25,16 @@ constexpr uint32_t kBurnTiles = 40;
 
 class ParticlePass : public GpuTest {
  protected:
-    void makeRig(uint32_t quads) {
+    void makeRig(uint32_t quads, bool byTexels = false) {
         static constexpr uint32_t kBindings[] = {
             FW_BIND_EMITTERS, FW_BIND_EMITTER_GROUPS, FW_BIND_PARTICLES,
             FW_BIND_FLAMES,   FW_BIND_DRAW_ARGS,      FW_BIND_VIEW,
             FW_BIND_BOOKS,    FW_BIND_COUNTERS,       FW_BIND_BURN_TILES};
         static constexpr uint32_t kUniforms[] = {FW_BIND_VIEW};
-        rig_ = std::make_unique<PassRig>(*device_, kBindings, uint32_t(sizeof(gpu::ParticlePush)),
-                                         std::span<const uint32_t>{}, kUniforms);
+        static constexpr uint32_t kTexels[] = {FW_BIND_PARTICLES};
+        rig_ = std::make_unique<PassRig>(
+            *device_, kBindings, uint32_t(sizeof(gpu::ParticlePush)),
+            byTexels ? std::span<const uint32_t>(kTexels) : std::span<const uint32_t>(), kUniforms);
         room_ = {kTiles, quads, 0, 0};
         rig_->make(FW_BIND_EMITTERS, 4 * sizeof(gpu::ParticleEmitter));
         rig_->make(FW_BIND_EMITTER_GROUPS, 8192 * sizeof(gpu::uvec2));
@@ -49,8 +51,8 @@ class ParticlePass : public GpuTest {
         gpu::ViewParams params{};
         testLooks().viewParams(input, params);
         rig_->make(FW_BIND_VIEW, sizeof params, &params);
-        particles_ = rig_->add("particles.comp");
-        quads_ = rig_->add("particle_quads.comp");
+        particles_ = rig_->add(byTexels ? "particles_texels.comp" : "particles.comp");
+        quads_ = rig_->add(byTexels ? "particle_quads_texels.comp" : "particle_quads.comp");
         sort_ = rig_->add("flame_sort.comp");
     }
     void SetUp() override {
@@ -146,7 +148,12 @@ FwFireEmitterDef emitterDef(uint32_t flags, float power) {
     return def;
 }
 
-TEST_F(ParticlePass, MovesThemAsTheLibrarySays) {
+class ParticleWays : public ParticlePass, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(, ParticleWays, testing::Values(false, true), [](const auto& way) {
+    return std::string(way.param ? "ByTexels" : "ByWords");
+});
+
+TEST_P(ParticleWays, MoveThemAsTheLibrarySays) {
     FwFireEmitterDef sticky =
         emitterDef(FW_EMITTER_JET | FW_EMITTER_IGNITES | FW_EMITTER_GROUND, 500);
     sticky.stick = 0.3f;
@@ -162,7 +169,7 @@ TEST_F(ParticlePass, MovesThemAsTheLibrarySays) {
     }
     ParticleReference& fire = add(emitterDef(0, 80));
     fire.air.wind[2] = 2;
-    makeRig(512);
+    makeRig(512, GetParam());
     for (int i = 0; i < 40; ++i) {
         const float place[3] = {0.02f * float(i), 1, 0};
         components::moveFireEmitter(jet.emitter, place, nullptr);
@@ -304,9 +311,9 @@ class SparkPass : public GpuTest {
         static constexpr uint32_t kBindings[] = {FW_BIND_SPARKS,    FW_BIND_FLAMES,
                                                  FW_BIND_DRAW_ARGS, FW_BIND_VIEW,
                                                  FW_BIND_COUNTERS,  FW_BIND_BURN_TILES};
-        static constexpr uint32_t kUniforms[] = {FW_BIND_VIEW};
+        static constexpr uint32_t kTexels[] = {FW_BIND_SPARKS}, kUniforms[] = {FW_BIND_VIEW};
         rig_ = std::make_unique<PassRig>(*device_, kBindings, uint32_t(sizeof(gpu::SparkPush)),
-                                         std::span<const uint32_t>{}, kUniforms);
+                                         kTexels, kUniforms);
         rig_->make(FW_BIND_SPARKS, sizeof(gpu::SparkSource));
         rig_->make(FW_BIND_FLAMES, kQuads * sizeof(gpu::FlameQuad));
         rig_->make(FW_BIND_DRAW_ARGS, gpu::kFlameOrder * 4);
@@ -321,20 +328,22 @@ class SparkPass : public GpuTest {
         testLooks().viewParams(input, params);
         rig_->make(FW_BIND_VIEW, sizeof params, &params);
         pass_ = rig_->add("sparks.comp");
+        byTexels_ = rig_->add("sparks_texels.comp");
     }
     void TearDown() override {
         rig_.reset();
         GpuTest::TearDown();
     }
     // Quads of a frame by their seed's bits; who shares those is left out.
-    std::map<uint32_t, gpu::FlameQuad> shown(const gpu::SparkSource& source) {
+    std::map<uint32_t, gpu::FlameQuad> shown(const gpu::SparkSource& source,
+                                             bool byTexels = false) {
         rig_->of<gpu::SparkSource>(FW_BIND_SPARKS)[0] = source;
         const auto arguments = rig_->of<uint32_t>(FW_BIND_DRAW_ARGS);
         std::fill_n(arguments.begin(), gpu::kFlameOrder, 0u);
         const gpu::SparkPush push{kQuads, 0, 0, 0};
         device_->run([&](VkCommandBuffer commands) {
             rig_->begin(commands);
-            rig_->dispatch(commands, pass_, &push, gpu::kSparkGroups);
+            rig_->dispatch(commands, byTexels ? byTexels_ : pass_, &push, gpu::kSparkGroups);
         });
         std::map<uint32_t, gpu::FlameQuad> out;
         std::map<uint32_t, int> met;
@@ -356,8 +365,32 @@ class SparkPass : public GpuTest {
 
     static constexpr uint32_t kQuads = 4096;
     std::unique_ptr<PassRig> rig_;
-    uint32_t pass_ = 0, count_ = 0;
+    uint32_t pass_ = 0, byTexels_ = 0, count_ = 0;
 };
+
+// By words and by texels.
+TEST_F(SparkPass, MeetTheFieldOfHeightsThatTheLibrarySays) {
+    if (!device_) return;
+    SparkRig rig(200);
+    for (int i = 0; i < 150; ++i) ASSERT_TRUE(rig.step(1 / 30.0f));
+    rig.layHill();
+    rig.record.flags &= ~gpu::kSparkGround;
+    rig.record.up.w = -1e9f;
+    const std::vector<Spark> wanted = rig.sparks();
+    for (const bool byTexels : {false, true}) {
+        const auto seen = shown(rig.record, byTexels);
+        size_t found = 0, bounced = 0;
+        for (const Spark& one : wanted) {
+            const auto at = seen.find(one.now.seed & 0xFFFFu);
+            if (at == seen.end()) continue;  // too far gone to show
+            ++found;
+            bounced += one.leg.began > 0;
+            EXPECT_LT(glm::length(placeOf(at->second) - one.place), 0.04f) << one.slot;
+        }
+        EXPECT_LT(150u, found);
+        EXPECT_LT(10u, bounced);
+    }
+}
 
 // Where the library has them; and a moment that comes again shows the same, whatever was between.
 TEST_F(SparkPass, ShowsThoseOfTheClockAgainAndAgain) {

@@ -4,6 +4,7 @@
 #include "shared/particle.h"
 #include "shared/spark.h"
 
+#include <cmath>
 #include <vector>
 
 namespace fw::test {
@@ -42,11 +43,24 @@ class SparkRig {
         components::commitEmitter(emitter);
         return any;
     }
+    // A slope along x and waves along z, as a host's field has heights; no plane.
+    static float hill(float x, float z) { return 0.6f * x + 0.4f * std::sin(1.1f * z); }
+    void layHill() {
+        emitter.def.flags &= ~uint32_t(FW_EMITTER_GROUND);
+        emitter.def.ground = -1e9f;
+        record.grid = {-4, -4, gpu::kSparkCellSide, 1};
+        for (uint32_t i = 0; i < gpu::kSparkCells * gpu::kSparkCells; ++i) {
+            const float x = float(i % gpu::kSparkCells) - 4, z = float(i / gpu::kSparkCells) - 4;
+            record.cells[i] = {hill(x, z), hill(x + 1, z), hill(x, z + 1), hill(x + 1, z + 1)};
+        }
+    }
     // As the pass has them.
     [[nodiscard]] std::vector<Spark> sparks() const {
         std::vector<Spark> out;
         gpu::SparkBounds bounds{};
         bounds.ground = {record.up.x, record.up.y, record.up.z, record.up.w};
+        bounds.grid = record.grid;
+        bounds.cells = record.cells;
         for (uint32_t slot = 0; slot < record.slots; ++slot) {
             Spark one;
             one.slot = slot;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -54,6 +55,34 @@ TEST(Sparks, NoneGoesBelowTheGroundAndSomeRestThere) {
     std::printf("[   FIGURE ] %d sparks: %d after a bounce, %d at rest\n", all, bounced, rest);
     EXPECT_LT(all / 50, bounced);
     EXPECT_LT(all / 200, rest);
+}
+
+TEST(Sparks, MeetAFieldOfHeightsAndRestOnIt) {
+    SparkRig rig(60);
+    rig.air.wind[0] = -1;
+    int bounced = 0, rest = 0, high = 0, all = 0;
+    for (int i = 0; i < 300; ++i) {
+        ASSERT_TRUE(rig.step(1 / 30.0f));
+        rig.layHill();
+        for (const Spark& one : rig.sparks()) {
+            // Between corners a cell is bilinear.
+            const vec3 p(glm::clamp(one.place.x, -4.0f, 4.0f), one.place.y,
+                         glm::clamp(one.place.z, -4.0f, 4.0f));
+            const float low = std::min({rig.hill(p.x, std::floor(p.z)), rig.hill(p.x, p.z),
+                                        rig.hill(p.x, std::ceil(p.z))});
+            ASSERT_GT(p.y, low - 0.01f) << "slot " << one.slot << " at " << one.now.age << " s";
+            ++all;
+            bounced += one.leg.began > 0;
+            const bool still = one.leg.began > 0 && one.leg.speed == vec3(0.0f);
+            rest += still;
+            high += still && p.y > 0.2f;
+        }
+    }
+    std::printf("[   FIGURE ] %d sparks: %d after a bounce, %d at rest, %d of them uphill\n", all,
+                bounced, rest, high);
+    EXPECT_LT(all / 50, bounced);
+    EXPECT_LT(all / 200, rest);
+    EXPECT_LT(10, high);
 }
 
 // A spark flies on from frame to frame: it is never elsewhere all at once, at a bounce neither.
