@@ -76,6 +76,13 @@ void defaults(FwBlockerDef& def) noexcept {
     set(def.halfSize, 0.5f, 0.5f, 0.5f);
 }
 
+void defaults(FwWindZoneDef& def) noexcept {
+    set(def.axis, 1, 0, 0);
+    set(def.size, 1, 1, 1);
+    def.speed = 5;
+    def.falloff = 0.5f;
+}
+
 void defaults(FwVolumetricFireDef& def) noexcept {
     def.diameter = 0.6f;
     def.power = 60;
@@ -189,6 +196,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwBudgetDef);
         case FW_DEF_NET:
             return sizeof(FwNetDef);
+        case FW_DEF_WIND_ZONE:
+            return sizeof(FwWindZoneDef);
         case FW_DEF_FIRE_COLLIDER:
             return sizeof(FwFireColliderDef);
         case FW_DEF_FIRE_TRACK:
@@ -248,6 +257,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_NET:
             write<FwNetDef>(def);
+            return true;
+        case FW_DEF_WIND_ZONE:
+            write<FwWindZoneDef>(def);
             return true;
         case FW_DEF_FIRE_COLLIDER:
             write<FwFireColliderDef>(def);

@@ -160,6 +160,32 @@ FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld* world, FwBlockerId id) {
     return destroyOf("fwWorld_RemoveBlocker", world, &world::World::removeBlocker, id);
 }
 
+FwResult FW_CALL fwWorld_CreateWindZone(FwWorld* world, const FwWindZoneDef* given,
+                                        FwWindZoneId* id) {
+    return createOf("fwWorld_CreateWindZone", world, &world::World::createWindZone, given,
+                    FW_DEF_WIND_ZONE, "FwWindZoneDef", id);
+}
+
+FwResult FW_CALL fwWorld_SetWindZone(FwWorld* world, FwWindZoneId id, const FwWindZoneDef* given) {
+    return onWorld("fwWorld_SetWindZone", world, [&](world::World& w) {
+        w.setWindZone(id, edge::readDef(given, FW_DEF_WIND_ZONE, "FwWindZoneDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld* world, FwWindZoneId id) {
+    return destroyOf("fwWorld_DestroyWindZone", world, &world::World::destroyWindZone, id);
+}
+
+FwResult FW_CALL fwWorld_GetWindAt(FwWorld* world, const float point[3], float wind[3]) {
+    return onWorld("fwWorld_GetWindAt", world, [&](world::World& w) {
+        checkPointer(point, "point");
+        checkPointer(wind, "wind");
+        w.windAtPoint(point, wind);
+        return FW_OK;
+    });
+}
+
 // ---- materials, images, meshes ----------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* given,
@@ -591,6 +617,10 @@ FwResult FW_CALL fwWorld_MakeSafetyMask(FwWorld* world, const float corner[3],
 
 FwResult FW_CALL fwWorld_GetStats(FwWorld* world, FwWorldStats* stats) {
     return fill("fwWorld_GetStats", world, stats, "FwWorldStats", &world::World::stats);
+}
+
+FwResult FW_CALL fwWorld_GetEnergyBook(FwWorld* world, FwEnergyBook* book) {
+    return fill("fwWorld_GetEnergyBook", world, book, "FwEnergyBook", &world::World::energyBook);
 }
 
 FwResult FW_CALL fwWorld_SetBudget(FwWorld* world, const FwBudgetDef* def) {

@@ -174,7 +174,7 @@ void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
         volume::FlameDef first = wanted;
         if (fire.state.lit) first.power = 0;  // it catches; a new fire has burnt for long
         volume::FlameAir still;
-        still.wind = volume::vecOf(air.wind) * fire.windResponse;
+        still.wind = volume::vecOf(fire.wind) * fire.windResponse;
         volume::startFlame(f.flame, first, still);
         f.flame.def = wanted;
         if (fire.tracked()) f.flame.trackTime = double(fire.track.times[0]);
@@ -209,7 +209,7 @@ void FireFlames::advance(const FireAir& air, float seconds) noexcept {
         Near near;
         findNear(f, air.colliders, seconds, near);
         volume::FlameAir around;
-        around.wind = volume::vecOf(air.wind) * f.fire->windResponse;
+        around.wind = volume::vecOf(f.fire->wind) * f.fire->windResponse;
         around.neighbours = met_[i];
         around.neighbours.height *= 1.0f - f.flame.tracked;
         around.colliders = {near.list.data(), near.count};

@@ -7,8 +7,7 @@
 
 namespace fw::components {
 
-struct FireAir {         // of a world
-    float wind[3] = {};  // m/s
+struct FireAir {  // of a world
     float up[3] = {0, 1, 0};
     std::span<const volume::Collider> colliders;
 };

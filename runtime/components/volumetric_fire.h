@@ -37,6 +37,7 @@ struct VolumetricFire {
     float position[3] = {};         // m, world
     float diameter = 0, power = 0;  // m; kW
     float windResponse = 1, blend = 0.3f;
+    float wind[3] = {};  // m/s, that blows where it stands
     std::array<volume::ControlPoint, volume::kMaxControlPoints> points{};
     uint32_t pointCount = 0;
     volume::Track track;  // no keys: none

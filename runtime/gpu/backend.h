@@ -206,6 +206,8 @@ class Backend {
     virtual void createObject(uint32_t slot, const ObjectInit& init) = 0;
     virtual void destroyObject(uint32_t slot) noexcept = 0;
     // Pose, tint and flags; the rest of the record stays.
+    // What wind zones add where an object is, packed (shared/wind.h); for looks alone.
+    virtual void setObjectWind(uint32_t, uint32_t) {}
     virtual void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                                uint32_t flags) = 0;
     // Of an object with an arpModel: its heat boundary begins at a point (m, object space), once.

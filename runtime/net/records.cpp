@@ -24,6 +24,7 @@ constexpr DeedForm kForms[] = {
     {true, false, false, 1},   // emitterPower
     {true, false, true, 7},    // moveField
     {true, false, false, 1},   // fieldAmount
+    {true, false, true, 11},   // windZone
 };
 static_assert(std::size(kForms) == size_t(Kind::count));
 

@@ -56,7 +56,7 @@ void World::takeForecast(Object& object, const gpu::BurnMap& map,
                          const gpu::Readback& readback) noexcept {
     Forecast& forecast = *object.forecast;
     forecast.pending = false;
-    const components::DriveInput drive = driveInput();
+    const components::DriveInput drive = driveInput(object);
     components::Latch latch = object.latch;
     components::resetLatch(object.data, drive, latch);
     const components::Records records =

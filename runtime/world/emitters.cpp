@@ -11,9 +11,14 @@ namespace fw::world {
 
 using components::FireEmitter;
 
-components::EmitterAir World::emitterAir(float ahead) const noexcept {
+components::EmitterAir World::emitterAir(const FireEmitter& emitter, float ahead) const noexcept {
     components::EmitterAir air;
-    std::copy_n(wind_, 3, air.wind);
+    // That of a mesh is where its mesh is.
+    const core::Owned<Object>* object =
+        emitter.def.shape == FW_EMITTER_MESH ? objects_.find(emitter.def.object) : nullptr;
+    const std::array<float, 3> wind =
+        windAt(object ? (*object)->data.pose.translation : emitter.position);
+    std::copy_n(wind.data(), 3, air.wind);
     std::copy_n(def_.up, 3, air.up);
     air.now = emitterTime_ + double(ahead);
     return air;
@@ -106,7 +111,8 @@ void World::setFireEmitterHidden(FwFireEmitterId id, bool hidden) {
 }
 
 void World::fireEmitterState(FwFireEmitterId id, FwFireEmitterState& state) {
-    components::fillEmitterState(emitters_.get(id), emitterAir(0), state);
+    FireEmitter& emitter = emitters_.get(id);
+    components::fillEmitterState(emitter, emitterAir(emitter, 0), state);
 }
 
 // ---- frames -----------------------------------------------------------------------------------
@@ -153,7 +159,6 @@ void World::planEmitters(float seconds) noexcept {
     emitterGroups_.clear();
     sparkSources_.clear();
     uint32_t end = 0, particles = 0, sparks = 0;
-    const components::EmitterAir air = emitterAir(seconds);
     bool listed = false;
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
         FireEmitter* emitter = emitters_.at(i);
@@ -163,9 +168,10 @@ void World::planEmitters(float seconds) noexcept {
         if (emitter && components::isSwept(emitter->def)) {
             if (!listed) listFireColliders();
             listed = true;
-            shieldJet(*emitter, air.now);
+            shieldJet(*emitter, emitterTime_ + double(seconds));
         }
         if (!emitter) continue;
+        const components::EmitterAir air = emitterAir(*emitter, seconds);
         const bool shows = components::advanceEmitter(*emitter, air, seconds, record);
         gpu::SparkSource source;
         if (components::advanceSparks(*emitter, air, seconds, source)) {

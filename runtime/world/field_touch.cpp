@@ -22,7 +22,7 @@ void World::stepCells(Field& field, uint64_t tick) noexcept {
     if (!field.cells) return;
     const uint32_t steps = components::fieldSteps(field.data, tick - field.began);
     if (field.cells->step >= steps) return;
-    const field::FieldRules rules = components::rulesOf(field.data, wind_);
+    const field::FieldRules rules = rulesOf(field.data);
     while (field.cells->step < steps) field::stepField(*field.cells, rules);
 }
 

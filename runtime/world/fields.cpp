@@ -26,7 +26,7 @@ FwParticleFieldId World::createParticleField(const FwParticleFieldDef& def) {
     const Field& made = *field;
     const FwParticleFieldId id = fields_.create(std::move(field));
     try {
-        backend_.createField(id.index1 - 1, components::rulesOf(made.data, wind_), made.data.masks);
+        backend_.createField(id.index1 - 1, rulesOf(made.data), made.data.masks);
     } catch (...) {
         fields_.destroy(id);
         throw;
@@ -47,7 +47,7 @@ void World::moveParticleField(FwParticleFieldId id, const float position[3],
     const bool wets = (field.flags & FW_FIELD_WETS) != 0;
     if (wets) mayChange();
     components::setFieldPlace(field, position, rotation);
-    backend_.setFieldRules(id.index1 - 1, components::rulesOf(field, wind_));
+    backend_.setFieldRules(id.index1 - 1, rulesOf(field));
     if (!wets) return;
     float numbers[7] = {position[0], position[1], position[2]};
     if (rotation) std::copy_n(rotation, 4, numbers + 3);
@@ -59,7 +59,7 @@ void World::setParticleFieldAmount(FwParticleFieldId id, float amount) {
     const bool wets = (field.flags & FW_FIELD_WETS) != 0;
     if (wets) mayChange();
     components::setFieldAmount(field, amount);
-    backend_.setFieldRules(id.index1 - 1, components::rulesOf(field, wind_));
+    backend_.setFieldRules(id.index1 - 1, rulesOf(field));
     if (wets) noteMove(Deed::Kind::fieldAmount, id.index1 - 1, &amount, 1);
 }
 
@@ -98,10 +98,13 @@ void World::particleFieldState(FwParticleFieldId id, FwParticleFieldState& state
     state.bytes = backend_.fieldBytes(id.index1 - 1);
 }
 
+field::FieldRules World::rulesOf(const components::ParticleField& field) const noexcept {
+    return components::rulesOf(field, windAt(field.position).data());
+}
+
 void World::sendFieldRules() noexcept {
     for (uint32_t i = 0; i < fields_.slotCount(); ++i)
-        if (const auto* field = fields_.at(i))
-            backend_.setFieldRules(i, components::rulesOf((*field)->data, wind_));
+        if (const auto* field = fields_.at(i)) backend_.setFieldRules(i, rulesOf((*field)->data));
 }
 
 void World::planFields(const ClockAdvance& time) noexcept {

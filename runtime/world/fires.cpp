@@ -183,12 +183,15 @@ void World::planFires(float seconds) noexcept {
     if (fires_.live() > 0) {
         listFireColliders();
         components::FireAir air;
-        std::copy_n(wind_, 3, air.wind);
         std::copy_n(def_.up, 3, air.up);
         air.colliders = fireShapes_;
         burning_.begin();
         for (uint32_t i = 0; i < fires_.slotCount(); ++i)
-            if (auto* fire = fires_.at(i)) burning_.settle((*fire)->data, air);
+            if (auto* fire = fires_.at(i)) {
+                const std::array<float, 3> wind = windAt((*fire)->data.position);
+                std::copy_n(wind.data(), 3, (*fire)->data.wind);
+                burning_.settle((*fire)->data, air);
+            }
         burning_.advance(air, seconds);
         count = burning_.write(fireFlames_);
         for (uint32_t i = 0; i < count; ++i) {

@@ -26,12 +26,14 @@ struct Deed {
         emitterPower,
         moveField,
         fieldAmount,
+        windZone,
         count
     };
     Kind kind = Kind::count;
     uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all
     uint32_t tick = 0;  // ignite: when it takes effect
-    uint32_t word = 0;  // flags; ignite: FwIgnitionKind; moveEmitter: 1: with a direction
+    uint32_t word = 0;  // flags; ignite: FwIgnitionKind; moveEmitter: 1: with a direction;
+                        // windZone: see zoneWord
     std::array<float, 12> numbers{};
 };
 

@@ -6,17 +6,9 @@
 
 namespace fw::world {
 
-components::DriveInput World::driveInput() const noexcept {
-    components::DriveInput drive;
-    drive.wind = fire::windUnits(wind_);
-    std::copy_n(def_.up, 3, drive.up);
-    drive.pace = def_.paceFactor;
-    return drive;
-}
-
 void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
-    const components::DriveInput drive = driveInput();
-    const auto sendRecords = [&](Object& object, components::Latch& latch) {
+    const auto sendRecords = [&](Object& object, const components::DriveInput& drive,
+                                 components::Latch& latch) {
         const components::Records records =
             components::makeRecords(object.data, domainOf(object), drive, latch);
         gpu::MaterialUpdate update;
@@ -37,13 +29,14 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
                          [&](const Frame::LatchOf& entry) { return entry.object == &object; });
         if (known != frame_.latches.end()) {
             known->due = true;
-            if (!known->latch.sent) sendRecords(object, known->latch);
+            if (!known->latch.sent) sendRecords(object, driveInput(object), known->latch);
             continue;
         }
         components::Latch latch = object.latch;
+        const components::DriveInput drive = driveInput(object);
         components::resetLatch(object.data, drive, latch);
         latch.sent = components::sameDrive(object.data, latch, object.latch);
-        if (!latch.sent) sendRecords(object, latch);
+        if (!latch.sent) sendRecords(object, drive, latch);
         frame_.latches.push_back({&object, latch, true});
         object.planStamp = planStamp_;
     }
@@ -53,17 +46,19 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         // Nobody knows which of them the fire reaches first.
         if (fresh)
             for (Frame::LatchOf& entry : frame_.latches)
-                if (!entry.latch.sent) sendRecords(*entry.object, entry.latch);
+                if (!entry.latch.sent)
+                    sendRecords(*entry.object, driveInput(*entry.object), entry.latch);
     }
     // While anything burns or is hot, any of them may be next.
     const bool anyActive = remoteOn() && (fresh || !idle_);
     const bool latchNow = now % fire::kWindLatchTicks == 0;
     for (Frame::LatchOf& entry : frame_.latches) {
         Object& object = *entry.object;
+        const components::DriveInput drive = driveInput(object);
         components::filterLatch(object.data, domainOf(object), drive, entry.latch);
         if (!latchNow || !components::latchDrive(object.data, entry.latch)) continue;
         entry.latch.sent = false;
-        if (object.story.active || entry.due || anyActive) sendRecords(object, entry.latch);
+        if (object.story.active || entry.due || anyActive) sendRecords(object, drive, entry.latch);
     }
 }
 

@@ -61,9 +61,8 @@ void World::followLights(float seconds) {
 
 uint32_t World::lights(std::span<FwLight> out) {
     lightSources_.clear();
-    const components::EmitterAir air = emitterAir(0);
     for (FwLight light : shownLights_) {
-        light.intensity *= components::flicker(air.now, components::flickerPhase(light.id));
+        light.intensity *= components::flicker(emitterTime_, components::flickerPhase(light.id));
         lightSources_.push_back(light);
     }
     for (uint32_t i = 0; i < fires_.slotCount(); ++i) {
@@ -79,8 +78,8 @@ uint32_t World::lights(std::span<FwLight> out) {
         if (!emitter || emitter->births.filled == 0 || emitter->def.shape == FW_EMITTER_MESH ||
             (emitter->def.flags & (FW_EMITTER_HIDDEN | FW_EMITTER_NO_LIGHT)))
             continue;
-        lightSources_.push_back(
-            components::emitterLight(*emitter, air, 0x40000000u | i, lastFrame_));
+        lightSources_.push_back(components::emitterLight(*emitter, emitterAir(*emitter, 0),
+                                                         0x40000000u | i, lastFrame_));
     }
     return components::gatherLights(lightSources_, keptLights_, def_.maxLights, out, lightTaken_);
 }

@@ -108,6 +108,34 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
     if (components::hasHeat(object.data)) state.energy = double(object.story.energy) / 1048576;
 }
 
+void World::energyBook(FwEnergyBook& book) noexcept {
+    // Of what flames give off (fluxFrom has the same share), in parts that add up.
+    constexpr uint64_t kRadiatedPercent = 33;
+    book.frameIndex = readbackFrame_;
+    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
+        const core::Owned<Object>* owned = objects_.at(slot);
+        if (!owned) continue;
+        const Object& object = **owned;
+        book.burningArea += burningAreaOf(object);
+        book.power += powerOf(object);
+        if (!components::hasHeat(object.data)) continue;
+        ++book.objects;
+        const mesh::BurnDomain& domain = domainOf(object);
+        const auto heat = components::makeHeatMaterials(object.data, domain, def_.paceFactor);
+        const MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
+        uint64_t fuel = 0;
+        for (size_t m = 0; m < heat.size(); ++m)
+            fuel += uint64_t(mesh.texelsOf[m]) * gpu::kFuelFull * heat[m].energy;
+        const uint64_t released = object.story.energy;
+        const uint64_t radiated =
+            released / 100 * kRadiatedPercent + released % 100 * kRadiatedPercent / 100;
+        book.fuel += fuel;
+        book.unburnt += fuel - released;
+        book.radiated += radiated;
+        book.convected += released - radiated;
+    }
+}
+
 Query World::makeQuery(FwBurnableMeshId id, const float position[3]) {
     components::checkValues(position, 3, "position", -1e6f, 1e6f);
     const Object& object = *objects_.get(id);

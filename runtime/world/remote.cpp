@@ -123,6 +123,7 @@ void World::latchRemote(uint32_t) {
         components::placeRemote(object.data.pose, domain, record);
         components::fillRemote(object.data, domain, object.governance, record);
         if (object.texels == 0) record.flags &= ~gpu::kRemoteLive;
+        record.high.w = int(object.zoneWind);
         record.neighbourFirst = object.remote.neighbourFirst;
         record.neighbourCount = object.remote.neighbourCount;
         if (object.remoteVersion != 0 && sameRecord(record, object.remote)) continue;
@@ -337,14 +338,13 @@ void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
 // Whom fire may reach from those that an event touched must see the same wind on every backend, be
 // the readback that tells of it late or not.
 void World::touchNear() {
-    const components::DriveInput drive = driveInput();
     const auto add = [&](uint32_t slot) {
         auto* owned = objects_.at(slot);
         if (!owned || (*owned)->planStamp == planStamp_ || (*owned)->touched) return;
         Object& object = **owned;
         object.planStamp = planStamp_;
         components::Latch latch = object.latch;
-        components::resetLatch(object.data, drive, latch);
+        components::resetLatch(object.data, driveInput(object), latch);
         latch.sent = components::sameDrive(object.data, latch, object.latch);
         frame_.latches.push_back({&object, latch, true});
     };

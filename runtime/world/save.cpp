@@ -109,7 +109,7 @@ uint64_t World::assetOf(const Object& object) noexcept {
 uint32_t World::windowOf(const Object& object) noexcept {
     components::Latch latch = object.latch;
     const components::Records records =
-        components::makeRecords(object.data, domainOf(object), driveInput(), latch);
+        components::makeRecords(object.data, domainOf(object), driveInput(object), latch);
     uint32_t window = records.timing.window;
     for (const gpu::BurnMaterial& material : records.materials)
         window = std::max(window, material.windowMax);
@@ -223,6 +223,9 @@ void World::noteSaved(SavedWorld& to) {
             std::copy_n(entry->halfSize, 3, saved.halfSize);
         }
     to.latchedBlockers.assign(remote_.blockers.begin(), remote_.blockers.end());
+    to.windZones.clear();
+    for (uint32_t i = 0; i < windPool_.slotCount(); ++i)
+        if (const components::WindZone* zone = windPool_.at(i)) to.windZones.push_back({i, *zone});
     to.fires.clear();
     for (uint32_t i = 0; i < fires_.slotCount(); ++i)
         if (const auto* fire = fires_.at(i)) {
@@ -389,6 +392,7 @@ void World::checkSaved(const SavedWorld& saved) {
                    saved.flags, kWorldFlags);
     checkCount(saved.objects.size(), objects_.live(), "burnable meshes");
     checkCount(saved.blockers.size(), blockers_.live(), "blockers");
+    checkCount(saved.windZones.size(), windPool_.live(), "wind zones");
     checkCount(saved.fires.size(), fires_.live(), "volumetric fires");
     checkCount(saved.emitters.size(), emitters_.live(), "fire emitters");
     checkCount(saved.fields.size(), fields_.live(), "particle fields");
@@ -456,6 +460,11 @@ void World::checkSaved(const SavedWorld& saved) {
     if (saved.latchedBlockers.size() > gpu::kMaxBlockers)
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu latched blockers; the limit is %u.",
                    saved.latchedBlockers.size(), gpu::kMaxBlockers);
+    for (const SavedWindZone& zone : saved.windZones)
+        if (zone.slot >= windPool_.slotCount() || !windPool_.at(zone.slot) ||
+            !components::plausible(zone.zone))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has wind zone %u, which is not here or is absurd.", zone.slot + 1);
     const auto checkTouches = [&](const std::array<SavedTouch, 8>& touches) {
         for (const SavedTouch& touch : touches)
             if (touch.object1 != 0) checkTexel(touch.object1 - 1, 0, "a flame");
@@ -537,12 +546,24 @@ void World::checkSaved(const SavedWorld& saved) {
     }
 }
 
+namespace {
+
+std::pmr::vector<components::WindZone> zonesOf(const SavedWorld& saved) {
+    std::pmr::vector<components::WindZone> zones(saved.windZones.get_allocator());
+    for (const SavedWindZone& one : saved.windZones) zones.push_back(one.zone);
+    components::sortWindZones(zones);
+    return zones;
+}
+
+}  // namespace
+
 SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
                               components::Latch& latch) {
-    components::DriveInput drive = driveInput();
-    drive.wind = fire::windUnits(saved.wind);
     const Object& object = **objects_.at(from.slot);
     const mesh::BurnDomain& domain = domainOf(object);
+    components::DriveInput drive = driveInput(object);
+    drive.wind = components::windIn(zonesOf(saved), fire::windUnits(saved.wind),
+                                    windPlaceOf(from.pose, domain));
     components::BurnableMesh posed = object.data;
     posed.pose = from.pose;
     components::resetLatch(posed, drive, latch);
@@ -612,6 +633,8 @@ void World::applySaved(const SavedWorld& saved,
     droppedSteps_ = saved.droppedSteps;
     order_ = saved.order;
     std::copy_n(saved.wind, 3, wind_);
+    for (const SavedWindZone& zone : saved.windZones) *windPool_.at(zone.slot) = zone.zone;
+    listWindZones();
     remote_.flags = saved.flags & kWaysOfFire;
     remote_.objectFlags = saved.flags & ~kWaysOfFire;
     remote_.warms = saved.warms;
@@ -704,6 +727,8 @@ void World::applySaved(const SavedWorld& saved,
 void World::applyObject(const SavedObject& from, const components::Latch& latch,
                         Object& object) noexcept {
     object.data.pose = from.pose;
+    object.zoneWind = zoneWindOf(object);
+    backend_.setObjectWind(object.slot, object.zoneWind);
     sendPose(object);
     object.latch = latch;
     object.firstEvent = from.firstEvent;
@@ -735,6 +760,7 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
             components::placeRemote(object.data.pose, domain, object.remote);
             components::fillRemote(object.data, domain, object.governance, object.remote);
             if (object.texels == 0) object.remote.flags &= ~gpu::kRemoteLive;
+            object.remote.high.w = int(object.zoneWind);
         }
         object.reach = components::remoteReach(object.data, domain,
                                                meshes_.at(object.data.meshSlot)->texelsOf);

@@ -60,6 +60,11 @@ struct SavedBlocker {
     float halfSize[3] = {};
 };
 
+struct SavedWindZone {
+    uint32_t slot = 0;
+    components::WindZone zone;
+};
+
 struct SavedTag {
     uint32_t object = 0, texel = 0, tag = 0;
 };
@@ -91,6 +96,7 @@ struct SavedWorld {
           pairs(memory),
           blockers(memory),
           latchedBlockers(memory),
+          windZones(memory),
           fires(memory),
           emitters(memory),
           fields(memory) {}
@@ -112,6 +118,7 @@ struct SavedWorld {
     std::pmr::vector<SavedPair> pairs;
     std::pmr::vector<SavedBlocker> blockers;
     std::pmr::vector<gpu::Blocker> latchedBlockers;
+    std::pmr::vector<SavedWindZone> windZones;
     std::pmr::vector<SavedFire> fires;
     std::pmr::vector<SavedEmitter> emitters;
     std::pmr::vector<SavedField> fields;
@@ -161,7 +168,7 @@ struct Save {  // on its way, and the last one
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 3;
+constexpr uint32_t kSaveVersion = 4;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
 

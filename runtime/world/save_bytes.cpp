@@ -64,6 +64,8 @@ template <typename S, Is<SavedBlocker> T>
 void put(S& s, T& value);
 template <typename S, Is<gpu::Blocker> T>
 void put(S& s, T& value);
+template <typename S, Is<SavedWindZone> T>
+void put(S& s, T& value);
 template <typename S, Is<SavedFire> T>
 void put(S& s, T& value);
 template <typename S, Is<Story> T>
@@ -172,6 +174,11 @@ template <typename S, Is<gpu::Blocker> T>
 void put(S& s, T& b) {
     putWords(s, b);
 }
+template <typename S, Is<SavedWindZone> T>
+void put(S& s, T& z) {
+    all(s, z.slot, z.zone.shape, z.zone.flow, z.zone.blend, z.zone.priority, z.zone.middle,
+        z.zone.axis, z.zone.size, z.zone.speed, z.zone.fades);
+}
 template <typename S, Is<SavedFire> T>
 void put(S& s, T& f) {
     all(s, f.slot, f.flags, f.position, f.power, f.touches);
@@ -272,6 +279,7 @@ void put(S& s, T& w) {
     list(s, w.pairs, "pairs that touch", 12);
     list(s, w.blockers, "blockers", 64);
     list(s, w.latchedBlockers, "latched blockers", 64);
+    list(s, w.windZones, "wind zones", 108);
     list(s, w.fires, "volumetric fires", 24);
     list(s, w.emitters, "fire emitters", 36);
     list(s, w.fields, "particle fields", 53);

@@ -114,10 +114,10 @@ void World::planSteps(const ClockAdvance& time) {
     ++planStamp_;
     const bool awake =
         !idle_ || !frame_.due.empty() || (switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;
-    const components::DriveInput drive = driveInput();
     for (Object* object : touched_) {
         // Where fire goes from object to object, many wait for it under a wind that they know.
-        if (remoteOn() && components::atRest(object->data, domainOf(*object), drive, object->latch))
+        if (remoteOn() &&
+            components::atRest(object->data, domainOf(*object), driveInput(*object), object->latch))
             continue;
         frame_.latches.push_back({object, object->latch, false});
         object->planStamp = planStamp_;

@@ -40,19 +40,22 @@ components::SurroundingAir World::listSources() {
         source.exact = true;
         sources_.push_back(source);
     }
-    const components::EmitterAir now = emitterAir(0);
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
         const components::FireEmitter* emitter = emitters_.at(i);
         if (!emitter || emitter->births.filled == 0 || emitter->def.shape == FW_EMITTER_MESH)
             continue;
-        add(components::emitterLight(*emitter, now, 0x40000000u | i, lastFrame_));
+        add(components::emitterLight(*emitter, emitterAir(*emitter, 0), 0x40000000u | i,
+                                     lastFrame_));
     }
     return air;
 }
 
 components::Surroundings World::surroundingsAt(const components::SurroundingAir& air,
                                                components::vec3 point) const noexcept {
-    components::Surroundings at = components::surroundingsOf(sources_, air, point);
+    components::SurroundingAir here = air;
+    const float place[3] = {point.x, point.y, point.z};
+    here.wind = volume::vecOf(windAt(place).data());
+    components::Surroundings at = components::surroundingsOf(sources_, here, point);
     if (burning_.now().empty()) return at;
     const components::FireAnswer fires =
         components::askFires(burning_.now(), profiles_, air.walls, point);

@@ -95,6 +95,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       objects_("Burnable mesh", memory),
       queries_("Query", memory),
       blockers_("Blocker", memory),
+      windPool_("Wind zone", memory),
+      windZones_(memory),
       fires_("Volumetric fire", memory),
       fields_("Particle field", memory),
       fireProfiles_("Fire profile", memory),
@@ -162,7 +164,7 @@ void World::setWind(const float wind[3]) {
     checkValues(wind, 3, "wind", -120.0f, 120.0f);
     if (!std::equal(wind_, wind_ + 3, wind)) ++driveChanges_;
     std::copy_n(wind, 3, wind_);
-    sendFieldRules();
+    windTurns();
     noteMove(Deed::Kind::wind, 0, wind, 3);
 }
 
@@ -332,13 +334,15 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
             components::burns(object.data, domain.texels[i].materialFlags & 0xFF))
             ++object.texels;
 
-    const components::DriveInput drive = driveInput();
+    const components::DriveInput drive = driveInput(object);
     components::resetLatch(object.data, drive, object.latch);
     const components::Records records =
         components::makeRecords(object.data, domain, drive, object.latch);
     gpu::ObjectInit init;
     init.mesh = object.data.meshSlot;
+    object.zoneWind = zoneWindOf(object);
     init.record = components::makeObject(object.data, domain, records);
+    init.record.zoneWind = object.zoneWind;
     init.materials = records.materials;
     init.slowness = slowness;
     std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
@@ -520,6 +524,7 @@ void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
         object.remoteDue = true;
         remote_.due.push_back(object.slot);
     }
+    takeZoneWind(object);
     sendPose(object);
     notePose(Deed::Kind::pose, object.slot, transform);
 }

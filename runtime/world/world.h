@@ -8,6 +8,7 @@
 #include "components/particle_field.h"
 #include "components/remote.h"
 #include "components/surroundings.h"
+#include "components/wind_zone.h"
 #include "core/handle_pool.h"
 #include "core/log.h"
 #include "core/owned.h"
@@ -106,6 +107,7 @@ struct Object {
     uint64_t planStamp = 0;      // of the plan whose latches hold it
     bool remoteDue = false;      // pose or def changed since its latch: it is in remote_.due
     bool remoteSent = true;      // the backend has the latched record
+    uint32_t zoneWind = 0;       // that zones add where it is, packed
     // As of the last readback.
     gpu::ObjectCounters counters{};
     uint64_t countersFrame = 0;
@@ -295,6 +297,11 @@ class World {
     World& operator=(const World&) = delete;
 
     void setWind(const float wind[3]);
+    FwWindZoneId createWindZone(const FwWindZoneDef& def);
+    void setWindZone(FwWindZoneId id, const FwWindZoneDef& def);
+    void destroyWindZone(FwWindZoneId id);
+    void energyBook(FwEnergyBook& book) noexcept;
+    void windAtPoint(const float point[3], float wind[3]) const;
     void setFlags(uint32_t given);
     FwBlockerId addBlocker(const FwBlockerDef& def);
     void moveBlocker(FwBlockerId id, const float transform[16]);
@@ -499,7 +506,8 @@ class World {
     void planFires(float seconds) noexcept;
     void commitFires() noexcept;
     // emitters.cpp
-    [[nodiscard]] components::EmitterAir emitterAir(float ahead) const noexcept;
+    [[nodiscard]] components::EmitterAir emitterAir(const components::FireEmitter& emitter,
+                                                    float ahead) const noexcept;
     [[nodiscard]] bool showEmitters() const noexcept {  // in the planned frame
         return !emitterRecords_.empty() || !sparkSources_.empty();
     }
@@ -520,6 +528,7 @@ class World {
     void planFieldDraws(const Clock& now) noexcept;
     void commitFields(uint64_t end) noexcept;
     void takeFields(const gpu::Readback& readback) noexcept;
+    [[nodiscard]] field::FieldRules rulesOf(const components::ParticleField& field) const noexcept;
     void sendFieldRules() noexcept;
     // jets.cpp
     float sweepJet(const float start[3], const float way[3], float most, components::JetHit& hit,
@@ -563,7 +572,18 @@ class World {
     void touchByField(Field& field, uint32_t now);
     // latch.cpp
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
-    [[nodiscard]] components::DriveInput driveInput() const noexcept;
+    // wind.cpp
+    [[nodiscard]] fire::WindVector windAt(const components::WindPlace& place) const noexcept;
+    [[nodiscard]] std::array<float, 3> windAt(const float place[3]) const noexcept;  // m/s
+    [[nodiscard]] static components::WindPlace windPlaceOf(const components::Pose& pose,
+                                                           const mesh::BurnDomain& domain) noexcept;
+    [[nodiscard]] components::DriveInput driveInput(const Object& object) const noexcept;
+    [[nodiscard]] uint32_t zoneWindOf(const Object& object) const noexcept;
+    void listWindZones() noexcept;
+    void windTurns() noexcept;
+    void takeZoneWind(Object& object) noexcept;
+    static uint32_t zoneWord(const FwWindZoneDef& def) noexcept;
+    static FwWindZoneDef zoneDefOf(const Deed& deed) noexcept;
     // remote.cpp
     [[nodiscard]] bool remoteOn() const noexcept {
         return remote_.flags != 0 || remote_.governed || clock_.tick < remote_.fades;
@@ -679,6 +699,8 @@ class World {
     core::HandlePool<FwBurnableMeshId, core::Owned<Object>> objects_;
     core::HandlePool<FwQueryId, Query> queries_;
     core::HandlePool<FwBlockerId, BlockerEntry> blockers_;
+    core::HandlePool<FwWindZoneId, components::WindZone> windPool_;
+    std::pmr::vector<components::WindZone> windZones_;  // in the order in which they count
     core::HandlePool<FwVolumetricFireId, core::Owned<Fire>> fires_;
     core::HandlePool<FwParticleFieldId, core::Owned<Field>> fields_;
     core::HandlePool<FwFireProfileId, FireProfileEntry> fireProfiles_;

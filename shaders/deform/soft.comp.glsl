@@ -10,6 +10,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_SHOWN
 #define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
+#include "shared/wind.h"
 
 void main() {
     DeformItem item = deformItem();
@@ -19,7 +20,9 @@ void main() {
     uint softBase = deformObjects[item.object + 3u].x;
     uvec4 material0 = deformObjects[item.object + 4u], more0 = deformObjects[item.object + 5u];
     float ground = uintBitsToFloat(facts2.x), scale = uintBitsToFloat(facts2.z);
-    vec3 up = upHere(facts2), wind = toObject(facts2, push.wind.xyz) / scale;
+    vec3 up = upHere(facts2);
+    vec3 blows = push.wind.xyz + 0.001 * vec3(unpackWind(objectQuads[facts2.y * 10u + 9u].w));
+    vec3 wind = toObject(facts2, blows) / scale;
     vec4 height = heightHere(facts2);
     uint way = push.parity >> 1u, echoed = (way + kArmWays - 1u) % kArmWays;
 

@@ -17,6 +17,7 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "shared/book.h"
 #include "shared/look.h"
+#include "shared/wind.h"
 layout(std430, set = 0, binding = FW_BIND_LOOKS) readonly buffer LooksBuffer {
     MaterialLook looks[];
 };
@@ -91,9 +92,10 @@ void main() {
     float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u)));
     float time = view.ambientSky.w;
     vec3 up = view.up.xyz;
-    vec3 drift = view.wind.xyz - up * dot(view.wind.xyz, up);
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
         BurnTile tile = burnTiles[i];
+        vec3 wind = view.wind.xyz + 0.001 * vec3(unpackWind(objects[tile.object].zoneWind));
+        vec3 drift = wind - up * dot(wind, up);
         uint seed = mixBits(mixBits(tile.object * 7919u + view.seed) ^ tile.tile);
         // Cells are met at random distances, or their borders would show in the heights.
         vec3 jitter = vec3(unit(seed), unit(seed + 1u), unit(seed + 2u)) - 0.5;

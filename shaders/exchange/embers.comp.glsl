@@ -60,7 +60,9 @@ uint nearestLane(uint object, uint corner, ivec3 at, uint axis) {
 void land(FireSource source) {
     ivec3 up = ivec3(push.upX, push.upY, push.upZ);
     uint axis = upAxis(up);
-    Ember ember = flyingEmber(source, source.ember, up, ivec3(push.windX, push.windY, push.windZ));
+    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) +
+                 unpackWind(uint(remoteObjects[source.object].high.w));
+    Ember ember = flyingEmber(source, source.ember, up, wind);
     int top;
     uint object = landsOn(ember.landing, axis, top);
     if (object == kNoneTexel) return;

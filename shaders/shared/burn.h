@@ -214,7 +214,7 @@ struct BurnObject {   // everything a pass needs to find an object's planes
     uint publishedBase;  // into published, as-published objects only
     uint heatBase;    // into heat; with kObjectHeat
     uint skinBase;    // into the skin texels; with kObjectSkinned
-    uint reserved2;
+    uint zoneWind;    // that wind zones add where it is (looks): wind.h
 };
 FW_SHARED_SIZE(BurnObject, 160)
 

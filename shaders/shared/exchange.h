@@ -8,6 +8,7 @@
 #ifndef FW_SHARED_EXCHANGE_H
 #define FW_SHARED_EXCHANGE_H
 #include "shared/heat.h"
+#include "shared/wind.h"
 
 FW_SHARED_BEGIN
 
@@ -45,7 +46,7 @@ struct RemoteObject {  // an object as others see it: latched at a step's start,
     ivec4 turn0;       // xyz: its rotation, Q12; w: low corner of its box in the world, mm
     ivec4 turn1;
     ivec4 turn2;
-    ivec4 high;        // xyz: the other corner; w: 0
+    ivec4 high;        // xyz: the other corner; w: what wind zones add there, see wind.h
     uvec4 power0;      // 1/16 W that a flaming texel gives, by material
     uvec4 power1;
     uint shift;

@@ -47,6 +47,16 @@ class BusyWorld {
         place(wall.transform, 1.0f, 0.3f, 0.25f, 0);
         put(wall.halfSize, 0.3f, 0.3f, 0.01f);
         ok(fwWorld_AddBlocker(world, &wall, &blocker));
+        FwWindZoneDef swirl = fwDefaultWindZoneDef();
+        swirl.shape = FW_WIND_SPHERE;
+        swirl.flow = FW_WIND_VORTEX;
+        put(swirl.axis, 0, 1, 0);
+        put(swirl.position, 1.4f, 0, 0.4f);
+        swirl.size[0] = 0.8f;
+        swirl.priority = 2;
+        ok(fwWorld_CreateWindZone(world, &swirl, &zones[0]));
+        const FwWindZoneDef fan = fanOf(0);
+        ok(fwWorld_CreateWindZone(world, &fan, &zones[1]));
     }
     BusyWorld(const BusyWorld&) = delete;
     BusyWorld& operator=(const BusyWorld&) = delete;
@@ -105,6 +115,7 @@ class BusyWorld {
     FwVolumetricFireId fire{};
     FwParticleFieldId field{};
     FwBlockerId blocker{};
+    FwWindZoneId zones[2] = {};
 
  private:
     // With a device an answer comes with a frame, be it of no time.
@@ -125,6 +136,17 @@ class BusyWorld {
         at[2] = -at[8];
         at[5] = at[15] = 1;
         at[12] = x, at[13] = y, at[14] = z;
+    }
+    static FwWindZoneDef fanOf(uint32_t frame) {
+        FwWindZoneDef fan = fwDefaultWindZoneDef();
+        fan.shape = FW_WIND_CONE;
+        fan.blend = FW_WIND_REPLACE;
+        fan.priority = -3;
+        put(fan.position, -0.4f, 0.1f, 0.2f);
+        put(fan.axis, 1, 0, 0.2f * std::sin(float(frame)));
+        put(fan.size, 2, 0.8f, 1);
+        fan.speed = 3 + float(frame % 4);
+        return fan;
     }
     void add(uint32_t i) {
         static const uint32_t kPresets[] = {FW_MATERIAL_PLYWOOD, FW_MATERIAL_PAPER,
@@ -172,6 +194,10 @@ class BusyWorld {
             float at[16];
             place(at, 0.9f + 0.01f * float(frame % 7), 0.1f, 0.5f, 0.1f * float(frame));
             ok(fwWorld_SetTransform(world, ids[7 % ids.size()], at));
+        }
+        if (frame % 45 == 13) {
+            const FwWindZoneDef fan = fanOf(frame);
+            ok(fwWorld_SetWindZone(world, zones[1], &fan));
         }
         if (frame == 100) ok(fwWorld_SetFlags(world, FW_WORLD_RADIATION | FW_WORLD_CONTACT));
         if (frame == 150)

@@ -27,6 +27,7 @@ int fwTestCallEverything(int* calls) {
     const FwFireColliderId collider = {0, 0};
     const FwParticleFieldId field = {0, 0};
     const FwPeerId peer = {0, 0};
+    const FwWindZoneId zone = {0, 0};
 
     RUNS(fwResultName(FW_OK));
     RUNS(fwGetVersion());
@@ -45,6 +46,11 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_AddBlocker(NULL, NULL, NULL));
     REFUSES(fwWorld_MoveBlocker(NULL, blocker, NULL));
     REFUSES(fwWorld_RemoveBlocker(NULL, blocker));
+    REFUSES(fwWorld_CreateWindZone(NULL, NULL, NULL));
+    REFUSES(fwWorld_SetWindZone(NULL, zone, NULL));
+    REFUSES(fwWorld_DestroyWindZone(NULL, zone));
+    REFUSES(fwWorld_GetWindAt(NULL, NULL, NULL));
+    REFUSES(fwWorld_GetEnergyBook(NULL, NULL));
     REFUSES(fwInitMaterialPreset(NULL, 0));
     RUNS(fwMaterialPresetName(0));
     REFUSES(fwWorld_CreateMaterial(NULL, NULL, NULL));

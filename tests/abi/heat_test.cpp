@@ -91,6 +91,12 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         EXPECT_EQ(FW_OK, fwWorld_GetObjectState(world_, object_, &made));
         return made;
     }
+    FwEnergyBook book() {
+        FwEnergyBook made{};
+        made.structSize = sizeof made;
+        EXPECT_EQ(FW_OK, fwWorld_GetEnergyBook(world_, &made)) << lastMessage(world_);
+        return made;
+    }
     FwWorldStats stats() {
         FwWorldStats made{};
         made.structSize = sizeof made;
@@ -163,6 +169,44 @@ TEST_P(AbiHeat, P12_TheBookOfEnergyIsExact) {
             } else {
                 EXPECT_EQ(now.texels, now.burning);
                 EXPECT_LT(0.0f, now.power);
+            }
+        }
+    }
+}
+
+// What an overlay shows adds up at every moment, and what it says is left is what the texels hold.
+TEST_P(AbiHeat, P12_TheBookOfTheWorldCloses) {
+    for (const uint32_t which : {uint32_t(FW_MATERIAL_PAPER), uint32_t(FW_MATERIAL_PINE)}) {
+        const bool pine = which == FW_MATERIAL_PINE;
+        make(preset(which), pine ? 20 : 2);
+        const FwEnergyBook whole = book();
+        EXPECT_EQ(1u, whole.objects);
+        EXPECT_LT(0u, whole.fuel);
+        EXPECT_EQ(whole.fuel, whole.unburnt);
+        EXPECT_EQ(0u, whole.radiated + whole.convected);
+        EXPECT_EQ(0u, whole.fuel % (texels().size() * 65535));
+        const uint64_t unit = whole.fuel / (texels().size() * 65535);
+        all(FW_IGNITE);
+        for (int part = 0; part < 4; ++part) {
+            run(part == 3 ? 90 : 0.25);
+            if (part == 1 && pine) all(FW_WET, 3);
+            uint64_t left = 0;
+            for (const auto& at : texels())
+                left += uint64_t(std::lround(65535 * double(point(at[0], at[2]).fuel)));
+            const FwEnergyBook now = book();
+            EXPECT_EQ(whole.fuel, now.fuel);
+            EXPECT_EQ(left * unit, now.unburnt);
+            EXPECT_EQ(now.fuel, now.unburnt + now.radiated + now.convected);
+            const uint64_t released = now.radiated + now.convected;
+            EXPECT_EQ(state().energy, double(released) / 1048576);
+            EXPECT_NEAR(0.33 * double(released), double(now.radiated), 1);
+            if (part == 3) {
+                EXPECT_EQ(0u, now.unburnt);
+                EXPECT_EQ(0.0f, now.power);
+            } else {
+                EXPECT_LT(0u, released);
+                EXPECT_LT(0.0f, now.power);
+                EXPECT_LT(0.0f, now.burningArea);
             }
         }
     }

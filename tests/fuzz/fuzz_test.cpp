@@ -421,6 +421,29 @@ class Fuzz {
         if (result == FW_OK) profiles_.known.push_back(id);
     }
 
+    void shapeWind() {
+        FwWindZoneDef def = fwDefaultWindZoneDef();
+        def.shape = random_.below(4);
+        def.flow = random_.below(4);
+        def.blend = random_.below(2);
+        for (float* vector : {def.position, def.axis, def.size})
+            for (int i = 0; i < 3; ++i) vector[i] = random_.number();
+        def.speed = random_.number();
+        garble(def);
+        def.structSize = sizeof def;
+        if (random_.once(2)) {
+            check(fwWorld_SetWindZone(world_, zones_.any(random_), &def));
+            return;
+        }
+        FwWindZoneId id{};
+        const FwResult result = fwWorld_CreateWindZone(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) zones_.known.push_back(id);
+        float wind[3] = {}, point[3] = {random_.number(), random_.number(), random_.number()};
+        const FwResult asked = fwWorld_GetWindAt(world_, point, wind);
+        check(asked);
+        for (const float value : wind) EXPECT_LE(std::abs(value), 120.1f) << asked;
+    }
     void shapeCollider() {
         FwFireColliderDef def = fwDefaultFireColliderDef();
         def.kind = random_.below(7);
@@ -526,7 +549,7 @@ class Fuzz {
         float values[16];
         for (float& value : values) value = random_.number();
         const FwBurnableMeshId object = objects_.any(random_);
-        switch (random_.below(32)) {
+        switch (random_.below(33)) {
             case 0: {
                 FwMaterialDef def = fwDefaultMaterialDef();
                 (void)fwInitMaterialPreset(&def, random_.below(16));
@@ -691,6 +714,10 @@ class Fuzz {
                 if (colliders_.known.size() < 6 || random_.once(8)) shapeCollider();
                 if (random_.once(3)) destroy(colliders_, fwWorld_RemoveFireCollider);
                 break;
+            case 31:
+                shapeWind();
+                if (random_.once(4)) destroy(zones_, fwWorld_DestroyWindZone);
+                break;
             case 30:
                 useField();
                 break;
@@ -735,6 +762,7 @@ class Fuzz {
     Ids<FwFlipbookId> books_;
     std::vector<unsigned char> saved_;  // the last one that was kept
     Ids<FwFireColliderId> colliders_;
+    Ids<FwWindZoneId> zones_;
     Ids<FwParticleFieldId> fields_;
     Ids<FwQueryId> queries_;
     std::vector<unsigned char> cooked_;

@@ -53,6 +53,7 @@ typedef struct FwFireEmitterId { uint32_t index1, generation; } FwFireEmitterId;
 typedef struct FwFlipbookId { uint32_t index1, generation; } FwFlipbookId;
 typedef struct FwParticleFieldId { uint32_t index1, generation; } FwParticleFieldId;
 typedef struct FwPeerId { uint32_t index1, generation; } FwPeerId;
+typedef struct FwWindZoneId { uint32_t index1, generation; } FwWindZoneId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -102,7 +103,7 @@ typedef enum FwDefType {
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
-    FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23,
+    FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23, FW_DEF_WIND_ZONE = 24,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -243,6 +244,51 @@ static inline FwBlockerDef fwDefaultBlockerDef(void) {
 FW_API FwResult FW_CALL fwWorld_AddBlocker(FwWorld*, const FwBlockerDef* def, FwBlockerId* id);
 FW_API FwResult FW_CALL fwWorld_MoveBlocker(FwWorld*, FwBlockerId id, const float transform[16]); /* [world] */
 FW_API FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld*, FwBlockerId id); /* [world] */
+
+typedef enum FwWindShape { /* where a wind zone is; what lies in it is measured from its middle to its edge */
+    FW_WIND_BOX = 0,           /* along the world's axes: size is half of its sides */
+    FW_WIND_SPHERE = 1,        /* size[0]: radius */
+    FW_WIND_CONE = 2,          /* from `position` along `axis`; size[0]: length, size[1]: radius at its end. A fan */
+    FW_WIND_SHAPE_COUNT = 3, FW_WIND_SHAPE_FORCE32 = 0x7fffffff
+} FwWindShape;
+typedef enum FwWindFlow {
+    FW_WIND_ALONG = 0,         /* along `axis` */
+    FW_WIND_RADIAL = 1,        /* away from `position`; a negative speed: towards it */
+    FW_WIND_VORTEX = 2,        /* around `axis` through `position`, right-handed */
+    FW_WIND_FLOW_COUNT = 3, FW_WIND_FLOW_FORCE32 = 0x7fffffff
+} FwWindFlow;
+typedef enum FwWindBlend {
+    FW_WIND_ADD = 0,           /* to what blows there */
+    FW_WIND_REPLACE = 1,       /* instead of it, as far as the zone has not faded; speed 0: shelter */
+    FW_WIND_BLEND_COUNT = 2, FW_WIND_BLEND_FORCE32 = 0x7fffffff
+} FwWindBlend;
+/* Wind of a place's own. An object's fire, its flames and the embers from it have the wind at the middle of its box
+ * (of its mesh at rest: split what is larger than a zone), volumetric fires, emitters and fields that at their position. */
+typedef struct FwWindZoneDef {
+    uint32_t structSize, flags; /* flags: 0 */
+    uint32_t shape;             /* FwWindShape, default FW_WIND_BOX */
+    uint32_t flow;              /* FwWindFlow, default FW_WIND_ALONG */
+    uint32_t blend;             /* FwWindBlend, default FW_WIND_ADD */
+    int32_t priority;           /* [-1000, 1000], default 0: higher ones count after lower ones, of the same those with
+                                   the higher id */
+    float position[3];          /* m, world, within +-1e6 */
+    float axis[3];              /* direction, default 1,0,0; of any length */
+    float size[3];              /* m, [0.01, 1000], default 1: see FwWindShape */
+    float speed;                /* m/s, [-120, 120], default 5 */
+    float falloff;              /* [0, 1], default 0.5: the part of the way from its middle to its edge on which it
+                                   fades; 0: as strong up to its edge */
+    uint32_t reserved;          /* 0 */
+} FwWindZoneDef;
+static inline FwWindZoneDef fwDefaultWindZoneDef(void) {
+    FwWindZoneDef d; fwInitDef(FW_DEF_WIND_ZONE, &d, (uint32_t)sizeof d); return d;
+}
+/* At most 64 at a time. Counts from the next step on; filtered like the world's wind. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateWindZone(FwWorld*, const FwWindZoneDef* def, FwWindZoneId* id);
+/* All of it anew: to turn a fan, or as it starts and stops. [world] */
+FW_API FwResult FW_CALL fwWorld_SetWindZone(FwWorld*, FwWindZoneId id, const FwWindZoneDef* def);
+FW_API FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld*, FwWindZoneId id); /* [world] */
+/* m/s, at a point (m, world, within +-1e6), as all that is there has it. [world] */
+FW_API FwResult FW_CALL fwWorld_GetWindAt(FwWorld*, const float point[3], float wind[3]);
 
 /* ---- materials ------------------------------------------------------------------------------------ */
 
@@ -1046,7 +1092,7 @@ FW_API FwResult FW_CALL fwWorld_FetchSave(FwWorld*, void* buffer, uint64_t* size
 /* The world as it was saved, on whatever backend: from here on both burn bit by bit alike, whatever frame rate each of
  * them has, if they hear the same calls. The world holds what the saved one did, made in the same order, so that the
  * ids' index1 are the same: burnable meshes of the same meshes and materials (by a hash of them and of their defs),
- * blockers, fires, emitters and fields. Its FwWorldDef has the same paceFactor, up, seed and limits of spread. All in it
+ * blockers, wind zones, fires, emitters and fields. Its FwWorldDef has the same paceFactor, up, seed and limits of spread. All in it
  * goes to where and what it was, also what has never burnt; ids stay valid. Unpolled events are dropped, queries that
  * wait are asked anew. FW_ERROR_BAD_DATA, and nothing is changed: the bytes are damaged, cut, of another version, or of
  * another world; the message says of what, with both values. Time is that of the save; frame indices go on growing.
@@ -1062,7 +1108,7 @@ FW_API FwResult FW_CALL fwWorld_Load(FwWorld*, const void* bytes, uint64_t size)
  * twice, late and in any order. A packet that is damaged, cut, or of another session or version is refused with a message
  * and changes nothing; the checksum finds damage, not malice: encrypt where that is to be feared. Nothing here waits.
  *
- * Sent by itself is: fwWorld_Ignite, SetWind, SetFlags, SetTransform, MoveBlocker; of volumetric fires with FW_FIRE_IGNITES
+ * Sent by itself is: fwWorld_Ignite, SetWind, SetWindZone, SetFlags, SetTransform, MoveBlocker; of volumetric fires with FW_FIRE_IGNITES
  * and jets with FW_EMITTER_IGNITES where they are and their power, of fields with FW_FIELD_WETS where they are and their
  * amount. On a client these calls are refused, as fwWorld_Load is. What is made and destroyed, and all else that changes what
  * burns (colliders, points of fires, painted fields, vertices), each host does by itself: told by fwNet_Tell, at the same step. */
@@ -1202,6 +1248,22 @@ typedef struct FwWorldStats {
                                       not counted. See FwWorldDef::maxRefinedTriangles */
 } FwWorldStats;
 FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [world] */
+
+/* Where the energy of all burnable meshes that the world holds is, to the joule: `fuel` is what they were made with,
+ * and always the sum of `unburnt`, `radiated` and `convected`. All in units of 2^-20 J, as the simulation counts, so
+ * that the sum is exact. As of `frameIndex`, like FwObjectState. Objects with FW_BURNABLE_LITE keep no book. */
+typedef struct FwEnergyBook {
+    uint32_t structSize;
+    uint32_t objects;          /* that keep a book */
+    uint64_t frameIndex;
+    uint64_t fuel;             /* in them when they were created */
+    uint64_t unburnt;          /* of it, that is left */
+    uint64_t radiated;         /* 33 % of what flames gave off: what may heat others */
+    uint64_t convected;        /* the rest, in hot gas */
+    float power;               /* W that they give off now, at pace 1 */
+    float burningArea;         /* m^2 that flames, of all objects */
+} FwEnergyBook;
+FW_API FwResult FW_CALL fwWorld_GetEnergyBook(FwWorld*, FwEnergyBook* book); /* [world] */
 
 /* What a frame may cost. While it costs more, detail falls in eight levels, and rises when there is room: how many
  * volumetric flames have rays of their own and with how many samples, the largest on the screen last, and how many

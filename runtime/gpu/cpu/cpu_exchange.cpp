@@ -266,9 +266,10 @@ void CpuBackend::State::embers(const ExchangePush& rules) noexcept {
         if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
         const CpuObject& from = *objects[slot];
         if (from.counters.burning == 0) continue;
+        const ivec3 blows = wind + unpackWind(uint32_t(from.remote.high.w));
         for (const FireSource& source : from.sources) {
             if (source.watts == 0 || source.ember == 0) continue;
-            const Ember ember = flyingEmber(source, source.ember, up, wind);
+            const Ember ember = flyingEmber(source, source.ember, up, blows);
             int top = kNoTop;
             const uint32_t target = landsOn(ember.landing, axis, top);
             if (target == kNoneTexel) continue;

@@ -28,7 +28,8 @@ bool deforms(const VkBackend::State& s, uint32_t slot, uint64_t now) noexcept {
     if (!object.live || object.shown.units == 0 || object.skinPlus1) return false;
     if (object.deformReset) return true;
     if (object.deform.flags & kDeformShell) {
-        const bool wind = s.wind[0] != 0 || s.wind[1] != 0 || s.wind[2] != 0;
+        const bool wind =
+            s.wind[0] != 0 || s.wind[1] != 0 || s.wind[2] != 0 || object.record.zoneWind != 0;
         const bool hidden = (object.record.flags & kObjectHidden) != 0;
         if (!hidden && (wind || now <= object.softUntil)) return true;
     }

@@ -300,6 +300,12 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
     s.recordsDirty = true;
 }
 
+void VkBackend::setObjectWind(uint32_t slot, uint32_t wind) {
+    State& s = *state_;
+    s.objects[slot].record.zoneWind = wind;
+    s.objects[slot].recordDirty = s.recordsDirty = true;
+}
+
 void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
                             std::span<const float> normals) noexcept {
     State& s = *state_;
