@@ -91,6 +91,7 @@ struct Board {
     void cards();
     void speeds();
     void numbers();
+    void energy();
     void plotMenu();
     void message(double time);
     void over();
@@ -217,7 +218,7 @@ void Board::purse() {
     list->AddCircle({r.x0 + dp(22), r.y0 + dp(17)}, dp(5), hex(0xB57E20), 0, dp(1.5f));
     put(fonts().heading, r.x0 + dp(38), r.y0 + dp(17), kInk, text("%d", state.coins));
     put(fonts().small, r.x0 + dp(14), r.y0 + dp(37), kDim, text("score %d", game::score(state)));
-    const village::Vec2 wind = metres(game::windOf(state, field.ground));
+    const village::Vec2 wind = metres(state.wind);
     const float speed = village::length(wind);
     const ImVec2 c{r.x1 - dp(86), r.midY()};
     list->AddCircle(c, dp(18), kBrass, 0, dp(1.2f));
@@ -290,6 +291,36 @@ void Board::numbers() {
         text("%d felled, %d s", state.felled, state.tick / game::kTicksPerSecond));
 }
 
+// Where every joule of the fuel is. The sum is taken here, of what is shown.
+void Board::energy() {
+    if (!player.books) return;
+    const FwEnergyBook& book = fires.book;
+    const Rect r{dp(12), dp(70), dp(262), dp(190)};
+    panel(r);
+    put(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(15), kInk, "ENERGY");
+    const auto apart = int64_t(book.fuel) - int64_t(book.unburnt + book.radiated + book.convected);
+    fwui::drawTextRight(list, fonts().small, r.x1 - dp(14), r.y0 + dp(15),
+                        apart == 0 ? kGreen : kRed,
+                        text("closes to %.6g J", std::ldexp(double(apart), -20)).c_str());
+    const struct {
+        const char* name;
+        uint64_t units;
+        ImU32 color;
+    } rows[] = {{"in fuel", book.unburnt, kGreen},
+                {"radiated", book.radiated, kOrange},
+                {"in hot gas", book.convected, kRed}};
+    float y = r.y0 + dp(38);
+    for (const auto& row : rows) {
+        put(fonts().small, r.x0 + dp(14), y, kDim, row.name);
+        fwui::drawTextRight(list, fonts().small, r.x1 - dp(14), y, kInk,
+                            text("%.3f MJ", 1e-6 * std::ldexp(double(row.units), -20)).c_str());
+        const double share = book.fuel ? double(row.units) / double(book.fuel) : 0;
+        bar(r.x0 + dp(14), r.x1 - dp(14), y + dp(12), dp(2), float(share), row.color);
+        y += dp(26);
+    }
+    put(fonts().small, r.x0 + dp(14), y, kDim, text("%u things keep a book", book.objects));
+}
+
 // Beside the selected tower: what it is, and what to do with it.
 void Board::plotMenu() {
     if (player.plot < 0) return;
@@ -360,6 +391,7 @@ void keys(const std::vector<int>& pressed, Board& board) {
         board.wishes.faster ^= key == 'F';
         board.wishes.rewind |= key == 'R';
         board.wishes.light ^= key == 'N';
+        player.books ^= key == 'E';
         constexpr int kEnter = 257;  // as GLFW numbers it
         if (key == kEnter) board.order(game::Order::Type::kCallWave);
         if (key == 'U' && player.plot >= 0) board.order(game::Order::Type::kUpgrade);
@@ -425,6 +457,7 @@ Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battle
     board.villageBar();
     board.purse();
     board.numbers();
+    board.energy();
     board.cards();
     board.speeds();
     board.plotMenu();

@@ -19,6 +19,7 @@ struct Player {
     int32_t plot = -1;                                // selected
     int32_t speed = 1;                                // 1, 2, 4
     bool paused = false;
+    bool books = false;    // the book of energy is open
     std::string said;      // the last thing the game told him
     double saidAt = -100;  // s of the stage's clock
 };
@@ -27,6 +28,7 @@ struct Player {
 struct FireNumbers {
     uint32_t burning = 0, caught = 0;  // things
     float megawatts = 0, squareMetres = 0;
+    FwEnergyBook book{};  // of the whole world
 };
 
 // What was pressed or clicked in this frame.

@@ -26,7 +26,7 @@ struct Choices {
     std::string light = "waves", ground = "parallax", backend = "vulkan";
     tower::ScriptedGame scripted;
     float waves = 0;
-    bool bot = false, antialias = false, report = false;
+    bool bot = false, antialias = false, report = false, energy = false;
 };
 
 constexpr const char* kLights[] = {"golden", "noon", "night"};
@@ -128,8 +128,10 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
     return all;
 }
 
-tower::FireNumbers countFires(const tower::FireVillage& fires) {
-    tower::FireNumbers numbers{fires.burning(), fires.caught(), 0, 0};
+tower::FireNumbers countFires(const tower::FireVillage& fires, FwWorld* world) {
+    tower::FireNumbers numbers{fires.burning(), fires.caught(), 0, 0, {}};
+    numbers.book.structSize = sizeof numbers.book;
+    tower::checkFire(world, fwWorld_GetEnergyBook(world, &numbers.book), "fwWorld_GetEnergyBook");
     for (const tower::Thing& thing : fires.things) {
         numbers.megawatts += 1e-6f * thing.state.power;
         numbers.squareMetres += thing.state.burningArea;
@@ -217,6 +219,7 @@ int play(const sample::Options& options, const Choices& choices) {
         tower::Rewind rewind(fire.world, siege);
         tower::Hud hud(host, stage);
         tower::Player player;
+        player.books = choices.energy;
         const std::vector<tower::PointLight> lamps = lampLights(field.scene);
         startUp.update(2);
         startUp.finish();
@@ -225,7 +228,8 @@ int play(const sample::Options& options, const Choices& choices) {
             std::printf(
                 "1 to 4 and a click: place a tower; a click on it: U upgrades, X sells\n"
                 "Space: pause; F: fast-forward; R: ten seconds back; Enter: call the wave\n"
-                "drag or arrow keys: pan; wheel: zoom; N: the time of day; Escape: leave\n");
+                "drag or arrow keys: pan; wheel: zoom; N: the time of day; E: energy; Escape: "
+                "leave\n");
         // For who drives the window from outside: what was done, a line each.
         auto report = [&](const std::string& what) {
             if (!choices.report) return;
@@ -258,7 +262,7 @@ int play(const sample::Options& options, const Choices& choices) {
 
             // The player, by hand or by plan.
             tower::Wishes wishes =
-                hud.show(frame, lens, field, siege.state(), countFires(fires), player);
+                hud.show(frame, lens, field, siege.state(), countFires(fires, fire.world), player);
             auto say = [&](const std::string& what) {
                 player.said = what;
                 player.saidAt = frame.time;
@@ -387,6 +391,7 @@ int main(int argc, char** argv) {
         parser.addFlag("--rewind", "of --bot --headless: goes ten seconds back once, and plays on",
                        choices.scripted.rewind);
         parser.addFlag("--report", "says what was done, a line each", choices.report);
+        parser.addFlag("--energy", "shows where every joule of the fuel is", choices.energy);
         parser.addFlag("--msaa", "four samples a pixel", choices.antialias);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.fps == 0) options.fps = options.headless ? 10.0 : 30.0;

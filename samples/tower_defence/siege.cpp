@@ -19,7 +19,10 @@ constexpr float kSprayRadius = 1.4f;    // m
 constexpr float kSprayWide = 1.2f;      // m, of its sheet
 constexpr float kSprayLong = 11.0f;     // m
 constexpr float kRoof = 2.6f;           // m above the ground: where water is aimed at
-constexpr float kEmberPower = 40;       // kW
+constexpr float kFanHeight = 2;         // m, of its middle
+constexpr float kFanReach = 2;     // of its range: what it blows on is blown on beyond the road
+constexpr float kFanWidth = 0.6f;  // radius of its wind at its end, of its length
+constexpr float kEmberPower = 40;  // kW
 constexpr float kEmberSeconds = 44 * kTickSeconds;
 
 glm::vec3 toGlm(Vec3 v) { return {v.x, v.y, v.z}; }
@@ -97,6 +100,9 @@ void Siege::makeEmitters() {
         std::copy_n(&place[0], 3, water.position);
         check(fwWorld_CreateParticleField(world_, &water, &sprays_[plot]),
               "fwWorld_CreateParticleField");
+
+        const FwWindZoneDef fan = windOfPlot(plot);
+        check(fwWorld_CreateWindZone(world_, &fan, &fans_[plot]), "fwWorld_CreateWindZone");
     }
 }
 
@@ -211,6 +217,32 @@ void Siege::aimSpray(size_t plot) {
           "fwWorld_MoveParticleField");
 }
 
+// A cone of wind that reaches a little beyond the road.
+FwWindZoneDef Siege::windOfPlot(size_t plot) const {
+    const game::Tower& tower = state_.towers[plot];
+    const Vec2 blows = metres(game::fanOf(state_, field_.ground, plot));
+    const glm::vec3 place = onGround(field_.ground.plots[plot], kFanHeight);
+    const float reach =
+        0.001f * float(game::kTowers[size_t(TowerKind::kWindFan)].range[size_t(tower.level)]);
+    FwWindZoneDef zone = fwDefaultWindZoneDef();
+    zone.shape = FW_WIND_CONE;
+    std::copy_n(&place[0], 3, zone.position);
+    zone.speed = village::length(blows);
+    if (zone.speed > 0) {
+        zone.axis[0] = blows.x;
+        zone.axis[2] = blows.y;
+    }
+    zone.size[0] = kFanReach * reach;
+    zone.size[1] = kFanWidth * zone.size[0];
+    zone.falloff = 0.6f;
+    return zone;
+}
+
+void Siege::turnFan(size_t plot) {
+    const FwWindZoneDef zone = windOfPlot(plot);
+    check(fwWorld_SetWindZone(world_, fans_[plot], &zone), "fwWorld_SetWindZone");
+}
+
 void Siege::aimTowers() {
     for (size_t plot = 0; plot < game::kPlots; ++plot) {
         const game::Tower& tower = state_.towers[plot];
@@ -226,6 +258,7 @@ void Siege::aimTowers() {
         aimJet(plot);
         flyEmber(plot);
         aimSpray(plot);
+        turnFan(plot);
     }
 }
 
@@ -238,8 +271,7 @@ void Siege::advance(int32_t ticks) {
     for (const game::Happening& happening : happened_) carryOut(happening);
     moveEnemies();
     aimTowers();
-    const game::Point blows = game::windOf(state_, field_.ground);
-    const Vec2 wind = metres(blows);
+    const Vec2 wind = metres(state_.wind);
     wind_.velocity = {wind.x, wind.y};
     wind_.blown += wind_.velocity * (float(ticks) * kTickSeconds);
     const float metresPerSecond[3] = {wind.x, 0, wind.y};

@@ -52,6 +52,8 @@ class Siege {
     void aimJet(size_t plot);
     void flyEmber(size_t plot);
     void aimSpray(size_t plot);
+    FwWindZoneDef windOfPlot(size_t plot) const;
+    void turnFan(size_t plot);
     void check(FwResult result, const char* what) const { checkFire(world_, result, what); }
 
     FwWorld* world_;
@@ -64,6 +66,7 @@ class Siege {
     // One of each for every plot, whatever stands there: a save wants a world of the same things.
     std::array<FwFireEmitterId, game::kPlots> jets_{}, embers_{};
     std::array<FwParticleFieldId, game::kPlots> sprays_{};
+    std::array<FwWindZoneId, game::kPlots> fans_{};
 };
 
 }  // namespace tower

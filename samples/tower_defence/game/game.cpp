@@ -340,14 +340,17 @@ Point nearestOfRoad(const Ground& ground, Point place) {
     });
 }
 
+Point fanOf(const State& state, const Ground& ground, size_t plot) {
+    const Tower& tower = state.towers[plot];
+    if (tower.kind != TowerKind::kWindFan) return {};
+    const Point from = ground.plots[plot], to = nearestOfRoad(ground, from);
+    return lengthened({to.x - from.x, to.z - from.z}, ofLevel(ruleOf(tower).strength, tower));
+}
+
 Point windOf(const State& state, const Ground& ground) {
     Point wind = state.wind;
     for (size_t i = 0; i < kPlots; ++i) {
-        const Tower& tower = state.towers[i];
-        if (tower.kind != TowerKind::kWindFan) continue;
-        const Point to = nearestOfRoad(ground, ground.plots[i]);
-        const Point blows = lengthened({to.x - ground.plots[i].x, to.z - ground.plots[i].z},
-                                       ofLevel(ruleOf(tower).strength, tower));
+        const Point blows = fanOf(state, ground, i);
         wind = {wind.x + blows.x, wind.z + blows.z};
     }
     return wind;

@@ -113,8 +113,10 @@ Point roadPoint(const Ground& ground, int32_t along,
 int32_t roadLength(const Ground& ground);  // mm
 Point placeOf(const Ground& ground, const Enemy& enemy);
 Point nearestOfRoad(const Ground& ground, Point place);
-// What blows now: the state's own wind and what the fans add. They turn the whole valley's: a wind
-// zone of its own each of them has not.
+// What a fan blows towards the road, mm/s; nothing where no fan stands.
+Point fanOf(const State& state, const Ground& ground, size_t plot);
+// What an ember meets on its way: the valley's wind and what all fans add. Fire meets a fan's where
+// it blows alone.
 Point windOf(const State& state, const Ground& ground);
 int32_t priceOf(const Tower& tower);   // coins of its next level; 0: there is none
 int32_t refundOf(const Tower& tower);  // coins for selling it
