@@ -9,13 +9,24 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
+#include <utility>
 
 #include "document/flame_curve.h"
 #include "document/world_parts.h"
+#include "flamewright/flamewright_debug.h"
 #include "import/content_hash.h"
 #include "import/float_picture.h"
 
 namespace fwedit {
+
+struct BurnShared {
+    std::map<std::pair<uint32_t, float>, FwMaterialId> materials;
+    std::map<const fwimport::DecodedImage*, FwImageId> images;
+    std::map<std::string, FwMeshId> meshes;  // by bake
+    std::map<std::string, FwFireProfileId> profiles;
+    FwFlipbookId books[FW_FLIPBOOK_PRESET_COUNT] = {};
+};
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,16 +121,7 @@ bool createMesh(FwWorld* world, const std::vector<char>& bake, FwMeshId& id) {
     return fwWorld_CreateMesh(world, &cooked, &id) == FW_OK;
 }
 
-// Materials and pictures that objects of one burn share.
-struct Shared {
-    std::map<std::pair<uint32_t, float>, FwMaterialId> materials;
-    std::map<const fwimport::DecodedImage*, FwImageId> images;
-    std::map<std::string, FwMeshId> meshes;  // by bake
-    std::map<std::string, FwFireProfileId> profiles;
-    FwFlipbookId books[FW_FLIPBOOK_PRESET_COUNT] = {};
-};
-
-FwMaterialId materialOf(Burn& burn, Shared& shared, uint32_t preset, float thickness) {
+FwMaterialId materialOf(Burn& burn, BurnShared& shared, uint32_t preset, float thickness) {
     if (preset == FW_MATERIAL_NONCOMBUSTIBLE) return {};
     FwMaterialId& id = shared.materials[{preset, thickness}];
     if (id.index1 != 0) return id;
@@ -130,7 +132,7 @@ FwMaterialId materialOf(Burn& burn, Shared& shared, uint32_t preset, float thick
     return id;
 }
 
-std::string addMesh(Burn& burn, Shared& shared, const Mesh& mesh, const PaintImages& images,
+std::string addMesh(Burn& burn, BurnShared& shared, const Mesh& mesh, const PaintImages& images,
                     const fs::path& folder, Assets& assets) {
     std::string error;
     BurnMesh made;
@@ -187,10 +189,22 @@ std::string addMesh(Burn& burn, Shared& shared, const Mesh& mesh, const PaintIma
     return "";
 }
 
-FwFireProfileId profileOf(Burn& burn, Shared& shared, const Flame& flame, const fs::path& folder) {
+// What is drawn by points is named by them.
+std::string shapeKeyOf(const Flame& flame) {
+    if (!hasCurve(flame)) return flame.profile;
+    std::string key = "#";
+    for (const Keys* keys : {&flame.outline, &flame.stops}) {
+        for (const Key& at : *keys)
+            key += std::to_string(at.time) + ":" + std::to_string(at.value) + " ";
+        key += "/";
+    }
+    return key;
+}
+
+FwFireProfileId profileOf(Burn& burn, BurnShared& shared, const Flame& flame,
+                          const fs::path& folder) {
     if (!hasShape(flame)) return {};
-    // What is drawn by points is of that flame alone.
-    const std::string key = hasCurve(flame) ? "#" + std::to_string(flame.id) : flame.profile;
+    const std::string key = shapeKeyOf(flame);
     FwFireProfileId& id = shared.profiles[key];
     if (id.index1 != 0) return id;
     FlameShape shape;
@@ -208,7 +222,7 @@ FwFireProfileId profileOf(Burn& burn, Shared& shared, const Flame& flame, const 
     return id;
 }
 
-FwFlipbookId bookOf(Burn& burn, Shared& shared, uint32_t preset) {
+FwFlipbookId bookOf(Burn& burn, BurnShared& shared, uint32_t preset) {
     FwFlipbookId& id = shared.books[preset];
     if (id.index1 != 0) return id;
     FwFlipbookDef def = fwDefaultFlipbookDef();
@@ -217,14 +231,14 @@ FwFlipbookId bookOf(Burn& burn, Shared& shared, uint32_t preset) {
     return id;
 }
 
-void giveBooks(Burn& burn, Shared& shared, FwFireEmitterDef& def) {
+void giveBooks(Burn& burn, BurnShared& shared, FwFireEmitterDef& def) {
     def.fireBooks[0] = bookOf(burn, shared, FW_FLIPBOOK_ROLL);
     def.fireBooks[1] = bookOf(burn, shared, FW_FLIPBOOK_PUFF);
     def.smokeBooks[0] = bookOf(burn, shared, FW_FLIPBOOK_SMOKE);
     def.sparkBook = bookOf(burn, shared, FW_FLIPBOOK_SPARK);
 }
 
-void addSource(Burn& burn, Shared& shared, const HeatSource& source) {
+void addSource(Burn& burn, BurnShared& shared, const HeatSource& source) {
     BurnPart part;
     part.id = source.id;
     FwResult result = FW_OK;
@@ -245,7 +259,7 @@ void addSource(Burn& burn, Shared& shared, const HeatSource& source) {
     burn.parts.push_back(std::move(part));
 }
 
-void addFlame(Burn& burn, Shared& shared, const Flame& flame, const fs::path& folder) {
+void addFlame(Burn& burn, BurnShared& shared, const Flame& flame, const fs::path& folder) {
     BurnPart part;
     part.id = flame.id;
     FwVolumetricFireDef def = fireDefOf(burn.scene, flame);
@@ -259,7 +273,7 @@ void addFlame(Burn& burn, Shared& shared, const Flame& flame, const fs::path& fo
     burn.parts.push_back(std::move(part));
 }
 
-void addEmitter(Burn& burn, Shared& shared, const Emitter& emitter) {
+void addEmitter(Burn& burn, BurnShared& shared, const Emitter& emitter) {
     BurnPart part;
     part.id = emitter.id;
     FwFireEmitterDef def = emitterDefOf(burn.scene, emitter);
@@ -278,17 +292,18 @@ void addEmitter(Burn& burn, Shared& shared, const Emitter& emitter) {
 }
 
 void addCollider(Burn& burn, const Collider& collider) {
-    FwFireColliderId id{};
+    BurnPart part;
+    part.id = collider.id;
     const FwFireColliderDef def = colliderDefOf(burn.scene, collider);
-    FwResult result = fwWorld_AddFireCollider(burn.world, &def, &id);
+    FwResult result = fwWorld_AddFireCollider(burn.world, &def, &part.collider);
     if (result >= 0 && collider.shields && collider.shape == ColliderBox) {
-        FwBlockerId blocker{};
         const FwBlockerDef blockerDef = blockerDefOf(burn.scene, collider);
-        result = fwWorld_AddBlocker(burn.world, &blockerDef, &blocker);
+        result = fwWorld_AddBlocker(burn.world, &blockerDef, &part.blocker);
     }
     if (result < 0)
         burn.report.push_back("\"" + collider.name +
                               "\" is left out: " + worldProblem(burn, result));
+    burn.parts.push_back(std::move(part));
 }
 
 // 0 while it does not work, else the factor of its keys.
@@ -374,8 +389,156 @@ void feedParts(Burn& burn, double time) {
     }
 }
 
+// Of a scene what a burn is made for, and cannot follow.
+Scene fixedPartOf(const Scene& scene) {
+    Scene part;
+    part.settings = scene.settings;
+    const Settings usual;
+    part.settings.duration = usual.duration;
+    part.settings.framesPerSecond = usual.framesPerSecond;
+    part.settings.wind = usual.wind;
+    part.settings.daylight = usual.daylight;
+    part.settings.light = usual.light;
+    part.settings.sunDirection = usual.sunDirection;
+    part.settings.exposure = usual.exposure;
+    part.meshes = scene.meshes;
+    for (Mesh& mesh : part.meshes) {
+        mesh.name.clear();
+        mesh.hidden = mesh.locked = false;
+        mesh.position = mesh.rotation = {};
+        mesh.scale = {1, 1, 1};
+    }
+    part.layers = scene.layers;
+    for (PaintLayer& layer : part.layers) {
+        layer.name.clear();
+        layer.image.clear();  // a file's name, given when it is saved
+        layer.locked = false;
+    }
+    return part;
+}
+
+template <typename T>
+T unnamed(T object) {
+    object.name.clear();
+    object.hidden = object.locked = false;
+    return object;
+}
+
+// A match that has been struck is not struck elsewhere.
+bool litOtherwise(const Burn& burn, const Scene& scene) {
+    const auto struck = [&](const HeatSource& source) {
+        return source.shape == SourceMatch && static_cast<double>(source.start) < burn.time;
+    };
+    const auto stands = [&](const HeatSource& source, const Scene& in, const Scene& other) {
+        const HeatSource* same = findIn(other.sources, source.id);
+        return same && unnamed(*same) == unnamed(source) &&
+               worldPosition(in, source.id) == worldPosition(other, source.id);
+    };
+    for (const HeatSource& source : burn.scene.sources)
+        if (struck(source) && !stands(source, burn.scene, scene)) return true;
+    for (const HeatSource& source : scene.sources)
+        if (struck(source) && !stands(source, scene, burn.scene)) return true;
+    return false;
+}
+
+// ---- what is made anew when more than this differs
+
+template <typename T>
+T placeless(T object) {
+    object = unnamed(std::move(object));
+    object.position = {};
+    object.sticksTo = 0;
+    return object;
+}
+template <typename T>
+T timeless(T object) {
+    object.start = object.duration = 0;
+    return object;
+}
+HeatSource steered(const HeatSource& source) {
+    HeatSource rest = timeless(placeless(source));
+    // A jet has room for as much as it was made for.
+    if (source.shape == SourceFlamethrower) {
+        rest.direction = {};
+        return rest;
+    }
+    rest.output = 0;
+    rest.keys.clear();
+    return rest;
+}
+Flame steered(const Flame& flame) {
+    Flame rest = timeless(placeless(flame));
+    rest.power = 0;
+    rest.keys.clear();
+    return rest;
+}
+Emitter steered(const Emitter& emitter) {
+    Emitter rest = timeless(unnamed(emitter));
+    rest.position = {};
+    return rest;  // what it sticks to is what it shows the fire of
+}
+Collider steered(const Collider& collider) { return unnamed(collider); }
+
+void hide(const Burn& burn, const BurnPart& part, bool hidden) {
+    for (const FwVolumetricFireId fire : part.fires)
+        fwWorld_SetVolumetricFireHidden(burn.world, fire, hidden ? 1 : 0);
+    if (part.emitter.index1 != 0)
+        fwWorld_SetFireEmitterHidden(burn.world, part.emitter, hidden ? 1 : 0);
+}
+
+void steer(const Burn& burn, BurnPart& part, const HeatSource& source) {
+    part.lastFactor = -1;
+    hide(burn, part, source.hidden);
+    if (part.emitter.index1 != 0) {
+        const FwFireEmitterDef def = jetDefOf(burn.scene, source);
+        fwWorld_MoveFireEmitter(burn.world, part.emitter, def.position, def.direction);
+        return;
+    }
+    const std::vector<FwVolumetricFireDef> defs = sourceFiresOf(burn.scene, source);
+    for (size_t i = 0; i < std::min(defs.size(), part.fires.size()); ++i)
+        fwWorld_MoveVolumetricFire(burn.world, part.fires[i], defs[i].position);
+}
+void steer(const Burn& burn, BurnPart& part, const Flame& flame) {
+    part.lastFactor = -1;
+    hide(burn, part, flame.hidden);
+    const FwVolumetricFireDef def = fireDefOf(burn.scene, flame);
+    for (const FwVolumetricFireId fire : part.fires)
+        fwWorld_MoveVolumetricFire(burn.world, fire, def.position);
+}
+void steer(const Burn& burn, BurnPart& part, const Emitter& emitter) {
+    part.lastFactor = -1;
+    hide(burn, part, emitter.hidden);
+    if (part.emitter.index1 == 0) return;
+    const FwFireEmitterDef def = emitterDefOf(burn.scene, emitter);
+    fwWorld_MoveFireEmitter(burn.world, part.emitter, def.position, def.direction);
+}
+void steer(const Burn& burn, BurnPart& part, const Collider& collider) {
+    const FwFireColliderDef def = colliderDefOf(burn.scene, collider);
+    if (part.collider.index1 != 0) fwWorld_SetFireCollider(burn.world, part.collider, &def);
+    const FwBlockerDef blocker = blockerDefOf(burn.scene, collider);
+    if (part.blocker.index1 != 0) fwWorld_MoveBlocker(burn.world, part.blocker, blocker.transform);
+}
+
+void removePart(const Burn& burn, const BurnPart& part) {
+    for (const FwVolumetricFireId fire : part.fires)
+        fwWorld_DestroyVolumetricFire(burn.world, fire);
+    if (part.emitter.index1 != 0) fwWorld_DestroyFireEmitter(burn.world, part.emitter);
+    if (part.collider.index1 != 0) fwWorld_RemoveFireCollider(burn.world, part.collider);
+    if (part.blocker.index1 != 0) fwWorld_RemoveBlocker(burn.world, part.blocker);
+}
+
+// The shape of a flame that is gone, unless another one has it.
+void dropShape(const Burn& burn, BurnShared& shared, const Flame* flame) {
+    if (!flame || !hasShape(*flame)) return;
+    const auto shape = shared.profiles.find(shapeKeyOf(*flame));
+    if (shape != shared.profiles.end() &&
+        fwWorld_DestroyFireProfile(burn.world, shape->second) == FW_OK)
+        shared.profiles.erase(shape);
+}
+
 }  // namespace
 
+Burn::Burn() = default;
 Burn::~Burn() { fwDestroyWorld(world); }
 
 std::shared_ptr<const ImportedModel> modelOf(const Mesh& mesh, const fs::path& folder,
@@ -465,7 +628,8 @@ std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const P
         std::string ignored;
         return paintSurfaceOf(context, mesh, folder, assets, ignored);
     };
-    Shared shared;
+    burn->shared = std::make_unique<BurnShared>();
+    BurnShared& shared = *burn->shared;
     for (const Mesh& mesh : scene.meshes) {
         const std::string problem = addMesh(*burn, shared, mesh, images, folder, assets);
         if (!problem.empty())
@@ -497,6 +661,107 @@ bool feedBurn(Burn& burn, float deltaTime, std::string& error) {
     }
     burn.time = to;
     return true;
+}
+
+bool reviseBurn(Burn& burn, const Scene& scene, const fs::path& folder) {
+    if (!(fixedPartOf(burn.scene) == fixedPartOf(scene)) || litOtherwise(burn, scene)) return false;
+    const Scene before = std::exchange(burn.scene, scene);
+    for (const BurnMesh& mesh : burn.meshes) {
+        const Mesh& object = *findIn(scene.meshes, mesh.id);
+        const std::array<float, 16> pose = transformOf(object);
+        fwWorld_SetTransform(burn.world, mesh.object, pose.data());
+        fwWorld_SetHidden(burn.world, mesh.object, object.hidden ? 1 : 0);
+    }
+    if (scene.settings.wind != before.settings.wind || scene.winds.empty())
+        fwWorld_SetWind(burn.world, scene.settings.wind.data());
+    std::vector<BurnPart> old = std::exchange(burn.parts, {});
+    // Keeps what only moves, is hidden or gives more or less; makes the rest anew in its place.
+    const auto follow = [&](const auto& objects, const auto& formerly, auto&& add) {
+        for (const auto& object : objects) {
+            const auto part = std::find_if(old.begin(), old.end(),
+                                           [&](const BurnPart& at) { return at.id == object.id; });
+            const auto* former = findIn(formerly, object.id);
+            if (part != old.end() && former && steered(*former) == steered(object)) {
+                steer(burn, *part, object);
+                burn.parts.push_back(std::move(*part));
+            } else {
+                if (part != old.end()) removePart(burn, *part);
+                add(object);
+            }
+            if (part != old.end()) old.erase(part);
+        }
+    };
+    BurnShared& shared = *burn.shared;
+    follow(scene.sources, before.sources,
+           [&](const HeatSource& source) { addSource(burn, shared, source); });
+    follow(scene.flames, before.flames, [&](const Flame& flame) {
+        dropShape(burn, shared, findIn(before.flames, flame.id));
+        addFlame(burn, shared, flame, folder);
+    });
+    follow(scene.emitters, before.emitters,
+           [&](const Emitter& emitter) { addEmitter(burn, shared, emitter); });
+    follow(scene.colliders, before.colliders,
+           [&](const Collider& collider) { addCollider(burn, collider); });
+    for (const BurnPart& gone : old) {
+        removePart(burn, gone);
+        dropShape(burn, shared, findIn(before.flames, gone.id));
+    }
+    return true;
+}
+
+Backdrop backdropOf(const Burn& burn) {
+    Backdrop made;
+    glm::vec3 low(-0.5f, 0, -0.5f), high(0.5f, 1, 0.5f);
+    for (const BurnMesh& mesh : burn.meshes) {
+        const Mesh* object = findIn(burn.scene.meshes, mesh.id);
+        if (!object || !mesh.model) continue;
+        const std::array<float, 16> values = transformOf(*object);
+        glm::mat4 pose;
+        std::memcpy(&pose[0][0], values.data(), sizeof pose);
+        for (int corner = 0; corner < 8; ++corner) {
+            glm::vec3 p;
+            for (int c = 0; c < 3; ++c)
+                p[c] = (corner >> c & 1) ? mesh.model->high[static_cast<size_t>(c)]
+                                         : mesh.model->low[static_cast<size_t>(c)];
+            p = glm::vec3(pose * glm::vec4(p, 1));
+            low = made.any ? glm::min(low, p) : p;
+            high = made.any ? glm::max(high, p) : p;
+            made.any = true;
+        }
+        if (object->hidden) continue;
+        const auto first = static_cast<uint32_t>(made.positions.size() / 3);
+        for (size_t i = 0; i + 2 < mesh.model->positions.size(); i += 3) {
+            const glm::vec4 at(mesh.model->positions[i], mesh.model->positions[i + 1],
+                               mesh.model->positions[i + 2], 1);
+            const glm::vec3 p(pose * at);
+            made.positions.insert(made.positions.end(), {p.x, p.y, p.z});
+        }
+        for (const uint32_t index : mesh.model->indices) made.indices.push_back(first + index);
+    }
+    const glm::vec3 size = high - low;
+    made.size = std::max({size.x, size.y, size.z, 0.05f});
+    made.middle = {0.5f * (low.x + high.x), std::min(low.y, burn.scene.settings.ground),
+                   0.5f * (low.z + high.z)};
+    return made;
+}
+
+void requestHashes(const Burn& burn) {
+    for (const BurnMesh& mesh : burn.meshes) fwDebug_RequestBurnMap(burn.world, mesh.object);
+}
+
+FwResult fetchHashes(const Burn& burn, std::vector<std::string>& lines) {
+    lines.clear();
+    for (const BurnMesh& mesh : burn.meshes) {
+        uint64_t count = 0, hash = 0, tick = 0;
+        const FwResult result =
+            fwDebug_FetchBurnMap(burn.world, mesh.object, nullptr, 0, &count, &hash, &tick);
+        if (result != FW_OK) return result;
+        char numbers[64];
+        std::snprintf(numbers, sizeof numbers, ": %016llx at tick %llu",
+                      static_cast<unsigned long long>(hash), static_cast<unsigned long long>(tick));
+        lines.push_back(findIn(burn.scene.meshes, mesh.id)->name + numbers);
+    }
+    return FW_OK;
 }
 
 bool runBurn(Burn& burn, double time, std::string& error) {

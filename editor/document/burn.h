@@ -35,13 +35,15 @@ struct BurnMesh {
     std::shared_ptr<const fwimport::ImportedModel> model;
     std::string bake;  // key into Assets::bakes and surfaces
 };
-struct BurnPart {  // a source, flame or emitter at work
+struct BurnPart {  // a source, flame, emitter or collider at work
     ObjectId id = 0;
     std::vector<FwVolumetricFireId> fires;
     FwFireEmitterId emitter{};
-    FwParticleFieldId field{};
+    FwFireColliderId collider{};
+    FwBlockerId blocker{};
     float lastFactor = -1;
 };
+struct BurnShared;  // materials, pictures, shapes and books that objects of a burn have in common
 
 struct Burn {
     FwContext* context = nullptr;  // not ours
@@ -50,11 +52,12 @@ struct Burn {
     double time = 0;  // s, of the world
     std::vector<BurnMesh> meshes;
     std::vector<BurnPart> parts;
+    std::unique_ptr<BurnShared> shared;
     std::vector<std::string> report;  // what was left out, and why
     // Texels of a mesh's burn map, for questions about paint; set by createBurn.
     std::function<std::shared_ptr<const PaintSurface>(const Mesh&)> surfaceOf;
 
-    Burn() = default;
+    Burn();
     ~Burn();
     Burn(const Burn&) = delete;
     Burn& operator=(const Burn&) = delete;
@@ -68,9 +71,29 @@ std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const P
 // Call right before each fwWorld_Step or fwWorld_RecordOutside with its deltaTime: sources, keys
 // and wind of [time, time + deltaTime). Moves burn.time on.
 bool feedBurn(Burn& burn, float deltaTime, std::string& error);
+// Wishes the ignition maps' hashes; fetchHashes has them after the next step or some frames later,
+// if it be of no time: "Crate: 1b0c2f... at tick 640" for each mesh. FW_NOT_READY: not yet.
+void requestHashes(const Burn& burn);
+FwResult fetchHashes(const Burn& burn, std::vector<std::string>& lines);
 // Contexts that step themselves (own device, cpu): feeds and steps on to `time`, in frames of the
 // scene. False: `error`. Back in time: create it anew.
 bool runBurn(Burn& burn, double time, std::string& error);
+// Goes on with the scene changed, from this moment: wind, light and camera, what heats, wets and
+// blows, flames and their shapes, walls, where meshes stand. False, and nothing is changed, where
+// it takes a new burn: other meshes, materials or ways to spread, or a match that has lit already.
+// Paint is not looked at. `folder`: where relative paths begin.
+bool reviseBurn(Burn& burn, const Scene& scene, const std::filesystem::path& folder);
+// What a picture stands on: the middle of the floor, the largest side of what burns (m), and the
+// triangles of all that is seen and casts a shadow, in world space.
+struct Backdrop {
+    bool any = false;  // there are meshes; else the size is a guess
+    Vec3 middle{};
+    float size = 1;
+    std::vector<float> positions;
+    std::vector<uint32_t> indices;
+    bool operator==(const Backdrop&) const = default;
+};
+Backdrop backdropOf(const Burn& burn);
 // The scene's camera and light. `time`: s, for flicker.
 FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time);
 // Own device: RGBA8 sRGB, rows top first.

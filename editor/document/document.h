@@ -50,6 +50,9 @@ struct Document {
 Document newDocument();
 // Where the scene's relative paths begin now.
 std::filesystem::path baseFolder(const Document& document);
+[[nodiscard]] inline std::filesystem::path absoluteBase(const Document& document) {
+    return std::filesystem::absolute(baseFolder(document));
+}
 [[nodiscard]] inline bool unsaved(const Document& document) {
     return document.at != document.saved;
 }

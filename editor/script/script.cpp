@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "document/text.h"
+#include "import/float_picture.h"
 #include "script/output_lines.h"
 
 namespace fwedit {
@@ -170,11 +173,37 @@ bool expectField(ScriptHost& host, const Words& words, std::string& error) {
     return false;
 }
 
+// Two pictures of one size, whose values differ by no more than that in the mean, of [0, 1].
+bool expectAlike(ScriptHost& host, const Words& words, std::string& error) {
+    double limit = 0;
+    fwimport::FloatPicture a, b;
+    if (!need(words, 5, 5, "expect alike FILE FILE SHARE", error)) return false;
+    if (!numberOf(words[4], limit) || limit < 0) {
+        error = "\"" + words[4] + "\" is no share from 0 on";
+        return false;
+    }
+    if (!fwimport::readPicture(host.folder / words[2], a, error) ||
+        !fwimport::readPicture(host.folder / words[3], b, error))
+        return false;
+    if (a.width != b.width || a.height != b.height || a.channels != b.channels) {
+        error = "the pictures differ in size";
+        return false;
+    }
+    double sum = 0;
+    for (size_t i = 0; i < a.values.size(); ++i)
+        sum += std::fabs(double{a.values[i]} - double{b.values[i]});
+    const double mean = sum / static_cast<double>(std::max<size_t>(a.values.size(), 1));
+    host.say("the pictures differ by " + std::to_string(mean));
+    error = "they differ by " + std::to_string(mean) + ", more than " + words[4];
+    return mean <= limit;
+}
+
 bool expect(ScriptHost& host, const Words& words, std::string& error) {
     if (words.size() < 2) return need(words, 2, 2, "expect WHAT ...", error);
     const Document& document = host.document;
     if (words[1] == "count") return expectCount(host, words, error);
     if (words[1] == "lit") return expectLit(host, words, error);
+    if (words[1] == "alike") return expectAlike(host, words, error);
     if (words.size() == 3 && words[1] == "unsaved") {
         if ((words[2] == "yes") == unsaved(document)) return true;
         error = std::string("the scene is ") + (unsaved(document) ? "not saved" : "saved");
@@ -231,6 +260,54 @@ bool printReport(ScriptHost& host, std::string& error) {
     return true;
 }
 
+bool printHashes(ScriptHost& host, std::string& error) {
+    FwContext* cpu = host.cpu(error);
+    std::vector<std::string> lines;
+    if (!cpu || !burnToPlayhead(host, cpu, error)) return false;
+    requestHashes(*host.burn);
+    if (fwWorld_Step(host.burn->world, 0) < 0 || fetchHashes(*host.burn, lines) != FW_OK) {
+        error = "the burn maps cannot be read";
+        return false;
+    }
+    for (const std::string& line : lines) host.say(line);
+    return true;
+}
+
+// Until the sample shows the scene as it is here.
+bool awaitLink(ScriptHost& host, std::string& error) {
+    constexpr auto kPatience = std::chrono::seconds(60);
+    const auto begun = std::chrono::steady_clock::now();
+    while (!host.link.shown(host.document)) {
+        host.link.follow(host.document);
+        if (!host.link.connected()) {
+            error = host.link.problem().empty() ? "there is no link" : host.link.problem();
+            return false;
+        }
+        if (std::chrono::steady_clock::now() - begun > kPatience) {
+            error = "the sample does not answer";
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (!host.link.answer().empty()) host.say(host.link.answer());
+    return true;
+}
+
+bool link(ScriptHost& host, const Words& words, std::string& error) {
+    double port = 0;
+    if (!need(words, 2, 2, "link PORT|wait|off", error)) return false;
+    if (words[1] == "wait") return awaitLink(host, error);
+    if (words[1] == "off") {
+        host.link.disconnect();
+        return true;
+    }
+    if (!numberOf(words[1], port) || port < 1 || port > 65535 || port != std::floor(port)) {
+        error = "\"" + words[1] + "\" is no port from 1 to 65535, nor wait or off";
+        return false;
+    }
+    return host.link.connect(static_cast<uint16_t>(port), error);
+}
+
 // What only a script does; false in `known`: it is a command of the document.
 bool runOwn(ScriptHost& host, const Words& words, const std::string& line, bool& known,
             std::string& error) {
@@ -264,6 +341,8 @@ bool runOwn(ScriptHost& host, const Words& words, const std::string& line, bool&
     if (verb == "burn") return recorded(host, error);
     if (verb == "why") return why(host, words, error);
     if (verb == "report") return printReport(host, error);
+    if (verb == "hash") return printHashes(host, error);
+    if (verb == "link") return link(host, words, error);
     if (verb == "expect") return expect(host, words, error);
     if (verb == "refuse") return refuse(host, line, error);
     return runOutputLine(host, words, known, error);
@@ -365,7 +444,9 @@ bool frameScene(ScriptHost& host, std::string& error) {
     return true;
 }
 
-bool runScriptLine(ScriptHost& host, const std::string& line, std::string& error) {
+namespace {
+
+bool runLineAlone(ScriptHost& host, const std::string& line, std::string& error) {
     Words words;
     error.clear();
     if (!splitWords(line, words, error)) return false;
@@ -391,6 +472,14 @@ bool runScriptLine(ScriptHost& host, const std::string& line, std::string& error
     else if (!message.empty())
         host.say(message);
     return good;
+}
+
+}  // namespace
+
+bool runScriptLine(ScriptHost& host, const std::string& line, std::string& error) {
+    const bool done = runLineAlone(host, line, error);
+    if (host.link.connected()) host.link.follow(host.document);
+    return done;
 }
 
 bool runScript(ScriptHost& host, const fs::path& file, std::string& error) {

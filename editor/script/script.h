@@ -6,7 +6,11 @@
 //   why "Crate" 0 0.4 0.2         burn                           (the whole burn, for lit and why)
 //   expect count source 2         expect "Torch" output 18       expect unsaved yes
 //   expect step "Move Torch"      expect same "yard.fwscene"     expect lit "Crate" above 0.2
+//   expect alike "a.png" "b.png" 0.02     pictures, in the mean of their values
 //   refuse set "Torch" shape round        a command that must not be possible
+//   hash                          of the ignition map of each mesh at the playhead, and its tick
+//   link 47380                    pushes the scene, and from here on each change, to the sample
+//   that link wait                     listens there; waits until the sample shows it link off
 // And what the scene is for (output/output.h):
 //   cook "game"                   all that a game loads, into a folder
 //   snippet "game/yard.c"         code that puts it together; .cpp: in C++
@@ -20,10 +24,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "document/burn.h"
 #include "document/document.h"
 #include "document/inspect.h"
+#include "link/scene_link.h"
 
 namespace fwedit {
 
@@ -41,6 +47,7 @@ struct ScriptHost {
     double playhead = 0;  // s
     BurnRecord record;
     uint64_t recordRevision = ~uint64_t{0};
+    fwlink::SceneSender link;
     std::function<void(const std::string&)> say;              // a line for whoever watches
     std::function<bool(const std::string&, float)> progress;  // of what is written; false stops
 

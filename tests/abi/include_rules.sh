@@ -20,15 +20,16 @@ runtime/gpu|gpu/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/
 plugin/src|flamewright/|world/|net/|components/|core/|gpu/backend.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
 plugin/include|flamewright/
 shaders/shared|shared/
-samples|flamewright/|common/|import/|shell/
+samples|flamewright/|common/|import/|shell/|document/|link/
 editor/import|flamewright/|import/
 editor/shell|common/|shell/
 editor/viewport|flamewright/|common/|import/|shell/|document/|viewport/
-editor/app|flamewright/|common/|import/|shell/|document/|output/|script/|viewport/|app/|tools/|profile/|volume/|core/error.h
+editor/link|import/|document/|link/
+editor/app|flamewright/|common/|import/|shell/|document/|link/|output/|script/|viewport/|app/|tools/|profile/|volume/|core/error.h
 editor/document|flamewright/|import/|document/
 editor/output|flamewright/|import/|document/|output/|tools/
-editor/script|flamewright/|import/|document/|output/|tools/|script/
-editor/tools|flamewright/|import/|document/|output/|script/|scene/|tools/|book/|core/|volume/|shared/
+editor/script|flamewright/|import/|document/|link/|output/|tools/|script/
+editor/tools|flamewright/|import/|document/|link/|output/|script/|scene/|tools/|book/|core/|volume/|shared/
 '
 
 sources() {

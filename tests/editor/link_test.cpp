@@ -1,0 +1,298 @@
+// The live link: what is edited arrives, whole and no more of it than has changed; what is no
+// message is refused; either side may go at any moment.
+#include "link/scene_link.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include "editor/yard.h"
+
+namespace {
+
+using namespace fwtest;
+using fwlink::Bytes;
+using fwlink::Channel;
+using fwlink::Kind;
+using fwlink::LinkedScene;
+using fwlink::Listener;
+using fwlink::Message;
+using fwlink::MessageReader;
+using fwlink::SceneReader;
+using fwlink::SceneReceiver;
+using fwlink::SceneSender;
+using ::testing::HasSubstr;
+
+constexpr const char* kPainted =
+    "import board.glb name=Board materials paper map_size 128 texels_per_metre 64\n"
+    "add layer multiplier name=Belt mesh Board size 512\n";
+
+// Within two seconds, asked again and again.
+template <typename Ask>
+bool soon(Ask&& ask) {
+    for (int i = 0; i < 1000; ++i) {
+        if (ask()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return false;
+}
+
+TEST(EditorLink, MessagesComeWholeInWhateverPieces) {
+    Bytes stream;
+    for (uint8_t i = 0; i < 40; ++i)
+        fwlink::appendMessage(stream, i % 2 ? Kind::Scene : Kind::Paint, Bytes(size_t{i} * 7, i));
+    std::mt19937 random(5);
+    MessageReader reader;
+    std::string error;
+    uint32_t came = 0;
+    for (size_t at = 0; at < stream.size();) {
+        const size_t size = std::min<size_t>(1 + random() % 90, stream.size() - at);
+        reader.feed({stream.data() + at, size});
+        at += size;
+        for (Message message; reader.next(message, error); ++came) {
+            EXPECT_EQ(came % 2 ? Kind::Scene : Kind::Paint, message.kind);
+            EXPECT_EQ(Bytes(size_t{came} * 7, uint8_t(came)), message.body);
+        }
+    }
+    EXPECT_EQ("", error);
+    EXPECT_EQ(40u, came);
+}
+
+TEST(EditorLink, WhatIsNoMessageIsRefusedInWords) {
+    Bytes good;
+    fwlink::appendMessage(good, Kind::Scene, Bytes{1, 2, 3});
+    const auto refused = [&](size_t at, uint8_t value) {
+        Bytes spoilt = good;
+        spoilt[at] = value;
+        MessageReader reader;
+        reader.feed(spoilt);
+        Message message;
+        std::string error, later;
+        EXPECT_FALSE(reader.next(message, error));
+        reader.feed(good);  // nothing is believed after that
+        EXPECT_FALSE(reader.next(message, later));
+        return error;
+    };
+    EXPECT_THAT(refused(0, 'G'), HasSubstr("no message of a live link"));
+    EXPECT_THAT(refused(4, 9), HasSubstr("speaks version 9, this one 1"));
+    EXPECT_THAT(refused(6, 77), HasSubstr("kind 77; there are 3"));
+    EXPECT_THAT(refused(11, 0x7f), HasSubstr("it may have 33554432"));
+    EXPECT_THAT(refused(17, 9), HasSubstr("came damaged"));
+}
+
+// All that an editor says about a scene with paint, as messages.
+std::vector<Message> messagesOf(const Document& document, SceneSender& sender, Listener& listener,
+                                Channel& channel) {
+    std::string error;
+    if (!sender.connected()) {
+        EXPECT_TRUE(sender.connect(listener.port(), error)) << error;
+        EXPECT_TRUE(soon([&] {
+            if (!channel.open()) channel = listener.accept();
+            return channel.open();
+        }));
+    }
+    std::vector<Message> messages;
+    EXPECT_TRUE(soon([&] {
+        sender.follow(document);
+        channel.pump();
+        for (Message message; channel.next(message);) messages.push_back(message);
+        return !messages.empty() && messages.back().kind == Kind::Scene;
+    }));
+    return messages;
+}
+
+TEST(EditorLink, OnlyTilesThatChangedAreSent) {
+    Yard yard;
+    yard.run(kPainted);
+    Document& document = yard.host->document;
+    Listener listener;
+    std::string error;
+    ASSERT_TRUE(listener.listen(0, error)) << error;
+    SceneSender sender;
+    Channel channel;
+    SceneReader reader;
+    bool whole = false;
+    const auto take = [&](const std::vector<Message>& messages) {
+        for (const Message& message : messages)
+            EXPECT_TRUE(reader.take(message, whole, error)) << error;
+        EXPECT_TRUE(whole);
+        EXPECT_EQ(document.scene, reader.scene().scene);
+        EXPECT_EQ(document.images, reader.scene().images);
+        EXPECT_EQ(yard.folder, reader.scene().folder);
+    };
+    yard.run("fill Belt value 0.5\n");
+    const auto first = messagesOf(document, sender, listener, channel);
+    ASSERT_EQ(2u, first.size());
+    take(first);
+    // A dab is in one of three tiles; a change that is no paint sends none.
+    yard.run("stroke Belt value 0 size 0.02 path 0:0.2:0.01 0.02:0.2:0.01\n");
+    const auto second = messagesOf(document, sender, listener, channel);
+    ASSERT_EQ(2u, second.size());
+    EXPECT_LT(second[0].body.size(), first[0].body.size() / 2);
+    take(second);
+    yard.run("set settings wind 3 0 0\n");
+    const auto third = messagesOf(document, sender, listener, channel);
+    EXPECT_EQ(1u, third.size());
+    take(third);
+    yard.run("undo 2\n");
+    take(messagesOf(document, sender, listener, channel));
+    yard.run("remove Belt\n");
+    take(messagesOf(document, sender, listener, channel));
+    EXPECT_TRUE(reader.scene().images.empty());
+}
+
+TEST(EditorLink, TenThousandSpoiltBodiesAreRefusedOrAScene) {
+    Yard yard;
+    yard.run(kPainted);
+    yard.run("fill Belt value 0.5\n");
+    Listener listener;
+    std::string error;
+    ASSERT_TRUE(listener.listen(0, error)) << error;
+    SceneSender sender;
+    Channel channel;
+    const std::vector<Message> good = messagesOf(yard.host->document, sender, listener, channel);
+    std::mt19937 random(7);
+    uint32_t refused = 0;
+    for (int i = 0; i < 10000; ++i) {
+        SceneReader reader;
+        bool whole = false;
+        for (Message message : good) {
+            if (message.body.size() > 4096) message.body.resize(4096 + random() % 64);
+            for (uint32_t k = random() % 4; k > 0 && !message.body.empty(); --k) {
+                const size_t at = random() % std::min<size_t>(message.body.size(), 96);
+                message.body[at] = uint8_t(random());
+            }
+            if (random() % 5 == 0) message.body.resize(random() % (message.body.size() + 1));
+            message.kind = Kind(random() % 9 ? uint16_t(message.kind) : random() % 3);
+            error.clear();
+            if (reader.take(message, whole, error)) continue;
+            ++refused;
+            EXPECT_FALSE(error.empty());
+        }
+        for (const auto& [layer, image] : reader.scene().images)
+            EXPECT_EQ(size_t{image.width} * image.height, image.flat().size()) << layer;
+    }
+    EXPECT_GT(refused, 5000u);
+}
+
+TEST(EditorLink, AnswersWhatItShowsAndEitherSideMayGo) {
+    Yard yard;
+    yard.run(kPainted);
+    auto receiver = std::make_unique<SceneReceiver>();
+    std::string error, report;
+    ASSERT_TRUE(receiver->listen(0, error)) << error;
+    const std::string port = std::to_string(receiver->port());
+    LinkedScene scene;
+    const auto comes = [&] { return receiver->poll(scene, report); };
+    yard.run("link " + port + "\n");
+    ASSERT_TRUE(soon(comes));
+    EXPECT_EQ(yard.host->document.scene, scene.scene);
+    // The artist's lines go on while nobody answers; the newest is what counts.
+    yard.run("set settings wind 1 0 0\nset settings wind 2 0 0\n");
+    std::thread sample([&] {
+        receiver->took(scene.number, "");
+        for (int i = 0; i < 2000 && receiver->connected(); ++i) {
+            if (comes()) receiver->took(scene.number, "One mesh is left out");
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    });
+    yard.run("link wait\n");
+    EXPECT_EQ("One mesh is left out", yard.said.back());
+    yard.run("link off\n");
+    sample.join();
+    EXPECT_FALSE(receiver->connected());
+    EXPECT_EQ(2, scene.scene.settings.wind[0]);
+    EXPECT_THAT(yard.fails("link wait"), HasSubstr("there is no link"));
+
+    // Another editor comes; then the sample goes.
+    yard.run("link " + port + "\n");
+    ASSERT_TRUE(soon(comes));
+    receiver = nullptr;
+    yard.run("set settings wind 3 0 0\n");
+    EXPECT_THAT(yard.fails("link wait"), HasSubstr("gone"));
+    EXPECT_THAT(yard.fails("link " + port), HasSubstr("Nobody answers on port " + port));
+    EXPECT_THAT(yard.fails("link 70000"), HasSubstr("no port from 1 to 65535"));
+}
+
+TEST(EditorLink, AStrangerOnThePortIsShownOutAndTheNextIsServed) {
+    Yard yard;
+    yard.run(kPainted);
+    SceneReceiver receiver;
+    std::string error, report, said;
+    ASSERT_TRUE(receiver.listen(0, error)) << error;
+    LinkedScene scene;
+    Channel stranger;
+    ASSERT_TRUE(stranger.connect(receiver.port(), error)) << error;
+    // A browser's request is no message, nor is a message that only the editor gets.
+    stranger.send(Kind::Taken, Bytes{1, 2, 3});
+    EXPECT_TRUE(soon([&] {
+        stranger.pump();
+        EXPECT_FALSE(receiver.poll(scene, report));
+        said += report;
+        return !stranger.open();
+    }));
+    EXPECT_THAT(said, HasSubstr("a message that is for the editor"));
+    yard.run("link " + std::to_string(receiver.port()) + "\n");
+    EXPECT_TRUE(soon([&] { return receiver.poll(scene, report); }));
+}
+
+// ---- what a sample does with it
+
+std::string hashOf(Burn& burn) {
+    std::vector<std::string> lines;
+    requestHashes(burn);
+    EXPECT_EQ(FW_OK, fwWorld_Step(burn.world, 0));
+    EXPECT_EQ(FW_OK, fetchHashes(burn, lines));
+    return lines.empty() ? "" : lines[0];
+}
+
+TEST(EditorBurn, GoesOnWithAChangedSceneAsIfItHadAlwaysBeenSo) {
+    Yard yard;
+    yard.run(kBoard);
+    std::string error;
+    ASSERT_TRUE(burnToPlayhead(*yard.host, yard.host->cpu(error), error)) << error;
+    Burn& burn = *yard.host->burn;
+    const auto revise = [&] { return reviseBurn(burn, yard.host->document.scene, yard.folder); };
+    ASSERT_TRUE(runBurn(burn, 1, error)) << error;
+    // What comes later: a second match, and water in the way of the first one's fire.
+    yard.run(
+        "add source match name=Later position 0.4 0.2 0 radius 0.04 start 2\n"
+        "add source water position 0 0.2 0 radius 0.3 output 0.2 start 2\n"
+        "add flame camp name=Campfire position 0 0 3\nadd collider box position 0 0 6\n"
+        "add emitter disc position 0 0 4\nadd wind velocity 1 0 0 start 50\n");
+    ASSERT_TRUE(revise());
+    EXPECT_EQ(6u, burn.parts.size());
+    yard.run("set Campfire power 200 position 0 0 3.5\nset Match name Struck\n");
+    ASSERT_TRUE(revise());
+    yard.run("set Campfire diameter 1 outline 0:0.7 1:0.05 stops 0:900 1:1500\n");
+    ASSERT_TRUE(revise());
+    yard.run("set Campfire stops 0:1000 1:1500\n");
+    ASSERT_TRUE(revise());
+    EXPECT_EQ(6u, burn.parts.size());
+    ASSERT_TRUE(runBurn(burn, 6, error)) << error;
+    auto anew = createBurn(yard.host->cpu(error), yard.host->document.scene, {}, yard.folder,
+                           yard.host->assets, error);
+    ASSERT_TRUE(anew && runBurn(*anew, 6, error)) << error;
+    EXPECT_EQ(hashOf(*anew), hashOf(burn));
+
+    // What a burn is made for is not changed under it.
+    for (const char* line :
+         {"set Board moisture 0.4", "set settings pace 30", "set Struck position 0 0 0",
+          "add layer multiplier mesh Board", "remove Board"}) {
+        yard.run(std::string(line) + "\n");
+        EXPECT_FALSE(revise()) << line;
+        yard.run("undo\n");
+    }
+    yard.run("set Board position 0 0 1\nset settings daylight night\nset Later start 9\n");
+    EXPECT_FALSE(revise());  // that match was struck at 2 s
+    yard.run("undo\n");
+    EXPECT_TRUE(revise());
+    yard.run("remove Campfire\n");
+    EXPECT_TRUE(revise());
+    EXPECT_EQ(5u, burn.parts.size());
+}
+
+}  // namespace
