@@ -231,6 +231,8 @@ void fillHere(App& app) {
     fill.at = page.aim;
     fill.slopeLow = page.slopeLow;
     fill.slopeHigh = page.slopeHigh;
+    fill.curveLow = page.curveLow;
+    fill.curveHigh = page.curveHigh;
     const size_t texel = fwedit::nearestTexel(*page.surface, page.aim);
     if (texel < page.surface->material.size()) fill.material = page.surface->material[texel];
     perform(app, command);
@@ -536,10 +538,10 @@ void showPaintTools(App& app, const Rect& rect) {
         page.mirror = !page.mirror;
     x += toolButtonWidth(mirror) + dp(8);
     const float right = rect.x1 - dp(8);
-    if (page.tool == PaintTool::kFill && x + dp(370) < right - dp(220)) {
+    if (page.tool == PaintTool::kFill && x + dp(440) < right - dp(220)) {
         x += drawText(list, fonts().body, x + dp(2), y + dp(14), colors::dim, "Fill by") + dp(12);
-        segments("fill by", {x, y + dp(2)}, dp(310, 24),
-                 {"All", "Island", "Piece", "Material", "Slope"}, page.fillBy);
+        segments("fill by", {x, y + dp(2)}, dp(380, 24),
+                 {"All", "Island", "Piece", "Material", "Slope", "Bend"}, page.fillBy);
     }
     segments("paint views", {right - dp(204), y + dp(2)}, dp(204, 24), {"3D", "Both", "Unwrap"},
              page.view);
@@ -659,6 +661,25 @@ void showBrush(App& app, const Rect& rect) {
                   {.unit = "°", .format = "%.0f", .lowest = 0, .highest = 180});
         numberRow(rows, "Slope to", page.slopeHigh,
                   {.unit = "°", .format = "%.0f", .lowest = 0, .highest = 180});
+    }
+    if (page.tool == PaintTool::kFill && fwedit::FillBy(page.fillBy) == fwedit::FillBy::Curvature) {
+        constexpr float kMost = 200;  // 1/m that the sliders reach; more can be typed
+        numberRow(rows, "Bend from", page.curveLow,
+                  {.unit = "/m",
+                   .format = "%.0f",
+                   .lowest = -kMost,
+                   .highest = kMost,
+                   .least = -10000,
+                   .most = 10000});
+        numberRow(rows, "Bend to", page.curveHigh,
+                  {.unit = "/m",
+                   .format = "%.0f",
+                   .lowest = -kMost,
+                   .highest = kMost,
+                   .least = -10000,
+                   .most = 10000});
+        rows.y += drawTextWrapped(rows.list, fonts().small, {rows.x0, rows.y}, rows.x1 - rows.x0,
+                                  colors::dim, "Above 0: edges. Below 0: hollows. 0: flat.");
     }
     endPanel();
 }

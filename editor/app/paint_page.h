@@ -21,6 +21,7 @@ struct PaintPage {
     int material = FW_MATERIAL_PAPER;         // FwMaterialPreset
     int fillBy = 1;                           // FillBy
     float slopeLow = 0, slopeHigh = 35;       // degrees from level
+    float curveLow = 5, curveHigh = 10000;    // 1/m
     int view = 1;                             // 3D, both, unwrap
     float zoom = 1;                           // of the unwrap
     ImVec2 shift{};                           // dp, of the unwrap

@@ -46,7 +46,7 @@ constexpr const char* kVerbs[] = {"add",    "set",   "move",   "key",    "unkey"
                                   "remove", "order", "import", "stroke", "fill"};
 static_assert(std::size(kVerbs) == size_t(Verb::Count));
 constexpr const char* kModes[] = {"paint", "erase", "smooth"};
-constexpr const char* kFills[] = {"all", "island", "piece", "material", "slope"};
+constexpr const char* kFills[] = {"all", "island", "piece", "material", "slope", "curvature"};
 
 template <size_t N>
 size_t indexOf(const char* const (&words)[N], std::string_view word) {
@@ -267,9 +267,13 @@ bool parseFill(Reader& reader, FillRequest& fill) {
             if (!reader.number(fill.slopeLow, "slope", 0, 180) ||
                 !reader.number(fill.slopeHigh, "slope", 0, 180))
                 return false;
+        } else if (key == "curvature") {
+            if (!reader.number(fill.curveLow, "curvature", -1e5, 1e5) ||
+                !reader.number(fill.curveHigh, "curvature", -1e5, 1e5))
+                return false;
         } else {
             return reader.refuse("A fill has no \"" + key +
-                                 "\"; it takes by, value, at, slot, slope");
+                                 "\"; it takes by, value, at, slot, slope, curvature");
         }
     }
     return true;
@@ -459,6 +463,9 @@ std::string printCommand(const Scene& scene, const Command& command) {
             if (fill.by == FillBy::Material) text += join(" slot ", std::to_string(fill.material));
             if (fill.by == FillBy::Slope)
                 text += " slope " + printNumber(fill.slopeLow) + " " + printNumber(fill.slopeHigh);
+            if (fill.by == FillBy::Curvature)
+                text +=
+                    " curvature " + printNumber(fill.curveLow) + " " + printNumber(fill.curveHigh);
             return text;
         }
         default:

@@ -314,6 +314,30 @@ size_t nearestTexel(const PaintSurface& surface, Vec3 position) {
     return best;
 }
 
+namespace {
+
+// How the normals turn away from a texel's, over the way to their places; sharp edges bend as far
+// as texels reach.
+float curvatureAt(const PaintSurface& surface, size_t texel) {
+    const Vec3 p = at3(surface.positions, texel), n = at3(surface.normals, texel);
+    const float reach = 3 * surface.spacing;
+    float sum = 0, count = 0;
+    const Vec3 low = {p[0] - reach, p[1] - reach, p[2] - reach};
+    const Vec3 high = {p[0] + reach, p[1] + reach, p[2] + reach};
+    forTexelsWithin(surface, low, high, [&](size_t other) {
+        const Vec3 way = minus(at3(surface.positions, other), p);
+        const float square = dot(way, way);
+        const Vec3 normal = at3(surface.normals, other);
+        // The back of a thin wall is no bend of its front.
+        if (square > reach * reach || square < 1e-12f || dot(normal, n) < -0.5f) return;
+        sum += dot(minus(normal, n), way) / square;
+        ++count;
+    });
+    return count > 0 ? sum / count : 0;
+}
+
+}  // namespace
+
 PaintImage applyFill(const PaintSurface& surface, uint32_t kind, const PaintImage& image,
                      const FillRequest& fill, Vec3 up) {
     PaintImage before = image.width == surface.width && image.height == surface.height
@@ -343,6 +367,11 @@ PaintImage applyFill(const PaintSurface& surface, uint32_t kind, const PaintImag
             case FillBy::Slope: {
                 const float level = dot(at3(surface.normals, i), up) / (length > 0 ? length : 1);
                 takes = level >= low - 1e-5f && level <= high + 1e-5f;
+                break;
+            }
+            case FillBy::Curvature: {
+                const float bend = curvatureAt(surface, i);
+                takes = bend >= fill.curveLow && bend <= fill.curveHigh;
                 break;
             }
         }

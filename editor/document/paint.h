@@ -73,13 +73,15 @@ struct Stroke {
     std::vector<Vec3> normals;  // as many or none: then thin walls are painted on both sides
     bool operator==(const Stroke&) const = default;
 };
-enum class FillBy : uint32_t { All, Island, Piece, Material, Slope };
+enum class FillBy : uint32_t { All, Island, Piece, Material, Slope, Curvature };
 struct FillRequest {
     FillBy by = FillBy::All;
     float value = 0;
     Vec3 at{};                           // of Island, Piece: a point on it, m, object space
     uint32_t material = 0;               // slot, of Material
     float slopeLow = 0, slopeHigh = 90;  // degrees from level ground, of Slope
+    // 1/m, of Curvature: one over the radius of the bend, > 0 outwards as at edges, < 0 in hollows.
+    float curveLow = 5, curveHigh = 10000;
     bool operator==(const FillRequest&) const = default;
 };
 

@@ -755,6 +755,42 @@ TEST(EditorPaint, FillsKeepToWhatTheyAreBy) {
     EXPECT_EQ(0, image.at(10, 5));
 }
 
+TEST(EditorPaint, FillsByCurvatureFindEdgesAndHollows) {
+    // A strip that is flat, bends outwards with a radius of 0.1 m, is flat, and bends inwards.
+    PaintSurface surface;
+    surface.width = 120;
+    surface.height = 16;
+    surface.spacing = 0.01f;
+    for (uint32_t y = 0; y < surface.height; ++y) {
+        float x = 0, up = 0, angle = 0;  // of the strip's way
+        for (uint32_t i = 0; i < surface.width; ++i) {
+            surface.positions.insert(surface.positions.end(), {x, up, 0.01f * float(y)});
+            surface.normals.insert(surface.normals.end(), {-std::sin(angle), std::cos(angle), 0});
+            const float bend = i >= 30 && i < 60 ? 10.0f : i >= 90 ? -10.0f : 0.0f;
+            angle -= bend * surface.spacing;
+            x += surface.spacing * std::cos(angle);
+            up += surface.spacing * std::sin(angle);
+        }
+    }
+    surface.real.assign(size_t{surface.width} * surface.height, 1);
+    indexSurface(surface);
+    FillRequest fill;
+    fill.value = 1;
+    fill.by = FillBy::Curvature;
+    const PaintImage empty = makePaintImage(PaintMoisture, surface.width, surface.height);
+    const auto filled = [&](float low, float high) {
+        fill.curveLow = low;
+        fill.curveHigh = high;
+        const PaintImage image = applyFill(surface, PaintMoisture, empty, fill, {0, 1, 0});
+        std::string taken;  // in the middle of each of the four stretches
+        for (const uint32_t x : {15u, 45u, 75u, 105u}) taken += image.at(x, 8) ? 'x' : '.';
+        return taken;
+    };
+    EXPECT_EQ(".x..", filled(2, 100));
+    EXPECT_EQ("...x", filled(-100, -2));
+    EXPECT_EQ("x.x.", filled(-0.5f, 0.5f));
+}
+
 TEST(EditorPaint, SmoothingLevelsAnEdgeAcrossTheSeam) {
     std::vector<uint8_t> values(64 * 32, 0);
     for (size_t i = 0; i < values.size(); ++i)
