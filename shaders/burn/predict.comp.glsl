@@ -53,6 +53,7 @@ void predictRow(uint work) {
     if (chosen == 0u) return;
     uvec4 bases = objectBases(item.w);
     uint latest = push.now + objectTimes(item.w).z;
+    bool anew = (objectPlaces(item.w).w & kObjectAnew) != 0u;
     uint materialBase = item.w * kMaterialsPerObject;
     uint x = uint(findLSB(chosen));
     uint last = uint(findMSB(chosen));
@@ -88,10 +89,10 @@ void predictRow(uint work) {
                     now = kNever;
                 }
             }
-            if (now != before) {
+            if (now != before || anew) {
                 predict[bases.y + texel] = now;
                 if (hasTime(now)) changed |= 1u << x;
-                if (concernsOthers(before, now)) spread |= 1u << x;
+                if (concernsOthers(before, now) || (anew && hasTime(now))) spread |= 1u << x;
             }
         }
         left = middle;

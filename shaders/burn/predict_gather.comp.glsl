@@ -1,7 +1,9 @@
 // Finds the texels of the predict list's tiles whose shown arrival may change, and lists their rows
 // for `predict`, rim texels for `predict_rim`. States that are no arrival (wet, put out, ...) are
 // passed on here, of wet ones how near the fire is. What has an arrival already is gone over in
-// about every eighth frame only. One thread per row.
+// about every eighth frame only. Of an object that no view shows, what burns or was put out is passed
+// on and nothing is looked for; what is found anew forgets what was predicted before. One thread per
+// row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -84,7 +86,8 @@ void gatherRow(uint slot, uint row) {
     uvec4 pb = predictQuads[(at >> 2u) + 1u];
     uint t[8] = uint[8](ta.x, ta.y, ta.z, ta.w, tb.x, tb.y, tb.z, tb.w);
     uint p[8] = uint[8](pa.x, pa.y, pa.z, pa.w, pb.x, pb.y, pb.z, pb.w);
-    uint lit = 0u;   // burns, and is not shown so
+    uint burns = 0u; // or has burnt
+    uint lit = 0u;   // so, and is not shown so
     uint open = 0u;  // unburnt: an arrival may be predicted
     uint known = 0u; // of these: with a time
     uint passed = 0u;
@@ -92,12 +95,15 @@ void gatherRow(uint slot, uint row) {
     FW_UNROLL for (int i = 0; i < 8; ++i) {
         uint bit = 1u << uint(i);
         bool differs = p[i] != t[i];
+        burns |= isSource(t[i]) ? bit : 0u;
         lit |= isSource(t[i]) && differs ? bit : 0u;
         open |= t[i] == kNever ? bit : 0u;
         known |= t[i] == kNever && hasTime(p[i]) ? bit : 0u;
         wet |= t[i] == kWet ? bit : 0u;
         passed |= !isSource(t[i]) && t[i] != kNever && differs ? bit : 0u;
     }
+    bool unseen = (places.w & kObjectUnseen) != 0u;
+    bool anew = (places.w & kObjectAnew) != 0u;
     bool marks = (lit | known | passed) != 0u;
     for (; passed != 0u; passed &= passed - 1u) {
         uint i = at + uint(findLSB(passed));
@@ -109,6 +115,15 @@ void gatherRow(uint slot, uint row) {
         else if (hasTime(time)) gradient[i] = time < push.now ? push.now - time : 1u;
         else if (time == kNever || time == kWet) gradient[i] = 1u;
         predict[i] = code;
+    }
+    for (uint stale = anew ? known : unseen ? lit : 0u; stale != 0u; stale &= stale - 1u) {
+        uint i = at + uint(findLSB(stale));
+        predict[i] = state[i];
+    }
+    if (anew) known = 0u;
+    if (unseen) {
+        if (marks && (flag & kTileMarked) == 0u) atomicOr(tileState[worldTile].flag, kTileMarked);
+        return;
     }
     // About every fourth frame: water does not hurry.
     bool soon = wet != 0u;
@@ -131,7 +146,7 @@ void gatherRow(uint slot, uint row) {
     } else if (soon) {
         predictTouch(push.predictParity ^ 1u, worldTile);
     }
-    uint chosen = lit;
+    uint chosen = anew ? lit | burns : lit;
     bool again = (hash32((push.now >> 7u) + worldTile) & 7u) == 0u;
     if (again) chosen |= known;
     else if (known != 0u) predictTouch(push.predictParity ^ 1u, worldTile);

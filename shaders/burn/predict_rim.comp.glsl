@@ -68,10 +68,11 @@ void predictTexel(uint rimWork) {
     bool spread = false;
     uint y = divide(texel, bases.w);
     uint x = texel - y * bases.w;
-    if (now != before) {
+    bool anew = (objectPlaces(object).w & kObjectAnew) != 0u;
+    if (now != before || anew) {
         predict[at] = now;
         if (hasTime(now)) gradient[at] = gradientOf(at, x, y, bases.w, sizes.y, now);
-        spread = concernsOthers(before, now);
+        spread = concernsOthers(before, now) || (anew && hasTime(now));
     }
     if (spread) {
         uvec2 mask = lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u));

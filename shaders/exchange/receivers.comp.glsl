@@ -23,7 +23,9 @@ bool gives(uint slot, uint entry) {
                    bothChances(push.chance, remoteObjects[from].chance));
 }
 
-// Counts the sources of weight [low, high), or lists them from `listed` on.
+// Of the object's sources those of weight [low, high) go into the list from `listed` on; how many
+// there are. Without a list all are counted by their weight's highest bit.
+uint weightBits[32];
 uint pass(uint slot, ivec3 middle, uint low, uint high, bool list, uint listed) {
     uint first = remoteObjects[slot].neighbourFirst;
     uint count = 0u;
@@ -35,6 +37,7 @@ uint pass(uint slot, ivec3 middle, uint low, uint high, bool list, uint listed) 
         for (uint cell = 0u; cell < remoteObjects[from].sourceCount; ++cell) {
             uint weight = sourceWeight(sources[base + cell], middle);
             if (weight < low || weight >= high) continue;
+            if (!list) weightBits[topBit(weight)] += 1u;
             if (list && listed + count < kSourcesPerReceiver)
                 receivers[slot * kReceiverWords + 2u + listed + count] =
                     (base + cell) | (entry & 0xFF000000u);
@@ -53,12 +56,15 @@ void gather(uint slot) {
     }
     receivers[at * kReceiverWords] = slot;
     ivec3 middle = boxMiddle(remoteObjects[slot]);
-    uint low = 1u;
-    uint count = pass(slot, middle, low, kNoneTexel, false, 0u);
+    FW_UNROLL for (int bit = 0; bit < 32; ++bit) weightBits[bit] = 0u;
+    uint count = pass(slot, middle, 1u, kNoneTexel, false, 0u);
+    // The least power of two that so few are not below.
+    uint least = 0u;
     while (count > kSourcesPerReceiver) {
-        low *= 2u;
-        count = pass(slot, middle, low, kNoneTexel, false, 0u);
+        count -= weightBits[least];
+        ++least;
     }
+    uint low = 1u << least;
     count = pass(slot, middle, low, kNoneTexel, true, 0u);
     if (low > 1u) count += pass(slot, middle, low / 2u, low, true, count);
     receivers[slot * kReceiverWords + 1u] = min(count, kSourcesPerReceiver);

@@ -270,13 +270,13 @@ FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 nor
     ivec3 d = ivec3(middle.x - at.x, middle.y - at.y, middle.z - at.z);
     if (!withinReach(d)) return 0u;
     uint size = mostOf(s.diameter, uint(s.place.w)) * 2u;
-    if (size >= 65535u || squareSum(d) <= size * size) {  // near: a row of four
-        uint part = s.watts / 4u, sum = 0u;
-        FW_UNROLL for (int i = 0; i < 4; ++i)
-            sum += fluxFrom(alongFlame(s, up, 2 * i + 1), part, nearest, at, normal, both);
-        return leastOf(sum, kFluxMost);
-    }
-    return fluxFrom(middle, s.watts, nearest, at, normal, both);
+    bool row = size >= 65535u || squareSum(d) <= size * size;  // near: a row of four
+    // A loop: software devices end one early, and would compute both sides of a branch.
+    uint part = row ? s.watts / 4u : s.watts, sum = 0u;
+    int end = row ? 8 : 5, apart = row ? 2 : 4;
+    for (int eighths = row ? 1 : 4; eighths < end; eighths += apart)
+        sum += fluxFrom(alongFlame(s, up, eighths), part, nearest, at, normal, both);
+    return leastOf(sum, kFluxMost);
 }
 
 // K above ambient on the axis of a plume at z mm above its base: McCaffrey's three zones.
@@ -318,15 +318,17 @@ FW_SHARED_FN FlameFrame flameFrame(FW_IN(FireSource) s, ivec3 up, ivec3 at) {
 
 // W/m^2 that a plume gives to a surface at `heat`, 1/16 K; ambient, too.
 FW_SHARED_FN uint plumeFlux(FW_IN(FireSource) s, FW_IN(FlameFrame) f, uint heat, uint ambient) {
-    if (!f.near || f.above <= 0) return 0u;
     uint width = (uint(f.above) * 492u) / 4096u + s.diameter / 2u;  // mm: 0.12 z + D/2
     width = leastOf(mostOf(width, 10u), 20000u);
-    uint square = width * width;
-    if (f.beside2 >= square * 9u) return 0u;
-    uint x = divide(f.beside2, (square >> 12u) + 1u) * 23u;  // (r/b)^2 log2(e), Q16
-    uint gas = (plumeRise(uint(f.above), s.scale) * halvings(x)) >> 12u;  // 1/16 K
-    uint mine = heat > ambient ? heat - ambient : 0u;
-    return gas > mine ? ((gas - mine) * kPlumeTransfer) >> 4u : 0u;
+    uint square = width * width, flux = 0u;
+    // As a loop, which costs nothing where no plume comes.
+    for (bool within = f.near && f.above > 0 && f.beside2 < square * 9u; within; within = false) {
+        uint x = divide(f.beside2, (square >> 12u) + 1u) * 23u;  // (r/b)^2 log2(e), Q16
+        uint gas = (plumeRise(uint(f.above), s.scale) * halvings(x)) >> 12u;  // 1/16 K
+        uint mine = heat > ambient ? heat - ambient : 0u;
+        flux = gas > mine ? ((gas - mine) * kPlumeTransfer) >> 4u : 0u;
+    }
+    return flux;
 }
 
 // Does this flame light the vapours of a hot surface there?

@@ -364,6 +364,15 @@ class EveryPass : public GpuTest {
         emitter_->emitter.books = {1u, 2u | 3u << 16};
     }
 
+    // No view shows it: of what it will do nothing is predicted until one does again.
+    void hide(bool hidden) {
+        gpu::BurnObject record = scene_->init(0).record;
+        const gpu::vec4 rows[] = {record.worldRow0, record.worldRow1, record.worldRow2};
+        const uint32_t flags = record.flags & ~gpu::kObjectHidden;
+        rig_->backend.setObjectPose(0, rows, record.tint,
+                                    hidden ? flags | gpu::kObjectHidden : flags);
+    }
+
     // As a save may have it: unburnt, in all lists with all of its tiles.
     void restoreBox() {
         const mesh::BurnDomain& domain = scene_->domains[0];
@@ -401,6 +410,10 @@ class EveryPass : public GpuTest {
         frame({gpu::kEventIgnite, 1, 3, 0, true, true});
         frame({.steps = 2, .switches = gpu::kSwitchDense, .probes = true});
         for (int i = 0; i < 3; ++i) frame({.steps = 4});
+        hide(true);
+        frame({.steps = 1});
+        hide(false);
+        frame({.steps = 1});
         placeBox();
         showBooks();
         frame({gpu::kEventExtinguish, 2});

@@ -4,6 +4,7 @@
 #include "mesh/remote_tiles.h"
 
 #include <algorithm>
+#include <array>
 
 namespace fw::gpu::cpu {
 namespace {
@@ -147,7 +148,8 @@ void CpuBackend::State::warmAll(const ExchangePush& rules) noexcept {
 void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) noexcept {
     const CpuObject& object = *objects[slot];
     const ivec3 middle = boxMiddle(object.remote);
-    // Counts the sources of weight [low, high), or lists them.
+    // Counts the sources of weight [low, high) by its highest bit, or lists them.
+    std::array<uint32_t, 32> bits{};
     const auto pass = [&](uint32_t low, uint32_t high, bool takes) {
         uint32_t count = 0;
         for (uint32_t n = 0; n < object.remote.neighbourCount; ++n) {
@@ -163,6 +165,7 @@ void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) 
             for (const FireSource& source : from.sources) {
                 const uint32_t weight = sourceWeight(source, middle);
                 if (weight < low || weight >= high) continue;
+                if (!takes) ++bits[topBit(weight)];
                 if (takes && warmCount < kSourcesPerReceiver)
                     warms[warmCount++] = {&source, entry >> 24};
                 ++count;
@@ -170,8 +173,11 @@ void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) 
         }
         return count;
     };
-    uint32_t low = 1;
-    while (pass(low, kNoneTexel, false) > kSourcesPerReceiver) low *= 2;
+    // The least power of two that so few are not below.
+    uint32_t least = 0;
+    for (uint32_t count = pass(1, kNoneTexel, false); count > kSourcesPerReceiver; ++least)
+        count -= bits[least];
+    const uint32_t low = 1u << least;
     warmCount = 0;
     pass(low, kNoneTexel, true);
     if (low > 1) pass(low / 2, low, true);

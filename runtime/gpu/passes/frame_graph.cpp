@@ -16,19 +16,24 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,       &kRestorePass,       &kEventsPass,       &kHeatPass,
-    &kWakePass,        &kSchedulePass,      &kGatherPass,       &kArrivalPass,
-    &kArrivalRimPass,  &kGrantPass,         &kCommitPass,       &kPublishedPass,
-    &kReduceClearPass, &kReduceFrontPass,   &kReducePass,       &kFireCellsPass,
-    &kFireSourcesPass, &kReceiversPass,     &kExchangePass,     &kContactsPass,
-    &kEmbersPass,      &kPredictGatherPass, &kPredictPass,      &kPredictRimPass,
-    &kSupportPass,     &kProbePass,         &kLightsPass,       &kFlameQuadsPass,
-    &kFlameSortPass,   &kRefineHeatPass,    &kRefineLevelsPass, &kRefineScanPass,
-    &kRefineEmitPass,  &kRefinePlacePass,   &kRecedePass,       &kTiesPass,
-    &kSoftPass,        &kSpringsPass,       &kDrapePass,        &kInnerPass,
-    &kSkinPass,        &kSootPass,          &kRefineCutPass,    &kRefinePublishedPass,
-    &kVolumeProbePass, &kVolumeMarchPass,   &kParticlesPass,    &kParticleQuadsPass,
-    &kSparksPass,      &kFieldPass,         &kFieldMaskPass,    &kFieldShowPass};
+    &kResetPass,         &kRestorePass,       &kEventsPass,
+    &kHeatPass,          &kWakePass,          &kSchedulePass,
+    &kGatherPass,        &kArrivalPass,       &kArrivalRimPass,
+    &kGrantPass,         &kCommitPass,        &kPublishedPass,
+    &kReduceClearPass,   &kReduceFrontPass,   &kReducePass,
+    &kFireCellsPass,     &kFireSourcesPass,   &kReceiversPass,
+    &kExchangePass,      &kContactsPass,      &kEmbersPass,
+    &kPredictAnewPass,   &kPredictGatherPass, &kPredictPass,
+    &kPredictRimPass,    &kSupportPass,       &kProbePass,
+    &kLightsPass,        &kFlameQuadsPass,    &kFlameSortPass,
+    &kRefineHeatPass,    &kRefineLevelsPass,  &kRefineScanPass,
+    &kRefineEmitPass,    &kRefinePlacePass,   &kRecedePass,
+    &kTiesPass,          &kSoftPass,          &kSpringsPass,
+    &kDrapePass,         &kInnerPass,         &kSkinPass,
+    &kSootPass,          &kRefineCutPass,     &kRefinePublishedPass,
+    &kVolumeProbePass,   &kVolumeMarchPass,   &kParticlesPass,
+    &kParticleQuadsPass, &kSparksPass,        &kFieldPass,
+    &kFieldMaskPass,     &kFieldShowPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -239,14 +244,24 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
     recordExchange(recorder, lists, step, push);
 }
 
-void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick) {
+void recordPredictAnew(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t object,
+                       uint32_t tiles) {
+    StepPush push{};
+    push.object = object;
+    push.predictParity = lists.predictParity;
+    recorder.dispatch(kPredictAnewPass, &push, std::min(std::max(groupsOf(tiles), 1u), kMaxGroups));
+}
+
+void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick, bool seen) {
     StepPush push{};
     push.now = endTick;
     push.predictParity = lists.predictParity;
     zeroRow(recorder, kRowPredict + (lists.predictParity ^ 1));
     recorder.dispatchList(kPredictGatherPass, &push, kRowPredict + lists.predictParity);
-    recorder.dispatchWork(kPredictPass, &push, kRowPredict + lists.predictParity);
-    recorder.dispatchRim(kPredictRimPass, &push, kRowPredict + lists.predictParity);
+    if (seen) {
+        recorder.dispatchWork(kPredictPass, &push, kRowPredict + lists.predictParity);
+        recorder.dispatchRim(kPredictRimPass, &push, kRowPredict + lists.predictParity);
+    }
     lists.predictParity ^= 1;
 }
 

@@ -24,11 +24,11 @@ struct SparkPush;     // shared/spark.h
 extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWakePass, kSchedulePass,
     kGatherPass, kArrivalPass, kArrivalRimPass, kGrantPass, kCommitPass, kPublishedPass,
     kReduceClearPass, kReduceFrontPass, kReducePass, kFireCellsPass, kFireSourcesPass,
-    kReceiversPass, kExchangePass, kContactsPass, kEmbersPass, kPredictGatherPass, kPredictPass,
-    kPredictRimPass, kSupportPass, kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass,
-    kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass, kRefinePlacePass,
-    kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass, kSpringsPass,
-    kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass,
+    kReceiversPass, kExchangePass, kContactsPass, kEmbersPass, kPredictAnewPass, kPredictGatherPass,
+    kPredictPass, kPredictRimPass, kSupportPass, kProbePass, kLightsPass, kFlameQuadsPass,
+    kFlameSortPass, kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass,
+    kRefinePlacePass, kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass,
+    kSpringsPass, kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass,
     kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
@@ -90,7 +90,12 @@ struct StepRecord {
 // Makes counters row kRowIteration the front list's and zeroes the `iterations` rows after it.
 void recordCounters(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t iterations);
 void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord& step);
-void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick);
+// One ring further. `seen`: some view may show what is predicted; else only what burns and what was
+// put out is passed on.
+void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick, bool seen);
+// The next ring finds anew what is known of this object; its kObjectAnew is set.
+void recordPredictAnew(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t object,
+                       uint32_t tiles);
 // Tiles `first` .. + `count` of all; `ticks` since they last came to it.
 void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks, uint32_t first,
                    uint32_t count);

@@ -63,6 +63,7 @@ struct FrameNeeds {
     bool stimulus = false;                // an event or a latch
     bool findsAnew = false;               // the first step wakes what forgets
     bool burning = false, predicting = false, publishedRuns = false, heating = false;
+    bool appears = false;  // an object comes into view
     bool falling = false;  // burnt pieces may lose their hold
     uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;  // what deforms
     uint32_t innerGroups = 0;             // and shows an inner skin
@@ -85,6 +86,13 @@ struct FrameNeeds {
 
 // vk_record.cpp
 void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& upload);
+
+// vk_seen.cpp
+// Which objects come into view or leave it with the frame: marks those, and what they need.
+void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs);
+// Arrival ahead of the front: what no view shows is not predicted.
+void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,
+                       UploadWriter& writer);
 
 // vk_restore.cpp
 void recordRestores(VkBackend::State& s, FrameRecorder& recorder);

@@ -183,6 +183,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     const Table& vk = device.table;
     const uint32_t viewOffset = pushView(slot, view, viewport);
     refine.height = std::fabs(viewport.height);
+    look(view, refine.height, slot.frameIndex);
     vk.CmdSetViewport(commands, 0, 1, &viewport);
     VkRect2D scissor{};
     const float left = std::max(viewport.x, 0.0f), top = std::max(viewport.y, 0.0f);

@@ -153,8 +153,9 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     needs.burning = !s.burnEmpty || needs.stimulus || needs.never;
     needs.heating =
         !s.hotEmpty || (needs.exchanges && needs.burning) || needs.stimulus || needs.never;
-    needs.predicting =
-        !s.predictEmpty || (needs.exchanges && needs.burning) || needs.stimulus || needs.never;
+    addSeenNeeds(s, needs);
+    needs.predicting = !s.predictEmpty || (needs.exchanges && needs.burning) || needs.stimulus ||
+                       needs.never || needs.appears;
     needs.falling =
         anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||

@@ -119,6 +119,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     fresh.live = true;
     fresh.mesh = init.mesh;
     fresh.record = init.record;
+    fresh.seenFrame = last;
     try {
         s.quarantine.reserve(s.quarantine.size() + s.liveObjects + 1);
         s.drawItems.reserve((s.liveObjects + 1) * kMaterialsPerObject);
@@ -294,7 +295,7 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
         entry.deformDirty = true;
         entry.softUntil = 0;  // it swings anew
     }
-    constexpr uint32_t kFixed = kObjectPublished | kObjectHeat;
+    constexpr uint32_t kFixed = kObjectPublished | kObjectHeat | kObjectUnseen;
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
     entry.recordDirty = true;
     s.recordsDirty = true;

@@ -290,9 +290,11 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
 }
 
 // Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
-// than hides where that part ends.
-void recordSooting(VkBackend::State& s, FrameRecorder& recorder) {
-    constexpr uint32_t kMostTiles = 4096, kMostTicksOfAPart = kTicksPerSecond / 64;
+// than hides where that part ends. Where nobody looks it is laid a few times a second.
+void recordSooting(VkBackend::State& s, bool seen, FrameRecorder& recorder) {
+    constexpr uint32_t kMostTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
+    const uint32_t mostTicksOfAPart = seen ? kTicksPerSecond / 64 : kTicksPerSecond;
+    if (!seen && s.open.endTick - s.sootTick < kUnseenTicks) return;
     const uint32_t tiles = s.planes.capacity(kSpaceObjectTiles);
     const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
     const uint32_t first = s.sootFirst < tiles ? s.sootFirst : 0;
@@ -301,7 +303,7 @@ void recordSooting(VkBackend::State& s, FrameRecorder& recorder) {
     s.sootTick = s.open.endTick;
     if (count == 0 || ticks == 0) return;
     s.sootFirst = first + count;
-    recordSoot(recorder, parts > 1 ? std::min(ticks * parts, kMostTicksOfAPart) : ticks, first,
+    recordSoot(recorder, parts > 1 ? std::min(ticks * parts, mostTicksOfAPart) : ticks, first,
                count);
 }
 
@@ -478,12 +480,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         frontEmpty = burnEmpty = predictEmpty = hotEmpty = false;
     }
     shownTick = plan.endTick;
-    if (needs.predicting) {
-        // A ring a round: long frames need more to stay ahead of a fast front.
-        const size_t rounds = std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1;
-        for (size_t i = 0; i < rounds; ++i) recordPredict(recorder, lists, plan.endTick);
-        predictWalks += uint32_t(rounds);
-    }
+    if (needs.predicting) recordPredictions(*this, plan, recorder, writer);
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
     slot.layout.predictParity = lists.predictParity;
     if (needs.vertexGroups) {
@@ -510,7 +507,10 @@ void VkBackend::State::run(const FramePlan& plan) {
 }
 
 void VkBackend::State::closeFrame(const FwView* view) {
-    if (view) outside = *view;
+    if (view) {
+        outside = *view;
+        look(*view, refine.height, open.ringFrame);
+    }
     if (!open.recording) {
         open = {};
         return;
@@ -531,7 +531,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
         FrameRecorder looks(target);
         if (!burnEmpty) {
             recordLights(looks, lists, open.endTick);
-            recordSooting(*this, looks);
+            recordSooting(*this, view != nullptr, looks);
             if (view) recordFlameQuads(looks, lists, open.endTick, books.live ? flameBooks : 0);
         }
         const SortPush room = quadRoom();

@@ -109,6 +109,8 @@ struct ObjectEntry {
     bool doused = false;     // one of them was not fire
     bool warmed = false;     // others' fires sent heat to it
     bool charred = false;    // most of it burns or has burnt: its cold rest is not worth a draw
+    uint64_t seenFrame = 0;  // ring frame whose view last showed it; kObjectUnseen: long ago
+    bool turns = false;      // scratch of run: it comes into view, or leaves it
     uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
     uint32_t douseEnds = 0;  // tick by which that has had its effect
     bool forget = false;     // scratch of run
@@ -405,6 +407,9 @@ struct VkBackend::State {
     void closeFrame(const FwView* view);
     RecordTarget recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept;
     uint32_t pushView(FrameInFlight& slot, const FwView& view, const VkViewport& viewport);
+    // vk_seen.cpp
+    // In ring frame `frame` a view of `height` px shows what it shows.
+    void look(const FwView& view, float height, uint64_t frame) noexcept;
     // vk_refine.cpp
     void uploadRefineTable();
     void noteFire(uint32_t object, uint32_t tick) noexcept;

@@ -1,0 +1,143 @@
+// Which objects some view shows, and what that spares: arrival ahead of the front is for looks
+// alone. Of an object that none shows, what burns and what was put out is noted as it comes, so
+// that its ages are right, and nothing ahead of it; when a view shows it again, that is found at
+// once.
+#include "gpu/vk/frame_needs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::gpu::vk {
+namespace {
+
+// Frames that an object is still predicted after a view showed it: one that looks around comes
+// back.
+constexpr uint64_t kSeenFrames = 64;
+constexpr uint64_t kIdleTurns = 16;  // what no fire reached is looked for once in so many frames
+static_assert(kIdleTurns < kSeenFrames);
+constexpr float kSeenRoom = 1.5f;     // of its bounds: it deforms, and the view turns
+constexpr float kLeastPixels = 3.0f;  // half as much across shows nothing of what lies ahead
+constexpr float kAnyHeight = 1080;    // px, before anything was drawn
+// More rings of a frame in which an object comes into view: the next ones add to them. A picture by
+// itself has no next frame, and takes what there is to see, up to so many.
+constexpr uint32_t kRingsOfFrame = 8, kRingsOfPicture = 96;
+
+struct Sphere {
+    glm::vec3 middle;  // m, from the eye
+    float radius;      // m
+};
+
+Sphere sphereOf(const ObjectEntry& object, const mesh::BurnDomain& domain, const vec4& eye) {
+    const glm::vec3 low(domain.boundsLow[0], domain.boundsLow[1], domain.boundsLow[2]);
+    const glm::vec3 high(domain.boundsHigh[0], domain.boundsHigh[1], domain.boundsHigh[2]);
+    const vec4 rest(0.5f * (low + high), 1.0f);
+    const vec4 &x = object.record.worldRow0, &y = object.record.worldRow1,
+               &z = object.record.worldRow2;
+    const glm::vec3 middle(glm::dot(x, rest), glm::dot(y, rest), glm::dot(z, rest));
+    const float scale = glm::length(glm::vec3(x));
+    return {middle - glm::vec3(eye), kSeenRoom * scale * 0.5f * glm::length(high - low)};
+}
+
+bool shows(const ViewParams& p, const Sphere& sphere) noexcept {
+    const auto row = [&](int i) { return vec4(p.clip0[i], p.clip1[i], p.clip2[i], p.clip3[i]); };
+    const vec4 w = row(3);
+    for (int axis = 0; axis < 2; ++axis)
+        for (const float side : {-1.0f, 1.0f}) {
+            const vec4 plane = w + side * row(axis);
+            if (glm::dot(glm::vec3(plane), sphere.middle) + plane.w <
+                -sphere.radius * glm::length(glm::vec3(plane)))
+                return false;
+        }
+    const bool perspective = p.forward.w > 0.5f;
+    const float away = perspective ? std::max(glm::length(sphere.middle) - sphere.radius, 0.0f) : 1;
+    return sphere.radius >= kLeastPixels * p.eye.w * away;
+}
+
+// Texels that fire may cross in the time that is looked ahead.
+uint32_t ringsOf(const ObjectEntry& object) noexcept {
+    uint32_t least = ~0u;
+    for (const BurnMaterial& m : object.materials)
+        if ((m.flags & 1) != 0) least = std::min(least, m.sigma0);
+    // m in a tick: ticks are 2^-22 of sigma0 for 1/8 of a quantum.
+    const double speed = double(object.record.originQuantum.w) / 8 * 4194304.0 / double(least);
+    const double edge = std::sqrt(std::max(double(object.record.tint.w), 1e-12));
+    const double rings = double(object.record.horizon) * speed / edge;
+    return uint32_t(std::clamp(rings, 1.0, double(kRingsOfPicture)));
+}
+
+bool seenLately(const ObjectEntry& object, uint64_t frame) noexcept {
+    return object.seenFrame + kSeenFrames >= frame && (object.record.flags & kObjectHidden) == 0;
+}
+
+}  // namespace
+
+void VkBackend::State::look(const FwView& view, float height, uint64_t frame) noexcept {
+    if (!limits.looks.viewParams) return;
+    ViewInput input;
+    input.view = &view;
+    input.viewport[2] = input.viewport[3] = height > 0 ? height : kAnyHeight;
+    ViewParams params{};
+    limits.looks.viewParams(input, params);
+    for (size_t i = 0; i < objects.size(); ++i) {
+        ObjectEntry& object = objects[i];
+        if (!object.live || object.seenFrame == frame) continue;
+        if (!object.touched && (i + frame) % kIdleTurns != 0) continue;
+        // A host moves the vertices of what is skinned where it likes.
+        if (object.skinPlus1 != 0 ||
+            shows(params, sphereOf(object, *meshes[object.mesh].domain, params.eye)))
+            object.seenFrame = frame;
+    }
+}
+
+void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
+    for (ObjectEntry& object : s.objects) {
+        const bool unseen = (object.record.flags & kObjectUnseen) != 0;
+        const bool wanted = seenLately(object, s.open.ringFrame);
+        object.turns = object.live && object.touched && unseen == wanted;
+        if (!object.turns) continue;
+        needs.uploadBytes += 2 * uploaded(sizeof object.record.flags);
+        needs.appears |= wanted;
+    }
+}
+
+void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,
+                       UploadWriter& writer) {
+    const auto tell = [&](uint32_t slot, uint32_t flags) {
+        const Staged staged = writer.write(std::span<const uint32_t>(&flags, 1));
+        recorder.copyIn(staged.at, FW_BIND_OBJECTS,
+                        uint64_t(slot) * sizeof(BurnObject) + offsetof(BurnObject, flags),
+                        sizeof flags);
+    };
+    uint32_t rings = 0;
+    bool seen = false;
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+        ObjectEntry& object = s.objects[i];
+        uint32_t& flags = object.record.flags;
+        if (object.turns) {
+            flags ^= kObjectUnseen;
+            const bool comes = (flags & kObjectUnseen) == 0;
+            tell(i, comes ? flags | kObjectAnew : flags);
+            if (comes) {
+                recordPredictAnew(recorder, s.lists, i, object.record.tileCount);
+                rings = std::max(rings, ringsOf(object));
+            }
+        }
+        // What was lit by others is known to burn only later.
+        seen |= object.live && (flags & kObjectUnseen) == 0 &&
+                (object.touched || seenLately(object, s.open.ringFrame));
+    }
+    // A ring a round: long frames need more to stay ahead of a fast front.
+    auto rounds = uint32_t(std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1);
+    recordPredict(recorder, s.lists, plan.endTick, seen);
+    if (rings > 0) {
+        rounds += plan.frameIndex == 0 ? rings : std::min(rings, kRingsOfFrame);
+        for (uint32_t i = 0; i < s.objects.size(); ++i)
+            if (s.objects[i].turns && (s.objects[i].record.flags & kObjectUnseen) == 0)
+                tell(i, s.objects[i].record.flags);
+    }
+    for (uint32_t i = 1; seen && i < rounds; ++i)
+        recordPredict(recorder, s.lists, plan.endTick, seen);
+    s.predictWalks += seen ? rounds : 1;
+}
+
+}  // namespace fw::gpu::vk
