@@ -35,7 +35,7 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         components::Latch latch = object.latch;
         const components::DriveInput drive = driveInput(object);
         components::resetLatch(object.data, drive, latch);
-        latch.sent = components::sameDrive(object.data, latch, object.latch);
+        latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
         if (!latch.sent) sendRecords(object, drive, latch);
         frame_.latches.push_back({&object, latch, true});
         object.planStamp = planStamp_;

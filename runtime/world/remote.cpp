@@ -345,7 +345,7 @@ void World::touchNear() {
         object.planStamp = planStamp_;
         components::Latch latch = object.latch;
         components::resetLatch(object.data, driveInput(object), latch);
-        latch.sent = components::sameDrive(object.data, latch, object.latch);
+        latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
         frame_.latches.push_back({&object, latch, true});
     };
     if (remote_.flags & FW_WORLD_EMBERS) {

@@ -568,11 +568,12 @@ SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
     posed.pose = from.pose;
     components::resetLatch(posed, drive, latch);
     SavedRecords made;
+    // What has not burnt yet: the backend may have records of another wind, of this world's past.
+    latch.sent = from.touched;
     if (!from.touched) return made;
     latch.filters = from.filters;
     latch.pose = from.latched;
     made.records = components::makeRecords(posed, domain, drive, latch);
-    latch.sent = true;
     made.heated = components::hasHeat(object.data);
     if (made.heated) made.heat = components::makeHeatMaterials(posed, domain, def_.paceFactor);
     uint32_t window = made.records.timing.window;

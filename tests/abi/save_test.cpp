@@ -64,6 +64,29 @@ void goesBack(uint32_t backend) {
 TEST(Save, GoesBackInTheSameWorld) { goesBack(FW_BACKEND_CPU); }
 TEST(Save, GoesBackInTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
 
+// Back to before anything burnt, and to before it in a world that never saw the save's wind: what
+// catches then burns by that wind.
+void goesBackToBefore(uint32_t backend) {
+    BusyWorld w(backend);
+    if (!there(w)) GTEST_SKIP() << "there is no such backend here";
+    const float wind[3] = {2, 0, 1};
+    EXPECT_EQ(FW_OK, fwWorld_SetWind(w.world, wind));
+    w.run(0, 1);
+    const Bytes bytes = w.save();
+    w.run(1, 60);
+    const uint64_t then = w.hash();
+    w.run(60, 90);
+    ASSERT_EQ(FW_OK, w.load(bytes)) << lastMessage(w.world);
+    w.run(1, 60);
+    EXPECT_EQ(then, w.hash());
+    BusyWorld other(backend);
+    ASSERT_EQ(FW_OK, other.load(bytes)) << lastMessage(other.world);
+    other.run(1, 60);
+    EXPECT_EQ(then, other.hash());
+}
+TEST(Save, GoesBackToBeforeAnythingBurnt) { goesBackToBefore(FW_BACKEND_CPU); }
+TEST(Save, GoesBackToBeforeAnythingBurntOnADevice) { goesBackToBefore(FW_BACKEND_VULKAN); }
+
 // A world that sleeps stays asleep: the wind of its first fire begins with that fire, and not where
 // the save was loaded.
 TEST(Save, WhereNothingBurnsYetTheFirstFireIsAlike) {
