@@ -57,6 +57,17 @@ FwResult answer(const char* function, FwWorld* world,
     });
 }
 
+// *size: room in `buffer`, then what there is; buffer null: the host asks for the size.
+void giveBytes(std::span<const std::byte> bytes, const char* what, void* buffer, uint64_t& size) {
+    const uint64_t room = size;
+    size = bytes.size();
+    if (!buffer) return;
+    if (room < bytes.size())
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "*size is %llu and the %s has %zu bytes.",
+                   static_cast<unsigned long long>(room), what, bytes.size());
+    std::memcpy(buffer, bytes.data(), bytes.size());
+}
+
 void freeWorld(FwWorld* world) noexcept {
     FwContext* context = world->context;
     world->server.reset();
@@ -647,13 +658,7 @@ FwResult FW_CALL fwWorld_FetchSave(FwWorld* world, void* buffer, uint64_t* size)
         checkPointer(size, "size");
         const std::pmr::vector<std::byte>* bytes = w.fetchSave();
         if (!bytes) return FW_NOT_READY;
-        const uint64_t room = *size;
-        *size = bytes->size();
-        if (!buffer) return FW_OK;
-        if (room < bytes->size())
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "*size is %llu and the save has %zu bytes.",
-                       static_cast<unsigned long long>(room), bytes->size());
-        std::memcpy(buffer, bytes->data(), bytes->size());
+        giveBytes(*bytes, "save", buffer, *size);
         return FW_OK;
     });
 }
@@ -662,6 +667,44 @@ FwResult FW_CALL fwWorld_Load(FwWorld* world, const void* bytes, uint64_t size) 
     return onWorld("fwWorld_Load", world, [&](world::World& w) {
         checkPointer(bytes, "bytes");
         w.load({static_cast<const std::byte*>(bytes), size_t(size)});
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_StartLog(FwWorld* world) {
+    return onWorld("fwWorld_StartLog", world, [&](world::World& w) {
+        w.startLog();
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_StopLog(FwWorld* world) {
+    return onWorld("fwWorld_StopLog", world, [&](world::World& w) {
+        w.stopLog();
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_FetchLog(FwWorld* world, void* buffer, uint64_t* size) {
+    return onWorld("fwWorld_FetchLog", world, [&](world::World& w) {
+        checkPointer(size, "size");
+        giveBytes(w.fetchLog(), "log", buffer, *size);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_OpenLog(FwWorld* world, const void* bytes, uint64_t size) {
+    return onWorld("fwWorld_OpenLog", world, [&](world::World& w) {
+        if (size > 0) checkPointer(bytes, "bytes");
+        w.openLog({static_cast<const std::byte*>(bytes), size_t(size)});
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_PlayLog(FwWorld* world, uint64_t untilTick, float* seconds) {
+    return onWorld("fwWorld_PlayLog", world, [&](world::World& w) {
+        checkPointer(seconds, "seconds");
+        *seconds = w.playLog(untilTick);
         return FW_OK;
     });
 }

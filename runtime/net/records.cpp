@@ -7,37 +7,6 @@ namespace {
 
 using Kind = world::Deed::Kind;
 
-// What of a deed its kind has.
-struct DeedForm {
-    bool slot, tick, word;
-    uint32_t numbers;
-};
-constexpr DeedForm kForms[] = {
-    {false, false, false, 3},  // wind
-    {false, false, true, 0},   // flags
-    {true, true, true, 5},     // ignite
-    {true, false, false, 12},  // pose
-    {true, false, false, 12},  // moveBlocker
-    {true, false, false, 3},   // moveFire
-    {true, false, false, 1},   // firePower
-    {true, false, true, 6},    // moveEmitter
-    {true, false, false, 1},   // emitterPower
-    {true, false, true, 7},    // moveField
-    {true, false, false, 1},   // fieldAmount
-    {true, false, true, 11},   // windZone
-};
-static_assert(std::size(kForms) == size_t(Kind::count));
-
-// `s` is a Writer, or a Reader.
-template <class S, class T>
-void putDeed(S& s, T& deed) {
-    const DeedForm& form = kForms[size_t(deed.kind)];
-    if (form.slot) s.number(deed.slot);
-    if (form.tick) s.number(deed.tick);
-    if (form.word) s.number(deed.word);
-    for (uint32_t i = 0; i < form.numbers; ++i) s.number(deed.numbers[i]);
-}
-
 }  // namespace
 
 void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
@@ -46,7 +15,7 @@ void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
     writer.number(uint16_t(uint32_t(record.kind) | what << 8));
     writer.number(record.step);
     if (record.kind == RecordKind::deed) {
-        putDeed(writer, record.deed);
+        world::putDeed(writer, record.deed);
     } else if (record.kind == RecordKind::hashes) {
         writer.number(record.tick);
         writer.number(record.first);
@@ -72,7 +41,7 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
     if (isDeed) {
         record.deed = {};
         record.deed.kind = Kind(what);
-        putDeed(reader, record.deed);
+        world::putDeed(reader, record.deed);
     } else if (record.kind == RecordKind::hashes) {
         reader.number(record.tick);
         reader.number(record.first);

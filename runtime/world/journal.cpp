@@ -17,11 +17,15 @@ auto idAt(const Pool& pool, uint32_t slot) {
 }
 
 struct Performing {
-    explicit Performing(Journal& given) : journal(given) { journal.performs = true; }
-    ~Performing() { journal.performs = false; }
+    explicit Performing(Journal* given) : journal(given) {
+        if (journal) journal->performs = true;
+    }
+    ~Performing() {
+        if (journal) journal->performs = false;
+    }
     Performing(const Performing&) = delete;
     Performing& operator=(const Performing&) = delete;
-    Journal& journal;
+    Journal* journal;
 };
 
 }  // namespace
@@ -49,6 +53,7 @@ void World::mayChange() const {
 }
 
 void World::note(const Deed& deed) noexcept {
+    if (noted_) noted_->push({clock_.tick, false, deed});
     if (!journal_ || journal_->follows) return;
     try {
         journal_->deeds.push_back({clock_.tick, deed});
@@ -57,9 +62,13 @@ void World::note(const Deed& deed) noexcept {
     }
 }
 
+void World::noteSaveInLog() noexcept {
+    if (noted_) noted_->push({clock_.tick, true, {}});
+}
+
 void World::noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
                      uint32_t word) noexcept {
-    if (!journal_) return;
+    if (!journal_ && !noted_) return;
     Deed deed;
     deed.kind = kind;
     deed.slot = slot;
@@ -75,12 +84,12 @@ void World::notePose(Deed::Kind kind, uint32_t slot, const float transform[16]) 
 }
 
 void World::performLoad(std::span<const std::byte> bytes) {
-    const Performing performing(*journal_);
+    const Performing performing(journal_.get());
     load(bytes);
 }
 
 void World::perform(const Deed& deed) {
-    const Performing performing(*journal_);
+    const Performing performing(journal_.get());
     const float* numbers = deed.numbers.data();
     float transform[16] = {};
     for (int c = 0; c < 4; ++c) std::copy_n(numbers + 3 * c, 3, transform + 4 * c);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <memory_resource>
 #include <span>
 #include <vector>
@@ -36,6 +37,35 @@ struct Deed {
                         // windZone: see zoneWord
     std::array<float, 12> numbers{};
 };
+
+// What of a deed its kind has, in bytes. `s` is a core::Writer, or a core::Reader of a known kind.
+struct DeedForm {
+    bool slot, tick, word;
+    uint32_t numbers;
+};
+constexpr DeedForm kDeedForms[] = {
+    {false, false, false, 3},  // wind
+    {false, false, true, 0},   // flags
+    {true, true, true, 5},     // ignite
+    {true, false, false, 12},  // pose
+    {true, false, false, 12},  // moveBlocker
+    {true, false, false, 3},   // moveFire
+    {true, false, false, 1},   // firePower
+    {true, false, true, 6},    // moveEmitter
+    {true, false, false, 1},   // emitterPower
+    {true, false, true, 7},    // moveField
+    {true, false, false, 1},   // fieldAmount
+    {true, false, true, 11},   // windZone
+};
+static_assert(std::size(kDeedForms) == size_t(Deed::Kind::count));
+template <class S, class T>
+void putDeed(S& s, T& deed) {
+    const DeedForm& form = kDeedForms[size_t(deed.kind)];
+    if (form.slot) s.number(deed.slot);
+    if (form.tick) s.number(deed.tick);
+    if (form.word) s.number(deed.word);
+    for (uint32_t i = 0; i < form.numbers; ++i) s.number(deed.numbers[i]);
+}
 
 constexpr uint32_t kHashSteps = 8;    // an object's turn is at multiples of these
 constexpr uint32_t kHashRounds = 16;  // each has its turn once in so many; in more, if it is more

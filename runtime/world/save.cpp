@@ -173,6 +173,7 @@ void World::commitSave(uint64_t frameIndex) noexcept {
         } catch (...) {
             save.failed = true;
         }
+        if (who == size_t(SaveFor::host)) noteSaveInLog();
         if (who != size_t(SaveFor::net) || !journal_) continue;
         journal_->captured = true;
         journal_->capturedAt = clock_.tick;
@@ -643,6 +644,7 @@ void World::applySaved(const SavedWorld& saved,
     ++driveChanges_;
     ++geometry_;
     loadedFrame_ = lastFrame_;
+    loadedTick_ = clock_.tick;
     for (core::Owned<Save>& save : saves_) {
         if (!save || !save->pending) continue;
         save->pending = false;  // of the world that was

@@ -18,6 +18,7 @@
 #include "mesh/front/arrivals.h"
 #include "mesh/remote_tiles.h"
 #include "world/clock.h"
+#include "world/deed_log.h"
 #include "world/event_queue.h"
 #include "world/governor.h"
 #include "world/journal.h"
@@ -395,6 +396,13 @@ class World {
     // journal.cpp
     Journal& keepJournal(bool follows);  // from here on
     void dropJournal() noexcept { journal_ = {}; }
+    // deed_log.cpp
+    void startLog();
+    void stopLog() noexcept;
+    const std::pmr::vector<std::byte>& fetchLog();  // until the next call
+    void openLog(std::span<const std::byte> bytes);
+    // Does what comes before the next step; s that the world may go then. 0: `untilTick` is there.
+    float playLog(uint64_t untilTick);
     // save_tiles.cpp. Of an object in a save, a hash for each block of its tiles; none: it is at
     // rest there. The blocks whose hashes are not `theirs`, of a save of the same tick: as bytes
     // (false: the object is at rest), and put into that other save.
@@ -637,6 +645,7 @@ class World {
                   uint32_t word = 0) noexcept;
     void notePose(Deed::Kind kind, uint32_t slot, const float transform[16]) noexcept;
     void planHashes(const ClockAdvance& time);
+    void noteSaveInLog() noexcept;
     void noteHash(const gpu::BurnMap& map, const gpu::Readback& readback);
     void checkSaved(const SavedWorld& saved);  // throws
     // Its latch, too, as it was.
@@ -756,7 +765,9 @@ class World {
     uint64_t planStamp_ = 0;
     std::array<core::Owned<Save>, size_t(SaveFor::count)> saves_;  // once one was asked for
     core::Owned<Journal> journal_;                                 // null: nobody asks
-    uint64_t loadedFrame_ = 0;  // readbacks up to this frame are of another past
+    core::Owned<DeedLog> noted_, played_;                          // null: none
+    uint64_t loadedFrame_ = 0;     // readbacks up to this frame are of another past
+    uint64_t loadedTick_ = ~0ull;  // of the save that was loaded last
 
     // As of the last readback.
     uint64_t readbackFrame_ = 0, readbackTick_ = 0;

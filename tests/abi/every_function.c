@@ -121,6 +121,11 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RequestSave(NULL));
     REFUSES(fwWorld_FetchSave(NULL, NULL, NULL));
     REFUSES(fwWorld_Load(NULL, NULL, 0));
+    REFUSES(fwWorld_StartLog(NULL));
+    REFUSES(fwWorld_StopLog(NULL));
+    REFUSES(fwWorld_FetchLog(NULL, NULL, NULL));
+    REFUSES(fwWorld_OpenLog(NULL, NULL, 0));
+    REFUSES(fwWorld_PlayLog(NULL, 0, NULL));
     REFUSES(fwNet_Serve(NULL, NULL));
     REFUSES(fwNet_Join(NULL, NULL));
     REFUSES(fwNet_Leave(NULL));

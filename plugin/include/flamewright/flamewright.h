@@ -1099,6 +1099,30 @@ FW_API FwResult FW_CALL fwWorld_FetchSave(FwWorld*, void* buffer, uint64_t* size
  * Uploads with the next frame. [world] */
 FW_API FwResult FW_CALL fwWorld_Load(FwWorld*, const void* bytes, uint64_t size);
 
+/* ---- a log: any moment of a burn, seen again -------------------------------------------------------------- */
+
+/* What the host does to the burn, each with the tick it came before. With the last save before a moment it gives that moment
+ * bit by bit, on any backend, whatever frame rate either has: load the save, open the log, then
+ *     while (fwWorld_PlayLog(world, untilTick, &seconds) == FW_OK && seconds > 0) fwWorld_Step(world, seconds);
+ * In it are the same calls that a network sends by itself (see fwNet_Serve); all else (what is made and destroyed, colliders,
+ * points of fires, painted fields, vertices) the host does again at its time.
+ * Notes from here on, some 20 to 60 bytes a call; a log that was noted before is dropped. [world] */
+FW_API FwResult FW_CALL fwWorld_StartLog(FwWorld*);
+/* Notes no more, and drops what was noted. [world] */
+FW_API FwResult FW_CALL fwWorld_StopLog(FwWorld*);
+/* All that was noted, little-endian, versioned, with a checksum. As fwWorld_FetchSave: buffer null for the size, or
+ * with enough room; *size is what is (or would be) written, in bytes. The log goes on. [world] */
+FW_API FwResult FW_CALL fwWorld_FetchLog(FwWorld*, void* buffer, uint64_t* size);
+/* Reads a log to be played, in place of one that was; size 0: none any more. FW_ERROR_BAD_DATA, and nothing is changed: the
+ * bytes are damaged, cut, of another version, or of a world that is made of other things. [world] */
+FW_API FwResult FW_CALL fwWorld_OpenLog(FwWorld*, const void* bytes, uint64_t size);
+/* Does what the log has before the world's next step. *seconds: how far the world is to be moved before the next call: to
+ * the next thing in the log, or to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick), but no
+ * farther than a frame may go; 0: it is there. What lies before the world's present, or went into the save that was loaded
+ * there, is passed over; what the world refuses, too, and its log says so. Refused without a log, and while the world
+ * follows a server's. [world] */
+FW_API FwResult FW_CALL fwWorld_PlayLog(FwWorld*, uint64_t untilTick, float* seconds);
+
 /* ---- a network: one burn on many machines ------------------------------------------------------------------ */
 
 /* The server's world is the truth. Clients have worlds that are made of the same things in the same order (see fwWorld_Load);
@@ -1266,9 +1290,10 @@ typedef struct FwEnergyBook {
 FW_API FwResult FW_CALL fwWorld_GetEnergyBook(FwWorld*, FwEnergyBook* book); /* [world] */
 
 /* What a frame may cost. While it costs more, detail falls in eight levels, and rises when there is room: how many
- * volumetric flames have rays of their own and with how many samples, the largest on the screen last, and how many
- * triangles refined meshes aim at. Fires are never deleted, and what burns is the same bit by bit at every level. A
- * new load settles within 60 frames; a single slow frame changes nothing. */
+ * volumetric flames have rays of their own and with how many samples, the largest on the screen last, how many
+ * triangles refined meshes aim at, and how many quads flames of burning meshes and particles show (the others are
+ * larger for it); under a limit of bytes also how fine marched flames are. Fires are never deleted, and what burns is
+ * the same bit by bit at every level. A new load settles within 60 frames; a single slow frame changes nothing. */
 typedef struct FwBudgetDef {
     uint32_t structSize, reserved;  /* 0 */
     float gpuMilliseconds;     /* of all that is recorded for a frame, [0, 1000]; default 0: no limit */
@@ -1277,6 +1302,9 @@ typedef struct FwBudgetDef {
     float measuredMilliseconds;/* what the host measured of our part of the last frame on its GPU, [0, 1e5]; < 0, the
                                   default: take the library's time stamps. Needed where the queue family has none */
     uint32_t reserved1;        /* 0 */
+    uint64_t bytes;            /* of device memory that follows detail: of marched flames and of quads; default 0: no
+                                  limit. Buffers are made anew when the level changes. Not what is authoritative, nor
+                                  meshes and their refinement: see FwContextDef::gpuMemoryBudget */
 } FwBudgetDef;
 static inline FwBudgetDef fwDefaultBudgetDef(void) {
     FwBudgetDef d; fwInitDef(FW_DEF_BUDGET, &d, (uint32_t)sizeof d); return d;
@@ -1290,6 +1318,9 @@ typedef struct FwBudgetState {
     uint32_t volumeSteps;      /* samples of a ray at most */
     uint32_t refinedTriangles; /* that refined meshes aim to stay within */
     float gpuMilliseconds, cpuMilliseconds; /* of a frame, smooth; 0: not known */
+    float quads;               /* share of flames' quads and particles that show, [0, 1] */
+    uint32_t reserved;
+    uint64_t bytes;            /* that FwBudgetDef::bytes limits, now; 0 on the cpu backend */
 } FwBudgetState;
 FW_API FwResult FW_CALL fwWorld_GetBudgetState(FwWorld*, FwBudgetState* state); /* [world] */
 

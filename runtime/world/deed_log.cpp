@@ -1,0 +1,156 @@
+#include "world/deed_log.h"
+
+#include "core/hash.h"
+#include "core/stream.h"
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fw::world {
+namespace {
+
+constexpr uint32_t kMagic = 0x474C5746;  // "FWLG"
+constexpr uint32_t kLogVersion = 1;
+constexpr size_t kHeadBytes = 24;  // magic, version, identity, checksum of the rest
+constexpr uint16_t kSaveEntry = 0xFFFF;
+constexpr size_t kLeastEntry = sizeof(uint32_t) + sizeof(uint16_t);
+
+}  // namespace
+
+void DeedLog::push(const LogEntry& entry) noexcept {
+    try {
+        entries.push_back(entry);
+    } catch (...) {
+        lost = true;
+    }
+}
+
+void writeLog(std::span<const LogEntry> entries, uint64_t identity,
+              std::pmr::vector<std::byte>& out) {
+    out.clear();
+    core::Writer writer(out);
+    writer.number(kMagic);
+    writer.number(kLogVersion);
+    writer.number(identity);
+    writer.number(uint64_t(0));  // the checksum's place
+    writer.number(uint32_t(entries.size()));
+    for (const LogEntry& entry : entries) {
+        writer.number(uint32_t(entry.tick));
+        writer.number(entry.save ? kSaveEntry : uint16_t(entry.deed.kind));
+        if (!entry.save) putDeed(writer, entry.deed);
+    }
+    std::pmr::vector<std::byte> sum(out.get_allocator());
+    core::Writer(sum).number(core::hashBytes(std::span(out).subspan(kHeadBytes)));
+    std::copy(sum.begin(), sum.end(), out.begin() + kHeadBytes - sizeof(uint64_t));
+}
+
+void readLog(std::span<const std::byte> bytes, uint64_t identity,
+             std::pmr::vector<LogEntry>& entries) {
+    core::Reader reader(bytes, "log");
+    uint32_t magic = 0, version = 0;
+    uint64_t world = 0, sum = 0;
+    reader.number(magic);
+    if (magic != kMagic) core::fail(FW_ERROR_BAD_DATA, "The log does not begin with \"FWLG\".");
+    reader.number(version);
+    if (version != kLogVersion)
+        core::fail(FW_ERROR_BAD_DATA, "The log has format version %u; %u is read.", version,
+                   kLogVersion);
+    reader.number(world);
+    reader.number(sum);
+    if (sum != core::hashBytes(bytes.subspan(kHeadBytes)))
+        core::fail(FW_ERROR_BAD_DATA, "The log is damaged or cut: its checksum is not right.");
+    if (world != identity)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The log is of a world with other rules, objects or meshes than this one's.");
+    const uint32_t count = reader.count("entries", kLeastEntry);
+    entries.clear();
+    entries.reserve(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        LogEntry entry;
+        uint32_t tick = 0;
+        uint16_t kind = 0;
+        reader.number(tick);
+        reader.number(kind);
+        entry.tick = tick;
+        if (tick % gpu::kStepTicks != 0 || (i > 0 && entry.tick < entries.back().tick))
+            core::fail(FW_ERROR_BAD_DATA, "Entry %u of the log is at tick %u.", i, tick);
+        entry.save = kind == kSaveEntry;
+        if (!entry.save) {
+            if (kind >= uint32_t(Deed::Kind::count))
+                core::fail(FW_ERROR_BAD_DATA, "Entry %u of the log is of kind %u.", i, kind);
+            entry.deed.kind = Deed::Kind(kind);
+            putDeed(reader, entry.deed);
+        }
+        entries.push_back(entry);
+    }
+    if (reader.left() != 0)
+        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the log.", reader.left());
+}
+
+std::span<const LogEntry> fromTick(std::span<const LogEntry> entries, uint64_t tick,
+                                   bool loaded) noexcept {
+    auto at = std::lower_bound(entries.begin(), entries.end(), tick,
+                               [](const LogEntry& entry, uint64_t t) { return entry.tick < t; });
+    if (loaded) {
+        const auto end = std::find_if(at, entries.end(),
+                                      [&](const LogEntry& entry) { return entry.tick != tick; });
+        const auto save = std::find_if(at, end, [](const LogEntry& entry) { return entry.save; });
+        if (save != end) at = save;
+    }
+    return entries.subspan(size_t(at - entries.begin()));
+}
+
+// ---- World --------------------------------------------------------------------------------------
+
+void World::startLog() { noted_ = core::Owned<DeedLog>::make(memory_, memory_); }
+
+void World::stopLog() noexcept { noted_ = {}; }
+
+const std::pmr::vector<std::byte>& World::fetchLog() {
+    if (!noted_)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "The world notes no log; fwWorld_StartLog first.");
+    if (noted_->lost)
+        core::fail(FW_ERROR_OUT_OF_MEMORY, "Memory ended while the log was noted; it has a gap.");
+    writeLog(noted_->entries, identity(), noted_->bytes);
+    return noted_->bytes;
+}
+
+void World::openLog(std::span<const std::byte> bytes) {
+    if (bytes.empty()) {
+        played_ = {};
+        return;
+    }
+    auto log = core::Owned<DeedLog>::make(memory_, memory_);
+    readLog(bytes, identity(), log->entries);
+    played_ = std::move(log);
+}
+
+float World::playLog(uint64_t untilTick) {
+    if (!played_)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "There is no log to play; fwWorld_OpenLog first.");
+    mayChange();
+    std::span<const LogEntry> ahead =
+        fromTick(played_->entries, clock_.tick, loadedTick_ == clock_.tick);
+    uint64_t until = untilTick - untilTick % gpu::kStepTicks;
+    if (until <= clock_.tick) return 0;
+    for (; !ahead.empty() && ahead.front().tick == clock_.tick; ahead = ahead.subspan(1)) {
+        if (ahead.front().save) continue;
+        try {
+            perform(ahead.front().deed);
+        } catch (const core::Error& error) {
+            log_.write(FW_LOG_WARNING, "A call of the log at tick %llu is refused: %s",
+                       static_cast<unsigned long long>(clock_.tick), error.message);
+        }
+    }
+    if (!ahead.empty()) until = std::min(until, ahead.front().tick);
+    until = std::min(until, clock_.tick + uint64_t(mostSteps()) * gpu::kStepTicks);
+    // Never a hair too short: the next call would find the step still ahead.
+    const double exact = secondsTo(until);
+    const auto seconds = float(exact);
+    return double(seconds) < exact ? std::nextafter(seconds, std::numeric_limits<float>::infinity())
+                                   : seconds;
+}
+
+}  // namespace fw::world
