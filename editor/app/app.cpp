@@ -30,7 +30,8 @@ App::App(const sample::VulkanHost& hostGiven, FwContext* contextGiven, fwui::UiR
       live(hostGiven, contextGiven, uiGiven),
       flame(std::make_unique<FlamePage>(hostGiven, contextGiven, uiGiven)),
       paint(std::make_unique<PaintPage>()),
-      output(std::make_unique<OutputPage>()) {
+      output(std::make_unique<OutputPage>()),
+      cards(hostGiven, uiGiven, builtIns().size()) {
     const std::string name = host.properties.deviceName;
     slow = host.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     flame->slow = slow;
@@ -143,6 +144,24 @@ void frameSelection(App& app, bool all) {
     const float half = 0.5f * glm::radians(std::max(5.0f, app.camera.fieldOfView));
     const float least = std::atan(std::tan(half) * std::min(1.0f, aspect));
     app.camera.distance = 1.15f * radius / std::sin(least);
+}
+
+void compareStep(App& app, size_t step) {
+    if (step >= app.document.steps.size()) return;
+    fwedit::Document then = app.document;
+    fwedit::goTo(then, step);
+    app.live.compareWith(then.scene, then.images, fwedit::absoluteBase(app.document));
+    const std::string& name = app.document.steps[step].name;
+    app.compared = name.empty() ? "As it was opened" : "After: " + name;
+    say(app, "Compared side by side from here on");
+}
+
+std::string pinWords(const App& app, fwview::WhyCard& pin) {
+    const double caught = app.live.caughtAt(pin), now = app.live.time();
+    if (caught >= 0 && caught > now) return "Catches at " + clockText(caught);
+    if (caught >= 0) return "Caught at " + clockText(caught);
+    if (!pin.error.empty()) return pin.error;
+    return pin.answered ? pin.answer.answer : "Asking the fire";
 }
 
 const char* iconOf(const fwedit::Scene& scene, Kind kind, ObjectId id) {
@@ -644,6 +663,16 @@ std::vector<Action> makeActions(App& app) {
          [at] { at->live.seek(double(at->document.scene.settings.duration)); },
          {},
          scene},
+        {"Compare",
+         "Time",
+         "C",
+         icons::compare,
+         [at] {
+             if (at->live.comparing()) return at->live.endCompare();
+             compareStep(*at, at->document.at);
+         },
+         {},
+         scene},
         {"Loop", "Time", "L", icons::loop, [at] { at->looping = !at->looping; }, {}, scene},
         {"Add event",
          "Time",
@@ -787,6 +816,7 @@ void recordPages(App& app, const fwui::Frame& frame) {
 bool isLively(const App& app) {
     if (app.page == Page::kFlame && app.flame->lively()) return true;
     if (app.output->lively()) return true;
+    if (app.page == Page::kWelcome && app.cardsCome) return true;
     if (app.page != Page::kScene && app.page != Page::kPaint) return false;
     if (app.now - app.movedAt < 1) return true;  // until the sharp picture is there
     return app.playing || !app.live.settled() || app.live.preparing() || app.live.resting();
@@ -803,7 +833,10 @@ void showApp(App& app) {
             showWelcome(app, app.screen);
             break;
         case Page::kScene:
-            showScene(app, app.screen);
+            if (app.bare)
+                showBare(app, app.screen);
+            else
+                showScene(app, app.screen);
             break;
         case Page::kPaint:
             showPaint(app, app.screen);

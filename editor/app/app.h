@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cards.h"
 #include "app/user_state.h"
 #include "document/document.h"
 #include "shell/widgets.h"
@@ -50,6 +51,13 @@ struct FileDialog {
     bool fresh = false;
 };
 
+// How sharp a moving picture is on a device of the CPU's: as sharp as 15 frames a second allow.
+struct Pace {
+    uint32_t step = 3;  // of the shares in viewport_panel.cpp, the sharpest first
+    uint32_t frames = 0;
+    float seconds = 0;  // that these took
+};
+
 struct App {
     App(const sample::VulkanHost& host, FwContext* context, fwui::UiRenderer& ui);
     ~App();
@@ -64,6 +72,8 @@ struct App {
     std::unique_ptr<FlamePage> flame;
     std::unique_ptr<PaintPage> paint;
     std::unique_ptr<OutputPage> output;
+    Cards cards;
+    bool cardsCome = true;  // some are still to be loaded
     UserState user;
     std::string device;  // as people call it
     bool slow = false;   // a device of the CPU's: pictures that move are drawn smaller
@@ -80,11 +90,14 @@ struct App {
     bool scrubbing = false;   // a hand holds the playhead
     bool burnTimes = false;   // the map of burn times lies over the picture
     double burnTimesAt = -1;  // s that it was coloured at
+    Pace pace;
     double movedAt = -1e9;    // s, when the view last moved by hand
+    std::string compared;     // what the left half of a comparison is
+    bool bare = false;        // the picture of the scene and nothing else
     bool showHelpers = true;  // marks, gizmo and outline over the picture
     int leftTab = 0;
     std::string filter;
-    bool placeOpen = true, mainOpen = true, timeOpen = true, moreOpen = false;
+    bool pinsOpen = true, placeOpen = true, mainOpen = true, timeOpen = true, moreOpen = false;
     std::vector<std::pair<float, float>> strip;  // time, share burnt, as it was seen
     fwedit::ObjectId renaming = 0;
     std::string renamed;
@@ -118,6 +131,10 @@ bool isSelected(const App& app, fwedit::ObjectId id);
 void select(App& app, fwedit::ObjectId id, bool add, bool flip);
 fwedit::ObjectId addObject(App& app, fwedit::Kind kind, std::vector<fwedit::Assignment> fields);
 void frameSelection(App& app, bool all);
+// Lays the scene after that step of the history beside what it is now.
+void compareStep(App& app, size_t step);
+// What is known of a pinned spot at the time that is shown: "Catches at 0:12.4".
+std::string pinWords(const App& app, fwview::WhyCard& pin);
 const char* iconOf(const fwedit::Scene& scene, fwedit::Kind kind, fwedit::ObjectId id);
 ImU32 colorOf(const fwedit::Scene& scene, fwedit::Kind kind, fwedit::ObjectId id);
 std::string clockText(double seconds, bool tenths = true);
@@ -142,6 +159,7 @@ void askFile(App& app, FileDialog dialog);
 // ---- pages and what lies over them; each draws itself
 void showWelcome(App& app, fwui::Rect rect);
 void showScene(App& app, fwui::Rect rect);
+void showBare(App& app, const fwui::Rect& rect);
 void showPaint(App& app, fwui::Rect rect);
 void showFlame(App& app, fwui::Rect rect);
 void showOutput(App& app, fwui::Rect rect);

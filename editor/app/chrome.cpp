@@ -206,9 +206,14 @@ void showTransport(App& app, ImDrawList* list, const Rect& rect, bool marks) {
     if (!marks) return;
     const Action* event = findAction(app, "Add event");
     const ToolLook look{.icon = icons::event, .label = "Event"};
-    if (toolButton("event", {rect.x1 - dp(8) - toolButtonWidth(look), y}, look, "Add an event here",
-                   "M"))
-        event->run();
+    ToolLook beside{.icon = icons::compare, .label = "Compare"};
+    beside.active = app.live.comparing();
+    float right = rect.x1 - dp(8) - toolButtonWidth(beside);
+    if (toolButton("compare", {right, y}, beside,
+                   beside.active ? "Back to one picture" : "Keep this beside what changes", "C"))
+        findAction(app, "Compare")->run();
+    right -= toolButtonWidth(look) + dp(4);
+    if (toolButton("event", {right, y}, look, "Add an event here", "M")) event->run();
 }
 
 }  // namespace fwapp

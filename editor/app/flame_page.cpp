@@ -202,6 +202,26 @@ FlamePage::~FlamePage() {
     if (targetId.index1 != 0) fwContext_UnregisterTarget(context, targetId);
 }
 
+namespace {
+
+// A picture of a preset's glow in the preset's own colour, where it has one.
+void tintPixels(uint32_t preset, std::vector<uint8_t>& rgba) {
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    fwInitFirePreset(&def, preset);
+    if (!(def.tintWeight > 0)) return;
+    float tint[3];
+    for (int c = 0; c < 3; ++c) tint[c] = std::pow(std::clamp(def.tint[c], 0.0f, 1.0f), 1 / 2.2f);
+    for (size_t i = 0; i + 3 < rgba.size(); i += 4) {
+        const float bright = float(std::max({rgba[i], rgba[i + 1], rgba[i + 2]}));
+        for (size_t c = 0; c < 3; ++c) {
+            const float own = float(rgba[i + c]);
+            rgba[i + c] = uint8_t(own + def.tintWeight * (bright * tint[c] - own));
+        }
+    }
+}
+
+}  // namespace
+
 // Worlds, backdrops and targets: when the page is first seen.
 void FlamePage::open() {
     opened = true;
@@ -210,6 +230,7 @@ void FlamePage::open() {
         std::vector<uint8_t> half(FlameCanvas::kBytes), whole(2 * FlameCanvas::kBytes);
         const ProfilePaint standard = presetPaint(i);
         fillPixels(standard, ProfilePlane::kTemperature, half.data(), exposureOf(standard));
+        tintPixels(i, half);
         constexpr size_t kWidth = ProfilePaint::kWidth;
         for (size_t y = 0; y < size_t(ProfilePaint::kHeight); ++y) {
             for (size_t x = 0; x < kWidth; ++x) {

@@ -450,6 +450,34 @@ void showParts(App& app, Rows& rows, Kind kind, ObjectId id) {
     }
 }
 
+// The spots that were asked about and kept, as the fire is at the time that is shown.
+void showPins(App& app, Rows& rows) {
+    std::vector<fwview::WhyCard>& pins = app.live.pins;
+    if (pins.empty() || !section(rows, "Pinned spots", app.pinsOpen)) return;
+    size_t closed = pins.size();
+    for (size_t i = 0; i < pins.size(); ++i) {
+        ImGui::PushID(int(i));
+        const fwedit::Mesh* mesh = fwedit::findIn(app.document.scene.meshes, pins[i].mesh);
+        const ImVec2 middle(rows.x0 + dp(9), rows.y + dp(10));
+        rows.list->AddCircleFilled(middle, dp(9), colors::title, 24);
+        drawTextCentred(rows.list, fonts().smallSemi, middle.x, middle.y, colors::gap,
+                        std::to_string(i + 1).c_str());
+        const float x = rows.x0 + dp(26), width = rows.x1 - x - dp(24);
+        drawTextFit(rows.list, fonts().body, x, rows.y + dp(10), width, colors::title,
+                    mesh ? mesh->name.c_str() : "Its mesh is gone");
+        if (iconButton("unpin", {rows.x1 - dp(8), rows.y + dp(10)}, icons::close, colors::dim,
+                       "Unpin"))
+            closed = i;
+        rows.y += dp(22);
+        const std::string words = mesh ? pinWords(app, pins[i]) : std::string();
+        rows.y += drawTextWrapped(rows.list, fonts().small, {x, rows.y}, width, colors::text,
+                                  words.c_str()) +
+                  dp(8);
+        ImGui::PopID();
+    }
+    if (closed < pins.size()) pins.erase(pins.begin() + std::ptrdiff_t(closed));
+}
+
 }  // namespace
 
 void showInspector(App& app, Rect rect) {
@@ -505,6 +533,7 @@ void showInspector(App& app, Rect rect) {
     }
     ImGui::PushID(int(id));
     Rows rows{list, rect.x0 + dp(10), rect.x1 - dp(10), rect.y0 - ImGui::GetScrollY()};
+    showPins(app, rows);
     showParts(app, rows, kind, id);
     ImGui::SetCursorScreenPos({rect.x0, rows.y + dp(8)});
     ImGui::Dummy({1, 1});

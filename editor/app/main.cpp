@@ -147,6 +147,7 @@ class Program {
                 input_.dropped.clear();
             }
             fwapp::autosave(*app_);
+            if (fwapp::followLink(*app_)) quiet = 0;
             if (!lively && !touched) {
                 app_->now += passed;
                 app_->framesPerSecond = 0;
@@ -192,8 +193,10 @@ class Program {
         constexpr float kStep = 1.0f / 30;
         app_->live.awaitPipelines();
         for (int i = 0; i < 4; ++i) frame(kStep);
-        for (int i = 0;
-             i < 2000 && (app_->live.preparing() || app_->live.resting() || app_->output->lively());
+        while (app_->page == fwapp::Page::kWelcome && app_->cardsCome) frame(kStep);
+        for (int i = 0; i < 2000 &&
+                        (app_->live.preparing() || app_->live.resting() || app_->output->lively() ||
+                         (app_->live.comparing() && !app_->live.comparesNow()));
              ++i) {
             frame(kStep);
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -202,6 +205,7 @@ class Program {
         app_->playing = wishes_.seconds > 0;
         for (float t = 0; t < wishes_.seconds; t += kStep) frame(kStep);
         app_->playing = false;
+        if (wishes_.page.find("pin") != std::string::npos) pinMiddle();
         for (int i = 0; i < 3; ++i) frame(kStep);
         sample::writePng(wishes_.shot, frames_.picture());
     }
@@ -215,6 +219,16 @@ class Program {
             if (!fwedit::runLine(app_->document, line, message))
                 throw sample::Failure("\"" + line + "\": " + message);
         for (int i = 0; i < 3 && !wishes_.lines.empty(); ++i) frame(1.0f / 30);
+    }
+
+    // Asks the spot in the middle of the picture, and keeps it.
+    void pinMiddle() {
+        fwview::LiveScene& live = app_->live;
+        const fwview::SurfaceHit hit = live.pick(0.5f, 0.5f, false);
+        if (!hit.hit) return;
+        live.askWhy(hit.object, hit.position);
+        for (int i = 0; i < 200 && !live.why.answered; ++i) frame(1.0f / 30);
+        live.pinWhy();
     }
 
     // For whoever drives the program from outside: what was done, and when there is a picture.
@@ -305,6 +319,8 @@ void openPage(fwapp::App& app, const Wishes& wishes) {
     if (asks("mesh") && !app.document.scene.meshes.empty())
         fwapp::select(app, app.document.scene.meshes[0].id, false, false);
     if (asks("history")) app.leftTab = 1;
+    if (asks("beside")) fwapp::findAction(app, "Compare")->run();
+    app.bare = asks("bare");
 }
 
 int run(const sample::Options& options, const Wishes& wishes) {
@@ -342,7 +358,9 @@ int main(int argc, char** argv) {
                                     "[FILE.fwscene | FILE.glb] | --script FILE [--headless]");
         parser.addText("--shot", "FILE.png", "with --headless: a picture of the window, then leave",
                        wishes.shot);
-        parser.addText("--page", "NAME", "welcome, scene, paint, flame or export", wishes.page);
+        parser.addText("--page", "NAME",
+                       "welcome, scene, paint, flame, export; scene+bare: the picture alone",
+                       wishes.page);
         parser.addText("--scene", "NAME", "a scene of the welcome page, by its name",
                        wishes.builtIn);
         parser.addText("--do", "LINES", "with --shot: commands before it, ; between them",

@@ -157,6 +157,15 @@ bool finished(const OutputPage::Job& job) {
 
 void stop(OutputPage::Job& job) { job.stop = true; }
 
+std::string linkWords(const App& app) {
+    const OutputPage& page = *app.output;
+    if (!page.linked) return "Off. Nothing leaves the editor.";
+    if (!page.link.connected()) return "No sample listens there. It is sought each second.";
+    if (!page.link.shown(app.document)) return "Sending the change";
+    if (!page.link.answer().empty()) return page.link.answer();
+    return "The sample shows the scene as it is here.";
+}
+
 }  // namespace
 
 OutputPage::~OutputPage() {
@@ -199,6 +208,22 @@ void followOutput(App& app) {
     });
 }
 
+bool followLink(App& app) {
+    constexpr double kCallAgain = 1;  // s
+    OutputPage& page = *app.output;
+    const std::string before = linkWords(app);
+    if (!page.linked) {
+        page.link.disconnect();
+    } else if (app.page != Page::kWelcome) {
+        if (!page.link.connected() && app.now - page.calledAt > kCallAgain) {
+            page.calledAt = app.now;
+            page.link.connect(uint16_t(page.port), page.linkProblem);
+        }
+        page.link.follow(app.document);
+    }
+    return linkWords(app) != before;
+}
+
 void addOutputActions(App& app, std::vector<Action>& list) {
     App* at = &app;
     const int page = int(Page::kOutput);
@@ -220,6 +245,17 @@ void addOutputActions(App& app, std::vector<Action>& list) {
           [at] { copyCode(*at); },
           {},
           page},
+         {"Link to a sample",
+          "Export",
+          "Ctrl+L",
+          icons::link,
+          [at] {
+              at->output->linked = !at->output->linked;
+              at->output->calledAt = -1e9;
+              say(*at, at->output->linked ? "Changes go to the sample" : "The link is off");
+          },
+          {},
+          -3},
          {"Stop writing", "Export", "", icons::close, [at] { stop(at->output->job); },
           [at] { return at->output->writes(); }, page}});
 }
@@ -263,6 +299,20 @@ void showActs(App& app, const Rect& rect) {
     if (section(rows, "For the game", page.gameOpen)) {
         note(rows, "Burn maps, paint, pictures and flame shapes, and the code that loads them.");
         act(app, rows, "Write game files", true);
+    }
+    if (section(rows, "Live link", page.linkOpen)) {
+        note(rows,
+             "A sample of the game shows each change as it is made: samples/run 14_scene "
+             "--link and this port.");
+        rows.label("Linked");
+        bool linked = page.linked;
+        if (toggle("linked", {rows.fieldX(), rows.y}, linked))
+            findAction(app, "Link to a sample")->run();
+        rows.next();
+        const uint32_t port = page.port;
+        wholeRow(rows, "Port", page.port, nullptr, 1024, 65535);
+        if (page.port != port) page.link.disconnect();
+        note(rows, linkWords(app).c_str());
     }
     if (section(rows, "Filmstrip", page.stripOpen)) {
         wholeRow(rows, "Pictures", page.strip.count, nullptr, 2, 32);
@@ -344,7 +394,6 @@ void showCode(App& app, Rect rect) {
     ImDrawList* inner = ImGui::GetWindowDrawList();
     const float row = dp(17), left = rect.x0 + dp(14) - ImGui::GetScrollX();
     const float top = rect.y0 + dp(12) - ImGui::GetScrollY();
-    const float indent = textSize(fonts().body, "n").x;  // of a space: letters are not all as wide
     float widest = 0;
     size_t at = 0;
     for (size_t i = 0; at < code.size(); ++i) {
@@ -352,10 +401,8 @@ void showCode(App& app, Rect rect) {
         const float y = top + row * (float(i) + 0.5f);
         if (y > rect.y0 - row && y < rect.y1 + row && end > at) {
             const std::string line = code.substr(at, end - at);
-            const size_t first = std::min(line.find_first_not_of(' '), line.size());
-            const float from = left + indent * float(first);
-            drawText(inner, fonts().body, from, y, codeColor(line), line.c_str() + first);
-            widest = std::max(widest, from - left + textSize(fonts().body, line.c_str() + first).x);
+            drawText(inner, fonts().mono, left, y, codeColor(line), line.c_str());
+            widest = std::max(widest, textSize(fonts().mono, line.c_str()).x);
         }
         at = end + 1;
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/app.h"
+#include "link/scene_link.h"
 #include "output/output.h"
 
 namespace fwapp {
@@ -41,7 +42,13 @@ struct OutputPage {
     fwedit::FilmstripDef strip;
     fwedit::TurntableDef turn;
     int flame = 0;  // of the scene's, for a flipbook
-    bool gameOpen = true, bookOpen = true, timesOpen = true, stripOpen = true, turnOpen = true;
+    fwlink::SceneSender link;
+    bool linked = false;  // wished; off until somebody switches it on
+    uint32_t port = fwlink::kUsualPort;
+    double calledAt = -1e9;   // s, App::now, when the sample was last sought
+    std::string linkProblem;  // why there is none
+    bool gameOpen = true, linkOpen = true, bookOpen = true, timesOpen = true, stripOpen = true,
+         turnOpen = true;
 
     Job job;   // what is written
     Job look;  // the code, for the page
@@ -58,5 +65,8 @@ struct OutputPage {
 void addOutputActions(App& app, std::vector<Action>& list);
 // Takes over what the background has finished; each frame, whatever the page.
 void followOutput(App& app);
+// Pushes what has changed to the sample that is linked, or seeks it. True: what is said of it has
+// changed. Nothing waits; call it often.
+bool followLink(App& app);
 
 }  // namespace fwapp

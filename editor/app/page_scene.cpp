@@ -197,6 +197,12 @@ void showHistory(App& app, const Rect& rect) {
                            : colors::text,
                     i == 0 ? "As it was opened" : app.document.steps[i].name.c_str());
         if (row.clicked) fwedit::goTo(app.document, i);
+        if (row.hovered && ImGui::IsMouseClicked(1)) ImGui::OpenPopup("step menu");
+        if (beginMenu("step menu", ImGui::GetMousePosOnOpeningCurrentPopup(), dp(190))) {
+            if (menuItem("Go back to this", icons::history)) fwedit::goTo(app.document, i);
+            if (menuItem("Compare with this", icons::compare)) compareStep(app, i);
+            endMenu();
+        }
         ImGui::PopID();
         y += dp(24);
     }
@@ -383,6 +389,28 @@ void showStrip(const App& app, ImDrawList* list, const Rect& rect, const TimeSca
     }
 }
 
+// Small pictures of the burn, as far as it was seen.
+void showFilm(const App& app, ImDrawList* list, const Rect& rect, const TimeScale& scale) {
+    const fwview::FilmStrip& film = app.live.film;
+    const float y0 = rect.y0, y1 = rect.y1 - dp(4);
+    if (film.empty() || !app.live.burn()) {
+        list->AddRectFilled({scale.x0, y0}, {scale.x1, y1}, colors::well);
+        drawText(list, fonts().small, scale.x0 + dp(8), 0.5f * (y0 + y1), colors::dim,
+                 "Pictures of what was seen show here");
+        return;
+    }
+    const float width = (scale.x1 - scale.x0) / float(film.kPictures);
+    for (uint32_t i = 0; i < film.kPictures; ++i) {
+        const ImVec2 low(std::floor(scale.x0 + width * float(i)), y0);
+        const ImVec2 high(std::floor(scale.x0 + width * float(i + 1)) - hairline(), y1);
+        list->AddRectFilled(low, high, colors::well);
+        if (!film.has(i)) continue;
+        ImVec2 from, to;
+        film.place(i, (high.x - low.x) / (high.y - low.y), from, to);
+        list->AddImage(film.texture(), low, high, from, to);
+    }
+}
+
 void recordStrip(App& app) {
     const fwedit::Burn* burn = app.live.burn();
     if (!burn || app.live.preparing()) return;
@@ -435,9 +463,17 @@ void showTimeline(App& app, Rect rect) {
         app.live.seek(wanted);
     }
     drawText(list, fonts().small, rect.x0 + dp(10), events.midY(), colors::dim, "Events");
+    // Little height: the strip alone; the film has what is left of it.
     if (rect.height() > dp(14)) {
-        drawText(list, fonts().small, rect.x0 + dp(10), rect.midY(), colors::dim, "Burn strip");
-        showStrip(app, list, rect, scale);
+        const Rect strip = rect.cutTop(std::min(dp(26), rect.height()));
+        drawText(list, fonts().small, strip.x0 + dp(10), strip.midY() - dp(1), colors::dim,
+                 "Burn strip");
+        showStrip(app, list, strip, scale);
+    }
+    if (rect.height() > dp(18)) {
+        drawText(list, fonts().small, rect.x0 + dp(10), rect.midY() - dp(2), colors::dim,
+                 "Filmstrip");
+        showFilm(app, list, rect, scale);
     }
     const float x = std::floor(scale.x(now));
     list->AddRectFilled({x, ruler.y0 + dp(10)}, {x + dp(1.5f), bottom - dp(3)}, colors::accent);
@@ -464,6 +500,12 @@ void followBurnTimes(App& app) {
 }
 
 }  // namespace
+
+void showBare(App& app, const Rect& rect) {
+    app.live.follow(app.document);
+    app.live.shown = fwview::Shown::kBurn;
+    showPicture(app, rect);
+}
 
 void showScene(App& app, Rect rect) {
     app.live.follow(app.document);

@@ -130,7 +130,7 @@ void showCards(App& app, Rect rect) {
     const int columns = std::clamp(int((rect.width() - dp(72)) / dp(270)), 1, 4);
     const float width =
         std::floor((rect.width() - dp(72) - gap * float(columns - 1)) / float(columns));
-    const float picture = std::floor(width * 0.62f), height = picture + dp(60);
+    const float picture = std::floor(width / kCardAspect), height = picture + dp(60);
     const auto cards = builtIns();
     for (size_t i = 0; i < cards.size(); ++i) {
         const BuiltIn& card = cards[i];
@@ -144,8 +144,12 @@ void showCards(App& app, Rect rect) {
         drawBox(list, low, high, hovered ? colors::control : colors::raised, 8);
         const ImVec2 end(high.x, low.y + picture);
         list->AddRectFilled(low, end, colors::well, dp(8), ImDrawFlags_RoundCornersTop);
-        drawIcon(list, fonts().icon34, {(low.x + end.x) * 0.5f, (low.y + end.y) * 0.5f},
-                 faded(colors::heat, 0.8f), card.icon);
+        if (void* texture = app.cards.texture(i))
+            list->AddImageRounded(texture, low, end, {0, 0}, {1, 1}, colors::white, dp(8),
+                                  ImDrawFlags_RoundCornersTop);
+        else
+            drawIcon(list, fonts().icon34, {(low.x + end.x) * 0.5f, (low.y + end.y) * 0.5f},
+                     faded(colors::heat, 0.8f), card.icon);
         drawText(list, fonts().semi, low.x + dp(12), end.y + dp(20), colors::title, card.name);
         drawTextFit(list, fonts().small, low.x + dp(12), end.y + dp(39), width - dp(24),
                     colors::dim, card.about);
@@ -157,6 +161,7 @@ void showCards(App& app, Rect rect) {
 }  // namespace
 
 void showWelcome(App& app, Rect rect) {
+    if (app.cardsCome && app.now > 0.05) app.cardsCome = app.cards.loadNext();
     showTopBar(app, rect.cutTop(dp(metrics::topBar)));
     showStatus(app, rect.cutBottom(dp(metrics::status)),
                {{"Ctrl+O", "open"}, {"Ctrl+N", "new scene"}, {"F1", "all keys"}});

@@ -605,8 +605,13 @@ void showWhy(App& app, ImDrawList* list, const Picture& picture) {
     const std::string head = why.answered        ? headOf(answer.answer)
                              : why.error.empty() ? std::string("Asking the fire")
                                                  : std::string("No answer");
-    drawTextFit(list, fonts().heading, x + dp(24), y + dp(22), inner - dp(50), colors::title,
+    drawTextFit(list, fonts().heading, x + dp(24), y + dp(22), inner - dp(74), colors::title,
                 head.c_str());
+    if (why.answered && iconButton("pin why", {high.x - dp(42), y + dp(22)}, icons::pin,
+                                   colors::dim, "Keep this spot in the inspector")) {
+        app.live.pinWhy();
+        return;
+    }
     if (iconButton("close why", {high.x - dp(18), y + dp(22)}, icons::close, colors::dim,
                    "Close")) {
         why = {};
@@ -685,6 +690,38 @@ void drawTimeLegend(const App& app, ImDrawList* list, ImVec2 low) {
                     clockText(duration / 2, false).c_str());
     drawTextRight(list, fonts().small, low.x + dp(202), low.y + dp(45), colors::text,
                   clockText(duration, false).c_str());
+}
+
+// The spots that are kept, with their numbers.
+void drawPins(App& app, ImDrawList* list, const Picture& picture) {
+    for (size_t i = 0; i < app.live.pins.size(); ++i) {
+        ImVec2 spot;
+        if (!picture.at(app.live.pins[i].position, spot)) continue;
+        list->AddCircleFilled(spot, dp(9), colors::white, 24);
+        list->AddCircle(spot, dp(9), hex(0x000000, 140), 24, dp(1.5f));
+        drawTextCentred(list, fonts().smallSemi, spot.x, spot.y, hex(0x101113),
+                        std::to_string(i + 1).c_str());
+    }
+}
+
+// The names of the two halves, and the line between them.
+void drawHalves(const App& app, ImDrawList* list, const Rect& rect, const Rect& worked) {
+    if (!app.live.comparing()) return;
+    if (!app.live.comparesNow()) {
+        drawChip(list, {rect.midX(), rect.y0 + dp(20)}, "Preparing what it is compared with");
+        return;
+    }
+    list->AddRectFilled({worked.x0 - dp(1), rect.y0}, {worked.x0 + dp(1), rect.y1}, colors::gap);
+    const auto name = [&](float x, float room, const char* letter, const char* what) {
+        const float width = std::min(room - dp(24), textSize(fonts().body, what).x + dp(42));
+        const ImVec2 low(x + dp(12), rect.y0 + dp(12));
+        drawBox(list, low, low + ImVec2(width, dp(26)), hex(0x151618, 215), 6);
+        drawText(list, fonts().semi, low.x + dp(10), low.y + dp(13), colors::accent, letter);
+        drawTextFit(list, fonts().body, low.x + dp(28), low.y + dp(13), width - dp(38),
+                    colors::title, what);
+    };
+    name(rect.x0, worked.x0 - rect.x0, "A", app.compared.c_str());
+    name(worked.x0, worked.width() - dp(90), "B", "Now");
 }
 
 // What a click means: the marker under it, else the surface, else nothing.
@@ -791,16 +828,50 @@ void zoom(App& app, float notches) {
     app.camera.distance = std::clamp(app.camera.distance * std::pow(0.88f, notches), 0.01f, 1e4f);
 }
 
+namespace {
+
+// Share of the pixels' sides that a moving picture has now; looked at anew every few frames.
+float movingSharpness(App& app) {
+    constexpr float kShares[] = {1, 0.8f, 0.64f, 0.5f, 0.4f, 0.32f};
+    constexpr float kMost = 1 / 18.0f;                     // s of a frame; 15 a second is the aim
+    constexpr float kRoom = kMost * 0.64f * 0.64f * 0.9f;  // then the next sharper one fits
+    constexpr uint32_t kLooks = 6;
+    Pace& pace = app.pace;
+    pace.seconds += app.deltaTime;
+    if (++pace.frames >= kLooks) {
+        const float mean = pace.seconds / float(pace.frames);
+        if (mean > kMost && pace.step + 1 < std::size(kShares)) ++pace.step;
+        if (mean < kRoom && pace.step > 0) --pace.step;
+        pace.frames = 0;
+        pace.seconds = 0;
+    }
+    return kShares[pace.step];
+}
+
+}  // namespace
+
+void showPicture(App& app, const Rect& rect) {
+    ImDrawList* list = beginPanel("##picture", rect, colors::gap);
+    app.live.resize(uint32_t(rect.width()), uint32_t(rect.height()));
+    if (app.live.burn() && app.live.target.texture())
+        list->AddImage(app.live.target.texture(), rect.low(), rect.high());
+    endPanel();
+}
+
 void showViewport(App& app, const Rect& rect) {
     ImDrawList* list = beginPanel("##view", rect, colors::gap);
     constexpr double kStill = 0.3;  // s until what stood still is sharp again
     if (hand().busy != Busy::kNone || ImGui::GetIO().MouseWheel != 0) app.movedAt = app.now;
     const bool moves =
         app.playing || app.live.seeking() || app.live.previews() || app.now - app.movedAt < kStill;
-    const float sharpness = app.slow && moves ? 0.5f : 1.0f;
+    if (!moves) app.pace = {.step = app.pace.step};
+    const float sharpness = app.slow && moves ? movingSharpness(app) : 1.0f;
     app.live.resize(uint32_t(std::max(8.0f, rect.width() * sharpness)),
                     uint32_t(std::max(8.0f, rect.height() * sharpness)));
-    const Picture picture{rect, app.live.view};
+    // Of a comparison the right half is the scene that is worked on.
+    Rect worked = rect;
+    if (app.live.comparesNow()) worked.x0 = std::floor(rect.midX());
+    const Picture picture{worked, app.live.view};
     if (app.live.burn() && app.live.target.texture())
         list->AddImage(app.live.target.texture(), rect.low(), rect.high());
 
@@ -816,14 +887,14 @@ void showViewport(App& app, const Rect& rect) {
         endPanel();
         return;
     }
-    hit("view", rect.low(), {rect.width(), rect.height()});
+    hit("view", worked.low(), {worked.width(), worked.height()});
     const bool hovered = ImGui::IsItemHovered();
     const std::vector<Marker> markers = markersOf(app, picture);
     const ImGuiIO& io = ImGui::GetIO();
     const ImVec2 mouse = io.MousePos;
     Hand& state = hand();
 
-    list->PushClipRect(rect.low(), rect.high(), true);
+    list->PushClipRect(worked.low(), worked.high(), true);
     Gizmo gizmo;
     Handles handles;
     glm::vec3 pivot(0);
@@ -932,7 +1003,11 @@ void showViewport(App& app, const Rect& rect) {
         case Busy::kNone:
             break;
     }
-    if (app.burnTimes) drawTimeLegend(app, list, {rect.x0 + dp(12), rect.y1 - dp(68)});
+    drawPins(app, list, picture);
+    list->PopClipRect();
+    list->PushClipRect(rect.low(), rect.high(), true);
+    if (app.burnTimes) drawTimeLegend(app, list, {worked.x0 + dp(12), rect.y1 - dp(68)});
+    drawHalves(app, list, rect, worked);
     showWhy(app, list, picture);
     if (app.live.preparing()) {
         float share = 0;

@@ -23,4 +23,6 @@ void pan(App& app, const Picture& picture, ImVec2 by);
 void zoom(App& app, float notches);
 
 void showViewport(App& app, const fwui::Rect& rect);
+// The picture of the live scene alone, whole and sharp.
+void showPicture(App& app, const fwui::Rect& rect);
 }  // namespace fwapp

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Takes the guide's pictures anew, without a display: the target flamewright_guide runs it.
-# Usage: pictures.sh, with the build folder in FW_BUILD_FOLDER.
+# Takes the guide's pictures anew, and those of the welcome page's scenes, without a display: the target flamewright_guide runs it.
+# Usage: pictures.sh [cards], with the build folder in FW_BUILD_FOLDER.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 editor="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/flamewright-editor"
@@ -15,6 +15,21 @@ page() {
     "$editor" --headless --size 1280x720 --scale 1 --shot "$here/$1.png" --page "$2" --seconds "$3" \
         --scene "$4" --do "${5:-}"
 }
+# card NAME SECONDS SCENE: the scene alone, as small as the welcome page shows it. The program has them
+# in it: build it again afterwards.
+card() {
+    "$editor" --headless --size 360x223 --scale 1 --shot "$here/../app/cards/$1.png" --page scene+bare \
+        --seconds "$2" --scene "$3"
+}
+mkdir -p "$here/../app/cards"
+card burning_crate 9 "Burning crate"
+card campfire 3 "Campfire"
+card hand_torch 3 "Hand torch"
+card bonfire 4 "Bonfire"
+card candle 3 "Candle"
+card rune_fire 3 "Rune fire"
+[[ ${1:-} != cards ]] || exit 0
+
 page welcome welcome 0 ""
 page scene scene 6 "Burning crate"
 page paint paint 0 "Burning crate" 'add layer multiplier mesh Crate name=Belt;'\

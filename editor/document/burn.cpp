@@ -738,6 +738,18 @@ Backdrop backdropOf(const Burn& burn) {
         }
         for (const uint32_t index : mesh.model->indices) made.indices.push_back(first + index);
     }
+    for (const Flame& flame : burn.scene.flames) {
+        if (made.any) break;  // flames alone are as large as they burn
+        const Vec3 place = worldPosition(burn.scene, flame.id);
+        const glm::vec3 foot(place[0], place[1], place[2]);
+        // Heskestad 1983: 0.235 Q^(2/5) - 1.02 D, m, kW; never less than half as high as wide.
+        const float tall =
+            std::max(0.235f * std::pow(std::max(flame.power, 0.0f), 0.4f) - 1.02f * flame.diameter,
+                     0.5f * flame.diameter);
+        const float half = 0.5f * flame.diameter;
+        low = glm::min(low, foot - glm::vec3(half, 0, half));
+        high = glm::max(high, foot + glm::vec3(half, tall, half));
+    }
     const glm::vec3 size = high - low;
     made.size = std::max({size.x, size.y, size.z, 0.05f});
     made.middle = {0.5f * (low.x + high.x), std::min(low.y, burn.scene.settings.ground),

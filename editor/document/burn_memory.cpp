@@ -132,6 +132,13 @@ bool BurnMemory::agesAt(const Burn& burn, ObjectId id, const PaintSurface& surfa
     return true;
 }
 
+double BurnMemory::caughtAt(ObjectId mesh, size_t texel) const {
+    const auto found = ticks_.find(mesh);
+    if (found == ticks_.end() || texel >= found->second.size()) return -1;
+    const uint32_t tick = found->second[texel];
+    return tick >= kFirstCode ? -1 : double(int64_t{tick} - int64_t(start_)) / kTicksPerSecond;
+}
+
 bool BurnMemory::timesOf(const Burn& burn, ObjectId id, std::vector<uint8_t>& values) const {
     const auto found = ticks_.find(id);
     if (found == ticks_.end()) return false;

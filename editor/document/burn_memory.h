@@ -34,6 +34,8 @@ class BurnMemory {
     // By texel: 0 not lit by then, 1 to 254 how much of its glow is over, 255 charred.
     bool agesAt(const Burn& burn, ObjectId mesh, const PaintSurface& surface, double time,
                 std::vector<uint8_t>& values) const;
+    // s at which that texel caught; < 0: not, as far as is known.
+    [[nodiscard]] double caughtAt(ObjectId mesh, size_t texel) const;
     // By texel: 0 to 254 when it caught, over the scene's length; 255 not yet.
     bool timesOf(const Burn& burn, ObjectId mesh, std::vector<uint8_t>& values) const;
 

@@ -81,6 +81,13 @@ bool loadFonts(std::string& error) {
     made.smallSemi = text("Inter-SemiBold.otf", 13.5f);
     made.heading = text("InterDisplay-SemiBold.otf", 19);
     made.title = text("InterDisplay-SemiBold.otf", 32);
+    // Letters of one width, for code: nearly every system has this one; ImGui has one of its own.
+    const char* mono = "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf";
+    ImFontConfig plain;
+    plain.SizePixels = dp(13);
+    made.mono = std::filesystem::exists(mono)
+                    ? atlas->AddFontFromFileTTF(mono, dp(13.5f), &plain, kText)
+                    : atlas->AddFontDefault(&plain);
     made.icon14 = icon(14);
     made.icon17 = icon(17);
     made.icon20 = icon(20);

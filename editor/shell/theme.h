@@ -12,7 +12,7 @@
 namespace fwui {
 
 struct Fonts {
-    ImFont *body, *semi, *small, *smallSemi, *heading, *title;
+    ImFont *body, *semi, *small, *smallSemi, *heading, *title, *mono;
     ImFont *icon14, *icon17, *icon20, *icon34;
 };
 

@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kSeekStep = 1.0f / 8;  // s of the fire in a frame that hurries
 constexpr uint32_t kSeekSteps = 4;     // such steps in one frame of the screen
+constexpr size_t kMostPins = 9;
 
 std::filesystem::path cacheFolder() {
     if (const char* given = std::getenv("XDG_CACHE_HOME"); given && *given)
@@ -73,6 +74,7 @@ fwedit::Scene withoutLabels(const fwedit::Scene& scene, bool paints) {
 LiveScene::LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::UiRenderer& ui)
     : target(host, ui),
       overlay(host, ui, target.overPass()),
+      film(host, ui),
       host_(host),
       context_(context),
       burnt_(host, ui, target.overPass()) {
@@ -110,10 +112,13 @@ LiveScene::~LiveScene() {
     if (pipelines_.valid()) pipelines_.wait();
     if (work_.valid()) work_.wait();
     if (restWork_.valid()) restWork_.wait();
+    if (otherWork_.valid()) otherWork_.wait();
     vkDeviceWaitIdle(host_.device);
     work_ = {};
+    otherWork_ = {};
     restWork_ = {};
     burn_.reset();
+    other_.reset();
     rest_ = {};
     fwContext_UnregisterTarget(context_, targetId_);
 }
@@ -127,10 +132,13 @@ void LiveScene::forget() {
     rest_ = {};
     restWanted_ = false;
     memory_.forget();
+    film.forget();
     overlay.clear();
     burnt_.clear();
     laidOver.clear();
     why = {};
+    pins.clear();
+    endCompare();
     preview_ = -1;
     previewed_ = owesPaint_ = false;
     studio_.reset();
@@ -151,7 +159,10 @@ void LiveScene::follow(const fwedit::Document& document, bool paints) {
     awaitPipelines();
     if (done(work_)) adopt(work_.get());
     if (done(restWork_)) adoptRest(restWork_.get());
-    if (work_.valid()) return;
+    if (done(otherWork_)) adoptOther(otherWork_.get());
+    if (work_.valid() || otherWork_.valid()) return;
+    followOther();
+    if (otherWork_.valid()) return;
     if (document.revision == seen_ && !restart_ && (paints || !owesPaint_)) {
         startRest();
         return;
@@ -198,8 +209,14 @@ void LiveScene::adopt(Made made) {
     burn_ = std::move(made.burn);
     // The background has the assets; what it made is here.
     burn_->surfaceOf = [this](const fwedit::Mesh& mesh) { return surfaceOf(mesh.id); };
-    why.asks = false;
+    for (WhyCard* card : cards()) {
+        card->asks = false;
+        card->time = -1e9;  // what it knows is of another fire
+        card->error.clear();
+        card->texelOf = nullptr;
+    }
     memory_.begin(*burn_);
+    film.forget();
     preview_ = -1;
     previewed_ = false;
     restWanted_ = true;
@@ -244,8 +261,6 @@ std::shared_ptr<const fwedit::PaintSurface> LiveScene::surfaceOf(fwedit::ObjectI
 
 // The backdrop stands below the meshes and catches their shadow.
 void LiveScene::setUpStudio() {
-    glm::vec3 low(-0.5f, 0, -0.5f), high(0.5f, 1, 0.5f);
-    const bool any = bounds(low, high);
     std::string key;
     for (const fwedit::BurnMesh& mesh : burn_->meshes) {
         const fwedit::Mesh* object = fwedit::findIn(burn_->scene.meshes, mesh.id);
@@ -259,28 +274,88 @@ void LiveScene::setUpStudio() {
     key.append(reinterpret_cast<const char*>(sun.data()), sizeof sun);
     if (studio_ && key == studioKey_) return;
     studioKey_ = key;
-    const glm::vec3 size = high - low;
-    const float largest = std::max({size.x, size.y, size.z, 0.05f});
-    const glm::vec3 centre(0.5f * (low.x + high.x), std::min(low.y, burn_->scene.settings.ground),
-                           0.5f * (low.z + high.z));
-    studio_.reset();
-    studio_ = std::make_unique<sample::Studio>(host_, target.pass(), centre, largest);
-    if (!any) return;
-    std::vector<float> positions;
-    std::vector<uint32_t> indices;
-    for (const fwedit::BurnMesh& mesh : burn_->meshes) {
-        const fwedit::Mesh* object = fwedit::findIn(burn_->scene.meshes, mesh.id);
-        if (!object || object->hidden || !mesh.model) continue;
-        const glm::mat4 pose = poseOf(*object);
-        const auto first = uint32_t(positions.size() / 3);
-        for (size_t i = 0; i + 2 < mesh.model->positions.size(); i += 3) {
-            const glm::vec3 p(pose * glm::vec4(glm::make_vec3(&mesh.model->positions[i]), 1));
-            positions.insert(positions.end(), {p.x, p.y, p.z});
-        }
-        for (const uint32_t index : mesh.model->indices) indices.push_back(first + index);
+    studio_ = makeStudio(*burn_);
+}
+
+std::unique_ptr<sample::Studio> LiveScene::makeStudio(const fwedit::Burn& burn) const {
+    const fwedit::Backdrop backdrop = fwedit::backdropOf(burn);
+    auto studio = std::make_unique<sample::Studio>(
+        host_, target.pass(), glm::make_vec3(backdrop.middle.data()), backdrop.size);
+    if (backdrop.any)
+        studio->castShadow(backdrop.positions, backdrop.indices, glm::mat4(1),
+                           glm::normalize(glm::make_vec3(burn.scene.settings.sunDirection.data())));
+    return studio;
+}
+
+// ---- the other burn of a comparison
+
+void LiveScene::compareWith(const fwedit::Scene& scene, const fwedit::PaintImages& images,
+                            const std::filesystem::path& folder) {
+    endCompare();
+    compared_ = std::make_unique<Compared>(Compared{scene, images, folder});
+    stale_ = true;
+}
+
+void LiveScene::endCompare() {
+    if (otherWork_.valid()) otherWork_.get();
+    if (other_) vkDeviceWaitIdle(host_.device);
+    compared_.reset();
+    other_.reset();
+    otherStudio_.reset();
+    otherMemory_.forget();
+    stale_ = true;
+}
+
+bool LiveScene::otherLags() const {
+    return compared_ && (!other_ || (burn_ && std::fabs(other_->time - burn_->time) > 1e-4));
+}
+
+// Its world is made, and made again where it is beyond the time and has kept no moment before it.
+void LiveScene::followOther() {
+    if (!compared_ || otherWork_.valid() || restWork_.valid() || !burn_) return;
+    if (other_ &&
+        (other_->time <= burn_->time + 1e-4 || otherMemory_.restore(*other_, burn_->time)))
+        return;
+    stop_ = false;
+    otherWork_ = std::async(std::launch::async, [this, compared = *compared_] {
+        Made made;
+        made.burn = fwedit::createBurn(context_, compared.scene, compared.images, compared.folder,
+                                       assets_, made.error);
+        return made;
+    });
+}
+
+void LiveScene::adoptOther(Made made) {
+    vkDeviceWaitIdle(host_.device);
+    if (!made.burn) {
+        report_.push_back(made.error);
+        compared_.reset();
+        return;
     }
-    studio_->castShadow(positions, indices, glm::mat4(1),
-                        glm::normalize(glm::make_vec3(sun.data())));
+    other_ = std::move(made.burn);
+    otherMemory_.begin(*other_);
+    otherStudio_ = makeStudio(*other_);
+    stale_ = true;
+}
+
+// After the burn itself: to its time, or towards it.
+void LiveScene::stepOther(const FwVulkanFrame& frame) {
+    FwVulkanFrame described = frame;
+    described.deltaTime =
+        std::clamp(float(burn_->time - other_->time), 0.0f, kSeekStep * kSeekSteps);
+    std::string error;
+    if (described.deltaTime > 0 && !fwedit::feedBurn(*other_, described.deltaTime, error))
+        report_.push_back(error);
+    otherMemory_.beforeFrame(*other_, described.deltaTime);
+    otherOutside_ = recordOutside(*other_, described);
+    otherMemory_.afterFrame(*other_);
+}
+
+VkViewport LiveScene::half(bool right) const {
+    VkViewport viewport = target.viewport();
+    viewport.width = std::floor(0.5f * viewport.width);
+    if (right) viewport.x = viewport.width;
+    return viewport;
 }
 
 // While a hand drags, the world that is there shows where things go.
@@ -311,7 +386,7 @@ void LiveScene::seek(double time, bool held) {
     wanted_ = std::max(0.0, time);
     previewed_ = false;
     if (!burn_) return;
-    if (held && rest_.burn && memory_.knows(wanted_)) {
+    if (held && rest_.burn && !comparing() && memory_.knows(wanted_)) {
         (previews() ? laid_ : stale_) = true;
         preview_ = wanted_;
         previewed_ = true;
@@ -361,33 +436,72 @@ void LiveScene::askWhy(fwedit::ObjectId mesh, glm::vec3 position) {
     stale_ = true;
 }
 
+void LiveScene::pinWhy() {
+    if (!why.open) return;
+    if (pins.size() >= kMostPins) pins.erase(pins.begin());
+    pins.push_back(std::exchange(why, {}));
+    stale_ = true;
+}
+
+double LiveScene::caughtAt(WhyCard& card) const {
+    const auto surface = surfaceOf(card.mesh);
+    const fwedit::Mesh* mesh = burn_ ? fwedit::findIn(burn_->scene.meshes, card.mesh) : nullptr;
+    if (!surface || !mesh) return -1;
+    if (card.texelOf != surface.get()) {
+        const glm::vec3 place(glm::inverse(poseOf(*mesh)) * glm::vec4(card.position, 1));
+        card.texel = fwedit::nearestTexel(*surface, {place.x, place.y, place.z});
+        card.texelOf = surface.get();
+    }
+    return memory_.caughtAt(card.mesh, card.texel);
+}
+
+std::vector<WhyCard*> LiveScene::cards() {
+    std::vector<WhyCard*> all;
+    if (why.open) all.push_back(&why);
+    for (WhyCard& pin : pins) all.push_back(&pin);
+    return all;
+}
+
+bool LiveScene::asks() const {
+    return why.asks ||
+           std::any_of(pins.begin(), pins.end(), [](const auto& pin) { return pin.asks; });
+}
+
+// One question at a time, the open card's first.
 void LiveScene::followWhy() {
     constexpr double kAskAgain = 0.5;  // s of the fire
-    if (!why.open || !burn_ || previews()) return;
-    if (why.asks) {
-        ++whyFrames_;
-        // Asked anew, the old answer stands until the whole new one is there.
-        fwedit::WhyAnswer& answer = why.answered ? nextAnswer_ : why.answer;
-        const bool knew = why.question.pointKnown;
-        const FwResult result = fwedit::pollWhy(*burn_, images_, why.question, answer, why.error);
-        if (!why.answered && why.question.pointKnown && !knew) {
-            why.answered = result >= 0;
-            why.frames = whyFrames_ - 1;
-            stale_ = true;  // the card is drawn with the next frame
-        }
-        if (result == FW_NOT_READY) return;
-        if (&answer == &nextAnswer_ && result == FW_OK) why.answer = nextAnswer_;
-        why.asks = false;
-        why.answered = result == FW_OK;
-        stale_ = true;
-        return;
+    if (!burn_ || previews()) return;
+    const std::vector<WhyCard*> all = cards();
+    for (WhyCard* card : all)
+        if (card->asks) return pollWhy(*card);
+    for (WhyCard* card : all) {
+        const bool fresh = card->answered && std::fabs(burn_->time - card->time) < kAskAgain;
+        if (!card->error.empty() || fresh) continue;
+        const glm::vec3& at = card->position;
+        card->asks =
+            fwedit::beginWhy(*burn_, card->mesh, {at.x, at.y, at.z}, card->question, card->error);
+        card->time = burn_->time;
+        card->waited = 0;
+        if (card->asks) return;
     }
-    if (!why.error.empty()) return;
-    if (why.answered && std::fabs(burn_->time - why.time) < kAskAgain) return;
-    why.asks = fwedit::beginWhy(*burn_, why.mesh, {why.position.x, why.position.y, why.position.z},
-                                why.question, why.error);
-    why.time = burn_->time;
-    whyFrames_ = 0;
+}
+
+void LiveScene::pollWhy(WhyCard& card) {
+    ++card.waited;
+    // Asked anew, the old answer stands until the whole new one is there.
+    fwedit::WhyAnswer& answer = card.answered ? card.next : card.answer;
+    const bool knew = card.question.pointKnown;
+    const FwResult result = fwedit::pollWhy(*burn_, images_, card.question, answer, card.error);
+    if (!card.answered && card.question.pointKnown && !knew) {
+        card.answered = result >= 0;
+        card.frames = card.waited - 1;
+        stale_ = true;  // the card is drawn with the next frame
+    }
+    if (result == FW_NOT_READY) return;
+    if (&answer == &card.next && result == FW_OK) card.answer = card.next;
+    card.asks = false;
+    card.answered = result == FW_OK;
+    stale_ = true;
 }
 
 FwResult LiveScene::recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame) {
@@ -411,7 +525,9 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     if (rests && !rest_.burn) return;
     const bool moved = !(camera == camera_);
     const bool hurries = seeking();
-    if (deltaTime <= 0 && !moved && !stale_ && !laid_ && !hurries && !memory_.waits() && !why.asks)
+    const bool compares = comparesNow() && !rests;
+    if (deltaTime <= 0 && !moved && !stale_ && !laid_ && !hurries && !memory_.waits() && !asks() &&
+        !(compares && otherLags()))
         return;
     const bool fresh = stale_, laysOver = canLayOver(moved);
     stale_ = laid_ = false;
@@ -432,21 +548,22 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     } else if (!preparing() && !previews()) {
         wanted_ = 0;
     }
-    view = fwedit::viewOf(seen, target.extent().width, target.extent().height,
+    view = fwedit::viewOf(seen, target.extent().width / (compares ? 2 : 1), target.extent().height,
                           rests ? 0.0 : burn_->time);
     if (step > 0 && !fwedit::feedBurn(*burn_, step, error)) report_.push_back(error);
     described.deltaTime = step;
 
     FwResult outside = FW_OK;
     memory_.beforeFrame(*burn_, step);
-    if (!rests || step > 0 || memory_.waits() || why.asks)
-        outside = recordOutside(*burn_, described);
+    if (!rests || step > 0 || memory_.waits() || asks()) outside = recordOutside(*burn_, described);
     memory_.afterFrame(*burn_);
+    if (compares) stepOther(described);
     if (restFresh_ && rest_.burn && !rests) {
         FwVulkanFrame still = described;
         still.deltaTime = 0;
         recordOutside(*rest_.burn, still);
     }
+    const bool warms = restFresh_;
     restFresh_ = false;
     burn_->scene.camera = camera;  // sides are said as the eye has them
     followWhy();
@@ -464,24 +581,21 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
         described.deltaTime = 0;
         outside = recordOutside(drawn, described);
     }
-    FwLight lights[8];
-    const uint32_t lightCount = fwWorld_GetLights(drawn.world, lights, 8);
-
     target.begin(frame);
-    sample::StageFrame stage;
-    stage.commands = frame.commands;
-    stage.slot = frame.slot;
-    studio_->draw(stage, frame.commands, view, {lights, lightCount});
-    const VkViewport viewport = target.viewport();
-    if (outside == FW_OK) {
-        const FwResult inside =
-            fwWorld_RecordInside(drawn.world, &described, targetId_, &view, &viewport);
-        if (inside < 0) report_.push_back(lastMessage(drawn.world));
+    if (compares) {
+        drawHalf(frame, *other_, *otherStudio_, described, half(false), otherOutside_ == FW_OK);
+        drawHalf(frame, drawn, *studio_, described, half(true), outside == FW_OK);
+    } else {
+        drawHalf(frame, drawn, *studio_, described, target.viewport(), outside == FW_OK);
     }
     target.end(frame);
     kept_ = previews();
     if (kept_) target.keep(frame);
+    if (!rests && !compares)
+        film.take(frame, target,
+                  float(burn_->time) / std::max(0.1f, burn_->scene.settings.duration));
     drawOverlays(frame);
+    if (warms) warmPreview(frame);
 
     FwPassTime times[64];
     const uint32_t count = std::min(fwDebug_GetPassTimes(drawn.world, times, 64), 64u);
@@ -490,10 +604,33 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     if (count > 0) milliseconds_ = sum;
 }
 
+// The burn and what it stands in, seen by the view of this frame in a part of the picture.
+void LiveScene::drawHalf(const fwui::Frame& frame, fwedit::Burn& burn, sample::Studio& studio,
+                         const FwVulkanFrame& described, const VkViewport& viewport, bool draws) {
+    FwLight lights[8];
+    const uint32_t lightCount = fwWorld_GetLights(burn.world, lights, 8);
+    sample::StageFrame stage;
+    stage.commands = frame.commands;
+    stage.slot = frame.slot;
+    const VkRect2D part{{int32_t(viewport.x), 0},
+                        {uint32_t(viewport.width), uint32_t(viewport.height)}};
+    vkCmdSetViewport(frame.commands, 0, 1, &viewport);
+    vkCmdSetScissor(frame.commands, 0, 1, &part);
+    studio.draw(stage, frame.commands, view, {lights, lightCount});
+    if (!draws) return;
+    const FwResult inside =
+        fwWorld_RecordInside(burn.world, &described, targetId_, &view, &viewport);
+    if (inside < 0) report_.push_back(lastMessage(burn.world));
+}
+
 void LiveScene::drawOverlays(const fwui::Frame& frame) {
     if (!previews() && laidOver.empty()) return;
     const glm::mat4 seen = glm::make_mat4(view.projection) * glm::make_mat4(view.view);
     target.beginOver(frame);
+    if (comparesNow()) {
+        const VkViewport right = half(true);
+        vkCmdSetViewport(frame.commands, 0, 1, &right);
+    }
     for (const fwedit::BurnMesh& mesh : burn_->meshes) {
         const fwedit::Mesh* object = fwedit::findIn(scene_.meshes, mesh.id);
         if (!object || object->hidden) continue;
@@ -502,6 +639,14 @@ void LiveScene::drawOverlays(const fwui::Frame& frame) {
         if (std::find(laidOver.begin(), laidOver.end(), mesh.id) != laidOver.end())
             overlay.draw(frame, mesh.id, clip, 1);
     }
+    target.endOver(frame);
+}
+
+// A preview's maps drawn once where none is seen: a driver may build the last of a pipeline at its
+// first draw, and a hand would wait for it.
+void LiveScene::warmPreview(const fwui::Frame& frame) {
+    target.beginOver(frame);
+    for (const auto& [mesh, surface] : rest_.surfaces) burnt_.draw(frame, mesh, glm::mat4(0), 0);
     target.endOver(frame);
 }
 

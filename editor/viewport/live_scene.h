@@ -15,6 +15,7 @@
 #include "common/studio.h"
 #include "document/burn_memory.h"
 #include "document/inspect.h"
+#include "viewport/film_strip.h"
 #include "viewport/map_overlay.h"
 #include "viewport/outline.h"
 #include "viewport/scene_target.h"
@@ -35,8 +36,12 @@ struct WhyCard {
     glm::vec3 position{0};  // m, world
     double time = 0;        // s that the answer is of
     fwedit::WhyQuestion question;
-    fwedit::WhyAnswer answer;
+    fwedit::WhyAnswer answer, next;  // next: on its way
     std::string error;
+    uint32_t waited = 0;  // frames since it was asked
+    // Of the burn map, nearest to the place; found when it is first needed.
+    size_t texel = 0;
+    const fwedit::PaintSurface* texelOf = nullptr;
 };
 
 class LiveScene {
@@ -60,8 +65,16 @@ class LiveScene {
     // Nothing of what is seen would change: no frame is needed for its sake.
     [[nodiscard]] bool settled() const {
         return !preparing() && !seeking() && !stale_ && !laid_ && !memory_.waits() &&
-               overlay.settled() && !why.asks;
+               overlay.settled() && !asks() && !otherLags();
     }
+    // Beside this burn another one of the scene as it was: the picture is in two halves, the other
+    // one at the left, and both are at one time. It stays as it is while the document changes.
+    void compareWith(const fwedit::Scene& scene, const fwedit::PaintImages& images,
+                     const std::filesystem::path& folder);
+    void endCompare();
+    [[nodiscard]] bool comparing() const { return compared_ != nullptr; }
+    // Both halves are there; until then the picture is the burn alone.
+    [[nodiscard]] bool comparesNow() const { return other_ && shown == Shown::kBurn; }
     // Pixels of the picture.
     void resize(uint32_t width, uint32_t height);
 
@@ -85,6 +98,10 @@ class LiveScene {
     void outlineOf(fwedit::ObjectId mesh, ImVec2 size, std::vector<glm::vec2>& lines);
     // Asks the burn of a spot; the answer comes some frames later, and anew as the fire goes on.
     void askWhy(fwedit::ObjectId mesh, glm::vec3 position);
+    // Keeps the card's spot: it is asked on as the fire goes, and as a hand scrubs.
+    void pinWhy();
+    // s at which a spot catches, as far as it was simulated; < 0: not, or not known.
+    double caughtAt(WhyCard& card) const;
     [[nodiscard]] const std::filesystem::path& cache() const { return assets_.cache; }
     // Texels to paint on; null: not made yet, or the mesh has none.
     [[nodiscard]] std::shared_ptr<const fwedit::PaintSurface> surfaceOf(
@@ -103,7 +120,9 @@ class LiveScene {
     FwView view{};  // of the last frame
     Shown shown = Shown::kBurn;
     WhyCard why;
+    std::vector<WhyCard> pins;  // the first is number 1
     MapOverlay overlay;
+    FilmStrip film;                          // of this burn, as far as it was seen
     std::vector<fwedit::ObjectId> laidOver;  // meshes whose map of the overlay is on the picture
 
  private:
@@ -129,7 +148,20 @@ class LiveScene {
     [[nodiscard]] bool canLayOver(bool moved) const;
     FwResult recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame);
     void followWhy();
+    void pollWhy(WhyCard& card);
+    [[nodiscard]] std::vector<WhyCard*> cards();
+    [[nodiscard]] bool asks() const;
+    void adoptOther(Made made);
+    void followOther();
+    void stepOther(const FwVulkanFrame& frame);
+    // The burn that is compared with is at another time, or not made yet.
+    [[nodiscard]] bool otherLags() const;
+    std::unique_ptr<sample::Studio> makeStudio(const fwedit::Burn& burn) const;
+    void drawHalf(const fwui::Frame& frame, fwedit::Burn& burn, sample::Studio& studio,
+                  const FwVulkanFrame& described, const VkViewport& viewport, bool draws);
+    [[nodiscard]] VkViewport half(bool right) const;
     void drawOverlays(const fwui::Frame& frame);
+    void warmPreview(const fwui::Frame& frame);
     void setUpStudio();
     void moveDragged(const fwedit::Document& document);
 
@@ -166,8 +198,17 @@ class LiveScene {
     fwedit::Camera camera_;
     std::map<fwedit::ObjectId, Outline> outlines_;
     std::vector<std::string> report_;
-    fwedit::WhyAnswer nextAnswer_;
-    uint32_t whyFrames_ = 0;       // since it was asked
+    struct Compared {
+        fwedit::Scene scene;
+        fwedit::PaintImages images;
+        std::filesystem::path folder;
+    };
+    std::unique_ptr<Compared> compared_;
+    std::unique_ptr<fwedit::Burn> other_;
+    std::unique_ptr<sample::Studio> otherStudio_;
+    std::future<Made> otherWork_;
+    fwedit::BurnMemory otherMemory_;
+    FwResult otherOutside_ = FW_OK;
     std::vector<uint8_t> values_;  // by texel, of what is coloured
     double milliseconds_ = 0;
     std::string studioKey_;

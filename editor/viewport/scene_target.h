@@ -31,6 +31,9 @@ class SceneTarget {
     [[nodiscard]] VkRenderPass overPass() const { return overPass_; }
     [[nodiscard]] VkFormat depthFormat() const { return depthFormat_; }
     [[nodiscard]] void* texture() const { return texture_; }  // for ImGui
+    [[nodiscard]] VkImage shownImage() const {
+        return shown_.image;
+    }  // to be sampled, but in a pass
     [[nodiscard]] VkExtent2D extent() const { return extent_; }
     [[nodiscard]] VkViewport viewport() const {
         return {0, 0, float(extent_.width), float(extent_.height), 0, 1};

@@ -789,6 +789,15 @@ TEST(EditorPaint, FillsByCurvatureFindEdgesAndHollows) {
     EXPECT_EQ(".x..", filled(2, 100));
     EXPECT_EQ("...x", filled(-100, -2));
     EXPECT_EQ("x.x.", filled(-0.5f, 0.5f));
+
+    Document document = paintable();
+    mustRun(document, "import crate.glb name=Crate");
+    mustRun(document, "add layer multiplier name=Dry");
+    const std::string line = "fill Dry value 1 by curvature curvature -50 -2";
+    Command command;
+    std::string error;
+    ASSERT_TRUE(parseCommand(document.scene, line, command, error)) << error;
+    EXPECT_THAT(printCommand(document.scene, command), HasSubstr("by curvature curvature -50 -2"));
 }
 
 TEST(EditorPaint, SmoothingLevelsAnEdgeAcrossTheSeam) {

@@ -1,0 +1,83 @@
+#!/bin/bash
+# An artist's long day, pressed together: the same round of work over and over in one window, with
+# real keys and clicks under the validation layer. Memory stays flat, and when the program is killed
+# in the middle of it, what was done until half a minute before is there again.
+# Usage: editor_session.sh [SECONDS], with the build folder in FW_BUILD_FOLDER; 40 unless given. 77:
+# something it needs is not here.
+set -euo pipefail
+seconds=${1:-40}
+binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/flamewright-editor"
+[[ -x $binary ]] || { echo "flamewright-editor is not built" && exit 77; }
+# shellcheck source=../support/window.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../support/window.sh"
+need Xvfb xdotool
+export HOME=$work XDG_STATE_HOME=$work/state XDG_CACHE_HOME=$work/cache
+open_display
+
+# MiB that the program holds.
+memory() { awk '/^VmRSS/ { print int($2 / 1024) }' "/proc/$program/status"; }
+
+# One round: a source placed, moved and taken back, the burn played, scrubbed, asked and compared,
+# a stroke painted, the flame page and the export page looked at.
+round() {
+    xdotool key 1 key shift+a mousemove 600 330 click 1
+    await "did: Add heat source"
+    xdotool key space
+    sleep 1
+    xdotool key space mousemove 130 598 mousedown 1 mousemove 100 598 mousemove 110 598 mouseup 1
+    xdotool key y mousemove 560 330 click 1
+    await "answered"
+    xdotool key Escape key c
+    await "did: Compared"
+    sleep 1
+    xdotool key c key 2
+    await "ready to paint"
+    xdotool mousemove 440 380 mousedown 1 mousemove 446 390 mousemove 460 420 mouseup 1
+    await "did: Paint burn multiplier on"
+    xdotool key 3
+    sleep 0.3
+    xdotool key 4
+    sleep 0.3
+    xdotool key 1 key ctrl+z
+    await "did: Undone"
+    xdotool key ctrl+z key ctrl+z
+    xdotool key Home
+}
+
+start "$binary" --scene "Burning crate"
+await ready
+round
+round
+before=$(memory)
+rounds=2
+end=$((SECONDS + seconds))
+while ((SECONDS < end)); do
+    round
+    rounds=$((rounds + 1))
+done
+after=$(memory)
+echo "$rounds rounds: $before MiB after the second, $after after the last"
+# What is kept of a scene (moments to go back to, undo) is bounded; a leak of a picture a round is not.
+((after <= before + before / 10 + 24)) || { echo "memory grows" && exit 1; }
+
+# Killed: the work until the last autosave is offered again.
+xdotool key 1 mousemove 600 330 key shift+a click 1
+await "did: Add heat source"
+for _ in $(seq 300); do
+    [[ ! -s $work/state/flamewright/recovery.fwscene ]] || break
+    sleep 0.1
+done
+sleep 0.5
+if grep -E -q 'VUID-|UNASSIGNED-|SYNC-HAZARD|validation:' "$work/log"; then
+    cat "$work/log"
+    echo "the validation layer complains" && exit 1
+fi
+kill -9 "$program"
+wait "$program" 2>/dev/null || true
+start "$binary"
+sleep 1
+xdotool mousemove 110 300 click 1
+await ready
+[[ $(grep -c '"point"' "$work/state/flamewright/recovery.fwscene") -ge 1 ]] ||
+    { echo "the last heat source was lost" && exit 1; }
+echo "killed, and its work is there again"
