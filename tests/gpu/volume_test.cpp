@@ -1265,12 +1265,12 @@ TEST(VolumeMarch, FitsWhatThereIs) {
         items[i].draw.mostSteps = 32;
         items[i].draw.wide = 1;
     }
-    const auto cell = [&] { return 640 * out[0].composite.place.z; };  // px
+    const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
     for (const size_t count : {size_t(1), size_t(7), items.size()}) {
         const uint32_t used = gpu::layVolumes({items.data(), count}, screen, 1, words, out);
         ASSERT_GT(used, 0u);
         EXPECT_EQ(used, out[0].march.samples);
-        std::printf("           %zu over all: cells of %.0f px\n", count, double(cell()));
+        std::printf("           %zu over all: cells of %.0f px\n", count, double(cell(0)));
         uint32_t known = 0, sample = out[0].march.samples;
         for (size_t i = 0; i < count; ++i) {
             const gpu::VolumeMarch& march = out[i].march;
@@ -1281,16 +1281,28 @@ TEST(VolumeMarch, FitsWhatThereIs) {
             EXPECT_EQ(shown.samples, sample);
             known += gpu::kVolumeTileWords * shown.tilesX * shown.tilesY;
             sample += march.cells * march.slabs * gpu::kVolumeCellWords;
-            EXPECT_GE(float(shown.tilesX * gpu::kVolumeTile) * cell(), 1280.0f);
-            EXPECT_GE(float(shown.tilesY * gpu::kVolumeTile) * cell(), 720.0f);
+            EXPECT_GE(float(shown.tilesX * gpu::kVolumeTile) * cell(i), 1280.0f);
+            EXPECT_GE(float(shown.tilesY * gpu::kVolumeTile) * cell(i), 720.0f);
         }
         EXPECT_EQ(known, out[0].march.samples);
         EXPECT_LE(sample, words);
         if (count == 1) {
-            EXPECT_EQ(cell(), 2.0f);
+            EXPECT_EQ(cell(0), 2.0f);
         }
     }
     EXPECT_EQ(gpu::layVolumes(items, screen, 1, 1000, out), 0u) << "it cannot fit";
+
+    // A small one keeps its fine cells, however many large ones crowd the memory.
+    gpu::VolumeItem& small = items.back();
+    small.draw.rect = {-0.01f, -0.02f, 0.01f, 0.02f};
+    small.draw.wide = 0.05f;
+    small.draw.rayX = {4, 0, 0, 0};
+    ASSERT_GT(gpu::layVolumes(std::span(&small, 1), screen, 1, words, out), 0u);
+    const float alone = cell(0);
+    EXPECT_LT(alone, 1.0f);
+    ASSERT_GT(gpu::layVolumes(items, screen, 1, words, out), 0u);
+    EXPECT_GT(cell(0), 4.0f) << "there was room for all";
+    EXPECT_EQ(cell(items.size() - 1), alone);
 }
 
 // Fires that burn, move and change: nothing is asked of the device or of the heap.

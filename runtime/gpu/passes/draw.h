@@ -150,9 +150,9 @@ uint32_t volumeRayWords(const VolumeScreen& screen);
 float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept;
 // Rays and samples of a flame that is marched as it is drawn: as many as if it were before.
 void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept;
-// Cells of all `items`, as fine as `words` allow, in their order, behind the `first` words, which
-// are others'; `perPixel`: m per pixel at a depth of 1. 0: they do not fit; else the end of the
-// words that are known of tiles.
+// Cells of all `items`, as fine as `words` allow, where those of most tiles get larger ones, in
+// their order, behind the `first` words, which are others'; `perPixel`: m per pixel at a depth
+// of 1. 0: they do not fit; else the end of the words that are known of tiles.
 uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
                     uint32_t words, std::span<MarchedVolume> out, uint32_t first = 0);
 // Farthest first.

@@ -1,11 +1,14 @@
 // Volumetric flames of the frame's view before it is drawn: each ray once for a cell of a few
 // pixels, or of a part of one where the flame is small, kept in slabs, of the tiles that
-// volume_probe finds worth it. Memory is bounded: what does not fit is marched in larger cells.
+// volume_probe finds worth it. Memory is bounded: where not all fits, those that take most of it
+// are marched in larger cells.
 #include "gpu/passes/frame_graph.h"
 #include "gpu/passes/volume_tiers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace fw::gpu {
 namespace {
@@ -27,6 +30,7 @@ constexpr float kSmallSpacing = 0.5f;  // of small ones, of those
 constexpr float kSamplesPerStep = 2.75f;
 constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
 constexpr uint64_t kLeastTiles = 512;       // of small flames, however small the screen
+constexpr uint64_t kHalfScreens = 5;        // whose tiles there is room for: plumes overlap
 
 static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
 
@@ -59,15 +63,17 @@ float awayOf(const VolumeDraw& draw) {
     return perspective ? draw.front + 0.5f * draw.deep * float(draw.slabs) : 1.0f;
 }
 
-// px, of a flame's cells; none is less than `least`.
-float cellOf(const VolumeDraw& draw, const VolumeScreen& screen, float least) {
+// px, of a flame's cells.
+float cellOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     const float wanted = volumeWide(draw, screen) / kCellsAcross;
     const auto most = float(screen.cell);
-    if (wanted >= most) return std::max(most, least);
+    if (wanted >= most) return most;
     float cell = 1.0f;
     while (cell > wanted && cell * float(kMostPerPixel) > 1.0f) cell *= 0.5f;
-    return std::max(cell, least);
+    return cell;
 }
+
+float coarser(float cell) { return cell < 1.0f ? 2.0f * cell : cell + 1.0f; }
 
 // m between samples. Where sheets are closer than samples thick flame is too dark; a small one,
 // which costs little, gets up to twice as many.
@@ -87,13 +93,25 @@ uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
 }
 
-uint64_t tilesOfAll(std::span<const VolumeItem> items, const VolumeScreen& screen, float least) {
-    uint64_t sum = 0;
-    for (const VolumeItem& item : items) {
-        const Tiles tiles = tilesOf(item.draw.rect, screen.size, cellOf(item.draw, screen, least));
-        sum += uint64_t(tiles.x) * tiles.y;
+// px, of all flames' cells, so that they take no more than so many tiles: what small flames need is
+// little, and they alone would be lost in larger ones. How many they take; 0: they do not fit.
+uint64_t fitCells(std::span<const VolumeItem> items, const VolumeScreen& screen, uint64_t room,
+                  std::array<float, kMaxVolumeFlames>& cells) {
+    std::array<uint64_t, kMaxVolumeFlames> tiles;
+    const auto lay = [&](size_t i, float cell) {
+        const Tiles t = tilesOf(items[i].draw.rect, screen.size, cell);
+        cells[i] = cell;
+        tiles[i] = uint64_t(t.x) * t.y;
+    };
+    for (size_t i = 0; i < items.size(); ++i) lay(i, cellOf(items[i].draw, screen));
+    const std::span<uint64_t> of(tiles.data(), items.size());
+    for (;;) {
+        const uint64_t all = std::accumulate(of.begin(), of.end(), uint64_t{0});
+        if (all <= room) return all;
+        const auto most = size_t(std::max_element(of.begin(), of.end()) - of.begin());
+        if (coarser(cells[most]) > kMostCell) return 0;
+        lay(most, coarser(cells[most]));
     }
-    return sum;
 }
 
 }  // namespace
@@ -107,7 +125,7 @@ float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept {
 }
 
 void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept {
-    const float cell = cellOf(draw, screen, 1.0f / float(kMostPerPixel));
+    const float cell = cellOf(draw, screen);
     draw.perPixel = cell <= 1.0f ? std::max(uint32_t(1.0f / cell), 2u) : 1;
     draw.spacing = spacingOf(draw, screen);
     draw.mostSteps = mostOf(draw, screen);
@@ -122,25 +140,22 @@ uint32_t volumeRayWords(const VolumeScreen& screen) {
     const auto tiles = [&](float pixels) {
         return uint64_t(std::clamp(std::ceil(pixels / tile), 0.0f, 4096.0f)) + 1;
     };
-    const uint64_t all =
-        std::max<uint64_t>(tiles(screen.size.x) * tiles(screen.size.y) * 3 / 2, kLeastTiles);
+    const uint64_t all = std::max<uint64_t>(
+        tiles(screen.size.x) * tiles(screen.size.y) * kHalfScreens / 2, kLeastTiles);
     return uint32_t(std::min(all * wordsOfTile(screen.slabs), kMostWords));
 }
 
 uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
                     uint32_t words, std::span<MarchedVolume> out, uint32_t first) {
-    float least = 1.0f / float(kMostPerPixel);
-    uint64_t all = 0;
-    for (;; least = least < 1.0f ? 2.0f * least : least + 1.0f) {
-        if (least > kMostCell) return 0;
-        all = tilesOfAll(items, screen, least);
-        if (first + all * wordsOfTile(screen.slabs) <= words) break;
-    }
+    std::array<float, kMaxVolumeFlames> cells;
+    const uint64_t room = words > first ? (words - first) / wordsOfTile(screen.slabs) : 0;
+    const uint64_t all = fitCells(items, screen, room, cells);
+    if (all == 0) return 0;
     const auto end = first + uint32_t(all * kVolumeTileWords);
     uint32_t known = first, samples = end;
     for (size_t i = 0; i < items.size(); ++i) {
         const VolumeDraw& draw = items[i].draw;
-        const float cell = cellOf(draw, screen, least);
+        const float cell = cells[i];
         const vec2 perCell = vec2(2.0f * cell) / screen.size;  // of the view's [-1, 1]
         const Tiles tiles = tilesOf(draw.rect, screen.size, cell);
         const uint32_t count = tiles.x * tiles.y;
