@@ -117,6 +117,8 @@ void defaults(FwFireColliderDef& def) noexcept {
     def.rotation[3] = 1;
     def.radius = 0.5f;
     def.cellSize = 1;
+    identity(def.view);
+    identity(def.projection);
 }
 
 void defaults(FwBudgetDef& def) noexcept { def.measuredMilliseconds = -1; }

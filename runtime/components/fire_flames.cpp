@@ -32,7 +32,7 @@ struct Near {
 };
 
 // Those that may be within the flame's bounds. A height field tells heights, not distances: it is
-// near where the flame is over it.
+// near where the flame is over it; a picture of depth tells of what is near a point alone.
 void findNear(const FireFlame& f, std::span<const volume::Collider> all, float seconds,
               Near& near) noexcept {
     near.count = 0;
@@ -43,9 +43,9 @@ void findNear(const FireFlame& f, std::span<const volume::Collider> all, float s
                         glm::length(f.flame.motion.base - f.flame.def.position) + 10.0f * seconds;
     for (const volume::Collider& c : all) {
         if (near.count == near.list.size()) return;
-        if (c.kind != volume::ColliderKind::HeightField &&
-            volume::surfaceOf(c, middle).distance > reach)
-            continue;
+        const bool bounded =
+            c.kind != volume::ColliderKind::HeightField && c.kind != volume::ColliderKind::Depth;
+        if (bounded && volume::surfaceOf(c, middle).distance > reach) continue;
         near.list[near.count++] = c;
     }
 }

@@ -2,6 +2,7 @@
 #include "volume/collide.h"
 
 #include "core/error.h"
+#include "volume/depth_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -131,6 +132,7 @@ bool feels(const Collider& c, vec3 from, vec3 to) noexcept {
 }  // namespace
 
 bool shades(const Collider& c, vec3 source, vec3 point) noexcept {
+    if (c.kind == ColliderKind::Depth) return false;
     const float here = surfaceOf(c, point).distance;
     if (surfaceOf(c, source).distance < 0.0f) return false;
     const bool ground = c.kind == ColliderKind::Plane || c.kind == ColliderKind::HeightField;
@@ -151,6 +153,8 @@ bool shades(const Collider& c, vec3 source, vec3 point) noexcept {
                          point + surfaceOf(c, point).normal * std::max(kSkin - here, 0.0f));
         case ColliderKind::Callback:
             return feels(c, source, point);
+        case ColliderKind::Depth:
+            return false;
     }
     return false;
 }
@@ -186,6 +190,8 @@ Surface surfaceOf(const Collider& c, vec3 point) noexcept {
             if (!std::isfinite(d) || !std::isfinite(n[0] + n[1] + n[2])) return {};
             return {d, normalOr(normal, vec3(0, 1, 0))};
         }
+        case ColliderKind::Depth:
+            return c.picture ? surfaceOf(*c.picture, c.radius, point) : Surface{};
     }
     return {};
 }
@@ -209,9 +215,9 @@ void checkCollider(const Collider& c) {
     const auto finite = [](vec3 v) {
         return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
     };
-    if (uint32_t(c.kind) > uint32_t(ColliderKind::Callback))
+    if (uint32_t(c.kind) > uint32_t(ColliderKind::Depth))
         core::fail(FW_ERROR_INVALID_ARGUMENT, "kind of the collider is %u; the last one is %u.",
-                   uint32_t(c.kind), uint32_t(ColliderKind::Callback));
+                   uint32_t(c.kind), uint32_t(ColliderKind::Depth));
     if (!finite(c.place) || !finite(c.extent))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "place and extent of the collider are (%g, %g, %g) and (%g, %g, %g); they must "
@@ -219,7 +225,7 @@ void checkCollider(const Collider& c) {
                    double(c.place.x), double(c.place.y), double(c.place.z), double(c.extent.x),
                    double(c.extent.y), double(c.extent.z));
     const bool round = c.kind == ColliderKind::Sphere || c.kind == ColliderKind::Capsule ||
-                       c.kind == ColliderKind::HeightField;
+                       c.kind == ColliderKind::HeightField || c.kind == ColliderKind::Depth;
     if (round && !(c.radius > 0.0f && c.radius < 1e6f))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "radius of the collider is %g m; it must lie in (0, 1e6).", double(c.radius));

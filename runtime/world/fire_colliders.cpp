@@ -1,5 +1,5 @@
-// What flames of volumetric fires flow around: the host's colliders, and the world's blockers as
-// boxes. Looks alone.
+// What flames of volumetric fires flow around: the host's colliders, among them pictures of depth,
+// and the world's blockers as boxes. Looks alone.
 #include "world/world.h"
 
 #include <algorithm>
@@ -37,13 +37,30 @@ volume::vec4 quaternion(const float r[3][3]) noexcept {
     return q / std::max(glm::length(q), 1e-6f);
 }
 
+void checkSides(const FwFireColliderDef& def, uint32_t most) {
+    for (const uint32_t side : {def.columns, def.rows})
+        if (side < 2 || side > most)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwFireColliderDef has %u columns and %u rows; the limits are [2, %u].",
+                       def.columns, def.rows, most);
+}
+
+void checkNumbers(const float* numbers, size_t count, const char* name, float low, float high) {
+    if (!numbers) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireColliderDef::%s is null.", name);
+    for (size_t i = 0; i < count; ++i)
+        if (!(numbers[i] >= low && numbers[i] <= high))
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwFireColliderDef::%s[%zu] is %g; the limits are [%g, %g].", name, i,
+                       double(numbers[i]), double(low), double(high));
+}
+
 // Throws, and then `entry` is as it was.
 void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
     volume::Collider shape;
-    if (def.kind > FW_COLLIDER_DISTANCE)
+    if (def.kind > FW_COLLIDER_DEPTH)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwFireColliderDef::kind is %u; the limits are [0, %u].", def.kind,
-                   uint32_t(FW_COLLIDER_DISTANCE));
+                   uint32_t(FW_COLLIDER_DEPTH));
     checkValues(def.position, 3, "FwFireColliderDef::position", -1e6f, 1e6f);
     shape.kind = volume::ColliderKind(def.kind);
     shape.place = volume::vecOf(def.position);
@@ -69,19 +86,12 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
             break;
         case volume::ColliderKind::HeightField: {
             checkValue(def.cellSize, "FwFireColliderDef::cellSize", 1e-3f, 1e5f);
-            for (const uint32_t side : {def.columns, def.rows})
-                if (side < 2 || side > 4096)
-                    core::fail(FW_ERROR_INVALID_ARGUMENT,
-                               "FwFireColliderDef has %u columns and %u rows; the limits are "
-                               "[2, 4096].",
-                               def.columns, def.rows);
+            checkSides(def, 4096);
             shape.radius = def.cellSize;
             shape.columns = def.columns;
             shape.rows = def.rows;
             keep = !def.heights && entry.heights.size() == size_t(def.columns) * def.rows &&
                    entry.shape.columns == def.columns;
-            if (!def.heights && !keep)
-                core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireColliderDef::heights is null.");
             break;
         }
         case volume::ColliderKind::Callback:
@@ -90,18 +100,28 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
             shape.distance = &askHost;
             shape.user = &entry;
             break;
+        case volume::ColliderKind::Depth:
+            checkValue(def.radius, "FwFireColliderDef::radius", 0.01f, 100.0f);
+            checkSides(def, volume::kMaxDepthSide);
+            checkNumbers(def.depths, size_t(def.columns) * def.rows, "depths", 0.0f, 1.0f);
+            checkValues(def.view, 16, "FwFireColliderDef::view", -1e9f, 1e9f);
+            checkValues(def.projection, 16, "FwFireColliderDef::projection", -1e9f, 1e9f);
+            shape.radius = def.radius;
+            shape.picture = &entry.picture;
+            break;
     }
     if (shape.kind != volume::ColliderKind::HeightField) volume::checkCollider(shape);
     std::pmr::vector<float> heights(entry.heights.get_allocator());
     if (shape.kind == volume::ColliderKind::HeightField && !keep) {
         const size_t count = size_t(def.columns) * def.rows;
-        for (size_t i = 0; i < count; ++i)
-            if (!(std::abs(def.heights[i]) <= 1e6f))
-                core::fail(FW_ERROR_INVALID_ARGUMENT,
-                           "FwFireColliderDef::heights[%zu] is %g; the limits are [-1e6, 1e6].", i,
-                           double(def.heights[i]));
+        checkNumbers(def.heights, count, "heights", -1e6f, 1e6f);
         heights.assign(def.heights, def.heights + count);
     }
+    if (shape.kind == volume::ColliderKind::Depth)
+        volume::setDepthPicture(entry.picture, {def.depths, size_t(def.columns) * def.rows},
+                                def.columns, def.rows, def.view, def.projection);
+    else
+        entry.picture.texels.clear();
     if (!keep) entry.heights.swap(heights);
     entry.shape = shape;
     entry.shape.heights = entry.heights.data();
@@ -111,8 +131,9 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
 
 }  // namespace
 
+// What flames alone heed stops no jet.
 FwFireColliderId World::addFireCollider(const FwFireColliderDef& def) {
-    ++geometry_;
+    geometry_ += def.kind != FW_COLLIDER_DEPTH;
     if (fireColliders_.live() >= kMaxFireColliders)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire colliders are in place; the limit is %u.",
                    fireColliders_.live(), kMaxFireColliders);
@@ -122,23 +143,31 @@ FwFireColliderId World::addFireCollider(const FwFireColliderDef& def) {
 }
 
 void World::setFireCollider(FwFireColliderId id, const FwFireColliderDef& def) {
-    ++geometry_;
-    setShape(def, *fireColliders_.get(id));
+    FireColliderEntry& entry = *fireColliders_.get(id);
+    const bool body = entry.shape.kind != volume::ColliderKind::Depth;
+    setShape(def, entry);
+    geometry_ += body || def.kind != FW_COLLIDER_DEPTH;
 }
 
 void World::removeFireCollider(FwFireColliderId id) {
-    ++geometry_;
+    geometry_ += fireColliders_.get(id)->shape.kind != volume::ColliderKind::Depth;
     fireColliders_.destroy(id);
 }
 
 void World::listFireColliders() noexcept {
     fireShapes_.clear();  // room was found with the first fire
-    for (uint32_t i = 0; i < fireColliders_.slotCount(); ++i)
-        if (const auto* entry = fireColliders_.at(i)) {
-            fireShapes_.push_back((*entry)->shape);
+    for (const bool pictures : {true, false}) {
+        for (uint32_t i = 0; i < fireColliders_.slotCount(); ++i) {
+            const auto* entry = fireColliders_.at(i);
+            if (!entry) continue;
+            const volume::Collider& shape = (*entry)->shape;
+            if ((shape.kind == volume::ColliderKind::Depth) != pictures) continue;
+            fireShapes_.push_back(shape);
             // What the host's function says may change at any time.
-            if ((*entry)->shape.kind == volume::ColliderKind::Callback) ++geometry_;
+            if (shape.kind == volume::ColliderKind::Callback) ++geometry_;
         }
+        if (pictures) firePictures_ = uint32_t(fireShapes_.size());
+    }
     for (uint32_t i = 0; i < blockers_.slotCount(); ++i) {
         const BlockerEntry* entry = blockers_.at(i);
         if (!entry) continue;

@@ -156,7 +156,7 @@ void World::askVolumetricFires(const float point[3], FwFireAnswer& answer) {
     components::checkValues(point, 3, "point", -1e6f, 1e6f);
     if (!burning_.now().empty()) listFireColliders();  // as they stand now
     const components::FireAnswer found =
-        components::askFires(burning_.now(), profiles_, fireShapes_, volume::vecOf(point));
+        components::askFires(burning_.now(), profiles_, walls(), volume::vecOf(point));
     answer.inside = found.air.inside ? 1 : 0;
     answer.temperature = found.air.kelvin;
     answer.heatFlux = found.air.heatFlux;
@@ -170,8 +170,8 @@ void World::volumetricFirePush(const float centre[3], float radius, FwFirePush& 
     components::checkValues(centre, 3, "centre", -1e6f, 1e6f);
     components::checkValue(radius, "radius", 0.0f, 100.0f);
     if (!burning_.now().empty()) listFireColliders();
-    const volume::FlamePush found = components::pushOfFires(burning_.now(), profiles_, fireShapes_,
-                                                            volume::vecOf(centre), radius);
+    const volume::FlamePush found =
+        components::pushOfFires(burning_.now(), profiles_, walls(), volume::vecOf(centre), radius);
     for (int i = 0; i < 3; ++i) push.force[i] = found.force[i];
     push.ignitionPower = found.ignition;
 }

@@ -170,7 +170,7 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
                       const JetGate* passed) noexcept {
     const vec3 from = volume::vecOf(start), along = volume::vecOf(way);
     vec3 normal(-along);
-    float nearest = sweepShapes(fireShapes_, from, along, most, normal);
+    float nearest = sweepShapes(walls(), from, along, most, normal);
     hit = {};
     hit.met = nearest < most;
     for (const uint32_t slot : jetSlots_) {

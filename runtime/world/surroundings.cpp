@@ -21,7 +21,7 @@ components::SurroundingAir World::listSources() {
     air.wind = volume::vecOf(wind_);
     fireShapes_.reserve(kMaxFireShapes);
     listFireColliders();  // as they stand now
-    air.walls = fireShapes_;
+    air.walls = walls();
     sources_.clear();
     // A light stands a quarter of its flame above what burns (lights.comp).
     const auto add = [&](const FwLight& light) {

@@ -17,6 +17,7 @@
 #include "mesh/burn_domain.h"
 #include "mesh/front/arrivals.h"
 #include "mesh/remote_tiles.h"
+#include "volume/depth_picture.h"
 #include "world/clock.h"
 #include "world/deed_log.h"
 #include "world/event_queue.h"
@@ -189,11 +190,13 @@ struct FlipbookEntry {
 };
 
 struct FireColliderEntry {
-    explicit FireColliderEntry(std::pmr::memory_resource* memory) : heights(memory) {}
+    explicit FireColliderEntry(std::pmr::memory_resource* memory)
+        : heights(memory), picture(memory) {}
     volume::Collider shape;
     std::pmr::vector<float> heights;
     float(FW_CALL* distance)(void*, const float*, float*) = nullptr;
     void* distanceData = nullptr;
+    volume::DepthPicture picture;
 };
 
 // Contacts of two objects as they were last found.
@@ -572,6 +575,10 @@ class World {
     void findFootprint(const Object& object, const components::JetHit& hit, float radius);
     // fire_colliders.cpp
     void listFireColliders() noexcept;
+    // Of those that are listed what is a body to all, not to flames alone.
+    [[nodiscard]] std::span<const volume::Collider> walls() const noexcept {
+        return std::span(fireShapes_).subspan(firePictures_);
+    }
     // fire_touch.cpp
     void touchByFires(uint64_t end);  // events up to a tick
     void touchByFire(Fire& fire, uint32_t now);
@@ -717,7 +724,9 @@ class World {
     FwFlipbookId flameBooks_[2] = {};  // of burning meshes' flames: fire's, smoke's
     core::HandlePool<FwFireColliderId, core::Owned<FireColliderEntry>> fireColliders_;
     std::pmr::vector<core::Owned<volume::Profile>> profiles_;  // by layer; null: none needed it
-    std::pmr::vector<volume::Collider> fireShapes_;  // of a frame: colliders, then blockers
+    // Of a frame: pictures of depth, which flames alone heed, colliders, blockers.
+    std::pmr::vector<volume::Collider> fireShapes_;
+    uint32_t firePictures_ = 0;
     components::FireFlames burning_;
     std::pmr::vector<gpu::VolumeFlame> fireFlames_;  // room for a frame's flames
     uint32_t flamesShown_ = 0;                       // that the backend draws

@@ -1,8 +1,10 @@
 // What is around a fire bends it: a gust passes over a camp fire in the open, one under a ceiling,
 // one at a wall, and a torch that is carried to and fro. In a window: drag to turn, wheel to zoom.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "common/camera.h"
 #include "common/filming.h"
@@ -44,8 +46,53 @@ glm::vec3 torchAt(double seconds) {
             0.10f + 0.16f * static_cast<float>(std::cos(a))};
 }
 
+// What an engine has on the processor of its scene's depth, from culling or read back; here each
+// ray meets every box and the floor.
+class SeenDepth {
+ public:
+    static constexpr uint32_t kColumns = 160, kRows = 50;
+
+    void look(const FwView& view) {
+        const glm::mat4 clip = glm::make_mat4(view.projection) * glm::make_mat4(view.view);
+        const glm::mat4 back = glm::inverse(clip);
+        for (uint32_t i = 0; i < kColumns * kRows; ++i) {
+            const float x = 2.0f * (static_cast<float>(i % kColumns) + 0.5f) / kColumns - 1.0f;
+            const float y = 2.0f * (static_cast<float>(i / kColumns) + 0.5f) / kRows - 1.0f;
+            const glm::vec4 near = back * glm::vec4(x, y, 0, 1), far = back * glm::vec4(x, y, 1, 1);
+            const glm::vec3 from = glm::vec3(near) / near.w, way = glm::vec3(far) / far.w - from;
+            float part = way.y < 0.0f ? std::min(-from.y / way.y, 1.0f) : 1.0f;
+            for (const Box& box : kStones) part = std::min(part, enters(box, from, way));
+            for (const Box& box : kWalls) part = std::min(part, enters(box, from, way));
+            const glm::vec4 seen = clip * glm::vec4(from + part * way, 1);
+            depths_[i] = std::clamp(seen.z / seen.w, 0.0f, 1.0f);
+        }
+    }
+    FwFireColliderDef def(const FwView& view) const {
+        FwFireColliderDef def = fwDefaultFireColliderDef();
+        def.kind = FW_COLLIDER_DEPTH;
+        def.columns = kColumns;
+        def.rows = kRows;
+        def.depths = depths_.data();
+        std::copy_n(view.view, 16, def.view);
+        std::copy_n(view.projection, 16, def.projection);
+        return def;
+    }
+
+ private:
+    // Parts of the way to where a ray comes into a box; 1: it does not.
+    static float enters(const Box& box, const glm::vec3& from, const glm::vec3& way) {
+        const glm::vec3 a = (box.center - box.half - from) / way;
+        const glm::vec3 b = (box.center + box.half - from) / way;
+        const glm::vec3 in = glm::min(a, b), out = glm::max(a, b);
+        const float first = std::max({in.x, in.y, in.z});
+        const bool meets = first > 0.0f && first < std::min({out.x, out.y, out.z});
+        return meets ? first : 1.0f;
+    }
+    std::array<float, kColumns * kRows> depths_{};
+};
+
 int run(const sample::Options& options, float seconds, const sample::FireLook& look, float gust,
-        float haze) {
+        float haze, bool seenAlone) {
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
@@ -63,6 +110,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         fire.registerTarget(stage);
         // Blockers are what radiation and flames do not pass; flames flow around them, too.
         for (const Box& box : kWalls) {
+            if (seenAlone) break;
             FwBlockerDef def = fwDefaultBlockerDef();
             for (int i = 0; i < 3; ++i) {
                 def.transform[12 + i] = box.center[i];
@@ -71,11 +119,14 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
             FwBlockerId id{};
             fire.check(fwWorld_AddBlocker(fire.world, &def, &id), "fwWorld_AddBlocker");
         }
-        FwFireColliderDef ground = fwDefaultFireColliderDef();
-        ground.kind = FW_COLLIDER_PLANE;
-        FwFireColliderId groundId{};
-        fire.check(fwWorld_AddFireCollider(fire.world, &ground, &groundId),
-                   "fwWorld_AddFireCollider");
+        FwFireColliderId groundId{}, seenId{};
+        if (!seenAlone) {
+            FwFireColliderDef ground = fwDefaultFireColliderDef();
+            ground.kind = FW_COLLIDER_PLANE;
+            fire.check(fwWorld_AddFireCollider(fire.world, &ground, &groundId),
+                       "fwWorld_AddFireCollider");
+        }
+        SeenDepth seen;
 
         static constexpr const char* kNames[] = {"in the open", "under a ceiling", "at a wall",
                                                  "torch"};
@@ -124,6 +175,16 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
                               frame);
             const float wind[3] = {gustAt(frame.time, gust), 0, 0};
             fire.check(fwWorld_SetWind(fire.world, wind), "fwWorld_SetWind");
+            if (seenAlone) {
+                seen.look(view);
+                const FwFireColliderDef def = seen.def(view);
+                if (frame.number == 0)
+                    fire.check(fwWorld_AddFireCollider(fire.world, &def, &seenId),
+                               "fwWorld_AddFireCollider");
+                else
+                    fire.check(fwWorld_SetFireCollider(fire.world, seenId, &def),
+                               "fwWorld_SetFireCollider");
+            }
             const glm::vec3 at = torchAt(frame.time);
             const float place[3] = {at.x, at.y, at.z};
             fire.check(fwWorld_MoveVolumetricFire(fire.world, fires[3], place),
@@ -170,18 +231,21 @@ int main(int argc, char** argv) {
         options.width = 1280;
         options.height = 400;
         float seconds = 4, gust = 4, haze = 1;
+        bool seenAlone = false;
         sample::FireLook look;
         sample::OptionParser parser(
             "08_wind_and_walls", "fires in a gust, under a ceiling, at a wall, and carried along");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--gust", "m/s, to the right", gust, -20.0f, 20.0f);
         parser.addNumber("--haze", "how far heat bends what is behind it", haze, 0.0f, 8.0f);
+        parser.addFlag("--seen", "flames know walls by a picture of the scene's depth alone",
+                       seenAlone);
         look.addTo(parser);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("open\nceiling\nwall\ntorch\n");
             return 0;
         }
-        return run(options, seconds, look, gust, haze);
+        return run(options, seconds, look, gust, haze, seenAlone);
     });
 }

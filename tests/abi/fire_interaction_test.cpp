@@ -38,6 +38,31 @@ float ceilingDistance(void*, const float point[3], float normal[3]) {
     normal[1] = -1;
     return 0.4f - point[1];
 }
+// The same ceiling as a camera 0.2 m over the ground and 2 m before the fire sees it.
+FwFireColliderDef ceilingSeen() {
+    constexpr uint32_t kColumns = 64, kRows = 48;
+    static const std::vector<float> depths = [] {
+        std::vector<float> all;
+        for (uint32_t row = 0; row < kRows; ++row) {
+            const float y = 1 - (float(row) + 0.5f) / kRows * 2;  // up per m ahead
+            all.insert(all.end(), kColumns, y > 0 ? 1 - 0.01f * y / 0.2f : 1.0f);
+        }
+        return all;
+    }();
+    FwFireColliderDef def = fwDefaultFireColliderDef();
+    def.kind = FW_COLLIDER_DEPTH;
+    def.columns = kColumns;
+    def.rows = kRows;
+    def.depths = depths.data();
+    def.view[13] = -0.2f;
+    def.view[14] = -2;
+    def.projection[0] = float(kRows) / kColumns;
+    def.projection[5] = -1;
+    def.projection[10] = def.projection[11] = -1;
+    def.projection[14] = -0.01f;
+    def.projection[15] = 0;
+    return def;
+}
 std::vector<Shape> shapesAbove() {
     std::vector<Shape> all;
     const auto made = [&](const char* name, FwFireColliderKind kind) -> FwFireColliderDef& {
@@ -58,6 +83,7 @@ std::vector<Shape> shapesAbove() {
     plane.position[1] = 0.4f;
     plane.normal[1] = -1;
     made("distance", FW_COLLIDER_DISTANCE).distance = &ceilingDistance;
+    all.push_back({"depth", ceilingSeen()});
     return all;
 }
 
@@ -145,6 +171,36 @@ TEST(AbiFireInteraction, GroundThatRisesAndBlockersCollideToo) {
     EXPECT_EQ(0.0f, w.state(through).contactPower);
 }
 
+// A picture of a wall bends flames and nothing else, and a new one every frame needs no memory.
+TEST(AbiFireInteraction, APictureOfDepthIsForFlamesAlone) {
+    FireWorld w;
+    const FwVolumetricFireId fire = w.make(fwDefaultVolumetricFireDef());
+    w.run(1);
+    FwFireColliderDef def = fwDefaultFireColliderDef();  // a wall 1.2 m beside the fire
+    const float heat = ask(w, 1.6f, 0.3f, 0).heatFlux;
+    EXPECT_GT(heat, 10.0f);
+    def.kind = FW_COLLIDER_BOX;
+    def.position[0] = 1.2f;
+    def.halfSize[0] = 0.02f;
+    def.halfSize[1] = def.halfSize[2] = 5;
+    const FwFireColliderId wall = add(w, def);
+    EXPECT_LT(ask(w, 1.6f, 0.3f, 0).heatFlux, 0.9f * heat) << "it would not be noticed";
+    EXPECT_EQ(FW_OK, fwWorld_RemoveFireCollider(w.world, wall));
+    def = ceilingSeen();
+    const FwFireColliderId seen = add(w, def);
+    const float above = 1.5f;
+    const float there = ask(w, 0, above, 0).heatFlux;
+    EXPECT_GT(there, 10.0f) << "radiation passes what is only seen";
+    const int64_t before = w.host.allocations;
+    for (int k = 0; k < 16; ++k) {
+        def.view[14] = -2 - 0.01f * float(k);
+        EXPECT_EQ(FW_OK, fwWorld_SetFireCollider(w.world, seen, &def));
+        w.run(1.0f / 32);
+    }
+    EXPECT_EQ(before, w.host.allocations);
+    EXPECT_GT(w.state(fire).contactPower, 0.0f);
+}
+
 TEST(AbiFireInteraction, CollidersAreChecked) {
     FireWorld w;
     FwFireColliderId id{};
@@ -153,8 +209,8 @@ TEST(AbiFireInteraction, CollidersAreChecked) {
         EXPECT_THAT(lastMessage(w.world), HasSubstr(text));
     };
     FwFireColliderDef def = fwDefaultFireColliderDef();
-    def.kind = 6;
-    refused(def, "kind is 6; the limits are [0, 5]");
+    def.kind = 7;
+    refused(def, "kind is 7; the limits are [0, 6]");
     def = fwDefaultFireColliderDef();
     def.radius = 0;
     refused(def, "radius is 0");
@@ -174,6 +230,25 @@ TEST(AbiFireInteraction, CollidersAreChecked) {
     const float heights[4] = {0, 0, INFINITY, 0};
     def.heights = heights;
     refused(def, "heights[2] is inf");
+    def = ceilingSeen();
+    def.depths = nullptr;
+    refused(def, "depths is null");
+    def = ceilingSeen();
+    def.columns = 513;
+    refused(def, "513 columns and 48 rows; the limits are [2, 512]");
+    def = ceilingSeen();
+    def.radius = 0;
+    refused(def, "radius is 0");
+    def = ceilingSeen();
+    def.projection[3] = NAN;
+    refused(def, "projection[3] is nan");
+    def = ceilingSeen();
+    std::fill_n(def.projection, 16, 0.0f);
+    refused(def, "have no inverse");
+    def = ceilingSeen();
+    const std::vector<float> far(size_t{64} * 48, 1.5f);
+    def.depths = far.data();
+    refused(def, "depths[0] is 1.5");
     def = fwDefaultFireColliderDef();
     def.position[2] = NAN;
     refused(def, "position[2] is nan");

@@ -446,7 +446,7 @@ class Fuzz {
     }
     void shapeCollider() {
         FwFireColliderDef def = fwDefaultFireColliderDef();
-        def.kind = random_.below(7);
+        def.kind = random_.below(8);
         for (float& x : def.position) x = random_.number();
         for (float& x : def.end) x = random_.number();
         for (float& x : def.normal) x = random_.number();
@@ -458,6 +458,7 @@ class Fuzz {
         def.columns = std::min(def.columns, 6u);  // honest array sizes
         def.rows = std::min(def.rows, 6u);
         def.heights = random_.once(9) ? nullptr : heights;
+        def.depths = random_.once(9) ? nullptr : heights;
         def.distance = random_.once(9) ? nullptr : &anyDistance;
         def.distanceData = &random_;
         def.structSize = sizeof def;

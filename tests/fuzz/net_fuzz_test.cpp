@@ -131,7 +131,8 @@ class Storm {
                 result = fwWorld_SetWind(w.world, at);
                 break;
             case 2:
-                result = fwWorld_SetFlags(w.world, below(2) ? uint32_t(FW_WORLD_CONTACT) : below(64));
+                result =
+                    fwWorld_SetFlags(w.world, below(2) ? uint32_t(FW_WORLD_CONTACT) : below(64));
                 break;
             case 3:
                 result = fwWorld_MoveVolumetricFire(w.world, w.fire, at);

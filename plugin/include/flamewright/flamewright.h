@@ -656,7 +656,11 @@ FW_API FwResult FW_CALL fwCookFireProfile(FwContext* context, const FwFireProfil
 
 typedef enum FwFireColliderKind {
     FW_COLLIDER_SPHERE = 0, FW_COLLIDER_CAPSULE = 1, FW_COLLIDER_BOX = 2, FW_COLLIDER_PLANE = 3,
-    FW_COLLIDER_HEIGHT_FIELD = 4, FW_COLLIDER_DISTANCE = 5, FW_COLLIDER_KIND_FORCE32 = 0x7fffffff
+    FW_COLLIDER_HEIGHT_FIELD = 4, FW_COLLIDER_DISTANCE = 5,
+    FW_COLLIDER_DEPTH = 6, /* a picture of the scene's depth: what it shows bends and flattens flames (what it does not,
+                              like an underside seen from above, does not). Only that: it shades nothing and stops no
+                              jet, so no pixel of it changes what burns */
+    FW_COLLIDER_KIND_FORCE32 = 0x7fffffff
 } FwFireColliderKind;
 typedef struct FwFireColliderDef { /* what flames flow around, beside the world's blockers; cosmetic */
     uint32_t structSize;
@@ -667,14 +671,18 @@ typedef struct FwFireColliderDef { /* what flames flow around, beside the world'
     float normal[3];       /* of a plane, towards the free side; default 0,1,0 */
     float halfSize[3];     /* m, of a box, > 0; default 0.5 */
     float rotation[4];     /* of a box: unit quaternion x, y, z, w; default 0,0,0,1 */
-    float radius;          /* m, > 0: sphere, capsule; default 0.5 */
+    float radius;          /* m, > 0: sphere, capsule; of a picture of depth [0.01, 100]: how far around flames it is
+                              looked at, and a tenth of it how thick it takes things to be; default 0.5 */
     float cellSize;        /* m, > 0: between two heights; default 1 */
-    uint32_t columns, rows;/* heights along x and z, each [2, 4096] */
+    uint32_t columns, rows;/* heights along x and z, each [2, 4096]; of a picture of depth each [2, 512] */
     const float* heights;  /* m above position, row after row along x; for worlds whose up is 0,1,0. Copied */
     /* Signed distance in m, and its unit normal, for FW_COLLIDER_DISTANCE. Called by the thread that steps or
      * records the world, many times; it calls nothing of the world. What is not finite is far away. */
     float (FW_CALL* distance)(void* distanceData, const float point[3], float normal[3]);
     void* distanceData;
+    const float* depths;   /* FW_COLLIDER_DEPTH: [0, 1], clip z over w in each middle, row after row, top first. Small
+                              is enough (160 x 90), and so is one that is some frames old, as read back. Copied */
+    float view[16], projection[16]; /* that it was drawn with, as FwView's; default identity */
 } FwFireColliderDef;
 static inline FwFireColliderDef fwDefaultFireColliderDef(void) {
     FwFireColliderDef d; fwInitDef(FW_DEF_FIRE_COLLIDER, &d, (uint32_t)sizeof d); return d;

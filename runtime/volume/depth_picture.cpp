@@ -1,0 +1,179 @@
+// Depths to patches, and the nearest of those around a point.
+#include "volume/depth_picture.h"
+
+#include "core/error.h"
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::volume {
+namespace {
+
+constexpr float kFarthest = 1e5f;  // m, clip w of what still counts as something
+constexpr float kGrazing = 0.03f;  // cosine to the eye of what is seen too much on edge to be known
+// Of the reach: so far behind what is seen a point is still inside of it, and not behind a post.
+constexpr float kThick = 0.1f;
+// Texels from the point's own at which the picture is looked at, eight to each ring; and then,
+// nearer and nearer, from the best of them.
+constexpr int kRings[] = {1, 2, 4, 8, 16, 32};
+constexpr int kCloser[] = {8, 4, 2, 1};
+constexpr int kAround[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
+                               {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+constexpr float kStraight = 0.8f;  // cosine, of ways to two texels in a row on one surface
+constexpr float kPatch = 0.6f;  // of the way to the next texel: so far from its middle one reaches
+
+glm::mat4 matrixOf(const float m[16]) noexcept {
+    glm::mat4 out;
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r) out[c][r] = m[4 * c + r];
+    return out;
+}
+
+bool finite(const glm::mat4& m) noexcept {
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r)
+            if (!std::isfinite(m[c][r])) return false;
+    return true;
+}
+
+// To the texel beside it, `step` and `count` of which lie before and after: over an edge it is the
+// nearer one, and the surface must go on so, there or to the other side. Zero: nobody knows.
+vec3 slopeAt(const DepthPicture& picture, uint32_t at, uint32_t step, uint32_t before,
+             uint32_t after) noexcept {
+    const auto way = [&](uint32_t from, uint32_t to, vec3& out) {
+        const DepthTexel &a = picture.texels[from], &b = picture.texels[to];
+        out = b.place - a.place;
+        return a.shown && b.shown;
+    };
+    vec3 ways[4];  // from two before it to two after
+    const bool there[4] = {before > 1 && way(at - 2 * step, at - step, ways[0]),
+                           before > 0 && way(at - step, at, ways[1]),
+                           after > 0 && way(at, at + step, ways[2]),
+                           after > 1 && way(at + step, at + 2 * step, ways[3])};
+    vec3 slope(0.0f);
+    float least = 1e30f;
+    for (const int k : {1, 2}) {
+        const float length = glm::length(ways[k]);
+        if (!there[k] || length >= least) continue;
+        const auto goesOn = [&](int other) {
+            return there[other] &&
+                   glm::dot(ways[other], ways[k]) > kStraight * glm::length(ways[other]) * length;
+        };
+        if (!goesOn(k - 1) && !goesOn(k + 1)) continue;
+        least = length;
+        slope = ways[k];
+    }
+    return slope;
+}
+
+struct Nearest {
+    float away = 1e9f;  // m
+    int column = 0, row = 0;
+    Surface surface;
+};
+
+// Whether it is nearer than what is known. `behind`: the point is not seen.
+bool meet(const DepthTexel& texel, float reach, vec3 point, bool behind,
+          Nearest& nearest) noexcept {
+    if (!texel.known) return false;
+    const vec3 off = point - texel.place;
+    const float above = glm::dot(off, texel.normal);
+    // What is seen is not inside of anything, however far a patch is taken to reach.
+    if (above < (behind ? -kThick * reach : 0.0f)) return false;
+    vec3 beside = off - above * texel.normal;
+    for (const vec3& side : {texel.across, texel.down})
+        beside -= side * std::clamp(glm::dot(beside, side) / glm::dot(side, side), -kPatch, kPatch);
+    const float away = std::sqrt(above * above + glm::dot(beside, beside));
+    if (away > reach || away >= nearest.away) return false;
+    nearest.away = away;
+    if (above < 0.0f || away < 1e-6f)
+        nearest.surface = {above, texel.normal};
+    else
+        nearest.surface = {away, (above * texel.normal + beside) / away};
+    return true;
+}
+
+}  // namespace
+
+void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint32_t columns,
+                     uint32_t rows, const float view[16], const float projection[16]) {
+    const glm::mat4 toView = matrixOf(view), toScreen = matrixOf(projection);
+    const glm::mat3 rotation(toView);  // rigid: the inverse is the transpose
+    const glm::mat4 toClip = toScreen * glm::mat4(rotation);
+    const glm::mat4 fromClip = glm::inverse(toClip);
+    if (!finite(toView) || !finite(toClip) || !finite(fromClip))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "view and projection of the picture of depth have no inverse.");
+    picture.texels.resize(size_t(columns) * rows);
+    picture.columns = columns;
+    picture.rows = rows;
+    picture.eye = -(glm::transpose(rotation) * vec3(toView[3]));
+    picture.toClip = toClip;
+    for (uint32_t row = 0; row < rows; ++row)
+        for (uint32_t column = 0; column < columns; ++column) {
+            const size_t at = size_t(row) * columns + column;
+            const vec4 clip(2.0f * (float(column) + 0.5f) / float(columns) - 1.0f,
+                            2.0f * (float(row) + 0.5f) / float(rows) - 1.0f, depths[at], 1.0f);
+            const vec4 there = fromClip * clip;
+            DepthTexel& texel = picture.texels[at];
+            texel = {};
+            if (!(there.w > 1.0f / kFarthest)) continue;  // the end of an endless view
+            texel.place = vec3(there) / there.w;
+            texel.shown = true;
+        }
+    // Clip w grows along it, whichever way the host's view space looks.
+    const float side = toScreen[2][3] > 0.0f ? 1.0f : -1.0f;
+    const vec3 forward = side * vec3(rotation[0][2], rotation[1][2], rotation[2][2]);
+    const bool perspective = toScreen[2][3] != 0.0f;
+    for (uint32_t row = 0; row < rows; ++row)
+        for (uint32_t column = 0; column < columns; ++column) {
+            const uint32_t at = row * columns + column;
+            DepthTexel& texel = picture.texels[at];
+            if (!texel.shown) continue;
+            const vec3 x = slopeAt(picture, at, 1, column, columns - 1 - column);
+            const vec3 y = slopeAt(picture, at, columns, row, rows - 1 - row);
+            const vec3 way = perspective ? texel.place : forward;
+            const vec3 normal = glm::cross(x, y);
+            const float size = glm::length(normal) * glm::length(way);
+            const float facing = size > 0.0f ? glm::dot(normal, way) / size : 0.0f;
+            if (!(std::abs(facing) > kGrazing)) continue;
+            texel.normal = glm::normalize(facing > 0.0f ? -normal : normal);
+            texel.across = x;
+            texel.down = y;
+            texel.known = true;
+        }
+}
+
+Surface surfaceOf(const DepthPicture& picture, float reach, vec3 point) noexcept {
+    const vec3 off = point - picture.eye;
+    const vec4 clip = picture.toClip * vec4(off, 1.0f);
+    if (!(clip.w > 1e-6f)) return {};
+    const float x = (0.5f * clip.x / clip.w + 0.5f) * float(picture.columns);
+    const float y = (0.5f * clip.y / clip.w + 0.5f) * float(picture.rows);
+    if (!(x >= 0.0f && y >= 0.0f && x < float(picture.columns) && y < float(picture.rows)))
+        return {};
+    const int column = int(x), row = int(y);
+    const auto texelAt = [&](int i, int j) -> const DepthTexel& {
+        return picture.texels[size_t(j) * picture.columns + size_t(i)];
+    };
+    const DepthTexel& own = texelAt(column, row);
+    const bool behind = own.known && glm::dot(off - own.place, own.normal) < 0.0f;
+    Nearest nearest;
+    const auto look = [&](int i, int j) {
+        if (i < 0 || j < 0 || i >= int(picture.columns) || j >= int(picture.rows)) return;
+        if (meet(texelAt(i, j), reach, off, behind, nearest)) nearest.column = i, nearest.row = j;
+    };
+    look(column, row);
+    for (const int ring : kRings)
+        for (const auto& way : kAround) look(column + ring * way[0], row + ring * way[1]);
+    if (nearest.away > reach) return {};
+    for (const int ring : kCloser) {
+        const int i = nearest.column, j = nearest.row;
+        for (const auto& way : kAround) look(i + ring * way[0], j + ring * way[1]);
+    }
+    return nearest.surface;
+}
+
+}  // namespace fw::volume
