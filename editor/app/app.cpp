@@ -161,7 +161,8 @@ std::string pinWords(const App& app, fwview::WhyCard& pin) {
     if (caught >= 0 && caught > now) return "Catches at " + clockText(caught);
     if (caught >= 0) return "Caught at " + clockText(caught);
     if (!pin.error.empty()) return pin.error;
-    return pin.answered ? pin.answer.answer : "Asking the fire";
+    if (!pin.answered) return "Asking the fire";
+    return pin.answer.answer + (pin.answer.forecast.empty() ? "" : ". " + pin.answer.forecast);
 }
 
 const char* iconOf(const fwedit::Scene& scene, Kind kind, ObjectId id) {

@@ -206,16 +206,19 @@ namespace {
 
 // A picture of a preset's glow in the preset's own colour, where it has one.
 void tintPixels(uint32_t preset, std::vector<uint8_t>& rgba) {
-    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
-    fwInitFirePreset(&def, preset);
-    if (!(def.tintWeight > 0)) return;
-    float tint[3];
-    for (int c = 0; c < 3; ++c) tint[c] = std::pow(std::clamp(def.tint[c], 0.0f, 1.0f), 1 / 2.2f);
+    const fw::volume::FlameLook look = fw::volume::presetDef(fw::volume::FlamePreset(preset)).look;
+    const float weight = look.tint[3];
+    if (!(weight > 0)) return;
+    // Without soot there is little glow to colour.
+    const float gain = look.painter == fw::volume::Painter::Burner ? 3.0f : 1.0f;
+    float tint[3];  // as the screen has it
+    for (size_t c = 0; c < 3; ++c)
+        tint[c] = gain * std::pow(std::clamp(look.tint[c], 0.0f, 1.0f), 1 / 2.2f);
     for (size_t i = 0; i + 3 < rgba.size(); i += 4) {
         const float bright = float(std::max({rgba[i], rgba[i + 1], rgba[i + 2]}));
         for (size_t c = 0; c < 3; ++c) {
-            const float own = float(rgba[i + c]);
-            rgba[i + c] = uint8_t(own + def.tintWeight * (bright * tint[c] - own));
+            const float value = float(rgba[i + c]);
+            rgba[i + c] = uint8_t(std::min(255.0f, value + weight * (bright * tint[c] - value)));
         }
     }
 }

@@ -306,7 +306,7 @@ void showActs(App& app, const Rect& rect) {
              "--link and this port.");
         rows.label("Linked");
         bool linked = page.linked;
-        if (toggle("linked", {rows.fieldX(), rows.y}, linked))
+        if (toggle("linked", {rows.fieldX(), rows.y + dp(3)}, linked))
             findAction(app, "Link to a sample")->run();
         rows.next();
         const uint32_t port = page.port;

@@ -198,12 +198,35 @@ bool expectAlike(ScriptHost& host, const Words& words, std::string& error) {
     return mean <= limit;
 }
 
+// The two halves of a comparison, by how much their values differ in the mean.
+bool expectHalves(ScriptHost& host, const Words& words, std::string& error) {
+    double limit = 0;
+    fwimport::FloatPicture picture;
+    if (!need(words, 5, 5, "expect halves FILE above|below SHARE", error)) return false;
+    if ((words[3] != "above" && words[3] != "below") || !numberOf(words[4], limit)) {
+        error = "it takes: expect halves FILE above|below SHARE";
+        return false;
+    }
+    if (!fwimport::readPicture(host.folder / words[2], picture, error)) return false;
+    double sum = 0;
+    const uint32_t half = picture.width / 2;
+    for (uint32_t y = 0; y < picture.height; ++y)
+        for (uint32_t x = 0; x < half; ++x)
+            for (uint32_t c = 0; c < picture.channels; ++c)
+                sum += std::fabs(double{picture.at(x, y, c)} - double{picture.at(x + half, y, c)});
+    const double mean = sum / std::max(1.0, double(picture.height) * half * picture.channels);
+    host.say("the halves differ by " + std::to_string(mean));
+    error = "the halves differ by " + std::to_string(mean);
+    return words[3] == "above" ? mean > limit : mean < limit;
+}
+
 bool expect(ScriptHost& host, const Words& words, std::string& error) {
     if (words.size() < 2) return need(words, 2, 2, "expect WHAT ...", error);
     const Document& document = host.document;
     if (words[1] == "count") return expectCount(host, words, error);
     if (words[1] == "lit") return expectLit(host, words, error);
     if (words[1] == "alike") return expectAlike(host, words, error);
+    if (words[1] == "halves") return expectHalves(host, words, error);
     if (words.size() == 3 && words[1] == "unsaved") {
         if ((words[2] == "yes") == unsaved(document)) return true;
         error = std::string("the scene is ") + (unsaved(document) ? "not saved" : "saved");

@@ -7,6 +7,7 @@
 //   expect count source 2         expect "Torch" output 18       expect unsaved yes
 //   expect step "Move Torch"      expect same "yard.fwscene"     expect lit "Crate" above 0.2
 //   expect alike "a.png" "b.png" 0.02     pictures, in the mean of their values
+//   expect halves "a.png" above 0.02      the left one against the right one
 //   refuse set "Torch" shape round        a command that must not be possible
 //   hash                          of the ignition map of each mesh at the playhead, and its tick
 //   link 47380                    pushes the scene, and from here on each change, to the sample

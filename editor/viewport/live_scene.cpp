@@ -270,6 +270,12 @@ void LiveScene::setUpStudio() {
             key.append(reinterpret_cast<const char*>(pose.data()), sizeof pose);
         }
     }
+    for (const fwedit::Flame& flame : burn_->scene.flames) {
+        if (!burn_->meshes.empty()) break;  // it is as large as they are
+        const fwedit::Vec3 place = fwedit::worldPosition(burn_->scene, flame.id);
+        const float values[] = {place[0], place[1], place[2], flame.diameter, flame.power};
+        key.append(reinterpret_cast<const char*>(values), sizeof values);
+    }
     const fwedit::Vec3 sun = burn_->scene.settings.sunDirection;
     key.append(reinterpret_cast<const char*>(sun.data()), sizeof sun);
     if (studio_ && key == studioKey_) return;

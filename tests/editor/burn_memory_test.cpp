@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "editor/yard.h"
 
@@ -92,6 +93,26 @@ TEST(BurnMemory, AgesGrowWithTimeAndAgreeWithTheWholeBurn) {
     for (size_t i = 0; i < late.size(); ++i)
         off += one.surface->real[i] && (late[i] > 0) != (field.seconds[i] <= 5);
     EXPECT_LE(off, late.size() / 1000);
+}
+
+TEST(BurnMemory, KnowsOfASpotWhenItCaught) {
+    Remembered one;
+    one.runTo(6);
+    one.rest();
+    one.yard.run("burn\n");
+    const ArrivalField& field = one.yard.host->record.fields[0];
+    size_t lit = 0, off = 0;
+    for (size_t i = 0; i < field.seconds.size(); ++i) {
+        if (!one.surface->real[i]) continue;
+        const double caught = one.memory.caughtAt(one.board, i);
+        lit += caught >= 0;
+        off += caught >= 0 ? std::fabs(caught - double(field.seconds[i])) > 1.0 / 32
+                           : field.seconds[i] < 5.9f;
+    }
+    EXPECT_GT(lit, 100u);
+    EXPECT_LE(off, lit / 100);
+    EXPECT_LT(one.memory.caughtAt(one.board, field.seconds.size()), 0);
+    EXPECT_LT(one.memory.caughtAt(one.board + 9, 0), 0);
 }
 
 TEST(BurnMemory, TimesAreSharesOfTheTimeline) {

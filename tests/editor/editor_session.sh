@@ -54,6 +54,7 @@ end=$((SECONDS + seconds))
 while ((SECONDS < end)); do
     round
     rounds=$((rounds + 1))
+    echo "round $rounds: $(memory) MiB"
 done
 after=$(memory)
 echo "$rounds rounds: $before MiB after the second, $after after the last"
@@ -75,8 +76,12 @@ fi
 kill -9 "$program"
 wait "$program" 2>/dev/null || true
 start "$binary"
-sleep 1
-xdotool mousemove 110 300 click 1
+# The button to recover it, as soon as the page is there.
+for _ in $(seq 60); do
+    grep -q '^ready$' "$work/log" && break
+    sleep 1
+    xdotool mousemove 112 296 click 1
+done
 await ready
 [[ $(grep -c '"point"' "$work/state/flamewright/recovery.fwscene") -ge 1 ]] ||
     { echo "the last heat source was lost" && exit 1; }

@@ -67,8 +67,18 @@ grep -q -E '^scene 2 is shown after [12] frames?$' "$work/log" || fail "wind and
 # The same scene in the editor's viewport, to the pixel but for what only flickers.
 "$editor" --headless --page scene+bare --size 320x180 --scale 1 --seconds 2 --shot "$work/viewport.png" \
     "$work/pushed.fwscene" >>"$work/log" 2>&1 || fail "the editor takes no picture"
+# And beside another setting: alike while nothing is changed, not in another light.
+for shot in same other; do
+    lines=
+    [[ $shot == same ]] || lines='set settings daylight dusk light 0.2'
+    "$editor" --headless --page scene+bare+beside --size 320x180 --scale 1 --seconds 1 \
+        --shot "$work/$shot.png" --do "$lines" "$work/pushed.fwscene" >>"$work/log" 2>&1 ||
+        fail "the editor takes no picture of a comparison"
+done
 cat >"$work/compare.fws" <<TEXT
 expect alike "viewport.png" "out/scene.png" 0.01
+expect halves "same.png" below 0.01
+expect halves "other.png" above 0.02
 TEXT
 "$editor" --script "$work/compare.fws" --headless >>"$work/script.log" 2>&1 || fail "the pictures differ"
 if [[ -n ${FW_KEEP_PICTURES:-} ]]; then cp "$work/viewport.png" "$work/out/scene.png" "$FW_KEEP_PICTURES/"; fi
