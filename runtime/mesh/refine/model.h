@@ -64,7 +64,7 @@ bool hasInside(const BurnDomain& domain, const RefineModel& model) noexcept;
 // Where the domain's vertices are on the inner skin of its walls: `wall` m in along every face (see
 // offsets.cpp), less where another wall is near. What is drawn from inside, unrefined. Empty: it
 // has no inside, or edges that are open, where no wall would join the two skins, or more than
-// 16384 triangles.
+// 65536 triangles.
 std::pmr::vector<glm::vec3> innerSkin(const BurnDomain& domain, float wall,
                                       std::pmr::memory_resource* memory);
 
