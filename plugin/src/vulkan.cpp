@@ -41,6 +41,7 @@ void fillViewParams(const gpu::ViewInput& input, gpu::ViewParams& out) {
     inputs.lightCount = input.lightCount;
     inputs.flameCapacity = input.flameCapacity;
     inputs.seed = input.seed;
+    inputs.quadShare = input.quadShare;
     std::copy_n(input.up, 3, inputs.up);
     std::copy_n(input.wind, 3, inputs.wind);
     inputs.paceFactor = input.paceFactor;

@@ -14,6 +14,7 @@ struct ViewInputs {          // what the host's view does not know
     uint32_t lightCount = 16;
     uint32_t flameCapacity = gpu::kFlameCapacity;
     uint32_t seed = 1;
+    float quadShare = 1;  // (0, 1]
     float up[3] = {0, 1, 0};
     float wind[3] = {};
     float paceFactor = 1;

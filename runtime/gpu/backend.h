@@ -131,6 +131,8 @@ struct Detail {
     uint32_t marched = 32;      // and at all; the others are cards
     uint32_t volumeSteps = 64;  // samples of a ray at most; see FwWorldDef
     float triangles = 1;        // share of FwWorldDef::maxRefinedTriangles
+    float quads = 1;  // share of flames' quads and particles that show; what shows is larger for it
+    float memory = 1;  // share of what marched flames and quads have otherwise; 1: it never shrinks
 
     [[nodiscard]] bool operator==(const Detail&) const = default;
 };
@@ -252,6 +254,8 @@ class Backend {
 
     virtual std::span<const PassTime> passTimes() = 0;
     virtual void memoryRows(std::pmr::vector<MemoryRow>& out) = 0;
+    // Of device memory that follows a plan's Detail::memory.
+    [[nodiscard]] virtual uint64_t detailBytes() const noexcept { return 0; }
 
     // Whether it draws: what only looks want is worth making.
     [[nodiscard]] virtual bool draws() const noexcept { return false; }

@@ -13,8 +13,9 @@ constexpr float kJump = 0.3f;       // a cost that is so far from the smooth one
 constexpr float kSavesMost = 3.0f;  // of a single level
 
 float shareOf(const FrameCost& limit, const FrameCost& cost) noexcept {
-    return std::max(limit.gpu > 0 ? cost.gpu / limit.gpu : 0.0f,
-                    limit.cpu > 0 ? cost.cpu / limit.cpu : 0.0f);
+    return std::max({limit.gpu > 0 ? cost.gpu / limit.gpu : 0.0f,
+                     limit.cpu > 0 ? cost.cpu / limit.cpu : 0.0f,
+                     limit.bytes > 0 ? float(cost.bytes / limit.bytes) : 0.0f});
 }
 
 float savesAt(const Governor& g, uint32_t level) noexcept {
@@ -22,8 +23,9 @@ float savesAt(const Governor& g, uint32_t level) noexcept {
 }
 
 // A mean at first, then a filter.
-void follow(float to, uint32_t seen, float& value) noexcept {
-    value += std::max(kSmooth, 1.0f / float(seen + 1)) * (to - value);
+template <class T>
+void follow(T to, uint32_t seen, T& value) noexcept {
+    value += T(std::max(kSmooth, 1.0f / float(seen + 1))) * (to - value);
 }
 
 // What the levels between two saved each, as it turned out.
@@ -49,17 +51,17 @@ void turnTo(uint32_t level, float share, Governor& g) noexcept {
 }  // namespace
 
 gpu::Detail detailOf(uint32_t level) noexcept {
-    // Many samples first, which is grain; then how many flames have their own rays; triangles all
-    // along.
+    // Many samples first, which is grain; then how many flames have their own rays; triangles,
+    // quads and memory all along.
     static constexpr std::array<gpu::Detail, kDetailLevels> kLevels = {{
-        {16, 32, 64, 1.0f},
-        {12, 32, 48, 0.85f},
-        {8, 24, 40, 0.7f},
-        {4, 16, 32, 0.55f},
-        {2, 8, 28, 0.4f},
-        {1, 4, 24, 0.3f},
-        {0, 2, 20, 0.2f},
-        {0, 1, 16, 0.125f},
+        {16, 32, 64, 1.0f, 1.0f, 1.0f},
+        {12, 32, 48, 0.85f, 0.9f, 0.8f},
+        {8, 24, 40, 0.7f, 0.8f, 0.65f},
+        {4, 16, 32, 0.55f, 0.7f, 0.5f},
+        {2, 8, 28, 0.4f, 0.6f, 0.4f},
+        {1, 4, 24, 0.3f, 0.5f, 0.3f},
+        {0, 2, 20, 0.2f, 0.42f, 0.2f},
+        {0, 1, 16, 0.125f, 0.35f, 0.125f},
     }};
     return kLevels[std::min(level, kDetailLevels - 1)];
 }
@@ -72,6 +74,7 @@ void govern(const FrameCost& limit, const FrameCost& spent, Governor& g) noexcep
     const float now = shareOf(limit, spent);
     follow(spent.gpu, g.seen, g.cost.gpu);
     follow(spent.cpu, g.seen, g.cost.cpu);
+    follow(spent.bytes, g.seen, g.cost.bytes);
     const float share = shareOf(limit, g.cost);
     g.overSum = now > kOver ? (g.over > 0 ? g.overSum : 0) + now : 0;
     g.over = now > kOver ? g.over + 1 : 0;

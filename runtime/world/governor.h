@@ -11,6 +11,7 @@ namespace fw::world {
 
 struct FrameCost {
     float gpu = 0, cpu = 0;  // ms of a frame; a limit of 0: none
+    double bytes = 0;        // of device memory that follows detail
 };
 
 constexpr uint32_t kDetailLevels = 8;       // 0: all there is

@@ -262,7 +262,7 @@ void World::setBudget(const FwBudgetDef& def) {
     components::checkValue(def.cpuMilliseconds, "FwBudgetDef::cpuMilliseconds", 0.0f, 1000.0f);
     components::checkValue(def.measuredMilliseconds, "FwBudgetDef::measuredMilliseconds", -1e5f,
                            1e5f);
-    budget_ = {def.gpuMilliseconds, def.cpuMilliseconds};
+    budget_ = {def.gpuMilliseconds, def.cpuMilliseconds, double(def.bytes)};
     budgetMeasured_ = def.measuredMilliseconds >= 0;
     if (budgetMeasured_) spent_.gpu = def.measuredMilliseconds;
 }
@@ -276,6 +276,8 @@ void World::budgetState(FwBudgetState& state) const noexcept {
     state.refinedTriangles = uint32_t(detail.triangles * float(def_.maxRefinedTriangles));
     state.gpuMilliseconds = governor_.cost.gpu;
     state.cpuMilliseconds = governor_.cost.cpu;
+    state.quads = detail.quads;
+    state.bytes = backend_.detailBytes();
 }
 
 // ---- flamewright_debug.h ----------------------------------------------------------------------

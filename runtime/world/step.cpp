@@ -76,9 +76,11 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     if (frame_.emittersDue) plan.emitters = &frame_.emitters;
     if (frame_.fieldsDue) plan.fields = &frame_.fields;
     plan.tickFraction = float(double(time.after.fraction) / double(Clock::kStepUnits));
+    spent_.bytes = double(backend_.detailBytes());
     govern(budget_, spent_, governor_);
     spent_.cpu = 0;
     plan.detail = detailOf(governor_.level);
+    if (!(budget_.bytes > 0)) plan.detail.memory = 1;
     backend_.run(plan);
 
     commitFrame(frameIndex, time, !skip);

@@ -89,7 +89,7 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
 
 void main() {
     uint count = counters[kRowBurn + push.burnParity].runCount;
-    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u)));
+    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u))) * view.quads.x;
     float time = view.ambientSky.w;
     vec3 up = view.up.xyz;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
@@ -163,7 +163,7 @@ void main() {
                 float tall = len * (0.55 + 0.75 * r3 * r3) * grown * (0.35 + 0.65 * strength);
                 vec3 axis = normalize(up * rise + drift + normal * (0.16 * rise) +
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
-                float halfWidth = flameHalfWidth(len, own.y) * (0.8 + 0.5 * r2) *
+                float halfWidth = flameHalfWidth(len, own.y) * view.quads.y * (0.8 + 0.5 * r2) *
                                   (0.5 + 0.5 * strength);
                 float loose = smoothstep(0.55, 1.0, a);
                 quad.baseHeight = vec4(place + normal * (0.15 * halfWidth) - axis * (0.06 * tall) +

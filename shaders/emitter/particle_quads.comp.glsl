@@ -58,7 +58,8 @@ void show(inout FlameQuad quad, uint book, float life, float age, float own) {
 void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     bool perspective = view.forward.w > 0.5;
     float age = p.placeAge.w, a = age / t.life;
-    float size = particleSize(e, t, age, p.speedPath.w, t.own);
+    float shows = shareShows(view.quads.x, particleHash(seed + 311u));
+    float size = particleSize(e, t, age, p.speedPath.w, t.own) * view.quads.y;
     vec3 place = p.placeAge.xyz, v = p.speedPath.xyz;
     vec3 toEye = view.eye.xyz - place;
     float far = perspective ? dot(-toEye, view.forward.xyz) : 1e3;
@@ -79,6 +80,7 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     // Close to the eye it fades, and so does what would fill the view.
     float near = smoothstep(kNearFade, kNearFade + 0.8, far) *
                  (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
+    near *= shows;
     bool drawn = near > 0.0;
 
     FlameQuad quad;

@@ -121,8 +121,16 @@ struct ViewParams {          // uniform block, one per view
     uint flameCapacity;      // most flame quads
     uint seed;
     vec4 viewport;           // px: x, y, width, height
+    vec4 quads;              // x: share that shows of flames and particles; y: how much wider that is; zw: 0
 };
-FW_SHARED_SIZE(ViewParams, 224)
+FW_SHARED_SIZE(ViewParams, 240)
+
+// Whether what has this number in [0, 1) shows, where a share of all does: 0 or 1, and between them
+// for a few, so that none comes or goes at once.
+FW_SHARED_FN float shareShows(float share, float own) {
+    float shows = (share - own) * 12.0f + share;
+    return shows < 0.0f ? 0.0f : shows > 1.0f ? 1.0f : shows;
+}
 
 // Emission of 40 cd/m^2 shows as 1 in the host's linear units, at emission scale 1.
 FW_SHARED_CONST float kWhiteLuminance = 40.0f;

@@ -131,6 +131,107 @@ TEST(BudgetOnDevice, NoFireGoesAwayAndTheLightStays) {
     std::printf("light at the least detail: %.3f of all\n", light[1] / light[0]);
 }
 
+// Fires, burning sheets and a jet's particles, seen in a picture now and then.
+struct Seen {
+    static constexpr uint32_t kWide = 160, kHigh = 90;
+    std::unique_ptr<Panels> panels;
+    std::vector<unsigned char> pixels = std::vector<unsigned char>(kWide * kHigh * 4);
+    FwOffscreenDef shot = fwDefaultOffscreenDef();
+
+    bool make() {
+        FwContext* context = nullptr;
+        FwErrorInfo info{};
+        const FwContextDef own = fwDefaultContextDef();
+        if (fwCreateContext(&own, &context, &info) != FW_OK) return false;
+        panels = std::make_unique<Panels>(fwDefaultWorldDef(), 20, 64, context);
+        for (int i = 0; i < 2; ++i) {
+            FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
+            fire.position[0] = 1.5f * float(i) - 3.0f;
+            FwVolumetricFireId id{};
+            EXPECT_EQ(FW_OK, fwWorld_CreateVolumetricFire(panels->world, &fire, &id));
+        }
+        FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
+        emitter.position[0] = 1.0f;
+        emitter.power = 300;
+        FwFireEmitterId id{};
+        EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(panels->world, &emitter, &id));
+        panels->ignite(panels->add(2.2f, 0.4f, 0), 2.4f, 0.4f, 0.1f, 0.05f);
+        shot.width = kWide, shot.height = kHigh;
+        shot.pixels = pixels.data();
+        shot.view = fw::test::viewAt({0, 1, 9}, {0, 0.8f, 0}, float(kWide) / kHigh, 4.57f);
+        return true;
+    }
+    void frames(uint32_t count) {
+        for (uint32_t i = 0; i < count; ++i) panels->run(1.0 / 32);
+        ASSERT_EQ(FW_OK, fwWorld_RenderOffscreen(panels->world, &shot))
+            << lastMessage(panels->world);
+    }
+    // Light of the picture's columns, linear, of the red in it.
+    double light(uint32_t from, uint32_t to) const {
+        double sum = 0;
+        for (uint32_t y = 0; y < kHigh; ++y)
+            for (uint32_t x = from; x < to; ++x)
+                sum += std::pow(double(pixels[(y * kWide + x) * 4]) / 255, 2.2);
+        return sum;
+    }
+};
+
+// Memory of what is shown falls below what the host gives within 60 frames and stays there; without
+// a limit it comes back. What burns knows nothing of it.
+TEST(BudgetOnDevice, BytesSettleUnderTheLimitAndComeBack) {
+    Seen seen, free;
+    if (!seen.make() || !free.make()) GTEST_SKIP() << "no Vulkan device";
+    FwWorld* world = seen.panels->world;
+    seen.frames(20);
+    const uint64_t all = budgetOf(world).bytes;
+    EXPECT_GT(all, 200000u);
+    FwBudgetDef def = fwDefaultBudgetDef();
+    def.bytes = all / 2;
+    ASSERT_EQ(FW_OK, fwWorld_SetBudget(world, &def));
+    seen.frames(60);
+    const uint32_t level = budgetOf(world).level;
+    EXPECT_GT(level, 0u);
+    for (int i = 0; i < 4; ++i) {  // and is still
+        seen.frames(5);
+        EXPECT_EQ(level, budgetOf(world).level);
+        EXPECT_LE(budgetOf(world).bytes, def.bytes);
+    }
+    std::printf("bytes: %llu of %llu, at level %u\n",
+                static_cast<unsigned long long>(budgetOf(world).bytes),
+                static_cast<unsigned long long>(all), level);
+    EXPECT_GT(seen.light(0, 95), 10.0) << "the fires are there";
+    def.bytes = 0;
+    ASSERT_EQ(FW_OK, fwWorld_SetBudget(world, &def));
+    seen.frames(60);
+    EXPECT_EQ(0u, budgetOf(world).level);
+    EXPECT_NEAR(1, double(budgetOf(world).bytes) / double(all), 0.15) << "but for what is spare";
+    free.panels->run(160.0 / 32);
+    EXPECT_EQ(saved(*free.panels), saved(*seen.panels));
+}
+
+// At the least detail a third of the quads shows (ParticlePass counts them), each larger: there is
+// about as much fire.
+TEST(BudgetOnDevice, QuadsFallAndTheFireStays) {
+    double sheet[2] = {}, jet[2] = {};
+    for (const bool held : {false, true}) {
+        Seen seen;
+        if (!seen.make()) GTEST_SKIP() << "no Vulkan device";
+        ASSERT_EQ(FW_OK, setBudget(seen.panels->world, held ? 2 : 0, 100));
+        seen.frames(40);
+        for (uint32_t i = 0; i < 12; ++i) {  // of seconds, as flames flicker
+            seen.panels->run(5.0 / 32);
+            seen.frames(1);
+            jet[held] += seen.light(75, 112);
+            sheet[held] += seen.light(118, 160);
+        }
+        EXPECT_FLOAT_EQ(held ? 0.35f : 1.0f, budgetOf(seen.panels->world).quads);
+    }
+    std::printf("at the least detail %.2f of the light of particles, %.2f of a sheet's\n",
+                jet[1] / jet[0], sheet[1] / sheet[0]);
+    EXPECT_NEAR(jet[1] / jet[0], 1, 0.35);
+    EXPECT_NEAR(sheet[1] / sheet[0], 1, 0.35);
+}
+
 TEST(AbiBudget, RefusesWhatIsNoBudget) {
     host::FireWorld w;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, setBudget(w.world, -1, -1));

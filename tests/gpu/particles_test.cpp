@@ -274,6 +274,39 @@ TEST_F(ParticlePass, QuadsAreDrawnFarthestFirstFewOrMany) {
     }
 }
 
+// With less detail fewer of them show, each of them larger, and none that was not seen before.
+TEST_F(ParticlePass, AShareOfThemShowsEachLarger) {
+    FwFireEmitterDef def = emitterDef(0, 100);
+    def.rate = 2000;
+    add(def);
+    makeRig(8192);
+    for (int i = 0; i < 30; ++i) frame(0.04f);
+    const auto measure = [&](float share, uint32_t& count, double& area) {
+        rig_->of<gpu::ViewParams>(FW_BIND_VIEW)[0].quads = {share, 1 / std::sqrt(share), 0, 0};
+        dispatch(true);
+        count = quads();
+        area = 0;
+        for (uint32_t i = 0; i < count; ++i) {
+            const auto& quad =
+                of<gpu::FlameQuad>(FW_BIND_FLAMES)[arguments()[gpu::kFlameOrder + i]];
+            area += double(quad.axisWidth.w) * double(quad.baseHeight.w) * double(quad.opacity);
+        }
+    };
+    uint32_t all = 0, few = 0, none = 0;
+    double allArea = 0, fewArea = 0, noArea = 0;
+    measure(1, all, allArea);
+    EXPECT_GT(all, 800u);
+    for (const float share : {0.7f, 0.35f}) {
+        measure(share, few, fewArea);
+        const double some = double(share) * 13 / 12;  // with those that show in part
+        EXPECT_NEAR(some, double(few) / all, 0.04) << few << " of " << all;
+        EXPECT_NEAR(fewArea / allArea, 1, 0.15);
+    }
+    measure(1, none, noArea);
+    EXPECT_EQ(all, none);
+    EXPECT_DOUBLE_EQ(allArea, noArea);
+}
+
 TEST_F(ParticlePass, TheRadixSortIsStable) {
     FwFireEmitterDef def = emitterDef(0, 100);
     def.rate = 9000;

@@ -170,4 +170,27 @@ TEST(Governor, RandomLoadsAreFollowedWithoutHunting) {
     }
 }
 
+// Bytes follow the level at once, but what frees them is seen later. Milliseconds have no limit.
+TEST(Governor, BytesSettleAndComeBack) {
+    for (const double limit : {0.9e6, 0.55e6, 0.3e6, 0.05e6}) {
+        Governor governor;
+        std::vector<uint32_t> levels;
+        const auto frames = [&](double given, uint32_t count) {
+            levels.clear();
+            for (uint32_t f = 0; f < count; ++f) {
+                const double bytes = 1e6 * double(world::detailOf(governor.level).memory);
+                world::govern({0, 0, given}, {3, 1, bytes}, governor);
+                levels.push_back(governor.level);
+            }
+        };
+        frames(limit, 400);
+        const uint32_t settled = levels[60];
+        for (size_t f = 60; f < levels.size(); ++f) EXPECT_EQ(settled, levels[f]) << limit;
+        const bool fits = 1e6 * double(world::detailOf(settled).memory) <= 1.04 * limit;
+        EXPECT_TRUE(fits || settled + 1 == world::kDetailLevels) << limit;
+        frames(0, 60);
+        EXPECT_EQ(0u, governor.level) << limit;
+    }
+}
+
 }  // namespace

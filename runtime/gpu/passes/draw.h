@@ -24,6 +24,7 @@ struct ViewInput {
     float up[3] = {0, 1, 0};
     float paceFactor = 1;
     uint32_t lightCount = 0, flameCapacity = 0, seed = 0;
+    float quadShare = 1;  // of flames' quads and particles that show
 };
 
 // Given by the layer above, which knows how things look.

@@ -177,6 +177,12 @@ void RangeAllocator::addCapacity(uint32_t units) {
     capacity_ += units;
 }
 
+void RangeAllocator::dropCapacity(uint32_t units) noexcept {
+    free_.back().units -= units;
+    if (free_.back().units == 0) free_.pop_back();
+    capacity_ -= units;
+}
+
 uint32_t RangeAllocator::allocate(uint32_t units) {
     for (size_t i = 0; i < free_.size(); ++i) {
         if (free_[i].units < units) continue;
@@ -279,11 +285,11 @@ Planes::Planes(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
     }
     try {
         for (uint32_t space = 0; space < kSpaceCount; ++space)
-            grow(Space(space),
-                 space == kSpaceFlames                 ? quadUnits(sizes.flames)
-                 : exact_ && space != kSpaceIterations ? 1
-                                                       : kInitialUnits[space],
-                 0);
+            resize(Space(space),
+                   space == kSpaceFlames                 ? quadUnits(sizes.flames)
+                   : exact_ && space != kSpaceIterations ? 1
+                                                         : kInitialUnits[space],
+                   0);
     } catch (...) {
         for (Slot& slot : slots_) deviceMemory_.destroy(slot.now);
         throw;
@@ -310,7 +316,7 @@ uint32_t Planes::limit(Space space) const noexcept {
     return uint32_t(units);
 }
 
-void Planes::grow(Space space, uint32_t units, uint64_t lastFrame) {
+void Planes::resize(Space space, uint32_t units, uint64_t lastFrame) {
     std::array<Buffer, kResourceCount> fresh{};
     size_t planes = 0;
     try {
@@ -325,7 +331,10 @@ void Planes::grow(Space space, uint32_t units, uint64_t lastFrame) {
             ++planes;
         }
         retired_.promise(planes);
-        spaces_[space].addCapacity(units - spaces_[space].capacity());
+        if (const uint32_t had = spaces_[space].capacity(); units < had)
+            spaces_[space].dropCapacity(had - units);
+        else
+            spaces_[space].addCapacity(units - had);
     } catch (...) {
         for (Buffer& buffer : fresh) deviceMemory_.destroy(buffer);
         throw;
@@ -361,13 +370,13 @@ uint32_t Planes::allocate(Space space, uint32_t units, uint64_t lastFrame) {
     const auto doubled = uint32_t(std::min<uint64_t>(most, uint64_t(capacity) * 2));
     if (doubled > least && !exact_) {
         try {
-            grow(space, doubled, lastFrame);
+            resize(space, doubled, lastFrame);
             return spaces_[space].allocate(units);
         } catch (const core::Error& error) {
             if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
         }
     }
-    grow(space, least, lastFrame);
+    resize(space, least, lastFrame);
     return spaces_[space].allocate(units);
 }
 
@@ -378,14 +387,34 @@ void Planes::release(Space space, uint32_t first, uint32_t units) noexcept {
 void Planes::atLeast(Space space, uint32_t units, uint64_t lastFrame) {
     const uint32_t capacity = spaces_[space].capacity();
     if (units <= capacity) return;
+    checkLimit(space, units);
+    const uint64_t doubled = exact_ ? units : std::max<uint64_t>(units, capacity * 2ull);
+    resize(space, uint32_t(std::min<uint64_t>(limit(space), doubled)), lastFrame);
+}
+
+void Planes::checkLimit(Space space, uint32_t units) const {
     const uint32_t most = limit(space);
     if (units > most)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "%u units in one frame do not fit: the device's maxStorageBufferRange of %u "
                    "bytes holds %u.",
                    units, device_.properties.limits.maxStorageBufferRange, most);
-    const uint64_t doubled = exact_ ? units : std::max<uint64_t>(units, capacity * 2ull);
-    grow(space, uint32_t(std::min<uint64_t>(most, doubled)), lastFrame);
+}
+
+void Planes::fit(Space space, uint32_t units, bool shrinks, uint64_t lastFrame) {
+    // What is asked for sways, and it grows by and by.
+    const uint32_t capacity = spaces_[space].capacity(), spare = units / 8;
+    if (units <= capacity && (!shrinks || capacity - units <= spare)) return;
+    checkLimit(space, units);
+    const uint32_t room = shrinks || exact_ ? units : std::min(limit(space), units + spare);
+    resize(space, std::max(room, 1u), lastFrame);
+}
+
+uint64_t Planes::bytes(Space space) const noexcept {
+    uint64_t all = 0;
+    for (const Slot& slot : slots_)
+        if (slot.plane.unitBytes && slot.plane.space == space) all += slot.now.size;
+    return all;
 }
 
 bool Planes::recordMoves(const Table& table, VkCommandBuffer commands, uint64_t frameIndex) {
@@ -393,9 +422,9 @@ bool Planes::recordMoves(const Table& table, VkCommandBuffer commands, uint64_t 
     for (Slot& slot : slots_) {
         slot.recorded = slot.now.handle != VK_NULL_HANDLE;
         if (!slot.before.handle) continue;
-        const VkBufferCopy all{0, 0, slot.before.size};
+        const VkBufferCopy all{0, 0, std::min(slot.before.size, slot.now.size)};
         table.CmdCopyBuffer(commands, slot.before.handle, slot.now.handle, 1, &all);
-        retired_.push(frameIndex, slot.before);  // room was reserved by grow
+        retired_.push(frameIndex, slot.before);  // room was reserved by resize
         moved = true;
     }
     movesPending_ = false;

@@ -77,8 +77,9 @@ class RangeAllocator {
  public:
     explicit RangeAllocator(std::pmr::memory_resource* memory) : free_(memory) {}
     static constexpr uint32_t kNoRange = 0xFFFFFFFFu;
-    void addCapacity(uint32_t units);   // at the end
-    uint32_t allocate(uint32_t units);  // kNoRange: does not fit
+    void addCapacity(uint32_t units);            // at the end
+    void dropCapacity(uint32_t units) noexcept;  // likewise, of what is free there
+    uint32_t allocate(uint32_t units);           // kNoRange: does not fit
     void release(uint32_t first, uint32_t units) noexcept;
     [[nodiscard]] uint32_t capacity() const noexcept { return capacity_; }
     [[nodiscard]] uint32_t used() const noexcept { return used_; }
@@ -158,6 +159,9 @@ class Planes {
     void release(Space space, uint32_t first, uint32_t units) noexcept;
     // For spaces that are refilled each frame or indexed by slot.
     void atLeast(Space space, uint32_t units, uint64_t lastFrame);
+    // Likewise, with little to spare; `shrinks`: with none, and fewer where it has many more. For
+    // spaces that follow detail.
+    void fit(Space space, uint32_t units, bool shrinks, uint64_t lastFrame);
 
     [[nodiscard]] const Buffer& buffer(uint32_t resource) const { return slots_[resource].now; }
     [[nodiscard]] uint32_t capacity(Space space) const { return spaces_[space].capacity(); }
@@ -167,6 +171,7 @@ class Planes {
     bool recordMoves(const Table& table, VkCommandBuffer commands, uint64_t frameIndex);
     [[nodiscard]] bool movesPending() const noexcept { return movesPending_; }
     void rows(std::pmr::vector<MemoryRow>& out) const;
+    [[nodiscard]] uint64_t bytes(Space space) const noexcept;
 
  private:
     struct Slot {
@@ -175,8 +180,10 @@ class Planes {
         Buffer before;          // holds the recorded content until the next frame moves it
         bool recorded = false;  // `now` was used by a recorded frame
     };
-    void grow(Space space, uint32_t units, uint64_t lastFrame);
+    // New buffers of so many units, more or fewer; fewer: the last ones are free.
+    void resize(Space space, uint32_t units, uint64_t lastFrame);
     uint32_t limit(Space space) const noexcept;
+    void checkLimit(Space space, uint32_t units) const;  // throws FW_ERROR_OUT_OF_MEMORY
 
     Device& device_;
     DeviceMemory& deviceMemory_;

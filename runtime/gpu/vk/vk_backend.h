@@ -128,6 +128,7 @@ class VkBackend final : public Backend {
     const Readback* nextReadback() override;
     std::span<const PassTime> passTimes() override;
     void memoryRows(std::pmr::vector<MemoryRow>& out) override;
+    [[nodiscard]] uint64_t detailBytes() const noexcept override;
 
     struct State;
 

@@ -20,7 +20,12 @@ void VkBackend::State::makeEmitterRoom(const EmitterUpdate& update, uint64_t las
     planes.atLeast(kSpaceSparks, update.sparkCount, last);
     const uint32_t tiles = tileQuads();
     const uint32_t wished = update.particles + update.particles / 4 + 16 + update.sparkQuads;
-    planes.atLeast(kSpaceFlames, quadUnits(std::min(tiles + wished, kMostQuads)), last);
+    // Who finds no quad is not seen, so that under a limit there is room for those that show:
+    // a twelfth of them does in part (shareShows).
+    const float share = detail.memory < 1 ? std::min(detail.quads * 13.0f / 12.0f, 1.0f) : 1.0f;
+    const auto shown = uint32_t(float(wished) * share);
+    planes.fit(kSpaceFlames, quadUnits(std::min(tiles + shown, kMostQuads)), detail.memory < 1,
+               last);
 }
 
 void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecorder& recorder,

@@ -201,8 +201,9 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
         s.volumes.reserve(plan.volumes->count);
     }
     if (plan.emitters) s.makeEmitterRoom(*plan.emitters, last);
-    if (!s.open.unseen && !(plan.volumes ? plan.volumes->count == 0 : s.volumes.empty()))
-        s.makeMarchRoom(plan.volumes ? plan.volumes->count : uint32_t(s.volumes.size()), last);
+    const uint32_t volumes = plan.volumes ? plan.volumes->count : uint32_t(s.volumes.size());
+    const bool follows = !s.open.unseen || s.detail.memory < 1;  // a limit holds unseen, too
+    if (follows && volumes > 0) s.makeMarchRoom(volumes, last);
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);

@@ -11,6 +11,8 @@
 namespace fw::gpu::vk {
 namespace {
 
+constexpr float kQuadsTurn = 1.0f / 32;  // a frame: none comes or goes at once
+
 void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingUpload& upload) {
     auto barrier = typed<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
     barrier.srcAccessMask = barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
@@ -361,6 +363,7 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
     input.paceFactor = limits.paceFactor;
     input.lightCount = limits.maxLights;
     input.flameCapacity = std::min(limits.maxFlames, kFlameCapacity);
+    input.quadShare = quadShare;
     input.seed = limits.seed;
     ViewParams params{};
     if (limits.looks.viewParams) limits.looks.viewParams(input, params);
@@ -390,6 +393,8 @@ void VkBackend::State::run(const FramePlan& plan) {
     march.steps = march.steps > detail.volumeSteps
                       ? std::max(march.steps - kStepsTurn, detail.volumeSteps)
                       : std::min(march.steps + kStepsTurn, detail.volumeSteps);
+    quadShare = quadShare > detail.quads ? std::max(quadShare - kQuadsTurn, detail.quads)
+                                         : std::min(quadShare + kQuadsTurn, detail.quads);
     crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
     if (!needs.work) {
         open.ran = true;

@@ -109,12 +109,16 @@ void VkBackend::State::noteScreen(const FwView& view, const VolumeScreen& screen
     march.frame = frame;
 }
 
+uint32_t VkBackend::State::rayWords() const noexcept {
+    return uint32_t(double(detail.memory) * volumeRayWords(march.screen));
+}
+
 void VkBackend::State::makeMarchRoom(uint32_t flames, uint64_t last) {
     if (!profiles.live) return;
     while (march.slots < flames) march.slots = std::max(2 * march.slots, kLeastCards);
     try {
-        planes.atLeast(kSpaceVolumeRays, march.slots * kPairWords + volumeRayWords(march.screen),
-                       last);
+        planes.fit(kSpaceVolumeRays, march.slots * kPairWords + rayWords(), detail.memory < 1,
+                   last);
     } catch (const core::Error& error) {
         if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
     }
@@ -201,7 +205,7 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
     march.capacity = capacity;
     ++march.passed;
     // Where memory is short there are none.
-    const uint32_t rays = volumeRayWords(march.screen);
+    const uint32_t rays = rayWords();
     const uint32_t slots =
         uint64_t{march.slots} * kPairWords + rays / 4 <= capacity ? march.slots : 0;
     std::array<TierItem, kMaxVolumeFlames> asked;
@@ -312,6 +316,13 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
 
 bool VkBackend::State::marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept {
     return march.there && screen == march.made && sameView(view, march.view);
+}
+
+uint64_t VkBackend::detailBytes() const noexcept {
+    const State& s = *state_;  // cards lie before the rays, and are as many as there are flames
+    const uint64_t cards = uint64_t(s.march.slots) * kPairWords * sizeof(uint32_t);
+    const uint64_t rays = s.planes.bytes(kSpaceVolumeRays);
+    return rays - std::min(rays, cards) + s.planes.bytes(kSpaceFlames);
 }
 
 }  // namespace fw::gpu::vk

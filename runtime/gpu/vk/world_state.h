@@ -299,6 +299,7 @@ struct VkBackend::State {
     float wind[3] = {};
     float tickFraction = 0;
     Detail detail;           // as of the frame's plan
+    float quadShare = 1;     // on its way to detail's
     uint32_t crossing = 0;   // of kSwitchCrossing and kSwitchNoZPass
     uint64_t softStep = 0;   // number of the step that sheets and springs have come to
     uint32_t softSteps = 0;  // that they take in the frame
@@ -448,6 +449,7 @@ struct VkBackend::State {
     void noteScreen(const FwView& view, const VolumeScreen& screen, uint64_t frame) noexcept;
     // Before the first command: room for what is marched; less of it makes it coarser.
     void makeMarchRoom(uint32_t flames, uint64_t last);
+    [[nodiscard]] uint32_t rayWords() const noexcept;  // at the frame's detail
     void marchVolumes(FrameRecorder& recorder) noexcept;
     void layMarch(std::span<const VolumeItem> items, FrameRecorder& recorder) noexcept;
     // What a flame's card shows, of the last two marches of it.
