@@ -109,7 +109,7 @@ TEST(Log, WhatASaveHasIsNotDoneAgain) {
     EXPECT_EQ(hash, other.hash());
 }
 
-void expectRefused(BusyWorld& w, const Bytes& log, const char* says) {
+void expectLogRefused(BusyWorld& w, const Bytes& log, const char* says) {
     EXPECT_EQ(FW_ERROR_BAD_DATA, fwWorld_OpenLog(w.world, log.data(), log.size())) << says;
     EXPECT_NE(std::string::npos, lastMessage(w.world).find(says)) << lastMessage(w.world);
 }
@@ -133,19 +133,19 @@ TEST(Log, RefusesWhatIsNoneOfTheWorlds) {
     EXPECT_EQ(log.size(), size);
     Bytes wrong = log;
     wrong[0] ^= 1;
-    expectRefused(w, wrong, "\"FWLG\"");
+    expectLogRefused(w, wrong, "\"FWLG\"");
     wrong = log;
     wrong[4] = 9;
-    expectRefused(w, wrong, "format version 9");
+    expectLogRefused(w, wrong, "format version 9");
     wrong = log;
     wrong[log.size() / 2] ^= 0x10;
-    expectRefused(w, wrong, "checksum");
+    expectLogRefused(w, wrong, "checksum");
     wrong.assign(log.begin(), log.end() - 1);
-    expectRefused(w, wrong, "checksum");
+    expectLogRefused(w, wrong, "checksum");
     wrong.assign(log.begin(), log.begin() + 11);
-    expectRefused(w, wrong, "log ends");
+    expectLogRefused(w, wrong, "log ends");
     BusyWorld fewer(FW_BACKEND_CPU, 12, 9);
-    expectRefused(fewer, log, "other rules, objects or meshes");
+    expectLogRefused(fewer, log, "other rules, objects or meshes");
     ASSERT_EQ(FW_OK, fwWorld_OpenLog(w.world, log.data(), log.size()));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayLog(w.world, 1000000, nullptr));
     ASSERT_EQ(FW_OK, fwWorld_PlayLog(w.world, 5, &seconds));  // behind it

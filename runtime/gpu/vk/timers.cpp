@@ -50,7 +50,7 @@ void FrameTimers::end(const Device& device, VkCommandBuffer commands) {
         device.table.CmdEndDebugUtilsLabelEXT(commands);
 }
 
-void FrameTimers::read(const Device& device, uint64_t frameIndex, std::pmr::vector<PassTime>& out) {
+void FrameTimers::read(Device& device, uint64_t frameIndex, std::pmr::vector<PassTime>& out) {
     if (spans_ == 0) return;
     std::array<uint64_t, kMaxSpans * 2> stamps{};
     const VkResult result = device.table.GetQueryPoolResults(
@@ -58,6 +58,7 @@ void FrameTimers::read(const Device& device, uint64_t frameIndex, std::pmr::vect
         sizeof(uint64_t), VK_QUERY_RESULT_64_BIT);
     const uint32_t spans = spans_;
     spans_ = 0;
+    if (result == VK_ERROR_DEVICE_LOST) device.notifyLost();
     if (result != VK_SUCCESS) return;  // the host's word was early: no times rather than a wait
     out.clear();
     const double period = double(device.properties.limits.timestampPeriod) * 1e-6;

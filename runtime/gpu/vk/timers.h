@@ -21,7 +21,7 @@ class FrameTimers {
     void begin(const Device& device, VkCommandBuffer commands, const char* name);
     void end(const Device& device, VkCommandBuffer commands);
     // Sums by name into out, which keeps its room. The frame is done.
-    void read(const Device& device, uint64_t frameIndex, std::pmr::vector<PassTime>& out);
+    void read(Device& device, uint64_t frameIndex, std::pmr::vector<PassTime>& out);
     // Of another frame now: until reset() is recorded its pool holds the old frame's stamps, and a
     // frame that has nothing to do but draw records none.
     void forget() noexcept {

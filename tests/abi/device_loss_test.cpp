@@ -1,0 +1,135 @@
+// The library's own device is lost at one Vulkan call after another: each time the host is told so,
+// once and for all, everything is freed, and the fire goes on from the last mirror, bit by bit.
+// FLAMEWRIGHT_LOSE_EVERY=1 in the environment: at every call.
+#include "support/loss_scene.h"
+#include "support/views.h"
+
+#include <dlfcn.h>
+
+#include <cstdio>
+
+namespace fw::test::device_loss_test {
+namespace {
+
+using namespace host;
+
+// Stands in for the loader from before anyone asks for one: dlopen finds by name what is there.
+const struct Loader {
+    LosingVulkan* vulkan = nullptr;
+    void (*drop)() = nullptr;
+    Loader() {
+        void* library = dlopen(FW_TEST_LOSING_LOADER, RTLD_NOW | RTLD_LOCAL);
+        auto* give = library ? reinterpret_cast<LosingVulkan* (*)()>(dlsym(library, "losingVulkan"))
+                             : nullptr;
+        if (give) vulkan = give();
+        drop = library ? reinterpret_cast<void (*)()>(dlsym(library, "losingDrop")) : nullptr;
+    }
+} loader;
+
+FwResult takePicture(FwWorld* world) {
+    static std::vector<unsigned char> pixels(64 * 36 * 4);
+    FwOffscreenDef shot = fwDefaultOffscreenDef();
+    shot.width = 64, shot.height = 36;
+    shot.pixels = pixels.data();
+    shot.view = viewAt({0.4f, 0.6f, 1.5f}, {0.4f, 0.1f, 0.1f}, 64.0f / 36);
+    return fwWorld_RenderOffscreen(world, &shot);
+}
+
+// A life of a context, until a call of it fails.
+struct Life {
+    Host host;
+    LossScene scene;
+    FwContext* context = nullptr;
+    FwResult result = FW_OK;
+    bool made = false;   // the context
+    int64_t frames = 0;  // calls until the first
+
+    Life() {
+        scene.picture = takePicture;
+        FwContextDef def = fwDefaultContextDef();
+        def.callbacks = host.callbacks();
+        FwErrorInfo error{};
+        result = fwCreateContext(&def, &context, &error);
+        made = result == FW_OK;
+        if (result == FW_OK) result = fwContext_Prepare(context);
+        if (result == FW_OK) result = scene.make(context);
+        frames = loader.vulkan->calls;
+        if (result == FW_OK) result = scene.play();
+    }
+    Life(const Life&) = delete;
+    Life& operator=(const Life&) = delete;
+    ~Life() {
+        fwDestroyContext(context);
+        EXPECT_EQ(0, host.blocks);
+        EXPECT_EQ(0, loader.vulkan->live) << "objects of the device are left";
+    }
+};
+
+TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
+    if (!*FW_TEST_LOSING_LOADER) GTEST_SKIP() << "there is no libvulkan.so.1";
+    ASSERT_TRUE(loader.vulkan && loader.vulkan->real) << "no loader between";
+    LosingVulkan& vulkan = *loader.vulkan;
+    LossReference reference;
+    int64_t calls = 0, frames = 0;
+    vulkan.begin(-1);
+    {
+        Life whole;
+        if (!whole.made) GTEST_SKIP() << "no Vulkan device";
+        ASSERT_EQ(FW_OK, whole.result) << whole.host.lastError;
+        calls = vulkan.calls;
+        frames = whole.frames;
+        ASSERT_GT(calls, 400) << "the library does not call through the table";
+        ASSERT_EQ(reference.saves.rbegin()->second, whole.scene.mirror);
+        EXPECT_EQ(reference.end, whole.scene.save());
+    }
+    const std::vector<int64_t> losses = chooseLosses(vulkan, frames, calls, 40, true);
+    std::map<uint32_t, uint32_t> mirrors;  // by frame, how often
+    std::vector<Bytes> recovered;
+    for (const int64_t call : losses) {
+        SCOPED_TRACE("lost at call " + std::to_string(call) + ", " + vulkan.nameOf(call));
+        vulkan.begin(call);
+        Bytes mirror;
+        uint32_t frame = 0;
+        {
+            Life life;
+            ASSERT_TRUE(vulkan.lost) << "the call did not come";
+            EXPECT_TRUE(life.result == FW_ERROR_DEVICE_LOST ||
+                        (life.result == FW_OK && host::mayPass(vulkan.nameOf(call))))
+                << fwResultName(life.result) << ": " << life.host.lastError;
+            if (life.scene.world) {  // it stays lost, and gives what it has
+                EXPECT_EQ(FW_ERROR_DEVICE_LOST, fwWorld_Step(life.scene.world, 0.1f));
+                EXPECT_EQ(FW_ERROR_DEVICE_LOST, takePicture(life.scene.world));
+                EXPECT_EQ(FW_OK, life.scene.takeSave()) << lastMessage(life.scene.world);
+            }
+            mirror = life.scene.mirror;
+            frame = life.scene.mirrored;
+        }
+        vulkan.begin(-1);
+        ++mirrors[frame];
+        if (frame == 0) continue;
+        EXPECT_EQ(reference.saves[frame], mirror) << "the mirror of frame " << frame;
+        if (std::find(recovered.begin(), recovered.end(), mirror) != recovered.end()) continue;
+        recovered.push_back(mirror);
+        for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
+            Host host;
+            FwContextDef def = fwDefaultContextDef();
+            def.backend = backend;
+            def.callbacks = host.callbacks();
+            FwContext* context = nullptr;
+            FwErrorInfo error{};
+            ASSERT_EQ(FW_OK, fwCreateContext(&def, &context, &error)) << error.message;
+            LossScene scene;
+            reference.expectRecovers(context, scene, mirror, frame);
+            fwDestroyContext(context);
+            EXPECT_EQ(0, host.blocks);
+        }
+    }
+    std::printf("%zu of %lld calls; without a mirror %u, with the first %u, with the second %u\n",
+                losses.size(), static_cast<long long>(calls), mirrors[0],
+                mirrors[LossScene::kSaves[0]], mirrors[LossScene::kSaves[1]]);
+    EXPECT_EQ(std::size(LossScene::kSaves), recovered.size());
+    loader.drop();
+}
+
+}  // namespace
+}  // namespace fw::test::device_loss_test
