@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ctime>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "common/filming.h"
@@ -14,18 +15,20 @@
 #include "game/bot.h"
 #include "hud.h"
 #include "overview.h"
+#include "recording.h"
 #include "renderer.h"
 #include "rewind.h"
 #include "scripted.h"
 #include "siege.h"
+#include "soak.h"
 #include "world_def.h"
 
 namespace {
 
 struct Choices {
-    std::string light = "waves", ground = "parallax", backend = "vulkan";
+    std::string light = "waves", ground = "parallax", backend = "vulkan", record, play;
     tower::ScriptedGame scripted;
-    float waves = 0;
+    float waves = 0, soak = 0;
     bool bot = false, antialias = false, report = false, energy = false;
 };
 
@@ -192,7 +195,18 @@ class Clock {
 int play(const sample::Options& options, const Choices& choices) {
     Day day(choices.light);
     constexpr double kStory = 10;  // s
-    const uint32_t frames = sample::framesOf(options, kStory);
+    std::optional<tower::Recorder> recorder;
+    std::optional<tower::Recording> played;
+    if (!choices.record.empty()) recorder.emplace(choices.record, options.seed);
+    if (!choices.play.empty()) played.emplace(choices.play, options.seed);
+    if (choices.soak > 0 && std::fmod(double(game::kTicksPerSecond), options.fps) != 0)
+        throw sample::Failure("--soak wants frames of whole ticks: --fps 4, 8, 16 or 32");
+    const auto soakFrames =
+        uint32_t(double(choices.soak) * 60 * options.fps / tower::Soak::kRounds);
+    const uint32_t frames = played           ? played->frames()
+                            : soakFrames > 0 ? tower::Soak::framesOf(soakFrames)
+                                             : sample::framesOf(options, kStory);
+    const bool byHand = !options.headless || played;
     sample::Progress startUp("painting the village", 2);
     const tower::Battlefield field = tower::makeBattlefield(options.seed);
     const tower::PaintedVillage painted = tower::paintVillage(field.scene);
@@ -213,9 +227,9 @@ int play(const sample::Options& options, const Choices& choices) {
         fire.registerTarget(stage);
         tower::Renderer renderer(host, stage, field.scene, painted, groundOf(choices.ground));
         tower::FireVillage fires(fire.context, fire.world, field.scene, &painted);
-        tower::Siege siege(fire.world, fires, field,
-                           options.headless ? game::underWay(field.ground, options.seed)
-                                            : game::newGame(options.seed));
+        tower::Siege siege(
+            fire.world, fires, field,
+            byHand ? game::newGame(options.seed) : game::underWay(field.ground, options.seed));
         tower::Rewind rewind(fire.world, siege);
         tower::Hud hud(host, stage);
         tower::Player player;
@@ -223,7 +237,7 @@ int play(const sample::Options& options, const Choices& choices) {
         const std::vector<tower::PointLight> lamps = lampLights(field.scene);
         startUp.update(2);
         startUp.finish();
-        const bool bot = choices.bot || options.headless;
+        const bool bot = choices.bot || !byHand;
         if (!options.headless)
             std::printf(
                 "1 to 4 and a click: place a tower; a click on it: U upgrades, X sells\n"
@@ -241,15 +255,35 @@ int play(const sample::Options& options, const Choices& choices) {
         film.name = "tower_defence";
         film.animationEvery = 3;
         sample::Filming filming(stage, options, film);
+        std::optional<tower::Soak> soak;
+        if (options.headless && soakFrames > 0) {
+            soak.emplace(fire.context, fire.world, siege, soakFrames);
+            stage.onPicture = {};
+        }
+        if (played)  // of a film the moments alone
+            stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
+                if (played->isMoment(number))
+                    sample::writePng(options.out / (std::to_string(number) + ".png"), picture);
+            };
 
         tower::Overview overview;
         Clock clock;
         VkExtent2D extent{};
         const clock_t began = std::clock();
         sample::StageFrame frame;
+        double time = 0;                 // s, that nothing moves in while it is paused
+        constexpr uint32_t kStands = 5;  // frames until a window shows what it will
+        uint32_t paused = 0;             // frames
         while (stage.next(frame)) {
-            if (options.headless)
-                overview.follow(frames > 1 ? float(frame.number) / float(frames - 1) : 0.0f);
+            if (soak) soak->beginFrame();
+            if (played) played->put(frame);
+            if (recorder) recorder->frame(frame);
+            if (!player.paused) time += double(frame.deltaTime);
+            frame.time = time;
+            if (!byHand)
+                overview.follow(soak         ? soak->share()
+                                : frames > 1 ? float(frame.number) / float(frames - 1)
+                                             : 0.0f);
             else
                 overview.steer(frame.input, frame.deltaTime, frame.extent);
             const sample::Camera camera = overview.camera();
@@ -276,9 +310,12 @@ int play(const sample::Options& options, const Choices& choices) {
                        (refused ? std::string(": ") + refused : ""));
             }
             if (wishes.pause) {
+                if (player.paused && recorder) recorder->moment();
                 player.paused = !player.paused;
                 report(player.paused ? "pause" : "go on");
             }
+            paused = player.paused ? paused + 1 : 0;
+            if (paused == kStands) report("stands still");
             if (wishes.faster) {
                 player.speed = player.speed == 4 ? 1 : player.speed * 2;
                 report("speed " + std::to_string(player.speed));
@@ -309,7 +346,8 @@ int play(const sample::Options& options, const Choices& choices) {
                 report("second " + std::to_string(second + 1));
             for (const game::Happening& happening : siege.happened())
                 if (const char* words = wordsFor(happening)) say(words);
-            if (!options.headless && ticks > 0) rewind.remember();
+            if (byHand && ticks > 0) rewind.remember();
+            if (soak) soak->afterAdvance();
             day.follow(siege.state().wave, frame.deltaTime);
             const tower::Daylight& light = day.light();
             stage.made.exposure = light.exposure;
@@ -327,8 +365,10 @@ int play(const sample::Options& options, const Choices& choices) {
         }
         vkDeviceWaitIdle(host.device);
         report("quit");
+        if (soak)
+            if (const int status = soak->report()) return status;
 
-        if (options.headless) {
+        if (options.headless && !played && !soak) {
             const game::State& state = siege.state();
             sample::Summary summary;
             summary.title = "The village under attack (" + choices.light + ")";
@@ -392,9 +432,20 @@ int main(int argc, char** argv) {
                        choices.scripted.rewind);
         parser.addFlag("--report", "says what was done, a line each", choices.report);
         parser.addFlag("--energy", "shows where every joule of the fuel is", choices.energy);
+        parser.addText("--record", "FILE", "keeps what is done in the window", choices.record);
+        parser.addText("--play", "FILE",
+                       "with --headless: what was done in a window, again; a picture of the end of "
+                       "each pause, by its frame's number",
+                       choices.play);
+        parser.addNumber(
+            "--soak",
+            "with --headless: minutes of a game in ten rounds of the same, and whether "
+            "the last costs what the first did",
+            choices.soak, 0.0f, 600.0f);
         parser.addFlag("--msaa", "four samples a pixel", choices.antialias);
         if (!parser.parse(argc, argv, options)) return 0;
-        if (options.fps == 0) options.fps = options.headless ? 10.0 : 30.0;
+        if (options.fps == 0)
+            options.fps = !options.headless ? 30.0 : choices.soak > 0 ? 8.0 : 10.0;
         if (options.list) {
             std::printf("one game, in three lights: --light golden, noon or night\n");
             return 0;
