@@ -357,11 +357,13 @@ void Board::plotMenu() {
 
 void Board::message(double time) {
     constexpr double kFor = 3;  // s
-    if (player.paused)
-        fwui::drawTextCentred(list, fonts().title, lens.size.x / 2, dp(96), kInk, "paused");
-    else if (time - player.saidAt < kFor)
-        fwui::drawTextCentred(list, fonts().heading, lens.size.x / 2, dp(80), kInk,
-                              player.said.c_str());
+    if (!player.paused && time - player.saidAt >= kFor) return;
+    ImFont* font = player.paused ? fonts().title : fonts().heading;
+    const char* words = player.paused ? "paused" : player.said.c_str();
+    const ImVec2 half{fwui::textSize(font, words).x / 2 + dp(18), dp(player.paused ? 26 : 18)};
+    const ImVec2 at{lens.size.x / 2, dp(player.paused ? 96 : 80)};
+    panel({at.x - half.x, at.y - half.y, at.x + half.x, at.y + half.y});
+    fwui::drawTextCentred(list, font, at.x, at.y, kInk, words);
 }
 
 void Board::over() {

@@ -67,7 +67,8 @@ const std::vector<VkVertexInputAttributeDescription> kAttributes = {
     {7, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 48}};
 const std::vector<VkVertexInputAttributeDescription> kCasterAttributes = {
     kAttributes[0], kAttributes[4], kAttributes[5], kAttributes[6]};
-constexpr float kFineWithin = 36.0f;  // m; further off the fine parts of a model are left out
+constexpr float kFineWithin = 36.0f;        // m; further off the fine parts of a model are left out
+constexpr uint32_t kMostTriangles = 20000;  // of a view
 
 // The sun looks at the whole play area; the map follows no camera, so shadows never swim.
 glm::mat4 sunClip(glm::vec3 toSun, float* texel) {
@@ -256,6 +257,11 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
         sample::projectionMatrix(scene.camera, aspect) * sample::viewMatrix(scene.camera);
     enum Seen : uint8_t { kNot, kNear, kFar };
     std::vector<Seen> seen;
+    struct Fine {
+        float away;  // m
+        size_t placed;
+    };
+    std::vector<Fine> fineWork;
     uint32_t triangles = (surfaces_[ground_].indexCount + surfaces_[road_].indexCount +
                           surfaces_[water_].indexCount) /
                          3;
@@ -269,10 +275,20 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
             continue;
         }
         // The library draws the whole of a model from everywhere.
-        const bool whole =
-            !p.drawn || glm::length(middle - scene.camera.eye) < kFineWithin + radius;
+        const float away = glm::length(middle - scene.camera.eye) - radius;
+        const bool whole = !p.drawn || away < kFineWithin;
+        if (p.drawn && whole) fineWork.push_back({away, seen.size()});
         seen.push_back(!p.drawn ? kNot : whole ? kNear : kFar);
         triangles += (whole ? s.indexCount : s.farIndexCount) / 3;
+    }
+    // Where a crowd is in view the farthest go without.
+    std::sort(fineWork.begin(), fineWork.end(),
+              [](const Fine& a, const Fine& b) { return a.away < b.away; });
+    for (; triangles > kMostTriangles && !fineWork.empty(); fineWork.pop_back()) {
+        const size_t i = fineWork.back().placed;
+        const Surface& s = surfaces_[size_t(scene.placed[i].model)];
+        seen[i] = kFar;
+        triangles -= (s.indexCount - s.farIndexCount) / 3;
     }
     mostTriangles_ = std::max(mostTriangles_, triangles);
 
