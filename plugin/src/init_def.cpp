@@ -83,6 +83,13 @@ void defaults(FwWindZoneDef& def) noexcept {
     def.falloff = 0.5f;
 }
 
+void defaults(FwRoomDef& def) noexcept {
+    def.rotation[3] = 1;
+    set(def.halfSize, 2, 1.25f, 2.5f);
+    def.vent = 0.01f;
+    def.oxygen = 0.2095f;
+}
+
 void defaults(FwVolumetricFireDef& def) noexcept {
     def.diameter = 0.6f;
     def.power = 60;
@@ -200,6 +207,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwNetDef);
         case FW_DEF_WIND_ZONE:
             return sizeof(FwWindZoneDef);
+        case FW_DEF_ROOM:
+            return sizeof(FwRoomDef);
         case FW_DEF_FIRE_COLLIDER:
             return sizeof(FwFireColliderDef);
         case FW_DEF_FIRE_TRACK:
@@ -262,6 +271,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_WIND_ZONE:
             write<FwWindZoneDef>(def);
+            return true;
+        case FW_DEF_ROOM:
+            write<FwRoomDef>(def);
             return true;
         case FW_DEF_FIRE_COLLIDER:
             write<FwFireColliderDef>(def);

@@ -197,6 +197,26 @@ FwResult FW_CALL fwWorld_GetWindAt(FwWorld* world, const float point[3], float w
     });
 }
 
+FwResult FW_CALL fwWorld_CreateRoom(FwWorld* world, const FwRoomDef* given, FwRoomId* id) {
+    return createOf("fwWorld_CreateRoom", world, &world::World::createRoom, given, FW_DEF_ROOM,
+                    "FwRoomDef", id);
+}
+
+FwResult FW_CALL fwWorld_SetRoom(FwWorld* world, FwRoomId id, const FwRoomDef* given) {
+    return onWorld("fwWorld_SetRoom", world, [&](world::World& w) {
+        w.setRoom(id, edge::readDef(given, FW_DEF_ROOM, "FwRoomDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_DestroyRoom(FwWorld* world, FwRoomId id) {
+    return destroyOf("fwWorld_DestroyRoom", world, &world::World::destroyRoom, id);
+}
+
+FwResult FW_CALL fwWorld_GetRoomState(FwWorld* world, FwRoomId id, FwRoomState* state) {
+    return fill("fwWorld_GetRoomState", world, state, "FwRoomState", &world::World::roomState, id);
+}
+
 // ---- materials, images, meshes ----------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* given,

@@ -20,14 +20,6 @@ static_assert(FW_FIELD_OPEN_LEFT == gpu::kFieldOpenLeft &&
               FW_FIELD_OPEN_BOTTOM == gpu::kFieldOpenBottom &&
               FW_FIELD_OPEN_TOP == gpu::kFieldOpenTop);
 
-void checkRotation(const float q[4], const char* name) {
-    checkValues(q, 4, name, -1.001f, 1.001f);
-    const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (std::fabs(length - 1) > 1e-3f)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s has length %g; it is a unit quaternion within 0.001.", name, double(length));
-}
-
 }  // namespace
 
 void setFieldPreset(FwParticleFieldDef& def, uint32_t preset) noexcept {

@@ -7,6 +7,14 @@
 
 namespace fw::components {
 
+void checkRotation(const float q[4], const char* name) {
+    checkValues(q, 4, name, -1.001f, 1.001f);
+    const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (std::fabs(length - 1) > 1e-3f)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s has length %g; it is a unit quaternion within 0.001.", name, double(length));
+}
+
 void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
     if (value < low || value > most)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", name, value,

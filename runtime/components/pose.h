@@ -31,6 +31,8 @@ constexpr float kMostPower = 1e5f;  // kW, of a fire
 // Throws unless all `count` values are finite and within [low, high]: "field[i] is v; ...".
 void checkValues(const float* values, unsigned count, const char* field, float low, float high);
 void checkValue(float value, const char* field, float low, float high);
+// Throws unless it is a unit quaternion.
+void checkRotation(const float q[4], const char* name);
 // The same of a whole number: "field is v; ...".
 void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most);
 

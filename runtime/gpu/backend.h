@@ -8,6 +8,7 @@
 #include "shared/burn.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
+#include "shared/room.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -62,6 +63,7 @@ struct StepPlan {               // one fixed step of 1/32 s
     uint32_t substepShift = 0;  // log2 of its iterations: the largest of the objects that burn
     bool reduce = false;        // also count burning texels and rebuild BurnTiles
     bool heat = false;          // also a heat step: kHeatSteps steps at once, at its start
+    bool rooms = false;         // with `heat`, before it: some room is there, or was
     bool exchange = false;      // with `reduce`: fire at a distance, and who may go on burning
     bool governed = false;      // some object or the world limits its fire
     bool capped = false;        // and how many tiles may burn
@@ -168,6 +170,7 @@ struct Readback {  // valid until the next call of nextReadback
     std::span<const ObjectImage> images;
     std::span<const BurnLight> lights;
     std::span<const FieldCounters> fields;  // by slot; those of its rows are the backend's
+    std::span<const RoomAir> rooms;         // by slot; empty: no step ever had any
     uint32_t frontTiles = 0;                // length of the front list: 0 and no events = idle
     uint32_t runTiles = 0;                  // tiles run in the frame
     uint32_t burningTiles = 0;
@@ -232,6 +235,9 @@ class Backend {
                           std::span<const uint32_t> /*words*/) {}
     // That show burning meshes' flames, from the next frame on: byte 0 fire's + 1, byte 1 smoke's.
     virtual void setFlameBooks(uint32_t /*books*/) noexcept {}
+
+    // From the next frame on; its objects say in their flags that they are in it.
+    virtual void setRoom(uint32_t slot, const Room& room) noexcept = 0;
 
     // Particle fields. Masks: a byte per cell, see kFieldWall. It begins empty; a wall that comes
     // kills what is there. Creation and masking: unchanged when they throw.

@@ -57,6 +57,7 @@ void World::collectReadbacks() {
         takeAnswers(*readback);
         takeLights(*readback);
         takeFields(*readback);
+        takeRooms(*readback);
         for (const gpu::BurnMap& map : readback->burnMaps) {
             if (map.object >= objects_.slotCount()) continue;
             auto* owned = objects_.at(map.object);
@@ -96,6 +97,10 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         tellSpread(object, readback);
         float place[3];
         if (now.burning > 0) object.story.lastBurning = readback.endTick;
+        if (now.burning > 0 && gpu::airStrength(now.air) < gpu::kAirFull / 2) {  // it chokes
+            object.story.lastDouse = readback.endTick;
+            object.story.doused = true;
+        }
 
         const bool freshFire = now.ignited > before.ignited || now.burning > 0;
         if (!object.story.sawFire && now.ignited > 0 && freshFire) {

@@ -119,6 +119,8 @@ void World::perform(const Deed& deed) {
             return setParticleFieldAmount(idAt(fields_, deed.slot), numbers[0]);
         case Deed::Kind::windZone:
             return setWindZone(idAt(windPool_, deed.slot), zoneDefOf(deed));
+        case Deed::Kind::room:
+            return setRoom(idAt(rooms_, deed.slot), roomDefOf(deed));
         case Deed::Kind::ignite: {
             if (deed.tick < clock_.tick || deed.tick > Clock::kLastTick) break;
             FwIgnitionDef def{};
@@ -154,9 +156,10 @@ uint64_t World::identity() noexcept {
     const float rules[] = {def_.paceFactor, def_.up[0],        def_.up[1],
                            def_.up[2],      def_.spreadChance, def_.timeToLive};
     uint64_t hash = core::hashBytes(std::as_bytes(std::span(rules)));
-    const uint32_t counts[] = {
-        kSaveVersion,     def_.seed,     def_.maxHops,     def_.maxBurningTiles, objects_.live(),
-        blockers_.live(), fires_.live(), emitters_.live(), fields_.live(),       windPool_.live()};
+    const uint32_t counts[] = {kSaveVersion,         def_.seed,        def_.maxHops,
+                               def_.maxBurningTiles, objects_.live(),  blockers_.live(),
+                               fires_.live(),        emitters_.live(), fields_.live(),
+                               windPool_.live(),     rooms_.live()};
     hash = core::hashWords(counts, hash);
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
         if (const auto* object = objects_.at(i)) {

@@ -28,14 +28,15 @@ struct Deed {
         moveField,
         fieldAmount,
         windZone,
+        room,
         count
     };
     Kind kind = Kind::count;
     uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all
     uint32_t tick = 0;  // ignite: when it takes effect
     uint32_t word = 0;  // flags; ignite: FwIgnitionKind; moveEmitter: 1: with a direction;
-                        // windZone: see zoneWord
-    std::array<float, 12> numbers{};
+                        // windZone: see zoneWord; room: its flags
+    std::array<float, 13> numbers{};
 };
 
 // What of a deed its kind has, in bytes. `s` is a core::Writer, or a core::Reader of a known kind.
@@ -56,6 +57,7 @@ constexpr DeedForm kDeedForms[] = {
     {true, false, true, 7},    // moveField
     {true, false, false, 1},   // fieldAmount
     {true, false, true, 11},   // windZone
+    {true, false, true, 13},   // room
 };
 static_assert(std::size(kDeedForms) == size_t(Deed::Kind::count));
 template <class S, class T>

@@ -227,6 +227,10 @@ void World::noteSaved(SavedWorld& to) {
     to.windZones.clear();
     for (uint32_t i = 0; i < windPool_.slotCount(); ++i)
         if (const components::WindZone* zone = windPool_.at(i)) to.windZones.push_back({i, *zone});
+    to.rooms.clear();
+    for (uint32_t i = 0; i < rooms_.slotCount(); ++i)
+        if (const RoomEntry* entry = rooms_.at(i))
+            to.rooms.push_back({i, entry->room, entry->air.oxygen, entry->air.epoch});
     to.fires.clear();
     for (uint32_t i = 0; i < fires_.slotCount(); ++i)
         if (const auto* fire = fires_.at(i)) {
@@ -365,6 +369,9 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         object.counters.refined = 0;
         object.story = (*objects_.at(object.slot))->story;
     }
+    for (SavedRoom& room : saved.rooms)  // its air goes on from what the frame left
+        if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.epoch)
+            room.oxygen = readback.rooms[room.slot].oxygen;
     writeSaved(saved, save.bytes);
     save.ready = true;
 }
@@ -394,6 +401,7 @@ void World::checkSaved(const SavedWorld& saved) {
     checkCount(saved.objects.size(), objects_.live(), "burnable meshes");
     checkCount(saved.blockers.size(), blockers_.live(), "blockers");
     checkCount(saved.windZones.size(), windPool_.live(), "wind zones");
+    checkCount(saved.rooms.size(), rooms_.live(), "rooms");
     checkCount(saved.fires.size(), fires_.live(), "volumetric fires");
     checkCount(saved.emitters.size(), emitters_.live(), "fire emitters");
     checkCount(saved.fields.size(), fields_.live(), "particle fields");
@@ -466,6 +474,11 @@ void World::checkSaved(const SavedWorld& saved) {
             !components::plausible(zone.zone))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has wind zone %u, which is not here or is absurd.", zone.slot + 1);
+    for (const SavedRoom& room : saved.rooms)
+        if (room.slot >= rooms_.slotCount() || !rooms_.at(room.slot) ||
+            !components::plausible(room.room))
+            core::fail(FW_ERROR_BAD_DATA, "The save has room %u, which is not here or is absurd.",
+                       room.slot + 1);
     const auto checkTouches = [&](const std::array<SavedTouch, 8>& touches) {
         for (const SavedTouch& touch : touches)
             if (touch.object1 != 0) checkTexel(touch.object1 - 1, 0, "a flame");
@@ -637,6 +650,14 @@ void World::applySaved(const SavedWorld& saved,
     std::copy_n(saved.wind, 3, wind_);
     for (const SavedWindZone& zone : saved.windZones) *windPool_.at(zone.slot) = zone.zone;
     listWindZones();
+    roomsMet_ = !saved.rooms.empty();
+    for (const SavedRoom& from : saved.rooms) {
+        RoomEntry& entry = *rooms_.at(from.slot);
+        entry.room = from.room;
+        fillRoom(entry, from.oxygen);
+        sendRoom(from.slot);
+    }
+    stirRooms();
     remote_.flags = saved.flags & kWaysOfFire;
     remote_.objectFlags = saved.flags & ~kWaysOfFire;
     remote_.warms = saved.warms;
@@ -732,6 +753,8 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
     object.data.pose = from.pose;
     object.zoneWind = zoneWindOf(object);
     backend_.setObjectWind(object.slot, object.zoneWind);
+    object.room1 = roomOf(object);
+    roomsMet_ |= from.counters.air != 0;
     sendPose(object);
     object.latch = latch;
     object.firstEvent = from.firstEvent;

@@ -65,6 +65,13 @@ struct SavedWindZone {
     components::WindZone zone;
 };
 
+struct SavedRoom {
+    uint32_t slot = 0;
+    components::Room room;
+    uint32_t oxygen = 0;  // of its air
+    uint32_t epoch = 0;   // which beginning's; not in files
+};
+
 struct SavedTag {
     uint32_t object = 0, texel = 0, tag = 0;
 };
@@ -97,6 +104,7 @@ struct SavedWorld {
           blockers(memory),
           latchedBlockers(memory),
           windZones(memory),
+          rooms(memory),
           fires(memory),
           emitters(memory),
           fields(memory) {}
@@ -119,6 +127,7 @@ struct SavedWorld {
     std::pmr::vector<SavedBlocker> blockers;
     std::pmr::vector<gpu::Blocker> latchedBlockers;
     std::pmr::vector<SavedWindZone> windZones;
+    std::pmr::vector<SavedRoom> rooms;
     std::pmr::vector<SavedFire> fires;
     std::pmr::vector<SavedEmitter> emitters;
     std::pmr::vector<SavedField> fields;

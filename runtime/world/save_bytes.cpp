@@ -66,6 +66,8 @@ template <typename S, Is<gpu::Blocker> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedWindZone> T>
 void put(S& s, T& value);
+template <typename S, Is<SavedRoom> T>
+void put(S& s, T& value);
 template <typename S, Is<SavedFire> T>
 void put(S& s, T& value);
 template <typename S, Is<Story> T>
@@ -179,6 +181,11 @@ void put(S& s, T& z) {
     all(s, z.slot, z.zone.shape, z.zone.flow, z.zone.blend, z.zone.priority, z.zone.middle,
         z.zone.axis, z.zone.size, z.zone.speed, z.zone.fades);
 }
+template <typename S, Is<SavedRoom> T>
+void put(S& s, T& r) {
+    all(s, r.slot, r.room.middle, r.room.half, r.room.axes, r.room.volume, r.room.vent,
+        r.room.oxygen, r.oxygen);
+}
 template <typename S, Is<SavedFire> T>
 void put(S& s, T& f) {
     all(s, f.slot, f.flags, f.position, f.power, f.touches);
@@ -280,6 +287,7 @@ void put(S& s, T& w) {
     list(s, w.blockers, "blockers", 64);
     list(s, w.latchedBlockers, "latched blockers", 64);
     list(s, w.windZones, "wind zones", 108);
+    list(s, w.rooms, "rooms", 148);
     list(s, w.fires, "volumetric fires", 24);
     list(s, w.emitters, "fire emitters", 36);
     list(s, w.fields, "particle fields", 53);

@@ -61,7 +61,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     planFields(time);
 
     // Nothing listed, nothing new: time passes without the device.
-    const bool skip = idle_ && frame_.events.empty() && frame_.updates.empty() &&
+    const bool skip = idle_ && roomsRest() && frame_.events.empty() && frame_.updates.empty() &&
                       !(switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE));
     gpu::FramePlan plan;
     plan.frameIndex = frameIndex;
@@ -134,6 +134,7 @@ void World::planSteps(const ClockAdvance& time) {
         plan.now = now;
         plan.reduce = (now / gpu::kStepTicks) % kReduceEvery == kReduceEvery - 1;
         plan.heat = (now / gpu::kStepTicks) % gpu::kHeatSteps == gpu::kHeatSteps - 1;
+        plan.rooms = plan.heat && roomsMet_;
         const size_t firstEvent = frame_.events.size(), firstDue = nextDue;
         for (; nextDue < frame_.due.size() && frame_.due[nextDue].step == step; ++nextDue) {
             const PendingTexel& event = frame_.due[nextDue].event;

@@ -97,6 +97,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       blockers_("Blocker", memory),
       windPool_("Wind zone", memory),
       windZones_(memory),
+      rooms_("Room", memory),
       fires_("Volumetric fire", memory),
       fields_("Particle field", memory),
       fireProfiles_("Fire profile", memory),
@@ -343,6 +344,8 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     object.zoneWind = zoneWindOf(object);
     init.record = components::makeObject(object.data, domain, records);
     init.record.zoneWind = object.zoneWind;
+    object.room1 = roomOf(object);
+    init.record.flags |= object.room1 << gpu::kObjectRoomShift;
     init.materials = records.materials;
     init.slowness = slowness;
     std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
@@ -508,7 +511,8 @@ void World::sendPose(const Object& object) noexcept {
     gpu::vec4 rows[3];
     components::poseRows(object.data.pose, rows);
     backend_.setObjectPose(object.slot, rows, components::objectTint(object.data, domainOf(object)),
-                           components::objectFlags(object.data, domainOf(object)));
+                           components::objectFlags(object.data, domainOf(object)) |
+                               object.room1 << gpu::kObjectRoomShift);
 }
 
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
@@ -525,6 +529,10 @@ void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
         remote_.due.push_back(object.slot);
     }
     takeZoneWind(object);
+    if (const uint32_t room1 = roomOf(object); room1 != object.room1) {
+        object.room1 = room1;
+        stirRooms();
+    }
     sendPose(object);
     notePose(Deed::Kind::pose, object.slot, transform);
 }

@@ -7,6 +7,7 @@
 #include "components/fire_flames.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
+#include "components/room.h"
 #include "components/surroundings.h"
 #include "components/wind_zone.h"
 #include "core/handle_pool.h"
@@ -110,6 +111,7 @@ struct Object {
     bool remoteDue = false;      // pose or def changed since its latch: it is in remote_.due
     bool remoteSent = true;      // the backend has the latched record
     uint32_t zoneWind = 0;       // that zones add where it is, packed
+    uint32_t room1 = 0;          // slot + 1 of the room that it is in; 0: none
     // As of the last readback.
     gpu::ObjectCounters counters{};
     uint64_t countersFrame = 0;
@@ -145,6 +147,11 @@ constexpr uint32_t kWorldFlags =
 struct BlockerEntry {
     components::Pose pose;
     float halfSize[3] = {};
+};
+
+struct RoomEntry {
+    components::Room room;
+    gpu::RoomAir air{};  // as of the last readback, or as it begins
 };
 
 // A burnable mesh within a fire's flame, since when and where; of fires that ignite.
@@ -304,6 +311,10 @@ class World {
     FwWindZoneId createWindZone(const FwWindZoneDef& def);
     void setWindZone(FwWindZoneId id, const FwWindZoneDef& def);
     void destroyWindZone(FwWindZoneId id);
+    FwRoomId createRoom(const FwRoomDef& def);
+    void setRoom(FwRoomId id, const FwRoomDef& def);
+    void destroyRoom(FwRoomId id);
+    void roomState(FwRoomId id, FwRoomState& state);
     void energyBook(FwEnergyBook& book) noexcept;
     void windAtPoint(const float point[3], float wind[3]) const;
     void setFlags(uint32_t given);
@@ -599,6 +610,15 @@ class World {
     void takeZoneWind(Object& object) noexcept;
     static uint32_t zoneWord(const FwWindZoneDef& def) noexcept;
     static FwWindZoneDef zoneDefOf(const Deed& deed) noexcept;
+    // rooms.cpp
+    [[nodiscard]] bool roomsRest() const noexcept;
+    void stirRooms() noexcept;
+    [[nodiscard]] uint32_t roomOf(const Object& object) const noexcept;
+    void roomsTurn() noexcept;
+    void sendRoom(uint32_t slot) noexcept;
+    void fillRoom(RoomEntry& entry, uint32_t oxygen) noexcept;
+    void takeRooms(const gpu::Readback& readback) noexcept;
+    static FwRoomDef roomDefOf(const Deed& deed) noexcept;
     // remote.cpp
     [[nodiscard]] bool remoteOn() const noexcept {
         return remote_.flags != 0 || remote_.governed || clock_.tick < remote_.fades;
@@ -717,6 +737,10 @@ class World {
     core::HandlePool<FwBlockerId, BlockerEntry> blockers_;
     core::HandlePool<FwWindZoneId, components::WindZone> windPool_;
     std::pmr::vector<components::WindZone> windZones_;  // in the order in which they count
+    core::HandlePool<FwRoomId, RoomEntry> rooms_;
+    uint32_t roomEpoch_ = 0;     // of their airs' beginnings, the last one
+    bool roomsMet_ = false;      // some were there: objects may still know their air
+    uint64_t roomsStirred_ = 0;  // tick at which something of their airs may have changed last
     core::HandlePool<FwVolumetricFireId, core::Owned<Fire>> fires_;
     core::HandlePool<FwParticleFieldId, core::Owned<Field>> fields_;
     core::HandlePool<FwFireProfileId, FireProfileEntry> fireProfiles_;

@@ -66,7 +66,7 @@ uint heatRow(TileRef tile, uint row, uvec2 comes, uint turn, bool held, inout Bu
     }
     uint news = waits << 24u;
     bool always = (turn & kWorkAlways) != 0u;
-    uint step = hash32(push.now);
+    uint step = hash32(push.now), strength = airStrength(objectCounters[object].air);
     if (todo == 0u) return news;
     do {
         uint i = uint(findLSB(todo));
@@ -82,6 +82,7 @@ uint heatRow(TileRef tile, uint row, uvec2 comes, uint turn, bool held, inout Bu
             now = heatDozes(x, m, before, chance);
         } else {
             if (!always) m = heatOverRest(m);
+            m = heatInAir(m, strength);
             now = heatTexelStep(x, m, before, push.now, comes.x, comes.y != 0u,
                                 materials[material].air, chance, units);
         }

@@ -98,6 +98,7 @@ void reduceTile(uint worldTile, uint parity) {
     BurnTile b;
     b.positionArea =
         vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
+    power *= float(airStrength(objectCounters[object].air)) / float(kAirFull);
     b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0),
                          power * area + (heats ? tileFire[worldTile] : 0.0));
     b.object = object;

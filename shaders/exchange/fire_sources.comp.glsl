@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_NEIGHBOURS
 #include "lib/buffers.glsl"
 
-void settle(uint slot, uint hops, bool gives) {
+void settle(uint slot, uint hops, bool gives, uint strength) {
     RemoteObject o = remoteObjects[slot];
     for (uint cell = 0u; cell < o.sourceCount; ++cell) {
         uint at = o.sourceBase + cell;
@@ -20,6 +20,7 @@ void settle(uint slot, uint hops, bool gives) {
             continue;
         }
         FireSource s = sources[at];
+        s.power = mulShift(s.power, strength, 8u);
         settleSource(s, o);
         s.object = slot;
         s.hops = hops;
@@ -44,7 +45,7 @@ void main() {
     for (bool once = c.burning != 0u; once; once = false) {
         uint hops = hopsOf(c.litBy);
         bool gives = mayGive(remoteObjects[slot], hops, push.hopsMost);
-        settle(slot, hops, gives);
+        settle(slot, hops, gives, airStrength(c.air));
         uint warms = gives && (push.flags & (kRemoteRadiation | kRemotePlume)) != 0u
                          ? remoteObjects[slot].neighbourCount : 0u;
         for (uint n = 0u; n < warms; ++n)

@@ -219,6 +219,11 @@ FW_BUFFER(FW_BIND_CONTACTS, readonly, ContactsBuffer, ContactLink, contacts);
 #ifdef FW_USE_BLOCKERS
 FW_BUFFER(FW_BIND_BLOCKERS, readonly, BlockersBuffer, Blocker, blockers);
 #endif
+#ifdef FW_USE_ROOMS
+#include "shared/room.h"
+FW_BUFFER(FW_BIND_ROOMS, readonly, RoomsBuffer, Room, rooms);
+FW_BUFFER(FW_BIND_ROOM_AIR, FW_READ_WRITE, RoomAirBuffer, RoomAir, roomAir);
+#endif
 #ifdef FW_USE_RECEIVERS
 FW_BUFFER(FW_BIND_RECEIVERS, FW_USE_RECEIVERS, ReceiversBuffer, uint, receivers);
 #endif

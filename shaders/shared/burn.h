@@ -56,12 +56,14 @@
 #define FW_BIND_CONTACTS 44   // ContactLink[]
 #define FW_BIND_BLOCKERS 45   // Blocker[kMaxBlockers]
 #define FW_BIND_RECEIVERS 46  // uint[kReceiverWords] per object slot, see there
+#define FW_BIND_ROOMS 47      // Room[kMaxRooms]: see room.h
 #define FW_BIND_SHOWN 48          // ShownVertex[]: drawn instead of the mesh's (per object); vertex input too
 #define FW_BIND_DEFORM_NODES 49   // DeformNode[] (per mesh)
 #define FW_BIND_DEFORM_COATS 50   // DeformCoat[] (per mesh)
 #define FW_BIND_DEFORM_OBJECTS 51 // DeformObject[], by object slot
 #define FW_BIND_DEFORM_GROUPS 52  // uvec2[]: object slot, first of 64 nodes or vertices
 #define FW_BIND_SOFT 53           // vec4[]: 3 per shown vertex of a sheet: place, place, normal and bend
+#define FW_BIND_ROOM_AIR 54          // RoomAir[kMaxRooms]
 #define FW_BIND_SKIN_TEXELS 56    // uvec4[]: three vertices and two unorm16 weights per texel (per mesh)
 #define FW_BIND_SKIN_SOURCES 57   // uint[]: per drawn vertex the host's (per mesh)
 #define FW_BIND_SKIN_GIVEN 58     // uint[]: what hosts' vertex buffers held (per object)
@@ -135,6 +137,7 @@ FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire stands on its shown v
 FW_SHARED_CONST uint kObjectZPass = 0x2000u;   // see passes/z_pass.cpp
 FW_SHARED_CONST uint kObjectUnseen = 0x4000u;  // no view shows it: nothing is predicted of it
 FW_SHARED_CONST uint kObjectAnew = 0x8000u;    // one does again: its prediction begins anew
+FW_SHARED_CONST uint kObjectRoomShift = 16u;   // 8 bits: the room that it is in, plus 1
 
 // TileState::flag
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
@@ -290,8 +293,14 @@ struct ObjectCounters {
     uint spots;       // embers that lit it, since ever
     uint spotTexel;   // one of those texels
     uint refined;     // triangles that its refined surface has
+    uint air;         // of its room: how strongly fire burns there, Q8, | kAirKnown; 0: it is in none
+    uint drawnLow;    // of its energy, that its room has accounted for; of no account in none
+    uint drawnHigh;
+    uint reserved;
 };
-FW_SHARED_SIZE(ObjectCounters, 64)
+FW_SHARED_SIZE(ObjectCounters, 80)
+FW_SHARED_CONST uint kAirFull = 256u;
+FW_SHARED_CONST uint kAirKnown = 0x200u;
 FW_SHARED_CONST uint kHeldFull = 1u;     // as many tiles burn as may: no other one catches
 FW_SHARED_CONST uint kHeldStopped = 2u;  // its time is over
 FW_SHARED_CONST uint kHeldWarm = 4u;     // not held, but warmed by others
@@ -344,6 +353,11 @@ struct StepPush {     // push constants of the simulation passes
 FW_SHARED_SIZE(StepPush, 64)
 
 FW_SHARED_FN bool isSource(uint t) { return t < kLiveEnd; }
+// How strongly fire burns in this air (ObjectCounters), Q8.
+FW_SHARED_FN uint airStrength(uint air) {
+    uint strength = air & 0x1FFu;
+    return (air & kAirKnown) == 0u || strength > kAirFull ? kAirFull : strength;
+}
 FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }
 FW_SHARED_FN bool isBarrier(uint t) { return t == kInert || t == kWet || t == kOutWet; }
 

@@ -44,6 +44,7 @@ FW_SHARED_CONST uint kHeatDries = 8u;           // its film is gone
 // HeatMaterial::flags
 FW_SHARED_CONST uint kHeatBurns = 1u;
 FW_SHARED_CONST uint kHeatThick = 2u;
+FW_SHARED_CONST uint kHeatLacksShift = 8u;      // 9 bits, Q8: what its fire lacks of its strength, for want of air
 
 struct HeatTexel {
     uint fuel;     // kFuelFull .. 0
@@ -185,6 +186,17 @@ FW_SHARED_FN void heatWets(FW_INOUT(HeatTexel) x, uint grams, FW_IN(HeatMaterial
     x.film = leastOf(x.film + leastOf(grams, kFilmMost), leastOf(m.filmMost, kFilmMost));
 }
 
+// The material in air that fire burns in as strongly (airStrength): it consumes and warms itself less.
+FW_SHARED_FN HeatMaterial heatInAir(FW_IN(HeatMaterial) m, uint strength) {
+    HeatMaterial weak = m;
+    weak.ownFlux = (m.ownFlux * strength) >> 8u;
+    weak.burnRate = mulShift(m.burnRate, strength, 8u);
+    weak.flags |= (kAirFull - strength) << kHeatLacksShift;
+    return weak;
+}
+FW_SHARED_FN uint heatLacks(FW_IN(HeatMaterial) m) { return m.flags >> kHeatLacksShift; }
+FW_SHARED_FN bool heatChokes(FW_IN(HeatMaterial) m) { return heatLacks(m) >= kAirFull; }
+
 // One step. flux: W/m^2 from elsewhere; air: wind's gain of the burning rate, Q8, 256 = still;
 // pilot: a flame is near; chance: a hash of texel and step. burnt: fuel units that went;
 // evaporated: g/m^2 of film that took fire's heat. Returns kHeat bits, already worked into x.
@@ -258,7 +270,7 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
         if (x.fuel == 0u) {
             x.phase = kPhaseBurnt;
             told |= kHeatBurnsOut;
-        } else if (heat < m.diesAt || x.soaked > kSoaksOut) {
+        } else if (heat < m.diesAt || x.soaked > kSoaksOut || heatChokes(m)) {
             x.phase = kPhaseOut;
             told |= kHeatExtinguishes;
         }
@@ -266,7 +278,7 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
     } else {
         x.soaked = 0u;
         bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u &&
-                     x.film == 0u && x.moist < m.moistDies;
+                     x.film == 0u && x.moist < m.moistDies && !heatChokes(m);
         if (ready && heat >= (pilot ? m.ignitesAt : m.ignitesAlone)) {
             if (x.phase == kPhaseOut) x.epoch = (x.epoch + 1u) & 3u;
             x.phase = kPhaseBurning;
@@ -394,11 +406,16 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
         x.phase = kPhaseBurning;
         x.heat = mostOf(x.heat, m.ignitesAt);
     }
+    // In bad air its time passes slower: what it consumes, how it looks, and when the front that
+    // waits for it comes.
+    uint passes = kHeatSteps * kStepTicks;
+    uint waits = (passes * heatLacks(m)) >> 8u;
+    if (lit && x.phase == kPhaseBurning) t += leastOf(waits, now - t);
     uint gone = 0u;
     if (lit && x.phase == kPhaseBurning && (m.flags & kHeatThick) == 0u) {
         // Re-lit, it goes on from the fuel it has. (Nothing to search where it is not.)
         uint age = thinAge(x.fuel, x.epoch != 0u ? m.burnTicks : 0u);
-        uint next = thinFuel(age + kHeatSteps * kStepTicks, m.burnTicks);
+        uint next = thinFuel(age + passes - waits, m.burnTicks);
         uint left = thinFuel(now - t, m.burnTicks);
         left = leastOf(x.epoch != 0u ? leastOf(left, next) : left, x.fuel);
         gone = x.fuel - left;

@@ -57,6 +57,8 @@ class BusyWorld {
         ok(fwWorld_CreateWindZone(world, &swirl, &zones[0]));
         const FwWindZoneDef fan = fanOf(0);
         ok(fwWorld_CreateWindZone(world, &fan, &zones[1]));
+        const FwRoomDef closet = closetOf(0);
+        ok(fwWorld_CreateRoom(world, &closet, &room));
     }
     BusyWorld(const BusyWorld&) = delete;
     BusyWorld& operator=(const BusyWorld&) = delete;
@@ -116,6 +118,7 @@ class BusyWorld {
     FwParticleFieldId field{};
     FwBlockerId blocker{};
     FwWindZoneId zones[2] = {};
+    FwRoomId room{};
 
  private:
     // With a device an answer comes with a frame, be it of no time.
@@ -147,6 +150,17 @@ class BusyWorld {
         put(fan.size, 2, 0.8f, 1);
         fan.speed = 3 + float(frame % 4);
         return fan;
+    }
+    // Around some of the things, with little air; its door opens and shuts.
+    static FwRoomDef closetOf(uint32_t frame) {
+        FwRoomDef closet = fwDefaultRoomDef();
+        put(closet.position, 0.7f, 0.1f, 0.3f);
+        put(closet.halfSize, 0.7f, 1, 0.8f);
+        closet.rotation[1] = std::sin(0.1f), closet.rotation[3] = std::cos(0.1f);
+        closet.volume = 0.3f;
+        closet.vent = frame % 2 ? 0.2f : 0.0f;
+        closet.flags = frame == 120 ? FW_ROOM_REFILL : 0;
+        return closet;
     }
     void add(uint32_t i) {
         static const uint32_t kPresets[] = {FW_MATERIAL_PLYWOOD, FW_MATERIAL_PAPER,
@@ -198,6 +212,10 @@ class BusyWorld {
         if (frame % 45 == 13) {
             const FwWindZoneDef fan = fanOf(frame);
             ok(fwWorld_SetWindZone(world, zones[1], &fan));
+        }
+        if (frame == 55 || frame == 120 || frame == 140) {
+            const FwRoomDef closet = closetOf(frame);
+            ok(fwWorld_SetRoom(world, room, &closet));
         }
         if (frame == 100) ok(fwWorld_SetFlags(world, FW_WORLD_RADIATION | FW_WORLD_CONTACT));
         if (frame == 150)

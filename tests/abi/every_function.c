@@ -28,6 +28,7 @@ int fwTestCallEverything(int* calls) {
     const FwParticleFieldId field = {0, 0};
     const FwPeerId peer = {0, 0};
     const FwWindZoneId zone = {0, 0};
+    const FwRoomId room = {0, 0};
 
     RUNS(fwResultName(FW_OK));
     RUNS(fwGetVersion());
@@ -50,6 +51,10 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_SetWindZone(NULL, zone, NULL));
     REFUSES(fwWorld_DestroyWindZone(NULL, zone));
     REFUSES(fwWorld_GetWindAt(NULL, NULL, NULL));
+    REFUSES(fwWorld_CreateRoom(NULL, NULL, NULL));
+    REFUSES(fwWorld_SetRoom(NULL, room, NULL));
+    REFUSES(fwWorld_DestroyRoom(NULL, room));
+    REFUSES(fwWorld_GetRoomState(NULL, room, NULL));
     REFUSES(fwWorld_GetEnergyBook(NULL, NULL));
     REFUSES(fwInitMaterialPreset(NULL, 0));
     RUNS(fwMaterialPresetName(0));

@@ -444,6 +444,31 @@ class Fuzz {
         check(asked);
         for (const float value : wind) EXPECT_LE(std::abs(value), 120.1f) << asked;
     }
+    void airRoom() {
+        FwRoomDef def = fwDefaultRoomDef();
+        for (float* vector : {def.position, def.halfSize})
+            for (int i = 0; i < 3; ++i) vector[i] = random_.number();
+        if (random_.once(4)) def.rotation[random_.below(4)] = random_.number();
+        def.volume = random_.once(2) ? 0 : random_.number();
+        def.vent = random_.number();
+        def.oxygen = random_.unit();
+        def.flags = random_.below(2);
+        garble(def);
+        def.structSize = sizeof def;
+        FwRoomState state{};
+        state.structSize = sizeof state;
+        check(fwWorld_GetRoomState(world_, rooms_.any(random_), &state));
+        EXPECT_LE(state.oxygen, 1.0f);
+        EXPECT_LE(state.strength, 1.0f);
+        if (random_.once(2)) {
+            check(fwWorld_SetRoom(world_, rooms_.any(random_), &def));
+            return;
+        }
+        FwRoomId id{};
+        const FwResult result = fwWorld_CreateRoom(world_, &def, &id);
+        check(result);
+        if (result == FW_OK) rooms_.known.push_back(id);
+    }
     void shapeCollider() {
         FwFireColliderDef def = fwDefaultFireColliderDef();
         def.kind = random_.below(8);
@@ -550,7 +575,7 @@ class Fuzz {
         float values[16];
         for (float& value : values) value = random_.number();
         const FwBurnableMeshId object = objects_.any(random_);
-        switch (random_.below(33)) {
+        switch (random_.below(34)) {
             case 0: {
                 FwMaterialDef def = fwDefaultMaterialDef();
                 (void)fwInitMaterialPreset(&def, random_.below(16));
@@ -719,6 +744,10 @@ class Fuzz {
                 shapeWind();
                 if (random_.once(4)) destroy(zones_, fwWorld_DestroyWindZone);
                 break;
+            case 32:
+                airRoom();
+                if (random_.once(4)) destroy(rooms_, fwWorld_DestroyRoom);
+                break;
             case 30:
                 useField();
                 break;
@@ -744,6 +773,8 @@ class Fuzz {
             profiles_.known.clear();
             books_.known.clear();
             colliders_.known.clear();
+            zones_.known.clear();
+            rooms_.known.clear();
             fields_.known.clear();
             queries_.known.clear();
         }
@@ -764,6 +795,7 @@ class Fuzz {
     std::vector<unsigned char> saved_;  // the last one that was kept
     Ids<FwFireColliderId> colliders_;
     Ids<FwWindZoneId> zones_;
+    Ids<FwRoomId> rooms_;
     Ids<FwParticleFieldId> fields_;
     Ids<FwQueryId> queries_;
     std::vector<unsigned char> cooked_;

@@ -94,6 +94,7 @@ class EveryPass : public GpuTest {
                                                    : nullptr);
         scene_ = &scene(published);
         scene_->create(rig_->backend);
+        rig_->backend.setRoom(0, {1u << 16, 1u << 20, gpu::kAirOutside, 1});
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         def.flags = FW_TARGET_COMPOSITE;
         def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show
@@ -232,6 +233,7 @@ class EveryPass : public GpuTest {
             step.substepShift = scene_->objects[0].substepShift;
             step.reduce = true;
             step.heat = true;
+            step.rooms = what.exchange;
             if (&step == steps.data()) {
                 step.events = events;
                 if (what.latch) step.materials = {&update, 1};

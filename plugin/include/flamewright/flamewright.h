@@ -54,6 +54,7 @@ typedef struct FwFlipbookId { uint32_t index1, generation; } FwFlipbookId;
 typedef struct FwParticleFieldId { uint32_t index1, generation; } FwParticleFieldId;
 typedef struct FwPeerId { uint32_t index1, generation; } FwPeerId;
 typedef struct FwWindZoneId { uint32_t index1, generation; } FwWindZoneId;
+typedef struct FwRoomId { uint32_t index1, generation; } FwRoomId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -103,7 +104,7 @@ typedef enum FwDefType {
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
-    FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23, FW_DEF_WIND_ZONE = 24,
+    FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23, FW_DEF_WIND_ZONE = 24, FW_DEF_ROOM = 25,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -289,6 +290,47 @@ FW_API FwResult FW_CALL fwWorld_SetWindZone(FwWorld*, FwWindZoneId id, const FwW
 FW_API FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld*, FwWindZoneId id); /* [world] */
 /* m/s, at a point (m, world, within +-1e6), as all that is there has it. [world] */
 FW_API FwResult FW_CALL fwWorld_GetWindAt(FwWorld*, const float point[3], float wind[3]);
+
+typedef enum FwRoomFlags {
+    FW_ROOM_REFILL = 1,         /* of fwWorld_SetRoom: its air becomes that of `oxygen`: gas that puts fires out */
+    FW_ROOM_FLAGS_FORCE32 = 0x7fffffff
+} FwRoomFlags;
+/* A room whose air fires use up. An object is in the room where the middle of its box lies (of its mesh at rest), of
+ * several in the one made first; outside of all there is air without end. Fire takes 1 kg of oxygen for 13.1 MJ
+ * (Huggett 1980). Below 15 % of oxygen by volume it weakens evenly until nothing burns in 12 %: it gives off less,
+ * spreads slower, lights others less, and goes out as it cools. What is still alight grows again when air comes, and
+ * what went out lights again where it is still hot enough. Objects with FW_BURNABLE_LITE, volumetric fires and
+ * emitters neither use air nor want it. */
+typedef struct FwRoomDef {
+    uint32_t structSize, flags; /* FwRoomFlags */
+    float position[3];          /* m, world, within +-1e6: its middle */
+    float rotation[4];          /* unit quaternion x, y, z, w; default 0,0,0,1 */
+    float halfSize[3];          /* m, half of its sides, [0.05, 1000], default 2, 1.25, 2.5 */
+    float volume;               /* m^3 of air, [0.1, 1e6]; 0, the default: that of its box, which is then within that */
+    float vent;                 /* m^3/s of air from outside, [0, 1e4], default 0.01: a leaky room. An opening of A m^2
+                                   and height h m: about 0.4 A sqrt(h) (Kawagoe), a door 0.9 */
+    float oxygen;               /* by volume, [0, 1], default 0.2095: as it is created, and with FW_ROOM_REFILL */
+    uint32_t reserved;          /* 0 */
+} FwRoomDef;
+static inline FwRoomDef fwDefaultRoomDef(void) {
+    FwRoomDef d; fwInitDef(FW_DEF_ROOM, &d, (uint32_t)sizeof d); return d;
+}
+/* At most 64 at a time. Counts from the next step on. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateRoom(FwWorld*, const FwRoomDef* def, FwRoomId* id);
+/* All of it anew but its air: as a door opens or a ship moves. [world] */
+FW_API FwResult FW_CALL fwWorld_SetRoom(FwWorld*, FwRoomId id, const FwRoomDef* def);
+/* Who was in it has air without end, or that of another room. [world] */
+FW_API FwResult FW_CALL fwWorld_DestroyRoom(FwWorld*, FwRoomId id);
+typedef struct FwRoomState {
+    uint32_t structSize;
+    uint32_t objects;           /* burnable meshes that are in it now */
+    uint64_t frameIndex;        /* the rest is as of it, like FwObjectState */
+    float oxygen;               /* by volume, [0, 1] */
+    float strength;             /* of fire in it, [0, 1]: 1 from 15 % of oxygen on, 0 up to 12 % */
+    float power;                /* W that uses its air, mean of the last 1/8 s, at pace 1 */
+    uint32_t reserved;
+} FwRoomState;
+FW_API FwResult FW_CALL fwWorld_GetRoomState(FwWorld*, FwRoomId id, FwRoomState* state); /* [world] */
 
 /* ---- materials ------------------------------------------------------------------------------------ */
 
@@ -991,7 +1033,7 @@ FW_API FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld*, const FwOffscreenDef* 
 typedef enum FwEventType {
     FW_EVENT_IGNITED = 1,       /* the object's first texel burns; value: s since world start */
     FW_EVENT_BURNT_OUT = 2,     /* nothing of it burns or waits to burn; value: burnt fraction */
-    FW_EVENT_EXTINGUISHED = 3,  /* as above, but by dousing */
+    FW_EVENT_EXTINGUISHED = 3,  /* as above, but by dousing, or for want of air */
     FW_EVENT_TAG_REACHED = 4,   /* the front reached a tagged point; value: s since world start */
     FW_EVENT_FRONT_LIMITED = 5, /* many arrivals come late: the front is faster than 8 substeps
                                    can follow; value: how many since the last such event */
@@ -1100,7 +1142,7 @@ FW_API FwResult FW_CALL fwWorld_FetchSave(FwWorld*, void* buffer, uint64_t* size
 /* The world as it was saved, on whatever backend: from here on both burn bit by bit alike, whatever frame rate each of
  * them has, if they hear the same calls. The world holds what the saved one did, made in the same order, so that the
  * ids' index1 are the same: burnable meshes of the same meshes and materials (by a hash of them and of their defs),
- * blockers, wind zones, fires, emitters and fields. Its FwWorldDef has the same paceFactor, up, seed and limits of spread. All in it
+ * blockers, wind zones, rooms, fires, emitters and fields. Its FwWorldDef has the same paceFactor, up, seed and limits of spread. All in it
  * goes to where and what it was, also what has never burnt; ids stay valid. Unpolled events are dropped, queries that
  * wait are asked anew. FW_ERROR_BAD_DATA, and nothing is changed: the bytes are damaged, cut, of another version, or of
  * another world; the message says of what, with both values. Time is that of the save; frame indices go on growing.
@@ -1140,7 +1182,7 @@ FW_API FwResult FW_CALL fwWorld_PlayLog(FwWorld*, uint64_t untilTick, float* sec
  * twice, late and in any order. A packet that is damaged, cut, or of another session or version is refused with a message
  * and changes nothing; the checksum finds damage, not malice: encrypt where that is to be feared. Nothing here waits.
  *
- * Sent by itself is: fwWorld_Ignite, SetWind, SetWindZone, SetFlags, SetTransform, MoveBlocker; of volumetric fires with FW_FIRE_IGNITES
+ * Sent by itself is: fwWorld_Ignite, SetWind, SetWindZone, SetRoom, SetFlags, SetTransform, MoveBlocker; of volumetric fires with FW_FIRE_IGNITES
  * and jets with FW_EMITTER_IGNITES where they are and their power, of fields with FW_FIELD_WETS where they are and their
  * amount. On a client these calls are refused, as fwWorld_Load is. What is made and destroyed, and all else that changes what
  * burns (colliders, points of fires, painted fields, vertices), each host does by itself: told by fwNet_Tell, at the same step. */

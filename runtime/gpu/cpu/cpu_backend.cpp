@@ -24,9 +24,9 @@ static_assert(kSwitchDense == FW_DEBUG_DENSE && kSwitchShuffle == FW_DEBUG_SHUFF
 
 namespace {
 
-constexpr const char* kTimerNames[kTimerCount] = {"wake",    "events",   "heat",   "schedule",
-                                                  "arrival", "grant",    "commit", "published",
-                                                  "reduce",  "exchange", "field"};
+constexpr const char* kTimerNames[kTimerCount] = {"wake",      "events",  "rooms",    "heat",
+                                                  "schedule",  "arrival", "grant",    "commit",
+                                                  "published", "reduce",  "exchange", "field"};
 
 class Stopwatch {
  public:
@@ -462,6 +462,8 @@ void CpuBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& ti
     record.flags = flags | kObjectLive;
 }
 
+void CpuBackend::setRoom(uint32_t slot, const Room& room) noexcept { state_->rooms[slot] = room; }
+
 void CpuBackend::run(const FramePlan& plan) {
     State& s = *state_;
     // Everything that can fail comes first.
@@ -488,6 +490,7 @@ void CpuBackend::run(const FramePlan& plan) {
     store.lights.clear();
     store.lights.reserve(s.maxLights);
     store.fields.resize(s.fields.size());
+    store.rooms.reserve(kMaxRooms);
 
     for (const StepPlan& step : plan.steps)
         if (step.remote) s.reserveRemote(*step.remote);
@@ -507,6 +510,10 @@ void CpuBackend::run(const FramePlan& plan) {
         if (!step.events.empty()) {
             Stopwatch watch(s, kTimerEvents);
             s.askThen(most, step.now, [&] { s.applyEvents(step); });
+        }
+        if (step.rooms) {
+            Stopwatch watch(s, kTimerRooms);
+            s.airRooms();
         }
         if (step.heat && !s.hotList.empty()) {
             Stopwatch watch(s, kTimerHeat);
@@ -573,6 +580,8 @@ void CpuBackend::run(const FramePlan& plan) {
     store.readback.images = store.images;
     store.readback.lights = store.lights;
     store.readback.fields = store.fields;
+    store.rooms.assign(s.roomAir.begin(), s.airs ? s.roomAir.end() : s.roomAir.begin());
+    store.readback.rooms = store.rooms;
     store.readback.frontTiles = uint32_t(s.list.size());
     store.readback.runTiles = uint32_t(std::min<uint64_t>(s.runTiles, 0xFFFFFFFFu));
     store.readback.burningTiles = uint32_t(s.burnTiles.size());

@@ -22,6 +22,7 @@ class CpuBackend final : public Backend {
     void createObject(uint32_t slot, const ObjectInit& init) override;
     void destroyObject(uint32_t slot) noexcept override;
     void setVertices(uint32_t, std::span<const float>, std::span<const float>) noexcept override {}
+    void setRoom(uint32_t slot, const Room& room) noexcept override;
     void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                        uint32_t flags) override;
     void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>) override {}

@@ -92,6 +92,7 @@ void CpuBackend::State::settleSources(const ExchangePush& rules) noexcept {
                 source.watts = 0;
                 continue;
             }
+            source.power = mulShift(source.power, airStrength(c.air), 8);
             settleSource(source, object.remote);
             source.object = slot;
             source.hops = hops;

@@ -72,8 +72,9 @@ uint32_t CpuBackend::State::heatTexel(const CpuObject& object, uint32_t texel, u
     const HeatMaterial& m = object.heatMaterials[kind];
     const uint32_t before = object.state[texel], chance = heatChance(texel, hash32(now));
     if (!always && work == kWorkDozes) return heatDozes(x, m, before, chance);
-    return heatTexelStep(x, always ? m : heatOverRest(m), before, now, comes.flux, comes.pilot != 0,
-                         object.materials[kind].air, chance, units);
+    return heatTexelStep(
+        x, heatInAir(always ? m : heatOverRest(m), airStrength(object.counters.air)), before, now,
+        comes.flux, comes.pilot != 0, object.materials[kind].air, chance, units);
 }
 
 void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept {
@@ -136,6 +137,31 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     }
     tile.lastChange = now;
     touchReaders(object, local, changed);
+}
+
+// As rooms.comp: what fires used of their rooms' air, and how they burn in what is left.
+void CpuBackend::State::airRooms() noexcept {
+    airs = true;
+    std::array<uint32_t, kMaxRooms> ofRoom{};  // J that it draws
+    const auto roomOf = [](const core::Owned<CpuObject>& object) {
+        return object ? object->record.flags >> kObjectRoomShift & 0xFF : 0u;  // plus 1
+    };
+    for (core::Owned<CpuObject>& object : objects) {
+        const uint32_t room = roomOf(object);
+        if (room == 0) continue;
+        ObjectCounters& c = object->counters;
+        if ((c.air & kAirKnown) == 0) {  // it comes in: what it gave off is gone
+            c.drawnLow = c.energyLow;
+            c.drawnHigh = c.energyHigh;
+        }
+        ofRoom[room - 1] += energySince(c.energyLow, c.energyHigh, c.drawnLow, c.drawnHigh);
+    }
+    for (uint32_t i = 0; i < kMaxRooms; ++i) roomBreathes(roomAir[i], rooms[i], ofRoom[i]);
+    for (core::Owned<CpuObject>& object : objects) {
+        if (!object) continue;
+        const uint32_t room = roomOf(object);
+        object->counters.air = room != 0 ? roomStrength(roomAir[room - 1].oxygen) | kAirKnown : 0;
+    }
 }
 
 // Which tiles would catch in this heat step.

@@ -51,6 +51,7 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
         float power = 0;
         const bool heats = !object.heat.empty();
         if (heats) power = tileFire[worldTile];  // of thick fuel
+        const float strength = float(airStrength(object.counters.air)) / float(kAirFull);
         for (uint32_t lane = 0; lane < 64; ++lane) {
             const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
             const uint32_t t = object.state[texel];
@@ -69,7 +70,7 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
             const ivec3 n = decodeNormal(domain.normals[texel]);
             for (int i = 0; i < 3; ++i) normal[i] += n[i];
             if (phase != kPhaseBurning || material.burnTicks == material.flameTicks)
-                power += material.powerPerArea * object.record.tint.w;
+                power += material.powerPerArea * object.record.tint.w * strength;
         }
         if (count == 0) {
             tiles[worldTile].flag &= ~kTileBurning;

@@ -56,7 +56,8 @@ struct ReadbackStore {
           imageTileHeat(memory),
           images(memory),
           lights(memory),
-          fields(memory) {}
+          fields(memory),
+          rooms(memory) {}
     Readback readback;
     std::pmr::vector<ObjectCounters> objects;
     std::pmr::vector<ProbeAnswer> answers;
@@ -70,11 +71,13 @@ struct ReadbackStore {
     std::pmr::vector<ObjectImage> images;
     std::pmr::vector<BurnLight> lights;
     std::pmr::vector<FieldCounters> fields;
+    std::pmr::vector<RoomAir> rooms;
 };
 
 enum Timer : uint32_t {
     kTimerWake,
     kTimerEvents,
+    kTimerRooms,
     kTimerHeat,
     kTimerSchedule,
     kTimerArrival,
@@ -117,6 +120,7 @@ struct CpuBackend::State {
     uint32_t heatEvents(CpuObject& object, std::span<const TexelEvent> batch,
                         std::span<const TexelEvent> events, uint32_t now, HeatTexel& x,
                         bool& byFlame) noexcept;  // cpu_heat.cpp: the texel's state after them
+    void airRooms() noexcept;
     void askHeat(uint32_t now) noexcept;
     void heatStep(uint32_t now) noexcept;
     [[nodiscard]] uint32_t heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept;
@@ -188,6 +192,9 @@ struct CpuBackend::State {
     std::pmr::vector<uint32_t> neighbours{memory};
     std::pmr::vector<ContactLink> links{memory};
     std::pmr::vector<Blocker> blockers{memory};
+    std::array<Room, kMaxRooms> rooms{};
+    std::array<RoomAir, kMaxRooms> roomAir{};
+    bool airs = false;  // some step had rooms
     uint32_t receivers = 0;
     struct Warms {  // a source of the receiver at hand
         const FireSource* source = nullptr;

@@ -33,7 +33,7 @@ constexpr const ComputePass* kComputePasses[] = {
     &kSootPass,          &kRefineCutPass,     &kRefinePublishedPass,
     &kVolumeProbePass,   &kVolumeMarchPass,   &kParticlesPass,
     &kParticleQuadsPass, &kSparksPass,        &kFieldPass,
-    &kFieldMaskPass,     &kFieldShowPass};
+    &kFieldMaskPass,     &kFieldShowPass,     &kRoomsPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -193,6 +193,11 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
                         uint64_t(step.events.count) * sizeof(TexelEvent));
         push.count = step.events.count;
         askThen([&] { recorder.dispatch(kEventsPass, &push, (push.count + 63) / 64); });
+    }
+    if (step.rooms) {
+        push = pushNow();
+        push.count = step.objectSlots;
+        recorder.dispatch(kRoomsPass, &push, 1);
     }
     if (step.heat) {
         push = pushNow();

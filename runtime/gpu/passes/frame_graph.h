@@ -29,7 +29,8 @@ extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWake
     kFlameSortPass, kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass,
     kRefinePlacePass, kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass,
     kSpringsPass, kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass,
-    kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass;
+    kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass,
+    kRoomsPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -77,6 +78,7 @@ struct StepRecord {
     bool iterate = true;  // false: the front is known to be empty
     bool reduce = false;
     bool heat = false;
+    bool rooms = false;  // their air, before heat
     Staged events;
     Staged wakeGroups;  // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;

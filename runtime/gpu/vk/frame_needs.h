@@ -60,6 +60,7 @@ struct FrameNeeds {
     uint32_t neighbours = 0, links = 0;   // of the largest remote update
     bool placing = false;                 // there is one
     bool exchanges = false;               // fire may come from other objects
+    bool airs = false;                    // rooms have a step
     bool stimulus = false;                // an event or a latch
     bool findsAnew = false;               // the first step wakes what forgets
     bool burning = false, predicting = false, publishedRuns = false, heating = false;

@@ -8,6 +8,7 @@
 #include "shared/field_draw.h"
 #include "shared/look.h"
 #include "shared/refine.h"
+#include "shared/room.h"
 #include "shared/spark.h"
 #include "shared/volume_draw.h"
 
@@ -95,6 +96,9 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_CONTACTS, kSpaceContacts, sizeof(ContactLink), true, kComponentObjects, "contacts", 0},
     {FW_BIND_BLOCKERS, kSpaceFixed, sizeof(Blocker) * kMaxBlockers, true, kComponentObjects,
      "blockers", 0},
+    {FW_BIND_ROOMS, kSpaceFixed, sizeof(Room) * kMaxRooms, true, kComponentObjects, "rooms", 0},
+    {FW_BIND_ROOM_AIR, kSpaceFixed, sizeof(RoomAir) * kMaxRooms, true, kComponentObjects,
+     "rooms' air", 0},
     {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},

@@ -84,6 +84,7 @@ class VkBackend final : public Backend {
     void createObject(uint32_t slot, const ObjectInit& init) override;
     void destroyObject(uint32_t slot) noexcept override;
     void setObjectWind(uint32_t slot, uint32_t wind) override;
+    void setRoom(uint32_t slot, const Room& room) noexcept override;
     void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                        uint32_t flags) override;
     void startBoundary(uint32_t slot, const float point[3], uint32_t tick) noexcept override;

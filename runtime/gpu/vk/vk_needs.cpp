@@ -45,6 +45,8 @@ ReadbackLayout layoutOf(VkBackend::State& s, const FramePlan& plan, const FrameN
     layout.flamesAt = place(16);
     layout.fields = uint32_t(s.fields.size());
     layout.fieldsAt = place(layout.fields * sizeof(FieldCounters));
+    layout.rooms = s.airs || needs.airs;
+    if (layout.rooms) layout.roomsAt = place(kMaxRooms * sizeof(RoomAir));
     for (const uint32_t object : plan.burnMaps) {
         ReadbackLayout::MapAt& map = layout.maps[layout.mapCount++];
         map.object = object;
@@ -78,6 +80,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         if (object.record.flags & kObjectPublished)
             s.published.push_back({i, publishedGroups(object.record), 0});
     }
+    if (s.roomsDirty) needs.uploadBytes += uploaded(sizeof s.rooms);
     const bool anyStep = !plan.steps.empty();
     // What burns may light something anew, where no front is left.
     bool iterates = !s.frontEmpty || needs.dense || needs.never;
@@ -102,6 +105,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
                                  uploaded(update.blockers.size_bytes());
         }
         needs.exchanges |= step.exchange;
+        needs.airs |= step.rooms;
         needs.events = std::max(needs.events, uint32_t(step.events.size()));
         needs.wakeGroups = std::max(needs.wakeGroups, uint32_t(wake));
         needs.uploadBytes +=
@@ -159,8 +163,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     needs.falling =
         anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
-                     needs.publishedRuns || !plan.probes.empty() || !plan.burnMaps.empty() ||
-                     !plan.images.empty();
+                     needs.publishedRuns || needs.airs || !plan.probes.empty() ||
+                     !plan.burnMaps.empty() || !plan.images.empty();
     if (plan.volumes) {
         if (plan.volumes->count > kMaxVolumeFlames)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -178,8 +182,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
                  refineBytes > 0 || forgets || plan.volumes || plan.emitters ||
                  (s.showsEmitters() && !s.open.unseen) || (!s.volumes.empty() && !s.open.unseen) ||
-                 needs.placing || s.recordsDirty || s.fieldsDirty || needs.fieldsShow ||
-                 !s.uploads.empty() || s.planes.movesPending();
+                 needs.placing || s.recordsDirty || s.roomsDirty || s.fieldsDirty ||
+                 needs.fieldsShow || !s.uploads.empty() || s.planes.movesPending();
     return needs;
 }
 

@@ -307,6 +307,11 @@ void VkBackend::setObjectWind(uint32_t slot, uint32_t wind) {
     s.objects[slot].recordDirty = s.recordsDirty = true;
 }
 
+void VkBackend::setRoom(uint32_t slot, const Room& room) noexcept {
+    state_->rooms[slot] = room;
+    state_->roomsDirty = true;
+}
+
 void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
                             std::span<const float> normals) noexcept {
     State& s = *state_;

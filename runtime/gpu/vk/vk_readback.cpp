@@ -49,6 +49,9 @@ const Readback* VkBackend::State::nextReadback() {
             if (layout.fields > 0)
                 std::memcpy(givenFields.data(), from + layout.fieldsAt,
                             layout.fields * sizeof(FieldCounters));
+            givesRooms = givesRooms || layout.rooms;
+            if (layout.rooms)
+                std::memcpy(givenRooms.data(), from + layout.roomsAt, sizeof givenRooms);
             if (layout.answers > 0)
                 std::memcpy(givenAnswers.data(), from + layout.answersAt,
                             uint64_t(layout.answers) * sizeof(ProbeAnswer));
@@ -147,6 +150,7 @@ const Readback* VkBackend::State::nextReadback() {
         given.objects = givenObjects;
         given.lights = givenLights;
         given.fields = givenFields;
+        given.rooms = std::span<const RoomAir>(givenRooms).first(givesRooms ? kMaxRooms : 0);
         freeQuarantine();
         return &given;
     }

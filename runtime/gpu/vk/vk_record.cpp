@@ -224,6 +224,12 @@ void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder
     s.blockers = uint32_t(update.blockers.size());
 }
 
+void recordRooms(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
+    const Staged staged = writer.write(std::span<const Room>(s.rooms));
+    recorder.copyIn(staged.at, FW_BIND_ROOMS, 0, sizeof s.rooms);
+    s.roomsDirty = false;
+}
+
 // The tiles that a step looks at anew: those of latched objects and of forgetful ones, or all.
 Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate> updates,
                        bool dense, bool findsAnew, UploadWriter& writer) {
@@ -423,12 +429,14 @@ void VkBackend::State::run(const FramePlan& plan) {
     if (!initialized) {
         for (const uint32_t resource :
              {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
-              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS})
+              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS,
+              FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
             recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
         initialized = true;
     }
     recordUploads(*this);
     if (recordsDirty) recordObjects(*this, recorder, writer);
+    if (roomsDirty) recordRooms(*this, recorder, writer);
     recordRestores(*this, recorder);
     recordForgetting(*this, recorder);
     drawVertices = planes.buffer(kResourceVertices).handle;
@@ -453,6 +461,8 @@ void VkBackend::State::run(const FramePlan& plan) {
         step.iterate = iterates;
         step.reduce = planned.reduce && needs.burning;
         step.heat = planned.heat && needs.heating;
+        step.rooms = planned.rooms;
+        airs = airs || planned.rooms;
         step.exchange = step.reduce && planned.exchange;
         step.governed = planned.governed;
         step.capped = planned.capped;
@@ -579,6 +589,8 @@ void VkBackend::State::closeFrame(const FwView* view) {
         if (layout.fields)
             recorder.copyOut(FW_BIND_FIELD_COUNTERS, 0, layout.fieldsAt,
                              layout.fields * sizeof(FieldCounters));
+        if (layout.rooms)
+            recorder.copyOut(FW_BIND_ROOM_AIR, 0, layout.roomsAt, kMaxRooms * sizeof(RoomAir));
         for (uint32_t i = 0; i < layout.mapCount; ++i) {
             const ReadbackLayout::MapAt& map = layout.maps[i];
             const BurnObject& object = objects[map.object].record;

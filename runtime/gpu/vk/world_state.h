@@ -330,6 +330,9 @@ struct VkBackend::State {
     bool emittersMove = false;            // in the open frame
     uint32_t flameBooks = 0;              // as setFlameBooks has them
     std::pmr::vector<FieldEntry> fields;
+    std::array<Room, kMaxRooms> rooms{};
+    bool roomsDirty = false;
+    bool airs = false;                       // some step had rooms
     std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their plane has them
     bool fieldsDirty = false;                // one of them has something for the next frame
     ViewParams seen{};                       // of the last pushView
@@ -387,6 +390,8 @@ struct VkBackend::State {
     std::pmr::vector<BurnMap> givenMaps;
     std::pmr::vector<BurnLight> givenLights;
     std::pmr::vector<FieldCounters> givenFields;
+    std::array<RoomAir, kMaxRooms> givenRooms{};
+    bool givesRooms = false;
     std::pmr::vector<PassTime> times;
     float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
     std::array<KeptFramebuffer, 16> framebuffers{};

@@ -1,0 +1,106 @@
+#include "components/room.h"
+
+#include "components/pose.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::components {
+namespace {
+
+constexpr double kQ14 = 16384;
+constexpr double kWholeAir = 4294967296.0;  // of RoomAir::oxygen
+constexpr float kFarthestRoom = 1e6f;       // m
+constexpr float kMostHalf = 1000, kLeastHalf = 0.05f;
+constexpr float kMostVolume = 1e6f, kLeastVolume = 0.1f;  // m^3
+constexpr float kMostVent = 1e4f;                         // m^3/s
+constexpr uint32_t kKnownRoomFlags = FW_ROOM_REFILL;
+// m^3 of oxygen that a J of fire takes: 13.1 MJ/kg (Huggett), 1.330 kg/m^3 at 293 K.
+constexpr double kOxygenPerJoule = 1 / (13.1e6 * 1.330);
+constexpr double kPeriod = double(gpu::kRoomPeriod) / gpu::kTicksPerSecond;  // s
+
+int64_t wholeOf(double value) noexcept { return std::llround(value); }
+
+}  // namespace
+
+Room makeRoom(const FwRoomDef& def) {
+    if ((def.flags & ~kKnownRoomFlags) != 0 || def.reserved != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwRoomDef::flags is 0x%x and reserved is %u; the known flags are 0x%x, and "
+                   "reserved is zero.",
+                   def.flags, def.reserved, kKnownRoomFlags);
+    checkValues(def.position, 3, "FwRoomDef::position", -kFarthestRoom, kFarthestRoom);
+    checkRotation(def.rotation, "FwRoomDef::rotation");
+    checkValues(def.halfSize, 3, "FwRoomDef::halfSize", kLeastHalf, kMostHalf);
+    checkValue(def.volume, "FwRoomDef::volume", 0, kMostVolume);
+    checkValue(def.vent, "FwRoomDef::vent", 0, kMostVent);
+    checkValue(def.oxygen, "FwRoomDef::oxygen", 0, 1);
+    const double box =
+        8.0 * double(def.halfSize[0]) * double(def.halfSize[1]) * double(def.halfSize[2]);
+    const double volume = def.volume != 0 ? double(def.volume) : box;
+    if (!(volume >= double(kLeastVolume) && volume <= double(kMostVolume)))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwRoomDef::volume is %g m^3 and its box has %g; the limits are [%g, %g].",
+                   double(def.volume), box, double(kLeastVolume), double(kMostVolume));
+    const double x = double(def.rotation[0]), y = double(def.rotation[1]),
+                 z = double(def.rotation[2]), w = double(def.rotation[3]);
+    const double axes[9] = {
+        1 - 2 * (y * y + z * z), 2 * (x * y + w * z),     2 * (x * z - w * y),
+        2 * (x * y - w * z),     1 - 2 * (x * x + z * z), 2 * (y * z + w * x),
+        2 * (x * z + w * y),     2 * (y * z - w * x),     1 - 2 * (x * x + y * y)};
+    Room room;
+    for (size_t i = 0; i < 3; ++i) {
+        room.middle[i] = wholeOf(double(def.position[i]) * 1000);
+        room.half[i] = wholeOf(double(def.halfSize[i]) * 1000);
+    }
+    for (size_t i = 0; i < 9; ++i) room.axes[i] = wholeOf(axes[i] * kQ14);
+    room.volume = uint64_t(wholeOf(volume * 1000));
+    room.vent = uint64_t(wholeOf(double(def.vent) * 1e6));
+    room.oxygen = uint32_t(std::min(double(def.oxygen) * kWholeAir, kWholeAir - 1));
+    return room;
+}
+
+bool plausible(const Room& room) noexcept {
+    const auto within = [](int64_t value, double low, double high) {
+        return double(value) >= low && double(value) <= high;
+    };
+    const double far = double(kFarthestRoom) * 1000;
+    bool fine =
+        within(int64_t(room.volume), double(kLeastVolume) * 1000, double(kMostVolume) * 1000);
+    fine &= within(int64_t(room.vent), 0, double(kMostVent) * 1e6);
+    for (size_t i = 0; i < 3; ++i)
+        fine &= within(room.middle[i], -far, far) &&
+                within(room.half[i], double(kLeastHalf) * 1000, double(kMostHalf) * 1000);
+    for (const int64_t axis : room.axes) fine &= within(axis, -1.01 * kQ14, 1.01 * kQ14);
+    return fine;
+}
+
+bool isIn(const Room& room, const WindPlace& place) noexcept {
+    const int64_t off[3] = {place.x - room.middle[0], place.y - room.middle[1],
+                            place.z - room.middle[2]};
+    // No room reaches as far, and nothing below is too large for its bits.
+    const auto far = int64_t(kMostHalf) * 2000;
+    for (const int64_t value : off)
+        if (std::abs(value) > far) return false;
+    for (size_t i = 0; i < 3; ++i) {
+        const int64_t* axis = room.axes.data() + 3 * i;
+        const int64_t along = off[0] * axis[0] + off[1] * axis[1] + off[2] * axis[2];
+        if (std::abs(along) > room.half[i] * int64_t(kQ14)) return false;
+    }
+    return true;
+}
+
+gpu::Room roomRecord(const Room& room, float pace, uint32_t starts, uint32_t epoch) noexcept {
+    const double volume = double(room.volume) / 1000;
+    // An implicit step: no vent is too strong for its length.
+    const double changes = double(room.vent) / 1e6 / volume * kPeriod * double(pace);
+    gpu::Room record;
+    record.takes = uint32_t(wholeOf(kOxygenPerJoule * kWholeAir * 1048576 / volume));
+    record.mixes = uint32_t(std::min(changes / (1 + changes) * kWholeAir, kWholeAir - 1));
+    record.starts = starts;
+    record.epoch = epoch;
+    return record;
+}
+
+}  // namespace fw::components

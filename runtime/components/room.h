@@ -1,0 +1,32 @@
+// A room of the host's: where it is, and how fires use its air and get it back. Integers once the
+// def is read, so that fire starves alike on every machine. Not what has become of its air: that
+// is the backend's (shared/room.h).
+#pragma once
+#include "components/wind_zone.h"
+#include "shared/room.h"
+
+namespace fw::components {
+
+struct Room {
+    std::array<int64_t, 3> middle{};  // mm
+    std::array<int64_t, 3> half{};    // mm, half of its sides
+    std::array<int64_t, 9> axes{};    // rows: its axes in the world, Q14
+    uint64_t volume = 0;              // litres of air
+    uint64_t vent = 0;                // of it that comes from outside, ml/s
+    uint32_t oxygen = 0;              // that it is filled with, 2^-32 of the air
+    bool operator==(const Room&) const = default;
+};
+
+// Throws core::Error naming the field.
+[[nodiscard]] Room makeRoom(const FwRoomDef& def);
+
+// Is it one that makeRoom may have made?
+[[nodiscard]] bool plausible(const Room& room) noexcept;
+
+[[nodiscard]] bool isIn(const Room& room, const WindPlace& place) noexcept;
+
+// As backends have it, at that pace. `starts`: oxygen that its beginning `epoch` has.
+[[nodiscard]] gpu::Room roomRecord(const Room& room, float pace, uint32_t starts,
+                                   uint32_t epoch) noexcept;
+
+}  // namespace fw::components

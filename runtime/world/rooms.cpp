@@ -1,0 +1,134 @@
+// Rooms: which object is in which, and what the backend has to know of them. What becomes of their
+// air is decided there, in the steps, and comes back with readbacks.
+#include "components/room.h"
+
+#include "world/world.h"
+
+#include <algorithm>
+
+namespace fw::world {
+namespace {
+
+// After the last change: what fires gave off has been drawn by then.
+constexpr uint64_t kRoomsSettle = 4 * uint64_t(gpu::kRoomPeriod);
+
+}  // namespace
+
+bool World::roomsRest() const noexcept {
+    return !roomsMet_ || readbackTick_ >= roomsStirred_ + kRoomsSettle;
+}
+
+void World::stirRooms() noexcept { roomsStirred_ = clock_.tick; }
+
+// Of those that it is in, the one made first (plus 1); 0: none.
+uint32_t World::roomOf(const Object& object) const noexcept {
+    if (rooms_.live() == 0) return 0;
+    const components::WindPlace place = windPlaceOf(object.data.pose, domainOf(object));
+    for (uint32_t slot = 0; slot < rooms_.slotCount(); ++slot)
+        if (const RoomEntry* entry = rooms_.at(slot); entry && components::isIn(entry->room, place))
+            return slot + 1;
+    return 0;
+}
+
+// Everyone is where the rooms are now.
+void World::roomsTurn() noexcept {
+    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
+        auto* owned = objects_.at(slot);
+        if (!owned) continue;
+        const uint32_t room1 = roomOf(**owned);
+        if (room1 == (*owned)->room1) continue;
+        (*owned)->room1 = room1;
+        sendPose(**owned);
+    }
+    stirRooms();
+}
+
+void World::sendRoom(uint32_t slot) noexcept {
+    const RoomEntry& entry = *rooms_.at(slot);
+    backend_.setRoom(slot, components::roomRecord(entry.room, def_.paceFactor, entry.air.oxygen,
+                                                  entry.air.epoch));
+}
+
+// From here on its air is that.
+void World::fillRoom(RoomEntry& entry, uint32_t oxygen) noexcept {
+    entry.air = {};
+    entry.air.oxygen = oxygen;
+    entry.air.epoch = ++roomEpoch_;
+}
+
+FwRoomId World::createRoom(const FwRoomDef& def) {
+    if (rooms_.live() >= gpu::kMaxRooms)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u rooms are there; the limit is %u.", rooms_.live(),
+                   gpu::kMaxRooms);
+    RoomEntry entry;
+    entry.room = components::makeRoom(def);
+    fillRoom(entry, entry.room.oxygen);
+    const FwRoomId id = rooms_.create(entry);
+    roomsMet_ = true;
+    sendRoom(id.index1 - 1);
+    roomsTurn();
+    return id;
+}
+
+void World::setRoom(FwRoomId id, const FwRoomDef& def) {
+    mayChange();
+    RoomEntry& entry = rooms_.get(id);
+    entry.room = components::makeRoom(def);
+    if ((def.flags & FW_ROOM_REFILL) != 0) fillRoom(entry, entry.room.oxygen);
+    sendRoom(id.index1 - 1);
+    roomsTurn();
+    float numbers[13];
+    std::copy_n(def.position, 3, numbers);
+    std::copy_n(def.rotation, 4, numbers + 3);
+    std::copy_n(def.halfSize, 3, numbers + 7);
+    numbers[10] = def.volume;
+    numbers[11] = def.vent;
+    numbers[12] = def.oxygen;
+    noteMove(Deed::Kind::room, id.index1 - 1, numbers, std::size(numbers), def.flags);
+}
+
+void World::destroyRoom(FwRoomId id) {
+    rooms_.destroy(id);
+    backend_.setRoom(id.index1 - 1, {});
+    roomsTurn();
+}
+
+FwRoomDef World::roomDefOf(const Deed& deed) noexcept {
+    FwRoomDef def{};
+    def.structSize = sizeof def;
+    def.flags = deed.word;
+    std::copy_n(deed.numbers.data(), 3, def.position);
+    std::copy_n(deed.numbers.data() + 3, 4, def.rotation);
+    std::copy_n(deed.numbers.data() + 7, 3, def.halfSize);
+    def.volume = deed.numbers[10];
+    def.vent = deed.numbers[11];
+    def.oxygen = deed.numbers[12];
+    return def;
+}
+
+// Of a readback of beginnings that still count.
+void World::takeRooms(const gpu::Readback& readback) noexcept {
+    const auto count = uint32_t(std::min<size_t>(readback.rooms.size(), rooms_.slotCount()));
+    bool stirs = hotTiles_ != 0 || burningTiles_ != 0;
+    for (uint32_t slot = 0; slot < count; ++slot) {
+        RoomEntry* entry = rooms_.at(slot);
+        if (!entry || entry->air.epoch != readback.rooms[slot].epoch) continue;
+        entry->air = readback.rooms[slot];
+        stirs = stirs || entry->air.stirs != 0;
+    }
+    if (stirs) roomsStirred_ = std::max<uint64_t>(roomsStirred_, readback.endTick);
+}
+
+void World::roomState(FwRoomId id, FwRoomState& state) {
+    const RoomEntry& entry = rooms_.get(id);
+    state.frameIndex = readbackFrame_;
+    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot)
+        if (auto* owned = objects_.at(slot)) state.objects += (*owned)->room1 == id.index1 ? 1 : 0;
+    state.oxygen = float(double(entry.air.oxygen) / 4294967296.0);
+    state.strength = float(gpu::roomStrength(entry.air.oxygen)) / float(gpu::kAirFull);
+    // J of a period, at pace 1.
+    state.power = float(double(entry.air.drawn) * gpu::kTicksPerSecond / gpu::kRoomPeriod /
+                        double(def_.paceFactor));
+}
+
+}  // namespace fw::world

@@ -1,0 +1,48 @@
+// Before a heat step: what fires used of their rooms' oxygen since the last one, what came in from
+// outside, and how strongly each object's fire burns in what is left. One group: sums of a room
+// are of its shared memory, in no order.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;  // kMaxRooms
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_ROOMS
+#include "lib/buffers.glsl"
+
+shared uint ofRoom[kMaxRooms];  // J that it draws, then how strongly fire burns there
+
+uint roomOf(uint slot) {  // plus 1
+    uint flags = objects[slot].flags;
+    return (flags & kObjectLive) != 0u ? (flags >> kObjectRoomShift) & 0xFFu : 0u;
+}
+
+void main() {
+    uint thread = gl_LocalInvocationID.x;
+    ofRoom[thread] = 0u;
+    barrier();
+    for (uint slot = thread; slot < push.count; slot += kMaxRooms) {
+        uint room = roomOf(slot);
+        if (room == 0u) continue;
+        uint low = objectCounters[slot].energyLow, high = objectCounters[slot].energyHigh;
+        uint drawnLow = objectCounters[slot].drawnLow, drawnHigh = objectCounters[slot].drawnHigh;
+        if ((objectCounters[slot].air & kAirKnown) == 0u) {  // it comes in: what it gave off is gone
+            drawnLow = low;
+            drawnHigh = high;
+        }
+        uint joules = energySince(low, high, drawnLow, drawnHigh);
+        objectCounters[slot].drawnLow = drawnLow;
+        objectCounters[slot].drawnHigh = drawnHigh;
+        if (joules != 0u) atomicAdd(ofRoom[room - 1u], joules);
+    }
+    barrier();
+    RoomAir air = roomAir[thread];
+    roomBreathes(air, rooms[thread], ofRoom[thread]);
+    roomAir[thread] = air;
+    ofRoom[thread] = roomStrength(air.oxygen);
+    barrier();
+    for (uint slot = thread; slot < push.count; slot += kMaxRooms) {
+        uint room = roomOf(slot);
+        objectCounters[slot].air = room != 0u ? ofRoom[room - 1u] | kAirKnown : 0u;
+    }
+}

@@ -1,0 +1,236 @@
+// Rooms: who is in one, what fires take of its air and how it comes back, and what little of it
+// makes of a texel's fire. Whole numbers, so what is expected is exact or off by a named rounding.
+#include "components/room.h"
+#include "core/error.h"
+#include "fire/heat.h"
+#include "fire/presets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace fw::test::room_test {
+namespace {
+
+constexpr double kWhole = 4294967296.0;
+
+FwRoomDef roomDef(float half, float volume = 0, float vent = 0) {
+    FwRoomDef def{};
+    def.structSize = sizeof def;
+    def.rotation[3] = 1;
+    for (float& value : def.halfSize) value = half;
+    def.volume = volume;
+    def.vent = vent;
+    def.oxygen = 0.2095f;
+    return def;
+}
+
+bool holds(const FwRoomDef& def, float x, float y, float z) {
+    const float place[3] = {x, y, z};
+    return components::isIn(components::makeRoom(def), components::windPlace(place));
+}
+
+TEST(Room, IsABoxThatMayBeTurned) {
+    FwRoomDef def = roomDef(1);
+    def.position[0] = 10;
+    def.halfSize[2] = 3;
+    EXPECT_TRUE(holds(def, 10.99f, 0.99f, -2.99f));
+    EXPECT_FALSE(holds(def, 11.01f, 0, 0));
+    EXPECT_FALSE(holds(def, 10, 0, 3.01f));
+    EXPECT_FALSE(holds(def, -1e6f, 1e6f, 1e6f));
+    def.rotation[1] = def.rotation[3] = std::sqrt(0.5f);  // a quarter about y: z is along x now
+    EXPECT_TRUE(holds(def, 12.9f, 0, 0.9f));
+    EXPECT_FALSE(holds(def, 10, 0, 2));
+    def.rotation[1] = std::sin(0.3927f), def.rotation[3] = std::cos(0.3927f);  // an eighth
+    EXPECT_TRUE(holds(def, 12, 0, 2));
+    EXPECT_FALSE(holds(def, 12, 0, -2));
+    EXPECT_TRUE(components::plausible(components::makeRoom(def)));
+}
+
+// 13.1 MJ take a kilogram of oxygen, which are 0.752 m^3.
+TEST(Room, FireTakesItsOxygen) {
+    for (const float volume : {0.1f, 3.0f, 40.0f, 1e6f}) {
+        const gpu::Room room = components::roomRecord(components::makeRoom(roomDef(1, volume)), 1,
+                                                      gpu::kAirOutside, 7);
+        gpu::RoomAir air{};
+        gpu::roomBreathes(air, room, 0);
+        EXPECT_EQ(gpu::kAirOutside, air.oxygen);
+        EXPECT_EQ(7u, air.epoch);
+        EXPECT_EQ(1u, air.stirs);
+        gpu::roomBreathes(air, room, 0);
+        EXPECT_EQ(0u, air.stirs);
+        const auto joules = uint32_t(1e5f * volume);
+        for (int i = 0; i < 10; ++i) gpu::roomBreathes(air, room, joules / 10);
+        const double taken = double(joules) / 13.1e6 / 1.330 / double(volume);
+        EXPECT_NEAR(0.2095 - taken, double(air.oxygen) / kWhole, 3e-5) << volume;
+        EXPECT_EQ(joules / 10, air.drawn);
+        gpu::roomBreathes(air, room, 0xFFFFFFFFu);
+        if (volume < 1e4f) {
+            EXPECT_EQ(0u, air.oxygen);
+        }
+    }
+}
+
+// An open door brings it back, as fast at any pace of the same burn, and to the last bit.
+TEST(Room, AirComesBack) {
+    for (const float pace : {1.0f, 8.0f}) {
+        const components::Room made = components::makeRoom(roomDef(1, 10, 0.5f));  // 20 s
+        const gpu::Room room = components::roomRecord(made, pace, uint32_t(0.10 * kWhole), 1);
+        gpu::RoomAir air{};
+        const int after = int(20 * 8 / pace);
+        for (int i = 0; i < after; ++i) gpu::roomBreathes(air, room, 0);
+        EXPECT_NEAR(0.2095 - 0.1095 * std::exp(-1), double(air.oxygen) / kWhole, 1.5e-3);
+        for (int i = 0; i < after * 30; ++i) gpu::roomBreathes(air, room, 0);
+        EXPECT_EQ(gpu::kAirOutside, air.oxygen);
+        EXPECT_EQ(0u, air.stirs);
+    }
+    const gpu::Room rich = components::roomRecord(components::makeRoom(roomDef(1, 1, 1e4f)), 100,
+                                                  uint32_t(0.9 * kWhole), 1);
+    gpu::RoomAir air{};
+    for (int i = 0; i < 4; ++i) gpu::roomBreathes(air, rich, 0);
+    EXPECT_NEAR(0.2095, double(air.oxygen) / kWhole, 1e-6);
+    EXPECT_GE(air.oxygen, gpu::kAirOutside);
+}
+
+TEST(Room, StrengthFallsEvenlyFrom15To12Percent) {
+    const auto at = [](double part) { return gpu::roomStrength(uint32_t(part * kWhole)); };
+    EXPECT_EQ(256u, at(0.2095));
+    EXPECT_EQ(256u, at(0.1501));
+    EXPECT_EQ(192u, at(0.142501));
+    EXPECT_EQ(128u, at(0.135001));
+    EXPECT_EQ(0u, at(0.12));
+    EXPECT_EQ(0u, at(0));
+    uint32_t before = 0;
+    for (uint32_t air = 0; air < 0xFFF00000u; air += 100000) {
+        EXPECT_LE(before, gpu::roomStrength(air));
+        EXPECT_LE(gpu::roomStrength(air), before + 1);
+        before = gpu::roomStrength(air);
+    }
+    EXPECT_EQ(256u, gpu::airStrength(0));  // in no room
+    EXPECT_EQ(0u, gpu::airStrength(gpu::kAirKnown));
+    EXPECT_EQ(256u, gpu::airStrength(0xFFFFFFFFu));
+}
+
+TEST(Room, NoJouleIsLostBetweenPeriods) {
+    uint32_t drawnLow = 5, drawnHigh = 0;
+    uint64_t energy = 5, joules = 0;
+    uint32_t draw = 1;
+    for (int i = 0; i < 4000; ++i) {
+        draw = gpu::hash32(draw + uint32_t(i));
+        energy += i % 3 == 0 ? uint64_t(draw) * 200 : draw >> 12;
+        joules += gpu::energySince(uint32_t(energy), uint32_t(energy >> 32), drawnLow, drawnHigh);
+        const uint64_t drawn = uint64_t(drawnHigh) << 32 | drawnLow;
+        ASSERT_EQ(joules << 20, drawn - 5);
+        ASSERT_LT(energy - drawn, 1u << 20);
+    }
+    EXPECT_GT(joules, 1u << 20);
+}
+
+// A texel that burns at an even strength, for as long as it does.
+struct Burn {
+    gpu::HeatMaterial material;
+    gpu::HeatTexel texel;
+    uint32_t state = 0, now = 0;
+    uint32_t burnt = 0;
+
+    explicit Burn(uint32_t preset) {
+        material = fire::heatMaterial(fire::presetDef(preset), {1e-4f, 1, 0});
+        texel = gpu::heatRests(material, true);
+    }
+    void step(uint32_t strength) {
+        uint32_t units = 0;
+        state = gpu::heatTexelStep(texel, gpu::heatInAir(material, strength), state, now, 20000,
+                                   true, 256, gpu::hash32(now), units);
+        burnt += units;
+        now += gpu::kRoomPeriod;
+    }
+    bool burns() const { return gpu::isSource(state) && texel.phase == gpu::kPhaseBurning; }
+};
+
+// A sheet in half-strong fire burns for twice as long, and gives off all that it has.
+TEST(Room, ThinFuelBurnsSlowerInLittleAir) {
+    Burn well(FW_MATERIAL_PAPER), little(FW_MATERIAL_PAPER);
+    int steps[2] = {};
+    for (int k = 0; k < 2; ++k) {
+        Burn& burn = k == 0 ? well : little;
+        do burn.step(k == 0 ? 256 : 128);
+        while (burn.burns() && ++steps[k] < 10000);
+        EXPECT_EQ(gpu::kPhaseBurnt, burn.texel.phase);
+        EXPECT_EQ(gpu::kFuelFull, burn.burnt);
+    }
+    EXPECT_GT(steps[0], 8);
+    EXPECT_NEAR(2 * steps[0], steps[1], 2);
+    // What begins in little air goes on where it was when more comes.
+    Burn opened(FW_MATERIAL_PAPER);
+    for (int i = 0; i < steps[0]; ++i) opened.step(128);
+    const uint32_t left = opened.texel.fuel;
+    EXPECT_NEAR(0.5 * gpu::kFuelFull, left, 0.03 * gpu::kFuelFull);
+    opened.step(256);
+    EXPECT_LT(left - opened.texel.fuel, gpu::kFuelFull / uint32_t(steps[0]) * 2);
+    for (int i = 0; i < steps[0] / 2 + 2; ++i) opened.step(256);
+    EXPECT_EQ(gpu::kPhaseBurnt, opened.texel.phase);
+}
+
+TEST(Room, WoodGivesOffLessAndWithoutAirGoesOut) {
+    uint32_t burnt[3] = {};
+    for (const uint32_t strength : {256u, 128u, 0u}) {
+        Burn burn(FW_MATERIAL_PINE);
+        for (int i = 0; i < 240; ++i) burn.step(256);
+        ASSERT_TRUE(burn.burns());
+        const uint32_t before = burn.burnt;
+        for (int i = 0; i < 80; ++i) burn.step(strength);
+        burnt[strength / 128] = burn.burnt - before;
+        EXPECT_EQ(strength != 0, burn.burns());
+        if (strength != 0) continue;
+        EXPECT_EQ(gpu::kPhaseOut, burn.texel.phase);
+        EXPECT_EQ(gpu::kOut, burn.state);
+        burn.step(256);  // hot as it is, it lights again
+        EXPECT_TRUE(burn.burns());
+        for (int i = 0; i < 80; ++i) burn.step(256);
+        EXPECT_TRUE(burn.burns());
+        EXPECT_GT(burn.burnt, before);
+    }
+    EXPECT_EQ(0u, burnt[0]);
+    EXPECT_GT(burnt[1], burnt[2] / 4);
+    EXPECT_LT(burnt[1], burnt[2] * 3 / 5);
+}
+
+TEST(Room, NamesWhatCannotBe) {
+    const auto message = [](const FwRoomDef& def) -> std::string {
+        try {
+            (void)components::makeRoom(def);
+        } catch (const core::Error& error) {
+            return error.message;
+        }
+        return "";
+    };
+    EXPECT_EQ("", message(roomDef(1)));
+    FwRoomDef def = roomDef(1);
+    def.flags = 6;
+    EXPECT_EQ(
+        "FwRoomDef::flags is 0x6 and reserved is 0; the known flags are 0x1, and reserved is zero.",
+        message(def));
+    def = roomDef(1);
+    def.halfSize[1] = 0.01f;
+    EXPECT_EQ("FwRoomDef::halfSize[1] is 0.01; the limits are [0.05, 1000].", message(def));
+    EXPECT_EQ("FwRoomDef::volume is 0 m^3 and its box has 0.064; the limits are [0.1, 1e+06].",
+              message(roomDef(0.2f)));
+    EXPECT_EQ("", message(roomDef(0.2f, 0.1f)));
+    EXPECT_NE("", message(roomDef(1000)));
+    def = roomDef(1);
+    def.vent = -1;
+    EXPECT_EQ("FwRoomDef::vent is -1; the limits are [0, 10000].", message(def));
+    def = roomDef(1);
+    def.oxygen = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_NE(std::string::npos, message(def).find("FwRoomDef::oxygen is "));
+    def = roomDef(1);
+    def.rotation[0] = 1;
+    EXPECT_NE(std::string::npos, message(def).find("FwRoomDef::rotation has length 1.41421;"));
+    components::Room room = components::makeRoom(roomDef(1));
+    room.volume = 0;
+    EXPECT_FALSE(components::plausible(room));
+}
+
+}  // namespace
+}  // namespace fw::test::room_test
