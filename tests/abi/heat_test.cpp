@@ -259,6 +259,37 @@ TEST_P(AbiHeat, ALittleWaterBoilsOff) {
     EXPECT_EQ(FW_POINT_EXTINGUISHED, int(point().kind));
 }
 
+// A steady spray puts wood out where it takes more heat than the flame gives back beyond what a
+// surface loses that is as hot as it must be to flame; with less of it fire goes on.
+TEST_P(AbiHeat, S7_6_ASprayAboveTheCriticalRatePutsOutAndOneBelowDoesNot) {
+    constexpr double kSigma = 5.67e-8, kAmbient = 293, kLatent = 2.26e6;
+    constexpr float kPace = 8;  // a spray each second of the burn
+    const FwMaterialDef wood = preset(FW_MATERIAL_PINE);
+    const double dies = double(wood.ignitionTemperature) - 50;
+    const double loses =
+        0.9 * kSigma * (std::pow(dies, 4) - std::pow(kAmbient, 4)) + 15 * (dies - kAmbient);
+    const double critical = 1000 * (double(wood.flameFeedback) - loses) / kLatent;  // g/m^2/s
+    for (const double part : {0.7, 1.3}) {
+        make(wood, kPace);
+        all(FW_IGNITE);
+        run(20);
+        ASSERT_EQ(FW_POINT_BURNING, int(point().kind));
+        double fed = 0, given = 0;  // g/m^2; events take whole ones
+        for (int i = 0; i < 200 && state().burning > 0; ++i) {
+            fed += critical * part * 0.125 * double(kPace);
+            all(FW_WET, float(std::floor(fed - given)));
+            given += std::floor(fed - given);
+            run(0.125);
+        }
+        const FwPointState after = point();
+        std::printf("spray of %.1f g/m^2/s, %.2f of the critical rate: %s, %.0f K\n",
+                    critical * part, part, state().burning ? "burns" : "out",
+                    double(after.temperature));
+        EXPECT_EQ(part > 1 ? FW_POINT_EXTINGUISHED : FW_POINT_BURNING, int(after.kind));
+        EXPECT_EQ(part > 1, state().burning == 0);
+    }
+}
+
 TEST_P(AbiHeat, AirDriesWhatIsWet) {
     FwMaterialDef paper = preset(FW_MATERIAL_PAPER);
     make(paper, 100);

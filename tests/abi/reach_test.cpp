@@ -173,6 +173,32 @@ TEST(AbiSpread, S7_6_TwoBoardsAndAWallBetween) {
     }
 }
 
+// A wall of four boxes around a window: through it the second board is lit, past it none is.
+TEST(AbiSpread, S7_6_TwoBoardsAndAHoleInTheWall) {
+    for (const float beside : {0.0f, 3.0f}) {  // m that the window is aside
+        TwoBoards p(worldDef(FW_WORLD_RADIATION), receiverOf(0.0018f, false));
+        const auto wall = [&](float y, float z, float high, float wide) {
+            FwBlockerDef box = fwDefaultBlockerDef();
+            box.transform[12] = 0.05f;
+            box.transform[13] = y;
+            box.transform[14] = z + beside;
+            box.halfSize[0] = 0.01f;
+            box.halfSize[1] = high;
+            box.halfSize[2] = wide;
+            FwBlockerId id{};
+            EXPECT_EQ(FW_OK, fwWorld_AddBlocker(p.world, &box, &id)) << lastMessage(p.world);
+        };
+        wall(-5, 0, 5.2f, 20);  // up to 0.2 m
+        wall(6, 0, 5, 20);      // from 1 m
+        wall(0.6f, -10.2f, 0.5f, 10);
+        wall(0.6f, 10.4f, 0.5f, 10);
+        const double caught = p.caught(120);
+        std::printf("two boards, a window %.0f m aside: %u texels lit\n", double(beside), p.lit(1));
+        EXPECT_EQ(beside == 0, caught > 0);
+        EXPECT_EQ(beside == 0, p.lit(1) > 0);
+    }
+}
+
 TEST(AbiSpread, APlumeLightsWhatIsAbove) {
     for (const uint32_t flags : {uint32_t(FW_WORLD_PLUME), uint32_t(FW_WORLD_CONTACT)}) {
         for (const float height : {1.0f, -1.0f}) {
