@@ -121,6 +121,7 @@ class Recorder final : public gpu::Backend {
     }
     void destroyObject(uint32_t) noexcept override { --objects; }
     void setVertices(uint32_t, std::span<const float>, std::span<const float>) noexcept override {}
+    void setRoom(uint32_t, const gpu::Room&) noexcept override {}
     void setObjectPose(uint32_t, const gpu::vec4*, const gpu::vec4&, uint32_t flags) override {
         lastFlags = flags;
     }
