@@ -99,7 +99,7 @@ TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
             if (life.scene.world) {  // it stays lost, and gives what it has
                 EXPECT_EQ(FW_ERROR_DEVICE_LOST, fwWorld_Step(life.scene.world, 0.1f));
                 EXPECT_EQ(FW_ERROR_DEVICE_LOST, takePicture(life.scene.world));
-                EXPECT_EQ(FW_OK, life.scene.takeSave()) << lastMessage(life.scene.world);
+                EXPECT_EQ(FW_OK, life.scene.takeSave()) << host::lastMessage(life.scene.world);
             }
             mirror = life.scene.mirror;
             frame = life.scene.mirrored;

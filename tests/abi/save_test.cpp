@@ -150,7 +150,7 @@ TEST(Save, LivesThroughALostDevice) {
     }
 }
 
-void expectRefused(BusyWorld& w, const Bytes& bytes, const char* says) {
+void expectSaveRefused(BusyWorld& w, const Bytes& bytes, const char* says) {
     const uint64_t before = w.hash();
     EXPECT_EQ(FW_ERROR_BAD_DATA, w.load(bytes)) << says;
     EXPECT_NE(std::string::npos, lastMessage(w.world).find(says)) << lastMessage(w.world);
@@ -163,22 +163,22 @@ TEST(Save, RefusesWhatIsNotTheWorlds) {
     const Bytes bytes = w.save();
     Bytes wrong = bytes;
     wrong[0] ^= 1;
-    expectRefused(w, wrong, "\"FWSV\"");
+    expectSaveRefused(w, wrong, "\"FWSV\"");
     wrong = bytes;
     wrong[4] = 9;
-    expectRefused(w, wrong, "format version 9");
+    expectSaveRefused(w, wrong, "format version 9");
     wrong = bytes;
     wrong[bytes.size() / 2] ^= 0x10;
-    expectRefused(w, wrong, "checksum");
+    expectSaveRefused(w, wrong, "checksum");
     wrong.assign(bytes.begin(), bytes.end() - 1);
-    expectRefused(w, wrong, "bytes of content; its header says");
+    expectSaveRefused(w, wrong, "bytes of content; its header says");
     wrong.assign(bytes.begin(), bytes.begin() + 11);
-    expectRefused(w, wrong, "has 11 bytes");
-    expectRefused(w, {}, "has 0 bytes");
+    expectSaveRefused(w, wrong, "has 11 bytes");
+    expectSaveRefused(w, {}, "has 0 bytes");
     BusyWorld slower(FW_BACKEND_CPU, 11);
-    expectRefused(slower, bytes, "FwWorldDef::paceFactor is 12; this world's is 11");
+    expectSaveRefused(slower, bytes, "FwWorldDef::paceFactor is 12; this world's is 11");
     BusyWorld fewer(FW_BACKEND_CPU, 12, 9);
-    expectRefused(fewer, bytes, "10 burnable meshes; this world has 9");
+    expectSaveRefused(fewer, bytes, "10 burnable meshes; this world has 9");
     uint64_t size = 3;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchSave(fewer.world, nullptr, &size));
     EXPECT_NE(std::string::npos, lastMessage(fewer.world).find("request it first"));

@@ -198,7 +198,7 @@ TEST(DeformTierA, NeverThroughTheWallBehindAndNeverBack) {
 
 // A slab that both sides eat at 0.65 mm/min: through in half the time, on both sides alike.
 TEST(DeformTierA, SlabOpensFromBothSidesAtOnce) {
-    constexpr float kSlab = 0.010f, kRate = 0.65e-3f / 60;
+    constexpr float kSlab = 0.010f, kCharRate = 0.65e-3f / 60;
     Mesh mesh;
     constexpr int kCells = 12;
     for (int side = 0; side < 2; ++side)
@@ -221,7 +221,7 @@ TEST(DeformTierA, SlabOpensFromBothSidesAtOnce) {
             }
     const BurnDomain domain = bakeOf(mesh.input(128));
     const DeformModel model = modelOf(domain);
-    const float whole = kSlab / kRate;  // s, from one side alone
+    const float whole = kSlab / kCharRate;  // s, from one side alone
     const gpu::DeformObject object = objectOf(whole, kSlab, whole);
     std::vector<uint32_t> states = allLit(domain);
     // The second side catches later, from one end to the other.

@@ -60,7 +60,7 @@ FloatPicture flat(uint32_t width, uint32_t height, std::vector<float> pixel,
     return p;
 }
 
-std::string refusal(const FloatPicture& picture) {
+std::string pictureRefusal(const FloatPicture& picture) {
     volume::Profile profile;
     std::string error;
     EXPECT_FALSE(fwtools::profileOfPicture(picture, profile, error));
@@ -127,15 +127,18 @@ TEST_F(PictureImport, NamedChannelsComeFirst) {
 TEST_F(PictureImport, BadProfilesAreRefusedByName) {
     FloatPicture hot = flat(16, 16, {1500.0f, 0.5f, 0}, {"R", "G", "B"});
     hot.values[(3 * 16 + 5) * 3] = 4000.0f;
-    EXPECT_EQ(refusal(hot), "channel \"R\" of pixel (5, 3) is 4000 K; it must lie in [0, 3000]");
+    EXPECT_EQ(pictureRefusal(hot),
+              "channel \"R\" of pixel (5, 3) is 4000 K; it must lie in [0, 3000]");
     hot.values[(3 * 16 + 5) * 3] = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_THAT(refusal(hot), HasSubstr("pixel (5, 3) is nan K"));
-    EXPECT_THAT(refusal(flat(16, 16, {1500.0f, -1.0f, 0}, {"R", "G", "B"})),
+    EXPECT_THAT(pictureRefusal(hot), HasSubstr("pixel (5, 3) is nan K"));
+    EXPECT_THAT(pictureRefusal(flat(16, 16, {1500.0f, -1.0f, 0}, {"R", "G", "B"})),
                 HasSubstr("channel \"G\" of pixel (0, 15) is -1; it must lie in [0, 2]"));
-    EXPECT_THAT(refusal(flat(4, 16, {1500.0f, 1.0f}, {"R", "G"})), HasSubstr("4 x 16 texels"));
-    EXPECT_EQ(refusal(flat(8, 8, {1.0f}, {"Y"})),
+    EXPECT_THAT(pictureRefusal(flat(4, 16, {1500.0f, 1.0f}, {"R", "G"})),
+                HasSubstr("4 x 16 texels"));
+    EXPECT_EQ(pictureRefusal(flat(8, 8, {1.0f}, {"Y"})),
               "its channels are \"Y\"; it needs R and G, or temperature and soot");
-    EXPECT_THAT(refusal(flat(8, 8, {0, 0, 0}, {"R", "G", "B"})), HasSubstr("neither soot nor hot"));
+    EXPECT_THAT(pictureRefusal(flat(8, 8, {0, 0, 0}, {"R", "G", "B"})),
+                HasSubstr("neither soot nor hot"));
 }
 
 TEST_F(PictureImport, BadFilesAreRefusedByName) {

@@ -24,7 +24,7 @@ FlameNodes nodesOf(const std::vector<ControlPoint>& points, float length) {
     return nodes;
 }
 
-void expectSound(const FlameNodes& nodes) {
+void expectSoundNodes(const FlameNodes& nodes) {
     for (size_t k = 0; k < nodes.size(); ++k) {
         const FlameNode& n = nodes[k];
         for (int c = 0; c < 4; ++c) {
@@ -83,7 +83,7 @@ TEST(VolumeCurve, ArcLengthIsThatOfAFinePolyline) {
 
 TEST(VolumeCurve, T4_5_FramesDoNotTwistOnAHelix) {
     const FlameNodes nodes = nodesOf(helix(0.5f, 0.25f, 20), 3.0f);
-    expectSound(nodes);
+    expectSoundNodes(nodes);
     for (size_t k = 0; k + 1 < nodes.size(); ++k) {
         // The least rotation that takes one tangent to the next, applied to the side.
         const vec3 a = vec3(nodes[k].along), b = vec3(nodes[k + 1].along), axis = glm::cross(a, b);
@@ -118,7 +118,7 @@ TEST(VolumeCurve, T4_5_NoBadCurveGivesABadNumber) {
         for (const float length : {0.0f, 1e-6f, 0.5f, 20.0f}) {
             SCOPED_TRACE("curve " + std::to_string(k));
             const FlameNodes nodes = nodesOf(curves[k], length);
-            expectSound(nodes);
+            expectSoundNodes(nodes);
             for (const vec3 p : {vec3(0), vec3(1, 2, 3), vec3(0, 0.5f, 0.1f), vec3(1e5f, 1, 0)}) {
                 const auto at = locate(nodes, p);
                 if (!at) continue;
@@ -135,7 +135,7 @@ TEST(VolumeCurve, T4_5_NoBadCurveGivesABadNumber) {
         for (ControlPoint& p : points)
             p = {size * vec3(unit(random), unit(random), unit(random)),
                  size * std::abs(unit(random))};
-        expectSound(nodesOf(points, size * 3.0f));
+        expectSoundNodes(nodesOf(points, size * 3.0f));
     }
 }
 

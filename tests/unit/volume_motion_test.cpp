@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using volume_scene::campFire;
 using volume_scene::failure;
 
-void expectSound(const Flame& f) {
+void expectSoundFlame(const Flame& f) {
     for (const auto& n : f.nodes)
         for (int c = 0; c < 4; ++c)
             ASSERT_TRUE(std::isfinite(n.centre[c]) && std::isfinite(n.along[c]) &&
@@ -82,7 +82,7 @@ TEST(VolumeMotion, WindLeansItAndItComesBack) {
         double sum = 0;
         for (int k = 0; k < 240; ++k)
             advanceFlame(f, air, 1.0 / 60.0), sum += double(tilt(f)) / 240.0;
-        expectSound(f);
+        expectSoundFlame(f);
         if (wind == 0.0f) {
             EXPECT_LT(sum, 8.0);
         }
@@ -114,7 +114,7 @@ TEST(VolumeMotion, T4_5_TenMetresASecondAndTeleports) {
         f.def.position = vec3(std::cos(a), 1.5f + 0.2f * std::sin(3.0f * a), std::sin(a));
         if (k % 200 == 150) f.def.position += vec3(500, 0, -300);
         advanceFlame(f, {}, dt);
-        expectSound(f);
+        expectSoundFlame(f);
         ASSERT_NEAR(glm::length(vec3(f.nodes[0].centre) - f.def.position), 0.0f, 1e-3f);
     }
 }
@@ -133,7 +133,7 @@ TEST(VolumeMotion, T4_5_ExtremesOfADefGiveNoBadNumber) {
                     startFlame(f, d, air);
                     for (const double dt : {0.0, 1e-9, 1.0 / 60.0, 10.0, double(NAN)})
                         advanceFlame(f, air, dt);
-                    expectSound(f);
+                    expectSoundFlame(f);
                 }
 }
 
@@ -183,7 +183,7 @@ TEST(VolumeMotion, TrackPlaysLoopsAndBlendsBack) {
     for (int k = 0; k < 240; ++k) {
         if (k == 120) f.def.driver = FlameDriver::Live;
         advanceFlame(f, air, 1.0 / 60.0);
-        expectSound(f);
+        expectSoundFlame(f);
         if (k == 60) {  // wholly the track's
             EXPECT_EQ(f.tracked, 1.0f);
             sampleTrack(track, f.trackTime, at);
@@ -214,7 +214,7 @@ TEST(VolumeMotion, HostsPointsAreTaken) {
     EXPECT_NEAR(f.nodes[0].centre.w, 0.3f, 0.05f);
     f.givenCount = 1;  // of one point there is still a flame
     advanceFlame(f, {}, 1.0 / 60.0);
-    expectSound(f);
+    expectSoundFlame(f);
     f.givenCount = 0;
     for (int k = 0; k < 60; ++k) advanceFlame(f, {}, 1.0 / 60.0);
     EXPECT_NEAR(vec3(f.nodes[0].centre).x, 0.0f, 1e-4f) << "without points it lives by itself";
