@@ -24,6 +24,8 @@ constexpr float kFanReach = 2;     // of its range: what it blows on is blown on
 constexpr float kFanWidth = 0.6f;  // radius of its wind at its end, of its length
 constexpr float kEmberPower = 40;  // kW
 constexpr float kEmberSeconds = 44 * kTickSeconds;
+constexpr Vec3 kCoals{0, 1.12f, 0};  // of a brazier, in its model's space
+constexpr float kBrazierPower = 70;  // kW
 
 glm::vec3 toGlm(Vec3 v) { return {v.x, v.y, v.z}; }
 
@@ -45,6 +47,7 @@ Siege::Siege(FwWorld* world, FireVillage& fires, const Battlefield& field, const
         placed.frame = instance.frame;
         placed.tint = instance.tint;
         placed_.push_back(placed);
+        if (village::Kit(instance.model) == village::Kit::kBrazier) lightBrazier(instance.frame);
     }
     for (const auto& kinds : field.towers)
         for (const size_t instance : kinds) placed_[instance].moves = true;
@@ -55,6 +58,20 @@ Siege::Siege(FwWorld* world, FireVillage& fires, const Battlefield& field, const
     makeEmitters();
     moveEnemies();
     aimTowers();
+}
+
+// A fire on its coals, for as long as the world lasts. What it lights is a lamp's (main.cpp).
+void Siege::lightBrazier(const village::Frame& frame) {
+    FwFireEmitterDef fire = fwDefaultFireEmitterDef();
+    fire.flags = FW_EMITTER_NO_LIGHT;
+    fire.shape = FW_EMITTER_DISC;
+    fire.radius = 0.3f;
+    fire.power = kBrazierPower;
+    fire.smoke = 0.12f;
+    const glm::vec3 coals = toGlm(frame.point(kCoals));
+    std::copy_n(&coals[0], 3, fire.position);
+    FwFireEmitterId id{};
+    check(fwWorld_CreateFireEmitter(world_, &fire, &id), "fwWorld_CreateFireEmitter");
 }
 
 void Siege::makeEmitters() {

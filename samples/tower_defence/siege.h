@@ -44,6 +44,7 @@ class Siege {
     void comeBack(const Moment& moment);
 
  private:
+    void lightBrazier(const village::Frame& frame);
     void makeEmitters();
     game::Burning askBurning() const;
     void carryOut(const game::Happening& happening);
