@@ -9,6 +9,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "common/pipeline.h"
+#include "common/relief_maps.h"
 
 namespace sample {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 #include "relief.vert.h"
 
 constexpr uint32_t kMostFires = 4;
+constexpr uint32_t kPictures = 3;  // of a model
 
 struct Block {  // relief_block.glsl
     glm::mat4 viewProjection;
@@ -24,7 +26,13 @@ struct Block {  // relief_block.glsl
     glm::vec4 firePlace[kMostFires], fireColor[kMostFires];
 };
 
-// Slopes along u and v, open sky, height. `steepest`: the slope that 1 stands for.
+ReliefHeights heightsOf(const ReliefModel& model) {
+    const ReliefPicture& p = model.picture;
+    return {p.width, p.height, p.metres, p.depth, model.repeats, p.heights};
+}
+
+// Slopes along u and v, cone (the root of its share of the widest), height. `steepest`: the slope
+// that 1 stands for.
 std::vector<uint8_t> shapeOf(const ReliefModel& model, float& steepest) {
     const ReliefPicture& p = model.picture;
     const auto w = static_cast<int>(p.width), h = static_cast<int>(p.height);
@@ -46,6 +54,7 @@ std::vector<uint8_t> shapeOf(const ReliefModel& model, float& steepest) {
             steepest = std::max({steepest, s.x, s.y});
         }
     steepest = std::min(steepest, 4.0f);
+    const std::vector<float> cones = reliefCones(heightsOf(model));
     std::vector<uint8_t> shape(p.heights.size() * 4);
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
@@ -53,7 +62,7 @@ std::vector<uint8_t> shapeOf(const ReliefModel& model, float& steepest) {
             const glm::vec2 s = 0.5f + 0.5f * slope(x, y) / steepest;
             shape[at * 4] = toByte(s.x);
             shape[at * 4 + 1] = toByte(s.y);
-            shape[at * 4 + 2] = toByte(0.45f + 0.55f * height(x, y));
+            shape[at * 4 + 2] = toByte(std::sqrt(cones[at] / kWidestCone));
             shape[at * 4 + 3] = toByte(height(x, y));
         }
     return shape;
@@ -133,10 +142,10 @@ Relief::Relief(const VulkanHost& host, const Stage& stage, std::span<const Relie
                                 VK_SAMPLER_MIPMAP_MODE_NEAREST);
     constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     frameLayout_ = makeSetLayout(host, {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER});
-    modelLayout_ = makeSetLayout(host, {kImage, kImage});
+    modelLayout_ = makeSetLayout(host, {kImage, kImage, kImage});
     const uint32_t slots = stage.made.framesInFlight;
     const auto count = static_cast<uint32_t>(models.size());
-    pool_ = makeSetPool(host, slots + count, slots, 2 * count);
+    pool_ = makeSetPool(host, slots + count, slots, kPictures * count);
     for (uint32_t i = 0; i < slots; ++i) {
         blocks_.push_back(
             host.createBuffer(sizeof(Block), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, true));
@@ -152,10 +161,14 @@ Relief::Relief(const VulkanHost& host, const Stage& stage, std::span<const Relie
         const std::vector<uint8_t> shape = shapeOf(model, steepest);
         drawn.color = host.createTexture(p.width, p.height, p.color.data(), false);
         drawn.shape = host.createTexture(p.width, p.height, shape.data(), false);
+        const ReliefHorizon horizon = reliefHorizon(heightsOf(model));
+        drawn.horizon =
+            host.createTexture(horizon.width, horizon.height, horizon.texels.data(), false);
         drawn.set = makeSet(host, pool_, modelLayout_);
         const VkSampler sampler = model.repeats ? repeat_ : clamp_;
         writeImage(host, drawn.set, 0, sampler, drawn.color.view);
         writeImage(host, drawn.set, 1, sampler, drawn.shape.view);
+        writeImage(host, drawn.set, 2, sampler, drawn.horizon.view);
         const float push[8] = {p.metres.x,
                                p.metres.y,
                                p.depth,
@@ -217,6 +230,7 @@ Relief::~Relief() {
     for (Drawn& drawn : models_) {
         host_.destroy(drawn.color);
         host_.destroy(drawn.shape);
+        host_.destroy(drawn.horizon);
     }
     host_.destroy(vertices_);
     host_.destroy(indices_);

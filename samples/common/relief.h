@@ -68,7 +68,7 @@ class Relief {
 
  private:
     struct Drawn {
-        Image color, shape;
+        Image color, shape, horizon;
         uint32_t firstIndex = 0, indexCount = 0;
         VkDescriptorSet set = VK_NULL_HANDLE;
         float push[8] = {};

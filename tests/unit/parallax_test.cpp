@@ -1,6 +1,8 @@
 // Parallax occlusion by the shader's own text, against meshes that the reliefs stand for.
 #include <gtest/gtest.h>
 
+#include "common/relief_maps.h"
+
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
@@ -13,6 +15,9 @@ namespace parallax {
 using namespace glm;
 float (*relief)(vec2 at) = nullptr;
 float reliefDepth(vec2 at) { return relief(at); }
+vec2 (*cones)(vec2 at) = nullptr;
+vec2 reliefCone(vec2 at) { return cones(at); }
+#define RELIEF_CONES
 #include "common/shaders/parallax.h"
 }  // namespace parallax
 
@@ -149,6 +154,126 @@ TEST(Parallax, ShadowsGrowWithWhatCastsThem) {
     }
     EXPECT_EQ(1, parallax::reliefLit({0, 0}, vec2(light), light.z, 0, kDeep, 2, 64));
     EXPECT_EQ(0, parallax::reliefLit({0, 0}, vec2(-1, 0), -0.1f, 0.1f, kDeep, 2, 64));
+}
+
+// Round stones side by side on a picture of 1 m that repeats, joints between them.
+constexpr uint32_t kTexels = 128;
+constexpr float kStones = 6, kStoneDepth = 0.05f;  // a row; m
+float stones(vec2 at) {
+    const vec2 cell = glm::fract(at * kStones) - 0.5f;
+    return std::min(1.0f, 8 * glm::dot(cell, cell) * glm::dot(cell, cell) * 4);
+}
+
+struct StoneMaps {
+    std::vector<float> heights = std::vector<float>(kTexels * kTexels);
+    std::vector<float> cones;
+    sample::ReliefHorizon horizonMap;
+    StoneMaps() {
+        for (uint32_t i = 0; i < kTexels * kTexels; ++i)
+            heights[i] = 1 - stones((vec2(i % kTexels, i / kTexels) + 0.5f) / float(kTexels));
+        const sample::ReliefHeights relief{kTexels, kTexels, {1, 1}, kStoneDepth, true, heights};
+        cones = sample::reliefCones(relief);
+        horizonMap = sample::reliefHorizon(relief);
+    }
+    // As a device reads: between four texels, round and round.
+    template <class Read>
+    static auto between(vec2 at, uint32_t side, Read read) {
+        const vec2 p = at * float(side) - 0.5f, low = glm::floor(p), f = p - low;
+        const auto texel = [&](int i, int j) {
+            const auto n = int(side);
+            const int x = ((int(low.x) + i) % n + n) % n, y = ((int(low.y) + j) % n + n) % n;
+            return read(size_t(y) * side + size_t(x));
+        };
+        return glm::mix(glm::mix(texel(0, 0), texel(1, 0), f.x),
+                        glm::mix(texel(0, 1), texel(1, 1), f.x), f.y);
+    }
+    [[nodiscard]] vec2 read(vec2 at) const {
+        return between(at, kTexels, [&](size_t i) { return vec2(1 - heights[i], cones[i]); });
+    }
+    [[nodiscard]] glm::vec4 horizon(vec2 at) const {
+        const std::vector<uint8_t>& of = horizonMap.texels;
+        return between(at, horizonMap.width, [&](size_t i) {
+            return glm::vec4(of[4 * i], of[4 * i + 1], of[4 * i + 2], of[4 * i + 3]) / 255.0f;
+        });
+    }
+};
+const StoneMaps& stoneMaps() {
+    static const StoneMaps maps;
+    return maps;
+}
+
+TEST(Parallax, ConesHoldNothing) {
+    const StoneMaps& maps = stoneMaps();
+    float narrowest = 1e9f, widest = 0;
+    for (uint32_t i = 0; i < kTexels * kTexels; i += 37) {
+        const vec2 at(i % kTexels, i / kTexels);
+        narrowest = std::min(narrowest, maps.cones[i]);
+        widest = std::max(widest, maps.cones[i]);
+        for (int y = -40; y <= 40; ++y)
+            for (int x = -40; x <= 40; ++x) {
+                const uint32_t there =
+                    ((uint32_t(at.y) + kTexels + uint32_t(y)) % kTexels) * kTexels +
+                    (uint32_t(at.x) + kTexels + uint32_t(x)) % kTexels;
+                const float up = (maps.heights[there] - maps.heights[i]) * kStoneDepth;
+                const float aside = glm::length(vec2(x, y)) / float(kTexels);
+                ASSERT_LE(maps.cones[i] * up, aside * 1.0001f) << i << ": " << x << ", " << y;
+            }
+    }
+    EXPECT_LT(narrowest, 1.0f);  // in the joints
+    EXPECT_EQ(sample::kWidestCone, widest);
+}
+
+TEST(Parallax, FewStepsByConesFindWhatManyLayersFind) {
+    parallax::relief = [](vec2 at) { return stoneMaps().read(at).x; };
+    parallax::cones = [](vec2 at) { return stoneMaps().read(at); };
+    for (const float down : {0.25f, 0.48f, 0.9f}) {
+        double squares = 0, far = 0;
+        int rays = 0;
+        for (int i = 0; i < 4000; ++i) {
+            const vec3 from(0.0137f * float(i % 63), 0.0219f * float(i / 63), 0);
+            const ReliefRay ray = rayOf(from, unitWay(0.37f * float(i), down));
+            const float wanted = parallax::reliefHit(ray, kStoneDepth, 400);
+            const float hit = parallax::reliefHitByCones(ray, kStoneDepth, 8);
+            ASSERT_GE(hit, 0) << i;
+            const double off =
+                double(parallax::reliefBelow(ray, hit) - parallax::reliefBelow(ray, wanted)) /
+                double(kStoneDepth);
+            squares += off * off;
+            far += std::abs(off) > 0.1;
+            ++rays;
+        }
+        std::printf(
+            "down %.2f: depth off by %.2f %% of the relief (RMS), %.2f %% of rays by over 10 %%\n",
+            double(down), 100 * std::sqrt(squares / rays), 100 * far / rays);
+        EXPECT_LT(std::sqrt(squares / rays), 0.1);  // a few slip past a corner
+        EXPECT_LT(far / rays, 0.06);
+    }
+}
+
+TEST(Parallax, HorizonsShadeAsStepsDo) {
+    parallax::relief = [](vec2 at) { return stoneMaps().read(at).x; };
+    const StoneMaps& maps = stoneMaps();
+    double off = 0, bias = 0, shaded = 0;
+    int places = 0;
+    for (const float up : {0.2f, 0.45f, 0.8f})
+        for (int i = 0; i < 2000; ++i) {
+            const vec2 at(0.0137f * float(i % 63), 0.0219f * float(i / 63));
+            const vec3 light = -unitWay(0.71f * float(i), up);
+            const float depth = kStoneDepth * maps.read(at).x;
+            const float wanted =
+                parallax::reliefLit(at, vec2(light), light.z, depth, kStoneDepth, 3, 200);
+            const float lit =
+                parallax::reliefLitByHorizon(maps.horizon(at), vec2(light), light.z, 3);
+            off += std::abs(double(lit - wanted));
+            bias += double(lit - wanted);
+            shaded += 1 - double(wanted);
+            ++places;
+        }
+    std::printf("shadows off by %.3f, their mean by %.3f, where %.3f is in shade\n", off / places,
+                bias / places, shaded / places);
+    EXPECT_GT(shaded / places, 0.1);
+    EXPECT_LT(off / places, 0.16);  // four ways know little of what stands between them
+    EXPECT_LT(std::abs(bias / places), 0.07);
 }
 
 }  // namespace

@@ -99,3 +99,59 @@ RELIEF_FN float reliefLit(vec2 at, vec2 along, float up, float depth, float deep
     }
     return out_ > 0.0f ? 1.0f - clamp(blocked, 0.0f, 1.0f) : 1.0f;
 }
+
+#ifdef RELIEF_CONES
+// Whoever asks for these also says, of a place on the picture,
+//     vec2 reliefCone(vec2 at);  its depth as above; and how far aside, on the picture, nothing
+//                                stands in the open cone above it, for each m up
+
+// Twice as wide as a cone that is empty is one that a ray seldom comes through something in.
+const float kReliefRelaxed = 2.0f;
+// Of the whole way: the least step. Past a stone's edge a ray would creep along it, and end there.
+const float kReliefLeast = 1.0f / 24.0f;
+
+// As reliefHit, in few steps: each goes to the side of the cone that the ray is in (J. Dummer, Cone
+// Step Mapping, 2006; F. Policarpo, M. Oliveira, Relaxed Cone Stepping, GPU Gems 3). Two secant
+// steps mend the last of them; reliefDepth is asked last where the relief is, but for a hair.
+RELIEF_FN float reliefHitByCones(ReliefRay ray, float deepest, int steps) {
+    bool atBottom;
+    float end = reliefEnd(ray, deepest, atBottom), aside = length(ray.along);
+    vec2 here = reliefCone(ray.at);
+    float way = 0.0f, above = 0.0f, gap = here.x * deepest - ray.depth, gapAbove = gap;
+    bool met = gap <= 0.0f, past = false;
+    for (int i = 0; i < steps && !met && !past; ++i) {
+        float falls = max(ray.down - 2.0f * ray.sag * way, 0.0f), cone = kReliefRelaxed * here.y;
+        above = way;
+        gapAbove = gap;
+        way = min(way + max(cone * gap / (aside + cone * falls + 1e-6f), kReliefLeast * end), end);
+        here = reliefCone(ray.at + ray.along * way);
+        gap = here.x * deepest - reliefBelow(ray, way);
+        met = gap <= 0.0f || (atBottom && way >= end);
+        past = !met && way >= end;
+    }
+    float most = min(2.0f * way - above, end);
+    for (int i = 0; i < 2; ++i) {
+        float nearer = gapAbove - gap, next = way + (way - above) * gap / max(nearer, 1e-7f);
+        next = nearer > 1e-7f ? clamp(next, above, most) : way;
+        bool under = gap <= 0.0f;
+        most = under ? way : most;
+        above = under ? above : way;
+        gapAbove = under ? gapAbove : gap;
+        way = next;
+        if (i == 0) gap = reliefDepth(ray.at + ray.along * way) * deepest - reliefBelow(ray, way);
+    }
+    return past ? -1.0f : way;
+}
+
+// [0, 1] of a light that reaches a place over its horizon, as reliefLit finds it step by step.
+// horizon: t / (1 + t) of its tangents t, along u, along v and against them (N. Max, Horizon
+// mapping, 1988). along, up: of the unit way to the light.
+RELIEF_FN float reliefLitByHorizon(vec4 horizon, vec2 along, float up, float softness) {
+    float flat_ = max(length(along), 1e-4f);
+    vec2 way = along / flat_;
+    vec4 facing = max(vec4(way, -way), vec4(0.0f));  // the squares of a unit way's parts are shares
+    float told = dot(facing * facing, horizon);
+    float over = told / max(1.0f - told, 0.02f) * flat_ - up;
+    return up > 0.0f ? 1.0f - clamp(over * softness, 0.0f, 1.0f) : 0.0f;
+}
+#endif

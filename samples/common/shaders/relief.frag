@@ -7,7 +7,8 @@ layout(constant_id = 0) const bool kParallax = true;
 layout(constant_id = 1) const bool kLinear = true;  // else display values are written
 
 layout(set = 1, binding = 0) uniform sampler2D colorMap;  // a: roughness
-layout(set = 1, binding = 1) uniform sampler2D shapeMap;  // slopes, open sky, height
+layout(set = 1, binding = 1) uniform sampler2D shapeMap;  // slopes, cone, height
+layout(set = 1, binding = 2) uniform sampler2D horizonMap;  // half as wide and high
 
 layout(push_constant) uniform Push {
     vec4 picture;  // m: width, height, depth; how steep the steepest slope is
@@ -23,13 +24,19 @@ layout(location = 0) out vec4 outColor;
 layout(depth_greater) out float gl_FragDepth;
 
 const float kPi = 3.14159265;
-float reliefLod;
-// Where layers are sought: a whole level, which is one read and not two, and coarser for shade.
-float soughtLod;
+float reliefLod;  // a whole level: it is one read and not two
+const float kWidestCone = 8.0;  // relief_maps.h
 
+vec4 shape;  // of the picture, where the relief was last asked for
 float reliefDepth(vec2 at) {
-    return 1.0 - textureLod(shapeMap, at / push.picture.xy, soughtLod).a;
+    shape = textureLod(shapeMap, at / push.picture.xy, reliefLod);
+    return 1.0 - shape.a;
 }
+vec2 reliefCone(vec2 at) {
+    vec2 told = textureLod(shapeMap, at / push.picture.xy, reliefLod).ba;
+    return vec2(1.0 - told.y, kWidestCone * told.x * told.x);
+}
+#define RELIEF_CONES
 #include "parallax.h"
 
 // m of way to where the picture ends.
@@ -52,8 +59,7 @@ void main() {
     toEye /= distance_;
     vec2 at = inRelief.xy;
     vec2 pixel = max(abs(dFdx(at)), abs(dFdy(at))) / push.picture.xy * push.texels.xy;
-    reliefLod = max(0.0, log2(max(pixel.x, pixel.y)) - 0.5);
-    soughtLod = floor(reliefLod + 0.5);
+    reliefLod = floor(max(0.0, log2(max(pixel.x, pixel.y))));
 
     float way = 0.0, depth = 0.0;
     if (kParallax) {
@@ -67,10 +73,7 @@ void main() {
         if (push.texels.z > 0.5) ray.most = toBorder(at, ray.along, push.picture.xy);
         if (push.texels.w > 0.0 && inRelief.w > 0.0)
             ray.most = toBorder(at, ray.along, vec2(1e3, push.texels.w));
-        bool bottom;
-        float crossed = length(ray.along / push.picture.xy * push.texels.xy) *
-                        reliefEnd(ray, scale, bottom) * exp2(-reliefLod);
-        way = reliefHit(ray, scale, reliefLayers(ray.down, crossed, 5.0, 20.0));
+        way = reliefHitByCones(ray, scale, int(mix(10.0, 5.0, clamp(ray.down, 0.0, 1.0))));
         if (way < 0.0) discard;
         at += ray.along * way;
         depth = reliefBelow(ray, way);
@@ -84,14 +87,17 @@ void main() {
     vec4 clip = block.viewProjection * vec4(position, 1.0);
     gl_FragDepth = max(clip.z / clip.w, gl_FragCoord.z);
 
-    soughtLod += 1.0;
     vec4 color = textureLod(colorMap, at / push.picture.xy, reliefLod);
-    vec4 shape = textureLod(shapeMap, at / push.picture.xy, reliefLod);
+    if (!kParallax) reliefDepth(at);
     vec3 albedo = color.rgb * color.rgb;
     vec2 slope = (shape.rg * 2.0 - 1.0) * push.picture.w;
     vec3 bent = normalize(n - u * slope.x - v * slope.y);
 
-    vec3 light = mix(block.ambientGround.rgb, block.ambientSky.rgb, 0.5 + 0.5 * bent.y) * shape.b;
+    vec3 light = mix(block.ambientGround.rgb, block.ambientSky.rgb, 0.5 + 0.5 * bent.y) *
+                 (0.45 + 0.55 * shape.a);
+    vec4 horizon = vec4(0.0);
+    if (kParallax)
+        horizon = textureLod(horizonMap, at / push.picture.xy, max(reliefLod - 1.0, 0.0));
     vec3 gloss = vec3(0.0);
     int fires = int(block.sunDirection.w);
     for (int i = -1; i < fires; ++i) {
@@ -107,12 +113,8 @@ void main() {
         float lit = 1.0;
         if (kParallax) {
             float softness = sun ? 8.0 : clamp(1.5 * sqrt(far2) / max(size, 0.01), 1.5, 8.0);
-            float up = max(dot(toLight, n), 0.05);
-            vec2 along = vec2(dot(toLight, u), dot(toLight, v));
-            float crossed = length(along / push.picture.xy * push.texels.xy) * depth / up;
-            int layers = reliefLayers(up, crossed * exp2(-soughtLod), 3.0, 6.0);
-            // Nothing stands above what is on top.
-            lit = reliefLit(at, along, up, depth, scale, softness, depth > 0.06 * scale ? layers : 0);
+            lit = reliefLitByHorizon(horizon, vec2(dot(toLight, u), dot(toLight, v)),
+                                     max(dot(toLight, n), 0.05), softness);
         }
         strong *= facing * lit;
         light += strong;
