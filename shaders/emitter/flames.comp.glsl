@@ -31,6 +31,9 @@ layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; 
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
 
+const float kLeastPixels = 20.0;  // of a flame's height
+const float kMostMerged = 1.6;    // times as high
+
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
 vec3 perpendicular(vec3 n) {
@@ -107,6 +110,10 @@ void main() {
         vec2 near = max(cellFire(cellKey(ivec3(floor(beside / side)), side)), own);
         vec2 around = max(cellFire(cellKey(ivec3(floor(above / large)), large)), near);
         float likely = flameLength(near, around);
+        // Small ones of which little is seen would be scattered scraps: fewer, and as much larger.
+        vec3 toTile = tile.positionArea.xyz - view.eye.xyz;
+        float pixel = view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
+        likely *= clamp(kLeastPixels * pixel / max(likely, 1e-3), 1.0, kMostMerged);
         float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
         float wish = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
         // A front thinner than its flames are deep still has a row of them.

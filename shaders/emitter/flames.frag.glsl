@@ -15,15 +15,15 @@ layout(location = 0) in vec2 inPlace;
 layout(location = 1) flat in vec4 inState;
 layout(location = 2) flat in uint inKind;
 layout(location = 3) flat in float inWidth;
+layout(location = 4) flat in vec2 inSun;  // where the light comes from, in the quad's plane
 
 #ifdef FW_BOOKS
 #include "shared/book.h"
 layout(set = 1, binding = 0) uniform sampler2D bookPicture;
-layout(location = 4) flat in vec4 inFrames;   // texel of the frame before and of that after
-layout(location = 5) flat in vec4 inMotions;  // the same of their motion
-layout(location = 6) flat in vec4 inSizes;    // texels of a frame, of its motion
-layout(location = 7) flat in vec2 inBetween;  // part of the way, most motion
-layout(location = 8) flat in vec2 inSun;      // where the light comes from, in the quad's plane
+layout(location = 5) flat in vec4 inFrames;   // texel of the frame before and of that after
+layout(location = 6) flat in vec4 inMotions;  // the same of their motion
+layout(location = 7) flat in vec4 inSizes;    // texels of a frame, of its motion
+layout(location = 8) flat in vec2 inBetween;  // part of the way, most motion
 
 // Half a texel beyond a border nothing is left: there lies the texel between frames.
 vec4 bookTexel(vec2 at, vec2 uv) {
@@ -60,6 +60,14 @@ float sootHides(float kelvin) { return 0.85 * smoothstep(1180.0, 1500.0, kelvin)
 #include "lib/soft_depth.glsl"
 #endif
 
+// Of `v` by the coordinates `c`, from what both are in the pixels beside.
+vec2 gradientOf(float v, vec2 c) {
+    vec2 cx = dFdx(c), cy = dFdy(c), d = vec2(dFdx(v), dFdy(v));
+    float area = cx.x * cy.y - cx.y * cy.x;
+    return vec2(d.x * cy.y - d.y * cx.y, d.y * cx.x - d.x * cy.x) /
+           (abs(area) > 1e-12 ? area : 1e-12);
+}
+
 // Turns `p` about `c` by twice atan(h).
 vec2 rolled(vec2 p, vec2 c, float h) {
     vec2 d = p - c;
@@ -86,12 +94,15 @@ void main() {
     m = rolled(m, left, strong * exp2(-6.0 * dot(fromLeft, fromLeft)));
     m = rolled(m, right, -strong * (1.2 - seed.y) * exp2(-6.0 * dot(fromRight, fromRight)));
     float squeeze = 1.0 - 0.5 * y;
+    // No two puffs lie the same way.
+    vec2 way = normalize(seed - 0.5 + vec2(1e-4, 0.0));
+    vec2 turned = vec2(c.x * way.x - c.y * way.y, c.x * way.y + c.y * way.x);
     vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45)
-             : smoke ? inPlace * vec2(0.11, 0.22)
+             : smoke ? turned * 0.15
                      : m * vec2(0.115, 0.085);
     p += seed;
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
-    float lod = smoke ? 1.5 : tongue ? 1.0 : 2.0;
+    float lod = smoke ? 3.0 : tongue ? 1.0 : 2.0;
     vec4 n1 = textureLod(lookTextures, vec3(p - vec2(0.0, slow * phase), kLayerNoise), lod);
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
@@ -150,11 +161,15 @@ void main() {
     vec3 white = tongue ? vec3(1.0) : kFireWhite;
     color = sootRadiance(kelvin) * white * (kFlameWhite * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
+    // Of smoke: billows, and between them nothing; the thinner it is, the more of it is eaten away.
+    // Where it gets thinner towards the light it faces it.
+    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) -
+                 mix(0.4, 0.0, saturate(3.0 * opacity));
+    vec2 slope = gradientOf(deep, c);
     if (smoke) {
-        float billow = (n1.r - 0.5) * 1.3 + (n2.g - 0.45) * 0.7;
-        float body = smoothstep(0.0, 0.75, 1.0 - r + 0.7 * billow) *
-                     (1.0 - smoothstep(0.7, 1.0, r));
-        alpha = saturate(body * opacity);
+        float body = smoothstep(0.0, 0.85, deep) * (1.0 - smoothstep(0.65, 1.0, r));
+        alpha = body * opacity;
+        float billow = -0.16 * dot(slope, inSun);
 #ifdef FW_BOOKS
         if (booked) {
             alpha = page.z * opacity;
@@ -164,9 +179,9 @@ void main() {
         }
 #endif
         // Crests catch the sun and the sky, hollows the fire below.
-        float crest = saturate(0.5 + 0.9 * billow + 0.25 * c.y);
-        vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.35 + 0.5 * crest) * 0.9 +
-                   view.sunColor.rgb * (0.30 * crest);
+        float crest = saturate(0.45 + 0.9 * billow + 0.25 * c.y);
+        vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.3 + 0.6 * crest) * 0.9 +
+                   view.sunColor.rgb * (0.45 * crest * crest);
         vec3 fire = vec3(1.0, 0.38, 0.10) *
                     (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
         color = (lit * 0.17 + fire) * alpha;

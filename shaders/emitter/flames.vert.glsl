@@ -18,15 +18,15 @@ layout(location = 0) out vec2 outPlace;        // x: -1..1, y: 0 foot .. 1 tip
 layout(location = 1) flat out vec4 outState;   // opacity, phase, kelvin, length over half width
 layout(location = 2) flat out uint outKind;
 layout(location = 3) flat out float outWidth;  // m, half of it
+layout(location = 4) flat out vec2 outSun;     // where the light comes from, in the quad's plane
 
 #ifdef FW_BOOKS
 #include "shared/book.h"
 layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer BooksBuffer { uint books[]; };
-layout(location = 4) flat out vec4 outFrames;   // texel of the frame before and of that after
-layout(location = 5) flat out vec4 outMotions;  // the same of their motion
-layout(location = 6) flat out vec4 outSizes;    // texels of a frame, of its motion
-layout(location = 7) flat out vec2 outBetween;  // part of the way, most motion
-layout(location = 8) flat out vec2 outSun;      // where the light comes from, in the quad's plane
+layout(location = 5) flat out vec4 outFrames;   // texel of the frame before and of that after
+layout(location = 6) flat out vec4 outMotions;  // the same of their motion
+layout(location = 7) flat out vec4 outSizes;    // texels of a frame, of its motion
+layout(location = 8) flat out vec2 outBetween;  // part of the way, most motion
 
 BookRecord bookOf(uint i) {
     uint at = i * kBookRecordWords;
@@ -110,9 +110,7 @@ void main() {
     vec3 at = start + side * (place.x * quad.axisWidth.w) + axis * (place.y * quad.baseHeight.w);
     // Towards the eye, so that a wall behind does not cut the tongue's side.
     at += toEye * (smoke ? 0.0 : 0.35 * quad.axisWidth.w);
-#ifdef FW_BOOKS
     outSun = vec2(dot(view.sunDirection.xyz, side), dot(view.sunDirection.xyz, axis));
-#endif
     outPlace = place;
     outState = vec4(quad.opacity, quad.phase, quad.kelvin, quad.baseHeight.w / quad.axisWidth.w);
     outKind = quad.kind;
