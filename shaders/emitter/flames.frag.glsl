@@ -19,6 +19,9 @@ layout(location = 4) flat in vec2 inSun;  // where the light comes from, in the 
 
 #ifdef FW_BOOKS
 #include "shared/book.h"
+// Books show all but sparks: the noise of what has none is left out, which a software device would
+// read and work on for every quad.
+layout(constant_id = 2) const uint kPagesAlone = 0u;
 layout(set = 1, binding = 0) uniform sampler2D bookPicture;
 layout(location = 5) flat in vec4 inFrames;   // texel of the frame before and of that after
 layout(location = 6) flat in vec4 inMotions;  // the same of their motion
@@ -41,6 +44,8 @@ vec4 showBook(vec2 uv) {
     return bookMix(bookTexel(inFrames.xy, before), bookTexel(inFrames.zw, after), inBetween.x);
 }
 const float kBookSpan = 600.0;  // K between a book's coldest and its hottest, about the quad's own
+#else
+const uint kPagesAlone = 0u;
 #endif
 
 layout(location = 0) out vec4 outColor;
@@ -103,11 +108,14 @@ void main() {
     p += seed;
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
     float lod = smoke ? 3.0 : tongue ? 1.0 : 2.0;
-    vec4 n1 = textureLod(lookTextures, vec3(p - vec2(0.0, slow * phase), kLayerNoise), lod);
+    vec4 n1 = vec4(0.5), n2 = vec4(0.5);
+    if (kPagesAlone == 0u)
+        n1 = textureLod(lookTextures, vec3(p - vec2(0.0, slow * phase), kLayerNoise), lod);
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
     vec2 q = p * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
-    vec4 n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
+    if (kPagesAlone == 0u)
+        n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
 
     vec3 color;
     float alpha;
@@ -148,7 +156,7 @@ void main() {
         hides = sootHides(kelvin);
     }
 #ifdef FW_BOOKS
-    bool booked = inKind >> kQuadBook != 0u;
+    bool booked = kPagesAlone != 0u || inKind >> kQuadBook != 0u;
     vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
     vec4 page = showBook(uv);
     if (booked) {
@@ -189,7 +197,7 @@ void main() {
     if (spark) {
         float body = saturate(1.6 * (1.0 - r * r)) * opacity;
 #ifdef FW_BOOKS
-        if (booked) body = page.y * opacity;
+        if (inKind >> kQuadBook != 0u) body = page.y * opacity;
 #endif
         // Its true light falls a thousandfold while it flies: nobody would see the end of it.
         vec3 glow = sootRadiance(inState.z);

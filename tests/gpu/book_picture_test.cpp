@@ -215,5 +215,37 @@ TEST_F(BookPicture, BooksComeAndGo) {
     EXPECT_GT(*std::max_element(without.alpha.begin(), without.alpha.end()), 0.05f);
 }
 
+// Where books show all but sparks the device leaves the noise of others out.
+TEST_F(BookPicture, LooksTheSameBesideWhatHasNone) {
+    const auto picture = [&](bool beside) {
+        fwDestroyWorld(world_);
+        world_ = nullptr;
+        FwWorldDef worldDef = fwDefaultWorldDef();
+        EXPECT_EQ(FW_OK, fwCreateWorld(context_, &worldDef, &world_));
+        FwFireEmitterDef def = fwDefaultFireEmitterDef();
+        def.seed = kSeed;
+        def.shape = FW_EMITTER_DISC;
+        def.radius = 0.3f;
+        def.power = 100;
+        def.smoke = 0.5f;
+        FwFireEmitterDef other = def;
+        def.fireBooks[0] = create(FW_FLIPBOOK_FLAME);
+        def.fireBooks[1] = create(FW_FLIPBOOK_ROLL);
+        def.smokeBooks[0] = create(FW_FLIPBOOK_SMOKE);
+        other.position[0] = 100;  // out of the picture
+        FwFireEmitterId id{};
+        EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(world_, &def, &id));
+        if (beside) {
+            EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(world_, &other, &id));
+        }
+        for (int i = 0; i < 96; ++i) fwWorld_Step(world_, 1.0f / 32);
+        const float nothing[4] = {0, 0, 0, 0};
+        return shoot(world_, frontView({0, 1}, 4, 4), kSide, kSide, nothing);
+    };
+    const std::vector<uint8_t> alone = picture(false), beside = picture(true);
+    EXPECT_GT(std::count_if(alone.begin(), alone.end(), [](uint8_t v) { return v > 64; }), 2000);
+    EXPECT_EQ(alone, beside);
+}
+
 }  // namespace
 }  // namespace fw::test::book_picture_test

@@ -103,7 +103,9 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
 extern const DrawPass kZPass;
 bool zPassDraws(std::span<const DrawItem> items);
 void recordZPass(DrawRecorder& recorder, std::span<const DrawItem> items);
-extern const DrawPass kFlamesPass, kBookFlamesPass;  // one or the other
+// One of them: without flipbooks; with some; with nothing but them and sparks.
+constexpr uint32_t kBookVariants = 2;
+extern const DrawPass kFlamesPass, kBookFlamesPasses[kBookVariants];
 void recordFlames(DrawRecorder& recorder);
 
 struct VolumeItem {  // a volumetric flame that a view may show

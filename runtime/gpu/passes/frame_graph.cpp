@@ -36,31 +36,31 @@ constexpr const ComputePass* kComputePasses[] = {
     &kFieldMaskPass,     &kFieldShowPass,     &kRoomsPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0],  &kSurfacePasses[1],   &kSurfacePasses[2],   &kSurfacePasses[3],
-    &kSurfacePasses[4],  &kSurfacePasses[5],   &kSurfacePasses[6],   &kSurfacePasses[7],
-    &kSurfacePasses[8],  &kSurfacePasses[9],   &kSurfacePasses[10],  &kSurfacePasses[11],
-    &kSurfacePasses[12], &kSurfacePasses[13],  &kSurfacePasses[14],  &kSurfacePasses[15],
-    &kSurfacePasses[16], &kSurfacePasses[17],  &kSurfacePasses[18],  &kSurfacePasses[19],
-    &kSurfacePasses[20], &kSurfacePasses[21],  &kSurfacePasses[22],  &kSurfacePasses[23],
-    &kSurfacePasses[24], &kSurfacePasses[25],  &kSurfacePasses[26],  &kSurfacePasses[27],
-    &kSurfacePasses[28], &kSurfacePasses[29],  &kSurfacePasses[30],  &kSurfacePasses[31],
-    &kSurfacePasses[32], &kSurfacePasses[33],  &kSurfacePasses[34],  &kZPass,
-    &kFlamesPass,        &kVolumePass,         &kVolumeCardPass,     &kVolumeCompositePass,
-    &kVolumeSlicesPass,  &kFieldDrawPasses[0], &kFieldDrawPasses[1], &kFieldDrawPasses[2],
-    &kBookFlamesPass,    &kVolumeHazePass};
+    &kSurfacePasses[0],  &kSurfacePasses[1],    &kSurfacePasses[2],   &kSurfacePasses[3],
+    &kSurfacePasses[4],  &kSurfacePasses[5],    &kSurfacePasses[6],   &kSurfacePasses[7],
+    &kSurfacePasses[8],  &kSurfacePasses[9],    &kSurfacePasses[10],  &kSurfacePasses[11],
+    &kSurfacePasses[12], &kSurfacePasses[13],   &kSurfacePasses[14],  &kSurfacePasses[15],
+    &kSurfacePasses[16], &kSurfacePasses[17],   &kSurfacePasses[18],  &kSurfacePasses[19],
+    &kSurfacePasses[20], &kSurfacePasses[21],   &kSurfacePasses[22],  &kSurfacePasses[23],
+    &kSurfacePasses[24], &kSurfacePasses[25],   &kSurfacePasses[26],  &kSurfacePasses[27],
+    &kSurfacePasses[28], &kSurfacePasses[29],   &kSurfacePasses[30],  &kSurfacePasses[31],
+    &kSurfacePasses[32], &kSurfacePasses[33],   &kSurfacePasses[34],  &kZPass,
+    &kFlamesPass,        &kVolumePass,          &kVolumeCardPass,     &kVolumeCompositePass,
+    &kVolumeSlicesPass,  &kFieldDrawPasses[0],  &kFieldDrawPasses[1], &kFieldDrawPasses[2],
+    &kVolumeHazePass,    &kBookFlamesPasses[0], &kBookFlamesPasses[1]};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
 constexpr uint32_t kNumberOfVolumes = kNumberOfZPass + 2;
 constexpr uint32_t kNumberOfFields = kNumberOfZPass + 6;
-constexpr uint32_t kNumberOfBookFlames = kNumberOfFields + kFieldVariants;
-constexpr uint32_t kNumberOfHaze = kNumberOfBookFlames + 1;
-static_assert(std::size(kDrawPasses) == kNumberOfHaze + 1);
+constexpr uint32_t kNumberOfHaze = kNumberOfFields + kFieldVariants;
+constexpr uint32_t kNumberOfBookFlames = kNumberOfHaze + 1;
+static_assert(std::size(kDrawPasses) == kNumberOfBookFlames + kBookVariants);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first. The variants of
 // fields are one step, in which they are drawn as they lie behind each other, and so are volumetric
 // flames of all tiers. Haze bends what is solid alone.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 6> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 7> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
@@ -70,7 +70,8 @@ constexpr auto kDrawSteps = [] {
     steps[2 * kSurfaceVariants + 2] = {kNumberOfFields, false};
     steps[2 * kSurfaceVariants + 3] = {kNumberOfZPass + 1, false};
     steps[2 * kSurfaceVariants + 4] = {kNumberOfBookFlames, false};
-    steps[2 * kSurfaceVariants + 5] = {kNumberOfVolumes, false};
+    steps[2 * kSurfaceVariants + 5] = {kNumberOfBookFlames + 1, false};
+    steps[2 * kSurfaceVariants + 6] = {kNumberOfVolumes, false};
     return steps;
 }();
 
@@ -372,7 +373,8 @@ bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (step.pass == kNumberOfZPass) return zPassDraws(list.surfaces);
     if (step.pass == kNumberOfFields) return !list.fields.empty();
     if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames && !list.books;
-    if (step.pass == kNumberOfBookFlames) return list.flames && list.books;
+    if (step.pass >= kNumberOfBookFlames && step.pass < kNumberOfBookFlames + kBookVariants)
+        return list.flames && list.books && list.pagesAlone == (step.pass > kNumberOfBookFlames);
     if (step.pass == kNumberOfHaze) return !list.hazes.empty();
     return !list.volumeRuns.empty();
 }

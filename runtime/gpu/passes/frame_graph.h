@@ -129,8 +129,9 @@ bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out);
 void sortFields(std::span<FieldItem> items) noexcept;  // farthest first
 struct DrawList {                                      // what a view may show
     std::span<const DrawItem> surfaces;
-    bool flames = false;  // something burns
-    bool books = false;   // flipbooks show some of it
+    bool flames = false;      // something burns
+    bool books = false;       // flipbooks show some of it
+    bool pagesAlone = false;  // and all of it but sparks
     std::span<const VolumeItem> volumes;
     std::span<const MarchedVolume> marched;  // instead of them
     std::span<const FieldItem> fields;

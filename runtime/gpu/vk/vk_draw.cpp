@@ -199,6 +199,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     DrawList list{drawItems,
                   !burnEmpty || showsEmitters(),
                   books.live,
+                  pagesAlone(),
                   {},
                   {},
                   {fieldItems.data(), orderFields(fieldItems)},
@@ -265,7 +266,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                                  usesView ? 1 : 0, &viewOffset);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
                                  &lookTextures.set.set, 0, nullptr);
-        if (&pass == &kBookFlamesPass)
+        if (&pass == &kBookFlamesPasses[0] || &pass == &kBookFlamesPasses[1])
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 1,
                                      &books.set.set, 0, nullptr);
         if (lent.depth)

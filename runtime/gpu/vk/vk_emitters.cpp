@@ -39,10 +39,19 @@ void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecor
     }
     if (update.count == 0) return;
     const std::span<const ParticleEmitter> emitters(update.records, update.count);
+    s.particlesByBook =
+        std::all_of(emitters.begin(), emitters.end(), [](const ParticleEmitter& emitter) {
+            return emitter.books != 0 && (emitter.otherBooks != 0 || emitter.life.w == 0);
+        });
     const Staged records = writer.write(emitters);
     recorder.copyIn(records.at, FW_BIND_EMITTERS, 0, emitters.size_bytes());
     const Staged groups = writer.write(update.groups);
     recorder.copyIn(groups.at, FW_BIND_EMITTER_GROUPS, 0, update.groups.size_bytes());
+}
+
+bool VkBackend::State::pagesAlone() const noexcept {
+    const bool tiles = burnEmpty || ((flameBooks & 0xFFu) != 0 && flameBooks >> 8 != 0);
+    return books.live && tiles && (emitterGroups == 0 || particlesByBook);
 }
 
 SortPush VkBackend::State::quadRoom() const noexcept {

@@ -326,6 +326,7 @@ struct VkBackend::State {
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
+    bool particlesByBook = false;         // books show all fire and smoke of them
     uint32_t sparkSources = 0;            // that throw sparks
     bool emittersMove = false;            // in the open frame
     uint32_t flameBooks = 0;              // as setFlameBooks has them
@@ -470,6 +471,8 @@ struct VkBackend::State {
     [[nodiscard]] bool showsEmitters() const noexcept {
         return emitterGroups > 0 || sparkSources > 0;
     }
+    // Books show all quads but sparks.
+    [[nodiscard]] bool pagesAlone() const noexcept;
     void makeEmitterRoom(const EmitterUpdate& update, uint64_t last);
     [[nodiscard]] SortPush quadRoom() const noexcept;
     // vk_field.cpp
