@@ -491,6 +491,67 @@ class Volume : public GpuTest {
         return all > 0 ? float(different / all) : 0.0f;
     }
 
+    // ---- a fire by its power alone, the mean of moments -----------------------------------------
+
+    using Mean = std::vector<vec4>;
+    static constexpr int kMoments = 24;
+    static constexpr float kApart = 0.21f;  // s
+    static void addMoment(Mean& sum, const Mean& picture) {
+        for (size_t k = 0; k < sum.size(); ++k) sum[k] += picture[k] / float(kMoments);
+    }
+    static float tallOf(float power) { return 0.235f * std::pow(power, 0.4f); }  // m, Heskestad
+
+    // What emitters show: a flame, a roll and a puff.
+    void layBooks() {
+        std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+        std::vector<book::Book> books;
+        for (const uint32_t preset : {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_ROLL, FW_FLIPBOOK_PUFF}) {
+            books.emplace_back(memory);
+            book::readBook(book::ownBook(preset, memory), books.back());
+        }
+        const book::Book* const laid[] = {&books[0], &books[1], &books[2]};
+        const book::Picture pages = book::layBooks(laid, memory);
+        rig_->backend.setBooks(pages.width, pages.height, std::as_bytes(std::span(pages.texels)),
+                               pages.words);
+    }
+    void addVolume(float power, Mean& mean) {
+        FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+        components::setFirePreset(def, FW_FIRE_CAMP);
+        def.flags = FW_FIRE_NO_SMOKE;
+        def.power = power;
+        def.diameter = 0.45f * tallOf(power);
+        def.tier = FW_FIRE_TIER_MARCH_HIGH;
+        for (int i = 0; i < kMoments; ++i) {
+            def.seed = 7 + uint32_t(i);
+            gpu::VolumeFlame flame = flameAlone(def, 2 + kApart * float(i));
+            flame.record.key = ++key_;
+            addMoment(mean, draw({&flame, 1}, FW_DEPTH_TEST));
+        }
+    }
+    // Its fire, by the books that are laid or, without, by noise.
+    void addEmitter(FwFireEmitterDef def, Mean& mean, bool byBooks = true) {
+        def.flags |= FW_EMITTER_NO_SMOKE;
+        def.sparks = 0;
+        ParticleReference emitter(def);
+        if (byBooks) emitter.emitter.books.fire = 1u | 2u << 8 | 3u << 16;
+        gpu::EmitterUpdate update;
+        std::vector<gpu::uvec2> groups;
+        for (uint32_t first = 0; first < emitter.emitter.ring; first += gpu::kParticleGroup)
+            groups.emplace_back(0, first);
+        update.groups = groups;
+        update.count = 1;
+        update.records = &emitter.record;
+        update.particleEnd = update.particles = emitter.emitter.ring;
+        emitters_ = &update;
+        constexpr int kWarm = 60;
+        for (int i = 0; i < kWarm + kMoments; ++i) {
+            EXPECT_TRUE(emitter.step(i < kWarm ? 1 / 30.0f : kApart) || i < 3);
+            const Mean picture = drawOnce({}, FW_DEPTH_TEST, 0);
+            if (i >= kWarm) addMoment(mean, picture);
+        }
+        emitters_ = nullptr;
+    }
+
     std::unique_ptr<VkRig> rig_;
     bool other_ = false;  // the view that is drawn is not that of the outside part
     const gpu::EmitterUpdate* emitters_ = nullptr;  // beside the flames
@@ -897,61 +958,13 @@ TEST_F(Volume, TiersAreTheSameFlame) {
 TEST_F(Volume, ThreeTiersOneLook) {
     if (!device_) return;
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-    std::vector<book::Book> books;
-    const uint32_t presets[] = {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_ROLL, FW_FLIPBOOK_PUFF};
-    for (const uint32_t preset : presets) {
-        books.emplace_back(memory);
-        book::readBook(book::ownBook(preset, memory), books.back());
-    }
-    const book::Book* const laid[] = {&books[0], &books[1], &books[2]};
-    const book::Picture pages = book::layBooks(laid, memory);
-    constexpr int kMoments = 24;
-    constexpr float kApart = 0.21f;  // s, of a fire's moments
-    using Mean = std::vector<vec4>;
-    const auto add = [](Mean& sum, const Mean& picture) {
-        for (size_t k = 0; k < sum.size(); ++k) sum[k] += picture[k] / float(kMoments);
-    };
-    const auto tallOf = [](float power) { return 0.235f * std::pow(power, 0.4f); };  // m, Heskestad
-
-    const auto asVolume = [&](float power, Mean& mean) {
-        FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
-        components::setFirePreset(def, FW_FIRE_CAMP);
-        def.flags = FW_FIRE_NO_SMOKE;
-        def.power = power;
-        def.diameter = 0.45f * tallOf(power);
-        def.tier = FW_FIRE_TIER_MARCH_HIGH;
-        for (int i = 0; i < kMoments; ++i) {
-            def.seed = 7 + uint32_t(i);
-            gpu::VolumeFlame flame = flameAlone(def, 2 + kApart * float(i));
-            flame.record.key = ++key_;
-            add(mean, draw({&flame, 1}, FW_DEPTH_TEST));
-        }
-    };
+    const auto asVolume = [&](float power, Mean& mean) { addVolume(power, mean); };
     const auto asFlipbooks = [&](float power, Mean& mean) {
         FwFireEmitterDef def = fwDefaultFireEmitterDef();
         def.shape = FW_EMITTER_DISC;
         def.radius = 0.225f * tallOf(power);
         def.power = power;
-        def.flags = FW_EMITTER_NO_SMOKE;
-        def.sparks = 0;
-        ParticleReference emitter(def);
-        emitter.emitter.books.fire = 1u | 2u << 8 | 3u << 16;
-        gpu::EmitterUpdate update;
-        std::vector<gpu::uvec2> groups;
-        for (uint32_t first = 0; first < emitter.emitter.ring; first += gpu::kParticleGroup)
-            groups.emplace_back(0, first);
-        update.groups = groups;
-        update.count = 1;
-        update.records = &emitter.record;
-        update.particleEnd = update.particles = emitter.emitter.ring;
-        emitters_ = &update;
-        constexpr int kWarm = 60;
-        for (int i = 0; i < kWarm + kMoments; ++i) {
-            EXPECT_TRUE(emitter.step(i < kWarm ? 1 / 30.0f : kApart) || i < 3);
-            const Mean picture = drawOnce({}, FW_DEPTH_TEST, 0);
-            if (i >= kWarm) add(mean, picture);
-        }
-        emitters_ = nullptr;
+        addEmitter(def, mean);
     };
     // A card twice as wide as the fire's base.
     const auto asField = [&](float power, Mean& mean) {
@@ -977,7 +990,7 @@ TEST_F(Volume, ThreeTiersOneLook) {
             fields.drawn = {&slot, 1};
             fields_ = &fields;
             const Mean picture = drawOnce({}, FW_DEPTH_TEST, 0);
-            if (i >= kWarm && i % kSteps == 0) add(mean, picture);
+            if (i >= kWarm && i % kSteps == 0) addMoment(mean, picture);
         }
         fields_ = nullptr;
         rig_->backend.destroyField(0);
@@ -993,8 +1006,7 @@ TEST_F(Volume, ThreeTiersOneLook) {
     for (int i = 0; i < 3; ++i) {
         // What a tier has drawn stays until it is told of a frame: none sees the one before.
         makeRig();
-        rig_->backend.setBooks(pages.width, pages.height, std::as_bytes(std::span(pages.texels)),
-                               pages.words);
+        layBooks();
         for (int k = 0; k < 3; ++k) {
             const float power = kPowers[k], tall = tallOf(power);
             const float eye[3] = {0, 0.6f * tall, 6 * tall}, at[3] = {0, 0.6f * tall, 0};
@@ -1027,6 +1039,42 @@ TEST_F(Volume, ThreeTiersOneLook) {
         EXPECT_NEAR(fires[i].green / fires[0].green, 1, 0.07) << kNames[i];
         EXPECT_NEAR(fires[i].up / fires[0].up, 1, 0.03) << kNames[i];
     }
+}
+
+// A flamethrower has two tiers: books, and noise for who has none. A volume's light of the same
+// power is told for comparison alone: a jet is a sheet of flame all along its way.
+TEST_F(Volume, AJetIsTheSameByBooksAndByNoise) {
+    if (!device_) return;
+    constexpr float kPower = 500;  // kW
+    const float far = 9 * tallOf(kPower);
+    const auto light = [&](auto&& add, vec3 middle) {
+        makeRig();
+        layBooks();
+        const float eye[3] = {middle.x, middle.y, far}, at[3] = {middle.x, middle.y, 0};
+        look(eye, at, 40);
+        Mean mean(kSide * kSide, vec4(0.0f));
+        add(mean);
+        return meanOf(mean);
+    };
+    FwFireEmitterDef jet = fwDefaultFireEmitterDef();
+    jet.flags = FW_EMITTER_JET | FW_EMITTER_NO_COLLISION;
+    jet.direction[0] = 1;
+    jet.direction[1] = 0.1f;
+    jet.power = kPower;
+    const float reach = components::emitterLook(jet).reach;
+    const vec3 above(0, 0.6f * tallOf(kPower), 0), along(0.6f * reach, 0.15f * reach, 0);
+    const vec4 books = light([&](Mean& mean) { addEmitter(jet, mean); }, along);
+    const vec4 noise = light([&](Mean& mean) { addEmitter(jet, mean, false); }, along);
+    const vec4 volume = light([&](Mean& mean) { addVolume(kPower, mean); }, above);
+    const float brighter = glm::dot(noise, kSeen) / glm::dot(books, kSeen);
+    const float greener = (noise.y / noise.x) / (books.y / books.x);
+    std::printf(
+        "[   FIGURE ] %g kW: a jet by noise against books: light %.2f, green of red %.2f; "
+        "its light is %.2f of a volume's\n",
+        double(kPower), double(brighter), double(greener),
+        double(glm::dot(books, kSeen) / glm::dot(volume, kSeen)));
+    EXPECT_NEAR(1, brighter, 0.1f);
+    EXPECT_NEAR(1, greener, 0.1f);
 }
 
 // Whatever tiers two flames are of, the near one is before the far one.
