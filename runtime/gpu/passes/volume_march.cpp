@@ -29,7 +29,7 @@ constexpr float kAllDetail = 96.0f;    // px across a flame from which its sampl
 constexpr float kSmallSpacing = 0.5f;  // of small ones, of those
 constexpr float kSamplesPerStep = 2.75f;
 constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
-constexpr uint64_t kLeastTiles = 512;       // of small flames, however small the screen
+constexpr uint64_t kLeastTiles = 2048;      // of small flames, however small the screen
 constexpr uint64_t kHalfScreens = 5;        // whose tiles there is room for: plumes overlap
 
 static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
