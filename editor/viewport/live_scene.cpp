@@ -353,7 +353,7 @@ void LiveScene::stepOther(const FwVulkanFrame& frame) {
     if (described.deltaTime > 0 && !fwedit::feedBurn(*other_, described.deltaTime, error))
         report_.push_back(error);
     otherMemory_.beforeFrame(*other_, described.deltaTime);
-    otherOutside_ = recordOutside(*other_, described);
+    otherOutside_ = recordOutside(*other_, described, otherView_);
     otherMemory_.afterFrame(*other_);
 }
 
@@ -510,8 +510,9 @@ void LiveScene::pollWhy(WhyCard& card) {
     stale_ = true;
 }
 
-FwResult LiveScene::recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame) {
-    const FwResult result = fwWorld_RecordOutside(burn.world, &frame, &view);
+FwResult LiveScene::recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame,
+                                  const FwView& from) {
+    const FwResult result = fwWorld_RecordOutside(burn.world, &frame, &from);
     if (result < 0) report_.push_back(lastMessage(burn.world));
     return result;
 }
@@ -561,13 +562,21 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
 
     FwResult outside = FW_OK;
     memory_.beforeFrame(*burn_, step);
-    if (!rests || step > 0 || memory_.waits() || asks()) outside = recordOutside(*burn_, described);
+    if (!rests || step > 0 || memory_.waits() || asks())
+        outside = recordOutside(*burn_, described, view);
     memory_.afterFrame(*burn_);
-    if (compares) stepOther(described);
+    if (compares) {
+        fwedit::Scene other;  // in its own light
+        other.settings = other_->scene.settings;
+        other.camera = camera;
+        otherView_ =
+            fwedit::viewOf(other, target.extent().width / 2, target.extent().height, burn_->time);
+        stepOther(described);
+    }
     if (restFresh_ && rest_.burn && !rests) {
         FwVulkanFrame still = described;
         still.deltaTime = 0;
-        recordOutside(*rest_.burn, still);
+        recordOutside(*rest_.burn, still, view);
     }
     const bool warms = restFresh_;
     restFresh_ = false;
@@ -585,14 +594,15 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     fwedit::Burn& drawn = rests ? *rest_.burn : *burn_;
     if (rests) {
         described.deltaTime = 0;
-        outside = recordOutside(drawn, described);
+        outside = recordOutside(drawn, described, view);
     }
     target.begin(frame);
     if (compares) {
-        drawHalf(frame, *other_, *otherStudio_, described, half(false), otherOutside_ == FW_OK);
-        drawHalf(frame, drawn, *studio_, described, half(true), outside == FW_OK);
+        drawHalf(frame, *other_, *otherStudio_, otherView_, described, half(false),
+                 otherOutside_ == FW_OK);
+        drawHalf(frame, drawn, *studio_, view, described, half(true), outside == FW_OK);
     } else {
-        drawHalf(frame, drawn, *studio_, described, target.viewport(), outside == FW_OK);
+        drawHalf(frame, drawn, *studio_, view, described, target.viewport(), outside == FW_OK);
     }
     target.end(frame);
     kept_ = previews();
@@ -610,9 +620,10 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     if (count > 0) milliseconds_ = sum;
 }
 
-// The burn and what it stands in, seen by the view of this frame in a part of the picture.
+// The burn and what it stands in, in a part of the picture.
 void LiveScene::drawHalf(const fwui::Frame& frame, fwedit::Burn& burn, sample::Studio& studio,
-                         const FwVulkanFrame& described, const VkViewport& viewport, bool draws) {
+                         const FwView& from, const FwVulkanFrame& described,
+                         const VkViewport& viewport, bool draws) {
     FwLight lights[8];
     const uint32_t lightCount = fwWorld_GetLights(burn.world, lights, 8);
     sample::StageFrame stage;
@@ -622,10 +633,10 @@ void LiveScene::drawHalf(const fwui::Frame& frame, fwedit::Burn& burn, sample::S
                         {uint32_t(viewport.width), uint32_t(viewport.height)}};
     vkCmdSetViewport(frame.commands, 0, 1, &viewport);
     vkCmdSetScissor(frame.commands, 0, 1, &part);
-    studio.draw(stage, frame.commands, view, {lights, lightCount});
+    studio.draw(stage, frame.commands, from, {lights, lightCount});
     if (!draws) return;
     const FwResult inside =
-        fwWorld_RecordInside(burn.world, &described, targetId_, &view, &viewport);
+        fwWorld_RecordInside(burn.world, &described, targetId_, &from, &viewport);
     if (inside < 0) report_.push_back(lastMessage(burn.world));
 }
 

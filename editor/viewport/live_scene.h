@@ -146,7 +146,7 @@ class LiveScene {
     bool goBack();
     void preview();
     [[nodiscard]] bool canLayOver(bool moved) const;
-    FwResult recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame);
+    FwResult recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame, const FwView& from);
     void followWhy();
     void pollWhy(WhyCard& card);
     [[nodiscard]] std::vector<WhyCard*> cards();
@@ -158,7 +158,8 @@ class LiveScene {
     [[nodiscard]] bool otherLags() const;
     std::unique_ptr<sample::Studio> makeStudio(const fwedit::Burn& burn) const;
     void drawHalf(const fwui::Frame& frame, fwedit::Burn& burn, sample::Studio& studio,
-                  const FwVulkanFrame& described, const VkViewport& viewport, bool draws);
+                  const FwView& from, const FwVulkanFrame& described, const VkViewport& viewport,
+                  bool draws);
     [[nodiscard]] VkViewport half(bool right) const;
     void drawOverlays(const fwui::Frame& frame);
     void warmPreview(const fwui::Frame& frame);
@@ -209,6 +210,7 @@ class LiveScene {
     std::future<Made> otherWork_;
     fwedit::BurnMemory otherMemory_;
     FwResult otherOutside_ = FW_OK;
+    FwView otherView_{};           // in its own light
     std::vector<uint8_t> values_;  // by texel, of what is coloured
     double milliseconds_ = 0;
     std::string studioKey_;

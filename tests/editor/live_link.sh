@@ -77,7 +77,7 @@ for shot in same other; do
 done
 cat >"$work/compare.fws" <<TEXT
 expect alike "viewport.png" "out/scene.png" 0.01
-expect halves "same.png" below 0.01
+expect halves "same.png" below 0.015
 expect halves "other.png" above 0.02
 TEXT
 "$editor" --script "$work/compare.fws" --headless >>"$work/script.log" 2>&1 || fail "the pictures differ"
