@@ -95,6 +95,7 @@ void defaults(FwVolumetricFireDef& def) noexcept {
     def.power = 60;
     def.windResponse = def.turbulence = def.speed = def.density = def.smoke = def.blue = 1;
     set(def.tint, 1, 1, 1);
+    set(def.coreTint, 1, 1, 1);
     def.blend = 0.3f;
 }
 

@@ -123,6 +123,8 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
     checkValue(def.blue, "FwVolumetricFireDef::blue", 0.0f, 10.0f);
     checkValues(def.tint, 3, "FwVolumetricFireDef::tint", 0.0f, 1.0f);
     checkValue(def.tintWeight, "FwVolumetricFireDef::tintWeight", 0.0f, 1.0f);
+    checkValues(def.coreTint, 3, "FwVolumetricFireDef::coreTint", 0.0f, 1.0f);
+    checkValue(def.coreTintWeight, "FwVolumetricFireDef::coreTintWeight", 0.0f, 1.0f);
     checkValue(def.blend, "FwVolumetricFireDef::blend", 0.0f, 60.0f);
     fire.diameter = def.diameter;
     setFirePosition(fire, def.position);
@@ -151,6 +153,8 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
         std::copy_n(def.tint, 3, look.tint);
         look.tint[3] = def.tintWeight;
     }
+    std::copy_n(def.coreTint, 3, look.coreTint);
+    look.coreTint[3] = def.coreTintWeight;
 }
 
 uint32_t mostParts(float power, float diameter) noexcept {

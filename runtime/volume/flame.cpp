@@ -162,6 +162,7 @@ void checkFlame(const FlameDef& d) {
     range("smoke (1/m)", l.smoke, 0.0f, 20.0f);
     range("smokeTop", l.smokeTop, 0.0f, 8.0f);
     for (float c : l.tint) range("tint", c, 0.0f, 1.0f);
+    for (float c : l.coreTint) range("coreTint", c, 0.0f, 1.0f);
     if (l.octaves < 1 || l.octaves > gpu::kFlameOctaves)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "octaves of the volumetric fire is %u; it must lie in [1, %u].", l.octaves,

@@ -31,10 +31,11 @@ struct FlameLook {
     float smoke = 1.2f;     // 1/m
     float smokeTop = 4.0f;  // of the profile's height
     float smokeAlbedo = 0.4f;
-    float tint[4] = {1, 1, 1, 0};  // linear rgb, weight
-    float tintWhite = 0.18f;
-    float flicker = 0.15f;  // of the light proxy
-    float radiant = 0.35f;  // share of the heat release that is radiated
+    float tint[4] = {1, 1, 1, 0};      // linear rgb, weight
+    float tintWhite = 0.18f;           // whiteness of the hottest under a tint
+    float coreTint[4] = {1, 1, 1, 0};  // linear rgb of the hottest, weight: instead of that
+    float flicker = 0.15f;             // of the light proxy
+    float radiant = 0.35f;             // share of the heat release that is radiated
     // The profile that goes with it, if none is given.
     Painter painter = Painter::Fire;
     float core = 1780.0f, tip = 1370.0f;  // K

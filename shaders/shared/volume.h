@@ -25,6 +25,7 @@ using glm::length;
 using glm::min;
 using glm::mix;
 using glm::smoothstep;
+using glm::unpackUnorm4x8;
 using std::abs;
 using std::exp;
 using std::floor;
@@ -96,7 +97,7 @@ struct FlameRecord {      // one flame of a frame
     float smokeTop;       // y at which smoke ends
 
     float smokeAlbedo;
-    float tintWhite;      // [0, 1] whiteness of the hottest under a tint
+    uint tintCore;        // rgb of the hottest under a tint: roots of linear, 8 bits each
     float tintLow; float tintHigh; // K
 
     uint key;             // of the flame, from frame to frame
@@ -351,9 +352,8 @@ FW_SHARED_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
     if (f.tint.w > 0.0f) {  // coloured fire keeps the luminance
         float luminance = dot(radiance, vec3(0.2126f, 0.7152f, 0.0722f));
         float hot = smoothstep(f.tintLow, f.tintHigh, kelvin);
-        vec3 hue = vec3(f.tint);
-        radiance = mix(radiance, 1.1f * luminance * mix(hue, mix(hue, vec3(1.0f), f.tintWhite), hot * hot),
-                       f.tint.w);
+        vec3 core = vec3(unpackUnorm4x8(f.tintCore));
+        radiance = mix(radiance, 1.1f * luminance * mix(vec3(f.tint), core * core, hot * hot), f.tint.w);
     }
     return radiance;
 }

@@ -443,6 +443,8 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     refuseFloat<F>(fire, &F::smoke, "smoke", makeFire, worldMessage, {-0.1f, 11.0f});
     refuseFloat<F>(fire, &F::blue, "blue", makeFire, worldMessage, {-0.1f, 11.0f});
     refuseFloat<F>(fire, &F::tintWeight, "tintWeight", makeFire, worldMessage, {-0.1f, 1.1f});
+    refuseFloat<F>(fire, &F::coreTintWeight, "coreTintWeight", makeFire, worldMessage,
+                   {-0.1f, 1.1f});
     refuseFloat<F>(fire, &F::blend, "blend", makeFire, worldMessage, {-0.1f, 61.0f});
     F tiered = fire;
     tiered.tier = 5;
@@ -459,6 +461,11 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
         def.tint[i] = 1.5f;
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeFire(&def));
         EXPECT_NE(std::string::npos, worldMessage().find("tint[" + std::to_string(i) + "] is 1.5"));
+        def = fire;
+        def.coreTint[i] = -0.5f;
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeFire(&def));
+        EXPECT_NE(std::string::npos,
+                  worldMessage().find("coreTint[" + std::to_string(i) + "] is -0.5"));
     }
 
     const std::function<FwResult(const FwFireEmitterDef*)> makeEmitter =

@@ -593,6 +593,18 @@ TEST_F(Volume, DrawsWhatTheLibraryMarches) {
         << "cells would not have been noticed";
 }
 
+// Two colours that go over into each other as the gas gets hotter.
+TEST_F(Volume, TheHottestGasHasAColourOfItsOwn) {
+    if (!device_) return;
+    makeRig();
+    const gpu::VolumeFlame plain = flameOf(FW_FIRE_MAGIC_BLUE, 1.3f);
+    gpu::VolumeFlame flame = plain;
+    flame.record.tintCore = glm::packUnorm4x8(vec4(1.0f, 0.5f, 0.0f, 0.0f));
+    const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);
+    EXPECT_LT(differenceOf(drawn, march(flame, FW_FIRE_MAGIC_BLUE)), 0.01f);
+    EXPECT_GT(differenceOf(drawn, draw({&plain, 1}, FW_DEPTH_NONE)), 0.05f);
+}
+
 // Where samples begin differs from cell to cell; nobody sees it.
 TEST_F(Volume, HasNoGrain) {
     if (!device_) return;

@@ -331,6 +331,35 @@ TEST(VolumeLook, NoEdgeOfTheTubeShows) {
     }
 }
 
+// A flame's own colours go over into each other as its gas gets hotter; as bright as it was. With
+// one colour alone the hottest is a little paler.
+TEST(VolumeLook, OwnColoursGoFromTheEdgeToTheCore) {
+    FlameLook look = presetDef(FlamePreset::CampFire).look;
+    const vec3 edge(0.05f, 0.1f, 0.9f), core(0.9f, 0.2f, 0.6f),
+        kLuminance(0.2126f, 0.7152f, 0.0722f);
+    look.tint[0] = edge.r, look.tint[1] = edge.g, look.tint[2] = edge.b, look.tint[3] = 1;
+    const auto hue = [&](float kelvin) {
+        const fw::gpu::FlameRecord record = describeFlame(look, {60, 0.6f, 1, 1}, {}, 1);
+        FlameLook real = look;
+        real.tint[3] = 0;
+        const auto glow = describeFlame(real, {60, 0.6f, 1, 1}, {}, 1);
+        return fw::gpu::flameRadiance(record, kelvin) /
+               (1.1f * glm::dot(fw::gpu::flameRadiance(glow, kelvin), kLuminance));
+    };
+    const auto near = [](vec3 wanted, vec3 is) {
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(wanted[c], is[c], 0.01f) << "channel " << c;
+    };
+    near(edge, hue(look.tip - 100));
+    near(glm::mix(edge, vec3(1.0f), look.tintWhite), hue(look.core));
+    look.coreTint[0] = core.r, look.coreTint[1] = core.g, look.coreTint[2] = core.b;
+    look.coreTint[3] = 1;
+    near(edge, hue(look.tip - 100));
+    near(core, hue(look.core));
+    const vec3 between = hue(0.5f * (look.tip + look.core));
+    EXPECT_GT(between.r, edge.r + 0.05f);
+    EXPECT_LT(between.r, core.r - 0.05f);
+}
+
 // Where in its steps a ray's samples lie leaves no layers: the same picture by and large, and no
 // row of it brighter.
 TEST(VolumeLook, NoLayersWhereSamplesLie) {

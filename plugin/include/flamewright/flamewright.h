@@ -620,6 +620,9 @@ typedef struct FwVolumetricFireDef {
     FwFireProfileId profile;    /* null: the preset's */
     float blend;                /* s, [0, 60]: from its own way to points or a track, and back; default 0.3 */
     uint32_t tier;              /* FwFireTier; default FW_FIRE_TIER_AUTO */
+    float coreTint[3];          /* linear colour of its hottest gas, [0, 1], where tintWeight is not 0: from there
+                                   it goes over into tint as it gets cooler */
+    float coreTintWeight;       /* [0, 1]; default 0: a paler tint */
 } FwVolumetricFireDef;
 static inline FwVolumetricFireDef fwDefaultVolumetricFireDef(void) {
     FwVolumetricFireDef d; fwInitDef(FW_DEF_VOLUMETRIC_FIRE, &d, (uint32_t)sizeof d); return d;
