@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr float kZeroCelsius = 273.15f, kMostKelvin = 3000, kMostSoot = 2;
+constexpr float kZeroCelsius = 273.15f;
 constexpr float kCoolest = 330, kHottest = 1930;  // degrees Celsius, ends of the colour map
 constexpr double kRefresh = 0.2;                  // s between pictures of a growing stroke
 constexpr float kReach = 1.25f;                   // radii that a profile is wide
@@ -67,7 +67,8 @@ float exposureOf(const ProfilePaint& paint) {
 ImU32 colorAt(const ProfilePaint& paint, ProfilePlane plane, size_t i, float exposure) {
     constexpr ImU32 kEmpty = hex(0x0C0D0F);
     if (plane == ProfilePlane::kSoot)
-        return mix(kEmpty, hex(0xE8E4DA), std::sqrt(std::min(1.0f, paint.soot[i] / kMostSoot)));
+        return mix(kEmpty, hex(0xE8E4DA),
+                   std::sqrt(std::min(1.0f, paint.soot[i] / ProfilePaint::kMostSoot)));
     const float celsius = paint.kelvin[i] - kZeroCelsius;
     const float there = std::clamp(exposure * glowAt(paint, i), 0.0f, 1.0f);
     const ImU32 glow = sampleMap(kHeatMap, (celsius - kCoolest) / (kHottest - kCoolest));
@@ -93,46 +94,6 @@ std::string tidy(const char* name) {
 }
 
 }  // namespace
-
-void paintDab(ProfilePaint& paint, const Dab& dab) {
-    auto& plane = dab.plane == ProfilePlane::kSoot ? paint.soot : paint.kelvin;
-    const std::vector<float> before =
-        dab.tool == ProfileTool::kSmooth ? plane : std::vector<float>();
-    const float most = dab.plane == ProfilePlane::kSoot ? kMostSoot : kMostKelvin;
-    for (int y = 0; y < ProfilePaint::kHeight; ++y) {
-        for (int x = 0; x < ProfilePaint::kWidth; ++x) {
-            // The flame is round: what is left of the axis is right of it too.
-            const float dy = (float(y) + 0.5f - dab.y) / dab.radiusY;
-            const float dx = (float(x) + 0.5f - std::fabs(dab.x)) / dab.radiusX;
-            const float away = std::sqrt(dx * dx + dy * dy);
-            if (away >= 1) continue;
-            const float fall =
-                dab.hardness >= 1 ? 1 : std::clamp((1 - away) / (1 - dab.hardness), 0.0f, 1.0f);
-            const float share = dab.strength * fall * fall * (3 - 2 * fall);
-            const auto texel = size_t(y * ProfilePaint::kWidth + x);
-            float& value = plane[texel];
-            float wanted = dab.tool == ProfileTool::kErase ? 0 : dab.value;
-            if (dab.tool == ProfileTool::kSmooth) {
-                float sum = 0, count = 0;
-                for (int v = std::max(0, y - 1); v <= std::min(ProfilePaint::kHeight - 1, y + 1);
-                     ++v) {
-                    for (int u = std::max(0, x - 1); u <= std::min(ProfilePaint::kWidth - 1, x + 1);
-                         ++u) {
-                        sum += before[size_t(v * ProfilePaint::kWidth + u)];
-                        ++count;
-                    }
-                }
-                wanted = sum / count;
-            }
-            value = std::clamp(value + share * (wanted - value), 0.0f, most);
-            // Heat shows by what glows in it: both are painted, and both go.
-            if (dab.plane == ProfilePlane::kSoot) continue;
-            if (dab.tool == ProfileTool::kPaint)
-                paint.soot[texel] = std::max(paint.soot[texel], 0.6f * share);
-            if (dab.tool == ProfileTool::kErase) paint.soot[texel] *= 1 - share;
-        }
-    }
-}
 
 // A picture of the interface that changes: copied in the frame that shows it.
 struct FlameCanvas {
@@ -295,9 +256,10 @@ void FlamePage::relight() {
         def.speed = shown.speed;
         def.seed = 1;
         def.position[1] = 0.01f;
-        if (shown.ownColor) {
-            std::copy(std::begin(shown.color), std::end(shown.color), def.tint);
-            def.tintWeight = 1;
+        if (shown.ownColors) {
+            std::copy(shown.edge.begin(), shown.edge.end(), def.tint);
+            std::copy(shown.core.begin(), shown.core.end(), def.coreTint);
+            def.tintWeight = def.coreTintWeight = 1;
         }
         fwWorld_CreateVolumetricFire(view.world, &def, &view.fire);
         const float blown[3] = {i == 2 ? wind : 0, 0, 0};
@@ -405,7 +367,7 @@ void FlamePage::redo() {
 void FlamePage::usePreset(uint32_t which) {
     draft.preset = which;
     draft.paint = presetPaint(which);
-    draft.curves = draft.ownColor = false;
+    draft.curves = draft.ownColors = false;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     fwInitFirePreset(&def, which);
     draft.diameter = def.diameter;
@@ -448,8 +410,15 @@ bool FlamePage::takeFrom(App& app, fwedit::ObjectId id) {
     draft.power = flame->power;
     draft.turbulence = flame->turbulence;
     draft.speed = flame->speed;
-    draft.ownColor = flame->tintWeight > 0;
-    if (draft.ownColor) std::copy(flame->tint.begin(), flame->tint.end(), draft.color);
+    draft.ownColors = flame->tintWeight > 0;
+    if (draft.ownColors) {
+        const float paler = fw::volume::FlameLook{}.tintWhite;  // a core that has no colour
+        for (size_t i = 0; i < 3; ++i) {
+            draft.edge[i] = flame->tint[i];
+            draft.core[i] = std::lerp(std::lerp(flame->tint[i], 1.0f, paler), flame->coreTint[i],
+                                      flame->coreTintWeight);
+        }
+    }
     draft.curves = fwedit::hasCurve(*flame);
     if (draft.curves) {
         draft.curve = fwedit::curveOf(*flame);
@@ -483,10 +452,12 @@ void FlamePage::putInto(App& app, fwedit::ObjectId id, const std::string& profil
         {"power", double(draft.power)},
         {"turbulence", double(draft.turbulence)},
         {"speed", double(draft.speed)},
-        {"tint_weight", draft.ownColor ? 1.0 : 0.0}};
-    if (draft.ownColor)
-        fields.push_back(
-            {"tint", std::vector<double>(std::begin(draft.color), std::end(draft.color))});
+        {"tint_weight", draft.ownColors ? 1.0 : 0.0},
+        {"core_tint_weight", draft.ownColors ? 1.0 : 0.0}};
+    if (draft.ownColors) {
+        fields.push_back({"tint", std::vector<double>(draft.edge.begin(), draft.edge.end())});
+        fields.push_back({"core_tint", std::vector<double>(draft.core.begin(), draft.core.end())});
+    }
     if (id == 0) {
         addObject(app, fwedit::Kind::Flame, std::move(fields));
         return;
@@ -600,6 +571,8 @@ void addFlameActions(App& app, std::vector<Action>& list) {
         {{"Paint", "Flame", "B", icons::brush, pick(ProfileTool::kPaint), {}, page},
          {"Erase", "Flame", "X", icons::erase, pick(ProfileTool::kErase), {}, page},
          {"Smooth", "Flame", "S", icons::smooth, pick(ProfileTool::kSmooth), {}, page},
+         {"Smear", "Flame", "F", icons::smear, pick(ProfileTool::kSmear), {}, page},
+         {"Gradient", "Flame", "G", icons::gradient, pick(ProfileTool::kGradient), {}, page},
          {"Pick a value", "Flame", "I", icons::pick, pick(ProfileTool::kPick), {}, page},
          {"Larger brush", "Flame", "]", nullptr, resize(1.2f), {}, page},
          {"Smaller brush", "Flame", "[", nullptr, resize(1 / 1.2f), {}, page},
@@ -717,6 +690,8 @@ void showFlameTools(App& app, const Rect& rect) {
     constexpr Item kTools[] = {{ProfileTool::kPaint, icons::brush, "Paint", "B"},
                                {ProfileTool::kErase, icons::erase, "Erase", "X"},
                                {ProfileTool::kSmooth, icons::smooth, "Smooth", "S"},
+                               {ProfileTool::kSmear, icons::smear, "Smear", "F"},
+                               {ProfileTool::kGradient, icons::gradient, "Gradient", "G"},
                                {ProfileTool::kPick, icons::pick, "Pick a value", "I"}};
     for (const Item& item : kTools) {
         if (page.draft.curves) break;
@@ -733,10 +708,10 @@ void showFlameTools(App& app, const Rect& rect) {
         ++page.pictureRevision;
     }
     x += dp(192);
-    int own = page.draft.ownColor ? 1 : 0;
-    if (segments("glow", {x, y + dp(2)}, dp(160, 24), {"Real glow", "Own colour"}, own)) {
-        page.draft.ownColor = own == 1;
-        page.keepStep(own == 1 ? "Own colour for the flame" : "Real glow for the flame");
+    int own = page.draft.ownColors ? 1 : 0;
+    if (segments("glow", {x, y + dp(2)}, dp(176, 24), {"Real glow", "Own colours"}, own)) {
+        page.draft.ownColors = own == 1;
+        page.keepStep(own == 1 ? "Own colours for the flame" : "Real glow for the flame");
     }
     float right = rect.x1 - dp(8);
     auto act = [&](const char* name, const char* icon, const char* label, bool active = false) {
@@ -794,6 +769,39 @@ void showPoint(FlamePage& page, Rows& rows) {
     rows.y += dp(4);
 }
 
+// As the screen has it.
+ImU32 screenColor(const std::array<float, 3>& linear) {
+    const auto part = [&](size_t i) {
+        return unsigned(std::lround(255 * std::sqrt(std::clamp(linear[i], 0.0f, 1.0f))));
+    };
+    return IM_COL32(part(0), part(1), part(2), 255);
+}
+
+// The flame's own colours, from where it is coolest to where it is hottest; true if one changed.
+bool showColors(FlamePage& page, Rows& rows) {
+    const ImU32 edge = screenColor(page.draft.edge), core = screenColor(page.draft.core);
+    rows.list->AddRectFilledMultiColor({rows.x0, rows.y}, {rows.x1, rows.y + dp(14)}, edge, core,
+                                       core, edge);
+    rows.y += dp(20);
+    int which = page.editsCore ? 1 : 0;
+    if (segments("which colour", {rows.x0, rows.y}, {rows.x1 - rows.x0, dp(24)}, {"Edge", "Core"},
+                 which))
+        page.editsCore = which == 1;
+    rows.y += dp(30);
+    std::array<float, 3>& color = page.editsCore ? page.draft.core : page.draft.edge;
+    constexpr const char* kParts[] = {"Red", "Green", "Blue"};
+    bool touched = false;
+    for (size_t i = 0; i < 3; ++i) {
+        float percent = 100 * color[i];
+        if (numberRow(rows, kParts[i], percent,
+                      {.unit = "%", .format = "%.0f", .lowest = 0, .highest = 100}) == Edit::kNone)
+            continue;
+        color[i] = 0.01f * percent;
+        touched = true;
+    }
+    return touched;
+}
+
 void showFlameLeft(App& app, const Rect& rect) {
     FlamePage& page = *app.flame;
     ImDrawList* list = beginPanel("##flame left", rect, colors::panel, true);
@@ -808,37 +816,26 @@ void showFlameLeft(App& app, const Rect& rect) {
                   {.unit = "%", .format = "%.0f", .lowest = 0, .highest = 100});
         numberRow(rows, "Softness", page.softness,
                   {.unit = "%", .format = "%.0f", .lowest = 0, .highest = 100});
-        if (page.plane == ProfilePlane::kTemperature) {
-            numberRow(rows, "Temperature", page.celsius,
-                      {.unit = "°C",
-                       .format = "%.0f",
-                       .lowest = 200,
-                       .highest = 2200,
-                       .snap = 10,
-                       .fill = colors::heat});
-        } else {
-            numberRow(rows, "Soot", page.soot, {.format = "%.2f", .lowest = 0, .highest = 2});
-        }
+        const bool ramps = page.tool == ProfileTool::kGradient;
+        const auto valueRow = [&](const char* name, float& celsius, float& soot) {
+            if (page.plane == ProfilePlane::kTemperature)
+                numberRow(rows, name, celsius,
+                          {.unit = "°C",
+                           .format = "%.0f",
+                           .lowest = 200,
+                           .highest = 2200,
+                           .snap = 10,
+                           .fill = colors::heat});
+            else
+                numberRow(rows, name, soot, {.format = "%.2f", .lowest = 0, .highest = 2});
+        };
+        const char* what = page.plane == ProfilePlane::kTemperature ? "Temperature" : "Soot";
+        valueRow(ramps ? "From" : what, page.celsius, page.soot);
+        if (ramps) valueRow("To", page.celsiusEnd, page.sootEnd);
         rows.y += dp(4);
     }
-    if (page.draft.ownColor && section(rows, "Colour", page.colorOpen)) {
-        constexpr const char* kParts[] = {"Red", "Green", "Blue"};
-        for (int i = 0; i < 3; ++i) {
-            float percent = 100 * page.draft.color[i];
-            if (numberRow(rows, kParts[i], percent,
-                          {.unit = "%", .format = "%.0f", .lowest = 0, .highest = 100}) ==
-                Edit::kNone)
-                continue;
-            page.draft.color[i] = 0.01f * percent;
-            touched = true;
-        }
-        const auto part = [&](int i) {
-            return unsigned(255 * std::sqrt(std::clamp(page.draft.color[i], 0.0f, 1.0f)));
-        };
-        drawBox(list, {rows.fieldX(), rows.y}, {rows.x1, rows.y + dp(16)},
-                IM_COL32(part(0), part(1), part(2), 255));
-        rows.next();
-    }
+    if (page.draft.ownColors && section(rows, "Own colours", page.colorOpen))
+        touched |= showColors(page, rows);
     if (section(rows, "Size of the flame", page.sizeOpen)) {
         touched |= numberRow(rows, "Width", page.draft.diameter,
                              {.unit = "m", .format = "%.2f", .lowest = 0.01f, .highest = 3}) !=
@@ -1144,7 +1141,7 @@ void showCanvas(App& app, const Rect& rect) {
     hit("canvas", low, high - low, &hovered, &held);
     const ImGuiIO& io = ImGui::GetIO();
     const ImVec2 mouse = io.MousePos;
-    Dab dab;
+    fwedit::Dab dab;
     dab.plane = page.plane;
     dab.x = (mouse.x - axis) / (0.5f * width) * float(ProfilePaint::kWidth);
     dab.y = (high.y - mouse.y) / height * float(ProfilePaint::kHeight);
@@ -1157,6 +1154,7 @@ void showCanvas(App& app, const Rect& rect) {
     dab.tool = io.KeyShift ? ProfileTool::kSmooth : io.KeyCtrl ? ProfileTool::kErase : page.tool;
     dab.value = page.plane == ProfilePlane::kTemperature ? page.celsius + kZeroCelsius : page.soot;
     const bool picks = page.tool == ProfileTool::kPick || io.KeyAlt;
+    const bool ramps = page.tool == ProfileTool::kGradient && !picks;
     if (hovered && io.MouseWheel != 0)
         page.size = std::clamp(page.size * std::pow(1.12f, io.MouseWheel), 1.0f, 100.0f);
     if (held && picks) {
@@ -1166,6 +1164,27 @@ void showCanvas(App& app, const Rect& rect) {
         if (page.plane == ProfilePlane::kSoot) page.soot = page.draft.paint.soot[i];
         if (page.plane == ProfilePlane::kTemperature && page.draft.paint.kelvin[i] > 0)
             page.celsius = std::max(200.0f, page.draft.paint.kelvin[i] - kZeroCelsius);
+    } else if (held && ramps) {
+        if (!page.stroking) {
+            page.underGradient = page.draft.paint;
+            page.lastX = dab.x;
+            page.lastY = dab.y;
+        }
+        page.draft.paint = page.underGradient;
+        const bool heat = page.plane == ProfilePlane::kTemperature;
+        paintGradient(page.draft.paint,
+                      {.plane = page.plane,
+                       .fromX = page.lastX,
+                       .fromY = page.lastY,
+                       .toX = dab.x,
+                       .toY = dab.y,
+                       .fromValue = heat ? page.celsius + kZeroCelsius : page.soot,
+                       .toValue = heat ? page.celsiusEnd + kZeroCelsius : page.sootEnd,
+                       .strength = page.strength * 0.01f,
+                       .aspect = 0.5f * width / float(ProfilePaint::kWidth) /
+                                 (height / float(ProfilePaint::kHeight))});
+        page.changed = page.stroking = true;
+        ++page.pictureRevision;
     } else if (held) {
         // Along the way since the last frame, a third of a radius apart.
         const float fromX = page.stroking ? page.lastX : dab.x;
@@ -1174,6 +1193,8 @@ void showCanvas(App& app, const Rect& rect) {
         const int count = std::clamp(int(way * 3), 1, 200);
         const float toX = dab.x, toY = dab.y;
         if (!page.stroking || way > 0) {
+            dab.alongX = (toX - fromX) / float(count);
+            dab.alongY = (toY - fromY) / float(count);
             for (int i = 1; i <= count; ++i) {
                 dab.x = fromX + (toX - fromX) * float(i) / float(count);
                 dab.y = fromY + (toY - fromY) * float(i) / float(count);
@@ -1188,9 +1209,11 @@ void showCanvas(App& app, const Rect& rect) {
     }
     if (page.stroking && !io.MouseDown[0]) {
         page.stroking = false;
-        page.keepStep(page.tool == ProfileTool::kErase    ? "Erase in the flame"
-                      : page.tool == ProfileTool::kSmooth ? "Smooth the flame"
-                                                          : "Paint the flame");
+        page.keepStep(page.tool == ProfileTool::kErase      ? "Erase in the flame"
+                      : page.tool == ProfileTool::kSmooth   ? "Smooth the flame"
+                      : page.tool == ProfileTool::kSmear    ? "Smear the flame"
+                      : page.tool == ProfileTool::kGradient ? "Gradient in the flame"
+                                                            : "Paint the flame");
         say(app, page.steps[page.at].name);
     }
     if (hovered || held) {
@@ -1206,21 +1229,39 @@ void showCanvas(App& app, const Rect& rect) {
             }
             list->AddPolyline(points, 48, color, ImDrawFlags_Closed, thick);
         };
-        ring(mouse.x, hex(0x000000, 190), dp(3.5f));
-        ring(mouse.x, hex(0xFFFFFF), dp(1.5f));
-        ring(2 * axis - mouse.x, hex(0xFFFFFF, 90), dp(1));
+        if (ramps) {
+            const ImVec2 from =
+                page.stroking
+                    ? ImVec2(axis + page.lastX * 0.5f * width / float(ProfilePaint::kWidth),
+                             high.y - page.lastY * height / float(ProfilePaint::kHeight))
+                    : mouse;
+            list->AddLine(from, mouse, hex(0x000000, 190), dp(3.5f));
+            list->AddLine(from, mouse, hex(0xFFFFFF), dp(1.5f));
+            for (const ImVec2 end : {from, mouse}) {
+                list->AddCircleFilled(end, dp(5), hex(0x000000, 190));
+                list->AddCircleFilled(end, dp(4), colors::white);
+            }
+        } else {
+            ring(mouse.x, hex(0x000000, 190), dp(3.5f));
+            ring(mouse.x, hex(0xFFFFFF), dp(1.5f));
+            ring(2 * axis - mouse.x, hex(0xFFFFFF, 90), dp(1));
+        }
         list->PopClipRect();
         char text[24];
+        const bool ends = ramps && page.stroking;  // the value where the mouse is
         if (page.plane == ProfilePlane::kTemperature) {
-            std::snprintf(text, sizeof text, "%.0f °C", double(page.celsius));
+            std::snprintf(text, sizeof text, "%.0f °C",
+                          double(ends ? page.celsiusEnd : page.celsius));
         } else {
-            std::snprintf(text, sizeof text, "Soot %.2f", double(page.soot));
+            std::snprintf(text, sizeof text, "Soot %.2f", double(ends ? page.sootEnd : page.soot));
         }
         const char* what = picks                              ? "Pick"
                            : dab.tool == ProfileTool::kErase  ? "Erase"
                            : dab.tool == ProfileTool::kSmooth ? "Smooth"
+                           : dab.tool == ProfileTool::kSmear  ? "Smear"
                                                               : text;
-        drawChip(list, {mouse.x, std::max(rect.y0 + dp(12), mouse.y - radii.y - dp(16))}, what);
+        const float above = ramps ? dp(8) : radii.y;
+        drawChip(list, {mouse.x, std::max(rect.y0 + dp(12), mouse.y - above - dp(16))}, what);
     }
     endPanel();
 }
@@ -1335,6 +1376,8 @@ void showFlame(App& app, Rect rect) {
                     {"Double click", "add one"},
                     {"Right click", "take it away"},
                     {"Wheel", "hotter, cooler"}});
+    else if (app.flame->tool == fwedit::ProfileTool::kGradient)
+        showStatus(app, status, {{"Drag", "from one value to the other"}, {"Alt", "pick"}});
     else
         showStatus(app, status,
                    {{"Drag", "paint"},

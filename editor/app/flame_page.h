@@ -3,6 +3,7 @@
 // saved for it; until then it is a draft of its own, with its own undo.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -12,17 +13,14 @@
 #include "app/app.h"
 #include "common/studio.h"
 #include "document/flame_curve.h"
+#include "document/flame_paint.h"
 #include "viewport/scene_target.h"
 
 namespace fwapp {
 
-// 64 x 128 as the plugin keeps them; rows from the base up.
-struct ProfilePaint {
-    static constexpr int kWidth = 64, kHeight = 128;
-    std::vector<float> kelvin = std::vector<float>(size_t(kWidth) * kHeight);  // [0, 3000]
-    std::vector<float> soot = std::vector<float>(size_t(kWidth) * kHeight);    // [0, 2]
-    bool operator==(const ProfilePaint&) const = default;
-};
+using fwedit::ProfilePaint;
+using fwedit::ProfilePlane;
+using fwedit::ProfileTool;
 
 // A flame as it is being made, by the brush or by points.
 struct FlameDraft {
@@ -32,23 +30,10 @@ struct FlameDraft {
     uint32_t preset = 0;
     float diameter = 0.6f, power = 60;  // m, kW
     float turbulence = 1, speed = 1;
-    bool ownColor = false;  // burns in `color` instead of a hot body's
-    float color[3] = {0.2f, 0.45f, 1};
+    bool ownColors = false;  // instead of a hot body's: linear, from its edge to its core
+    std::array<float, 3> edge{0.2f, 0.45f, 1}, core{0.75f, 0.95f, 1};
     bool operator==(const FlameDraft&) const = default;
 };
-
-enum class ProfileTool : int { kPaint, kErase, kSmooth, kPick };
-enum class ProfilePlane : int { kTemperature, kSoot };
-
-// A dab of the brush at (x, y), texels, of a radius in texels; mirrored about the axis by nature.
-// `value`: K or soot that it goes towards. `hardness`, `strength`: [0, 1].
-struct Dab {
-    ProfileTool tool = ProfileTool::kPaint;
-    ProfilePlane plane = ProfilePlane::kTemperature;
-    float x = 0, y = 0, radiusX = 4, radiusY = 4;
-    float value = 1600, strength = 0.6f, hardness = 0.3f;
-};
-void paintDab(ProfilePaint& paint, const Dab& dab);
 
 struct FlameCanvas;
 
@@ -114,15 +99,18 @@ struct FlamePage {
     ProfilePlane plane = ProfilePlane::kTemperature;
     float size = 12, strength = 60, softness = 70;  // cm, %, %
     float celsius = 1380, soot = 0.8f;
-    float wind = 4;     // m/s, of the preview
-    bool slow = false;  // see App::slow
+    float celsiusEnd = 700, sootEnd = 0.1f;  // where a gradient goes
+    bool editsCore = false;                  // of the own colours; else that of the edge
+    float wind = 4;                          // m/s, of the preview
+    bool slow = false;                       // see App::slow
     bool paused = false, stroking = false, changed = true, opened = false;
     bool brushOpen = true, sizeOpen = true, lifeOpen = true, colorOpen = true;
     double time = 0;
     uint64_t pictureRevision = 0, drawnRevision = ~0ull;
     std::string problem;  // why there is no picture
     double relitAt = -1;
-    float lastX = 0, lastY = 0;  // texels, of the stroke under way
+    float lastX = 0, lastY = 0;  // texels, of the stroke under way; of a gradient its begin
+    ProfilePaint underGradient;  // what was there before it
     float studioSize = 0;        // m
     uint64_t frameCount = 0;
     std::unique_ptr<FlameCanvas> canvas;

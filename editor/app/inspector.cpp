@@ -358,7 +358,8 @@ Part partOf(Kind kind, const char* key) {
     if (is({"start", "duration", "time", "keys"})) return Part::kTime;
     if (kind == Kind::Mesh && !is({"file", "materials", "moisture", "thickness"}))
         return Part::kMore;
-    if (kind == Kind::Flame && is({"density", "blue", "smoke", "tint", "tint_weight", "ignites"}))
+    if (kind == Kind::Flame && is({"density", "blue", "smoke", "tint", "tint_weight", "core_tint",
+                                   "core_tint_weight", "ignites"}))
         return Part::kMore;
     return Part::kMain;
 }

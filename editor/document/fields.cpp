@@ -179,6 +179,8 @@ const Table<Flame>& tableOf() {
             number("blue", "Blue at its foot", "", 0, 10, &Flame::blue),
             vector("tint", "Own colour", "", 0, 1, &Flame::tint),
             number("tint_weight", "Share of own colour", "", 0, 1, &Flame::tintWeight),
+            vector("core_tint", "Colour of its core", "", 0, 1, &Flame::coreTint),
+            number("core_tint_weight", "Share of its core", "", 0, 1, &Flame::coreTintWeight),
             flag("ignites", "Lights what it touches", &Flame::ignites),
         };
         addSpan(own, "Keys of the output");

@@ -89,6 +89,8 @@ struct Flame : Object {     // a volumetric fire
     float tintWeight = 0;
     bool ignites = false;
     float start = 0, duration = 0;
+    Vec3 coreTint{1, 1, 1};  // of its hottest gas
+    float coreTintWeight = 0;
     Keys keys;  // of the power
     ObjectId sticksTo = 0;
     bool operator==(const Flame&) const = default;

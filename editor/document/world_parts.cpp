@@ -119,6 +119,8 @@ FwVolumetricFireDef fireDefOf(const Scene& scene, const Flame& flame) {
     def.blue = flame.blue;
     copy(def.tint, flame.tint);
     def.tintWeight = flame.tintWeight;
+    copy(def.coreTint, flame.coreTint);
+    def.coreTintWeight = flame.coreTintWeight;
     return def;
 }
 

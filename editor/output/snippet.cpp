@@ -125,6 +125,8 @@ void printFields(Fields& fields, const FwVolumetricFireDef& def) {
     FW_ONE(blue);
     FW_LIST(tint);
     FW_ONE(tintWeight);
+    FW_LIST(coreTint);
+    FW_ONE(coreTintWeight);
 }
 
 void printFields(Fields& fields, const FwFireEmitterDef& def) {

@@ -37,6 +37,7 @@ constexpr const char* kEverything =
     "add source rain name=\"Rain, light\" position 0 1 0 radius 0.5 output 0.1 length 1 start 1\n"
     "add source water position 0.5 0.2 0 radius 0.1 output 0.05 keys 0:1 2:0\n"
     "add flame camp name=Campfire position 1 0 0 ignites yes tint 0.2 0.5 1 tint_weight 0.5 "
+    "core_tint 1 0.9 0.3 core_tint_weight 0.7 "
     "outline 0:0.7 0.5:0.4 1:0.05 stops 0:900 1:1500\n"
     "add emitter mesh name=\"2 sparks\" sticks_to Board\n"
     "add emitter disc position 0 0 1 duration 2\n"
