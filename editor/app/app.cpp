@@ -11,6 +11,8 @@
 #include "app/flame_page.h"
 #include "app/output_page.h"
 #include "app/paint_page.h"
+#include "document/apply.h"
+#include "document/clipboard.h"
 #include "shell/icons.h"
 
 namespace fwapp {
@@ -106,6 +108,23 @@ ObjectId addObject(App& app, Kind kind, std::vector<fwedit::Assignment> fields) 
     ObjectId added = 0;
     if (perform(app, command, &added)) select(app, added, false, false);
     return added;
+}
+
+void copySelection(App& app) {
+    const std::string text = fwedit::copyObjects(app.document.scene, app.selection);
+    if (text.empty()) return;
+    ImGui::SetClipboardText(text.c_str());
+    say(app, "Copied");
+}
+
+void paste(App& app) {
+    const char* text = ImGui::GetClipboardText();
+    std::vector<ObjectId> added;
+    std::string message;
+    if (!fwedit::pasteObjects(app.document, text ? text : "", added, message))
+        return toast(app, Toast::Kind::kInfo, "Nothing was pasted", message);
+    app.selection = added;
+    say(app, app.document.steps[app.document.at].name);
 }
 
 void frameSelection(App& app, bool all) {
@@ -464,6 +483,8 @@ std::vector<Action> makeActions(App& app) {
          opened},
         {"Duplicate", "Edit", "Ctrl+D", icons::copy, [many] { many(Verb::Duplicate); },
          hasSelection, scene, true},
+        {"Copy", "Edit", "Ctrl+C", nullptr, [at] { copySelection(*at); }, hasSelection, scene},
+        {"Paste", "Edit", "Ctrl+V", nullptr, [at] { paste(*at); }, {}, scene},
         {"Delete", "Edit", "Del", icons::trash, [many] { many(Verb::Remove); }, hasSelection,
          scene},
         {"Select all",
@@ -521,6 +542,7 @@ std::vector<Action> makeActions(App& app) {
          {},
          scene,
          true},
+        {"Show panels", "View", "Tab", nullptr, [at] { at->panels = !at->panels; }, {}, scene},
         {"Show burn times",
          "View",
          "O",
@@ -597,6 +619,23 @@ std::vector<Action> makeActions(App& app) {
          {},
          scene,
          true},
+        {"Add smoke and sparks",
+         "Scene",
+         "",
+         icons::bolt,
+         [at, atTarget] {
+             const fwedit::Scene& s = at->document.scene;
+             const ObjectId id = at->selection.size() == 1 ? at->selection[0] : 0;
+             // Of the fire of a mesh that is selected; else a fire of its own.
+             if (fwedit::findIn(s.meshes, id)) {
+                 addObject(*at, Kind::Emitter,
+                           {{"shape", double(fwedit::EmitterMesh)}, {"sticks_to", double(id)}});
+             } else {
+                 addObject(*at, Kind::Emitter, {{"position", atTarget()}});
+             }
+         },
+         {},
+         scene},
         {"Add wind", "Scene", "", icons::wind, [at] { addObject(*at, Kind::Wind, {}); }, {}, scene},
         {"Add wall",
          "Scene",
@@ -795,7 +834,10 @@ void runKeys(App& app) {
     for (const Action& action : app.actions) {
         if (app.files.open || app.palette || app.guard || app.about) return;
         if (!*action.keys || !keysPressed(action.keys)) continue;
-        if (io.WantTextInput && !io.KeyCtrl && std::strcmp(action.keys, "F1")) continue;
+        // Within a text its own undo and clipboard are meant.
+        if (io.WantTextInput && (!io.KeyCtrl || !std::strcmp(action.place, "Edit")) &&
+            std::strcmp(action.keys, "F1"))
+            continue;
         if (app.keys && std::strcmp(action.keys, "F1")) continue;
         if (action.page == -3 && app.page == Page::kWelcome) continue;
         if (action.page >= -1 && action.page != int(app.page)) continue;

@@ -91,10 +91,12 @@ struct App {
     bool burnTimes = false;   // the map of burn times lies over the picture
     double burnTimesAt = -1;  // s that it was coloured at
     Pace pace;
-    double movedAt = -1e9;    // s, when the view last moved by hand
-    std::string compared;     // what the left half of a comparison is
-    bool bare = false;        // the picture of the scene and nothing else
-    bool showHelpers = true;  // marks, gizmo and outline over the picture
+    double movedAt = -1e9;       // s, when the view last moved by hand
+    std::string compared;        // what the left half of a comparison is
+    double preparingSince = -1;  // s; < 0: nothing is prepared
+    bool bare = false;           // the picture of the scene and nothing else
+    bool panels = true;          // beside the picture
+    bool showHelpers = true;     // marks, gizmo and outline over the picture
     int leftTab = 0;
     std::string filter;
     bool pinsOpen = true, placeOpen = true, mainOpen = true, timeOpen = true, moreOpen = false;
@@ -130,6 +132,8 @@ bool performSet(App& app, fwedit::ObjectId id, const char* key, const fwedit::Va
 bool isSelected(const App& app, fwedit::ObjectId id);
 void select(App& app, fwedit::ObjectId id, bool add, bool flip);
 fwedit::ObjectId addObject(App& app, fwedit::Kind kind, std::vector<fwedit::Assignment> fields);
+void copySelection(App& app);  // as text, see document/clipboard.h
+void paste(App& app);
 void frameSelection(App& app, bool all);
 // Lays the scene after that step of the history beside what it is now.
 void compareStep(App& app, size_t step);

@@ -545,17 +545,18 @@ void showScene(App& app, Rect rect) {
     rect.y0 += dp(1);
     const float gap = dp(2), whole = rect.x1;
     // Little room: the timeline folds, then the left panel goes.
-    const bool low = rect.height() < dp(380), narrow = rect.width() < dp(900);
+    const bool low = rect.height() < dp(380) || !app.panels;
+    const bool narrow = rect.width() < dp(900) || !app.panels;
     const float timeline = low ? dp(34) : dp(app.user.timeline);
     const Rect bottom = rect.cutBottom(timeline);
     rect.cutBottom(gap);
     const Rect left = narrow ? Rect{} : rect.cutLeft(dp(app.user.left));
     if (!narrow) rect.cutLeft(gap);
-    const Rect right = rect.cutRight(dp(app.user.right));
-    rect.cutRight(gap);
+    const Rect right = app.panels ? rect.cutRight(dp(app.user.right)) : Rect{};
+    if (app.panels) rect.cutRight(gap);
     showTimeline(app, bottom);
     if (!narrow) showLeftPanel(app, left);
-    showInspector(app, right);
+    if (app.panels) showInspector(app, right);
     showViewport(app, rect);
     if (!narrow)
         splitter("##split left",
@@ -568,16 +569,17 @@ void showScene(App& app, Rect rect) {
                   .highest = 420,
                   .sign = 1},
                  app.user.left);
-    splitter("##split right",
-             {.vertical = true,
-              .at = right.x0 - gap,
-              .from = right.y0,
-              .to = right.y1,
-              .design = 296,
-              .lowest = 264,
-              .highest = 460,
-              .sign = -1},
-             app.user.right);
+    if (app.panels)
+        splitter("##split right",
+                 {.vertical = true,
+                  .at = right.x0 - gap,
+                  .from = right.y0,
+                  .to = right.y1,
+                  .design = 296,
+                  .lowest = 264,
+                  .highest = 460,
+                  .sign = -1},
+                 app.user.right);
     if (!low)
         splitter("##split time",
                  {.vertical = false,

@@ -22,19 +22,6 @@ bool nameTaken(const Scene& scene, const std::string& name) {
     return taken;
 }
 
-// "Crate", "Crate 2", "Crate 3": the first that is free.
-std::string freeName(const Scene& scene, std::string name) {
-    if (!nameTaken(scene, name)) return name;
-    const size_t space = name.find_last_of(' ');
-    if (space != std::string::npos && space + 1 < name.size() &&
-        name.find_first_not_of("0123456789", space + 1) == std::string::npos)
-        name.resize(space);
-    for (size_t number = 2;; ++number) {
-        const std::string tried = name + " " + std::to_string(number);
-        if (!nameTaken(scene, tried)) return tried;
-    }
-}
-
 ObjectId addObject(Scene& scene, Kind kind) {
     const ObjectId id = scene.nextId++;
     forEachList(scene, [&](Kind which, auto& list) {
@@ -241,6 +228,18 @@ void duplicate(Scene& scene, PaintImages& images, ObjectId id, ObjectId& added) 
 }
 
 }  // namespace
+
+std::string freeName(const Scene& scene, std::string name) {
+    if (!nameTaken(scene, name)) return name;
+    const size_t space = name.find_last_of(' ');
+    if (space != std::string::npos && space + 1 < name.size() &&
+        name.find_first_not_of("0123456789", space + 1) == std::string::npos)
+        name.resize(space);
+    for (size_t number = 2;; ++number) {
+        const std::string tried = name + " " + std::to_string(number);
+        if (!nameTaken(scene, tried)) return tried;
+    }
+}
 
 bool mendReferences(Scene& scene, std::vector<std::string>* repairs) {
     bool mended = false;

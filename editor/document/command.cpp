@@ -331,21 +331,6 @@ std::string paintName(const Scene& before, const Command& command, const std::st
            (mesh ? " on " + mesh->name : "");
 }
 
-// At most 40 characters, not bytes.
-std::string shortened(const std::string& text) {
-    size_t characters = 0;
-    for (size_t i = 0; i < text.size(); ++i) {
-        if ((static_cast<unsigned char>(text[i]) & 0xc0) == 0x80) continue;
-        if (++characters == 40) {
-            size_t left = 0;
-            for (size_t j = i; j < text.size(); ++j)
-                left += (static_cast<unsigned char>(text[j]) & 0xc0) != 0x80;
-            return left > 1 ? text.substr(0, i) + "…" : text;
-        }
-    }
-    return text;
-}
-
 }  // namespace
 
 bool splitWords(std::string_view line, std::vector<std::string>& words, std::string& error) {

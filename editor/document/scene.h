@@ -87,12 +87,12 @@ struct Flame : Object {     // a volumetric fire
     float windResponse = 1, turbulence = 1, speed = 1, density = 1, smoke = 1, blue = 1;
     Vec3 tint{1, 1, 1};
     float tintWeight = 0;
-    bool ignites = false;
-    float start = 0, duration = 0;
     Vec3 coreTint{1, 1, 1};  // of its hottest gas
     float coreTintWeight = 0;
     Keys keys;  // of the power
     ObjectId sticksTo = 0;
+    bool ignites = false;
+    float start = 0, duration = 0;
     bool operator==(const Flame&) const = default;
 };
 

@@ -22,6 +22,7 @@ std::string printNumber(double value);
 bool need(const std::vector<std::string>& words, size_t least, size_t most, const char* form,
           std::string& error);
 std::string inQuotes(std::string_view text);
+std::string shortened(const std::string& text);  // for undo: at most 40 characters, not bytes
 // Without control characters, as valid UTF-8, of at most `most` bytes.
 std::string cleanText(std::string_view text, size_t most);
 // A target's word: a name, or #id. 0: there is none.

@@ -14,6 +14,7 @@
 #include <random>
 #include <sstream>
 
+#include "document/clipboard.h"
 #include "document/text.h"
 #include "editor/text_of.h"
 #include "support/sanitized.h"
@@ -22,6 +23,7 @@ namespace {
 
 using namespace fwedit;
 using ::testing::HasSubstr;
+using ::testing::Not;
 namespace fs = std::filesystem;
 
 struct Folder {
@@ -394,6 +396,72 @@ TEST(EditorUndo, TheLinesOfTheStepsMakeTheSameScene) {
         ASSERT_TRUE(runLine(second, first.steps[i].line, message))
             << first.steps[i].line << ": " << message;
     EXPECT_EQ(everythingOf(first), everythingOf(second));
+}
+
+// As text, into the same scene and another one: as they were, but for name and id.
+TEST(EditorClipboard, WhatIsCopiedIsPastedAsOneStep) {
+    Document document = newDocument();
+    mustRun(document, "add mesh name=Crate file \"crate.glb\" position 1 0 0");
+    mustRun(document,
+            "add source disc name=\"Corner torch\" output 25 keys 0:0 1:1 sticks_to Crate");
+    mustRun(document,
+            "add flame magic_blue name=Rune tint 0.5 0 1 core_tint 1 1 0 outline 0:0.5 1:0.1");
+    mustRun(document, "add layer multiplier name=Belt mesh Crate");
+    std::vector<ObjectId> all;
+    forEachList(document.scene, [&](Kind, const auto& list) {
+        for (const auto& object : list) all.push_back(object.id);
+    });
+    const std::string text = copyObjects(document.scene, all);
+    EXPECT_THAT(text, HasSubstr("shape disc"));
+    EXPECT_THAT(text, Not(HasSubstr("layer")));
+
+    const std::string before = everythingOf(document);
+    const size_t step = document.at;
+    std::vector<ObjectId> added;
+    std::string message;
+    ASSERT_TRUE(pasteObjects(document, text, added, message)) << message;
+    EXPECT_EQ(step + 1, document.at);
+    EXPECT_EQ("Paste 3 objects", document.steps[document.at].name);
+    ASSERT_EQ(3u, added.size());
+    ASSERT_EQ(2u, document.scene.sources.size());
+    HeatSource copy = document.scene.sources[1];
+    EXPECT_EQ("Corner torch 2", copy.name);
+    copy.name = document.scene.sources[0].name;
+    copy.id = document.scene.sources[0].id;
+    EXPECT_EQ(document.scene.sources[0], copy);
+    Flame rune = document.scene.flames[1];
+    rune.name = "Rune";
+    rune.id = document.scene.flames[0].id;
+    EXPECT_EQ(document.scene.flames[0], rune);
+    undo(document);
+    EXPECT_EQ(before, everythingOf(document));
+
+    // Where there is no crate the torch stands by itself.
+    Document other = newDocument();
+    ASSERT_TRUE(pasteObjects(other,
+                             copyObjects(document.scene, std::vector{document.scene.sources[0].id}),
+                             added, message))
+        << message;
+    EXPECT_EQ("Corner torch", other.scene.sources.at(0).name);
+    EXPECT_EQ(0u, other.scene.sources[0].sticksTo);
+    EXPECT_EQ("Paste Corner torch", other.steps[other.at].name);
+}
+
+TEST(EditorClipboard, WhatIsNoObjectChangesNothing) {
+    Document document = newDocument();
+    mustRun(document, "add source point");
+    const std::string before = everythingOf(document);
+    const size_t step = document.at;
+    for (const char* text : {"", "hello", "remove #1", "add source point\nremove #1",
+                             "add source point output torch", "add castle"}) {
+        std::vector<ObjectId> added;
+        std::string message;
+        EXPECT_FALSE(pasteObjects(document, text, added, message)) << text;
+        EXPECT_FALSE(message.empty()) << text;
+        EXPECT_TRUE(added.empty()) << text;
+        EXPECT_EQ(before, everythingOf(document)) << text;
+        EXPECT_EQ(step, document.at) << text;
+    }
 }
 
 TEST(EditorFile, ASceneReadsBackEqualAndPrintsTheSameBytes) {

@@ -26,6 +26,13 @@ await ready
 xdotool mousemove 600 330 key shift+a
 xdotool click 1
 await "did: Add heat source"
+# By the clipboard, and back.
+xdotool key ctrl+c
+await "did: Copied"
+xdotool key ctrl+v
+await "did: Paste Heat source"
+xdotool key ctrl+z
+await "did: Undone"
 xdotool key space
 await "burn at 1 s"
 xdotool key space

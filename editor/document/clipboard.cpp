@@ -1,0 +1,100 @@
+// See clipboard.h.
+#include "document/clipboard.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "document/apply.h"
+#include "document/text.h"
+
+namespace fwedit {
+namespace {
+
+constexpr size_t kMostPasted = size_t{1} << 20;  // bytes
+
+// Only what differs from an object as it is added.
+std::string lineOf(const Scene& scene, Kind kind, ObjectId id) {
+    Scene plain;
+    PaintImages none;
+    std::string message;
+    ObjectId fresh = 0;
+    Command add;
+    add.verb = Verb::Add;
+    add.kind = kind;
+    applyCommand(newDocument(), add, plain, none, message, fresh);
+    std::string parent;
+    for (const FieldInfo& field : fieldsOf(kind)) {
+        Value value, standard;
+        if (!getField(scene, kind, id, field.key, value) ||
+            (getField(plain, kind, fresh, field.key, standard) && value == standard))
+            continue;
+        if (field.type != FieldType::Object) {
+            add.fields.push_back({field.key, std::move(value)});
+            continue;
+        }
+        // By its name: ids are of no meaning in another scene.
+        const Object* object = findObject(scene, static_cast<ObjectId>(std::get<double>(value)));
+        if (object) parent = std::string(" ") + field.key + " " + inQuotes(object->name);
+    }
+    return printCommand(scene, add) + parent + "\n";
+}
+
+// Without what no object here can be: "sticks_to" of a name that is not there.
+bool parseLine(const Scene& scene, const std::string& line, Command& command,
+               std::string& message) {
+    if (parseCommand(scene, line, command, message)) return true;
+    const size_t parent = line.rfind(" sticks_to ");
+    std::string ignored;
+    return parent != std::string::npos &&
+           parseCommand(scene, line.substr(0, parent), command, ignored);
+}
+
+}  // namespace
+
+std::string copyObjects(const Scene& scene, std::span<const ObjectId> objects) {
+    std::string text;
+    for (const ObjectId id : objects) {
+        Kind kind{};
+        if (findObject(scene, id, &kind) && kind != Kind::Layer) text += lineOf(scene, kind, id);
+    }
+    return text;
+}
+
+bool pasteObjects(Document& document, std::string_view text, std::vector<ObjectId>& added,
+                  std::string& message) {
+    added.clear();
+    const char* const kNone = "What was copied is no object of a scene";
+    message = kNone;
+    if (text.size() > kMostPasted) return false;
+    std::istringstream lines{std::string(text)};
+    beginDrag(document);
+    bool good = true;
+    for (std::string line; good && std::getline(lines, line);) {
+        if (line.empty()) continue;
+        Command command;
+        good = line.starts_with("add ");
+        if (!good) message = kNone;
+        good = good && parseLine(document.scene, line, command, message);
+        if (!good) break;
+        for (Assignment& field : command.fields)
+            if (std::string* name = std::get_if<std::string>(&field.value);
+                name && field.field == "name")
+                *name = freeName(document.scene, *name);
+        ObjectId id = 0;
+        good = run(document, command, message, &id);
+        if (good) added.push_back(id);
+    }
+    if (!good || added.empty()) {
+        cancelDrag(document);
+        added.clear();
+        return false;
+    }
+    const Object* first = findObject(document.scene, added.front());
+    document.dragName = added.size() == 1 ? shortened("Paste " + first->name)
+                                          : "Paste " + std::to_string(added.size()) + " objects";
+    endDrag(document);
+    message.clear();
+    return true;
+}
+
+}  // namespace fwedit
