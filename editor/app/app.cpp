@@ -637,6 +637,18 @@ std::vector<Action> makeActions(App& app) {
          {},
          scene},
         {"Add wind", "Scene", "", icons::wind, [at] { addObject(*at, Kind::Wind, {}); }, {}, scene},
+        {"Add fan",
+         "Scene",
+         "",
+         icons::wind,
+         [at, atTarget] {
+             addObject(*at, Kind::Wind,
+                       {{"name", fwedit::freeName(at->document.scene, "Fan")},
+                        {"shape", double(fwedit::WindFan)},
+                        {"position", atTarget()}});
+         },
+         {},
+         scene},
         {"Add wall",
          "Scene",
          "",

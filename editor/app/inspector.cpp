@@ -395,6 +395,15 @@ bool isIdle(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key)
         if (is("radius")) return shape != fwedit::ColliderBall && shape != fwedit::ColliderCapsule;
         if (is("length")) return shape != fwedit::ColliderCapsule;
     }
+    if (kind == Kind::Wind) {
+        const fwedit::Wind* wind = fwedit::findIn(scene.winds, id);
+        if (!wind) return false;
+        if (is("position") || is("sticks_to") || is("flow") || is("falloff") || is("shelters"))
+            return wind->shape == fwedit::WindEverywhere;
+        if (is("half_size")) return wind->shape != fwedit::WindBox;
+        if (is("radius")) return wind->shape != fwedit::WindBall && wind->shape != fwedit::WindFan;
+        if (is("length")) return wind->shape != fwedit::WindFan;
+    }
     if (kind == Kind::Mesh && is("refine_depth")) {
         const fwedit::Mesh* mesh = fwedit::findIn(scene.meshes, id);
         return mesh && !mesh->refine;
@@ -420,6 +429,7 @@ void showParts(App& app, Rows& rows, Kind kind, ObjectId id) {
                        : kind == Kind::Mesh     ? "Material"
                        : kind == Kind::Flame    ? "Flame"
                        : kind == Kind::Emitter  ? "Fire"
+                       : kind == Kind::Wind     ? "Wind"
                        : kind == Kind::Settings ? "Light and wind"
                                                 : "Shape";
     const Heading headings[] = {{Part::kPlace, "Place", &app.placeOpen},

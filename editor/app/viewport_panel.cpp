@@ -75,7 +75,9 @@ float distanceTo(ImVec2 p, ImVec2 a, ImVec2 b) {
     return std::hypot(p.x - a.x - t * along.x, p.y - a.y - t * along.y);
 }
 
-bool movable(Kind kind) {
+bool movable(const fwedit::Scene& scene, Kind kind, ObjectId id) {
+    const fwedit::Wind* wind = fwedit::findIn(scene.winds, id);
+    if (wind) return wind->shape != fwedit::WindEverywhere;
     return kind == Kind::Mesh || kind == Kind::Source || kind == Kind::Flame ||
            kind == Kind::Emitter || kind == Kind::Collider;
 }
@@ -87,7 +89,7 @@ bool pivotOf(const App& app, glm::vec3& pivot) {
     for (const ObjectId id : app.selection) {
         Kind kind{};
         const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
-        if (!object || object->locked || !movable(kind)) continue;
+        if (!object || object->locked || !movable(app.document.scene, kind, id)) continue;
         sum += asVec(fwedit::worldPosition(app.document.scene, id));
         ++count;
     }
@@ -254,12 +256,13 @@ void drawHandles(ImDrawList* list, const Handles& handles, bool turns, int hot) 
 const char* turnField(Kind kind) {
     if (kind == Kind::Mesh || kind == Kind::Collider) return "rotation";
     if (kind == Kind::Source || kind == Kind::Emitter) return "direction";
+    if (kind == Kind::Wind) return "velocity";
     return nullptr;
 }
 
 const char* stretchField(Kind kind) {
     if (kind == Kind::Mesh) return "scale";
-    if (kind == Kind::Collider) return "half_size";
+    if (kind == Kind::Collider || kind == Kind::Wind) return "half_size";
     return nullptr;
 }
 
@@ -307,10 +310,10 @@ struct Marker {
 std::vector<Marker> markersOf(const App& app, const Picture& picture) {
     std::vector<Marker> markers;
     fwedit::forEachList(app.document.scene, [&](Kind kind, const auto& list) {
-        if (!movable(kind) || kind == Kind::Mesh) return;
+        if (kind == Kind::Mesh) return;
         for (const auto& object : list) {
             ImVec2 place;
-            if (object.hidden ||
+            if (object.hidden || !movable(app.document.scene, kind, object.id) ||
                 !picture.at(asVec(fwedit::worldPosition(app.document.scene, object.id)), place))
                 continue;
             if (picture.rect.holds(place)) markers.push_back({object.id, kind, place});
@@ -353,6 +356,57 @@ void drawReach(const App& app, ImDrawList* list, const Picture& picture,
     }
 }
 
+// Where a zone of wind is: a box's edges, a ball's three rings, a fan's cone; and which way it
+// blows.
+void drawZone(const App& app, ImDrawList* list, const Picture& picture, const fwedit::Wind& wind,
+              ImU32 color) {
+    const glm::vec3 middle = asVec(fwedit::worldPosition(app.document.scene, wind.id));
+    const glm::vec3 velocity = asVec(wind.velocity);
+    const glm::vec3 way =
+        glm::length(velocity) > 1e-5f ? glm::normalize(velocity) : glm::vec3(1, 0, 0);
+    const auto edge = [&](glm::vec3 from, glm::vec3 to) {
+        ImVec2 a, b;
+        if (!picture.at(from, a) || !picture.at(to, b)) return;
+        list->AddLine(a, b, IM_COL32(0, 0, 0, 110), dp(3));
+        list->AddLine(a, b, color, dp(1.5f));
+    };
+    const auto ring = [&](glm::vec3 centre, glm::vec3 axis, float radius) {
+        const glm::vec3 u = glm::normalize(
+            glm::cross(axis, std::fabs(axis.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
+        const glm::vec3 v = glm::cross(axis, u);
+        constexpr int kParts = 32;
+        const auto at = [&](int i) {
+            const float angle = float(i) * 6.2831853f / kParts;
+            return centre + radius * (std::cos(angle) * u + std::sin(angle) * v);
+        };
+        for (int i = 0; i < kParts; ++i) edge(at(i), at(i + 1));
+        return std::array<glm::vec3, 4>{at(0), at(kParts / 4), at(kParts / 2), at(3 * kParts / 4)};
+    };
+    if (wind.shape == fwedit::WindBox) {
+        const glm::vec3 half = asVec(wind.halfSize);
+        for (int i = 0; i < 8; ++i)
+            for (int axis = 0; axis < 3; ++axis) {
+                if (i >> axis & 1) continue;
+                glm::vec3 corner = glm::vec3(i & 1, i >> 1 & 1, i >> 2 & 1) * 2.0f - 1.0f;
+                const glm::vec3 from = middle + corner * half;
+                corner[axis] = 1;
+                edge(from, middle + corner * half);
+            }
+    } else if (wind.shape == fwedit::WindBall) {
+        for (int axis = 0; axis < 3; ++axis) ring(middle, axisOf(axis), wind.radius);
+    } else {
+        for (const glm::vec3 rim : ring(middle + wind.length * way, way, wind.radius))
+            edge(middle, rim);
+    }
+    if (wind.flow == fwedit::WindOut) return;
+    ImVec2 a, b;
+    const float reach = wind.shape == fwedit::WindFan   ? 0.5f * wind.length
+                        : wind.shape == fwedit::WindBox ? wind.halfSize[0]
+                                                        : wind.radius;
+    if (picture.at(middle, a) && picture.at(middle + reach * way, b))
+        drawArrow(list, a, b, color, false);
+}
+
 void drawMarkers(App& app, ImDrawList* list, const Picture& picture,
                  const std::vector<Marker>& markers) {
     for (const Marker& marker : markers) {
@@ -360,6 +414,9 @@ void drawMarkers(App& app, ImDrawList* list, const Picture& picture,
         if (selected && marker.kind == Kind::Source)
             drawReach(app, list, picture, *fwedit::findIn(app.document.scene.sources, marker.id),
                       colors::accent);
+        if (selected && marker.kind == Kind::Wind)
+            drawZone(app, list, picture, *fwedit::findIn(app.document.scene.winds, marker.id),
+                     colors::accent);
         list->AddCircleFilled(marker.place, dp(11), hex(0x151618, 225), 32);
         list->AddCircle(marker.place, dp(11), selected ? colors::accent : hex(0xFFFFFF, 150), 32,
                         dp(selected ? 2 : 1));
@@ -389,7 +446,8 @@ void moveSelection(App& app, glm::vec3 by) {
     for (const ObjectId id : app.selection) {
         Kind kind{};
         const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
-        if (object && !object->locked && movable(kind)) command.targets.push_back(id);
+        if (object && !object->locked && movable(app.document.scene, kind, id))
+            command.targets.push_back(id);
     }
     command.offset = {by.x, by.y, by.z};
     if (!command.targets.empty()) perform(app, command);

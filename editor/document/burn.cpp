@@ -306,6 +306,17 @@ void addCollider(Burn& burn, const Collider& collider) {
     burn.parts.push_back(std::move(part));
 }
 
+void addWind(Burn& burn, const Wind& wind) {
+    if (wind.shape == WindEverywhere || wind.hidden) return;
+    BurnPart part;
+    part.id = wind.id;
+    const FwWindZoneDef def = windZoneDefOf(burn.scene, wind, 0);
+    const FwResult result = fwWorld_CreateWindZone(burn.world, &def, &part.zone);
+    if (result < 0)
+        burn.report.push_back("\"" + wind.name + "\" is left out: " + worldProblem(burn, result));
+    burn.parts.push_back(std::move(part));
+}
+
 // 0 while it does not work, else the factor of its keys.
 template <typename T>
 float factorOf(const T& object, double time) {
@@ -379,9 +390,16 @@ void feedParts(Burn& burn, double time) {
         } else if (const Emitter* emitter = findIn(burn.scene.emitters, part.id)) {
             factor = factorOf(*emitter, time);
             power = emitter->power;
+        } else if (const Wind* wind = findIn(burn.scene.winds, part.id)) {
+            factor = factorOf(*wind, time);
         }
         if (factor == part.lastFactor) continue;
         part.lastFactor = factor;
+        if (part.zone.index1 != 0) {
+            const FwWindZoneDef def =
+                windZoneDefOf(burn.scene, *findIn(burn.scene.winds, part.id), factor);
+            fwWorld_SetWindZone(burn.world, part.zone, &def);
+        }
         const float now = std::min(kMostPower, share * power * factor);
         for (const FwVolumetricFireId fire : part.fires)
             fwWorld_SetVolumetricFirePower(burn.world, fire, now);
@@ -478,6 +496,12 @@ Emitter steered(const Emitter& emitter) {
     return rest;  // what it sticks to is what it shows the fire of
 }
 Collider steered(const Collider& collider) { return unnamed(collider); }
+// A zone is set anew as a whole.
+Wind steered(const Wind& wind) {
+    Wind rest;
+    rest.shape = wind.shape == WindEverywhere || wind.hidden ? WindEverywhere : WindBox;
+    return rest;
+}
 
 void hide(const Burn& burn, const BurnPart& part, bool hidden) {
     for (const FwVolumetricFireId fire : part.fires)
@@ -512,6 +536,7 @@ void steer(const Burn& burn, BurnPart& part, const Emitter& emitter) {
     const FwFireEmitterDef def = emitterDefOf(burn.scene, emitter);
     fwWorld_MoveFireEmitter(burn.world, part.emitter, def.position, def.direction);
 }
+void steer(const Burn&, BurnPart& part, const Wind&) { part.lastFactor = -1; }
 void steer(const Burn& burn, BurnPart& part, const Collider& collider) {
     const FwFireColliderDef def = colliderDefOf(burn.scene, collider);
     if (part.collider.index1 != 0) fwWorld_SetFireCollider(burn.world, part.collider, &def);
@@ -525,6 +550,7 @@ void removePart(const Burn& burn, const BurnPart& part) {
     if (part.emitter.index1 != 0) fwWorld_DestroyFireEmitter(burn.world, part.emitter);
     if (part.collider.index1 != 0) fwWorld_RemoveFireCollider(burn.world, part.collider);
     if (part.blocker.index1 != 0) fwWorld_RemoveBlocker(burn.world, part.blocker);
+    if (part.zone.index1 != 0) fwWorld_DestroyWindZone(burn.world, part.zone);
 }
 
 // The shape of a flame that is gone, unless another one has it.
@@ -639,6 +665,7 @@ std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const P
     for (const Flame& flame : scene.flames) addFlame(*burn, shared, flame, folder);
     for (const Emitter& emitter : scene.emitters) addEmitter(*burn, shared, emitter);
     for (const Collider& collider : scene.colliders) addCollider(*burn, collider);
+    for (const Wind& wind : scene.winds) addWind(*burn, wind);
     feedParts(*burn, 0);
     return burn;
 }
@@ -650,7 +677,7 @@ bool feedBurn(Burn& burn, float deltaTime, std::string& error) {
     if (!burn.scene.winds.empty()) {
         Vec3 wind = burn.scene.settings.wind;
         for (const Wind& gust : burn.scene.winds)
-            for (size_t k = 0; k < 3; ++k)
+            for (size_t k = 0; k < 3 && gust.shape == WindEverywhere; ++k)
                 wind[k] = std::clamp(wind[k] + gust.velocity[k] * factorOf(gust, from), -kMostWind,
                                      kMostWind);
         const FwResult result = fwWorld_SetWind(burn.world, wind.data());
@@ -702,6 +729,7 @@ bool reviseBurn(Burn& burn, const Scene& scene, const fs::path& folder) {
            [&](const Emitter& emitter) { addEmitter(burn, shared, emitter); });
     follow(scene.colliders, before.colliders,
            [&](const Collider& collider) { addCollider(burn, collider); });
+    follow(scene.winds, before.winds, [&](const Wind& wind) { addWind(burn, wind); });
     for (const BurnPart& gone : old) {
         removePart(burn, gone);
         dropShape(burn, shared, findIn(before.flames, gone.id));

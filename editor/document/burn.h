@@ -35,12 +35,13 @@ struct BurnMesh {
     std::shared_ptr<const fwimport::ImportedModel> model;
     std::string bake;  // key into Assets::bakes and surfaces
 };
-struct BurnPart {  // a source, flame, emitter or collider at work
+struct BurnPart {  // a source, flame, emitter, collider or zone of wind at work
     ObjectId id = 0;
     std::vector<FwVolumetricFireId> fires;
     FwFireEmitterId emitter{};
     FwFireColliderId collider{};
     FwBlockerId blocker{};
+    FwWindZoneId zone{};
     float lastFactor = -1;
 };
 struct BurnShared;  // materials, pictures, shapes and books that objects of a burn have in common

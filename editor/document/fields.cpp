@@ -220,8 +220,17 @@ template <>
 const Table<Wind>& tableOf() {
     static const Table<Wind> table = [] {
         std::vector<Entry<Wind>> own = {
-            vector("velocity", "Wind", "m/s", -60, 60, &Wind::velocity)};
+            choice("shape", "Where", {"everywhere", "box", "ball", "fan"}, &Wind::shape),
+            vector("velocity", "Wind", "m/s", -60, 60, &Wind::velocity),
+            choice("flow", "Blows", {"along", "out", "around"}, &Wind::flow),
+            vector("position", "Position", "m", -kFar, kFar, &Wind::position),
+            vector("half_size", "Half size", "m", 0.01, 1000, &Wind::halfSize),
+            number("radius", "Radius", "m", 0.01, 1000, &Wind::radius),
+            number("length", "Reach", "m", 0.01, 1000, &Wind::length),
+            number("falloff", "Fades", "", 0, 1, &Wind::falloff),
+            flag("shelters", "Instead of other wind", &Wind::shelters)};
         addSpan(own, "Keys of the wind");
+        own.push_back(object("sticks_to", "Sticks to", &Wind::sticksTo));
         return withObject<Wind>(std::move(own));
     }();
     return table;

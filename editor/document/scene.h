@@ -42,6 +42,8 @@ enum SourceShape : uint32_t {
 };
 enum EmitterShape : uint32_t { EmitterPoint, EmitterDisc, EmitterLine, EmitterMesh };
 enum ColliderShape : uint32_t { ColliderBall, ColliderCapsule, ColliderBox, ColliderFloor };
+enum WindShape : uint32_t { WindEverywhere, WindBox, WindBall, WindFan };
+enum WindFlow : uint32_t { WindAlong, WindOut, WindAround };
 enum PaintKind : uint32_t { PaintMultiplier, PaintMoisture, PaintMaterial };
 enum Daylight : uint32_t { DaylightNight, DaylightDusk, DaylightDay };
 
@@ -89,10 +91,10 @@ struct Flame : Object {     // a volumetric fire
     float tintWeight = 0;
     Vec3 coreTint{1, 1, 1};  // of its hottest gas
     float coreTintWeight = 0;
-    Keys keys;  // of the power
-    ObjectId sticksTo = 0;
     bool ignites = false;
     float start = 0, duration = 0;
+    Keys keys;  // of the power
+    ObjectId sticksTo = 0;
     bool operator==(const Flame&) const = default;
 };
 
@@ -110,10 +112,19 @@ struct Emitter : Object {  // fire, smoke and sparks as particles
     bool operator==(const Emitter&) const = default;
 };
 
-struct Wind : Object {       // a gust: added to the scene's wind while it blows
-    Vec3 velocity{3, 0, 0};  // m/s
+struct Wind : Object {  // blows while it works: a gust everywhere, or in a zone of its own
+    uint32_t shape = WindEverywhere;
+    uint32_t flow = WindAlong;
+    Vec3 velocity{3, 0, 0};  // m/s; of zones that blow out or around its length counts
+    Vec3 position{};         // m, of a zone: its middle; of a fan where it stands
+    Vec3 halfSize{1, 1, 1};  // m, of a box
+    float radius = 1;        // m, of a ball; of a fan at its end
+    float length = 3;        // m, that a fan reaches
+    float falloff = 0.5f;    // [0, 1], how much of the way to its edge it fades on
+    bool shelters = false;   // instead of the wind around it, not added to it
     float start = 0, duration = 0;
     Keys keys;
+    ObjectId sticksTo = 0;
     bool operator==(const Wind&) const = default;
 };
 

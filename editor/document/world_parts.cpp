@@ -194,6 +194,25 @@ FwFireColliderDef colliderDefOf(const Scene& scene, const Collider& collider) {
     return def;
 }
 
+FwWindZoneDef windZoneDefOf(const Scene& scene, const Wind& wind, float factor) {
+    FwWindZoneDef def = fwDefaultWindZoneDef();
+    static constexpr FwWindShape kShapes[] = {FW_WIND_BOX, FW_WIND_BOX, FW_WIND_SPHERE,
+                                              FW_WIND_CONE};
+    static constexpr FwWindFlow kFlows[] = {FW_WIND_ALONG, FW_WIND_RADIAL, FW_WIND_VORTEX};
+    def.shape = kShapes[wind.shape];
+    def.flow = kFlows[wind.flow];
+    def.blend = wind.shelters ? FW_WIND_REPLACE : FW_WIND_ADD;
+    copy(def.position, worldPosition(scene, wind.id));
+    const float speed = std::hypot(wind.velocity[0], wind.velocity[1], wind.velocity[2]);
+    if (speed > 0) copy(def.axis, wind.velocity);
+    copy(def.size, wind.shape == WindBox   ? wind.halfSize
+                   : wind.shape == WindFan ? Vec3{wind.length, wind.radius, wind.radius}
+                                           : Vec3{wind.radius, wind.radius, wind.radius});
+    def.speed = std::min(speed * factor, kMostWind);
+    def.falloff = wind.falloff;
+    return def;
+}
+
 FwBlockerDef blockerDefOf(const Scene& scene, const Collider& collider) {
     FwBlockerDef def = fwDefaultBlockerDef();
     const std::array<float, 16> turn = turned(collider.rotation);

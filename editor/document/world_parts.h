@@ -21,6 +21,8 @@ FwVolumetricFireDef fireDefOf(const Scene& scene, const Flame& flame);
 std::vector<FwVolumetricFireDef> sourceFiresOf(const Scene& scene, const HeatSource& source);
 FwBurnableMeshDef burnableDefOf(const Mesh& mesh);
 FwFireColliderDef colliderDefOf(const Scene& scene, const Collider& collider);
+// Of a wind that has a zone, as strong as `factor` says.
+FwWindZoneDef windZoneDefOf(const Scene& scene, const Wind& wind, float factor);
 FwBlockerDef blockerDefOf(const Scene& scene, const Collider& collider);
 // The texels of a cooked burn map; `slots`: material by triangle of the model.
 bool surfaceOfBake(FwContext* context, const std::vector<char>& bake,

@@ -159,6 +159,18 @@ void printFields(Fields& fields, const FwFireColliderDef& def) {
     FW_ONE(radius);
 }
 
+void printFields(Fields& fields, const FwWindZoneDef& def) {
+    const FwWindZoneDef standard = fwDefaultWindZoneDef();
+    FW_ONE(shape);
+    FW_ONE(flow);
+    FW_ONE(blend);
+    FW_LIST(position);
+    FW_LIST(axis);
+    FW_LIST(size);
+    FW_ONE(speed);
+    FW_ONE(falloff);
+}
+
 void printFields(Fields& fields, const FwBlockerDef& def) {
     const FwBlockerDef standard = fwDefaultBlockerDef();
     FW_LIST(transform);
@@ -200,7 +212,9 @@ class Writer {
         for (const Flame& flame : scene_.flames) addFlame(flame);
         for (const Emitter& emitter : scene_.emitters) addEmitter(emitter);
         for (const Collider& collider : scene_.colliders) addCollider(collider);
-        for (const Wind& wind : scene_.winds) addGust(wind);
+        for (const Wind& wind : scene_.winds)
+            if (!wind.hidden || wind.shape == WindEverywhere)
+                wind.shape == WindEverywhere ? addGust(wind) : addZone(wind);
         const std::string create = createFunction(), advance = advanceFunctions();
         std::string text = head() + members() + helpers() + functions_ + advance + create;
         if (!is_.cpp)
@@ -530,6 +544,26 @@ class Writer {
                  ";\n        for (int i = 0; i < 3; ++i)\n"
                  "            wind[i] = within(wind[i] + velocity[i] * share, " +
                  literal(kMostWind) + ");\n    }\n";
+    }
+
+    void addZone(const Wind& wind) {
+        const std::string name = nameOf(wind.id);
+        const bool changes = wind.start > 0 || wind.duration > 0 || !wind.keys.empty();
+        const FwWindZoneDef made = windZoneDefOf(scene_, wind, 1);
+        member("FwWindZoneId", name);
+        if (changes) member("FwWindZoneDef", name + "_zone");
+        open("add_" + name, false, wind.name);
+        def("WindZone", made);
+        if (changes) line(in(name + "_zone") + " = def;");
+        line("return fwWorld_CreateWindZone(" + world() + ", &def, &" + in(name) + ");");
+        functions_ += "}\n\n";
+        if (!changes) return;
+        times_ = parts_ = true;
+        powers_ += "    { /* " + words(wind.name) + " */\n" + keyTable(wind.keys, "        ") +
+                   "        FwResult result;\n        " + in(name + "_zone") + ".speed = within(" +
+                   literal(made.speed) + " * " + factor(wind, "time") + ", " + literal(kMostWind) +
+                   ");\n        result = fwWorld_SetWindZone(" + world() + ", " + in(name) + ", &" +
+                   in(name + "_zone") + ");\n        if (result < 0) return result;\n    }\n";
     }
 
     // The output over time, of what has times or keys.

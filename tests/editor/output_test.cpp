@@ -43,6 +43,9 @@ constexpr const char* kEverything =
     "add emitter disc position 0 0 1 duration 2\n"
     "add wind velocity 3 0 0 start 0.5 duration 1 keys 0:0 1:1\n"
     "add wind velocity 0 0 1\n"
+    "add wind fan name=Fan velocity 4 0 0 position -1 0.2 0 length 3 radius 1 start 0.5 "
+    "keys 0:0 1:1\n"
+    "add wind box name=Lee velocity 0 0 0 position 3 0 0 shelters yes\n"
     "add collider box name=Wall position 0 0 5 rotation 10 20 30\n"
     "add collider floor position 0 -0.1 0\n";
 

@@ -209,6 +209,44 @@ TEST(EditorBurn, ASourceOfHeatLightsAndWaterHolds) {
         "expect lit Board below 0.05\n");
 }
 
+// A zone of wind is where it stands, as strong as its keys say, and goes along with a change.
+TEST(EditorBurn, AFanBlowsWhereItStandsAndWhenItRuns) {
+    Yard yard;
+    yard.run(kBoard);
+    yard.run(
+        "set settings wind 1 0 0\n"
+        "add wind fan name=Fan velocity 0 0 6 position 0 0 -3 length 4 radius 1 falloff 0 start 1\n"
+        "add wind ball name=Shelter velocity 0 0 0 position 5 0 0 radius 1 falloff 0 shelters "
+        "yes\n");
+    std::string error;
+    ASSERT_TRUE(burnToPlayhead(*yard.host, yard.host->cpu(error), error)) << error;
+    Burn& burn = *yard.host->burn;
+    EXPECT_THAT(burn.report, ::testing::IsEmpty());
+    const auto windAt = [&](float x, float z) {
+        const float point[3] = {x, 0, z};
+        Vec3 wind{};
+        EXPECT_EQ(FW_OK, fwWorld_GetWindAt(burn.world, point, wind.data()));
+        return wind;
+    };
+    ASSERT_TRUE(runBurn(burn, 0.75, error)) << error;
+    EXPECT_EQ((Vec3{1, 0, 0}), windAt(0, -1)) << "it does not run yet";
+    EXPECT_EQ((Vec3{0, 0, 0}), windAt(5, 0)) << "behind the shelter";
+    ASSERT_TRUE(runBurn(burn, 2, error)) << error;
+    const Vec3 blown = windAt(0, -1);
+    EXPECT_NEAR(1, blown[0], 1e-4f);
+    EXPECT_NEAR(6, blown[2], 1e-3f);
+    EXPECT_EQ((Vec3{1, 0, 0}), windAt(0, 3)) << "beyond its reach";
+    yard.run("move Fan 0 0 4\nset Fan velocity 0 0 3\n");
+    ASSERT_TRUE(reviseBurn(burn, yard.host->document.scene, yard.folder));
+    ASSERT_TRUE(runBurn(burn, 2.5, error)) << error;
+    EXPECT_EQ((Vec3{1, 0, 0}), windAt(0, -1));
+    EXPECT_NEAR(3, windAt(0, 3)[2], 1e-3f);
+    yard.run("set Fan hidden yes\n");
+    ASSERT_TRUE(reviseBurn(burn, yard.host->document.scene, yard.folder));
+    ASSERT_TRUE(runBurn(burn, 3, error)) << error;
+    EXPECT_EQ((Vec3{1, 0, 0}), windAt(0, 3));
+}
+
 TEST(EditorWhy, AnswersInAnArtistsWords) {
     Yard yard;
     yard.run(kBoard);
