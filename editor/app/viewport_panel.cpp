@@ -906,6 +906,25 @@ float movingSharpness(App& app) {
     return kShares[pace.step];
 }
 
+// Before there is a picture of the scene: how far it is, or that it was left.
+void showPreparing(App& app, ImDrawList* list, const Rect& rect, bool takesLong) {
+    const float y = rect.midY();
+    if (app.live.stopped()) {
+        drawTextCentred(list, fonts().body, rect.midX(), y - dp(8), colors::dim,
+                        "The scene is not prepared");
+        if (button("prepare", {rect.midX() - dp(60), y + dp(8)}, dp(120, 28), "Prepare it"))
+            app.live.goOn();
+        return;
+    }
+    float share = 0;
+    const std::string stage = app.live.stage(share);
+    drawTextCentred(list, fonts().body, rect.midX(), y - dp(8), colors::dim,
+                    stage.empty() ? "Preparing the scene" : stage.c_str());
+    progressBar(list, {rect.midX() - dp(110), y + dp(8)}, dp(220), dp(6), share, colors::accent);
+    if (takesLong && button("leave it", {rect.midX() - dp(46), y + dp(26)}, dp(92, 28), "Cancel"))
+        app.live.cancel();
+}
+
 }  // namespace
 
 void showPicture(App& app, const Rect& rect) {
@@ -933,15 +952,18 @@ void showViewport(App& app, const Rect& rect) {
     if (app.live.burn() && app.live.target.texture())
         list->AddImage(app.live.target.texture(), rect.low(), rect.high());
 
+    // What is prepared for long wants a button to leave it.
+    constexpr double kLong = 1;  // s
+    if (!app.live.preparing())
+        app.preparingSince = -1;
+    else if (app.preparingSince < 0)
+        app.preparingSince = app.now;
+    const bool takesLong = app.preparingSince >= 0 && app.now - app.preparingSince > kLong;
+
     const bool ready =
         app.live.burn() && app.live.view.structSize != 0 && app.live.view.projection[0] != 0;
     if (!ready) {
-        float share = 0;
-        const std::string stage = app.live.stage(share);
-        drawTextCentred(list, fonts().body, rect.midX(), rect.midY() - dp(8), colors::dim,
-                        stage.empty() ? "Preparing the scene" : stage.c_str());
-        progressBar(list, {rect.midX() - dp(110), rect.midY() + dp(8)}, dp(220), dp(6), share,
-                    colors::accent);
+        showPreparing(app, list, rect, takesLong);
         endPanel();
         return;
     }
@@ -1072,6 +1094,13 @@ void showViewport(App& app, const Rect& rect) {
         const std::string stage = app.live.stage(share);
         const std::string text = stage.empty() ? "Preparing" : stage;
         drawChip(list, {rect.midX(), rect.y1 - dp(22)}, text.c_str());
+        if (takesLong &&
+            button("leave it", {rect.midX() - dp(40), rect.y1 - dp(66)}, dp(80, 26), "Cancel"))
+            app.live.cancel();
+    } else if (app.live.stopped()) {
+        drawChip(list, {rect.midX(), rect.y1 - dp(22)}, "The last change is not shown");
+        if (button("show it", {rect.midX() - dp(40), rect.y1 - dp(66)}, dp(80, 26), "Show it"))
+            app.live.goOn();
     }
     if (app.document.scene.meshes.empty() && app.document.scene.flames.empty() &&
         app.document.scene.emitters.empty()) {

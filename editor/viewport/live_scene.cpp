@@ -189,7 +189,7 @@ void LiveScene::follow(const fwedit::Document& document, bool paints) {
     restart_ = false;
     folder_ = document.file.empty() ? std::filesystem::current_path()
                                     : std::filesystem::absolute(document.file).parent_path();
-    stop_ = false;
+    stop_ = stopped_ = false;
     work_ =
         std::async(std::launch::async, [this, scene = scene_, images = images_, folder = folder_] {
             Made made;
@@ -200,8 +200,13 @@ void LiveScene::follow(const fwedit::Document& document, bool paints) {
 
 void LiveScene::adopt(Made made) {
     stale_ = true;
+    stopped_ = stop_;
+    if (stopped_) {
+        vkDeviceWaitIdle(host_.device);  // what was made of it goes
+        return;
+    }
     if (!made.burn) {
-        if (!stop_) report_.push_back(made.error);
+        report_.push_back(made.error);
         return;
     }
     vkDeviceWaitIdle(host_.device);

@@ -91,7 +91,11 @@ class LiveScene {
     [[nodiscard]] const fwedit::Burn* burn() const { return burn_.get(); }
     // What the background does, and how far it is, [0, 1].
     std::string stage(float& share) const;
+    // Leaves what is prepared: what was there before stays. Unwraps under way are finished first.
     void cancel() { stop_ = true; }
+    // It was left; `goOn` takes it up again, as any change of the scene does.
+    [[nodiscard]] bool stopped() const { return stopped_; }
+    void goOn() { restart_ = true; }
     // The surface under a pixel, x and y in [0, 1]; locked things are looked through if wished.
     SurfaceHit pick(float x, float y, bool throughLocked) const;
     // The outline of a mesh as pairs of places in [0, 1] of a picture of so many pixels.
@@ -186,6 +190,7 @@ class LiveScene {
     bool previewed_ = false;  // a hand holds the preview
     bool owesPaint_ = false;
     std::atomic<bool> stop_{false};
+    bool stopped_ = false;
     mutable std::mutex stageMutex_;
     std::string stage_;
     float share_ = 0;
