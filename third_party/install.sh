@@ -12,7 +12,7 @@ packages=(
     libglfw3-dev
     libtinygltf-dev nlohmann-json3-dev
     libimgui-dev libstb-dev libfreetype-dev
-    fonts-inter fonts-material-design-icons-iconfont
+    fonts-inter fonts-material-design-icons-iconfont fonts-dejavu-core
     libopenimageio-dev libimath-dev zlib1g-dev
     assimp-testmodels
 )

@@ -385,7 +385,7 @@ void showGuard(App& app) {
 
 void showAbout(App& app) {
     ImDrawList* list = beginOverlay("##about", app.screen, 0.62f);
-    const ImVec2 size = dp(520, 300);
+    const ImVec2 size = dp(520, 340);
     const ImVec2 low(std::floor(app.screen.midX() - size.x * 0.5f),
                      std::floor(app.screen.height() * 0.2f));
     drawCard(list, low, low + size);
@@ -405,7 +405,9 @@ void showAbout(App& app) {
                     "Letters: Inter, SIL Open Font License 1.1 "
                     "(/usr/share/doc/fonts-inter/copyright).\n"
                     "Icons: Material Icons by Google, Apache License 2.0 "
-                    "(/usr/share/doc/fonts-material-design-icons-iconfont/copyright).");
+                    "(/usr/share/doc/fonts-material-design-icons-iconfont/copyright).\n"
+                    "Code: DejaVu Sans Mono, Bitstream Vera License "
+                    "(/usr/share/doc/fonts-dejavu-core/copyright).");
     if (button("close", low + size - dp(120, 52), dp(96, 30), "Close", ButtonKind::kPrimary))
         app.about = false;
     endPanel();

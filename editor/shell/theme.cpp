@@ -81,7 +81,7 @@ bool loadFonts(std::string& error) {
     made.smallSemi = text("Inter-SemiBold.otf", 13.5f);
     made.heading = text("InterDisplay-SemiBold.otf", 19);
     made.title = text("InterDisplay-SemiBold.otf", 32);
-    // Letters of one width, for code: nearly every system has this one; ImGui has one of its own.
+    // Letters of one width, for code; where there are none ImGui has some of its own.
     const char* mono = "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf";
     ImFontConfig plain;
     plain.SizePixels = dp(13);
