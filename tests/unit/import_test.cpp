@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "import/gltf_import.h"
+#include "support/sanitized.h"
 
 namespace {
 
@@ -445,6 +448,33 @@ TEST(Import, TestModelsThatMustBeRefused) {
         EXPECT_FALSE(fwimport::importGltf(kModels / path, model, error)) << path;
         EXPECT_THAT(error, HasSubstr(expected));
     }
+}
+
+// All that the package has, the broken ones too: a model or words, and never for long.
+TEST(Import, EveryTestModelIsAModelOrRefusedInWords) {
+    REQUIRE_MODELS();
+    using Clock = std::chrono::steady_clock;
+    int read = 0, refused = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(kModels.parent_path())) {
+        const std::string ending = entry.path().extension();
+        if (ending != ".gltf" && ending != ".glb") continue;
+        ImportedModel model;
+        std::string error;
+        const Clock::time_point begin = Clock::now();
+        if (fwimport::importGltf(entry.path(), model, error)) {
+            ++read;
+            EXPECT_GT(model.triangleCount(), 0u) << entry.path();
+        } else {
+            ++refused;
+            EXPECT_THAT(error, HasSubstr(entry.path().filename().string()));
+            EXPECT_GT(error.size(), entry.path().filename().string().size() + 10) << entry.path();
+        }
+        const std::chrono::duration<double> took = Clock::now() - begin;
+        EXPECT_LT(took.count(), 5 * fw::test::rounds(1, 4)) << entry.path();
+    }
+    std::printf("           %d read, %d refused\n", read, refused);
+    EXPECT_GT(read, 15);
+    EXPECT_GT(refused, 10);
 }
 
 TEST(Import, EveryPrimitiveMode) {

@@ -3,6 +3,7 @@
 #include "import/float_picture.h"
 #include "profile_picture.h"
 #include "sheet.h"
+#include "support/sanitized.h"
 
 #include "finish.h"
 #include "volume/look.h"
@@ -303,6 +304,48 @@ TEST(SheetImport, BadSheetsAreRefusedByName) {
     EXPECT_EQ(refusal(broken, grid4x2()), "pixel (3, 7) is inf; it must be a number");
     EXPECT_THAT(refusal(flat(64, 64, {1, 1, 1}, {"X", "Y", "Z"}), grid4x2()),
                 HasSubstr("without R, G and B"));
+}
+
+// Whatever a sheet's values and its grid are: frames of sound values, or words.
+TEST(SheetImport, TenThousandSpoiltSheetsAreRefusedOrSound) {
+    constexpr float kBad[] = {-1, 1e30f, -1e30f, std::numeric_limits<float>::infinity(),
+                              std::numeric_limits<float>::quiet_NaN()};
+    std::mt19937 random(11);
+    const auto below = [&](uint32_t limit) { return uint32_t(random() % limit); };
+    int refused = 0;
+    const int rounds = test::rounds(10000, 1000);
+    for (int k = 0; k < rounds; ++k) {
+        const uint32_t channels = below(8) ? 3 + below(2) : 1 + below(2);
+        const uint32_t columns = 1 + below(4), rows = 1 + below(3);
+        FloatPicture picture =
+            flat(8 * columns, 8 * rows, std::vector<float>(channels, 0.5f), {"R", "G", "B", "A"});
+        picture.names.resize(channels);
+        picture.whole = below(2) == 0;
+        for (uint32_t left = below(3) ? 0 : below(4); left > 0; --left)
+            picture.values[random() % picture.values.size()] = kBad[below(std::size(kBad))];
+        fwtools::SheetDef def;
+        def.columns = below(8) ? columns : uint32_t(random());
+        def.rows = below(8) ? rows : uint32_t(random());
+        def.side = below(4) ? 0 : below(8) ? below(64) : uint32_t(random());
+        def.facts.frames = below(4) ? 0 : below(16);
+        def.facts.kind = fw::book::Kind(below(3));
+        std::vector<fwtools::Frame> frames;
+        std::string error;
+        if (!fwtools::framesOfSheet(picture, def, frames, error)) {
+            EXPECT_FALSE(error.empty()) << k;
+            EXPECT_TRUE(frames.empty()) << k;
+            ++refused;
+            continue;
+        }
+        ASSERT_EQ(def.facts.frames, frames.size()) << k;
+        for (const fwtools::Frame& frame : frames) {
+            ASSERT_EQ(size_t{def.facts.width} * def.facts.height, frame.texels.size()) << k;
+            for (const auto& texel : frame.texels)
+                for (int c = 0; c < 4; ++c) ASSERT_TRUE(std::isfinite(texel[c])) << k;
+        }
+    }
+    EXPECT_GT(refused, rounds / 4);
+    EXPECT_LT(refused, rounds - rounds / 10);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // Fire-profiles: painting, lookups, ranges for skipping, the cooked file and how it fails.
 #include "core/error.h"
+#include "core/hash.h"
+#include "support/sanitized.h"
 #include "volume/look.h"
 #include "volume/profile.h"
 #include "volume_scene.h"
@@ -8,12 +10,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
 #include <random>
+#include <span>
 #include <string>
 
 namespace {
 
 using namespace fw::volume;
+using testing::AnyOf;
 using testing::HasSubstr;
 using volume_scene::failure;
 
@@ -134,6 +140,46 @@ TEST(VolumeProfile, BadFilesAreRefusedWithAReason) {
         b[random() % b.size()] ^= std::byte(1u << (random() % 8));
         EXPECT_NE(read(b), "nothing failed");
     }
+}
+
+// Signed again, so that more than the checksum stands between them and the flames.
+TEST(VolumeProfile, TenThousandSpoiltFilesAreRefusedOrSound) {
+    constexpr size_t kHeader = 24, kSum = 16;
+    constexpr uint32_t kSide = 8;
+    auto good = cookProfile(painted(), std::pmr::get_default_resource());
+    good.resize(kHeader + 4 * size_t{kSide} * kSide);  // the smallest there may be
+    std::memcpy(good.data() + 8, &kSide, sizeof kSide);
+    std::memcpy(good.data() + 12, &kSide, sizeof kSide);
+    std::mt19937 random(2);
+    int refused = 0;
+    const int rounds = fw::test::rounds(10000, 1000);
+    for (int k = 0; k < rounds; ++k) {
+        auto bytes = good;
+        if (k % 4 == 0) bytes.resize(random() % bytes.size());
+        for (uint32_t left = 1 + random() % 4; left > 0 && !bytes.empty(); --left)
+            bytes[random() % (k % 2 ? bytes.size() : std::min(bytes.size(), kHeader))] =
+                std::byte(random());
+        if (bytes.size() >= kHeader) {
+            const std::span<const std::byte> all(bytes);
+            const uint64_t sum =
+                fw::core::hashBytes(all.subspan(kHeader), fw::core::hashBytes(all.first(kSum)));
+            std::memcpy(bytes.data() + kSum, &sum, sizeof sum);
+        }
+        Profile profile;
+        const std::string said = failure([&] { readProfile(bytes, profile); });
+        if (said != "nothing failed") {
+            EXPECT_THAT(said, AnyOf(HasSubstr(".fwprofile"), HasSubstr("fire profile"))) << k;
+            ++refused;
+            continue;
+        }
+        for (const uint32_t texel : profile.texels) {
+            const glm::vec2 value = glm::unpackHalf2x16(texel);
+            ASSERT_TRUE(value.x >= 0 && value.x <= 3.001f && value.y >= 0 && value.y <= 2.001f)
+                << k;
+        }
+    }
+    EXPECT_GT(refused, rounds / 4);
+    EXPECT_LT(refused, rounds) << "some only have other texels";
 }
 
 }  // namespace
