@@ -202,6 +202,9 @@ class Program {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
         runLines();
+        const auto& winds = app_->document.scene.winds;
+        if (wishes_.page.find("wind") != std::string::npos && !winds.empty())
+            fwapp::select(*app_, winds[0].id, false, false);
         app_->playing = wishes_.seconds > 0;
         for (float t = 0; t < wishes_.seconds; t += kStep) frame(kStep);
         app_->playing = false;
