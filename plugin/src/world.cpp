@@ -691,6 +691,55 @@ FwResult FW_CALL fwWorld_Load(FwWorld* world, const void* bytes, uint64_t size) 
     });
 }
 
+FwResult FW_CALL fwWorld_RequestBurn(FwWorld* world, FwBurnableMeshId id) {
+    return onWorld("fwWorld_RequestBurn", world, [&](world::World& w) {
+        w.requestBurnMap(id);
+        answerAtOnce(world);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_FetchBurn(FwWorld* world, FwBurnableMeshId id, void* buffer,
+                                   uint64_t* size) {
+    return onWorld("fwWorld_FetchBurn", world, [&](world::World& w) {
+        checkPointer(size, "size");
+        const std::pmr::vector<std::byte>* bytes = w.fetchBurn(id);
+        if (!bytes) return FW_NOT_READY;
+        giveBytes(*bytes, "baked burn", buffer, *size);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_CreateBurn(FwWorld* world, const void* bytes, uint64_t size,
+                                    FwBurnId* id) {
+    return onWorld("fwWorld_CreateBurn", world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        checkPointer(bytes, "bytes");
+        *id = w.createBurn({static_cast<const std::byte*>(bytes), size_t(size)});
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_DestroyBurn(FwWorld* world, FwBurnId id) {
+    return destroyOf("fwWorld_DestroyBurn", world, &world::World::destroyBurn, id);
+}
+
+FwResult FW_CALL fwWorld_PlayBurn(FwWorld* world, FwBurnableMeshId id, FwBurnId burn, float delay,
+                                  float speed) {
+    return onWorld("fwWorld_PlayBurn", world, [&](world::World& w) {
+        w.playBurn(id, burn, delay, speed);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_StopBurn(FwWorld* world, FwBurnableMeshId id) {
+    return onWorld("fwWorld_StopBurn", world, [&](world::World& w) {
+        w.stopBurn(id);
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_StartLog(FwWorld* world) {
     return onWorld("fwWorld_StartLog", world, [&](world::World& w) {
         w.startLog();

@@ -67,6 +67,7 @@ struct StepPlan {               // one fixed step of 1/32 s
     bool exchange = false;      // with `reduce`: fire at a distance, and who may go on burning
     bool governed = false;      // some object or the world limits its fire
     bool capped = false;        // and how many tiles may burn
+    bool plays = false;         // some object may play a baked burn
     ExchangePush rules{};       // of the exchange; what places things in lists is the backend's
     const RemoteUpdate* remote = nullptr;       // null: nothing changed
     std::span<const TexelEvent> events;         // sorted by (object, texel, order)

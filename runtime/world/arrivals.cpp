@@ -44,7 +44,9 @@ void World::wishForecasts() noexcept {
     for (uint32_t i = 0; i < queries_.slotCount(); ++i) {
         const Query* query = queries_.at(i);
         if (!query || !query->isArrival || query->orphaned) continue;
-        Forecast& forecast = *(*objects_.get(query->object)).forecast;
+        const Object& object = *objects_.get(query->object);
+        if (object.play.burn1 != 0) continue;  // its burn tells
+        Forecast& forecast = *object.forecast;
         const bool comes = forecast.pending && forecast.pendingChanges >= query->since;
         if (forecast.wished || comes || answers(forecast, *query)) continue;
         forecast.wished = true;
@@ -89,11 +91,21 @@ bool World::fetchArrival(FwQueryId id, FwArrivalState& state) {
     const Query& query = openQuery(id, true);
     const Object& object = *objects_.get(query.object);
     const Forecast& forecast = *object.forecast;
-    if (!answers(forecast, query)) return false;
-    const uint32_t tick = forecast.arrivals.ticks[query.texel];
-    const uint32_t stop = object.counters.stopTick;
-    const bool comes = gpu::isSource(tick) && !(tick > forecast.tick && stop && tick >= stop);
-    if (comes ? tick >= forecast.arrivals.settled() : !forecast.arrivals.whole) return false;
+    uint64_t tick = gpu::kNever;
+    bool comes = false;
+    if (object.play.burn1 != 0) {
+        const uint32_t recorded = (*burns_.at(object.play.burn1 - 1))->ticks[query.texel];
+        comes = recorded != gpu::kNever;
+        if (comes) tick = object.play.tickOf(recorded);
+        state.frameIndex = lastFrame_;
+    } else {
+        if (!answers(forecast, query)) return false;
+        tick = forecast.arrivals.ticks[query.texel];
+        const uint32_t stop = object.counters.stopTick;
+        comes = gpu::isSource(uint32_t(tick)) && !(tick > forecast.tick && stop && tick >= stop);
+        if (comes ? tick >= forecast.arrivals.settled() : !forecast.arrivals.whole) return false;
+        state.frameIndex = forecast.frameIndex;
+    }
     const uint64_t now = clock_.hostTick();
     const double away = (double(tick) - double(now)) / gpu::kTicksPerSecond;
     state.kind = FW_ARRIVAL_NEVER;
@@ -102,7 +114,6 @@ bool World::fetchArrival(FwQueryId id, FwArrivalState& state) {
         state.kind = tick <= now ? FW_ARRIVAL_PAST : FW_ARRIVAL_AHEAD;
         state.seconds = float(away);
     }
-    state.frameIndex = forecast.frameIndex;
     state.distance = query.distance;
     texelPosition(object, query.texel, state.position);
     queries_.destroy(id);

@@ -93,6 +93,9 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         object.countersFrame = readback.frameIndex;
         object.story.mostIgnited = std::max(object.story.mostIgnited, now.ignited);
         clamps += now.lateClamps;
+        if (object.play.began != 0 && readback.endTick >= object.play.began &&
+            !gpu::playsAt(now.playsUntil, readback.endTick))
+            endPlay(object, readback.frameIndex);  // others' fire came
         takeEnergy(object, readback.endTick);
         tellSpread(object, readback);
         float place[3];

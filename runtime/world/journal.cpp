@@ -121,6 +121,12 @@ void World::perform(const Deed& deed) {
             return setWindZone(idAt(windPool_, deed.slot), zoneDefOf(deed));
         case Deed::Kind::room:
             return setRoom(idAt(rooms_, deed.slot), roomDefOf(deed));
+        case Deed::Kind::playBurn:
+            if (deed.tick < clock_.tick || deed.tick > Clock::kLastTick) break;
+            return playBurnAt(idAt(objects_, deed.slot), idAt(burns_, deed.word - 1), deed.tick,
+                              numbers[0]);
+        case Deed::Kind::stopBurn:
+            return stopBurn(idAt(objects_, deed.slot));
         case Deed::Kind::ignite: {
             if (deed.tick < clock_.tick || deed.tick > Clock::kLastTick) break;
             FwIgnitionDef def{};
@@ -159,7 +165,7 @@ uint64_t World::identity() noexcept {
     const uint32_t counts[] = {kSaveVersion,         def_.seed,        def_.maxHops,
                                def_.maxBurningTiles, objects_.live(),  blockers_.live(),
                                fires_.live(),        emitters_.live(), fields_.live(),
-                               windPool_.live(),     rooms_.live()};
+                               windPool_.live(),     rooms_.live(),    burns_.live()};
     hash = core::hashWords(counts, hash);
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
         if (const auto* object = objects_.at(i)) {

@@ -29,13 +29,16 @@ struct Deed {
         fieldAmount,
         windZone,
         room,
+        playBurn,
+        stopBurn,
         count
     };
     Kind kind = Kind::count;
     uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all
-    uint32_t tick = 0;  // ignite: when it takes effect
+    uint32_t tick = 0;  // ignite, playBurn: when it takes effect
     uint32_t word = 0;  // flags; ignite: FwIgnitionKind; moveEmitter: 1: with a direction;
-                        // windZone: see zoneWord; room: its flags
+                        // windZone: see zoneWord; room: its flags; playBurn: slot + 1 of the
+                        // burn
     std::array<float, 13> numbers{};
 };
 
@@ -58,6 +61,8 @@ constexpr DeedForm kDeedForms[] = {
     {true, false, false, 1},   // fieldAmount
     {true, false, true, 11},   // windZone
     {true, false, true, 13},   // room
+    {true, true, true, 1},     // playBurn
+    {true, false, false, 0},   // stopBurn
 };
 static_assert(std::size(kDeedForms) == size_t(Deed::Kind::count));
 template <class S, class T>

@@ -58,6 +58,7 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         components::filterLatch(object.data, domainOf(object), drive, entry.latch);
         if (!latchNow || !components::latchDrive(object.data, entry.latch)) continue;
         entry.latch.sent = false;
+        turnPlay(object);
         if (object.story.active || entry.due || anyActive) sendRecords(object, drive, entry.latch);
     }
 }

@@ -100,6 +100,7 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
     state.burning = object.counters.burning;
     state.frontTiles = object.counters.frontTiles;
     state.refinedTriangles = object.counters.refined;
+    state.plays = object.play.burn1 != 0 ? 1 : 0;
     state.burntFraction =
         object.texels ? std::min(1.0f, float(object.story.mostIgnited) / float(object.texels))
                       : 0.0f;

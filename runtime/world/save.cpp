@@ -86,10 +86,14 @@ SavedTouch savedTouch(const FireTouch& touch) noexcept {
 
 }  // namespace
 
-uint64_t World::assetOf(const Object& object) noexcept {
+uint64_t World::meshHash(const Object& object) noexcept {
     MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
     if (mesh.hash == 0) mesh.hash = hashOf(*mesh.domain) | 1;
-    uint64_t hash = mesh.hash;
+    return mesh.hash;
+}
+
+uint64_t World::assetOf(const Object& object) noexcept {
+    uint64_t hash = meshHash(object);
     const components::BurnableMesh& data = object.data;
     const uint32_t flags = data.flags & ~uint32_t(FW_BURNABLE_HIDDEN);
     hashMore(hash, &flags, sizeof flags);
@@ -275,6 +279,8 @@ void World::noteObject(Object& object, SavedObject& saved) noexcept {
     saved.asset = assetOf(object);
     saved.pose = object.data.pose;
     saved.firstEvent = object.firstEvent;
+    saved.play = object.play;
+    if (object.play.burn1 != 0) saved.burnHash = (*burns_.at(object.play.burn1 - 1))->hash;
     saved.placed = object.remoteVersion != 0;
     saved.due = object.remoteDue;
     saved.remote = object.remote;
@@ -367,6 +373,10 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         from = ends[next++];
         object.counters = image.counters;
         object.counters.refined = 0;
+        // Of what the backend alone knew at that frame.
+        if (object.play.began != 0 &&
+            !gpu::playsAt(image.counters.playsUntil, uint32_t(saved.clock.tick)))
+            object.play = {};
         object.story = (*objects_.at(object.slot))->story;
     }
     for (SavedRoom& room : saved.rooms)  // its air goes on from what the frame left
@@ -602,6 +612,7 @@ void World::load(std::span<const std::byte> bytes) {
     SavedWorld saved(memory_);
     readSaved(bytes, saved);
     checkSaved(saved);
+    settlePlays(saved);
     // The latches first: what the backend gets follows from them.
     std::pmr::vector<components::Latch> latches(memory_);
     std::pmr::vector<ImageStore> stores(memory_);
@@ -629,6 +640,7 @@ void World::load(std::span<const std::byte> bytes) {
     for (const SavedTag& tag : saved.tags)
         tags.push_back({objects_.idOf(tag.object), tag.texel, tag.tag});
     touched_.reserve(objects_.slotCount());
+    playing_.reserve(objects_.slotCount());
     remote_.due.reserve(objects_.slotCount());
     remote_.blockers.reserve(saved.latchedBlockers.size());
     backend_.restore(restored, uint32_t(saved.clock.tick));
@@ -700,6 +712,7 @@ void World::applySaved(const SavedWorld& saved,
         std::copy_n(blocker.halfSize, 3, entry.halfSize);
     }
     touched_.clear();
+    playing_.clear();
     for (size_t i = 0; i < saved.objects.size(); ++i)
         applyObject(saved.objects[i], latches[i], **objects_.at(saved.objects[i].slot));
     for (size_t i = 0; i < saved.pairs.size(); ++i) {
@@ -758,6 +771,8 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
     sendPose(object);
     object.latch = latch;
     object.firstEvent = from.firstEvent;
+    object.play = from.play;
+    if (object.play.burn1 != 0) startPlay(object);
     object.firstFrame = lastFrame_ + 1;
     object.touched = from.touched;
     ++object.changes;

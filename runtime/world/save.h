@@ -85,6 +85,8 @@ struct SavedObject {
     uint64_t asset = 0;  // of its mesh, materials and rules
     components::Pose pose;
     uint32_t firstEvent = 0;
+    Play play;
+    uint64_t burnHash = 0;
     bool placed = false, due = false;  // as others see it; it is to be seen anew
     gpu::RemoteObject remote{};        // where it is due
     bool touched = false;              // the rest is of those alone
@@ -177,7 +179,7 @@ struct Save {  // on its way, and the last one
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 4;
+constexpr uint32_t kSaveVersion = 5;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
 

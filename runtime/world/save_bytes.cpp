@@ -198,7 +198,8 @@ void put(S& s, T& o) {
 }
 template <typename S, Is<SavedObject> T>
 void put(S& s, T& o) {
-    all(s, o.slot, o.asset, o.pose, o.firstEvent, o.placed, o.due);
+    all(s, o.slot, o.asset, o.pose, o.firstEvent, o.play.burn1, o.placed, o.due);
+    if (o.play.burn1 != 0) all(s, o.burnHash, o.play.first, o.play.rate, o.play.began, o.play.ends);
     if (o.placed && o.due) putWords(s, o.remote);
     all(s, o.touched);
     if (!o.touched) return;

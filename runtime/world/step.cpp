@@ -110,12 +110,14 @@ void World::planSteps(const ClockAdvance& time) {
     });
     size_t gates = 0;
     for (const Frame::Due& due : frame_.due) gates += due.event.gateCount;
-    frame_.events.reserve(frame_.due.size() + gates);  // spans into it must hold
+    const size_t plays = beginPlays(end);
+    // Spans into it must hold. Who plays and is disturbed has one more.
+    frame_.events.reserve(frame_.due.size() + gates + plays + frame_.plays.size());
     frame_.remoteUsed = 0;
     frame_.remoteLatched = frame_.remoteFlushed = false;
     ++planStamp_;
-    const bool awake =
-        !idle_ || !frame_.due.empty() || (switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;
+    const bool awake = !idle_ || !frame_.due.empty() || plays > 0 ||
+                       (switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;
     for (Object* object : touched_) {
         // Where fire goes from object to object, many wait for it under a wind that they know.
         if (remoteOn() &&
@@ -142,7 +144,10 @@ void World::planSteps(const ClockAdvance& time) {
                 {event.object, event.texel, event.kind,
                  event.kind == FW_WET || event.kind == gpu::kEventHeat ? event.water : event.tick});
         }
-        planGates(std::span(frame_.due).subspan(firstDue, nextDue - firstDue), firstEvent);
+        const auto due = std::span(frame_.due).subspan(firstDue, nextDue - firstDue);
+        plan.plays = !frame_.plays.empty();
+        planPlays(now, due);
+        planGates(due, firstEvent);
         plan.events = std::span<const gpu::TexelEvent>(frame_.events).subspan(firstEvent);
         firstUpdate[step] = frame_.updates.size();
         planRemote(plan, now, awake);
@@ -263,6 +268,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
             object.story.doused = true;
         }
     }
+    commitPlays(frameIndex);
     for (uint32_t slot : frame_.burnMaps) {
         Object& object = **objects_.at(slot);
         const auto send = [&](bool& wished, bool& pending) {

@@ -96,6 +96,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       queries_("Query", memory),
       blockers_("Blocker", memory),
       windPool_("Wind zone", memory),
+      burns_("Baked burn", memory),
       windZones_(memory),
       rooms_("Room", memory),
       fires_("Volumetric fire", memory),
@@ -115,6 +116,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       remote_(memory),
       imageUsers_(memory),
       touched_(memory),
+      playing_(memory),
+      burnBytes_(memory),
       forecasts_(memory),
       tags_(memory),
       pending_(memory),
@@ -497,6 +500,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
         if (Query* query = queries_.at(i); query && query->object.index1 == id.index1)
             query->orphaned = true;
     std::erase(touched_, &object);
+    std::erase(playing_, &object);
     std::erase(forecasts_, slot);
     std::erase(remote_.due, slot);
     texels_ -= object.texels;

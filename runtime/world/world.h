@@ -24,6 +24,7 @@
 #include "world/event_queue.h"
 #include "world/governor.h"
 #include "world/journal.h"
+#include "world/played.h"
 
 #include <array>
 
@@ -118,6 +119,7 @@ struct Object {
     BurnMapCopy map;
     core::Owned<Forecast> forecast;  // null: never asked for
     uint64_t changes = 0;            // of what its fire will do, that we know of
+    Play play;                       // the baked burn that it plays
     // Of a skinned object: the host's vertices, m, in its mesh's shape; 3 each. Normals are
     // scratch.
     std::pmr::vector<float> skin, skinNormals;
@@ -407,6 +409,13 @@ class World {
     const std::pmr::vector<std::byte>* fetchSave(SaveFor who = SaveFor::host);  // null: not ready
     void load(std::span<const std::byte> bytes);
 
+    // played.cpp. A burn is made of what requestBurnMap brings.
+    const std::pmr::vector<std::byte>* fetchBurn(FwBurnableMeshId id);  // null: not ready
+    FwBurnId createBurn(std::span<const std::byte> bytes);
+    void destroyBurn(FwBurnId id);
+    void playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
+    void stopBurn(FwBurnableMeshId id);
+
     // journal.cpp
     Journal& keepJournal(bool follows);  // from here on
     void dropJournal() noexcept { journal_ = {}; }
@@ -477,6 +486,7 @@ class World {
               events(memory),
               updates(memory),
               latches(memory),
+              plays(memory),
               probes(memory),
               burnMaps(memory),
               images(memory),
@@ -494,11 +504,17 @@ class World {
             components::Latch latch;
             bool due = false;  // an event of this frame addresses it
         };
+        struct PlayOf {
+            Object* object = nullptr;
+            Play play;                   // as it is at the frame's end
+            uint32_t lit = mesh::kNone;  // the first texel that catches by it
+        };
         std::pmr::vector<gpu::StepPlan> steps;
         std::pmr::vector<Due> due;
         std::pmr::vector<gpu::TexelEvent> events;
         std::pmr::vector<gpu::MaterialUpdate> updates;
         std::pmr::vector<LatchOf> latches;  // of touched objects, as they are at the frame's end
+        std::pmr::vector<PlayOf> plays;     // of those that play a baked burn
         std::pmr::vector<gpu::Probe> probes;
         std::pmr::vector<uint32_t> burnMaps;
         std::pmr::vector<uint32_t> images;                   // slots of objects that a save takes
@@ -596,6 +612,16 @@ class World {
     // field_touch.cpp
     void stepCells(Field& field, uint64_t tick) noexcept;
     void touchByField(Field& field, uint32_t now);
+    // played.cpp
+    void playBurnAt(FwBurnableMeshId id, FwBurnId burn, uint32_t tick, float speed);
+    void reservePlays(size_t more);
+    void startPlay(Object& object) noexcept;
+    void endPlay(Object& object, uint64_t frameIndex) noexcept;
+    size_t beginPlays(uint64_t end);
+    void planPlays(uint32_t now, std::span<const Frame::Due> due);
+    void turnPlay(const Object& object) noexcept;
+    void settlePlays(SavedWorld& saved);  // of a save: throws where this world has other burns
+    void commitPlays(uint64_t frameIndex) noexcept;
     // latch.cpp
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
     // wind.cpp
@@ -655,6 +681,7 @@ class World {
                       const gpu::Readback& readback) noexcept;
     void runForecasts() noexcept;
     // save.cpp
+    [[nodiscard]] uint64_t meshHash(const Object& object) noexcept;
     [[nodiscard]] uint64_t assetOf(const Object& object) noexcept;
     [[nodiscard]] uint32_t windowOf(const Object& object) noexcept;
     void planSave();
@@ -736,6 +763,7 @@ class World {
     core::HandlePool<FwQueryId, Query> queries_;
     core::HandlePool<FwBlockerId, BlockerEntry> blockers_;
     core::HandlePool<FwWindZoneId, components::WindZone> windPool_;
+    core::HandlePool<FwBurnId, core::Owned<Burn>> burns_;
     std::pmr::vector<components::WindZone> windZones_;  // in the order in which they count
     core::HandlePool<FwRoomId, RoomEntry> rooms_;
     uint32_t roomEpoch_ = 0;     // of their airs' beginnings, the last one
@@ -769,6 +797,8 @@ class World {
     RemoteBook remote_;
     std::pmr::vector<uint32_t> imageUsers_;  // by backend slot: objects + 1 for a live id; 0: free
     std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing
+    std::pmr::vector<Object*> playing_;      // baked burns, in slot order
+    std::pmr::vector<std::byte> burnBytes_;  // of the last fetchBurn
     uint32_t shapes_ = 0;                    // entries of meshes_ that are shapes
     uint64_t texels_ = 0;                    // of all objects, that can burn
     uint32_t mapsWished_ = 0;                // wishes for objects' states that are still to be sent

@@ -52,6 +52,7 @@ void applyRun(uint first) {
     bool warms = false;
     bool byFlame = false;  // lit by heat that came; what the host lights needs no leave
     uvec2 has = uvec2(0u);
+    uint plays = objectCounters[object].playsUntil;
     if (heats) {
         uint heatAt = objects[object].heatBase + texel;
         uint kind = texels[objects[object].texelBase + texel].y >> 16u;
@@ -60,9 +61,11 @@ void applyRun(uint first) {
         HeatTexel x = unpackHeat(had);
         do {
             uint kind_ = events[last].kind;
-            bool lets = kind_ <= kEventGate || gatesLet(kind_);
+            bool lets = !hasGates(kind_) || gatesLet(kind_);
             uint was = now;
-            if (lets) now = heatEvent(x, m, now, eventKind(events[last].kind), events[last].tick, push.now);
+            if (lets)
+                now = heatEvent(x, m, now, playedKind(kind_, plays, push.now), events[last].tick,
+                                push.now);
             byFlame = isSource(was) ? byFlame : isSource(now) && eventKind(kind_) == kEventHeat;
             ++last;
         } while (last < push.count && events[last].object == object &&
@@ -71,7 +74,8 @@ void applyRun(uint first) {
         warms = has != had || now != before;
     } else {
         do {
-            now = applyEvent(now, eventKind(events[last].kind), events[last].tick, push.now);
+            now = applyEvent(now, playedKind(events[last].kind, plays, push.now), events[last].tick,
+                             push.now);
             ++last;
         } while (last < push.count && events[last].object == object &&
                  events[last].texel == texel);
@@ -106,6 +110,12 @@ void main() {
     uint object = events[i].object;
     uint texel = events[i].texel;
     if (eventKind(events[i].kind) == kEventGate) return;
+    if (eventKind(events[i].kind) == kEventPlays) {
+        // Never both in a step.
+        if (events[i].tick == kNever) atomicMax(objectCounters[object].playsUntil, kNever);
+        else atomicMin(objectCounters[object].playsUntil, events[i].tick);
+        return;
+    }
     if (i > 0u && events[i - 1u].object == object && events[i - 1u].texel == texel) return;
     applyRun(i);
 }

@@ -147,6 +147,7 @@ void finishTile(uint worldTile, TileRef tile, uint thread, uint flux, bool alway
     if (lit != gone) atomicAdd(objectCounters[object].ignited, lit - gone);
     if (lit != 0u) {
         atomicMax(objectCounters[object].lastIgnition, push.now + kStepTicks);
+        atomicMin(objectCounters[object].playsUntil, push.now + kStepTicks);
         if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
             burnAppend(push.burnParity, worldTile);
             atomicAdd(objectCounters[object].burningTiles, 1u);

@@ -54,7 +54,13 @@ void schedule(uint worldTile, bool dense) {
         if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
         return;
     }
-    // A loop, because devices without branches load under an `if` too.
+    // Loops, because devices without branches load under an `if` too.
+    for (bool plays = (push.switches & kSwitchPlays) != 0u; plays; plays = false) {
+        if (playsAt(objectCounters[tile.object].playsUntil, push.now)) {  // due when it goes live
+            if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
+            return;
+        }
+    }
     for (bool governed = (push.switches & kSwitchGoverned) != 0u; governed; governed = false) {
         if (stoppedAt(objectCounters[tile.object].stopTick, push.now)) {
             tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileNews);

@@ -48,6 +48,7 @@ void warmTile(uint slot, uint local) {
             by = key;
         }
     }
+    if (fluxWork(flux) == kWorkAlways) atomicMin(objectCounters[slot].playsUntil, push.now);
     if (flux != 0u && objectCounters[slot].litTick == 0u)
         atomicMax(objectCounters[slot].litBy, by);
     if (tileHeat[worldTile].flux == flux && tileHeat[worldTile].pilot == pilot) return;

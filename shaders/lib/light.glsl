@@ -17,6 +17,7 @@ bool lightTexel(uint object, uint texel, uint tick, uint by) {
     nowBurns(object, p.worldTile, push.now);
     if ((objects[object].flags & kObjectHeat) != 0u) hotTouch(push.hotParity, p.worldTile);
     litFrom(object, by);
+    atomicMin(objectCounters[object].playsUntil, push.now);
     texelChanged(object, texel, p, true);
     return true;
 }

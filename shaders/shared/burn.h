@@ -178,6 +178,7 @@ FW_SHARED_CONST uint kSwitchRefineFull = 64u;
 FW_SHARED_CONST uint kSwitchCrossing = 128u;
 FW_SHARED_CONST uint kSwitchNoZPass = 256u;
 FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;  // ours: some object or the world limits its fire
+FW_SHARED_CONST uint kSwitchPlays = 0x80000u;     // ours: some object may play a baked burn
 
 // TexelEvent::kind, as FwIgnitionKind
 FW_SHARED_CONST uint kEventIgnite = 0u;
@@ -189,6 +190,10 @@ FW_SHARED_CONST uint kEventHeat = 4u;  // ours: a flame blows on it for a heat s
 // A texel that a flame came to on its way, after the batch's other events, in no order; changes
 // nothing. tick: from ignition until it gives way.
 FW_SHARED_CONST uint kEventGate = 5u;
+// Of a baked burn: lights the texel if its object plays one. And when its object does (texel:
+// kNoneTexel): from now on (tick: kNever), or until a tick at most.
+FW_SHARED_CONST uint kEventPlay = 6u;
+FW_SHARED_CONST uint kEventPlays = 7u;
 FW_SHARED_CONST uint kEventKindBits = 8u;
 FW_SHARED_CONST uint kGateShut = 0x100u;  // of a gate's kind: it must still stand, else be gone
 FW_SHARED_CONST uint kGateMore = 0x200u;  // of a gate's kind: the next must let it too
@@ -296,7 +301,7 @@ struct ObjectCounters {
     uint air;         // of its room: how strongly fire burns there, Q8, | kAirKnown; 0: it is in none
     uint drawnLow;    // of its energy, that its room has accounted for; of no account in none
     uint drawnHigh;
-    uint reserved;
+    uint playsUntil;  // it plays a baked burn in steps that begin before: its front stands
 };
 FW_SHARED_SIZE(ObjectCounters, 80)
 FW_SHARED_CONST uint kAirFull = 256u;
@@ -362,6 +367,16 @@ FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }
 FW_SHARED_FN bool isBarrier(uint t) { return t == kInert || t == kWet || t == kOutWet; }
 
 FW_SHARED_FN uint eventKind(uint kind) { return kind & ((1u << kEventKindBits) - 1u); }
+FW_SHARED_FN bool hasGates(uint kind) { return (kind >> kEventKindBits) != 0u; }
+
+// Who disturbs an object lowers `playsUntil` to the end of the step, or of the exchange: so all that
+// happens in a step sees the same, in whatever order.
+FW_SHARED_FN bool playsAt(uint playsUntil, uint now) { return playsUntil > now; }
+// What an event is to an object that does so, or does not.
+FW_SHARED_FN uint playedKind(uint kind, uint playsUntil, uint now) {
+    uint k = eventKind(kind);
+    return k != kEventPlay ? k : playsAt(playsUntil, now) ? kEventIgnite : kEventGate;
+}
 
 // What one event makes of one texel. `now`: start tick of the step that applies it.
 FW_SHARED_FN uint applyEvent(uint t, uint kind, uint tick, uint now) {

@@ -29,6 +29,7 @@ int fwTestCallEverything(int* calls) {
     const FwPeerId peer = {0, 0};
     const FwWindZoneId zone = {0, 0};
     const FwRoomId room = {0, 0};
+    const FwBurnId burn = {0, 0};
 
     RUNS(fwResultName(FW_OK));
     RUNS(fwGetVersion());
@@ -126,6 +127,12 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RequestSave(NULL));
     REFUSES(fwWorld_FetchSave(NULL, NULL, NULL));
     REFUSES(fwWorld_Load(NULL, NULL, 0));
+    REFUSES(fwWorld_RequestBurn(NULL, object));
+    REFUSES(fwWorld_FetchBurn(NULL, object, NULL, NULL));
+    REFUSES(fwWorld_CreateBurn(NULL, NULL, 0, NULL));
+    REFUSES(fwWorld_DestroyBurn(NULL, burn));
+    REFUSES(fwWorld_PlayBurn(NULL, object, burn, 0.0f, 1.0f));
+    REFUSES(fwWorld_StopBurn(NULL, object));
     REFUSES(fwWorld_StartLog(NULL));
     REFUSES(fwWorld_StopLog(NULL));
     REFUSES(fwWorld_FetchLog(NULL, NULL, NULL));

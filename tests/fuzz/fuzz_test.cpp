@@ -469,6 +469,26 @@ class Fuzz {
         check(result);
         if (result == FW_OK) rooms_.known.push_back(id);
     }
+    // Of what an object burnt, now and then damaged, for any object to play.
+    void useBurn(FwBurnableMeshId object) {
+        check(fwWorld_RequestBurn(world_, object));
+        uint64_t size = 0;
+        FwResult result = fwWorld_FetchBurn(world_, object, nullptr, &size);
+        check(result);
+        if (result == FW_OK) {
+            std::vector<unsigned char> bytes(size);
+            check(fwWorld_FetchBurn(world_, object, bytes.data(), &size));
+            if (random_.once(4)) bytes[random_.below(uint32_t(size))] ^= 1u << random_.below(8);
+            FwBurnId id{};
+            result = fwWorld_CreateBurn(world_, bytes.data(), size, &id);
+            check(result);
+            if (result == FW_OK) burns_.known.push_back(id);
+        }
+        check(fwWorld_PlayBurn(world_, objects_.any(random_), burns_.any(random_),
+                               random_.unit() - 0.1f, random_.unit() * 20));
+        if (random_.once(4)) check(fwWorld_StopBurn(world_, objects_.any(random_)));
+        if (random_.once(4)) destroy(burns_, fwWorld_DestroyBurn);
+    }
     void shapeCollider() {
         FwFireColliderDef def = fwDefaultFireColliderDef();
         def.kind = random_.below(8);
@@ -742,6 +762,7 @@ class Fuzz {
                 break;
             case 31:
                 shapeWind();
+                if (random_.once(2)) useBurn(object);
                 if (random_.once(4)) destroy(zones_, fwWorld_DestroyWindZone);
                 break;
             case 32:
@@ -796,6 +817,7 @@ class Fuzz {
     Ids<FwFireColliderId> colliders_;
     Ids<FwWindZoneId> zones_;
     Ids<FwRoomId> rooms_;
+    Ids<FwBurnId> burns_;
     Ids<FwParticleFieldId> fields_;
     Ids<FwQueryId> queries_;
     std::vector<unsigned char> cooked_;

@@ -55,6 +55,7 @@ typedef struct FwParticleFieldId { uint32_t index1, generation; } FwParticleFiel
 typedef struct FwPeerId { uint32_t index1, generation; } FwPeerId;
 typedef struct FwWindZoneId { uint32_t index1, generation; } FwWindZoneId;
 typedef struct FwRoomId { uint32_t index1, generation; } FwRoomId;
+typedef struct FwBurnId { uint32_t index1, generation; } FwBurnId;
 
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
@@ -1044,6 +1045,8 @@ typedef enum FwEventType {
     FW_EVENT_SPREAD_TO = 7,     /* `object` was lit by `other`; tag: jumps since the first fire; value: s
                                    since world start; position: of `object`'s box's middle */
     FW_EVENT_SPOT_FIRE = 8,     /* an ember lit `object`; position: there; value: how many since the last */
+    FW_EVENT_WENT_LIVE = 9,     /* the baked burn that `object` played is over, or was disturbed: from here on
+                                   it is simulated; value: s since world start */
     FW_EVENT_TYPE_FORCE32 = 0x7fffffff
 } FwEventType;
 typedef struct FwEvent {        /* 64 bytes for ever */
@@ -1075,7 +1078,7 @@ typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU
     float reserved1;
     double energy;             /* J that its fuel gave off; 0 with FW_BURNABLE_LITE */
     uint32_t refinedTriangles; /* as last drawn, if it refines and caught fire; see FwWorldStats */
-    uint32_t reserved2;
+    uint32_t plays;            /* 1: a baked burn, see fwWorld_PlayBurn; 0: it is simulated */
 } FwObjectState;
 FW_API FwResult FW_CALL fwWorld_GetObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state); /* [world] */
 
@@ -1176,6 +1179,33 @@ FW_API FwResult FW_CALL fwWorld_OpenLog(FwWorld*, const void* bytes, uint64_t si
  * follows a server's. [world] */
 FW_API FwResult FW_CALL fwWorld_PlayLog(FwWorld*, uint64_t untilTick, float* seconds);
 
+/* ---- baked burns: fire that plays and goes live when disturbed ------------------------------------------------ */
+
+/* Asks for when each texel of an object caught, as it will be after the next frame; fetched like a save, some frames later
+ * with a device. What was put out, and what has not burnt, is not in it. [world] */
+FW_API FwResult FW_CALL fwWorld_RequestBurn(FwWorld*, FwBurnableMeshId id);
+/* FW_NOT_READY until it is there. Call with buffer null for the size, or with enough room; *size is what is (or would
+ * be) written, in bytes: a .fwburn file, little-endian, versioned, with a checksum, compressed. Times count from the first
+ * texel that caught. Refused where nothing has burnt. [world] */
+FW_API FwResult FW_CALL fwWorld_FetchBurn(FwWorld*, FwBurnableMeshId id, void* buffer, uint64_t* size);
+/* Bytes of fwWorld_FetchBurn, of this world or another one, to be played by any number of objects. FW_ERROR_BAD_DATA: they
+ * are damaged, cut or of another version. Takes 8 bytes a texel. [world] */
+FW_API FwResult FW_CALL fwWorld_CreateBurn(FwWorld*, const void* bytes, uint64_t size, FwBurnId* id);
+FW_API FwResult FW_CALL fwWorld_DestroyBurn(FwWorld*, FwBurnId id); /* refused while an object plays it [world] */
+/* From the next step on the object plays the burn, whose first texel catches `delay` s from now ([0, 3600], at least one
+ * step), and the others at `speed` times the pace at which they did ([1/16, 16], 1: as they did). Meant for what has not
+ * burnt yet; what burns already goes on. No front is simulated on it; fuel, heat, char, flames, lights, what it does to
+ * others, events, queries and saves are as ever, and fwWorld_RequestArrival tells what the burn says. The object goes live
+ * (FW_EVENT_WENT_LIVE), that is, its front is simulated from the state that it then has, within two steps after: the host
+ * or another object lights, heats, wets, dries or douses a texel of it; others' fire sends it 4 kW/m^2 (see
+ * FW_WORLD_RADIATION), of which wood does not catch yet; its wind or pose turns so far that its front would hear of it;
+ * fwWorld_StopBurn; the last texel of the burn caught. The same on every backend, in saves (which name burns by their id and
+ * a hash: make them in the same order), logs and networks. Replaces a burn that the object plays. The burn is of the same
+ * mesh (by a hash of what is baked of it, in the same shape), or it is refused; so is FW_BURNABLE_PUBLISHED. [world] */
+FW_API FwResult FW_CALL fwWorld_PlayBurn(FwWorld*, FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
+/* Makes an object live that plays a burn; else nothing. [world] */
+FW_API FwResult FW_CALL fwWorld_StopBurn(FwWorld*, FwBurnableMeshId id);
+
 /* ---- a network: one burn on many machines ------------------------------------------------------------------ */
 
 /* The server's world is the truth. Clients have worlds that are made of the same things in the same order (see fwWorld_Load);
@@ -1185,9 +1215,10 @@ FW_API FwResult FW_CALL fwWorld_PlayLog(FwWorld*, uint64_t untilTick, float* sec
  * twice, late and in any order. A packet that is damaged, cut, or of another session or version is refused with a message
  * and changes nothing; the checksum finds damage, not malice: encrypt where that is to be feared. Nothing here waits.
  *
- * Sent by itself is: fwWorld_Ignite, SetWind, SetWindZone, SetRoom, SetFlags, SetTransform, MoveBlocker; of volumetric fires with FW_FIRE_IGNITES
- * and jets with FW_EMITTER_IGNITES where they are and their power, of fields with FW_FIELD_WETS where they are and their
- * amount. On a client these calls are refused, as fwWorld_Load is. What is made and destroyed, and all else that changes what
+ * Sent by itself is: fwWorld_Ignite, PlayBurn, StopBurn, SetWind, SetWindZone, SetRoom, SetFlags, SetTransform, MoveBlocker;
+ * of volumetric fires with FW_FIRE_IGNITES and jets with FW_EMITTER_IGNITES where they are and their power, of fields with
+ * FW_FIELD_WETS where they are and their amount. On a client these calls are refused, as fwWorld_Load is. What is made and
+ * destroyed, and all else that changes what
  * burns (colliders, points of fires, painted fields, vertices), each host does by itself: told by fwNet_Tell, at the same step. */
 typedef struct FwNetDef {
     uint32_t structSize, flags; /* flags: 0 */

@@ -145,6 +145,14 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
         const TexelEvent& first = step.events[i];
         if (eventKind(first.kind) == kEventGate) break;  // the rest are
         CpuObject& object = *objects[first.object];
+        if (eventKind(first.kind) == kEventPlays) {
+            if (first.tick == kNever)
+                object.counters.playsUntil = kNever;
+            else
+                disturb(object, first.tick);
+            ++i;
+            continue;
+        }
         uint32_t& texel = object.state[first.texel];
         const uint32_t before = texel;
         const size_t begin = i;
@@ -159,7 +167,8 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             now = heatEvents(object, step.events, events, step.now, heated, byFlame);
         else
             for (const TexelEvent& event : events)
-                now = applyEvent(now, eventKind(event.kind), event.tick, step.now);
+                now = applyEvent(now, playedKind(event.kind, object.counters.playsUntil, step.now),
+                                 event.tick, step.now);
         const uint32_t x = first.texel % object.domain->width;
         const uint32_t y = first.texel / object.domain->width;
         const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
@@ -218,6 +227,10 @@ void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, u
     const BurnObject& record = objects[tile.object]->record;
     if (!takesPart(iteration, step.substepShift, record.substepShift)) {
         if ((tile.flag & kTileListed) != 0) listOut.push_back(worldTile);
+        return;
+    }
+    if (step.plays && playsAt(objects[tile.object]->counters.playsUntil, step.now)) {
+        if ((tile.flag & kTileListed) != 0) listOut.push_back(worldTile);  // due when it goes live
         return;
     }
     if (step.governed) {

@@ -36,6 +36,10 @@ void CpuBackend::State::litFrom(CpuObject& object, uint32_t by) noexcept {
     if (object.counters.litTick == 0) object.counters.litBy = std::max(object.counters.litBy, by);
 }
 
+void CpuBackend::State::disturb(CpuObject& object, uint32_t end) noexcept {
+    object.counters.playsUntil = std::min(object.counters.playsUntil, end);
+}
+
 void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexcept {
     ExchangePush rules = given;
     rules.now = now;
@@ -120,6 +124,7 @@ bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint
     burning(worldTile);
     if (!object.heat.empty()) hot(worldTile);
     litFrom(object, by);
+    disturb(object, now);
     if (!object.published.empty()) {
         publishedEvent(object, texel, true);
         return true;
@@ -213,6 +218,7 @@ void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
             by = key;
         }
     }
+    if (fluxWork(flux) == kWorkAlways) disturb(object, rules.now);
     if (flux != 0) litFrom(object, by);
     TileHeat& comes = tileHeat[worldTile];
     if (comes.flux == flux && comes.pilot == pilot) return;

@@ -45,9 +45,10 @@ uint32_t CpuBackend::State::heatEvents(CpuObject& object, std::span<const TexelE
     uint32_t after = object.state[texel];
     x = unpackHeat(object.heat[texel]);
     for (const TexelEvent& event : events) {
-        if (event.kind > kEventGate && !gatesLet(batch, event.kind, now)) continue;
+        if (hasGates(event.kind) && !gatesLet(batch, event.kind, now)) continue;
         const uint32_t was = after;
-        after = heatEvent(x, m, after, eventKind(event.kind), event.tick, now);
+        after = heatEvent(x, m, after, playedKind(event.kind, object.counters.playsUntil, now),
+                          event.tick, now);
         if (!isSource(was)) byFlame = isSource(after) && eventKind(event.kind) == kEventHeat;
     }
     return after;
@@ -133,6 +134,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     object.counters.ignited += lit - gone;
     if (lit != 0) {
         object.counters.lastIgnition = std::max(object.counters.lastIgnition, now + kStepTicks);
+        disturb(object, now + kStepTicks);
         burning(worldTile);
     }
     tile.lastChange = now;

@@ -149,6 +149,8 @@ struct CpuBackend::State {
     static uint32_t nearestLane(const CpuObject& object, uint32_t tile, const ivec3& at,
                                 uint32_t axis) noexcept;
     void litFrom(CpuObject& object, uint32_t by) noexcept;
+    // A baked burn that it plays ends with the step, or exchange, that ends there.
+    static void disturb(CpuObject& object, uint32_t end) noexcept;
     void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
     uint32_t allocateTiles(uint32_t count);
     void releaseTiles(uint32_t first, uint32_t count) noexcept;

@@ -168,7 +168,7 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         push.predictParity = lists.predictParity;
         push.hotParity = lists.hotParity;
         push.switches = step.switches | (step.governed ? kSwitchGoverned : 0u) |
-                        (step.capped ? kSwitchCapped : 0u);
+                        (step.capped ? kSwitchCapped : 0u) | (step.plays ? kSwitchPlays : 0u);
         push.tilesMost = step.rules.tilesMost;
         return push;
     };

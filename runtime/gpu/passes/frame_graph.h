@@ -83,7 +83,7 @@ struct StepRecord {
     Staged wakeGroups;  // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;
     std::span<const PublishedStep> published;
-    bool governed = false, capped = false;
+    bool governed = false, capped = false, plays = false;
     bool exchange = false;
     ExchangePush rules{};  // of the exchange, but for what the lists say
     uint32_t links = 0;    // contacts

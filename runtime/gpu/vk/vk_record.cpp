@@ -261,7 +261,7 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     object.lastEvent = std::max<uint64_t>(object.lastEvent, now + kStepTicks);
     const uint32_t kind = eventKind(event.kind);
     const bool douses =
-        kind != kEventIgnite && kind != kEventHeat && kind != kEventGate && !object.doused;
+        (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish) && !object.doused;
     if (object.touched && !douses) return;
     object.touched = true;
     object.doused = object.doused || douses;
@@ -466,6 +466,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         step.exchange = step.reduce && planned.exchange;
         step.governed = planned.governed;
         step.capped = planned.capped;
+        step.plays = planned.plays;
         step.rules = planned.rules;
         if (planned.remote) recordRemote(*this, *planned.remote, recorder, writer);
         step.links = links;

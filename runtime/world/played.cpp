@@ -1,0 +1,302 @@
+#include "world/played.h"
+
+#include "core/hash.h"
+#include "core/stream.h"
+#include "save/plane.h"
+#include "world/save.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace fw::world {
+namespace {
+
+constexpr uint32_t kBurnMagic = 0x42425746;  // "FWBB"
+constexpr uint32_t kBurnVersion = 1;
+constexpr size_t kBurnHead = 16;           // magic, version, checksum of the rest
+constexpr uint32_t kMostBurnSide = 4096;   // texels, as of a map
+constexpr float kSlowestPlay = 1.0f / 16;  // speeds
+constexpr float kFastestPlay = 16;
+
+uint32_t playRate(float speed) noexcept { return uint32_t(std::lround(speed * float(kPlayRate))); }
+
+// The most texels that catch in `steps` steps, wherever those begin.
+uint32_t mostAtOnce(const Burn& burn, const Play& play, uint32_t steps) noexcept {
+    const uint64_t span = uint64_t(steps) * gpu::kStepTicks;
+    uint32_t most = 0;
+    for (auto from = burn.order.begin(), at = from; at != burn.order.end(); ++at) {
+        const uint64_t tick = play.tickOf(burn.ticks[*at]);
+        while (play.tickOf(burn.ticks[*from]) + span < tick) ++from;
+        most = std::max(most, uint32_t(at - from) + 1);
+    }
+    return most;
+}
+
+// What catches from a tick on.
+auto catchFrom(const Burn& burn, const Play& play, uint64_t tick) noexcept {
+    return std::partition_point(burn.order.begin(), burn.order.end(), [&](uint32_t texel) {
+        return play.tickOf(burn.ticks[texel]) < tick;
+    });
+}
+
+}  // namespace
+
+void writeBurn(std::span<const uint32_t> state, uint64_t mesh, uint32_t width, uint32_t height,
+               std::pmr::vector<std::byte>& out) {
+    uint32_t first = gpu::kNever;
+    for (const uint32_t t : state)
+        if (gpu::isSource(t)) first = std::min(first, t);
+    std::pmr::vector<uint32_t> plane(out.get_allocator());
+    plane.reserve(state.size());
+    for (const uint32_t t : state) plane.push_back(gpu::isSource(t) ? t - first + 1 : 0);
+    out.clear();
+    core::Writer writer(out);
+    writer.number(kBurnMagic);
+    writer.number(kBurnVersion);
+    writer.number(uint64_t(0));  // the checksum's place
+    writer.number(mesh);
+    writer.number(width);
+    writer.number(height);
+    save::writePlane(plane, width, {}, out);
+    std::pmr::vector<std::byte> sum(out.get_allocator());
+    core::Writer(sum).number(core::hashBytes(std::span(out).subspan(kBurnHead)));
+    std::copy(sum.begin(), sum.end(), out.begin() + kBurnHead - sizeof(uint64_t));
+}
+
+void readBurn(std::span<const std::byte> bytes, Burn& burn) {
+    core::Reader reader(bytes, "baked burn");
+    uint32_t magic = 0, version = 0;
+    reader.number(magic);
+    if (magic != kBurnMagic)
+        core::fail(FW_ERROR_BAD_DATA, "The baked burn does not begin with \"FWBB\".");
+    reader.number(version);
+    if (version != kBurnVersion)
+        core::fail(FW_ERROR_BAD_DATA, "The baked burn has format version %u; %u is read.", version,
+                   kBurnVersion);
+    reader.number(burn.hash);
+    if (burn.hash != core::hashBytes(bytes.subspan(kBurnHead)))
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The baked burn is damaged or cut: its checksum is not right.");
+    reader.number(burn.mesh);
+    reader.number(burn.width);
+    reader.number(burn.height);
+    for (const uint32_t side : {burn.width, burn.height})
+        if (side == 0 || side > kMostBurnSide || side % 8 != 0)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The baked burn is of %u x %u texels; sides are multiples of 8, at most %u.",
+                       burn.width, burn.height, kMostBurnSide);
+    burn.ticks.assign(size_t(burn.width) * burn.height, 0);
+    if (!save::readPlane(reader.take(reader.left()), burn.width, {}, burn.ticks))
+        core::fail(FW_ERROR_BAD_DATA, "The baked burn's plane of ticks is none.");
+    burn.order.clear();
+    for (uint32_t i = 0; i < burn.ticks.size(); ++i) {
+        const bool lit = burn.ticks[i] != 0;
+        if (lit) burn.order.push_back(i);
+        burn.ticks[i] = lit ? burn.ticks[i] - 1 : gpu::kNever;
+    }
+    std::sort(burn.order.begin(), burn.order.end(), [&](uint32_t a, uint32_t b) {
+        return std::tie(burn.ticks[a], a) < std::tie(burn.ticks[b], b);
+    });
+}
+
+// ---- World --------------------------------------------------------------------------------------
+
+const std::pmr::vector<std::byte>* World::fetchBurn(FwBurnableMeshId id) {
+    const BurnMapCopy* map = fetchBurnMap(id);
+    if (!map) return nullptr;
+    Object& object = *objects_.get(id);
+    const mesh::BurnDomain& domain = domainOf(object);
+    if (std::none_of(map->ticks.begin(), map->ticks.end(), gpu::isSource))
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "Nothing of burnable mesh %u has burnt.", id.index1);
+    writeBurn(map->ticks, meshHash(object), domain.width, domain.height, burnBytes_);
+    return &burnBytes_;
+}
+
+FwBurnId World::createBurn(std::span<const std::byte> bytes) {
+    auto burn = core::Owned<Burn>::make(memory_, memory_);
+    readBurn(bytes, *burn);
+    return burns_.create(std::move(burn));
+}
+
+void World::destroyBurn(FwBurnId id) {
+    (void)burns_.get(id);
+    for (const Object* object : playing_)
+        if (object->play.burn1 == id.index1)
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "Baked burn %u is played by burnable mesh %u.",
+                       id.index1, object->id.index1);
+    burns_.destroy(id);
+}
+
+void World::playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed) {
+    mayChange();
+    components::checkValue(delay, "delay", 0.0f, 3600.0f);
+    playBurnAt(id, burn, eventTick(delay), speed);
+}
+
+void World::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick, float speed) {
+    Object& object = *objects_.get(id);
+    const Burn& burn = *burns_.get(burnId);
+    components::checkValue(speed, "speed", kSlowestPlay, kFastestPlay);
+    if (object.data.flags & FW_BURNABLE_PUBLISHED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Burnable mesh %u has FW_BURNABLE_PUBLISHED; it plays no baked burn.",
+                   id.index1);
+    const uint64_t mesh = meshHash(object);
+    if (burn.mesh != mesh || burn.ticks.size() != domainOf(object).texelCount())
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Baked burn %u is of a mesh of hash %016llx; burnable mesh %u has one of "
+                   "%016llx.",
+                   burnId.index1, static_cast<unsigned long long>(burn.mesh), id.index1,
+                   static_cast<unsigned long long>(mesh));
+    Play play;
+    play.burn1 = burnId.index1;
+    // Its first texel catches in the step after the one that tells the backend.
+    play.first = std::max(tick, uint32_t(clock_.tick) + gpu::kStepTicks);
+    play.rate = playRate(speed);
+    play.most = mostAtOnce(burn, play, def_.maxStepsPerFrame);
+    playing_.reserve(objects_.slotCount());
+    reservePlays(play.most);
+    if (object.play.burn1 == 0) startPlay(object);
+    object.play = play;
+    object.firstEvent = std::min(object.firstEvent, play.first);
+    ++object.changes;
+    note({Deed::Kind::playBurn, object.slot, tick, burnId.index1, {speed}});
+}
+
+void World::stopBurn(FwBurnableMeshId id) {
+    mayChange();
+    Object& object = *objects_.get(id);
+    object.play.ends = object.play.burn1 != 0;
+    note({Deed::Kind::stopBurn, object.slot, 0, 0, {}});
+}
+
+// ---- a frame ------------------------------------------------------------------------------------
+
+// Room for the events of a frame in which all that play have the most, and `more`.
+void World::reservePlays(size_t more) {
+    frame_.plays.reserve(playing_.size() + 1);
+    size_t events = pending_.size() + more;
+    for (const Object* object : playing_) events += object->play.most;
+    frame_.events.reserve(events + 2 * (playing_.size() + 1));
+}
+
+void World::startPlay(Object& object) noexcept {  // there is room
+    playing_.insert(
+        std::lower_bound(playing_.begin(), playing_.end(), &object,
+                         [](const Object* a, const Object* b) { return a->slot < b->slot; }),
+        &object);
+}
+
+void World::endPlay(Object& object, uint64_t frameIndex) noexcept {
+    object.play = {};
+    ++object.changes;
+    std::erase(playing_, &object);
+    raise(FW_EVENT_WENT_LIVE, &object, 0, frameIndex, object.data.pose.translation,
+          float(seconds()));
+}
+
+// Those that play; how many events that makes up to a tick, at most.
+size_t World::beginPlays(uint64_t end) {
+    frame_.plays.clear();
+    size_t events = 0;
+    for (Object* object : playing_) {
+        const Play& play = object->play;
+        frame_.plays.push_back({object, play});
+        const Burn& burn = **burns_.at(play.burn1 - 1);
+        const auto last = catchFrom(burn, play, end);
+        events += size_t(last - catchFrom(burn, play, clock_.tick));
+        if (play.began == 0 || play.ends || last == burn.order.end()) events += 2;
+    }
+    return events;
+}
+
+// What they do in a step; `due`: what others do to objects in it, by object.
+void World::planPlays(uint32_t now, std::span<const Frame::Due> due) {
+    const uint32_t end = now + gpu::kStepTicks;
+    for (Frame::PlayOf& entry : frame_.plays) {
+        Play& play = entry.play;
+        if (play.burn1 == 0) continue;
+        const uint32_t slot = entry.object->slot;
+        const auto other = std::lower_bound(
+            due.begin(), due.end(), slot,
+            [](const Frame::Due& one, uint32_t s) { return one.event.object < s; });
+        const bool disturbed = other != due.end() && other->event.object == slot;
+        const auto push = [&](uint32_t texel, uint32_t kind, uint32_t tick) {
+            frame_.events.push_back({slot, texel, kind, tick});
+        };
+        bool ends = play.ends || disturbed;
+        if (play.began == 0 && !ends) {
+            push(gpu::kNoneTexel, gpu::kEventPlays, gpu::kNever);
+            play.began = end;
+        } else if (play.began != 0) {
+            const Burn& burn = **burns_.at(play.burn1 - 1);
+            const auto next = catchFrom(burn, play, end);
+            // Where others have an event, too, none of ours is beside it: a texel's are in order.
+            if (!disturbed)
+                for (auto at = catchFrom(burn, play, now); at != next; ++at) {
+                    if (entry.lit == mesh::kNone) entry.lit = *at;
+                    push(*at, gpu::kEventPlay, uint32_t(play.tickOf(burn.ticks[*at])));
+                }
+            ends |= next == burn.order.end();
+        }
+        if (!ends) continue;
+        push(gpu::kNoneTexel, gpu::kEventPlays, end);  // of a burn that it played before, too
+        play = {};
+    }
+}
+
+// Its wind or pose turned in a step: it plays in the next, and is live from then on.
+void World::turnPlay(const Object& object) noexcept {
+    for (Frame::PlayOf& entry : frame_.plays)
+        if (entry.object == &object && entry.play.began != 0) entry.play.ends = true;
+}
+
+void World::settlePlays(SavedWorld& saved) {
+    size_t events = saved.pending.size(), count = 0;
+    for (SavedObject& object : saved.objects) {
+        Play& play = object.play;
+        if (play.burn1 == 0) continue;
+        const core::Owned<Burn>* burn =
+            play.burn1 <= burns_.slotCount() ? burns_.at(play.burn1 - 1) : nullptr;
+        if (!burn || (*burn)->hash != object.burnHash ||
+            (*burn)->mesh != meshHash(**objects_.at(object.slot)))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "Burnable mesh %u of the save plays baked burn %u, which is none or another "
+                       "one here.",
+                       object.slot + 1, play.burn1);
+        if (play.rate < playRate(kSlowestPlay) || play.rate > playRate(kFastestPlay) ||
+            play.first > Clock::kLastTick || play.began > saved.clock.tick)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "Burnable mesh %u of the save plays a baked burn as none can be.",
+                       object.slot + 1);
+        play.most = mostAtOnce(**burn, play, def_.maxStepsPerFrame);
+        events += play.most + 2;
+        ++count;
+    }
+    frame_.plays.reserve(count);
+    frame_.events.reserve(events);
+}
+
+void World::commitPlays(uint64_t frameIndex) noexcept {
+    for (const Frame::PlayOf& entry : frame_.plays) {
+        Object& object = *entry.object;
+        if (object.play.began == 0 && entry.play.began != 0) {
+            object.story.active = true;
+            object.story.lastStimulus =
+                std::max<uint64_t>(object.story.lastStimulus, entry.play.began);
+        }
+        if (entry.lit != mesh::kNone && !object.story.ignitionKnown && !object.story.sawFire) {
+            const Burn& burn = **burns_.at(object.play.burn1 - 1);
+            object.story.ignitionKnown = true;
+            object.story.firstIgnition = object.play.tickOf(burn.ticks[entry.lit]);
+            texelPlace(object, entry.lit, object.story.ignitionPoint);
+            backend_.startBoundary(object.slot, object.story.ignitionPoint,
+                                   uint32_t(object.story.firstIgnition));
+        }
+        object.play = entry.play;
+        if (object.play.burn1 == 0) endPlay(object, frameIndex);
+    }
+}
+
+}  // namespace fw::world
