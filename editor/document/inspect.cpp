@@ -43,7 +43,13 @@ std::string readField(Burn& burn, const BurnMesh& mesh, uint64_t start, ArrivalF
             ticks[i] >= kFirstCode
                 ? kNeverLit
                 : static_cast<float>(double(int64_t(ticks[i]) - int64_t(start)) / kTicksPerSecond);
-    return "";
+    if (litShare(field, kNeverLit / 2) == 0) return "";
+    uint64_t size = 0;
+    result = fwWorld_FetchBurn(burn.world, mesh.object, nullptr, &size);
+    if (result < 0) return worldProblem(burn, result);
+    field.baked.resize(size);
+    result = fwWorld_FetchBurn(burn.world, mesh.object, field.baked.data(), &size);
+    return result < 0 ? worldProblem(burn, result) : "";
 }
 
 void drainEvents(Burn& burn, BurnRecord& record) {

@@ -16,6 +16,7 @@ struct ArrivalField {  // of one mesh
     ObjectId mesh = 0;
     uint32_t width = 0, height = 0;
     std::vector<float> seconds;  // when each texel of the burn map caught; kNeverLit
+    std::vector<uint8_t> baked;  // the same for fwWorld_CreateBurn; empty: nothing caught
 };
 struct BurnRecord {
     double duration = 0;  // s that were run

@@ -216,6 +216,8 @@ bool writeArrivals(const OutputInput& input, FwContext* cpu, const fs::path& out
         const fs::path file = out / (plan.identifiers[field.mesh] + "_arrival.exr");
         if (!fwimport::writePicture(file, arrivalPicture(field), error)) return false;
         files.push_back(file);
+        const fs::path baked = out / (plan.identifiers[field.mesh] + "_baked.fwburn");
+        if (!field.baked.empty() && !writeAll(baked, field.baked, files, error)) return false;
     }
     return true;
 }

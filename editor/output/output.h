@@ -64,7 +64,8 @@ std::string snippetOf(const Scene& scene, const OutputPlan& plan, SnippetLanguag
 
 // Seconds at which each texel catches, -1: never.
 fwimport::FloatPicture arrivalPicture(const ArrivalField& field);
-// When each texel catches: MESH_arrival.exr for each mesh, s, -1 never.
+// When each texel catches: MESH_arrival.exr for each mesh, s, -1 never; and of those that did
+// MESH_baked.fwburn, which fwWorld_CreateBurn takes.
 bool writeArrivals(const OutputInput& input, FwContext* cpu, const std::filesystem::path& out,
                    const OutputProgress& progress, std::vector<std::filesystem::path>& files,
                    std::string& error);

@@ -267,6 +267,13 @@ TEST(EditorOutput, ABakeHasTheTimeOfEachSpot) {
         EXPECT_EQ(never ? -1.0f : field.seconds[i], picture.values[i]);
     }
     EXPECT_GT(lit, 1000u);
+    const std::string baked = textOf(yard.folder / "burn/board_baked.fwburn");
+    FwWorld* world = nullptr;
+    const FwWorldDef worldDef = fwDefaultWorldDef();
+    ASSERT_EQ(FW_OK, fwCreateWorld(yard.host->cpu(error), &worldDef, &world));
+    FwBurnId burn{};
+    EXPECT_EQ(FW_OK, fwWorld_CreateBurn(world, baked.data(), baked.size(), &burn));
+    fwDestroyWorld(world);
 }
 
 TEST(EditorOutput, FilmstripsAndTurntablesShowTheFire) {

@@ -1,10 +1,12 @@
 // fw-bake: a scene's whole burn, run once: when each spot catches, and what happens when.
 #include <algorithm>
 #include <cstdio>
+#include <span>
 
 #include "document/text.h"
 #include "output/output.h"
 #include "scene/tool.h"
+#include "tools/whole_file.h"
 
 namespace {
 
@@ -13,7 +15,8 @@ namespace fs = std::filesystem;
 constexpr const char* kHelp =
     "fw-bake FILE [options]\n"
     "  FILE            a .fwscene\n"
-    "  --out FOLDER    of MESH_arrival.exr (seconds; -1: never), default here\n"
+    "  --out FOLDER    of MESH_arrival.exr (seconds; -1: never), default here, and of\n"
+    "                  MESH_baked.fwburn, which a game plays (fwWorld_CreateBurn)\n"
     "  --part i/n      writes the i-th of n shares of the meshes\n"
     "  --cache FOLDER  keeps bakes there\n"
     "  --json          a line of JSON for each mesh and each event\n"
@@ -68,13 +71,18 @@ int main(int count, char** words) {
         const fwimport::FloatPicture picture = arrivalPicture(field);
         const auto lit =
             std::ranges::count_if(field.seconds, [](float at) { return at < kNeverLit; });
-        const fs::path file =
-            options.out / (std::to_string(mesh.id) + "_" + fs::path(mesh.name).filename().string() +
-                           "_arrival.exr");
+        const std::string name =
+            std::to_string(mesh.id) + "_" + fs::path(mesh.name).filename().string();
+        const fs::path file = options.out / (name + "_arrival.exr");
         if (!fwimport::writePicture(file, picture, error)) return refuse(options, error);
+        const fs::path baked = options.out / (name + "_baked.fwburn");
+        if (!field.baked.empty())
+            error = writeWhole(baked.string(), std::as_bytes(std::span(field.baked)));
+        if (!error.empty()) return refuse(options, error);
         JsonLine line;
         line.text("mesh", mesh.name);
         line.text("arrival", file.string());
+        if (!field.baked.empty()) line.text("baked", baked.string());
         line.number("lit_texels", double(lit));
         std::printf("%s\n", options.json ? line.done().c_str() : file.c_str());
     }

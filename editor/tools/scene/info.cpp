@@ -1,6 +1,8 @@
 // fw-info: what a file holds.
 #include <cstdio>
+#include <cstring>
 #include <fstream>
+#include <string_view>
 
 #include "scene/tool.h"
 
@@ -8,7 +10,7 @@ namespace {
 
 constexpr const char* kHelp =
     "fw-info FILE [--json] [--quiet]\n"
-    "  FILE  a .fwscene, a glTF file, or a cooked .fwburn\n"
+    "  FILE  a .fwscene, a glTF file, or a .fwburn: a cooked burn map, or a baked burn\n"
     "Exit code: 0 fine, 1 refused (the reason is told), 2 the command line is wrong.\n";
 
 }  // namespace
@@ -36,19 +38,32 @@ int main(int count, char** words) {
         FwContext* cpu = host.cpu(error);
         FwWorld* world = nullptr;
         const FwWorldDef worldDef = fwDefaultWorldDef();
+        if (!cpu || fwCreateWorld(cpu, &worldDef, &world) < 0) return refuse(options, error);
+        const auto refuseFile = [&] {
+            char text[1024] = "";
+            fwWorld_GetLastMessage(world, text, sizeof text);
+            return refuse(options, options.input + ": " + text);
+        };
+        if (std::string_view(bytes.data(), bytes.size()).starts_with("FWBB")) {  // a baked burn
+            FwBurnId burn{};
+            if (fwWorld_CreateBurn(world, bytes.data(), bytes.size(), &burn) < 0)
+                return refuseFile();
+            uint32_t sides[2];  // behind magic, version, checksum and the mesh's hash
+            std::memcpy(sides, bytes.data() + 24, sizeof sides);
+            row("baked_width", sides[0]);
+            row("baked_height", sides[1]);
+            std::printf("%s", options.json ? (json.done() + "\n").c_str() : plain.c_str());
+            return ExitFine;
+        }
         FwMeshDef def = fwDefaultMeshDef();
         def.cooked = bytes.data();
         def.cookedSize = bytes.size();
         FwMeshId mesh{};
         FwMeshInfo info{};
         info.structSize = sizeof info;
-        if (!cpu || fwCreateWorld(cpu, &worldDef, &world) < 0) return refuse(options, error);
         if (fwWorld_CreateMesh(world, &def, &mesh) < 0 ||
-            fwWorld_GetMeshInfo(world, mesh, &info) < 0) {
-            char text[1024] = "";
-            fwWorld_GetLastMessage(world, text, sizeof text);
-            return refuse(options, options.input + ": " + text);
-        }
+            fwWorld_GetMeshInfo(world, mesh, &info) < 0)
+            return refuseFile();
         row("map_width", info.mapWidth);
         row("map_height", info.mapHeight);
         row("texels", info.texels);
