@@ -1,6 +1,7 @@
 // A dedicated server: crates burn at 32 Hz on one core, by the same integers as on any GPU. One
 // line a second: how many burn, what it costs, and the hash of all of it, which a client compares
-// with its own. It links the library and nothing else.
+// with its own. It links the library and nothing else. --baked burns one crate beforehand, and all
+// others play that until their neighbours' heat makes them live.
 #include "common/yard.h"
 
 #include <algorithm>
@@ -23,14 +24,17 @@ constexpr float kStep = 1.0f / kStepsPerSecond;
 struct Wishes {
     uint32_t crates = 100, steps = 20 * kStepsPerSecond, seed = 1;
     bool fast = false;  // do not wait for the clock
+    bool baked = false;
     std::string out;
 };
 
 constexpr const char* kUsage =
-    "usage: 13_server [--crates N] [--frames N] [--seconds N] [--seed N] [--fast] [--out DIR]\n"
+    "usage: 13_server [--crates N] [--frames N] [--seconds N] [--seed N] [--fast] [--baked] [--out "
+    "DIR]\n"
     "  --crates N   [1, 1000] how many burn; default 100\n"
     "  --frames N   steps of 1/32 s; default 640\n"
     "  --fast       as fast as it can instead of in real time\n"
+    "  --baked      crates play a burn baked of one until something disturbs them\n"
     "  --out DIR    leave DIR/server.fwsave at the end\n";
 
 Wishes readArguments(int count, char** arguments) {
@@ -39,6 +43,10 @@ Wishes readArguments(int count, char** arguments) {
         const std::string name = arguments[i];
         if (name == "--fast") {
             wishes.fast = true;
+            continue;
+        }
+        if (name == "--baked") {
+            wishes.baked = true;
             continue;
         }
         if (name == "--headless") continue;  // as all samples: it never has a window
@@ -79,7 +87,22 @@ void save(FwWorld* world, const std::string& folder) {
     std::printf("%s: %zu bytes, with which a client joins late\n", path.c_str(), bytes.size());
 }
 
-void serve(FwWorld* world, const Yard& yard, const Wishes& wishes) {
+// A crate by itself burns in a world like the server's for a minute; then as bytes.
+std::string bakeCrate(FwWorld* world) {
+    const Yard yard = makeYard(world, 1);
+    lightCrate(world, yard, 0);
+    for (uint32_t step = 0; step < 60 * kStepsPerSecond; ++step)
+        check(fwWorld_Step(world, kStep), world);
+    uint64_t size = 0;
+    check(fwWorld_RequestBurn(world, yard.crates[0]), world);
+    check(fwWorld_FetchBurn(world, yard.crates[0], nullptr, &size), world);
+    std::string bytes(size, '\0');
+    check(fwWorld_FetchBurn(world, yard.crates[0], bytes.data(), &size), world);
+    return bytes;
+}
+
+// `burn`: what crates play; null: they are lit.
+void serve(FwWorld* world, const Yard& yard, FwBurnId burn, const Wishes& wishes) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     double spent = 0, worst = 0, all = 0;  // s: of the second, its longest step, of the run
@@ -88,7 +111,10 @@ void serve(FwWorld* world, const Yard& yard, const Wishes& wishes) {
         // All of them are alight within two seconds.
         for (; lit < yard.crates.size() && lit * 2 * kStepsPerSecond <= step * yard.crates.size();
              ++lit)
-            lightCrate(world, yard, lit);
+            if (burn.index1 != 0)
+                check(fwWorld_PlayBurn(world, yard.crates[lit], burn, 0, 1), world);
+            else
+                lightCrate(world, yard, lit);
         const double before = cpuSeconds();
         check(fwWorld_Step(world, kStep), world);
         const double took = cpuSeconds() - before;
@@ -100,10 +126,12 @@ void serve(FwWorld* world, const Yard& yard, const Wishes& wishes) {
         if ((step + 1) % kStepsPerSecond == 0) {
             const YardState state = stateOf(world, yard);
             std::printf(
-                "%5.0f s: %3u burn, %3u burnt, %7.0f kW; load %4.1f %% of a core, longest "
+                "%5.0f s: %3u burn, %3u burnt, %3u play, %7.0f kW; load %4.1f %% of a core, "
+                "longest "
                 "step %5.2f ms; hash %016llx\n",
-                double(step + 1) * kStep, state.burning, state.burnt, double(state.power) / 1000,
-                100 * spent, 1000 * worst, static_cast<unsigned long long>(hashOf(world, yard)));
+                double(step + 1) * kStep, state.burning, state.burnt, state.plays,
+                double(state.power) / 1000, 100 * spent, 1000 * worst,
+                static_cast<unsigned long long>(hashOf(world, yard)));
             std::fflush(stdout);
             spent = worst = 0;
         }
@@ -133,14 +161,25 @@ void run(const Wishes& wishes) {
     def.paceFactor = 10;
     def.seed = wishes.seed;
     def.wind[0] = 2;
-    FwWorld* world = nullptr;
-    if (fwCreateWorld(context, &def, &world) != FW_OK) {
+    const auto createWorld = [&] {
+        FwWorld* made = nullptr;
+        if (fwCreateWorld(context, &def, &made) == FW_OK) return made;
         char why[512] = "";
         fwContext_GetLastMessage(context, why, sizeof why);
         throw std::runtime_error(why);
+    };
+    std::string baked;
+    if (wishes.baked) {
+        FwWorld* alone = createWorld();  // the context's, if it throws
+        baked = bakeCrate(alone);
+        fwDestroyWorld(alone);
+        std::printf("a crate's burn: %zu bytes\n", baked.size());
     }
+    FwWorld* world = createWorld();
     const Yard yard = makeYard(world, wishes.crates);
-    serve(world, yard, wishes);
+    FwBurnId burn{};
+    if (wishes.baked) check(fwWorld_CreateBurn(world, baked.data(), baked.size(), &burn), world);
+    serve(world, yard, burn, wishes);
     if (!wishes.out.empty()) save(world, wishes.out);
 }
 

@@ -26,7 +26,7 @@ void placeOf(const Yard& yard, uint32_t crate, float (&place)[3]);
 void lightCrate(FwWorld* world, const Yard& yard, uint32_t crate);
 
 struct YardState {
-    uint32_t burning = 0, burnt = 0;  // crates
+    uint32_t burning = 0, burnt = 0, plays = 0;  // crates
     float power = 0;                  // W
 };
 YardState stateOf(FwWorld* world, const Yard& yard);
