@@ -1218,8 +1218,8 @@ FW_API FwResult FW_CALL fwWorld_StopBurn(FwWorld*, FwBurnableMeshId id);
  * Sent by itself is: fwWorld_Ignite, PlayBurn, StopBurn, SetWind, SetWindZone, SetRoom, SetFlags, SetTransform, MoveBlocker;
  * of volumetric fires with FW_FIRE_IGNITES and jets with FW_EMITTER_IGNITES where they are and their power, of fields with
  * FW_FIELD_WETS where they are and their amount. On a client these calls are refused, as fwWorld_Load is. What is made and
- * destroyed, and all else that changes what
- * burns (colliders, points of fires, painted fields, vertices), each host does by itself: told by fwNet_Tell, at the same step. */
+ * destroyed, and all else that changes what burns (colliders, points of fires, painted fields, vertices), each host does by
+ * itself: told by fwNet_Tell, at the same step. */
 typedef struct FwNetDef {
     uint32_t structSize, flags; /* flags: 0 */
     uint32_t token;             /* [1, 2^32): a number of the host's by chance, another one each time: of the session, or of
