@@ -9,7 +9,7 @@ binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/samples/tower_
 # shellcheck source=../support/window.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../support/window.sh"
 need Xvfb xdotool import compare
-most_away=1 # percent of pixels that may be away by more than a twentieth
+most_away=0.1 # percent of pixels that may be away by more than a twentieth
 
 # shoot NAME: pauses, waits until the picture stands, keeps it, goes on.
 shoot() {
@@ -65,6 +65,6 @@ done
 # Three different moments, or it would be no comparison.
 for other in fight light; do
     away=$(compare -metric AE -fuzz 5% "$work/window_placed.png" "$work/window_$other.png" null: 2>&1) || [[ $? -eq 1 ]]
-    awk "BEGIN { exit !($away > 0.02 * $most_away * 480 * 270) }" || { echo "$other looks like placed" && status=1; }
+    awk "BEGIN { exit !($away > 0.01 * 480 * 270) }" || { echo "$other looks like placed" && status=1; }
 done
 exit $status
