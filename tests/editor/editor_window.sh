@@ -64,12 +64,6 @@ await "did: Outline point of the flame"
 # Why does it not burn there? All but the forecast is answered at once.
 xdotool key 1
 await ready
-xdotool key f mousemove 540 300 mousedown 1
-xdotool mousemove 560 290 mousemove 580 280 mouseup 1
-await "did: Smear the flame"
-xdotool key g mousemove 540 420 mousedown 1
-xdotool mousemove 540 380 mousemove 540 240 mouseup 1
-await "did: Gradient in the flame"
 xdotool key y mousemove 540 300 click 1
 await "answered [0-2] frames later"
 xdotool key Escape
