@@ -1155,6 +1155,7 @@ void showCanvas(App& app, const Rect& rect) {
     dab.value = page.plane == ProfilePlane::kTemperature ? page.celsius + kZeroCelsius : page.soot;
     const bool picks = page.tool == ProfileTool::kPick || io.KeyAlt;
     const bool ramps = page.tool == ProfileTool::kGradient && !picks;
+    const bool draws = held || page.stroking;  // to where the hand let go, in a slow frame too
     if (hovered && io.MouseWheel != 0)
         page.size = std::clamp(page.size * std::pow(1.12f, io.MouseWheel), 1.0f, 100.0f);
     if (held && picks) {
@@ -1164,7 +1165,7 @@ void showCanvas(App& app, const Rect& rect) {
         if (page.plane == ProfilePlane::kSoot) page.soot = page.draft.paint.soot[i];
         if (page.plane == ProfilePlane::kTemperature && page.draft.paint.kelvin[i] > 0)
             page.celsius = std::max(200.0f, page.draft.paint.kelvin[i] - kZeroCelsius);
-    } else if (held && ramps) {
+    } else if (draws && ramps) {
         if (!page.stroking) {
             page.underGradient = page.draft.paint;
             page.lastX = dab.x;
@@ -1185,7 +1186,7 @@ void showCanvas(App& app, const Rect& rect) {
                                  (height / float(ProfilePaint::kHeight))});
         page.changed = page.stroking = true;
         ++page.pictureRevision;
-    } else if (held) {
+    } else if (draws) {
         // Along the way since the last frame, a third of a radius apart.
         const float fromX = page.stroking ? page.lastX : dab.x;
         const float fromY = page.stroking ? page.lastY : dab.y;
