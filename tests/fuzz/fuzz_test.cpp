@@ -711,7 +711,7 @@ class Fuzz {
                          events, events + fwWorld_PollEvents(world_, events, random_.below(17)))) {
                     EXPECT_LE(uint32_t(FW_EVENT_IGNITED), event.type);
                     fires += event.type == FW_EVENT_IGNITED ? 1 : 0;
-                    EXPECT_GE(uint32_t(FW_EVENT_TIME_DROPPED), event.type);
+                    EXPECT_GE(uint32_t(FW_EVENT_WENT_LIVE), event.type);
                 }
                 break;
             }
