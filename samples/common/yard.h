@@ -27,7 +27,7 @@ void lightCrate(FwWorld* world, const Yard& yard, uint32_t crate);
 
 struct YardState {
     uint32_t burning = 0, burnt = 0, plays = 0;  // crates
-    float power = 0;                  // W
+    float power = 0;                             // W
 };
 YardState stateOf(FwWorld* world, const Yard& yard);
 // Of every texel of every crate, as each machine of a game must have it. On the cpu backend.
