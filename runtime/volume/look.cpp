@@ -257,8 +257,9 @@ gpu::FlameRecord describeFlame(const FlameLook& l, const FlameSize& size, const 
     r.erode = l.erode, r.filament = l.filament, r.filamentWidth = l.filamentWidth;
     r.filamentBase = l.filamentBase, r.filamentHeight = l.filamentHeight, r.tipFill = l.tipFill;
     r.smoke = l.smoke, r.smokeTop = l.smokeTop, r.smokeAlbedo = l.smokeAlbedo;
-    const vec3 hue = vec3(r.tint), own(l.coreTint[0], l.coreTint[1], l.coreTint[2]);
-    const vec3 core = glm::mix(glm::mix(hue, vec3(1.0f), l.tintWhite), own, l.coreTint[3]);
+    const glm::vec3 hue(r.tint), own(l.coreTint[0], l.coreTint[1], l.coreTint[2]);
+    const glm::vec3 core =
+        glm::mix(glm::mix(hue, glm::vec3(1.0f), l.tintWhite), own, l.coreTint[3]);
     r.tintCore = glm::packUnorm4x8(gpu::vec4(glm::sqrt(core), 0.0f));
     r.tintLow = l.tip - 60.0f, r.tintHigh = l.core;
     r.octaves = std::clamp(l.octaves, 1u, gpu::kFlameOctaves);
