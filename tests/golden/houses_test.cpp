@@ -123,7 +123,7 @@ TEST_F(Houses, AHundredBurnWithinTheBudgetAndNothingPops) {
     EXPECT_GT(wished, kBudget * 3 / 2);
     EXPECT_GE(moves, kFrames / 3);  // objects are refined in every second frame at least
     EXPECT_LT(p.mean, rounds(2.0, 2.5));
-    EXPECT_LT(p.worst, rounds(4.5, 6.0));
+    EXPECT_LT(p.worst, rounds(5.5, 6.0));  // 4.0 to 4.7, by which flames find room
     EXPECT_LT(p.block, rounds(45.0, 90.0));
     EXPECT_LT(p.share, rounds(0.02, 0.07));
     // With all of them refined whenever one of them is due it is 1.70, as measured; in turns 1.44.
