@@ -295,9 +295,14 @@ void Board::numbers() {
 void Board::energy() {
     if (!player.books) return;
     const FwEnergyBook& book = fires.book;
-    const Rect r{dp(12), dp(70), dp(262), dp(190)};
+    const bool any = book.objects > 0;
+    const Rect r{dp(12), dp(70), dp(262), any ? dp(204) : dp(128)};
     panel(r);
     put(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(15), kInk, "ENERGY");
+    if (!any) {  // see fire_village.cpp
+        put(fonts().small, r.x0 + dp(14), r.y0 + dp(38), kDim, "no thing here keeps a book");
+        return;
+    }
     const auto apart = int64_t(book.fuel) - int64_t(book.unburnt + book.radiated + book.convected);
     fwui::drawTextRight(list, fonts().small, r.x1 - dp(14), r.y0 + dp(15),
                         apart == 0 ? kGreen : kRed,
