@@ -657,27 +657,20 @@ void showBrush(App& app, const Rect& rect) {
         }
     }
     if (page.tool == PaintTool::kFill && fwedit::FillBy(page.fillBy) == fwedit::FillBy::Slope) {
-        numberRow(rows, "Slope from", page.slopeLow,
-                  {.unit = "°", .format = "%.0f", .lowest = 0, .highest = 180});
-        numberRow(rows, "Slope to", page.slopeHigh,
-                  {.unit = "°", .format = "%.0f", .lowest = 0, .highest = 180});
+        const NumberLook slope{.unit = "°", .format = "%.0f", .lowest = 0, .highest = 180};
+        numberRow(rows, "Slope from", page.slopeLow, slope);
+        numberRow(rows, "Slope to", page.slopeHigh, slope);
     }
     if (page.tool == PaintTool::kFill && fwedit::FillBy(page.fillBy) == fwedit::FillBy::Curvature) {
         constexpr float kMost = 200;  // 1/m that the sliders reach; more can be typed
-        numberRow(rows, "Bend from", page.curveLow,
-                  {.unit = "/m",
-                   .format = "%.0f",
-                   .lowest = -kMost,
-                   .highest = kMost,
-                   .least = -10000,
-                   .most = 10000});
-        numberRow(rows, "Bend to", page.curveHigh,
-                  {.unit = "/m",
-                   .format = "%.0f",
-                   .lowest = -kMost,
-                   .highest = kMost,
-                   .least = -10000,
-                   .most = 10000});
+        const NumberLook bend{.unit = "/m",
+                              .format = "%.0f",
+                              .lowest = -kMost,
+                              .highest = kMost,
+                              .least = -10000,
+                              .most = 10000};
+        numberRow(rows, "Bend from", page.curveLow, bend);
+        numberRow(rows, "Bend to", page.curveHigh, bend);
         rows.y += drawTextWrapped(rows.list, fonts().small, {rows.x0, rows.y}, rows.x1 - rows.x0,
                                   colors::dim, "Above 0: edges. Below 0: hollows. 0: flat.");
     }

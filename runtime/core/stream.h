@@ -30,6 +30,12 @@ class Writer {
         for (size_t k = 0; k < sizeof(T); ++k) out_.push_back(std::byte(word >> (8 * k)));
     }
     void number(bool value) { out_.push_back(std::byte(value ? 1 : 0)); }
+    // Over what was written there: a sum of what follows is known when that is written.
+    template <Number T>
+    void numberAt(size_t at, const T& value) noexcept {
+        const auto word = std::bit_cast<WordOf<T>>(value);
+        for (size_t k = 0; k < sizeof(T); ++k) out_[at + k] = std::byte(word >> (8 * k));
+    }
     [[nodiscard]] std::pmr::vector<std::byte>& bytes() noexcept { return out_; }
 
  private:

@@ -41,9 +41,8 @@ void writeLog(std::span<const LogEntry> entries, uint64_t identity,
         writer.number(entry.save ? kSaveEntry : uint16_t(entry.deed.kind));
         if (!entry.save) putDeed(writer, entry.deed);
     }
-    std::pmr::vector<std::byte> sum(out.get_allocator());
-    core::Writer(sum).number(core::hashBytes(std::span(out).subspan(kHeadBytes)));
-    std::copy(sum.begin(), sum.end(), out.begin() + kHeadBytes - sizeof(uint64_t));
+    writer.numberAt(kHeadBytes - sizeof(uint64_t),
+                    core::hashBytes(std::span(out).subspan(kHeadBytes)));
 }
 
 void readLog(std::span<const std::byte> bytes, uint64_t identity,

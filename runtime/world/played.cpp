@@ -59,9 +59,8 @@ void writeBurn(std::span<const uint32_t> state, uint64_t mesh, uint32_t width, u
     writer.number(width);
     writer.number(height);
     save::writePlane(plane, width, {}, out);
-    std::pmr::vector<std::byte> sum(out.get_allocator());
-    core::Writer(sum).number(core::hashBytes(std::span(out).subspan(kBurnHead)));
-    std::copy(sum.begin(), sum.end(), out.begin() + kBurnHead - sizeof(uint64_t));
+    writer.numberAt(kBurnHead - sizeof(uint64_t),
+                    core::hashBytes(std::span(out).subspan(kBurnHead)));
 }
 
 void readBurn(std::span<const std::byte> bytes, Burn& burn) {

@@ -131,10 +131,13 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
     return all;
 }
 
-tower::FireNumbers countFires(const tower::FireVillage& fires, FwWorld* world) {
+// `book`: with the book of energy, which looks at every object.
+tower::FireNumbers countFires(const tower::FireVillage& fires, FwWorld* world, bool book) {
     tower::FireNumbers numbers{fires.burning(), fires.caught(), 0, 0, {}};
     numbers.book.structSize = sizeof numbers.book;
-    tower::checkFire(world, fwWorld_GetEnergyBook(world, &numbers.book), "fwWorld_GetEnergyBook");
+    if (book)
+        tower::checkFire(world, fwWorld_GetEnergyBook(world, &numbers.book),
+                         "fwWorld_GetEnergyBook");
     for (const tower::Thing& thing : fires.things) {
         numbers.megawatts += 1e-6f * thing.state.power;
         numbers.squareMetres += thing.state.burningArea;
@@ -295,8 +298,8 @@ int play(const sample::Options& options, const Choices& choices) {
             }
 
             // The player, by hand or by plan.
-            tower::Wishes wishes =
-                hud.show(frame, lens, field, siege.state(), countFires(fires, fire.world), player);
+            tower::Wishes wishes = hud.show(frame, lens, field, siege.state(),
+                                            countFires(fires, fire.world, player.books), player);
             auto say = [&](const std::string& what) {
                 player.said = what;
                 player.saidAt = frame.time;

@@ -64,19 +64,10 @@ struct Boards {  // of plywood, side by side; the first of each is the one that 
             for (const FwEvent& event : some) ++heard[event.type];
         }
     }
-    template <class Fetch>
-    void come(Fetch fetch) {  // with a device an answer comes with a later frame
-        FwResult result = fetch();
-        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-            ok(fwWorld_Step(world, 0));
-            result = fetch();
-        }
-        ok(result);
-    }
     Bytes bake(uint32_t which = 0) {
         ok(fwWorld_RequestBurn(world, ids[which]));
         uint64_t size = 0;
-        come([&] { return fwWorld_FetchBurn(world, ids[which], nullptr, &size); });
+        come(world, [&] { return fwWorld_FetchBurn(world, ids[which], nullptr, &size); });
         Bytes bytes(size);
         ok(fwWorld_FetchBurn(world, ids[which], bytes.data(), &size));
         return bytes;
@@ -92,7 +83,7 @@ struct Boards {  // of plywood, side by side; the first of each is the one that 
     std::vector<uint32_t> ticks(uint32_t which = 0, uint64_t* hash = nullptr) {
         ok(fwDebug_RequestBurnMap(world, ids[which]));
         uint64_t count = 0;
-        come([&] {
+        come(world, [&] {
             return fwDebug_FetchBurnMap(world, ids[which], nullptr, 0, &count, hash, nullptr);
         });
         std::vector<uint32_t> map(count);
@@ -119,14 +110,7 @@ struct Boards {  // of plywood, side by side; the first of each is the one that 
         ok(fwWorld_GetStats(world, &made));
         return made;
     }
-    Bytes save() {
-        ok(fwWorld_RequestSave(world));
-        uint64_t size = 0;
-        come([&] { return fwWorld_FetchSave(world, nullptr, &size); });
-        Bytes bytes(size);
-        ok(fwWorld_FetchSave(world, bytes.data(), &size));
-        return bytes;
-    }
+    Bytes save() { return saveOf(world); }
     void expectRefused(FwResult expected, FwResult result, const char* says) {
         EXPECT_EQ(expected, result) << says;
         EXPECT_NE(std::string::npos, lastMessage(world).find(says)) << lastMessage(world);
@@ -265,7 +249,7 @@ TEST(BakedBurn, ArrivalsAreTheBurns) {
         boards.ok(fwWorld_RequestArrival(boards.world, boards.ids[0], there, &query));
         FwArrivalState told{};
         told.structSize = sizeof told;
-        boards.come([&] { return fwWorld_FetchArrival(boards.world, query, &told); });
+        come(boards.world, [&] { return fwWorld_FetchArrival(boards.world, query, &told); });
         return told;
     };
     const FwArrivalState told = ask();
@@ -277,7 +261,7 @@ TEST(BakedBurn, ArrivalsAreTheBurns) {
         boards.ok(fwWorld_RequestPoint(boards.world, boards.ids[0], there, &query));
         FwPointState point{};
         point.structSize = sizeof point;
-        boards.come([&] { return fwWorld_FetchPoint(boards.world, query, &point); });
+        come(boards.world, [&] { return fwWorld_FetchPoint(boards.world, query, &point); });
         return point.kind;
     };
     boards.run(steps - 1);

@@ -4,11 +4,29 @@
 #include "abi/abi_support.h"
 
 #include <algorithm>
-#include <functional>
 
 namespace host {
 
 using Bytes = std::vector<unsigned char>;
+
+// Fetches what was asked for: with a device an answer comes with a later frame, be it of no time.
+template <class Fetch>
+void come(FwWorld* world, Fetch fetch) {
+    FwResult result = fetch();
+    for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+        EXPECT_EQ(FW_OK, fwWorld_Step(world, 0)) << lastMessage(world);
+        result = fetch();
+    }
+    EXPECT_EQ(FW_OK, result) << lastMessage(world);
+}
+inline Bytes saveOf(FwWorld* world) {
+    EXPECT_EQ(FW_OK, fwWorld_RequestSave(world)) << lastMessage(world);
+    uint64_t size = 0;
+    come(world, [&] { return fwWorld_FetchSave(world, nullptr, &size); });
+    Bytes bytes(size);
+    EXPECT_EQ(FW_OK, fwWorld_FetchSave(world, bytes.data(), &size)) << lastMessage(world);
+    return bytes;
+}
 
 // Much goes on at once in it: boxes and boards of several materials that light each other, wind
 // that turns, water, a flamethrower, a fire that stands there, a field that wets, a wall, a tag.
@@ -81,19 +99,13 @@ class BusyWorld {
         for (const FwBurnableMeshId id : ids) ok(fwDebug_RequestBurnMap(world, id));
         for (const FwBurnableMeshId id : ids) {
             uint64_t one = 0, tick = 0;
-            come([&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, &tick); });
+            come(world,
+                 [&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, &tick); });
             all = all * 31 + one + tick;
         }
         return all;
     }
-    Bytes save() {
-        ok(fwWorld_RequestSave(world));
-        uint64_t size = 0;
-        come([&] { return fwWorld_FetchSave(world, nullptr, &size); });
-        Bytes bytes(size);
-        ok(fwWorld_FetchSave(world, bytes.data(), &size));
-        return bytes;
-    }
+    Bytes save() { return saveOf(world); }
     FwResult load(const Bytes& bytes) {
         const unsigned char none = 0;  // an empty vector has no address
         return fwWorld_Load(world, bytes.empty() ? &none : bytes.data(), bytes.size());
@@ -121,15 +133,6 @@ class BusyWorld {
     FwRoomId room{};
 
  private:
-    // With a device an answer comes with a frame, be it of no time.
-    void come(const std::function<FwResult()>& fetch) {
-        FwResult result = fetch();
-        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-            ok(fwWorld_Step(world, 0));
-            result = fetch();
-        }
-        ok(result);
-    }
     void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     static void put(float (&to)[3], float x, float y, float z) { to[0] = x, to[1] = y, to[2] = z; }
     static void place(float (&at)[16], float x, float y, float z, float turn) {

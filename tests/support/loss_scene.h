@@ -177,5 +177,15 @@ inline std::vector<int64_t> chooseLosses(const fw::test::LosingVulkan& vulkan, i
 }
 // Times are read of a frame that is through: no reason to fail the next one, whoever reads them.
 inline bool mayPass(const char* name) { return std::strcmp(name, "vkGetQueryPoolResults") == 0; }
+// Whether `result` is right where the device was lost at the call `name`.
+inline bool tellsOfLoss(FwResult result, const char* name) {
+    return result == FW_ERROR_DEVICE_LOST || (result == FW_OK && mayPass(name));
+}
+// `mirrors`: how many went on from the mirror of a frame; 0: from none.
+inline void printLosses(size_t losses, int64_t calls, std::map<uint32_t, uint32_t>& mirrors) {
+    std::printf("%zu of %lld calls; without a mirror %u, with the first %u, with the second %u\n",
+                losses, static_cast<long long>(calls), mirrors[0], mirrors[LossScene::kSaves[0]],
+                mirrors[LossScene::kSaves[1]]);
+}
 
 }  // namespace host
