@@ -70,6 +70,7 @@ vec2 openBook(FlameQuad quad, vec2 place, float pixels) {
 #endif
 
 void main() {
+    float perspective = view.forward.w;  // weighed with, not branched on, see ARCHITECTURE.md
     uint number = uint(gl_VertexIndex) / 6u, vertex = uint(gl_VertexIndex) % 6u;
     FlameQuad quad = flameQuad[drawArgs[kFlameOrder + number]];
     uint corner = vertex < 3u ? vertex : vertex - 2u;
@@ -79,7 +80,7 @@ void main() {
     if (vertex == 5u) place = vec2(1.0, 1.0);
     // A spark too thin for a pixel is as wide as one, and dimmer instead.
     if ((quad.kind & 3u) == kQuadSpark) {
-        float far = view.forward.w > 0.5 ? dot(quad.baseHeight.xyz - view.eye.xyz, view.forward.xyz) : 1.0;
+        float far = mix(1.0, dot(quad.baseHeight.xyz - view.eye.xyz, view.forward.xyz), perspective);
         float wide = max(quad.axisWidth.w, 0.7 * view.eye.w * max(far, 0.05));
         float more = wide - quad.axisWidth.w;
         quad.baseHeight += vec4(quad.axisWidth.xyz * -more, 2.0 * more);
@@ -91,11 +92,11 @@ void main() {
 #ifdef FW_BOOKS
     outFrames = outMotions = outSizes = vec4(0.0);
     outBetween = vec2(0.0);
-    float away = view.forward.w > 0.5 ? max(dot(middle, view.forward.xyz), 0.01) : 1.0;
+    float away = mix(1.0, max(dot(middle, view.forward.xyz), 0.01), perspective);
     float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
     if (quad.kind >> kQuadBook != 0u) place = openBook(quad, place, pixels);
 #endif
-    vec3 toEye = view.forward.w > 0.5 ? -normalize(middle) : -view.forward.xyz;
+    vec3 toEye = -mix(view.forward.xyz, normalize(middle), perspective);
     vec3 axis = quad.axisWidth.xyz;
     float along = abs(dot(axis, toEye));
     vec3 screenUp = view.up.xyz - toEye * dot(view.up.xyz, toEye);

@@ -47,8 +47,8 @@ void main() {
 
     vec3 foot = d.place.xyz - view.eye.xyz;
     vec3 middle = foot + d.up.xyz * (0.5 * d.size.y);
-    bool perspective = view.forward.w > 0.5;
-    vec3 toEye = perspective ? -normalize(middle) : -view.forward.xyz;
+    float perspective = view.forward.w;  // weighed with, not branched on, see ARCHITECTURE.md
+    vec3 toEye = -mix(view.forward.xyz, normalize(middle), perspective);
     // A card: at least half of its height stays visible from above.
     vec3 axis = d.up.xyz;
     float along = abs(dot(axis, toEye));
@@ -78,7 +78,7 @@ void main() {
     vec3 at = card ? onCard : onBall;
     outPlace = card ? cardPlace : ballPlace;
     outNormal = card ? normalize(cross(side, axis)) : normal;
-    outToEye = perspective ? -at : -view.forward.xyz;
+    outToEye = -mix(view.forward.xyz, at, perspective);
     outAlong = card ? side * way
                     : normalize(-d.right.xyz * (sin(lon) * d.size.x) - d.forward.xyz * (cos(lon) * d.size.z));
     outLook = vec4(d.right.w, d.up.w, d.forward.w, d.size.w);

@@ -29,9 +29,9 @@ vec2 pixelOf(vec3 fromEye) {
 
 void main() {
     outColor = vec4(0.0);
-    bool perspective = view.forward.w > 0.5;
-    vec3 start = perspective ? vec3(0.0) : inRay;
-    vec3 way = perspective ? inRay : view.forward.xyz;
+    float perspective = view.forward.w;  // weighed with, not branched on, see ARCHITECTURE.md
+    vec3 start = inRay * (1.0 - perspective);
+    vec3 way = mix(view.forward.xyz, inRay, perspective);
     float perDepth = length(way), away = inBend.w;
     float behind = min(depthOfScene(draw.clip) * perDepth - away, kFarthest);
     if (behind <= 0.0 || away <= 0.0) return;

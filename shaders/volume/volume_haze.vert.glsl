@@ -70,9 +70,9 @@ void main() {
     outRay = draw.rayO.xyz + place.x * draw.rayX.xyz + place.y * draw.rayY.xyz;
 
     FlameRecord f = flame.record;
-    bool perspective = view.forward.w > 0.5;
-    vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : outRay);
-    vec3 direction = normalize(perspective ? outRay : view.forward.xyz);
+    float perspective = view.forward.w;  // weighed with, not branched on, see ARCHITECTURE.md
+    vec3 from = view.eye.xyz + outRay * (1.0 - perspective);
+    vec3 direction = normalize(mix(view.forward.xyz, outRay, perspective));
     Passing pass = passAxis(f, from, direction);
     vec3 haze = flameHaze(f, pass.at);
     vec3 bend = haze.x * pass.side + haze.y * pass.along + haze.z * cross(pass.along, pass.side);

@@ -34,7 +34,7 @@ void main() {
     FlamePlace place = slicePlace(a, b, point.at);
     outPlace = vec4(place.p, place.s, place.radius);
     // Half a slice further along the ray.
-    vec3 ray = view.forward.w > 0.5 ? (point.at - view.eye.xyz) / max(depth, 1e-6) : view.forward.xyz;
+    vec3 ray = mix(view.forward.xyz, (point.at - view.eye.xyz) / max(depth, 1e-6), view.forward.w);
     vec3 beyond = point.at + 0.5 * draw.spacing * ray;
     place = flamePlaceAt(beyond, a, b, flamePlane(beyond, a), flamePlane(beyond, b));
     outSlope = (vec4(place.p, place.s, place.radius) - outPlace) / (0.5 * draw.spacing);

@@ -99,7 +99,8 @@ void main() {
     if (kParallax)
         horizon = textureLod(horizonMap, at / push.picture.xy, max(reliefLod - 1.0, 0.0));
     vec3 gloss = vec3(0.0);
-    int fires = int(block.sunDirection.w);
+    // Not known before it runs: lavapipe would compile and keep one shader a frame.
+    int fires = int(block.sunDirection.w) + (int(gl_FragCoord.x) >> 31);
     for (int i = -1; i < fires; ++i) {
         bool sun = i < 0;
         int k = max(i, 0);

@@ -40,7 +40,8 @@ void main() {
     vec3 light = block.sunColor.rgb * max(0.0, dot(n, block.sunDirection.xyz)) * shade.x * pool;
     light += mix(block.ambientGround.rgb, block.ambientSky.rgb, 0.5 + 0.5 * n.y) * shade.y *
              (0.35 + 0.65 * pool);
-    int fires = int(block.ambientGround.w);
+    // Not known before it runs: lavapipe would compile and keep one shader a frame.
+    int fires = int(block.ambientGround.w) + (int(gl_FragCoord.x) >> 31);
     for (int i = 0; i < fires; ++i) {
         vec3 to = block.firePlace[i].xyz - worldPosition;
         float squared = dot(to, to) + block.firePlace[i].w;
