@@ -42,7 +42,7 @@ double cpuSeconds() {
 }
 
 // Of the same view, before and after a frame's time.
-void addChange(const Picture& before, const Picture& after, Popping& p) {
+void addChange(const Picture& before, const Picture& after, Popping& p, uint32_t frames = kFrames) {
     constexpr uint32_t kAcross = kWidth / kBlock;
     std::vector<double> blocks(size_t{kAcross + 1} * (kHeight / kBlock + 1));
     uint64_t covered = 1, sum = 0, far = 0;
@@ -59,7 +59,7 @@ void addChange(const Picture& before, const Picture& after, Popping& p) {
             blocks[size_t{y / kBlock} * kAcross + x / kBlock] += change / double(kBlock * kBlock);
         }
     const double mean = double(sum) / double(covered);
-    p.mean += mean / double(kFrames);
+    p.mean += mean / double(frames);
     p.worst = std::max(p.worst, mean);
     p.block = std::max(p.block, *std::max_element(blocks.begin(), blocks.end()));
     p.share = std::max(p.share, double(far) / double(covered));
@@ -129,6 +129,89 @@ TEST_F(Houses, AHundredBurnWithinTheBudgetAndNothingPops) {
     // With all of them refined whenever one of them is due it is 1.70, as measured; in turns 1.44.
     // Soot of the step is laid with it. Instrumented, the host's share of it is another one.
     EXPECT_LT(refining / drawing, rounds(1.55, 3.0));
+}
+
+// FNV-1a over its state.
+uint64_t stateOf(FwWorld* world, FwBurnableMeshId house) {
+    uint64_t count = 0, hash = 0, tick = 0;
+    EXPECT_EQ(fwDebug_RequestBurnMap(world, house), FW_OK);
+    FwResult result = FW_NOT_READY;
+    for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+        fwWorld_Step(world, 0);
+        result = fwDebug_FetchBurnMap(world, house, nullptr, 0, &count, &hash, &tick);
+    }
+    EXPECT_EQ(result, FW_OK);
+    return hash;
+}
+
+// 1/255, in the mean of all channels.
+double meanOff(const Picture& a, const Picture& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.rgb.size(); ++i) sum += std::abs(int(a.rgb[i]) - int(b.rgb[i]));
+    return sum / double(a.rgb.size());
+}
+
+// At the lowest level of a budget that nothing could meet the same houses are on fire, they look
+// like those with all detail, and no frame jumps though predictions wait for others. The camera
+// stands, so that all changes are the fire's.
+TEST_F(Houses, AtTheLowestLevelTheyBurnOnAndNothingPops) {
+    constexpr uint32_t kFew = rounds(12, 3), kSettle = 40, kShown = rounds(24, 5);
+    const FwView view = streetView({0, 2.5f, 5}, {1.0f, 1.2f, -7}, float(kWidth) / float(kHeight));
+    Village villages[2];
+    std::vector<Picture> shown[2];
+    Popping popping[2];
+    double seconds[2] = {};  // of CPU
+    uint32_t level[2] = {};
+    for (const int held : {0, 1}) {
+        Village& village = villages[held];
+        ASSERT_TRUE(village.make(context_, kFew, kBudget, 4));
+        for (float t = 0; t < 4; t += 0.25f) ASSERT_EQ(fwWorld_Step(village.world, 0.25f), FW_OK);
+        FwBudgetDef budget = fwDefaultBudgetDef();
+        budget.gpuMilliseconds = held ? 0.001f : 0.0f;
+        ASSERT_EQ(fwWorld_SetBudget(village.world, &budget), FW_OK);
+        for (uint32_t f = 0; f < kSettle + kShown; ++f) {
+            const double from = cpuSeconds();
+            ASSERT_EQ(fwWorld_Step(village.world, kFrameTime), FW_OK);
+            if (f < kSettle) continue;
+            shown[held].push_back(draw(village, view));
+            seconds[held] += cpuSeconds() - from;
+            if (f == kSettle) continue;
+            const Picture& now = shown[held].back();
+            addChange(shown[held][f - kSettle - 1], now, popping[held], kShown - 1);
+            if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION"))
+                writePng(
+                    std::string(folder) + (held ? "/held" : "/free") + std::to_string(f) + ".png",
+                    now);
+        }
+        FwBudgetState state{};
+        state.structSize = sizeof state;
+        ASSERT_EQ(fwWorld_GetBudgetState(village.world, &state), FW_OK);
+        level[held] = state.level;
+    }
+    double off = 0, light[2] = {};
+    const Picture black{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 3)};
+    for (uint32_t f = 0; f < kShown; ++f) {
+        off += meanOff(shown[0][f], shown[1][f]) / kShown;
+        for (const int held : {0, 1}) light[held] += meanOff(shown[held][f], black) / kShown;
+    }
+    std::printf(
+        "\nlevel %u: a frame changes the picture by %.2f (all detail %.2f), at most %.2f (%.2f), a "
+        "block by %.1f (%.1f); off by %.2f of %.1f, light %.3f; %.2f of the processor's time\n",
+        level[1], popping[1].mean, popping[0].mean, popping[1].worst, popping[0].worst,
+        popping[1].block, popping[0].block, off, light[0], light[1] / light[0],
+        seconds[1] / seconds[0]);
+    EXPECT_EQ(level[0], 0u);
+    EXPECT_EQ(level[1], 7u);
+    EXPECT_EQ(villages[1].stats().burningObjects, kFew);
+    for (uint32_t i = 0; i < kFew; ++i)
+        EXPECT_EQ(stateOf(villages[0].world, villages[0].houses[i]),
+                  stateOf(villages[1].world, villages[1].houses[i]));
+    EXPECT_LT(popping[1].mean, 1.3 * popping[0].mean + 0.1);
+    EXPECT_LT(popping[1].worst, 1.5 * popping[0].worst + 0.5);
+    EXPECT_LT(popping[1].block, 1.5 * popping[0].block + 5);
+    EXPECT_LT(off, 0.1 * light[0]);
+    EXPECT_NEAR(light[1] / light[0], 1, 0.05);
+    EXPECT_LT(seconds[1] / seconds[0], rounds(0.75, 2.0));
 }
 
 }  // namespace

@@ -91,6 +91,9 @@ void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& up
 // vk_seen.cpp
 // Which objects come into view or leave it with the frame: marks those, and what they need.
 void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs);
+// Whether a frame's predictions are due: with all detail, always.
+[[nodiscard]] bool predictsNow(const VkBackend::State& s, const FrameNeeds& needs,
+                               uint32_t endTick) noexcept;
 // Arrival ahead of the front: what no view shows is not predicted.
 void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,
                        UploadWriter& writer);

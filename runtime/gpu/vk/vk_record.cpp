@@ -496,7 +496,8 @@ void VkBackend::State::run(const FramePlan& plan) {
         frontEmpty = burnEmpty = predictEmpty = hotEmpty = false;
     }
     shownTick = plan.endTick;
-    if (needs.predicting) recordPredictions(*this, plan, recorder, writer);
+    if (needs.predicting && predictsNow(*this, needs, plan.endTick))
+        recordPredictions(*this, plan, recorder, writer);
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
     slot.layout.predictParity = lists.predictParity;
     if (needs.vertexGroups) {

@@ -21,6 +21,9 @@ constexpr float kAnyHeight = 1080;    // px, before anything was drawn
 // More rings of a frame in which an object comes into view: the next ones add to them. A picture by
 // itself has no next frame, and takes what there is to see, up to so many.
 constexpr uint32_t kRingsOfFrame = 8, kRingsOfPicture = 96;
+// How long predictions may wait where detail is short: ticks, with no triangles left, and texels
+// that fire crosses meanwhile, as a round brings a ring. What is known stays, and its age goes on.
+constexpr double kLongestPause = kTicksPerSecond / 10.0, kCrossedInPause = 0.6;
 
 struct Sphere {
     glm::vec3 middle;  // m, from the eye
@@ -53,15 +56,19 @@ bool shows(const ViewParams& p, const Sphere& sphere) noexcept {
     return sphere.radius >= kLeastPixels * p.eye.w * away;
 }
 
-// Texels that fire may cross in the time that is looked ahead.
-uint32_t ringsOf(const ObjectEntry& object) noexcept {
+// Texels that fire may cross in a tick.
+double paceOf(const ObjectEntry& object) noexcept {
     uint32_t least = ~0u;
     for (const BurnMaterial& m : object.materials)
         if ((m.flags & 1) != 0) least = std::min(least, m.sigma0);
     // m in a tick: ticks are 2^-22 of sigma0 for 1/8 of a quantum.
     const double speed = double(object.record.originQuantum.w) / 8 * 4194304.0 / double(least);
-    const double edge = std::sqrt(std::max(double(object.record.tint.w), 1e-12));
-    const double rings = double(object.record.horizon) * speed / edge;
+    return speed / std::sqrt(std::max(double(object.record.tint.w), 1e-12));
+}
+
+// Texels that fire may cross in the time that is looked ahead.
+uint32_t ringsOf(const ObjectEntry& object) noexcept {
+    const double rings = double(object.record.horizon) * paceOf(object);
     return uint32_t(std::clamp(rings, 1.0, double(kRingsOfPicture)));
 }
 
@@ -100,6 +107,16 @@ void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
     }
 }
 
+bool predictsNow(const VkBackend::State& s, const FrameNeeds& needs, uint32_t endTick) noexcept {
+    const double shortOf = 1.0 - double(s.detail.triangles);
+    if (shortOf <= 0 || needs.stimulus || needs.appears) return true;
+    double pause = kLongestPause * shortOf;
+    for (const ObjectEntry& object : s.objects)
+        if (object.live && object.touched && (object.record.flags & kObjectUnseen) == 0)
+            pause = std::min(pause, kCrossedInPause / std::max(paceOf(object), 1e-9));
+    return double(endTick - s.predictTick) >= pause;  // of a save that was loaded: long ago
+}
+
 void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,
                        UploadWriter& writer) {
     const auto tell = [&](uint32_t slot, uint32_t flags) {
@@ -108,6 +125,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
                         uint64_t(slot) * sizeof(BurnObject) + offsetof(BurnObject, flags),
                         sizeof flags);
     };
+    s.predictTick = plan.endTick;
     uint32_t rings = 0;
     bool seen = false;
     for (uint32_t i = 0; i < s.objects.size(); ++i) {

@@ -294,6 +294,7 @@ struct VkBackend::State {
     uint32_t supportUntil = 0;             // tick until which burnt pieces may still fall
     uint32_t supportFirst = 0;             // tile that the next look at what holds what begins at
     uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
+    uint32_t predictTick = 0;              // of the last round of predictions
     uint32_t shownTick = 0;                // tick of the state that draws show
     uint32_t links = 0, blockers = 0;      // of the last remote update
     float wind[3] = {};
