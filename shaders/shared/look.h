@@ -212,6 +212,7 @@ FW_SHARED_CONST uint kFlameParticles = 5u;   // word: of particles
 FW_SHARED_CONST uint kFlameOrder = 8u;       // first word of the order
 FW_SHARED_CONST uint kFlameCapacity = 4096u; // hard limit of tiles' quads drawn
 FW_SHARED_CONST uint kMostQuads = 65536u;    // of both
+FW_SHARED_CONST uint kFewQuads = 1024u;      // of both: beyond, another way of ordering them is cheaper
 
 struct SortPush {
     uint tiles;      // quads of tiles, at most
