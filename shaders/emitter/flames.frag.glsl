@@ -122,19 +122,21 @@ void main() {
     // Of a tongue: two octaves; the finer one is faster, so that shapes change and do not just
     // travel.
     float turbulence = (n1.r - 0.5) * 1.9 + (n2.r - 0.5) * 1.0 + (n2.g - 0.45) * 0.55;
+    // Soot glows in folds of a sheet.
+    float sheet = (n2.r - 0.5) + (tongue ? 0.6 : 0.7) * (n2.b - 0.5) + (tongue ? 0.0 : 0.25) * (n1.b - 0.5);
+    float fold = exp2(sheet * sheet * (tongue ? -120.0 : -103.0));
     float kelvin, soot, hides;
     if (tongue) {
         float yy = max(y - 0.62 * sqrt(y) * turbulence, 0.45 * y);
         float xx = abs(x + 0.5 * y * (n1.b - 0.5)) * (1.0 + 0.15 * turbulence * y);
-        float halfWidth = 0.78 * pow(max(1.0 - yy, 0.0), 0.75) *
+        float narrow = sqrt(max(1.0 - yy, 0.0));
+        float halfWidth = 0.78 * narrow * sqrt(narrow) *
                           (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
         float inside = halfWidth - xx;
         soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
         soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) *
                 (1.0 - smoothstep(0.90, 1.0, y)) *
                 (1.0 - smoothstep(0.60, 0.98, abs(x)));
-        float sheet = (n2.r - 0.5) + 0.6 * (n2.b - 0.5);
-        float fold = exp(-sheet * sheet / 0.012);
         soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));
         float core = saturate(inside / 0.6);
         kelvin = inState.z - 330.0 * smoothstep(0.05, 1.0, yy) + 90.0 * (core - 0.4) -
@@ -146,8 +148,6 @@ void main() {
         float late = smoothstep(0.45, 0.95, phase);
         float torn = 2.1 * (n1.r - 0.5) + 1.1 * (n2.r - 0.5) + 0.5 * (n2.g - 0.45);
         float deep = 0.92 - r * 1.05 + torn, least = mix(0.0, 0.72, phase);
-        float sheet = (n2.r - 0.5) + 0.7 * (n2.b - 0.5) + 0.25 * (n1.b - 0.5);
-        float fold = exp(-sheet * sheet / 0.014);
         soot = smoothstep(0.0, 0.24 + 0.26 * late, deep - least) * (1.0 - smoothstep(0.62, 0.97, r)) *
                mix(1.0, 0.28 + 1.0 * fold, smoothstep(0.05, 0.40, phase) * (1.0 - 0.6 * late));
         kelvin = inState.z + 260.0 * (saturate((deep - least) * 0.9) - 0.35) + 90.0 * fold -
@@ -166,8 +166,8 @@ void main() {
         hides = sootHides(kelvin) * page.z / max(page.y, 1e-4);
     }
 #endif
-    vec3 white = tongue ? vec3(1.0) : kFireWhite;
-    color = sootRadiance(kelvin) * white * (kFlameWhite * view.sunColor.w * soot * opacity);
+    vec3 glow = sootRadiance(spark ? inState.z : kelvin);
+    color = glow * (tongue ? vec3(1.0) : kFireWhite) * (kFlameWhite * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     // Of smoke: billows, and between them nothing; the thinner it is, the more of it is eaten away.
     // Where it gets thinner towards the light it faces it.
@@ -200,8 +200,7 @@ void main() {
         if (inKind >> kQuadBook != 0u) body = page.y * opacity;
 #endif
         // Its true light falls a thousandfold while it flies: nobody would see the end of it.
-        vec3 glow = sootRadiance(inState.z);
-        color = glow * (pow(max(glow.g * 2.5, 1e-4), -0.5) * kFlameWhite * view.sunColor.w * body);
+        color = glow * (inversesqrt(max(glow.g * 2.5, 1e-4)) * kFlameWhite * view.sunColor.w * body);
         alpha = 0.0;
     }
 #ifdef FW_SOFT
@@ -217,8 +216,8 @@ void main() {
     if (kEncoding != 0u) {
         // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
         // a thin one must turn red, not grey.
-        color = smoke ? encodeOutput(color / alpha, kEncoding) * alpha
-                      : encodeOutput(color, kEncoding);
+        float whole = smoke ? max(alpha, 1e-6) : 1.0;
+        color = encodeOutput(color / whole, kEncoding) * whole;
     }
     outColor = vec4(min(color, vec3(60000.0)), alpha);
 }

@@ -69,6 +69,9 @@ vec2 openBook(FlameQuad quad, vec2 place, float pixels) {
 }
 #endif
 
+const float kSmall = 24.0;  // px across: a triangle costs a software device less than two
+const float kRoot3 = 1.7320508;
+
 void main() {
     float perspective = view.forward.w;  // weighed with, not branched on, see ARCHITECTURE.md
     uint number = uint(gl_VertexIndex) / 6u, vertex = uint(gl_VertexIndex) % 6u;
@@ -89,11 +92,16 @@ void main() {
     }
     vec3 foot = quad.baseHeight.xyz - view.eye.xyz;
     vec3 middle = foot + quad.axisWidth.xyz * (0.5 * quad.baseHeight.w);
+    float away = mix(1.0, max(dot(middle, view.forward.xyz), 0.01), perspective);
+    float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
+    // What shows nothing outside of a circle is, while small, the triangle around that.
+    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue && quad.kind >> kQuadBook == 0u) {
+        place = vec2(vertex == 0u ? 0.0 : vertex == 1u ? -kRoot3 : kRoot3, vertex == 0u ? 1.5 : 0.0);
+        if (vertex > 2u) place = vec2(0.0);
+    }
 #ifdef FW_BOOKS
     outFrames = outMotions = outSizes = vec4(0.0);
     outBetween = vec2(0.0);
-    float away = mix(1.0, max(dot(middle, view.forward.xyz), 0.01), perspective);
-    float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
     if (quad.kind >> kQuadBook != 0u) place = openBook(quad, place, pixels);
 #endif
     vec3 toEye = -mix(view.forward.xyz, normalize(middle), perspective);
