@@ -274,6 +274,28 @@ TEST_F(ParticlePass, QuadsAreDrawnFarthestFirstFewOrMany) {
     }
 }
 
+// A puff that reached into the ground would end at a straight line where no depth softens it.
+TEST_F(ParticlePass, SmokeOfAJetLiesOnTheGroundThatItStrikes) {
+    FwFireEmitterDef def = emitterDef(FW_EMITTER_JET | FW_EMITTER_GROUND, 500);
+    def.direction[1] = -0.5f;
+    add(def);
+    makeRig(8192);
+    for (int i = 0; i < 60; ++i) frame(0.04f);
+    uint32_t puffs = 0, lying = 0;
+    for (uint32_t i = 0; i < quads(); ++i) {
+        const auto& quad = of<gpu::FlameQuad>(FW_BIND_FLAMES)[arguments()[gpu::kFlameOrder + i]];
+        if ((quad.kind & 3u) != gpu::kQuadSmoke) continue;
+        ++puffs;
+        const float middle = quad.baseHeight.y + 0.5f * quad.baseHeight.w * quad.axisWidth.y;
+        const float above = middle / (0.5f * quad.baseHeight.w);  // in its radii
+        ASSERT_GT(above, 0.88f);
+        lying += above < 0.9f;
+    }
+    EXPECT_GT(puffs, 50u);
+    EXPECT_GT(lying, 4u);
+    std::printf("[   FIGURE ] puffs %u, lying on the ground %u\n", puffs, lying);
+}
+
 // With less detail fewer of them show, each of them larger, and none that was not seen before.
 TEST_F(ParticlePass, AShareOfThemShowsEachLarger) {
     FwFireEmitterDef def = emitterDef(0, 100);
