@@ -54,6 +54,7 @@ layout(location = 0) out vec4 outColor;
 #include "lib/look_noise.glsl"
 
 const float kFlameWhite = 2.4;  // of thin soot at 1600 K, in the host's units
+const float kNoiseBall = 0.9;   // of that: a jet of noise has the light of one of books
 
 // Of a ball's soot at a temperature: what has not burnt away, and what of the light behind it takes.
 // Soot that cools burns, or is smoke, which has quads of its own. What were left of it would be dark
@@ -125,7 +126,7 @@ void main() {
     // Soot glows in folds of a sheet.
     float sheet = (n2.r - 0.5) + (tongue ? 0.6 : 0.7) * (n2.b - 0.5) + (tongue ? 0.0 : 0.25) * (n1.b - 0.5);
     float fold = exp2(sheet * sheet * (tongue ? -120.0 : -103.0));
-    float kelvin, soot, hides;
+    float kelvin, soot, hides, white = kFlameWhite * (tongue ? 1.0 : kNoiseBall);
     if (tongue) {
         float yy = max(y - 0.62 * sqrt(y) * turbulence, 0.45 * y);
         float xx = abs(x + 0.5 * y * (n1.b - 0.5)) * (1.0 + 0.15 * turbulence * y);
@@ -162,12 +163,13 @@ void main() {
     if (booked) {
         soot = page.y;
         kelvin = inState.z + kBookSpan * (page.x - 0.5);
+        white = kFlameWhite;
         soot *= sootLeft(kelvin);
         hides = sootHides(kelvin) * page.z / max(page.y, 1e-4);
     }
 #endif
     vec3 glow = sootRadiance(spark ? inState.z : kelvin);
-    color = glow * (tongue ? vec3(1.0) : kFireWhite) * (kFlameWhite * view.sunColor.w * soot * opacity);
+    color = glow * (tongue ? vec3(1.0) : kFireWhite) * (white * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     // Of smoke: billows, and between them nothing; the thinner it is, the more of it is eaten away.
     // Where it gets thinner towards the light it faces it.

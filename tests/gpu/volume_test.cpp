@@ -1085,7 +1085,7 @@ TEST_F(Volume, AJetByNoiseIsLikeOneByBooks) {
         "its light is %.2f of a volume's\n",
         double(kPower), double(brighter), double(greener),
         double(glm::dot(books, kSeen) / glm::dot(volume, kSeen)));
-    EXPECT_NEAR(1, brighter, 0.15f);
+    EXPECT_NEAR(1, brighter, 0.08f);
     EXPECT_NEAR(1, greener, 0.1f);
 }
 
