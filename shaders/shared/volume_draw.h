@@ -88,6 +88,9 @@ struct VolumeMarch {
 };
 FW_SHARED_SIZE(VolumeMarch, 112)
 
+// n / d, exact below 2^22: software devices divide integers lane by lane.
+FW_SHARED_FN uint volumeQuotient(uint n, uint d) { return uint((float(n) + 0.5f) / float(d)); }
+
 // Workgroups of the probe side by side; each sees as many cells as eight rays.
 FW_SHARED_FN uint volumeProbeBlocks(uint tiles, uint apart) { return (tiles + apart - 1u) / apart; }
 

@@ -20,9 +20,11 @@ void main() {
     uint quad = vertex / 6u, corner = vertex % 6u;
     corner = corner < 3u ? corner : 6u - corner;  // 0 1 2, 3 2 1
     uint tiles = draw.tilesX * draw.tilesY;
-    uint tile = rays[draw.flags + kVolumeList * tiles + quad / draw.slabs];
-    uint slab = draw.slabs - 1u - quad % draw.slabs;
-    ivec2 at = ivec2(tile % draw.tilesX, tile / draw.tilesX);
+    uint listed = volumeQuotient(quad, draw.slabs);
+    uint tile = rays[draw.flags + kVolumeList * tiles + listed];
+    uint slab = draw.slabs - 1u - (quad - listed * draw.slabs);
+    uint row = volumeQuotient(tile, draw.tilesX);
+    ivec2 at = ivec2(tile - row * draw.tilesX, row);
     // Cells around a tile reach a little into it: those of its neighbours' nearest rows and columns.
     // Of small flames each pixel has its own.
     // Neighbours that were not marched have none, and nothing is near them.

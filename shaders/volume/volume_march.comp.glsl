@@ -2,6 +2,8 @@
 // A volumetric flame's rays in cells of a few pixels, each of them once and whole, and kept slab by
 // slab: what a slab adds does not depend on the scene, so the scene's depth, which is known later
 // and for each pixel, chooses among slabs. A workgroup is a tile that volume_probe listed.
+// FW_SMOKE: volume_smoke, for flames that smoke. A device that does not skip branches would pay for
+// a sixth of that march where none does.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -71,7 +73,8 @@ void main() {
     begin = burns ? begin : all / 2u;
     end = burns ? end : begin + 1u;
 
-    uvec2 place = uvec2(tile % march.tilesX, tile / march.tilesX) * kVolumeTile + in_;
+    uint row = volumeQuotient(tile, march.tilesX);
+    uvec2 place = uvec2(tile - row * march.tilesX, row) * kVolumeTile + in_;
     uint cell = place.y * (march.tilesX * kVolumeTile) + place.x;
     place += uvec2(march.originX, march.originY);
     vec2 at_ = vec2(place) + (march.perPixel > 1u ? volumeShift(place.x, place.y) : vec2(0.0));
@@ -83,19 +86,22 @@ void main() {
     vec3 direction = along / perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
-    FlameSun sun = raySun(direction, white);
     float phase = volumePhase(place.x, place.y);
     float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
+    // The curve is looked up as often as it is over the whole of the flame.
+    uint intervals = min(volumeQuotient(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
     RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,
-                           direction, march.intervals | zero);
+                           direction, intervals);
 
     FlameSmokeRay smoke = FlameSmokeRay(fresh(), fresh());
+#ifdef FW_SMOKE
     {
+        FlameSun sun = raySun(direction, white);
         vec2 span = flameSpans(f, from, direction).zw;
         float step_ = max(span.y - span.x, 0.0) / float(kFlameSmokeSteps);
         float middle = first + 0.5 * stride * float(all);
-        uint k = 0u, count = f.smoke > 0.0 ? kFlameSmokeSteps : 1u;
+        uint k = 0u, count = kFlameSmokeSteps | zero;
         do {
             float t = span.x + step_ * (float(k) + phase);
             vec3 x = from + direction * t;
@@ -104,13 +110,14 @@ void main() {
             k += 1u;
         } while (k < count);
     }
+#endif
 
     vec3 lit = white * view.sunDirection.w;
-    uint encoding = march.encoding | zero, last = (end - 1u) / turns, bits = 0u;
+    uint encoding = march.encoding | zero, last = volumeQuotient(end - 1u, turns), bits = 0u;
     FlameRay one = smoke.front;
     vec3 scattered = one.radiance;
     vec4 before = vec4(0.0);
-    uint s = begin / turns, k = begin;
+    uint s = volumeQuotient(begin, turns), k = begin;
     if (s > 0u) {
         before = flameShown(one, scattered, lit, encoding);
         for (uint i = 1u; i < s; ++i) nothing(i, cell, 1.0 - before.a);

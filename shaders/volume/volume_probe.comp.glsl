@@ -32,7 +32,8 @@ void main() {
     uint blocksX = volumeProbeBlocks(march.tilesX, march.apart);
     uint lane = gl_LocalInvocationIndex;
     uvec2 in_ = uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
-    uvec2 probe = uvec2(gl_WorkGroupID.x % blocksX, gl_WorkGroupID.x / blocksX) * 8u + in_;
+    uint row = volumeQuotient(gl_WorkGroupID.x, blocksX);
+    uvec2 probe = uvec2(gl_WorkGroupID.x - row * blocksX, row) * 8u + in_;
     vec2 place = vec2(march.originX, march.originY) + float(march.apart) * (vec2(probe) + 0.5) - 0.5;
     vec3 ray = march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz;
     bool perspective = view.forward.w > 0.5;

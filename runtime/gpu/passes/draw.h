@@ -114,6 +114,7 @@ struct VolumeItem {  // a volumetric flame that a view may show
     vec4 whole{};  // VolumeDraw::rect as if the view had no edge; empty: it is around the eye
     vec3 middle{}, base{};    // m, world: of its bounds; where it stands
     float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
+    bool smokes = false;
 };
 extern const DrawPass kVolumePass;
 // Where the view shows it, in so many slabs; false: nowhere.
@@ -134,6 +135,7 @@ void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items);
 
 struct MarchedVolume {  // one whose rays are marched before the drawing, and how it is shown
     uint32_t flame = 0;
+    bool smokes = false;  // marched by kVolumeSmokePass
     VolumeMarch march{};
     VolumeComposite composite{};
 };

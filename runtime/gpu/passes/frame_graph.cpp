@@ -16,24 +16,25 @@ constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
 constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,         &kRestorePass,       &kEventsPass,
-    &kHeatPass,          &kWakePass,          &kSchedulePass,
-    &kGatherPass,        &kArrivalPass,       &kArrivalRimPass,
-    &kGrantPass,         &kCommitPass,        &kPublishedPass,
-    &kReduceClearPass,   &kReduceFrontPass,   &kReducePass,
-    &kFireCellsPass,     &kFireSourcesPass,   &kReceiversPass,
-    &kExchangePass,      &kContactsPass,      &kEmbersPass,
-    &kPredictAnewPass,   &kPredictGatherPass, &kPredictPass,
-    &kPredictRimPass,    &kSupportPass,       &kProbePass,
-    &kLightsPass,        &kFlameQuadsPass,    &kFlameSortPass,
-    &kRefineHeatPass,    &kRefineLevelsPass,  &kRefineScanPass,
-    &kRefineEmitPass,    &kRefinePlacePass,   &kRecedePass,
-    &kTiesPass,          &kSoftPass,          &kSpringsPass,
-    &kDrapePass,         &kInnerPass,         &kSkinPass,
-    &kSootPass,          &kRefineCutPass,     &kRefinePublishedPass,
-    &kVolumeProbePass,   &kVolumeMarchPass,   &kParticlesPass,
-    &kParticleQuadsPass, &kSparksPass,        &kFieldPass,
-    &kFieldMaskPass,     &kFieldShowPass,     &kRoomsPass};
+    &kResetPass,       &kRestorePass,       &kEventsPass,
+    &kHeatPass,        &kWakePass,          &kSchedulePass,
+    &kGatherPass,      &kArrivalPass,       &kArrivalRimPass,
+    &kGrantPass,       &kCommitPass,        &kPublishedPass,
+    &kReduceClearPass, &kReduceFrontPass,   &kReducePass,
+    &kFireCellsPass,   &kFireSourcesPass,   &kReceiversPass,
+    &kExchangePass,    &kContactsPass,      &kEmbersPass,
+    &kPredictAnewPass, &kPredictGatherPass, &kPredictPass,
+    &kPredictRimPass,  &kSupportPass,       &kProbePass,
+    &kLightsPass,      &kFlameQuadsPass,    &kFlameSortPass,
+    &kRefineHeatPass,  &kRefineLevelsPass,  &kRefineScanPass,
+    &kRefineEmitPass,  &kRefinePlacePass,   &kRecedePass,
+    &kTiesPass,        &kSoftPass,          &kSpringsPass,
+    &kDrapePass,       &kInnerPass,         &kSkinPass,
+    &kSootPass,        &kRefineCutPass,     &kRefinePublishedPass,
+    &kVolumeProbePass, &kVolumeMarchPass,   &kVolumeSmokePass,
+    &kParticlesPass,   &kParticleQuadsPass, &kSparksPass,
+    &kFieldPass,       &kFieldMaskPass,     &kFieldShowPass,
+    &kRoomsPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],    &kSurfacePasses[2],   &kSurfacePasses[3],
@@ -427,8 +428,12 @@ void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolum
     uint32_t last = 0;
     for (const MarchedVolume& one : volumes) last = std::max(last, one.march.flame);
     recorder.fillZero(FW_BIND_VOLUME_WORK, 0, (last + 1) * sizeof(VolumeWork));
-    recorder.dispatchVolumes(kVolumeProbePass, volumes, false);
-    recorder.dispatchVolumes(kVolumeMarchPass, volumes, true);
+    recorder.dispatchVolumes(kVolumeProbePass, volumes, vk::VolumesOf::all);
+    const auto smokes = [](const MarchedVolume& one) { return one.smokes; };
+    if (!std::all_of(volumes.begin(), volumes.end(), smokes))
+        recorder.dispatchVolumes(kVolumeMarchPass, volumes, vk::VolumesOf::clear);
+    if (std::any_of(volumes.begin(), volumes.end(), smokes))
+        recorder.dispatchVolumes(kVolumeSmokePass, volumes, vk::VolumesOf::smoke);
 }
 
 namespace {

@@ -29,8 +29,8 @@ extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWake
     kFlameSortPass, kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass,
     kRefinePlacePass, kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass,
     kSpringsPass, kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass,
-    kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass,
-    kRoomsPass;
+    kVolumeSmokePass, kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass,
+    kFieldShowPass, kRoomsPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();

@@ -71,6 +71,7 @@ void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen&
 
     const vec2 perCell = cell / metres;
     out.flame = item.flame;
+    out.smokes = item.smokes;
     out.march = {};
     out.composite = {};
     VolumeMarch& march = out.march;

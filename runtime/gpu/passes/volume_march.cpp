@@ -118,6 +118,8 @@ uint64_t fitCells(std::span<const VolumeItem> items, const VolumeScreen& screen,
 
 const ComputePass kVolumeMarchPass{
     "volume march", "volume_march.comp", kVolumeMarchUses, sizeof(VolumeMarch), nullptr, true};
+const ComputePass kVolumeSmokePass{
+    "volume smoke", "volume_smoke.comp", kVolumeMarchUses, sizeof(VolumeMarch), nullptr, true};
 
 float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept {
     const float pixel = 2.0f / screen.size.x * glm::length(vec3(draw.rayX)) * awayOf(draw);
@@ -161,6 +163,7 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         const uint32_t count = tiles.x * tiles.y;
         MarchedVolume& one = out[i];
         one.flame = items[i].flame;
+        one.smokes = items[i].smokes;
         VolumeMarch& march = one.march;
         march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell * kFinestDetail);
         march.turns = turnsOf(draw, screen);

@@ -31,7 +31,7 @@ void FrameRecorder::dispatch(const ComputePass& pass, const void* push, uint32_t
 }
 
 void FrameRecorder::dispatchVolumes(const ComputePass& pass, std::span<const MarchedVolume> volumes,
-                                    bool listed) {
+                                    VolumesOf which) {
     const Table& vk = t_.device->table;
     const size_t number = passNumber(pass);
     const PassObjects& objects = t_.pipelines->compute(number);
@@ -42,7 +42,9 @@ void FrameRecorder::dispatchVolumes(const ComputePass& pass, std::span<const Mar
     vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 1, 1,
                              &t_.profiles, 0, nullptr);
     const VkDescriptorSet set = t_.sets->compute(number);
+    const bool listed = which != VolumesOf::all;
     for (const MarchedVolume& one : volumes) {
+        if (listed && one.smokes != (which == VolumesOf::smoke)) continue;
         // In the order of their bindings: the view, the flame.
         const std::array<uint32_t, 2> offsets{t_.viewOffset, one.flame * kVolumeFlameBytes};
         vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,

@@ -20,6 +20,10 @@ struct RecordTarget {  // what a recorder works on; all of it outlives the recor
     VkDescriptorSet profiles = VK_NULL_HANDLE;  // of those that use the fire profiles
 };
 
+// Of volumetric flames: all, with the groups of the probe; or those with and without smoke, with
+// the groups that the probe listed.
+enum class VolumesOf : uint8_t { all, clear, smoke };
+
 class FrameRecorder {
  public:
     explicit FrameRecorder(const RecordTarget& target) : t_(target) {}
@@ -35,10 +39,9 @@ class FrameRecorder {
     void dispatchIndirect(const ComputePass& pass, const void* push, uint32_t resource,
                           uint64_t at);
 
-    // All of them at once: none sees what another writes. `listed`: groups as the probe listed
-    // them, or those of the probe.
+    // Those of them at once: none sees what another writes.
     void dispatchVolumes(const ComputePass& pass, std::span<const MarchedVolume> volumes,
-                         bool listed);
+                         VolumesOf which);
 
     void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);
     void copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes);

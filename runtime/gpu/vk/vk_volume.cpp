@@ -41,6 +41,7 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
                                         vec3(flame.nodes[0].centre),
                                         record.key,
                                         record.tier,
+                                        record.smoke > 0.0f,
                                         {},
                                         {}};
         volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
@@ -63,6 +64,7 @@ uint32_t VkBackend::State::orderVolumes(
             continue;
         item.middle = 0.5f * (vec3(volumes[i].flameLow) + vec3(volumes[i].flameHigh));
         item.base = volumes[i].base;
+        item.smokes = volumes[i].smokes;
         item.near = item.draw.front;
         item.far = item.draw.front + item.draw.deep * float(slabs);
         volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);

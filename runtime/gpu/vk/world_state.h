@@ -323,6 +323,7 @@ struct VkBackend::State {
         uint32_t intervals = 1;        // see VolumeDraw
         vec3 base{};                   // where it stands
         uint32_t key = 0, tier = 0;
+        bool smokes = false;
         vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
