@@ -165,6 +165,8 @@ void checkLentColor(const Target& target, const FwVulkanFrame& frame) {
 }
 
 constexpr float kAnyHeight = 1000;  // px
+// A side of a pixel, of the first picture: all four places at which samples begin, or it is grain.
+constexpr uint32_t kFirstRays = 2;
 
 constexpr VkAccessFlags kColorAccess =
     VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
@@ -207,7 +209,10 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     if (target.key.flames && !volumes.empty()) {
         const VolumeScreen screen =
             screenOf(target.key, {viewport.width, std::fabs(viewport.height)});
+        // In the first picture nobody could know which screen to march for.
+        const bool first = march.screen.size.x == 0.0f;
         noteScreen(view, screen, slot.frameIndex);
+        const uint32_t leastRays = first && march.screen == screen ? kFirstRays : 1;
         const bool made = marchedFor(view, screen);
         if (made) {
             list.marched = {march.items.data(), march.count};
@@ -225,7 +230,9 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                     order.add(kVolumeSlicesPass, cut++);
                 } else {
                     items[whole] = items[i];
-                    volumeRays(screen, items[whole].draw);
+                    VolumeDraw& draw = items[whole].draw;
+                    volumeRays(screen, draw);
+                    draw.perPixel = std::max(draw.perPixel, leastRays);
                     order.add(kVolumePass, whole++);
                 }
             }
