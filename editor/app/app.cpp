@@ -372,16 +372,43 @@ void takeDropped(App& app, const std::vector<fs::path>& files) {
     }
 }
 
-void autosave(App& app) {
-    constexpr double kEvery = 20;  // s
-    static_assert(kEvery < 30);    // at most so much work is lost
-    if (!fwedit::unsaved(app.document) || app.document.dragging) return;
-    if (app.document.revision == app.savedRevision || app.now - app.savedTime < kEvery) return;
+namespace {
+
+// False: it is not kept.
+bool keepAside(App& app) {
     app.savedTime = app.now;
     app.savedRevision = app.document.revision;
     std::string error;
-    if (stateFolder().empty() || !fwedit::saveCopy(app.document, recoveryFile(), error)) return;
+    if (stateFolder().empty() || !fwedit::saveCopy(app.document, recoveryFile(), error))
+        return false;
     noteRecovery(app.document.file);
+    return true;
+}
+
+}  // namespace
+
+void autosave(App& app) {
+    if (!fwedit::unsaved(app.document) || app.document.dragging) return;
+    if (app.document.revision == app.savedRevision ||
+        app.now - app.savedTime < double(app.autosaveEvery))
+        return;
+    keepAside(app);
+}
+
+void recover(App& app, const Recovery& recovery) {
+    fwedit::Document document;
+    std::vector<std::string> repairs;
+    std::string error;
+    if (!fwedit::openCopy(recovery.file, recovery.original, document, repairs, error)) {
+        toast(app, Toast::Kind::kError, "The unsaved work cannot be read", error);
+        return;
+    }
+    showDocument(app, std::move(document));
+    if (!repairs.empty())
+        toast(app, Toast::Kind::kWarning, "Unsaved work was recovered with repairs",
+              joined(repairs));
+    say(app, "Recovered unsaved work");
+    if (keepAside(app)) dropRecovery(recovery);  // not before it lies aside as ours
 }
 
 const Action* findAction(const App& app, const char* name) {

@@ -121,6 +121,7 @@ struct App {
     std::vector<float> costs;  // ms of the device, the newest last
     double savedTime = 0;
     uint64_t savedRevision = 0;  // by autosave
+    float autosaveEvery = 20;    // s; at most so much work is lost, and no more than 30 s of it
     fwui::Rect screen;
 };
 
@@ -153,6 +154,7 @@ bool save(App& app, bool elsewhere, std::function<void()> after = {});
 void ifSaved(App& app, std::function<void()> then);  // asks first where there is unsaved work
 void takeDropped(App& app, const std::vector<std::filesystem::path>& files);
 void autosave(App& app);
+void recover(App& app, const Recovery& recovery);
 
 std::vector<Action> makeActions(App& app);
 void runKeys(App& app);

@@ -36,6 +36,7 @@ struct Wishes {
     bool report = false;  // prints what happens, line by line
     std::string lines;    // commands before the picture, ; between them
     bool once = false;    // one frame, then leave: what a start takes
+    float autosave = 20;  // s
 };
 
 float monitorScale(GLFWwindow* window, VkExtent2D extent) {
@@ -332,7 +333,12 @@ int run(const sample::Options& options, const Wishes& wishes) {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         Program program(host, {options.width, options.height}, wishes);
         fwapp::App& app = program.app();
+        app.autosaveEvery = wishes.autosave;
         for (const std::string& file : options.positional) fwapp::takeDropped(app, {file});
+        fwapp::Recovery left;
+        if (!options.positional.empty() && fwapp::findRecovery(left))
+            fwapp::toast(app, fwapp::Toast::Kind::kWarning, "Unsaved work was found",
+                         "It stays until you look at it: File, Close scene.");
         for (size_t i = 0; i < fwapp::builtIns().size(); ++i)
             if (wishes.builtIn == fwapp::builtIns()[i].name) fwapp::openBuiltIn(app, int(i));
         openPage(app, wishes);
@@ -372,6 +378,8 @@ int main(int argc, char** argv) {
         parser.addFlag("--once", "with --headless: one frame, no picture, then leave", wishes.once);
         parser.addNumber("--scale", "size of the interface; 0: as the monitor has it", wishes.scale,
                          0, 4);
+        parser.addNumber("--autosave", "seconds between copies of unsaved work", wishes.autosave,
+                         0.05f, 25);
         parser.addNumber("--seconds", "how long the burn runs before the picture", wishes.seconds,
                          0, 600);
         if (!parser.parse(argc, argv, options)) return 0;

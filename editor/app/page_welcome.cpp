@@ -25,38 +25,34 @@ std::string ago(const fs::path& file) {
     return std::to_string(int(seconds / 86400)) + " days ago";
 }
 
-void recover(App& app, const fs::path& original) {
-    fwedit::Document document;
-    std::vector<std::string> repairs;
-    std::string error;
-    if (!fwedit::openDocument(recoveryFile(), document, repairs, error)) {
-        toast(app, Toast::Kind::kError, "The unsaved work cannot be read", error);
-        return;
-    }
-    document.file = original;
-    document.saved = ~size_t{0};
-    app.document = std::move(document);
-    app.live.forget();
-    app.camera = app.document.scene.camera;
-    app.page = Page::kScene;
-}
-
 float showRecovery(App& app, ImDrawList* list, float x, float y, float width) {
-    fs::path original;
-    if (!findRecovery(original)) return y;
+    // The folder is looked at once a second.
+    static Recovery found;
+    static bool any = false;
+    static double lookedAt = -1e9;
+    if (app.now - lookedAt > 1) {
+        any = findRecovery(found);
+        lookedAt = app.now;
+    }
+    if (!any) return y;
     const ImVec2 low(x, y), high(x + width, y + dp(88));
     drawBox(list, low, high, mix(colors::header, colors::warn, 0.08f), 8,
             mix(colors::header, colors::warn, 0.5f));
     drawIcon(list, fonts().icon20, low + dp(20, 18), colors::warn, icons::history);
     drawText(list, fonts().semi, x + dp(34), y + dp(18), colors::title, "Unsaved work found");
     const std::string what =
-        (original.empty() ? "Untitled" : original.stem().string()) + ", " + ago(recoveryFile());
+        (found.original.empty() ? "Untitled" : found.original.stem().string()) + ", " +
+        ago(found.file);
     drawTextFit(list, fonts().small, x + dp(34), y + dp(38), width - dp(44), colors::text,
                 what.c_str());
-    if (button("recover", {x + dp(34), y + dp(54)}, dp(84, 24), "Recover", ButtonKind::kPrimary))
-        recover(app, original);
-    if (button("discard", {x + dp(126), y + dp(54)}, dp(76, 24), "Discard", ButtonKind::kGhost))
-        dropRecovery();
+    if (button("recover", {x + dp(34), y + dp(54)}, dp(84, 24), "Recover", ButtonKind::kPrimary)) {
+        recover(app, found);
+        lookedAt = -1e9;
+    }
+    if (button("discard", {x + dp(126), y + dp(54)}, dp(76, 24), "Discard", ButtonKind::kGhost)) {
+        dropRecovery(found);
+        lookedAt = -1e9;
+    }
     return high.y + dp(20);
 }
 

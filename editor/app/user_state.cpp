@@ -1,8 +1,13 @@
 // See user_state.h.
 #include "app/user_state.h"
 
+#include <signal.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -90,25 +95,65 @@ void addRecent(UserState& state, const fs::path& file) {
     saveUserState(state);
 }
 
-fs::path recoveryFile() { return stateFolder() / "recovery.fwscene"; }
+namespace {
 
-bool findRecovery(fs::path& original) {
-    if (!fs::exists(recoveryFile())) return false;
-    std::ifstream in(stateFolder() / "recovery.of");
-    std::string line;
-    std::getline(in, line);
-    original = line;
-    return true;
+constexpr const char* kRecovery = "recovery-";
+
+fs::path ofFile(const fs::path& copy) { return fs::path(copy).replace_extension(".of"); }
+
+// A copy goes with the pictures of its paint.
+void dropCopy(const fs::path& copy) {
+    const std::string pictures = copy.stem().string() + ".paint_";
+    std::error_code ignored;
+    fs::remove(copy, ignored);
+    fs::remove(ofFile(copy), ignored);
+    std::vector<fs::path> gone;
+    for (const auto& entry : fs::directory_iterator(copy.parent_path(), ignored))
+        if (entry.path().filename().string().starts_with(pictures)) gone.push_back(entry.path());
+    for (const fs::path& picture : gone) fs::remove(picture, ignored);
+}
+
+// The number of the process that wrote it; 0: it is no such file.
+pid_t writerOf(const fs::path& copy) {
+    const std::string stem = copy.stem().string();
+    if (copy.extension() != ".fwscene" || !stem.starts_with(kRecovery)) return 0;
+    return pid_t(std::strtol(stem.c_str() + std::strlen(kRecovery), nullptr, 10));
+}
+
+}  // namespace
+
+fs::path recoveryFile() {
+    return stateFolder() / (kRecovery + std::to_string(::getpid()) + ".fwscene");
 }
 
 void noteRecovery(const fs::path& original) {
-    writeText(stateFolder() / "recovery.of", original.string() + "\n");
+    const std::string path = original.empty() ? "" : fs::absolute(original).string();
+    writeText(ofFile(recoveryFile()), path + "\n");
 }
 
-void dropRecovery() {
+void dropRecovery() { dropCopy(recoveryFile()); }
+
+bool findRecovery(Recovery& recovery) {
+    recovery = {};
+    fs::file_time_type newest{};
     std::error_code ignored;
-    fs::remove(recoveryFile(), ignored);
-    fs::remove(stateFolder() / "recovery.of", ignored);
+    for (const auto& entry : fs::directory_iterator(stateFolder(), ignored)) {
+        const pid_t writer = writerOf(entry.path());
+        if (writer <= 0 || writer == ::getpid()) continue;
+        if (::kill(writer, 0) == 0 || errno != ESRCH) continue;
+        const auto written = fs::last_write_time(entry.path(), ignored);
+        if (!recovery.file.empty() && written <= newest) continue;
+        newest = written;
+        recovery.file = entry.path();
+    }
+    if (recovery.file.empty()) return false;
+    std::ifstream in(ofFile(recovery.file));
+    std::string line;
+    std::getline(in, line);
+    recovery.original = line;
+    return true;
 }
+
+void dropRecovery(const Recovery& recovery) { dropCopy(recovery.file); }
 
 }  // namespace fwapp

@@ -24,10 +24,15 @@ void loadUserState(UserState& state);
 void saveUserState(const UserState& state);
 void addRecent(UserState& state, const std::filesystem::path& file);
 
-// What was open, for recovery: its copy, and the file that it was of (empty: it had none).
-std::filesystem::path recoveryFile();
-bool findRecovery(std::filesystem::path& original);
+// Copies of unsaved work, one of each editor that runs: another one's is found once that no longer
+// lives, and stays until it is recovered or discarded.
+struct Recovery {
+    std::filesystem::path file, original;  // the copy, and what it is of (empty: it had no file)
+};
+std::filesystem::path recoveryFile();  // our own
 void noteRecovery(const std::filesystem::path& original);
-void dropRecovery();
+void dropRecovery();                    // our own
+bool findRecovery(Recovery& recovery);  // the newest that a dead editor left
+void dropRecovery(const Recovery& recovery);
 
 }  // namespace fwapp

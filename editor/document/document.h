@@ -93,5 +93,8 @@ bool openDocument(const std::filesystem::path& file, Document& document,
 bool saveDocument(Document& document, const std::filesystem::path& file, std::string& error);
 // The same without making it the document's file: autosave, and a copy beside it.
 bool saveCopy(const Document& document, const std::filesystem::path& file, std::string& error);
+// Such a copy as unsaved work on `original` (empty: it had no file).
+bool openCopy(const std::filesystem::path& copy, const std::filesystem::path& original,
+              Document& document, std::vector<std::string>& repairs, std::string& error);
 
 }  // namespace fwedit

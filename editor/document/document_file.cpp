@@ -211,6 +211,16 @@ bool saveCopy(const Document& document, const fs::path& file, std::string& error
     return writeScene(scene, document, file, error);
 }
 
+bool openCopy(const fs::path& copy, const fs::path& original, Document& document,
+              std::vector<std::string>& repairs, std::string& error) {
+    if (!openDocument(copy, document, repairs, error)) return false;
+    document.file = original;
+    const fs::path from = folderOf(copy), to = baseFolder(document);
+    changeEverywhere(document, [&](Scene& step) { rebaseScene(step, from, to); });
+    document.saved = ~size_t{0};
+    return true;
+}
+
 bool saveDocument(Document& document, const fs::path& file, std::string& error) {
     endDrag(document);
     Scene scene = document.scene;
