@@ -13,6 +13,7 @@
 #include "app/paint_page.h"
 #include "document/apply.h"
 #include "document/clipboard.h"
+#include "document/keys.h"
 #include "shell/icons.h"
 
 namespace fwapp {
@@ -561,7 +562,7 @@ std::vector<Action> makeActions(App& app) {
          },
          {},
          scene},
-        {"Show marks",
+        {"Show marks and maps",
          "View",
          "H",
          icons::eye,
@@ -569,12 +570,27 @@ std::vector<Action> makeActions(App& app) {
          {},
          scene,
          true},
-        {"Show panels", "View", "Tab", nullptr, [at] { at->panels = !at->panels; }, {}, scene},
+        {"Show panels", "View", "Tab", nullptr, [at] { at->panels = !at->panels; }, {}, opened},
         {"Show burn times",
          "View",
          "O",
          icons::timer,
-         [at] { at->burnTimes = !at->burnTimes; },
+         [at] {
+             at->burnTimes = !at->burnTimes;
+             at->multipliers = false;
+             if (at->burnTimes) at->showHelpers = true;
+         },
+         {},
+         scene},
+        {"Show burn multipliers",
+         "View",
+         "Shift+O",
+         icons::brush,
+         [at] {
+             at->multipliers = !at->multipliers;
+             at->burnTimes = false;
+             if (at->multipliers) at->showHelpers = true;
+         },
          {},
          scene},
         {"Larger interface", "View", "Ctrl+Plus", nullptr,
@@ -720,6 +736,17 @@ std::vector<Action> makeActions(App& app) {
          [at] { at->playing = !at->playing; },
          {},
          scene},
+        {"Burn on from here",
+         "Time",
+         "Ctrl+Space",
+         nullptr,
+         [at] {
+             at->live.seek(at->live.time());  // what was only previewed is burnt
+             at->playing = true;
+             say(*at, "Burns on from " + clockText(at->live.time()));
+         },
+         {},
+         scene},
         {"Back one frame",
          "Time",
          ",",
@@ -798,50 +825,78 @@ std::vector<Action> makeActions(App& app) {
              at->paletteAt = 0;
          }},
         {"Keys", "Help", "F1", icons::keyboard, [at] { at->keys = !at->keys; }},
+        {"What is this?", "Help", "Shift+F1", icons::question,
+         [at] {
+             fwui::asking() = !fwui::asking();
+             if (fwui::asking()) say(*at, "Point at what you want to know about");
+         }},
         {"About Flamewright", "Help", "", icons::info, [at] { at->about = true; }},
     };
     addPaintActions(app, list);
     addFlameActions(app, list);
     addOutputActions(app, list);
+    for (Action& action : list) {
+        action.standard = action.keys;
+        const auto own = app.user.keys.find(action.name);
+        if (own != app.user.keys.end()) action.keys = own->second;
+    }
     return list;
+}
+
+const char* keysOf(const App& app, const char* name) {
+    const Action* action = findAction(app, name);
+    return action ? action->keys.c_str() : "";
+}
+
+bool rebind(App& app, size_t index, const std::string& keys, std::string& problem) {
+    Action& action = app.actions[index];
+    std::vector<fwedit::KeyUse> uses;
+    for (const Action& other : app.actions) uses.push_back({other.name, other.keys, other.page});
+    if (const auto wanted = fwedit::parseKeys(keys)) {
+        const fwedit::KeyUse* taken = fwedit::keyConflict(uses, action.name, *wanted, action.page);
+        if (taken) {
+            problem = keys + " is “" + std::string(taken->command) + "”. Press other keys.";
+            return false;
+        }
+    }
+    action.keys = keys;
+    if (keys == action.standard)
+        app.user.keys.erase(action.name);
+    else
+        app.user.keys[action.name] = keys;
+    saveUserState(app.user);
+    problem.clear();
+    say(app, keys.empty() ? std::string(action.name) + " has no keys now"
+                          : keys + " is " + action.name + " now");
+    return true;
+}
+
+std::string listKeys(const App& app) {
+    std::string text;
+    for (const Action& action : app.actions)
+        text += std::to_string(action.page) + "\t" + action.keys + "\t" + action.name + "\n";
+    return text;
 }
 
 namespace {
 
-// GLFW's number of a key by its name on the cap.
-int keyCode(const std::string& name) {
-    if (name.size() == 1) {
-        const char c = name[0];
-        if ((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')) return c;
-        if (std::strchr(",.[]-=/;'", c)) return c;
-    }
-    struct Named {
-        const char* name;
-        int code;
-    };
-    constexpr Named kNamed[] = {{"Space", 32}, {"Del", 261},   {"Home", 268},  {"End", 269},
-                                {"F1", 290},   {"Esc", 256},   {"Tab", 258},   {"Plus", 61},
-                                {"Minus", 45}, {"Num 1", 321}, {"Num 3", 323}, {"Num 7", 327}};
-    for (const Named& named : kNamed)
-        if (name == named.name) return named.code;
-    return -1;
+bool keysPressed(const std::string& keys) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto wanted = fwedit::parseKeys(keys);
+    return wanted && io.KeyCtrl == wanted->ctrl && io.KeyShift == wanted->shift && !io.KeyAlt &&
+           ImGui::IsKeyPressed(wanted->code, false);
 }
 
-bool keysPressed(const char* keys) {
+// The next key that is pressed is the action's.
+void awaitKeys(App& app) {
     const ImGuiIO& io = ImGui::GetIO();
-    bool ctrl = false, shift = false;
-    std::string rest = keys;
-    if (rest.starts_with("Ctrl+")) {
-        ctrl = true;
-        rest.erase(0, 5);
+    for (int code = 0; code < IM_ARRAYSIZE(io.KeysDown); ++code) {
+        if (!ImGui::IsKeyPressed(code, false)) continue;
+        const std::string keys = fwedit::printKeys({code, io.KeyCtrl, io.KeyShift});
+        if (keys.empty() || io.KeyAlt) continue;
+        if (rebind(app, size_t(app.rebinding), keys, app.keysProblem)) app.rebinding = -1;
+        return;
     }
-    if (rest.starts_with("Shift+")) {
-        shift = true;
-        rest.erase(0, 6);
-    }
-    const int code = keyCode(rest);
-    return code >= 0 && io.KeyCtrl == ctrl && io.KeyShift == shift && !io.KeyAlt &&
-           ImGui::IsKeyPressed(code, false);
 }
 
 }  // namespace
@@ -849,7 +904,12 @@ bool keysPressed(const char* keys) {
 void runKeys(App& app) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsKeyPressed(256, false)) {  // Esc closes the topmost
-        if (app.files.open) {
+        if (app.rebinding >= 0) {
+            app.rebinding = -1;
+            app.keysProblem.clear();
+        } else if (fwui::asking()) {
+            fwui::asking() = false;
+        } else if (app.files.open) {
             app.files.open = false;
         } else if (app.palette) {
             app.palette = false;
@@ -869,15 +929,16 @@ void runKeys(App& app) {
         }
         return;
     }
+    if (app.rebinding >= 0) return awaitKeys(app);
     // A slow frame may hear of several keys: a page's and then one of that page.
     for (const Action& action : app.actions) {
         if (app.files.open || app.palette || app.guard || app.about) return;
-        if (!*action.keys || !keysPressed(action.keys)) continue;
+        if (action.keys.empty() || !keysPressed(action.keys)) continue;
         // Within a text its own undo and clipboard are meant.
         if (io.WantTextInput && (!io.KeyCtrl || !std::strcmp(action.place, "Edit")) &&
-            std::strcmp(action.keys, "F1"))
+            std::strcmp(action.name, "Keys"))
             continue;
-        if (app.keys && std::strcmp(action.keys, "F1")) continue;
+        if (app.keys && std::strcmp(action.name, "Keys")) continue;
         if (action.page == -3 && app.page == Page::kWelcome) continue;
         if (action.page >= -1 && action.page != int(app.page)) continue;
         if (action.enabled && !action.enabled()) continue;
@@ -889,7 +950,13 @@ void recordPages(App& app, const fwui::Frame& frame) {
     if (app.page == Page::kFlame) app.flame->record(frame, app.deltaTime);
     if (app.page != Page::kScene && app.page != Page::kPaint) return;
     const bool runs = app.page == Page::kScene && app.playing && !app.live.preparing();
-    app.live.record(frame, app.camera, runs ? app.deltaTime * app.speed : 0);
+    fwedit::Camera camera = app.camera;
+    // What fits into the scene page's wide picture fits into the narrow one beside the unwrap.
+    const VkExtent2D extent = app.live.target.extent();
+    if (app.page == Page::kPaint && extent.width > 0)
+        camera.distance *=
+            std::clamp(1.15f * float(extent.height) / float(extent.width), 1.0f, 2.5f);
+    app.live.record(frame, camera, runs ? app.deltaTime * app.speed : 0);
     if (app.live.milliseconds() <= 0) return;
     app.costs.push_back(float(app.live.milliseconds()));
     if (app.costs.size() > 64) app.costs.erase(app.costs.begin());

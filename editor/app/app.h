@@ -32,12 +32,13 @@ struct Toast {
 struct Action {
     const char* name;   // "Add heat source"
     const char* place;  // of the menu: "File", "Edit", "View", "Scene", "Time", "Help", "Pages"
-    const char* keys;   // "Ctrl+S"; empty: none
+    std::string keys;   // "Ctrl+S"; empty: none
     const char* icon;   // may be null
     std::function<void()> run;
     std::function<bool()> enabled = {};
-    int page = -2;      // only there; -2: on all, -3: on all with a scene
-    bool line = false;  // a line above it in the menu
+    int page = -2;              // only there; -2: on all, -3: on all with a scene
+    bool line = false;          // a line above it in the menu
+    std::string standard = {};  // keys that it has by design
 };
 
 struct FileDialog {
@@ -87,9 +88,11 @@ struct App {
     fwedit::Camera camera;
     bool playing = false, looping = false;
     float speed = 1;
-    bool scrubbing = false;   // a hand holds the playhead
-    bool burnTimes = false;   // the map of burn times lies over the picture
-    double burnTimesAt = -1;  // s that it was coloured at
+    bool scrubbing = false;          // a hand holds the playhead
+    bool burnTimes = false;          // the map of burn times lies over the picture
+    bool multipliers = false;        // that of burn multipliers does, of all layers of paint
+    uint64_t multipliersOf = ~0ull;  // revision that it was coloured at
+    double burnTimesAt = -1;         // s that it was coloured at
     Pace pace;
     double movedAt = -1e9;       // s, when the view last moved by hand
     std::string compared;        // what the left half of a comparison is
@@ -108,6 +111,8 @@ struct App {
     std::vector<Toast> toasts;
     FileDialog files;
     bool palette = false, keys = false, about = false, guard = false, quit = false;
+    int rebinding = -1;       // action whose new keys are awaited
+    std::string keysProblem;  // with the last that were pressed
     std::string paletteText;
     int paletteAt = 0;
     bool paletteFresh = false;
@@ -159,6 +164,12 @@ void recover(App& app, const Recovery& recovery);
 std::vector<Action> makeActions(App& app);
 void runKeys(App& app);
 const Action* findAction(const App& app, const char* name);
+const char* keysOf(const App& app, const char* name);  // of that action, as they are now
+// Gives it these keys (empty: none) and keeps them with the user's settings. False: `problem` says
+// which command has them.
+bool rebind(App& app, size_t action, const std::string& keys, std::string& problem);
+// A line an action: its page, its keys, its name.
+std::string listKeys(const App& app);
 
 void askFile(App& app, FileDialog dialog);
 

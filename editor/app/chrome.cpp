@@ -27,7 +27,8 @@ void showMenu(App& app, const char* name, ImVec2 at) {
         if (std::strcmp(action.place, name)) continue;
         if (action.line && !first) menuLine();
         first = false;
-        if (menuItem(action.name, action.icon, action.keys, allowed(app, action))) action.run();
+        if (menuItem(action.name, action.icon, action.keys.c_str(), allowed(app, action)))
+            action.run();
     }
     if (!std::strcmp(name, "File") && !app.user.recent.empty()) {
         menuLine();
@@ -107,7 +108,8 @@ void showTopBar(App& app, const Rect& rect) {
     drawBox(list, low, high, colors::well, 4, hovered ? colors::edge : colors::line);
     drawIcon(list, fonts().icon17, {low.x + dp(14), y}, colors::dim, icons::search);
     drawText(list, fonts().body, low.x + dp(28), y, colors::dim, "Find anything");
-    drawTextRight(list, fonts().small, high.x - dp(8), y, colors::dim, "Ctrl+P");
+    drawTextRight(list, fonts().small, high.x - dp(8), y, colors::dim,
+                  keysOf(app, "Find anything"));
     endPanel();
 }
 
@@ -166,7 +168,7 @@ void showTransport(App& app, ImDrawList* list, const Rect& rect, bool marks) {
         const Action* action = findAction(app, name);
         ToolLook look{.icon = icon};
         look.active = active;
-        if (toolButton(name, {x, y}, look, action->name, action->keys)) action->run();
+        if (toolButton(name, {x, y}, look, action->name, action->keys.c_str())) action->run();
         x += dp(width);
     };
     act("To start", icons::toStart, 28);
@@ -179,7 +181,7 @@ void showTransport(App& app, ImDrawList* list, const Rect& rect, bool marks) {
                         : colors::control);
     drawIcon(list, fonts().icon20, {x + dp(18), y + dp(14)}, colors::white,
              app.playing ? icons::pause : icons::play);
-    tip("Play or pause", "Space");
+    tip("Play or pause", keysOf(app, "Play, pause"));
     x += dp(38);
     act("On one frame", icons::stepFwd, 28);
     act("To end", icons::toEnd, 34);
@@ -210,10 +212,12 @@ void showTransport(App& app, ImDrawList* list, const Rect& rect, bool marks) {
     beside.active = app.live.comparing();
     float right = rect.x1 - dp(8) - toolButtonWidth(beside);
     if (toolButton("compare", {right, y}, beside,
-                   beside.active ? "Back to one picture" : "Keep this beside what changes", "C"))
+                   beside.active ? "Back to one picture" : "Keep this beside what changes",
+                   keysOf(app, "Compare")))
         findAction(app, "Compare")->run();
     right -= toolButtonWidth(look) + dp(4);
-    if (toolButton("event", {right, y}, look, "Add an event here", "M")) event->run();
+    if (toolButton("event", {right, y}, look, "Add an event here", event->keys.c_str()))
+        event->run();
 }
 
 }  // namespace fwapp

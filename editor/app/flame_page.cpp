@@ -545,6 +545,10 @@ void addFlameActions(App& app, std::vector<Action>& list) {
     auto resize = [at](float by) {
         return [at, by] { at->flame->size = std::clamp(at->flame->size * by, 1.0f, 100.0f); };
     };
+    auto strengthen = [at](float by) {
+        return
+            [at, by] { at->flame->strength = std::clamp(at->flame->strength + by, 0.0f, 100.0f); };
+    };
     // The flame of the scene that is selected, else the first; 0: there is none.
     auto target = [at] {
         fwedit::ObjectId id = 0;
@@ -576,6 +580,8 @@ void addFlameActions(App& app, std::vector<Action>& list) {
          {"Pick a value", "Flame", "I", icons::pick, pick(ProfileTool::kPick), {}, page},
          {"Larger brush", "Flame", "]", nullptr, resize(1.2f), {}, page},
          {"Smaller brush", "Flame", "[", nullptr, resize(1 / 1.2f), {}, page},
+         {"Stronger brush", "Flame", "Shift+]", nullptr, strengthen(10), {}, page},
+         {"Weaker brush", "Flame", "Shift+[", nullptr, strengthen(-10), {}, page},
          {"Pause the preview",
           "Flame",
           "Space",
@@ -675,33 +681,14 @@ namespace {
 
 void showFlameTools(App& app, const Rect& rect) {
     FlamePage& page = *app.flame;
-    ImDrawList* list = beginPanel("##flame tools", rect, colors::header);
+    beginPanel("##flame tools", rect, colors::header);
     const float y = rect.y0 + dp(5);
     float x = rect.x0 + dp(8);
     int by = page.draft.curves ? 1 : 0;
     if (segments("by", {x, y + dp(2)}, dp(140, 24), {"Brush", "Points"}, by))
         page.useCurves(by == 1);
-    tip("Made by the brush or by points", "P");
+    tip("Made by the brush or by points", keysOf(app, "By points or by brush"));
     x += dp(148);
-    struct Item {
-        ProfileTool tool;
-        const char *icon, *name, *keys;
-    };
-    constexpr Item kTools[] = {{ProfileTool::kPaint, icons::brush, "Paint", "B"},
-                               {ProfileTool::kErase, icons::erase, "Erase", "X"},
-                               {ProfileTool::kSmooth, icons::smooth, "Smooth", "S"},
-                               {ProfileTool::kSmear, icons::smear, "Smear", "F"},
-                               {ProfileTool::kGradient, icons::gradient, "Gradient", "G"},
-                               {ProfileTool::kPick, icons::pick, "Pick a value", "I"}};
-    for (const Item& item : kTools) {
-        if (page.draft.curves) break;
-        const ToolLook look{.icon = item.icon, .active = page.tool == item.tool};
-        if (toolButton(item.name, {x, y}, look, item.name, item.keys)) page.tool = item.tool;
-        x += toolButtonWidth(look) + dp(3);
-    }
-    if (!page.draft.curves) x += dp(4);
-    drawColumn(list, x, rect.y0 + dp(9), rect.y1 - dp(9), colors::edge);
-    x += dp(8);
     int plane = int(page.plane);
     if (segments("plane", {x, y + dp(2)}, dp(184, 24), {"Temperature", "Soot"}, plane)) {
         page.plane = ProfilePlane(plane);
@@ -718,15 +705,14 @@ void showFlameTools(App& app, const Rect& rect) {
         const ToolLook look{.icon = icon, .label = label, .active = active};
         right -= toolButtonWidth(look);
         const Action* action = findAction(app, name);
-        if (toolButton(name, {right, y}, look, name, *action->keys ? action->keys : nullptr))
-            action->run();
+        if (toolButton(name, {right, y}, look, name, action->keys.c_str())) action->run();
         right -= dp(4);
     };
     act("Use in the scene…", icons::firepit, "Use in scene");
     act("Compare A and B", icons::compare, "Compare", page.compares);
     act("Export flame picture…", icons::exportTo, "Export");
-    act("Save flame shape…", icons::save, nullptr);
-    act("Import flame shape…", icons::importFrom, nullptr);
+    act("Save flame shape…", icons::save, "Save");
+    act("Import flame shape…", icons::importFrom, "Import");
     endPanel();
 }
 
@@ -802,6 +788,32 @@ bool showColors(FlamePage& page, Rows& rows) {
     return touched;
 }
 
+// Two beside each other, with their names.
+void showBrushTools(App& app, Rows& rows) {
+    FlamePage& page = *app.flame;
+    struct Item {
+        ProfileTool tool;
+        const char *icon, *name;  // of its action
+    };
+    constexpr Item kTools[] = {{ProfileTool::kPaint, icons::brush, "Paint"},
+                               {ProfileTool::kErase, icons::erase, "Erase"},
+                               {ProfileTool::kSmooth, icons::smooth, "Smooth"},
+                               {ProfileTool::kSmear, icons::smear, "Smear"},
+                               {ProfileTool::kGradient, icons::gradient, "Gradient"},
+                               {ProfileTool::kPick, icons::pick, "Pick a value"}};
+    const float half = std::floor((rows.x1 - rows.x0) * 0.5f);
+    for (size_t i = 0; i < std::size(kTools); ++i) {
+        const Item& item = kTools[i];
+        const ToolLook look{
+            .icon = item.icon, .label = item.name, .active = page.tool == item.tool};
+        if (toolButton(item.name, {rows.x0 + float(i % 2) * half, rows.y}, look, item.name,
+                       keysOf(app, item.name)))
+            page.tool = item.tool;
+        if (i % 2 == 1) rows.y += dp(32);
+    }
+    rows.y += dp(4);
+}
+
 void showFlameLeft(App& app, const Rect& rect) {
     FlamePage& page = *app.flame;
     ImDrawList* list = beginPanel("##flame left", rect, colors::panel, true);
@@ -810,6 +822,7 @@ void showFlameLeft(App& app, const Rect& rect) {
     if (page.draft.curves) {
         showPoint(page, rows);
     } else if (section(rows, "Brush", page.brushOpen)) {
+        showBrushTools(app, rows);
         numberRow(rows, "Size", page.size,
                   {.unit = "cm", .format = "%.0f", .lowest = 1, .highest = 100});
         numberRow(rows, "Strength", page.strength,
@@ -955,8 +968,9 @@ void drawStops(ImDrawList* list, const FlamePage& page, const CanvasPlace& place
         list->AddRectFilledMultiColor({place.stopX(a), bar.y0}, {place.stopX(b), bar.y1}, left,
                                       right, right, left);
     }
-    drawText(list, fonts().small, bar.x0, bar.y0 - dp(9), colors::text, "Edge");
-    drawTextRight(list, fonts().small, bar.x1, bar.y0 - dp(9), colors::text, "Core, °C");
+    const float beside = (bar.y0 + bar.y1) * 0.5f;
+    drawTextRight(list, fonts().small, bar.x0 - dp(14), beside, colors::text, "Edge, °C");
+    drawText(list, fonts().small, bar.x1 + dp(14), beside, colors::text, "Core");
     for (size_t i = 0; i < stops.size(); ++i) {
         const float x = place.stopX(stops[i].time);
         const bool chosen = page.chosen.stop == int(i);
@@ -1387,20 +1401,23 @@ void showFlame(App& app, Rect rect) {
                     {"Alt", "pick"},
                     {"[ ]", "size"}});
     rect.y0 += dp(1);
-    const Rect presets = rect.cutBottom(dp(116));
-    rect.cutBottom(dp(2));
-    const Rect left = rect.cutLeft(dp(236));
-    rect.cutLeft(dp(2));
+    Rect presets, left;
+    if (app.panels) {
+        presets = rect.cutBottom(dp(116));
+        rect.cutBottom(dp(2));
+        left = rect.cutLeft(dp(236));
+        rect.cutLeft(dp(2));
+    }
     const Rect preview = rect.cutRight(std::floor(std::min(dp(456), rect.width() * 0.45f)));
     rect.cutRight(dp(2));
-    showFlameLeft(app, left);
+    if (app.panels) showFlameLeft(app, left);
     showCanvas(app, rect);
     if (!app.flame->problem.empty()) {
         toast(app, Toast::Kind::kError, "The preview stands still", app.flame->problem);
         app.flame->problem.clear();
     }
     showPreview(app, preview);
-    showPresets(app, presets);
+    if (app.panels) showPresets(app, presets);
 }
 
 }  // namespace fwapp

@@ -26,19 +26,22 @@ struct Range {
     float low, high;
     const char* format;
     bool heat = false;
+    const char* zero = nullptr;  // what 0 stands for, if not for none
+    bool percent = false;        // a share, shown in hundredths
 };
 constexpr Range kRanges[] = {{"output", 0, 60, "%.1f", true},
                              {"power", 0, 400, "%.1f", true},
                              {"radius", 0, 1, "%.3f"},
                              {"length", 0, 5, "%.2f"},
                              {"start", 0, 60, "%.1f"},
-                             {"duration", 0, 120, "%.1f"},
+                             {"duration", 0, 120, "%.1f", false, "To the end"},
                              {"time", 0, 120, "%.1f"},
                              {"diameter", 0.002f, 3, "%.3f"},
-                             {"thickness", 0, 0.1f, "%.3f"},
-                             {"moisture", 0, 1, "%.2f"},
+                             {"thickness", 0, 0.1f, "%.3f", false, "As the material"},
+                             {"moisture", 0, 1, "%.0f", false, "As the material", true},
                              {"speed", 0, 4, "%.2f"},
-                             {"life", 0, 10, "%.2f"},
+                             {"life", 0, 10, "%.2f", false, "By itself"},
+                             {"cone", 0, 3.14f, "%.2f", false, "By itself"},
                              {"pace", 0.1f, 60, "%.1f"},
                              {"light", 0, 4, "%.2f"},
                              {"exposure", 0, 4, "%.2f"},
@@ -60,6 +63,14 @@ NumberLook lookOf(const FieldInfo& field) {
         look.highest = std::min(range.high, look.most);
         look.format = range.format;
         if (range.heat) look.fill = colors::heat;
+        look.zero = range.zero;
+        if (range.percent) {
+            look.unit = "%";
+            look.lowest *= 100;
+            look.highest *= 100;
+            look.least *= 100;
+            look.most *= 100;
+        }
         return look;
     }
     if (field.high - field.low <= 100 && field.type != FieldType::Vector) {
@@ -121,9 +132,12 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
         }
         case FieldType::Whole:
         case FieldType::Number: {
-            auto number = float(std::get<double>(value));
-            const Edit edit = numberRow(rows, field.label, number, lookOf(field));
-            double wanted = double(number);
+            NumberLook look = lookOf(field);
+            if (kind == Kind::Settings || kind == Kind::Event) look.zero = nullptr;
+            const double share = look.unit == std::string_view("%") && field.high <= 2 ? 100 : 1;
+            auto number = float(std::get<double>(value) * share);
+            const Edit edit = numberRow(rows, field.label, number, look);
+            double wanted = double(number) / share;
             if (field.type == FieldType::Whole) wanted = std::round(wanted);
             if (edit != Edit::kNone) applyEdit(app, id, field.key, wanted, edit);
             break;
@@ -287,7 +301,7 @@ void showKeys(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fie
     drawBox(draw, low, high, colors::well, 4);
     const float one = high.y - dp(6) - (high.y - low.y - dp(12)) / most;
     drawRow(draw, low.x, high.x, one, hex(0xFFFFFF, 26));
-    drawText(draw, fonts().small, low.x + dp(4), one - dp(8), colors::off, "1×");
+    drawTextRight(draw, fonts().small, high.x - dp(4), one - dp(8), colors::off, "1×");
     bool held = false, hovered = false;
     hit("keys", low, high - low, &hovered, &held);
     const ImVec2 mouse = ImGui::GetIO().MousePos;

@@ -37,6 +37,7 @@ struct Wishes {
     std::string lines;    // commands before the picture, ; between them
     bool once = false;    // one frame, then leave: what a start takes
     float autosave = 20;  // s
+    bool keys = false;    // prints them, then leaves
 };
 
 float monitorScale(GLFWwindow* window, VkExtent2D extent) {
@@ -342,6 +343,10 @@ int run(const sample::Options& options, const Wishes& wishes) {
         for (size_t i = 0; i < fwapp::builtIns().size(); ++i)
             if (wishes.builtIn == fwapp::builtIns()[i].name) fwapp::openBuiltIn(app, int(i));
         openPage(app, wishes);
+        if (wishes.keys) {
+            std::fputs(fwapp::listKeys(app).c_str(), stdout);
+            return 0;
+        }
         if (wishes.once) {
             program.showOnce();
         } else if (options.headless) {
@@ -376,6 +381,8 @@ int main(int argc, char** argv) {
                        wishes.lines);
         parser.addFlag("--report", "print what is done, line by line", wishes.report);
         parser.addFlag("--once", "with --headless: one frame, no picture, then leave", wishes.once);
+        parser.addFlag("--keys", "print each command's page, keys and name, then leave",
+                       wishes.keys);
         parser.addNumber("--scale", "size of the interface; 0: as the monitor has it", wishes.scale,
                          0, 4);
         parser.addNumber("--autosave", "seconds between copies of unsaved work", wishes.autosave,

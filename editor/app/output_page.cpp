@@ -272,7 +272,7 @@ void act(App& app, Rows& rows, const char* name, bool primary) {
                         colors::off, name);
     } else if (button(name, {rows.x0, rows.y}, {rows.x1 - rows.x0, dp(28)}, name,
                       primary ? ButtonKind::kPrimary : ButtonKind::kPlain, action->icon,
-                      *action->keys ? action->keys : nullptr)) {
+                      action->keys.empty() ? nullptr : action->keys.c_str())) {
         action->run();
     }
     rows.y += dp(38);

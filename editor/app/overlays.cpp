@@ -165,7 +165,7 @@ std::vector<Found> findAnything(App& app) {
         if (action.page >= -1 && action.page != int(app.page)) continue;
         if (action.enabled && !action.enabled()) continue;
         if (!std::strcmp(action.name, "Find anything")) continue;
-        consider(action.name, action.place, action.icon, action.keys, action.run);
+        consider(action.name, action.place, action.icon, action.keys.c_str(), action.run);
     }
     if (app.page != Page::kWelcome) {
         fwedit::forEachList(app.document.scene, [&](fwedit::Kind kind, const auto& list) {
@@ -274,16 +274,19 @@ void showPalette(App& app) {
 
 void showKeys(App& app) {
     ImDrawList* list = beginOverlay("##keys", app.screen, 0.975f);
-    const float x0 = app.screen.x0 + dp(56), x1 = app.screen.x1 - dp(56);
-    const float y0 = app.screen.y0 + dp(48);
+    const float x0 = app.screen.x0 + dp(40), x1 = app.screen.x1 - dp(40);
+    const float y0 = app.screen.y0 + dp(44);
     drawText(list, fonts().title, x0, y0, colors::title, "Keys");
-    drawText(list, fonts().body, x0 + dp(88), y0 + dp(5), colors::dim,
-             "Everything here is also found by its name: Ctrl+P.");
+    const char* about = "Click a line to give it other keys, right click for those by design.";
+    drawText(list, fonts().body, x0 + dp(88), y0 + dp(5),
+             app.keysProblem.empty() ? colors::dim : colors::warn,
+             app.keysProblem.empty() ? about : app.keysProblem.c_str());
     const float close = textSize(fonts().body, "close").x;
     drawTextRight(list, fonts().body, x1, y0, colors::dim, "close");
     drawKeys(list, x1 - close - dp(8), y0, "Esc", true);
     struct Line {
         std::string name, keys;
+        int action = -1;  // < 0: these stay as they are
     };
     struct Group {
         std::string name;
@@ -297,12 +300,14 @@ void showKeys(App& app) {
         groups.push_back({name, {}, false});
         return groups.back();
     };
-    for (const char* place :
-         {"File", "Edit", "Pages", "Help", "Tools", "Scene", "View", "Time", "Flame", "Export"}) {
-        for (const Action& action : app.actions) {
-            if (std::strcmp(action.place, place) || !*action.keys) continue;
+    for (const char* place : {"File", "Edit", "Pages", "Help", "Tools", "Scene", "View", "Time",
+                              "Paint", "Flame", "Export"}) {
+        for (size_t i = 0; i < app.actions.size(); ++i) {
+            const Action& action = app.actions[i];
+            const bool keyed = !action.keys.empty() || !action.standard.empty();
+            if (std::strcmp(action.place, place) || !keyed) continue;
             Group& to = group(place);
-            to.lines.push_back({action.name, action.keys});
+            to.lines.push_back({action.name, action.keys, int(i)});
             if (action.page == int(app.page)) to.here = true;
         }
     }
@@ -310,37 +315,70 @@ void showKeys(App& app) {
     around.lines = {{"Orbit", "Alt+Drag|Right drag"},
                     {"Pan", "Middle drag"},
                     {"Zoom", "Wheel"},
-                    {"Snap, fine", "Ctrl|Shift"}};
-    constexpr int kColumns = 4;
-    const float gap = dp(36), width = (x1 - x0 - gap * (kColumns - 1)) / kColumns;
-    size_t lines = 0;
-    for (const Group& one : groups) lines += one.lines.size() + 2;
-    const size_t column = (lines + kColumns - 1) / kColumns + 2;
-    float x = x0, y = y0 + dp(52);
-    size_t used = 0;
+                    {"Snap, fine", "Ctrl|Shift"},
+                    {"Straight line", "Shift+Click"}};
+    constexpr int kColumns = 5;
+    constexpr float kLine = 23;
+    const float gap = dp(28), width = (x1 - x0 - gap * (kColumns - 1)) / kColumns;
+    const float top = y0 + dp(46), bottom = app.screen.y1 - dp(12);
+    float x = x0, y = top;
+    bool onLine = false;
     for (const Group& one : groups) {
-        if (used > 0 && used + one.lines.size() + 1 > column) {
+        // A group that does not fit goes on in the next column.
+        if (y > top &&
+            y + dp(30) + dp(kLine) * float(std::min<size_t>(3, one.lines.size())) > bottom) {
             x += width + gap;
-            y = y0 + dp(52);
-            used = 0;
+            y = top;
         }
-        drawText(list, fonts().semi, x, y, one.here ? colors::accent : colors::title,
-                 one.name.c_str());
-        if (one.here && (one.name == "Scene" || one.name == "Flame"))
-            drawTextRight(list, fonts().small, x + width, y, colors::accent, "you are here");
-        drawRow(list, x, x + width, y + dp(14), one.here ? colors::accent : colors::edge);
-        y += dp(32);
+        const auto head = [&] {
+            drawText(list, fonts().semi, x, y, one.here ? colors::accent : colors::title,
+                     one.name.c_str());
+            drawRow(list, x, x + width, y + dp(13), one.here ? colors::accent : colors::edge);
+            y += dp(30);
+        };
+        head();
         for (const Line& line : one.lines) {
+            if (y + dp(kLine * 0.5f) > bottom) {
+                x += width + gap;
+                y = top;
+                head();
+            }
+            const bool waits = line.action >= 0 && line.action == app.rebinding;
+            bool hovered = false;
+            if (line.action >= 0) {
+                ImGui::PushID(line.action);
+                const ImVec2 low(x - dp(6), y - dp(kLine * 0.5f));
+                if (hit("keys", low, {width + dp(12), dp(kLine)}, &hovered)) {
+                    app.rebinding = line.action;
+                    app.keysProblem.clear();
+                }
+                ImGui::PopID();
+                if (hovered || waits)
+                    drawBox(list, low, low + ImVec2(width + dp(12), dp(kLine)),
+                            waits ? colors::accentSoft : colors::control);
+                if (hovered && ImGui::IsMouseClicked(1))
+                    rebind(app, size_t(line.action), app.actions[size_t(line.action)].standard,
+                           app.keysProblem);
+                onLine = onLine || hovered;
+            }
             drawText(list, fonts().body, x, y, colors::text, line.name.c_str());
-            drawKeys(list, x + width, y, line.keys.c_str(), true);
-            y += dp(25);
+            if (waits) {
+                drawTextRight(list, fonts().small, x + width, y, colors::accent, "Press keys");
+            } else if (line.keys.empty()) {
+                drawTextRight(list, fonts().small, x + width, y, colors::off, "none");
+            } else {
+                drawKeys(list, x + width, y, line.keys.c_str(), true);
+            }
+            y += dp(kLine);
         }
-        y += dp(16);
-        used += one.lines.size() + 2;
+        y += dp(14);
     }
-    const bool clicked = ImGui::IsMouseClicked(0);
     endPanel();
-    if (clicked && ImGui::GetTime() > 0) app.keys = false;
+    if (ImGui::IsMouseClicked(0) && !onLine && ImGui::GetTime() > 0) {
+        app.keys = app.rebinding >= 0;
+        app.rebinding = -1;
+        app.keysProblem.clear();
+    }
 }
 
 // ---- questions
@@ -481,6 +519,9 @@ void showOverlays(App& app) {
     if (app.guard) showGuard(app);
     if (app.about) showAbout(app);
     if (app.keys) showKeys(app);
+    if (asking())
+        drawChip(ImGui::GetForegroundDrawList(), ImGui::GetIO().MousePos + dp(46, 26),
+                 "What is this?");
 }
 
 }  // namespace fwapp

@@ -30,19 +30,19 @@ void showTools(App& app, const Rect& rect) {
     ToolLook look{.icon = icons::select};
     look.active = app.tool == Tool::kSelect;
     look.mirrored = true;
-    if (toolButton("select", {x, y}, look, "Select", "Q")) act("Select");
+    if (toolButton("select", {x, y}, look, "Select", keysOf(app, "Select"))) act("Select");
     x += dp(30);
     look = {.icon = icons::move};
     look.active = app.tool == Tool::kMove;
-    if (toolButton("move", {x, y}, look, "Move", "W")) act("Move");
+    if (toolButton("move", {x, y}, look, "Move", keysOf(app, "Move"))) act("Move");
     x += dp(30);
     look = {.icon = icons::rotate};
     look.active = app.tool == Tool::kRotate;
-    if (toolButton("rotate", {x, y}, look, "Rotate", "E")) act("Rotate");
+    if (toolButton("rotate", {x, y}, look, "Rotate", keysOf(app, "Rotate"))) act("Rotate");
     x += dp(30);
     look = {.icon = icons::scale};
     look.active = app.tool == Tool::kScale;
-    if (toolButton("scale", {x, y}, look, "Scale", "R")) act("Scale");
+    if (toolButton("scale", {x, y}, look, "Scale", keysOf(app, "Scale"))) act("Scale");
     x += dp(30);
     separator(list, x, rect);
     look = {.icon = icons::snap, .label = "Snap"};
@@ -55,13 +55,14 @@ void showTools(App& app, const Rect& rect) {
     look = {.icon = icons::srcPoint, .label = "Heat"};
     look.drops = true;
     look.active = app.placing;
-    if (toolButton("heat", {x, y}, look, "Add a heat source: then click where", "Shift+A"))
+    if (toolButton("heat", {x, y}, look, "Add a heat source: then click where",
+                   keysOf(app, "Add heat source")))
         ImGui::OpenPopup("heat menu");
     if (beginMenu("heat menu", {x, rect.y1 - dp(3)}, dp(180))) {
         for (const char* name : {"Add heat source", "Add match", "Add heat disc", "Add heat line",
                                  "Add flamethrower"}) {
             const Action* action = findAction(app, name);
-            if (menuItem(name + 4, action->icon, action->keys)) action->run();
+            if (menuItem(name + 4, action->icon, action->keys.c_str())) action->run();
         }
         endMenu();
     }
@@ -83,12 +84,14 @@ void showTools(App& app, const Rect& rect) {
     look = {.icon = icons::question, .label = "Why?"};
     look.active = app.tool == Tool::kWhy;
     right -= toolButtonWidth(look);
-    if (toolButton("why", {right, y}, look, "Ask a spot why it does not burn", "Y"))
+    if (toolButton("why", {right, y}, look, "Ask a spot why it does not burn",
+                   keysOf(app, "Why does it not burn?")))
         act("Why does it not burn?");
     look = {.icon = icons::timer, .label = "Burn times"};
     look.active = app.burnTimes;
     right -= toolButtonWidth(look) + dp(4);
-    if (right > x && toolButton("burn times", {right, y}, look, "When each spot caught", "O"))
+    if (right > x && toolButton("burn times", {right, y}, look, "When each spot caught",
+                                keysOf(app, "Show burn times")))
         act("Show burn times");
     right -= dp(10);
     int light = int(app.document.scene.settings.daylight);
@@ -114,7 +117,7 @@ void showObjectMenu(App& app, ObjectId id, const fwedit::Object& object) {
     }
     for (const char* name : {"Frame selection", "Duplicate", "Delete"}) {
         const Action* action = findAction(app, name);
-        if (menuItem(name, action->icon, action->keys)) action->run();
+        if (menuItem(name, action->icon, action->keys.c_str())) action->run();
     }
     endMenu();
 }
@@ -231,7 +234,7 @@ void showLeftPanel(App& app, Rect rect) {
             if (action.line) menuLine();
             std::string name = action.name + 4;
             name[0] = char(std::toupper(static_cast<unsigned char>(name[0])));
-            if (menuItem(name.c_str(), action.icon, action.keys)) action.run();
+            if (menuItem(name.c_str(), action.icon, action.keys.c_str())) action.run();
         }
         menuLine();
         if (menuItem("Mesh from a file…", icons::importFrom))
@@ -343,12 +346,17 @@ std::vector<Mark> marksOf(const fwedit::Scene& scene) {
 // Names where there is room: dropped, never cut, when the next mark is near.
 void showMarks(App& app, ImDrawList* list, const Rect& rect, const TimeScale& scale) {
     const std::vector<Mark> marks = marksOf(app.document.scene);
+    // Those that begin together stand side by side.
+    std::vector<float> places;
+    for (const Mark& mark : marks) {
+        const float x = scale.x(std::min(mark.time, scale.duration));
+        places.push_back(places.empty() ? x : std::max(x, places.back() + dp(20)));
+    }
     for (size_t i = 0; i < marks.size(); ++i) {
         const Mark& mark = marks[i];
-        if (mark.time > scale.duration) break;
-        const float x = scale.x(mark.time);
-        const float end =
-            i + 1 < marks.size() ? scale.x(marks[i + 1].time) - dp(12) : scale.x1 + dp(20);
+        if (mark.time > scale.duration || places[i] > scale.x1) break;
+        const float x = places[i];
+        const float end = i + 1 < marks.size() ? places[i + 1] - dp(12) : scale.x1 + dp(20);
         ImGui::PushID(int(mark.id));
         if (hit("mark", {x - dp(9), rect.midY() - dp(9)}, dp(18, 18)))
             select(app, mark.id, false, false);
@@ -361,6 +369,16 @@ void showMarks(App& app, ImDrawList* list, const Rect& rect, const TimeScale& sc
         if (x + dp(13) + textSize(fonts().small, mark.name.c_str()).x < end)
             drawText(list, fonts().small, x + dp(13), rect.midY(), colors::text, mark.name.c_str());
     }
+}
+
+// To the right of the playhead, so that it does not cross the words; at the end of the strip to its
+// left.
+void showShare(ImDrawList* list, const Rect& rect, const TimeScale& scale, double now,
+               const char* text) {
+    const float width = textSize(fonts().small, text).x, head = scale.x(now);
+    float x = head + dp(8);
+    if (x + width > scale.x1 - dp(4)) x = head - dp(8) - width;
+    drawText(list, fonts().small, x, rect.y0 + dp(12), colors::text, text);
 }
 
 // How much of all meshes has burnt, as far as it was seen to burn.
@@ -379,7 +397,7 @@ void showStrip(const App& app, ImDrawList* list, const Rect& rect, const TimeSca
     if (app.strip.size() > 1) {
         char text[48];
         std::snprintf(text, sizeof text, "%.0f %% burnt", double(100 * app.strip.back().second));
-        drawText(list, fonts().small, scale.x0 + dp(8), rect.y0 + dp(12), colors::text, text);
+        showShare(list, rect, scale, std::min(app.live.time(), scale.duration), text);
     } else if (app.document.scene.meshes.empty()) {
         drawText(list, fonts().small, scale.x0 + dp(8), rect.midY() - dp(1), colors::dim,
                  "Burning meshes show here");
@@ -485,9 +503,17 @@ void showTimeline(App& app, Rect rect) {
     endPanel();
 }
 
-// The map over the picture grows with the burn.
-void followBurnTimes(App& app) {
-    if (!app.burnTimes) {
+// The map over the picture: of burn multipliers, or of burn times, which grows with the burn.
+void followMaps(App& app) {
+    if (app.multipliers && app.showHelpers) {
+        app.burnTimesAt = -1;
+        if (app.multipliersOf == app.document.revision || app.live.preparing()) return;
+        app.multipliersOf = app.document.revision;
+        colorMultipliers(app);
+        return;
+    }
+    app.multipliersOf = ~0ull;
+    if (!app.burnTimes || !app.showHelpers) {
         if (!app.live.laidOver.empty()) app.live.redraw();
         app.live.laidOver.clear();
         app.burnTimesAt = -1;
@@ -510,7 +536,7 @@ void showBare(App& app, const Rect& rect) {
 void showScene(App& app, Rect rect) {
     app.live.follow(app.document);
     app.live.shown = fwview::Shown::kBurn;
-    followBurnTimes(app);
+    followMaps(app);
     app.paint->colored = false;  // the overlay is this page's now
     for (const std::string& line : app.live.takeReport())
         toast(app, Toast::Kind::kWarning, "Something was left out", line);
@@ -522,9 +548,11 @@ void showScene(App& app, Rect rect) {
     showTools(app, rect.cutTop(dp(metrics::toolBar)));
     const Rect status = rect.cutBottom(dp(metrics::status));
     if (app.tool == Tool::kWhy && !app.placing) {
-        showStatus(
-            app, status,
-            {{"Click", "ask why"}, {"Alt+drag", "orbit"}, {"Space", "play"}, {"Esc", "done"}});
+        showStatus(app, status,
+                   {{"Click", "ask why"},
+                    {"Alt+drag", "orbit"},
+                    {keysOf(app, "Play, pause"), "play"},
+                    {"Esc", "done"}});
     } else if (app.placing) {
         showStatus(app, status, {{"Click", "put it there"}, {"Esc", "leave it"}});
     } else if (app.selection.empty()) {
@@ -532,15 +560,15 @@ void showScene(App& app, Rect rect) {
                    {{"Click", "select"},
                     {"Alt+drag", "orbit"},
                     {"Wheel", "zoom"},
-                    {"Shift+A", "add heat"},
-                    {"Space", "play"}});
+                    {keysOf(app, "Add heat source"), "add heat"},
+                    {keysOf(app, "Play, pause"), "play"}});
     } else {
         showStatus(app, status,
                    {{"Drag", "move"},
                     {"Ctrl", "snap"},
                     {"Alt+drag", "orbit"},
-                    {"D", "drop to surface"},
-                    {"F", "frame"}});
+                    {keysOf(app, "Drop to surface"), "drop to surface"},
+                    {keysOf(app, "Frame selection"), "frame"}});
     }
     rect.y0 += dp(1);
     const float gap = dp(2), whole = rect.x1;

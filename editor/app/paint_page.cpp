@@ -142,6 +142,17 @@ void colorOverlay(App& app) {
     app.live.redraw();
 }
 
+void drawMapLegend(ImDrawList* list, ImVec2 low, const char* name, std::span<const MapStop> map,
+                   std::initializer_list<const char*> words) {
+    drawBox(list, low, low + dp(212, 56), hex(0x151618, 215), 6);
+    drawText(list, fonts().smallSemi, low.x + dp(10), low.y + dp(13), colors::title, name);
+    drawMap(list, low + dp(10, 24), low + dp(202, 34), map);
+    const char* const* word = words.begin();
+    drawText(list, fonts().small, low.x + dp(10), low.y + dp(45), colors::text, word[0]);
+    drawTextCentred(list, fonts().small, low.x + dp(106), low.y + dp(45), colors::text, word[1]);
+    drawTextRight(list, fonts().small, low.x + dp(202), low.y + dp(45), colors::text, word[2]);
+}
+
 ObjectId addLayer(App& app) {
     PaintPage& page = *app.paint;
     const std::vector<ObjectId> before = app.selection;
@@ -325,21 +336,11 @@ void drawLegend(const App& app, ImDrawList* list, ImVec2 low) {
         return;
     }
     const bool moisture = page.kind == fwedit::PaintMoisture;
-    const ImVec2 high = low + dp(212, 56);
-    drawBox(list, low, high, hex(0x151618, 215), 6);
-    drawText(list, fonts().smallSemi, low.x + dp(10), low.y + dp(13), colors::title,
-             kindName(page.kind));
-    if (moisture) {
-        drawMap(list, low + dp(10, 24), low + dp(202, 34), kMoistureStops);
-    } else {
-        drawMap(list, low + dp(10, 24), low + dp(202, 34), kMultiplierStops);
-    }
-    drawText(list, fonts().small, low.x + dp(10), low.y + dp(45), colors::text,
-             moisture ? "Dry" : "Never");
-    drawTextCentred(list, fonts().small, low.x + dp(106), low.y + dp(45), colors::text,
-                    moisture ? "50 %" : "As is");
-    drawTextRight(list, fonts().small, low.x + dp(202), low.y + dp(45), colors::text,
-                  moisture ? "Wet through" : "Twice");
+    if (moisture)
+        drawMapLegend(list, low, kindName(page.kind), kMoistureStops,
+                      {"Dry", "50 %", "Wet through"});
+    else
+        drawMultiplierLegend(list, low);
 }
 
 void showMeshView(App& app, const Rect& rect) {
@@ -515,17 +516,17 @@ void showPaintTools(App& app, const Rect& rect) {
     const float y = rect.y0 + dp(5);
     float x = rect.x0 + dp(8);
     struct Entry {
-        const char *icon, *name, *keys;
+        const char *icon, *name, *action;
     };
-    constexpr Entry kTools[] = {{icons::brush, "Paint", "B"},
-                                {icons::erase, "Erase", "X"},
-                                {icons::smooth, "Smooth", "S"},
-                                {icons::fill, "Fill", "G"},
-                                {icons::pick, "Pick", "I"}};
+    constexpr Entry kTools[] = {{icons::brush, "Paint", "Paint on the mesh"},
+                                {icons::erase, "Erase", "Erase paint"},
+                                {icons::smooth, "Smooth", "Smooth paint"},
+                                {icons::fill, "Fill", "Fill with paint"},
+                                {icons::pick, "Pick", "Pick paint"}};
     for (int i = 0; i < 5; ++i) {
         ToolLook look{.icon = kTools[i].icon, .label = kTools[i].name};
         look.active = int(page.tool) == i;
-        if (toolButton(kTools[i].name, {x, y}, look, kTools[i].name, kTools[i].keys))
+        if (toolButton(kTools[i].name, {x, y}, look, kTools[i].name, keysOf(app, kTools[i].action)))
             page.tool = PaintTool(i);
         x += toolButtonWidth(look) + dp(2);
     }
@@ -534,7 +535,8 @@ void showPaintTools(App& app, const Rect& rect) {
     x += dp(9);
     ToolLook mirror{.icon = icons::symmetry, .label = "Mirror"};
     mirror.active = page.mirror;
-    if (toolButton("mirror", {x, y}, mirror, "Both sides of the mesh's middle", "K"))
+    if (toolButton("mirror", {x, y}, mirror, "Both sides of the mesh's middle",
+                   keysOf(app, "Mirror paint")))
         page.mirror = !page.mirror;
     x += toolButtonWidth(mirror) + dp(8);
     const float right = rect.x1 - dp(8);
@@ -760,6 +762,31 @@ void showLayers(App& app, const Rect& rect) {
 
 }  // namespace
 
+void colorMultipliers(App& app) {
+    app.live.laidOver.clear();
+    for (const fwedit::Mesh& mesh : app.document.scene.meshes) {
+        const auto surface = app.live.surfaceOf(mesh.id);
+        if (!surface) continue;
+        uint32_t width = 0, height = 0;
+        std::vector<uint8_t> values =
+            fwedit::multiplierOf(app.document.scene, app.document.images, mesh.id, width, height);
+        if (values.empty()) continue;  // as it is everywhere
+        if (width != surface->width || height != surface->height)
+            values = fwedit::resizedPaint(
+                         fwedit::paintImageOf(fwedit::PaintMultiplier, width, height, values),
+                         fwedit::PaintMultiplier, surface->width, surface->height)
+                         .flat();
+        app.live.overlay.color(mesh.id, surface, values, paletteOf(fwedit::PaintMultiplier),
+                               {0, 0, surface->width, surface->height});
+        app.live.laidOver.push_back(mesh.id);
+    }
+    app.live.redraw();
+}
+
+void drawMultiplierLegend(ImDrawList* list, ImVec2 low) {
+    drawMapLegend(list, low, "Burn multiplier", kMultiplierStops, {"Never", "As is", "Twice"});
+}
+
 void addPaintActions(App& app, std::vector<Action>& list) {
     App* at = &app;
     const int page = int(Page::kPaint);
@@ -820,12 +847,14 @@ void showPaint(App& app, Rect rect) {
                 {"Right drag", "orbit"}});
     rect.y0 += dp(1);
     const float gap = dp(2);
-    const Rect left = rect.cutLeft(dp(236));
-    rect.cutLeft(gap);
-    const Rect right = rect.cutRight(dp(252));
-    rect.cutRight(gap);
-    showBrush(app, left);
-    showLayers(app, right);
+    if (app.panels) {
+        const Rect left = rect.cutLeft(dp(236));
+        rect.cutLeft(gap);
+        const Rect right = rect.cutRight(dp(252));
+        rect.cutRight(gap);
+        showBrush(app, left);
+        showLayers(app, right);
+    }
     if (page.view == 2) {
         showUnwrap(app, rect);
         return;

@@ -45,6 +45,9 @@ struct PaintPage {
     bool colored = false;
 };
 
+// Lays what all layers of paint make of each mesh's speed over it.
+void colorMultipliers(App& app);
+void drawMultiplierLegend(ImDrawList* list, ImVec2 low);
 void addPaintActions(App& app, std::vector<Action>& list);
 
 }  // namespace fwapp

@@ -72,6 +72,8 @@ void loadUserState(UserState& state) {
         if (key == "timeline") state.timeline = number(92, 340);
         if (key == "interface") state.interfaceSize = number(0.75f, 2);
         if (key == "folder") state.lastFolder = value;
+        if (const size_t tab = value.find('\t'); key == "keys" && tab != std::string::npos)
+            state.keys[value.substr(0, tab)] = value.substr(tab + 1);
         if (key == "recent" && state.recent.size() < kMostRecent) state.recent.emplace_back(value);
     }
 }
@@ -83,6 +85,8 @@ void saveUserState(const UserState& state) {
     text << "left " << state.left << "\nright " << state.right << "\ntimeline " << state.timeline
          << "\ninterface " << state.interfaceSize << "\nfolder " << state.lastFolder.string()
          << "\n";
+    for (const auto& [command, keys] : state.keys)
+        text << "keys " << command << '\t' << keys << "\n";
     for (const fs::path& file : state.recent) text << "recent " << file.string() << "\n";
     writeText(folder / "editor", text.str());
 }

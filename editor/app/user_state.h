@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct UserState {
     float interfaceSize = 1;                        // factor of the monitor's scale, [0.75, 2]
     std::vector<std::filesystem::path> recent;      // the newest first, 8 at most
     std::filesystem::path lastFolder;
+    std::map<std::string, std::string> keys;  // by command, where they are not those by design
 };
 
 // A path as people write it, with ~ for their home, and back.

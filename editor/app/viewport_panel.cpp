@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "app/paint_page.h"
 #include "shell/icons.h"
 
 namespace fwapp {
@@ -1086,7 +1087,12 @@ void showViewport(App& app, const Rect& rect) {
     drawPins(app, list, picture);
     list->PopClipRect();
     list->PushClipRect(rect.low(), rect.high(), true);
-    if (app.burnTimes) drawTimeLegend(app, list, {worked.x0 + dp(12), rect.y1 - dp(68)});
+    const ImVec2 legend(worked.x0 + dp(12), rect.y1 - dp(68));
+    if (app.multipliers && app.showHelpers) {
+        drawMultiplierLegend(list, legend);
+    } else if (app.burnTimes && app.showHelpers) {
+        drawTimeLegend(app, list, legend);
+    }
     drawHalves(app, list, rect, worked);
     showWhy(app, list, picture);
     if (app.live.preparing()) {

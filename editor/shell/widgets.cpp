@@ -148,7 +148,19 @@ ImDrawList* beginPanel(const char* name, const Rect& rect, ImU32 fill, bool scro
     return ImGui::GetWindowDrawList();
 }
 
-void endPanel() { ImGui::End(); }
+void endPanel() {
+    // What goes on below the edge fades out there.
+    const ImGuiWindow* window = ImGui::GetCurrentWindow();
+    if (!(window->Flags & ImGuiWindowFlags_NoScrollbar) && window->Scroll.y < window->ScrollMax.y) {
+        const ImU32 fill =
+            ImGui::ColorConvertFloat4ToU32(ImGui::GetStyleColorVec4(ImGuiCol_WindowBg));
+        const ImVec2 low = window->Pos, high = low + window->Size;
+        const ImU32 body = (fill & IM_COL32_A_MASK) ? colors::panel : 0;
+        window->DrawList->AddRectFilledMultiColor({low.x, high.y - dp(12)}, high, faded(body, 0),
+                                                  faded(body, 0), body, body);
+    }
+    ImGui::End();
+}
 
 void splitter(const char* id, const SplitterRequest& request, float& size) {
     const auto [vertical, at, from, to, design, lowest, highest, sign] = request;
@@ -192,11 +204,21 @@ bool hit(const char* id, ImVec2 low, ImVec2 size, bool* hovered, bool* held) {
         ImGui::GetForegroundDrawList()->AddRect(low - dp(2, 2), low + size + dp(2, 2),
                                                 colors::accent, dp(metrics::radius + 2), 0, dp(2));
     }
+    if (pressed && asking()) {
+        asking() = false;
+        return false;
+    }
     return pressed;
 }
 
+bool& asking() {
+    static bool on = false;  // there is one mouse
+    return on;
+}
+
 void tip(const char* name, const char* keys, const char* more) {
-    if (!name || !ImGui::IsItemHovered() || GImGui->HoveredIdTimer < kTipDelay) return;
+    if (!name || !ImGui::IsItemHovered() || (!asking() && GImGui->HoveredIdTimer < kTipDelay))
+        return;
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float below = high.y + dp(8);
@@ -527,12 +549,15 @@ Edit number(const char* id, ImVec2 at, ImVec2 size, float& value, const NumberLo
     if (look.letter)
         drawText(list, fonts().smallSemi, at.x + dp(6), y, look.letterColor, look.letter);
     float x = at.x + size.x - dp(7);
-    if (look.unit && *look.unit) {
+    if (look.unit && *look.unit && !(look.zero && value == 0 && !held)) {
         drawTextRight(list, fonts().small, x, y, colors::dim, look.unit);
         x -= textSize(fonts().small, look.unit).x + dp(4);
     }
-    drawTextRight(list, fonts().body, x, y, colors::title,
-                  formatNumber(value, look.format).c_str());
+    if (look.zero && value == 0 && !held)
+        drawTextRight(list, fonts().body, at.x + size.x - dp(7), y, colors::dim, look.zero);
+    else
+        drawTextRight(list, fonts().body, x, y, colors::title,
+                      formatNumber(value, look.format).c_str());
     return edit;
 }
 
@@ -593,6 +618,18 @@ Edit numberRow(Rows& rows, const char* label, float& value, const NumberLook& lo
     rows.label(label);
     const Edit edit = number(label, {rows.fieldX(), rows.y}, {rows.fieldWidth(), dp(metrics::row)},
                              value, look, standard);
+    if (asking()) {
+        char range[96] = "";
+        if (look.highest > look.lowest)
+            std::snprintf(range, sizeof range, "%s to %s %s. ",
+                          formatNumber(look.lowest, look.format).c_str(),
+                          formatNumber(look.highest, look.format).c_str(),
+                          look.unit ? look.unit : "");
+        const std::string how = std::string(range) +
+                                "Drag it, finely with Shift; double click to type, sums and units "
+                                "too; right click puts it back.";
+        tip(label, nullptr, how.c_str());
+    }
     rows.next();
     return edit;
 }

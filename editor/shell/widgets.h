@@ -26,6 +26,8 @@ void splitter(const char* id, const SplitterRequest& request, float& size);
 
 // The button without a look. Draws the ring of keyboard focus.
 bool hit(const char* id, ImVec2 low, ImVec2 size, bool* hovered = nullptr, bool* held = nullptr);
+// While true the mouse asks: what it points at is explained at once, and clicks end the asking.
+bool& asking();
 // Of the item made last: after the mouse has rested there.
 void tip(const char* name, const char* keys = nullptr, const char* more = nullptr);
 
@@ -70,6 +72,7 @@ struct NumberLook {
     float snap = 0;                 // with Ctrl; 0: none
     float least = 0, most = 0;      // of what is typed; equal: as the range
     ImU32 fill = 0;
+    const char* zero = nullptr;    // said instead of 0, where that stands for something else
     const char* letter = nullptr;  // of an axis
     ImU32 letterColor = 0;
 };

@@ -41,7 +41,8 @@ start() {
     "$1" --validate --report "${@:2}" >"$work/log" 2>&1 &
     program=$!
     for _ in $(seq 600); do
-        xdotool search --name Flamewright >"$work/window" 2>/dev/null && break
+        # It finds nothing, and says so in no way, while a window comes or goes.
+        xdotool search --name Flamewright >"$work/window" 2>/dev/null && [[ -s $work/window ]] && break
         sleep 0.1
     done
     window=$(head -1 "$work/window")
