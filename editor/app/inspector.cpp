@@ -134,6 +134,7 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
         case FieldType::Number: {
             NumberLook look = lookOf(field);
             if (kind == Kind::Settings || kind == Kind::Event) look.zero = nullptr;
+            if (kind == Kind::Emitter && !std::strcmp(field.key, "speed")) look.zero = "By itself";
             const double share = look.unit == std::string_view("%") && field.high <= 2 ? 100 : 1;
             auto number = float(std::get<double>(value) * share);
             const Edit edit = numberRow(rows, field.label, number, look);

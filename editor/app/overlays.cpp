@@ -315,8 +315,8 @@ void showKeys(App& app) {
     around.lines = {{"Orbit", "Alt+Drag|Right drag"},
                     {"Pan", "Middle drag"},
                     {"Zoom", "Wheel"},
-                    {"Snap, fine", "Ctrl|Shift"},
-                    {"Straight line", "Shift+Click"}};
+                    {"Snap, fine", "Ctrl|Shift"}};
+    group("Paint").lines.push_back({"Straight line", "Shift+Click"});
     constexpr int kColumns = 5;
     constexpr float kLine = 23;
     const float gap = dp(28), width = (x1 - x0 - gap * (kColumns - 1)) / kColumns;
@@ -324,9 +324,11 @@ void showKeys(App& app) {
     float x = x0, y = top;
     bool onLine = false;
     for (const Group& one : groups) {
-        // A group that does not fit goes on in the next column.
-        if (y > top &&
-            y + dp(30) + dp(kLine) * float(std::min<size_t>(3, one.lines.size())) > bottom) {
+        // One that does not fit begins in the next column while there is one, else it goes on
+        // there.
+        const float height = dp(30) + dp(kLine) * float(one.lines.size());
+        const bool last = x + width + gap >= x1;
+        if (y > top && y + height > bottom && !last) {
             x += width + gap;
             y = top;
         }
@@ -338,7 +340,7 @@ void showKeys(App& app) {
         };
         head();
         for (const Line& line : one.lines) {
-            if (y + dp(kLine * 0.5f) > bottom) {
+            if (y + dp(kLine * 0.5f) > bottom && x + width + gap < x1) {
                 x += width + gap;
                 y = top;
                 head();

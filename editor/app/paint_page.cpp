@@ -165,9 +165,9 @@ ObjectId addLayer(App& app) {
     return id;
 }
 
-fwedit::BrushMode modeOf(const PaintPage& page) {
+fwedit::BrushMode modeOf(const PaintPage& page, bool line = false) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (io.KeyShift || page.tool == PaintTool::kSmooth) return fwedit::BrushMode::Smooth;
+    if ((io.KeyShift && !line) || page.tool == PaintTool::kSmooth) return fwedit::BrushMode::Smooth;
     if (io.KeyCtrl || page.tool == PaintTool::kErase) return fwedit::BrushMode::Erase;
     return fwedit::BrushMode::Paint;
 }
@@ -185,23 +185,30 @@ void extendStroke(App& app) {
     app.live.redraw();
 }
 
-void beginStroke(App& app) {
+// False: there is nothing to paint on.
+bool prepareStroke(App& app, fwedit::BrushMode mode) {
     PaintPage& page = *app.paint;
     const fwedit::Mesh* mesh = fwedit::findIn(app.document.scene.meshes, page.mesh);
-    if (!mesh || (page.layer == 0 && addLayer(app) == 0)) return;
+    if (!mesh || (page.layer == 0 && addLayer(app) == 0)) return false;
     const fwedit::PaintLayer* layer = fwedit::findIn(app.document.scene.layers, page.layer);
     if (layer->hidden || layer->locked) {
         toast(app, Toast::Kind::kWarning, "Nothing was painted",
               "\"" + layer->name + "\" is " + (layer->hidden ? "hidden" : "locked"));
-        return;
+        return false;
     }
     page.stroke = {};
-    page.stroke.mode = modeOf(page);
+    page.stroke.mode = mode;
     page.stroke.size = radiusOf(page, *mesh);
     page.stroke.value = valueOf(page);
     page.stroke.strength = page.strength * 0.01f;
     page.stroke.hardness = page.hardness * 0.01f;
     page.stroke.mirror = page.mirror;
+    return true;
+}
+
+void beginStroke(App& app) {
+    PaintPage& page = *app.paint;
+    if (!prepareStroke(app, modeOf(page))) return;
     const auto found = app.document.images.find(page.layer);
     const fwedit::PaintImage blank =
         fwedit::makePaintImage(page.kind, page.surface->width, page.surface->height);
@@ -215,6 +222,12 @@ void beginStroke(App& app) {
 void endStroke(App& app) {
     PaintPage& page = *app.paint;
     page.painter.reset();
+    if (!page.stroke.path.empty()) {
+        page.endedOn = page.mesh;
+        page.ended = page.stroke.path.back();
+        page.endedNormal =
+            page.stroke.normals.empty() ? fwedit::Vec3{} : page.stroke.normals.back();
+    }
     fwedit::Command command;
     command.verb = fwedit::Verb::Stroke;
     command.targets = {page.layer};
@@ -222,6 +235,16 @@ void endStroke(App& app) {
     page.stroke = {};
     page.colored = false;
     perform(app, command);
+}
+
+// From where the last stroke ended to where the brush is.
+void lineHere(App& app) {
+    PaintPage& page = *app.paint;
+    if (!page.aims || !prepareStroke(app, modeOf(page, true))) return;
+    page.stroke.path = {page.ended, page.aim};
+    if (!page.through && page.endedNormal != fwedit::Vec3{})
+        page.stroke.normals = {page.endedNormal, page.aimNormal};
+    endStroke(app);
 }
 
 void cancelStroke(PaintPage& page) {
@@ -276,11 +299,25 @@ void work(App& app, bool hovered) {
         }
         return;
     }
+    if (page.mayLine) {
+        if (std::hypot(io.MousePos.x - page.pressX, io.MousePos.y - page.pressY) > dp(3)) {
+            page.mayLine = false;
+            if (page.aims) beginStroke(app);
+        } else if (!io.MouseDown[0]) {
+            page.mayLine = false;
+            lineHere(app);
+        }
+        return;
+    }
     if (!hovered || !page.aims || !ImGui::IsMouseClicked(0)) return;
     if (io.KeyAlt || page.tool == PaintTool::kPick) {
         pickHere(app);
     } else if (page.tool == PaintTool::kFill) {
         fillHere(app);
+    } else if (io.KeyShift && page.endedOn == page.mesh) {
+        page.mayLine = true;
+        page.pressX = io.MousePos.x;
+        page.pressY = io.MousePos.y;
     } else {
         beginStroke(app);
     }
@@ -842,6 +879,7 @@ void showPaint(App& app, Rect rect) {
                {{"Drag", "paint"},
                 {"Ctrl", "take away"},
                 {"Shift", "smooth"},
+                {"Shift+click", "line"},
                 {"[ ]", "size"},
                 {"Alt+click", "pick"},
                 {"Right drag", "orbit"}});

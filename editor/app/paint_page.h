@@ -34,6 +34,12 @@ struct PaintPage {
     std::shared_ptr<const fwedit::PaintSurface> surface;  // of `mesh`
     bool orbits = false, pans = false, slides = false;
 
+    // Where the last stroke ended, for a straight line from there.
+    fwedit::ObjectId endedOn = 0;
+    fwedit::Vec3 ended{}, endedNormal{};  // object space
+    bool mayLine = false;                 // Shift is down: a click draws the line, a drag smooths
+    float pressX = 0, pressY = 0;
+
     // Where the brush is, in space and in the unwrap; from the view under the mouse.
     bool aims = false;
     fwedit::Vec3 aim{}, aimNormal{};  // object space

@@ -310,8 +310,8 @@ struct KindWords {
     const char *key, *label;
 };
 constexpr KindWords kKinds[] = {
-    {"mesh", "Mesh"},         {"source", "Heat source"}, {"flame", "Flame"}, {"emitter", "Emitter"},
-    {"wind", "Wind"},         {"collider", "Collider"},  {"layer", "Layer"}, {"event", "Event"},
+    {"mesh", "Mesh"},         {"source", "Heat source"}, {"flame", "Flame"}, {"emitter", "Smoke and sparks"},
+    {"wind", "Wind"},         {"collider", "Wall"},  {"layer", "Layer"}, {"event", "Event"},
     {"settings", "Settings"}, {"camera", "Camera"}};
 static_assert(std::size(kKinds) == size_t(Kind::Count));
 

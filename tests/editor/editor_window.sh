@@ -54,9 +54,19 @@ xdotool key ctrl+z
 await "did: Undone"
 xdotool key ctrl+shift+z
 await "did: Done again"
+# A straight line from where the stroke ended.
+xdotool mousemove 500 400 keydown shift click 1
+await "did: Paint burn multiplier on"
+xdotool keyup shift
 xdotool key 3 mousemove 540 300 mousedown 1
 xdotool mousemove 560 340 mousemove 560 400 mouseup 1
 await "did: Paint the flame"
+xdotool key f mousemove 540 300 mousedown 1
+xdotool mousemove 560 290 mousemove 580 280 mouseup 1
+await "did: Smear the flame"
+xdotool key g mousemove 540 420 mousedown 1
+xdotool mousemove 540 380 mousemove 540 240 mouseup 1
+await "did: Gradient in the flame"
 # By points: the outline is dragged, and that is a step.
 xdotool key p mousemove 645 443 mousedown 1
 xdotool mousemove 630 440 mousemove 612 432 mouseup 1
@@ -66,6 +76,14 @@ xdotool key 1
 await ready
 xdotool key y mousemove 540 300 click 1
 await "answered [0-2] frames later"
+xdotool key Escape
+# Time goes on from where it was only looked at; a click is asked about; other keys for a command.
+xdotool key ctrl+space
+await "did: Burns on from"
+xdotool key space key shift+F1
+await "did: Point at"
+xdotool key Escape key F1 mousemove 100 120 click 1 key ctrl+p key ctrl+shift+n
+await "did: Ctrl.Shift.N is New scene now"
 xdotool key Escape
 xdotool key ctrl+s key ctrl+a type "$work/first.fwscene"
 xdotool key Return

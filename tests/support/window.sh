@@ -40,14 +40,16 @@ start() {
     seen=0
     "$1" --validate --report "${@:2}" >"$work/log" 2>&1 &
     program=$!
+    # What is found may be the window of a program that was just killed, or one that is not there yet.
     for _ in $(seq 600); do
-        # It finds nothing, and says so in no way, while a window comes or goes.
-        xdotool search --name Flamewright >"$work/window" 2>/dev/null && [[ -s $work/window ]] && break
+        xdotool search --name Flamewright >"$work/window" 2>/dev/null || true
+        window=$(head -1 "$work/window")
+        if [[ -n $window ]] && xdotool windowmove "$window" 0 0 windowfocus "$window" 2>/dev/null; then return; fi
         sleep 0.1
     done
-    window=$(head -1 "$work/window")
-    xdotool windowmove "$window" 0 0
-    xdotool windowfocus "$window"
+    cat "$work/log"
+    echo "it shows no window"
+    exit 1
 }
 
 # await EXPRESSION: until a line of the report matches; what came before is forgotten.
