@@ -128,6 +128,19 @@ void paste(App& app) {
     say(app, app.document.steps[app.document.at].name);
 }
 
+namespace {
+
+// How much further back the paint page's eye is: what fits into the scene page's wide picture fits
+// into the narrow one beside the unwrap.
+float standOff(const App& app) {
+    constexpr float kWide = 0.95f;  // aspect from which on nothing is cut off
+    const VkExtent2D extent = app.live.target.extent();
+    if (app.page != Page::kPaint || extent.width == 0) return 1;
+    return std::clamp(kWide * float(extent.height) / float(extent.width), 1.0f, 2.5f);
+}
+
+}  // namespace
+
 void frameSelection(App& app, bool all) {
     glm::vec3 low(0), high(0);
     bool any = false;
@@ -163,7 +176,7 @@ void frameSelection(App& app, bool all) {
     const float aspect = extent.height > 0 ? float(extent.width) / float(extent.height) : 1.0f;
     const float half = 0.5f * glm::radians(std::max(5.0f, app.camera.fieldOfView));
     const float least = std::atan(std::tan(half) * std::min(1.0f, aspect));
-    app.camera.distance = 1.15f * radius / std::sin(least);
+    app.camera.distance = 1.15f * radius / std::sin(least) / standOff(app);
 }
 
 void compareStep(App& app, size_t step) {
@@ -951,11 +964,7 @@ void recordPages(App& app, const fwui::Frame& frame) {
     if (app.page != Page::kScene && app.page != Page::kPaint) return;
     const bool runs = app.page == Page::kScene && app.playing && !app.live.preparing();
     fwedit::Camera camera = app.camera;
-    // What fits into the scene page's wide picture fits into the narrow one beside the unwrap.
-    const VkExtent2D extent = app.live.target.extent();
-    if (app.page == Page::kPaint && extent.width > 0)
-        camera.distance *=
-            std::clamp(1.15f * float(extent.height) / float(extent.width), 1.0f, 2.5f);
+    camera.distance *= standOff(app);
     app.live.record(frame, camera, runs ? app.deltaTime * app.speed : 0);
     if (app.live.milliseconds() <= 0) return;
     app.costs.push_back(float(app.live.milliseconds()));

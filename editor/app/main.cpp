@@ -345,7 +345,8 @@ int run(const sample::Options& options, const Wishes& wishes) {
         openPage(app, wishes);
         if (wishes.keys) {
             std::fputs(fwapp::listKeys(app).c_str(), stdout);
-            return 0;
+            std::fflush(stdout);
+            std::_Exit(0);  // what the start has begun is not waited for
         }
         if (wishes.once) {
             program.showOnce();

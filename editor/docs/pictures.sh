@@ -1,6 +1,6 @@
 #!/bin/bash
 # Takes the guide's pictures anew, and those of the welcome page's scenes, without a display: the target flamewright_guide runs it.
-# Usage: pictures.sh [cards], with the build folder in FW_BUILD_FOLDER.
+# Usage: pictures.sh [cards | pages], with the build folder in FW_BUILD_FOLDER.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 editor="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/flamewright-editor"
@@ -22,12 +22,14 @@ card() {
         --seconds "$2" --scene "$3"
 }
 mkdir -p "$here/../app/cards"
-card burning_crate 9 "Burning crate"
-card campfire 3 "Campfire"
-card hand_torch 3 "Hand torch"
-card bonfire 4 "Bonfire"
-card candle 3 "Candle"
-card rune_fire 3 "Rune fire"
+if [[ ${1:-} != pages ]]; then
+    card burning_crate 9 "Burning crate"
+    card campfire 3 "Campfire"
+    card hand_torch 3 "Hand torch"
+    card bonfire 4 "Bonfire"
+    card candle 3 "Candle"
+    card rune_fire 3 "Rune fire"
+fi
 [[ ${1:-} != cards ]] || exit 0
 
 page welcome welcome 0 ""

@@ -18,8 +18,8 @@ fault() {
 }
 # Pages by number, -2: all, -3: all that have a scene. Then keys, then the command.
 while IFS=$'\t' read -r page keys command; do
-    grep -q -F -x "$page"$'\t'"$keys"$'\t'"$command" "$work/keys" ||
-        fault "$command is not on $keys (page $page): $(grep -F $'\t'"$command" "$work/keys" || echo it is not there)"
+    grep -q -F -x -e "$page"$'\t'"$keys"$'\t'"$command" "$work/keys" ||
+        fault "$command is not on $keys (page $page): $(grep -F -e $'\t'"$command" "$work/keys" || echo it is not there)"
 done < <(tr '|' '\t' <<'TEXT'
 -2|Ctrl+P|Find anything
 -3|Ctrl+Z|Undo
