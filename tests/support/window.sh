@@ -19,10 +19,11 @@ need() {
     done
 }
 
-# A screen of 1280 x 720 that nobody sees; DISPLAY names it.
+# A screen of 1280 x 720 that nobody sees; DISPLAY names it. It does not begin anew when the last
+# window is gone: a program that starts just then would find no display.
 open_display() {
     need Xvfb
-    Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$work/display" 2>"$work/xvfb.log" &
+    Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp -noreset 3>"$work/display" 2>"$work/xvfb.log" &
     server=$!
     for _ in $(seq 100); do
         [[ -s $work/display ]] && break
