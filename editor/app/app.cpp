@@ -841,7 +841,7 @@ std::vector<Action> makeActions(App& app) {
         {"What is this?", "Help", "Shift+F1", icons::question,
          [at] {
              fwui::asking() = !fwui::asking();
-             if (fwui::asking()) say(*at, "Point at what you want to know about");
+             if (fwui::asking()) say(*at, "Point at what you ask about");
          }},
         {"About Flamewright", "Help", "", icons::info, [at] { at->about = true; }},
     };

@@ -300,7 +300,8 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
         if (!view.world || view.rect.width() < 8) continue;
         // They take turns: on a slow device all three, else the two small ones.
         const uint64_t turns = slow ? 3 : i == 0 ? 1 : 2;
-        const bool due = (frameCount + uint64_t(i)) % turns == 0;
+        // A picture that holds nothing yet does not wait.
+        const bool due = !view.seen || (frameCount + uint64_t(i)) % turns == 0;
         view.owed += deltaTime;
         if (!due || (paused && view.drawn == pictureRevision && view.seen)) continue;
         FwView camera = fwDefaultView();
@@ -1287,9 +1288,12 @@ void showView(FlamePage& page, ImDrawList* list, int i, const Rect& rect, const 
     view.rect = rect;
     if (view.target) {
         const float share = page.slow ? 0.5f : 1.0f;
+        const VkExtent2D before = view.target->extent();
         view.target->resize(uint32_t(std::max(8.0f, rect.width() * share)),
                             uint32_t(std::max(8.0f, rect.height() * share)));
-        list->AddImage(view.target->texture(), rect.low(), rect.high());
+        const VkExtent2D now = view.target->extent();
+        if (before.width != now.width || before.height != now.height) view.seen = false;
+        if (view.world) list->AddImage(view.target->texture(), rect.low(), rect.high());
     }
     const ImVec2 low = rect.low() + dp(8, 8);
     const float width = textSize(fonts().body, name).x + dp(36);

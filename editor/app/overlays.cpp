@@ -522,7 +522,7 @@ void showOverlays(App& app) {
     if (app.about) showAbout(app);
     if (app.keys) showKeys(app);
     if (asking())
-        drawChip(ImGui::GetForegroundDrawList(), ImGui::GetIO().MousePos + dp(46, 26),
+        drawChip(ImGui::GetForegroundDrawList(), ImGui::GetIO().MousePos + dp(50, -22),
                  "What is this?");
 }
 

@@ -820,8 +820,8 @@ void colorMultipliers(App& app) {
     app.live.redraw();
 }
 
-void drawMultiplierLegend(ImDrawList* list, ImVec2 low) {
-    drawMapLegend(list, low, "Burn multiplier", kMultiplierStops, {"Never", "As is", "Twice"});
+void drawMultiplierLegend(ImDrawList* list, ImVec2 low, const char* name) {
+    drawMapLegend(list, low, name, kMultiplierStops, {"Never", "As is", "Twice"});
 }
 
 void addPaintActions(App& app, std::vector<Action>& list) {

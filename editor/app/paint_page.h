@@ -53,7 +53,7 @@ struct PaintPage {
 
 // Lays what all layers of paint make of each mesh's speed over it.
 void colorMultipliers(App& app);
-void drawMultiplierLegend(ImDrawList* list, ImVec2 low);
+void drawMultiplierLegend(ImDrawList* list, ImVec2 low, const char* name = "Burn multiplier");
 void addPaintActions(App& app, std::vector<Action>& list);
 
 }  // namespace fwapp

@@ -1089,7 +1089,9 @@ void showViewport(App& app, const Rect& rect) {
     list->PushClipRect(rect.low(), rect.high(), true);
     const ImVec2 legend(worked.x0 + dp(12), rect.y1 - dp(68));
     if (app.multipliers && app.showHelpers) {
-        drawMultiplierLegend(list, legend);
+        drawMultiplierLegend(
+            list, legend,
+            app.live.laidOver.empty() ? "Burn multiplier: nothing is painted" : "Burn multiplier");
     } else if (app.burnTimes && app.showHelpers) {
         drawTimeLegend(app, list, legend);
     }

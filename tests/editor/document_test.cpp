@@ -529,6 +529,38 @@ TEST(EditorFile, SaveAndOpenKeepSceneAndPaint) {
     EXPECT_TRUE(unsaved(document));
 }
 
+// What a crash leaves lies in another folder than the scene that it is of, and begins paths there.
+TEST(EditorFile, ACopyKeptElsewhereIsUnsavedWorkOnItsOriginal) {
+    Folder folder;
+    Document document = paintable();
+    const fs::path file = folder.path / "scenes/yard.fwscene",
+                   copy = folder.path / "state/kept.fwscene";
+    std::string error;
+    document.folder = folder.path;
+    mustRun(document, "import \"models/crate.glb\" name=Crate");
+    mustRun(document, "add layer multiplier name=Dry");
+    ASSERT_TRUE(saveDocument(document, file, error)) << error;
+    mustRun(document, "fill Dry value 0.3");
+    const std::string meshes = document.scene.meshes.at(0).file;
+    ASSERT_TRUE(saveCopy(document, copy, error)) << error;
+    EXPECT_TRUE(unsaved(document));
+
+    Document back;
+    std::vector<std::string> repairs;
+    ASSERT_TRUE(openCopy(copy, file, back, repairs, error)) << error;
+    EXPECT_THAT(repairs, ::testing::IsEmpty());
+    EXPECT_TRUE(unsaved(back));
+    EXPECT_EQ(file, back.file);
+    EXPECT_EQ(meshes, back.scene.meshes.at(0).file);  // from the original's folder
+    EXPECT_TRUE(back.images == document.images);
+    // Saved, it is the original with the work in it; the copy's pictures may go.
+    ASSERT_TRUE(saveDocument(back, back.file, error)) << error;
+    fs::remove_all(copy.parent_path());
+    ASSERT_TRUE(openDocument(file, back, repairs, error)) << error;
+    EXPECT_THAT(repairs, ::testing::IsEmpty());
+    EXPECT_TRUE(back.images == document.images);
+}
+
 TEST(EditorFile, ASaveThatCannotBeSaysWhyAndKeepsTheOldFile) {
     Folder folder;
     Document document = newDocument();
