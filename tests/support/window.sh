@@ -4,6 +4,7 @@
 
 work=$(mktemp -d)
 server= program=
+layers=(--validate)  # what programs are started with
 cleanup() {
     [[ -z $program ]] || kill "$program" 2>/dev/null || true
     [[ -z $server ]] || kill "$server" 2>/dev/null || true
@@ -39,7 +40,7 @@ open_display() {
 start() {
     : >"$work/log"
     seen=0
-    "$1" --validate --report "${@:2}" >"$work/log" 2>&1 &
+    "$1" "${layers[@]}" --report "${@:2}" >"$work/log" 2>&1 &
     program=$!
     # What is found may be the window of a program that was just killed, or one that is not there yet.
     for _ in $(seq 600); do
