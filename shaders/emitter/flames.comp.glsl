@@ -92,7 +92,7 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
 
 void main() {
     uint count = counters[kRowBurn + push.burnParity].runCount;
-    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u))) * view.quads.x;
+    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u)));
     float time = view.ambientSky.w;
     vec3 up = view.up.xyz;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
@@ -128,6 +128,7 @@ void main() {
             bool smoke = k == 3u;
             MaterialLook mainLook = looks[materials[tile.object * kMaterialsPerObject].look];
             float odds = smoke ? min(0.10 * wish * mainLook.smoke, 0.5) : min(wish / 3.0, 1.0);
+            odds *= view.quads.x;  // of what shows: a tile may wish for more than that
             uint s = mixBits(seed + (k + 1u) * 0x9e3779b9u);
             float period = (smoke ? 0.7 + 1.4 * scale : 0.32 + 0.5 * scale) * (0.8 + 0.4 * unit(s));
             float life = time / period + unit(s + 1u) * 16.0;
@@ -170,7 +171,8 @@ void main() {
                 float tall = len * (0.55 + 0.75 * r3 * r3) * grown * (0.35 + 0.65 * strength);
                 vec3 axis = normalize(up * rise + drift + normal * (0.16 * rise) +
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
-                float halfWidth = flameHalfWidth(len, own.y) * view.quads.y * (0.8 + 0.5 * r2) *
+                // They lie kFlameCover deep: what fewer of them leave open is less than their share.
+                float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) * (0.8 + 0.5 * r2) *
                                   (0.5 + 0.5 * strength);
                 float loose = smoothstep(0.55, 1.0, a);
                 quad.baseHeight = vec4(place + normal * (0.15 * halfWidth) - axis * (0.06 * tall) +

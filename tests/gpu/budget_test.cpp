@@ -151,7 +151,7 @@ struct Seen {
             EXPECT_EQ(FW_OK, fwWorld_CreateVolumetricFire(panels->world, &fire, &id));
         }
         FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
-        emitter.position[0] = 1.0f;
+        emitter.position[0] = 0.2f;
         emitter.power = 300;
         FwFireEmitterId id{};
         EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(panels->world, &emitter, &id));
@@ -210,7 +210,8 @@ TEST(BudgetOnDevice, BytesSettleUnderTheLimitAndComeBack) {
 }
 
 // At the least detail a third of the quads shows (ParticlePass counts them), each larger: there is
-// about as much fire.
+// as much fire, of flames too that are so small in the picture that they are fewer and larger for
+// that.
 TEST(BudgetOnDevice, QuadsFallAndTheFireStays) {
     double sheet[2] = {}, jet[2] = {};
     for (const bool held : {false, true}) {
@@ -221,15 +222,15 @@ TEST(BudgetOnDevice, QuadsFallAndTheFireStays) {
         for (uint32_t i = 0; i < 12; ++i) {  // of seconds, as flames flicker
             seen.panels->run(5.0 / 32);
             seen.frames(1);
-            jet[held] += seen.light(75, 112);
+            jet[held] += seen.light(58, 112);
             sheet[held] += seen.light(118, 160);
         }
         EXPECT_FLOAT_EQ(held ? 0.35f : 1.0f, budgetOf(seen.panels->world).quads);
     }
     std::printf("at the least detail %.2f of the light of particles, %.2f of a sheet's\n",
                 jet[1] / jet[0], sheet[1] / sheet[0]);
-    EXPECT_NEAR(jet[1] / jet[0], 1, 0.35);
-    EXPECT_NEAR(sheet[1] / sheet[0], 1, 0.35);
+    EXPECT_NEAR(jet[1] / jet[0], 1, 0.08);
+    EXPECT_NEAR(sheet[1] / sheet[0], 1, 0.08);
 }
 
 TEST(AbiBudget, RefusesWhatIsNoBudget) {
