@@ -55,6 +55,7 @@ layout(location = 0) out vec4 outColor;
 
 const float kFlameWhite = 2.4;  // of thin soot at 1600 K, in the host's units
 const float kNoiseBall = 0.9;   // of that: a jet of noise has the light of one of books
+const float kSunStep = 0.18;    // of a puff's radius, towards the light
 
 // Of a ball's soot at a temperature: what has not burnt away, and what of the light behind it takes.
 // Soot that cools burns, or is smoke, which has quads of its own. What were left of it would be dark
@@ -65,14 +66,6 @@ float sootHides(float kelvin) { return 0.85 * smoothstep(1180.0, 1500.0, kelvin)
 #ifdef FW_SOFT
 #include "lib/soft_depth.glsl"
 #endif
-
-// Of `v` by the coordinates `c`, from what both are in the pixels beside.
-vec2 gradientOf(float v, vec2 c) {
-    vec2 cx = dFdx(c), cy = dFdy(c), d = vec2(dFdx(v), dFdy(v));
-    float area = cx.x * cy.y - cx.y * cy.x;
-    return vec2(d.x * cy.y - d.y * cx.y, d.y * cx.x - d.x * cy.x) /
-           (abs(area) > 1e-12 ? area : 1e-12);
-}
 
 // Turns `p` about `c` by twice atan(h).
 vec2 rolled(vec2 p, vec2 c, float h) {
@@ -110,8 +103,14 @@ void main() {
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
     float lod = smoke ? 3.0 : tongue ? 1.0 : 2.0;
     vec4 n1 = vec4(0.5), n2 = vec4(0.5);
-    if (kPagesAlone == 0u)
-        n1 = textureLod(lookTextures, vec3(p - vec2(0.0, slow * phase), kLayerNoise), lod);
+    // Smoke asks a step towards its light, too: what pixels beside differ by is a texel's grain.
+    vec2 ahead = kSunStep * inSun, seen = p - vec2(0.0, slow * phase);
+    float aheadNoise = 0.5;
+    if (kPagesAlone == 0u) {
+        n1 = textureLod(lookTextures, vec3(seen, kLayerNoise), lod);
+        vec2 sunward = vec2(ahead.x * way.x - ahead.y * way.y, ahead.x * way.y + ahead.y * way.x);
+        aheadNoise = textureLod(lookTextures, vec3(seen + sunward * 0.15, kLayerNoise), lod).r;
+    }
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
     vec2 q = p * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
@@ -172,14 +171,13 @@ void main() {
     color = glow * (tongue ? vec3(1.0) : kFireWhite) * (white * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     // Of smoke: billows, and between them nothing; the thinner it is, the more of it is eaten away.
-    // Where it gets thinner towards the light it faces it.
     float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) -
                  mix(0.4, 0.0, saturate(3.0 * opacity));
-    vec2 slope = gradientOf(deep, c);
     if (smoke) {
         float body = smoothstep(0.0, 0.85, deep) * (1.0 - smoothstep(0.65, 1.0, r));
         alpha = body * opacity;
-        float billow = -0.16 * dot(slope, inSun);
+        // Where it gets thinner towards the light it faces it.
+        float billow = 0.9 * (1.1 * (length(c + ahead) - r) + 6.0 * (n1.r - aheadNoise));
 #ifdef FW_BOOKS
         if (booked) {
             alpha = page.z * opacity;
