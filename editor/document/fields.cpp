@@ -309,10 +309,11 @@ const Table<Camera>& tableOf() {
 struct KindWords {
     const char *key, *label;
 };
-constexpr KindWords kKinds[] = {
-    {"mesh", "Mesh"},         {"source", "Heat source"}, {"flame", "Flame"}, {"emitter", "Smoke and sparks"},
-    {"wind", "Wind"},         {"collider", "Wall"},  {"layer", "Layer"}, {"event", "Event"},
-    {"settings", "Settings"}, {"camera", "Camera"}};
+constexpr KindWords kKinds[] = {{"mesh", "Mesh"},         {"source", "Heat source"},
+                                {"flame", "Flame"},       {"emitter", "Smoke and sparks"},
+                                {"wind", "Wind"},         {"collider", "Wall"},
+                                {"layer", "Layer"},       {"event", "Event"},
+                                {"settings", "Settings"}, {"camera", "Camera"}};
 static_assert(std::size(kKinds) == size_t(Kind::Count));
 
 // Calls `visit(object, table)` with the object in its own type; false: there is none.
