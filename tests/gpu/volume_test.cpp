@@ -624,6 +624,17 @@ TEST_F(Volume, HasNoGrain) {
     EXPECT_GT(grainOf(grainy), exact + 0.01f) << "grain would not have been noticed";
 }
 
+// Nobody knows the first picture's screen before it is drawn: it has more rays a pixel instead.
+TEST_F(Volume, TheFirstPictureHasLessGrainThanOneRayAPixel) {
+    if (!device_) return;
+    makeRig();
+    const gpu::VolumeFlame flame = flameOf(FW_FIRE_HOUSE, 1.3f, FW_FIRE_NO_SMOKE);
+    const float first = grainOf(drawOnce({&flame, 1}, FW_DEPTH_TEST, 0));
+    const float one = grainOf(drawDirect({&flame, 1}, FW_DEPTH_TEST));
+    std::printf("           %.4f, of one ray a pixel %.4f\n", double(first), double(one));
+    EXPECT_LT(first, 0.8f * one);
+}
+
 // Profiles of the host's lie behind the presets' and may be others while frames are in flight.
 TEST_F(Volume, DrawsTheHostsProfile) {
     if (!device_) return;
