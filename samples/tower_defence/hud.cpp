@@ -33,6 +33,9 @@ constexpr const char* kIcons[game::kTowerKinds] = {"", fwui::icons::flame, fwui:
                                                    fwui::icons::water, fwui::icons::wind};
 constexpr const char* kNames[game::kTowerKinds] = {"", "FLAME", "MORTAR", "WATER", "WIND"};
 
+// Its panels stand beside each other from these on, of dp(1).
+constexpr float kLayoutWidth = 920, kLayoutHeight = 290;
+
 std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
 std::string text(const char* format, ...) {
     char out[160];
@@ -299,7 +302,7 @@ void Board::energy() {
     const Rect r{dp(12), dp(70), dp(262), any ? dp(204) : dp(128)};
     panel(r);
     put(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(15), kInk, "ENERGY");
-    if (!any) {  // see fire_village.cpp
+    if (!any) {
         put(fonts().small, r.x0 + dp(14), r.y0 + dp(38), kDim, "no thing here keeps a book");
         return;
     }
@@ -415,7 +418,7 @@ Hud::Hud(const sample::VulkanHost& host, sample::Stage& stage) : stage_(stage) {
         std::make_unique<fwui::UiRenderer>(host, stage.outputPass(), stage.made.framesInFlight);
     fwui::theme().scale = 0;  // of no window yet
     stage.overlay = [this](VkCommandBuffer commands) {
-        renderer_->draw(commands, slot_, *ImGui::GetDrawData());
+        if (shown_) renderer_->draw(commands, slot_, *ImGui::GetDrawData());
     };
 }
 
@@ -425,9 +428,12 @@ Hud::~Hud() {
     ImGui::DestroyContext();
 }
 
-// As wide as the window allows: laid out for 1280 pixels, legible down to some 700.
+// As wide as the window allows: laid out for 1280 pixels, legible down to some 700. In smaller ones
+// it shrinks as it must for its panels to stand beside each other.
 void Hud::fit(VkExtent2D extent) {
-    const float scale = std::clamp(float(extent.width) / 1280, 0.6f, 3.0f);
+    const float wide = float(extent.width), high = float(extent.height);
+    const float scale =
+        std::min({std::clamp(wide / 1280, 0.6f, 3.0f), wide / kLayoutWidth, high / kLayoutHeight});
     if (scale == fwui::theme().scale) return;
     fwui::theme().scale = scale;
     std::string error;
@@ -447,6 +453,12 @@ void Hud::takeInput(const sample::StageFrame& frame) {
 Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
                  const game::State& state, const FireNumbers& fires, Player& player) {
     slot_ = frame.slot;
+    shown_ = frame.extent.width >= kLeastWidth && frame.extent.height >= kLeastHeight;
+    if (!shown_) {
+        Board blind{nullptr, lens, field, state, fires, player};
+        keys(frame.input.keys, blind);
+        return std::move(blind.wishes);
+    }
     fit(frame.extent);
     takeInput(frame);
     ImGui::NewFrame();

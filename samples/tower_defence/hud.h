@@ -44,6 +44,9 @@ class Hud {
     Hud(const Hud&) = delete;
     Hud& operator=(const Hud&) = delete;
 
+    // Pixels. A smaller window shows the game alone, which keys still play.
+    static constexpr uint32_t kLeastWidth = 400, kLeastHeight = 150;
+
     // Lays out the frame, which the stage's overlay then draws.
     Wishes show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
                 const game::State& state, const FireNumbers& fires, Player& player);
@@ -55,6 +58,7 @@ class Hud {
     std::unique_ptr<fwui::UiRenderer> renderer_;
     sample::Stage& stage_;
     uint32_t slot_ = 0;
+    bool shown_ = false;
 };
 
 }  // namespace tower
