@@ -28,7 +28,87 @@ struct Performing {
     Journal* journal;
 };
 
+// A def's fields into a deed: whole numbers into its word, by bits, floats into its numbers.
+struct DeedWriter {
+    Deed deed;
+    uint32_t shift = 0;
+    size_t count = 0;
+    void bits(uint32_t value, uint32_t width) {
+        deed.word |= value << shift;
+        shift += width;
+    }
+    void number(float value) { deed.numbers[count++] = value; }
+};
+// And out of it again.
+struct DeedReader {
+    const Deed& deed;
+    uint32_t shift = 0;
+    size_t count = 0;
+    void bits(uint32_t& value, uint32_t width) {
+        value = uint32_t(uint64_t(deed.word) >> shift & ((uint64_t(1) << width) - 1));
+        shift += width;
+    }
+    void number(float& value) { value = deed.numbers[count++]; }
+};
+
+// Of both ways, what a deed has of a def. `priority` is not negative in it.
+template <class Way, class Def, class Priority>
+void putZone(Way& way, Def& def, Priority& priority) {
+    way.bits(def.shape, 4);
+    way.bits(def.flow, 4);
+    way.bits(def.blend, 8);
+    way.bits(priority, 16);
+    for (auto& value : def.position) way.number(value);
+    for (auto& value : def.axis) way.number(value);
+    for (auto& value : def.size) way.number(value);
+    way.number(def.speed);
+    way.number(def.falloff);
+}
+constexpr int32_t kPriorityZero = 0x8000;
+
+template <class Way, class Def>
+void putRoom(Way& way, Def& def) {
+    way.bits(def.flags, 32);
+    for (auto& value : def.position) way.number(value);
+    for (auto& value : def.rotation) way.number(value);
+    for (auto& value : def.halfSize) way.number(value);
+    way.number(def.volume);
+    way.number(def.vent);
+    way.number(def.oxygen);
+}
+
 }  // namespace
+
+Deed deedOf(const FwWindZoneDef& def) noexcept {
+    DeedWriter writer;
+    const auto priority = uint32_t(def.priority + kPriorityZero);
+    putZone(writer, def, priority);
+    return writer.deed;
+}
+
+FwWindZoneDef windZoneDefOf(const Deed& deed) noexcept {
+    FwWindZoneDef def{};
+    def.structSize = sizeof def;
+    DeedReader reader{deed};
+    uint32_t priority = 0;
+    putZone(reader, def, priority);
+    def.priority = int32_t(priority) - kPriorityZero;
+    return def;
+}
+
+Deed deedOf(const FwRoomDef& def) noexcept {
+    DeedWriter writer;
+    putRoom(writer, def);
+    return writer.deed;
+}
+
+FwRoomDef roomDefOf(const Deed& deed) noexcept {
+    FwRoomDef def{};
+    def.structSize = sizeof def;
+    DeedReader reader{deed};
+    putRoom(reader, def);
+    return def;
+}
 
 uint64_t hashState(std::span<const uint32_t> ticks, std::span<const gpu::uvec2> heat) noexcept {
     uint64_t hash = core::hashWords(ticks);
@@ -118,7 +198,7 @@ void World::perform(const Deed& deed) {
         case Deed::Kind::fieldAmount:
             return setParticleFieldAmount(idAt(fields_, deed.slot), numbers[0]);
         case Deed::Kind::windZone:
-            return setWindZone(idAt(windPool_, deed.slot), zoneDefOf(deed));
+            return setWindZone(idAt(windPool_, deed.slot), windZoneDefOf(deed));
         case Deed::Kind::room:
             return setRoom(idAt(rooms_, deed.slot), roomDefOf(deed));
         case Deed::Kind::playBurn:

@@ -1,6 +1,7 @@
 // What other machines have to know of a world: what its host did to the burn, in order, and hashes
 // of its objects at fixed steps. Kept while someone asks for it (net/), and taken from there.
 #pragma once
+#include "flamewright/flamewright.h"
 #include "shared/burn.h"
 
 #include <array>
@@ -37,8 +38,8 @@ struct Deed {
     uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all
     uint32_t tick = 0;  // ignite, playBurn: when it takes effect
     uint32_t word = 0;  // flags; ignite: FwIgnitionKind; moveEmitter: 1: with a direction;
-                        // windZone: see zoneWord; room: its flags; playBurn: slot + 1 of the
-                        // burn
+                        // windZone, room: what of their defs is no float, see deedOf; playBurn:
+                        // slot + 1 of the burn
     std::array<float, 13> numbers{};
 };
 
@@ -73,6 +74,12 @@ void putDeed(S& s, T& deed) {
     if (form.word) s.number(deed.word);
     for (uint32_t i = 0; i < form.numbers; ++i) s.number(deed.numbers[i]);
 }
+
+// A def as a deed's word and numbers, and back. Its kind and slot are others' business.
+[[nodiscard]] Deed deedOf(const FwWindZoneDef& def) noexcept;
+[[nodiscard]] Deed deedOf(const FwRoomDef& def) noexcept;
+[[nodiscard]] FwWindZoneDef windZoneDefOf(const Deed& deed) noexcept;
+[[nodiscard]] FwRoomDef roomDefOf(const Deed& deed) noexcept;
 
 constexpr uint32_t kHashSteps = 8;    // an object's turn is at multiples of these
 constexpr uint32_t kHashRounds = 16;  // each has its turn once in so many; in more, if it is more

@@ -77,33 +77,13 @@ void World::setRoom(FwRoomId id, const FwRoomDef& def) {
     if ((def.flags & FW_ROOM_REFILL) != 0) fillRoom(entry, entry.room.oxygen);
     sendRoom(id.index1 - 1);
     roomsTurn();
-    float numbers[13];
-    std::copy_n(def.position, 3, numbers);
-    std::copy_n(def.rotation, 4, numbers + 3);
-    std::copy_n(def.halfSize, 3, numbers + 7);
-    numbers[10] = def.volume;
-    numbers[11] = def.vent;
-    numbers[12] = def.oxygen;
-    noteMove(Deed::Kind::room, id.index1 - 1, numbers, std::size(numbers), def.flags);
+    noteDef(Deed::Kind::room, id.index1 - 1, def);
 }
 
 void World::destroyRoom(FwRoomId id) {
     rooms_.destroy(id);
     backend_.setRoom(id.index1 - 1, {});
     roomsTurn();
-}
-
-FwRoomDef World::roomDefOf(const Deed& deed) noexcept {
-    FwRoomDef def{};
-    def.structSize = sizeof def;
-    def.flags = deed.word;
-    std::copy_n(deed.numbers.data(), 3, def.position);
-    std::copy_n(deed.numbers.data() + 3, 4, def.rotation);
-    std::copy_n(deed.numbers.data() + 7, 3, def.halfSize);
-    def.volume = deed.numbers[10];
-    def.vent = deed.numbers[11];
-    def.oxygen = deed.numbers[12];
-    return def;
 }
 
 // Of a readback of beginnings that still count.

@@ -570,23 +570,12 @@ void World::checkSaved(const SavedWorld& saved) {
     }
 }
 
-namespace {
-
-std::pmr::vector<components::WindZone> zonesOf(const SavedWorld& saved) {
-    std::pmr::vector<components::WindZone> zones(saved.windZones.get_allocator());
-    for (const SavedWindZone& one : saved.windZones) zones.push_back(one.zone);
-    components::sortWindZones(zones);
-    return zones;
-}
-
-}  // namespace
-
 SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
                               components::Latch& latch) {
     const Object& object = **objects_.at(from.slot);
     const mesh::BurnDomain& domain = domainOf(object);
     components::DriveInput drive = driveInput(object);
-    drive.wind = components::windIn(zonesOf(saved), fire::windUnits(saved.wind),
+    drive.wind = components::windIn(saved.zones, fire::windUnits(saved.wind),
                                     windPlaceOf(from.pose, domain));
     components::BurnableMesh posed = object.data;
     posed.pose = from.pose;

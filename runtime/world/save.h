@@ -106,6 +106,7 @@ struct SavedWorld {
           blockers(memory),
           latchedBlockers(memory),
           windZones(memory),
+          zones(memory),
           rooms(memory),
           fires(memory),
           emitters(memory),
@@ -129,6 +130,7 @@ struct SavedWorld {
     std::pmr::vector<SavedBlocker> blockers;
     std::pmr::vector<gpu::Blocker> latchedBlockers;
     std::pmr::vector<SavedWindZone> windZones;
+    std::pmr::vector<components::WindZone> zones;  // the same in the order in which they count
     std::pmr::vector<SavedRoom> rooms;
     std::pmr::vector<SavedFire> fires;
     std::pmr::vector<SavedEmitter> emitters;

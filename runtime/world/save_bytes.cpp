@@ -485,6 +485,8 @@ void readSaved(std::span<const std::byte> bytes, SavedWorld& saved) {
     put(reader, saved);
     if (reader.left() != 0)
         core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the content of the save.", reader.left());
+    for (const SavedWindZone& one : saved.windZones) saved.zones.push_back(one.zone);
+    components::sortWindZones(saved.zones);
 }
 
 }  // namespace fw::world

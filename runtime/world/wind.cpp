@@ -105,38 +105,12 @@ void World::setWindZone(FwWindZoneId id, const FwWindZoneDef& def) {
         zone = made;
         listWindZones();
     }
-    float numbers[11];
-    std::copy_n(def.position, 3, numbers);
-    std::copy_n(def.axis, 3, numbers + 3);
-    std::copy_n(def.size, 3, numbers + 6);
-    numbers[9] = def.speed;
-    numbers[10] = def.falloff;
-    noteMove(Deed::Kind::windZone, id.index1 - 1, numbers, std::size(numbers), zoneWord(def));
+    noteDef(Deed::Kind::windZone, id.index1 - 1, def);
 }
 
 void World::destroyWindZone(FwWindZoneId id) {
     windPool_.destroy(id);
     listWindZones();
-}
-
-// What a deed has of a zone beside its numbers.
-uint32_t World::zoneWord(const FwWindZoneDef& def) noexcept {
-    return def.shape | def.flow << 4 | def.blend << 8 | uint32_t(def.priority + 0x8000) << 16;
-}
-
-FwWindZoneDef World::zoneDefOf(const Deed& deed) noexcept {
-    FwWindZoneDef def{};
-    def.structSize = sizeof def;
-    def.shape = deed.word & 15;
-    def.flow = deed.word >> 4 & 15;
-    def.blend = deed.word >> 8 & 255;
-    def.priority = int32_t(deed.word >> 16) - 0x8000;
-    std::copy_n(deed.numbers.data(), 3, def.position);
-    std::copy_n(deed.numbers.data() + 3, 3, def.axis);
-    std::copy_n(deed.numbers.data() + 6, 3, def.size);
-    def.speed = deed.numbers[9];
-    def.falloff = deed.numbers[10];
-    return def;
 }
 
 }  // namespace fw::world

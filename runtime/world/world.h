@@ -634,8 +634,6 @@ class World {
     void listWindZones() noexcept;
     void windTurns() noexcept;
     void takeZoneWind(Object& object) noexcept;
-    static uint32_t zoneWord(const FwWindZoneDef& def) noexcept;
-    static FwWindZoneDef zoneDefOf(const Deed& deed) noexcept;
     // rooms.cpp
     [[nodiscard]] bool roomsRest() const noexcept;
     void stirRooms() noexcept;
@@ -644,7 +642,6 @@ class World {
     void sendRoom(uint32_t slot) noexcept;
     void fillRoom(RoomEntry& entry, uint32_t oxygen) noexcept;
     void takeRooms(const gpu::Readback& readback) noexcept;
-    static FwRoomDef roomDefOf(const Deed& deed) noexcept;
     // remote.cpp
     [[nodiscard]] bool remoteOn() const noexcept {
         return remote_.flags != 0 || remote_.governed || clock_.tick < remote_.fades;
@@ -697,6 +694,14 @@ class World {
     void note(const Deed& deed) noexcept;
     void noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
                   uint32_t word = 0) noexcept;
+    template <class Def>
+    void noteDef(Deed::Kind kind, uint32_t slot, const Def& def) noexcept {
+        if (!journal_ && !noted_) return;
+        Deed deed = deedOf(def);
+        deed.kind = kind;
+        deed.slot = slot;
+        note(deed);
+    }
     void notePose(Deed::Kind kind, uint32_t slot, const float transform[16]) noexcept;
     void planHashes(const ClockAdvance& time);
     void noteSaveInLog() noexcept;
