@@ -47,4 +47,26 @@ inline ClockAdvance advance(const Clock& clock, float deltaTime, uint32_t maxSte
     return result;
 }
 
+// Heat steps and reductions take a step each of four, so that none has the work of both.
+constexpr uint32_t kReduceEvery = 4;  // steps
+constexpr uint32_t kReducePhase = 3;  // as exchanges, which come with it
+constexpr uint32_t kHeatPhase = 1;
+static_assert(kHeatPhase < gpu::kHeatSteps && kReducePhase < kReduceEvery);
+constexpr bool reducesAt(uint64_t tick) noexcept {
+    return tick / gpu::kStepTicks % kReduceEvery == kReducePhase;
+}
+// When flames were counted last, by then.
+constexpr uint64_t lastReduced(uint64_t tick) noexcept {
+    constexpr uint64_t kPeriod = uint64_t(kReduceEvery) * gpu::kStepTicks;
+    constexpr uint64_t kFirst = uint64_t(kReducePhase + 1) * gpu::kStepTicks;
+    return tick < kFirst ? 0 : (tick - kFirst) / kPeriod * kPeriod + kFirst;
+}
+constexpr bool heatsAt(uint64_t tick) noexcept {
+    return tick / gpu::kStepTicks % gpu::kHeatSteps == kHeatPhase;
+}
+// How many heat steps began before that tick.
+constexpr uint64_t heatStepsBefore(uint64_t tick) noexcept {
+    return (tick / gpu::kStepTicks + gpu::kHeatSteps - 1 - kHeatPhase) / gpu::kHeatSteps;
+}
+
 }  // namespace fw::world

@@ -149,7 +149,7 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
 void World::takeEnergy(Object& object, uint32_t endTick) noexcept {
     const gpu::ObjectCounters& now = object.counters;
     const uint64_t energy = uint64_t(now.energyHigh) << 32 | now.energyLow;
-    const uint64_t steps = endTick / (gpu::kHeatSteps * gpu::kStepTicks);
+    const uint64_t steps = heatStepsBefore(endTick);
     if (steps == object.story.heatSteps) return;
     const double seconds = double(steps - object.story.heatSteps) * gpu::kHeatSteps / 32;
     object.story.power = now.burning == 0 ? 0.0f

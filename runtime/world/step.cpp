@@ -8,7 +8,6 @@
 namespace fw::world {
 namespace {
 
-constexpr uint32_t kReduceEvery = 4;  // steps
 constexpr size_t kMaxBurnMapsPerFrame = 64;
 
 // Does it want the state of this frame? One that runs still answers what was asked before.
@@ -134,8 +133,8 @@ void World::planSteps(const ClockAdvance& time) {
         const uint32_t now = uint32_t(clock_.tick) + step * gpu::kStepTicks;
         gpu::StepPlan plan;
         plan.now = now;
-        plan.reduce = (now / gpu::kStepTicks) % kReduceEvery == kReduceEvery - 1;
-        plan.heat = (now / gpu::kStepTicks) % gpu::kHeatSteps == gpu::kHeatSteps - 1;
+        plan.reduce = reducesAt(now);
+        plan.heat = heatsAt(now);
         plan.rooms = plan.heat && roomsMet_;
         const size_t firstEvent = frame_.events.size(), firstDue = nextDue;
         for (; nextDue < frame_.due.size() && frame_.due[nextDue].step == step; ++nextDue) {
@@ -242,7 +241,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     const auto touch = [&](Object& object) {
         if (object.touched) return;  // room for every object was found at its creation
         object.touched = true;
-        object.story.heatSteps = clock_.tick / (gpu::kHeatSteps * gpu::kStepTicks);
+        object.story.heatSteps = heatStepsBefore(clock_.tick);
         touched_.insert(
             std::lower_bound(touched_.begin(), touched_.end(), &object,
                              [](const Object* a, const Object* b) { return a->slot < b->slot; }),

@@ -1,7 +1,9 @@
 // A heat step of the tiles on the hot list: temperature, fuel and water of each texel, and what
 // becomes of its state in the front. Tiles at rest leave the list. Most of the others are only warm,
-// or wet, and have their turn now and then: a group finds those of 64 that have, and runs them by
-// eight, a thread per row.
+// or wet, and have their turn now and then: a group looks through the list until it has 64 that do,
+// runs them by eight with eight threads each, and finishes them with a thread each. A thread looks
+// through a row for texels whose turn it is; those of a tile are listed and shared out, as fire
+// rarely fills a tile. Tiles that stay hot are appended together: one counter is all groups' way.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -29,101 +31,162 @@ layout(local_size_x = 64) in;
 #include "shared/heat.h"
 #include "lib/lists.glsl"
 
+const uint kBlock = 64u;  // tiles that are finished together
+
 shared uint running;
-shared uint runs[64];  // world tiles
-// What the rows of a tile tell: changed | lit << 8 | put out << 16 | work << 24, heat of what burnt.
-shared uint rowNews[64];
-shared uint rowLow[64];
-shared uint rowHigh[64];
-shared float rowWatts[64];
+shared uint runs[2u * kBlock];  // world tiles
+shared uint staying;
+shared uint stays[kBlock];
+shared uint staysAt;
+shared uint rowTodo[64];
+shared uint items[512];  // of eight tiles: lane, and kItem bits
+shared uint kinds[8];    // of eight tiles: which materials theirs have, by bits
+shared uint tileChanged[2u * kBlock];
+// What eight threads of each tile tell: lit | put out << 8 | work << 16, and heat of what burnt.
+shared uint threadNews[8u * kBlock];
+shared uint threadLow[8u * kBlock];
+shared uint threadHigh[8u * kBlock];
+shared float threadWatts[8u * kBlock];
 
-struct Burnt {
-    uint low, high;  // 2^-20 J
-    float watts;
+const uint kItemDozes = 64u, kItemRests = 128u, kItemReal = 256u;
+const uint kItemKindShift = 9u;
+
+struct Row {
+    uint todo;    // texels whose turn it is, by bits
+    uint dozes;
+    uint rests;
+    uint waits;   // work of the others
 };
-
-// `turn`: see heatTurn. `held`: it may not catch: what would stays as it is, and is looked at again.
-uint heatRow(TileRef tile, uint row, uvec2 comes, uint turn, bool held, inout Burnt burnt) {
+Row rowWork(TileRef tile, uint row, uint flux, uint turn) {
     uint object = tile.object;
     uint texel = texelOf(object, tile.local, row * 8u);
     uint stateAt = objects[object].stateBase + texel;
     uint heatAt = objects[object].heatBase + texel;
-    uint texelAt = objects[object].texelBase + texel;
     uint ambient = heatQuads[object * kMaterialsPerObject * 6u + 1u].w;
     uvec4 ta = stateQuads[stateAt >> 2u];
     uvec4 tb = stateQuads[(stateAt >> 2u) + 1u];
     uint t[8] = uint[8](ta.x, ta.y, ta.z, ta.w, tb.x, tb.y, tb.z, tb.w);
-    uint todo = 0u, dozes = 0u, waits = 0u;
+    Row r = Row(0u, 0u, 0u, 0u);
     FW_UNROLL for (int i = 0; i < 4; ++i) {
         uvec4 two = heatPairs[(heatAt >> 1u) + uint(i)];
         FW_UNROLL for (int k = 0; k < 2; ++k) {
             HeatTexel x = unpackHeat(k == 0 ? two.xy : two.zw);
-            uint work = heatWork(x, t[2 * i + k], comes.x, ambient), bit = 1u << uint(2 * i + k);
-            todo |= (work & turn) != 0u ? bit : 0u;
-            dozes |= work == kWorkDozes ? bit : 0u;
-            waits |= (work & turn) == 0u ? work : 0u;
+            uint work = heatWork(x, t[2 * i + k], flux, ambient), bit = 1u << uint(2 * i + k);
+            // In a warm tile what dozes takes every step, as a plain one.
+            if (work == kWorkDozes && (turn & kWorkAlways) != 0u) work = kWorkAlways;
+            r.todo |= (work & turn) != 0u ? bit : 0u;
+            r.dozes |= work == kWorkDozes ? bit : 0u;
+            r.rests |= work == kWorkRests ? bit : 0u;
+            r.waits |= (work & turn) == 0u ? work : 0u;
         }
     }
-    uint news = waits << 24u;
-    bool always = (turn & kWorkAlways) != 0u;
-    uint step = hash32(push.now), strength = airStrength(objectCounters[object].air);
-    if (todo == 0u) return news;
-    do {
-        uint i = uint(findLSB(todo));
-        uint kind = texels[texelAt + i].y >> 16u;
-        uint material = object * kMaterialsPerObject + (kind & 7u);
-        HeatMaterial m = heatMaterial(material);
-        HeatTexel x = unpackHeat(heat[heatAt + i]);
-        uint before = state[stateAt + i];
-        uint now = before;
-        uint chance = heatChance(texel + i, step);
-        uint units = 0u;
-        if (!always && (dozes >> i & 1u) != 0u) {
-            now = heatDozes(x, m, before, chance);
-        } else {
-            if (!always) m = heatOverRest(m);
-            m = heatInAir(m, strength);
-            now = heatTexelStep(x, m, before, push.now, comes.x, comes.y != 0u,
-                                materials[material].air, chance, units);
-        }
-        bool lights = (kind & kTexelReal) != 0u && isSource(now) && !isSource(before);
-        bool writes = !asksOnly() && !(held && lights);
-        news |= lights && !writes ? kWorkAlways << 24u | (asksOnly() ? 1u << (i + 8u) : 0u) : 0u;
-        if ((kind & kTexelReal) != 0u && writes) {
-            uint low, high;
-            umulExtended(units, m.energy, high, low);
-            burnt.high += high + (burnt.low + low < low ? 1u : 0u);
-            burnt.low += low;
-            burnt.watts += float(units) * m.watts;
-            heat[heatAt + i] = packHeat(x);
-            if (now != before) state[stateAt + i] = now;
-            uint bit = 1u << i;
-            news |= now != before ? bit : 0u;
-            news |= lights ? bit << 8u : 0u;
-            news |= isSource(before) && !isSource(now) ? bit << 16u : 0u;
-            news |= heatWork(x, now, comes.x, ambient) << 24u;
-        }
-        todo &= todo - 1u;
-    } while (todo != 0u);
-    return news;
+    return r;
 }
 
-void finishTile(uint worldTile, TileRef tile, uint thread, uint flux, bool always) {
+// Lists a row's texels behind those of the rows before it.
+void listRow(TileRef tile, uint thread, Row r) {
+    uint row = thread & 7u, at = (thread & ~7u) * 8u;
+    FW_UNROLL for (uint other = 0u; other < 7u; ++other)
+        at += other < row ? uint(bitCount(rowTodo[(thread & ~7u) + other])) : 0u;
+    uint texelAt = objects[tile.object].texelBase + texelOf(tile.object, tile.local, row * 8u);
+    uint todo = r.todo;
+    if (todo == 0u) return;
+    do {
+        uint i = uint(findLSB(todo)), bit = 1u << i;
+        uint flags = texels[texelAt + i].y >> 16u;
+        uint kind = flags & (kMaterialsPerObject - 1u);
+        items[at] = row * 8u + i + ((r.dozes & bit) != 0u ? kItemDozes : 0u) +
+                    ((r.rests & bit) != 0u ? kItemRests : 0u) +
+                    ((flags & kTexelReal) != 0u ? kItemReal : 0u) + (kind << kItemKindShift);
+        atomicOr(kinds[thread >> 3u], 1u << kind);
+        ++at;
+        todo &= todo - 1u;
+    } while (todo != 0u);
+}
+
+struct Told {
+    uint news;       // as threadNews
+    uint low, high;  // 2^-20 J
+    float watts;
+};
+
+// A thread's part of the list of tile `slot` of the block: each eighth item. `held`: the tile may not catch: what would
+// stays as it is, and is looked at again.
+Told heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) {
+    Told told = Told(0u, 0u, 0u, 0.0);
+    uint count = 0u, first = (thread & ~7u) * 8u + (thread & 7u);
+    FW_UNROLL for (uint row = 0u; row < 8u; ++row)
+        count += uint(bitCount(rowTodo[(thread & ~7u) + row]));
+    if (count == 0u) return told;
+    uint object = tile.object, width = objects[object].width;
+    uint corner = texelOf(object, tile.local, 0u);
+    uint stateAt = objects[object].stateBase;
+    uint heatAt = objects[object].heatBase;
+    uint ambient = heatQuads[object * kMaterialsPerObject * 6u + 1u].w;
+    uint step = hash32(push.now), strength = airStrength(objectCounters[object].air);
+    // A material is many words, and one is most often all of a tile: texels of each in turn. Both
+    // loops are as long for all threads of a tile.
+    uint left = kinds[thread >> 3u];
+    do {
+        uint kind = uint(findLSB(left)), material = object * kMaterialsPerObject + kind;
+        HeatMaterial own = heatInAir(heatMaterial(material), strength);
+        uint air = materials[material].air;
+        uint at = 0u;
+        do {
+            uint item = at + (thread & 7u) < count ? items[first + at] : 0u;
+            uint lane = item & 63u;
+            uint texel = corner + (lane >> 3u) * width + (lane & 7u);
+            HeatTexel x = unpackHeat(heat[heatAt + texel]);
+            uint before = state[stateAt + texel];
+            uint now = before;
+            uint chance = heatChance(texel, step);
+            uint units = 0u;
+            if ((item & kItemDozes) != 0u)
+                now = heatDozes(x, own, before, chance);
+            else
+                now = heatTexelStep(
+                    x, heatOver(own, (item & kItemRests) != 0u ? restShift(comes.x) : 0u), before,
+                    push.now, comes.x, comes.y != 0u, air, chance, units);
+            bool real = (item & kItemReal) != 0u && item >> kItemKindShift == kind;
+            bool lights = real && isSource(now) && !isSource(before);
+            bool writes = !asksOnly() && !(held && lights);
+            told.news |= lights && !writes ? kWorkAlways << 16u : 0u;
+            told.news += lights && asksOnly() ? 1u : 0u;
+            if (real && writes) {
+                uint low, high;
+                umulExtended(units, own.energy, high, low);
+                told.high += high + (told.low + low < low ? 1u : 0u);
+                told.low += low;
+                told.watts += float(units) * own.watts;
+                heat[heatAt + texel] = packHeat(x);
+                if (now != before) {
+                    state[stateAt + texel] = now;
+                    atomicOr(tileChanged[slot * 2u + (lane >> 5u)], 1u << (lane & 31u));
+                }
+                told.news += lights ? 1u : 0u;
+                told.news += isSource(before) && !isSource(now) ? 0x100u : 0u;
+                told.news |= heatWork(x, now, comes.x, ambient) << 16u;
+            }
+            at += 8u;
+        } while (at < count);
+        left &= left - 1u;
+    } while (left != 0u);
+    return told;
+}
+
+void finishTile(uint worldTile, TileRef tile, uint slot) {
     uint object = tile.object;
-    uvec2 changed = uvec2(0u);
-    uint lit = 0u, gone = 0u, work = fluxWork(flux), low = 0u, high = 0u;
+    uvec2 changed = uvec2(tileChanged[slot * 2u], tileChanged[slot * 2u + 1u]);
+    uint lit = 0u, gone = 0u, work = fluxWork(tileHeat[worldTile].flux), low = 0u, high = 0u;
     float watts = 0.0;
-    for (uint row = 0u; row < 8u; ++row) {
-        uint news = rowNews[thread + row];
-        uint bits = (news & 0xFFu) << ((row & 3u) * 8u);
-        changed.x |= row < 4u ? bits : 0u;
-        changed.y |= row < 4u ? 0u : bits;
-        lit += uint(bitCount(news & 0xFF00u));
-        gone += uint(bitCount(news & 0xFF0000u));
-        work |= news >> 24u;
-        low += rowLow[thread + row];
-        high += rowHigh[thread + row] + (low < rowLow[thread + row] ? 1u : 0u);
-        watts += rowWatts[thread + row];
+    for (uint k = slot * 8u; k < slot * 8u + 8u; ++k) {
+        uint news = threadNews[k];
+        lit += news & 0xFFu;
+        gone += news >> 8u & 0xFFu;
+        work |= news >> 16u;
+        low += threadLow[k];
+        high += threadHigh[k] + (low < threadLow[k] ? 1u : 0u);
+        watts += threadWatts[k];
     }
     if (asksOnly()) {
         if (lit != 0u) askToBurn(worldTile);
@@ -131,10 +194,9 @@ void finishTile(uint worldTile, TileRef tile, uint thread, uint flux, bool alway
     }
     if (work != 0u) {
         // Only what is in its turn always can show anything.
-        bool warm = staysWarm(work, always, tile.local, push.now);
-        if (warm) atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
+        if ((work & kWorkAlways) != 0u) atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
         else atomicAnd(tileState[worldTile].flag, ~kTileWarm);
-        hotAppend(push.hotParity ^ 1u, worldTile);
+        stays[atomicAdd(staying, 1u)] = worldTile;
     } else {
         atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
     }
@@ -160,50 +222,82 @@ void finishTile(uint worldTile, TileRef tile, uint thread, uint flux, bool alway
 
 uint turnOf(uint worldTile, TileRef tile) {
     bool warm = (tileState[worldTile].flag & kTileWarm) != 0u;
-    return heatTurn(warm, tile.object, tile.local, push.now);
+    return heatTurn(warm, tile.object, tile.local, tileHeat[worldTile].flux, push.now);
+}
+
+// One more of the list: it runs, stays as it is, or is gone.
+void takeTile(uint worldTile) {
+    TileRef tile = tileRef(worldTile);
+    bool alive = tile.alive && (objects[tile.object].flags & kObjectHeat) != 0u;
+    if (!alive) {
+        if (!asksOnly()) atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
+    } else if (turnOf(worldTile, tile) == 0u) {
+        if (!asksOnly()) stays[atomicAdd(staying, 1u)] = worldTile;  // sleeps on
+    } else if (!asksOnly() || !mayBurn(worldTile)) {
+        runs[atomicAdd(running, 1u)] = worldTile;
+    }
+}
+
+// Appends all that stay.
+void keepHot(uint thread) {
+    barrier();
+    uint count = staying;
+    if (thread == 0u) staysAt = hotSlots(push.hotParity ^ 1u, count);
+    barrier();
+    if (thread < count) hotStore(push.hotParity ^ 1u, staysAt + thread, stays[thread]);
+    if (thread == 0u) staying = 0u;
+    barrier();
+}
+
+// Eight tiles of a block, from its `first` on.
+void runEight(uint thread, uint base, uint first, uint all) {
+    uint slot = first + (thread >> 3u);
+    bool here = base + slot < all;
+    uint worldTile = here ? runs[base + slot] : 0u;
+    TileRef tile = tileRef(worldTile);
+    uvec2 comes = here ? uvec2(tileHeat[worldTile].flux, tileHeat[worldTile].pilot) : uvec2(0u);
+    Row row = Row(0u, 0u, 0u, 0u);
+    if (here) row = rowWork(tile, thread & 7u, comes.x, turnOf(worldTile, tile));
+    rowTodo[thread] = row.todo;
+    if (thread < 8u) kinds[thread] = 0u;
+    barrier();
+    listRow(tile, thread, row);
+    barrier();
+    Told told = heatItems(tile, slot, thread, comes, !mayBurn(worldTile));
+    uint at = slot * 8u + (thread & 7u);
+    threadNews[at] = told.news | row.waits << 16u;
+    threadLow[at] = told.low;
+    threadHigh[at] = told.high;
+    threadWatts[at] = told.watts;
+    barrier();
 }
 
 void main() {
     uint count = counters[kRowHot + push.hotParity].listCount;
     uint thread = gl_LocalInvocationID.x;
-    for (uint base = gl_WorkGroupID.x * 64u; base < count; base += gl_NumWorkGroups.x * 64u) {
+    uint base = gl_WorkGroupID.x * 64u;
+    if (thread == 0u) staying = 0u;
+    while (base < count) {
         if (thread == 0u) running = 0u;
         barrier();
-        if (base + thread < count) {
-            uint worldTile = hotTile(push.hotParity, base + thread);
-            TileRef tile = tileRef(worldTile);
-            bool alive = tile.alive && (objects[tile.object].flags & kObjectHeat) != 0u;
-            if (!alive) {
-                if (!asksOnly())
-                    atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
-            } else if (turnOf(worldTile, tile) == 0u) {
-                if (!asksOnly()) hotAppend(push.hotParity ^ 1u, worldTile);  // sleeps on
-            } else if (!asksOnly() || !mayBurn(worldTile)) {
-                runs[atomicAdd(running, 1u)] = worldTile;
+        uint all = 0u;
+        do {
+            if (base + thread < count) takeTile(hotTile(push.hotParity, base + thread));
+            base += gl_NumWorkGroups.x * 64u;
+            keepHot(thread);
+            all = running;
+            barrier();
+        } while (all < kBlock && base < count);
+        for (uint block = 0u; block < all; block += kBlock) {
+            tileChanged[thread] = 0u;
+            tileChanged[kBlock + thread] = 0u;
+            uint tiles = min(all - block, kBlock);
+            for (uint first = 0u; first < tiles; first += 8u) runEight(thread, block, first, all);
+            if (thread < tiles) {
+                uint worldTile = runs[block + thread];
+                finishTile(worldTile, tileRef(worldTile), thread);
             }
-        }
-        barrier();
-        uint all = running;
-        for (uint first = 0u; first < all; first += 8u) {
-            uint slot = first + (thread >> 3u);
-            bool here = slot < all;
-            uint worldTile = here ? runs[slot] : 0u;
-            TileRef tile = tileRef(worldTile);
-            uint turn = turnOf(worldTile, tile);
-            uvec2 comes =
-                here ? uvec2(tileHeat[worldTile].flux, tileHeat[worldTile].pilot) : uvec2(0u);
-            Burnt burnt = Burnt(0u, 0u, 0.0);
-            uint news = 0u;
-            if (here)
-                news = heatRow(tile, thread & 7u, comes, turn, !mayBurn(worldTile), burnt);
-            rowNews[thread] = news;
-            rowLow[thread] = burnt.low;
-            rowHigh[thread] = burnt.high;
-            rowWatts[thread] = burnt.watts;
-            barrier();
-            if (here && (thread & 7u) == 0u)
-                finishTile(worldTile, tile, thread, comes.x, (turn & kWorkAlways) != 0u);
-            barrier();
+            keepHot(thread);
         }
     }
 }

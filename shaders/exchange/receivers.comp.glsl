@@ -23,10 +23,9 @@ bool gives(uint slot, uint entry) {
                    bothChances(push.chance, remoteObjects[from].chance));
 }
 
-// Of the object's sources those of weight [low, high) go into the list from `listed` on; how many
-// there are. Without a list all are counted by their weight's highest bit.
+// The object's sources, counted by their weight's highest bit.
 uint weightBits[32];
-uint pass(uint slot, ivec3 middle, uint low, uint high, bool list, uint listed) {
+uint countSources(uint slot, ivec3 middle) {
     uint first = remoteObjects[slot].neighbourFirst;
     uint count = 0u;
     for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {
@@ -36,15 +35,35 @@ uint pass(uint slot, ivec3 middle, uint low, uint high, bool list, uint listed) 
         uint base = remoteObjects[from].sourceBase;
         for (uint cell = 0u; cell < remoteObjects[from].sourceCount; ++cell) {
             uint weight = sourceWeight(sources[base + cell], middle);
-            if (weight < low || weight >= high) continue;
-            if (!list) weightBits[topBit(weight)] += 1u;
-            if (list && listed + count < kSourcesPerReceiver)
-                receivers[slot * kReceiverWords + 2u + listed + count] =
-                    (base + cell) | (entry & 0xFF000000u);
+            if (weight == 0u) continue;
+            weightBits[topBit(weight)] += 1u;
             ++count;
         }
     }
     return count;
+}
+
+// Lists those of weight [low, ...), which are `strong`, and behind them those of half of it, as far
+// as there is room. How many it lists.
+uint listSources(uint slot, ivec3 middle, uint low, uint strong) {
+    uint first = remoteObjects[slot].neighbourFirst;
+    uint listed = 0u, weak = strong;
+    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {
+        uint entry = neighbours[first + n];
+        if (!gives(slot, entry)) continue;
+        uint from = entry & 0xFFFFFFu;
+        uint base = remoteObjects[from].sourceBase;
+        for (uint cell = 0u; cell < remoteObjects[from].sourceCount; ++cell) {
+            uint weight = sourceWeight(sources[base + cell], middle);
+            if (weight == 0u || weight < low / 2u) continue;
+            uint at = weight >= low ? listed : weak;
+            if (at < kSourcesPerReceiver)
+                receivers[slot * kReceiverWords + 2u + at] = (base + cell) | (entry & 0xFF000000u);
+            listed += weight >= low ? 1u : 0u;
+            weak += weight >= low ? 0u : 1u;
+        }
+    }
+    return min(weak, kSourcesPerReceiver);
 }
 
 void gather(uint slot) {
@@ -57,17 +76,14 @@ void gather(uint slot) {
     receivers[at * kReceiverWords] = slot;
     ivec3 middle = boxMiddle(remoteObjects[slot]);
     FW_UNROLL for (int bit = 0; bit < 32; ++bit) weightBits[bit] = 0u;
-    uint count = pass(slot, middle, 1u, kNoneTexel, false, 0u);
+    uint count = countSources(slot, middle);
     // The least power of two that so few are not below.
     uint least = 0u;
     while (count > kSourcesPerReceiver) {
         count -= weightBits[least];
         ++least;
     }
-    uint low = 1u << least;
-    count = pass(slot, middle, low, kNoneTexel, true, 0u);
-    if (low > 1u) count += pass(slot, middle, low / 2u, low, true, count);
-    receivers[slot * kReceiverWords + 1u] = min(count, kSourcesPerReceiver);
+    receivers[slot * kReceiverWords + 1u] = listSources(slot, middle, 1u << least, count);
 }
 
 void main() {

@@ -39,10 +39,26 @@ void burnAppend(uint parity, uint worldTile) {
 
 #ifdef FW_USE_HOT_LISTS
 uint hotTile(uint parity, uint slot) { return parity == 0u ? hotLists[slot].x : hotLists[slot].y; }
-void hotAppend(uint parity, uint worldTile) {
-    uint slot = listSlot(kRowHot + parity, 64u);
+void hotStore(uint parity, uint slot, uint worldTile) {
     if (parity == 0u) hotLists[slot].x = worldTile;
     else hotLists[slot].y = worldTile;
+}
+// Slots for so many; the first. A group of `heat` goes through 256.
+const uint kHotPerGroup = 256u;
+uint hotSlots(uint parity, uint count) {
+    uint row = kRowHot + parity;
+    uint slot = atomicAdd(counters[row].listCount, count);
+    if (count != 0u) {
+        atomicMax(counters[row].listX, min((slot + count - 1u) / kHotPerGroup + 1u, kMaxGroups));
+        if (slot == 0u) {
+            counters[row].listY = 1u;
+            counters[row].listZ = 1u;
+        }
+    }
+    return slot;
+}
+void hotAppend(uint parity, uint worldTile) {
+    hotStore(parity, listSlot(kRowHot + parity, kHotPerGroup), worldTile);
 }
 // Of objects with heat only: something of the tile's temperature, water or flux changes from now on,
 // and it takes every step (kTileWarm), or its turns.

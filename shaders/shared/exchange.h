@@ -271,11 +271,14 @@ FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 nor
     if (!withinReach(d)) return 0u;
     uint size = mostOf(s.diameter, uint(s.place.w)) * 2u;
     bool row = size >= 65535u || squareSum(d) <= size * size;  // near: a row of four
-    // A loop: software devices end one early, and would compute both sides of a branch.
+    // A loop: software devices end one early, and would compute both sides of a branch. It loads
+    // nothing, so threads may leave it one by one.
     uint part = row ? s.watts / 4u : s.watts, sum = 0u;
-    int end = row ? 8 : 5, apart = row ? 2 : 4;
-    for (int eighths = row ? 1 : 4; eighths < end; eighths += apart)
+    int end = row ? 8 : 5, apart = row ? 2 : 4, eighths = row ? 1 : 4;
+    do {
         sum += fluxFrom(alongFlame(s, up, eighths), part, nearest, at, normal, both);
+        eighths += apart;
+    } while (eighths < end);
     return leastOf(sum, kFluxMost);
 }
 

@@ -23,11 +23,14 @@ FW_SHARED_CONST uint kMoistMost = 255u;         // 1/128 kg/kg
 FW_SHARED_CONST uint kSoaksOut = 3u;            // steps under a film before a flame dies: one more
 FW_SHARED_CONST uint kLukewarm = 16u;           // 1/16 K off the ambient that still count as at rest
 FW_SHARED_CONST uint kDozes = 32u;              // steps between those of a tile with cold water only
-// Steps between those of a tile that is only warm: no flame, no water, too cold to char, and too
+// Steps between those of a texel that is only warm: no flame, no water, too cold to char, and too
 // little comes to it to make it much warmer (wood needs 10 kW/m^2 to catch).
 FW_SHARED_CONST uint kRestsShift = 3u;
 FW_SHARED_CONST uint kRests = 1u << kRestsShift;
 FW_SHARED_CONST uint kRestFlux = 4096u;         // W/m^2: from here on it takes every step
+// And of one that less than the sun of noon comes to.
+FW_SHARED_CONST uint kNapsShift = 5u;
+FW_SHARED_CONST uint kNapFlux = 1024u;          // W/m^2
 
 // HeatTexel::phase
 FW_SHARED_CONST uint kPhaseFresh = 0u;
@@ -432,15 +435,19 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
     return t;
 }
 
-// The material over kRests steps at once: what does not burn takes one such as well.
-FW_SHARED_FN HeatMaterial heatOverRest(FW_IN(HeatMaterial) m) {
+// The material over as many steps at once as such a texel waits: 1 << shift. What burns takes one.
+FW_SHARED_FN uint restShift(uint flux) { return flux < kNapFlux ? kNapsShift : kRestsShift; }
+FW_SHARED_FN uint workShift(uint work, uint flux) {
+    return work == kWorkRests ? restShift(flux) : 0u;
+}
+FW_SHARED_FN HeatMaterial heatOver(FW_IN(HeatMaterial) m, uint shift) {
     HeatMaterial long_ = m;
-    long_.inertia = m.inertia == 0u ? 0u : mostOf(m.inertia >> kRestsShift, 1u);
-    long_.capacityLeast = m.capacityLeast >> kRestsShift;
-    long_.capacityMost = m.capacityMost >> kRestsShift;
-    long_.filmFlux = mostOf(m.filmFlux >> kRestsShift, 1u);
-    long_.moistFlux = mostOf(m.moistFlux >> kRestsShift, 1u);
-    long_.airDries = m.airDries << kRestsShift;
+    long_.inertia = m.inertia == 0u ? 0u : mostOf(m.inertia >> shift, 1u);
+    long_.capacityLeast = m.capacityLeast >> shift;
+    long_.capacityMost = m.capacityMost >> shift;
+    long_.filmFlux = mostOf(m.filmFlux >> shift, 1u);
+    long_.moistFlux = mostOf(m.moistFlux >> shift, 1u);
+    long_.airDries = m.airDries << shift;
     return long_;
 }
 // The same for cold water, once in kDozes steps.
@@ -451,23 +458,20 @@ FW_SHARED_FN uint heatDozes(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
     return wetState(t, heatClosed(x, m));
 }
 
-// Of which work a tile's texels take this step, all of it if it is warm. A tile rests from one of its
-// turns to the next, at which exchanges change what comes to it: none of the time is lost.
-FW_SHARED_FN bool restEnds(uint tile, uint now) {
+// Of which work a tile's texels take this step. What comes to a tile changes only where a rest of
+// kRests steps ends, so all of the time between is under one flux; where a change makes the rests
+// longer or shorter, some of it counts twice or never, which is as often this as that.
+FW_SHARED_FN bool restEnds(uint tile, uint flux, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + 1u;
-    return ((turn - tile) & (kRests - 1u)) == 0u;
+    return ((turn - tile) & ((1u << restShift(flux)) - 1u)) == 0u;
 }
 FW_SHARED_FN bool dozeEnds(uint object, uint tile, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + hash32(object * 0x9E3779B9u + tile);
     return (turn & (kDozes - 1u)) == 0u;
 }
-FW_SHARED_FN uint heatTurn(bool warm, uint object, uint tile, uint now) {
-    if (warm) return kWorkAlways | kWorkRests | kWorkDozes;
-    return (restEnds(tile, now) ? kWorkRests : 0u) | (dozeEnds(object, tile, now) ? kWorkDozes : 0u);
-}
-// Is a tile warm after a step that leaves `work`?
-FW_SHARED_FN bool staysWarm(uint work, bool warm, uint tile, uint now) {
-    return (work & kWorkAlways) != 0u || (warm && (work & kWorkRests) != 0u && !restEnds(tile, now));
+FW_SHARED_FN uint heatTurn(bool warm, uint object, uint tile, uint flux, uint now) {
+    return (warm ? kWorkAlways : 0u) | (restEnds(tile, flux, now) ? kWorkRests : 0u) |
+           (dozeEnds(object, tile, now) ? kWorkDozes : 0u);
 }
 
 FW_SHARED_END

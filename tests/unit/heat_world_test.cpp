@@ -158,13 +158,21 @@ TEST(HeatMap, HotTilesFollowTheFireAndTheRestIsAtRest) {
     }
 }
 
-// What is only warm takes one step in kRests, and is as warm as if it took all of them: as long as
-// something comes to it and after that, and when more comes than it may rest under.
+// What is only warm takes one step in kRests, one in four times as many where little or nothing
+// comes to it, and is as warm as if it took all of them: as long as something comes to it and after
+// that, and when more comes than it may rest under.
 TEST(HeatMap, WhatIsOnlyWarmTakesOneStepInEight) {
     HotSheet sheet(fire::HeatFacts{}, 1e-4);
     const uint32_t tile = 2 * sheet.domain.tilesX + 2;
     const uint32_t texel = (2 * 8 + 3) * sheet.domain.width + 2 * 8 + 3;
     gpu::HeatTexel all = sheet.at(texel);  // of all steps
+    // Exchanges give a tile another flux where a rest of it ends.
+    for (bool ends = false; !ends;) {
+        const uint32_t now = sheet.now;
+        sheet.step();
+        ends =
+            now / gpu::kStepTicks % gpu::kHeatSteps == 3 && gpu::restEnds(tile, gpu::kNapFlux, now);
+    }
     const auto run = [&](uint32_t flux, int seconds) {
         sheet.backend.setTileHeat(0, tile, {flux, 1});
         uint32_t changes = 0;
@@ -177,18 +185,18 @@ TEST(HeatMap, WhatIsOnlyWarmTakesOneStepInEight) {
             const uint32_t chance = gpu::heatChance(texel, gpu::hash32(now));
             gpu::heatStep(all, sheet.material, flux, 256, true, chance, burnt, water);
             changes += sheet.at(texel).heat != before ? 1 : 0;
-            if (gpu::restEnds(tile, now))
+            if (gpu::restEnds(tile, flux, now))
                 apart = std::max(apart, std::fabs(double(sheet.at(texel).heat) - all.heat) / 16);
         }
         std::printf("under %u W/m^2 for %d s: %u of %d steps, %.1f K, at most %.2f K apart\n", flux,
                     seconds, changes, seconds * 8, double(sheet.at(texel).heat) / 16, apart);
-        EXPECT_LT(apart, 2.0);
+        EXPECT_LT(apart, 4.0) << "a long step that begins cold is the worst of them";
         return changes;
     };
     const uint32_t warms = run(3000, 120);
     EXPECT_GT(sheet.at(texel).heat, sheet.material.ambient + 16u * 30);
     EXPECT_LT(warms, 120u + gpu::kRests);
-    EXPECT_LT(run(0, 120), 120u + gpu::kRests);
+    EXPECT_LT(run(0, 120), 120u / 4 + gpu::kRests);
     const uint32_t hot = run(8000, 60);
     EXPECT_GT(hot, 60u * 8 * 9 / 10) << "it takes every step again";
 }

@@ -6,6 +6,15 @@
 
 namespace fw::gpu::cpu {
 
+namespace {
+
+// In a warm tile what dozes takes every step, as a plain one.
+uint32_t workIn(uint32_t turn, uint32_t work) noexcept {
+    return work == kWorkDozes && (turn & kWorkAlways) != 0 ? kWorkAlways : work;
+}
+
+}  // namespace
+
 void createHeat(CpuObject& object) {
     const mesh::BurnDomain& domain = *object.domain;
     object.heat.resize(domain.texelCount());
@@ -63,19 +72,20 @@ void CpuBackend::State::heatComes(uint32_t worldTile, uint32_t flux) noexcept {
 uint32_t CpuBackend::State::heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept {
     const TileState& tile = tiles[worldTile];
     const uint32_t local = worldTile - objects[tile.object]->record.worldTileBase;
-    return heatTurn((tile.flag & kTileWarm) != 0, tile.object, local, now);
+    return heatTurn((tile.flag & kTileWarm) != 0, tile.object, local, tileHeat[worldTile].flux,
+                    now);
 }
 
 uint32_t CpuBackend::State::heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
-                                      bool always, const TileHeat& comes, uint32_t now,
-                                      HeatTexel& x, uint32_t& units) const noexcept {
+                                      const TileHeat& comes, uint32_t now, HeatTexel& x,
+                                      uint32_t& units) const noexcept {
     const uint32_t kind = object.domain->texels[texel].materialFlags & 7;
     const HeatMaterial& m = object.heatMaterials[kind];
     const uint32_t before = object.state[texel], chance = heatChance(texel, hash32(now));
-    if (!always && work == kWorkDozes) return heatDozes(x, m, before, chance);
+    if (work == kWorkDozes) return heatDozes(x, m, before, chance);
     return heatTexelStep(
-        x, heatInAir(always ? m : heatOverRest(m), airStrength(object.counters.air)), before, now,
-        comes.flux, comes.pilot != 0, object.materials[kind].air, chance, units);
+        x, heatInAir(heatOver(m, workShift(work, comes.flux)), airStrength(object.counters.air)),
+        before, now, comes.flux, comes.pilot != 0, object.materials[kind].air, chance, units);
 }
 
 void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept {
@@ -88,7 +98,6 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     const TileHeat comes = tileHeat[worldTile];
     const bool held = !mayBurn(worldTile);
     const uint32_t ambient = object.heatMaterials[0].ambient;
-    const bool always = (turn & kWorkAlways) != 0;
     uint64_t energy = 0, changed = 0;
     uint32_t lit = 0, gone = 0, left = fluxWork(comes.flux);
     float watts = 0;
@@ -98,13 +107,13 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         if ((kind & kTexelReal) == 0) continue;
         const uint32_t before = object.state[texel];
         HeatTexel x = unpackHeat(object.heat[texel]);
-        const uint32_t work = heatWork(x, before, comes.flux, ambient);
+        const uint32_t work = workIn(turn, heatWork(x, before, comes.flux, ambient));
         if ((work & turn) == 0) {
             left |= work;
             continue;
         }
         uint32_t units = 0;
-        const uint32_t after = heatTexel(object, texel, work, always, comes, now, x, units);
+        const uint32_t after = heatTexel(object, texel, work, comes, now, x, units);
         if (held && isSource(after) && !isSource(before)) {  // as it was, and looked at again
             left |= kWorkAlways;
             continue;
@@ -120,7 +129,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         gone += isSource(before) && !isSource(after) ? 1 : 0;
     }
     if (left != 0) {
-        const bool warm = staysWarm(left, always, local, now);
+        const bool warm = (left & kWorkAlways) != 0;
         tile.flag = warm ? tile.flag | kTileWarm : tile.flag & ~kTileWarm;
         hotOut.push_back(worldTile);
     } else {
@@ -185,11 +194,11 @@ void CpuBackend::State::askHeat(uint32_t now) noexcept {
             if ((domain.texels[texel].materialFlags & kTexelReal) == 0 || isSource(before))
                 continue;
             HeatTexel x = unpackHeat(object.heat[texel]);
-            const uint32_t work = heatWork(x, before, comes.flux, object.heatMaterials[0].ambient);
+            const uint32_t ambient = object.heatMaterials[0].ambient;
+            const uint32_t work = workIn(turn, heatWork(x, before, comes.flux, ambient));
             if ((work & turn) == 0) continue;
             uint32_t units = 0;
-            lights = isSource(
-                heatTexel(object, texel, work, (turn & kWorkAlways) != 0, comes, now, x, units));
+            lights = isSource(heatTexel(object, texel, work, comes, now, x, units));
         }
         if (lights) askToBurn(worldTile);
     }

@@ -127,7 +127,7 @@ struct CpuBackend::State {
     void heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept;
     // What a step makes of a texel with such work, `always` or in its turn; units: of its fuel.
     [[nodiscard]] uint32_t heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
-                                     bool always, const TileHeat& comes, uint32_t now, HeatTexel& x,
+                                     const TileHeat& comes, uint32_t now, HeatTexel& x,
                                      uint32_t& units) const noexcept;
     void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
     void reduce(uint32_t now) noexcept;         // cpu_reduce.cpp
