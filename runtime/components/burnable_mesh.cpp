@@ -135,6 +135,10 @@ bool hasHeat(const BurnableMesh& object) noexcept {
     return (object.flags & (FW_BURNABLE_LITE | FW_BURNABLE_PUBLISHED)) == 0;
 }
 
+bool keepsBook(const BurnableMesh& object) noexcept {
+    return (object.flags & FW_BURNABLE_PUBLISHED) == 0;
+}
+
 std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
                                         const mesh::BurnDomain& domain,
                                         std::pmr::memory_resource* memory) {
@@ -269,6 +273,18 @@ std::array<gpu::HeatMaterial, kMaterials> makeHeatMaterials(const BurnableMesh& 
         made[i] =
             fire::heatMaterial(object.materialMask >> i & 1 ? object.materials[i] : stone, place);
     return made;
+}
+
+Fuel fuelOf(const BurnableMesh& object, const mesh::BurnDomain& domain,
+            std::span<const uint32_t, kMaterials> texelsOf, float pace) noexcept {
+    const std::array<gpu::HeatMaterial, kMaterials> heat = makeHeatMaterials(object, domain, pace);
+    Fuel fuel;
+    for (uint32_t m = 0; m < kMaterials; ++m) {
+        if (heat[m].energy == 0) continue;
+        fuel.energy += uint64_t(texelsOf[m]) * gpu::kFuelFull * heat[m].energy;
+        fuel.texels += texelsOf[m];
+    }
+    return fuel;
 }
 
 gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& domain,

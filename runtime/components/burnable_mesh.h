@@ -65,6 +65,8 @@ void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def)
 [[nodiscard]] bool burns(const BurnableMesh& object, uint32_t material) noexcept;
 // Has it temperature, fuel and water per texel?
 [[nodiscard]] bool hasHeat(const BurnableMesh& object) noexcept;
+// Does the world know what of its fuel has burnt?
+[[nodiscard]] bool keepsBook(const BurnableMesh& object) noexcept;
 
 // Q7 slowness per texel with the host's speed multiplier in it; empty if there is none.
 std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
@@ -90,6 +92,14 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
 std::array<gpu::HeatMaterial, kMaterials> makeHeatMaterials(const BurnableMesh& object,
                                                             const mesh::BurnDomain& domain,
                                                             float pace) noexcept;
+
+struct Fuel {
+    uint64_t energy = 0;  // 2^-20 J
+    uint32_t texels = 0;  // that it is in
+};
+// What an object is made with. texelsOf: real texels of its mesh, by material.
+[[nodiscard]] Fuel fuelOf(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                          std::span<const uint32_t, kMaterials> texelsOf, float pace) noexcept;
 
 // What the backend keeps of an object; bases are the backend's.
 gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& domain,

@@ -146,8 +146,25 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
     lateClamps_ = clamps;
 }
 
+// Without fuel per texel a texel has all of its own until it has burnt out, and none from then on.
+// What caught since flames were counted last would pass for burnt out: that waits for the next
+// count.
+void World::takeBurnt(Object& object, uint32_t endTick) noexcept {
+    const gpu::ObjectCounters& now = object.counters;
+    const components::Fuel& fuel = object.fuel;
+    if (fuel.texels == 0 || now.lastIgnition > lastReduced(endTick)) return;
+    const uint64_t burnt = std::min(now.ignited - std::min(now.ignited, now.burning), fuel.texels);
+    // In parts, as the product is too large.
+    object.story.energy =
+        fuel.energy / fuel.texels * burnt + fuel.energy % fuel.texels * burnt / fuel.texels;
+}
+
 void World::takeEnergy(Object& object, uint32_t endTick) noexcept {
     const gpu::ObjectCounters& now = object.counters;
+    if (!components::hasHeat(object.data)) {
+        takeBurnt(object, endTick);
+        return;
+    }
     const uint64_t energy = uint64_t(now.energyHigh) << 32 | now.energyLow;
     const uint64_t steps = heatStepsBefore(endTick);
     if (steps == object.story.heatSteps) return;

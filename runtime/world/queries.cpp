@@ -106,7 +106,7 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
                       : 0.0f;
     state.burningArea = burningAreaOf(object);
     state.power = powerOf(object);
-    if (components::hasHeat(object.data)) state.energy = double(object.story.energy) / 1048576;
+    if (components::keepsBook(object.data)) state.energy = double(object.story.energy) / 1048576;
 }
 
 void World::energyBook(FwEnergyBook& book) noexcept {
@@ -119,19 +119,13 @@ void World::energyBook(FwEnergyBook& book) noexcept {
         const Object& object = **owned;
         book.burningArea += burningAreaOf(object);
         book.power += powerOf(object);
-        if (!components::hasHeat(object.data)) continue;
+        if (!components::keepsBook(object.data)) continue;
         ++book.objects;
-        const mesh::BurnDomain& domain = domainOf(object);
-        const auto heat = components::makeHeatMaterials(object.data, domain, def_.paceFactor);
-        const MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
-        uint64_t fuel = 0;
-        for (size_t m = 0; m < heat.size(); ++m)
-            fuel += uint64_t(mesh.texelsOf[m]) * gpu::kFuelFull * heat[m].energy;
         const uint64_t released = object.story.energy;
         const uint64_t radiated =
             released / 100 * kRadiatedPercent + released % 100 * kRadiatedPercent / 100;
-        book.fuel += fuel;
-        book.unburnt += fuel - released;
+        book.fuel += object.fuel.energy;
+        book.unburnt += object.fuel.energy - released;
         book.radiated += radiated;
         book.convected += released - radiated;
     }

@@ -353,6 +353,8 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     init.slowness = slowness;
     std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
     std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat;
+    if (components::keepsBook(object.data))
+        object.fuel = components::fuelOf(object.data, domain, mesh.texelsOf, def_.paceFactor);
     if (components::hasHeat(object.data)) {
         heat = components::makeHeatMaterials(object.data, domain, def_.paceFactor);
         init.heat = heat;

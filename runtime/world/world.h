@@ -98,6 +98,7 @@ struct Object {
     uint32_t slot = 0;        // the backend's: its index in the pool
     FwBurnableMeshId id{};
     uint32_t texels = 0;                  // that can burn
+    components::Fuel fuel;                // when it was made; none: it keeps no book
     uint64_t firstFrame = 0;              // readbacks of older frames speak of another object
     std::pmr::vector<uint16_t> slowness;  // per texel, Q7; empty: the mesh's own
     bool touched = false;                 // an event ever addressed it: it filters wind and latches
@@ -661,6 +662,7 @@ class World {
     void collectReadbacks();  // throws std::bad_alloc; the readback then stays with the backend
     void takeCounters(const gpu::Readback& readback) noexcept;
     void takeEnergy(Object& object, uint32_t endTick) noexcept;
+    void takeBurnt(Object& object, uint32_t endTick) noexcept;
     void takeAnswers(const gpu::Readback& readback) noexcept;
     void takeLights(const gpu::Readback& readback) noexcept;
     void followLights(float seconds);

@@ -212,6 +212,52 @@ TEST_P(AbiHeat, P12_TheBookOfTheWorldCloses) {
     }
 }
 
+// What keeps no fuel per texel keeps a book by what has burnt out: it closes at every moment of a
+// fire that crosses a sheet, never goes back while nothing is put out, and ends with nothing left.
+TEST_P(AbiHeat, P12_TheBookOfALiteObjectCloses) {
+    make(preset(FW_MATERIAL_PAPER), 4, FW_BURNABLE_LITE);
+    const FwEnergyBook whole = book();
+    EXPECT_EQ(1u, whole.objects);
+    EXPECT_EQ(0u, whole.fuel % (texels().size() * 65535)) << "as if it were whole";
+    EXPECT_LT(0u, whole.fuel);
+    EXPECT_EQ(whole.fuel, whole.unburnt);
+    FwIgnitionDef match = fwDefaultIgnitionDef();
+    match.radius = 0.01f;
+    ASSERT_EQ(FW_OK, fwWorld_Ignite(world_, &match, nullptr)) << lastMessage(world_);
+    uint64_t unburnt = whole.unburnt;
+    int between = 0;
+    for (int i = 0; i < 1600 && unburnt > 0; ++i) {
+        ASSERT_EQ(FW_OK, fwWorld_Step(world_, 1.0f / 32)) << lastMessage(world_);
+        const FwEnergyBook now = book();
+        EXPECT_EQ(whole.fuel, now.fuel);
+        EXPECT_EQ(now.fuel, now.unburnt + now.radiated + now.convected);
+        EXPECT_LE(now.unburnt, unburnt);
+        const double released = double(now.radiated + now.convected);
+        EXPECT_EQ(state().energy, released / 1048576);
+        EXPECT_LE(released, double(whole.fuel) * double(state().burntFraction) * (1 + 1e-6));
+        between += now.unburnt < unburnt ? 1 : 0;
+        unburnt = now.unburnt;
+    }
+    EXPECT_EQ(0u, unburnt);
+    EXPECT_LT(5, between) << "it goes by and by";
+    run(1);
+    EXPECT_EQ(0.0f, book().power);
+}
+
+// And what is put out has its fuel again.
+TEST_P(AbiHeat, P12_WhatIsPutOutOfALiteObjectIsLeft) {
+    make(preset(FW_MATERIAL_PINE), 1, FW_BURNABLE_LITE);
+    const FwEnergyBook whole = book();
+    all(FW_IGNITE);
+    run(1);
+    EXPECT_LT(0.0f, book().power);
+    EXPECT_EQ(whole.fuel, book().unburnt) << "nothing has burnt out yet";
+    all(FW_EXTINGUISH);
+    run(1);
+    EXPECT_EQ(0.0f, book().power);
+    EXPECT_EQ(whole.fuel, book().unburnt);
+}
+
 TEST_P(AbiHeat, P13_WaterPutsOutAndMustGoFirst) {
     make(preset(FW_MATERIAL_COTTON), 1);
     all(FW_IGNITE);
