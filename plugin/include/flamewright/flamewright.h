@@ -1076,7 +1076,7 @@ typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU
     float burningArea;         /* m^2 */
     float power;               /* W, at pace 1 */
     float reserved1;
-    double energy;             /* J that its fuel gave off; 0 with FW_BURNABLE_LITE */
+    double energy;             /* J that its fuel gave off; 0 with FW_BURNABLE_PUBLISHED */
     uint32_t refinedTriangles; /* as last drawn, if it refines and caught fire; see FwWorldStats */
     uint32_t plays;            /* 1: a baked burn, see fwWorld_PlayBurn; 0: it is simulated */
 } FwObjectState;
@@ -1359,7 +1359,8 @@ FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [wor
 
 /* Where the energy of all burnable meshes that the world holds is, to the joule: `fuel` is what they were made with,
  * and always the sum of `unburnt`, `radiated` and `convected`. All in units of 2^-20 J, as the simulation counts, so
- * that the sum is exact. As of `frameIndex`, like FwObjectState. Objects with FW_BURNABLE_LITE keep no book. */
+ * that the sum is exact. As of `frameIndex`, like FwObjectState. With FW_BURNABLE_LITE a texel's fuel counts as a
+ * whole, once it has burnt out (put out before, it has all of it); FW_BURNABLE_PUBLISHED keeps no book. */
 typedef struct FwEnergyBook {
     uint32_t structSize;
     uint32_t objects;          /* that keep a book */
