@@ -6,8 +6,8 @@
 namespace fw::world {
 namespace {
 
-constexpr float kOver = 1.04f;      // of the budget: less is measurement
-constexpr float kAim = 0.97f;       // of the budget, when detail falls
+constexpr float kOver = 1.03f;      // of the budget: less is measurement
+constexpr float kAim = 0.95f;       // of the budget, when detail falls
 constexpr float kSmooth = 0.2f;     // share of a new measurement
 constexpr float kJump = 0.3f;       // a cost that is so far from the smooth one is another load ...
 constexpr float kSavesMost = 3.0f;  // of a single level

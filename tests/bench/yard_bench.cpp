@@ -79,6 +79,9 @@ void show(benchmark::State& state, YardBench& bench) {
     state.counters["burning"] = double(bench.burning());
     for (const char* pass : {"heat", "exchange", "reduce"})
         state.counters[pass] = bench.passes[pass] / double(bench.seconds.size());
+    // What a step does for the eye alone.
+    state.counters["looks"] =
+        (bench.passes["lights"] + bench.passes["soot"]) / double(bench.seconds.size());
 }
 
 void burning(benchmark::State& state, uint32_t backend, uint32_t crates) {
