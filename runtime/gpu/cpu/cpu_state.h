@@ -125,7 +125,7 @@ struct CpuBackend::State {
     void heatStep(uint32_t now) noexcept;
     [[nodiscard]] uint32_t heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept;
     void heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept;
-    // What a step makes of a texel with such work, `always` or in its turn; units: of its fuel.
+    // What a step makes of a texel with such work, whose turn it is; units: of its fuel.
     [[nodiscard]] uint32_t heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
                                      const TileHeat& comes, uint32_t now, HeatTexel& x,
                                      uint32_t& units) const noexcept;
