@@ -52,6 +52,12 @@ void adoptDocument(App& app, fwedit::Document document) {
     app.document.surface = [&app](const fwedit::Scene&, ObjectId mesh) {
         return app.live.surfaceOf(mesh).get();
     };
+    app.document.nodePose = [&app](const fwedit::Mesh& mesh, std::string_view node,
+                                   fwedit::Pose& pose, std::string& error) {
+        if (app.live.burn()) return fwedit::nodePosesOf(*app.live.burn())(mesh, node, pose, error);
+        error = "\"" + mesh.name + "\" is not in the scene yet";
+        return false;
+    };
     *app.paint = {};
     app.burnTimes = false;
 }
@@ -153,7 +159,7 @@ void frameSelection(App& app, bool all) {
     for (const ObjectId id : app.selection) {
         if (all) break;
         if (fwedit::findIn(scene.meshes, id)) continue;
-        const fwedit::Vec3 p = fwedit::worldPosition(scene, id);
+        const fwedit::Vec3 p = fwedit::worldPosition(scene, id, app.document.nodePose);
         take({p[0], p[1], p[2]}, 0.25f);
     }
     if (!any) {
@@ -163,7 +169,7 @@ void frameSelection(App& app, bool all) {
             take(b, 0);
         }
         for (const fwedit::Flame& flame : scene.flames) {
-            const fwedit::Vec3 p = fwedit::worldPosition(scene, flame.id);
+            const fwedit::Vec3 p = fwedit::worldPosition(scene, flame.id, app.document.nodePose);
             take({p[0], p[1] + flame.diameter, p[2]}, flame.diameter);
         }
     }
@@ -717,7 +723,8 @@ std::vector<Action> makeActions(App& app) {
         {"Drop to surface", "Scene", "D", icons::down,
          [at] {
              for (const ObjectId id : at->selection) {
-                 const fwedit::Vec3 p = fwedit::worldPosition(at->document.scene, id);
+                 const fwedit::Vec3 p =
+                     fwedit::worldPosition(at->document.scene, id, at->document.nodePose);
                  if (!at->live.burn()) continue;
                  fwview::Ray ray;
                  ray.origin = {p[0], p[1] + 0.02f, p[2]};

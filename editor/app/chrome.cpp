@@ -65,6 +65,8 @@ void showTopBar(App& app, const Rect& rect) {
         showMenu(app, name, {x, rect.y1 - dp(4)});
         x += width;
     }
+    constexpr float kFindWidth = 192, kFindIcon = 28;  // dp
+    float find = kFindWidth;
     if (app.page != Page::kWelcome) {
         struct Tab {
             Page page;
@@ -75,8 +77,8 @@ void showTopBar(App& app, const Rect& rect) {
                                  {Page::kFlame, "Flame", icons::flame},
                                  {Page::kOutput, "Export", icons::exportTo}};
         const float width = dp(92);
-        const float first = std::floor(rect.midX() - width * float(std::size(kTabs)) * 0.5f);
-        float at = first;
+        const float tabs = width * float(std::size(kTabs));
+        float at = std::max(std::floor(rect.midX() - tabs * 0.5f), std::ceil(x + dp(8)));
         for (const Tab& tab : kTabs) {
             const ImVec2 low(at, rect.y0 + dp(4)), high(at + width - dp(2), rect.y1);
             bool hovered = false;
@@ -95,21 +97,28 @@ void showTopBar(App& app, const Rect& rect) {
             at += width;
         }
         const std::string name = sceneName(app);
-        const float room = rect.x1 - dp(210) - (at + dp(20));
+        // Where there is no room for both the name stays, and the search has its icon alone.
+        if (rect.x1 - dp(kFindWidth + 18) - (at + dp(20)) < dp(60)) find = kFindIcon;
+        const float room = rect.x1 - dp(find + 18) - (at + dp(20));
         drawTextFit(list, fonts().body, at + dp(20), y, room, colors::text, name.c_str());
         if (fwedit::unsaved(app.document)) {
             const float end = at + dp(20) + std::min(room, textSize(fonts().body, name.c_str()).x);
             list->AddCircleFilled({end + dp(11), y}, dp(3), colors::warn, 16);
         }
     }
-    const ImVec2 low(rect.x1 - dp(200), rect.y0 + dp(6)), high(rect.x1 - dp(8), rect.y1 - dp(6));
+    const ImVec2 low(rect.x1 - dp(8 + find), rect.y0 + dp(6)),
+        high(rect.x1 - dp(8), rect.y1 - dp(6));
     bool hovered = false;
     if (hit("find", low, high - low, &hovered)) findAction(app, "Find anything")->run();
     drawBox(list, low, high, colors::well, 4, hovered ? colors::edge : colors::line);
     drawIcon(list, fonts().icon17, {low.x + dp(14), y}, colors::dim, icons::search);
-    drawText(list, fonts().body, low.x + dp(28), y, colors::dim, "Find anything");
-    drawTextRight(list, fonts().small, high.x - dp(8), y, colors::dim,
-                  keysOf(app, "Find anything"));
+    if (find == kFindIcon) {
+        tip("Find anything", keysOf(app, "Find anything"));
+    } else {
+        drawText(list, fonts().body, low.x + dp(28), y, colors::dim, "Find anything");
+        drawTextRight(list, fonts().small, high.x - dp(8), y, colors::dim,
+                      keysOf(app, "Find anything"));
+    }
     endPanel();
 }
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <numeric>
 
 #include "common/camera.h"
 #include "core/error.h"
@@ -701,19 +702,31 @@ void showFlameTools(App& app, const Rect& rect) {
         page.draft.ownColors = own == 1;
         page.keepStep(own == 1 ? "Own colours for the flame" : "Real glow for the flame");
     }
-    float right = rect.x1 - dp(8);
-    auto act = [&](const char* name, const char* icon, const char* label, bool active = false) {
-        const ToolLook look{.icon = icon, .label = label, .active = active};
-        right -= toolButtonWidth(look);
-        const Action* action = findAction(app, name);
-        if (toolButton(name, {right, y}, look, name, action->keys.c_str())) action->run();
-        right -= dp(4);
+    struct Act {
+        const char* name;
+        ToolLook look;
     };
-    act("Use in the scene…", icons::firepit, "Use in scene");
-    act("Compare A and B", icons::compare, "Compare", page.compares);
-    act("Export flame picture…", icons::exportTo, "Export");
-    act("Save flame shape…", icons::save, "Save");
-    act("Import flame shape…", icons::importFrom, "Import");
+    std::array<Act, 5> acts = {
+        {{"Import flame shape…", {.icon = icons::importFrom, .label = "Import"}},
+         {"Save flame shape…", {.icon = icons::save, .label = "Save"}},
+         {"Export flame picture…", {.icon = icons::exportTo, .label = "Export"}},
+         {"Compare A and B", {.icon = icons::compare, .label = "Compare", .active = page.compares}},
+         {"Use in the scene…", {.icon = icons::firepit, .label = "Use in scene"}}}};
+    const auto widthOf = [&] {
+        return std::accumulate(acts.begin(), acts.end(), dp(4), [](float sum, const Act& act) {
+            return sum + toolButtonWidth(act.look) + dp(4);
+        });
+    };
+    // In a narrow window their words are in the tips alone.
+    x += dp(184);
+    if (x + widthOf() > rect.x1)
+        for (Act& act : acts) act.look.label = nullptr;
+    x = rect.x1 - widthOf();
+    for (const Act& act : acts) {
+        const Action* action = findAction(app, act.name);
+        if (toolButton(act.name, {x, y}, act.look, act.name, action->keys.c_str())) action->run();
+        x += toolButtonWidth(act.look) + dp(4);
+    }
     endPanel();
 }
 
@@ -1081,6 +1094,24 @@ void editCurve(App& app, ImDrawList* list, const CanvasPlace& place) {
     drawStops(list, page, place, hot);
 }
 
+// The brush from there to where the dab is, a third of a radius apart.
+void paintAlong(FlamePage& page, fwedit::Dab dab, float fromX, float fromY) {
+    const float toX = dab.x, toY = dab.y;
+    const float way = std::hypot((toX - fromX) / dab.radiusX, (toY - fromY) / dab.radiusY);
+    const int count = std::clamp(int(way * 3), 1, 200);
+    dab.alongX = (toX - fromX) / float(count);
+    dab.alongY = (toY - fromY) / float(count);
+    for (int i = 1; i <= count; ++i) {
+        dab.x = fromX + (toX - fromX) * float(i) / float(count);
+        dab.y = fromY + (toY - fromY) * float(i) / float(count);
+        paintDab(page.draft.paint, dab);
+    }
+    page.lastX = toX;
+    page.lastY = toY;
+    page.changed = true;
+    ++page.pictureRevision;
+}
+
 void showCanvas(App& app, const Rect& rect) {
     FlamePage& page = *app.flame;
     ImDrawList* list = beginPanel("##canvas", rect, colors::gap);
@@ -1131,7 +1162,8 @@ void showCanvas(App& app, const Rect& rect) {
     const float mapY = rect.y1 - dp(34), mapX0 = low.x, mapX1 = high.x;
     if (page.plane == ProfilePlane::kTemperature) {
         drawMap(list, {mapX0, mapY}, {mapX1, mapY + dp(10)}, kHeatMap);
-        for (int i = 0; i <= 4; ++i) {
+        const int every = mapX1 - mapX0 < dp(240) ? 2 : 1;  // numbers have room beside each other
+        for (int i = 0; i <= 4; i += every) {
             const float celsius = kCoolest + (kHottest - kCoolest) * float(i) / 4;
             char text[24];
             std::snprintf(text, sizeof text, i == 4 ? "%.0f °C" : "%.0f", double(celsius));
@@ -1166,10 +1198,17 @@ void showCanvas(App& app, const Rect& rect) {
     dab.radiusY = std::max(dab.radiusY, 0.8f);
     dab.strength = page.strength * 0.01f;
     dab.hardness = 1 - page.softness * 0.01f;
-    dab.tool = io.KeyShift ? ProfileTool::kSmooth : io.KeyCtrl ? ProfileTool::kErase : page.tool;
-    dab.value = page.plane == ProfilePlane::kTemperature ? page.celsius + kZeroCelsius : page.soot;
     const bool picks = page.tool == ProfileTool::kPick || io.KeyAlt;
     const bool ramps = page.tool == ProfileTool::kGradient && !picks;
+    if (hovered && ImGui::IsMouseClicked(0) && io.KeyShift && page.ended && !picks && !ramps) {
+        page.mayLine = true;
+        page.pressX = mouse.x;
+        page.pressY = mouse.y;
+    }
+    dab.tool = io.KeyShift && !page.mayLine ? ProfileTool::kSmooth
+               : io.KeyCtrl                 ? ProfileTool::kErase
+                                            : page.tool;
+    dab.value = page.plane == ProfilePlane::kTemperature ? page.celsius + kZeroCelsius : page.soot;
     const bool draws = held || page.stroking;  // to where the hand let go, in a slow frame too
     if (hovered && io.MouseWheel != 0)
         page.size = std::clamp(page.size * std::pow(1.12f, io.MouseWheel), 1.0f, 100.0f);
@@ -1201,30 +1240,25 @@ void showCanvas(App& app, const Rect& rect) {
                                  (height / float(ProfilePaint::kHeight))});
         page.changed = page.stroking = true;
         ++page.pictureRevision;
-    } else if (draws) {
-        // Along the way since the last frame, a third of a radius apart.
-        const float fromX = page.stroking ? page.lastX : dab.x;
-        const float fromY = page.stroking ? page.lastY : dab.y;
-        const float way = std::hypot((dab.x - fromX) / dab.radiusX, (dab.y - fromY) / dab.radiusY);
-        const int count = std::clamp(int(way * 3), 1, 200);
-        const float toX = dab.x, toY = dab.y;
-        if (!page.stroking || way > 0) {
-            dab.alongX = (toX - fromX) / float(count);
-            dab.alongY = (toY - fromY) / float(count);
-            for (int i = 1; i <= count; ++i) {
-                dab.x = fromX + (toX - fromX) * float(i) / float(count);
-                dab.y = fromY + (toY - fromY) * float(i) / float(count);
-                paintDab(page.draft.paint, dab);
-            }
-            page.changed = true;
-            ++page.pictureRevision;
+    } else if (page.mayLine) {
+        if (std::hypot(mouse.x - page.pressX, mouse.y - page.pressY) > dp(3)) {
+            page.mayLine = false;  // a drag, which smooths
+        } else if (!io.MouseDown[0]) {
+            paintAlong(page, dab, page.endedX, page.endedY);
+            page.stroking = true;
         }
-        page.lastX = toX;
-        page.lastY = toY;
+    } else if (draws) {
+        // Along the way since the last frame.
+        if (!page.stroking || dab.x != page.lastX || dab.y != page.lastY)
+            paintAlong(page, dab, page.stroking ? page.lastX : dab.x,
+                       page.stroking ? page.lastY : dab.y);
         page.stroking = true;
     }
     if (page.stroking && !io.MouseDown[0]) {
-        page.stroking = false;
+        page.stroking = page.mayLine = false;
+        page.ended = !ramps;
+        page.endedX = page.lastX;
+        page.endedY = page.lastY;
         page.keepStep(page.tool == ProfileTool::kErase      ? "Erase in the flame"
                       : page.tool == ProfileTool::kSmooth   ? "Smooth the flame"
                       : page.tool == ProfileTool::kSmear    ? "Smear the flame"
@@ -1296,10 +1330,15 @@ void showView(FlamePage& page, ImDrawList* list, int i, const Rect& rect, const 
         if (view.world) list->AddImage(view.target->texture(), rect.low(), rect.high());
     }
     const ImVec2 low = rect.low() + dp(8, 8);
-    const float width = textSize(fonts().body, name).x + dp(36);
+    const float most = rect.width() - dp(16);
+    std::string words = name;  // where there is no room, without how much of it
+    if (textSize(fonts().body, name).x + dp(36) > most)
+        words.resize(std::min(words.find(','), words.size()));
+    const float width = std::min(textSize(fonts().body, words.c_str()).x + dp(36), most);
     drawBox(list, low, low + ImVec2(width, dp(24)), hex(0x151618, 215));
     drawIcon(list, fonts().icon17, low + dp(14, 12), colors::text, sign);
-    drawText(list, fonts().body, low.x + dp(28), low.y + dp(12), colors::text, name);
+    drawTextFit(list, fonts().body, low.x + dp(28), low.y + dp(12), width - dp(32), colors::text,
+                words.c_str());
 }
 
 // The draft and what was kept, alike in light and size of the picture.
@@ -1359,22 +1398,28 @@ void showPresets(App& app, const Rect& rect) {
         button("swap", {end + dp(12), rect.y0 + dp(68)}, {wide, dp(28)}, "Swap A and B"))
         page.swapWithOther();
     float x = rect.x0 + dp(10);
+    const float gap = dp(10);  // all of them are there, however narrow
+    const float card = std::min(dp(84), (end + dp(2) - x) / float(FW_FIRE_PRESET_COUNT) - gap);
+    const float inset = std::max(dp(1), 0.5f * (card - dp(56)));
     for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i) {
-        const ImVec2 low(x, rect.y0 + dp(31)), high = low + dp(84, 58);
-        if (high.x > end - dp(8)) break;
+        const ImVec2 low(x, rect.y0 + dp(31)), high = low + ImVec2(card, dp(58));
+        const std::string name = tidy(fwFirePresetName(i));
         ImGui::PushID(int(i));
         bool hovered = false;
-        if (hit("preset", low, {dp(84), dp(80)}, &hovered)) page.usePreset(i);
+        if (hit("preset", low, {card, dp(80)}, &hovered)) page.usePreset(i);
+        tip(name.c_str());
         ImGui::PopID();
         const bool here = page.draft.preset == i;
         drawBox(list, low, high, colors::well, 4);
         if (i < page.presetTextures.size())
-            list->AddImageRounded(page.presetTextures[i], low + dp(14, 1), high - dp(14, 1), {0, 0},
-                                  {1, 1}, colors::white, dp(3));
+            list->AddImageRounded(page.presetTextures[i], low + ImVec2(inset, dp(1)),
+                                  high - ImVec2(inset, dp(1)), {0, 0}, {1, 1}, colors::white,
+                                  dp(3));
         if (here || hovered) drawBox(list, low, high, 0, 4, here ? colors::accent : colors::edge);
-        drawTextCentred(list, fonts().small, low.x + dp(42), high.y + dp(12),
-                        here ? colors::title : colors::dim, tidy(fwFirePresetName(i)).c_str());
-        x += dp(94);
+        const float spare = std::max(0.0f, card + dp(6) - textSize(fonts().small, name.c_str()).x);
+        drawTextFit(list, fonts().small, low.x - dp(3) + 0.5f * spare, high.y + dp(12),
+                    card + dp(6), here ? colors::title : colors::dim, name.c_str());
+        x += card + gap;
     }
     endPanel();
 }
@@ -1402,6 +1447,7 @@ void showFlame(App& app, Rect rect) {
                    {{"Drag", "paint"},
                     {"Ctrl", "take away"},
                     {"Shift", "smooth"},
+                    {"Shift+click", "line"},
                     {"Alt", "pick"},
                     {"[ ]", "size"}});
     rect.y0 += dp(1);

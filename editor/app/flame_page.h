@@ -111,7 +111,11 @@ struct FlamePage {
     double relitAt = -1;
     float lastX = 0, lastY = 0;  // texels, of the stroke under way; of a gradient its begin
     ProfilePaint underGradient;  // what was there before it
-    float studioSize = 0;        // m
+    // A press with Shift where a stroke has ended before: a line from there, unless it drags.
+    bool ended = false, mayLine = false;
+    float endedX = 0, endedY = 0;  // texels
+    float pressX = 0, pressY = 0;
+    float studioSize = 0;  // m
     uint64_t frameCount = 0;
     std::unique_ptr<FlameCanvas> canvas;
     std::vector<sample::Image> presetImages;

@@ -116,6 +116,64 @@ void showObjectChoice(App& app, const Rows& rows, ObjectId id, const FieldInfo& 
     endMenu();
 }
 
+// The mesh among whose parts a field chooses; 0: it is no such field.
+ObjectId nodeHolder(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key) {
+    if (kind == Kind::Mesh) return std::strcmp(key, "node") ? 0 : id;
+    fwedit::Value parent;
+    if (std::strcmp(key, "sticks_to_node") ||
+        !fwedit::getField(scene, kind, id, "sticks_to", parent))
+        return 0;
+    const auto mesh = ObjectId(std::get<double>(parent));
+    return fwedit::findIn(scene.meshes, mesh) ? mesh : 0;
+}
+
+// The node of a file as an artist reads it.
+std::string nodeLabel(const fwimport::ImportedModel& model, const std::string& node) {
+    std::string ignored;
+    const int32_t index = fwimport::findNode(model.nodes, node, ignored);
+    if (index < 0) return node + " (gone)";
+    const std::string& name = model.nodes[size_t(index)].name;
+    return name.empty() ? "Part " + std::to_string(index) : name;
+}
+
+// A part of the file of `mesh`: those there are, below what they hang on.
+void showNodeChoice(App& app, const Rows& rows, ObjectId id, const FieldInfo& field, ObjectId mesh,
+                    const char* whole) {
+    std::shared_ptr<const fwimport::ImportedModel> model;
+    if (app.live.burn())
+        for (const fwedit::BurnMesh& made : app.live.burn()->meshes)
+            if (made.id == mesh) model = made.model;
+    fwedit::Value value;
+    Kind kind{};
+    if (!fwedit::findObject(app.document.scene, id, &kind) ||
+        !fwedit::getField(app.document.scene, kind, id, field.key, value))
+        return;
+    const std::string chosen = std::get<std::string>(value);
+    const std::string shown = chosen.empty() ? whole : model ? nodeLabel(*model, chosen) : chosen;
+    dropdown(field.key, {rows.fieldX(), rows.y}, {rows.fieldWidth(), dp(metrics::row)},
+             shown.c_str(), icons::link);
+    if (!beginMenu(field.key, {rows.fieldX(), rows.y + dp(24)}, rows.fieldWidth())) return;
+    if (menuItem(whole, icons::crate, nullptr, true, chosen.empty()))
+        performSet(app, id, field.key, std::string());
+    for (size_t i = 0; model && i < model->nodes.size(); ++i) {
+        const fwimport::ImportedNode& node = model->nodes[i];
+        if (!node.inScene) continue;
+        std::string ignored;
+        const bool first =
+            fwimport::findNode(model->nodes, node.name, ignored) == static_cast<int32_t>(i);
+        const std::string named = first ? node.name : "#" + std::to_string(i);
+        std::string label;
+        for (int32_t above = node.parent; above >= 0; above = model->nodes[size_t(above)].parent)
+            label += "   ";
+        label += nodeLabel(*model, named);
+        ImGui::PushID(int(i));
+        if (menuItem(label.c_str(), nullptr, nullptr, true, named == chosen))
+            performSet(app, id, field.key, named);
+        ImGui::PopID();
+    }
+    endMenu();
+}
+
 void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& field) {
     fwedit::Value value;
     if (!fwedit::getField(app.document.scene, kind, id, field.key, value)) return;
@@ -182,6 +240,13 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
             break;
         case FieldType::Text: {
             rows.label(field.label);
+            const ObjectId mesh = nodeHolder(app.document.scene, kind, id, field.key);
+            if (mesh != 0) {
+                showNodeChoice(app, rows, id, field, mesh,
+                               mesh == id ? "The whole file" : "The whole of it");
+                rows.next();
+                break;
+            }
             static ImGuiID editing = 0;  // there is one keyboard
             static std::string text;
             const ImGuiID own = ImGui::GetID(field.key);
@@ -368,7 +433,7 @@ Part partOf(Kind kind, const char* key) {
         if (is({"wind", "daylight", "light", "exposure"})) return Part::kMain;
         return Part::kMore;
     }
-    if (is({"position", "rotation", "scale", "sticks_to", "direction", "extent"}))
+    if (is({"position", "rotation", "scale", "sticks_to", "sticks_to_node", "direction", "extent"}))
         return Part::kPlace;
     if (is({"start", "duration", "time", "keys"})) return Part::kTime;
     if (kind == Kind::Mesh && !is({"file", "materials", "moisture", "thickness"}))
@@ -401,6 +466,7 @@ bool isIdle(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key)
         if (!emitter) return false;
         if (is("extent")) return emitter->shape != fwedit::EmitterLine;
         if (is("radius")) return emitter->shape != fwedit::EmitterDisc;
+        if (is("sticks_to_node") && emitter->shape == fwedit::EmitterMesh) return true;
     }
     if (kind == Kind::Collider) {
         const fwedit::Collider* collider = fwedit::findIn(scene.colliders, id);
@@ -419,6 +485,7 @@ bool isIdle(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key)
         if (is("radius")) return wind->shape != fwedit::WindBall && wind->shape != fwedit::WindFan;
         if (is("length")) return wind->shape != fwedit::WindFan;
     }
+    if (is("sticks_to_node")) return nodeHolder(scene, kind, id, key) == 0;
     if (kind == Kind::Mesh && is("refine_depth")) {
         const fwedit::Mesh* mesh = fwedit::findIn(scene.meshes, id);
         return mesh && !mesh->refine;

@@ -2,12 +2,16 @@
 // else the program sleeps.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <thread>
@@ -47,6 +51,19 @@ float monitorScale(GLFWwindow* window, VkExtent2D extent) {
     const float fit =
         std::min(float(extent.width) / 1280, float(extent.height) / 720);  // no scale reported
     return std::clamp(std::floor(fit * 4) / 4, 1.0f, 3.0f);
+}
+
+// s since the process began, libraries and all; the kernel counts it in hundredths.
+double sinceStart() {
+    std::ifstream file("/proc/self/stat");
+    const std::string line((std::istreambuf_iterator<char>(file)), {});
+    std::istringstream fields(line.substr(line.rfind(')') + 1));  // a name may hold anything
+    std::string field;
+    for (int i = 3; i <= 22; ++i) fields >> field;  // see proc(5)
+    timespec now{};
+    clock_gettime(CLOCK_BOOTTIME, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec) -
+           std::strtod(field.c_str(), nullptr) / double(sysconf(_SC_CLK_TCK));
 }
 
 // ImGui wants a cursor shown; GLFW knows four of them.
@@ -159,6 +176,12 @@ class Program {
             if (wishes_.report && app_->live.previews()) {
                 vkDeviceWaitIdle(host_.device);  // what a hand waits for, the device's part too
                 previewTime_ = std::chrono::duration<double>(Clock::now() - now).count();
+            }
+            if (wishes_.report && drawn && !shownOnce_) {
+                shownOnce_ = true;
+                vkDeviceWaitIdle(host_.device);
+                std::printf("first frame %.0f ms after the start\n", 1000 * sinceStart());
+                std::fflush(stdout);
             }
             if (wishes_.report) report();
             if (!drawn) glfwWaitEventsTimeout(0.05);
@@ -305,6 +328,7 @@ class Program {
     int reportedSecond_ = 0;
     size_t reportedToasts_ = 0;
     uint32_t playedFrames_ = 0;
+    bool shownOnce_ = false;
     std::string title_;
 };
 

@@ -80,7 +80,7 @@ void writeGame(App& app) {
                        {fwedit::SnippetLanguage::C, fwedit::SnippetLanguage::Cpp}) {
                       const bool c = language == fwedit::SnippetLanguage::C;
                       const fs::path file = out / (plan.identifier + (c ? ".c" : ".cpp"));
-                      const std::string code = fwedit::snippetOf(input.scene, plan, language);
+                      const std::string code = fwedit::snippetOf(plan, language);
                       done.error =
                           fwtools::writeWhole(file.string(), std::as_bytes(std::span(code)));
                       if (!done.error.empty()) return false;
@@ -202,8 +202,8 @@ void followOutput(App& app) {
     begin(app, page.look, "Code", [](const auto& input, const auto&, OutputPage::Done& done) {
         fwedit::OutputPlan plan;
         if (!fwedit::planOutput(input, plan, done.error)) return false;
-        done.codes[0] = fwedit::snippetOf(input.scene, plan, fwedit::SnippetLanguage::C);
-        done.codes[1] = fwedit::snippetOf(input.scene, plan, fwedit::SnippetLanguage::Cpp);
+        done.codes[0] = fwedit::snippetOf(plan, fwedit::SnippetLanguage::C);
+        done.codes[1] = fwedit::snippetOf(plan, fwedit::SnippetLanguage::Cpp);
         return true;
     });
 }
@@ -426,7 +426,8 @@ std::string leftText(double spent, float share) {
 void showResults(App& app, const Rect& rect) {
     OutputPage& page = *app.output;
     ImDrawList* list = beginPanel("##results", rect);
-    const float x = rect.x0 + dp(10), right = rect.x1 - dp(10), half = rect.x0 + dp(430);
+    const float x = rect.x0 + dp(10), right = rect.x1 - dp(10),
+                half = rect.x0 + std::min(dp(430), 0.55f * rect.width());
     drawText(list, fonts().semi, x, rect.y0 + dp(18), colors::title, "Into the folder");
     std::string folder = homely(folderOf(app));
     if (textField("folder", {x, rect.y0 + dp(32)}, {half - x - dp(20), dp(28)}, folder,
@@ -487,10 +488,10 @@ void showOutput(App& app, Rect rect) {
     showStatus(app, rect.cutBottom(dp(metrics::status)),
                {{"Ctrl+E", "write game files"}, {"Ctrl+Shift+C", "copy the code"}, {"1", "scene"}});
     rect.y0 += dp(1);
-    const Rect results = rect.cutBottom(dp(110));
-    rect.cutBottom(dp(2));
     const Rect acts = rect.cutLeft(dp(296));
     rect.cutLeft(dp(2));
+    const Rect results = rect.cutBottom(dp(110));
+    rect.cutBottom(dp(2));
     showActs(app, acts);
     showCode(app, rect);
     showResults(app, results);

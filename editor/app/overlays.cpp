@@ -316,17 +316,27 @@ void showKeys(App& app) {
                     {"Pan", "Middle drag"},
                     {"Zoom", "Wheel"},
                     {"Snap, fine", "Ctrl|Shift"}};
-    group("Paint").lines.push_back({"Straight line", "Shift+Click"});
-    constexpr int kColumns = 5;
-    constexpr float kLine = 23;
-    const float gap = dp(28), width = (x1 - x0 - gap * (kColumns - 1)) / kColumns;
-    const float top = y0 + dp(46), bottom = app.screen.y1 - dp(12);
-    float x = x0, y = top;
-    bool onLine = false;
+    for (const char* place : {"Paint", "Flame"})
+        group(place).lines.push_back({"Straight line", "Shift+Click"});
+    // As many columns as have room for the longest lines; what is higher than the window scrolls.
+    constexpr float kLine = 23, kHead = 30, kRest = 14;
+    const float gap = dp(28);
+    const int columns = std::clamp(int((x1 - x0 + gap) / dp(232)), 1, 5);
+    const float width = (x1 - x0 - gap * float(columns - 1)) / float(columns);
+    float all = 0;
+    for (const Group& one : groups) all += dp(kHead + kRest + kLine * float(one.lines.size()));
+    const float begin = y0 + dp(30), end = app.screen.y1 - dp(4);
+    ImGui::SetCursorScreenPos({x0 - dp(8), begin});
+    ImGui::BeginChild("lines", {app.screen.x1 - x0 + dp(4), end - begin});
+    list = ImGui::GetWindowDrawList();
+    const float top = begin + dp(16) - ImGui::GetScrollY();
+    const float bottom = top + std::max(end - begin - dp(24), all / float(columns) + dp(60));
+    float x = x0, y = top, lowest = top;
+    bool onLine = app.screen.x1 - ImGui::GetIO().MousePos.x < dp(16);  // or where it scrolls
     for (const Group& one : groups) {
         // One that does not fit begins in the next column while there is one, else it goes on
         // there.
-        const float height = dp(30) + dp(kLine) * float(one.lines.size());
+        const float height = dp(kHead) + dp(kLine) * float(one.lines.size());
         const bool last = x + width + gap >= x1;
         if (y > top && y + height > bottom && !last) {
             x += width + gap;
@@ -336,7 +346,7 @@ void showKeys(App& app) {
             drawText(list, fonts().semi, x, y, one.here ? colors::accent : colors::title,
                      one.name.c_str());
             drawRow(list, x, x + width, y + dp(13), one.here ? colors::accent : colors::edge);
-            y += dp(30);
+            y += dp(kHead);
         };
         head();
         for (const Line& line : one.lines) {
@@ -364,6 +374,7 @@ void showKeys(App& app) {
                 onLine = onLine || hovered;
             }
             drawText(list, fonts().body, x, y, colors::text, line.name.c_str());
+            lowest = std::max(lowest, y);
             if (waits) {
                 drawTextRight(list, fonts().small, x + width, y, colors::accent, "Press keys");
             } else if (line.keys.empty()) {
@@ -373,8 +384,11 @@ void showKeys(App& app) {
             }
             y += dp(kLine);
         }
-        y += dp(14);
+        y += dp(kRest);
     }
+    ImGui::SetCursorScreenPos({x0, lowest + dp(kLine)});
+    ImGui::Dummy({1, 1});
+    ImGui::EndChild();
     endPanel();
     if (ImGui::IsMouseClicked(0) && !onLine && ImGui::GetTime() > 0) {
         app.keys = app.rebinding >= 0;

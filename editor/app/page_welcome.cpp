@@ -123,7 +123,7 @@ void showCards(App& app, Rect rect) {
              "Each opens as a copy. Nothing you change here touches the original.");
     y += dp(50);
     const float gap = dp(16);
-    const int columns = std::clamp(int((rect.width() - dp(72)) / dp(270)), 1, 4);
+    const int columns = std::clamp(int((rect.width() - dp(72)) / dp(220)), 1, 4);
     const float width =
         std::floor((rect.width() - dp(72) - gap * float(columns - 1)) / float(columns));
     const float picture = std::floor(width / kCardAspect), height = picture + dp(60);

@@ -2,6 +2,7 @@
 #include "app/paint_page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <glm/gtc/type_ptr.hpp>
@@ -142,15 +143,18 @@ void colorOverlay(App& app) {
     app.live.redraw();
 }
 
-void drawMapLegend(ImDrawList* list, ImVec2 low, const char* name, std::span<const MapStop> map,
-                   std::initializer_list<const char*> words) {
-    drawBox(list, low, low + dp(212, 56), hex(0x151618, 215), 6);
+// At most 212 dp of the `room`, px.
+void drawMapLegend(ImDrawList* list, ImVec2 low, float room, const char* name,
+                   std::span<const MapStop> map, std::initializer_list<const char*> words) {
+    const float right = low.x + std::min(room, dp(212)) - dp(10);
+    drawBox(list, low, {right + dp(10), low.y + dp(56)}, hex(0x151618, 215), 6);
     drawText(list, fonts().smallSemi, low.x + dp(10), low.y + dp(13), colors::title, name);
-    drawMap(list, low + dp(10, 24), low + dp(202, 34), map);
+    drawMap(list, low + dp(10, 24), {right, low.y + dp(34)}, map);
     const char* const* word = words.begin();
     drawText(list, fonts().small, low.x + dp(10), low.y + dp(45), colors::text, word[0]);
-    drawTextCentred(list, fonts().small, low.x + dp(106), low.y + dp(45), colors::text, word[1]);
-    drawTextRight(list, fonts().small, low.x + dp(202), low.y + dp(45), colors::text, word[2]);
+    drawTextCentred(list, fonts().small, 0.5f * (low.x + dp(10) + right), low.y + dp(45),
+                    colors::text, word[1]);
+    drawTextRight(list, fonts().small, right, low.y + dp(45), colors::text, word[2]);
 }
 
 ObjectId addLayer(App& app) {
@@ -361,23 +365,24 @@ void drawRing(ImDrawList* list, const Picture& picture, glm::vec3 at, glm::vec3 
     }
 }
 
-void drawLegend(const App& app, ImDrawList* list, ImVec2 low) {
+void drawLegend(const App& app, ImDrawList* list, ImVec2 low, float room) {
     const PaintPage& page = *app.paint;
     if (page.kind == fwedit::PaintMaterial) {
-        const ImVec2 high = low + dp(190, 30);
+        const ImVec2 high(low.x + std::min(room, dp(190)), low.y + dp(30));
         drawBox(list, low, high, hex(0x151618, 215), 6);
         drawBox(list, low + dp(10, 9), low + dp(22, 21),
                 kMaterialColors[page.material % FW_MATERIAL_PRESET_COUNT], 3);
-        drawTextFit(list, fonts().smallSemi, low.x + dp(30), low.y + dp(15), dp(150), colors::title,
+        drawTextFit(list, fonts().smallSemi, low.x + dp(30), low.y + dp(15),
+                    high.x - low.x - dp(40), colors::title,
                     materialName(uint32_t(page.material)).c_str());
         return;
     }
     const bool moisture = page.kind == fwedit::PaintMoisture;
     if (moisture)
-        drawMapLegend(list, low, kindName(page.kind), kMoistureStops,
+        drawMapLegend(list, low, room, kindName(page.kind), kMoistureStops,
                       {"Dry", "50 %", "Wet through"});
     else
-        drawMultiplierLegend(list, low);
+        drawMultiplierLegend(list, low, room);
 }
 
 void showMeshView(App& app, const Rect& rect) {
@@ -437,7 +442,7 @@ void showMeshView(App& app, const Rect& rect) {
         }
     }
     if (hovered || page.painter) work(app, hovered && !overBall);
-    drawLegend(app, list, {rect.x0 + dp(12), rect.y1 - dp(68)});
+    drawLegend(app, list, {rect.x0 + dp(12), rect.y1 - dp(68)}, rect.width() - dp(24));
     list->PopClipRect();
     endPanel();
 }
@@ -531,8 +536,9 @@ void showUnwrap(App& app, const Rect& rect) {
     std::snprintf(text, sizeof text, "%u islands, %u × %u, %.1f px per cm", surface.islands,
                   surface.width, surface.height,
                   double(0.01f / std::max(1e-6f, surface.spacing * scaleOf(*mesh))));
-    drawTextFit(list, fonts().small, rect.x0 + dp(72), rect.y0 + dp(20), rect.width() - dp(110),
-                colors::dim, text);
+    if (rect.width() > dp(220))
+        drawTextFit(list, fonts().small, rect.x0 + dp(72), rect.y0 + dp(20), rect.width() - dp(110),
+                    colors::dim, text);
     if (iconButton("frame unwrap", {rect.x1 - dp(18), rect.y0 + dp(20)}, icons::frame, colors::text,
                    "Show all of it")) {
         page.zoom = 1;
@@ -577,10 +583,19 @@ void showPaintTools(App& app, const Rect& rect) {
         page.mirror = !page.mirror;
     x += toolButtonWidth(mirror) + dp(8);
     const float right = rect.x1 - dp(8);
-    if (page.tool == PaintTool::kFill && x + dp(440) < right - dp(220)) {
-        x += drawText(list, fonts().body, x + dp(2), y + dp(14), colors::dim, "Fill by") + dp(12);
-        segments("fill by", {x, y + dp(2)}, dp(380, 24),
-                 {"All", "Island", "Piece", "Material", "Slope", "Bend"}, page.fillBy);
+    if (page.tool == PaintTool::kFill) {
+        constexpr std::array<const char*, 6> kBy = {"All",      "Island", "Piece",
+                                                    "Material", "Slope",  "Bend"};
+        const bool wide = x + dp(440) < right - dp(220);
+        if (wide || x + dp(170) < right - dp(220))
+            x += drawText(list, fonts().body, x + dp(2), y + dp(14), colors::dim, "Fill by") +
+                 dp(12);
+        if (wide)
+            segments("fill by", {x, y + dp(2)}, dp(380, 24),
+                     {kBy[0], kBy[1], kBy[2], kBy[3], kBy[4], kBy[5]}, page.fillBy);
+        else
+            choice("fill by", {x, y + dp(2)}, {std::min(dp(100), right - dp(212) - x), dp(24)}, kBy,
+                   page.fillBy);
     }
     segments("paint views", {right - dp(204), y + dp(2)}, dp(204, 24), {"3D", "Both", "Unwrap"},
              page.view);
@@ -820,8 +835,8 @@ void colorMultipliers(App& app) {
     app.live.redraw();
 }
 
-void drawMultiplierLegend(ImDrawList* list, ImVec2 low, const char* name) {
-    drawMapLegend(list, low, name, kMultiplierStops, {"Never", "As is", "Twice"});
+void drawMultiplierLegend(ImDrawList* list, ImVec2 low, float room, const char* name) {
+    drawMapLegend(list, low, room, name, kMultiplierStops, {"Never", "As is", "Twice"});
 }
 
 void addPaintActions(App& app, std::vector<Action>& list) {

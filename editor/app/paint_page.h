@@ -53,7 +53,8 @@ struct PaintPage {
 
 // Lays what all layers of paint make of each mesh's speed over it.
 void colorMultipliers(App& app);
-void drawMultiplierLegend(ImDrawList* list, ImVec2 low, const char* name = "Burn multiplier");
+void drawMultiplierLegend(ImDrawList* list, ImVec2 low, float room,
+                          const char* name = "Burn multiplier");
 void addPaintActions(App& app, std::vector<Action>& list);
 
 }  // namespace fwapp

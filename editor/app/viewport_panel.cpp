@@ -83,6 +83,10 @@ bool movable(const fwedit::Scene& scene, Kind kind, ObjectId id) {
            kind == Kind::Emitter || kind == Kind::Collider;
 }
 
+glm::vec3 placeOf(const App& app, ObjectId id) {
+    return asVec(fwedit::worldPosition(app.document.scene, id, app.document.nodePose));
+}
+
 // Where the gizmo stands: the middle of what is selected and can move.
 bool pivotOf(const App& app, glm::vec3& pivot) {
     glm::vec3 sum(0);
@@ -91,7 +95,7 @@ bool pivotOf(const App& app, glm::vec3& pivot) {
         Kind kind{};
         const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
         if (!object || object->locked || !movable(app.document.scene, kind, id)) continue;
-        sum += asVec(fwedit::worldPosition(app.document.scene, id));
+        sum += placeOf(app, id);
         ++count;
     }
     if (count == 0) return false;
@@ -315,7 +319,7 @@ std::vector<Marker> markersOf(const App& app, const Picture& picture) {
         for (const auto& object : list) {
             ImVec2 place;
             if (object.hidden || !movable(app.document.scene, kind, object.id) ||
-                !picture.at(asVec(fwedit::worldPosition(app.document.scene, object.id)), place))
+                !picture.at(placeOf(app, object.id), place))
                 continue;
             if (picture.rect.holds(place)) markers.push_back({object.id, kind, place});
         }
@@ -326,8 +330,11 @@ std::vector<Marker> markersOf(const App& app, const Picture& picture) {
 // The reach of a source as a ring around its direction.
 void drawReach(const App& app, ImDrawList* list, const Picture& picture,
                const fwedit::HeatSource& source, ImU32 color) {
-    const glm::vec3 place = asVec(fwedit::worldPosition(app.document.scene, source.id));
-    glm::vec3 axis = asVec(source.direction);
+    const glm::vec3 place = placeOf(app, source.id);
+    const glm::vec3 direction = asVec(
+        fwedit::turnedBy(fwedit::holderPose(app.document.scene, source.id, app.document.nodePose),
+                         source.direction));
+    glm::vec3 axis = direction;
     const bool flat = source.shape == fwedit::SourceDisc || source.shape == fwedit::SourceRain;
     if (!flat || glm::length(axis) < 1e-5f)
         axis = glm::vec3(glm::inverse(glm::make_mat4(picture.view.view))[2]);
@@ -347,9 +354,8 @@ void drawReach(const App& app, ImDrawList* list, const Picture& picture,
     list->AddPolyline(ring.data(), int(ring.size()), color, ImDrawFlags_Closed, dp(2));
     if (source.shape == fwedit::SourceFlamethrower || source.shape == fwedit::SourceLine) {
         ImVec2 a, b;
-        const glm::vec3 way = glm::length(asVec(source.direction)) > 1e-5f
-                                  ? glm::normalize(asVec(source.direction))
-                                  : glm::vec3(0, 1, 0);
+        const glm::vec3 way =
+            glm::length(direction) > 1e-5f ? glm::normalize(direction) : glm::vec3(0, 1, 0);
         const float reach = source.shape == fwedit::SourceLine ? 0.5f * source.length : 0.6f;
         const glm::vec3 back = source.shape == fwedit::SourceLine ? reach * way : glm::vec3(0);
         if (picture.at(place - back, a) && picture.at(place + reach * way, b))
@@ -361,7 +367,7 @@ void drawReach(const App& app, ImDrawList* list, const Picture& picture,
 // blows.
 void drawZone(const App& app, ImDrawList* list, const Picture& picture, const fwedit::Wind& wind,
               ImU32 color) {
-    const glm::vec3 middle = asVec(fwedit::worldPosition(app.document.scene, wind.id));
+    const glm::vec3 middle = placeOf(app, wind.id);
     const glm::vec3 velocity = asVec(wind.velocity);
     const glm::vec3 way =
         glm::length(velocity) > 1e-5f ? glm::normalize(velocity) : glm::vec3(1, 0, 0);
@@ -541,8 +547,10 @@ void turnOrStretch(App& app, const Picture& picture, ImDrawList* list) {
             if (turns && !std::strcmp(key, "direction")) {
                 const glm::mat4 turn =
                     glm::rotate(glm::mat4(1), glm::radians(amount), axisOf(state.axis));
-                const glm::vec3 way(turn * glm::vec4(asVec(before), 0));
-                now = {way.x, way.y, way.z};
+                const fwedit::Pose holder =
+                    fwedit::holderPose(app.document.scene, id, app.document.nodePose);
+                const glm::vec3 way(turn * glm::vec4(asVec(fwedit::turnedBy(holder, before)), 0));
+                now = fwedit::directionWithin(holder, {way.x, way.y, way.z});
             } else if (turns) {
                 now = turnedAngles(before, state.axis, amount);
             } else {
@@ -1090,7 +1098,7 @@ void showViewport(App& app, const Rect& rect) {
     const ImVec2 legend(worked.x0 + dp(12), rect.y1 - dp(68));
     if (app.multipliers && app.showHelpers) {
         drawMultiplierLegend(
-            list, legend,
+            list, legend, worked.x1 - dp(12) - legend.x,
             app.live.laidOver.empty() ? "Burn multiplier: nothing is painted" : "Burn multiplier");
     } else if (app.burnTimes && app.showHelpers) {
         drawTimeLegend(app, list, legend);

@@ -59,39 +59,73 @@ std::string whyNotAttached(const Scene& scene, ObjectId child, ObjectId parent) 
     return "";
 }
 
+// Of an object that can stick to one; null else.
+std::string* nodeOf(Scene& scene, ObjectId id) {
+    std::string* node = nullptr;
+    forEachList(scene, [&](Kind, auto& list) {
+        for (auto& object : list)
+            if constexpr (requires { object.sticksToNode; })
+                if (object.id == id) node = &object.sticksToNode;
+    });
+    return node;
+}
+
+// Empty, or why `child` cannot stick to that node.
+std::string whyNoNode(const Scene& scene, ObjectId child, std::string_view node,
+                      const NodePoseOf& nodePose) {
+    if (node.empty()) return "";
+    const Mesh* mesh = findIn(scene.meshes, parentOf(scene, child));
+    std::string error;
+    if (!mesh)
+        error = "it takes a part of a mesh that \"" + findObject(scene, child)->name +
+                "\" sticks to, and that is none";
+    Pose ignored;
+    if (!mesh || (nodePose && !nodePose(*mesh, node, ignored, error)))
+        return "sticks_to_node is \"" + cleanText(std::string(node), 80) + "\"; " + error;
+    return "";
+}
+
 bool setFields(Scene& scene, Kind kind, ObjectId id, const std::vector<Assignment>& fields,
-               bool keepPlace, std::string& repair, std::string& error) {
+               bool keepPlace, const NodePoseOf& nodePose, std::string& repair,
+               std::string& error) {
     for (const Assignment& made : fields) {
         std::string mended;
-        const bool attaches = made.field == "sticks_to";
-        const Vec3 world = attaches && keepPlace ? worldPosition(scene, id) : Vec3{};
+        const bool attaches = made.field == "sticks_to" || made.field == "sticks_to_node";
+        const bool keeps = attaches && keepPlace && findField(kind, "position");
+        const Pose before = keeps ? holderPose(scene, id, nodePose) : Pose{};
+        const ObjectId parent = attaches ? parentOf(scene, id) : 0;
         if (const double* number = std::get_if<double>(&made.value)) {
             const auto to = static_cast<ObjectId>(std::clamp(*number, 0.0, 4294967295.0));
-            if (attaches) error = whyNotAttached(scene, id, to);
+            if (made.field == "sticks_to") error = whyNotAttached(scene, id, to);
             if (made.field == "mesh" && kind == Kind::Layer && to && !findIn(scene.meshes, to))
                 error = "mesh is #" + std::to_string(to) + ", which is no mesh of the scene";
             if (!error.empty()) return false;
         }
+        if (made.field == "sticks_to_node")
+            if (const auto* node = std::get_if<std::string>(&made.value)) {
+                error = whyNoNode(scene, id, *node, nodePose);
+                if (!error.empty()) return false;
+            }
         if (!setField(scene, kind, id, made.field, made.value, mended, error)) return false;
         if (!mended.empty() && repair.empty()) repair = mended;
-        if (!attaches || !keepPlace || !findField(kind, "position")) continue;
-        const Vec3 own = positionWithin(scene, parentOf(scene, id), world);
-        std::string ignored;
-        setField(scene, kind, id, "position", std::vector<double>(own.begin(), own.end()), ignored,
-                 error);
+        // A node is of the mesh that it was of.
+        std::string* node = nodeOf(scene, id);
+        if (attaches && node && parentOf(scene, id) != parent) node->clear();
+        if (keeps) keepInWorld(scene, id, before, holderPose(scene, id, nodePose));
     }
     return true;
 }
 
-void removeObject(Scene& scene, PaintImages& images, ObjectId id) {
+void removeObject(Scene& scene, PaintImages& images, ObjectId id, const NodePoseOf& nodePose) {
     // What sticks to it stays where it is.
     forEachList(scene, [&](Kind, auto& list) {
         for (auto& object : list)
             if constexpr (requires { object.sticksTo; })
                 if (object.sticksTo == id) {
-                    if constexpr (requires { object.position; })
-                        object.position = worldPosition(scene, object.id);
+                    keepInWorld(scene, object.id, holderPose(scene, object.id, nodePose),
+                                kWorldPose);
                     object.sticksTo = 0;
+                    if constexpr (requires { object.sticksToNode; }) object.sticksToNode.clear();
                 }
     });
     for (const PaintLayer& layer : scene.layers)
@@ -101,6 +135,14 @@ void removeObject(Scene& scene, PaintImages& images, ObjectId id) {
         std::erase_if(list, [&](const auto& object) { return object.id == id; });
     });
     images.erase(id);
+}
+
+// Something that `id` sticks to, directly or through others, is among the targets.
+bool holdsAny(const Scene& scene, const std::vector<ObjectId>& targets, ObjectId id) {
+    for (ObjectId at = parentOf(scene, id), hops = 0; at != 0 && hops < 64;
+         at = parentOf(scene, at), ++hops)
+        if (std::find(targets.begin(), targets.end(), at) != targets.end()) return true;
+    return false;
 }
 
 bool applyKey(Scene& scene, const Command& command, std::string& error) {
@@ -185,8 +227,8 @@ std::string stemOf(const std::string& file) {
     return dot == std::string::npos || dot == 0 ? last : last.substr(0, dot);
 }
 
-bool applyAdd(const Command& command, Scene& scene, std::string& message, std::string& error,
-              ObjectId& added) {
+bool applyAdd(const Command& command, Scene& scene, const NodePoseOf& nodePose,
+              std::string& message, std::string& error, ObjectId& added) {
     if (objectCount(scene) >= kMostObjects) {
         error = "The scene has " + std::to_string(objectCount(scene)) + " objects, the most it can";
         return false;
@@ -197,7 +239,7 @@ bool applyAdd(const Command& command, Scene& scene, std::string& message, std::s
         return false;
     }
     const ObjectId id = addObject(scene, kind);
-    if (!setFields(scene, kind, id, command.fields, false, message, error)) return false;
+    if (!setFields(scene, kind, id, command.fields, false, nodePose, message, error)) return false;
     Object& object = *findObject(scene, id);
     if (command.verb == Verb::Import) {
         Mesh& mesh = scene.meshes.back();
@@ -258,6 +300,14 @@ bool mendReferences(Scene& scene, std::vector<std::string>* repairs) {
                     mended = true;
                 }
             }
+            if constexpr (requires { object.sticksToNode; }) {
+                why = whyNoNode(scene, object.id, object.sticksToNode, {});
+                if (!why.empty()) {
+                    object.sticksToNode.clear();
+                    if (repairs) repairs->push_back(where + why + "; it is now none");
+                    mended = true;
+                }
+            }
             if constexpr (requires { object.mesh; }) {
                 if (object.mesh == 0 || findIn(scene.meshes, object.mesh)) continue;
                 if (repairs)
@@ -279,15 +329,17 @@ bool applyCommand(const Document& document, const Command& command, Scene& scene
     if (good) switch (command.verb) {
             case Verb::Add:
             case Verb::Import:
-                good = applyAdd(command, scene, repair, error, added);
+                good = applyAdd(command, scene, document.nodePose, repair, error, added);
                 break;
             case Verb::Set:
                 if (command.targets.empty())
-                    good = setFields(scene, command.kind, 0, command.fields, true, repair, error);
+                    good = setFields(scene, command.kind, 0, command.fields, true,
+                                     document.nodePose, repair, error);
                 for (const ObjectId id : command.targets) {
                     Kind kind{};
                     findObject(scene, id, &kind);
-                    good = good && setFields(scene, kind, id, command.fields, true, repair, error);
+                    good = good && setFields(scene, kind, id, command.fields, true,
+                                             document.nodePose, repair, error);
                 }
                 break;
             case Verb::Move:
@@ -300,8 +352,11 @@ bool applyCommand(const Document& document, const Command& command, Scene& scene
                         good = false;
                     }
                     if (!good) break;
+                    if (holdsAny(scene, command.targets, id)) continue;  // it comes along
                     auto& position = std::get<std::vector<double>>(value);
-                    for (size_t k = 0; k < 3; ++k) position[k] += double(command.offset[k]);
+                    const Vec3 by =
+                        offsetWithin(holderPose(scene, id, document.nodePose), command.offset);
+                    for (size_t k = 0; k < 3; ++k) position[k] += double(by[k]);
                     good = setField(scene, kind, id, "position", value, repair, error);
                 }
                 break;
@@ -318,7 +373,8 @@ bool applyCommand(const Document& document, const Command& command, Scene& scene
                 for (const ObjectId id : command.targets) duplicate(scene, images, id, added);
                 break;
             case Verb::Remove:
-                for (const ObjectId id : command.targets) removeObject(scene, images, id);
+                for (const ObjectId id : command.targets)
+                    removeObject(scene, images, id, document.nodePose);
                 break;
             case Verb::Order:
                 forEachList(scene, [&](Kind, auto& list) {

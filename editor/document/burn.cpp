@@ -577,8 +577,9 @@ std::shared_ptr<const ImportedModel> modelOf(const Mesh& mesh, const fs::path& f
     const fs::path path = fs::absolute(folder / mesh.file, code).lexically_normal();
     const auto changed = fs::last_write_time(path, code);
     // A file that was saved anew is read anew.
-    const std::string key =
-        path.string() + "@" + std::to_string(code ? 0 : changed.time_since_epoch().count());
+    const std::string key = path.string() + "@" +
+                            std::to_string(code ? 0 : changed.time_since_epoch().count()) + "#" +
+                            mesh.node;
     if (const auto found = assets.models.find(key); found != assets.models.end())
         return found->second;
     if (!goOn(assets, "Reading " + path.filename().string(), 0)) {
@@ -586,8 +587,32 @@ std::shared_ptr<const ImportedModel> modelOf(const Mesh& mesh, const fs::path& f
         return nullptr;
     }
     auto model = std::make_shared<ImportedModel>();
-    if (!fwimport::importGltf(path, *model, error)) return nullptr;
+    if (!fwimport::importGltf(path, *model, error, mesh.node)) return nullptr;
     return assets.models[key] = model;
+}
+
+bool nodePoseOf(const ImportedModel& model, const Mesh& mesh, std::string_view node, Pose& pose,
+                std::string& error) {
+    std::string why;
+    const int32_t index = fwimport::findNode(model.nodes, node, why);
+    if (index < 0) {
+        error = fs::path(mesh.file).filename().string() + ": " + why;
+        return false;
+    }
+    const auto& values = model.nodes[static_cast<size_t>(index)].pose;
+    std::transform(values.begin(), values.end(), pose.begin(),
+                   [](double value) { return static_cast<float>(value); });
+    return true;
+}
+
+NodePoseOf nodePosesOf(const Burn& burn) {
+    return [&burn](const Mesh& mesh, std::string_view node, Pose& pose, std::string& error) {
+        for (const BurnMesh& made : burn.meshes)
+            if (made.id == mesh.id && made.model)
+                return nodePoseOf(*made.model, mesh, node, pose, error);
+        error = "\"" + mesh.name + "\" is not in the scene yet";
+        return false;
+    };
 }
 
 std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& mesh,
@@ -661,11 +686,13 @@ std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const P
         if (!problem.empty())
             burn->report.push_back("\"" + mesh.name + "\" is left out: " + problem);
     }
-    for (const HeatSource& source : scene.sources) addSource(*burn, shared, source);
-    for (const Flame& flame : scene.flames) addFlame(*burn, shared, flame, folder);
-    for (const Emitter& emitter : scene.emitters) addEmitter(*burn, shared, emitter);
-    for (const Collider& collider : scene.colliders) addCollider(*burn, collider);
-    for (const Wind& wind : scene.winds) addWind(*burn, wind);
+    burn->scene = placedScene(scene, nodePosesOf(*burn), &burn->report);
+    const Scene& placed = burn->scene;
+    for (const HeatSource& source : placed.sources) addSource(*burn, shared, source);
+    for (const Flame& flame : placed.flames) addFlame(*burn, shared, flame, folder);
+    for (const Emitter& emitter : placed.emitters) addEmitter(*burn, shared, emitter);
+    for (const Collider& collider : placed.colliders) addCollider(*burn, collider);
+    for (const Wind& wind : placed.winds) addWind(*burn, wind);
     feedParts(*burn, 0);
     return burn;
 }
@@ -690,7 +717,8 @@ bool feedBurn(Burn& burn, float deltaTime, std::string& error) {
     return true;
 }
 
-bool reviseBurn(Burn& burn, const Scene& scene, const fs::path& folder) {
+bool reviseBurn(Burn& burn, const Scene& wanted, const fs::path& folder) {
+    const Scene scene = placedScene(wanted, nodePosesOf(burn));
     if (!(fixedPartOf(burn.scene) == fixedPartOf(scene)) || litOtherwise(burn, scene)) return false;
     const Scene before = std::exchange(burn.scene, scene);
     for (const BurnMesh& mesh : burn.meshes) {

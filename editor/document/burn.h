@@ -49,7 +49,7 @@ struct BurnShared;  // materials, pictures, shapes and books that objects of a b
 struct Burn {
     FwContext* context = nullptr;  // not ours
     FwWorld* world = nullptr;
-    Scene scene;      // that it was made of
+    Scene scene;      // that it was made of, placed
     double time = 0;  // s, of the world
     std::vector<BurnMesh> meshes;
     std::vector<BurnPart> parts;
@@ -122,6 +122,11 @@ bool sceneBounds(const Scene& scene, const std::filesystem::path& folder, Assets
 std::shared_ptr<const fwimport::ImportedModel> modelOf(const Mesh& mesh,
                                                        const std::filesystem::path& folder,
                                                        Assets& assets, std::string& error);
+// Of a model for NodePoseOf. False: `error` names its file, the node and those there are.
+bool nodePoseOf(const fwimport::ImportedModel& model, const Mesh& mesh, std::string_view node,
+                Pose& pose, std::string& error);
+// By the models of a burn's meshes, which it points to.
+NodePoseOf nodePosesOf(const Burn& burn);
 // The cooked burn map: from memory, the cache, or baked now, and its key in Assets::bakes. Null:
 // `error`.
 std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& mesh,

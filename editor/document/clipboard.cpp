@@ -2,6 +2,7 @@
 #include "document/clipboard.h"
 
 #include <algorithm>
+#include <cstring>
 #include <sstream>
 
 #include "document/apply.h"
@@ -28,6 +29,10 @@ std::string lineOf(const Scene& scene, Kind kind, ObjectId id) {
         if (!getField(scene, kind, id, field.key, value) ||
             (getField(plain, kind, fresh, field.key, standard) && value == standard))
             continue;
+        if (!std::strcmp(field.key, "sticks_to_node")) {  // after the mesh that has it
+            parent += std::string(" ") + field.key + " " + inQuotes(std::get<std::string>(value));
+            continue;
+        }
         if (field.type != FieldType::Object) {
             add.fields.push_back({field.key, std::move(value)});
             continue;

@@ -317,6 +317,7 @@ std::string setName(const Scene& before, const Command& command) {
     if (key == "scale") return "Scale " + who;
     if (key == "hidden") return (on ? "Hide " : "Show ") + who;
     if (key == "locked") return (on ? "Lock " : "Unlock ") + who;
+    if (key == "sticks_to_node") return "Attach " + who;
     if (key == "sticks_to") return (on ? "Attach " : "Detach ") + who;
     return label + " of " + who;
 }

@@ -39,6 +39,9 @@ struct Document {
     // Surfaces to paint on, by mesh; null: that mesh cannot be painted now. Set by whoever bakes.
     std::function<const PaintSurface*(const Scene&, ObjectId mesh)> surface;
 
+    // Where nodes of the meshes' files stand; see scene.h. Set by whoever reads the files.
+    NodePoseOf nodePose;
+
     // A drag under way, see beginDrag.
     bool dragging = false, dragChanged = false;
     std::string dragName, dragLine;
@@ -91,7 +94,8 @@ bool openDocument(const std::filesystem::path& file, Document& document,
                   std::vector<std::string>& repairs, std::string& error);
 // Writes the pictures of the layers, then the scene; each whole or not at all.
 bool saveDocument(Document& document, const std::filesystem::path& file, std::string& error);
-// The same without making it the document's file: autosave, and a copy beside it.
+// The same without making it the document's file: autosave, and a copy beside it. Pictures of the
+// copy that was there before go.
 bool saveCopy(const Document& document, const std::filesystem::path& file, std::string& error);
 // Such a copy as unsaved work on `original` (empty: it had no file).
 bool openCopy(const std::filesystem::path& copy, const std::filesystem::path& original,

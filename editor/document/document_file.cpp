@@ -197,6 +197,7 @@ bool openDocument(const fs::path& file, Document& document, std::vector<std::str
     fresh.file = file;
     fresh.folder = document.folder;
     fresh.surface = document.surface;
+    fresh.nodePose = document.nodePose;
     readPictures(fresh, repairs);
     resetHistory(fresh);
     fresh.revision = document.revision + 1;
@@ -208,7 +209,19 @@ bool openDocument(const fs::path& file, Document& document, std::vector<std::str
 
 bool saveCopy(const Document& document, const fs::path& file, std::string& error) {
     Scene scene = document.scene;
-    return writeScene(scene, document, file, error);
+    if (!writeScene(scene, document, file, error)) return false;
+    // The copy before had pictures of its own; those that the new one has no use for go.
+    std::set<std::string> kept;
+    for (const PaintLayer& layer : scene.layers) kept.insert(layer.image);
+    const std::string own = file.stem().string() + ".paint_";
+    std::vector<fs::path> gone;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folderOf(file), ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with(own) && !kept.contains(name)) gone.push_back(entry.path());
+    }
+    for (const fs::path& picture : gone) fs::remove(picture, ignored);
+    return true;
 }
 
 bool openCopy(const fs::path& copy, const fs::path& original, Document& document,

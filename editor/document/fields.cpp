@@ -152,6 +152,8 @@ const Table<HeatSource>& tableOf() {
         };
         addSpan(own, "Keys of the output");
         own.push_back(object("sticks_to", "Sticks to", &HeatSource::sticksTo));
+        own.push_back(
+            words("sticks_to_node", "At its part", FieldType::Text, &HeatSource::sticksToNode));
         return withObject<HeatSource>(std::move(own));
     }();
     return table;
@@ -185,6 +187,8 @@ const Table<Flame>& tableOf() {
         };
         addSpan(own, "Keys of the output");
         own.push_back(object("sticks_to", "Sticks to", &Flame::sticksTo));
+        own.push_back(
+            words("sticks_to_node", "At its part", FieldType::Text, &Flame::sticksToNode));
         return withObject<Flame>(std::move(own));
     }();
     return table;
@@ -211,6 +215,8 @@ const Table<Emitter>& tableOf() {
         };
         addSpan(own, "Keys of the output");
         own.push_back(object("sticks_to", "Sticks to", &Emitter::sticksTo));
+        own.push_back(
+            words("sticks_to_node", "At its part", FieldType::Text, &Emitter::sticksToNode));
         return withObject<Emitter>(std::move(own));
     }();
     return table;

@@ -105,7 +105,7 @@ void explain(Burn& burn, const PaintImages& images, const WhyQuestion& question,
     answer = {};
     if (const auto surface = burn.surfaceOf(*mesh)) {
         const size_t texel = nearestTexel(
-            *surface, positionWithin(burn.scene, meshId,
+            *surface, positionWithin(transformOf(*mesh),
                                      {point.position[0], point.position[1], point.position[2]}));
         if (texel < surface->material.size())
             preset = mesh->materials[surface->material[texel] & 7];

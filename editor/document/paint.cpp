@@ -7,7 +7,6 @@
 namespace fwedit {
 namespace {
 
-float dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 Vec3 at3(const std::vector<float>& list, size_t i) {

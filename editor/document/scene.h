@@ -6,12 +6,17 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fwedit {
 
 using Vec3 = std::array<float, 3>;
+using Pose = std::array<float, 16>;  // column-major, as the plugin takes it
+inline float dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+constexpr Pose kWorldPose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 using ObjectId = uint32_t;  // stable while the scene lives, saved with it; 0: none
 
 // What every object of a scene has. Names are for people; two may be alike.
@@ -49,7 +54,7 @@ enum Daylight : uint32_t { DaylightNight, DaylightDusk, DaylightDay };
 
 struct Mesh : Object {            // something that burns, from a glTF file
     std::string file;             // relative to the scene's file
-    std::string node;             // of it alone; empty: the whole file
+    std::string node;             // what hangs on it alone; empty: the whole file
     Vec3 position{}, rotation{};  // m; degrees, about x, then y, then z
     Vec3 scale{1, 1, 1};
     std::array<uint32_t, 8> materials{1, 1, 1, 1, 1, 1, 1, 1};  // FwMaterialPreset, by slot
@@ -75,7 +80,10 @@ struct HeatSource : Object {  // heat, or against it water
     float length = 1;                     // m, of a line, of a rain's fall
     float start = 0, duration = 0;        // s; duration 0: to the end
     Keys keys;                            // of the output
-    ObjectId sticksTo = 0;                // moves with that object
+    // Moves with that object, and turns with it if it is a mesh: position and direction are its own
+    // then. Of a mesh's file it may be one node, by its name or as "#3".
+    ObjectId sticksTo = 0;
+    std::string sticksToNode;
     bool operator==(const HeatSource&) const = default;
 };
 
@@ -95,6 +103,7 @@ struct Flame : Object {     // a volumetric fire
     float start = 0, duration = 0;
     Keys keys;  // of the power
     ObjectId sticksTo = 0;
+    std::string sticksToNode;
     bool operator==(const Flame&) const = default;
 };
 
@@ -109,6 +118,7 @@ struct Emitter : Object {  // fire, smoke and sparks as particles
     float start = 0, duration = 0;
     Keys keys;
     ObjectId sticksTo = 0;  // of EmitterMesh: the mesh whose fire it shows
+    std::string sticksToNode;
     bool operator==(const Emitter&) const = default;
 };
 
@@ -228,11 +238,32 @@ const T* findIn(const std::vector<T>& list, ObjectId id) {
     return nullptr;
 }
 
-// Column-major object to world, as the plugin takes it.
-std::array<float, 16> transformOf(const Mesh& mesh);
+// Object to world.
+Pose transformOf(const Mesh& mesh);
+
+// Where a node of a mesh's file stands within the mesh, at rest. False: `error` says why it has no
+// place. Empty: nobody has read the files, and each node counts as the mesh itself.
+using NodePoseOf =
+    std::function<bool(const Mesh& mesh, std::string_view node, Pose& pose, std::string& error)>;
+
+// What an object's own place is given in: what it sticks to, or the world.
+Pose holderPose(const Scene& scene, ObjectId id, const NodePoseOf& nodePose = {});
+Vec3 placedBy(const Pose& holder, const Vec3& position);
+Vec3 turnedBy(const Pose& holder, const Vec3& direction);  // as long as before
+// The other way; of a holder without volume: 0.
+Vec3 positionWithin(const Pose& holder, const Vec3& world);
+Vec3 offsetWithin(const Pose& holder, const Vec3& world);
+Vec3 directionWithin(const Pose& holder, const Vec3& world);
 // Position of anything that has one, what it sticks to included; the middle of the scene else.
-Vec3 worldPosition(const Scene& scene, ObjectId id);
-// The position by which something that sticks to `parent` (0: to nothing) is at `world`.
-Vec3 positionWithin(const Scene& scene, ObjectId parent, const Vec3& world);
+Vec3 worldPosition(const Scene& scene, ObjectId id, const NodePoseOf& nodePose = {});
+// The mesh that an object sticks to, be it through others; null: none.
+const Mesh* meshHolding(const Scene& scene, ObjectId id);
+// Sets position, direction and extent of an object so that they are in the world what they are now
+// within `before`, once `after` holds it.
+void keepInWorld(Scene& scene, ObjectId id, const Pose& before, const Pose& after);
+// The scene without nodes: what sticks to one sticks to its mesh, there where the node is.
+// `problems`: of nodes that have no place, whole sentences; may be null.
+Scene placedScene(const Scene& scene, const NodePoseOf& nodePose,
+                  std::vector<std::string>* problems = nullptr);
 
 }  // namespace fwedit

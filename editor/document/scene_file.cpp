@@ -13,7 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 1;
+// 2: what sticks to a mesh turns with it, and may stick to a node of its file.
+constexpr int kVersion = 2;
 constexpr size_t kMostBytes = size_t{16} << 20;
 constexpr size_t kMostRepairs = 100;
 
@@ -128,6 +129,7 @@ class SceneReader {
         std::vector<std::string> references;
         mendReferences(scene, &references);
         for (const std::string& repair : references) tell(repair);
+        if (version->get<int64_t>() == 1) turnIntoHolders(scene);
         if (told_ > kMostRepairs)
             repairs_.push_back(name_ + ": " + std::to_string(told_ - kMostRepairs) +
                                " more repairs of this kind");
@@ -311,6 +313,19 @@ class SceneReader {
         else if (next != root.end())
             tell("next_id is " + cleanText(next->dump(-1, ' ', true), 80) +
                  "; it must be above every id; it is now " + std::to_string(scene.nextId));
+    }
+
+    // Directions of version 1 were the world's, whatever a thing stuck to.
+    static void turnIntoHolders(Scene& scene) {
+        forEachList(scene, [&](Kind, auto& list) {
+            for (auto& object : list) {
+                if constexpr (requires { object.direction; }) {
+                    const Vec3 position = object.position;
+                    keepInWorld(scene, object.id, kWorldPose, holderPose(scene, object.id));
+                    object.position = position;  // that was its own already
+                }
+            }
+        });
     }
 
     struct Given {

@@ -77,7 +77,7 @@ FwFireEmitterDef jetDefOf(const Scene& scene, const HeatSource& source) {
                 (source.hidden ? uint32_t{FW_EMITTER_HIDDEN} : 0u);
     def.seed = source.id;
     copy(def.position, worldPosition(scene, source.id));
-    copy(def.direction, unit(source.direction, {0, 1, 0}));
+    copy(def.direction, unit(turnedBy(holderPose(scene, source.id), source.direction), {0, 1, 0}));
     def.power = std::min(kMostPower, source.output * peakOf(source.keys));
     return def;
 }
@@ -88,8 +88,9 @@ FwFireEmitterDef emitterDefOf(const Scene& scene, const Emitter& emitter) {
     def.flags = emitter.hidden ? uint32_t{FW_EMITTER_HIDDEN} : 0u;
     def.seed = emitter.id;
     copy(def.position, worldPosition(scene, emitter.id));
-    copy(def.direction, unit(emitter.direction, {0, 1, 0}));
-    copy(def.extent, emitter.extent);
+    const Pose holder = holderPose(scene, emitter.id);
+    copy(def.direction, unit(turnedBy(holder, emitter.direction), {0, 1, 0}));
+    copy(def.extent, turnedBy(holder, emitter.extent));
     def.radius = emitter.radius;
     def.power = std::min(kMostPower, emitter.power * peakOf(emitter.keys));
     def.speed = emitter.speed;
@@ -136,7 +137,7 @@ std::vector<FwVolumetricFireDef> sourceFiresOf(const Scene& scene, const HeatSou
         copy(def.position, middle);
         return {def};
     }
-    const Vec3 along = unit(source.direction, {1, 0, 0});
+    const Vec3 along = unit(turnedBy(holderPose(scene, source.id), source.direction), {1, 0, 0});
     const auto count = static_cast<uint32_t>(
         std::clamp(std::ceil(source.length / std::max(def.diameter, 0.05f)), 1.0f, 16.0f));
     std::vector<FwVolumetricFireDef> fires(count, def);

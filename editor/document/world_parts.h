@@ -12,6 +12,7 @@ constexpr float kMostWind = 120;         // m/s, of each of its parts
 // Empty if the result is fine, else the plugin's own words.
 std::string worldProblem(const Burn& burn, FwResult result);
 
+// The scenes here are placed ones, see scene.h.
 FwWorldDef worldDefOf(const Scene& scene);
 // Jets and emitters have room for the most that their keys ask for.
 FwFireEmitterDef jetDefOf(const Scene& scene, const HeatSource& source);

@@ -5,6 +5,7 @@
 #include "import/gltf_types.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -48,12 +49,17 @@ void checkExtensions(const tinygltf::Model& source) {
 class Importer {
  public:
     Importer(const tinygltf::Model& source, ImportedModel& model)
-        : source_(source), model_(model), visited_(source.nodes.size(), false) {}
+        : source_(source), model_(model), visited_(source.nodes.size(), false) {
+        model_.nodes.resize(source.nodes.size());
+        for (size_t i = 0; i < source.nodes.size(); ++i)
+            model_.nodes[i].name = source.nodes[i].name;
+    }
 
-    void run() {
+    void run(std::string_view part) {
         if (!source_.animations.empty()) note("animations are left out: the rest pose is used");
         if (!source_.skins.empty()) note("skins are left out: the bind pose is used");
-        for (int root : roots()) visit(root, glm::dmat4(1.0), 0);
+        for (int root : roots()) place(root, -1, glm::dmat4(1.0), 0);
+        takeMeshes(part);
         if (model_.indices.empty()) {
             std::string why;
             for (const std::string& line : model_.report) why += "\n - " + line;
@@ -127,7 +133,8 @@ class Importer {
         return result;
     }
 
-    void visit(int index, const glm::dmat4& parent, int depth) {
+    // Finds where a node and all below it stand.
+    void place(int index, int parent, const glm::dmat4& above, int depth) {
         if (index < 0 || static_cast<size_t>(index) >= source_.nodes.size()) {
             refuse("a node names the child ", index, "; there are ", source_.nodes.size());
         }
@@ -137,20 +144,39 @@ class Importer {
             refuse("nodes[", index, "] has more than one parent, or is its own ancestor");
         }
         visited_[static_cast<size_t>(index)] = true;
+        order_.push_back(static_cast<size_t>(index));
         const tinygltf::Node& node = source_.nodes[static_cast<size_t>(index)];
-        const glm::dmat4 world = parent * localTransform(node, text("nodes[", index, "]"));
-        if (node.mesh >= 0) {
-            if (static_cast<size_t>(node.mesh) >= source_.meshes.size()) {
-                refuse("nodes[", index, "].mesh is ", node.mesh, "; there are ",
-                       source_.meshes.size());
+        const glm::dmat4 world = above * localTransform(node, text("nodes[", index, "]"));
+        ImportedNode& placed = model_.nodes[static_cast<size_t>(index)];
+        placed.parent = parent;
+        placed.inScene = true;
+        std::copy_n(glm::value_ptr(world), 16, placed.pose.begin());
+        for (int child : node.children) place(child, index, world, depth + 1);
+    }
+
+    // Of all nodes that are in the scene, or of one and what is below it.
+    void takeMeshes(std::string_view part) {
+        std::string problem;
+        const int32_t top = part.empty() ? -1 : findNode(model_.nodes, part, problem);
+        if (!part.empty() && top < 0) refuse(problem);
+        std::vector<bool> taken(model_.nodes.size(), top < 0);
+        for (const size_t index : order_) {  // parents come before their children
+            const int32_t parent = model_.nodes[index].parent;
+            if (static_cast<int32_t>(index) == top ||
+                (parent >= 0 && taken[static_cast<size_t>(parent)]))
+                taken[index] = true;
+            const int which = source_.nodes[index].mesh;
+            if (which < 0 || !taken[index]) continue;
+            if (static_cast<size_t>(which) >= source_.meshes.size()) {
+                refuse("nodes[", index, "].mesh is ", which, "; there are ", source_.meshes.size());
             }
-            const tinygltf::Mesh& mesh = source_.meshes[static_cast<size_t>(node.mesh)];
+            const tinygltf::Mesh& mesh = source_.meshes[static_cast<size_t>(which)];
+            const glm::dmat4 world = glm::make_mat4(model_.nodes[index].pose.data());
             for (size_t i = 0; i < mesh.primitives.size(); ++i) {
                 addPrimitive(mesh.primitives[i], world,
-                             text("meshes[", node.mesh, "].primitives[", i, "]"));
+                             text("meshes[", which, "].primitives[", i, "]"));
             }
         }
-        for (int child : node.children) visit(child, world, depth + 1);
     }
 
     int attribute(const tinygltf::Primitive& primitive, const std::string& name) const {
@@ -457,6 +483,7 @@ class Importer {
     const tinygltf::Model& source_;
     ImportedModel& model_;
     std::vector<bool> visited_;
+    std::vector<size_t> order_;  // of the nodes as they were found
     std::map<int, uint32_t> materials_;
     std::map<int, int32_t> images_;
     std::vector<TextureUse> textureUses_;
@@ -466,9 +493,35 @@ class Importer {
 
 }  // namespace
 
+int32_t findNode(std::span<const ImportedNode> nodes, std::string_view which, std::string& error) {
+    for (size_t i = 0; i < nodes.size(); ++i)
+        if (nodes[i].inScene && nodes[i].name == which && !which.empty())
+            return static_cast<int32_t>(i);
+    if (which.starts_with('#')) {
+        size_t number = 0;
+        const char* end = which.data() + which.size();
+        const auto [at, code] = std::from_chars(which.data() + 1, end, number);
+        if (code == std::errc{} && at == end && number < nodes.size() && nodes[number].inScene)
+            return static_cast<int32_t>(number);
+    }
+    constexpr size_t kMostListed = 12;
+    size_t count = 0;
+    std::string list;
+    for (size_t i = 0; i < nodes.size(); ++i) {
+        if (!nodes[i].inScene || ++count > kMostListed) continue;
+        list += list.empty() ? "" : ", ";
+        list += nodes[i].name.empty() ? text("#", i) : nodes[i].name.substr(0, 80);
+    }
+    error = text(
+        "there is no node \"", which.substr(0, 80), "\"; ",
+        count == 0 ? "it has none" : text("its nodes are #0 to #", nodes.size() - 1, ": ", list),
+        count > kMostListed ? text(" and ", count - kMostListed, " more") : "");
+    return -1;
+}
+
 bool importGltfBytes(std::span<const uint8_t> bytes, const std::string& name,
-                     const std::filesystem::path& folder, ImportedModel& model,
-                     std::string& error) {
+                     const std::filesystem::path& folder, ImportedModel& model, std::string& error,
+                     std::string_view part) {
     try {
         if (bytes.size() > kMaxFileBytes) {
             refuse("it is ", bytes.size(), " bytes; the limit is ", kMaxFileBytes);
@@ -503,7 +556,7 @@ bool importGltfBytes(std::span<const uint8_t> bytes, const std::string& name,
         checkExtensions(source);
         if (!wrongType.empty()) refuse(wrongType);
         ImportedModel result;
-        Importer(source, result).run();
+        Importer(source, result).run(part);
         model = std::move(result);
         return true;
     } catch (const std::exception& failure) {
@@ -512,7 +565,8 @@ bool importGltfBytes(std::span<const uint8_t> bytes, const std::string& name,
     }
 }
 
-bool importGltf(const std::filesystem::path& path, ImportedModel& model, std::string& error) {
+bool importGltf(const std::filesystem::path& path, ImportedModel& model, std::string& error,
+                std::string_view part) {
     const std::string name = path.string();
     std::error_code code;
     const uint64_t size = std::filesystem::file_size(path, code);
@@ -531,7 +585,7 @@ bool importGltf(const std::filesystem::path& path, ImportedModel& model, std::st
         error = name + ": it cannot be read";
         return false;
     }
-    return importGltfBytes(bytes, name, path.parent_path(), model, error);
+    return importGltfBytes(bytes, name, path.parent_path(), model, error, part);
 }
 
 }  // namespace fwimport

@@ -1,5 +1,6 @@
 // glTF 2.0 (.gltf and .glb) into plain arrays in world space, ready to be baked.
-// Geometry and base colours only: no animation, skins, morph targets, cameras or lights.
+// Geometry, base colours and the nodes they hang on: no animation, skins, morph targets, cameras or
+// lights.
 // Every range is checked before it is read; what cannot be used is refused by name. An optional
 // field of the wrong type counts as absent.
 #pragma once
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "import/image_decode.h"
@@ -23,6 +25,13 @@ struct ImportedMaterial {
     bool doubleSided = false;
 };
 
+struct ImportedNode {      // at rest
+    std::string name;      // as the file has it; may be empty, or another one's too
+    int32_t parent = -1;   // into ImportedModel::nodes; -1: none
+    bool inScene = false;  // else it is in another scene of the file, and has no place
+    std::array<double, 16> pose{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};  // to the model
+};
+
 struct ImportedModel {
     std::vector<float> positions;             // 3 per vertex, m, node transforms applied
     std::vector<float> normals;               // 3 per vertex, unit; 0,0,0 where the file has none
@@ -32,6 +41,7 @@ struct ImportedModel {
     std::vector<uint32_t> triangleMaterials;  // 1 per triangle, into `materials`
     std::vector<ImportedMaterial> materials;  // those that are used; at least one
     std::vector<DecodedImage> images;         // base colours, those that are used
+    std::vector<ImportedNode> nodes;          // all of the file, by its numbers
     bool hasNormals = false, hasUvs = false, hasColors = false;  // for every vertex
     std::array<float, 3> low{}, high{};                          // m, bounds of the positions
     std::vector<std::string> report;  // what was left out or mended, and why
@@ -44,11 +54,19 @@ constexpr uint64_t kMaxFileBytes = 1ull << 30;
 constexpr uint64_t kMaxVertices = 1ull << 24;
 constexpr uint64_t kMaxTriangles = 1ull << 24;
 
-// False: `error` names the file, the field, its value and what is allowed; `model` is untouched.
-bool importGltf(const std::filesystem::path& path, ImportedModel& model, std::string& error);
+// `part`: a node, as findNode takes it; only what hangs on it is taken, where it stands in the
+// file. Empty: the whole file. False: `error` names the file, the field, its value and what is
+// allowed; `model` is untouched.
+bool importGltf(const std::filesystem::path& path, ImportedModel& model, std::string& error,
+                std::string_view part = {});
 
 // As above for a file in memory; `name` is for messages, `folder` is where its URIs begin.
 bool importGltfBytes(std::span<const uint8_t> bytes, const std::string& name,
-                     const std::filesystem::path& folder, ImportedModel& model, std::string& error);
+                     const std::filesystem::path& folder, ImportedModel& model, std::string& error,
+                     std::string_view part = {});
+
+// The first node of that name in the scene, else the one of that number: "#3". -1: there is none,
+// and `error` says which there are.
+int32_t findNode(std::span<const ImportedNode> nodes, std::string_view which, std::string& error);
 
 }  // namespace fwimport

@@ -4,20 +4,46 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <cstring>
+#include <algorithm>
+#include <cmath>
 #include <exception>
+#include <string_view>
 
 namespace fwimport {
 namespace {
 
 // The file name OpenImageIO should believe in; null for what is not a picture we take.
 const char* nameFor(std::span<const uint8_t> bytes) {
-    auto begins = [&](const char* signature, size_t size) {
-        return bytes.size() > size && std::memcmp(bytes.data(), signature, size) == 0;
+    struct Signature {
+        size_t at;
+        std::string_view bytes;
+        const char* name;
     };
-    if (begins("\x89PNG\r\n\x1a\n", 8)) return "memory.png";
-    if (begins("\xff\xd8\xff", 3)) return "memory.jpg";
+    using namespace std::string_view_literals;
+    static constexpr Signature kSignatures[] = {{0, "\x89PNG\r\n\x1a\n"sv, "memory.png"},
+                                                {0, "\xff\xd8\xff"sv, "memory.jpg"},
+                                                {0, "\x76\x2f\x31\x01"sv, "memory.exr"},
+                                                {0, "II*\0"sv, "memory.tif"},
+                                                {0, "MM\0*"sv, "memory.tif"},
+                                                {0, "#?R"sv, "memory.hdr"},
+                                                {0, "DDS "sv, "memory.dds"},
+                                                {8, "WEBP"sv, "memory.webp"}};
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    for (const Signature& one : kSignatures)
+        if (text.size() > one.at && text.substr(one.at).starts_with(one.bytes)) return one.name;
     return nullptr;
+}
+
+// Numbers of light, as films have them, as bytes of a picture.
+void encodeSrgb(std::span<const float> linear, size_t channels, std::span<uint8_t> bytes) {
+    for (size_t i = 0; i < linear.size(); ++i) {
+        const float value = std::clamp(linear[i], 0.0f, 1.0f);  // not a number: 0
+        const bool alpha = channels % 2 == 0 && i % channels == channels - 1;
+        const float shown = alpha                 ? value
+                            : value <= 0.0031308f ? 12.92f * value
+                                                  : 1.055f * std::pow(value, 1 / 2.4f) - 0.055f;
+        bytes[i] = static_cast<uint8_t>(std::lround(255 * (shown > 0 ? shown : 0.0f)));
+    }
 }
 
 }  // namespace
@@ -25,7 +51,7 @@ const char* nameFor(std::span<const uint8_t> bytes) {
 bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error) {
     const char* name = nameFor(bytes);
     if (!name) {
-        error = "it is neither PNG nor JPEG";
+        error = "it is none of PNG, JPEG, EXR, TIFF, HDR, DDS and WebP";
         return false;
     }
     try {
@@ -50,10 +76,16 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
         const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
         const auto stride = static_cast<size_t>(channels);
         std::vector<uint8_t> raw(pixels * stride);
-        if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, raw.data())) {
+        const bool light = spec.format.basetype == OIIO::TypeDesc::FLOAT ||
+                           spec.format.basetype == OIIO::TypeDesc::HALF;
+        std::vector<float> linear(light ? raw.size() : 0);
+        const OIIO::TypeDesc wanted = light ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8;
+        void* into = light ? static_cast<void*>(linear.data()) : raw.data();
+        if (!input->read_image(0, 0, 0, channels, wanted, into)) {
             error = "it cannot be decoded: " + input->geterror();
             return false;
         }
+        if (light) encodeSrgb(linear, stride, raw);
         DecodedImage result;
         result.width = static_cast<uint32_t>(spec.width);
         result.height = static_cast<uint32_t>(spec.height);

@@ -1,4 +1,4 @@
-// Decodes a compressed picture (PNG, JPEG and what else OpenImageIO knows by its first bytes).
+// Decodes a picture in memory, by its first bytes: PNG, JPEG, EXR, TIFF, HDR, DDS, WebP.
 // Not a texture: eight bits per channel, RGBA, one level.
 #pragma once
 

@@ -114,10 +114,12 @@ bool planOutput(const OutputInput& input, OutputPlan& plan, std::string& error) 
     });
     std::map<std::string, const PlannedMesh*> maps;  // by the key of the bake
     std::map<const void*, int32_t> images;
+    std::map<ObjectId, const fwimport::ImportedModel*> models;  // the assets keep them
     plan.meshes.reserve(scene.meshes.size());
     for (const Mesh& mesh : scene.meshes) {
         const auto model = modelOf(mesh, input.folder, input.assets, error);
         if (!model) return false;
+        models[mesh.id] = model.get();
         const std::string& name = plan.identifiers[mesh.id];
         PlannedMesh& planned = plan.meshes.emplace_back();
         planned.mesh = mesh.id;
@@ -140,6 +142,17 @@ bool planOutput(const OutputInput& input, OutputPlan& plan, std::string& error) 
                     {name + ".color" + std::to_string(plan.images.size()) + ".rgba", decoded.width,
                      decoded.height, &decoded.rgba});
         }
+    }
+    std::vector<std::string> problems;
+    plan.scene = placedScene(
+        scene,
+        [&](const Mesh& mesh, std::string_view node, Pose& pose, std::string& why) {
+            return nodePoseOf(*models.at(mesh.id), mesh, node, pose, why);
+        },
+        &problems);
+    if (!problems.empty()) {
+        error = problems.front();
+        return false;
     }
     for (const Flame& flame : scene.flames)
         if (hasShape(flame)) plan.shapes[flame.id] = plan.identifiers[flame.id] + ".fwprofile";

@@ -46,6 +46,7 @@ struct PlannedMesh {
 };
 // What there is to write, and what it is called there and in code.
 struct OutputPlan {
+    Scene scene;                   // placed
     std::string identifier, type;  // of the scene: crate_yard, CrateYard
     std::vector<PlannedMesh> meshes;
     std::vector<PlannedImage> images;
@@ -60,7 +61,7 @@ bool cookScene(const OutputInput& input, const OutputPlan& plan, FwContext* cpu,
 
 enum class SnippetLanguage { C, Cpp };
 // Source that compiles by itself, with the plugin's header, and makes the scene of its files.
-std::string snippetOf(const Scene& scene, const OutputPlan& plan, SnippetLanguage language);
+std::string snippetOf(const OutputPlan& plan, SnippetLanguage language);
 
 // Seconds at which each texel catches, -1: never.
 fwimport::FloatPicture arrivalPicture(const ArrivalField& field);

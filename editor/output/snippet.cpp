@@ -202,8 +202,8 @@ constexpr Book kBooks[] = {{"roll_book", "FW_FLIPBOOK_ROLL", "fireBooks[0]"},
 
 class Writer {
  public:
-    Writer(const Scene& scene, const OutputPlan& plan, const Dialect& dialect)
-        : scene_(scene), plan_(plan), is_(dialect) {}
+    Writer(const OutputPlan& plan, const Dialect& dialect)
+        : scene_(plan.scene), plan_(plan), is_(dialect) {}
 
     std::string write() {
         addShared();
@@ -216,7 +216,8 @@ class Writer {
             if (!wind.hidden || wind.shape == WindEverywhere)
                 wind.shape == WindEverywhere ? addGust(wind) : addZone(wind);
         const std::string create = createFunction(), advance = advanceFunctions();
-        std::string text = head() + members() + helpers() + functions_ + advance + create;
+        std::string text =
+            head() + members() + helpers() + functions_ + advance + moveFunctions() + create;
         if (!is_.cpp)
             text += "void " + named("destroy") + "(" + is_.scene +
                     ") {\n    fwDestroyWorld(scene->world);\n    scene->world = NULL;\n}\n";
@@ -428,6 +429,7 @@ class Writer {
         if (source.shape == SourceFlamethrower) {
             const FwFireEmitterDef made = jetDefOf(scene_, source);
             emitter(source.id, source.name, made, true, 0);
+            carry(source.id, "fwWorld_MoveFireEmitter", in(name), made.position, made.direction);
             power(source, source.output, "fwWorld_SetFireEmitterPower", in(name));
             return;
         }
@@ -441,6 +443,7 @@ class Writer {
             line("return fwWorld_CreateVolumetricFire(" + world() + ", &def, &" + in(name) + at +
                  ");");
             functions_ += "}\n\n";
+            carry(source.id, "fwWorld_MoveVolumetricFire", in(name) + at, fires[i].position);
             power(source, 1 / static_cast<float>(fires.size()) * source.output,
                   "fwWorld_SetVolumetricFirePower", in(name) + at);
         }
@@ -485,7 +488,11 @@ class Writer {
     void addEmitter(const Emitter& one) {
         const bool sticks = findIn(scene_.meshes, one.sticksTo) != nullptr;
         if (one.shape == EmitterMesh && !sticks) return;  // it shows the fire of none
-        emitter(one.id, one.name, emitterDefOf(scene_, one), one.books, sticks ? one.sticksTo : 0);
+        const FwFireEmitterDef made = emitterDefOf(scene_, one);
+        emitter(one.id, one.name, made, one.books, sticks ? one.sticksTo : 0);
+        if (one.shape != EmitterMesh)
+            carry(one.id, "fwWorld_MoveFireEmitter", in(nameOf(one.id)), made.position,
+                  made.direction);
         power(one, one.power, "fwWorld_SetFireEmitterPower", in(nameOf(one.id)));
     }
 
@@ -564,6 +571,40 @@ class Writer {
                    literal(made.speed) + " * " + factor(wind, "time") + ", " + literal(kMostWind) +
                    ");\n        result = fwWorld_SetWindZone(" + world() + ", " + in(name) + ", &" +
                    in(name + "_zone") + ");\n        if (result < 0) return result;\n    }\n";
+    }
+
+    // What sticks to a mesh comes along when the game moves that.
+    void carry(ObjectId id, const std::string& function, const std::string& part,
+               const float (&position)[3], const float* direction = nullptr) {
+        const Mesh* mesh = meshHolding(scene_, id);
+        if (!mesh) return;
+        const Pose pose = transformOf(*mesh);
+        const auto list = [](const Vec3& v) {
+            return "{" + literal(v[0]) + ", " + literal(v[1]) + ", " + literal(v[2]) + "}";
+        };
+        std::string& text = carried_[mesh->id];
+        text += "    if (result >= 0) {\n        static const float own[3] = " +
+                list(positionWithin(pose, {position[0], position[1], position[2]})) + ";\n";
+        if (direction)
+            text += "        static const float ahead[3] = " +
+                    list(offsetWithin(pose, {direction[0], direction[1], direction[2]})) +
+                    ";\n        float way[3];\n        within_pose(transform, ahead, 0, way);\n";
+        text += "        within_pose(transform, own, 1, place);\n        result = " + function +
+                "(" + world() + ", " + part + ", place" + (direction ? ", way" : "") +
+                ");\n    }\n";
+    }
+    std::string moveFunctions() const {
+        std::string text;
+        for (const auto& [id, parts] : carried_)
+            text += "/* " + words(findIn(scene_.meshes, id)->name) +
+                    " goes there (object to world, column-major), and what sticks to it. */\n"
+                    "FwResult " +
+                    named(("move_" + nameOf(id)).c_str()) + "(" + is_.scene +
+                    ", const float transform[16]) {\n    float place[3];\n    FwResult result = "
+                    "fwWorld_SetTransform(" +
+                    world() + ", " + in(nameOf(id)) + ", transform);\n" + parts +
+                    "    return result;\n}\n\n";
+        return text;
     }
 
     // The output over time, of what has times or keys.
@@ -690,6 +731,13 @@ class Writer {
                 "        value = a[1] + (b[1] - a[1]) * (time - a[0]) / (b[0] - a[0]);\n        "
                 "break;\n    }\n"
                 "    return value > 0 ? value : 0.0f;\n}\n\n";
+        if (!carried_.empty())
+            text +=
+                "/* A place, or with 0 for `moves` a way, of a thing that stands at a pose. */\n"
+                "static void within_pose(const float pose[16], const float own[3], float moves, "
+                "float* out) {\n    int i;\n    for (i = 0; i < 3; ++i)\n"
+                "        out[i] = pose[i] * own[0] + pose[4 + i] * own[1] + pose[8 + i] * own[2] + "
+                "pose[12 + i] * moves;\n}\n\n";
         if (pours_) text += pour();
         return text;
     }
@@ -809,14 +857,15 @@ class Writer {
     const OutputPlan& plan_;
     const Dialect& is_;
     std::string members_, functions_, calls_, advance_, powers_, blow_;
+    std::map<ObjectId, std::string> carried_;  // by the mesh
     // Which helpers are needed.
     bool reads_ = false, times_ = false, parts_ = false, pours_ = false, gusts_ = false;
 };
 
 }  // namespace
 
-std::string snippetOf(const Scene& scene, const OutputPlan& plan, SnippetLanguage language) {
-    return Writer(scene, plan, language == SnippetLanguage::Cpp ? kCpp : kC).write();
+std::string snippetOf(const OutputPlan& plan, SnippetLanguage language) {
+    return Writer(plan, language == SnippetLanguage::Cpp ? kCpp : kC).write();
 }
 
 }  // namespace fwedit

@@ -59,8 +59,7 @@ bool snippet(ScriptHost& host, const Words& words, std::string& error) {
     }
     if (!planOutput(outputOf(host), plan, error)) return false;
     const std::string text =
-        snippetOf(host.document.scene, plan,
-                  file.extension() == ".c" ? SnippetLanguage::C : SnippetLanguage::Cpp);
+        snippetOf(plan, file.extension() == ".c" ? SnippetLanguage::C : SnippetLanguage::Cpp);
     std::error_code ignored;
     fs::create_directories(file.parent_path(), ignored);
     error = fwtools::writeWhole(file.string(), std::as_bytes(std::span(text)));

@@ -339,6 +339,7 @@ bool runOwn(ScriptHost& host, const Words& words, const std::string& line, bool&
     if (verb == "new") {
         Document fresh = newDocument();
         fresh.surface = host.document.surface;
+        fresh.nodePose = host.document.nodePose;
         fresh.folder = host.folder;
         fresh.revision = host.document.revision + 1;
         host.document = std::move(fresh);
@@ -384,6 +385,11 @@ ScriptHost::ScriptHost(fs::path begin) : folder(std::move(begin)), document(newD
         const auto surface = paintSurfaceOf(context, *found, baseFolder(document), assets, error);
         if (!surface) say(error);
         return surface.get();  // assets keep it
+    };
+    document.nodePose = [this](const Mesh& mesh, std::string_view node, Pose& pose,
+                               std::string& error) {
+        const auto model = modelOf(mesh, baseFolder(document), assets, error);
+        return model && nodePoseOf(*model, mesh, node, pose, error);
     };
 }
 

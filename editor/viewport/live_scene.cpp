@@ -380,7 +380,8 @@ void LiveScene::moveDragged(const fwedit::Document& document) {
     }
     for (const fwedit::BurnPart& part : burn_->parts) {
         if (!fwedit::findObject(document.scene, part.id)) continue;
-        const fwedit::Vec3 place = fwedit::worldPosition(document.scene, part.id);
+        const fwedit::Vec3 place =
+            fwedit::worldPosition(document.scene, part.id, document.nodePose);
         for (const FwVolumetricFireId fire : part.fires)
             fwWorld_MoveVolumetricFire(burn_->world, fire, place.data());
     }

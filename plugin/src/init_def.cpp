@@ -83,6 +83,14 @@ void defaults(FwWindZoneDef& def) noexcept {
     def.falloff = 0.5f;
 }
 
+void defaults(FwWindGridDef& def) noexcept {
+    def.blend = FW_WIND_REPLACE;
+    def.counts[0] = def.counts[1] = def.counts[2] = 2;
+    def.cellSize = 1;
+}
+
+void defaults(FwGustDef& def) noexcept { def.size = 12; }
+
 void defaults(FwRoomDef& def) noexcept {
     def.rotation[3] = 1;
     set(def.halfSize, 2, 1.25f, 2.5f);
@@ -208,6 +216,10 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwNetDef);
         case FW_DEF_WIND_ZONE:
             return sizeof(FwWindZoneDef);
+        case FW_DEF_WIND_GRID:
+            return sizeof(FwWindGridDef);
+        case FW_DEF_GUSTS:
+            return sizeof(FwGustDef);
         case FW_DEF_ROOM:
             return sizeof(FwRoomDef);
         case FW_DEF_FIRE_COLLIDER:
@@ -272,6 +284,12 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_WIND_ZONE:
             write<FwWindZoneDef>(def);
+            return true;
+        case FW_DEF_WIND_GRID:
+            write<FwWindGridDef>(def);
+            return true;
+        case FW_DEF_GUSTS:
+            write<FwGustDef>(def);
             return true;
         case FW_DEF_ROOM:
             write<FwRoomDef>(def);

@@ -188,6 +188,23 @@ FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld* world, FwWindZoneId id) {
     return destroyOf("fwWorld_DestroyWindZone", world, &world::World::destroyWindZone, id);
 }
 
+FwResult FW_CALL fwWorld_SetWindGrid(FwWorld* world, const FwWindGridDef* given) {
+    return onWorld("fwWorld_SetWindGrid", world, [&](world::World& w) {
+        if (given)
+            w.setWindGrid(edge::readDef(given, FW_DEF_WIND_GRID, "FwWindGridDef"));
+        else
+            w.setWindGrid({});
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_SetGusts(FwWorld* world, const FwGustDef* given) {
+    return onWorld("fwWorld_SetGusts", world, [&](world::World& w) {
+        w.setGusts(edge::readDef(given, FW_DEF_GUSTS, "FwGustDef"));
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_GetWindAt(FwWorld* world, const float point[3], float wind[3]) {
     return onWorld("fwWorld_GetWindAt", world, [&](world::World& w) {
         checkPointer(point, "point");

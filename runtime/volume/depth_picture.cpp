@@ -23,6 +23,10 @@ constexpr int kAround[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
                                {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
 constexpr float kStraight = 0.8f;  // cosine, of ways to two texels in a row on one surface
 constexpr float kPatch = 0.6f;  // of the way to the next texel: so far from its middle one reaches
+// Looked for up and down over the reach; so often closer.
+constexpr int kShelfSteps = 12, kShelfCloser = 4;
+constexpr float kShelfLevel = 0.5f;   // its normal's share of up, at least
+constexpr float kShelfInside = 0.7f;  // of its thickness: gas in it is put back down, above it up
 
 glm::mat4 matrixOf(const float m[16]) noexcept {
     glm::mat4 out;
@@ -95,6 +99,72 @@ bool meet(const DepthTexel& texel, float reach, vec3 point, bool behind,
     return true;
 }
 
+// What the picture has where a point from the eye is; null: it is beside the picture.
+const DepthTexel* texelAt(const DepthPicture& picture, vec3 off, int& column, int& row) noexcept {
+    const vec4 clip = picture.toClip * vec4(off, 1.0f);
+    if (!(clip.w > 1e-6f)) return nullptr;
+    const float x = (0.5f * clip.x / clip.w + 0.5f) * float(picture.columns);
+    const float y = (0.5f * clip.y / clip.w + 0.5f) * float(picture.rows);
+    if (!(x >= 0.0f && y >= 0.0f && x < float(picture.columns) && y < float(picture.rows)))
+        return nullptr;
+    column = int(x), row = int(y);
+    return &picture.texels[size_t(row) * picture.columns + size_t(column)];
+}
+
+bool isBehind(const DepthTexel& texel, vec3 off) noexcept {
+    return texel.known && glm::dot(off - texel.place, texel.normal) < 0.0f;
+}
+
+// The underside of what is seen from above over a point, where the room below it is seen too: as
+// far below its top as it is taken to be thick, or where that room ends. Ground has no such room.
+void meetShelf(const DepthPicture& picture, float reach, vec3 off, Nearest& nearest) noexcept {
+    const vec3 step(0.0f, reach / float(kShelfSteps), 0.0f);
+    const auto hides = [&](vec3 at, const DepthTexel*& texel) {
+        int column, row;
+        texel = texelAt(picture, at, column, row);
+        return texel && isBehind(*texel, at);
+    };
+    const DepthTexel* texel = nullptr;  // where a point was last looked for
+    bool hidden = hides(off, texel);
+    int up = 1;
+    for (; up <= kShelfSteps; ++up) {
+        const bool before = hidden;
+        hidden = hides(off + float(up) * step, texel);
+        if (!texel) return;
+        if (before && !hidden) break;
+    }
+    if (up > kShelfSteps) return;
+    // Close over its top: further up rays to the eye pass over what is behind it.
+    vec3 over = off + float(up) * step, under = over - step;
+    for (int k = 0; k < kShelfCloser; ++k) {
+        const DepthTexel* at = nullptr;
+        const vec3 middle = 0.5f * (over + under);
+        if (hides(middle, at)) {
+            under = middle;
+        } else {
+            over = middle;
+            texel = at;
+        }
+        if (!at) return;
+    }
+    if (!texel->known || texel->normal.y < kShelfLevel) return;
+    const float top = over.y - glm::dot(over - texel->place, texel->normal) / texel->normal.y;
+    if (over.y - top > step.y) return;  // what is seen there lies far behind
+    float room = 1e9f;
+    for (int down = up - 1; down >= up - 2 * kShelfSteps && room == 1e9f; --down) {
+        const vec3 at = off + float(down) * step;
+        const bool covered = hides(at, texel);
+        if (!texel) return;
+        if (!covered && at.y < top) room = at.y;
+    }
+    if (room == 1e9f) return;
+    const float thick = std::min(kThick * reach, top - room);
+    const float below = top - thick - off.y;
+    if (below < -kShelfInside * thick || below >= nearest.away) return;
+    nearest.away = std::abs(below);
+    nearest.surface = {below, vec3(0.0f, -1.0f, 0.0f)};
+}
+
 }  // namespace
 
 void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint32_t columns,
@@ -148,32 +218,26 @@ void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint3
 
 Surface surfaceOf(const DepthPicture& picture, float reach, vec3 point) noexcept {
     const vec3 off = point - picture.eye;
-    const vec4 clip = picture.toClip * vec4(off, 1.0f);
-    if (!(clip.w > 1e-6f)) return {};
-    const float x = (0.5f * clip.x / clip.w + 0.5f) * float(picture.columns);
-    const float y = (0.5f * clip.y / clip.w + 0.5f) * float(picture.rows);
-    if (!(x >= 0.0f && y >= 0.0f && x < float(picture.columns) && y < float(picture.rows)))
-        return {};
-    const int column = int(x), row = int(y);
-    const auto texelAt = [&](int i, int j) -> const DepthTexel& {
-        return picture.texels[size_t(j) * picture.columns + size_t(i)];
-    };
-    const DepthTexel& own = texelAt(column, row);
-    const bool behind = own.known && glm::dot(off - own.place, own.normal) < 0.0f;
+    int column = 0, row = 0;
+    const DepthTexel* own = texelAt(picture, off, column, row);
+    if (!own) return {};
+    const bool behind = isBehind(*own, off);
     Nearest nearest;
     const auto look = [&](int i, int j) {
         if (i < 0 || j < 0 || i >= int(picture.columns) || j >= int(picture.rows)) return;
-        if (meet(texelAt(i, j), reach, off, behind, nearest)) nearest.column = i, nearest.row = j;
+        const DepthTexel& texel = picture.texels[size_t(j) * picture.columns + size_t(i)];
+        if (meet(texel, reach, off, behind, nearest)) nearest.column = i, nearest.row = j;
     };
     look(column, row);
     for (const int ring : kRings)
         for (const auto& way : kAround) look(column + ring * way[0], row + ring * way[1]);
-    if (nearest.away > reach) return {};
-    for (const int ring : kCloser) {
-        const int i = nearest.column, j = nearest.row;
-        for (const auto& way : kAround) look(i + ring * way[0], j + ring * way[1]);
-    }
-    return nearest.surface;
+    if (nearest.away <= reach)
+        for (const int ring : kCloser) {
+            const int i = nearest.column, j = nearest.row;
+            for (const auto& way : kAround) look(i + ring * way[0], j + ring * way[1]);
+        }
+    meetShelf(picture, reach, off, nearest);
+    return nearest.away <= reach ? nearest.surface : Surface{};
 }
 
 }  // namespace fw::volume

@@ -34,7 +34,8 @@ void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint3
                      uint32_t rows, const float view[16], const float projection[16]);
 
 // Of what is shown within `reach` m around a point the nearest. A little behind a surface it is
-// inside; further behind, or beside the picture, nothing is known and far away.
+// inside; further behind, or beside the picture, nothing is known and far away, but for the
+// underside of what is seen from above with room below it.
 Surface surfaceOf(const DepthPicture& picture, float reach, vec3 point) noexcept;
 
 }  // namespace fw::volume

@@ -9,6 +9,14 @@
 namespace fw::world {
 namespace {
 
+// In bad air fire's time passes slower: ticks told from `from` on for good air as they are in this
+// one, if it stays; kNever: fire does not burn in it.
+uint64_t inAir(uint64_t tick, uint64_t from, uint32_t air) noexcept {
+    const uint32_t strength = gpu::airStrength(air);
+    if (tick <= from || strength >= gpu::kAirFull) return tick;
+    return strength == 0 ? gpu::kNever : from + (tick - from) * gpu::kAirFull / strength;
+}
+
 bool answers(const Forecast& forecast, const Query& query) noexcept {
     return forecast.told && forecast.changes >= query.since && forecast.tick >= query.sinceTick;
 }
@@ -58,7 +66,7 @@ void World::takeForecast(Object& object, const gpu::BurnMap& map,
                          const gpu::Readback& readback) noexcept {
     Forecast& forecast = *object.forecast;
     forecast.pending = false;
-    const components::DriveInput drive = driveInput(object);
+    const components::DriveInput drive = driveInput(object, clock_.tick);
     components::Latch latch = object.latch;
     components::resetLatch(object.data, drive, latch);
     const components::Records records =
@@ -104,6 +112,10 @@ bool World::fetchArrival(FwQueryId id, FwArrivalState& state) {
         const uint32_t stop = object.counters.stopTick;
         comes = gpu::isSource(uint32_t(tick)) && !(tick > forecast.tick && stop && tick >= stop);
         if (comes ? tick >= forecast.arrivals.settled() : !forecast.arrivals.whole) return false;
+        if (comes) {
+            tick = inAir(tick, forecast.tick, object.counters.air);
+            comes = tick != gpu::kNever;
+        }
         state.frameIndex = forecast.frameIndex;
     }
     const uint64_t now = clock_.hostTick();

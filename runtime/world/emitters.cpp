@@ -17,7 +17,7 @@ components::EmitterAir World::emitterAir(const FireEmitter& emitter, float ahead
     const core::Owned<Object>* object =
         emitter.def.shape == FW_EMITTER_MESH ? objects_.find(emitter.def.object) : nullptr;
     const std::array<float, 3> wind =
-        windAt(object ? (*object)->data.pose.translation : emitter.position);
+        windAt(object ? (*object)->data.pose.translation : emitter.position, clock_.tick);
     std::copy_n(wind.data(), 3, air.wind);
     std::copy_n(def_.up, 3, air.up);
     air.now = emitterTime_ + double(ahead);

@@ -99,7 +99,7 @@ void World::particleFieldState(FwParticleFieldId id, FwParticleFieldState& state
 }
 
 field::FieldRules World::rulesOf(const components::ParticleField& field) const noexcept {
-    return components::rulesOf(field, windAt(field.position).data());
+    return components::rulesOf(field, steadyWindAt(field.position).data());
 }
 
 void World::sendFieldRules() noexcept {

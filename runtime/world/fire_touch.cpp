@@ -96,8 +96,9 @@ void World::touchByFire(Fire& fire, uint32_t now) {
     for (FireTouch& touch : fire.touches) touch.seen = false;
     std::array<Ball, volume::kMaxControlPoints> balls;
     const uint32_t count =
-        fire.data.power > 0 ? ballsOf(fire.data, def_.up, windAt(fire.data.position).data(), balls)
-                            : 0;
+        fire.data.power > 0
+            ? ballsOf(fire.data, def_.up, windAt(fire.data.position, now).data(), balls)
+            : 0;
     for (uint32_t slot = 0; count > 0 && slot < objects_.slotCount(); ++slot) {
         auto* owned = objects_.at(slot);
         if (!owned || (*owned)->texels == 0) continue;

@@ -188,7 +188,7 @@ void World::planFires(float seconds) noexcept {
         burning_.begin();
         for (uint32_t i = 0; i < fires_.slotCount(); ++i)
             if (auto* fire = fires_.at(i)) {
-                const std::array<float, 3> wind = windAt((*fire)->data.position);
+                const std::array<float, 3> wind = windAt((*fire)->data.position, clock_.tick);
                 std::copy_n(wind.data(), 3, (*fire)->data.wind);
                 burning_.settle((*fire)->data, air);
             }

@@ -77,6 +77,15 @@ void putRoom(Way& way, Def& def) {
     way.number(def.oxygen);
 }
 
+template <class Way, class Def>
+void putGrid(Way& way, Def& def) {
+    way.bits(def.blend, 8);
+    for (auto& count : def.counts) way.bits(count, 8);
+    for (auto& value : def.origin) way.number(value);
+    way.number(def.cellSize);
+    way.number(def.fade);
+}
+
 }  // namespace
 
 Deed deedOf(const FwWindZoneDef& def) noexcept {
@@ -107,6 +116,20 @@ FwRoomDef roomDefOf(const Deed& deed) noexcept {
     def.structSize = sizeof def;
     DeedReader reader{deed};
     putRoom(reader, def);
+    return def;
+}
+
+Deed deedOf(const FwWindGridDef& def) noexcept {
+    DeedWriter writer;
+    putGrid(writer, def);
+    return writer.deed;
+}
+
+FwWindGridDef windGridDefOf(const Deed& deed) noexcept {
+    FwWindGridDef def{};
+    def.structSize = sizeof def;
+    DeedReader reader{deed};
+    putGrid(reader, def);
     return def;
 }
 
@@ -207,6 +230,17 @@ void World::perform(const Deed& deed) {
                               numbers[0]);
         case Deed::Kind::stopBurn:
             return stopBurn(idAt(objects_, deed.slot));
+        case Deed::Kind::windGrid:
+            return takeWindGrid(deed);
+        case Deed::Kind::windPoints:
+            return takeWindPoints(deed);
+        case Deed::Kind::gusts: {
+            FwGustDef def{};
+            def.structSize = sizeof def;
+            def.strength = numbers[0];
+            def.size = numbers[1];
+            return setGusts(def);
+        }
         case Deed::Kind::ignite: {
             if (deed.tick < clock_.tick || deed.tick > Clock::kLastTick) break;
             FwIgnitionDef def{};

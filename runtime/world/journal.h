@@ -32,14 +32,17 @@ struct Deed {
         room,
         playBurn,
         stopBurn,
+        windGrid,
+        windPoints,
+        gusts,
         count
     };
     Kind kind = Kind::count;
-    uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all
+    uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all; windPoints: the first
     uint32_t tick = 0;  // ignite, playBurn: when it takes effect
     uint32_t word = 0;  // flags; ignite: FwIgnitionKind; moveEmitter: 1: with a direction;
-                        // windZone, room: what of their defs is no float, see deedOf; playBurn:
-                        // slot + 1 of the burn
+                        // windZone, room, windGrid: what of a def is no float, see deedOf;
+                        // playBurn: slot + 1 of the burn
     std::array<float, 13> numbers{};
 };
 
@@ -64,6 +67,9 @@ constexpr DeedForm kDeedForms[] = {
     {true, false, true, 13},   // room
     {true, true, true, 1},     // playBurn
     {true, false, false, 0},   // stopBurn
+    {false, false, true, 5},   // windGrid
+    {true, false, false, 12},  // windPoints
+    {false, false, false, 2},  // gusts
 };
 static_assert(std::size(kDeedForms) == size_t(Deed::Kind::count));
 template <class S, class T>
@@ -78,8 +84,10 @@ void putDeed(S& s, T& deed) {
 // A def as a deed's word and numbers, and back. Its kind and slot are others' business.
 [[nodiscard]] Deed deedOf(const FwWindZoneDef& def) noexcept;
 [[nodiscard]] Deed deedOf(const FwRoomDef& def) noexcept;
+[[nodiscard]] Deed deedOf(const FwWindGridDef& def) noexcept;  // without its points
 [[nodiscard]] FwWindZoneDef windZoneDefOf(const Deed& deed) noexcept;
 [[nodiscard]] FwRoomDef roomDefOf(const Deed& deed) noexcept;
+[[nodiscard]] FwWindGridDef windGridDefOf(const Deed& deed) noexcept;
 
 constexpr uint32_t kHashSteps = 8;    // an object's turn is at multiples of these
 constexpr uint32_t kHashRounds = 16;  // each has its turn once in so many; in more, if it is more

@@ -29,11 +29,11 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
                          [&](const Frame::LatchOf& entry) { return entry.object == &object; });
         if (known != frame_.latches.end()) {
             known->due = true;
-            if (!known->latch.sent) sendRecords(object, driveInput(object), known->latch);
+            if (!known->latch.sent) sendRecords(object, driveInput(object, now), known->latch);
             continue;
         }
         components::Latch latch = object.latch;
-        const components::DriveInput drive = driveInput(object);
+        const components::DriveInput drive = driveInput(object, now);
         components::resetLatch(object.data, drive, latch);
         latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
         if (!latch.sent) sendRecords(object, drive, latch);
@@ -42,19 +42,19 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
     }
     const bool fresh = firstEvent < frame_.events.size();
     if (remoteOn()) {
-        if (fresh || placed) touchNear();
+        if (fresh || placed) touchNear(now);
         // Nobody knows which of them the fire reaches first.
         if (fresh)
             for (Frame::LatchOf& entry : frame_.latches)
                 if (!entry.latch.sent)
-                    sendRecords(*entry.object, driveInput(*entry.object), entry.latch);
+                    sendRecords(*entry.object, driveInput(*entry.object, now), entry.latch);
     }
     // While anything burns or is hot, any of them may be next.
     const bool anyActive = remoteOn() && (fresh || !idle_);
     const bool latchNow = now % fire::kWindLatchTicks == 0;
     for (Frame::LatchOf& entry : frame_.latches) {
         Object& object = *entry.object;
-        const components::DriveInput drive = driveInput(object);
+        const components::DriveInput drive = driveInput(object, now);
         components::filterLatch(object.data, domainOf(object), drive, entry.latch);
         if (!latchNow || !components::latchDrive(object.data, entry.latch)) continue;
         entry.latch.sent = false;

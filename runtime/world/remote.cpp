@@ -114,8 +114,16 @@ gpu::ExchangePush World::exchangeRules() const noexcept {
     return rules;
 }
 
+// Whom another wind finds is where it was, and touches whom it did.
+void World::takeRemoteWind(Object& object, int wind) noexcept {
+    if (object.remoteVersion == 0 || wind == object.remote.high.w) return;
+    object.remote.high.w = wind;
+    object.remoteSent = false;
+    remote_.unsent = true;
+}
+
 // Poses and blockers as they are now.
-void World::latchRemote(uint32_t) {
+void World::latchRemote(uint32_t now) {
     for (const uint32_t slot : remote_.due) {
         Object& object = **objects_.at(slot);
         const mesh::BurnDomain& domain = domainOf(object);
@@ -123,9 +131,10 @@ void World::latchRemote(uint32_t) {
         components::placeRemote(object.data.pose, domain, record);
         components::fillRemote(object.data, domain, object.governance, record);
         if (object.texels == 0) record.flags &= ~gpu::kRemoteLive;
-        record.high.w = int(object.zoneWind);
+        record.high.w = int(zoneWindOf(object, now));
         record.neighbourFirst = object.remote.neighbourFirst;
         record.neighbourCount = object.remote.neighbourCount;
+        takeRemoteWind(object, record.high.w);
         if (object.remoteVersion != 0 && sameRecord(record, object.remote)) continue;
         object.remote = record;
         object.reach = components::remoteReach(object.data, domain,
@@ -134,6 +143,8 @@ void World::latchRemote(uint32_t) {
         object.remoteSent = false;
         remote_.unsent = true;
     }
+    for (uint32_t slot = 0; gusty() && slot < objects_.slotCount(); ++slot)
+        if (auto* owned = objects_.at(slot)) takeRemoteWind(**owned, int(zoneWindOf(**owned, now)));
     if (!remote_.blockersDue) return;
     remote_.blockers.clear();
     for (uint32_t i = 0; i < blockers_.slotCount(); ++i)
@@ -337,14 +348,14 @@ void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
 
 // Whom fire may reach from those that an event touched must see the same wind on every backend, be
 // the readback that tells of it late or not.
-void World::touchNear() {
+void World::touchNear(uint32_t now) {
     const auto add = [&](uint32_t slot) {
         auto* owned = objects_.at(slot);
         if (!owned || (*owned)->planStamp == planStamp_ || (*owned)->touched) return;
         Object& object = **owned;
         object.planStamp = planStamp_;
         components::Latch latch = object.latch;
-        components::resetLatch(object.data, driveInput(object), latch);
+        components::resetLatch(object.data, driveInput(object, now), latch);
         latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
         frame_.latches.push_back({&object, latch, true});
     };

@@ -112,8 +112,8 @@ uint64_t World::assetOf(const Object& object) noexcept {
 // Ticks beyond which nobody asks when a tile last changed.
 uint32_t World::windowOf(const Object& object) noexcept {
     components::Latch latch = object.latch;
-    const components::Records records =
-        components::makeRecords(object.data, domainOf(object), driveInput(object), latch);
+    const components::Records records = components::makeRecords(
+        object.data, domainOf(object), driveInput(object, clock_.tick), latch);
     uint32_t window = records.timing.window;
     for (const gpu::BurnMaterial& material : records.materials)
         window = std::max(window, material.windowMax);
@@ -198,6 +198,9 @@ void World::noteSaved(SavedWorld& to) {
     to.droppedSteps = droppedSteps_;
     to.order = order_;
     std::copy_n(wind_, 3, to.wind);
+    to.windGrid.shape = windGrid_.shape;
+    to.windGrid.points.assign(windGrid_.points.begin(), windGrid_.points.end());
+    to.gusts = gusts_;
     to.flags = remote_.flags | remote_.objectFlags;
     to.warms = remote_.warms;
     to.blockersDue = remote_.blockersDue;
@@ -479,6 +482,10 @@ void World::checkSaved(const SavedWorld& saved) {
     if (saved.latchedBlockers.size() > gpu::kMaxBlockers)
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu latched blockers; the limit is %u.",
                    saved.latchedBlockers.size(), gpu::kMaxBlockers);
+    if (!components::plausible(saved.windGrid.shape) ||
+        saved.windGrid.shape.points() != saved.windGrid.points.size() ||
+        !components::plausible(saved.gusts, clock.tick))
+        core::fail(FW_ERROR_BAD_DATA, "The save has a grid of wind or gusts that none can be.");
     for (const SavedWindZone& zone : saved.windZones)
         if (zone.slot >= windPool_.slotCount() || !windPool_.at(zone.slot) ||
             !components::plausible(zone.zone))
@@ -574,9 +581,10 @@ SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
                               components::Latch& latch) {
     const Object& object = **objects_.at(from.slot);
     const mesh::BurnDomain& domain = domainOf(object);
-    components::DriveInput drive = driveInput(object);
-    drive.wind = components::windIn(saved.zones, fire::windUnits(saved.wind),
-                                    windPlaceOf(from.pose, domain));
+    components::DriveInput drive = driveInput(object, clock_.tick);
+    drive.wind =
+        windOf({fire::windUnits(saved.wind), saved.windGrid, saved.gusts, saved.zones, saved.seed},
+               windPlaceOf(from.pose, domain), saved.clock.tick);
     components::BurnableMesh posed = object.data;
     posed.pose = from.pose;
     components::resetLatch(posed, drive, latch);
@@ -635,6 +643,8 @@ void World::load(std::span<const std::byte> bytes) {
     backend_.restore(restored, uint32_t(saved.clock.tick));
 
     // From here on nothing fails.
+    windGrid_.shape = saved.windGrid.shape;
+    windGrid_.points.swap(saved.windGrid.points);
     applySaved(saved, latches);
     tags_.swap(tags);
     pending_.swap(saved.pending);
@@ -649,6 +659,7 @@ void World::applySaved(const SavedWorld& saved,
     droppedSteps_ = saved.droppedSteps;
     order_ = saved.order;
     std::copy_n(saved.wind, 3, wind_);
+    gusts_ = saved.gusts;
     for (const SavedWindZone& zone : saved.windZones) *windPool_.at(zone.slot) = zone.zone;
     listWindZones();
     roomsMet_ = !saved.rooms.empty();
@@ -753,7 +764,7 @@ void World::applySaved(const SavedWorld& saved,
 void World::applyObject(const SavedObject& from, const components::Latch& latch,
                         Object& object) noexcept {
     object.data.pose = from.pose;
-    object.zoneWind = zoneWindOf(object);
+    object.zoneWind = zoneWindOf(object, clock_.tick);
     backend_.setObjectWind(object.slot, object.zoneWind);
     object.room1 = roomOf(object);
     roomsMet_ |= from.counters.air != 0;
@@ -790,7 +801,7 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
             components::placeRemote(object.data.pose, domain, object.remote);
             components::fillRemote(object.data, domain, object.governance, object.remote);
             if (object.texels == 0) object.remote.flags &= ~gpu::kRemoteLive;
-            object.remote.high.w = int(object.zoneWind);
+            object.remote.high.w = from.remote.high.w;
         }
         object.reach = components::remoteReach(object.data, domain,
                                                meshes_.at(object.data.meshSlot)->texelsOf);

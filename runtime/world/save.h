@@ -88,7 +88,7 @@ struct SavedObject {
     Play play;
     uint64_t burnHash = 0;
     bool placed = false, due = false;  // as others see it; it is to be seen anew
-    gpu::RemoteObject remote{};        // where it is due
+    gpu::RemoteObject remote{};        // where it is due; else its wind alone
     bool touched = false;              // the rest is of those alone
     std::array<fire::WindFilter, components::kMaterials> filters{};
     components::Pose latched;
@@ -99,7 +99,8 @@ struct SavedObject {
 
 struct SavedWorld {
     explicit SavedWorld(std::pmr::memory_resource* memory)
-        : objects(memory),
+        : windGrid(memory),
+          objects(memory),
           pending(memory),
           tags(memory),
           pairs(memory),
@@ -118,6 +119,8 @@ struct SavedWorld {
     Clock clock;
     uint64_t steps = 0, droppedSteps = 0, order = 0;
     float wind[3] = {};
+    components::WindGrid windGrid;
+    components::Gusts gusts;
     uint32_t flags = 0;
     bool warms = false, blockersDue = false;
     uint64_t fades = 0;
@@ -181,7 +184,7 @@ struct Save {  // on its way, and the last one
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 4;
+constexpr uint32_t kSaveVersion = 5;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
 

@@ -18,6 +18,7 @@ using save::PlaneMask;
 constexpr uint32_t kMagic = 0x56535746u;  // "FWSV"
 constexpr size_t kHeaderBytes = 24;
 constexpr const char* kWhat = "save";
+constexpr uint32_t kMostWindPlane = 2 * 120 * 128;  // see WindGrid's plane of an axis
 
 // FNV-1a over 8 bytes at a time, the last few one by one: a save has many.
 uint64_t checksum(std::span<const std::byte> bytes) noexcept {
@@ -65,6 +66,10 @@ void put(S& s, T& value);
 template <typename S, Is<gpu::Blocker> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedWindZone> T>
+void put(S& s, T& value);
+template <typename S, Is<components::WindGrid> T>
+void put(S& s, T& value);
+template <typename S, Is<components::Gusts> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedRoom> T>
 void put(S& s, T& value);
@@ -181,6 +186,43 @@ void put(S& s, T& z) {
     all(s, z.slot, z.zone.shape, z.zone.flow, z.zone.blend, z.zone.priority, z.zone.middle,
         z.zone.axis, z.zone.size, z.zone.speed, z.zone.fades);
 }
+// Its points as three planes, one of each axis; what is negative is odd.
+template <typename S, Is<components::WindGrid> T>
+void put(S& s, T& g) {
+    all(s, g.shape.blend, g.shape.counts, g.shape.origin, g.shape.cell, g.shape.fade);
+    if constexpr (S::kReads) {
+        if (!components::plausible(g.shape))
+            core::fail(FW_ERROR_BAD_DATA, "The save has a grid of wind that none can be.");
+        g.points.assign(g.shape.points(), {});
+    }
+    if (g.points.empty()) return;
+    std::pmr::vector<uint32_t> plane(g.points.size(), g.points.get_allocator());
+    for (size_t axis = 0; axis < 3; ++axis) {
+        if constexpr (S::kReads) {
+            const uint32_t size = s.count("bytes of a grid of wind", 1);
+            bool fine = save::readPlane(s.take(size), g.shape.counts[0], {}, plane);
+            for (size_t i = 0; i < plane.size(); ++i) {
+                fine = fine && plane[i] <= kMostWindPlane;
+                g.points[i][axis] =
+                    int16_t(plane[i] & 1u ? -int32_t(plane[i] / 2) - 1 : int32_t(plane[i] / 2));
+            }
+            if (!fine) core::fail(FW_ERROR_BAD_DATA, "The save's grid of wind is damaged.");
+        } else {
+            for (size_t i = 0; i < plane.size(); ++i) {
+                const int32_t units = g.points[i][axis];
+                plane[i] = units < 0 ? uint32_t(-units - 1) * 2 + 1 : uint32_t(units) * 2;
+            }
+            std::pmr::vector<std::byte> bytes(s.bytes().get_allocator());
+            save::writePlane(plane, g.shape.counts[0], {}, bytes);
+            s.number(uint32_t(bytes.size()));
+            s.bytes().insert(s.bytes().end(), bytes.begin(), bytes.end());
+        }
+    }
+}
+template <typename S, Is<components::Gusts> T>
+void put(S& s, T& g) {
+    all(s, g.strength, g.size, g.drift, g.since);
+}
 template <typename S, Is<SavedRoom> T>
 void put(S& s, T& r) {
     all(s, r.slot, r.room.middle, r.room.half, r.room.axes, r.room.volume, r.room.vent,
@@ -201,6 +243,7 @@ void put(S& s, T& o) {
     all(s, o.slot, o.asset, o.pose, o.firstEvent, o.play.burn1, o.placed, o.due);
     if (o.play.burn1 != 0) all(s, o.burnHash, o.play.first, o.play.rate, o.play.began, o.play.ends);
     if (o.placed && o.due) putWords(s, o.remote);
+    if (o.placed && !o.due) put(s, o.remote.high.w);
     all(s, o.touched);
     if (!o.touched) return;
     all(s, o.filters, o.latched, o.story);
@@ -287,6 +330,8 @@ void put(S& s, T& w) {
     list(s, w.pairs, "pairs that touch", 12);
     list(s, w.blockers, "blockers", 64);
     list(s, w.latchedBlockers, "latched blockers", 64);
+    put(s, w.windGrid);
+    put(s, w.gusts);
     list(s, w.windZones, "wind zones", 108);
     list(s, w.rooms, "rooms", 148);
     list(s, w.fires, "volumetric fires", 24);

@@ -42,6 +42,7 @@ void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
 void World::advance(uint64_t frameIndex, float deltaTime) {
     checkFrame(frameIndex, deltaTime);
     collectReadbacks();
+    settleWind();
     const ClockAdvance time = fw::world::advance(clock_, deltaTime, def_.maxStepsPerFrame);
     const size_t waiting = pending_.size();
     ++sweeps_;
@@ -119,8 +120,9 @@ void World::planSteps(const ClockAdvance& time) {
                        (switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;
     for (Object* object : touched_) {
         // Where fire goes from object to object, many wait for it under a wind that they know.
-        if (remoteOn() &&
-            components::atRest(object->data, domainOf(*object), driveInput(*object), object->latch))
+        if (remoteOn() && !gusty() &&
+            components::atRest(object->data, domainOf(*object), driveInput(*object, clock_.tick),
+                               object->latch))
             continue;
         frame_.latches.push_back({object, object->latch, false});
         object->planStamp = planStamp_;

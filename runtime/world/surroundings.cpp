@@ -54,7 +54,7 @@ components::Surroundings World::surroundingsAt(const components::SurroundingAir&
                                                components::vec3 point) const noexcept {
     components::SurroundingAir here = air;
     const float place[3] = {point.x, point.y, point.z};
-    here.wind = volume::vecOf(windAt(place).data());
+    here.wind = volume::vecOf(windAt(place, clock_.tick).data());
     components::Surroundings at = components::surroundingsOf(sources_, here, point);
     if (burning_.now().empty()) return at;
     const components::FireAnswer fires =

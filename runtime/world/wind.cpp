@@ -1,7 +1,8 @@
-// The one place that answers which wind blows where: the world's, and the zones that the host put
-// around some of it. Zones count in integers, so that all machines agree; what takes a float gets
-// the world's own wind as it was given, and what zones add to it.
-#include "components/wind_zone.h"
+// The one place that answers which wind blows where: the world's, that of the host's grid in its
+// place or beside it, both as gusts have them, and the zones that the host put around some of it.
+// All but the first count in integers, so that all machines agree; what takes a float gets the
+// world's own wind as it was given, and what the others add to it.
+#include "components/wind_grid.h"
 
 #include "shared/wind.h"
 #include "world/world.h"
@@ -14,21 +15,54 @@ using components::WindPlace;
 using components::WindZone;
 using fire::WindVector;
 
-fire::WindVector World::windAt(const WindPlace& place) const noexcept {
-    return components::windIn(windZones_, fire::windUnits(wind_), place);
+namespace {
+
+constexpr uint32_t kPointsOfDeed = 4;  // of a grid
+
+// m/s: what blows everywhere, and what `here` has more of.
+std::array<float, 3> withMore(const float (&wind)[3], const WindVector& here) noexcept {
+    const WindVector around = fire::windUnits(wind);
+    std::array<float, 3> sum;
+    for (size_t i = 0; i < 3; ++i) sum[i] = wind[i] + float(here[i] - around[i]) * fire::kWindUnit;
+    return sum;
 }
 
-std::array<float, 3> World::windAt(const float place[3]) const noexcept {
-    std::array<float, 3> wind{wind_[0], wind_[1], wind_[2]};
-    if (windZones_.empty()) return wind;
-    const WindVector around = fire::windUnits(wind_), here = windAt(components::windPlace(place));
-    for (size_t i = 0; i < 3; ++i) wind[i] += float(here[i] - around[i]) * fire::kWindUnit;
-    return wind;
+}  // namespace
+
+WindVector windOf(const Winds& winds, const WindPlace& place, uint64_t tick) noexcept {
+    const WindVector on = components::windOnGrid(winds.grid, winds.around, place);
+    return components::windIn(
+        winds.zones, components::gustOf(winds.gusts, winds.seed, winds.around, on, place, tick),
+        place);
+}
+
+Winds World::winds() const noexcept {
+    return {fire::windUnits(wind_), windGrid_, gusts_, windZones_, def_.seed};
+}
+
+// Nothing but the world's own wind blows anywhere.
+bool World::evenWind() const noexcept {
+    return windZones_.empty() && windGrid_.points.empty() && !gusty();
+}
+
+WindVector World::windAt(const WindPlace& place, uint64_t tick) const noexcept {
+    return evenWind() ? fire::windUnits(wind_) : windOf(winds(), place, tick);
+}
+
+std::array<float, 3> World::windAt(const float place[3], uint64_t tick) const noexcept {
+    if (evenWind()) return {wind_[0], wind_[1], wind_[2]};
+    return withMore(wind_, windAt(components::windPlace(place), tick));
+}
+
+std::array<float, 3> World::steadyWindAt(const float place[3]) const noexcept {
+    const components::Gusts none;
+    return withMore(wind_, windOf({fire::windUnits(wind_), windGrid_, none, windZones_, 0},
+                                  components::windPlace(place), 0));
 }
 
 void World::windAtPoint(const float point[3], float wind[3]) const {
     components::checkValues(point, 3, "point", -1e6f, 1e6f);
-    const std::array<float, 3> here = windAt(point);
+    const std::array<float, 3> here = windAt(point, clock_.tick);
     std::copy_n(here.data(), 3, wind);
 }
 
@@ -41,20 +75,20 @@ WindPlace World::windPlaceOf(const components::Pose& pose,
     return components::windPlace(place);
 }
 
-components::DriveInput World::driveInput(const Object& object) const noexcept {
+components::DriveInput World::driveInput(const Object& object, uint64_t tick) const noexcept {
     components::DriveInput drive;
-    drive.wind = windZones_.empty() ? fire::windUnits(wind_)
-                                    : windAt(windPlaceOf(object.data.pose, domainOf(object)));
+    drive.wind = evenWind() ? fire::windUnits(wind_)
+                            : windAt(windPlaceOf(object.data.pose, domainOf(object)), tick);
     std::copy_n(def_.up, 3, drive.up);
     drive.pace = def_.paceFactor;
     return drive;
 }
 
-// What zones add where an object is, as its records hold it.
-uint32_t World::zoneWindOf(const Object& object) const noexcept {
-    if (windZones_.empty()) return 0;
+// What blows where an object is beside the world's wind, as its records hold it.
+uint32_t World::zoneWindOf(const Object& object, uint64_t tick) const noexcept {
+    if (evenWind()) return 0;
     const WindVector around = fire::windUnits(wind_);
-    WindVector here = windAt(windPlaceOf(object.data.pose, domainOf(object)));
+    WindVector here = windAt(windPlaceOf(object.data.pose, domainOf(object)), tick);
     for (size_t i = 0; i < 3; ++i) here[i] -= around[i];
     return components::packWind(here);
 }
@@ -71,14 +105,18 @@ void World::listWindZones() noexcept {
 
 // Whoever keeps a wind gets the one that blows now.
 void World::windTurns() noexcept {
+    windDue_ = false;
+    gustsShown_ = clock_.tick;
     sendFieldRules();
     for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot)
         if (auto* owned = objects_.at(slot)) takeZoneWind(**owned);
 }
 
 void World::takeZoneWind(Object& object) noexcept {
-    const uint32_t wind = zoneWindOf(object);
-    if (wind == object.zoneWind) return;
+    const uint32_t wind = zoneWindOf(object, clock_.tick);
+    // In gusts others hear of it with each exchange; after the last one, once more.
+    const bool heard = gusty() || object.remoteVersion == 0 || int(wind) == object.remote.high.w;
+    if (wind == object.zoneWind && heard) return;
     object.zoneWind = wind;
     backend_.setObjectWind(object.slot, wind);
     if (object.remoteDue) return;  // at most once each: room was found at its creation
@@ -106,6 +144,79 @@ void World::setWindZone(FwWindZoneId id, const FwWindZoneDef& def) {
         listWindZones();
     }
     noteDef(Deed::Kind::windZone, id.index1 - 1, def);
+}
+
+// Before a frame: parts of a grid may have come one by one, and gusts go on.
+void World::settleWind() noexcept {
+    constexpr uint64_t kQuarter = fire::kWindLatchTicks;
+    if (windDue_ || (gusty() && clock_.tick / kQuarter != gustsShown_ / kQuarter)) windTurns();
+}
+
+void World::setGusts(const FwGustDef& def) {
+    mayChange();
+    const components::Gusts gusts = components::makeGusts(def, gusts_);
+    if (!(gusts == gusts_)) ++driveChanges_;
+    gusts_ = gusts;
+    windTurns();
+    const float numbers[] = {def.strength, def.size};
+    noteMove(Deed::Kind::gusts, 0, numbers, std::size(numbers));
+}
+
+// Of a deed the grid's place, and calm on it; then what of its points is not.
+void World::setWindGrid(const FwWindGridDef& def) {
+    mayChange();
+    components::WindGrid grid(memory_);
+    if (def.structSize != 0) {
+        grid.shape = components::makeWindGridShape(def);
+        components::readWindPoints(def, grid.points);
+    }
+    const bool stays = grid.shape == windGrid_.shape;
+    if (!stays) noteDef(Deed::Kind::windGrid, 0, def);
+    for (uint32_t first = 0; first < grid.points.size(); first += kPointsOfDeed) {
+        Deed deed;
+        deed.kind = Deed::Kind::windPoints;
+        deed.slot = first;
+        bool other = false;
+        for (uint32_t k = 0; k < kPointsOfDeed && first + k < grid.points.size(); ++k)
+            for (size_t i = 0; i < 3; ++i) {
+                const int16_t units = grid.points[first + k][i];
+                other |= units != (stays ? windGrid_.points[first + k][i] : 0);
+                deed.numbers[3 * k + i] = float(units) * fire::kWindUnit;
+            }
+        if (other && (journal_ || noted_)) note(deed);
+    }
+    windGrid_.shape = grid.shape;
+    windGrid_.points.swap(grid.points);
+    ++driveChanges_;
+    windTurns();
+}
+
+void World::takeWindGrid(const Deed& deed) {
+    mayChange();
+    const FwWindGridDef def = windGridDefOf(deed);
+    components::WindGridShape shape;
+    if (def.counts[0] != 0) shape = components::makeWindGridShape(def);
+    std::pmr::vector<components::WindPoint> calm(shape.points(), memory_);
+    windGrid_.points.swap(calm);
+    windGrid_.shape = shape;
+    ++driveChanges_;
+    windDue_ = true;
+    note(deed);
+}
+
+void World::takeWindPoints(const Deed& deed) {
+    mayChange();
+    if (deed.slot >= windGrid_.points.size())
+        core::fail(FW_ERROR_BAD_DATA, "A deed is of point %u of the wind's grid, which has %zu.",
+                   deed.slot, windGrid_.points.size());
+    std::array<components::WindPoint, kPointsOfDeed> points;
+    for (uint32_t k = 0; k < kPointsOfDeed; ++k)
+        points[k] = components::makeWindPoint(deed.numbers.data() + size_t{3} * k, deed.slot + k);
+    const size_t count = std::min<size_t>(kPointsOfDeed, windGrid_.points.size() - deed.slot);
+    std::copy_n(points.begin(), count, windGrid_.points.begin() + std::ptrdiff_t(deed.slot));
+    ++driveChanges_;
+    windDue_ = true;
+    note(deed);
 }
 
 void World::destroyWindZone(FwWindZoneId id) {

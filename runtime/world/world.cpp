@@ -98,6 +98,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       windPool_("Wind zone", memory),
       burns_("Baked burn", memory),
       windZones_(memory),
+      windGrid_(memory),
       rooms_("Room", memory),
       fires_("Volumetric fire", memory),
       fields_("Particle field", memory),
@@ -167,6 +168,7 @@ void World::setWind(const float wind[3]) {
     mayChange();
     checkValues(wind, 3, "wind", -120.0f, 120.0f);
     if (!std::equal(wind_, wind_ + 3, wind)) ++driveChanges_;
+    components::windChanges(gusts_, fire::windUnits(wind_), clock_.tick);
     std::copy_n(wind, 3, wind_);
     windTurns();
     noteMove(Deed::Kind::wind, 0, wind, 3);
@@ -338,13 +340,13 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
             components::burns(object.data, domain.texels[i].materialFlags & 0xFF))
             ++object.texels;
 
-    const components::DriveInput drive = driveInput(object);
+    const components::DriveInput drive = driveInput(object, clock_.tick);
     components::resetLatch(object.data, drive, object.latch);
     const components::Records records =
         components::makeRecords(object.data, domain, drive, object.latch);
     gpu::ObjectInit init;
     init.mesh = object.data.meshSlot;
-    object.zoneWind = zoneWindOf(object);
+    object.zoneWind = zoneWindOf(object, clock_.tick);
     init.record = components::makeObject(object.data, domain, records);
     init.record.zoneWind = object.zoneWind;
     object.room1 = roomOf(object);

@@ -5,10 +5,12 @@
 #include "book/book.h"
 #include "components/fire_emitter.h"
 #include "components/fire_flames.h"
+#include "components/gusts.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
 #include "components/room.h"
 #include "components/surroundings.h"
+#include "components/wind_grid.h"
 #include "components/wind_zone.h"
 #include "core/handle_pool.h"
 #include "core/log.h"
@@ -289,6 +291,17 @@ struct PendingTexel {  // an event that waits for its step
     bool shut = false;
 };
 
+// All that blows.
+struct Winds {
+    fire::WindVector around{};  // everywhere
+    const components::WindGrid& grid;
+    const components::Gusts& gusts;
+    std::span<const components::WindZone> zones;  // in the order in which they count
+    uint32_t seed = 0;
+};
+[[nodiscard]] fire::WindVector windOf(const Winds& winds, const components::WindPlace& place,
+                                      uint64_t tick) noexcept;
+
 void checkWorldDef(const FwWorldDef& def);  // throws
 
 // save.h
@@ -311,6 +324,8 @@ class World {
     World& operator=(const World&) = delete;
 
     void setWind(const float wind[3]);
+    void setWindGrid(const FwWindGridDef& def);  // of structSize 0: none any more
+    void setGusts(const FwGustDef& def);
     FwWindZoneId createWindZone(const FwWindZoneDef& def);
     void setWindZone(FwWindZoneId id, const FwWindZoneDef& def);
     void destroyWindZone(FwWindZoneId id);
@@ -626,14 +641,24 @@ class World {
     // latch.cpp
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
     // wind.cpp
-    [[nodiscard]] fire::WindVector windAt(const components::WindPlace& place) const noexcept;
-    [[nodiscard]] std::array<float, 3> windAt(const float place[3]) const noexcept;  // m/s
+    [[nodiscard]] fire::WindVector windAt(const components::WindPlace& place,
+                                          uint64_t tick) const noexcept;
+    [[nodiscard]] std::array<float, 3> windAt(const float place[3], uint64_t tick) const noexcept;
+    // m/s, as if there were no gusts.
+    [[nodiscard]] std::array<float, 3> steadyWindAt(const float place[3]) const noexcept;
+    [[nodiscard]] Winds winds() const noexcept;
+    [[nodiscard]] bool evenWind() const noexcept;
+    [[nodiscard]] bool gusty() const noexcept { return gusts_.strength != 0; }
     [[nodiscard]] static components::WindPlace windPlaceOf(const components::Pose& pose,
                                                            const mesh::BurnDomain& domain) noexcept;
-    [[nodiscard]] components::DriveInput driveInput(const Object& object) const noexcept;
-    [[nodiscard]] uint32_t zoneWindOf(const Object& object) const noexcept;
+    [[nodiscard]] components::DriveInput driveInput(const Object& object,
+                                                    uint64_t tick) const noexcept;
+    [[nodiscard]] uint32_t zoneWindOf(const Object& object, uint64_t tick) const noexcept;
     void listWindZones() noexcept;
+    void takeWindGrid(const Deed& deed);
+    void takeWindPoints(const Deed& deed);
     void windTurns() noexcept;
+    void settleWind() noexcept;
     void takeZoneWind(Object& object) noexcept;
     // rooms.cpp
     [[nodiscard]] bool roomsRest() const noexcept;
@@ -649,10 +674,11 @@ class World {
     }
     void planRemote(gpu::StepPlan& step, uint32_t now, bool awake);
     void latchRemote(uint32_t now);
+    void takeRemoteWind(Object& object, int wind) noexcept;
     void findNeighbours();
     void findLinks(uint32_t now);
     gpu::ExchangePush exchangeRules() const noexcept;
-    void touchNear();
+    void touchNear(uint32_t now);
     uint32_t seenOf(uint32_t from, uint32_t to);
     void linkPair(const Object& to, const Object& from, uint32_t since,
                   std::pmr::vector<gpu::ContactLink>& out);
@@ -772,6 +798,10 @@ class World {
     core::HandlePool<FwWindZoneId, components::WindZone> windPool_;
     core::HandlePool<FwBurnId, core::Owned<Burn>> burns_;
     std::pmr::vector<components::WindZone> windZones_;  // in the order in which they count
+    components::WindGrid windGrid_;
+    components::Gusts gusts_;
+    bool windDue_ = false;     // what objects keep of the wind is to be found anew
+    uint64_t gustsShown_ = 0;  // tick of the gusts that objects keep
     core::HandlePool<FwRoomId, RoomEntry> rooms_;
     uint32_t roomEpoch_ = 0;     // of their airs' beginnings, the last one
     bool roomsMet_ = false;      // some were there: objects may still know their air

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "common/options.h"
+#include "game/rules.h"
+#include "placed.h"
 #include "rays.h"
 
 namespace tower {
@@ -74,6 +76,28 @@ void fillMesh(MeshArrays& arrays, const village::Model& model, const PaintedMode
     def.noiseFeature = 0.12f;
 }
 
+// Corners of what is of wood, far apart from each other, the highest first.
+std::vector<glm::vec3> beamsOf(const village::Model& model) {
+    std::vector<glm::vec3> corners, chosen;
+    for (size_t i = 0; i < model.indices.size(); ++i) {
+        const Material material = model.materials[i / 3];
+        if (material == Material::kWood || material == Material::kPaint)
+            corners.push_back(toGlm(model.vertices[model.indices[i]].position));
+    }
+    std::vector<float> away(corners.size(), 1e9f);  // m^2, from the nearest chosen one
+    for (int k = 0; k < game::kBeams && !corners.empty(); ++k) {
+        const auto far = std::max_element(away.begin(), away.end()) - away.begin();
+        chosen.push_back(corners[size_t(far)]);
+        for (size_t i = 0; i < corners.size(); ++i) {
+            const glm::vec3 off = corners[i] - chosen.back();
+            away[i] = std::min(away[i], glm::dot(off, off));
+        }
+    }
+    std::stable_sort(chosen.begin(), chosen.end(),
+                     [](const glm::vec3& a, const glm::vec3& b) { return a.y > b.y; });
+    return chosen;
+}
+
 }  // namespace
 
 // Blades, cloth and roofs that burn through show their backs; closed lumps never do.
@@ -131,6 +155,7 @@ FireVillage::FireVillage(FwContext* context, FwWorld* world, const village::Scen
       world_(world),
       meshes_(scene.models.size()),
       images_(scene.models.size()),
+      beams_(scene.models.size()),
       instances_(scene.instances) {
     // The bake is the slow part and may run on any thread: cook first, create from the cooked.
     std::vector<std::vector<uint8_t>> cooked(scene.models.size());
@@ -185,6 +210,7 @@ void FireVillage::makeModel(size_t model, const village::Model& source, const Pa
     def.cookedSize = cooked.size();
     check(fwWorld_CreateMesh(world_, &def, &meshes_[model]),
           ("fwWorld_CreateMesh of \"" + source.name + "\"").c_str());
+    beams_[model] = beamsOf(source);
     if (!painted) return;
     // The painting holds square roots; the library wants sRGB.
     uint8_t sRgb[256];
@@ -251,6 +277,14 @@ void FireVillage::ignite(glm::vec3 place, float radius) { touch(FW_IGNITE, place
 
 void FireVillage::wet(glm::vec3 place, float radius, float water) {
     touch(FW_WET, place, radius, water);
+}
+
+void FireVillage::dropBeam(size_t index, size_t beam) {
+    const Thing& thing = things[index];
+    const auto& places = beams_[size_t(instances_[thing.instance].model)];
+    if (beam >= places.size()) return;
+    const glm::vec3 at = places[beam];
+    ignite(toGlm(thing.frame.point({at.x, at.y, at.z})), 0.001f * float(game::kBeamBurns));
 }
 
 void FireVillage::move(size_t index, const village::Frame& frame) {

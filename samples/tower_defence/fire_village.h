@@ -43,6 +43,8 @@ class FireVillage {
     // A ball of flame, or of water (g/m^2), against all that it touches.
     void ignite(glm::vec3 place, float radius);
     void wet(glm::vec3 place, float radius, float water);
+    // What of its roof falls on its walls, and lights them there; of kBeams, from above downward.
+    void dropBeam(size_t thing, size_t beam);
     void move(size_t thing, const village::Frame& frame);
     // As if it had never burnt: another object in the old one's place.
     void renew(size_t thing);
@@ -71,7 +73,8 @@ class FireVillage {
     FwMaterialId materials_[8]{};
     std::vector<FwMeshId> meshes_;  // by model; null where it cannot burn
     std::vector<FwImageId> images_;
-    std::vector<size_t> thingOf_;  // by instance
+    std::vector<std::vector<glm::vec3>> beams_;  // by model, m: where they land
+    std::vector<size_t> thingOf_;                // by instance
     std::vector<village::Instance> instances_;
     std::vector<PointLight> lights_;
     uint32_t burning_ = 0, caught_ = 0;

@@ -1,9 +1,13 @@
 // What the game hands to the renderer of each instance.
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include "village/model.h"
 
 namespace tower {
+
+inline glm::vec3 toGlm(village::Vec3 v) { return {v.x, v.y, v.z}; }
 
 // One instance as it is this frame.
 struct Placed {

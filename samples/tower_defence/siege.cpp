@@ -27,8 +27,6 @@ constexpr float kEmberSeconds = 44 * kTickSeconds;
 constexpr Vec3 kCoals{0, 1.12f, 0};  // of a brazier, in its model's space
 constexpr float kBrazierPower = 70;  // kW
 
-glm::vec3 toGlm(Vec3 v) { return {v.x, v.y, v.z}; }
-
 glm::vec3 onGround(game::Point point, float above) {
     const Vec2 place = metres(point);
     return {place.x, village::groundHeight(place) + above, place.y};
@@ -152,6 +150,10 @@ void Siege::carryOut(const game::Happening& happening) {
             break;
         case Type::kEmberLands:
             fires_.ignite(onGround(happening.place, 0.6f), 0.001f * float(happening.strength));
+            break;
+        case Type::kBeamFalls:
+            fires_.dropBeam(fires_.thingOf(field_.houses[size_t(happening.slot)]),
+                            size_t(happening.strength));
             break;
         case Type::kSprays:
             fires_.wet(onGround(happening.place, kRoof), kSprayRadius, float(happening.strength));

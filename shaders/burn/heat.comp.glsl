@@ -71,9 +71,8 @@ Row rowWork(TileRef tile, uint row, uint flux, uint turn) {
         uvec4 two = heatPairs[(heatAt >> 1u) + uint(i)];
         FW_UNROLL for (int k = 0; k < 2; ++k) {
             HeatTexel x = unpackHeat(k == 0 ? two.xy : two.zw);
-            uint work = heatWork(x, t[2 * i + k], flux, ambient), bit = 1u << uint(2 * i + k);
-            // In a warm tile what dozes takes every step, as a plain one.
-            if (work == kWorkDozes && (turn & kWorkAlways) != 0u) work = kWorkAlways;
+            uint work = workInTurn(heatWork(x, t[2 * i + k], flux, ambient), turn);
+            uint bit = 1u << uint(2 * i + k);
             r.todo |= (work & turn) != 0u ? bit : 0u;
             r.dozes |= work == kWorkDozes ? bit : 0u;
             r.rests |= work == kWorkRests ? bit : 0u;
@@ -144,9 +143,8 @@ Told heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) {
             if ((item & kItemDozes) != 0u)
                 now = heatDozes(x, own, before, chance);
             else
-                now = heatTexelStep(
-                    x, heatOver(own, (item & kItemRests) != 0u ? restShift(comes.x) : 0u), before,
-                    push.now, comes.x, comes.y != 0u, air, chance, units);
+                now = heatTexelStep(x, heatOver(own, (item & kItemRests) != 0u, comes.x), before,
+                                    push.now, comes.x, comes.y != 0u, air, chance, units);
             bool real = (item & kItemReal) != 0u && item >> kItemKindShift == kind;
             bool lights = real && isSource(now) && !isSource(before);
             bool writes = !asksOnly() && !(held && lights);

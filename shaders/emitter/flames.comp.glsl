@@ -28,16 +28,30 @@ layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint dr
 layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer BooksBuffer { uint books[]; };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 #include "emitter/cells.glsl"
+#include "emitter/nearer.glsl"
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
 
 const float kLeastPixels = 20.0;  // of a flame's height
 const float kMostMerged = 1.6;    // times as high
+const float kMostClear = 0.9;     // half widths, see clearance
 
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
 vec3 perpendicular(vec3 n) {
     return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
+}
+
+// Towards the eye, in half widths, beyond what every quad is moved (flames.vert): a quad faces the eye
+// and its wall does not, so that side would go into the wall. What faces away stands behind its wall
+// as far as others before theirs, or would come through where that is thin. Sheets have one side.
+vec3 clearance(BurnObject object, vec3 place, vec3 normal) {
+    vec3 toEye = view.forward.w > 0.5 ? normalize(view.eye.xyz - place) : -view.forward.xyz;
+    float facing = dot(normal, toEye);
+    if ((object.flags & kObjectTwoSided) != 0u) return vec3(0.0);
+    float slant = sqrt(max(1.0 - facing * facing, 0.0)) / max(abs(facing), 0.2);
+    float before = clamp(slant - 0.15, kQuadNearer, kMostClear);
+    return toEye * (mix(-before, before, smoothstep(-0.3, 0.0, facing)) - kQuadNearer);
 }
 
 void emit(FlameQuad quad) {
@@ -175,7 +189,8 @@ void main() {
                 float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) * (0.8 + 0.5 * r2) *
                                   (0.5 + 0.5 * strength);
                 float loose = smoothstep(0.55, 1.0, a);
-                quad.baseHeight = vec4(place + normal * (0.15 * halfWidth) - axis * (0.06 * tall) +
+                vec3 stands = normal * 0.15 + clearance(object, place, normal);
+                quad.baseHeight = vec4(place + stands * halfWidth - axis * (0.06 * tall) +
                                            axis * (0.10 * tall * loose * loose), tall);
                 quad.axisWidth = vec4(axis, halfWidth * (1.0 - 0.35 * loose));
                 quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) *

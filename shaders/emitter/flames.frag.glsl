@@ -56,6 +56,8 @@ layout(location = 0) out vec4 outColor;
 const float kFlameWhite = 2.4;  // of thin soot at 1600 K, in the host's units
 const float kNoiseBall = 0.9;   // of that: a jet of noise has the light of one of books
 const float kSunStep = 0.18;    // of a puff's radius, towards the light
+const float kSmokeRolls = 0.5;  // of a ball's life: as long has a puff's smoke rolled up
+const vec2 kAcross = vec2(0.6, 0.8);  // how its octaves lie to each other: cosine, sine
 
 // Of a ball's soot at a temperature: what has not burnt away, and what of the light behind it takes.
 // Soot that cools burns, or is smoke, which has quads of its own. What were left of it would be dark
@@ -74,6 +76,17 @@ vec2 rolled(vec2 p, vec2 c, float h) {
     return c + d + k * h * (vec2(d.y, -d.x) - h * d);
 }
 
+struct Roll {
+    vec3 left, right;  // where a vortex is, and how far it has turned
+};
+vec2 rolledUp(vec2 p, Roll roll) {
+    vec2 fromLeft = p - roll.left.xy, fromRight = p - roll.right.xy;
+    p = rolled(p, roll.left.xy, roll.left.z * exp2(-6.0 * dot(fromLeft, fromLeft)));
+    return rolled(p, roll.right.xy, roll.right.z * exp2(-6.0 * dot(fromRight, fromRight)));
+}
+
+vec2 turnedBy(vec2 p, vec2 way) { return vec2(p.x * way.x - p.y * way.y, p.x * way.y + p.y * way.x); }
+
 void main() {
     uint what = inKind & 3u, named = (inKind >> kQuadSeed & 0xFFFFu) << 1u | (inKind & 1u);
     bool tongue = what == kQuadTongue, smoke = what == kQuadSmoke, spark = what == kQuadSpark;
@@ -84,36 +97,36 @@ void main() {
     float r = length(c);
 
     // Software devices run every branch: what they all need is fetched once, from where each wants
-    // it. A ball of fire rolls up about two vortices that rise in it.
-    vec2 m = vec2(seed.x < 0.5 ? -c.x : c.x, c.y);
-    float strong = 0.25 + 1.0 * phase;
-    vec2 left = vec2(-0.30 - 0.20 * seed.y, 0.05 + 0.4 * phase - 0.5 * seed.y);
-    vec2 right = vec2(0.45 - 0.20 * seed.y, -0.25 + 0.4 * phase + 0.4 * seed.y);
-    vec2 fromLeft = m - left, fromRight = m - right;
-    m = rolled(m, left, strong * exp2(-6.0 * dot(fromLeft, fromLeft)));
-    m = rolled(m, right, -strong * (1.2 - seed.y) * exp2(-6.0 * dot(fromRight, fromRight)));
+    // it. A ball of fire rolls up about two vortices that rise in it; so has smoke, long since.
+    float rolls = smoke ? kSmokeRolls : phase;
+    Roll roll;
+    roll.left = vec3(-0.30 - 0.20 * seed.y, 0.05 + 0.4 * rolls - 0.5 * seed.y, 0.25 + rolls);
+    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y,
+                      -(0.25 + rolls) * (1.2 - seed.y));
+    float mirror = seed.x < 0.5 ? -1.0 : 1.0;
+    vec2 m = rolledUp(vec2(mirror * c.x, c.y), roll);
     float squeeze = 1.0 - 0.5 * y;
     // No two puffs lie the same way.
     vec2 way = normalize(seed - 0.5 + vec2(1e-4, 0.0));
-    vec2 turned = vec2(c.x * way.x - c.y * way.y, c.x * way.y + c.y * way.x);
     vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45)
-             : smoke ? turned * 0.15
+             : smoke ? turnedBy(m, way) * 0.15
                      : m * vec2(0.115, 0.085);
     p += seed;
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
     float lod = smoke ? 3.0 : tongue ? 1.0 : 2.0;
     vec4 n1 = vec4(0.5), n2 = vec4(0.5);
     // Smoke asks a step towards its light, too: what pixels beside differ by is a texel's grain.
-    vec2 ahead = kSunStep * inSun, seen = p - vec2(0.0, slow * phase);
+    vec2 ahead = kSunStep * inSun, scroll = vec2(0.0, slow * phase);
     float aheadNoise = 0.5;
     if (kPagesAlone == 0u) {
-        n1 = textureLod(lookTextures, vec3(seen, kLayerNoise), lod);
-        vec2 sunward = vec2(ahead.x * way.x - ahead.y * way.y, ahead.x * way.y + ahead.y * way.x);
-        aheadNoise = textureLod(lookTextures, vec3(seen + sunward * 0.15, kLayerNoise), lod).r;
+        n1 = textureLod(lookTextures, vec3(p - scroll, kLayerNoise), lod);
+        vec2 sunward = turnedBy(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), way) * 0.15 + seed;
+        aheadNoise = textureLod(lookTextures, vec3(sunward - scroll, kLayerNoise), lod).r;
     }
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
-    vec2 q = p * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
+    // Octaves of smoke lie across each other: along the lattice of one both would show it.
+    vec2 q = (smoke ? turnedBy(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
     if (kPagesAlone == 0u)
         n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
 
@@ -215,9 +228,12 @@ void main() {
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {
         // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
-        // a thin one must turn red, not grey.
+        // a thin one must turn red, not grey. As much light as a display has hides what is behind
+        // it: many that burn one behind the other would sum up to white.
         float whole = smoke ? max(alpha, 1e-6) : 1.0;
         color = encodeOutput(color / whole, kEncoding) * whole;
+        float brightest = max(max(color.r, color.g), color.b);
+        alpha = smoke || spark ? alpha : max(alpha, brightest * brightest * brightest);
     }
     outColor = vec4(min(color, vec3(60000.0)), alpha);
 }

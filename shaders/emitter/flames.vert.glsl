@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
+#include "emitter/nearer.glsl"
 
 layout(std430, set = 0, binding = FW_BIND_FLAMES) readonly buffer FlamesBuffer {
     FlameQuad flameQuad[];
@@ -118,7 +119,7 @@ void main() {
     vec3 start = smoke ? middle - axis * (0.5 * quad.baseHeight.w) : foot;
     vec3 at = start + side * (place.x * quad.axisWidth.w) + axis * (place.y * quad.baseHeight.w);
     // Towards the eye, so that a wall behind does not cut the tongue's side.
-    at += toEye * (smoke ? 0.0 : 0.35 * quad.axisWidth.w);
+    at += toEye * (smoke ? 0.0 : kQuadNearer * quad.axisWidth.w);
     outSun = vec2(dot(view.sunDirection.xyz, side), dot(view.sunDirection.xyz, axis));
     outPlace = place;
     outState = vec4(quad.opacity, quad.phase, quad.kelvin, quad.baseHeight.w / quad.axisWidth.w);

@@ -109,8 +109,10 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
     smoke.axisWidth = vec4(view.up.xyz, 0.62 * size);
-    // It lies on the ground as it grows: a puff that reaches into it ends at a straight line.
-    float sunk = 0.55 * size - (dot(place, e.up.xyz) - e.carried.w);
+    // It leaves walls and lies on the ground as it grows: a puff that reaches into them ends at a
+    // straight line.
+    place += p.hit.xyz * particleOffWall(p, e.up.xyz, size, a);
+    float sunk = kPuffReach * size - (dot(place, e.up.xyz) - e.carried.w);
     place += e.up.xyz * ((e.flags & kEmitterGround) != 0u ? max(0.0, sunk) : 0.0);
     smoke.baseHeight = vec4(place - view.up.xyz * (0.62 * size), 1.24 * size);
     smoke.opacity = particleSmoke(e, a) * t.smoke * near;

@@ -2,7 +2,8 @@
 // between: 0 lists the coarse triangles with a hole, and of what has an inside those along open edges,
 // a lane each; 1 a workgroup each: small triangles that a hole crosses leave the index list, and what
 // is left of them is written as vertices, with their inner skin and walls along the hole and along
-// open edges; without room they stay whole; 2 draw arguments.
+// open edges; without room they stay whole; 2 draw arguments. Where a triangle is coarser than its size
+// asks for, corners are too far apart to know its holes: all of it is written, to be discarded by texels.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -11,13 +12,18 @@ layout(local_size_x = 64) in;
 #define FW_USE_TRIANGLES readonly
 #define FW_USE_EDGES readonly
 #define FW_USE_SLOTS readonly
-#define FW_USE_HEAT readonly
+#define FW_USE_ITEMS readonly
+#define FW_USE_HEAT FW_READ_WRITE
 #define FW_USE_LEVELS readonly
 #define FW_USE_VERTICES readonly
+#define FW_USE_PREDICT readonly
 #define FW_USE_INDICES writeonly
 #define FW_USE_MESH_VERTICES readonly
 #define FW_USE_CUTS writeonly
 #include "lib/refine_buffers.glsl"
+#include "lib/refine_arrival.glsl"
+
+const uint kByTexels = 0x80000000u;  // of a job's triangle
 
 uint slotOf(uint object, uint vertex) {
     return meshVertices[(refined[object].meshDraws + vertex) * 3u + 2u].w;
@@ -31,23 +37,67 @@ uint openSides(uint object, RefineTriangle t) {
     return refined[object].inner != 0u ? open : 0u;
 }
 
+bool isGone(uint object, float hole) { return hole <= refined[object].now; }
+
+// Whether fire has been through all of it, by its corners, the middles of its sides and three places
+// within.
+bool isLost(uint object, RefineTriangle t) {
+    bool lost = true;
+    for (uint v = 0u; v < 3u; ++v) {
+        uint at = refined[object].vertices + slotOf(object, t.corner[v]);
+        lost = lost && isGone(object, vertices[at].hole);
+    }
+    bool inner = refineInteriorDepth(t.flags) >= 2u;
+    uint count = lost && refined[object].fewest > 0.0 ? 6u : 0u;
+    for (uint k = 0u; k < count; ++k) {
+        uint side = k % 3u;
+        RefineEdge edge = edges[refined[object].meshEdges + t.edge[side]];
+        uint s = (edge.flags & 15u) > 0u ? refineEdgeSlot(edge, 1u, 1u) : edge.low;
+        if (k >= 3u && inner)
+            s = refineInnerSlot(t, side == 1u ? 2u : 1u, side == 2u ? 2u : 1u, 2u);
+        RefineSlot slot = slots[refined[object].meshSlots + s];
+        lost = lost && isGone(object, refineNow(object, slot, push.nowTick, push.recede).hole);
+    }
+    return lost;
+}
+
+// Whether a side or the interior has fewer levels than its size asks for, by as much as matters.
+bool isShort(uint object, RefineTriangle t, uint triangle) {
+    uint base = refined[object].items;
+    float fewest = refined[object].fewest;
+    uvec4 own = uvec4(t.edge[0], t.edge[1], t.edge[2], refined[object].edgeCount + triangle);
+    bool few = false;
+    for (int k = 0; k < 4; ++k)
+        few = few || items[base + own[k]].level + fewest < items[base + own[k]].target;
+    return few && fewest > 0.0;
+}
+
 void find(uint object, uint triangle) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
-    uint base = refined[object].items;
-    uint seen = heat[base + refined[object].edgeCount + triangle] | heat[base + t.edge[0]] |
-                heat[base + t.edge[1]] | heat[base + t.edge[2]];
-    if ((seen & kRefineGone) == 0u && openSides(object, t) == 0u) return;
+    uint base = refined[object].items, own = base + refined[object].edgeCount + triangle;
+    uint seen = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
+    bool few = refined[object].fewest > 0.0;
+    uint burns = few ? seen & (kRefineGone | kRefineGoing) : 0u, how = 0u;
+    while (burns != 0u) {
+        how = isShort(object, t, triangle) ? kByTexels : 0u;
+        burns = 0u;
+    }
+    bool written = (heat[own] & kRefineWritten) != 0u;
+    if ((seen & kRefineGone) == 0u && how == 0u && !written && openSides(object, t) == 0u) return;
     // Most of what is burnt is gone, and coarse again: no workgroup for that.
     uvec2 packed = levels[refined[object].triangles + triangle];
-    uint gone = 0u, coarse = packed.x == 0u && (seen & kRefineGone) != 0u ? 1u : 0u;
-    while (coarse != 0u) {
-        for (uint v = 0u; v < 3u; ++v) {
-            uint at = refined[object].vertices + slotOf(object, t.corner[v]);
-            gone += vertices[at].hole <= refined[object].now ? 1u : 0u;
-        }
-        coarse = 0u;
+    bool lost = (heat[own] & kRefineLost) != 0u;
+    bool known = lost;
+    bool asks = (seen & (kRefineGone | kRefineStays)) == kRefineGone && !lost;
+    if (!few) asks = packed.x == 0u && (seen & kRefineGone) != 0u;
+    while (asks) {
+        lost = isLost(object, t);
+        asks = false;
     }
-    if (gone == 3u) {
+    how = lost ? 0u : how;
+    uint news = (lost && !known && few ? kRefineLost : 0u) | (how != 0u ? kRefineWritten : 0u);
+    if (news != 0u || written) heat[own] = (heat[own] & ~kRefineWritten) | news;
+    if (lost && packed.x == 0u) {
         uint to = refined[object].indices + packed.y * 3u;
         indices[to] = indices[to + 1u] = indices[to + 2u] = t.corner[0];
         return;
@@ -55,7 +105,7 @@ void find(uint object, uint triangle) {
     uint job = atomicAdd(work[kRefineWorkCut + 3u], 1u);
     atomicMax(work[kRefineWorkCut], min(job + 1u, kMostGroups));
     work[push.cutJobs + 2u * job] = object;
-    work[push.cutJobs + 2u * job + 1u] = triangle;
+    work[push.cutJobs + 2u * job + 1u] = triangle | how;
 }
 
 // Of the first triangle of material m, and its end.
@@ -122,7 +172,7 @@ void writeVertex(uint at, Point p, bool inner, float left) {
 }
 
 void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole,
-                 uint first) {
+                 bool byTexels, uint first) {
     Point points[4];
     for (uint i = 0u; i < 4u; ++i)
         points[i] = pointOf(object, drawn, slots_, fields, cut.corner[min(i, cut.points - 1u)]);
@@ -137,13 +187,14 @@ void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut 
         for (uint v = 0u; v < 3u; ++v) {
             uint p = corners[v];
             bool inner = p >= 4u;
-            float left = wall ? (inner ? outer - 1.0 : outer) : points[p & 3u].left;
+            float left = byTexels ? kRefineByTexels : points[p & 3u].left;
+            left = wall ? (inner ? outer - 1.0 : outer) : left;
             writeVertex(first + 3u * k + v, points[p & 3u], inner, left);
         }
     }
 }
 
-void cutGroup(uint object, uint triangle) {
+void cutGroup(uint object, uint triangle, bool byTexels) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
     uvec2 packed = levels[refined[object].triangles + triangle];
     float now = refined[object].now;
@@ -173,7 +224,8 @@ void cutGroup(uint object, uint triangle) {
                          refineSidesOf(packed.x, codes[refineNext(v)]);
             border |= (sides & open) != 0u ? 1u << v : 0u;
         }
-        bool whole = solid == 7u;
+        solid = byTexels ? 7u : solid;
+        bool whole = solid == 7u && !byTexels;
         uint crossed = solid != 0u && (!whole || border != 0u) ? 1u : 0u;
         while (crossed != 0u) {
             RefineCut cut = refineCut(solid, border);
@@ -183,7 +235,7 @@ void cutGroup(uint object, uint triangle) {
                 atomicMin(work[counts + 8u], at);
                 whole = true;
             } else {
-                cutTriangle(object, drawn, slots_, fields, cut, whole,
+                cutTriangle(object, drawn, slots_, fields, cut, whole, byTexels,
                             refined[object].cuts + 3u * (before + at));
             }
             crossed = 0u;
@@ -207,8 +259,11 @@ void main() {
     }
     if (push.phase == 1u) {
         uint jobs = work[kRefineWorkCut + 3u];
-        for (uint job = gl_WorkGroupID.x; job < jobs; job += gl_NumWorkGroups.x)
-            cutGroup(work[push.cutJobs + 2u * job], work[push.cutJobs + 2u * job + 1u]);
+        for (uint job = gl_WorkGroupID.x; job < jobs; job += gl_NumWorkGroups.x) {
+            uint triangle = work[push.cutJobs + 2u * job + 1u];
+            cutGroup(work[push.cutJobs + 2u * job], triangle & ~kByTexels,
+                     (triangle & kByTexels) != 0u);
+        }
         return;
     }
     uint i = gl_GlobalInvocationID.x;

@@ -1,11 +1,13 @@
 // Warms the edges and interiors near the tiles of the front (lit soon, or moving) or of the burn list:
-// a wave of heat that runs ahead of the fire. One lane per tile.
+// a wave of heat that runs ahead of the fire. One lane per tile. Of objects that are fresh all tiles
+// that burnt are warmed once, a workgroup each object: their holes are there from the first picture on.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_WORK readonly
 #define FW_USE_WORDS readonly
 #define FW_USE_HEAT FW_READ_WRITE
+#define FW_USE_PREDICT readonly
 #include "lib/refine_buffers.glsl"
 
 layout(std430, set = 0, binding = FW_BIND_OBJECTS) readonly buffer ObjectQuadsBuffer {
@@ -29,7 +31,48 @@ uint entry(uint i) {
     return burnB[i];
 }
 
+void warm(uint object, uint local, uint bits) {
+    uint base = refined[object].meshWords;
+    uint list = base + refined[object].tileCount + 1u;
+    uint first = refined[object].items;
+    uint end = words[base + local + 1u];
+    for (uint at = words[base + local]; at < end; ++at)
+        atomicOr(heat[first + words[list + at]], bits);
+}
+
+bool burnt(uint object, uint local) {
+    uint width = refined[object].textureWidth, across = width >> 3u;
+    uint base = refined[object].stateBase + local / across * 8u * width + local % across * 8u;
+    uint lit = 0u;
+    for (uint k = 0u; k < 64u; ++k) {
+        uint t = predict[base + (k >> 3u) * width + (k & 7u)];
+        bool live = t < kLiveEnd && int(push.nowTick - t) >= 0;
+        lit |= live || t == kOut || t == kOutWet ? 1u : 0u;
+    }
+    return lit != 0u;
+}
+
+void warmFresh() {
+    for (uint g = gl_WorkGroupID.x; g < push.objects; g += gl_NumWorkGroups.x) {
+        uint object = work[objectList() + 2u * g];
+        uint first = objectQuads[object * 10u + 1u].x;
+        bool fresh = (refined[object].flags & kRefineIsFresh) != 0u;
+        uint tiles = fresh ? refined[object].tileCount : 0u;
+        for (uint local = gl_LocalInvocationID.x; local < tiles; local += 64u) {
+            uint shows = tileState[first + local].flag & kTileMarked;
+            while (shows != 0u) {
+                if (burnt(object, local)) warm(object, local, kRefineHot);
+                shows = 0u;
+            }
+        }
+    }
+}
+
 void main() {
+    if (push.parity == kRefineFreshHeat) {
+        warmFresh();
+        return;
+    }
     uint count = counters[push.row].listCount;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
         uint tile = entry(i);
@@ -41,14 +84,9 @@ void main() {
                 local < refined[object].tileCount;
         bool burns = push.parity >= 2u || (tileState[tile].flag & kTileBurning) != 0u;
         uint bits = kRefineHot | (burns ? kRefineBurning : 0u);
-        uint base = refined[object].meshWords;
-        uint at = known ? words[base + local] : 0u;
-        uint end = known ? words[base + local + 1u] : 0u;
-        uint list = base + refined[object].tileCount + 1u;
-        uint first = refined[object].items;
-        while (at < end) {
-            atomicOr(heat[first + words[list + at]], bits);
-            at += 1u;
+        while (known) {
+            warm(object, local, bits);
+            known = false;
         }
     }
 }

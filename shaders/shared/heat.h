@@ -435,12 +435,10 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
     return t;
 }
 
-// The material over as many steps at once as such a texel waits: 1 << shift. What burns takes one.
+// The material over as many steps at once as a texel waits that rests. What burns takes one.
 FW_SHARED_FN uint restShift(uint flux) { return flux < kNapFlux ? kNapsShift : kRestsShift; }
-FW_SHARED_FN uint workShift(uint work, uint flux) {
-    return work == kWorkRests ? restShift(flux) : 0u;
-}
-FW_SHARED_FN HeatMaterial heatOver(FW_IN(HeatMaterial) m, uint shift) {
+FW_SHARED_FN HeatMaterial heatOver(FW_IN(HeatMaterial) m, bool rests, uint flux) {
+    uint shift = rests ? restShift(flux) : 0u;
     HeatMaterial long_ = m;
     long_.inertia = m.inertia == 0u ? 0u : mostOf(m.inertia >> shift, 1u);
     long_.capacityLeast = m.capacityLeast >> shift;
@@ -472,6 +470,11 @@ FW_SHARED_FN bool dozeEnds(uint object, uint tile, uint now) {
 FW_SHARED_FN uint heatTurn(bool warm, uint object, uint tile, uint flux, uint now) {
     return (warm ? kWorkAlways : 0u) | (restEnds(tile, flux, now) ? kWorkRests : 0u) |
            (dozeEnds(object, tile, now) ? kWorkDozes : 0u);
+}
+// A texel's work as its tile's turn has it: in a warm tile what dozes takes every step, as a plain
+// one. Its turn it is where (work & turn) is not 0.
+FW_SHARED_FN uint workInTurn(uint work, uint turn) {
+    return work == kWorkDozes && (turn & kWorkAlways) != 0u ? kWorkAlways : work;
 }
 
 FW_SHARED_END

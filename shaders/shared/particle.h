@@ -324,6 +324,7 @@ FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle
     return p;
 }
 
+FW_SHARED_CONST float kSplashOff = 0.35f;  // m that it is off what it struck, at most
 // It met a surface at `c` with unit normal `n`: what went along it goes on, the rest turns into a
 // sheet that prefers the way it came and up.
 FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
@@ -341,7 +342,7 @@ FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Partic
                      0.28f * length(along) * (0.3f + t.other), 4.5f);
     vec3 sheet = along * 0.75f + side * out_ + n * (into * (0.03f + 0.10f * t.own));
     v = first ? sheet : along + n * 0.2f;
-    float off = min(0.30f * size, 0.35f);
+    float off = min(0.30f * size, kSplashOff);
     float age = first ? clamp(p.placeAge.w, 0.22f * t.life, max(0.38f * t.life, 0.0f))
                       : p.placeAge.w;
     p.placeAge = vec4(c + n * off, p.placeAge.w > t.life ? p.placeAge.w : age);
@@ -404,6 +405,14 @@ FW_SHARED_FN float particleQuarter(float x) { return x * sqrt(sqrt(x)); }  // x^
 FW_SHARED_FN float particleSmoke(ParticleEmitter e, float a) {
     return smoothstep(0.65f, 1.05f, a) *
            particleQuarter(particleUnit((1.0f + e.life.z - a) / max(e.life.z, 0.01f)));
+}
+FW_SHARED_CONST float kPuffReach = 0.55f;  // of its particle's size, from its middle
+// m that a puff keeps off the wall that its particle struck: what reached into it would end at a
+// straight line. (The ground is one to be asked for its height.) It comes off as it begins to show.
+FW_SHARED_FN float particleOffWall(Particle p, vec3 up, float size, float a) {
+    float upright = dot(vec3(p.hit.x, p.hit.y, p.hit.z), up);
+    float wall = p.hit.w >= 0.0f ? 1.0f - upright * upright : 0.0f;
+    return wall * smoothstep(0.5f, 0.8f, a) * max(kPuffReach * size - kSplashOff * 0.5f, 0.0f);
 }
 // Length over width, and how far the quad follows the way it flies (1) or its own turn (0).
 // `across`: m/s on the screen.

@@ -38,6 +38,7 @@ FW_SHARED_CONST uint kRefineBurning = 2u;  // something of it burns
 FW_SHARED_CONST uint kRefineGone = 4u;     // some are burnt through; kept
 FW_SHARED_CONST uint kRefineStays = 8u;    // some are not
 FW_SHARED_CONST uint kRefineGoing = 16u;   // some of these are lit
+FW_SHARED_CONST uint kRefineLost = 32u;    // of an interior: all of the triangle is burnt through; kept
 
 struct RefineTriangle {  // a coarse triangle; corners and sides counter-clockwise, side e = e, e + 1
     uint edge[3];
@@ -127,7 +128,9 @@ struct RefineObject {
     uint cutTriangles;   // room for; shared out to materials by their triangles
     float dt;            // s since it was last refined
     uint inner;          // from a vertex to its place on the inner skin; 0: a sheet, it has none
-    uint reserved2; uint reserved3; uint reserved4; uint reserved5;
+    float fewest;        // levels short of what its size asks for, from which on corners do not know holes
+                         // and texels say where they are; 0: corners always do
+    uint reserved2; uint reserved3; uint reserved4;
 };
 FW_SHARED_SIZE(RefineObject, 192)
 FW_SHARED_CONST uint kRefineIsActive = 1u;
@@ -158,7 +161,7 @@ struct RefinePush {
     uint nowTick;
     uint budget;      // triangles; 0: all fit
     uint row;         // heat: counters row of the list
-    uint parity;      // heat: of the list; + 2: it is the burn list
+    uint parity;      // heat: of the list; + 2: it is the burn list; kRefineFreshHeat
     uint full;        // 1: everything at its deepest and moving, for comparison
     uint reserved;
     float recede;     // share of a slot's reach, below 1
@@ -172,6 +175,7 @@ struct RefinePush {
     uint cutJobs;     // as far behind it: edges
 };
 FW_SHARED_SIZE(RefinePush, 64)
+FW_SHARED_CONST uint kRefineFreshHeat = 4u;  // RefinePush::parity
 FW_SHARED_CONST float kRefineRate = 4.0f;    // levels per s, once a surface has moved
 FW_SHARED_CONST float kRefineCool = 1.0f;    // s that a level outlives its heat
 FW_SHARED_CONST float kRefineGrace = 0.25f;  // s of burning during which a surface counts as flat

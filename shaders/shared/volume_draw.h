@@ -105,8 +105,9 @@ struct VolumeComposite {
     uint perPixel;        // cells a side: 2, 4, 8, all of them in one tile; 0: a cell is a pixel or more
     float from; float to; // see volumeTurned
     uint reserved0; uint reserved1;
+    vec4 window;          // low x, y, high x, y, cells from the origin: finer ones show the flame there
 };
-FW_SHARED_SIZE(VolumeComposite, 80)
+FW_SHARED_SIZE(VolumeComposite, 96)
 
 // A flame that was marched once and is shown for some frames: tiles of one slab, whose cells are
 // kept as wide as they are in the world. Its words are what is known of its tiles, then its cells.

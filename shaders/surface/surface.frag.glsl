@@ -5,6 +5,7 @@
 #include "shared/burn.h"
 #include "shared/heat.h"
 #include "shared/look.h"
+#include "shared/refine_cut.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
 // Families of materials that a variant can draw, and whether they can burn (kSurface...). The
@@ -50,6 +51,9 @@ layout(location = 0) out vec4 outColor;
 #include "surface/base.glsl"
 #include "surface/look.glsl"
 
+// Of its time: holes that corners expect later than texels by more are the texels'. Noise between
+// corners of a mesh as fine as its size asks for makes less.
+const float kHoleKnown = 0.5;
 // W/sr of the visible part of a flame to candela: soot glows a little for much heat.
 const float kCandelaPerWatt = 0.013;
 
@@ -275,7 +279,8 @@ void main() {
     face *= dot(face, toEye) < 0.0 ? -1.0 : 1.0;
     // Walls of holes that were cut and of open borders have no normals of their own.
     bool cut = kBurns && (draw.flags & kDrawCut) != 0u;
-    bool wall = (draw.flags & kDrawCut) != 0u && inSootLead.y < -0.5;
+    bool wall = (draw.flags & kDrawCut) != 0u && inSootLead.y < -0.5 &&
+                inSootLead.y > 0.5 * kRefineByTexels;
     bool rim = cut && wall && inSootLead.y > -2.5;
     if (wall) normal = normalize(face);
     bool back = dot(face, normal) < 0.0;
@@ -416,6 +421,11 @@ void main() {
     // What the wall behind has burnt is missing here too, even before this side catches.
     site.lead = cut ? 0.0 : inSootLead.y;
     site.left = cut ? max(inSootLead.y, 0.0) * draw.timeScale : -1.0;
+    // Corners that are too far apart know nothing of a hole between them: texels do, at every level.
+    float holeLeft = look.holeTime + later - max(site.age, -ahead);
+    bool byTexels = cut && !wall && (inSootLead.y < 0.5 * kRefineByTexels ||
+                                     site.left - holeLeft > kHoleKnown * look.holeTime);
+    if (byTexels) site.left = -1.0;
     site.nearness = draw.nearness;
     if (wall && !rim) site.left = 1000.0;  // no rim
     if (rim) {
@@ -423,7 +433,7 @@ void main() {
         site.age = max(site.age, look.holeTime);
         site.left = saturate(-1.0 - inSootLead.y) * look.thickness * site.slow;
     }
-    bool soon = site.lead >= 1e-3 || (cut && site.left < look.holeTime);
+    bool soon = site.lead >= 1e-3 || (cut && !byTexels && site.left < look.holeTime);
     bool cold = !kBurns || look.spreadRate <= 0.0 ||
                 (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;
@@ -442,7 +452,7 @@ void main() {
     if (inside) skin.occlusion = 0.5;
     if (kBurns && !cold) {
         vec2 uneven = vec2(dot(laterSlope, axisX), dot(laterSlope, axisY)) / site.slow;
-        if (look.rimWidth < kThinRim && !cut)
+        if (look.rimWidth < kThinRim && site.left < 0.0)
             site.steep = clamp(length(site.ahead + uneven), 1.0, 4.0);
         float edge = holeEdge(max(site.age, -ahead) - look.jitter * delay, site, look);
         if (rim) {

@@ -39,7 +39,8 @@ void add(uint at, float weight, inout vec4 color, inout float through) {
 
 void main() {
     outColor = vec4(0.0);
-    if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    bool elsewhere = all(greaterThan(inCell + 0.5, draw.window.xy)) && all(lessThan(inCell + 0.5, draw.window.zw));
+    if (elsewhere || !volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
     uint pitch = kVolumeCellWords * kVolumeTile * draw.tilesX;
     vec4 color = vec4(0.0);
     float through = 0.0;

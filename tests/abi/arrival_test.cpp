@@ -129,6 +129,37 @@ TEST(Arrival, TellsOfWhatWasJustDone) {
     EXPECT_EQ(tell(w, 0.2f, 0.125f).state.kind, FW_ARRIVAL_AHEAD);
 }
 
+// In air of half the strength fire takes its time, and in worse air it never comes.
+TEST(Arrival, TellsOfTheRoomsAir) {
+    SheetWorld w(preset(FW_MATERIAL_PAPER), 1.0f, 0.5f, 64, windy(0, 3));
+    FwRoomDef hall = fwDefaultRoomDef();
+    hall.volume = 1000;  // one sheet changes nothing of its air
+    hall.vent = 0;
+    FwRoomId room{};
+    ASSERT_EQ(FW_OK, fwWorld_CreateRoom(w.world, &hall, &room)) << lastMessage(w.world);
+    w.ball(FW_IGNITE, 0.1f, 0, 0.25f, 0.03f);
+    w.run(1);
+    const double good = tell(w, 0.8f, 0.25f).state.seconds;
+    const auto breathe = [&](float oxygen) {
+        hall.oxygen = oxygen;
+        hall.flags = FW_ROOM_REFILL;
+        ASSERT_EQ(FW_OK, fwWorld_SetRoom(w.world, room, &hall)) << lastMessage(w.world);
+        w.run(0.5);  // until it is heard of
+    };
+    breathe(0.135f);
+    FwRoomState air{};
+    air.structSize = sizeof air;
+    ASSERT_EQ(FW_OK, fwWorld_GetRoomState(w.world, room, &air));
+    EXPECT_NEAR(0.5f, air.strength, 0.02f);
+    const double asked = timeOf(w.world), told = tell(w, 0.8f, 0.25f).time - asked;
+    EXPECT_LT(1.5 * good, told);
+    const double came = catches(w, 0.8f, 0.25f, 400) - asked;
+    std::printf("in half of the air: told %.2f s, came at %.2f s\n", told, came);
+    EXPECT_NEAR(told, came, 0.05 * came);
+    breathe(0.11f);
+    EXPECT_EQ(FW_ARRIVAL_NEVER, tell(w, 0.98f, 0.02f).state.kind);
+}
+
 TEST(Arrival, TellsOfTheWind) {
     FwMaterialDef grass = preset(FW_MATERIAL_THATCH);
     SheetWorld w(grass, 1.0f, 0.5f, 64, windy(0, 1));

@@ -29,7 +29,8 @@ inline Bytes saveOf(FwWorld* world) {
 }
 
 // Much goes on at once in it: boxes and boards of several materials that light each other, wind
-// that turns, water, a flamethrower, a fire that stands there, a field that wets, a wall, a tag.
+// that turns, has gusts and a grid, water, a flamethrower, a fire that stands there, a field that
+// wets, a wall, a tag.
 class BusyWorld {
  public:
     explicit BusyWorld(uint32_t backend, float pace = 12, uint32_t things = 10) {
@@ -187,6 +188,19 @@ class BusyWorld {
         ok(fwWorld_CreateBurnableMesh(world, &def, &id));
         ids.push_back(id);
     }
+    // Over all of the things; later some of its points blow otherwise.
+    void blowGrid(uint32_t frame) {
+        FwWindGridDef grid = fwDefaultWindGridDef();
+        grid.counts[0] = 4;
+        grid.blend = FW_WIND_ADD;
+        put(grid.origin, -0.5f, -0.3f, -0.4f);
+        grid.fade = 0.2f;
+        float velocities[48] = {};
+        for (uint32_t i = 0; i < 48; ++i)
+            velocities[i] = float(i % 7) - 3 + (i > 30 && frame == 80 ? 1.25f : 0.0f);
+        grid.velocities = velocities;
+        ok(fwWorld_SetWindGrid(world, &grid));
+    }
     void act(uint32_t frame) {
         FwIgnitionDef ball = fwDefaultIgnitionDef();
         uint32_t texels = 0;
@@ -212,6 +226,14 @@ class BusyWorld {
             place(at, 0.9f + 0.01f * float(frame % 7), 0.1f, 0.5f, 0.1f * float(frame));
             ok(fwWorld_SetTransform(world, ids[7 % ids.size()], at));
         }
+        if (frame == 20 || frame == 105) {
+            FwGustDef gusts = fwDefaultGustDef();
+            gusts.strength = frame == 20 ? 0.6f : 0.0f;
+            gusts.size = 1.5f;
+            ok(fwWorld_SetGusts(world, &gusts));
+        }
+        if (frame == 33 || frame == 80) blowGrid(frame);
+        if (frame == 125) ok(fwWorld_SetWindGrid(world, nullptr));
         if (frame % 45 == 13) {
             const FwWindZoneDef fan = fanOf(frame);
             ok(fwWorld_SetWindZone(world, zones[1], &fan));

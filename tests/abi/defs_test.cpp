@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(133, calls);  // every function of the three headers
+    EXPECT_EQ(135, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -48,6 +48,8 @@ const DefCase kDefs[] = {
     {"offscreen", FW_DEF_OFFSCREEN, sizeof(FwOffscreenDef)},
     {"blocker", FW_DEF_BLOCKER, sizeof(FwBlockerDef)},
     {"wind zone", FW_DEF_WIND_ZONE, sizeof(FwWindZoneDef)},
+    {"wind grid", FW_DEF_WIND_GRID, sizeof(FwWindGridDef)},
+    {"gusts", FW_DEF_GUSTS, sizeof(FwGustDef)},
     {"room", FW_DEF_ROOM, sizeof(FwRoomDef)},
     {"fire", FW_DEF_VOLUMETRIC_FIRE, sizeof(FwVolumetricFireDef)},
     {"flipbook", FW_DEF_FLIPBOOK, sizeof(FwFlipbookDef)},
@@ -285,6 +287,15 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
             return result;
         },
         worldMessage);
+    const float velocities[24] = {};
+    FwWindGridDef grid = fwDefaultWindGridDef();
+    grid.velocities = velocities;
+    checkSizes<FwWindGridDef>(
+        "FwWindGridDef", grid,
+        [&](const FwWindGridDef* def) { return fwWorld_SetWindGrid(w.world, def); }, worldMessage);
+    checkSizes<FwGustDef>(
+        "FwGustDef", fwDefaultGustDef(),
+        [&](const FwGustDef* def) { return fwWorld_SetGusts(w.world, def); }, worldMessage);
     FwIgnitionDef ignition = fwDefaultIgnitionDef();
     ignition.radius = 0.05f;
     checkSizes<FwIgnitionDef>(

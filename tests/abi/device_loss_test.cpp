@@ -2,6 +2,7 @@
 // once and for all, everything is freed, and the fire goes on from the last mirror, bit by bit.
 // FLAMEWRIGHT_LOSE_EVERY=1 in the environment: at every call.
 #include "support/loss_scene.h"
+#include "support/sanitized.h"
 #include "support/views.h"
 
 #include <dlfcn.h>
@@ -65,6 +66,9 @@ struct Life {
     }
 };
 
+// Calls; a sanitized life takes four times as long.
+constexpr int64_t kApart = fw::test::rounds(40, 80);
+
 TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
     if (!*FW_TEST_LOSING_LOADER) GTEST_SKIP() << "there is no libvulkan.so.1";
     ASSERT_TRUE(loader.vulkan && loader.vulkan->real) << "no loader between";
@@ -82,7 +86,7 @@ TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
         ASSERT_EQ(reference.saves.rbegin()->second, whole.scene.mirror);
         EXPECT_EQ(reference.end, whole.scene.save());
     }
-    const std::vector<int64_t> losses = chooseLosses(vulkan, frames, calls, 40, true);
+    const std::vector<int64_t> losses = chooseLosses(vulkan, frames, calls, kApart, true);
     std::map<uint32_t, uint32_t> mirrors;  // by frame, how often
     std::vector<Bytes> recovered;
     for (const int64_t call : losses) {

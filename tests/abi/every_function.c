@@ -51,6 +51,8 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_CreateWindZone(NULL, NULL, NULL));
     REFUSES(fwWorld_SetWindZone(NULL, zone, NULL));
     REFUSES(fwWorld_DestroyWindZone(NULL, zone));
+    REFUSES(fwWorld_SetWindGrid(NULL, NULL));
+    REFUSES(fwWorld_SetGusts(NULL, NULL));
     REFUSES(fwWorld_GetWindAt(NULL, NULL, NULL));
     REFUSES(fwWorld_CreateRoom(NULL, NULL, NULL));
     REFUSES(fwWorld_SetRoom(NULL, room, NULL));

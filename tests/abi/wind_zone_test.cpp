@@ -1,7 +1,8 @@
-// Wind zones through the C ABI: what a fan does to fire on a sheet and to what embers light, that
-// both backends agree, and what is refused.
+// Wind zones, the host's grid of wind and gusts through the C ABI: what they do to fire on a sheet
+// and to what embers light, that both backends and all frame rates agree, and what is refused.
 #include "abi/panels.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -64,9 +65,15 @@ struct Meadow {
             EXPECT_LT(0u, texels);
         }
     }
-    void run(int steps) {
-        for (int i = 0; i < steps; ++i)
-            ASSERT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32)) << lastMessage(world);
+    void run(int steps, int stepsAFrame = 1) {
+        for (int i = 0; i < steps; i += stepsAFrame)
+            ASSERT_EQ(FW_OK, fwWorld_Step(world, float(stepsAFrame) / 32)) << lastMessage(world);
+    }
+    std::array<float, 3> windAt(float x, float y, float z) {
+        const float point[3] = {x, y, z};
+        std::array<float, 3> wind{};
+        EXPECT_EQ(FW_OK, fwWorld_GetWindAt(world, point, wind.data())) << lastMessage(world);
+        return wind;
     }
     template <class Fetch>
     void come(Fetch fetch) {
@@ -212,6 +219,198 @@ TEST(AbiWindZone, CarriesEmbers) {
     }
     EXPECT_EQ(0u, lit[0]);
     EXPECT_LT(0u, lit[1]);
+}
+
+// 3 x 2 x 4 points over [-1, 1] x [-0.5, 0.5] x [-0.5, 2.5] m, and what blows on them by place.
+struct Grid {
+    Grid(void (*blows)(float x, float y, float z, float* wind), uint32_t blend = FW_WIND_REPLACE) {
+        def.counts[0] = 3, def.counts[2] = 4;
+        def.origin[0] = -1, def.origin[1] = def.origin[2] = -0.5f;
+        def.blend = blend;
+        for (uint32_t i = 0; i < 24; ++i)
+            blows(-1 + float(i % 3), -0.5f + float(i / 3 % 2), -0.5f + float(i / 6),
+                  velocities + 3 * size_t{i});
+        def.velocities = velocities;
+    }
+    Grid(const Grid&) = delete;
+    Grid& operator=(const Grid&) = delete;
+    FwWindGridDef def = fwDefaultWindGridDef();
+    float velocities[72] = {};
+};
+void evenly(float, float, float, float* wind) { wind[0] = 4; }
+void turning(float, float, float z, float* wind) { wind[0] = 6 * (1 - z); }  // right, then left
+void shearing(float x, float y, float z, float* wind) {
+    wind[0] = z;
+    wind[1] = 2 * x - y;
+    wind[2] = x * y - 1;
+}
+
+// A grid that is the same all over is the world's wind, instead of it or added to it; and it goes.
+TEST(AbiWindGrid, IsAWindLikeTheWorlds) {
+    Meadow world(FW_BACKEND_CPU), grid(FW_BACKEND_CPU), both(FW_BACKEND_CPU), gone(FW_BACKEND_CPU),
+        still(FW_BACKEND_CPU);
+    const float wind[3] = {4, 0, 0}, half[3] = {2, 0, 0};
+    ASSERT_EQ(FW_OK, fwWorld_SetWind(world.world, wind));
+    const Grid even(evenly);
+    ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(grid.world, &even.def)) << lastMessage(grid.world);
+    ASSERT_EQ(FW_OK, fwWorld_SetWind(both.world, half));
+    const Grid more([](float, float, float, float* w) { w[0] = 2; }, FW_WIND_ADD);
+    ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(both.world, &more.def)) << lastMessage(both.world);
+    ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(gone.world, &even.def));
+    ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(gone.world, nullptr)) << lastMessage(gone.world);
+    for (Meadow* m : {&world, &grid, &both, &gone, &still}) {
+        m->light();
+        m->run(32 * 4);
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(world.hash(i), grid.hash(i));
+        EXPECT_EQ(world.hash(i), both.hash(i));
+        EXPECT_EQ(still.hash(i), gone.hash(i));
+        EXPECT_NE(world.hash(i), still.hash(i));
+    }
+}
+
+// One that turns along z: the fires at its ends run opposite ways.
+TEST(AbiWindGrid, DrivesFireAsItBlowsThere) {
+    Meadow m(FW_BACKEND_CPU);
+    const Grid turns(turning);
+    ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &turns.def)) << lastMessage(m.world);
+    m.light();
+    m.run(32 * 5);
+    EXPECT_TRUE(m.burnt(0, 0.25f));
+    EXPECT_FALSE(m.burnt(0, -0.25f));
+    EXPECT_TRUE(m.burnt(2, -0.25f));
+    EXPECT_FALSE(m.burnt(2, 0.25f));
+}
+
+TEST(AbiWindGrid, IsTrilinearBetweenItsPoints) {
+    Meadow m(FW_BACKEND_CPU);
+    const float around[3] = {-3, 0.5f, 8};
+    ASSERT_EQ(FW_OK, fwWorld_SetWind(m.world, around));
+    Grid grid(shearing);
+    ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &grid.def)) << lastMessage(m.world);
+    for (const auto& at : {std::array{-0.9f, 0.2f, 2.1f}, std::array{0.77f, -0.4f, 0.0f},
+                           std::array{1.0f, 0.5f, 2.5f}, std::array{-1.0f, -0.5f, -0.5f}}) {
+        float expected[3] = {};
+        shearing(at[0], at[1], at[2], expected);
+        const std::array<float, 3> wind = m.windAt(at[0], at[1], at[2]);
+        for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(expected[i], wind[i], 0.03f) << i;
+    }
+    for (const float beyond : {-1.002f, 1.002f}) EXPECT_EQ(8, m.windAt(beyond, 0, 0)[2]);
+    // Half of its way inward it is half of it.
+    grid.def.fade = 0.4f;
+    ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &grid.def));
+    EXPECT_NEAR(0.5f * (8 - 1 + 0.8f * 0.1f), m.windAt(0.8f, 0.1f, 1)[2], 0.03f);
+    EXPECT_NEAR(1, m.windAt(0.5f, 0.0f, 1)[0], 0.03f);
+}
+
+// Points that change, gusts that pass, frames of many steps: all the same, on each backend.
+TEST(AbiWindGrid, BackendsAndFrameRatesAgreeInGusts) {
+    uint64_t hashes[3][3] = {};
+    for (int k = 0; k < 3; ++k) {
+        Meadow m(k == 2 ? FW_BACKEND_VULKAN : FW_BACKEND_CPU, 3,
+                 FW_WORLD_EMBERS | FW_WORLD_CONTACT | FW_WORLD_PLUME);
+        if (!m.world) GTEST_SKIP() << "there is no such backend here";
+        const float around[3] = {3, 0, 1};
+        ASSERT_EQ(FW_OK, fwWorld_SetWind(m.world, around));
+        FwGustDef gusts = fwDefaultGustDef();
+        gusts.strength = 0.8f;
+        gusts.size = 1.5f;
+        ASSERT_EQ(FW_OK, fwWorld_SetGusts(m.world, &gusts)) << lastMessage(m.world);
+        m.light();
+        for (int part = 0; part < 6; ++part) {
+            m.run(24, k == 1 ? 12 : 1);
+            Grid turns(part % 2 ? turning : shearing, FW_WIND_ADD);
+            turns.velocities[5] += float(part);
+            ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &turns.def)) << lastMessage(m.world);
+        }
+        for (size_t i = 0; i < 3; ++i) hashes[k][i] = m.hash(i);
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(hashes[0][i], hashes[1][i]) << i;
+        EXPECT_EQ(hashes[0][i], hashes[2][i]) << i;
+    }
+    EXPECT_NE(hashes[0][0], hashes[0][1]);
+}
+
+// A gust comes along with the wind, and on the whole it blows as it would without.
+TEST(AbiWindGrid, GustsDriftWithTheWind) {
+    Meadow m(FW_BACKEND_CPU, 1);
+    const float around[3] = {4, 0, 0};
+    ASSERT_EQ(FW_OK, fwWorld_SetWind(m.world, around));
+    FwGustDef gusts = fwDefaultGustDef();
+    gusts.strength = 0.5f;
+    gusts.size = 4;
+    ASSERT_EQ(FW_OK, fwWorld_SetGusts(m.world, &gusts)) << lastMessage(m.world);
+    constexpr int kPlaces = 4000;
+    double mean = 0, least = 99, most = 0;
+    std::vector<float> before;
+    for (int i = 0; i < kPlaces; ++i) {
+        before.push_back(m.windAt(0.5f * float(i), 0, 0)[0]);
+        mean += double(before.back()) / kPlaces;
+        least = std::min(least, double(before.back()));
+        most = std::max(most, double(before.back()));
+    }
+    EXPECT_NEAR(4, mean, 0.15);
+    EXPECT_LE(2, least);
+    EXPECT_GT(3, least);
+    EXPECT_GE(6, most);
+    EXPECT_LT(5, most);
+    m.run(32);  // 4 m further
+    for (int i = 0; i < 40; ++i)
+        EXPECT_NEAR(before[size_t(i)], m.windAt(0.5f * float(i) + 4, 0, 0)[0], 0.02f) << i;
+    // As it turns, gusts stay where they are.
+    const float other[3] = {0, 0, 3};
+    const std::array<float, 3> here = m.windAt(1, 0, 0);
+    ASSERT_EQ(FW_OK, fwWorld_SetWind(m.world, other));
+    EXPECT_NEAR(here[0] / 4, m.windAt(1, 0, 0)[2] / 3, 0.02f);
+    gusts.strength = 0;
+    ASSERT_EQ(FW_OK, fwWorld_SetGusts(m.world, &gusts));
+    EXPECT_EQ(3, m.windAt(1, 0, 0)[2]);
+}
+
+TEST(AbiWindGrid, SaysWhatIsWrong) {
+    Meadow m(FW_BACKEND_CPU, 1);
+    const auto expectRefused = [&](FwResult result, const char* says) {
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, result) << says;
+        EXPECT_EQ(0u, lastMessage(m.world).find(says)) << lastMessage(m.world);
+    };
+    Grid good(evenly);
+    ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &good.def));
+    const auto expectGrid = [&](void (*spoil)(Grid&), const char* says) {
+        Grid bad(shearing);
+        spoil(bad);
+        expectRefused(fwWorld_SetWindGrid(m.world, &bad.def), says);
+    };
+    expectGrid([](Grid& g) { g.def.counts[1] = 1; },
+               "FwWindGridDef::counts[1] is 1; the limits are [2, 64].");
+    expectGrid([](Grid& g) { g.def.counts[2] = 65; },
+               "FwWindGridDef::counts[2] is 65; the limits are [2, 64].");
+    expectGrid([](Grid& g) { g.def.counts[0] = g.def.counts[1] = g.def.counts[2] = 64; },
+               "FwWindGridDef::counts makes 64 x 64 x 64 = 262144 points; the limit is 32768.");
+    expectGrid([](Grid& g) { g.def.velocities = nullptr; }, "FwWindGridDef::velocities is null.");
+    expectGrid([](Grid& g) { g.velocities[7] = -120.5f; },
+               "FwWindGridDef::velocities[7] is -120.5 m/s; the limits are [-120, 120].");
+    expectGrid([](Grid& g) { g.velocities[71] = std::numeric_limits<float>::quiet_NaN(); },
+               "FwWindGridDef::velocities[71] is ");
+    expectGrid([](Grid& g) { g.def.cellSize = 0; },
+               "FwWindGridDef::cellSize is 0; the limits are [0.01, 1000].");
+    expectGrid([](Grid& g) { g.def.fade = -1; },
+               "FwWindGridDef::fade is -1; the limits are [0, 1000].");
+    expectGrid([](Grid& g) { g.def.origin[2] = 2e6f; }, "FwWindGridDef::origin[2] is 2e+06;");
+    expectGrid([](Grid& g) { g.def.blend = 2; }, "FwWindGridDef::blend is 2; the limit is 1.");
+    expectGrid([](Grid& g) { g.def.reserved = 1; },
+               "FwWindGridDef::flags is 0x0 and reserved is 1; both are zero.");
+    EXPECT_NEAR(4, m.windAt(0, 0, 0)[0], 0.01f);  // as before
+    FwGustDef gusts = fwDefaultGustDef();
+    gusts.strength = 1.5f;
+    expectRefused(fwWorld_SetGusts(m.world, &gusts),
+                  "FwGustDef::strength is 1.5; the limits are [0, 1].");
+    gusts.strength = 1;
+    gusts.size = 0.1f;
+    expectRefused(fwWorld_SetGusts(m.world, &gusts),
+                  "FwGustDef::size is 0.1; the limits are [0.5, 1000].");
+    expectRefused(fwWorld_SetGusts(m.world, nullptr), "FwGustDef is null.");
 }
 
 TEST(AbiWindZone, SaysWhatBlowsAndWhatIsWrong) {

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -544,6 +545,10 @@ TEST(EditorFile, ACopyKeptElsewhereIsUnsavedWorkOnItsOriginal) {
     const std::string meshes = document.scene.meshes.at(0).file;
     ASSERT_TRUE(saveCopy(document, copy, error)) << error;
     EXPECT_TRUE(unsaved(document));
+    // Each copy takes the place of the one before, with its pictures.
+    mustRun(document, "fill Dry value 0.7");
+    ASSERT_TRUE(saveCopy(document, copy, error)) << error;
+    EXPECT_EQ(2, std::distance(fs::directory_iterator(copy.parent_path()), {}));
 
     Document back;
     std::vector<std::string> repairs;
@@ -596,7 +601,15 @@ TEST(EditorFile, AHundredKillsAtAnyMomentLeaveAWholeFile) {
                 if (!saveDocument(document, file, ignored)) ::_exit(1);
             }
         }
-        ::usleep(1000 + random() % 15000);
+        // By the child's own clock: where others work it may not have run at all by another one.
+        clockid_t clock{};
+        ASSERT_EQ(0, ::clock_getcpuclockid(child, &clock));
+        const long until = 500'000 + static_cast<long>(random() % 10'000'000);  // ns
+        timespec ran{};
+        for (int i = 0; i < 20'000 && ran.tv_sec == 0 && ran.tv_nsec < until; ++i) {
+            ::usleep(200);
+            if (::clock_gettime(clock, &ran) != 0) break;
+        }
         ::kill(child, SIGKILL);
         int status = 0;
         ASSERT_EQ(child, ::waitpid(child, &status, 0));
@@ -700,7 +713,7 @@ TEST(EditorFile, RefusalsSayWhatItIs) {
     EXPECT_THAT(why("{\"fwscene\": 1"), HasSubstr("line 1"));
     EXPECT_THAT(why("[]"), HasSubstr("a list"));
     EXPECT_THAT(why("{}"), HasSubstr("which version"));
-    EXPECT_THAT(why("{\"fwscene\": 2}"), HasSubstr("fwscene is 2; this program reads up to 1"));
+    EXPECT_THAT(why("{\"fwscene\": 3}"), HasSubstr("fwscene is 3; this program reads up to 2"));
     EXPECT_THAT(why(std::string(200000, '[')), HasSubstr("not opened"));
     EXPECT_THAT(why("\x89PNG\r\n"), HasSubstr("not opened"));
     EXPECT_THAT(why(std::string(size_t{17} << 20, ' ')), HasSubstr("above 16777216"));
@@ -782,6 +795,126 @@ TEST(EditorScene, WhatSticksMovesAlongAndStaysWhenItsHolderGoes) {
     mustRun(document, "remove \"Box\"");
     EXPECT_EQ(0u, document.scene.sources[0].sticksTo);
     near({1, 3, -2});
+}
+
+// A file with one node, at (1, 2, 3) and turned so that its z is the mesh's x.
+bool poseOfTheHook(const Mesh&, std::string_view node, Pose& pose, std::string& error) {
+    error = "a.glb: there is no such node";
+    pose = {0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 2, 3, 1};
+    return node == "hook";
+}
+
+void expectNear(Vec3 wish, Vec3 given) {
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(wish[k], given[k], 1e-5f) << k;
+}
+
+TEST(EditorScene, WhatSticksToANodeStandsAndTurnsWithIt) {
+    Document document = newDocument();
+    document.nodePose = poseOfTheHook;
+    const auto place = [&] { return worldPosition(document.scene, 2, document.nodePose); };
+    const auto way = [&] {
+        return turnedBy(holderPose(document.scene, 2, document.nodePose),
+                        document.scene.sources[0].direction);
+    };
+    mustRun(document, "import a.glb name=Box position 10 0 0");
+    mustRun(document,
+            "add source flamethrower name=Jet direction 0 0 1 sticks_to Box sticks_to_node hook");
+    expectNear({11, 2, 3}, place());
+    expectNear({1, 0, 0}, way());
+    mustRun(document, "set Box rotation 0 90 0");
+    expectNear({13, 2, -1}, place());
+    expectNear({0, 0, -1}, way());
+    // A hand moves it in the world, and once if its holder is moved too.
+    mustRun(document, "move Jet 1 0 0");
+    expectNear({14, 2, -1}, place());
+    mustRun(document, "move \"Jet\" \"Box\" 0 1 0");
+    expectNear({14, 3, -1}, place());
+    // Let go and taken again it stays where it is.
+    const HeatSource held = document.scene.sources[0];
+    mustRun(document, "set Jet sticks_to none");
+    EXPECT_EQ("", document.scene.sources[0].sticksToNode);
+    expectNear({14, 3, -1}, document.scene.sources[0].position);
+    expectNear({0, 0, -1}, document.scene.sources[0].direction);
+    mustRun(document, "set Jet sticks_to Box sticks_to_node hook");
+    EXPECT_EQ("Attach Jet", document.steps[document.at].name);
+    expectNear(held.position, document.scene.sources[0].position);
+    expectNear(held.direction, document.scene.sources[0].direction);
+
+    const std::string before = printScene(document.scene);
+    EXPECT_THAT(refusal(document, "set Jet sticks_to_node eye"),
+                HasSubstr("sticks_to_node is \"eye\"; a.glb: there is no such node"));
+    mustRun(document, "add source name=Loose");
+    EXPECT_THAT(refusal(document, "set Loose sticks_to_node hook"),
+                HasSubstr("a part of a mesh that \"Loose\" sticks to"));
+    undo(document);
+    EXPECT_EQ(before, printScene(document.scene));
+
+    // As a game knows it there is no node, and all else is as it was.
+    const Scene placed = placedScene(document.scene, document.nodePose);
+    EXPECT_EQ("", placed.sources[0].sticksToNode);
+    expectNear(place(), worldPosition(placed, 2));
+    expectNear(way(), turnedBy(holderPose(placed, 2), placed.sources[0].direction));
+    std::vector<std::string> problems;
+    document.scene.sources[0].sticksToNode = "eye";
+    (void)placedScene(document.scene, document.nodePose, &problems);
+    ASSERT_EQ(1u, problems.size());
+    EXPECT_THAT(problems[0], HasSubstr("\"Jet\" sticks to \"Box\" itself: a.glb"));
+    document.scene.sources[0].sticksToNode = "hook";
+    mustRun(document, "remove Box");
+    expectNear({14, 3, -1}, document.scene.sources[0].position);
+    expectNear({0, 0, -1}, document.scene.sources[0].direction);
+}
+
+// What has hardly any size cannot hold things far away: they stay where a file may have them.
+TEST(EditorScene, WhatSticksToAGrainIsStillAScene) {
+    Document document = newDocument();
+    mustRun(document, "import a.glb name=Grain scale 1e-30 1e-30 1e-30 rotation 0 45 0");
+    mustRun(document, "add emitter line position 5 0 0 direction 1000 0 1000 extent 100 0 100");
+    mustRun(document, "set #2 sticks_to Grain");
+    Scene again;
+    std::vector<std::string> repairs;
+    std::string error;
+    ASSERT_TRUE(readScene(printScene(document.scene), "x", again, repairs, error)) << error;
+    EXPECT_THAT(repairs, ::testing::IsEmpty());
+    EXPECT_EQ(document.scene, again);
+}
+
+// A flame on a lamp on a node: each stands on the one before.
+TEST(EditorScene, ARowOfThingsEndsAtANode) {
+    Document document = newDocument();
+    document.nodePose = poseOfTheHook;
+    mustRun(document, "import a.glb name=Box scale 2 2 2");
+    mustRun(document, "add source name=Lamp position 0 1 0 sticks_to Box sticks_to_node hook");
+    mustRun(document, "add emitter line name=Sparks position 0 0 1 extent 0 0 2 sticks_to Lamp");
+    const Vec3 place = worldPosition(document.scene, 3, document.nodePose);
+    expectNear({4, 6, 6}, place);
+    const Scene placed = placedScene(document.scene, document.nodePose);
+    EXPECT_EQ(1u, placed.emitters[0].sticksTo);
+    expectNear(place, worldPosition(placed, 3));
+    expectNear({2, 0, 0}, placed.emitters[0].extent);
+}
+
+TEST(EditorFile, WhatStuckInVersionOneKeepsItsWay) {
+    Scene scene;
+    std::vector<std::string> repairs;
+    std::string error;
+    ASSERT_TRUE(readScene(R"({"fwscene": 1, "next_id": 9,
+        "meshes": [{"id": 1, "name": "Box", "rotation": [0, 90, 0]}],
+        "sources": [{"id": 2, "name": "Jet", "direction": [1, 0, 0], "sticks_to": 1},
+                    {"id": 3, "name": "Free", "direction": [1, 0, 0], "sticks_to_node": "hook"}]})",
+                          "x", scene, repairs, error))
+        << error;
+    expectNear({1, 0, 0}, turnedBy(holderPose(scene, 2), scene.sources[0].direction));
+    expectNear({0, 0, 1}, scene.sources[0].direction);
+    EXPECT_EQ((Vec3{1, 0, 0}), scene.sources[1].direction);
+    EXPECT_EQ("", scene.sources[1].sticksToNode);
+    ASSERT_EQ(1u, repairs.size());
+    EXPECT_THAT(repairs[0], HasSubstr("sources[1].sticks_to_node is \"hook\""));
+    const std::string printed = printScene(scene);
+    EXPECT_THAT(printed, HasSubstr("\"fwscene\": 2"));
+    Scene again;
+    ASSERT_TRUE(readScene(printed, "again", again, repairs, error)) << error;
+    EXPECT_EQ(scene, again);
 }
 
 TEST(EditorScene, KeysAreStraightLinesBetweenThem) {

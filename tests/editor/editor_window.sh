@@ -61,6 +61,10 @@ xdotool keyup shift
 xdotool key 3 mousemove 540 300 mousedown 1
 xdotool mousemove 560 340 mousemove 560 400 mouseup 1
 await "did: Paint the flame"
+# A straight line from where that ended.
+xdotool mousemove 590 460 keydown shift click 1
+await "did: Paint the flame"
+xdotool keyup shift
 xdotool key f mousemove 540 300 mousedown 1
 xdotool mousemove 560 290 mousemove 580 280 mouseup 1
 await "did: Smear the flame"

@@ -1,6 +1,7 @@
 #!/bin/bash
 # A sample shows a scene that a script of the editor pushes to it, change by change: in place within
-# a frame what can be, by a burn of its own what cannot. At the end both have one fire, bit for bit,
+# a frame what can be, by a burn of its own what cannot. What lights it sticks to a node of the file,
+# which is turned. At the end both have one fire, bit for bit,
 # and the sample's picture is the editor's viewport.
 # Usage: live_link.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
 set -euo pipefail
@@ -37,7 +38,7 @@ cat >"$work/edit.fws" <<TEXT
 import box.glb name=Box materials pine map_size 256 texels_per_metre 128
 set settings pace 30 duration 4
 set camera target 0 0.1 0 distance 3 yaw 25 pitch 12
-add source match name=Match position 0.3 0 0.5 radius 0.15
+add source match name=Match position 0.3 -0.5 0 radius 0.15 sticks_to Box sticks_to_node "#1"
 link $port
 link wait
 play 2

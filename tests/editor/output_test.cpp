@@ -31,6 +31,9 @@ constexpr const char* kEverything =
     "set Match start 0.3\n"
     "add source point name=\"Corner torch\" position 0.3 0 1.1 output 30 radius 0.1 start 0.5 "
     "duration 1.5\n"
+    "add source point name=Lamp output 30 radius 0.05 sticks_to Board sticks_to_node wick\n"
+    "add source flamethrower name=Nozzle direction 0 0 1 output 100 sticks_to \"Second board\" "
+    "sticks_to_node hook\n"
     "add source line position 0 0 0.3 direction 1 0 0 length 1 output 50 radius 0.08\n"
     "add source flamethrower name=Register position -1 0.2 0 direction 1 0 0 output 300 "
     "keys 0:0 1:1 2:0.25\n"
@@ -91,7 +94,9 @@ int main(void) {
     if (fwCreateContext(&contextDef, &context, &info) < 0) return 2;
     {
         Yard yard;
+        static const float pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.05f, 0.02f, 1};
         if (CREATE < 0) return 3;
+        if (MOVE < 0) return 6;
         for (i = 0; i < 30; ++i)
             if (ADVANCE < 0 || fwWorld_Step(WORLD, 0.125f) < 0) return 4;
         {
@@ -121,7 +126,9 @@ TEST(EditorOutput, AGameOfTheSnippetBurnsAsTheEditorDoesInCAndInCpp) {
     Yard yard;
     yard.run(kBoard);
     yard.run(kEverything);
-    yard.run("save yard.fwscene\ncook game\nsnippet game/yard.c\nsnippet game/yard.cpp\nplay 0\n");
+    yard.run("save yard.fwscene\ncook game\nsnippet game/yard.c\nsnippet game/yard.cpp\n");
+    // The game moves a board, and what sticks to it comes along as it does here.
+    yard.run("move Board 0 0.05 0.02\nplay 0\n");
     std::string error;
     FwContext* cpu = yard.host->cpu(error);
     ASSERT_TRUE(burnToPlayhead(*yard.host, cpu, error)) << error;
@@ -146,6 +153,7 @@ TEST(EditorOutput, AGameOfTheSnippetBurnsAsTheEditorDoesInCAndInCpp) {
                                (fw::test::kSanitized ? " -fsanitize=address,undefined" : "");
     std::string c = replaced(kGame, "CREATE", "yard_create(context, \"" + folder + "\", &yard)");
     c = replaced(replaced(c, "ADVANCE", "yard_advance(&yard, 0.125f)"), "WORLD", "yard.world");
+    c = replaced(c, "MOVE", "yard_move_board(&yard, pose)");
     std::ofstream(yard.folder / "main.c") << "#include \"game/yard.c\"\n"
                                           << replaced(c, "DESTROY", "yard_destroy(&yard)");
     runCommand("cc -std=c11" + strict + " -o " + (yard.folder / "in_c").string() + " " +
@@ -154,6 +162,7 @@ TEST(EditorOutput, AGameOfTheSnippetBurnsAsTheEditorDoesInCAndInCpp) {
 
     std::string cpp = replaced(kGame, "CREATE", "create(context, \"" + folder + "\", yard)");
     cpp = replaced(replaced(cpp, "ADVANCE", "advance(yard, 0.125f)"), "WORLD", "yard.world.get()");
+    cpp = replaced(cpp, "MOVE", "move_board(yard, pose)");
     std::ofstream(yard.folder / "main.cpp") << "#include \"game/yard.cpp\"\n"
                                             << replaced(cpp, "DESTROY", "(void)0");
     runCommand("c++ -std=c++20" + strict + " -o " + (yard.folder / "in_cpp").string() + " " +

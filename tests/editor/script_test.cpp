@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "document/world_parts.h"
 #include "editor/yard.h"
 #include "import/float_picture.h"
 
@@ -194,6 +195,50 @@ TEST(EditorBurn, EveryKindOfObjectComesIntoTheWorld) {
         yard.host->burn->report,
         ::testing::Contains(HasSubstr("\"Lost\" is left out: it shows the fire of a mesh")));
     EXPECT_THAT(yard.host->burn->report, ::testing::Contains(HasSubstr("\"Second\" is left out")));
+}
+
+// A node of the file that a thing burns of holds a flame, wherever that thing goes.
+TEST(EditorBurn, AFlameSticksToANodeOfTheFile) {
+    Yard yard;
+    yard.run(kBoard);
+    yard.run(
+        "add flame candle name=Candle sticks_to Board sticks_to_node wick\n"
+        "add emitter name=Sparks direction 0 0 1 sticks_to Board sticks_to_node \"#1\"\n"
+        "play 0\n");
+    std::string error;
+    ASSERT_TRUE(burnToPlayhead(*yard.host, yard.host->cpu(error), error)) << error;
+    Burn& burn = *yard.host->burn;
+    EXPECT_THAT(burn.report, ::testing::IsEmpty());
+    const auto near = [](Vec3 wish, const float* given) {
+        for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(wish[k], given[k], 1e-5f) << k;
+    };
+    near({0.4f, 0.3f, 0.02f}, fireDefOf(burn.scene, burn.scene.flames[0]).position);
+    near({1, 0, 0}, emitterDefOf(burn.scene, burn.scene.emitters[0]).direction);
+    // At the wick's own scale.
+    yard.run("set Candle position 0 0.1 0\nset Board rotation 0 90 0\nmove Board 5 0 0\n");
+    ASSERT_TRUE(reviseBurn(burn, yard.host->document.scene, yard.folder));
+    near({5.02f, 0.5f, -0.4f}, fireDefOf(burn.scene, burn.scene.flames[0]).position);
+    near({0, 0, -1}, emitterDefOf(burn.scene, burn.scene.emitters[0]).direction);
+    EXPECT_THAT(yard.fails("set Candle sticks_to_node wich"),
+                HasSubstr("sticks_to_node is \"wich\"; board.glb: there is no node \"wich\"; its "
+                          "nodes are #0 to #2: boards, hook, wick"));
+    // A file that lost it is told of, and nothing is written that would be elsewhere.
+    yard.host->document.scene.flames[0].sticksToNode = "gone";
+    yard.host->burn = nullptr;
+    ASSERT_TRUE(burnToPlayhead(*yard.host, yard.host->cpu(error), error)) << error;
+    EXPECT_THAT(yard.host->burn->report, ::testing::ElementsAre(HasSubstr("no node \"gone\"")));
+    EXPECT_THAT(yard.fails("cook game"), HasSubstr("no node \"gone\""));
+}
+
+TEST(EditorBurn, APartOfAFileBurnsByItself) {
+    Yard yard;
+    yard.run(kBoard);
+    EXPECT_THAT(yard.fails("refuse set Board node boards"), HasSubstr("possible"));
+    yard.run("play 1\nset Board node hook\n");
+    std::string error;
+    ASSERT_TRUE(burnToPlayhead(*yard.host, yard.host->cpu(error), error)) << error;
+    ASSERT_EQ(1u, yard.host->burn->report.size());
+    EXPECT_THAT(yard.host->burn->report[0], HasSubstr("there is no triangle in it"));
 }
 
 TEST(EditorBurn, ASourceOfHeatLightsAndWaterHolds) {

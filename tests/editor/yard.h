@@ -19,7 +19,8 @@ using namespace fwedit;
 namespace fs = std::filesystem;
 
 // A folder with "board.glb" in it: an upright board, 1 m wide, 0.4 m tall, 2 cm thick, its lower
-// edge at y = 0; and a second, loose board behind it.
+// edge at y = 0; and a second, loose board behind it. On its front a node "hook", which looks along
+// x, and 0.1 m above that on the hook a "wick".
 struct Yard {
     fs::path folder;
     std::vector<std::string> said;
@@ -78,7 +79,10 @@ struct Yard {
             }
         const size_t bytes = positions.size() * 4;
         std::string json =
-            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)"
+            R"({"mesh":0,"name":"boards","children":[1]},{"name":"hook","translation":[0.4,0.2,0.02],)"
+            R"("rotation":[0,0.70710678,0,0.70710678],"children":[2]},)"
+            R"({"name":"wick","translation":[0,0.1,0],"scale":[2,2,2]}],)"
             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
             R"("buffers":[{"byteLength":)" +
             std::to_string(bytes + indices.size() * 2) + R"(}],"bufferViews":[{"buffer":0,)" +

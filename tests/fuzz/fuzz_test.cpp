@@ -421,6 +421,25 @@ class Fuzz {
         if (result == FW_OK) profiles_.known.push_back(id);
     }
 
+    void shapeGrid() {
+        FwGustDef gusts = fwDefaultGustDef();
+        gusts.strength = random_.number();
+        gusts.size = random_.number();
+        garble(gusts);
+        gusts.structSize = sizeof gusts;
+        check(fwWorld_SetGusts(world_, &gusts));
+        float velocities[3 * 64];  // as many as a garbled count may ask for below
+        for (float& value : velocities) value = random_.number();
+        FwWindGridDef grid = fwDefaultWindGridDef();
+        grid.cellSize = random_.number();
+        for (float& value : grid.origin) value = random_.number();
+        garble(grid);
+        grid.structSize = sizeof grid;
+        uint64_t points = 1;
+        for (const uint32_t count : grid.counts) points *= std::min(count, 65u);
+        grid.velocities = points <= 64 && !random_.once(8) ? velocities : nullptr;
+        check(fwWorld_SetWindGrid(world_, random_.once(6) ? nullptr : &grid));
+    }
     void shapeWind() {
         FwWindZoneDef def = fwDefaultWindZoneDef();
         def.shape = random_.below(4);
@@ -435,6 +454,7 @@ class Fuzz {
             check(fwWorld_SetWindZone(world_, zones_.any(random_), &def));
             return;
         }
+        shapeGrid();
         FwWindZoneId id{};
         const FwResult result = fwWorld_CreateWindZone(world_, &def, &id);
         check(result);

@@ -122,8 +122,9 @@ TEST_F(Houses, AHundredBurnWithinTheBudgetAndNothingPops) {
     EXPECT_GT(least, kBudget / 4);
     EXPECT_GT(wished, kBudget * 3 / 2);
     EXPECT_GE(moves, kFrames / 3);  // objects are refined in every second frame at least
-    EXPECT_LT(p.mean, rounds(2.0, 2.5));
-    EXPECT_LT(p.worst, rounds(5.5, 6.0));  // 4.0 to 4.7, by which flames find room
+    // 2.5 and 5.7; with all detail 1.6 and 4.3. Rims that texels tell are livelier than cut ones.
+    EXPECT_LT(p.mean, 2.8);
+    EXPECT_LT(p.worst, 6.0);
     EXPECT_LT(p.block, rounds(45.0, 90.0));
     EXPECT_LT(p.share, rounds(0.02, 0.07));
     // With all of them refined whenever one of them is due it is 1.70, as measured; in turns 1.44.
@@ -159,32 +160,51 @@ double meanOff(const Picture& a, const Picture& b) {
     return sum / double(a.rgb.size());
 }
 
-// At the lowest level of a budget that nothing could meet the same houses are on fire, they look
-// like those with all detail, and no frame jumps though predictions wait for others. The camera
+// Where one of the two shows what is behind everything and the other does not: the share of the
+// block of kBlock^2 px in which most pixels do.
+double holesOff(const Picture& a, const Picture& b) {
+    constexpr uint32_t kAcross = kWidth / kBlock + 1;
+    std::vector<uint32_t> blocks(size_t{kAcross} * (kHeight / kBlock + 1));
+    const auto open = [](const Picture& p, size_t at) {
+        return std::memcmp(&p.rgb[at], p.rgb.data(), 3) == 0;
+    };
+    for (uint32_t y = 0; y < kHeight; ++y)
+        for (uint32_t x = 0; x < kWidth; ++x) {
+            const size_t at = (size_t{y} * kWidth + x) * 3;
+            blocks[size_t{y / kBlock} * kAcross + x / kBlock] += open(a, at) != open(b, at);
+        }
+    return *std::max_element(blocks.begin(), blocks.end()) / double(kBlock * kBlock);
+}
+
+// Houses that burnt before any picture showed them. At the lowest level of a budget that nothing
+// could meet they are on fire as with all detail, what one can see through is the same, and no
+// frame jumps though predictions wait for others: nor does the first one to the second. The camera
 // stands, so that all changes are the fire's.
 TEST_F(Houses, AtTheLowestLevelTheyBurnOnAndNothingPops) {
-    constexpr uint32_t kFew = rounds(6, 3), kSettle = 32, kShown = rounds(16, 5);
+    constexpr uint32_t kFew = rounds(30, 10), kSettle = 32, kShown = rounds(10, 5);
     const FwView view = streetView({0, 2.5f, 5}, {1.0f, 1.2f, -7}, float(kWidth) / float(kHeight));
     Village villages[2];
     std::vector<Picture> shown[2];
-    Popping popping[2];
+    Popping first[2], popping[2];
     uint32_t predicted[2] = {};  // pictures that were
     uint32_t level[2] = {};
     for (const int held : {0, 1}) {
         Village& village = villages[held];
-        ASSERT_TRUE(village.make(context_, kFew, kBudget, 4));
+        const uint32_t budgeted = held ? kBudget * kFew / kHouses : kBudget;
+        ASSERT_TRUE(village.make(context_, kFew, budgeted, 4));
         for (float t = 0; t < 4; t += 0.25f) ASSERT_EQ(fwWorld_Step(village.world, 0.25f), FW_OK);
         FwBudgetDef budget = fwDefaultBudgetDef();
         budget.gpuMilliseconds = held ? 0.001f : 0.0f;
         ASSERT_EQ(fwWorld_SetBudget(village.world, &budget), FW_OK);
-        for (uint32_t f = 0; f < kSettle + kShown; ++f) {
+        for (uint32_t f = 0; f < kSettle; ++f)
             ASSERT_EQ(fwWorld_Step(village.world, kFrameTime), FW_OK);
-            if (f < kSettle) continue;
+        for (uint32_t f = 0; f < kShown; ++f) {
+            ASSERT_EQ(fwWorld_Step(village.world, kFrameTime), FW_OK);
             shown[held].push_back(draw(village, view));
             predicted[held] += predicts(village.world) ? 1 : 0;
-            if (f == kSettle) continue;
             const Picture& now = shown[held].back();
-            addChange(shown[held][f - kSettle - 1], now, popping[held], kShown - 1);
+            if (f == 1) addChange(shown[held][0], now, first[held], 1);
+            if (f > 1) addChange(shown[held][f - 1], now, popping[held], kShown - 2);
             if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION"))
                 writePng(
                     std::string(folder) + (held ? "/held" : "/free") + std::to_string(f) + ".png",
@@ -195,18 +215,20 @@ TEST_F(Houses, AtTheLowestLevelTheyBurnOnAndNothingPops) {
         ASSERT_EQ(fwWorld_GetBudgetState(village.world, &state), FW_OK);
         level[held] = state.level;
     }
-    double off = 0, light[2] = {};
+    double off = 0, holes = 0, light[2] = {};
     const Picture black{kWidth, kHeight, std::vector<uint8_t>(size_t{kWidth} * kHeight * 3)};
     for (uint32_t f = 0; f < kShown; ++f) {
         off += meanOff(shown[0][f], shown[1][f]) / kShown;
+        holes = std::max(holes, holesOff(shown[0][f], shown[1][f]));
         for (const int held : {0, 1}) light[held] += meanOff(shown[held][f], black) / kShown;
     }
     std::printf(
         "\nlevel %u: a frame changes the picture by %.2f (all detail %.2f), at most %.2f (%.2f), a "
-        "block by %.1f (%.1f); off by %.2f of %.1f, light %.3f; predicted %u times (%u)\n",
+        "block by %.1f (%.1f); the first by %.2f (%.2f), a block by %.1f (%.1f); holes off by %.2f "
+        "of a block, all by %.2f of %.1f, light %.3f; predicted %u times (%u)\n",
         level[1], popping[1].mean, popping[0].mean, popping[1].worst, popping[0].worst,
-        popping[1].block, popping[0].block, off, light[0], light[1] / light[0], predicted[1],
-        predicted[0]);
+        popping[1].block, popping[0].block, first[1].mean, first[0].mean, first[1].block,
+        first[0].block, holes, off, light[0], light[1] / light[0], predicted[1], predicted[0]);
     EXPECT_EQ(level[0], 0u);
     EXPECT_EQ(level[1], 7u);
     EXPECT_EQ(villages[1].stats().burningObjects, kFew);
@@ -216,6 +238,11 @@ TEST_F(Houses, AtTheLowestLevelTheyBurnOnAndNothingPops) {
     EXPECT_LT(popping[1].mean, 1.3 * popping[0].mean + 0.1);
     EXPECT_LT(popping[1].worst, 1.5 * popping[0].worst + 0.5);
     EXPECT_LT(popping[1].block, 1.5 * popping[0].block + 5);
+    for (const int held : {0, 1}) {
+        EXPECT_LT(first[held].mean, 1.5 * popping[held].worst + 0.5);
+        EXPECT_LT(first[held].block, 1.5 * popping[held].block + 10);
+    }
+    EXPECT_LT(holes, 0.6);
     EXPECT_LT(off, 0.1 * light[0]);
     EXPECT_NEAR(light[1] / light[0], 1, 0.05);
     EXPECT_EQ(predicted[0], kShown);

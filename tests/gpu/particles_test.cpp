@@ -97,6 +97,12 @@ class ParticlePass : public GpuTest {
             rig_->dispatch(commands, sort_, &room_, 1);
         });
     }
+    void sortAlone() {
+        device_->run([&](VkCommandBuffer commands) {
+            rig_->begin(commands);
+            rig_->dispatch(commands, sort_, &room_, 1);
+        });
+    }
     template <class T>
     std::span<const T> of(uint32_t binding) const {
         return rig_->of<T>(binding);
@@ -296,6 +302,39 @@ TEST_F(ParticlePass, SmokeOfAJetLiesOnTheGroundThatItStrikes) {
     std::printf("[   FIGURE ] puffs %u, lying on the ground %u\n", puffs, lying);
 }
 
+// Nor at a wall, where it hangs before what its jet struck: its puffs leave it as they grow.
+TEST_F(ParticlePass, SmokeOfAJetHangsBeforeTheWallThatItStrikes) {
+    constexpr float kWall = 3;  // m, along x
+    add(emitterDef(FW_EMITTER_JET, 500));
+    makeRig(8192);
+    components::JetShield wall;
+    wall.met = true;
+    wall.place[0] = kWall;
+    wall.normal[0] = -1;
+    wall.radius = 6;
+    for (int i = 0; i < 60; ++i) {
+        components::takeShield(references_[0]->emitter, 0, wall, references_[0]->air.now);
+        frame(0.04f);
+    }
+    uint32_t puffs = 0, hanging = 0;
+    float all = 0, within = 0;  // sums of opacity
+    for (uint32_t i = 0; i < quads(); ++i) {
+        const auto& quad = of<gpu::FlameQuad>(FW_BIND_FLAMES)[arguments()[gpu::kFlameOrder + i]];
+        if ((quad.kind & 3u) != gpu::kQuadSmoke) continue;
+        ++puffs;
+        const float off = (kWall - quad.baseHeight.x) / (0.5f * quad.baseHeight.w);  // in radii
+        all += quad.opacity;
+        within += off < 0.85f ? quad.opacity : 0.0f;
+        hanging += off < 1.3f;
+    }
+    std::printf(
+        "[   FIGURE ] puffs %u, close to the wall %u; of their smoke %.3f reaches into it\n", puffs,
+        hanging, double(within / all));
+    EXPECT_GT(puffs, 50u);
+    EXPECT_GT(hanging, puffs / 4);
+    EXPECT_LT(within, 0.1f * all);
+}
+
 // With less detail fewer of them show, each of them larger, and none that was not seen before.
 TEST_F(ParticlePass, AShareOfThemShowsEachLarger) {
     FwFireEmitterDef def = emitterDef(0, 100);
@@ -344,6 +383,42 @@ TEST_F(ParticlePass, TheRadixSortIsStable) {
     for (int i = 0; i < 15; ++i) frame(0.05f);
     ASSERT_GT(quads(), gpu::kFewQuads);
     for (uint32_t i = 0; i < quads(); ++i) ASSERT_EQ(kTiles + i, arguments()[gpu::kFlameOrder + i]);
+}
+
+// At depths by chance, all at one, and the other way round; what is as far stays in its order.
+TEST_F(ParticlePass, TheRadixSortOrdersSixtyThousandAtAnyDepths) {
+    constexpr uint32_t kQuads = 60000, kDepths = 700;
+    makeRig(kQuads);
+    const float* m = view_.view;  // its third row points back to the eye
+    const vec3 back(m[2], m[6], m[10]);
+    const auto depthOf = [](uint32_t kind, uint32_t i) {
+        const uint32_t chance = gpu::particleBits(i) % kDepths;
+        return kind == 0   ? 2 + 0.05f * float(chance)
+               : kind == 1 ? 7.0f
+                           : 2 + 0.5f * float(i * uint64_t(kDepths) / kQuads);
+    };
+    for (uint32_t kind = 0; kind < 3; ++kind) {
+        for (uint32_t i = 0; i < kQuads; ++i) {
+            gpu::FlameQuad& quad = rig_->of<gpu::FlameQuad>(FW_BIND_FLAMES)[kTiles + i];
+            quad = {};
+            quad.baseHeight = gpu::vec4(back * (-depthOf(kind, i) - m[14]), 0);
+        }
+        rig_->of<uint32_t>(FW_BIND_DRAW_ARGS)[gpu::kFlameTiles] = 0;
+        rig_->of<uint32_t>(FW_BIND_DRAW_ARGS)[gpu::kFlameParticles] = kQuads;
+        sortAlone();
+        ASSERT_EQ(kQuads, quads());
+        expectAll(kTiles);
+        float last = 1e9f;
+        std::map<float, uint32_t> lastOf;  // quad of each depth
+        for (uint32_t i = 0; i < kQuads; ++i) {
+            const uint32_t quad = arguments()[gpu::kFlameOrder + i];
+            const float depth = depthOf(kind, quad - kTiles);
+            ASSERT_LE(depth, last * (1 + 1.0f / 2000)) << kind << " " << i;
+            ASSERT_LT(lastOf[depth], quad) << kind << " " << i;
+            lastOf[depth] = quad;
+            last = depth;
+        }
+    }
 }
 
 TEST_F(ParticlePass, MoreThanThereIsRoomForAreNotDrawnAndNothingBreaks) {

@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 
 namespace fw::test::volume_test {
 namespace {
@@ -121,6 +122,7 @@ class Volume : public GpuTest {
         plan.frameIndex = ++index_;
         plan.endTick = uint32_t(index_ * gpu::kStepTicks);
         plan.volumes = &update;
+        plan.detail.memory = memory_;
         if (emitters_) plan.emitters = emitters_;
         if (fields_) plan.fields = fields_;
         const float behind =
@@ -304,7 +306,7 @@ class Volume : public GpuTest {
         const gpu::VolumeScreen screen{{kSide, kSide}, 1};
         gpu::MarchedVolume marched;
         const uint32_t words = gpu::volumeRayWords(screen);
-        EXPECT_GT(gpu::layVolumes({&item, 1}, screen, view.eye.w, words, {&marched, 1}), 0u);
+        EXPECT_GT(gpu::layVolumes({&item, 1}, screen, view.eye.w, words, {&marched, 1}).count, 0u);
         const gpu::VolumeMarch& m = marched.march;
         const float cell = 0.5f * float(kSide) * marched.composite.place.z;  // px
         const auto side = int(marched.composite.tilesX * gpu::kVolumeTile);
@@ -554,6 +556,7 @@ class Volume : public GpuTest {
 
     std::unique_ptr<VkRig> rig_;
     bool other_ = false;  // the view that is drawn is not that of the outside part
+    float memory_ = 1;    // gpu::Detail::memory
     const gpu::EmitterUpdate* emitters_ = nullptr;  // beside the flames
     const gpu::FieldUpdate* fields_ = nullptr;
     TestImage color_, depth_, behind_;
@@ -633,6 +636,23 @@ TEST_F(Volume, TheFirstPictureHasLessGrainThanOneRayAPixel) {
     const float one = grainOf(drawDirect({&flame, 1}, FW_DEPTH_TEST));
     std::printf("           %.4f, of one ray a pixel %.4f\n", double(first), double(one));
     EXPECT_LT(first, 0.8f * one);
+}
+
+// Nobody knows a screen that has just become another, either; one that stays beside the one that
+// frames are marched for takes more rays but once.
+TEST_F(Volume, AScreenThatBecomesAnotherShowsNoGrain) {
+    if (!device_) return;
+    makeRig();
+    const gpu::VolumeFlame flame = flameOf(FW_FIRE_HOUSE, 1.3f, FW_FIRE_NO_SMOKE);
+    (void)draw({&flame, 1}, FW_DEPTH_TEST);
+    const float other = grainOf(drawOnce({&flame, 1}, FW_DEPTH_NONE, 0));
+    const float one = grainOf(drawDirect({&flame, 1}, FW_DEPTH_NONE));
+    (void)draw({&flame, 1}, FW_DEPTH_NONE);
+    const float back = grainOf(drawOnce({&flame, 1}, FW_DEPTH_TEST, 0));
+    std::printf("           %.4f, and back %.4f, of one ray a pixel %.4f\n", double(other),
+                double(back), double(one));
+    EXPECT_LT(other, 0.8f * one);
+    EXPECT_LT(back, 0.8f * one);
 }
 
 // Profiles of the host's lie behind the presets' and may be others while frames are in flight.
@@ -970,6 +990,9 @@ TEST_F(Volume, TiersAreTheSameFlame) {
                         components::firePresetName(preset), double(worst), double(worstCover),
                         double(worstSize));
             EXPECT_LT(worst, 0.05f) << components::firePresetName(preset) << " " << tier;
+            // A slice hides by what it takes of light like its own, less than of white.
+            EXPECT_LT(worstCover, tier == FW_FIRE_TIER_SLICES ? 0.08f : 0.05f)
+                << components::firePresetName(preset) << " " << tier;
             EXPECT_LT(worstSize, 0.03f) << components::firePresetName(preset) << " " << tier;
         }
     }
@@ -1179,6 +1202,58 @@ TEST_F(Volume, NoSwitchOfTiersPops) {
     }
 }
 
+// A camera dollies away through all tiers and back: over each tier's stretch of the way the flame
+// is as bright and covers as much as where it is marched all the way, and no frame pops.
+TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
+    if (!device_) return;
+    makeRig();
+    constexpr uint32_t kLegs[] = {FW_FIRE_TIER_MARCH_HIGH, FW_FIRE_TIER_MARCH_LOW,
+                                  FW_FIRE_TIER_SLICES, FW_FIRE_TIER_IMPOSTOR};
+    constexpr int kLeg = 18, kWay = kLeg * int(std::size(kLegs));  // frames
+    gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
+    const float tall = 1.5f * flame.record.high.w;
+    struct Leg {
+        double light = 0, cover = 0;
+        float pop = 0;  // most from one frame to the next, of its light
+    };
+    const auto film = [&](bool all, std::array<Leg, std::size(kLegs)>& legs) {
+        flame.record.key = ++key_;
+        float last = 0;
+        for (int frame = 0; frame < 2 * kWay; ++frame) {
+            const int way = frame < kWay ? frame : 2 * kWay - 1 - frame;
+            const float away = 3.6f * tall * std::pow(1.007f, float(way));
+            const float at[3] = {0, 0.5f * tall, 0};
+            const float eye[3] = {0.2f * away, 0.5f * tall + 0.1f * away, away};
+            look(eye, at, 40);
+            Leg& leg = legs[size_t(way / kLeg)];
+            flame.record.tier = kLegs[all ? way / kLeg : 0];
+            const vec4 mean = meanOf(drawOnce({&flame, 1}, FW_DEPTH_TEST, 0)) * away * away;
+            const float light = glm::dot(mean, kSeen);
+            // The first picture is marched as it is drawn.
+            if (frame > 1) leg.pop = std::max(leg.pop, std::abs(light / last - 1));
+            last = light;
+            leg.light += double(light);
+            leg.cover += double(mean.w);
+        }
+    };
+    std::array<Leg, std::size(kLegs)> marched, through;
+    film(false, marched);
+    film(true, through);
+    for (size_t i = 0; i < std::size(kLegs); ++i) {
+        const double light = through[i].light / marched[i].light;
+        const double cover = through[i].cover / marched[i].cover;
+        std::printf("           tier %u: light %.4f, cover %.4f, at most %.4f a frame of %.4f\n",
+                    kLegs[i], light, cover, double(through[i].pop), double(marched[i].pop));
+        // A slice hides by one number for all colours, what it takes of light like its own: a
+        // little less than of white. And it is a ray a pixel, of so few pixels a rough sample,
+        // which its neighbours' way to it and from it shows, too.
+        const bool slices = kLegs[i] == FW_FIRE_TIER_SLICES;
+        EXPECT_NEAR(light, 1.0, 0.05) << kLegs[i];
+        EXPECT_NEAR(cover, 1.0, slices ? 0.07 : 0.05) << kLegs[i];
+        EXPECT_LT(through[i].pop, marched[i].pop + (i < 2 ? 0.02f : 0.04f)) << kLegs[i];
+    }
+}
+
 // As the host's scene is seen through hot gas: bent above a flame, and there alone; nothing that
 // stands before the flame moves or smears; and none where the view, the tier or the frame wants
 // none.
@@ -1338,9 +1413,9 @@ TEST(VolumeMarch, FitsWhatThereIs) {
     }
     const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
     for (const size_t count : {size_t(1), size_t(7), items.size()}) {
-        const uint32_t used = gpu::layVolumes({items.data(), count}, screen, 1, words, out);
-        ASSERT_GT(used, 0u);
-        EXPECT_EQ(used, out[0].march.samples);
+        const gpu::LaidVolumes laid = gpu::layVolumes({items.data(), count}, screen, 1, words, out);
+        ASSERT_EQ(laid.count, count);
+        EXPECT_EQ(laid.end, out[0].march.samples);
         std::printf("           %zu over all: cells of %.0f px\n", count, double(cell(0)));
         uint32_t known = 0, sample = out[0].march.samples;
         for (size_t i = 0; i < count; ++i) {
@@ -1361,19 +1436,116 @@ TEST(VolumeMarch, FitsWhatThereIs) {
             EXPECT_EQ(cell(0), 2.0f);
         }
     }
-    EXPECT_EQ(gpu::layVolumes(items, screen, 1, 1000, out), 0u) << "it cannot fit";
+    EXPECT_EQ(gpu::layVolumes(items, screen, 1, 1000, out).end, 0u) << "it cannot fit";
 
     // A small one keeps its fine cells, however many large ones crowd the memory.
     gpu::VolumeItem& small = items.back();
     small.draw.rect = {-0.01f, -0.02f, 0.01f, 0.02f};
     small.draw.wide = 0.05f;
     small.draw.rayX = {4, 0, 0, 0};
-    ASSERT_GT(gpu::layVolumes(std::span(&small, 1), screen, 1, words, out), 0u);
+    ASSERT_GT(gpu::layVolumes(std::span(&small, 1), screen, 1, words, out).end, 0u);
     const float alone = cell(0);
     EXPECT_LT(alone, 1.0f);
-    ASSERT_GT(gpu::layVolumes(items, screen, 1, words, out), 0u);
+    ASSERT_GT(gpu::layVolumes(items, screen, 1, words, out).end, 0u);
     EXPECT_GT(cell(0), 4.0f) << "there was room for all";
     EXPECT_EQ(cell(items.size() - 1), alone);
+}
+
+// Where room is short smoke makes way: fire keeps cells as fine as if its flame smoked not, in a
+// window of its own that begins where the smoke's cells end.
+TEST(VolumeMarch, SmokeMakesWayForFire) {
+    const gpu::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
+    const uint32_t words = gpu::volumeRayWords(screen);
+    std::array<gpu::VolumeItem, 24> items;
+    for (gpu::VolumeItem& item : items) {
+        item.flame = uint32_t(&item - items.data());
+        item.smokes = true;
+        item.draw.slabs = gpu::kVolumeSlabs;
+        item.draw.rect = {-1, -1, 1, 1};
+        item.burns = {-0.1f, -0.2f, 0.1f, 0.2f};
+        item.draw.deep = 0.2f;
+        item.draw.spacing = 0.1f;
+        item.draw.mostSteps = 32;
+        item.draw.wide = 1;
+    }
+    std::array<gpu::MarchedVolume, 2 * items.size()> out;
+    const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
+    ASSERT_EQ(gpu::layVolumes({items.data(), 1}, screen, 1, words, out).count, 1u);
+    EXPECT_EQ(cell(0), 2.0f) << "there is room for one";
+    EXPECT_EQ(out[0].composite.window, vec4(0.0f));
+    ASSERT_EQ(gpu::layVolumes(items, screen, 1, words, out).count, out.size());
+    for (size_t i = 0; i < out.size(); i += 2) {
+        const gpu::VolumeComposite &whole = out[i].composite, &fire = out[i + 1].composite;
+        EXPECT_FALSE(out[i].window);
+        EXPECT_TRUE(out[i + 1].window);
+        EXPECT_GE(cell(i), 8.0f);
+        EXPECT_EQ(cell(i + 1), 2.0f);
+        const vec2 size = float(gpu::kVolumeTile) * vec2(fire.tilesX, fire.tilesY);
+        const vec2 low(fire.place), high = low + size * vec2(fire.place.z, fire.place.w);
+        const vec2 per(whole.place.z, whole.place.w);
+        EXPECT_LT(glm::distance(vec2(whole.place) + per * vec2(whole.window), low), 1e-5f);
+        EXPECT_LT(
+            glm::distance(vec2(whole.place) + per * vec2(whole.window.z, whole.window.w), high),
+            1e-5f);
+        const vec4& burns = items[0].burns;
+        EXPECT_TRUE(low.x < burns.x + 1e-5f && low.y < burns.y + 1e-5f &&
+                    high.x > burns.z - 1e-5f && high.y > burns.w - 1e-5f);
+    }
+}
+
+// That is the same flame: no line where its cells become others, no light lost or shown twice.
+TEST_F(Volume, SmokeThatMakesWayShowsTheSameFlame) {
+    if (!device_) return;
+    makeRig();
+    const float eye[3] = {0.9f, 1.2f, 5.5f}, at[3] = {0, 1.1f, 0};
+    look(eye, at, 30);
+    for (int i = 0; i < 3; ++i) rig_->view.ambientSky[i] = rig_->view.ambientGround[i] = 0.6f;
+    const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f);
+    const std::vector<vec4> whole = draw({&flame, 1}, FW_DEPTH_TEST);
+    std::vector<vec4> shared = whole;
+    for (memory_ = 0.1f; shared == whole && memory_ > 0.004f; memory_ *= 0.7f)
+        shared = draw({&flame, 1}, FW_DEPTH_TEST);
+    const float difference = differenceOf(shared, whole);
+    std::printf("           mean %.4f of %.4f, cover %.4f of %.4f, difference %.4f\n",
+                double(meanOf(shared).x), double(meanOf(whole).x), double(meanOf(shared).w),
+                double(meanOf(whole).w), double(difference));
+    EXPECT_GT(difference, 1e-5f) << "there was room for all";
+    EXPECT_LT(difference, 0.02f);
+    EXPECT_NEAR(meanOf(shared).x / meanOf(whole).x, 1.0f, 0.02f);
+    EXPECT_NEAR(meanOf(shared).w / meanOf(whole).w, 1.0f, 0.02f);
+}
+
+// What is in part behind the eye is on the screen where it is before it, and nowhere else.
+TEST(VolumeDraw, BesideTheEyeItIsWhereItIsSeen) {
+    const float eye[3] = {0, 0, 0}, at[3] = {0, 0, -1};
+    const FwView camera = testView(eye, at, 40, 1, false);
+    gpu::ViewInput input;
+    input.view = &camera;
+    input.viewport[2] = input.viewport[3] = 100;
+    gpu::ViewParams view{};
+    testLooks().viewParams(input, view);
+    const vec4 low(1, -0.5f, -10, 0.5f), high(2, 0.3f, 3, 1);
+    gpu::VolumeDraw draw{};
+    vec4 whole(1.0f);
+    ASSERT_TRUE(gpu::volumeDraw(view, low, high, 1, draw, &whole));
+    EXPECT_EQ(whole, vec4(0.0f)) << "it is around the eye";
+    vec4 seen(1, 1, -1, -1);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    for (int k = 0; k < 20000; ++k) {
+        const vec3 p =
+            glm::mix(vec3(low), vec3(high), vec3(unit(random), unit(random), unit(random)));
+        const vec4 clip = p.x * view.clip0 + p.y * view.clip1 + p.z * view.clip2 + view.clip3;
+        const vec2 place = vec2(clip) / clip.w;
+        if (!(clip.w > 1e-3f) || glm::any(glm::greaterThan(glm::abs(place), vec2(1.0f)))) continue;
+        seen = vec4(glm::min(vec2(seen), place), glm::max(vec2(seen.z, seen.w), place));
+        ASSERT_TRUE(place.x >= draw.rect.x && place.y >= draw.rect.y && place.x <= draw.rect.z &&
+                    place.y <= draw.rect.w);
+    }
+    EXPECT_NEAR(draw.rect.x, seen.x, 0.03f) << "not all of the screen";
+    EXPECT_GT(draw.rect.x, 0.2f);
+    const vec4 behind(2, 1, 4, 0);
+    EXPECT_FALSE(gpu::volumeDraw(view, vec4(1, 0, 1, 1), behind, 1, draw));
 }
 
 // Fires that burn, move and change: nothing is asked of the device or of the heap.

@@ -4,6 +4,7 @@
 #include "fire/presets.h"
 #include "gpu/cpu/cpu_backend.h"
 #include "support/meshes.h"
+#include "world/clock.h"
 
 #include <gtest/gtest.h>
 
@@ -50,7 +51,8 @@ class HotSheet {
         gpu::StepPlan plan;
         plan.now = now;
         plan.events = events;
-        plan.heat = plan.reduce = now / gpu::kStepTicks % gpu::kHeatSteps == 3;
+        plan.heat = world::heatsAt(now);
+        plan.reduce = world::reducesAt(now);
         gpu::FramePlan frame;
         frame.frameIndex = ++frames;
         frame.steps = {&plan, 1};
@@ -90,18 +92,27 @@ TEST(HeatMap, P11_AFluxFromElsewhereIgnitesItsTileInTime) {
         const double inertia = 0.2222 * 450 * 2500;
         const double exact = std::numbers::pi / 4 * inertia * (330 / flux) * (330 / flux);
         const uint32_t tile = 2 * sheet.domain.tilesX + 2, start = sheet.now;
-        const uint32_t texel = (2 * 8 + 3) * sheet.domain.width + 2 * 8 + 3;
+        const uint32_t corner = 2 * 8 * sheet.domain.width + 2 * 8;
         sheet.backend.setTileHeat(0, tile, {uint32_t(flux), 1});
-        double found = -1;
-        while (found < 0 && sheet.now < start + 200 * 4096) {
+        // What a texel's heat is rounded by is its own, so not all catch in the same step.
+        double first = -1, last = -1;  // s
+        while (last < 0 && sheet.now < start + 200 * 4096) {
             sheet.step();
-            if (gpu::isSource(sheet.backend.state(0)[texel]))
-                found = double(sheet.backend.state(0)[texel] - start) / 4096;
+            uint32_t lit = 0;
+            for (uint32_t i = 0; i < 64; ++i)
+                lit += gpu::isSource(
+                           sheet.backend.state(0)[corner + (i >> 3) * sheet.domain.width + (i & 7)])
+                           ? 1
+                           : 0;
+            const double seconds = double(sheet.now - start) / 4096;
+            if (lit != 0 && first < 0) first = seconds;
+            if (lit == 64) last = seconds;
         }
-        std::printf("a tile at %.0f kW/m^2 caught after %.1f s, half-space %.1f s\n", flux / 1000,
-                    found, exact);
-        EXPECT_NEAR(found, exact, 0.05 * exact + 0.2);
-        // The whole tile, and no other yet.
+        std::printf("a tile at %.0f kW/m^2 caught after %.1f to %.1f s, half-space %.1f s\n",
+                    flux / 1000, first, last, exact);
+        EXPECT_NEAR(first, exact, 0.05 * exact + 0.2);
+        EXPECT_NEAR(last, exact, 0.05 * exact + 0.2);
+        // And no other yet.
         sheet.step();
         EXPECT_EQ(64u, sheet.backend.counters(0).ignited);
     }
@@ -170,8 +181,7 @@ TEST(HeatMap, WhatIsOnlyWarmTakesOneStepInEight) {
     for (bool ends = false; !ends;) {
         const uint32_t now = sheet.now;
         sheet.step();
-        ends =
-            now / gpu::kStepTicks % gpu::kHeatSteps == 3 && gpu::restEnds(tile, gpu::kNapFlux, now);
+        ends = world::heatsAt(now) && gpu::restEnds(tile, gpu::kNapFlux, now);
     }
     const auto run = [&](uint32_t flux, int seconds) {
         sheet.backend.setTileHeat(0, tile, {flux, 1});
@@ -180,7 +190,7 @@ TEST(HeatMap, WhatIsOnlyWarmTakesOneStepInEight) {
         for (int i = 0; i < 32 * seconds; ++i) {
             const uint32_t before = sheet.at(texel).heat, now = sheet.now;
             sheet.step();
-            if (now / gpu::kStepTicks % gpu::kHeatSteps != 3) continue;
+            if (!world::heatsAt(now)) continue;
             uint32_t burnt = 0, water = 0;
             const uint32_t chance = gpu::heatChance(texel, gpu::hash32(now));
             gpu::heatStep(all, sheet.material, flux, 256, true, chance, burnt, water);

@@ -117,6 +117,40 @@ TEST(Import, QuadLoadsWithItsTransform) {
     EXPECT_EQ(model.triangleCount(), model.triangleMaterials.size());
 }
 
+TEST(Import, NodesStandWhereTheirParentsPutThem) {
+    Quad quad;
+    quad.node = R"({"name":"root","translation":[1,2,3],"children":[1,2]},)"
+                R"({"name":"arm","mesh":0,"rotation":[0,0.70710678,0,0.70710678],"children":[3]},)"
+                R"({"name":"left","mesh":0,"translation":[5,0,0]},)"
+                R"({"translation":[0,0,2]},{"name":"elsewhere"})";
+    ImportedModel model;
+    std::string error;
+    ASSERT_TRUE(fwimport::importGltfBytes(quad.bytes(), "quad", "", model, error)) << error;
+    EXPECT_EQ(4u, model.triangleCount());
+    ASSERT_EQ(5u, model.nodes.size());
+    EXPECT_EQ(1, model.nodes[3].parent);
+    const double* tip = model.nodes[3].pose.data() + 12;
+    EXPECT_NEAR(3, tip[0], 1e-6);
+    EXPECT_NEAR(2, tip[1], 1e-6);
+    EXPECT_NEAR(3, tip[2], 1e-6);
+    EXPECT_EQ(2, fwimport::findNode(model.nodes, "left", error));
+    EXPECT_EQ(3, fwimport::findNode(model.nodes, "#3", error));
+    for (const char* none : {"", "#", "#4", "#5", "#-1", "#3x", "elsewhere"})
+        EXPECT_EQ(-1, fwimport::findNode(model.nodes, none, error)) << none;
+    EXPECT_THAT(error,
+                HasSubstr("no node \"elsewhere\"; its nodes are #0 to #4: root, arm, left, #3"));
+
+    // A part alone, where it stands.
+    ImportedModel part;
+    ASSERT_TRUE(fwimport::importGltfBytes(quad.bytes(), "quad", "", part, error, "left")) << error;
+    EXPECT_EQ(2u, part.triangleCount());
+    EXPECT_EQ(6, part.low[0]);
+    ASSERT_TRUE(fwimport::importGltfBytes(quad.bytes(), "quad", "", part, error, "root")) << error;
+    EXPECT_EQ(model.positions, part.positions);
+    EXPECT_FALSE(fwimport::importGltfBytes(quad.bytes(), "quad", "", part, error, "right"));
+    EXPECT_THAT(error, HasSubstr("quad: there is no node \"right\""));
+}
+
 TEST(Import, WronglyTypedFieldsAreNamed) {
     const auto node = [](const char* text) {
         Quad quad;
@@ -385,7 +419,7 @@ TEST(Import, ImagesThatCannotBeDecodedAreReported) {
     ASSERT_TRUE(loads(quad.bytes(), model));
     EXPECT_TRUE(model.images.empty());
     EXPECT_EQ(-1, model.materials[0].image);
-    EXPECT_THAT(model.report, ::testing::Contains(HasSubstr("neither PNG nor JPEG")));
+    EXPECT_THAT(model.report, ::testing::Contains(HasSubstr("none of PNG, JPEG, EXR")));
 }
 
 // ---- the files of assimp-testmodels -----------------------------------------------------------

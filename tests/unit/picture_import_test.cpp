@@ -1,6 +1,7 @@
 // What artists paint: fire profiles and flipbook sheets from PNG, EXR and TIFF, and how bad ones
 // are refused.
 #include "import/float_picture.h"
+#include "import/image_decode.h"
 #include "profile_picture.h"
 #include "sheet.h"
 #include "support/sanitized.h"
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
 
@@ -210,6 +212,79 @@ fwtools::SheetDef grid4x2() {
     def.facts.frames = 0;
     def.facts.loops = 0;
     return def;
+}
+
+// A mesh's pictures in whatever a painter saves: a row of white, half the light of it, and black.
+TEST_F(PictureImport, MeshesTakeTheirColoursFromEveryKindOfPicture) {
+    const auto bytesOf = [&](const std::string& name) {
+        std::ifstream stream(file(name), std::ios::binary);
+        const std::string text((std::istreambuf_iterator<char>(stream)), {});
+        return std::vector<uint8_t>(text.begin(), text.end());
+    };
+    std::map<std::string, std::vector<uint8_t>> pictures;
+    for (const char* name : {"a.png", "a.tif", "a.exr", "a.hdr"}) {
+        FloatPicture picture = flat(3, 1, {0, 0, 0}, {"R", "G", "B"}, std::string(name) == "a.png");
+        std::fill_n(picture.values.begin(), 3, 1.0f);
+        std::fill_n(picture.values.begin() + 3, 3, 0.5f);
+        std::string error;
+        if (std::string(name) != "a.hdr") {
+            ASSERT_TRUE(writePicture(file(name), picture, error)) << error;
+            pictures[name] = bytesOf(name);
+        }
+    }
+    // Eight bits of each and the exponent that they have in common.
+    std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 3\n";
+    for (const int pixel : {0x81, 0x80, 0})
+        hdr += std::string(3, pixel ? '\x80' : '\0') + static_cast<char>(pixel);
+    pictures["a.hdr"] = {hdr.begin(), hdr.end()};
+    // The header says: caps, size and RGB of 32 bits, by masks.
+    std::vector<uint32_t> dds(32);
+    dds[0] = 0x20534444u;
+    dds[1] = 124;
+    dds[2] = 0x1007;
+    dds[3] = 1;
+    dds[4] = 3;
+    dds[19] = 32;
+    dds[20] = 0x41;
+    dds[22] = 32;
+    dds[23] = 0x00ff0000u;
+    dds[24] = 0x0000ff00u;
+    dds[25] = 0x000000ffu;
+    dds[26] = 0xff000000u;
+    dds[27] = 0x1000;
+    dds.insert(dds.end(), {0xffffffffu, 0xff808080u, 0xff000000u});
+    for (const uint32_t word : dds)
+        for (int i = 0; i < 4; ++i) pictures["a.dds"].push_back(uint8_t(word >> (8 * i)));
+
+    for (const auto& [name, bytes] : pictures) {
+        fwimport::DecodedImage image;
+        std::string error;
+        ASSERT_TRUE(fwimport::decodeImage(bytes, image, error)) << name << ": " << error;
+        ASSERT_EQ(3u, image.width) << name;
+        ASSERT_EQ(12u, image.rgba.size()) << name;
+        EXPECT_EQ(255, image.rgba[0]) << name;
+        // Half the light is 188 of what is shown; a picture of bytes has them as they are.
+        const bool light = name == "a.exr" || name == "a.hdr" || name == "a.tif";
+        EXPECT_NEAR(light ? 188 : 128, image.rgba[4], 1) << name;
+        EXPECT_EQ(0, image.rgba[8]) << name;
+        EXPECT_EQ(255, image.rgba[11]) << name;
+        // Spoilt it is refused or a picture, never more.
+        std::mt19937 random(3);
+        for (int i = 0; i < 200; ++i) {
+            std::vector<uint8_t> spoilt = bytes;
+            for (int k = 0; k < 4; ++k) spoilt[random() % spoilt.size()] = uint8_t(random());
+            if (i % 2) spoilt.resize(random() % spoilt.size());
+            fwimport::DecodedImage made;
+            if (fwimport::decodeImage(spoilt, made, error))
+                EXPECT_EQ(size_t{4} * made.width * made.height, made.rgba.size()) << name;
+            else
+                EXPECT_FALSE(error.empty());
+        }
+    }
+    fwimport::DecodedImage none;
+    std::string error;
+    EXPECT_FALSE(fwimport::decodeImage(std::vector<uint8_t>(64), none, error));
+    EXPECT_THAT(error, HasSubstr("none of PNG, JPEG, EXR, TIFF, HDR, DDS and WebP"));
 }
 
 TEST(SheetImport, FramesRunToTheRightThenDown) {

@@ -84,12 +84,13 @@ struct SeenShapes {
     std::vector<float> depths;
 
     SeenShapes(std::span<const Collider> shapes, vec3 eye, vec3 to, bool perspective = true,
-               bool reversed = false) {
+               bool reversed = false, float closer = 1.0f) {
         constexpr uint32_t kColumns = 160, kRows = 90;
         constexpr float kFar = 50.0f;
         view = glm::lookAt(eye, to, vec3(0, 1, 0));
         projection[0][0] = (perspective ? 1.6f : 0.5f) * 9.0f / 16.0f;
         projection[1][1] = perspective ? -1.6f : -0.5f;
+        projection[0][0] *= closer, projection[1][1] *= closer;
         if (perspective) {  // endless: 0.02 m to wherever
             projection[2][2] = reversed ? 0.0f : -1.0f;
             projection[2][3] = -1.0f;
@@ -245,6 +246,22 @@ TEST(VolumeCollide, UnderACeilingItIsAJet) {
     SCOPED_TRACE("a picture of it");
     const SeenShapes seen(std::span(&ceiling, 1), vec3(0.4f, 0.1f, 2.5f), vec3(0, 0.3f, 0));
     expectJetUnder(seen.collider(), 0.45f);
+}
+
+// A slab that the eye sees from above, and the room below it, but never its underside.
+TEST(VolumeCollide, UnderASlabSeenFromAboveItIsAJet) {
+    Collider shapes[2] = {{}, plane(vec3(0), vec3(0, 1, 0))};
+    shapes[0].kind = ColliderKind::Box;
+    shapes[0].place = vec3(0, 0.49f, 0), shapes[0].extent = vec3(1.2f, 0.04f, 0.8f);
+    const SeenShapes seen(shapes, vec3(0.85f, 1.25f, 6.5f), vec3(0, 0.45f, 0), true, false, 4.0f);
+    expectJetUnder(seen.collider(), 0.53f);
+    const Collider picture = seen.collider();
+    for (const float x : {-0.4f, 0.0f, 0.4f}) {
+        const Surface under = surfaceOf(picture, vec3(x, 0.4f, 0));
+        EXPECT_NEAR(under.distance, 0.07f, 0.03f) << x;
+        EXPECT_LT(under.normal.y, -0.98f) << x;
+    }
+    EXPECT_GT(surfaceOf(picture, vec3(0, -0.02f, 0)).normal.y, 0.9f) << "ground is no slab";
 }
 
 TEST(VolumeCollide, AWallPushesItAsideAndNoGasIsInside) {

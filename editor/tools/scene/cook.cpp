@@ -59,7 +59,7 @@ int main(int count, char** words) {
         if (!rest) break;
         const fs::path file =
             options.out / (plan.identifier + (language == SnippetLanguage::C ? ".c" : ".cpp"));
-        const std::string text = snippetOf(input.scene, plan, language);
+        const std::string text = snippetOf(plan, language);
         error = writeWhole(file.string(), std::as_bytes(std::span(text)));
         if (!error.empty()) return refuse(options, error);
         files.push_back(file);

@@ -106,6 +106,7 @@ typedef enum FwDefType {
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
     FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23, FW_DEF_WIND_ZONE = 24, FW_DEF_ROOM = 25,
+    FW_DEF_WIND_GRID = 26, FW_DEF_GUSTS = 27,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -289,7 +290,38 @@ FW_API FwResult FW_CALL fwWorld_CreateWindZone(FwWorld*, const FwWindZoneDef* de
 /* All of it anew: to turn a fan, or as it starts and stops. [world] */
 FW_API FwResult FW_CALL fwWorld_SetWindZone(FwWorld*, FwWindZoneId id, const FwWindZoneDef* def);
 FW_API FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld*, FwWindZoneId id); /* [world] */
-/* m/s, at a point (m, world, within +-1e6), as all that is there has it. [world] */
+/* Wind on a grid: of a weather map, of the host's own solver. Trilinear between its points; none of it outside. */
+typedef struct FwWindGridDef {
+    uint32_t structSize, flags; /* flags: 0 */
+    uint32_t blend;             /* FwWindBlend, default FW_WIND_REPLACE: with the world's wind. Zones count after it */
+    uint32_t counts[3];         /* points along the world's x, y, z, [2, 64] each, at most 32768 in all; default 2 */
+    float origin[3];            /* m, world, within +-1e6: where the first point is */
+    float cellSize;             /* m, [0.01, 1000], default 1: from point to point, along each axis */
+    float fade;                 /* m, [0, 1000], default 0: the way inward from its faces on which it fades */
+    uint32_t reserved;          /* 0 */
+    const float* velocities;    /* m/s, 3 of each point, each within +-120; x runs fastest, then y, then z. Copied */
+} FwWindGridDef;
+static inline FwWindGridDef fwDefaultWindGridDef(void) {
+    FwWindGridDef d; fwInitDef(FW_DEF_WIND_GRID, &d, (uint32_t)sizeof d); return d;
+}
+/* In place of the grid that was; null: none any more. Rounded to 1/128 m/s. Counts from the next step on, filtered like
+ * the world's wind; meant for a few times a second: a log or a network has some 55 bytes for every four points in a row
+ * of which one changed, where the grid stays where it is, else for all that are not calm. [world] */
+FW_API FwResult FW_CALL fwWorld_SetWindGrid(FwWorld*, const FwWindGridDef* def);
+/* Gusts: the world's wind and that of its grid are stronger here and weaker there, by noise that drifts with the wind.
+ * They reach fronts, embers, plumes, flames, volumetric fires and emitters, a quarter of a second at a time, the same on
+ * every backend; not particle fields, nor what zones add or shelter. What plays a baked burn goes live in them. */
+typedef struct FwGustDef {
+    uint32_t structSize, flags; /* flags: 0 */
+    float strength;             /* [0, 1], default 0: it blows (1 - strength) to (1 + strength) times as strong */
+    float size;                 /* m, [0.5, 1000], default 12: of a gust; half of it in half of its size */
+} FwGustDef;
+static inline FwGustDef fwDefaultGustDef(void) {
+    FwGustDef d; fwInitDef(FW_DEF_GUSTS, &d, (uint32_t)sizeof d); return d;
+}
+/* From the next step on; strength 0: none. [world] */
+FW_API FwResult FW_CALL fwWorld_SetGusts(FwWorld*, const FwGustDef* def);
+/* m/s, at a point (m, world, within +-1e6), now, as all that is there has it. [world] */
 FW_API FwResult FW_CALL fwWorld_GetWindAt(FwWorld*, const float point[3], float wind[3]);
 
 typedef enum FwRoomFlags {
@@ -703,8 +735,9 @@ FW_API FwResult FW_CALL fwCookFireProfile(FwContext* context, const FwFireProfil
 typedef enum FwFireColliderKind {
     FW_COLLIDER_SPHERE = 0, FW_COLLIDER_CAPSULE = 1, FW_COLLIDER_BOX = 2, FW_COLLIDER_PLANE = 3,
     FW_COLLIDER_HEIGHT_FIELD = 4, FW_COLLIDER_DISTANCE = 5,
-    FW_COLLIDER_DEPTH = 6, /* a picture of the scene's depth: what it shows bends and flattens flames (what it does not,
-                              like an underside seen from above, does not). Only that: it shades nothing and stops no
+    FW_COLLIDER_DEPTH = 6, /* a picture of the scene's depth: what it shows bends and flattens flames, and so does the
+                              underside of a slab whose top it shows, and the room below (for worlds whose up is
+                              0,1,0); what else it does not show does not. Only that: it shades nothing and stops no
                               jet, so no pixel of it changes what burns */
     FW_COLLIDER_KIND_FORCE32 = 0x7fffffff
 } FwFireColliderKind;
@@ -1120,13 +1153,13 @@ typedef struct FwArrivalState {
     float position[3];         /* m, world, of the texel */
     float reserved;
 } FwArrivalState;
-/* When will the object's own fire be at the texel nearest to `position` (m, world)? As things are at the time
- * of the call: where it burns, what is wet, under the wind and pose of now as if they stayed. Not what other
- * objects, water that dries or limits on burning tiles will make of it. The front is run ahead of itself, at
- * most FwWorldDef::arrivalTiles a frame, for all questions about an object at once; what is near is known
- * first, and the first frames tell it where the state is read back later. Exact for a fire left alone.
- * After a change (fire, water, wind, pose) ask anew. Counts to the 1024 queries that may be open. Allocates
- * some 5 bytes a texel at an object's first question. Not for FW_BURNABLE_PUBLISHED. [world] */
+/* When will the object's own fire be at the texel nearest to `position` (m, world)? As things are at the time of the
+ * call: where it burns, what is wet, under the wind, pose and room's air of now as if they stayed (in air in which
+ * nothing burns: never). Not what other objects, gusts, water that dries or limits on burning tiles will make of it.
+ * The front is run ahead of itself, at most FwWorldDef::arrivalTiles a frame, for all questions about an object at
+ * once; what is near is known first, and the first frames tell it where the state is read back later. Exact for a
+ * fire left alone. After a change (fire, water, wind, pose, air) ask anew. Counts to the 1024 queries that may be
+ * open. Allocates some 5 bytes a texel at an object's first question. Not for FW_BURNABLE_PUBLISHED. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestArrival(FwWorld*, FwBurnableMeshId id, const float position[3], FwQueryId* query);
 /* FW_NOT_READY until the answer is here; FW_OK writes it and frees the query. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArrivalState* state);
@@ -1215,7 +1248,8 @@ FW_API FwResult FW_CALL fwWorld_StopBurn(FwWorld*, FwBurnableMeshId id);
  * twice, late and in any order. A packet that is damaged, cut, or of another session or version is refused with a message
  * and changes nothing; the checksum finds damage, not malice: encrypt where that is to be feared. Nothing here waits.
  *
- * Sent by itself is: fwWorld_Ignite, PlayBurn, StopBurn, SetWind, SetWindZone, SetRoom, SetFlags, SetTransform, MoveBlocker;
+ * Sent by itself is: fwWorld_Ignite, PlayBurn, StopBurn, SetWind, SetWindGrid, SetGusts, SetWindZone, SetRoom, SetFlags,
+ * SetTransform, MoveBlocker;
  * of volumetric fires with FW_FIRE_IGNITES and jets with FW_EMITTER_IGNITES where they are and their power, of fields with
  * FW_FIELD_WETS where they are and their amount. On a client these calls are refused, as fwWorld_Load is. What is made and
  * destroyed, and all else that changes what burns (colliders, points of fires, painted fields, vertices), each host does by

@@ -365,17 +365,22 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
     if (total > 0x7FFFFFFFu)
         core::fail(FW_ERROR_OUT_OF_MEMORY, "The world has %zu tiles; the limit is %u.", total,
                    0x7FFFFFFFu);
-    // All or nothing: room first, then the size that says so.
+    // All or nothing: room first, then the size that says so. Half as much again, or the thousandth
+    // object would copy what the others have a thousandth time.
+    const auto findRoom = [](auto& entries, size_t needed) {
+        if (entries.capacity() < needed)
+            entries.reserve(std::max(needed, entries.capacity() + entries.capacity() / 2));
+    };
     for (auto* entries : {&list, &listOut, &runList, &burnList, &hotList, &hotOut})
-        entries->reserve(total);
-    asks.reserve(total);
-    asked.reserve(total);
-    tileHeat.reserve(total);
-    tileFire.reserve(total);
-    burnTiles.reserve(total);
-    results.reserve(total);
-    scratch.reserve(total * 64);
-    tiles.reserve(total);
+        findRoom(*entries, total);
+    findRoom(asks, total);
+    findRoom(asked, total);
+    findRoom(tileHeat, total);
+    findRoom(tileFire, total);
+    findRoom(burnTiles, total);
+    findRoom(results, total);
+    findRoom(scratch, total * 64);
+    findRoom(tiles, total);
     results.resize(total);
     scratch.resize(total * 64);
     tiles.resize(total);

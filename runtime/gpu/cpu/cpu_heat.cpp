@@ -6,15 +6,6 @@
 
 namespace fw::gpu::cpu {
 
-namespace {
-
-// In a warm tile what dozes takes every step, as a plain one.
-uint32_t workIn(uint32_t turn, uint32_t work) noexcept {
-    return work == kWorkDozes && (turn & kWorkAlways) != 0 ? kWorkAlways : work;
-}
-
-}  // namespace
-
 void createHeat(CpuObject& object) {
     const mesh::BurnDomain& domain = *object.domain;
     object.heat.resize(domain.texelCount());
@@ -83,9 +74,9 @@ uint32_t CpuBackend::State::heatTexel(const CpuObject& object, uint32_t texel, u
     const HeatMaterial& m = object.heatMaterials[kind];
     const uint32_t before = object.state[texel], chance = heatChance(texel, hash32(now));
     if (work == kWorkDozes) return heatDozes(x, m, before, chance);
-    return heatTexelStep(
-        x, heatInAir(heatOver(m, workShift(work, comes.flux)), airStrength(object.counters.air)),
-        before, now, comes.flux, comes.pilot != 0, object.materials[kind].air, chance, units);
+    const HeatMaterial waited = heatOver(m, work == kWorkRests, comes.flux);
+    return heatTexelStep(x, heatInAir(waited, airStrength(object.counters.air)), before, now,
+                         comes.flux, comes.pilot != 0, object.materials[kind].air, chance, units);
 }
 
 void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept {
@@ -107,7 +98,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         if ((kind & kTexelReal) == 0) continue;
         const uint32_t before = object.state[texel];
         HeatTexel x = unpackHeat(object.heat[texel]);
-        const uint32_t work = workIn(turn, heatWork(x, before, comes.flux, ambient));
+        const uint32_t work = workInTurn(heatWork(x, before, comes.flux, ambient), turn);
         if ((work & turn) == 0) {
             left |= work;
             continue;
@@ -195,7 +186,7 @@ void CpuBackend::State::askHeat(uint32_t now) noexcept {
                 continue;
             HeatTexel x = unpackHeat(object.heat[texel]);
             const uint32_t ambient = object.heatMaterials[0].ambient;
-            const uint32_t work = workIn(turn, heatWork(x, before, comes.flux, ambient));
+            const uint32_t work = workInTurn(heatWork(x, before, comes.flux, ambient), turn);
             if ((work & turn) == 0) continue;
             uint32_t units = 0;
             lights = isSource(heatTexel(object, texel, work, comes, now, x, units));

@@ -115,6 +115,7 @@ struct VolumeItem {  // a volumetric flame that a view may show
     vec3 middle{}, base{};    // m, world: of its bounds; where it stands
     float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
     bool smokes = false;
+    vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
 };
 extern const DrawPass kVolumePass;
 // Where the view shows it, in so many slabs; false: nowhere.
@@ -136,9 +137,11 @@ void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items);
 struct MarchedVolume {  // one whose rays are marched before the drawing, and how it is shown
     uint32_t flame = 0;
     bool smokes = false;  // marched by kVolumeSmokePass
+    bool window = false;  // finer cells where it burns, of the one before it
     VolumeMarch march{};
     VolumeComposite composite{};
 };
+constexpr uint32_t kVolumeWorks = 3;  // of VolumeWork per flame: it, its card, where it burns
 extern const DrawPass kVolumeCompositePass;
 struct VolumeScreen {     // what the marched view is shown on
     vec2 size{};          // px
@@ -157,9 +160,16 @@ float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept;
 void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept;
 // Cells of all `items`, as fine as `words` allow, where those of most tiles get larger ones, in
 // their order, behind the `first` words, which are others'; `perPixel`: m per pixel at a depth
-// of 1. 0: they do not fit; else the end of the words that are known of tiles.
-uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
-                    uint32_t words, std::span<MarchedVolume> out, uint32_t first = 0);
+// of 1. Where room is short smoke, thin and wide, makes way for fire: a flame that smokes gets
+// large cells, and behind it in `out` fine ones where it burns. So `out` needs room for twice as
+// many.
+struct LaidVolumes {
+    uint32_t end = 0;    // of the words that are known of tiles; 0: they do not fit
+    uint32_t count = 0;  // of `out`
+};
+LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
+                       float perPixel, uint32_t words, std::span<MarchedVolume> out,
+                       uint32_t first = 0);
 // Farthest first.
 void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes);
 

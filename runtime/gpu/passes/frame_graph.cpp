@@ -439,7 +439,8 @@ void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolum
 namespace {
 
 // Heat to levels, levels to triangles; what moves is listed to be placed.
-void recordTurn(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with) {
+void recordTurn(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with,
+                bool fresh) {
     RefinePush push = with;
     push.row = lists.row;
     push.parity = lists.parity;
@@ -447,6 +448,8 @@ void recordTurn(vk::FrameRecorder& recorder, const FrameLists& lists, const Refi
     push.row = kRowBurn + lists.burnParity;
     push.parity = 2 + lists.burnParity;
     recorder.dispatchList(kRefineHeatPass, &push, push.row);
+    push.parity = kRefineFreshHeat;
+    if (fresh) recorder.dispatch(kRefineHeatPass, &push, std::min(push.objects, kMaxGroups));
     const uint32_t items = std::min(push.edgeGroups + push.triangleGroups, kMaxGroups),
                    triangles = std::min(push.triangleGroups, kMaxGroups);
     const uint32_t groups[5] = {items, push.budget ? triangles : 0, push.budget ? 1u : 0, items,
@@ -460,8 +463,8 @@ void recordTurn(vk::FrameRecorder& recorder, const FrameLists& lists, const Refi
 }  // namespace
 
 void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& with,
-                  bool turn, bool cuts) {
-    if (turn) recordTurn(recorder, lists, with);
+                  bool turn, bool cuts, bool fresh) {
+    if (turn) recordTurn(recorder, lists, with, fresh);
     RefinePush push = with;
     push.phase = 0;
     recorder.dispatch(kRefinePlacePass, &push, std::min(push.cornerGroups, kMaxGroups));

@@ -167,11 +167,12 @@ void recordVolumeMarch(vk::FrameRecorder& recorder, std::span<const MarchedVolum
                        uint32_t first, uint32_t end, uint32_t cards);
 
 // After the steps. The work plane holds its lists, and zero before them. `lists`: see FrameLists.
-// `cuts`: some object is kRefineIsCut. Without `turn` what was listed last time is placed again.
+// `cuts`, `fresh`: some object is. Without `turn` what was listed last time is placed again.
 void recordRefine(vk::FrameRecorder& recorder, const FrameLists& lists, const RefinePush& push,
-                  bool turn, bool cuts);
+                  bool turn, bool cuts, bool fresh);
 
-// The published scheme's, after the steps: groups of vertices, then of listed triangles.
+// The published scheme's, after the steps: groups of vertices,
+// then of listed triangles.
 void recordRefinePublished(vk::FrameRecorder& recorder, const ArpPush& push, uint32_t placeGroups,
                            uint32_t nameGroups);
 

@@ -12,6 +12,7 @@ constexpr Use kRefineHeatUses[] = {
     {FW_BIND_BURN_A, Access::read},       {FW_BIND_BURN_B, Access::read},
     {FW_BIND_REFINE_WORK, Access::read},  {FW_BIND_REFINE_OBJECTS, Access::read},
     {FW_BIND_REFINE_WORDS, Access::read}, {FW_BIND_REFINE_HEAT, Access::write},
+    {FW_BIND_PREDICT, Access::read},      {FW_BIND_GRADIENT, Access::read},
 };
 
 }  // namespace

@@ -17,6 +17,7 @@ constexpr Use kVolumeUses[] = {
 };
 
 constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
+constexpr float kLeastW = 1e-4f;     // of clip space: what is nearer is beside the eye or behind it
 // Samples this far apart, in diameters: closer shows no more but for less grain.
 constexpr float kSpacing = 0.05f;
 
@@ -25,6 +26,48 @@ constexpr float kSpacing = 0.05f;
 float along(const vec3& direction, const ViewParams& view, int component) {
     return view.clip0[component] * direction.x + view.clip1[component] * direction.y +
            view.clip2[component] * direction.z;
+}
+
+struct BoxShown {
+    // x and y of the view, as if it had no edge; empty: nowhere.
+    vec4 rect{1e30f, 1e30f, -1e30f, -1e30f};
+    float near = 1e30f, far = -1e30f;  // m along the view
+    bool around = false;               // some of it is beside or behind the eye
+};
+
+BoxShown showBox(const ViewParams& view, const vec3& low, const vec3& high) {
+    const bool perspective = view.forward.w > 0.5f;
+    const vec3 forward(view.forward), eye(view.eye);
+    BoxShown shown;
+    vec4 corners[8];  // of clip space
+    const auto add = [&](const vec4& at) {
+        const vec2 place = vec2(at) / at.w;
+        shown.rect = vec4(glm::min(vec2(shown.rect), place),
+                          glm::max(vec2(shown.rect.z, shown.rect.w), place));
+    };
+    for (int i = 0; i < 8; ++i) {
+        const vec3 from =
+            vec3((i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z) -
+            eye;
+        const float depth = glm::dot(from, forward);
+        shown.near = std::min(shown.near, depth);
+        shown.far = std::max(shown.far, depth);
+        corners[i] = from.x * view.clip0 + from.y * view.clip1 + from.z * view.clip2 + view.clip3;
+        if (perspective && !(corners[i].w > kLeastW))
+            shown.around = true;
+        else
+            add(corners[i]);
+    }
+    // Of what is in part behind the eye the view shows what its edges have before it.
+    for (int i = 0; shown.around && i < 8; ++i) {
+        if (!(corners[i].w > kLeastW)) continue;
+        for (int axis = 1; axis < 8; axis *= 2) {
+            const vec4& other = corners[i ^ axis];
+            if (other.w > kLeastW) continue;
+            add(glm::mix(other, corners[i], (kLeastW - other.w) / (corners[i].w - other.w)));
+        }
+    }
+    return shown;
 }
 
 }  // namespace
@@ -43,35 +86,17 @@ const DrawPass kVolumePass{.name = "volume",
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
                 VolumeDraw& out, vec4* whole) {
     const bool perspective = view.forward.w > 0.5f;
-    const vec3 forward(view.forward), eye(view.eye);
+    const vec3 forward(view.forward);
     const vec3 rows[4] = {vec3(view.clip0.x, view.clip1.x, view.clip2.x),
                           vec3(view.clip0.y, view.clip1.y, view.clip2.y),
                           vec3(view.clip0.z, view.clip1.z, view.clip2.z),
                           vec3(view.clip0.w, view.clip1.w, view.clip2.w)};
-    float near = 1e30f, far = -1e30f;
-    vec4 rect(1e30f, 1e30f, -1e30f, -1e30f);
-    bool around = false;  // some corner is beside or behind the eye
-    for (int i = 0; i < 8; ++i) {
-        const vec3 corner =
-            vec3((i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z) -
-            eye;
-        const float depth = glm::dot(corner, forward);
-        near = std::min(near, depth);
-        far = std::max(far, depth);
-        const float w = glm::dot(rows[3], corner) + view.clip3.w;
-        if (perspective && !(w > 1e-4f)) {
-            around = true;
-            continue;
-        }
-        const float x = (glm::dot(rows[0], corner) + view.clip3.x) / w;
-        const float y = (glm::dot(rows[1], corner) + view.clip3.y) / w;
-        rect = vec4(std::min(rect.x, x), std::min(rect.y, y), std::max(rect.z, x),
-                    std::max(rect.w, y));
-    }
-    if (perspective) near = std::max(near, kFirstSlab);
+    const BoxShown shown = showBox(view, vec3(low), vec3(high));
+    const vec4& rect = shown.rect;
+    const float near = perspective ? std::max(shown.near, kFirstSlab) : shown.near;
+    const float far = shown.far;
     if (!(far > near)) return false;
-    if (whole) *whole = around ? vec4(0.0f) : rect;
-    if (around) rect = vec4(-1.0f, -1.0f, 1.0f, 1.0f);
+    if (whole) *whole = shown.around ? vec4(0.0f) : rect;
     out.rect = vec4(std::max(rect.x, -1.0f), std::max(rect.y, -1.0f), std::min(rect.z, 1.0f),
                     std::min(rect.w, 1.0f));
     if (!(out.rect.x < out.rect.z && out.rect.y < out.rect.w)) return false;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace fw::gpu {
 namespace {
@@ -31,6 +30,11 @@ constexpr float kSamplesPerStep = 2.75f;
 constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
 constexpr uint64_t kLeastTiles = 2048;      // of small flames, however small the screen
 constexpr uint64_t kHalfScreens = 5;        // whose tiles there is room for: plumes overlap
+// Where room is short: times as large as those of fire are smoke's cells at least, and so many
+// tiles of fire are worth one of smoke.
+constexpr float kSmokeCells = 4.0f;
+constexpr float kSmokeTiles = 4.0f;
+constexpr uint64_t kFewTiles = 32;  // of a flame, which keeps its cells as long as others have more
 
 static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
 
@@ -73,8 +77,6 @@ float cellOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     return cell;
 }
 
-float coarser(float cell) { return cell < 1.0f ? 2.0f * cell : cell + 1.0f; }
-
 // m between samples. Where sheets are closer than samples thick flame is too dark; a small one,
 // which costs little, gets up to twice as many.
 float spacingOf(const VolumeDraw& draw, const VolumeScreen& screen) {
@@ -93,26 +95,85 @@ uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
 }
 
-// px, of all flames' cells, so that they take no more than so many tiles: what small flames need is
-// little, and they alone would be lost in larger ones. How many they take; 0: they do not fit.
-uint64_t fitCells(std::span<const VolumeItem> items, const VolumeScreen& screen, uint64_t room,
-                  std::array<float, kMaxVolumeFlames>& cells) {
-    std::array<uint64_t, kMaxVolumeFlames> tiles;
-    const auto lay = [&](size_t i, float cell) {
-        const Tiles t = tilesOf(items[i].draw.rect, screen.size, cell);
-        cells[i] = cell;
-        tiles[i] = uint64_t(t.x) * t.y;
-    };
-    for (size_t i = 0; i < items.size(); ++i) lay(i, cellOf(items[i].draw, screen));
-    const std::span<uint64_t> of(tiles.data(), items.size());
-    for (;;) {
-        const uint64_t all = std::accumulate(of.begin(), of.end(), uint64_t{0});
-        if (all <= room) return all;
-        const auto most = size_t(std::max_element(of.begin(), of.end()) - of.begin());
-        if (coarser(cells[most]) > kMostCell) return 0;
-        lay(most, coarser(cells[most]));
+float coarser(float cell) { return cell < 1.0f ? 2.0f * cell : cell + 1.0f; }
+
+struct Laid {  // a part of the view for a flame
+    uint32_t item = 0;
+    bool window = false;
+    bool smoke = false;  // most of it
+    vec4 rect{};
+    float cell = 0;  // px
+    Tiles tiles{};
+    [[nodiscard]] uint64_t count() const { return uint64_t(tiles.x) * tiles.y; }
+    // Cells of the part of the largest become larger first: of those with many tiles that of small
+    // cells, so that what is near does not show its cells before what is far. 0: they cannot.
+    [[nodiscard]] float weight() const {
+        if (coarser(cell) > kMostCell) return 0.0f;
+        const auto n = float(count());
+        const float size = count() <= kFewTiles ? n / kMostCell : n / std::max(cell, 1.0f);
+        return smoke ? kSmokeTiles * size : size;
     }
-}
+};
+
+// All flames' parts and cells, which together take no more than so many tiles: what small flames
+// need is little, and they alone would be lost in larger ones.
+class Layout {
+ public:
+    Layout(std::span<const VolumeItem> items, const VolumeScreen& screen)
+        : items_(items), screen_(screen) {}
+    // False: they do not fit.
+    bool fit(uint64_t room) {
+        for (size_t i = 0; i < items_.size(); ++i)
+            add(uint32_t(i), false, items_[i].draw.rect, cellOf(items_[i].draw, screen_));
+        if (all_ > room) smokeMakesWay();
+        while (all_ > room) {
+            Laid& most = *std::max_element(
+                parts_.begin(), parts_.begin() + ptrdiff_t(count_),
+                [](const Laid& a, const Laid& b) { return a.weight() < b.weight(); });
+            if (most.weight() == 0.0f) return false;
+            lay(most, coarser(most.cell));
+        }
+        return true;
+    }
+    [[nodiscard]] std::span<const Laid> parts() const { return {parts_.data(), count_}; }
+    [[nodiscard]] uint64_t tiles() const { return all_; }
+
+ private:
+    void lay(Laid& part, float cell) {
+        all_ -= part.count();
+        part.cell = cell;
+        part.tiles = tilesOf(part.rect, screen_.size, cell);
+        all_ += part.count();
+    }
+    void add(uint32_t item, bool window, const vec4& rect, float cell) {
+        Laid& part = parts_[count_++];
+        part = {item, window, false, rect, cell, {}};
+        lay(part, cell);
+    }
+    void smokeMakesWay() {
+        count_ = 0, all_ = 0;
+        for (size_t i = 0; i < items_.size(); ++i) {
+            const VolumeItem& item = items_[i];
+            const float cell = cellOf(item.draw, screen_);
+            add(uint32_t(i), false, item.draw.rect, cell);
+            if (!item.smokes) continue;
+            Laid& whole = parts_[count_ - 1];
+            const bool seen = item.burns.x < item.burns.z && item.burns.y < item.burns.w;
+            const Tiles fire = tilesOf(item.burns, screen_.size, cell);
+            // A window nearly as large as the flame would save nothing.
+            if (seen && 3 * whole.count() < 4 * uint64_t(fire.x) * fire.y) continue;
+            whole.smoke = true;
+            lay(whole, std::max(kSmokeCells * cell, 1.0f));
+            if (seen) add(uint32_t(i), true, item.burns, cell);
+        }
+    }
+
+    std::span<const VolumeItem> items_;
+    const VolumeScreen& screen_;
+    std::array<Laid, 2 * kMaxVolumeFlames> parts_;  // a flame's window behind the flame
+    size_t count_ = 0;
+    uint64_t all_ = 0;  // tiles
+};
 
 }  // namespace
 
@@ -147,23 +208,26 @@ uint32_t volumeRayWords(const VolumeScreen& screen) {
     return uint32_t(std::min(all * wordsOfTile(screen.slabs), kMostWords));
 }
 
-uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen, float perPixel,
-                    uint32_t words, std::span<MarchedVolume> out, uint32_t first) {
-    std::array<float, kMaxVolumeFlames> cells;
+LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
+                       float perPixel, uint32_t words, std::span<MarchedVolume> out,
+                       uint32_t first) {
+    Layout layout(items, screen);
     const uint64_t room = words > first ? (words - first) / wordsOfTile(screen.slabs) : 0;
-    const uint64_t all = fitCells(items, screen, room, cells);
-    if (all == 0) return 0;
-    const auto end = first + uint32_t(all * kVolumeTileWords);
-    uint32_t known = first, samples = end;
-    for (size_t i = 0; i < items.size(); ++i) {
-        const VolumeDraw& draw = items[i].draw;
-        const float cell = cells[i];
+    if (!layout.fit(room)) return {};
+    LaidVolumes laid;
+    laid.end = first + uint32_t(layout.tiles() * kVolumeTileWords);
+    uint32_t known = first, samples = laid.end;
+    for (const Laid& part : layout.parts()) {
+        const VolumeItem& item = items[part.item];
+        const VolumeDraw& draw = item.draw;
+        const float cell = part.cell;
         const vec2 perCell = vec2(2.0f * cell) / screen.size;  // of the view's [-1, 1]
-        const Tiles tiles = tilesOf(draw.rect, screen.size, cell);
+        const Tiles& tiles = part.tiles;
         const uint32_t count = tiles.x * tiles.y;
-        MarchedVolume& one = out[i];
-        one.flame = items[i].flame;
-        one.smokes = items[i].smokes;
+        MarchedVolume& one = out[laid.count++];
+        one.flame = item.flame;
+        one.window = part.window;
+        one.smokes = item.smokes;
         VolumeMarch& march = one.march;
         march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell * kFinestDetail);
         march.turns = turnsOf(draw, screen);
@@ -199,10 +263,19 @@ uint32_t layVolumes(std::span<const VolumeItem> items, const VolumeScreen& scree
         composite.perPixel = march.perPixel;
         composite.from = 0.0f;
         composite.to = 1.0f;
+        composite.window = vec4(0.0f);
+        if (part.window) {
+            // Of the whole flame's cells, which end where these begin.
+            VolumeComposite& whole = out[laid.count - 2].composite;
+            const vec2 low = vec2(composite.place), size(tiles.x, tiles.y);
+            const vec2 high = low + perCell * float(kVolumeTile) * size;
+            const vec2 from(whole.place), per(whole.place.z, whole.place.w);
+            whole.window = vec4((low - from) / per, (high - from) / per);
+        }
         known += count * kVolumeTileWords;
         samples += march.cells * kVolumeCellWords * draw.slabs;
     }
-    return end;
+    return laid;
 }
 
 }  // namespace fw::gpu

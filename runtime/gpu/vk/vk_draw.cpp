@@ -165,8 +165,6 @@ void checkLentColor(const Target& target, const FwVulkanFrame& frame) {
 }
 
 constexpr float kAnyHeight = 1000;  // px
-// A side of a pixel, of the first picture: all four places at which samples begin, or it is grain.
-constexpr uint32_t kFirstRays = 2;
 
 constexpr VkAccessFlags kColorAccess =
     VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
@@ -209,10 +207,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
     if (target.key.flames && !volumes.empty()) {
         const VolumeScreen screen =
             screenOf(target.key, {viewport.width, std::fabs(viewport.height)});
-        // In the first picture nobody could know which screen to march for.
-        const bool first = march.screen.size.x == 0.0f;
         noteScreen(view, screen, slot.frameIndex);
-        const uint32_t leastRays = first && march.screen == screen ? kFirstRays : 1;
         const bool made = marchedFor(view, screen);
         if (made) {
             list.marched = {march.items.data(), march.count};
@@ -221,7 +216,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             list.volumeRuns = {march.order.runs.data(), march.order.count};
         } else {
             const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
-            const uint32_t count = orderVolumes(slabs, items);
+            const uint32_t count = orderVolumes(slabs, items), least = leastRays(view, screen);
             uint32_t whole = 0, cut = 0;
             for (uint32_t i = 0; i < count; ++i) {
                 if (volumes[items[i].flame].tier == FW_FIRE_TIER_SLICES &&
@@ -232,7 +227,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                     items[whole] = items[i];
                     VolumeDraw& draw = items[whole].draw;
                     volumeRays(screen, draw);
-                    draw.perPixel = std::max(draw.perPixel, leastRays);
+                    draw.perPixel = std::max(draw.perPixel, least);
                     order.add(kVolumePass, whole++);
                 }
             }

@@ -201,7 +201,7 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
         s.fieldDraws.reserve(plan.fields->drawn.size());
     }
     if (plan.volumes) {
-        s.planes.atLeast(kSpaceVolumes, 2 * plan.volumes->count, last);  // and their cards' work
+        s.planes.atLeast(kSpaceVolumes, kVolumeWorks * plan.volumes->count, last);
         s.volumes.reserve(plan.volumes->count);
     }
     if (plan.emitters) s.makeEmitterRoom(*plan.emitters, last);

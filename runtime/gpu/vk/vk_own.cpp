@@ -174,7 +174,8 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         plan.tickFraction = tickFraction;
         plan.switches = (refine.full ? kSwitchRefineFull : 0) | crossing;
         march.screen = screenOf(target.key, {float(def.width), float(def.height)});
-        look(def.view, float(def.height), open.ringFrame);
+        refine.height = float(def.height);
+        look(def.view, refine.height, open.ringFrame);
         run(plan);
         ringFrame = open.ringFrame;
         closeFrame(&def.view);

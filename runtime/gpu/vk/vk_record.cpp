@@ -273,28 +273,33 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     }
 }
 
-// Burnt pieces that lost their hold: a part of all tiles each frame, in turn.
+// Burnt pieces that lost their hold: a part of the tiles each frame, in turn, from the first object
+// that fire came to up to the last one.
 void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
                    FrameRecorder& recorder) {
     constexpr uint32_t kMostTiles = 16384;
+    uint32_t begin = kNoneTexel, end = 0;
+    float latest = 0;
+    for (const ObjectEntry& object : s.objects) {
+        if (!object.live || !object.touched) continue;
+        begin = std::min(begin, object.record.worldTileBase);
+        end = std::max(end, object.record.worldTileBase + object.record.tileCount);
+        for (const BurnMaterial& material : object.materials)
+            if (material.holeTicks) latest = std::max(latest, material.baseColor.w);
+    }
     if (burning) {
-        float latest = 0;
-        for (const ObjectEntry& object : s.objects) {
-            if (!object.live || !object.touched) continue;
-            for (const BurnMaterial& material : object.materials)
-                if (material.holeTicks) latest = std::max(latest, material.baseColor.w);
-        }
         // After the last flame: until all is gone, and as long as it takes to notice.
         s.supportUntil = plan.endTick + uint32_t(1.2f * latest) + 16 * kTicksPerSecond;
         if (latest == 0) return;
     }
-    const uint32_t tiles = s.planes.capacity(kSpaceObjectTiles);
-    const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
-    const uint32_t first = s.supportFirst < tiles ? s.supportFirst : 0;
-    const uint32_t count = std::min(tiles - first, kMostTiles);
+    if (end <= begin) return;
+    const uint32_t parts = (end - begin + kMostTiles - 1) / kMostTiles;
+    const bool goesOn = s.supportFirst > begin && s.supportFirst < end;
+    const uint32_t first = goesOn ? s.supportFirst : begin;
+    const uint32_t count = std::min(end - first, kMostTiles);
     s.supportFirst = first + count;
     const auto ticks = uint32_t(plan.steps.size()) * kStepTicks * parts;
-    if (count) recordSupport(recorder, plan.endTick, ticks, first, count);
+    recordSupport(recorder, plan.endTick, ticks, first, count);
 }
 
 // Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it

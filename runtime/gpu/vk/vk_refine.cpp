@@ -21,6 +21,8 @@ constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
 // Holes are cut where a mean edge is longer than this, in segments of the finest; what was is until
 // it is shorter than the second.
 constexpr float kCutFrom = 4, kCutTo = 3;
+// Levels short of what its size asks for, with which a triangle still says where its holes are.
+constexpr float kFewestLevels = 1.25f;
 constexpr float kCutNear = 10;          // where rims show what only cut ones can
 constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
 // Of the budget, what levels aim at: they are on their way for a moment, and some objects wait.
@@ -300,7 +302,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
     push.nowTick = shownTick;
     const uint64_t recordsAt = at;
     uint32_t ordinal = 0;
-    bool cuts = false;
+    bool cuts = false, fresh = false;
     for (uint32_t i = 0; i < push.objectEnd; ++i, at += sizeof(RefineObject)) {
         RefineObject record{};
         ObjectEntry& object = objects[i];
@@ -330,6 +332,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
             cuts |= cut;
             if (!object.refine.started) {
                 record.flags |= kRefineIsFresh;
+                fresh = true;
                 const RangeOf& items = object.refine.items;
                 recorder.fillZero(FW_BIND_REFINE_HEAT, uint64_t(items.first) * 4,
                                   uint64_t(items.units) * 4);
@@ -341,7 +344,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
     slot.uploadUsed = at;
     recorder.copyIn(recordsAt, FW_BIND_REFINE_OBJECTS, 0,
                     uint64_t(push.objectEnd) * sizeof(RefineObject));
-    recordRefine(recorder, lists, push, turn, cuts);
+    recordRefine(recorder, lists, push, turn, cuts, fresh);
 }
 
 void VkBackend::State::lookFrom(const FwView& view) noexcept {
@@ -447,6 +450,7 @@ RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full
     r.inner = use.inner;
     r.cuts = use.cuts.first;
     r.cutTriangles = use.cuts.units / 3;
+    r.fewest = kFewestLevels;
     // A wall is gone when it looks gone.
     const auto seconds = [&](uint32_t m) {
         const BurnMaterial& material = object.materials[m];

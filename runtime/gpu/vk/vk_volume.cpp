@@ -11,6 +11,8 @@ namespace fw::gpu::vk {
 constexpr uint32_t kLeastCards = 32;     // that there is room for
 constexpr uint32_t kCardsPerFrame = 12;  // are marched anew, or all that must be
 constexpr uint32_t kPairWords = 2 * kCardWords;
+// A side of a pixel: all four places at which samples begin, or it is grain.
+constexpr uint32_t kUnknownRays = 2;
 constexpr float kCardTurn = 0.985f;  // cosine of what a card is seen from aside: 10 degrees
 
 static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
@@ -68,6 +70,11 @@ uint32_t VkBackend::State::orderVolumes(
         item.near = item.draw.front;
         item.far = item.draw.front + item.draw.deep * float(slabs);
         volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);
+        VolumeDraw burning;
+        item.burns = volumes[i].smokes && volumeDraw(seen, volumes[i].flameLow,
+                                                     volumes[i].flameHigh, slabs, burning)
+                         ? burning.rect
+                         : vec4(0.0f);
         item.draw.intervals = volumes[i].intervals;
         ++count;
     }
@@ -245,16 +252,18 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
     }
     // `seen` is a view of one pixel.
     const uint32_t first = slots * kPairWords;
-    const uint32_t end =
-        count == 0
-            ? first
-            : layVolumes({marched.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
-                         std::min(capacity, first + rays), march.items, first);
-    if (count > 0 && end == 0) return;
-    for (uint32_t i = 0; i < count; ++i) {
+    LaidVolumes laid{first, 0};
+    if (count > 0) {
+        laid = layVolumes({marched.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
+                          std::min(capacity, first + rays), march.items, first);
+        if (laid.end == 0) return;
+    }
+    for (uint32_t i = 0, k = 0; k < laid.count; ++k) {
+        MarchedVolume& one = march.items[k];
+        while (marched[i].flame != one.flame) ++i;
         const TierLife& life = march.lives[lives[i]];
-        VolumeComposite& composite = march.items[i].composite;
-        setFade(life, life.marchedNow(), composite.from, composite.to);
+        setFade(life, life.marchedNow(), one.composite.from, one.composite.to);
+        if (one.window) one.march.flame = 2 * uint32_t(volumes.size()) + one.flame;
     }
 
     // What is marched with all its samples has haze; it goes with them, little by little.
@@ -285,7 +294,7 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
     for (uint32_t k = 0; k < dues; ++k) {
         const uint32_t i = due[k];
         if (k >= kCardsPerFrame && age(i) != ~uint64_t{0}) break;
-        MarchedVolume& one = march.items[count + cards];
+        MarchedVolume& one = march.items[laid.count + cards];
         VolumeCardPair& pair = march.pairs[places[i]];
         if (pair.shapes[pair.newest].there) pair.newest ^= 1u;
         pair.over = (dues + kCardsPerFrame - 1) / kCardsPerFrame;
@@ -297,10 +306,11 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         ++cards;
     }
     // In the order in which they lie behind each other, whatever they are shown as.
-    for (size_t i = 0, shown = 0; i < items.size(); ++i) {
+    for (uint32_t i = 0, shown = 0; i < items.size(); ++i) {
         if (places[i] == kMaxVolumeFlames) continue;
         const TierLife& life = march.lives[places[i]];
-        if (life.marched()) march.order.add(kVolumeCompositePass, uint32_t(shown++));
+        for (; shown < laid.count && march.items[shown].flame == items[i].flame; ++shown)
+            march.order.add(kVolumeCompositePass, shown);
         if (life.shows(FW_FIRE_TIER_SLICES)) {
             SlicedVolume& one = march.sliced[march.slicedCount];
             one = layVolumeSlices(items[i]);
@@ -311,13 +321,19 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
     }
     march.made = march.screen;
     march.view = outside;
-    march.count = count;
+    march.count = laid.count;
     march.there = true;
-    recordVolumeMarch(recorder, {march.items.data(), count + cards}, first, end, cards);
+    recordVolumeMarch(recorder, {march.items.data(), laid.count + cards}, first, laid.end, cards);
 }
 
 bool VkBackend::State::marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept {
     return march.there && screen == march.made && sameView(view, march.view);
+}
+
+uint32_t VkBackend::State::leastRays(const FwView& view, const VolumeScreen& screen) noexcept {
+    if (!sameView(view, outside) || screen == march.unknown) return 1;
+    march.unknown = screen;
+    return kUnknownRays;
 }
 
 uint64_t VkBackend::detailBytes() const noexcept {

@@ -343,13 +343,14 @@ struct VkBackend::State {
     // What is marched before it is drawn: the view of the outside part, on the screen that a draw
     // with it was last seen to have. Other views, and the first picture, march as they draw.
     struct March {
-        VolumeScreen screen;  // no size: none was seen
-        uint64_t frame = 0;   // that saw it: of several screens in a frame the largest counts
-        VolumeScreen made;    // of what is in the plane
-        FwView view{};        // and its view; in the plane nothing: count is 0
+        VolumeScreen screen;   // no size: none was seen
+        uint64_t frame = 0;    // that saw it: of several screens in a frame the largest counts
+        VolumeScreen made;     // of what is in the plane
+        VolumeScreen unknown;  // that was last drawn before anything was marched for it
+        FwView view{};         // and its view; in the plane nothing: count is 0
         bool there = false;
         uint32_t count = 0;
-        std::array<MarchedVolume, 2 * kMaxVolumeFlames>
+        std::array<MarchedVolume, kVolumeWorks * kMaxVolumeFlames>
             items;  // cards that are marched behind them
         uint32_t cardCount = 0;
         std::array<VolumeCard, 2 * kMaxVolumeFlames> cards;
@@ -465,6 +466,9 @@ struct VkBackend::State {
     // Whether what is marched is for a view on a screen; else they are to be marched as they are
     // drawn.
     [[nodiscard]] bool marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept;
+    // A side of a pixel, of the view as it is drawn: more where nobody could know its screen, in
+    // the first picture and after a resize. A second screen of each frame takes them once.
+    uint32_t leastRays(const FwView& view, const VolumeScreen& screen) noexcept;
     // What bends what is behind it in the view that was last pushed, farthest first; how many.
     uint32_t orderHazes(bool marched, float strength,
                         std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept;

@@ -268,6 +268,11 @@ void countHouses(State& state, const Burning& burning, std::vector<Happening>& h
     for (size_t i = 0; i < kHouses; ++i) {
         const int32_t before = state.houseBurnt[i];
         state.houseBurnt[i] = std::max(before, burning.houseBurnt[i]);
+        for (int32_t beam = 0; beam < kBeams && burning.houseAlight[i]; ++beam) {
+            const int32_t falls = kBeamsFallFrom + beam * kBeamsFallEvery;
+            if (before < falls && state.houseBurnt[i] >= falls)
+                happened.push_back({Happening::Type::kBeamFalls, int32_t(i), {}, beam});
+        }
         if (before < kHouseIsLost && state.houseBurnt[i] >= kHouseIsLost)
             happened.push_back({Happening::Type::kHouseLost, int32_t(i), {}, 0});
     }

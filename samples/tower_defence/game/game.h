@@ -84,6 +84,7 @@ struct Happening {
         kShot,        // a mortar's ember is in the air
         kEmberLands,  // `place`, `strength` mm about it
         kSprays,      // water at `place`, `strength` g/m^2
+        kBeamFalls,   // from a burning roof, the `strength`-th of its house
         kHouseLost,
         kWaveBegins,
         kWaveOver,

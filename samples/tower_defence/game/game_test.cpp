@@ -193,6 +193,24 @@ TEST(GameRules, FansTurnTheWindAndHoldEnemiesUp) {
     EXPECT_LT(with.state.enemies[slot].along, without.state.enemies[slot].along - 500);
 }
 
+TEST(GameRules, BeamsFallOnceEachWhileARoofBurns) {
+    Play play;
+    play.burning.houseBurnt[2] = kBeamsFallFrom + kBeamsFallEvery;
+    play.run(2);
+    EXPECT_EQ(play.count(Happening::Type::kBeamFalls), 0u) << "its fire is out";
+    Play burns;
+    burns.burning.houseAlight[2] = true;
+    for (const int32_t burnt : {kBeamsFallFrom - 1, kBeamsFallFrom + kBeamsFallEvery, 1000, 1000}) {
+        burns.burning.houseBurnt[2] = burnt;
+        burns.run(1);
+    }
+    std::vector<int32_t> beams;
+    for (const Happening& h : burns.happened)
+        if (h.type == Happening::Type::kBeamFalls && h.slot == 2) beams.push_back(h.strength);
+    ASSERT_EQ(beams.size(), size_t(kBeams));
+    for (int32_t i = 0; i < kBeams; ++i) EXPECT_EQ(beams[size_t(i)], i);
+}
+
 TEST(GameRules, HousesAreLostOnceAndCount) {
     Play play;
     const int32_t before = score(play.state);

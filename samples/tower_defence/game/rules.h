@@ -90,4 +90,9 @@ constexpr int32_t kScorePerCoin = 10, kScorePerLife = 100, kScorePerHouse = 500,
                   kScorePerWave = 200;
 constexpr int32_t kHouseIsLost = 500;  // thousandths burnt
 
+// A roof does not touch the walls that carry it: what falls from it lights them, piece by piece.
+constexpr int32_t kBeams = 32;                               // of a house
+constexpr int32_t kBeamsFallFrom = 60, kBeamsFallEvery = 8;  // thousandths burnt
+constexpr int32_t kBeamBurns = 320;                          // mm about where it lands
+
 }  // namespace game

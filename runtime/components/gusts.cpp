@@ -1,0 +1,96 @@
+#include "components/gusts.h"
+
+#include "components/pose.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "shared/burn.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::components {
+namespace {
+
+constexpr int64_t kGustOne = int64_t(1) << 14;
+constexpr float kLeastGust = 0.5f, kMostGust = 1000;  // m
+constexpr int64_t kMostUnits = 120 * 128;             // 1/128 m/s
+// Units of drift in a metre.
+constexpr int64_t kDriftMetre = 128 * int64_t(gpu::kTicksPerSecond);
+
+int64_t floorDivide(int64_t a, int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
+
+// Q14, [-1, 1], of a lattice's corner.
+int64_t corner(const std::array<int64_t, 3>& cell, uint32_t seed) noexcept {
+    uint32_t hash = seed;
+    for (const int64_t part : cell) hash = core::hash32(hash * 0x9E3779B9u + uint32_t(part));
+    return int64_t(hash >> 17) - kGustOne;
+}
+
+// Q14, [-1, 1]; smooth between corners `size` mm apart.
+int64_t noise(const std::array<int64_t, 3>& place, int64_t size, uint32_t seed) noexcept {
+    std::array<int64_t, 3> cell;
+    int64_t weight[3];
+    for (size_t i = 0; i < 3; ++i) {
+        cell[i] = floorDivide(place[i], size);
+        const int64_t x = (place[i] - cell[i] * size) * kGustOne / size;
+        weight[i] = x * x / kGustOne * (3 * kGustOne - 2 * x) / kGustOne;
+    }
+    int64_t sum = 0;
+    for (uint32_t k = 0; k < 8; ++k) {
+        std::array<int64_t, 3> at = cell;
+        int64_t part = kGustOne;
+        for (size_t i = 0; i < 3; ++i) {
+            const bool far = (k >> i & 1) != 0;
+            at[i] += far ? 1 : 0;
+            part = part * (far ? weight[i] : kGustOne - weight[i]) / kGustOne;
+        }
+        sum += corner(at, seed) * part / kGustOne;
+    }
+    return sum;
+}
+
+}  // namespace
+
+Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
+    if (def.flags != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwGustDef::flags is 0x%x; it is zero.", def.flags);
+    checkValue(def.strength, "FwGustDef::strength", 0.0f, 1.0f);
+    checkValue(def.size, "FwGustDef::size", kLeastGust, kMostGust);
+    Gusts gusts = before;
+    gusts.strength = std::llround(double(def.strength) * double(kGustOne));
+    gusts.size = std::llround(double(def.size) * 1000);
+    return gusts;
+}
+
+bool plausible(const Gusts& gusts, uint64_t tick) noexcept {
+    if (gusts.since > tick || gusts.strength < 0 || gusts.strength > kGustOne) return false;
+    const int64_t most = kMostUnits * int64_t(gusts.since);
+    for (const int64_t way : gusts.drift)
+        if (way < -most || way > most) return false;
+    return gusts.strength == 0 || (gusts.size >= std::llround(double(kLeastGust) * 1000) &&
+                                   gusts.size <= std::llround(double(kMostGust) * 1000));
+}
+
+void windChanges(Gusts& gusts, const fire::WindVector& wind, uint64_t tick) noexcept {
+    const auto ticks = int64_t(tick - gusts.since);
+    for (size_t i = 0; i < 3; ++i) gusts.drift[i] += wind[i] * ticks;
+    gusts.since = uint32_t(tick);
+}
+
+fire::WindVector gustOf(const Gusts& gusts, uint32_t seed, const fire::WindVector& wind,
+                        const fire::WindVector& here, const WindPlace& place,
+                        uint64_t tick) noexcept {
+    if (gusts.strength == 0) return here;
+    const int64_t ticks = int64_t(tick - tick % fire::kWindLatchTicks) - int64_t(gusts.since);
+    std::array<int64_t, 3> off{place.x, place.y, place.z};
+    for (size_t i = 0; i < 3; ++i)
+        off[i] -= (gusts.drift[i] + wind[i] * ticks) * 1000 / kDriftMetre;
+    const int64_t both = (2 * noise(off, gusts.size, seed) + noise(off, gusts.size / 2, ~seed)) / 3;
+    const int64_t gain = kGustOne + gusts.strength * both / kGustOne;
+    fire::WindVector out;
+    for (size_t i = 0; i < 3; ++i)
+        out[i] = int32_t(std::clamp(here[i] * gain / kGustOne, -kMostUnits, kMostUnits));
+    return out;
+}
+
+}  // namespace fw::components
