@@ -13,7 +13,7 @@ namespace {
 
 constexpr int64_t kGustOne = int64_t(1) << 14;
 constexpr float kLeastGust = 0.5f, kMostGust = 1000;  // m
-constexpr int64_t kMostUnits = 120 * 128;             // 1/128 m/s
+constexpr int64_t kMostGustWind = fire::kMostWindUnits;
 // Units of drift in a metre.
 constexpr int64_t kDriftMetre = 128 * int64_t(gpu::kTicksPerSecond);
 
@@ -58,17 +58,17 @@ Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
     checkValue(def.size, "FwGustDef::size", kLeastGust, kMostGust);
     Gusts gusts = before;
     gusts.strength = std::llround(double(def.strength) * double(kGustOne));
-    gusts.size = std::llround(double(def.size) * 1000);
+    gusts.size = millimetres(def.size);
     return gusts;
 }
 
 bool plausible(const Gusts& gusts, uint64_t tick) noexcept {
     if (gusts.since > tick || gusts.strength < 0 || gusts.strength > kGustOne) return false;
-    const int64_t most = kMostUnits * int64_t(gusts.since);
+    const int64_t most = kMostGustWind * int64_t(gusts.since);
     for (const int64_t way : gusts.drift)
         if (way < -most || way > most) return false;
-    return gusts.strength == 0 || (gusts.size >= std::llround(double(kLeastGust) * 1000) &&
-                                   gusts.size <= std::llround(double(kMostGust) * 1000));
+    return gusts.strength == 0 ||
+           (gusts.size >= millimetres(kLeastGust) && gusts.size <= millimetres(kMostGust));
 }
 
 void windChanges(Gusts& gusts, const fire::WindVector& wind, uint64_t tick) noexcept {
@@ -89,7 +89,7 @@ fire::WindVector gustOf(const Gusts& gusts, uint32_t seed, const fire::WindVecto
     const int64_t gain = kGustOne + gusts.strength * both / kGustOne;
     fire::WindVector out;
     for (size_t i = 0; i < 3; ++i)
-        out[i] = int32_t(std::clamp(here[i] * gain / kGustOne, -kMostUnits, kMostUnits));
+        out[i] = int32_t(std::clamp(here[i] * gain / kGustOne, -kMostGustWind, kMostGustWind));
     return out;
 }
 

@@ -13,9 +13,6 @@ constexpr int64_t kWhole = int64_t(1) << 14;
 constexpr float kLeastGridCell = 0.01f, kMostGridCell = 1000;  // m
 constexpr float kMostGridFade = 1000;                          // m
 constexpr float kFarthestGrid = 1e6f;                          // m
-constexpr float kMostGridWind = 120;                           // m/s
-
-int64_t gridMillimetres(float metres) noexcept { return std::llround(double(metres) * 1000); }
 
 }  // namespace
 
@@ -42,19 +39,19 @@ WindGridShape makeWindGridShape(const FwWindGridDef& def) {
     checkValues(def.origin, 3, "FwWindGridDef::origin", -kFarthestGrid, kFarthestGrid);
     checkValue(def.cellSize, "FwWindGridDef::cellSize", kLeastGridCell, kMostGridCell);
     checkValue(def.fade, "FwWindGridDef::fade", 0.0f, kMostGridFade);
-    for (size_t i = 0; i < 3; ++i) shape.origin[i] = gridMillimetres(def.origin[i]);
-    shape.cell = gridMillimetres(def.cellSize);
-    shape.fade = gridMillimetres(def.fade);
+    for (size_t i = 0; i < 3; ++i) shape.origin[i] = millimetres(def.origin[i]);
+    shape.cell = millimetres(def.cellSize);
+    shape.fade = millimetres(def.fade);
     return shape;
 }
 
 WindPoint makeWindPoint(const float velocity[3], uint32_t point) {
     for (uint32_t i = 0; i < 3; ++i)
-        if (!(std::abs(velocity[i]) <= kMostGridWind))
+        if (!(std::abs(velocity[i]) <= fire::kMostWind))
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwWindGridDef::velocities[%u] is %g m/s; the limits are [%g, %g].",
-                       3 * point + i, double(velocity[i]), double(-kMostGridWind),
-                       double(kMostGridWind));
+                       3 * point + i, double(velocity[i]), double(-fire::kMostWind),
+                       double(fire::kMostWind));
     const fire::WindVector units = fire::windUnits(velocity);
     return {int16_t(units[0]), int16_t(units[1]), int16_t(units[2])};
 }
@@ -71,11 +68,10 @@ void readWindPoints(const FwWindGridDef& def, std::pmr::vector<WindPoint>& point
 
 bool plausible(const WindGridShape& shape) noexcept {
     if (shape == WindGridShape{}) return true;
-    bool fine = shape.blend < FW_WIND_BLEND_COUNT &&
-                shape.cell >= gridMillimetres(kLeastGridCell) &&
-                shape.cell <= gridMillimetres(kMostGridCell) && shape.fade >= 0 &&
-                shape.fade <= gridMillimetres(kMostGridFade);
-    const int64_t far = gridMillimetres(kFarthestGrid);
+    bool fine = shape.blend < FW_WIND_BLEND_COUNT && shape.cell >= millimetres(kLeastGridCell) &&
+                shape.cell <= millimetres(kMostGridCell) && shape.fade >= 0 &&
+                shape.fade <= millimetres(kMostGridFade);
+    const int64_t far = millimetres(kFarthestGrid);
     for (size_t i = 0; i < 3; ++i)
         fine = fine && shape.counts[i] >= 2 && shape.counts[i] <= kMostGridSide &&
                shape.origin[i] >= -far && shape.origin[i] <= far;

@@ -15,10 +15,9 @@ using Vector = std::array<int64_t, 3>;
 constexpr int kOneBits = 14;
 constexpr int64_t kOne = int64_t(1) << kOneBits;
 constexpr float kMostZoneSize = 1000;  // m
-constexpr float kMostZoneSpeed = 120;  // m/s
 constexpr float kFarthestZone = 1e6f;  // m
 constexpr int32_t kMostZonePriority = 1000;
-constexpr int64_t kMostZoneWind = int64_t(kMostZoneSpeed) * 128;
+constexpr int64_t kMostZoneWind = fire::kMostWindUnits;
 constexpr uint32_t kQuarter = 32;  // 1/128 m/s in 1/4 m/s
 
 // Largest whole number whose square is not more than n.
@@ -82,8 +81,6 @@ Vector flowOf(const WindZone& zone, const Vector& off) noexcept {
     }
 }
 
-int64_t millimetres(float metres) noexcept { return std::llround(double(metres) * 1000); }
-
 // A sphere has one size, a cone two, a box three; the others are not looked at.
 unsigned sizesOf(uint32_t shape) noexcept {
     return shape == FW_WIND_SPHERE ? 1 : shape == FW_WIND_CONE ? 2 : 3;
@@ -113,7 +110,7 @@ WindZone makeWindZone(const FwWindZoneDef& def) {
     checkValues(def.axis, 3, "FwWindZoneDef::axis", -kFarthestZone, kFarthestZone);
     const unsigned sizes = sizesOf(def.shape);
     checkValues(def.size, sizes, "FwWindZoneDef::size", 0.01f, kMostZoneSize);
-    checkValue(def.speed, "FwWindZoneDef::speed", -kMostZoneSpeed, kMostZoneSpeed);
+    checkValue(def.speed, "FwWindZoneDef::speed", -fire::kMostWind, fire::kMostWind);
     checkValue(def.falloff, "FwWindZoneDef::falloff", 0.0f, 1.0f);
     WindZone zone;
     zone.shape = def.shape;
@@ -156,6 +153,8 @@ void sortWindZones(std::span<WindZone> zones) noexcept {
         for (size_t k = i; k > 0 && zones[k].priority < zones[k - 1].priority; --k)
             std::swap(zones[k], zones[k - 1]);
 }
+
+int64_t millimetres(float metres) noexcept { return std::llround(double(metres) * 1000); }
 
 WindPlace windPlace(const float place[3]) noexcept {
     return {millimetres(place[0]), millimetres(place[1]), millimetres(place[2])};

@@ -35,6 +35,7 @@ struct WindZone {
 void sortWindZones(std::span<WindZone> zones) noexcept;
 
 // m to mm.
+[[nodiscard]] int64_t millimetres(float metres) noexcept;
 [[nodiscard]] WindPlace windPlace(const float place[3]) noexcept;
 
 // What blows at a place where `wind` blows around all zones; these are in the order in which they

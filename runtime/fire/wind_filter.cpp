@@ -16,7 +16,7 @@ WindVector windUnits(const float wind[3]) noexcept {
     WindVector units{};
     for (size_t i = 0; i < 3; ++i) {
         if (std::isnan(wind[i])) continue;
-        units[i] = int32_t(std::lround(std::clamp(wind[i], -120.0f, 120.0f) / kWindUnit));
+        units[i] = int32_t(std::lround(std::clamp(wind[i], -kMostWind, kMostWind) / kWindUnit));
     }
     return units;
 }

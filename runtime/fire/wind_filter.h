@@ -11,13 +11,15 @@ using WindVector = std::array<int32_t, 3>;  // 1/128 m/s
 
 constexpr uint32_t kWindLatchTicks = 1024;  // latches are at least 1/4 s apart
 constexpr float kWindUnit = 1.0f / 128.0f;  // m/s
+constexpr float kMostWind = 120;            // m/s along an axis, of any wind
+constexpr int32_t kMostWindUnits = int32_t(kMostWind / kWindUnit);
 
 struct WindFilter {
     std::array<int64_t, 3> value{};  // 1/128 m/s with 24 more bits
     WindVector latched{};            // what the front sees
 };
 
-// m/s, |component| <= 120, to units; not a number becomes 0.
+// m/s, |component| <= kMostWind, to units; not a number becomes 0.
 WindVector windUnits(const float wind[3]) noexcept;
 
 // As if `wind` had blown for ever.

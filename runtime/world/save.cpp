@@ -405,9 +405,9 @@ void World::checkSaved(const SavedWorld& saved) {
         core::fail(FW_ERROR_BAD_DATA, "The save is of tick %llu, which no world has.",
                    static_cast<unsigned long long>(clock.tick));
     for (const float value : saved.wind)
-        if (!(std::abs(value) <= 120.0f))
-            core::fail(FW_ERROR_BAD_DATA, "The save's wind is %g m/s; the limits are [-120, 120].",
-                       double(value));
+        if (!(std::abs(value) <= fire::kMostWind))
+            core::fail(FW_ERROR_BAD_DATA, "The save's wind is %g m/s; the limits are [%g, %g].",
+                       double(value), double(-fire::kMostWind), double(fire::kMostWind));
     if ((saved.flags & ~kWorldFlags) != 0)
         core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
                    saved.flags, kWorldFlags);
@@ -437,8 +437,9 @@ void World::checkSaved(const SavedWorld& saved) {
         if (object.touched) checkPose(object.latched, object.slot);
         for (const fire::WindFilter& filter : object.filters)
             for (int i = 0; i < 3; ++i)
-                if (std::abs(int64_t(filter.latched[size_t(i)])) > 120 * 128 ||
-                    std::abs(double(filter.value[size_t(i)])) > 120.0 * 128 * 16777216 + 1)
+                if (std::abs(int64_t(filter.latched[size_t(i)])) > fire::kMostWindUnits ||
+                    std::abs(double(filter.value[size_t(i)])) >
+                        double(fire::kMostWindUnits) * 16777216 + 1)
                     core::fail(FW_ERROR_BAD_DATA, "The save's wind at burnable mesh %u is absurd.",
                                object.slot + 1);
     }

@@ -18,7 +18,8 @@ using save::PlaneMask;
 constexpr uint32_t kMagic = 0x56535746u;  // "FWSV"
 constexpr size_t kHeaderBytes = 24;
 constexpr const char* kWhat = "save";
-constexpr uint32_t kMostWindPlane = 2 * 120 * 128;  // see WindGrid's plane of an axis
+constexpr uint32_t kMostWindPlane =
+    2 * uint32_t(fire::kMostWindUnits);  // see WindGrid's plane of an axis
 
 // FNV-1a over 8 bytes at a time, the last few one by one: a save has many.
 uint64_t checksum(std::span<const std::byte> bytes) noexcept {

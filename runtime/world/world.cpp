@@ -46,7 +46,7 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
                    double(length));
     for (float& value : def.up) value /= length;
     checkValue(def.paceFactor, "FwWorldDef::paceFactor", 0.1f, 1000.0f);
-    checkValues(def.wind, 3, "FwWorldDef::wind", -120.0f, 120.0f);
+    checkValues(def.wind, 3, "FwWorldDef::wind", -fire::kMostWind, fire::kMostWind);
     checkLimit(def.reserved, "FwWorldDef::reserved", 0, 0);
     checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
     checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, components::kMostLights);
@@ -166,7 +166,7 @@ World::~World() {
 
 void World::setWind(const float wind[3]) {
     mayChange();
-    checkValues(wind, 3, "wind", -120.0f, 120.0f);
+    checkValues(wind, 3, "wind", -fire::kMostWind, fire::kMostWind);
     if (!std::equal(wind_, wind_ + 3, wind)) ++driveChanges_;
     components::windChanges(gusts_, fire::windUnits(wind_), clock_.tick);
     std::copy_n(wind, 3, wind_);
