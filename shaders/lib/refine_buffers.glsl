@@ -32,8 +32,6 @@ FW_BUFFER(FW_BIND_REFINE_ITEMS, FW_USE_ITEMS, RefineItemsBuffer, RefineLevel, it
 #endif
 #ifdef FW_USE_HEAT
 FW_BUFFER(FW_BIND_REFINE_HEAT, FW_USE_HEAT, RefineHeatBuffer, uint, heat);
-// Of an interior: its triangle left the index list for texels to tell its holes. Kept until it is back.
-const uint kRefineWritten = 64u;
 #endif
 #ifdef FW_USE_LEVELS
 FW_BUFFER(FW_BIND_REFINE_LEVELS, FW_USE_LEVELS, RefineLevelsBuffer, uvec2, levels);

@@ -2,8 +2,8 @@
 // between: 0 lists the coarse triangles with a hole, and of what has an inside those along open edges,
 // a lane each; 1 a workgroup each: small triangles that a hole crosses leave the index list, and what
 // is left of them is written as vertices, with their inner skin and walls along the hole and along
-// open edges; without room they stay whole; 2 draw arguments. Where a triangle is coarser than its size
-// asks for, corners are too far apart to know its holes: all of it is written, to be discarded by texels.
+// open edges; without room they stay whole; 2 draw arguments. Of objects whose texels tell their holes
+// triangles stay whole until all of them is gone, and have walls along open edges alone.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -12,7 +12,6 @@ layout(local_size_x = 64) in;
 #define FW_USE_TRIANGLES readonly
 #define FW_USE_EDGES readonly
 #define FW_USE_SLOTS readonly
-#define FW_USE_ITEMS readonly
 #define FW_USE_HEAT FW_READ_WRITE
 #define FW_USE_LEVELS readonly
 #define FW_USE_VERTICES readonly
@@ -23,7 +22,7 @@ layout(local_size_x = 64) in;
 #include "lib/refine_buffers.glsl"
 #include "lib/refine_arrival.glsl"
 
-const uint kByTexels = 0x80000000u;  // of a job's triangle
+const uint kLost = 0x80000000u;  // of a job's triangle: all of it is gone
 
 uint slotOf(uint object, uint vertex) {
     return meshVertices[(refined[object].meshDraws + vertex) * 3u + 2u].w;
@@ -37,6 +36,8 @@ uint openSides(uint object, RefineTriangle t) {
     return refined[object].inner != 0u ? open : 0u;
 }
 
+bool isTold(uint object) { return (refined[object].flags & kRefineIsTold) != 0u; }
+
 bool isGone(uint object, float hole) { return hole <= refined[object].now; }
 
 // Whether fire has been through all of it, by its corners, the middles of its sides and three places
@@ -48,7 +49,7 @@ bool isLost(uint object, RefineTriangle t) {
         lost = lost && isGone(object, vertices[at].hole);
     }
     bool inner = refineInteriorDepth(t.flags) >= 2u;
-    uint count = lost && refined[object].fewest > 0.0 ? 6u : 0u;
+    uint count = lost ? 6u : 0u;
     for (uint k = 0u; k < count; ++k) {
         uint side = k % 3u;
         RefineEdge edge = edges[refined[object].meshEdges + t.edge[side]];
@@ -61,42 +62,22 @@ bool isLost(uint object, RefineTriangle t) {
     return lost;
 }
 
-// Whether a side or the interior has fewer levels than its size asks for, by as much as matters.
-bool isShort(uint object, RefineTriangle t, uint triangle) {
-    uint base = refined[object].items;
-    float fewest = refined[object].fewest;
-    uvec4 own = uvec4(t.edge[0], t.edge[1], t.edge[2], refined[object].edgeCount + triangle);
-    bool few = false;
-    for (int k = 0; k < 4; ++k)
-        few = few || items[base + own[k]].level + fewest < items[base + own[k]].target;
-    return few && fewest > 0.0;
-}
-
 void find(uint object, uint triangle) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
     uint base = refined[object].items, own = base + refined[object].edgeCount + triangle;
     uint seen = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
-    bool few = refined[object].fewest > 0.0;
-    uint burns = few ? seen & (kRefineGone | kRefineGoing) : 0u, how = 0u;
-    while (burns != 0u) {
-        how = isShort(object, t, triangle) ? kByTexels : 0u;
-        burns = 0u;
-    }
-    bool written = (heat[own] & kRefineWritten) != 0u;
-    if ((seen & kRefineGone) == 0u && how == 0u && !written && openSides(object, t) == 0u) return;
-    // Most of what is burnt is gone, and coarse again: no workgroup for that.
-    uvec2 packed = levels[refined[object].triangles + triangle];
+    uint open = openSides(object, t);
+    if ((seen & kRefineGone) == 0u && open == 0u) return;
     bool lost = (heat[own] & kRefineLost) != 0u;
-    bool known = lost;
     bool asks = (seen & (kRefineGone | kRefineStays)) == kRefineGone && !lost;
-    if (!few) asks = packed.x == 0u && (seen & kRefineGone) != 0u;
     while (asks) {
         lost = isLost(object, t);
+        if (lost) heat[own] |= kRefineLost;
         asks = false;
     }
-    how = lost ? 0u : how;
-    uint news = (lost && !known && few ? kRefineLost : 0u) | (how != 0u ? kRefineWritten : 0u);
-    if (news != 0u || written) heat[own] = (heat[own] & ~kRefineWritten) | news;
+    if (isTold(object) && !lost && open == 0u) return;
+    // Most of what is burnt is gone, and coarse again: no workgroup for that.
+    uvec2 packed = levels[refined[object].triangles + triangle];
     if (lost && packed.x == 0u) {
         uint to = refined[object].indices + packed.y * 3u;
         indices[to] = indices[to + 1u] = indices[to + 2u] = t.corner[0];
@@ -105,7 +86,7 @@ void find(uint object, uint triangle) {
     uint job = atomicAdd(work[kRefineWorkCut + 3u], 1u);
     atomicMax(work[kRefineWorkCut], min(job + 1u, kMostGroups));
     work[push.cutJobs + 2u * job] = object;
-    work[push.cutJobs + 2u * job + 1u] = triangle | how;
+    work[push.cutJobs + 2u * job + 1u] = triangle | (lost ? kLost : 0u);
 }
 
 // Of the first triangle of material m, and its end.
@@ -172,7 +153,7 @@ void writeVertex(uint at, Point p, bool inner, float left) {
 }
 
 void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole,
-                 bool byTexels, uint first) {
+                 uint first) {
     Point points[4];
     for (uint i = 0u; i < 4u; ++i)
         points[i] = pointOf(object, drawn, slots_, fields, cut.corner[min(i, cut.points - 1u)]);
@@ -187,14 +168,13 @@ void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut 
         for (uint v = 0u; v < 3u; ++v) {
             uint p = corners[v];
             bool inner = p >= 4u;
-            float left = byTexels ? kRefineByTexels : points[p & 3u].left;
-            left = wall ? (inner ? outer - 1.0 : outer) : left;
+            float left = wall ? (inner ? outer - 1.0 : outer) : points[p & 3u].left;
             writeVertex(first + 3u * k + v, points[p & 3u], inner, left);
         }
     }
 }
 
-void cutGroup(uint object, uint triangle, bool byTexels) {
+void cutGroup(uint object, uint triangle, bool lost) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
     uvec2 packed = levels[refined[object].triangles + triangle];
     float now = refined[object].now;
@@ -224,8 +204,9 @@ void cutGroup(uint object, uint triangle, bool byTexels) {
                          refineSidesOf(packed.x, codes[refineNext(v)]);
             border |= (sides & open) != 0u ? 1u << v : 0u;
         }
-        solid = byTexels ? 7u : solid;
-        bool whole = solid == 7u && !byTexels;
+        if (isTold(object)) solid = 7u;
+        if (lost) solid = 0u;
+        bool whole = solid == 7u;
         uint crossed = solid != 0u && (!whole || border != 0u) ? 1u : 0u;
         while (crossed != 0u) {
             RefineCut cut = refineCut(solid, border);
@@ -235,7 +216,7 @@ void cutGroup(uint object, uint triangle, bool byTexels) {
                 atomicMin(work[counts + 8u], at);
                 whole = true;
             } else {
-                cutTriangle(object, drawn, slots_, fields, cut, whole, byTexels,
+                cutTriangle(object, drawn, slots_, fields, cut, whole,
                             refined[object].cuts + 3u * (before + at));
             }
             crossed = 0u;
@@ -261,8 +242,7 @@ void main() {
         uint jobs = work[kRefineWorkCut + 3u];
         for (uint job = gl_WorkGroupID.x; job < jobs; job += gl_NumWorkGroups.x) {
             uint triangle = work[push.cutJobs + 2u * job + 1u];
-            cutGroup(work[push.cutJobs + 2u * job], triangle & ~kByTexels,
-                     (triangle & kByTexels) != 0u);
+            cutGroup(work[push.cutJobs + 2u * job], triangle & ~kLost, (triangle & kLost) != 0u);
         }
         return;
     }

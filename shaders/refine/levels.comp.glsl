@@ -106,7 +106,7 @@ void aim(uint object, uint item) {
     uint rim = kRefineGone | kRefineStays;
     if ((seen & kRefineGoing) != 0u || (seen & rim) == rim) warm |= kRefineHot;
     if (push.full != 0u) warm = kRefineHot | kRefineBurning;
-    uint kept = seen & (kRefineGone | kRefineLost | kRefineWritten);
+    uint kept = seen & (kRefineGone | kRefineLost);
     heat[at] = kept | (warm << kRefineHeatShift);
     // Most of a mesh has no heat and nothing left of it.
     uint awake = warm == 0u && s.level == 0.0 && s.target == 0.0 ? 0u : 1u;

@@ -184,6 +184,8 @@ FW_SHARED_CONST uint kDrawWet = 0x80000u;
 FW_SHARED_CONST uint kDrawThick = 0x100000u;
 // Holes are cut out of the triangles: vertices know how long each point still stands.
 FW_SHARED_CONST uint kDrawCut = 0x200000u;
+// Walls along open edges where nothing is cut: texels say how long each point still stands.
+FW_SHARED_CONST uint kDrawTold = 0x400000u;
 // Share of a wall by which refined faces recede; what is left is char, and shows at rims.
 FW_SHARED_CONST float kRefineRecede = 0.6f;
 

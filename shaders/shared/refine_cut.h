@@ -89,7 +89,6 @@ FW_SHARED_CONST float kRefineCutRim = -1.0f;   // at the outer skin
 FW_SHARED_CONST float kRefineCutDeep = -2.0f;  // at the inner skin
 FW_SHARED_CONST float kRefineBorder = -3.0f;   // along an open edge, at the outer skin
 FW_SHARED_CONST float kRefineBorderDeep = -4.0f;
-FW_SHARED_CONST float kRefineByTexels = -8.0f; // of a triangle whose texels say where its holes are
 // Polygon side that the k-th triangle, of a wall, stands on.
 FW_SHARED_FN uint refineCutWallSide(FW_IN(RefineCut) cut, uint k) {
     uint wanted = (k - 2u * (cut.points - 2u)) >> 1u;

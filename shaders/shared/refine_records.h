@@ -128,15 +128,15 @@ struct RefineObject {
     uint cutTriangles;   // room for; shared out to materials by their triangles
     float dt;            // s since it was last refined
     uint inner;          // from a vertex to its place on the inner skin; 0: a sheet, it has none
-    float fewest;        // levels short of what its size asks for, from which on corners do not know holes
-                         // and texels say where they are; 0: corners always do
-    uint reserved2; uint reserved3; uint reserved4;
+    uint reserved1; uint reserved2; uint reserved3; uint reserved4;
 };
 FW_SHARED_SIZE(RefineObject, 192)
 FW_SHARED_CONST uint kRefineIsActive = 1u;
 FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing of it is initialised yet
 FW_SHARED_CONST uint kRefineIsCut = 4u;    // near: holes are cut; else fragments are discarded
 FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all its triangles are emitted again
+FW_SHARED_CONST uint kRefineIsTold = 32u;  // of what is cut: coarser than its size asks for, so that corners
+                                           // do not know its holes, and texels say where they are
 FW_SHARED_CONST uint kRefineIsCounted = 16u;  // shares the budget, whether it is its turn or not
 
 // A word of the heat plane: what the lists of tiles say for the next frame; the same for this one; and

@@ -5,7 +5,6 @@
 #include "shared/burn.h"
 #include "shared/heat.h"
 #include "shared/look.h"
-#include "shared/refine_cut.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
 // Families of materials that a variant can draw, and whether they can burn (kSurface...). The
@@ -51,9 +50,6 @@ layout(location = 0) out vec4 outColor;
 #include "surface/base.glsl"
 #include "surface/look.glsl"
 
-// Of its time: holes that corners expect later than texels by more are the texels'. Noise between
-// corners of a mesh as fine as its size asks for makes less.
-const float kHoleKnown = 0.5;
 // W/sr of the visible part of a flame to candela: soot glows a little for much heat.
 const float kCandelaPerWatt = 0.013;
 
@@ -279,8 +275,7 @@ void main() {
     face *= dot(face, toEye) < 0.0 ? -1.0 : 1.0;
     // Walls of holes that were cut and of open borders have no normals of their own.
     bool cut = kBurns && (draw.flags & kDrawCut) != 0u;
-    bool wall = (draw.flags & kDrawCut) != 0u && inSootLead.y < -0.5 &&
-                inSootLead.y > 0.5 * kRefineByTexels;
+    bool wall = (draw.flags & kDrawCut) != 0u && inSootLead.y < -0.5;
     bool rim = cut && wall && inSootLead.y > -2.5;
     if (wall) normal = normalize(face);
     bool back = dot(face, normal) < 0.0;
@@ -421,19 +416,15 @@ void main() {
     // What the wall behind has burnt is missing here too, even before this side catches.
     site.lead = cut ? 0.0 : inSootLead.y;
     site.left = cut ? max(inSootLead.y, 0.0) * draw.timeScale : -1.0;
-    // Corners that are too far apart know nothing of a hole between them: texels do, at every level.
-    float holeLeft = look.holeTime + later - max(site.age, -ahead);
-    bool byTexels = cut && !wall && (inSootLead.y < 0.5 * kRefineByTexels ||
-                                     site.left - holeLeft > kHoleKnown * look.holeTime);
-    if (byTexels) site.left = -1.0;
     site.nearness = draw.nearness;
-    if (wall && !rim) site.left = 1000.0;  // no rim
+    // No rim; corners that are too far apart know nothing of a hole between them: texels do.
+    if (wall && !rim) site.left = (draw.flags & kDrawTold) != 0u ? -1.0 : 1000.0;
     if (rim) {
         // As char that has burnt through; what glows at its rim fades inwards.
         site.age = max(site.age, look.holeTime);
         site.left = saturate(-1.0 - inSootLead.y) * look.thickness * site.slow;
     }
-    bool soon = site.lead >= 1e-3 || (cut && !byTexels && site.left < look.holeTime);
+    bool soon = site.lead >= 1e-3 || (cut && site.left >= 0.0 && site.left < look.holeTime);
     bool cold = !kBurns || look.spreadRate <= 0.0 ||
                 (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;

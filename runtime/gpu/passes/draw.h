@@ -54,7 +54,8 @@ struct DrawItem {
     uint32_t coldVariant = ~0u;  // of its triangles where nothing shows; ~0: drawn as the others
     float coldReach = 0;         // texels, of that variant
     bool refined = false;        // its triangles are in the refinement's planes
-    bool cut = false;            // and holes are cut out of them
+    bool cut = false;            // and some of them are cut
+    bool told = false;           // by what stands along open edges: its holes are its texels'
     uint32_t inner = 0;          // from a vertex's place to that on the inner skin; 0: has none
     bool consumed = false;       // those burnt through are left out, whole: nothing is cut
     bool zPass = false;          // drawn after the others, as z_pass.cpp says

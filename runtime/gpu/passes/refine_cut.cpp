@@ -14,7 +14,6 @@ constexpr Use kRefineCutUses[] = {
     {FW_BIND_REFINE_INDICES, Access::write},   {FW_BIND_REFINE_CUTS, Access::write},
     {FW_BIND_REFINE_CUT_DRAWS, Access::write}, {FW_BIND_REFINE_EDGES, Access::read},
     {FW_BIND_PREDICT, Access::read},           {FW_BIND_GRADIENT, Access::read},
-    {FW_BIND_REFINE_ITEMS, Access::read},
 };
 
 }  // namespace

@@ -180,7 +180,8 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
         if (!drawnBy(variant, item, zPass)) continue;
         SurfaceDraw draw = item.draw;
         if (!burning) draw.nearness = item.coldReach;
-        if (burning && (item.cut || (item.refined && item.consumed))) draw.flags |= kDrawCut;
+        if (burning && ((item.cut && !item.told) || (item.refined && item.consumed)))
+            draw.flags |= kDrawCut;
         if (item.refined) {
             draw.flags |= kDrawPlaced;
             // What turns its back is seen from inside.
@@ -191,7 +192,7 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
         else
             recorder.drawItem(item, &draw);
         if (!item.cut || cold) continue;
-        draw.flags = (draw.flags & ~kDrawPlaced) | kDrawCut;
+        draw.flags = (draw.flags & ~kDrawPlaced) | kDrawCut | (item.told ? kDrawTold : 0);
         recorder.drawCut(item, &draw);
     }
 }

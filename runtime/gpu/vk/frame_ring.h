@@ -17,7 +17,7 @@ struct ReadbackLayout {  // where the pieces of a frame's readback lie, bytes
              rows = 0;  // counters rows: the first iteration's, and the list's at the end
     uint32_t burnParity = 0, predictParity = 0, hotParity = 0;  // as the frame leaves them
     uint64_t objectsAt = 0, answersAt = 0, lightsAt = 0, flamesAt = 0, countersAt = 0, fieldsAt = 0;
-    uint64_t roomsAt = 0;
+    uint64_t roomsAt = 0, biasAt = 0;
     struct MapAt {
         uint32_t object = 0, texels = 0;
         uint64_t at = 0, heatAt = 0;
@@ -27,6 +27,7 @@ struct ReadbackLayout {  // where the pieces of a frame's readback lie, bytes
     std::array<MapAt, kMaxMaps> maps{};
     uint32_t mapCount = 0;
     bool rooms = false;   // their air
+    bool bias = false;    // of refinement
     bool images = false;  // where they are is the world's: one frame's at a time
 };
 

@@ -43,6 +43,7 @@ ReadbackLayout layoutOf(VkBackend::State& s, const FramePlan& plan, const FrameN
     layout.answersAt = place(uint64_t(layout.answers) * sizeof(ProbeAnswer));
     layout.lightsAt = place(uint64_t(layout.lights) * sizeof(BurnLight));
     layout.flamesAt = place(16);
+    layout.biasAt = place(4);
     layout.fields = uint32_t(s.fields.size());
     layout.fieldsAt = place(layout.fields * sizeof(FieldCounters));
     layout.rooms = s.airs || needs.airs;

@@ -1,5 +1,6 @@
 // Readbacks, oldest first, once the host says that their frame is done. Never waits.
 #include "gpu/vk/frame_needs.h"
+#include "shared/refine.h"
 
 #include <algorithm>
 #include <cstring>
@@ -118,6 +119,11 @@ const Readback* VkBackend::State::nextReadback() {
             uint32_t arguments[4];
             std::memcpy(arguments, from + layout.flamesAt, sizeof arguments);
             given.flames = arguments[0] / 6 * arguments[1];  // of VkDrawIndirectCommand
+            if (layout.bias) {
+                uint32_t steps = 0;
+                std::memcpy(&steps, from + layout.biasAt, sizeof steps);
+                refine.bias = float(steps) * kRefineBiasStep;
+            }
             const bool spreading =
                 std::any_of(objects.begin(), objects.end(),
                             [](const ObjectEntry& object) { return object.publishedTouched; });

@@ -156,6 +156,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                 chooseVariants(s, object, item);
                 item.refined = object.refine.started;
                 item.cut = object.refine.cut;
+                item.told = object.refine.told;
                 item.inner = object.refine.inner;
                 item.consumed = object.refine.arpPlus1 != 0;
                 item.zPass = zPassed(object);
@@ -593,6 +594,9 @@ void VkBackend::State::closeFrame(const FwView* view) {
             recorder.copyOut(FW_BIND_LIGHTS, 0, layout.lightsAt,
                              uint64_t(layout.lights) * sizeof(BurnLight));
         recorder.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
+        slot.layout.bias = open.refined;
+        if (layout.bias)
+            recorder.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
         if (layout.fields)
             recorder.copyOut(FW_BIND_FIELD_COUNTERS, 0, layout.fieldsAt,
                              layout.fields * sizeof(FieldCounters));

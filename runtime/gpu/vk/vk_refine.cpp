@@ -22,7 +22,7 @@ constexpr uint32_t kLookSide = 512, kNoiseSide = 64;
 // it is shorter than the second.
 constexpr float kCutFrom = 4, kCutTo = 3;
 // Levels short of what its size asks for, with which a triangle still says where its holes are.
-constexpr float kFewestLevels = 1.25f;
+constexpr float kFewestLevels = 1.25f, kFewestAgain = 0.9f;
 constexpr float kCutNear = 10;          // where rims show what only cut ones can
 constexpr float kDefaultHeight = 1080;  // px, before anything was drawn
 // Of the budget, what levels aim at: they are on their way for a moment, and some objects wait.
@@ -294,6 +294,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
     if (turn) {
         listRefined(false);
         refine.last = push;
+        open.refined = true;
         std::memcpy(slot.upload.mapped + at, refine.lists.data(), refine.lists.size() * 4);
         recorder.copyIn(at, FW_BIND_REFINE_WORK, 0, refine.lists.size() * 4);
         at += (refine.lists.size() * 4 + 15) / 16 * 16;
@@ -323,9 +324,13 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
             object.refine.turnEye = record.eye;
             const float segments = cutSegments(object, record);
             const bool cut = segments > (object.refine.cut ? kCutTo : kCutFrom);
-            if (object.refine.cut && !cut) record.flags |= kRefineIsWhole;
-            if (cut) record.flags |= kRefineIsCut;
+            const bool told = cut && tellsByTexels(object);
+            // What was cut is emitted again.
+            const bool was = object.refine.cut && (!cut || (told && !object.refine.told));
+            record.flags |=
+                (was ? kRefineIsWhole : 0) | (cut ? kRefineIsCut : 0) | (told ? kRefineIsTold : 0);
             object.refine.cut = cut;
+            object.refine.told = told;
             object.refine.nearness =
                 std::clamp((segments - kCutFrom) / (kCutNear - kCutFrom), 0.0f, 1.0f);
             object.refine.now = record.now;
@@ -364,6 +369,7 @@ void VkBackend::State::showRefined() noexcept {
         const RefineUse& use = objects[item.object].refine;
         item.refined = use.started;
         item.cut = use.cut;
+        item.told = use.told;
         item.consumed = use.arpPlus1 != 0;
         item.draw.now = use.now;
         item.draw.nearness = use.nearness;
@@ -378,6 +384,14 @@ float VkBackend::State::cutSegments(const ObjectEntry& object,
     if (record.eye.w == 0) return kCutNear;
     const float pixels = meshes[object.mesh].refine[object.refine.key].edgeLength * record.eye.w;
     return pixels / std::max(record.pixelsPerEdge * eyeDistance(object, record), 1e-6f);
+}
+
+// Whether the budget leaves it so few levels that corners do not know its holes; while that is not
+// known, whether it may.
+bool VkBackend::State::tellsByTexels(const ObjectEntry& object) const noexcept {
+    if (refine.full || refine.push.budget == 0) return false;
+    if (refine.bias < 0) return true;
+    return refine.bias > (object.refine.told ? kFewestAgain : kFewestLevels);
 }
 
 // m, object space, from the eye to the mesh's bounds.
@@ -450,7 +464,6 @@ RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full
     r.inner = use.inner;
     r.cuts = use.cuts.first;
     r.cutTriangles = use.cuts.units / 3;
-    r.fewest = kFewestLevels;
     // A wall is gone when it looks gone.
     const auto seconds = [&](uint32_t m) {
         const BurnMaterial& material = object.materials[m];

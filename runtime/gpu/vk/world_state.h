@@ -53,6 +53,7 @@ struct RefineUse {  // an object's own
     uint32_t epochTick = 0;
     uint32_t quietTick = 0;  // it is refined before this; 0: no fire yet
     bool cut = false;        // near: its holes are cut
+    bool told = false;       // or, where it is too coarse for that, told by texels
     uint32_t inner = 0;      // as RefineObject
     bool border = false;     // walls stand along its open edges, whether it burns or not
     float nearness = 0;      // as SurfaceDraw
@@ -309,7 +310,8 @@ struct VkBackend::State {
     // The frame that is open.
     struct Open {
         bool open = false, ran = false, recording = false, readback = false;
-        bool unseen = false;  // nothing draws before the next one
+        bool unseen = false;   // nothing draws before the next one
+        bool refined = false;  // the budget of refinement was shared out anew
         VkCommandBuffer commands = VK_NULL_HANDLE;
         uint64_t ringFrame = 0, planFrame = 0;
         uint32_t endTick = 0;
@@ -375,6 +377,7 @@ struct VkBackend::State {
         vec4 eye{};                        // m, world; w: pixels of 1 m at 1 m, 0: no limit by size
         float height = 0;                  // px, of what was last drawn; 0: nothing was
         float pixels = 0;                  // of 1 m at clip w = 1
+        float bias = -1;                   // levels that the budget takes; below 0: not known yet
         bool full = false;                 // everything at its deepest, and placed in every frame
     } refine;
     struct Arp {             // of the frame, refined by the published scheme
@@ -434,6 +437,7 @@ struct VkBackend::State {
                                     const RefineObject& record) const noexcept;
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
     float cutSegments(const ObjectEntry& object, const RefineObject& record) const noexcept;
+    bool tellsByTexels(const ObjectEntry& object) const noexcept;
     void showRefined() noexcept;
     void lookFrom(const FwView& view) noexcept;
     // vk_published.cpp
