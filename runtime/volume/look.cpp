@@ -12,6 +12,10 @@ namespace {
 using glm::mix;
 using glm::smoothstep;
 
+// Of an eddy's wavelength, how far it throws fire at most. Further folds tongues over themselves, and a
+// sample's step is more than a shred of flame: tips were strings of beads.
+constexpr float kMostWarp = 1.0f;
+
 struct Paint {
     float kelvin, soot;
 };
@@ -252,7 +256,8 @@ gpu::FlameRecord describeFlame(const FlameLook& l, const FlameSize& size, const 
     r.lambda = l.lambda * scale, r.lambdaWarp = l.lambdaWarp * scale;
     r.lambdaColumn = l.lambdaColumn * scale;
     r.stretch = l.stretch, r.turbulence = l.turbulence, r.radial = l.radial;
-    r.warp = l.warp, r.columns = l.columns, r.ridge = l.ridge, r.converge = l.converge;
+    r.warp = std::min(l.warp, kMostWarp * r.lambdaWarp / d);
+    r.columns = l.columns, r.ridge = l.ridge, r.converge = l.converge;
     r.puff = l.puff, r.soot = l.thickness / scale, r.blue = l.blue, r.blueHeight = l.blueHeight;
     r.erode = l.erode, r.filament = l.filament, r.filamentWidth = l.filamentWidth;
     r.filamentBase = l.filamentBase, r.filamentHeight = l.filamentHeight, r.tipFill = l.tipFill;
