@@ -12,8 +12,8 @@ namespace {
 using glm::mix;
 using glm::smoothstep;
 
-// Of an eddy's wavelength, how far it throws fire at most. Further folds tongues over themselves, and a
-// sample's step is more than a shred of flame: tips were strings of beads.
+// Of an eddy's wavelength, how far it throws fire at most. Further folds tongues over themselves,
+// and a sample's step is more than a shred of flame: tips were strings of beads.
 constexpr float kMostWarp = 1.0f;
 
 struct Paint {
@@ -110,7 +110,7 @@ FlamePresetDef presetDef(FlamePreset preset) noexcept {
             d.power = 600.0f, d.diameter = 1.3f;
             l.octaves = 4, l.lambda = 0.34f, l.lambdaWarp = 0.40f, l.lambdaColumn = 0.30f,
             l.stretch = 2.3f;
-            l.converge = 0.95f, l.radial = 0.15f, l.erode = 0.24f, l.smoke = 0.8f,
+            l.converge = 0.95f, l.radial = 0.15f, l.erode = 0.24f, l.smoke = 1.4f,
             l.smokeTop = 4.5f;
             break;
         case FlamePreset::HouseFire:
@@ -119,7 +119,7 @@ FlamePresetDef presetDef(FlamePreset preset) noexcept {
             l.stretch = 2.2f;
             l.converge = 0.95f, l.warp = 0.44f, l.radial = 0.12f, l.erode = 0.2f,
             l.thickness = 6.0f;
-            l.smoke = 1.5f, l.smokeAlbedo = 0.25f, l.smokeTop = 5.5f;
+            l.smoke = 2.2f, l.smokeAlbedo = 0.5f, l.smokeTop = 5.5f;
             l.heightFactor = 1.58f;
             break;
         case FlamePreset::GasBurner:

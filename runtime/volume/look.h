@@ -28,9 +28,9 @@ struct FlameLook {
     float erode = 0.28f;
     float filament = 1.0f, filamentWidth = 0.09f, filamentBase = 0.03f, filamentHeight = 0.25f;
     float tipFill = 0.45f;
-    float smoke = 1.2f;     // 1/m
-    float smokeTop = 4.0f;  // of the profile's height
-    float smokeAlbedo = 0.4f;
+    float smoke = 1.6f;                // 1/m
+    float smokeTop = 4.0f;             // of the profile's height
+    float smokeAlbedo = 0.6f;          // wood's; oil's and plastics' is less
     float tint[4] = {1, 1, 1, 0};      // linear rgb, weight
     float tintWhite = 0.18f;           // whiteness of the hottest under a tint
     float coreTint[4] = {1, 1, 1, 0};  // linear rgb of the hottest, weight: instead of that

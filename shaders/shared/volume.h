@@ -456,9 +456,12 @@ FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
 }
 
 // What smoke scatters towards the eye, of the flame below, of the air around and of the sun, per unit of
-// density. What is scattered again and again gets deeper than the sun itself does.
+// density. What is scattered again and again gets deeper than the sun itself does. Fresh smoke is finer
+// than light's waves are long and throws the short ones aside more: a flame's deep orange gets brown.
+FW_SHARED_CONST vec3 kSmokeAside = vec3(1.0f, 1.4f, 1.9f);
 FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, vec3 sun, float depth) {
-    vec3 fire = flameRadiance(f, 0.5f * (f.tintLow + f.tintHigh)) * (f.glow.w / (distance2 + 0.3f * f.low.w * f.low.w));
+    vec3 fire = kSmokeAside * flameRadiance(f, 0.5f * (f.tintLow + f.tintHigh)) *
+                (f.glow.w / (distance2 + 0.3f * f.low.w * f.low.w));
     vec3 day = sun * (0.8f * exp(-depth) + 0.2f * exp(-0.2f * depth));
     return f.smokeAlbedo * (fire * mix(1.25f, 0.5f, shade) + (vec3(f.air) + day) * mix(0.7f, 1.1f, shade));
 }

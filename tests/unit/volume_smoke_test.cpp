@@ -1,5 +1,6 @@
 // Smoke in the sun: how much of it stands between a place and the sun is the integral of the
-// plume's body, and of what is seen of a plume by day one side is bright and the other is not.
+// plume's body, and of what is seen of a plume by day one side is bright and the other is not. By
+// night it has the light of the flame below it, as much as comes there, and is seen by that.
 #include "volume_scene.h"
 
 #include <gtest/gtest.h>
@@ -103,6 +104,88 @@ TEST(VolumeSmoke, OneSideIsInTheSun) {
                 against / along);
     EXPECT_GT(sunny, 1.15 * shady);
     EXPECT_GT(against, along);  // smoke throws light forwards
+}
+
+// Mean radiance that comes to a place from all sides, of the flame: what smoke there scatters.
+vec3 comesTo(const Flame& flame, const Profile& profile, vec3 place) {
+    MarchRules rules;
+    rules.steps = 40, rules.smoke = false;
+    constexpr int kWays = 256;
+    vec3 sum(0.0f);
+    for (int k = 0; k < kWays; ++k) {
+        const float y = 1.0f - 2.0f * (float(k) + 0.5f) / float(kWays);
+        const float side = std::sqrt(1.0f - y * y), turn = 2.3999632f * float(k);
+        const vec3 way(side * std::cos(turn), y, side * std::sin(turn));
+        sum += marchRay(flame.record, flame.nodes, profile, place, way, rules).radiance;
+    }
+    return sum / float(kWays);
+}
+
+float luminance(vec3 c) { return glm::dot(c, vec3(0.2126f, 0.7152f, 0.0722f)); }
+
+TEST(VolumeSmoke, ByNightItHasTheLightThatComesFromTheFlame) {
+    for (const FlamePreset preset :
+         {FlamePreset::CampFire, FlamePreset::Bonfire, FlamePreset::HouseFire}) {
+        const FlamePresetDef p = presetDef(preset);
+        FlameDef def;
+        def.look = p.look, def.power = p.power, def.diameter = p.diameter;
+        Profile profile;
+        paintLook(def.look, profile);
+        Flame flame;
+        startFlame(flame, def, {});
+        for (const float high : {1.0f, 1.5f, 2.0f}) {  // of what is seen of the flame
+            const vec3 place(0.25f * def.diameter, high * flame.size.height, 0.0f);
+            float comes = 0.0f, said = 0.0f;
+            Flame f = flame;
+            for (int moment = 0; moment < 6; ++moment) {
+                for (int k = 0; k < 9; ++k) advanceFlame(f, {}, 1.0 / 30.0);
+                comes += luminance(comesTo(f, profile, place));
+                const vec3 to = vec3(f.record.glow) - place;
+                // Of a shade between crest and hollow, and as even as the radiance it is told by.
+                const vec3 light = gpu::flameSmokeLight(f.record, glm::dot(to, to), 1.0f / 3.0f,
+                                                        vec3(0.0f), 0.0f) /
+                                   (f.record.smokeAlbedo * gpu::kSmokeAside);
+                said += luminance(light);
+            }
+            std::printf("%s, smoke at %.1f of its height: %.2f of what comes\n", presetName(preset),
+                        double(high), double(said / comes));
+            EXPECT_GT(said, 0.5f * comes) << presetName(preset) << " at " << high;
+            EXPECT_LT(said, 2.5f * comes) << presetName(preset) << " at " << high;
+        }
+    }
+}
+
+// Of the brightest of its flame, as film sees it: a veil above what burns, and brown, not red.
+TEST(VolumeSmoke, ByNightItIsAVeil) {
+    const FlamePresetDef p = presetDef(FlamePreset::HouseFire);
+    FlameDef def;
+    def.look = p.look, def.power = p.power, def.diameter = p.diameter;
+    Flame flame;
+    startFlame(flame, def, {});
+    MarchRules rules;
+    rules.steps = 40;
+    const auto seenAt = [&](const Shown& f, float high) {
+        vec3 sum(0.0f);
+        for (int k = -4; k <= 4; ++k)
+            sum += marchRay(f.record, f.nodes, *f.profile,
+                            vec3(0.06f * float(k) * f.size.diameter, high * f.size.height, 40.0f),
+                            vec3(0, 0, -1), rules)
+                       .radiance;
+        return sum / 9.0f;
+    };
+    vec3 fire(0.0f), smoke(0.0f);
+    for (int moment = 0; moment < 8; ++moment) {
+        for (int k = 0; k < 9; ++k) advanceFlame(flame, {}, 1.0 / 30.0);
+        const Shown f(flame);
+        fire += seenAt(f, 0.3f), smoke += seenAt(f, 2.0f);
+    }
+    const float share = luminance(smoke) / luminance(fire);
+    std::printf("smoke at twice the height: %.4f of the flame's radiance, green %.2f of red\n",
+                double(share), double(smoke.g / smoke.r));
+    EXPECT_GT(share, 1.0f / 300.0f);
+    EXPECT_LT(share, 1.0f / 40.0f);
+    EXPECT_GT(smoke.g, 0.22f * smoke.r);
+    EXPECT_LT(smoke.g, 0.5f * smoke.r);
 }
 
 }  // namespace
