@@ -159,6 +159,12 @@ void readBook(std::span<const std::byte> bytes, Book& book) {
     book = std::move(made);
 }
 
+bool emitsAlone(const Book& book) noexcept {
+    for (size_t i = 2; i < book.texels.size(); i += 4)
+        if (book.texels[i] != 0) return false;
+    return true;
+}
+
 vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
     const Facts& f = book.facts;
     return lookup<4>(book.texels.data() + size_t(4) * f.width * f.height * frame, f.width, f.height,

@@ -56,6 +56,9 @@ std::pmr::vector<std::byte> cookBook(const Book& book, std::pmr::memory_resource
 // Throws core::Error; `book` is then unchanged.
 void readBook(std::span<const std::byte> bytes, Book& book);
 
+// No texel hides anything: what shows it is only added to what lies behind, in any order.
+bool emitsAlone(const Book& book) noexcept;
+
 // Bilinear, nothing beyond the borders; as a sampler has it.
 vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept;
 vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept;  // uv per frame

@@ -315,7 +315,8 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
     record.otherBooks = emitter.books.other;
     record.flags = ((def.flags & FW_EMITTER_HIDDEN) ? gpu::kEmitterHidden : 0u) |
                    ((def.flags & FW_EMITTER_GROUND) ? gpu::kEmitterGround : 0u) |
-                   ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u);
+                   ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u) |
+                   (emitter.books.fireEmits ? gpu::kEmitterEmits : 0u);
     if (isSwept(def)) {
         const auto add = [&](const JetShield& shield) {
             record.shields[2 * record.shieldCount] = with(shield.place, shield.radius);

@@ -54,6 +54,7 @@ struct EmitterAir {
 struct EmitterBooks {
     uint32_t fire = 0, other = 0;  // as ParticleEmitter has them
     uint32_t spark = 0;            // as SparkSource
+    bool fireEmits = false;        // books of fire are given, and none of them hides anything
 };
 
 // Where it was and how many sparks a second it threw there, at steps of the clock, the last first.

@@ -91,7 +91,8 @@ struct EmitterUpdate {   // fire emitters in this frame; looks only
     uint32_t count = 0;
     std::span<const uvec2> groups;        // record, first of kParticleGroup slots of its ring
     uint32_t particleEnd = 0;             // behind the last particle of any of them
-    uint32_t particles = 0;               // of all rings
+    uint32_t particles = 0;               // of all rings that may show what hides
+    uint32_t lightParticles = 0;          // of those that may show what emits alone
     const SparkSource* sparks = nullptr;  // those of them that throw some
     uint32_t sparkCount = 0;
     uint32_t sparkQuads = 0;  // of all of those, at most

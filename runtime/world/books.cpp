@@ -57,7 +57,9 @@ FwFlipbookId World::createFlipbook(const FwFlipbookDef& def) {
         flipbooks_.destroy(id);
         throw;
     }
-    flipbooks_.get(id).book = std::move(book);
+    FlipbookEntry& entry = flipbooks_.get(id);
+    entry.emits = book::emitsAlone(*book);
+    entry.book = std::move(book);
     return id;
 }
 
@@ -99,8 +101,11 @@ components::EmitterBooks World::emitterBooks(const FwFireEmitterDef& def) {
     components::EmitterBooks books;
     for (uint32_t i = 0, at = 0; i < 3; ++i)
         if (const uint32_t b =
-                bookByte(def.fireBooks[i], "FwFireEmitterDef::fireBooks", book::Kind::Fire))
+                bookByte(def.fireBooks[i], "FwFireEmitterDef::fireBooks", book::Kind::Fire)) {
+            books.fireEmits =
+                (at == 0 || books.fireEmits) && flipbooks_.get(def.fireBooks[i]).emits;
             books.fire |= b << (8 * at++);
+        }
     for (uint32_t i = 0, at = 0; i < 2; ++i)
         if (const uint32_t b =
                 bookByte(def.smokeBooks[i], "FwFireEmitterDef::smokeBooks", book::Kind::Smoke))

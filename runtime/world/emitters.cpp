@@ -158,7 +158,7 @@ void World::planEmitters(float seconds) noexcept {
     emitterRecords_.clear();
     emitterGroups_.clear();
     sparkSources_.clear();
-    uint32_t end = 0, particles = 0, sparks = 0;
+    uint32_t end = 0, particles = 0, lights = 0, sparks = 0;
     bool listed = false;
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
         FireEmitter* emitter = emitters_.at(i);
@@ -184,7 +184,9 @@ void World::planEmitters(float seconds) noexcept {
             emitterGroups_.push_back({uint32_t(emitterRecords_.size()), first});
         emitterRecords_.push_back(record);
         end = std::max(end, record.first + record.ring);
-        particles += record.ring;
+        const bool emits = (record.flags & gpu::kEmitterEmits) != 0;
+        if (emits) lights += record.ring;
+        if (!emits || record.life.w > 0) particles += record.ring;
     }
     gpu::EmitterUpdate& update = frame_.emitters;
     update.records = emitterRecords_.data();
@@ -192,6 +194,7 @@ void World::planEmitters(float seconds) noexcept {
     update.groups = emitterGroups_;
     update.particleEnd = end;
     update.particles = particles;
+    update.lightParticles = lights;
     update.sparks = sparkSources_.data();
     update.sparkCount = uint32_t(sparkSources_.size());
     update.sparkQuads = sparks;

@@ -199,6 +199,7 @@ struct FireProfileEntry {
 struct FlipbookEntry {
     core::Owned<book::Book> book;
     uint32_t users = 0;
+    bool emits = false;  // it hides nothing
 };
 
 struct FireColliderEntry {

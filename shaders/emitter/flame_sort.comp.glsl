@@ -1,6 +1,8 @@
-// Orders the quads of a view, farthest first: burning tiles' and particles' together, or one would
-// show through the other. One group: a bitonic sort in shared memory of few of them, of more a radix
-// sort, which is stable, and on a software device a third of the work for 2,500.
+// Orders the quads of a view that hide what is behind them, farthest first: burning tiles' and
+// particles' together, or one would show through the other. One group: a bitonic sort in shared
+// memory of few of them, of more a radix sort, which is stable, and on a software device a third of
+// the work for 2,500. What emits alone may come in any order: it is not sorted, but laid where those
+// that hide leave it, see layLights.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
@@ -15,11 +17,14 @@ layout(push_constant) uniform Push { SortPush push; };
 
 const uint kThreads = 128u, kDigits = 16u;
 const uint kDepthBits = 16u;  // of a key of many, above the number of its quad
+const uint kMarks = 1024u;    // depths among which what emits alone looks for its own
 
 shared uint keys[(kDigits + 1u) * kThreads];
 shared uint nearest, farthest;  // bits of depths: positive floats sort as their bits do
 
-// Of the i-th quad.
+// Of the words that the sort works in.
+uint half_() { return push.tiles + push.particles + push.lights; }
+// Of the i-th quad that hides.
 uint placeOf(uint i, uint tiles) { return i < tiles ? i : push.tiles + (i - tiles); }
 float depthOf(uint place) {
     vec3 d = flameQuad[place].baseHeight.xyz +
@@ -61,7 +66,7 @@ void sortFew(uint me, uint count, uint tiles) {
 // Of the depths that there are 16 bits, but no more than 12 of a mantissa, or quads in one place would
 // change places with each other from frame to frame. Four bits a turn; each thread keeps a run in order.
 void sortMany(uint me, uint count, uint tiles) {
-    uint other = push.tiles + push.particles, each = (count + kThreads - 1u) / kThreads;
+    uint other = half_(), each = (count + kThreads - 1u) / kThreads;
     uint begin = me * each, end = min(begin + each, count);
     if (me == 0u) {
         nearest = 0xFFFFFFFFu;
@@ -128,15 +133,68 @@ void sortMany(uint me, uint count, uint tiles) {
     }
 }
 
+// What emits alone goes before all that hide from no farther away than itself: after those behind it,
+// so that it shows through what is before it as much as that lets through. With more than kMarks that
+// hide, those of a run count as one. `hiding` lie in their order.
+void layLights(uint me, uint hiding, uint lights) {
+    uint first = push.tiles + push.particles, work = kFlameOrder + half_();
+    if (hiding == 0u) {
+        for (uint i = me; i < lights; i += kThreads) drawArgs[kFlameOrder + i] = first + i;
+        return;
+    }
+    uint run = (hiding + kMarks - 1u) / kMarks, marks = (hiding + run - 1u) / run;
+    memoryBarrierBuffer();
+    barrier();
+    // keys: depths of the marks, farthest first, then how many come before each, and behind all.
+    for (uint g = me; g < marks; g += kThreads)
+        keys[g] = floatBitsToUint(depthOf(drawArgs[kFlameOrder + g * run]));
+    for (uint g = me; g <= marks; g += kThreads) keys[kMarks + g] = 0u;
+    for (uint i = me; i < hiding; i += kThreads) drawArgs[work + i] = drawArgs[kFlameOrder + i];
+    barrier();
+    for (uint i = me; i < lights; i += kThreads) {
+        uint depth = floatBitsToUint(depthOf(first + i)), low = 0u, high = marks;
+        while (low < high) {
+            uint middle = (low + high) >> 1u;
+            bool behind = keys[middle] > depth;
+            low = behind ? middle + 1u : low;
+            high = behind ? high : middle;
+        }
+        drawArgs[work + hiding + i] = low << 17u | atomicAdd(keys[kMarks + low], 1u);
+    }
+    barrier();
+    // Sums of all up to each.
+    for (uint reach = 1u; reach <= marks; reach <<= 1u) {
+        uint sums[kMarks / kThreads + 1u];
+        uint own = 0u;
+        for (uint g = me; g <= marks; g += kThreads)
+            sums[own++] = keys[kMarks + g] + (g >= reach ? keys[kMarks + g - reach] : 0u);
+        barrier();
+        own = 0u;
+        for (uint g = me; g <= marks; g += kThreads) keys[kMarks + g] = sums[own++];
+        barrier();
+    }
+    memoryBarrierBuffer();
+    barrier();
+    for (uint i = me; i < hiding; i += kThreads)
+        drawArgs[kFlameOrder + i + keys[kMarks + i / run]] = drawArgs[work + i];
+    for (uint i = me; i < lights; i += kThreads) {
+        uint found = drawArgs[work + hiding + i], gap = found >> 17u;
+        uint before = gap > 0u ? keys[kMarks + gap - 1u] : 0u;
+        drawArgs[kFlameOrder + min(gap * run, hiding) + before + (found & 0x1FFFFu)] = first + i;
+    }
+}
+
 void main() {
     uint me = gl_LocalInvocationID.x;
     uint tiles = min(drawArgs[kFlameTiles], min(push.tiles, view.flameCapacity));
-    uint count = tiles + min(drawArgs[kFlameParticles], push.particles);
-    bool few = count <= kFewQuads;  // the one place that decides how
-    if (few)
-        sortFew(me, count, tiles);
+    uint hiding = tiles + min(drawArgs[kFlameParticles], push.particles);
+    uint lights = min(drawArgs[kFlameLights], push.lights);
+    if (hiding <= push.few)  // gpu/passes/draw_order.h decides
+        sortFew(me, hiding, tiles);
     else
-        sortMany(me, count, tiles);
+        sortMany(me, hiding, tiles);
+    if (lights > 0u) layLights(me, hiding, lights);
+    uint count = hiding + lights;
     memoryBarrierBuffer();
     barrier();
     if (me == 0u) {

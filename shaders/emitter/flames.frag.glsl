@@ -169,7 +169,7 @@ void main() {
         hides = sootHides(kelvin);
     }
 #ifdef FW_BOOKS
-    bool booked = kPagesAlone != 0u || inKind >> kQuadBook != 0u;
+    bool booked = kPagesAlone != 0u || (inKind >> kQuadBook & 0xFFu) != 0u;
     vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
     vec4 page = showBook(uv);
     if (booked) {
@@ -210,7 +210,7 @@ void main() {
     if (spark) {
         float body = saturate(1.6 * (1.0 - r * r)) * opacity;
 #ifdef FW_BOOKS
-        if (inKind >> kQuadBook != 0u) body = page.y * opacity;
+        if ((inKind >> kQuadBook & 0xFFu) != 0u) body = page.y * opacity;
 #endif
         // Its true light falls a thousandfold while it flies: nobody would see the end of it.
         color = glow * (inversesqrt(max(glow.g * 2.5, 1e-4)) * kFlameWhite * view.sunColor.w * body);
@@ -224,7 +224,8 @@ void main() {
     color *= soft;
     alpha *= soft;
 #endif
-    if (alpha < 0.002 && !spark) discard;
+    bool emits = spark || (inKind & kQuadEmits) != 0u;  // and hides nothing
+    if (alpha < 0.002 && !emits) discard;
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {
         // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
@@ -233,7 +234,7 @@ void main() {
         float whole = smoke ? max(alpha, 1e-6) : 1.0;
         color = encodeOutput(color / whole, kEncoding) * whole;
         float brightest = max(max(color.r, color.g), color.b);
-        alpha = smoke || spark ? alpha : max(alpha, brightest * brightest * brightest);
+        alpha = smoke || emits ? alpha : max(alpha, brightest * brightest * brightest);
     }
     outColor = vec4(min(color, vec3(60000.0)), alpha);
 }

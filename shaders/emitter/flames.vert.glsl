@@ -46,7 +46,7 @@ vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u));
 
 // What the fragments read of a quad's book; of its corner, the one of what it shows. `pixels`: across.
 vec2 openBook(FlameQuad quad, vec2 place, float pixels) {
-    uint book = (quad.kind >> kQuadBook) - 1u;
+    uint book = (quad.kind >> kQuadBook & 0xFFu) - 1u;
     BookRecord b = bookOf(book);
     BookPlace p = bookPlace(quad.phase, b.frames, (b.flags & kBookLoops) != 0u);
     vec2 texels = halves(b.size);
@@ -96,14 +96,15 @@ void main() {
     float away = mix(1.0, max(dot(middle, view.forward.xyz), 0.01), perspective);
     float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
     // What shows nothing outside of a circle is, while small, the triangle around that.
-    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue && quad.kind >> kQuadBook == 0u) {
+    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue &&
+        (quad.kind >> kQuadBook & 0xFFu) == 0u) {
         place = vec2(vertex == 0u ? 0.0 : vertex == 1u ? -kRoot3 : kRoot3, vertex == 0u ? 1.5 : 0.0);
         if (vertex > 2u) place = vec2(0.0);
     }
 #ifdef FW_BOOKS
     outFrames = outMotions = outSizes = vec4(0.0);
     outBetween = vec2(0.0);
-    if (quad.kind >> kQuadBook != 0u) place = openBook(quad, place, pixels);
+    if ((quad.kind >> kQuadBook & 0xFFu) != 0u) place = openBook(quad, place, pixels);
 #endif
     vec3 toEye = -mix(view.forward.xyz, normalize(middle), perspective);
     vec3 axis = quad.axisWidth.xyz;

@@ -123,6 +123,13 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
          (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 
+    // What emits alone has its own places: nobody sorts it.
+    if (fire && (e.flags & kEmitterEmits) != 0u) {
+        uint light = atomicAdd(drawArgs[kFlameLights], 1u);
+        quad.kind |= kQuadEmits;
+        if (light < push.lights) flameQuad[push.firstQuad + push.quads + light] = quad;
+        fire = false;
+    }
     uint count = (fire ? 1u : 0u) + (smokes ? 1u : 0u);
     uint first = 0u;
     if (count > 0u) first = atomicAdd(drawArgs[kFlameParticles], count);

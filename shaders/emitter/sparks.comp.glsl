@@ -86,7 +86,7 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, 
     quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadBook | kQuadSpark;
     // Close to the eye a thin thing is a wide one.
     if (a >= 1.0 || quad.opacity <= 0.004 || wide > 0.03 * far) return;
-    uint first = atomicAdd(drawArgs[kFlameParticles], 1u);
+    uint first = atomicAdd(drawArgs[kFlameLights], 1u);
     if (first < push.quads) flameQuad[push.firstQuad + first] = quad;
 }
 

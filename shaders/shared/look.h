@@ -196,7 +196,7 @@ struct FlameQuad {
     float phase;             // s of scroll, already offset by its seed; of kQuadFire: its life, [0, 1];
                              // of one with a book bookPlace's time
     float kelvin;            // K of the hottest part; of kQuadSmoke: how lit by fire, [0, 1]
-    uint kind;               // kQuad... | seed << 2 | its book + 1 << 18, 0: it has none
+    uint kind;               // kQuad... | seed << 2 | its book + 1 << 18, 0: it has none | kQuadEmits
 };
 FW_SHARED_SIZE(FlameQuad, 48)
 
@@ -206,20 +206,25 @@ FW_SHARED_CONST uint kQuadFire = 2u;    // of a particle
 FW_SHARED_CONST uint kQuadSpark = 3u;
 FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
 FW_SHARED_CONST uint kQuadBook = 18u;
+FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // it hides nothing; of kQuadSpark it is understood
 
-// Draw arguments of the flames, then the order they are drawn in: farthest first, then as many words
-// that the sort works in. Quads are burning tiles', at most kFlameCapacity, then particles'.
+// Draw arguments of the flames, then the order they are drawn in, then as many words that the sort
+// works in. Quads are burning tiles', at most kFlameCapacity, then particles', then those that emit
+// alone: sparks, and fire of books that hide nothing. These are not sorted: they are laid between
+// those that hide, farthest first, and among each other as they come.
 FW_SHARED_CONST uint kFlameTiles = 4u;       // word: quads of tiles that were wished for
-FW_SHARED_CONST uint kFlameParticles = 5u;   // word: of particles
+FW_SHARED_CONST uint kFlameParticles = 5u;   // word: of particles, that hide
+FW_SHARED_CONST uint kFlameLights = 6u;      // word: of those that emit alone
 FW_SHARED_CONST uint kFlameOrder = 8u;       // first word of the order
 FW_SHARED_CONST uint kFlameCapacity = 4096u; // hard limit of tiles' quads drawn
-FW_SHARED_CONST uint kMostQuads = 65536u;    // of both
-FW_SHARED_CONST uint kFewQuads = 1024u;      // of both: beyond, another way of ordering them is cheaper
+FW_SHARED_CONST uint kMostQuads = 65536u;    // of all
+FW_SHARED_CONST uint kMostFewQuads = 2048u;  // that the sort has room for in shared memory
 
 struct SortPush {
     uint tiles;      // quads of tiles, at most
     uint particles;  // of particles, at most
-    uint reserved0; uint reserved1;
+    uint lights;     // of those that emit alone, at most
+    uint few;        // to sort, <= kMostFewQuads: beyond, another way is cheaper
 };
 FW_SHARED_SIZE(SortPush, 16)
 

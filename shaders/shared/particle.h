@@ -43,6 +43,7 @@ FW_SHARED_CONST uint kTileChoice = 6u;  // of its mesh among them, from which it
 FW_SHARED_CONST uint kEmitterHidden = 1u;
 FW_SHARED_CONST uint kEmitterGround = 2u;  // they come to rest on `carried.w`
 FW_SHARED_CONST uint kEmitterJet = 4u;     // a stream of liquid that tears into flame
+FW_SHARED_CONST uint kEmitterEmits = 8u;   // books show its fire, and none of them hides anything
 
 struct ParticleEmitter {  // one frame of one emitter
     vec4 from;       // m, world: where it was at the last frame's end; w: s, of this frame
@@ -100,7 +101,7 @@ FW_SHARED_CONST uint kNoHit = 0xFFFFu;
 struct ParticlePush {
     uint quads;      // that may be shown
     uint firstQuad;  // of them
-    uint reserved;
+    uint lights;     // that may be shown behind those, of what emits alone
     uint burnRow;    // counters row that says how many burning tiles there are; kNoBurnRow: none
 };
 FW_SHARED_SIZE(ParticlePush, 16)

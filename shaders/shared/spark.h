@@ -59,7 +59,7 @@ FW_SHARED_CONST uint kSparkCells = 8u;         // of a row
 FW_SHARED_CONST float kSparkCellSide = 1.0f;   // m
 
 struct SparkPush {
-    uint quads;      // that may be shown
+    uint quads;      // that may be shown; they emit alone (kFlameLights)
     uint firstQuad;  // of them
     uint burnRow;    // as ParticlePush
     uint reserved;

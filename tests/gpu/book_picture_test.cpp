@@ -247,5 +247,72 @@ TEST_F(BookPicture, LooksTheSameBesideWhatHasNone) {
     EXPECT_EQ(alone, beside);
 }
 
+// A soft spot of fire that hides nothing; `hides`: as much as it glows.
+book::Book glow(float hides) {
+    book::Book made = spots(book::Kind::Fire);
+    for (size_t i = 0; i < made.texels.size(); i += 4) {
+        const uint8_t v = made.texels[i + 2];
+        made.texels[i + 1] = v;
+        made.texels[i + 2] = uint8_t(hides * float(v));
+    }
+    return made;
+}
+
+// Fire of a book that hides nothing is a sum: whoever is made first, hot or red, near or far, the
+// picture is the same but for what eight bits round. Nobody sorts it, so that its order in a frame
+// is that in which its emitters are made. Fire that hides is sorted, and no sum.
+TEST_F(BookPicture, WhatEmitsAloneLooksTheSameInAnyOrder) {
+    const auto picture = [&](const book::Book& made, bool backwards) {
+        fwDestroyWorld(world_);  // eddies go by its clock
+        world_ = nullptr;
+        const FwWorldDef fresh = fwDefaultWorldDef();
+        EXPECT_EQ(FW_OK, fwCreateWorld(context_, &fresh, &world_));
+        const FwFlipbookId book = create(made);
+        for (uint32_t k = 0; k < 6; ++k) {
+            const uint32_t i = backwards ? 5 - k : k;
+            FwFireEmitterDef def = fwDefaultFireEmitterDef();
+            def.seed = 77 + i;
+            def.position[0] = 0.1f * float(i) - 0.25f;
+            def.position[1] = -0.8f;
+            def.position[2] = i % 2 == 0 ? 0.6f : -0.6f;
+            def.rate = 40;
+            def.speed = 1;
+            def.life = 1.2f;
+            def.size0 = 0.3f;
+            def.size1 = 0.6f;
+            def.smoke = 0;
+            def.temperature = i < 3 ? 1800.0f : 1250.0f;
+            def.fireBooks[0] = book;
+            FwFireEmitterId id{};
+            EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(world_, &def, &id));
+        }
+        for (int i = 0; i < 48; ++i) fwWorld_Step(world_, 1.0f / 32);
+        FwView view = frontView({0, 0}, 3, 3);
+        view.exposure = 0.15f;  // far from white, where all would be the same
+        const float black[4] = {0, 0, 0, 1};
+        return shoot(world_, view, kSide, kSide, black);
+    };
+    const book::Book alone = glow(0);
+    const std::vector<uint8_t> one = picture(alone, false), other = picture(alone, true);
+    double shown = 0, apart = 0;
+    int most = 0, lit = 0;
+    for (size_t i = 0; i < one.size(); ++i) {
+        if (i % 4 == 3) continue;
+        const int d = std::abs(int(one[i]) - int(other[i]));
+        shown += one[i], apart += d;
+        most = std::max(most, d);
+        lit += one[i] > 40;
+    }
+    std::printf("           apart %d levels at most, %.4f of its light; %d texels lit\n", most,
+                apart / shown, lit);
+    EXPECT_GT(lit, 5000);
+    EXPECT_LE(most, 6);  // of some dozens that are added one to the other
+    EXPECT_LT(apart, 0.005 * shown);
+    const std::vector<uint8_t> hiding = picture(glow(1), false);
+    double hidden = 0;
+    for (size_t i = 0; i < hiding.size(); ++i) hidden += i % 4 == 3 ? 0 : hiding[i];
+    EXPECT_LT(hidden, 0.95 * shown);
+}
+
 }  // namespace
 }  // namespace fw::test::book_picture_test

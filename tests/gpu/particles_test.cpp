@@ -1,5 +1,6 @@
 // Particles on a device: they move as the library's text says, and their quads are drawn in order.
 #include "components/view_params.h"
+#include "gpu/passes/blend_order.h"
 #include "gpu/passes/draw.h"
 #include "shared/book.h"
 #include "shared/particle.h"
@@ -25,7 +26,8 @@ constexpr uint32_t kBurnTiles = 40;
 
 class ParticlePass : public GpuTest {
  protected:
-    void makeRig(uint32_t quads, bool byTexels = false) {
+    // `lights`: quads that emit alone, in places of their own.
+    void makeRig(uint32_t quads, bool byTexels = false, uint32_t lights = 0) {
         static constexpr uint32_t kBindings[] = {
             FW_BIND_EMITTERS, FW_BIND_EMITTER_GROUPS, FW_BIND_PARTICLES,
             FW_BIND_FLAMES,   FW_BIND_DRAW_ARGS,      FW_BIND_VIEW,
@@ -35,12 +37,13 @@ class ParticlePass : public GpuTest {
         rig_ = std::make_unique<PassRig>(
             *device_, kBindings, uint32_t(sizeof(gpu::ParticlePush)),
             byTexels ? std::span<const uint32_t>(kTexels) : std::span<const uint32_t>(), kUniforms);
-        room_ = {kTiles, quads, 0, 0};
+        room_ = {kTiles, quads, lights, gpu::fewQuads(true)};
         rig_->make(FW_BIND_EMITTERS, 4 * sizeof(gpu::ParticleEmitter));
         rig_->make(FW_BIND_EMITTER_GROUPS, 8192 * sizeof(gpu::uvec2));
         rig_->make(FW_BIND_PARTICLES, std::max(end_, 1u) * sizeof(gpu::ParticleWords));
-        rig_->make(FW_BIND_FLAMES, (kTiles + quads) * sizeof(gpu::FlameQuad));
-        rig_->make(FW_BIND_DRAW_ARGS, (gpu::kFlameOrder + 2 * (kTiles + quads)) * 4);
+        const uint32_t all = kTiles + quads + lights;
+        rig_->make(FW_BIND_FLAMES, all * sizeof(gpu::FlameQuad));
+        rig_->make(FW_BIND_DRAW_ARGS, (gpu::kFlameOrder + 2 * all) * 4);
         rig_->make(FW_BIND_BOOKS, gpu::kBookWords * 4);
         rig_->make(FW_BIND_COUNTERS, sizeof(gpu::IterationCounters));
         rig_->make(FW_BIND_BURN_TILES, kBurnTiles * sizeof(gpu::BurnTile));
@@ -89,6 +92,7 @@ class ParticlePass : public GpuTest {
         gpu::ParticlePush push{};
         push.quads = room_.particles;
         push.firstQuad = room_.tiles;
+        push.lights = room_.lights;
         push.burnRow = 0;
         device_->run([&](VkCommandBuffer commands) {
             rig_->begin(commands);
@@ -140,8 +144,9 @@ class ParticlePass : public GpuTest {
     uint32_t end_ = 0;
     FwView view_{};
 
- private:
     gpu::SortPush room_{};
+
+ private:
     uint32_t particles_ = 0, quads_ = 0, sort_ = 0, groups_ = 0;
 };
 
@@ -269,9 +274,9 @@ TEST_F(ParticlePass, QuadsAreDrawnFarthestFirstFewOrMany) {
         makeRig(20000);
         for (int i = 0; i < 20; ++i) frame(0.05f);
         if (rate < 1000)
-            EXPECT_LT(quads(), gpu::kFewQuads);
+            EXPECT_LT(quads(), gpu::fewQuads(true));
         else
-            EXPECT_GT(quads(), rate < 5000 ? gpu::kFewQuads + 500u : gpu::kFlameCapacity);
+            EXPECT_GT(quads(), rate < 5000 ? gpu::fewQuads(true) + 500u : gpu::kFlameCapacity);
         EXPECT_LT(450u, quads());
         expectAll(kTiles);
         const std::vector<float> d = depths();
@@ -381,7 +386,7 @@ TEST_F(ParticlePass, TheRadixSortIsStable) {
     add(def);
     makeRig(10000);
     for (int i = 0; i < 15; ++i) frame(0.05f);
-    ASSERT_GT(quads(), gpu::kFewQuads);
+    ASSERT_GT(quads(), gpu::fewQuads(true));
     for (uint32_t i = 0; i < quads(); ++i) ASSERT_EQ(kTiles + i, arguments()[gpu::kFlameOrder + i]);
 }
 
@@ -433,6 +438,123 @@ TEST_F(ParticlePass, MoreThanThereIsRoomForAreNotDrawnAndNothingBreaks) {
     for (size_t i = 1; i < d.size(); ++i) ASSERT_GE(d[i - 1], d[i] * (1 - 1.0f / 2000)) << i;
 }
 
+// Depths by chance of what hides and of what emits alone, from the eye on.
+class EmittingQuads : public ParticlePass {
+ protected:
+    static float depthOf(uint32_t quad) { return 2 + 30 * gpu::particleHash(quad * 31 + 7); }
+    // The order of so many of both.
+    std::vector<uint32_t> order(uint32_t hiding, uint32_t lights, uint32_t few) {
+        makeRig(std::max(hiding, 1u), false, lights);
+        room_.few = few;
+        const float* m = view_.view;  // its third row points back to the eye
+        const auto put = [&](uint32_t place) {
+            gpu::FlameQuad& quad = rig_->of<gpu::FlameQuad>(FW_BIND_FLAMES)[place];
+            quad = {};
+            quad.baseHeight = gpu::vec4(vec3(m[2], m[6], m[10]) * (-depthOf(place) - m[14]), 0);
+        };
+        for (uint32_t i = 0; i < hiding; ++i) put(kTiles + i);
+        firstLight_ = kTiles + std::max(hiding, 1u);
+        for (uint32_t i = 0; i < lights; ++i) put(firstLight_ + i);
+        const auto words = rig_->of<uint32_t>(FW_BIND_DRAW_ARGS);
+        std::fill_n(words.begin(), words.size(), 0xFFFFFFFFu);
+        words[gpu::kFlameTiles] = 0;
+        words[gpu::kFlameParticles] = hiding;
+        words[gpu::kFlameLights] = lights;
+        sortAlone();
+        EXPECT_EQ(hiding + lights, quads());
+        std::vector<uint32_t> out(arguments().begin() + gpu::kFlameOrder,
+                                  arguments().begin() + gpu::kFlameOrder + quads());
+        std::vector<uint32_t> seen = out;
+        std::sort(seen.begin(), seen.end());
+        for (uint32_t i = 0; i < seen.size(); ++i)
+            EXPECT_EQ(i < hiding ? kTiles + i : firstLight_ + i - hiding, seen[i]);
+        return out;
+    }
+    uint32_t firstLight_ = 0;
+};
+
+TEST_F(EmittingQuads, AreNotSortedWhereNothingHides) {
+    const std::vector<uint32_t> found = order(0, 5000, gpu::fewQuads(true));
+    for (uint32_t i = 0; i < found.size(); ++i) ASSERT_EQ(firstLight_ + i, found[i]);
+}
+
+// Each behind what hides and is nearer, before what hides and is farther: the light that comes
+// through is that of a full sort. With more than 1,024 that hide, to a run of them.
+TEST_F(EmittingQuads, LieBetweenThoseThatHide) {
+    struct {
+        uint32_t hiding, lights, few;
+    } const cases[] = {{1, 1, 1024},       {1, 700, 1024},     {300, 40, 1024},
+                       {1024, 3000, 1024}, {1500, 900, 2048},  {2048, 2048, 2048},
+                       {1025, 500, 1024},  {5000, 2000, 1024}, {20000, 4000, 1024}};
+    for (const auto& c : cases) {
+        SCOPED_TRACE(testing::Message() << c.hiding << " " << c.lights << " " << c.few);
+        const std::vector<uint32_t> found = order(c.hiding, c.lights, c.few);
+        std::vector<float> sorted;  // of those that hide
+        for (const uint32_t quad : found)
+            if (quad < firstLight_) sorted.push_back(depthOf(quad));
+        for (size_t i = 1; i < sorted.size(); ++i)
+            ASSERT_GE(sorted[i - 1], sorted[i] * (1 - 1.0f / 2000)) << i;
+        const size_t run = (c.hiding + 1023) / 1024;
+        size_t before = 0;
+        for (const uint32_t quad : found) {
+            if (quad < firstLight_) {
+                ++before;
+                continue;
+            }
+            const float depth = depthOf(quad);
+            // Behind it, and not drawn before it: those of a run at most, or as far to a rounding.
+            const auto wrong = [&](float d, bool drawn) {
+                return drawn ? d < depth * (1 - 1.0f / 1000) : d > depth * (1 + 1.0f / 1000);
+            };
+            size_t off = 0;
+            for (size_t i = 0; i < sorted.size(); ++i) off += wrong(sorted[i], i < before);
+            ASSERT_LT(off, run) << quad;
+        }
+    }
+}
+
+// The order in which they are made is the order in which they lie: of two frames in which what
+// hides is the same, what emits alone is another, nothing of those that hide changes its place
+// among them.
+TEST_F(EmittingQuads, ChangeNothingAmongThoseThatHide) {
+    const auto hiding = [&](std::vector<uint32_t> all) {
+        std::erase_if(all, [&](uint32_t quad) { return quad >= firstLight_; });
+        return all;
+    };
+    for (const uint32_t count : {900u, 3000u}) {
+        const auto alone = hiding(order(count, 0, 1024));
+        EXPECT_EQ(alone, hiding(order(count, 1, 1024)));
+        EXPECT_EQ(alone, hiding(order(count, 2500, 1024)));
+    }
+}
+
+// By its books alone an emitter's fire emits: it is not where the sort looks, its smoke is.
+TEST_P(ParticleWays, FireThatEmitsAloneHasPlacesOfItsOwn) {
+    FwFireEmitterDef def = emitterDef(0, 100);
+    def.rate = 400;
+    def.life = 1;
+    def.smoke = 1;
+    def.sparks = 0;
+    ParticleReference& one = add(def);
+    one.emitter.books.fire = 1;
+    one.emitter.books.fireEmits = true;
+    makeRig(2000, GetParam(), 2000);
+    std::fill_n(rig_->of<uint32_t>(FW_BIND_BOOKS).begin(), gpu::kBookWords, 0u);
+    for (int i = 0; i < 30; ++i) frame(0.05f);
+    const uint32_t hiding = arguments()[gpu::kFlameParticles];
+    const uint32_t lights = arguments()[gpu::kFlameLights];
+    EXPECT_GT(lights, 200u);
+    EXPECT_GT(hiding, 100u);
+    ASSERT_EQ(hiding + lights, quads());
+    for (uint32_t i = 0; i < quads(); ++i) {
+        const uint32_t place = arguments()[gpu::kFlameOrder + i];
+        const uint32_t kind = of<gpu::FlameQuad>(FW_BIND_FLAMES)[place].kind;
+        const bool light = place >= kTiles + 2000;
+        EXPECT_EQ(light ? gpu::kQuadFire : gpu::kQuadSmoke, kind & 3u);
+        EXPECT_EQ(light, (kind & gpu::kQuadEmits) != 0);
+    }
+}
+
 class SparkPass : public GpuTest {
  protected:
     void SetUp() override {
@@ -477,7 +599,8 @@ class SparkPass : public GpuTest {
         });
         std::map<uint32_t, gpu::FlameQuad> out;
         std::map<uint32_t, int> met;
-        count_ = arguments[gpu::kFlameParticles];
+        EXPECT_EQ(0u, arguments[gpu::kFlameParticles]);  // the sort sees none of them
+        count_ = arguments[gpu::kFlameLights];
         for (uint32_t i = 0; i < std::min(count_, kQuads); ++i) {
             const gpu::FlameQuad& quad = rig_->of<gpu::FlameQuad>(FW_BIND_FLAMES)[i];
             EXPECT_EQ(gpu::kQuadSpark, quad.kind & 3u);

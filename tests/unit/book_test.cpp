@@ -120,6 +120,14 @@ double seamOf(const book::Book& made, double& others, double& most) {
     return difference(f.frames - 1, 0);
 }
 
+TEST(Flipbook, EmitsAloneWhereNoTexelHides) {
+    book::Book book(std::pmr::get_default_resource());
+    book.texels = {10, 20, 0, 30, 40, 50, 0, 60};
+    EXPECT_TRUE(book::emitsAlone(book));
+    book.texels[6] = 1;
+    EXPECT_FALSE(book::emitsAlone(book));
+}
+
 TEST(Flipbook, LoopSeam) {
     constexpr uint32_t kFrames = 20;
     const book::Book made = smallBook("campfire", 24, kFrames);

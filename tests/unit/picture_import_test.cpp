@@ -334,6 +334,13 @@ TEST(SheetImport, HueIsTemperatureAndAlphaIsSmoke) {
     EXPECT_NEAR(smoke.w, 1 - std::pow(0.4f, 0.25f), 1e-4f) << "1 - exp(-tau / 4)";
     EXPECT_GT(middle(discs({1, 0.8f, 0.3f}, false), Fire).z, 0.99f)
         << "without alpha black is nothing";
+    // Light that covers nothing anywhere emits alone; where any of it covers, all of it hides.
+    FloatPicture light = discs({1, 0.8f, 0.3f, 0}, false);
+    for (uint32_t i = 3; i < light.values.size(); i += 4) light.values[i] = 0;
+    EXPECT_EQ(middle(light, Fire).z, 0.0f);
+    EXPECT_GT(middle(light, Fire).y, 0.99f);
+    light.values[3] = 0.5f;
+    EXPECT_GT(middle(light, Fire).z, 0.99f);
 }
 
 TEST(SheetImport, ResamplingKeepsTheMean) {

@@ -30,8 +30,10 @@ struct Plane {  // of one number
 
 Plane seenOf(const Frame& frame, uint32_t width, uint32_t height) {
     Plane plane{width, height, {}};
-    for (const vec4& t : frame.texels)
-        plane.values.push_back(t.z * (0.4f + 0.6f * t.x) + 0.5f * t.w);
+    for (const vec4& t : frame.texels) {
+        const float shows = t.z > 0 ? t.z : t.y;  // what emits alone hides nothing
+        plane.values.push_back(shows * (0.4f + 0.6f * t.x) + 0.5f * t.w);
+    }
     return plane;
 }
 

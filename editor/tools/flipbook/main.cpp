@@ -41,7 +41,9 @@ constexpr const char* kHelp =
     "  --frames N      default: all of the grid;  --size N  default: as the sheet has it\n"
     "Whole numbers are sRGB with alpha beside, floats linear and premultiplied; without alpha "
     "black\n"
-    "is nothing. A fire's hue becomes its temperature: red 1370 K, yellow 1780 K.\n";
+    "is nothing; floats with an alpha of 0 throughout only emit, and hide nothing. A fire's hue "
+    "becomes\n"
+    "its temperature: red 1370 K, yellow 1780 K.\n";
 
 struct Options {
     std::string scene, out, sheet, picture;

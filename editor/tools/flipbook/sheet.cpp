@@ -63,7 +63,8 @@ vec4 meanOver(const Reader& read, uint32_t left, uint32_t top, uint32_t width, u
     return sum / ((x1 - x0) * (y1 - y0));
 }
 
-vec4 texelOf(const vec4& seen, book::Kind kind) {
+// `emits`: it hides nothing.
+vec4 texelOf(const vec4& seen, book::Kind kind, bool emits) {
     const float hides = std::clamp(seen.w, 0.0f, 1.0f);
     const float depth = -std::log(1.0f - std::min(hides, 0.996f));
     const float thick = 1.0f - std::exp(-depth / 4.0f);
@@ -73,7 +74,16 @@ vec4 texelOf(const vec4& seen, book::Kind kind) {
     const float kelvin = kRed + (kYellow - kRed) * std::clamp(hue, 0.0f, 1.0f);
     const float glows = std::min(most, 1.0f);
     return vec4((kelvin - gpu::kBookCold) / (gpu::kBookHot - gpu::kBookCold), glows,
-                std::max(hides, glows), thick);
+                emits ? 0.0f : std::max(hides, glows), thick);
+}
+
+// Premultiplied light that nowhere covers anything is meant to be added.
+bool emitsAlone(const FloatPicture& picture, const Reader& read) {
+    if (picture.whole || read.alpha < 0) return false;
+    for (uint32_t y = 0; y < picture.height; ++y)
+        for (uint32_t x = 0; x < picture.width; ++x)
+            if (picture.at(x, y, uint32_t(read.alpha)) > 0.0f) return false;
+    return true;
 }
 
 }  // namespace
@@ -120,6 +130,7 @@ bool framesOfSheet(const FloatPicture& picture, SheetDef& def, std::vector<Frame
                            i / picture.channels / picture.width, ") is ", picture.values[i],
                            "; it must be a number");
 
+    const bool emits = emitsAlone(picture, read);
     std::vector<Frame> made(facts.frames);
     for (uint32_t k = 0; k < facts.frames; ++k) {
         const uint32_t left = k % def.columns * width, top = k / def.columns * height;
@@ -128,7 +139,7 @@ bool framesOfSheet(const FloatPicture& picture, SheetDef& def, std::vector<Frame
                 made[k].texels.push_back(
                     texelOf(def.side ? meanOver(read, left, top, width, height, def.side, x, row)
                                      : read(left + x, top + row),
-                            facts.kind));
+                            facts.kind, emits));
     }
     frames = std::move(made);
     def.facts = facts;

@@ -1,9 +1,8 @@
 // Particle fields of one view: a draw each, farthest first. What emits alone, what absorbs and what
 // refracts are variants, so that none pays for another.
 #include "shared/field_draw.h"
+#include "gpu/passes/blend_order.h"
 #include "gpu/passes/frame_graph.h"
-
-#include <algorithm>
 
 namespace fw::gpu {
 namespace {
@@ -53,9 +52,9 @@ bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out) 
 }
 
 void sortFields(std::span<FieldItem> items) noexcept {
-    std::sort(items.begin(), items.end(), [](const FieldItem& a, const FieldItem& b) {
-        return a.depth != b.depth ? a.depth > b.depth : a.draw < b.draw;
-    });
+    orderOnHost(
+        items, [](const FieldItem& item) { return item.depth; },
+        [](const FieldItem& item) { return item.draw; });
 }
 
 }  // namespace fw::gpu

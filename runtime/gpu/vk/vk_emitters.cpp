@@ -1,9 +1,11 @@
 // Fire emitters on their way to the device, and room for their particles and quads.
 #include "core/error.h"
+#include "gpu/passes/blend_order.h"
 #include "gpu/vk/frame_needs.h"
 #include "shared/spark.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fw::gpu::vk {
 
@@ -13,13 +15,17 @@ uint32_t VkBackend::State::tileQuads() const noexcept {
 
 // Some particles show twice while fire turns to smoke; who finds no quad is not seen.
 void VkBackend::State::makeEmitterRoom(const EmitterUpdate& update, uint64_t last) {
+    lightShare = 0.0f;
     if (update.count == 0 && update.sparkCount == 0) return;
     planes.atLeast(kSpaceParticles, update.particleEnd, last);
     planes.atLeast(kSpaceEmitters, update.count, last);
     planes.atLeast(kSpaceEmitterGroups, uint32_t(update.groups.size()), last);
     planes.atLeast(kSpaceSparks, update.sparkCount, last);
     const uint32_t tiles = tileQuads();
-    const uint32_t wished = update.particles + update.particles / 4 + 16 + update.sparkQuads;
+    const uint32_t hiding = update.particles + update.particles / 4 + 16;
+    const uint32_t lights = update.sparkQuads + update.lightParticles;
+    const uint32_t wished = hiding + lights;
+    lightShare = float(lights) / float(wished);
     // Who finds no quad is not seen, so that under a limit there is room for those that show:
     // a twelfth of them does in part (shareShows).
     const float share = detail.memory < 1 ? std::min(detail.quads * 13.0f / 12.0f, 1.0f) : 1.0f;
@@ -58,7 +64,11 @@ SortPush VkBackend::State::quadRoom() const noexcept {
     SortPush room{};
     room.tiles = tileQuads();
     const uint32_t all = std::min(planes.capacity(kSpaceFlames) - quadUnits(0), kMostQuads);
-    room.particles = all - std::min(all, room.tiles);
+    // What emits alone has places of its own; who has more than wished for, or less, both have.
+    const uint32_t behind = all - std::min(all, room.tiles);
+    room.lights = std::min(uint32_t(std::ceil(float(behind) * lightShare)), behind);
+    room.particles = behind - room.lights;
+    room.few = fewQuads(device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU);
     return room;
 }
 

@@ -562,12 +562,14 @@ void VkBackend::State::closeFrame(const FwView* view) {
             ParticlePush push{};
             push.quads = room.particles;
             push.firstQuad = room.tiles;
+            push.lights = room.lights;
             push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
             if (emittersMove && emitterGroups > 0) recordParticles(looks, push, emitterGroups);
             if (view && burnEmpty) recordNoQuads(looks);
             if (view && emitterGroups > 0) recordParticleQuads(looks, push, emitterGroups);
             if (view && sparkSources > 0)
-                recordSparks(looks, {push.quads, push.firstQuad, push.burnRow, 0}, sparkSources);
+                recordSparks(looks, {room.lights, room.tiles + room.particles, push.burnRow, 0},
+                             sparkSources);
         }
         if (view && (!burnEmpty || particles)) recordFlameSort(looks, room);
         if (marches) marchVolumes(looks);

@@ -1,5 +1,6 @@
 // Volumetric flames on their way to the device, and the order in which a view draws them.
 #include "core/error.h"
+#include "gpu/passes/blend_order.h"
 #include "gpu/vk/frame_needs.h"
 #include "shared/volume_flame.h"
 
@@ -83,9 +84,8 @@ uint32_t VkBackend::State::orderVolumes(
     const auto middle = [](const VolumeItem& item) {
         return item.draw.front + 0.5f * item.draw.deep * float(item.draw.slabs);
     };
-    std::sort(out.begin(), out.begin() + count, [&](const VolumeItem& a, const VolumeItem& b) {
-        return middle(a) != middle(b) ? middle(a) > middle(b) : a.flame < b.flame;
-    });
+    orderOnHost(std::span(out.data(), count), middle,
+                [](const VolumeItem& item) { return item.flame; });
     return count;
 }
 
@@ -168,9 +168,9 @@ uint32_t VkBackend::State::orderHazes(
         one.away = glm::dot(vec3(seen.forward), box.base - vec3(seen.eye));
         ++count;
     }
-    std::sort(out.begin(), out.begin() + count, [](const HazedVolume& a, const HazedVolume& b) {
-        return a.away != b.away ? a.away > b.away : a.flame < b.flame;
-    });
+    orderOnHost(
+        std::span(out.data(), count), [](const HazedVolume& one) { return one.away; },
+        [](const HazedVolume& one) { return one.flame; });
     return count;
 }
 

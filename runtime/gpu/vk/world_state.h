@@ -332,6 +332,7 @@ struct VkBackend::State {
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
     bool particlesByBook = false;         // books show all fire and smoke of them
     uint32_t sparkSources = 0;            // that throw sparks
+    float lightShare = 0.0f;              // of particles' quads: those that emit alone, [0, 1]
     bool emittersMove = false;            // in the open frame
     uint32_t flameBooks = 0;              // as setFlameBooks has them
     std::pmr::vector<FieldEntry> fields;

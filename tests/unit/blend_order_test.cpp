@@ -1,0 +1,52 @@
+// Who brings what blends into order.
+#include "gpu/passes/blend_order.h"
+#include "shared/look.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fw::test {
+namespace {
+
+using gpu::Orderer;
+using gpu::PlacedBy;
+
+TEST(BlendOrder, WhatTheDevicePlacesItOrdersItself) {
+    for (const uint32_t hiding : {1u, 1000u, gpu::kMostQuads})
+        EXPECT_EQ(Orderer::Device, gpu::ordererOf(PlacedBy::Device, hiding));
+}
+
+TEST(BlendOrder, WhatTheHostPlacesTheHostOrders) {
+    for (const uint32_t hiding : {1u, 256u})
+        EXPECT_EQ(Orderer::Host, gpu::ordererOf(PlacedBy::Host, hiding));
+}
+
+TEST(BlendOrder, WhatOnlyEmitsNobodyOrders) {
+    EXPECT_EQ(Orderer::None, gpu::ordererOf(PlacedBy::Device, 0));
+    EXPECT_EQ(Orderer::None, gpu::ordererOf(PlacedBy::Host, 0));
+}
+
+// The sort's shared memory holds as many as it compares, whatever the device.
+TEST(BlendOrder, ADeviceComparesNoMoreThanItsGroupHolds) {
+    EXPECT_EQ(1024u, gpu::fewQuads(true));
+    EXPECT_EQ(gpu::kMostFewQuads, gpu::fewQuads(false));
+    EXPECT_LE(gpu::fewQuads(true), gpu::kMostFewQuads);
+}
+
+TEST(BlendOrder, TheHostsAreFarthestFirstAndAsFarByNumber) {
+    struct Thing {
+        float depth;
+        uint32_t number;
+    };
+    std::array<Thing, 5> things{{{2, 4}, {7, 1}, {2, 0}, {-1, 2}, {7, 3}}};
+    gpu::orderOnHost(
+        std::span<Thing>(things), [](const Thing& t) { return t.depth; },
+        [](const Thing& t) { return t.number; });
+    const uint32_t expected[] = {1, 3, 0, 4, 2};
+    for (size_t i = 0; i < things.size(); ++i) EXPECT_EQ(expected[i], things[i].number) << i;
+}
+
+}  // namespace
+}  // namespace fw::test
