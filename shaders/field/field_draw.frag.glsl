@@ -163,7 +163,9 @@ void main() {
     if (kVariant == 2u) {  // refracts
         float d = max(f.density * (1.0 + 1.6 * detail * rough), 0.0);
         vec3 up = normalize(cross(normal, inAlong));
-        vec2 wave = -f.slope * 2.4 - detail * vec2(rough, 0.6 * ridge) * 1.8;
+        // A sheet ends within a cell or two, above a pool and at its source: turned as far as that the
+        // rims would be rows of white dots where the sun is mirrored.
+        vec2 wave = -f.slope * (round_ ? 2.4 : 0.25) - detail * vec2(rough, 0.6 * ridge) * 1.8;
         vec3 n = normalize(normal + inAlong * wave.x + up * wave.y);
         float film = smoothstep(0.10, 0.42, d) * edge;
         if (round_) film = smoothstep(0.10, 0.42, d) * step(0.0, facing) * smoothstep(0.0, 0.25, facing);
@@ -175,7 +177,7 @@ void main() {
         vec3 half_ = normalize(view.sunDirection.xyz + toEye);
         float gleam = pow(max(dot(n, half_), 0.0), 60.0);
         // Where it breaks it is white.
-        float foam = smoothstep(0.55, 1.25, 0.55 * d + 1.6 * detail * ridge + 0.25 * length(f.motion));
+        float foam = smoothstep(0.55, 1.25, 0.55 * min(d, 1.0) + 1.6 * detail * ridge + 0.25 * length(f.motion));
         vec3 light = view.ambientSky.rgb * 0.8 + view.sunColor.rgb * 0.35;
         vec3 deep = inTint.rgb * vec3(0.10, 0.26, 0.31) * light;
         float share1 = clamp(body - 1.0, 0.0, 1.0) * strength * film;
