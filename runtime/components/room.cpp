@@ -91,15 +91,29 @@ bool isIn(const Room& room, const WindPlace& place) noexcept {
     return true;
 }
 
-gpu::Room roomRecord(const Room& room, float pace, uint32_t starts, uint32_t epoch) noexcept {
+// Thomas (1981): 7.8 kW for each m^2 of walls, floor and ceiling, and 378 kW for each m^2.5 of
+// A sqrt(h) of the opening, of which 0.4 m^3/s come in (Kawagoe, as FwRoomDef::vent has it).
+uint64_t Room::flashPower() const noexcept {
+    const auto a = uint64_t(half[0]), b = uint64_t(half[1]), c = uint64_t(half[2]);
+    const uint64_t walls = 8 * (a * b + b * c + c * a);  // mm^2
+    return walls * 78 / 10000 + vent * 945 / 1000;
+}
+
+gpu::Room roomRecord(const Room& room, float pace, const gpu::RoomAir& begins) noexcept {
     const double volume = double(room.volume) / 1000;
     // An implicit step: no vent is too strong for its length.
     const double changes = double(room.vent) / 1e6 / volume * kPeriod * double(pace);
     gpu::Room record;
     record.takes = uint32_t(wholeOf(kOxygenPerJoule * kWholeAir * 1048576 / volume));
     record.mixes = uint32_t(std::min(changes / (1 + changes) * kWholeAir, kWholeAir - 1));
-    record.starts = starts;
-    record.epoch = epoch;
+    record.starts = begins.oxygen;
+    record.epoch = begins.epoch;
+    record.power = begins.power;
+    record.flash = begins.flash;
+    // More than the mean holds is no fire that there is.
+    const double flashes = double(room.flashPower()) * kPeriod * double(pace);
+    if (flashes <= double(gpu::kFlashMost))
+        record.flashes = std::max(uint32_t(wholeOf(flashes)), 1u);
     return record;
 }
 

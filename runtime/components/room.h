@@ -8,12 +8,13 @@
 namespace fw::components {
 
 struct Room {
-    std::array<int64_t, 3> middle{};  // mm
-    std::array<int64_t, 3> half{};    // mm, half of its sides
-    std::array<int64_t, 9> axes{};    // rows: its axes in the world, Q14
-    uint64_t volume = 0;              // litres of air
-    uint64_t vent = 0;                // of it that comes from outside, ml/s
-    uint32_t oxygen = 0;              // that it is filled with, 2^-32 of the air
+    std::array<int64_t, 3> middle{};                     // mm
+    std::array<int64_t, 3> half{};                       // mm, half of its sides
+    std::array<int64_t, 9> axes{};                       // rows: its axes in the world, Q14
+    uint64_t volume = 0;                                 // litres of air
+    uint64_t vent = 0;                                   // of it that comes from outside, ml/s
+    uint32_t oxygen = 0;                                 // that it is filled with, 2^-32 of the air
+    [[nodiscard]] uint64_t flashPower() const noexcept;  // W at which it flashes over
     bool operator==(const Room&) const = default;
 };
 
@@ -25,8 +26,8 @@ struct Room {
 
 [[nodiscard]] bool isIn(const Room& room, const WindPlace& place) noexcept;
 
-// As backends have it, at that pace. `starts`: oxygen that its beginning `epoch` has.
-[[nodiscard]] gpu::Room roomRecord(const Room& room, float pace, uint32_t starts,
-                                   uint32_t epoch) noexcept;
+// As backends have it, at that pace. `begins`: the air that its beginning, of that epoch, has.
+[[nodiscard]] gpu::Room roomRecord(const Room& room, float pace,
+                                   const gpu::RoomAir& begins) noexcept;
 
 }  // namespace fw::components

@@ -12,6 +12,9 @@ namespace {
 // After the last change: what fires gave off has been drawn by then.
 constexpr uint64_t kRoomsSettle = 4 * uint64_t(gpu::kRoomPeriod);
 
+// How often a room has flashed over since its air began.
+uint32_t flashesOf(const gpu::RoomAir& air) noexcept { return (air.flash + 1) / 2; }
+
 }  // namespace
 
 bool World::roomsRest() const noexcept {
@@ -45,14 +48,15 @@ void World::roomsTurn() noexcept {
 
 void World::sendRoom(uint32_t slot) noexcept {
     const RoomEntry& entry = *rooms_.at(slot);
-    backend_.setRoom(slot, components::roomRecord(entry.room, def_.paceFactor, entry.air.oxygen,
-                                                  entry.air.epoch));
+    backend_.setRoom(slot, components::roomRecord(entry.room, def_.paceFactor, entry.air));
 }
 
-// From here on its air is that.
-void World::fillRoom(RoomEntry& entry, uint32_t oxygen) noexcept {
+// From here on its air is that; with fire that burnt so in it: of a save.
+void World::fillRoom(RoomEntry& entry, uint32_t oxygen, uint32_t power, uint32_t flash) noexcept {
     entry.air = {};
     entry.air.oxygen = oxygen;
+    entry.air.power = power;
+    entry.air.flash = flash;
     entry.air.epoch = ++roomEpoch_;
 }
 
@@ -93,8 +97,14 @@ void World::takeRooms(const gpu::Readback& readback) noexcept {
     for (uint32_t slot = 0; slot < count; ++slot) {
         RoomEntry* entry = rooms_.at(slot);
         if (!entry || entry->air.epoch != readback.rooms[slot].epoch) continue;
+        const uint32_t told = flashesOf(entry->air);
         entry->air = readback.rooms[slot];
         stirs = stirs || entry->air.stirs != 0;
+        if (flashesOf(entry->air) == told) continue;
+        float middle[3];
+        for (size_t i = 0; i < 3; ++i) middle[i] = float(double(entry->room.middle[i]) / 1000);
+        raise(FW_EVENT_FLASHED_OVER, nullptr, slot + 1, readback.frameIndex, middle,
+              float(double(entry->air.flashTick) / gpu::kTicksPerSecond));
     }
     if (stirs) roomsStirred_ = std::max<uint64_t>(roomsStirred_, readback.endTick);
 }
@@ -109,6 +119,8 @@ void World::roomState(FwRoomId id, FwRoomState& state) {
     // J of a period, at pace 1.
     state.power = float(double(entry.air.drawn) * gpu::kTicksPerSecond / gpu::kRoomPeriod /
                         double(def_.paceFactor));
+    state.flashedOver = entry.air.flash & 1u;
+    state.flashOverPower = float(entry.room.flashPower());
 }
 
 }  // namespace fw::world

@@ -237,7 +237,8 @@ void World::noteSaved(SavedWorld& to) {
     to.rooms.clear();
     for (uint32_t i = 0; i < rooms_.slotCount(); ++i)
         if (const RoomEntry* entry = rooms_.at(i))
-            to.rooms.push_back({i, entry->room, entry->air.oxygen, entry->air.epoch});
+            to.rooms.push_back({i, entry->room, entry->air.oxygen, entry->air.power,
+                                entry->air.flash, entry->air.epoch});
     to.fires.clear();
     for (uint32_t i = 0; i < fires_.slotCount(); ++i)
         if (const auto* fire = fires_.at(i)) {
@@ -383,8 +384,12 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         object.story = (*objects_.at(object.slot))->story;
     }
     for (SavedRoom& room : saved.rooms)  // its air goes on from what the frame left
-        if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.epoch)
-            room.oxygen = readback.rooms[room.slot].oxygen;
+        if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.epoch) {
+            const gpu::RoomAir& air = readback.rooms[room.slot];
+            room.oxygen = air.oxygen;
+            room.power = air.power;
+            room.flash = air.flash;
+        }
     writeSaved(saved, save.bytes);
     save.ready = true;
 }
@@ -494,7 +499,8 @@ void World::checkSaved(const SavedWorld& saved) {
                        "The save has wind zone %u, which is not here or is absurd.", zone.slot + 1);
     for (const SavedRoom& room : saved.rooms)
         if (room.slot >= rooms_.slotCount() || !rooms_.at(room.slot) ||
-            !components::plausible(room.room))
+            !components::plausible(room.room) ||
+            room.power > gpu::kFlashMost * (gpu::kRoomMeans - 1))
             core::fail(FW_ERROR_BAD_DATA, "The save has room %u, which is not here or is absurd.",
                        room.slot + 1);
     const auto checkTouches = [&](const std::array<SavedTouch, 8>& touches) {
@@ -667,7 +673,7 @@ void World::applySaved(const SavedWorld& saved,
     for (const SavedRoom& from : saved.rooms) {
         RoomEntry& entry = *rooms_.at(from.slot);
         entry.room = from.room;
-        fillRoom(entry, from.oxygen);
+        fillRoom(entry, from.oxygen, from.power, from.flash);
         sendRoom(from.slot);
     }
     stirRooms();

@@ -68,7 +68,8 @@ struct SavedWindZone {
 struct SavedRoom {
     uint32_t slot = 0;
     components::Room room;
-    uint32_t oxygen = 0;  // of its air
+    uint32_t oxygen = 0;  // of its air, as power and flash
+    uint32_t power = 0, flash = 0;
     uint32_t epoch = 0;   // which beginning's; not in files
 };
 
@@ -184,7 +185,7 @@ struct Save {  // on its way, and the last one
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 5;
+constexpr uint32_t kSaveVersion = 6;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
 

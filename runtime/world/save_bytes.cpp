@@ -227,7 +227,7 @@ void put(S& s, T& g) {
 template <typename S, Is<SavedRoom> T>
 void put(S& s, T& r) {
     all(s, r.slot, r.room.middle, r.room.half, r.room.axes, r.room.volume, r.room.vent,
-        r.room.oxygen, r.oxygen);
+        r.room.oxygen, r.oxygen, r.power, r.flash);
 }
 template <typename S, Is<SavedFire> T>
 void put(S& s, T& f) {
@@ -334,7 +334,7 @@ void put(S& s, T& w) {
     put(s, w.windGrid);
     put(s, w.gusts);
     list(s, w.windZones, "wind zones", 108);
-    list(s, w.rooms, "rooms", 148);
+    list(s, w.rooms, "rooms", 156);
     list(s, w.fires, "volumetric fires", 24);
     list(s, w.emitters, "fire emitters", 36);
     list(s, w.fields, "particle fields", 53);

@@ -667,7 +667,8 @@ class World {
     [[nodiscard]] uint32_t roomOf(const Object& object) const noexcept;
     void roomsTurn() noexcept;
     void sendRoom(uint32_t slot) noexcept;
-    void fillRoom(RoomEntry& entry, uint32_t oxygen) noexcept;
+    void fillRoom(RoomEntry& entry, uint32_t oxygen, uint32_t power = 0,
+                  uint32_t flash = 0) noexcept;
     void takeRooms(const gpu::Readback& readback) noexcept;
     // remote.cpp
     [[nodiscard]] bool remoteOn() const noexcept {

@@ -1,6 +1,6 @@
 // Before a heat step: what fires used of their rooms' oxygen since the last one, what came in from
-// outside, and how strongly each object's fire burns in what is left. One group: sums of a room
-// are of its shared memory, in no order.
+// outside, how strongly each object's fire burns in what is left, and which rooms flash over. One
+// group: sums of a room are of its shared memory, in no order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;  // kMaxRooms
@@ -37,7 +37,7 @@ void main() {
     }
     barrier();
     RoomAir air = roomAir[thread];
-    roomBreathes(air, rooms[thread], ofRoom[thread]);
+    roomBreathes(air, rooms[thread], ofRoom[thread], push.now);
     roomAir[thread] = air;
     ofRoom[thread] = roomStrength(air.oxygen);
     barrier();

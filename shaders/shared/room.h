@@ -1,5 +1,5 @@
-// The air of rooms: what fires take of its oxygen, what comes in from outside, and how strongly
-// fire burns in what is left. Integers only, one text for C++ and GLSL; it loads nothing. Not what
+// The air of rooms: what fires take of its oxygen, what comes in from outside, how strongly fire
+// burns in what is left, and when a room flashes over. Integers only, one text for C++ and GLSL; it loads nothing. Not what
 // a texel makes of it (heat.h).
 // GLSL too, and laid out by hand.
 // clang-format off
@@ -21,16 +21,26 @@ struct Room {     // as the host has it
     uint mixes;   // part of what it lacks that comes from outside in a period, Q32
     uint starts;  // oxygen that it begins with
     uint epoch;   // which beginning that is; 0: there is no such room
+    uint flashes; // J of fire in a period, as a mean, at which it flashes over; 0: it never does
+    uint power;   // RoomAir::power and flash that it begins with
+    uint flash;
+    uint reserved;
 };
-FW_SHARED_SIZE(Room, 16)
+FW_SHARED_SIZE(Room, 32)
 
 struct RoomAir {  // and what has become of it
     uint oxygen;
     uint epoch;   // as its room's, once it has begun
     uint drawn;   // J of fire in the last period
     uint stirs;   // 1: something of it changed in that
+    uint power;   // kRoomMeans - 1 times the mean of what was drawn, over about so many periods
+    uint flash;   // how often it has flashed over, times 2; odd: it burns so now
+    uint flashTick; // when it last did
+    uint reserved;
 };
-FW_SHARED_SIZE(RoomAir, 16)
+FW_SHARED_SIZE(RoomAir, 32)
+FW_SHARED_CONST uint kRoomMeans = 8u;
+FW_SHARED_CONST uint kFlashMost = (1u << 28u) - 1u;  // J in a period: the mean's bits hold as much
 
 // Whole J that an object's fire gave off since the last time, when it stood at `drawn`; what is left
 // over waits there. Both in 2^-20 J.
@@ -44,11 +54,28 @@ FW_SHARED_FN uint energySince(uint low, uint high, FW_INOUT(uint) drawnLow, FW_I
     return joules;
 }
 
-// One period of a room in which fires gave off so many J.
-FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules) {
-    uint before = air.oxygen;
+// A period's part in the mean, which ends at nothing; and whether that is a flashover: told again
+// only once it has been half as much.
+FW_SHARED_FN void roomFlashes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
+    air.power += (joules < kFlashMost ? joules : kFlashMost);
+    air.power -= divide(air.power + kRoomMeans - 1u, kRoomMeans);
+    bool over = (air.flash & 1u) != 0u;
+    uint most = room.flashes * (kRoomMeans - 1u);
+    if (over && (room.flashes == 0u || air.power < most / 2u)) air.flash += 1u;
+    if (over || room.flashes == 0u || air.power < most) return;
+    air.flash += 1u;
+    air.flashTick = now;
+}
+
+// One period of a room, up to `now`, in which fires gave off so many J.
+FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
+    uint before = air.oxygen, power = air.power;
     bool begins = air.epoch != room.epoch;
-    if (begins) air.oxygen = room.starts;
+    if (begins) {
+        air.oxygen = room.starts;
+        air.power = room.power;
+        air.flash = room.flash;
+    }
     air.epoch = room.epoch;
     uint high, low;
     umulExtended(joules, room.takes, high, low);
@@ -60,7 +87,8 @@ FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint jou
     comes = comes < off ? comes : off;
     air.oxygen = less ? air.oxygen + comes : air.oxygen - comes;
     air.drawn = joules;
-    air.stirs = begins || joules != 0u || air.oxygen != before ? 1u : 0u;
+    roomFlashes(air, room, joules, now);
+    air.stirs = begins || joules != 0u || air.oxygen != before || air.power != power ? 1u : 0u;
 }
 
 // How strongly fire burns in it, Q8.

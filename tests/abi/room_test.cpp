@@ -1,6 +1,6 @@
 // Rooms through the C ABI: fire that uses up its air weakens and goes out, a door brings it back,
 // both backends agree to the bit, and what is refused.
-#include "abi/abi_support.h"
+#include "abi/busy_world.h"
 
 #include <algorithm>
 
@@ -246,6 +246,71 @@ TEST(AbiRoom, BothBackendsAgree) {
         EXPECT_EQ(hashes[0][part], hashes[1][part]) << part;
         EXPECT_EQ(oxygen[0][part], oxygen[1][part]) << part;
     }
+}
+
+// The power at which it does, once, at the same step on both backends, and not again where a save
+// of it is loaded.
+TEST(AbiRoom, FlashesOverWhenItsFiresGiveOffEnough) {
+    float told[2] = {};
+    std::vector<unsigned char> save;
+    const uint32_t backends[] = {FW_BACKEND_CPU, FW_BACKEND_VULKAN};
+    const auto flashes = [](const Paper& paper) {
+        return std::count_if(paper.events.begin(), paper.events.end(), [](const FwEvent& event) {
+            return event.type == FW_EVENT_FLASHED_OVER;
+        });
+    };
+    for (int b = 0; b < 2; ++b) {
+        Paper paper(backends[b]), large(FW_BACKEND_CPU);
+        if (!paper.world) GTEST_SKIP() << "there is no such backend here";
+        FwRoomDef def = paper.roomOf(20 * paper.fuel);
+        def.position[0] = def.position[2] = 0.3f;
+        (void)large.put(def);  // of the same air, and of larger walls
+        for (float& half : def.halfSize) half = 0.2f;
+        const FwRoomId room = paper.put(def);
+        const float needed = paper.air(room).flashOverPower;
+        EXPECT_NEAR(7800 * 24 * 0.04, double(needed), 100);
+        FwRoomState state{};
+        state.structSize = offsetof(FwRoomState, flashOverPower);  // an older host's
+        EXPECT_EQ(FW_OK, fwWorld_GetRoomState(paper.world, room, &state));
+        EXPECT_EQ(0u, state.flashedOver);
+        paper.light(0.03f);
+        large.light(0.03f);
+        double before = 0, most = 0;
+        for (int i = 0; i < 1440 && paper.air(room).flashedOver == 0; ++i) {
+            paper.run(0.125);
+            before = most;
+            most = std::max(most, double(paper.air(room).power));
+        }
+        ASSERT_EQ(1u, paper.air(room).flashedOver) << most << " W of " << needed;
+        EXPECT_GT(most, double(needed));
+        EXPECT_LT(before, 1.5 * double(needed));
+        if (b == 0)
+            save = saveOf(paper.world);
+        else {  // on the other backend, where it is told no more
+            Paper loaded(backends[1]);
+            const FwRoomId same = loaded.put(def);
+            ASSERT_EQ(FW_OK, fwWorld_Load(loaded.world, save.data(), save.size()))
+                << lastMessage(loaded.world);
+            EXPECT_EQ(1u, loaded.air(same).flashedOver);
+            loaded.run(200);
+            EXPECT_EQ(0u, loaded.air(same).flashedOver);
+            EXPECT_EQ(0, flashes(loaded));
+        }
+        paper.run(200);
+        EXPECT_EQ(0u, paper.air(room).flashedOver);
+        ASSERT_EQ(1, flashes(paper));
+        const FwEvent event =
+            *std::find_if(paper.events.begin(), paper.events.end(),
+                          [](const FwEvent& one) { return one.type == FW_EVENT_FLASHED_OVER; });
+        EXPECT_EQ(room.index1, event.tag);
+        EXPECT_EQ(0u, event.object.index1);
+        EXPECT_EQ(0.3f, event.position[0]);
+        EXPECT_GT(event.value, 1);
+        told[b] = event.value;
+        large.run(200);
+        EXPECT_FALSE(large.heard(FW_EVENT_FLASHED_OVER));
+    }
+    EXPECT_EQ(told[0], told[1]);
 }
 
 // However long nothing burns: rooms whose air still comes back go on, and one at rest costs none.

@@ -26,6 +26,13 @@ FwRoomDef roomDef(float half, float volume = 0, float vent = 0) {
     return def;
 }
 
+gpu::RoomAir airOf(uint32_t oxygen, uint32_t epoch) {
+    gpu::RoomAir air{};
+    air.oxygen = oxygen;
+    air.epoch = epoch;
+    return air;
+}
+
 bool holds(const FwRoomDef& def, float x, float y, float z) {
     const float place[3] = {x, y, z};
     return components::isIn(components::makeRoom(def), components::windPlace(place));
@@ -52,20 +59,20 @@ TEST(Room, IsABoxThatMayBeTurned) {
 TEST(Room, FireTakesItsOxygen) {
     for (const float volume : {0.1f, 3.0f, 40.0f, 1e6f}) {
         const gpu::Room room = components::roomRecord(components::makeRoom(roomDef(1, volume)), 1,
-                                                      gpu::kAirOutside, 7);
+                                                      airOf(gpu::kAirOutside, 7));
         gpu::RoomAir air{};
-        gpu::roomBreathes(air, room, 0);
+        gpu::roomBreathes(air, room, 0, 0);
         EXPECT_EQ(gpu::kAirOutside, air.oxygen);
         EXPECT_EQ(7u, air.epoch);
         EXPECT_EQ(1u, air.stirs);
-        gpu::roomBreathes(air, room, 0);
+        gpu::roomBreathes(air, room, 0, 0);
         EXPECT_EQ(0u, air.stirs);
         const auto joules = uint32_t(1e5f * volume);
-        for (int i = 0; i < 10; ++i) gpu::roomBreathes(air, room, joules / 10);
+        for (int i = 0; i < 10; ++i) gpu::roomBreathes(air, room, joules / 10, 0);
         const double taken = double(joules) / 13.1e6 / 1.330 / double(volume);
         EXPECT_NEAR(0.2095 - taken, double(air.oxygen) / kWhole, 3e-5) << volume;
         EXPECT_EQ(joules / 10, air.drawn);
-        gpu::roomBreathes(air, room, 0xFFFFFFFFu);
+        gpu::roomBreathes(air, room, 0xFFFFFFFFu, 0);
         if (volume < 1e4f) {
             EXPECT_EQ(0u, air.oxygen);
         }
@@ -76,21 +83,84 @@ TEST(Room, FireTakesItsOxygen) {
 TEST(Room, AirComesBack) {
     for (const float pace : {1.0f, 8.0f}) {
         const components::Room made = components::makeRoom(roomDef(1, 10, 0.5f));  // 20 s
-        const gpu::Room room = components::roomRecord(made, pace, uint32_t(0.10 * kWhole), 1);
+        const gpu::Room room =
+            components::roomRecord(made, pace, airOf(uint32_t(0.10 * kWhole), 1));
         gpu::RoomAir air{};
         const int after = int(20 * 8 / pace);
-        for (int i = 0; i < after; ++i) gpu::roomBreathes(air, room, 0);
+        for (int i = 0; i < after; ++i) gpu::roomBreathes(air, room, 0, 0);
         EXPECT_NEAR(0.2095 - 0.1095 * std::exp(-1), double(air.oxygen) / kWhole, 1.5e-3);
-        for (int i = 0; i < after * 30; ++i) gpu::roomBreathes(air, room, 0);
+        for (int i = 0; i < after * 30; ++i) gpu::roomBreathes(air, room, 0, 0);
         EXPECT_EQ(gpu::kAirOutside, air.oxygen);
         EXPECT_EQ(0u, air.stirs);
     }
     const gpu::Room rich = components::roomRecord(components::makeRoom(roomDef(1, 1, 1e4f)), 100,
-                                                  uint32_t(0.9 * kWhole), 1);
+                                                  airOf(uint32_t(0.9 * kWhole), 1));
     gpu::RoomAir air{};
-    for (int i = 0; i < 4; ++i) gpu::roomBreathes(air, rich, 0);
+    for (int i = 0; i < 4; ++i) gpu::roomBreathes(air, rich, 0, 0);
     EXPECT_NEAR(0.2095, double(air.oxygen) / kWhole, 1e-6);
     EXPECT_GE(air.oxygen, gpu::kAirOutside);
+}
+
+// Thomas: 7.8 kW for each m^2 of its sides, 378 kW for each m^2.5 of A sqrt(h).
+TEST(Room, FlashesOverAtThePowerOfItsSidesAndDoor) {
+    FwRoomDef def = roomDef(1);
+    def.halfSize[0] = 2, def.halfSize[1] = 1.25f, def.halfSize[2] = 2.5f;
+    EXPECT_EQ(7800u * 85, components::makeRoom(def).flashPower());
+    def.vent = 0.4f * 2 * std::sqrt(2.0f);  // a door of 1 m by 2 m
+    EXPECT_NEAR(7800.0 * 85 + 378000 * 2 * std::sqrt(2), components::makeRoom(def).flashPower(),
+                1000);
+    for (float& half : def.halfSize) half = 1000;
+    def.volume = 1e6f;
+    EXPECT_EQ(0u, components::roomRecord(components::makeRoom(def), 1, airOf(0, 1)).flashes);
+}
+
+TEST(Room, FlashesOverOnceUntilItHasBurntHalfAsMuch) {
+    gpu::Room room{};
+    room.epoch = 1;
+    room.flashes = 1000;
+    gpu::RoomAir air{};
+    uint32_t now = 0;
+    const auto burn = [&](uint32_t joules, int periods) {
+        for (int i = 0; i < periods; ++i) {
+            now += gpu::kRoomPeriod;
+            gpu::roomBreathes(air, room, joules, now);
+        }
+    };
+    burn(990, 400);  // never as much
+    EXPECT_EQ(0u, air.flash);
+    burn(1010, 400);
+    EXPECT_EQ(1u, air.flash);
+    const uint32_t when = air.flashTick;
+    EXPECT_LT(when, now);
+    burn(700, 400);  // less, but no end of it
+    burn(1100, 400);
+    EXPECT_EQ(1u, air.flash);
+    EXPECT_EQ(when, air.flashTick);
+    burn(400, 400);
+    EXPECT_EQ(2u, air.flash);
+    burn(900, 400);
+    EXPECT_EQ(2u, air.flash);
+    burn(1500, 1);  // one flare is none, two are
+    EXPECT_EQ(2u, air.flash);
+    burn(1500, 1);
+    EXPECT_EQ(3u, air.flash);
+    EXPECT_EQ(now, air.flashTick);
+    burn(0, 10000);  // and it comes to rest
+    EXPECT_EQ(0u, air.power);
+    EXPECT_EQ(0u, air.stirs);
+    EXPECT_EQ(4u, air.flash);
+    burn(0xFFFFFFFFu, 10000);  // beyond all bounds nothing wraps
+    EXPECT_EQ(5u, air.flash);
+    EXPECT_GT(air.power, gpu::kFlashMost * 6);
+    room.power = 7 * 900, room.flash = 5, room.epoch = 2;  // as a save has it
+    burn(900, 1);
+    EXPECT_EQ(5u, air.flash);
+    EXPECT_NEAR(7 * 900, air.power, 8);
+    room.flashes = 0;
+    burn(0, 1);
+    EXPECT_EQ(6u, air.flash);
+    burn(0xFFFFFFFFu, 100);
+    EXPECT_EQ(6u, air.flash);
 }
 
 TEST(Room, StrengthFallsEvenlyFrom15To12Percent) {

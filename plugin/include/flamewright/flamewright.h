@@ -333,7 +333,10 @@ typedef enum FwRoomFlags {
  * (Huggett 1980). Below 15 % of oxygen by volume it weakens evenly until nothing burns in 12 %: it gives off less,
  * spreads slower, lights others less, and goes out as it cools. What is still alight grows again when air comes, and
  * what went out lights again where it is still hot enough. Objects with FW_BURNABLE_LITE, volumetric fires and
- * emitters neither use air nor want it. */
+ * emitters neither use air nor want it.
+ * It flashes over (FW_EVENT_FLASHED_OVER) when its fires, in the mean of about a second, give off what Thomas (1981)
+ * says that takes: 7.8 kW for each m^2 of its box's sides and 945 kW for each m^3/s of `vent` (378 kW for each m^2.5
+ * of A sqrt(h)); once, until they have given off less than half of that. It is told, and changes nothing by itself. */
 typedef struct FwRoomDef {
     uint32_t structSize, flags; /* FwRoomFlags */
     float position[3];          /* m, world, within +-1e6: its middle */
@@ -361,6 +364,8 @@ typedef struct FwRoomState {
     float oxygen;               /* by volume, [0, 1] */
     float strength;             /* of fire in it, [0, 1]: 1 from 15 % of oxygen on, 0 up to 12 % */
     float power;                /* W that uses its air, mean of the last 1/8 s, at pace 1 */
+    uint32_t flashedOver;       /* 1: it has flashed over and still burns so; 0: not */
+    float flashOverPower;       /* W at which it does */
     uint32_t reserved;
 } FwRoomState;
 FW_API FwResult FW_CALL fwWorld_GetRoomState(FwWorld*, FwRoomId id, FwRoomState* state); /* [world] */
@@ -1080,10 +1085,12 @@ typedef enum FwEventType {
     FW_EVENT_SPOT_FIRE = 8,     /* an ember lit `object`; position: there; value: how many since the last */
     FW_EVENT_WENT_LIVE = 9,     /* the baked burn that `object` played is over, or was disturbed: from here on
                                    it is simulated; value: s since world start */
+    FW_EVENT_FLASHED_OVER = 10, /* a room did, see FwRoomDef; tag: index1 of its FwRoomId; object: null;
+                                   position: its middle; value: s since world start */
     FW_EVENT_TYPE_FORCE32 = 0x7fffffff
 } FwEventType;
 typedef struct FwEvent {        /* 64 bytes for ever */
-    uint32_t type, tag;         /* FwEventType; tag: the host's number of a tagged point */
+    uint32_t type, tag;         /* FwEventType; tag: of FW_EVENT_TAG_REACHED the host's number */
     uint64_t userData;          /* the object's */
     FwBurnableMeshId object;
     uint64_t frameIndex;        /* the frame whose work raised it */

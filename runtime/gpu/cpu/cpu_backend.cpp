@@ -531,7 +531,7 @@ void CpuBackend::run(const FramePlan& plan) {
         }
         if (step.rooms) {
             Stopwatch watch(s, kTimerRooms);
-            s.airRooms();
+            s.airRooms(step.now);
         }
         if (step.heat && !s.hotList.empty()) {
             Stopwatch watch(s, kTimerHeat);

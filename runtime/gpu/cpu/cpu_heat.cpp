@@ -142,7 +142,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
 }
 
 // As rooms.comp: what fires used of their rooms' air, and how they burn in what is left.
-void CpuBackend::State::airRooms() noexcept {
+void CpuBackend::State::airRooms(uint32_t now) noexcept {
     airs = true;
     std::array<uint32_t, kMaxRooms> ofRoom{};  // J that it draws
     const auto roomOf = [](const core::Owned<CpuObject>& object) {
@@ -158,7 +158,7 @@ void CpuBackend::State::airRooms() noexcept {
         }
         ofRoom[room - 1] += energySince(c.energyLow, c.energyHigh, c.drawnLow, c.drawnHigh);
     }
-    for (uint32_t i = 0; i < kMaxRooms; ++i) roomBreathes(roomAir[i], rooms[i], ofRoom[i]);
+    for (uint32_t i = 0; i < kMaxRooms; ++i) roomBreathes(roomAir[i], rooms[i], ofRoom[i], now);
     for (core::Owned<CpuObject>& object : objects) {
         if (!object) continue;
         const uint32_t room = roomOf(object);

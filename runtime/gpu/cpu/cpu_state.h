@@ -120,7 +120,7 @@ struct CpuBackend::State {
     uint32_t heatEvents(CpuObject& object, std::span<const TexelEvent> batch,
                         std::span<const TexelEvent> events, uint32_t now, HeatTexel& x,
                         bool& byFlame) noexcept;  // cpu_heat.cpp: the texel's state after them
-    void airRooms() noexcept;
+    void airRooms(uint32_t now) noexcept;
     void askHeat(uint32_t now) noexcept;
     void heatStep(uint32_t now) noexcept;
     [[nodiscard]] uint32_t heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept;
