@@ -103,7 +103,7 @@ gpu::Room roomRecord(const Room& room, float pace, const gpu::RoomAir& begins) n
     const double volume = double(room.volume) / 1000;
     // An implicit step: no vent is too strong for its length.
     const double changes = double(room.vent) / 1e6 / volume * kPeriod * double(pace);
-    gpu::Room record;
+    gpu::Room record{};
     record.takes = uint32_t(wholeOf(kOxygenPerJoule * kWholeAir * 1048576 / volume));
     record.mixes = uint32_t(std::min(changes / (1 + changes) * kWholeAir, kWholeAir - 1));
     record.starts = begins.oxygen;

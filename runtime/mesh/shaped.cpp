@@ -1,10 +1,10 @@
 #include "mesh/shaped.h"
 
+#include "mesh/ring.h"
 #include "mesh/texels.h"
 #include "shared/front.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace fw::mesh {
@@ -13,22 +13,6 @@ namespace {
 glm::dvec3 unpackNormal(uint32_t packed) {
     const auto n = gpu::decodeNormal(packed);
     return glm::dvec3(n.x, n.y, n.z) / 16384.0;
-}
-
-// Texel that k-th in the ring of `texel` is, or kNone.
-uint32_t ringOf(const BurnDomain& domain, uint32_t texel, uint32_t k) {
-    const uint32_t x = texel % domain.width, y = texel / domain.width;
-    if (domain.texels[texel].materialFlags & kTexelRim) {
-        const TileStatic& tile = domain.tiles[y / kTileSide * domain.tilesX + x / kTileSide];
-        const uint32_t lane = y % kTileSide * kTileSide + x % kTileSide;
-        const uint64_t mask = uint64_t(tile.rimMaskHigh) << 32 | tile.rimMaskLow;
-        const uint64_t below = mask & ((uint64_t(1) << lane) - 1);
-        const uint32_t record = tile.rimBase + uint32_t(std::popcount(below));
-        return domain.links[size_t(record) * 8 + k];
-    }
-    const int nx = int(x) + kRingX[k], ny = int(y) + kRingY[k];
-    if (nx < 0 || ny < 0 || nx >= int(domain.width) || ny >= int(domain.height)) return kNone;
-    return uint32_t(ny) * domain.width + uint32_t(nx);
 }
 
 // Places of texels, m, stretched; and from them the lengths that the front needs to know.

@@ -65,6 +65,7 @@ void World::collectReadbacks() {
             if (journal_) noteHash(map, *readback);
             if ((*owned)->forecast && (*owned)->forecast->pending)
                 takeForecast(**owned, map, *readback);
+            if ((*owned)->breaks) takeBreaks(**owned, map, *readback);
             BurnMapCopy& copy = (*owned)->map;
             if (!copy.pending || copy.ticks.size() != map.ticks.size()) continue;
             std::copy(map.ticks.begin(), map.ticks.end(), copy.ticks.begin());

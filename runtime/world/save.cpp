@@ -653,6 +653,9 @@ void World::load(std::span<const std::byte> bytes) {
     windGrid_.shape = saved.windGrid.shape;
     windGrid_.points.swap(saved.windGrid.points);
     applySaved(saved, latches);
+    for (const gpu::RestoredObject& one : restored)
+        if (Object& object = **objects_.at(one.image.object); object.breaks)
+            settleBreaks(object, one.image.ticks, one.image.heat, uint32_t(clock_.tick));
     tags_.swap(tags);
     pending_.swap(saved.pending);
     for (SavedField& field : saved.fields)
@@ -795,6 +798,7 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
         again(object.forecast->wished, object.forecast->pending);
         object.forecast->told = false;
     }
+    if (object.breaks) settleBreaks(object, {}, {}, 0);  // it has not burnt, or is restored next
     object.remote = {};
     object.remoteSent = false;
     object.remoteDue = from.due;

@@ -52,6 +52,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
         planProbes();
         if (journal_) planHashes(time);
         planSave();
+        planBreaks(time.after.tick);
     } catch (...) {
         pending_.resize(waiting);
         throw;
@@ -270,6 +271,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
         }
     }
     commitPlays(frameIndex);
+    commitBreaks(frameIndex);
     for (uint32_t slot : frame_.burnMaps) {
         Object& object = **objects_.at(slot);
         const auto send = [&](bool& wished, bool& pending) {

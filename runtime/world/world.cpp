@@ -123,6 +123,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       tags_(memory),
       pending_(memory),
       found_(memory),
+      holds_(memory),
       jetAreas_(memory),
       jetFlux_(memory),
       jetSlots_(memory),
@@ -391,6 +392,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     object.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
     object.remoteDue = true;
     object.firstFrame = lastFrame_ + 1;
+    object.breaks = makeBreaks(def, mesh);
     object.slowness = std::move(slowness);
     init.slowness = object.slowness;
     const uint32_t burnable = object.texels;
@@ -402,6 +404,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
         findRoom(frame_.latches, objects_.slotCount());
         findRoom(frame_.updates, objects_.slotCount());
         findRoom(frame_.burnMaps, objects_.slotCount());
+        findRoom(frame_.breaks, objects_.slotCount());
         findRoom(touched_, objects_.slotCount());
         findRoom(jetSlots_, objects_.slotCount());
         findRoom(remote_.due, objects_.slotCount());

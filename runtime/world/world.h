@@ -19,6 +19,7 @@
 #include "gpu/backend.h"
 #include "mesh/burn_domain.h"
 #include "mesh/front/arrivals.h"
+#include "mesh/hold.h"
 #include "mesh/remote_tiles.h"
 #include "volume/depth_picture.h"
 #include "world/clock.h"
@@ -46,6 +47,7 @@ struct MeshEntry {
     uint64_t hash = 0;                         // of the domain, once a save asked; 0: not yet
     InnerSkin innerSkin = InnerSkin::unknown;  // that the backend has
     float innerWall = 0;                       // m, how deep that is
+    core::Owned<mesh::Pieces> pieces;          // once an object asks what breaks
     uint32_t refinements = 0;  // bit per depth that the backend has; 16 higher: as published
     // By depth, once an object is refined by the published scheme.
     std::array<core::Owned<mesh::ArpModel>, gpu::kRefineDepth + 1> arps;
@@ -71,6 +73,20 @@ struct Forecast {  // of an object that was asked when fire arrives
     bool told = false;                         // it began
     bool wished = false;                       // with the state of the next frame
     bool pending = false;                      // that is on its way
+};
+
+// Of an object whose host asks what breaks, see breaks.cpp.
+struct Breaks {
+    explicit Breaks(std::pmr::memory_resource* memory) : lost(memory) {}
+    float share = 0, area = 0;    // as in its def; 0: not asked
+    bool hangs = false;           // from its pins; else it stands
+    std::array<FwPin, 8> pins{};  // object space
+    uint32_t pinCount = 0;
+    std::pmr::vector<bool> lost;  // by texel: it hung on nothing when it was last looked for
+    bool shareTold = false;
+    bool waits = false;    // some of what caught is not gone yet
+    bool pending = false;  // its state as of that frame is on its way
+    uint64_t frameIndex = 0;
 };
 
 // What happened to an object's fire, and what of it the host was told. In ticks.
@@ -121,6 +137,7 @@ struct Object {
     uint64_t countersFrame = 0;
     BurnMapCopy map;
     core::Owned<Forecast> forecast;  // null: never asked for
+    core::Owned<Breaks> breaks;      // null: not asked for
     uint64_t changes = 0;            // of what its fire will do, that we know of
     Play play;                       // the baked burn that it plays
     // Of a skinned object: the host's vertices, m, in its mesh's shape; 3 each. Normals are
@@ -506,6 +523,7 @@ class World {
               plays(memory),
               probes(memory),
               burnMaps(memory),
+              breaks(memory),
               images(memory),
               remote(memory),
               fieldRuns(memory),
@@ -534,6 +552,7 @@ class World {
         std::pmr::vector<PlayOf> plays;     // of those that play a baked burn
         std::pmr::vector<gpu::Probe> probes;
         std::pmr::vector<uint32_t> burnMaps;
+        std::pmr::vector<uint32_t> breaks;                   // slots of those looked at for breaks
         std::pmr::vector<uint32_t> images;                   // slots of objects that a save takes
         std::pmr::vector<core::Owned<RemoteTables>> remote;  // the first `remoteUsed` of them
         size_t remoteUsed = 0;
@@ -707,6 +726,17 @@ class World {
     void takeForecast(Object& object, const gpu::BurnMap& map,
                       const gpu::Readback& readback) noexcept;
     void runForecasts() noexcept;
+    // breaks.cpp
+    core::Owned<Breaks> makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry);
+    void planBreaks(uint64_t end) noexcept;
+    void commitBreaks(uint64_t frameIndex) noexcept;
+    void markBearers(const Object& object) noexcept;
+    void findBreaks(Object& object, std::span<const uint32_t> ticks,
+                    std::span<const gpu::uvec2> heat, uint32_t now, const uint64_t* tells) noexcept;
+    void takeBreaks(Object& object, const gpu::BurnMap& map,
+                    const gpu::Readback& readback) noexcept;
+    void settleBreaks(Object& object, std::span<const uint32_t> ticks,
+                      std::span<const gpu::uvec2> heat, uint32_t now) noexcept;
     // save.cpp
     [[nodiscard]] uint64_t meshHash(const Object& object) noexcept;
     [[nodiscard]] uint64_t assetOf(const Object& object) noexcept;
@@ -847,6 +877,7 @@ class World {
     std::pmr::vector<Tag> tags_;
     std::pmr::vector<PendingTexel> pending_;
     std::pmr::vector<uint32_t> found_;  // scratch of ball queries
+    mesh::HoldScratch holds_;           // room for the largest that asks what breaks
     // Scratch of a jet's ray: of the texels found, 1e-9 m^2 and W/m^2.
     std::pmr::vector<uint64_t> jetAreas_;
     std::pmr::vector<uint32_t> jetFlux_;

@@ -552,6 +552,13 @@ typedef struct FwBurnableMeshDef {
                                          finest edge */
     float heatStep;                   /* delta r: what r grows by in a step of 1/32 s, [0, 1000]; 0,
                                          default: as fast as the materials' fastest fire */
+    /* FW_EVENT_STRUCTURE_BROKE, looked for twice a second of the world's time. What is gone is where holes are:
+     * what burnt out, and gave way. Costs a look at each texel; with a device a copy of its burn map, 12 bytes a texel. */
+    float breakShare;                 /* (0, 1]: raise it once that much of its surface is gone; 0, default: never */
+    float breakArea;                  /* m^2, (0, 1e6]: raise it for each part of so much or more that has lost its
+                                         way, over what is left, to where it stands: the lowest two texels of what
+                                         hung together when the mesh was made, as it is turned now; of
+                                         FW_BURNABLE_SHELL to its pins. 0, default: never */
 } FwBurnableMeshDef;
 static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
     FwBurnableMeshDef d; fwInitDef(FW_DEF_BURNABLE_MESH, &d, (uint32_t)sizeof d); return d;
@@ -1087,8 +1094,15 @@ typedef enum FwEventType {
                                    it is simulated; value: s since world start */
     FW_EVENT_FLASHED_OVER = 10, /* a room did, see FwRoomDef; tag: index1 of its FwRoomId; object: null;
                                    position: its middle; value: s since world start */
+    FW_EVENT_STRUCTURE_BROKE = 11, /* of objects with breakShare or breakArea: the host may break `object`; tag:
+                                   FwBreakKind; value: m^2 of its surface that are concerned */
     FW_EVENT_TYPE_FORCE32 = 0x7fffffff
 } FwEventType;
+typedef enum FwBreakKind {
+    FW_BREAK_PART = 1,          /* a part of what is left of it hangs on nothing any more; position: the middle of it */
+    FW_BREAK_SHARE = 2,         /* so much of it is gone; position: of its box's middle */
+    FW_BREAK_KIND_FORCE32 = 0x7fffffff
+} FwBreakKind;
 typedef struct FwEvent {        /* 64 bytes for ever */
     uint32_t type, tag;         /* FwEventType; tag: of FW_EVENT_TAG_REACHED the host's number */
     uint64_t userData;          /* the object's */

@@ -1,0 +1,199 @@
+// What of an object is gone, and what no longer hangs on anything: what a host should break. Looked
+// for in the states of objects that are read back twice a second of the world's time, in integers;
+// it changes nothing of the fire.
+#include "mesh/hold.h"
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+namespace {
+
+constexpr uint64_t kBreaksTicks = gpu::kTicksPerSecond / 2;
+constexpr float kFeetReach = 2;  // texels above the lowest
+
+// m^2 of the object's for 1e-9 m^2 of its mesh.
+double areaScale(const components::BurnableMesh& object) noexcept {
+    return 1e-9 * double(object.pose.scale) * double(object.pose.scale);
+}
+
+uint64_t areaOf(const mesh::BurnDomain& domain, uint32_t texel) noexcept {
+    return uint64_t(std::llround(double(domain.areas[texel]) * 1e9));
+}
+
+}  // namespace
+
+// Null where the host does not ask.
+core::Owned<Breaks> World::makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry) {
+    components::checkValue(def.breakShare, "FwBurnableMeshDef::breakShare", 0, 1);
+    components::checkValue(def.breakArea, "FwBurnableMeshDef::breakArea", 0, 1e6f);
+    if (def.breakShare == 0 && def.breakArea == 0) return {};
+    const mesh::BurnDomain& domain = *entry.domain;
+    if (!entry.pieces) {
+        auto pieces = core::Owned<mesh::Pieces>::make(memory_, memory_);
+        mesh::findPieces(domain, *pieces);
+        entry.pieces = std::move(pieces);
+    }
+    mesh::reserveHold(domain, *entry.pieces, holds_);
+    auto breaks = core::Owned<Breaks>::make(memory_, memory_);
+    breaks->share = def.breakShare;
+    breaks->area = def.breakArea;
+    if ((def.flags & FW_BURNABLE_SHELL) != 0) {
+        breaks->hangs = true;
+        breaks->pinCount = def.pinCount;
+        std::copy_n(def.pins, def.pinCount, breaks->pins.begin());
+    }
+    breaks->lost.assign(domain.texelCount(), false);
+    return breaks;
+}
+
+// Whose turn it is: twice a second each, not all in the same frame. Of a frame that a save is made
+// of all, so that what is told is what went before it.
+void World::planBreaks(uint64_t end) noexcept {
+    frame_.breaks.clear();
+    for (const Object* object : touched_) {
+        const Breaks* breaks = object->breaks.get();
+        if (!breaks || breaks->pending || !(object->story.active || breaks->waits)) continue;
+        const uint64_t off = uint64_t(object->slot) * gpu::kStepTicks;
+        const bool turn = (clock_.tick + off) / kBreaksTicks != (end + off) / kBreaksTicks;
+        if (!turn && frame_.images.empty()) continue;
+        const uint32_t slot = object->slot;  // room for all was found at their creation
+        if (std::find(frame_.burnMaps.begin(), frame_.burnMaps.end(), slot) ==
+            frame_.burnMaps.end())
+            frame_.burnMaps.push_back(slot);
+        frame_.breaks.push_back(slot);
+    }
+}
+
+void World::commitBreaks(uint64_t frameIndex) noexcept {
+    for (const uint32_t slot : frame_.breaks) {
+        Breaks& breaks = *(*objects_.at(slot))->breaks;
+        breaks.pending = true;
+        breaks.frameIndex = frameIndex;
+    }
+}
+
+// Texels that bear the rest: where it is pinned, or what it stands on.
+void World::markBearers(const Object& object) noexcept {
+    const mesh::BurnDomain& domain = domainOf(object);
+    const Breaks& breaks = *object.breaks;
+    if (!breaks.hangs) {
+        // How much higher a metre along each axis of the object is.
+        float zero[3] = {}, origin[3], most = 0, rises[3];
+        components::toWorld(object.data.pose, zero, origin);
+        for (size_t i = 0; i < 3; ++i) {
+            float axis[3] = {}, end[3];
+            axis[i] = 1;
+            components::toWorld(object.data.pose, axis, end);
+            rises[i] = 0;
+            for (size_t k = 0; k < 3; ++k) rises[i] += def_.up[k] * (end[k] - origin[k]);
+            most = std::max(most, std::abs(rises[i]));
+        }
+        int32_t up[3];
+        for (size_t i = 0; i < 3; ++i) up[i] = int32_t(std::lround(rises[i] / most * 1024));
+        const float reach = kFeetReach * 1024 * domain.texelSide / domain.quantum;
+        mesh::markFeet(domain, *meshes_.at(object.data.meshSlot)->pieces, up, int64_t(reach),
+                       holds_);
+        return;
+    }
+    for (uint32_t i = 0; i < domain.texelCount(); ++i) {
+        if (!domain.real(i)) continue;
+        const mesh::TexelPosition& p = domain.texels[i];
+        const uint16_t units[3] = {p.x, p.y, p.z};
+        float at[3];
+        for (int k = 0; k < 3; ++k) at[k] = domain.origin[k] + domain.quantum * float(units[k]);
+        for (uint32_t n = 0; n < breaks.pinCount; ++n) {
+            const FwPin& pin = breaks.pins[n];
+            float along = 0, length = 0, away = 0;
+            for (int k = 0; k < 3; ++k) {
+                along += (at[k] - pin.from[k]) * (pin.to[k] - pin.from[k]);
+                length += (pin.to[k] - pin.from[k]) * (pin.to[k] - pin.from[k]);
+            }
+            const float part = length > 0 ? std::clamp(along / length, 0.0f, 1.0f) : 0.0f;
+            for (int k = 0; k < 3; ++k) {
+                const float off = at[k] - pin.from[k] - part * (pin.to[k] - pin.from[k]);
+                away += off * off;
+            }
+            if (away <= pin.radius * pin.radius) holds_.marks[i] |= mesh::kHoldBears;
+        }
+    }
+}
+
+// `tells`: as of a frame; null where what is found is known already.
+void World::findBreaks(Object& object, std::span<const uint32_t> ticks,
+                       std::span<const gpu::uvec2> heat, uint32_t now,
+                       const uint64_t* tells) noexcept {
+    const mesh::BurnDomain& domain = domainOf(object);
+    Breaks& breaks = *object.breaks;
+    if (ticks.size() != domain.texelCount()) return;
+    std::array<uint32_t, gpu::kMaterialsPerObject> holes{};
+    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
+        holes[i] = components::holeTicks(object.data, i, def_.paceFactor);
+    const bool heated = heat.size() == ticks.size();
+    uint64_t all = 0, gone = 0;
+    breaks.waits = false;
+    holds_.marks.assign(domain.texelCount(), 0);
+    for (uint32_t i = 0; i < domain.texelCount(); ++i) {
+        if (!domain.real(i)) continue;
+        const uint64_t area = areaOf(domain, i);
+        all += area;
+        const uint32_t t = ticks[i], opens = holes[texelMaterial(object, i)];
+        bool open = false;
+        if (opens != 0 && gpu::isSource(t)) {
+            open = heated ? gpu::gateLets(gpu::kEventGate, opens, gpu::unpackHeat(heat[i]), t, now)
+                          : t <= now && now - t >= opens;
+            breaks.waits = breaks.waits || !open;
+        }
+        if (open) gone += area;
+        if (!open && !breaks.lost[i]) holds_.marks[i] = mesh::kHoldStands;
+    }
+    const double scale = areaScale(object.data);
+    const bool much = breaks.share > 0 && double(gone) >= double(breaks.share) * double(all);
+    if (much && !breaks.shareTold && tells) {
+        float middle[3], place[3];
+        for (int i = 0; i < 3; ++i) middle[i] = (domain.boundsLow[i] + domain.boundsHigh[i]) * 0.5f;
+        components::toWorld(object.data.pose, middle, place);
+        raise(FW_EVENT_STRUCTURE_BROKE, &object, FW_BREAK_SHARE, *tells, place,
+              float(double(gone) * scale));
+    }
+    breaks.shareTold = much;
+    if (!(breaks.area > 0) || gone == 0 || (breaks.hangs && breaks.pinCount == 0)) return;
+    markBearers(object);
+    mesh::markHeld(domain, holds_);
+    for (uint32_t from = 0; mesh::nextLost(domain, from, holds_);) {
+        uint64_t area = 0;
+        double sum[3] = {};
+        for (const uint32_t texel : holds_.lost) {
+            breaks.lost[texel] = true;
+            area += areaOf(domain, texel);
+            float place[3];
+            texelPosition(object, texel, place);
+            for (int k = 0; k < 3; ++k) sum[k] += double(place[k]);
+        }
+        if (!tells || double(area) * scale < double(breaks.area)) continue;
+        float middle[3];
+        for (int k = 0; k < 3; ++k) middle[k] = float(sum[k] / double(holds_.lost.size()));
+        raise(FW_EVENT_STRUCTURE_BROKE, &object, FW_BREAK_PART, *tells, middle,
+              float(double(area) * scale));
+    }
+}
+
+void World::takeBreaks(Object& object, const gpu::BurnMap& map,
+                       const gpu::Readback& readback) noexcept {
+    Breaks& breaks = *object.breaks;
+    if (!breaks.pending || readback.frameIndex < breaks.frameIndex) return;
+    breaks.pending = false;
+    findBreaks(object, map.ticks, map.heat, readback.endTick, &readback.frameIndex);
+}
+
+// As a save has it: what is gone in it was told before it was made.
+void World::settleBreaks(Object& object, std::span<const uint32_t> ticks,
+                         std::span<const gpu::uvec2> heat, uint32_t now) noexcept {
+    Breaks& breaks = *object.breaks;
+    breaks.pending = breaks.shareTold = false;
+    std::fill(breaks.lost.begin(), breaks.lost.end(), false);
+    findBreaks(object, ticks, heat, now, nullptr);
+}
+
+}  // namespace fw::world

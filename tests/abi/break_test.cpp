@@ -1,0 +1,210 @@
+// FW_EVENT_STRUCTURE_BROKE: boards that burn through in the middle lose what stood on it, sheets
+// what hung on it, and what is gone of a whole is told once; on both backends alike, and through
+// saves.
+#include "abi/busy_world.h"
+
+namespace fw::test::break_test {
+namespace {
+
+using namespace host;
+
+constexpr float kWide = 0.4f, kHigh = 0.8f;
+constexpr int kRows = 16;
+
+// A board that stands upright on its short side, of stone but for two bands that burn: at a
+// quarter of its height and at three.
+struct Board {
+    explicit Board(uint32_t backend, uint32_t flags = 0, float share = 0, float area = 0.01f,
+                   bool pinned = false)
+        : sheet(kWide, kHigh, kRows) {
+        FwContextDef contextDef = fwDefaultContextDef();
+        contextDef.backend = backend;
+        contextDef.callbacks = host.callbacks();
+        FwErrorInfo error{};
+        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        FwWorldDef def = fwDefaultWorldDef();
+        def.paceFactor = 10;
+        ok(fwCreateWorld(context, &def, &world));
+        FwMeshDef meshDef = sheet.def(64);
+        std::vector<uint8_t> of;
+        for (int row = 0; row < kRows; ++row)
+            of.insert(of.end(), size_t(kRows) * 2, row == 4 || row == 11 ? 0 : 1);
+        meshDef.triangleMaterials = of.data();
+        FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
+        ok(fwWorld_CreateMesh(world, &meshDef, &made.mesh));
+        FwMaterialDef material = fwDefaultMaterialDef();
+        ok(fwInitMaterialPreset(&material, FW_MATERIAL_PAPER));
+        ok(fwWorld_CreateMaterial(world, &material, &made.materials[0]));
+        made.flags |= flags;
+        made.userData = 77;
+        made.breakShare = share;
+        made.breakArea = area;
+        const float upright[16] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+        std::copy_n(upright, 16, made.transform);
+        FwPin pin{};
+        pin.to[0] = kWide;
+        pin.from[2] = pin.to[2] = kHigh;
+        pin.radius = 0.03f;
+        if (pinned) {
+            made.flags |= FW_BURNABLE_SHELL;
+            made.pins = &pin;
+            made.pinCount = 1;
+        }
+        ok(fwWorld_CreateBurnableMesh(world, &made, &id));
+    }
+    ~Board() {
+        fwDestroyContext(context);
+        EXPECT_EQ(0, host.blocks);
+    }
+    Board(const Board&) = delete;
+    Board& operator=(const Board&) = delete;
+
+    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
+    void light(int row, float x = kWide / 2, float radius = 0.52f * kWide) {
+        FwIgnitionDef ball = fwDefaultIgnitionDef();
+        ball.position[0] = x;
+        ball.position[1] = (float(row) + 0.5f) * kHigh / kRows;
+        ball.radius = radius;
+        uint32_t texels = 0;
+        ok(fwWorld_Ignite(world, &ball, &texels));
+        EXPECT_LT(0u, texels);
+    }
+    void run(double seconds, float deltaTime = 1.0f / 32) {
+        for (double t = 0; t < seconds - 1e-9; t += double(deltaTime)) {
+            ok(fwWorld_Step(world, deltaTime));
+            poll();
+        }
+    }
+    void poll() {
+        FwEvent some[16];
+        const uint32_t count = fwWorld_PollEvents(world, some, 16);
+        for (uint32_t i = 0; i < count; ++i)
+            if (some[i].type == FW_EVENT_STRUCTURE_BROKE) broke.push_back(some[i]);
+    }
+
+    Host host;
+    Sheet sheet;
+    FwContext* context = nullptr;
+    FwWorld* world = nullptr;
+    FwBurnableMeshId id{};
+    std::vector<FwEvent> broke;
+};
+
+constexpr float kRowArea = kWide * kHigh / kRows;
+constexpr double kBurns = 20;  // s that a band needs, and some more
+
+TEST(AbiBreak, WhatStoodOnItFallsOnce) {
+    for (const uint32_t flags : {0u, uint32_t(FW_BURNABLE_LITE)}) {
+        Board board(FW_BACKEND_CPU, flags);
+        board.light(11, kWide / 2, 0.02f);
+        board.run(kBurns);
+        ASSERT_EQ(1u, board.broke.size());
+        const FwEvent& top = board.broke[0];
+        EXPECT_EQ(uint32_t(FW_BREAK_PART), top.tag);
+        EXPECT_EQ(77u, top.userData);
+        EXPECT_EQ(board.id.index1, top.object.index1);
+        EXPECT_NEAR(4 * kRowArea, top.value, 0.3f * kRowArea);
+        EXPECT_NEAR(14 * kHigh / kRows, top.position[1], 0.03f);
+        EXPECT_NEAR(kWide / 2, top.position[0], 0.02f);
+        board.light(4, kWide / 2, 0.02f);  // what stood between follows, without the top
+        board.run(kBurns);
+        ASSERT_EQ(2u, board.broke.size());
+        EXPECT_NEAR(6 * kRowArea, board.broke[1].value, 0.5f * kRowArea);
+        EXPECT_NEAR(8 * kHigh / kRows, board.broke[1].position[1], 0.03f);
+    }
+}
+
+TEST(AbiBreak, SheetsHangFromTheirPins) {
+    Board sheet(FW_BACKEND_CPU, 0, 0, 0.01f, true);
+    sheet.light(11);
+    sheet.run(kBurns);
+    ASSERT_EQ(1u, sheet.broke.size());
+    EXPECT_NEAR(11 * kRowArea, sheet.broke[0].value, 0.7f * kRowArea);
+    EXPECT_NEAR(5.5f * kHigh / kRows, sheet.broke[0].position[1], 0.04f);
+}
+
+TEST(AbiBreak, TellsWhatIsAskedAlone) {
+    Board none(FW_BACKEND_CPU, 0, 0, 0), large(FW_BACKEND_CPU, 0, 0, 5 * kRowArea),
+        whole(FW_BACKEND_CPU, FW_BURNABLE_NO_HOLES), share(FW_BACKEND_CPU, 0, 0.09f, 0);
+    for (Board* board : {&none, &large, &whole, &share}) {
+        board->light(11);
+        board->run(kBurns);
+    }
+    EXPECT_TRUE(none.broke.empty());
+    EXPECT_TRUE(large.broke.empty());
+    EXPECT_TRUE(whole.broke.empty());
+    EXPECT_TRUE(share.broke.empty());  // 6 % are gone
+    for (Board* board : {&none, &large, &whole, &share}) {
+        board->light(4);
+        board->run(kBurns);
+    }
+    EXPECT_TRUE(none.broke.empty());
+    EXPECT_EQ(1u, large.broke.size());
+    EXPECT_TRUE(whole.broke.empty());
+    ASSERT_EQ(1u, share.broke.size());
+    EXPECT_EQ(uint32_t(FW_BREAK_SHARE), share.broke[0].tag);
+    EXPECT_GT(share.broke[0].value, 0.09f * kWide * kHigh * 0.98f);
+    EXPECT_NEAR(kHigh / 2, share.broke[0].position[1], 1e-5f);
+}
+
+// Of the same frames, and on from a save as if it had not been loaded.
+TEST(AbiBreak, BothBackendsTellTheSame) {
+    Board cpu(FW_BACKEND_CPU, 0, 0.09f), device(FW_BACKEND_VULKAN, 0, 0.09f);
+    if (!device.world) GTEST_SKIP() << "there is no such backend here";
+    Bytes save;
+    for (Board* board : {&cpu, &device}) {
+        board->light(11);
+        board->run(kBurns);
+        board->light(4, 0, 0.02f);
+        board->run(0.5);
+        if (board == &cpu)
+            save = saveOf(cpu.world);
+        else
+            (void)saveOf(device.world);
+        board->run(kBurns);
+        for (int i = 0; i < 4; ++i) {  // what is on its way
+            board->ok(fwWorld_Step(board->world, 0));
+            board->poll();
+        }
+    }
+    ASSERT_EQ(3u, cpu.broke.size());
+    ASSERT_EQ(3u, device.broke.size());
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(cpu.broke[i].tag, device.broke[i].tag);
+        EXPECT_EQ(cpu.broke[i].value, device.broke[i].value);
+        EXPECT_EQ(cpu.broke[i].position[1], device.broke[i].position[1]);
+    }
+    Board loaded(FW_BACKEND_CPU, 0, 0.09f);
+    loaded.ok(fwWorld_Load(loaded.world, save.data(), save.size()));
+    loaded.run(kBurns);
+    ASSERT_EQ(2u, loaded.broke.size());  // not the top again
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(cpu.broke[i + 1].tag, loaded.broke[i].tag);
+        EXPECT_EQ(cpu.broke[i + 1].value, loaded.broke[i].value);
+    }
+    // And back in time, what was told comes again.
+    cpu.broke.clear();
+    cpu.ok(fwWorld_Load(cpu.world, save.data(), save.size()));
+    cpu.run(kBurns);
+    EXPECT_EQ(2u, cpu.broke.size());
+}
+
+TEST(AbiBreak, NamesWhatIsWrong) {
+    SheetWorld w(evenMaterial(0.02f, 5));
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    EXPECT_EQ(0, def.breakShare);
+    EXPECT_EQ(0, def.breakArea);
+    def.mesh = w.mesh;
+    FwBurnableMeshId id{};
+    def.breakShare = 1.5f;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateBurnableMesh(w.world, &def, &id));
+    EXPECT_NE(std::string::npos,
+              lastMessage(w.world).find("FwBurnableMeshDef::breakShare is 1.5; the limits are"));
+    def.breakShare = 0;
+    def.breakArea = -1;
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateBurnableMesh(w.world, &def, &id));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("FwBurnableMeshDef::breakArea is -1"));
+}
+
+}  // namespace
+}  // namespace fw::test::break_test
