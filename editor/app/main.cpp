@@ -66,6 +66,13 @@ double sinceStart() {
            std::strtod(field.c_str(), nullptr) / double(sysconf(_SC_CLK_TCK));
 }
 
+// s that all threads have worked, those of a device of the CPU's among them.
+double processorTime() {
+    timespec used{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return double(used.tv_sec) + 1e-9 * double(used.tv_nsec);
+}
+
 // ImGui wants a cursor shown; GLFW knows four of them.
 struct Cursors {
     GLFWcursor* made[ImGuiMouseCursor_COUNT] = {};
@@ -130,8 +137,8 @@ class Program {
         fwapp::showApp(app);
         ImGui::Render();
         fwapp::recordPages(app, frame);
-        frames_.beginOutput(frame);
-        ui_->draw(frame.commands, frame.slot, *ImGui::GetDrawData());
+        const bool fresh = frames_.beginOutput(frame);
+        ui_->draw(frame.commands, frame.slot, *ImGui::GetDrawData(), fresh);
         frames_.end(frame);
         return true;
     }
@@ -203,7 +210,8 @@ class Program {
         fwapp::dropRecovery();
         fwapp::saveUserState(app_->user);
         if (wishes_.report && playedSeconds_ > 0)
-            std::printf("played at %.1f frames a second\n", playedFrames_ / playedSeconds_);
+            std::printf("played at %.1f frames a second, %.1f ms of processor time each\n",
+                        playedFrames_ / playedSeconds_, 1000 * playedWork_ / playedFrames_);
     }
 
     // Without a window, one frame of it, as soon as it can be had.
@@ -292,10 +300,13 @@ class Program {
         if (app.toasts.size() > reportedToasts_)
             print("told: " + app.toasts.back().title + ": " + app.toasts.back().text);
         reportedToasts_ = app.toasts.size();
+        const double work = processorTime();
         if (app.playing && ready) {
             ++playedFrames_;
             playedSeconds_ += double(app.deltaTime);
+            playedWork_ += work - workBefore_;
         }
+        workBefore_ = work;
     }
 
     void rescale() {
@@ -321,6 +332,7 @@ class Program {
     std::unique_ptr<fwapp::App> app_;
     float scale_ = 0;
     double reportedResult_ = -1e9, playedSeconds_ = 0;
+    double playedWork_ = 0, workBefore_ = 0;  // s of processor time, the device's too
     bool reportedReady_ = false;
     std::string reportedWhy_, reportedPreview_;
     bool reportedPaintable_ = false;

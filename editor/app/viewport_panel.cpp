@@ -945,7 +945,9 @@ void showPicture(App& app, const Rect& rect) {
 }
 
 void showViewport(App& app, const Rect& rect) {
-    ImDrawList* list = beginPanel("##view", rect, colors::gap);
+    // Below a picture nothing is painted: it covers all of it.
+    const bool covered = app.live.burn() && app.live.target.texture();
+    ImDrawList* list = beginPanel("##view", rect, covered ? 0 : colors::gap);
     constexpr double kStill = 0.3;  // s until what stood still is sharp again
     if (hand().busy != Busy::kNone || ImGui::GetIO().MouseWheel != 0) app.movedAt = app.now;
     const bool moves =

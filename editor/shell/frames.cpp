@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 namespace fwui {
 
@@ -11,10 +12,10 @@ using sample::checkVulkan;
 
 Frames::Frames(const sample::VulkanHost& host, const char* title, VkExtent2D size)
     : host_(host), size_(size) {
-    VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
     if (host.made.windowed) {
         window = std::make_unique<sample::Window>(host, title, size.width, size.height);
-        format = window->format;
+        if (!window->takesCopies)
+            throw sample::Failure("pictures cannot be copied to this display's windows");
     }
     for (Slot& slot : slots_) {
         VkCommandPoolCreateInfo poolInfo{};
@@ -37,14 +38,13 @@ Frames::Frames(const sample::VulkanHost& host, const char* title, VkExtent2D siz
         checkVulkan(vkCreateSemaphore(host.device, &semaphore, nullptr, &slot.available),
                     "vkCreateSemaphore");
     }
-    makePass(format);
-    makeFramebuffers();
+    makePass(window ? window->format : VK_FORMAT_R8G8B8A8_UNORM);
+    makeOutput();
 }
 
 Frames::~Frames() {
     vkDeviceWaitIdle(host_.device);
-    dropFramebuffers();
-    host_.destroy(output_);
+    dropOutput();
     host_.destroy(readback_);
     for (Slot& slot : slots_) {
         vkDestroyCommandPool(host_.device, slot.pool, nullptr);
@@ -58,12 +58,11 @@ void Frames::makePass(VkFormat format) {
     VkAttachmentDescription output{};
     output.format = format;
     output.samples = VK_SAMPLE_COUNT_1_BIT;
-    output.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    output.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
     output.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
     output.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
     output.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    output.finalLayout =
-        window ? VK_IMAGE_LAYOUT_PRESENT_SRC_KHR : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    output.initialLayout = output.finalLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
     VkSubpassDescription subpass{};
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
@@ -94,44 +93,43 @@ void Frames::makePass(VkFormat format) {
                 "vkCreateRenderPass");
 }
 
-void Frames::dropFramebuffers() {
-    for (VkFramebuffer framebuffer : framebuffers_)
-        vkDestroyFramebuffer(host_.device, framebuffer, nullptr);
-    framebuffers_.clear();
+void Frames::dropOutput() {
+    vkDestroyFramebuffer(host_.device, framebuffer_, nullptr);
+    framebuffer_ = VK_NULL_HANDLE;
+    host_.destroy(output_);
 }
 
-void Frames::makeFramebuffers() {
-    dropFramebuffers();
-    std::vector<VkImageView> views;
-    if (window) {
-        views = window->views;
-        generation_ = window->generation;
-    } else {
-        if (!output_.image) {
-            sample::ImageRequest request;
-            request.width = size_.width;
-            request.height = size_.height;
-            request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-            output_ = host_.createImage(request);
-            readback_ = host_.createBuffer(VkDeviceSize{size_.width} * size_.height * 4,
-                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT, true);
-        }
-        views.push_back(output_.view);
-    }
-    for (const VkImageView& view : views) {
-        VkFramebufferCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
-        info.renderPass = outputPass;
-        info.attachmentCount = 1;
-        info.pAttachments = &view;
-        info.width = extent().width;
-        info.height = extent().height;
-        info.layers = 1;
-        VkFramebuffer made = VK_NULL_HANDLE;
-        checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &made),
-                    "vkCreateFramebuffer");
-        framebuffers_.push_back(made);
-    }
+void Frames::makeOutput() {
+    checkVulkan(vkDeviceWaitIdle(host_.device), "vkDeviceWaitIdle");
+    dropOutput();
+    if (window) generation_ = window->generation;
+    sample::ImageRequest request;
+    request.width = extent().width;
+    request.height = extent().height;
+    if (window) request.format = window->format;
+    request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    output_ = host_.createImage(request);
+    if (!window)
+        readback_ = host_.createBuffer(VkDeviceSize{size_.width} * size_.height * 4,
+                                       VK_BUFFER_USAGE_TRANSFER_DST_BIT, true);
+    host_.runNow([&](VkCommandBuffer commands) {
+        sample::imageBarrier(
+            commands, output_.image, VK_IMAGE_LAYOUT_UNDEFINED,
+            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0,
+            VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+            VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT);
+    });
+    fresh_ = true;
+    VkFramebufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+    info.renderPass = outputPass;
+    info.attachmentCount = 1;
+    info.pAttachments = &output_.view;
+    info.width = request.width;
+    info.height = request.height;
+    info.layers = 1;
+    checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &framebuffer_),
+                "vkCreateFramebuffer");
 }
 
 bool Frames::begin(Frame& frame) {
@@ -139,7 +137,7 @@ bool Frames::begin(Frame& frame) {
     checkVulkan(vkWaitForFences(host_.device, 1, &slot.fence, VK_TRUE, ~0ull), "vkWaitForFences");
     completed_ = std::max(completed_, slot.index);
     if (window && !window->acquire(slot.available, imageIndex_)) return false;
-    if (window && window->generation != generation_) makeFramebuffers();
+    if (window && window->generation != generation_) makeOutput();
     checkVulkan(vkResetFences(host_.device, 1, &slot.fence), "vkResetFences");
     checkVulkan(vkResetCommandPool(host_.device, slot.pool, 0), "vkResetCommandPool");
     VkCommandBufferBeginInfo info{};
@@ -155,23 +153,37 @@ bool Frames::begin(Frame& frame) {
     return true;
 }
 
-void Frames::beginOutput(const Frame& frame) {
-    VkClearValue clear{};
-    clear.color.float32[3] = 1;
+bool Frames::beginOutput(const Frame& frame) {
     VkRenderPassBeginInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
     info.renderPass = outputPass;
-    info.framebuffer = framebuffers_[window ? imageIndex_ : 0];
+    info.framebuffer = framebuffer_;
     info.renderArea = {{0, 0}, frame.extent};
-    info.clearValueCount = 1;
-    info.pClearValues = &clear;
     vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+    return std::exchange(fresh_, false);
+}
+
+void Frames::copyToWindow(const Frame& frame) const {
+    const VkImage to = window->images[imageIndex_];
+    sample::imageBarrier(frame.commands, to, VK_IMAGE_LAYOUT_UNDEFINED,
+                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT, 0,
+                         VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+    VkImageCopy copy{};
+    copy.srcSubresource = copy.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.extent = {frame.extent.width, frame.extent.height, 1};
+    vkCmdCopyImage(frame.commands, output_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    sample::imageBarrier(frame.commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                         VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                         VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0);
 }
 
 void Frames::end(const Frame& frame) {
     vkCmdEndRenderPass(frame.commands);
     Slot& slot = slots_[frame.slot];
-    if (!window) {
+    if (window) {
+        copyToWindow(frame);
+    } else {
         VkBufferImageCopy region{};
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         region.imageExtent = {size_.width, size_.height, 1};
@@ -192,7 +204,7 @@ void Frames::end(const Frame& frame) {
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &slot.commands;
-    const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_TRANSFER_BIT;
     VkSemaphore rendered = VK_NULL_HANDLE;
     if (window) {
         rendered = window->rendered(imageIndex_);

@@ -1,5 +1,5 @@
-// The editor's frames: a ring of command buffers and the output that the interface is drawn to, a
-// window's or a picture's.
+// The editor's frames: a ring of command buffers and the output that the interface is drawn to. It
+// keeps what was drawn, so that a frame draws what changed; a window shows copies of it.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,8 @@ class Frames {
 
     // False: there is nothing to draw into now.
     bool begin(Frame& frame);
-    void beginOutput(const Frame& frame);
+    // True: nothing is in the output yet. Else what the frame before left there.
+    bool beginOutput(const Frame& frame);
     // Ends the output, submits, shows.
     void end(const Frame& frame);
     // Without a window: what the last frame drew. Waits.
@@ -48,8 +49,9 @@ class Frames {
         uint64_t index = 0;
     };
     void makePass(VkFormat format);
-    void makeFramebuffers();
-    void dropFramebuffers();
+    void makeOutput();
+    void dropOutput();
+    void copyToWindow(const Frame& frame) const;
 
     const sample::VulkanHost& host_;
     VkExtent2D size_;
@@ -58,7 +60,8 @@ class Frames {
     uint32_t imageIndex_ = 0, generation_ = 0;
     sample::Image output_;
     sample::Buffer readback_;
-    std::vector<VkFramebuffer> framebuffers_;
+    VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
+    bool fresh_ = false;
 };
 
 }  // namespace fwui

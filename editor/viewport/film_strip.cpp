@@ -15,6 +15,7 @@ FilmStrip::FilmStrip(const sample::VulkanHost& host, fwui::UiRenderer& ui) : hos
     sample::ImageRequest request;
     request.width = kColumns * kWidth;
     request.height = kRows * kHeight;
+    request.format = fwui::kUiFormat;
     request.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     pictures_ = host.createImage(request);
     host.runNow([&](VkCommandBuffer commands) {

@@ -14,7 +14,7 @@ namespace {
 
 using sample::checkVulkan;
 
-constexpr VkFormat kLight = VK_FORMAT_R16G16B16A16_SFLOAT, kDisplay = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr VkFormat kLight = VK_FORMAT_R16G16B16A16_SFLOAT, kDisplay = fwui::kUiFormat;
 
 struct Push {  // post.frag
     float mode, exposure, bloom, vignette, aspect;

@@ -388,12 +388,17 @@ Image VulkanHost::createTexture(uint32_t width, uint32_t height, const uint8_t* 
     request.height = height;
     while ((std::max(width, height) >> request.mips) > 0) ++request.mips;
     request.format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+    return createTexture(request, rgba);
+}
+
+Image VulkanHost::createTexture(ImageRequest request, const uint8_t* texels) const {
+    const uint32_t width = request.width, height = request.height;
     request.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                     VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     Image result = createImage(request);
     const VkDeviceSize bytes = VkDeviceSize{width} * height * 4;
     Buffer staging = createBuffer(bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, true);
-    std::memcpy(staging.mapped, rgba, bytes);
+    std::memcpy(staging.mapped, texels, bytes);
     runNow([&](VkCommandBuffer commands) {
         imageBarrier(commands, result.image, VK_IMAGE_LAYOUT_UNDEFINED,
                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0,

@@ -86,6 +86,8 @@ class VulkanHost {
     Image createImage(const ImageRequest& request) const;
     // A sampled image with a full mip chain, filled before it returns. RGBA8, rows top first.
     Image createTexture(uint32_t width, uint32_t height, const uint8_t* rgba, bool srgb) const;
+    // Of any format of 4 bytes a texel, with as many mips as are asked for; the usage is its own.
+    Image createTexture(ImageRequest request, const uint8_t* texels) const;
     void destroy(Image& image) const;
 
     VkSampler createSampler(VkFilter filter, VkSamplerAddressMode address,

@@ -97,7 +97,10 @@ bool Window::makeSwapchain() {
     info.imageColorSpace = chosen.colorSpace;
     info.imageExtent = extent;
     info.imageArrayLayers = 1;
-    info.imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    info.imageUsage =
+        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+        (surface.supportedUsageFlags & VkImageUsageFlags{VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+    takesCopies = (info.imageUsage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0;
     info.preTransform = surface.currentTransform;
     info.compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
     info.presentMode = VK_PRESENT_MODE_FIFO_KHR;
@@ -110,7 +113,7 @@ bool Window::makeSwapchain() {
     format = chosen.format;
 
     vkGetSwapchainImagesKHR(host_.device, swapchain_, &count, nullptr);
-    std::vector<VkImage> images(count);
+    images.resize(count);
     vkGetSwapchainImagesKHR(host_.device, swapchain_, &count, images.data());
     for (VkImage image : images) {
         VkImageViewCreateInfo viewInfo{};

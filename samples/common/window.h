@@ -48,7 +48,9 @@ class Window {
 
     VkFormat format = VK_FORMAT_UNDEFINED;
     VkExtent2D extent{};
+    std::vector<VkImage> images;
     std::vector<VkImageView> views;
+    bool takesCopies = false;  // the images may be copied to
     uint32_t generation = 0;
 
  private:
