@@ -1,4 +1,4 @@
-// Fire-profiles: resampling, ranges, and the cooked file. The reader trusts nothing.
+// Fire-profiles: resampling, and the cooked file. The reader trusts nothing.
 #include "volume/profile.h"
 
 #include "core/error.h"
@@ -17,44 +17,8 @@ constexpr uint32_t kVersion = 1;
 constexpr size_t kHeaderBytes = 24;
 
 constexpr uint32_t kW = gpu::kProfileWidth, kH = gpu::kProfileHeight;
-constexpr uint32_t levelWidth(uint32_t level) { return kW >> (level + 2); }
-constexpr uint32_t levelHeight(uint32_t level) { return kH >> (level + 2); }
-constexpr uint32_t levelBase(uint32_t level) {
-    uint32_t base = 0;
-    for (uint32_t k = 0; k < level; ++k) base += levelWidth(k) * levelHeight(k);
-    return base;
-}
-static_assert(levelBase(Profile::kLevels) == Profile::kCells);
 
 float burning(gpu::vec2 v) noexcept { return std::max(std::min(v.x, 1.0f), v.y); }
-
-void findRanges(Profile& p) noexcept {
-    const auto at = [&](int x, int y) {
-        x = std::clamp(x, 0, int(kW) - 1), y = std::clamp(y, 0, int(kH) - 1);
-        return burning(glm::unpackHalf2x16(p.texels[uint32_t(y) * kW + uint32_t(x)]));
-    };
-    // A lookup anywhere in a cell reaches one texel beyond it.
-    for (uint32_t cy = 0; cy < levelHeight(0); ++cy)
-        for (uint32_t cx = 0; cx < levelWidth(0); ++cx) {
-            ProfileRange r{1e9f, 0.0f};
-            for (int y = int(4 * cy) - 1; y <= int(4 * cy) + 4; ++y)
-                for (int x = int(4 * cx) - 1; x <= int(4 * cx) + 4; ++x)
-                    r.low = std::min(r.low, at(x, y)), r.high = std::max(r.high, at(x, y));
-            p.ranges[cy * levelWidth(0) + cx] = r;
-        }
-    for (uint32_t level = 1; level < Profile::kLevels; ++level)
-        for (uint32_t cy = 0; cy < levelHeight(level); ++cy)
-            for (uint32_t cx = 0; cx < levelWidth(level); ++cx) {
-                ProfileRange r{1e9f, 0.0f};
-                for (uint32_t k = 0; k < 4; ++k) {
-                    const ProfileRange& f =
-                        p.ranges[levelBase(level - 1) + (2 * cy + k / 2) * levelWidth(level - 1) +
-                                 2 * cx + k % 2];
-                    r.low = std::min(r.low, f.low), r.high = std::max(r.high, f.high);
-                }
-                p.ranges[levelBase(level) + cy * levelWidth(level) + cx] = r;
-            }
-}
 
 void checkTexel(float kelvin, float soot, uint32_t x, uint32_t y) {
     if (!(kelvin >= 0.0f && kelvin <= kMaxProfileKelvin))
@@ -97,7 +61,6 @@ void resample(uint32_t width, uint32_t height, const Read& read, Profile& out) {
         core::fail(
             FW_ERROR_BAD_DATA,
             "the fire profile holds neither soot nor hot gas; at least one texel must be above 0.");
-    findRanges(out);
 }
 
 }  // namespace
@@ -113,29 +76,6 @@ gpu::vec2 Profile::sample(float rho, float y) const noexcept {
     };
     return glm::mix(glm::mix(at(x0, y0), at(x1, y0), u - float(x0)),
                     glm::mix(at(x0, y1), at(x1, y1), u - float(x0)), v - float(y0));
-}
-
-ProfileRange Profile::over(float rho0, float rho1, float y0, float y1) const noexcept {
-    const bool outside = y0 < 0.0f || y1 >= 1.0f;  // some of it is where nothing burns
-    if (y1 < 0.0f || y0 >= 1.0f) return {};
-    const auto cell = [](float v, float reach, uint32_t side) {
-        return std::clamp(int(std::floor(v / reach * float(side))), 0, int(side) - 1) / 4;
-    };
-    int x0 = cell(rho0, gpu::kProfileReach, kW), x1 = cell(rho1, gpu::kProfileReach, kW);
-    int v0 = cell(y0, 1.0f, kH), v1 = cell(y1, 1.0f, kH);
-    uint32_t level = 0;  // the finest at which it is at most two cells wide and high
-    while (level + 1 < kLevels && (x1 - x0 > 1 || v1 - v0 > 1)) {
-        ++level;
-        x0 >>= 1, x1 >>= 1, v0 >>= 1, v1 >>= 1;
-    }
-    ProfileRange r{outside ? 0.0f : 1e9f, 0.0f};
-    for (int v = v0; v <= v1; ++v)
-        for (int x = x0; x <= x1; ++x) {
-            const ProfileRange& c =
-                ranges[levelBase(level) + uint32_t(v) * levelWidth(level) + uint32_t(x)];
-            r.low = std::min(r.low, c.low), r.high = std::max(r.high, c.high);
-        }
-    return r;
 }
 
 void paintProfile(std::span<const float> kelvin, std::span<const float> soot, uint32_t width,

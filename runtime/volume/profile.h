@@ -1,6 +1,5 @@
 // The fire-profile: what burns where in a flame, painted by an artist as temperature and soot over
-// radius and height. With its cooked form (.fwprofile) and what an empty-space skip asks of it.
-// Images are read by tools, not here.
+// radius and height. With its cooked form (.fwprofile). Images are read by tools, not here.
 #pragma once
 #include "shared/volume.h"
 
@@ -16,26 +15,16 @@ constexpr float kMaxProfileKelvin = 3000.0f;
 constexpr float kMaxProfileSoot = 2.0f;
 constexpr uint32_t kMinProfileSide = 8, kMaxProfileSide = 512;
 
-// Of a cell of texels, and of what bilinear lookups reach into it.
-struct ProfileRange {
-    float low = 0.0f, high = 0.0f;  // of soot or clean gas, whichever is more; 0: nothing burns
-};
-
 // 64 x 128 texels, x over rho in [0, kProfileReach], y over height in [0, 1], base row first.
 struct Profile {
     static constexpr uint32_t kTexels = gpu::kProfileWidth * gpu::kProfileHeight;
-    static constexpr uint32_t kLevels = 5;  // cells of 4, 8, 16, 32, 64 texels
-    static constexpr uint32_t kCells = 512 + 128 + 32 + 8 + 2;
 
     // Halfs: low 1000 K, high soot. R16G16_SFLOAT as it goes to a device. Below 1000 K soot does
     // not glow: there the first says how much clean gas burns (blue), in the same unit.
     std::array<uint32_t, kTexels> texels{};
-    std::array<ProfileRange, kCells> ranges{};  // level after level
 
     // Bilinear, clamped in rho, none above y = 1. x: 1000 K, y: soot.
     [[nodiscard]] gpu::vec2 sample(float rho, float y) const noexcept;
-    // Conservative: nothing within the rectangle burns more than `high`, nor less than `low`.
-    [[nodiscard]] ProfileRange over(float rho0, float rho1, float y0, float y1) const noexcept;
 };
 
 // From planes of width x height values, any size in [8, 512], resampled. Throws core::Error that

@@ -1,4 +1,4 @@
-// Fire-profiles: painting, lookups, ranges for skipping, the cooked file and how it fails.
+// Fire-profiles: painting, lookups, the cooked file and how it fails.
 #include "core/error.h"
 #include "core/hash.h"
 #include "support/sanitized.h"
@@ -57,31 +57,6 @@ TEST(VolumeProfile, OtherSizesAreResampled) {
     EXPECT_NEAR(p.sample(0.5f, 0.5f).y, 0.5f, 0.02f);
     EXPECT_NEAR(p.sample(0.5f, 0.999f).y, 1.0f, 0.02f);
     EXPECT_NEAR(p.sample(1.0f, 0.2f).x, 1.5f, 0.001f);
-}
-
-TEST(VolumeProfile, RangesAreConservative) {
-    for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
-        Profile p;
-        paintLook(presetDef(FlamePreset(k)).look, p);
-        std::mt19937 random(k);
-        std::uniform_real_distribution<float> unit(0.0f, 1.0f);
-        int empty = 0;
-        for (int trial = 0; trial < 3000; ++trial) {
-            const float r0 = 1.4f * unit(random), r1 = r0 + 0.5f * unit(random) * unit(random);
-            const float y0 = 1.3f * unit(random) - 0.1f,
-                        y1 = y0 + 0.5f * unit(random) * unit(random);
-            const ProfileRange range = p.over(r0, r1, y0, y1);
-            empty += range.high <= 0.0f;
-            for (int s = 0; s < 8; ++s) {
-                const auto v =
-                    p.sample(glm::mix(r0, r1, unit(random)), glm::mix(y0, y1, unit(random)));
-                const float burns = std::max(std::min(v.x, 1.0f), v.y);
-                ASSERT_LE(burns, range.high + 1e-6f) << presetName(FlamePreset(k));
-                ASSERT_GE(burns, range.low - 1e-6f) << presetName(FlamePreset(k));
-            }
-        }
-        EXPECT_GT(empty, 300) << presetName(FlamePreset(k)) << ": there is something to skip";
-    }
 }
 
 TEST(VolumeProfile, CookedFormComesBackBitForBit) {
