@@ -269,49 +269,63 @@ void World::findLinks(uint32_t now) {
     RemoteBook& book = remote_;
     book.links.clear();
     if (!(book.flags & FW_WORLD_CONTACT)) return;
-    for (const uint64_t pair : book.near) {
-        const auto first = uint32_t(pair >> 32), second = uint32_t(pair);
-        if (first > second) continue;
-        const Object &a = **objects_.at(first), &b = **objects_.at(second);
-        if (mesh::gapOf(boxOf(a.remote), boxOf(b.remote)) > int(gpu::kContactGap)) continue;
-        const auto end = book.pairs.begin() + std::ptrdiff_t(book.pairsUsed);
-        auto known = std::find_if(book.pairs.begin(), end, [&](const auto& entry) {
-            return entry.slots[0] == first && entry.slots[1] == second;
-        });
-        if (known == end) {
-            if (book.pairsUsed == book.pairs.size()) book.pairs.emplace_back(memory_);
-            known = book.pairs.begin() + std::ptrdiff_t(book.pairsUsed++);
-            known->begin(first, second);
-        }
-        known->used = true;
-        if (known->versions[0] != a.remoteVersion || known->versions[1] != b.remoteVersion) {
-            // Who only shifted while they touch has touched since then.
-            const bool same = known->ids[0].index1 != 0 &&
-                              known->ids[0].generation == a.id.generation &&
-                              known->ids[1].generation == b.id.generation;
-            const uint32_t since = same && !known->links.empty() ? known->links[0].since : now;
-            known->links.clear();
-            linkPair(a, b, since, known->links);
-            linkPair(b, a, since, known->links);
-            known->versions[0] = a.remoteVersion;
-            known->versions[1] = b.remoteVersion;
-            known->ids[0] = a.id;
-            known->ids[1] = b.id;
-        }
-        book.links.insert(book.links.end(), known->links.begin(), known->links.end());
+    try {
+        linkPairs(now);
+    } catch (...) {  // what links they have is not known: all are found anew
+        for (PairContacts& pair : book.pairs) pair.versions[0] = pair.versions[1] = 0;
+        throw;
     }
-    for (size_t i = 0; i < book.pairsUsed;) {
-        PairContacts& entry = book.pairs[i];
-        if (!entry.used)
-            std::swap(entry, book.pairs[--book.pairsUsed]);
-        else
-            book.pairs[i++].used = false;
-    }
+    book.pairLinks.swap(book.nextLinks);
+    book.links.assign(book.pairLinks.begin(), book.pairLinks.end());
+    std::erase_if(book.pairs, [](const PairContacts& pair) { return !pair.used; });
+    for (PairContacts& pair : book.pairs) pair.used = false;
     std::sort(book.links.begin(), book.links.end(),
               [](const gpu::ContactLink& a, const gpu::ContactLink& b) {
                   return std::tie(a.object, a.texel, a.fromObject, a.fromTexel) <
                          std::tie(b.object, b.texel, b.fromObject, b.fromTexel);
               });
+}
+
+// Contacts of all pairs into nextLinks. One list has those of all: lists of their own, for pairs
+// that come and go, would each grow to the largest that ever was in it.
+void World::linkPairs(uint32_t now) {
+    RemoteBook& book = remote_;
+    book.nextLinks.clear();
+    for (const uint64_t pair : book.near) {
+        const auto first = uint32_t(pair >> 32), second = uint32_t(pair);
+        if (first > second) continue;
+        const Object &a = **objects_.at(first), &b = **objects_.at(second);
+        if (mesh::gapOf(boxOf(a.remote), boxOf(b.remote)) > int(gpu::kContactGap)) continue;
+        auto known = std::find_if(book.pairs.begin(), book.pairs.end(), [&](const auto& entry) {
+            return entry.slots[0] == first && entry.slots[1] == second;
+        });
+        if (known == book.pairs.end()) {
+            book.pairs.push_back({{first, second}});
+            known = book.pairs.end() - 1;
+        }
+        known->used = true;
+        const auto begin = uint32_t(book.nextLinks.size());
+        if (known->versions[0] != a.remoteVersion || known->versions[1] != b.remoteVersion) {
+            // Who only shifted while they touch has touched since then.
+            const bool same = known->ids[0].index1 != 0 &&
+                              known->ids[0].generation == a.id.generation &&
+                              known->ids[1].generation == b.id.generation;
+            const uint32_t since = same && known->touches ? known->since : now;
+            linkPair(a, b, since, book.nextLinks);
+            linkPair(b, a, since, book.nextLinks);
+            known->since = since;
+            known->touches = book.nextLinks.size() != begin;
+            known->versions[0] = a.remoteVersion;
+            known->versions[1] = b.remoteVersion;
+            known->ids[0] = a.id;
+            known->ids[1] = b.id;
+        } else {
+            const auto kept = book.pairLinks.begin() + std::ptrdiff_t(known->first);
+            book.nextLinks.insert(book.nextLinks.end(), kept, kept + std::ptrdiff_t(known->count));
+        }
+        known->first = begin;
+        known->count = uint32_t(book.nextLinks.size()) - begin;
+    }
 }
 
 // awake: the step will run.

@@ -214,11 +214,8 @@ void World::noteSaved(SavedWorld& to) {
     to.tags.clear();
     for (const Tag& tag : tags_) to.tags.push_back({tag.object.index1 - 1, tag.texel, tag.tag});
     to.pairs.clear();
-    for (size_t i = 0; i < remote_.pairsUsed; ++i) {
-        const PairContacts& pair = remote_.pairs[i];
-        if (!pair.links.empty())
-            to.pairs.push_back({{pair.slots[0], pair.slots[1]}, pair.links[0].since});
-    }
+    for (const PairContacts& pair : remote_.pairs)
+        if (pair.touches) to.pairs.push_back({{pair.slots[0], pair.slots[1]}, pair.since});
     std::sort(to.pairs.begin(), to.pairs.end(), [](const SavedPair& a, const SavedPair& b) {
         return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
     });
@@ -638,8 +635,7 @@ void World::load(std::span<const std::byte> bytes) {
         one.window = made.records.timing.window;
         one.substepShift = made.records.timing.substepShift;
     }
-    while (remote_.pairs.size() < saved.pairs.size()) remote_.pairs.emplace_back(memory_);
-    for (size_t i = 0; i < saved.pairs.size(); ++i) remote_.pairs[i].links.reserve(1);
+    remote_.pairs.reserve(saved.pairs.size());
     std::pmr::vector<Tag> tags(memory_);
     for (const SavedTag& tag : saved.tags)
         tags.push_back({objects_.idOf(tag.object), tag.texel, tag.tag});
@@ -715,7 +711,6 @@ void World::applySaved(const SavedWorld& saved,
     remote_.blockers.assign(saved.latchedBlockers.begin(), saved.latchedBlockers.end());
     remote_.seen.clear();
     remote_.due.clear();
-    remote_.pairsUsed = saved.pairs.size();
     for (const SavedBlocker& blocker : saved.blockers) {
         BlockerEntry& entry = *blockers_.at(blocker.slot);
         entry.pose = blocker.pose;
@@ -725,14 +720,13 @@ void World::applySaved(const SavedWorld& saved,
     playing_.clear();
     for (size_t i = 0; i < saved.objects.size(); ++i)
         applyObject(saved.objects[i], latches[i], **objects_.at(saved.objects[i].slot));
-    for (size_t i = 0; i < saved.pairs.size(); ++i) {
-        PairContacts& pair = remote_.pairs[i];
-        pair.begin(saved.pairs[i].slots[0], saved.pairs[i].slots[1]);
-        pair.used = true;
+    remote_.pairs.clear();
+    for (const SavedPair& from : saved.pairs) {
+        PairContacts pair{{from.slots[0], from.slots[1]}};
         for (int k = 0; k < 2; ++k) pair.ids[k] = objects_.idOf(pair.slots[k]);
-        gpu::ContactLink since{};  // found anew, of the same beginning
-        since.since = saved.pairs[i].since;
-        pair.links.push_back(since);
+        pair.since = from.since;  // of links that are found anew
+        pair.touches = true;
+        remote_.pairs.push_back(pair);
     }
     const auto idOf = [&](uint32_t plus1) {
         return plus1 != 0 ? objects_.idOf(plus1 - 1) : FwBurnableMeshId{};

@@ -231,19 +231,12 @@ struct FireColliderEntry {
 
 // Contacts of two objects as they were last found.
 struct PairContacts {
-    explicit PairContacts(std::pmr::memory_resource* memory) : links(memory) {}
-    // Another pair in the same room.
-    void begin(uint32_t first, uint32_t second) noexcept {
-        slots[0] = first;
-        slots[1] = second;
-        versions[0] = versions[1] = 0;
-        ids[0] = ids[1] = {};
-        links.clear();
-    }
     uint32_t slots[2] = {}, versions[2] = {};
     FwBurnableMeshId ids[2] = {};
+    uint32_t first = 0, count = 0;  // of RemoteBook::pairLinks, of these versions
+    uint32_t since = 0;             // tick, while they touch
+    bool touches = false;
     bool used = true;
-    std::pmr::vector<gpu::ContactLink> links;
 };
 
 struct Seen {  // what the host said of a pair
@@ -263,6 +256,8 @@ struct RemoteBook {
           near(memory),
           seen(memory),
           pairs(memory),
+          pairLinks(memory),
+          nextLinks(memory),
           contacts(memory),
           contactPlaces(memory),
           links(memory),
@@ -282,10 +277,10 @@ struct RemoteBook {
     std::pmr::vector<uint32_t> order;       // scratch
     std::pmr::vector<uint64_t> near;        // pairs of slots, both ways, sorted
     std::pmr::vector<Seen> seen;            // by pair
-    std::pmr::vector<PairContacts> pairs;   // the first `pairsUsed`; the rest keep their room
-    size_t pairsUsed = 0;
-    std::pmr::vector<mesh::Contact> contacts;            // scratch
-    std::pmr::vector<mesh::ContactPlace> contactPlaces;  // scratch
+    std::pmr::vector<PairContacts> pairs;
+    std::pmr::vector<gpu::ContactLink> pairLinks, nextLinks;  // of all pairs; the latter is scratch
+    std::pmr::vector<mesh::Contact> contacts;                 // scratch
+    std::pmr::vector<mesh::ContactPlace> contactPlaces;       // scratch
     std::pmr::vector<gpu::ContactLink> links;
     std::pmr::vector<gpu::Blocker> blockers;  // latched
 };
@@ -698,6 +693,7 @@ class World {
     void takeRemoteWind(Object& object, int wind) noexcept;
     void findNeighbours();
     void findLinks(uint32_t now);
+    void linkPairs(uint32_t now);
     gpu::ExchangePush exchangeRules() const noexcept;
     void touchNear(uint32_t now);
     uint32_t seenOf(uint32_t from, uint32_t to);

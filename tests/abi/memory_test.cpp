@@ -54,6 +54,7 @@ struct Session {
         def.mesh = mesh;
         def.materials[0] = material;
         def.baseColor = image;
+        def.breakArea = 1e-3f;
         retry([&] { return fwWorld_CreateBurnableMesh(world, &def, &object); });
         FwIgnitionDef ignition = fwDefaultIgnitionDef();
         ignition.object = object;
@@ -219,6 +220,11 @@ TEST(AbiMemory, NothingLeftFromAnAllocationOn) {
 
 TEST(AbiMemory, AWarmedUpFrameAllocatesNothing) {
     ::host::SheetWorld w(::host::evenMaterial(0.02f, 5));
+    FwBurnableMeshDef asked = fwDefaultBurnableMeshDef();  // what breaks is looked for on it
+    asked.mesh = w.mesh;
+    asked.materials[0] = w.materialId;
+    asked.breakArea = 1e-3f;
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &asked, &w.object));
     w.ball(FW_IGNITE, 0.2f, 0, 0.1f, 0.03f);
     w.run(2.0);
     const int64_t before = w.host.allocations;
@@ -228,6 +234,57 @@ TEST(AbiMemory, AWarmedUpFrameAllocatesNothing) {
         ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1.0f / 60));
     }
     EXPECT_EQ(before, w.host.allocations);
+}
+
+// Sheets in a row that touch, of which each in turn lies on its neighbour, so that another pair has
+// many contacts each time: memory is that of all at a time, not of the most that each ever had.
+TEST(AbiMemory, ContactsThatComeAndGoLeaveNothing) {
+    Host host;
+    FwContext* context = ::host::createCpuContext(host);
+    FwWorldDef worldDef = fwDefaultWorldDef();
+    worldDef.flags = FW_WORLD_CONTACT;
+    FwWorld* world = nullptr;
+    ASSERT_EQ(FW_OK, fwCreateWorld(context, &worldDef, &world));
+    const ::host::Sheet sheet(0.5f, 0.5f);
+    const FwMeshDef meshDef = sheet.def(64);
+    const FwMaterialDef material = ::host::evenMaterial(0.02f, 5);
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &def.mesh));
+    ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(world, &material, &def.materials[0]));
+    constexpr int kSheets = 8;
+    FwBurnableMeshId ids[kSheets];
+    const auto place = [&](int i, float x, float y) {
+        float at[16];
+        std::memcpy(at, def.transform, sizeof at);
+        at[12] = x;
+        at[13] = y;
+        EXPECT_EQ(FW_OK, fwWorld_SetTransform(world, ids[i], at));
+    };
+    const auto steps = [&] {
+        for (int i = 0; i < 12; ++i) EXPECT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32));
+    };
+    for (int i = 0; i < kSheets; ++i)
+        ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &def, &ids[i]));
+    for (int i = 0; i < kSheets; ++i) place(i, 0.51f * float(i), 0);
+    FwIgnitionDef ball = fwDefaultIgnitionDef();
+    ball.object = ids[0];
+    ball.radius = 0.01f;
+    ASSERT_EQ(FW_OK, fwWorld_Ignite(world, &ball, nullptr));
+    steps();
+    const int64_t flat = host.bytes;
+    int64_t first = 0, last = 0;
+    for (int i = 0; i + 1 < kSheets; ++i) {
+        place(i, 0.51f * float(i + 1), 0.01f);
+        steps();
+        place(i, 0.51f * float(i), 0);
+        steps();
+        last = host.bytes;
+        if (i == 1) first = last;  // both of the lists that take turns have their room
+    }
+    EXPECT_LT(flat, first);
+    EXPECT_EQ(first, last);
+    fwDestroyContext(context);
+    EXPECT_EQ(0, host.bytes);
 }
 
 }  // namespace
