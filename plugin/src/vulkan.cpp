@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 using namespace fw;
 using edge::checkPointer;
@@ -56,7 +57,7 @@ class VulkanDevice final : public Device {
           log_(log),
           context_(host, budget, &memory, log),
           lookTable_(&memory),
-          lookTextures_(components::bakeLookTextures(&memory)),
+          lookTextures_(&memory),
           fireProfiles_(components::bakeFireProfiles(&memory)) {
         for (uint32_t i = 0; i < components::kLookCount; ++i)
             lookTable_.push_back(components::materialLook(i));
@@ -73,7 +74,7 @@ class VulkanDevice final : public Device {
         std::copy_n(def.up, 3, limits.up);
         limits.paceFactor = def.paceFactor;
         limits.looks.table = lookTable_;
-        limits.looks.textures = lookTextures_;
+        limits.looks.textures = lookTextures();
         limits.looks.profiles = fireProfiles_;
         limits.looks.viewParams = &fillViewParams;
         return std::pmr::polymorphic_allocator<>(&memory_).new_object<gpu::vk::VkBackend>(
@@ -84,7 +85,10 @@ class VulkanDevice final : public Device {
             static_cast<gpu::vk::VkBackend*>(backend));
     }
     void fillInfo(FwContextInfo& info) const noexcept override { context_.fillInfo(info); }
-    void prepare() override { context_.prepare(); }
+    void prepare() override {
+        lookTextures();
+        context_.prepare();
+    }
     void step(gpu::Backend& given, world::World& world, float deltaTime) override {
         requireOwn();
         components::checkValue(deltaTime, "deltaTime", 0.0f, 10.0f);
@@ -111,6 +115,13 @@ class VulkanDevice final : public Device {
     gpu::vk::Context& context() noexcept { return context_; }
 
  private:
+    // A third of a second of work, so the first world pays, or who prepares: a program that has
+    // none yet shows its first picture without it. Worlds may be made on several threads.
+    const std::pmr::vector<std::byte>& lookTextures() {
+        const std::lock_guard lock(looksMutex_);
+        if (lookTextures_.empty()) lookTextures_ = components::bakeLookTextures(&memory_);
+        return lookTextures_;
+    }
     void requireOwn() const {
         if (!context_.ownDevice())
             core::fail(
@@ -124,6 +135,7 @@ class VulkanDevice final : public Device {
     gpu::vk::Context context_;
     // Kept for the worlds to come: a backend copies them when it is made.
     std::pmr::vector<gpu::MaterialLook> lookTable_;
+    std::mutex looksMutex_;
     std::pmr::vector<std::byte> lookTextures_, fireProfiles_;
 };
 
