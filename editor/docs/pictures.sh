@@ -33,7 +33,7 @@ fi
 [[ ${1:-} != cards ]] || exit 0
 
 page welcome welcome 0 ""
-page scene scene 6 "Burning crate"
+page scene scene 9 "Burning crate"
 page paint paint 0 "Burning crate" 'add layer multiplier mesh Crate name=Belt;'\
 'stroke Belt size 0.07 value 0 path -0.25:0.28:0.27 0.25:0.28:0.27 0.27:0.28:-0.25;'\
 'stroke Belt size 0.09 value 1.85 path -0.25:0.1:0.27 0.25:0.1:0.27'
