@@ -290,9 +290,21 @@ void main() {
     float facing = max(abs(dot(normal, toEye)), 0.2);
     float pixel = view.eye.w * depth * inversesqrt(facing);
 
+    // Dominant axis of the normal, dithered by zigzags: ragged joins do not show in wood.
+    float inverseScale = inversesqrt(dot(draw.row0.xyz, draw.row0.xyz));
+    vec3 ex = vec3(draw.row0.x, draw.row1.x, draw.row2.x) * inverseScale;
+    vec3 ey = vec3(draw.row0.y, draw.row1.y, draw.row2.y) * inverseScale;
+    vec3 ez = vec3(draw.row0.z, draw.row1.z, draw.row2.z) * inverseScale;
+    float da = zigzag(5.0 * (inRest.x + inRest.z) + 0.8 * zigzag(7.3 * inRest.y + 0.2));
+    float db = zigzag(4.3 * (inRest.y + 0.7 * inRest.z) + 0.8 * zigzag(9.2 * inRest.x));
+    vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) +
+             0.1 * vec3(da, db, -0.5 * (da + db));
+    bool facesX = w.x > w.y && w.x > w.z, facesY = !facesX && w.y > w.z;
+    vec2 flatPlace = vec2(facesX ? inRest.z : inRest.x, facesY ? inRest.z : inRest.y);
+
     bool detailed = (draw.flags & kObjectDetail) != 0u;
-    vec2 d;
-    vec3 axisX, axisY;
+    vec2 d = flatPlace;
+    vec3 axisX = facesX ? ez : ex, axisY = facesY ? ez : ey;
     if (detailed) {
         d = inDetail.xy;
         vec2 dx = dFdx(d), dy = dFdy(d);
@@ -300,29 +312,6 @@ void main() {
         axisY = r1 * dx.y + r2 * dy.y;
         axisX /= max(length(axisX), 1e-4);
         axisY /= max(length(axisY), 1e-4);
-    } else {
-        // Dominant axis of the normal, dithered by zigzags: ragged joins do not show in wood.
-        float inverseScale = inversesqrt(dot(draw.row0.xyz, draw.row0.xyz));
-        vec3 ex = vec3(draw.row0.x, draw.row1.x, draw.row2.x) * inverseScale;
-        vec3 ey = vec3(draw.row0.y, draw.row1.y, draw.row2.y) * inverseScale;
-        vec3 ez = vec3(draw.row0.z, draw.row1.z, draw.row2.z) * inverseScale;
-        float da = zigzag(5.0 * (inRest.x + inRest.z) + 0.8 * zigzag(7.3 * inRest.y + 0.2));
-        float db = zigzag(4.3 * (inRest.y + 0.7 * inRest.z) + 0.8 * zigzag(9.2 * inRest.x));
-        vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) +
-                 0.1 * vec3(da, db, -0.5 * (da + db));
-        if (w.x > w.y && w.x > w.z) {
-            d = inRest.zy;
-            axisX = ez;
-            axisY = ey;
-        } else if (w.y > w.z) {
-            d = inRest.xz;
-            axisX = ex;
-            axisY = ez;
-        } else {
-            d = inRest.xy;
-            axisX = ex;
-            axisY = ey;
-        }
     }
 
     vec4 coarse, fine;
@@ -345,9 +334,13 @@ void main() {
         coat = coatAt(inAtlas + clamp(creeps, -1.0, 1.0));
     }
 
-    // Where holes come first; in wood also where its rings wander.
-    vec2 grownAt =
-        kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3) : vec2(d.x, d.y / look.drip);
+    // Where holes come first; in wood also where its rings wander. Both walls of a solid have the same,
+    // whatever their patterns: one that is the other's mirror image would let see through them in
+    // symmetric holes. Wood's planks differ in any case.
+    bool sheet = (draw.flags & kObjectTwoSided) != 0u;
+    vec2 grownAt = sheet ? d : flatPlace;
+    grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3)
+                       : vec2(grownAt.x, grownAt.y / look.drip);
     vec4 grown = noiseAt(grownAt, kHasWood ? 2.6 : look.holeTiles, max(pixel, look.blur));
     vec3 color = draw.colorRough.rgb;
     Base fresh;

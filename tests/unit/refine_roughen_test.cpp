@@ -71,5 +71,44 @@ TEST(RefineRoughen, BothSidesOfAWallAgree) {
     EXPECT_GT(high, 1.05);
 }
 
+// Each wall alone, and details that are the other wall's mirror image: holes go by the place.
+TEST(RefineRoughen, WallsOfASolidAgreeWhateverTheirDetails) {
+    RefineScene scene(gridBox(0.6, 0.5, 0.2, 2, 2, 1, 13), {}, 96);
+    for (mesh::RenderVertex& v : scene.domain.vertices) {
+        v.detail[0] = v.position[2] > 0.1f ? v.position[0] : 0.6f - v.position[0];
+        v.detail[1] = v.position[1];
+    }
+    scene.domain.hasDetail = true;
+    std::vector<uint8_t> noise(kSide * kSide);
+    for (uint32_t i = 0; i < noise.size(); ++i) noise[i] = uint8_t(gpu::hash32(i) >> 24);
+    for (const bool wood : {false, true}) {
+        std::vector<gpu::RefineSlot> slots(scene.model.slots.begin(), scene.model.slots.end());
+        const mesh::RefineHoles holes{0.5f, 2.6f, 0.8f, wood};
+        mesh::refineRoughen(scene.domain, scene.model, {&holes, 1}, noise, kSide, slots);
+        std::map<std::pair<long, long>, double> below;
+        const auto key = [](const gpu::RefineSlot& s) {
+            return std::make_pair(std::lround(double(s.x) * 8192), std::lround(double(s.y) * 8192));
+        };
+        const auto inside = [](const gpu::RefineSlot& s) {
+            return s.x > 0.03f && s.y > 0.03f && s.x < 0.57f && s.y < 0.47f;
+        };
+        for (size_t i = 0; i < slots.size(); ++i)
+            if (slots[i].z == 0 && inside(slots[i]))
+                below[key(slots[i])] = scaleOf(scene, slots, i);
+        uint32_t pairs = 0, differ = 0;
+        for (size_t i = 0; i < slots.size(); ++i) {
+            const auto other = below.find(key(slots[i]));
+            if (slots[i].z < 0.19f || other == below.end()) continue;
+            differ += std::abs(other->second - scaleOf(scene, slots, i)) > 0.01;
+            ++pairs;
+        }
+        EXPECT_GT(pairs, 20u);
+        if (wood)
+            EXPECT_GT(differ, pairs / 2);  // planks have grain of their own
+        else
+            EXPECT_EQ(differ, 0u);
+    }
+}
+
 }  // namespace
 }  // namespace fw::test

@@ -43,6 +43,7 @@ float sample(std::span<const uint8_t> noise, uint32_t side, float u, float v) {
 void refineRoughen(const BurnDomain& domain, const RefineModel& model,
                    std::span<const RefineHoles> materials, std::span<const uint8_t> noise,
                    uint32_t side, std::span<gpu::RefineSlot> slots) noexcept {
+    const bool solid = hasInside(domain, model);
     for (uint32_t i = 0; i < slots.size(); ++i) {
         gpu::RefineSlot& slot = slots[i];
         const uint32_t material = slot.texel >> 24;
@@ -51,11 +52,13 @@ void refineRoughen(const BurnDomain& domain, const RefineModel& model,
         if (!(holes.variation > 0)) continue;
         const RenderVertex v = refineRenderVertex(domain, model, i);
         float d[2] = {v.detail[0], v.detail[1]};
-        // Walls that burn through together have the same holes, whatever their patterns.
-        const bool planks = domain.hasDetail && slot.opposite == gpu::kRefineOpposed;
-        if (!planks) flatten(v.position, v.normal, d);
+        // Walls that burn through together have the same holes, whatever their patterns; so have
+        // all of a solid but planks.
+        const bool detailed =
+            domain.hasDetail && slot.opposite == gpu::kRefineOpposed && (holes.wood || !solid);
+        if (!detailed) flatten(v.position, v.normal, d);
         if (holes.wood) {
-            const float plank = planks ? std::floor(d[0] / kPlank + 64) : 3;
+            const float plank = detailed ? std::floor(d[0] / kPlank + 64) : 3;
             d[0] += plank * 0.77f;
             d[1] += plank * 1.31f;
         }
