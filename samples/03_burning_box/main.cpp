@@ -129,6 +129,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: a burning box";
+        stageRequest.samples = options.noMsaa ? VK_SAMPLE_COUNT_1_BIT : VK_SAMPLE_COUNT_4_BIT;
         const uint32_t frames = sample::framesOf(options, wishes.seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 0.8f);
@@ -225,6 +226,7 @@ int main(int argc, char** argv) {
         parser.addNumber("--turn", "turntable, degrees a second", wishes.turn, -360.0f, 360.0f);
         parser.addNumber("--wall", "thickness of the boards, m", wishes.wall, 0.001f, 0.1f);
         parser.addNumber("--distance", "of the camera, m", wishes.distance, 0.3f, 50.0f);
+        parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("one box\n");

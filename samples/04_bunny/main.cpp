@@ -45,6 +45,7 @@ int run(const sample::Options& options, float seconds, float turn, bool compare)
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: " + subject.name;
+        stageRequest.samples = options.noMsaa ? VK_SAMPLE_COUNT_1_BIT : VK_SAMPLE_COUNT_4_BIT;
         const uint32_t frames = sample::framesOf(options, seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
@@ -147,6 +148,7 @@ int main(int argc, char** argv) {
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--turn", "turntable, degrees a second", turn, -360.0f, 360.0f);
         parser.addFlag("--compare", "beside it, to the left, one as the papers had it", compare);
+        parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf(

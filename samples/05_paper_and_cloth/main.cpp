@@ -153,6 +153,7 @@ int run(const sample::Options& options, float seconds, bool compare) {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: paper and cloth";
+        stageRequest.samples = options.noMsaa ? VK_SAMPLE_COUNT_1_BIT : VK_SAMPLE_COUNT_4_BIT;
         const uint32_t frames = sample::framesOf(options, seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 1.1f);
@@ -220,6 +221,7 @@ int main(int argc, char** argv) {
         sample::OptionParser parser("05_paper_and_cloth", "sheets that curl, shrink and fall");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addFlag("--compare", "two cloths, to the left one of published springs", compare);
+        parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             for (const Exhibit& exhibit : kExhibits) std::printf("%s\n", exhibit.name);

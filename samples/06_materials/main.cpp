@@ -107,6 +107,7 @@ int run(const sample::Options& options, float seconds, int only) {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: eight materials";
+        stageRequest.samples = options.noMsaa ? VK_SAMPLE_COUNT_1_BIT : VK_SAMPLE_COUNT_4_BIT;
         const uint32_t frames = sample::framesOf(options, seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 2.4f);
@@ -198,6 +199,7 @@ int main(int argc, char** argv) {
         sample::OptionParser parser("06_materials", "eight materials side by side");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--only", "1 to 8: that one alone, from near", only, 0.0f, 8.0f);
+        parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             for (const Exhibit& exhibit : kExhibits)

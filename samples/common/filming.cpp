@@ -2,6 +2,7 @@
 #include "common/filming.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 namespace sample {
@@ -17,7 +18,9 @@ FilmRequest filled(FilmRequest film, const Stage& stage, const Options& options)
 }  // namespace
 
 Filming::Filming(Stage& stage, const Options& options, FilmRequest film)
-    : film_(filled(film, stage, options)), progress_(film.name, std::max(1u, stage.frames())) {
+    : samples_(stage.made.samples),
+      film_(filled(film, stage, options)),
+      progress_(film.name, std::max(1u, stage.frames())) {
     stage.onPicture = [this](uint32_t number, Picture&& picture) {
         film_.add(number, picture);
         progress_.update(number + 1);
@@ -26,6 +29,9 @@ Filming::Filming(Stage& stage, const Options& options, FilmRequest film)
 
 void Filming::finish(Summary summary, const FireHost& fire) {
     progress_.finish();
+    if (samples_ != VK_SAMPLE_COUNT_1_BIT)
+        summary.rows.emplace_back("picture",
+                                  std::to_string(uint32_t(samples_)) + " samples a pixel");
     summary.passes = fire.passCosts();
     summary.files = film_.close();
     printSummary(summary);

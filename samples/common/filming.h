@@ -22,6 +22,7 @@ class Filming {
     void finish(Summary summary, const FireHost& fire);
 
  private:
+    VkSampleCountFlagBits samples_;
     Film film_;
     Progress progress_;
 };

@@ -24,6 +24,7 @@ struct Options {
     uint32_t seed = 1;          // of everything random
     double fps = 30.0;          // (0, 240]; simulated rate headless, limit of the window's rate
     bool validate = false;      // Vulkan validation layers; any message makes the sample fail
+    bool noMsaa = false;        // one sample a pixel, of samples that take four
     bool list = false;          // the sample says what it can show, and ends
     std::filesystem::path out;  // folder of the pictures; default out/<name>
     std::vector<std::string> positional;
