@@ -92,6 +92,7 @@ struct FireEmitter {
         double part = 0;  // of the next birth, [0, 1)
         uint32_t head = 0, filled = 0, serial = 0;
         double last = -1e9;  // s of the last birth
+        float vigour = 1;    // of a mesh: how fast its fire rises and for how long, of all burning
         bool placed = false;
         SparkHistory sparks;
     } births, next;

@@ -844,7 +844,9 @@ typedef enum FwEmitterShape {
     FW_EMITTER_DISC = 1,  /* across direction, of radius */
     FW_EMITTER_LINE = 2,  /* from position - extent to position + extent */
     FW_EMITTER_MESH = 3,  /* on the tiles of `object` that flame, each as likely as it has power. At `power` or more
-                             it has all its births, at less as many fewer. Its light is the mesh's */
+                             all its particles are there, at less as many fewer at once, which rise slower and burn
+                             shorter, by power to the 0.2: flames as high as so much power has. Its light is the
+                             mesh's */
     FW_EMITTER_SHAPE_FORCE32 = 0x7fffffff
 } FwEmitterShape;
 typedef enum FwEmitterFlags {
