@@ -263,6 +263,8 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     const uint32_t kind = eventKind(event.kind);
     const bool douses =
         (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish) && !object.doused;
+    object.catches |= kind == kEventIgnite && !object.lit;
+    object.lit |= kind == kEventIgnite;
     if (object.touched && !douses) return;
     object.touched = true;
     object.doused = object.doused || douses;

@@ -68,7 +68,7 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
     for (ObjectEntry& object : s.objects) {
         if (!object.live) continue;
         object.resetDue = object.recordDirty = true;
-        object.touched = object.doused = object.warmed = object.charred = false;
+        object.touched = object.doused = object.warmed = object.charred = object.lit = false;
         object.publishedTouched = false;
         object.publishedParity = 0;
         object.lastDouse = 0;

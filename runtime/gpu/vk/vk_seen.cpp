@@ -18,8 +18,9 @@ static_assert(kIdleTurns < kSeenFrames);
 constexpr float kSeenRoom = 1.5f;     // of its bounds: it deforms, and the view turns
 constexpr float kLeastPixels = 3.0f;  // half as much across shows nothing of what lies ahead
 constexpr float kAnyHeight = 1080;    // px, before anything was drawn
-// More rings of a frame in which an object comes into view: the next ones add to them. A picture by
-// itself has no next frame, and takes what there is to see, up to so many.
+// More rings of a frame in which an object comes into view or catches fire, which would end in
+// steps of whole texels: the next ones add to them. A picture by itself has no next frame, and
+// takes what there is to see, up to so many.
 constexpr uint32_t kRingsOfFrame = 8, kRingsOfPicture = 96;
 // How long predictions may wait where detail is short: ticks, with no triangles left, and texels
 // that fire crosses meanwhile, as a round brings a ring. What is known stays, and its age goes on.
@@ -126,6 +127,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
                         sizeof flags);
     };
     s.predictTick = plan.endTick;
+    const uint32_t most = plan.frameIndex == 0 ? kRingsOfPicture : kRingsOfFrame;
     uint32_t rings = 0;
     bool seen = false;
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
@@ -137,9 +139,12 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
             tell(i, comes ? flags | kObjectAnew : flags);
             if (comes) {
                 recordPredictAnew(recorder, s.lists, i, object.record.tileCount);
-                rings = std::max(rings, ringsOf(object));
+                rings = std::max(rings, std::min(ringsOf(object), most));
             }
         }
+        if (object.catches && (flags & kObjectUnseen) == 0)
+            rings = std::max(rings, std::min(ringsOf(object), kRingsOfFrame));
+        object.catches = false;
         // What was lit by others is known to burn only later.
         seen |= object.live && (flags & kObjectUnseen) == 0 &&
                 (object.touched || seenLately(object, s.open.ringFrame));
@@ -148,7 +153,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
     auto rounds = uint32_t(std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1);
     recordPredict(recorder, s.lists, plan.endTick, seen);
     if (rings > 0) {
-        rounds += plan.frameIndex == 0 ? rings : std::min(rings, kRingsOfFrame);
+        rounds += rings;
         for (uint32_t i = 0; i < s.objects.size(); ++i)
             if (s.objects[i].turns && (s.objects[i].record.flags & kObjectUnseen) == 0)
                 tell(i, s.objects[i].record.flags);

@@ -108,6 +108,8 @@ struct ObjectEntry {
     bool inner = false;      // what faces away is drawn on the mesh's inner skin
     bool touched = false;    // some event reached it: it may burn, or be wet
     bool doused = false;     // one of them was not fire
+    bool lit = false;        // one of them was
+    bool catches = false;    // scratch of run: the first that was
     bool warmed = false;     // others' fires sent heat to it
     bool charred = false;    // most of it burns or has burnt: its cold rest is not worth a draw
     uint64_t seenFrame = 0;  // ring frame whose view last showed it; kObjectUnseen: long ago

@@ -1,0 +1,94 @@
+// Boards that burn, by what a picture of them shows, where a golden would say too little.
+#include "support/own_world.h"
+#include "support/refine_scene.h"
+
+namespace fw::test::boards_test {
+namespace {
+
+constexpr uint32_t kWidth = 192, kHeight = 192;
+constexpr float kSide = 0.5f;  // m
+
+class Boards : public OwnWorld {
+ protected:
+    Picture draw() {
+        const glm::vec3 target(0.5f * kSide, 0.5f * kSide, 0);
+        return pictureOf(world_, viewAt(target + glm::vec3(0, 0, 4), target, 1, 12), kWidth,
+                         kHeight);
+    }
+    void addBoard(const Mesh& mesh, const std::vector<float>& details, float spreadRate) {
+        FwMeshDef def = meshDefOf(mesh);
+        def.details = details.data();
+        def.mapSize = 512;
+        def.texelsPerMetre = 128;
+        FwMaterialDef plastic = fwDefaultMaterialDef();
+        ASSERT_EQ(fwInitMaterialPreset(&plastic, FW_MATERIAL_PLASTIC), FW_OK);
+        plastic.spreadRate = spreadRate;
+        plastic.windGain = plastic.upGain = plastic.headGain = plastic.ceilingGain = 0;
+        add(def, plastic, FW_BURNABLE_LITE);
+    }
+};
+
+// Detail coordinates run around the board, so that those of its back are its front's mirror image:
+// where holes followed them it was seen through where both walls were open, in an inkblot.
+TEST_F(Boards, HolesAreNotMirrored) {
+    makeWorld(1, 32);
+    const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
+    std::vector<float> details;
+    for (size_t i = 0; i < mesh.positions.size(); i += 3) {
+        const float x = mesh.positions[i], y = mesh.positions[i + 1];
+        details.insert(details.end(), {mesh.positions[i + 2] > 0.006f ? x : kSide - x, y});
+    }
+    addBoard(mesh, details, 0.3f);
+    const Picture whole = draw();
+    touch(FW_IGNITE, 0.5f * kSide, 0.5f * kSide, 0, 2 * kSide);
+    run(0.28f, 0.03125f);
+    uint32_t open = 0, twice = 0;
+    const auto seenThrough = [&](const Picture& picture, uint32_t x, uint32_t y) {
+        const uint8_t* pixel = &picture.rgb[(size_t{y} * kWidth + x) * 3];
+        return std::equal(pixel, pixel + 3, picture.rgb.data());
+    };
+    const Picture burnt = draw();
+    uint32_t covered = 0;
+    for (uint32_t y = 0; y < kHeight; ++y)
+        for (uint32_t x = 0; x < kWidth; ++x) {
+            if (seenThrough(whole, x, y)) continue;
+            ++covered;
+            if (!seenThrough(burnt, x, y)) continue;
+            ++open;
+            twice += seenThrough(burnt, kWidth - 1 - x, y);
+        }
+    std::printf("%.3f of the board is open, %.3f of that on both sides of its middle\n",
+                open / double(covered), twice / double(open));
+    EXPECT_GT(open, covered / 10);
+    EXPECT_LT(open, covered * 6 / 10);
+    // By chance as much as is open anywhere; a mirror image has all.
+    EXPECT_LT(twice, open * 8 / 10);
+}
+
+// What heat browns ahead of a front is several texels wide: in the frame that a board catches in it
+// is all there, and does not end where the first round of the prediction did.
+TEST_F(Boards, ScorchIsThereAtOnce) {
+    makeWorld(1, 32);
+    const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
+    addBoard(mesh, std::vector<float>(mesh.positions.size() / 3 * 2, 0), 0.02f);
+    const Picture whole = draw();
+    touch(FW_IGNITE, 0.5f * kSide, 0.5f * kSide, 0.012f, 0.02f);
+    fwWorld_Step(world_, 0.03125f);
+    const auto changed = [&](const Picture& picture) {
+        uint32_t count = 0;
+        for (size_t i = 0; i < picture.rgb.size(); i += 3)
+            count += std::abs(int(picture.rgb[i]) - int(whole.rgb[i])) +
+                         std::abs(int(picture.rgb[i + 2]) - int(whole.rgb[i + 2])) >
+                     6;
+        return count;
+    };
+    const uint32_t first = changed(draw());
+    for (int i = 0; i < 12; ++i) fwWorld_Step(world_, 1.0f / 512);
+    const uint32_t later = changed(draw());
+    std::printf("%u pixels at once, %u some frames later\n", first, later);
+    EXPECT_GT(first, 200u);
+    EXPECT_GT(first, later * 3 / 4);
+}
+
+}  // namespace
+}  // namespace fw::test::boards_test
