@@ -124,7 +124,7 @@ TEST_F(Houses, AHundredBurnWithinTheBudgetAndNothingPops) {
     EXPECT_GE(moves, kFrames / 3);  // objects are refined in every second frame at least
     // 2.2 and 5.6; with all detail 1.6 and 4.3. Rims that texels tell are livelier than cut ones.
     EXPECT_LT(p.mean, 2.4);
-    EXPECT_LT(p.worst, 5.9);
+    EXPECT_LT(p.worst, 6.0);
     EXPECT_LT(p.block, rounds(45.0, 90.0));
     EXPECT_LT(p.share, rounds(0.02, 0.07));
     // With all of them refined whenever one of them is due it is 1.70, as measured; in turns 1.44.
