@@ -3,19 +3,24 @@
 #include "mesh/ring.h"
 
 #include <algorithm>
+#include <array>
 
 namespace fw::mesh {
 namespace {
 
-// Takes what is on the stack and, over links, all that `joins` (it marks what it takes).
+// Takes what is on the stack and, over links, all real texels that `joins` (it marks what it
+// takes).
 template <class Stack, class Joins>
 void spread(const BurnDomain& domain, Stack& stack, Joins joins) {
+    std::array<uint32_t, 8> around;  // of a texel that is no rim, whose ring is in the image
+    for (size_t k = 0; k < 8; ++k) around[k] = uint32_t(kRingY[k] * int(domain.width) + kRingX[k]);
     while (!stack.empty()) {
         const uint32_t texel = stack.back();
         stack.pop_back();
+        const bool rim = (domain.texels[texel].materialFlags & kTexelRim) != 0;
         for (uint32_t k = 0; k < 8; ++k) {
-            const uint32_t other = ringOf(domain, texel, k);
-            if (other != kNone && domain.real(other) && joins(other)) stack.push_back(other);
+            const uint32_t other = rim ? ringOf(domain, texel, k) : texel + around[k];
+            if (other != kNone && joins(other)) stack.push_back(other);
         }
     }
 }
@@ -30,7 +35,7 @@ void findPieces(const BurnDomain& domain, Pieces& pieces) {
         if (!domain.real(i) || pieces.of[i] != kNone) continue;
         const uint32_t piece = pieces.count++;
         const auto joins = [&](uint32_t texel) {
-            if (pieces.of[texel] != kNone) return false;
+            if (!domain.real(texel) || pieces.of[texel] != kNone) return false;
             pieces.of[texel] = piece;
             return true;
         };

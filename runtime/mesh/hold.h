@@ -16,7 +16,7 @@ struct Pieces {
 void findPieces(const BurnDomain& domain, Pieces& pieces);
 
 enum HoldMark : uint8_t {  // of a texel
-    kHoldStands = 1,       // it is there: neither gone nor lost
+    kHoldStands = 1,       // it is real, and there: neither gone nor lost
     kHoldBears = 2,        // it rests on something, as long as it is there
     kHoldHeld = 4,
     kHoldSeen = 8,

@@ -553,7 +553,8 @@ typedef struct FwBurnableMeshDef {
     float heatStep;                   /* delta r: what r grows by in a step of 1/32 s, [0, 1000]; 0,
                                          default: as fast as the materials' fastest fire */
     /* FW_EVENT_STRUCTURE_BROKE, looked for twice a second of the world's time. What is gone is where holes are:
-     * what burnt out, and gave way. Costs a look at each texel; with a device a copy of its burn map, 12 bytes a texel. */
+     * what burnt out, and gave way. Costs some 25 ns a texel each time; with a device a copy of its burn map, 12 bytes a
+     * texel. */
     float breakShare;                 /* (0, 1]: raise it once that much of its surface is gone; 0, default: never */
     float breakArea;                  /* m^2, (0, 1e6]: raise it for each part of so much or more that has lost its
                                          way, over what is left, to where it stands: the lowest two texels of what
