@@ -70,7 +70,7 @@ struct SavedRoom {
     components::Room room;
     uint32_t oxygen = 0;  // of its air, as power and flash
     uint32_t power = 0, flash = 0;
-    uint32_t epoch = 0;   // which beginning's; not in files
+    uint32_t epoch = 0;  // which beginning's; not in files
 };
 
 struct SavedTag {
