@@ -94,7 +94,8 @@ class EveryPass : public GpuTest {
                                                    : nullptr);
         scene_ = &scene(published);
         scene_->create(rig_->backend);
-        rig_->backend.setRoom(0, {1u << 16, 1u << 20, gpu::kAirOutside, 1});
+        rig_->backend.setRoom(
+            0, {1u << 16, 1u << 20, gpu::kAirOutside, 1, /*flashes*/ 1u << 20, 0, 0, 0});
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         def.flags = FW_TARGET_COMPOSITE;
         def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show

@@ -1403,7 +1403,9 @@ TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
             "%.4f\n",
             kLegs[i], light, cover, double(size), double(through[i].pop), double(marched[i].pop));
         // A march's cells reach half a pixel further than a slice's rays: see TiersAreTheSameFlame.
-        if (kLegs[i] != FW_FIRE_TIER_SLICES) EXPECT_LT(size, 0.03f) << kLegs[i];
+        if (kLegs[i] != FW_FIRE_TIER_SLICES) {
+            EXPECT_LT(size, 0.03f) << kLegs[i];
+        }
         // A slice hides by one number for all colours, what it takes of light like its own: a
         // little less than of white. And it is a ray a pixel, of so few pixels a rough sample,
         // which its neighbours' way to it and from it shows, too.
