@@ -9,14 +9,15 @@ namespace fw::gpu {
 
 // None: what only emits is added to what is there, and sums do not ask for an order. (Between
 // things that hide, it keeps its place: the device lays quads there without sorting them.)
+//
 // Host: what the host itself places, and so knows the depth of: fields, volumetric flames, what
-// haze
-//   bends. Some hundreds at most: a sort is microseconds, and on a device its numbers would have to
-//   be brought there first, for a pass of one group that the draw waits for.
+// haze bends. Some hundreds at most: a sort is microseconds, and on a device its numbers would have
+// to be brought there first, for a pass of one group that the draw waits for.
+//
 // Device: quads of particles and of burning tiles. The device made them in this frame, and no host
-//   knows where they are: to sort them there one would wait for them to come back, and a software
-//   device, which has them in the host's memory, would sort them on the same cores that it has
-//   itself. No device gives a particle to the host.
+// knows where they are: to sort them there one would wait for them to come back, and a software
+// device, which has them in the host's memory, would sort them on the same cores that it has
+// itself. No device gives a particle to the host.
 enum class Orderer : uint32_t { None, Host, Device };
 
 enum class PlacedBy : uint32_t { Host, Device };
