@@ -238,9 +238,18 @@ void UiRenderer::findChanges(const ImDrawData& data, bool whole) {
 
 // ---- drawing
 
-void UiRenderer::draw(VkCommandBuffer commands, uint32_t slotIndex, const ImDrawData& data,
-                      bool whole) {
+void UiRenderer::draw(VkCommandBuffer commands, uint32_t slot, const ImDrawData& data, bool whole) {
     findChanges(data, whole);
+    drawChanges(commands, slot, data, true);
+}
+
+void UiRenderer::drawOver(VkCommandBuffer commands, uint32_t slot, const ImDrawData& data) {
+    changes_ = {{0, 0, int32_t(data.DisplaySize.x), int32_t(data.DisplaySize.y)}};
+    drawChanges(commands, slot, data, false);
+}
+
+void UiRenderer::drawChanges(VkCommandBuffer commands, uint32_t slotIndex, const ImDrawData& data,
+                             bool clears) {
     if (changes_.empty()) return;
     Slot& slot = slots_[slotIndex];
     reserve(slot.vertices,
@@ -276,22 +285,25 @@ void UiRenderer::draw(VkCommandBuffer commands, uint32_t slotIndex, const ImDraw
                          sizeof(ImDrawIdx) == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32);
     vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
 
-    for (uint32_t i = 0; i < changes_.size(); ++i) drawPart(commands, data, i);
+    for (uint32_t i = 0; i < changes_.size(); ++i) drawPart(commands, data, i, clears);
 }
 
 // All that shows in a part of the output, over black: what is half seen lies over that, not over
 // itself of a frame before or of a part that this one crosses.
-void UiRenderer::drawPart(VkCommandBuffer commands, const ImDrawData& data, uint32_t number) {
+void UiRenderer::drawPart(VkCommandBuffer commands, const ImDrawData& data, uint32_t number,
+                          bool clears) {
     const Part& part = changes_[number];
     void* bound = fontTexture_;
     const auto fontSet = reinterpret_cast<VkDescriptorSet>(fontTexture_);
     const VkRect2D whole{{part.x0, part.y0},
                          {uint32_t(part.x1 - part.x0), uint32_t(part.y1 - part.y0)}};
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, solidPipeline_);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &fontSet, 0,
                             nullptr);
-    vkCmdSetScissor(commands, 0, 1, &whole);
-    vkCmdDrawIndexed(commands, kClearIndices, 1, 0, int32_t(number * kClearCorners), 0);
+    if (clears) {
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, solidPipeline_);
+        vkCmdSetScissor(commands, 0, 1, &whole);
+        vkCmdDrawIndexed(commands, kClearIndices, 1, 0, int32_t(number * kClearCorners), 0);
+    }
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
 
     uint32_t firstIndex = kClearIndices;

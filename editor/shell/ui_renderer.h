@@ -32,6 +32,8 @@ class UiRenderer {
     // In the pass, outside nothing: sets its own viewport and scissors. `whole`: the output holds
     // nothing yet; else it is as the last call left it.
     void draw(VkCommandBuffer commands, uint32_t slot, const ImDrawData& data, bool whole);
+    // The same, all of it, over what the pass has drawn so far: a game's.
+    void drawOver(VkCommandBuffer commands, uint32_t slot, const ImDrawData& data);
 
  private:
     struct Part {  // of the output, in pixels
@@ -49,7 +51,8 @@ class UiRenderer {
     void addChange(Part part);
     [[nodiscard]] Part boundsOf(const ImDrawCmd& command, const ImVec2& a, const ImVec2& b,
                                 const ImVec2& c) const;
-    void drawPart(VkCommandBuffer commands, const ImDrawData& data, uint32_t number);
+    void drawChanges(VkCommandBuffer commands, uint32_t slot, const ImDrawData& data, bool clears);
+    void drawPart(VkCommandBuffer commands, const ImDrawData& data, uint32_t number, bool clears);
 
     struct Slot {
         sample::Buffer vertices, indices;

@@ -418,7 +418,7 @@ Hud::Hud(const sample::VulkanHost& host, sample::Stage& stage) : stage_(stage) {
         std::make_unique<fwui::UiRenderer>(host, stage.outputPass(), stage.made.framesInFlight);
     fwui::theme().scale = 0;  // of no window yet
     stage.overlay = [this](VkCommandBuffer commands) {
-        if (shown_) renderer_->draw(commands, slot_, *ImGui::GetDrawData());
+        if (shown_) renderer_->drawOver(commands, slot_, *ImGui::GetDrawData());
     };
 }
 
