@@ -21,20 +21,24 @@ float arrivalAt(uint object, uint base, uint weights, uint nowTick) {
     return refineArrival(t, weights, nowTick, refined[object].epochTick);
 }
 
-RefineVertex refineNow(uint object, RefineSlot slot, uint nowTick, float recede) {
+// behind: s since the object's epoch when the wall behind it was lit; unlit: as if it will be once a
+// wall takes to burn through, so that corners around what is lit know the way to it.
+RefineVertex refineNow(uint object, RefineSlot slot, uint nowTick, float recede,
+                       out float behind) {
     float own = arrivalAt(object, slot.texel & 0xFFFFFFu, slot.weights, nowTick);
-    float opposite = kRefineNever;
+    behind = kRefineNever;
     bool walled = slot.opposite != kRefineOpposed;
     while (walled) {
-        opposite = arrivalAt(object, slot.opposite & 0xFFFFFFu,
-                             refineOppositeWeights(slot.opposite), nowTick);
+        behind = arrivalAt(object, slot.opposite & 0xFFFFFFu,
+                           refineOppositeWeights(slot.opposite), nowTick);
         walled = false;
     }
     uint material = slot.texel >> 24u;
     vec4 low = refined[object].burnSeconds0;
     vec4 high = refined[object].burnSeconds1;
     float seconds = material < 4u ? low[material & 3u] : high[material & 3u];
-    vec4 v = refineEvaluate(slot, own, opposite, refined[object].now, seconds, recede);
+    vec4 v = refineEvaluate(slot, own, behind, refined[object].now, seconds, recede);
+    behind = min(behind, refined[object].now + abs(seconds));
     return RefineVertex(v.x, v.y, v.z, v.w);
 }
 #endif

@@ -57,7 +57,9 @@ bool isLost(uint object, RefineTriangle t) {
         if (k >= 3u && inner)
             s = refineInnerSlot(t, side == 1u ? 2u : 1u, side == 2u ? 2u : 1u, 2u);
         RefineSlot slot = slots[refined[object].meshSlots + s];
-        lost = lost && isGone(object, refineNow(object, slot, push.nowTick, push.recede).hole);
+        float behind;
+        lost = lost &&
+               isGone(object, refineNow(object, slot, push.nowTick, push.recede, behind).hole);
     }
     return lost;
 }

@@ -24,12 +24,13 @@ uint fateOf(uint object, float hole) {
 
 uint evaluate(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
-    RefineVertex v = refineNow(object, slot, push.nowTick, push.recede);
+    float behind;
+    RefineVertex v = refineNow(object, slot, push.nowTick, push.recede, behind);
     vertices[refined[object].vertices + s] = v;
     uint inner = refined[object].inner;
     while (inner != 0u) {
         vec3 p = refineInnerSkin(slot);
-        vertices[refined[object].vertices + inner + s] = RefineVertex(p.x, p.y, p.z, v.hole);
+        vertices[refined[object].vertices + inner + s] = RefineVertex(p.x, p.y, p.z, behind);
         inner = 0u;
     }
     return fateOf(object, v.hole);

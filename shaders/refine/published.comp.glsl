@@ -16,7 +16,9 @@ layout(local_size_x = 64) in;
 
 void place(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
-    vertices[refined[object].vertices + s] = refineNow(object, slot, push.nowTick, push.recede);
+    float behind;
+    vertices[refined[object].vertices + s] =
+        refineNow(object, slot, push.nowTick, push.recede, behind);
 }
 
 void name(uint object, uint entry) {

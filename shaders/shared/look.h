@@ -117,7 +117,7 @@ struct ViewParams {          // uniform block, one per view
     vec4 up;                 // world up; w: pace factor of the world
     vec4 wind;               // m/s; w: clip z over w of what is clipped away beyond the far plane
     uint now;                // tick
-    uint lightCount;         // most lights, also the size of the list
+    uint lightCount;         // most lights
     uint flameCapacity;      // most flame quads
     uint seed;
     vec4 viewport;           // px: x, y, width, height
@@ -161,13 +161,13 @@ struct SurfaceDraw {
     float horizon;           // s that the prediction looks ahead
     uint look;               // row of the looks table
     uint stateBase;          // as BurnObject
-    uint width;              // texels
-    uint height;
+    uint size;               // texels: width, << 16: height
     uint flags;              // kObject..., kDrawVertexLight
     uint places;             // with kDrawPlaced: of vertex slot 0 among the refined places
+    uint inner;              // from there to its place on the inner skin; 0: has none
     uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
     float filmMost;          // g/m^2 of water that stay on it; 0: no heat plane
-    float now;               // with kDrawCut: s on the clock of its holes
+    float now;               // with kDrawPlaced: s on the clock of its holes
     float nearness;          // with kDrawCut: 0 where cut and discarded rims must look the same, to 1;
                              // of kSurfaceCold: texels, coldReach
 };
@@ -186,6 +186,8 @@ FW_SHARED_CONST uint kDrawThick = 0x100000u;
 FW_SHARED_CONST uint kDrawCut = 0x200000u;
 // Walls along open edges where nothing is cut: texels say how long each point still stands.
 FW_SHARED_CONST uint kDrawTold = 0x400000u;
+// Of placed vertices those on the inner skin.
+FW_SHARED_CONST uint kDrawInner = 0x800000u;
 // Share of a wall by which refined faces recede; what is left is char, and shows at rims.
 FW_SHARED_CONST float kRefineRecede = 0.6f;
 

@@ -71,7 +71,8 @@ FW_SHARED_SIZE(RefineSlot, 32)
 
 struct RefineVertex {    // a vertex now
     float x, y, z;       // m, object space
-    float hole;          // s since the object's epoch: burnt through; kRefineNever: not known
+    float hole;          // s since the object's epoch: burnt through; kRefineNever: not known;
+                         // on the inner skin: when the wall behind was lit, see refineNow
 };
 FW_SHARED_SIZE(RefineVertex, 16)
 

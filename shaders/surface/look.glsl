@@ -65,6 +65,14 @@ float holeDelay(vec4 grown, vec4 fine, float delay, MaterialLook m) {
     return m.holeVariation * n + 1.5 * m.jitter * delay;
 }
 
+// s that a hole comes earlier by the wall behind, `other` s after that was lit; as refineHole: when
+// one of them is burnt through, or where their fronts meet.
+float leadOf(float a, float other, float through) {
+    if (other <= -0.999 * through) return 0.0;
+    float both = max(0.5 * (through - a - other), -min(a, other));
+    return max(through - a - min(through - max(a, other), both), 0.0);
+}
+
 // m from here to the rim of the hole; negative: gone.
 float holeEdge(float a, Site s, MaterialLook m) {
     if (m.holeTime <= 0.0) return 1.0;

@@ -53,6 +53,9 @@ layout(location = 0) out vec4 outColor;
 // W/sr of the visible part of a flame to candela: soot glows a little for much heat.
 const float kCandelaPerWatt = 0.013;
 
+ivec2 lastTexel() { return ivec2(int(draw.size & 0xFFFFu), int(draw.size >> 16u)) - 1; }
+uint texelAt(ivec2 texel) { return uint(texel.y) * (draw.size & 0xFFFFu) + uint(texel.x); }
+
 struct Arrival {
     float age;      // s since ignition, look time not applied; very negative: not in sight
     vec2 gradient;  // s/texel
@@ -71,7 +74,7 @@ struct Arrival {
 Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     vec2 st = uv - 0.5;
     vec2 corner = floor(st);
-    ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
+    ivec2 limit = lastTexel();
     Arrival o;
     o.age = 0.0;
     o.gradient = vec2(0.0);
@@ -82,7 +85,7 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     for (int i = 0; i < taps; ++i) {
         ivec2 o2 = i < 4 ? ivec2(i & 1, i >> 1) : ivec2((i - 4) % 5 - 2, (i - 4) / 5 - 2);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
-        uint index = draw.stateBase + uint(texel.y) * draw.width + uint(texel.x);
+        uint index = draw.stateBase + texelAt(texel);
         uint t = predict[index], packed = gradient[index];
         vec2 off = st - corner - vec2(o2);
         float away = dot(off, off);
@@ -133,14 +136,14 @@ struct Warmth {
 Warmth warmthAt(vec2 uv) {
     vec2 st = uv - 0.5;
     vec2 corner = floor(st);
-    ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
+    ivec2 limit = lastTexel();
     float total = 1e-6, kelvin = 300.0 * total, fuel = total;
     bool plane = (draw.flags & kDrawHeat) != 0u;
     int taps = plane ? 4 : 1, i = 0;
     do {
         ivec2 o2 = ivec2(i & 1, i >> 1);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
-        uint at = 2u * (draw.heatBase + uint(texel.y) * draw.width + uint(texel.x));
+        uint at = 2u * (draw.heatBase + texelAt(texel));
         uint word = heat[plane ? at : 0u];
         vec2 share = 1.0 - abs(st - corner - vec2(o2));
         float w = plane ? share.x * share.y : 0.0;
@@ -156,7 +159,7 @@ Warmth warmthAt(vec2 uv) {
 // poured has an edge of a texel: shown over five. Five texels tell whether there is an edge.
 vec2 coatAt(vec2 uv) {
     vec2 middle = floor(uv), off = uv - middle - 0.5;
-    ivec2 limit = ivec2(int(draw.width) - 1, int(draw.height) - 1);
+    ivec2 limit = lastTexel();
     vec2 sum = vec2(0.0);
     float total = 1e-6, least = 1.0, most = 0.0;
     bool plane = draw.filmMost > 0.0;
@@ -166,7 +169,7 @@ vec2 coatAt(vec2 uv) {
         ivec2 o2 = i < 4 ? ivec2((i & 1) * 4 - 2, (i >> 1) * 4 - 2) : ivec2(0);
         if (i > 4) o2 = ivec2((i - 5) % 5 - 2, (i - 5) / 5 - 2);
         ivec2 texel = clamp(ivec2(middle) + o2, ivec2(0), limit);
-        uint index = uint(texel.y) * draw.width + uint(texel.x);
+        uint index = texelAt(texel);
         uint t = predict[draw.stateBase + index];
         uint word = plane ? heat[2u * (draw.heatBase + index) + 1u] : 0u;
         float film = min(float(word & 0x3FFu) * perGram, 1.0);
@@ -408,6 +411,10 @@ void main() {
 
     // What the wall behind has burnt is missing here too, even before this side catches.
     site.lead = cut ? 0.0 : inSootLead.y;
+    if (!cut && (draw.flags & kDrawPlaced) != 0u) {
+        site.age = max(site.age, -1e3);
+        site.lead = leadOf(site.age, inSootLead.y, look.holeTime);
+    }
     site.left = cut ? max(inSootLead.y, 0.0) * draw.timeScale : -1.0;
     site.nearness = draw.nearness;
     // No rim; corners that are too far apart know nothing of a hole between them: texels do.

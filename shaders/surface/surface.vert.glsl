@@ -64,7 +64,7 @@ void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, ino
 
 // Whether fire, heat, water or soot left a mark within reach.
 bool markedNear(vec2 texel) {
-    ivec2 last = ivec2(int(draw.width) - 1, int(draw.height) - 1) >> 3;
+    ivec2 last = (ivec2(int(draw.size & 0xFFFFu), int(draw.size >> 16u)) - 1) >> 3;
     ivec2 low = ivec2(max(texel - draw.nearness, 0.0)) >> 3;
     ivec2 high = min(ivec2(texel + draw.nearness) >> 3, last);
     uint flags = 0u;
@@ -89,8 +89,12 @@ void main() {
     bool placed = (flags & kDrawPlaced) != 0u;
     while (placed) {  // a branch would cost every mesh the load
         vec4 place = places[draw.places + inSlot];
-        rest = place.xyz;
-        lead = (flags & kDrawCut) != 0u ? clamp(place.w - draw.now, 0.0, 1000.0) : 0.0;
+        vec4 inner = places[draw.places + draw.inner + inSlot];
+        rest = (flags & kDrawInner) != 0u ? inner.xyz : place.xyz;
+        // Its hole; or how long the wall behind it burns.
+        float behind = draw.inner != 0u ? draw.now - inner.w : -1000.0;
+        lead = (flags & kDrawCut) != 0u ? clamp(place.w - draw.now, 0.0, 1000.0)
+                                        : clamp(behind * draw.timeScale, -1000.0, 1000.0);
         placed = false;
     }
     vec3 position = fromEye(rest);

@@ -10,12 +10,13 @@ constexpr float kSide = 0.5f;  // m
 
 class Boards : public OwnWorld {
  protected:
-    Picture draw() {
+    Picture draw(float zoom = 12) {
         const glm::vec3 target(0.5f * kSide, 0.5f * kSide, 0);
-        return pictureOf(world_, viewAt(target + glm::vec3(0, 0, 4), target, 1, 12), kWidth,
+        return pictureOf(world_, viewAt(target + glm::vec3(0, 0, 4), target, 1, zoom), kWidth,
                          kHeight);
     }
-    void addBoard(const Mesh& mesh, const std::vector<float>& details, float spreadRate) {
+    void addBoard(const Mesh& mesh, const std::vector<float>& details, float spreadRate,
+                  uint32_t flags = 0) {
         FwMeshDef def = meshDefOf(mesh);
         def.details = details.data();
         def.mapSize = 512;
@@ -24,7 +25,7 @@ class Boards : public OwnWorld {
         ASSERT_EQ(fwInitMaterialPreset(&plastic, FW_MATERIAL_PLASTIC), FW_OK);
         plastic.spreadRate = spreadRate;
         plastic.windGain = plastic.upGain = plastic.headGain = plastic.ceilingGain = 0;
-        add(def, plastic, FW_BURNABLE_LITE);
+        add(def, plastic, FW_BURNABLE_LITE | flags);
     }
 };
 
@@ -88,6 +89,39 @@ TEST_F(Boards, ScorchIsThereAtOnce) {
     std::printf("%u pixels at once, %u some frames later\n", first, later);
     EXPECT_GT(first, 200u);
     EXPECT_GT(first, later * 3 / 4);
+}
+
+// Only the back burns; its holes are the front's. Near the eye they are cut, far from it every
+// pixel finds them: as much must be open.
+TEST_F(Boards, WhatBurnsThroughFromBehindIsOpenNearAndFar) {
+    makeWorld(1, 32);
+    const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
+    addBoard(mesh, std::vector<float>(mesh.positions.size() / 3 * 2, 0), 0.3f, FW_BURNABLE_REFINE);
+    constexpr float kNear = 12, kFar = 3.5f;
+    const Picture whole[] = {draw(kNear), draw(kFar)};
+    touch(FW_IGNITE, 0.5f * kSide, 0.5f * kSide, 0, 0.13f);
+    double open[2] = {};
+    const auto isBackground = [](const Picture& picture, size_t at) {
+        return std::equal(&picture.rgb[at], &picture.rgb[at] + 3, picture.rgb.data());
+    };
+    for (int moment = 0; moment < 3; ++moment) {
+        run(moment == 0 ? 0.32f : 0.04f, 0.01f);
+        for (const int far : {0, 1}) {
+            (void)draw(far ? kFar : kNear);
+            fwWorld_Step(world_, 1.0f / 512);
+            const Picture burnt = draw(far ? kFar : kNear);
+            uint32_t covered = 0, seen = 0;
+            for (size_t at = 0; at < burnt.rgb.size(); at += 3) {
+                if (isBackground(whole[far], at)) continue;
+                ++covered;
+                seen += isBackground(burnt, at);
+            }
+            open[far] = double(seen) / double(covered);
+        }
+        std::printf("open: %.3f near, %.3f far\n", open[0], open[1]);
+        EXPECT_NEAR(open[0], open[1], 0.05);
+    }
+    EXPECT_GT(open[0], 0.1);
 }
 
 }  // namespace

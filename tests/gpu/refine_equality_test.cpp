@@ -410,7 +410,6 @@ TEST_F(RefineEquality, InnerSkinAndBordersAreTheLibrarys) {
             const gpu::RefineVertex& v = vertices[scene.model.slots.size() + slot];
             const glm::vec3 skin3 = gpu::refineInnerSkin(scene.model.slots[slot]);
             ASSERT_LT(glm::distance(skin3, glm::vec3(v.x, v.y, v.z)), 1e-6f);
-            ASSERT_EQ(vertices[slot].hole, v.hole);
         }
     }
     std::printf("inside: at most %zu triangles of cut skins, %zu of borders\n", skins, borders);

@@ -142,8 +142,7 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     draw.horizon = float(object.horizon) / float(kTicksPerSecond);
     draw.look = material.look;
     draw.stateBase = object.stateBase;
-    draw.width = object.width;
-    draw.height = object.height;
+    draw.size = object.width | object.height << 16;
     draw.flags = object.flags | (edge < kSmallEdge ? kDrawVertexLight : 0);
     draw.places = places;
     const bool heated = (object.flags & kObjectHeat) != 0;
@@ -185,7 +184,8 @@ void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const Dra
         if (item.refined) {
             draw.flags |= kDrawPlaced;
             // What turns its back is seen from inside.
-            if (behind != turned) draw.places += item.inner;
+            draw.inner = item.inner;
+            if (behind != turned && item.inner != 0) draw.flags |= kDrawInner;
         }
         if (burning && !item.refined && behind != turned && item.inside != kNoneTexel)
             recorder.drawInside(item, &draw);
