@@ -10,6 +10,7 @@
 #include "shared/field.h"
 #include "shared/room.h"
 
+#include <cmath>
 #include <cstdint>
 #include <memory_resource>
 #include <span>
@@ -136,10 +137,16 @@ struct Detail {
     uint32_t volumeSteps = 64;  // samples of a ray at most; see FwWorldDef
     float triangles = 1;        // share of FwWorldDef::maxRefinedTriangles
     float quads = 1;  // share of flames' quads and particles that show; what shows is larger for it
+    float lights =
+        1;  // share of FwWorldDef::maxLights: the fewer there are, the more each shines for
     float memory = 1;  // share of what marched flames and quads have otherwise; 1: it never shrinks
 
     [[nodiscard]] bool operator==(const Detail&) const = default;
 };
+// Of `most` lights.
+[[nodiscard]] inline uint32_t lightsOf(const Detail& detail, uint32_t most) noexcept {
+    return uint32_t(std::ceil(double(detail.lights) * double(most)));
+}
 
 struct FramePlan {
     uint64_t frameIndex = 0;

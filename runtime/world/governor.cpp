@@ -51,17 +51,17 @@ void turnTo(uint32_t level, float share, Governor& g) noexcept {
 }  // namespace
 
 gpu::Detail detailOf(uint32_t level) noexcept {
-    // Many samples first, which is grain; then how many flames have their own rays; triangles,
-    // quads and memory all along.
+    // Many samples first, which is grain; then how many flames have their own rays, and lights;
+    // triangles, quads and memory all along.
     static constexpr std::array<gpu::Detail, kDetailLevels> kLevels = {{
-        {16, 32, 64, 1.0f, 1.0f, 1.0f},
-        {12, 32, 48, 0.85f, 0.9f, 0.8f},
-        {8, 24, 40, 0.7f, 0.8f, 0.65f},
-        {4, 16, 32, 0.55f, 0.7f, 0.5f},
-        {2, 8, 28, 0.4f, 0.6f, 0.4f},
-        {1, 4, 24, 0.3f, 0.5f, 0.3f},
-        {0, 2, 20, 0.2f, 0.42f, 0.2f},
-        {0, 1, 16, 0.125f, 0.35f, 0.125f},
+        {16, 32, 64, 1.0f, 1.0f, 1.0f, 1.0f},
+        {12, 32, 48, 0.85f, 0.9f, 1.0f, 0.8f},
+        {8, 24, 40, 0.7f, 0.8f, 1.0f, 0.65f},
+        {4, 16, 32, 0.55f, 0.7f, 1.0f, 0.5f},
+        {2, 8, 28, 0.4f, 0.6f, 0.875f, 0.4f},
+        {1, 4, 24, 0.3f, 0.5f, 0.75f, 0.3f},
+        {0, 2, 20, 0.2f, 0.42f, 0.625f, 0.2f},
+        {0, 1, 16, 0.125f, 0.35f, 0.5f, 0.125f},
     }};
     return kLevels[std::min(level, kDetailLevels - 1)];
 }

@@ -272,6 +272,7 @@ void World::budgetState(FwBudgetState& state) const noexcept {
     state.gpuMilliseconds = governor_.cost.gpu;
     state.cpuMilliseconds = governor_.cost.cpu;
     state.quads = detail.quads;
+    state.lights = gpu::lightsOf(detail, def_.maxLights);
     state.bytes = backend_.detailBytes();
 }
 

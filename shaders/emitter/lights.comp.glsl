@@ -186,7 +186,8 @@ void main() {
         for (uint k = 0u; k < 3u; ++k) atomicAdd(lightOffset[nearest * 3u + k], offset[k]);
     }
     barrier();
-    for (uint light = me; light < view.lightCount; light += 128u) {
+    // There may have been more.
+    for (uint light = me; light < uint(lights.length()); light += 128u) {
         BurnLight l;
         l.positionRadius = vec4(0.0);
         l.colorIntensity = vec4(0.0);

@@ -77,6 +77,9 @@ TEST(Governor, LevelsOnlyGiveUp) {
         EXPECT_LE(less.volumeSteps, more.volumeSteps);
         EXPECT_LT(less.triangles, more.triangles);
         EXPECT_GT(less.triangles, 0.0f);
+        EXPECT_LE(less.lights, more.lights);
+        EXPECT_GE(gpu::lightsOf(less, 1), 1u);
+        EXPECT_EQ(gpu::lightsOf(less, 0), 0u);
         EXPECT_GE(less.marched, 1u);
         EXPECT_GE(less.volumeSteps, 6u);
     }

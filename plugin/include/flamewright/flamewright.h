@@ -1434,8 +1434,8 @@ FW_API FwResult FW_CALL fwWorld_GetEnergyBook(FwWorld*, FwEnergyBook* book); /* 
 
 /* What a frame may cost. While it costs more, detail falls in eight levels, and rises when there is room: how many
  * volumetric flames have rays of their own and with how many samples, the largest on the screen last, how many
- * triangles refined meshes aim at, and how many quads flames of burning meshes and particles show (the others are
- * larger for it); under a limit of bytes also how fine marched flames are. Fires are never deleted, and what burns is
+ * triangles refined meshes aim at, how many quads flames of burning meshes and particles show (the others are larger
+ * for it), and how many lights shine for all (the others shine for them too); under a limit of bytes also how fine marched flames are. Fires are never deleted, and what burns is
  * the same bit by bit at every level. A new load settles within 60 frames; a single slow frame changes nothing. */
 typedef struct FwBudgetDef {
     uint32_t structSize, reserved;  /* 0 */
@@ -1462,7 +1462,7 @@ typedef struct FwBudgetState {
     uint32_t refinedTriangles; /* that refined meshes aim to stay within */
     float gpuMilliseconds, cpuMilliseconds; /* of a frame, smooth; 0: not known */
     float quads;               /* share of flames' quads and particles that show, [0, 1] */
-    uint32_t reserved;
+    uint32_t lights;           /* at most that shine for all fires; FwWorldDef::maxLights, and half of it at the least */
     uint64_t bytes;            /* that FwBudgetDef::bytes limits, now; 0 on the cpu backend */
 } FwBudgetState;
 FW_API FwResult FW_CALL fwWorld_GetBudgetState(FwWorld*, FwBudgetState* state); /* [world] */

@@ -375,7 +375,7 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
         input.up[i] = limits.up[i];
     }
     input.paceFactor = limits.paceFactor;
-    input.lightCount = limits.maxLights;
+    input.lightCount = lightCount;
     input.flameCapacity = std::min(limits.maxFlames, kFlameCapacity);
     input.quadShare = quadShare;
     input.seed = limits.seed;
@@ -397,6 +397,9 @@ void VkBackend::State::run(const FramePlan& plan) {
     softSteps =
         uint32_t(std::min<uint64_t>(softNow > softStep ? softNow - softStep : 0, kMostSoftSteps));
     softStep = softNow;
+    const uint32_t lightsWanted = lightsOf(plan.detail, limits.maxLights);
+    lightCount =
+        lightCount > lightsWanted ? lightCount - 1 : std::min(lightCount + 1, lightsWanted);
     const FrameNeeds needs = needsOf(*this, plan);
     open.planFrame = plan.frameIndex;
     open.endTick = plan.endTick;
