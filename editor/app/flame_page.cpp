@@ -217,14 +217,7 @@ void FlamePage::open() {
         def.volumeSteps = 40;
         fwCreateWorld(context, &def, &view.world);
     }
-    FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-    def.renderPass = views[0].target->pass().pass;
-    def.colorFormat = views[0].target->pass().colorFormat;
-    def.depthFormat = views[0].target->depthFormat();
-    def.samples = 1;
-    def.colorAttachmentCount = 1;
-    def.depthMode = FW_DEPTH_TEST;
-    def.encoding = FW_OUTPUT_LINEAR;
+    const FwVulkanTargetDef def = views[0].target->flames();
     fwContext_RegisterTarget(context, &def, &targetId);
     fwContext_Prepare(context);
 }
@@ -333,6 +326,8 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
         const FwResult outside = fwWorld_RecordOutside(view.world, &described, &camera);
         view.target->begin(frame);
         view.studio->draw(stage, frame.commands, camera, {lights, count});
+        view.target->beginFlames(frame);
+        view.target->lendDepth(described);
         const VkViewport all = view.target->viewport();
         if (outside == FW_OK) fwWorld_RecordInside(view.world, &described, targetId, &camera, &all);
         view.target->end(frame);

@@ -85,16 +85,10 @@ LiveScene::LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::U
         share_ = share;
         return !stop_;
     };
-    FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-    def.renderPass = target.pass().pass;
-    def.colorFormat = target.pass().colorFormat;
-    def.depthFormat = target.depthFormat();
-    def.samples = 1;
-    def.colorAttachmentCount = 1;
-    def.depthMode = FW_DEPTH_TEST;
-    def.encoding = FW_OUTPUT_LINEAR;
-    pipelines_ = std::async(std::launch::async, [this, context, def] {
-        if (fwContext_RegisterTarget(context, &def, &targetId_) == FW_OK &&
+    pipelines_ = std::async(std::launch::async, [this, context] {
+        const FwVulkanTargetDef solids = target.solids(), flames = target.flames();
+        if (fwContext_RegisterTarget(context, &solids, &solids_) == FW_OK &&
+            fwContext_RegisterTarget(context, &flames, &flames_) == FW_OK &&
             fwContext_Prepare(context) == FW_OK)
             return;
         char text[512] = "";
@@ -120,7 +114,7 @@ LiveScene::~LiveScene() {
     burn_.reset();
     other_.reset();
     rest_ = {};
-    fwContext_UnregisterTarget(context_, targetId_);
+    for (const FwTargetId id : {solids_, flames_}) fwContext_UnregisterTarget(context_, id);
 }
 
 void LiveScene::forget() {
@@ -602,14 +596,17 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
         described.deltaTime = 0;
         outside = recordOutside(drawn, described, view);
     }
+    std::vector<Half> halves;
+    if (compares)
+        halves.push_back({*other_, *otherStudio_, otherView_, half(false), otherOutside_ == FW_OK});
+    halves.push_back(
+        {drawn, *studio_, view, compares ? half(true) : target.viewport(), outside == FW_OK});
     target.begin(frame);
-    if (compares) {
-        drawHalf(frame, *other_, *otherStudio_, otherView_, described, half(false),
-                 otherOutside_ == FW_OK);
-        drawHalf(frame, drawn, *studio_, view, described, half(true), outside == FW_OK);
-    } else {
-        drawHalf(frame, drawn, *studio_, view, described, target.viewport(), outside == FW_OK);
-    }
+    for (const Half& part : halves) drawSolids(frame, part, described);
+    target.beginFlames(frame);
+    target.lendDepth(described);
+    for (const Half& part : halves)
+        if (part.ready) recordInside(part, described, flames_);
     target.end(frame);
     kept_ = previews();
     if (kept_) target.keep(frame);
@@ -626,24 +623,26 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     if (count > 0) milliseconds_ = sum;
 }
 
-// The burn and what it stands in, in a part of the picture.
-void LiveScene::drawHalf(const fwui::Frame& frame, fwedit::Burn& burn, sample::Studio& studio,
-                         const FwView& from, const FwVulkanFrame& described,
-                         const VkViewport& viewport, bool draws) {
+// The burn's surfaces and what it stands in.
+void LiveScene::drawSolids(const fwui::Frame& frame, const Half& part,
+                           const FwVulkanFrame& described) {
     FwLight lights[8];
-    const uint32_t lightCount = fwWorld_GetLights(burn.world, lights, 8);
+    const uint32_t lightCount = fwWorld_GetLights(part.burn.world, lights, 8);
     sample::StageFrame stage;
     stage.commands = frame.commands;
     stage.slot = frame.slot;
-    const VkRect2D part{{int32_t(viewport.x), 0},
-                        {uint32_t(viewport.width), uint32_t(viewport.height)}};
-    vkCmdSetViewport(frame.commands, 0, 1, &viewport);
-    vkCmdSetScissor(frame.commands, 0, 1, &part);
-    studio.draw(stage, frame.commands, from, {lights, lightCount});
-    if (!draws) return;
+    const VkRect2D pixels{{int32_t(part.viewport.x), 0},
+                          {uint32_t(part.viewport.width), uint32_t(part.viewport.height)}};
+    vkCmdSetViewport(frame.commands, 0, 1, &part.viewport);
+    vkCmdSetScissor(frame.commands, 0, 1, &pixels);
+    part.studio.draw(stage, frame.commands, part.from, {lights, lightCount});
+    if (part.ready) recordInside(part, described, solids_);
+}
+
+void LiveScene::recordInside(const Half& part, const FwVulkanFrame& described, FwTargetId id) {
     const FwResult inside =
-        fwWorld_RecordInside(burn.world, &described, targetId_, &from, &viewport);
-    if (inside < 0) report_.push_back(lastMessage(burn.world));
+        fwWorld_RecordInside(part.burn.world, &described, id, &part.from, &part.viewport);
+    if (inside < 0) report_.push_back(lastMessage(part.burn.world));
 }
 
 void LiveScene::drawOverlays(const fwui::Frame& frame) {

@@ -144,6 +144,13 @@ class LiveScene {
         std::unique_ptr<fwedit::Burn> burn;
         std::map<fwedit::ObjectId, std::shared_ptr<const fwedit::PaintSurface>> surfaces;
     };
+    struct Half {  // a burn in its part of the picture
+        fwedit::Burn& burn;
+        sample::Studio& studio;
+        const FwView& from;
+        VkViewport viewport;
+        bool ready;  // to be drawn
+    };
     void adopt(Made made);
     void startRest();
     void adoptRest(Rest made);
@@ -161,9 +168,8 @@ class LiveScene {
     // The burn that is compared with is at another time, or not made yet.
     [[nodiscard]] bool otherLags() const;
     std::unique_ptr<sample::Studio> makeStudio(const fwedit::Burn& burn) const;
-    void drawHalf(const fwui::Frame& frame, fwedit::Burn& burn, sample::Studio& studio,
-                  const FwView& from, const FwVulkanFrame& described, const VkViewport& viewport,
-                  bool draws);
+    void drawSolids(const fwui::Frame& frame, const Half& part, const FwVulkanFrame& described);
+    void recordInside(const Half& part, const FwVulkanFrame& described, FwTargetId id);
     [[nodiscard]] VkViewport half(bool right) const;
     void drawOverlays(const fwui::Frame& frame);
     void warmPreview(const fwui::Frame& frame);
@@ -172,7 +178,7 @@ class LiveScene {
 
     const sample::VulkanHost& host_;
     FwContext* context_;
-    FwTargetId targetId_{};
+    FwTargetId solids_{}, flames_{};
     fwedit::Assets assets_;
     std::unique_ptr<fwedit::Burn> burn_;
     std::unique_ptr<sample::Studio> studio_;

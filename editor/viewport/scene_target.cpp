@@ -27,10 +27,13 @@ SceneTarget::SceneTarget(const sample::VulkanHost& host, fwui::UiRenderer& ui)
       ui_(ui),
       depthFormat_(host.depthFormat()),
       drawing_(host, 1, 2, {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(Push)}) {
-    scenePass_ = makePass(kLight, true, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    spreadPass_ = makePass(kLight, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    shownPass_ = makePass(kDisplay, false, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    overPass_ = makePass(kDisplay, true, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, true);
+    constexpr VkImageLayout kDrawn = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                            kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    scenePass_ = makePass({kLight, Depth::kWritten, VK_IMAGE_LAYOUT_UNDEFINED, kDrawn});
+    flamePass_ = makePass({kLight, Depth::kNone, kDrawn, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL});
+    spreadPass_ = makePass({kLight, Depth::kNone, VK_IMAGE_LAYOUT_UNDEFINED, kRead});
+    shownPass_ = makePass({kDisplay, Depth::kNone, VK_IMAGE_LAYOUT_UNDEFINED, kRead});
+    overPass_ = makePass({kDisplay, Depth::kTested, kRead, kRead});
     set_ = drawing_.newSet();
 
     sample::PipelineRequest request;
@@ -50,7 +53,7 @@ SceneTarget::SceneTarget(const sample::VulkanHost& host, fwui::UiRenderer& ui)
 SceneTarget::~SceneTarget() {
     vkDeviceWaitIdle(host_.device);
     dropImages();
-    for (VkRenderPass pass : {scenePass_, spreadPass_, shownPass_, overPass_})
+    for (VkRenderPass pass : {scenePass_, flamePass_, spreadPass_, shownPass_, overPass_})
         vkDestroyRenderPass(host_.device, pass, nullptr);
 }
 
@@ -59,31 +62,60 @@ sample::ScenePass SceneTarget::pass() const {
             fwui::Frames::kSlots};
 }
 
-VkRenderPass SceneTarget::makePass(VkFormat color, bool depth, VkImageLayout after,
-                                   bool over) const {
+FwVulkanTargetDef SceneTarget::solids() const {
+    FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
+    def.renderPass = scenePass_;
+    def.colorFormat = kLight;
+    def.depthFormat = depthFormat_;
+    def.samples = 1;
+    def.colorAttachmentCount = 1;
+    def.depthMode = FW_DEPTH_TEST;
+    def.flags = FW_TARGET_NO_FLAMES;
+    def.encoding = FW_OUTPUT_LINEAR;
+    return def;
+}
+
+FwVulkanTargetDef SceneTarget::flames() const {
+    FwVulkanTargetDef def = solids();
+    def.renderPass = flamePass_;
+    def.depthMode = FW_DEPTH_SAMPLED;
+    def.flags = 0;
+    return def;
+}
+
+void SceneTarget::lendDepth(FwVulkanFrame& frame) const {
+    frame.sampledDepth = depth_.view;
+    frame.sampledDepthLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+}
+
+VkRenderPass SceneTarget::makePass(const PassRequest& request) const {
+    constexpr VkImageLayout kReadDepth = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+    const bool keeps = request.before != VK_IMAGE_LAYOUT_UNDEFINED,
+               tests = request.depth == Depth::kTested, any = request.depth != Depth::kNone;
     std::array<VkAttachmentDescription, 2> attachments{};
-    attachments[0].format = color;
+    attachments[0].format = request.color;
     attachments[0].samples = VK_SAMPLE_COUNT_1_BIT;
-    attachments[0].loadOp = depth ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    attachments[0].loadOp = keeps ? VK_ATTACHMENT_LOAD_OP_LOAD
+                            : any ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                                  : VK_ATTACHMENT_LOAD_OP_DONT_CARE;
     attachments[0].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
     attachments[0].stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
     attachments[0].stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    attachments[0].finalLayout = after;
+    attachments[0].initialLayout = request.before;
+    attachments[0].finalLayout = request.after;
     attachments[1] = attachments[0];
     attachments[1].format = depthFormat_;
-    attachments[1].finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-    for (VkAttachmentDescription& attachment : attachments) {
-        if (!over) break;
-        attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-        attachment.initialLayout = attachment.finalLayout;
-    }
+    attachments[1].loadOp = tests ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR;
+    attachments[1].initialLayout = tests ? kReadDepth : VK_IMAGE_LAYOUT_UNDEFINED;
+    attachments[1].finalLayout = kReadDepth;
     const VkAttachmentReference colorPlace{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    const VkAttachmentReference depthPlace{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+    const VkAttachmentReference depthPlace{
+        1, tests ? kReadDepth : VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
     VkSubpassDescription subpass{};
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
     subpass.colorAttachmentCount = 1;
     subpass.pColorAttachments = &colorPlace;
-    subpass.pDepthStencilAttachment = depth ? &depthPlace : nullptr;
+    subpass.pDepthStencilAttachment = any ? &depthPlace : nullptr;
     constexpr VkPipelineStageFlags kWrites = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
                                              VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                                              VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
@@ -91,21 +123,23 @@ VkRenderPass SceneTarget::makePass(VkFormat color, bool depth, VkImageLayout aft
         VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
     constexpr VkAccessFlags kWritten =
         VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    constexpr VkAccessFlags kTested =
+        VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
     std::array<VkSubpassDependency, 2> dependencies{};
     dependencies[0].srcSubpass = VK_SUBPASS_EXTERNAL;
     dependencies[0].srcStageMask = kWrites | kReads;
     dependencies[0].srcAccessMask = kWritten;
     dependencies[0].dstStageMask = kWrites;
-    dependencies[0].dstAccessMask = kWritten | VK_ACCESS_COLOR_ATTACHMENT_READ_BIT |
-                                    VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+    dependencies[0].dstAccessMask = kWritten | kTested;
     dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
-    dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-    dependencies[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-    dependencies[1].dstStageMask = kReads;
-    dependencies[1].dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
+    dependencies[1].srcStageMask = kWrites;
+    dependencies[1].srcAccessMask = kWritten;
+    dependencies[1].dstStageMask = kWrites | kReads;
+    dependencies[1].dstAccessMask =
+        kWritten | kTested | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
     VkRenderPassCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
-    info.attachmentCount = depth ? 2 : 1;
+    info.attachmentCount = any ? 2 : 1;
     info.pAttachments = attachments.data();
     info.subpassCount = 1;
     info.pSubpasses = &subpass;
@@ -135,8 +169,8 @@ VkFramebuffer SceneTarget::makeFramebuffer(VkRenderPass pass,
 void SceneTarget::dropImages() {
     ui_.removeTexture(texture_);
     texture_ = nullptr;
-    for (VkFramebuffer* framebuffer :
-         {&sceneFramebuffer_, &spreadFramebuffer_, &shownFramebuffer_, &overFramebuffer_}) {
+    for (VkFramebuffer* framebuffer : {&sceneFramebuffer_, &flameFramebuffer_, &spreadFramebuffer_,
+                                       &shownFramebuffer_, &overFramebuffer_}) {
         vkDestroyFramebuffer(host_.device, *framebuffer, nullptr);
         *framebuffer = VK_NULL_HANDLE;
     }
@@ -169,9 +203,8 @@ void SceneTarget::resize(uint32_t width, uint32_t height) {
     shown_ = host_.createImage(request);
     kept_ = host_.createImage(request);
     request.format = depthFormat_;
-    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    if (depthFormat_ == VK_FORMAT_D24_UNORM_S8_UINT) request.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
     depth_ = host_.createImage(request);
     sample::ImageRequest quarter;
     quarter.width = std::max(1u, width / 4);
@@ -181,6 +214,7 @@ void SceneTarget::resize(uint32_t width, uint32_t height) {
     spread_ = host_.createImage(quarter);
 
     sceneFramebuffer_ = makeFramebuffer(scenePass_, {color_.firstMip, depth_.view}, width, height);
+    flameFramebuffer_ = makeFramebuffer(flamePass_, {color_.firstMip}, width, height);
     spreadFramebuffer_ =
         makeFramebuffer(spreadPass_, {spread_.view}, quarter.width, quarter.height);
     shownFramebuffer_ = makeFramebuffer(shownPass_, {shown_.view}, width, height);
@@ -197,14 +231,15 @@ void SceneTarget::resize(uint32_t width, uint32_t height) {
     });
 }
 
-void SceneTarget::begin(const fwui::Frame& frame) {
+void SceneTarget::beginPass(const fwui::Frame& frame, VkRenderPass pass,
+                            VkFramebuffer framebuffer) const {
     std::array<VkClearValue, 2> clear{};
     clear[0].color = {{0.02f, 0.02f, 0.025f, 1.0f}};
     clear[1].depthStencil = {1.0f, 0};
     VkRenderPassBeginInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
-    info.renderPass = scenePass_;
-    info.framebuffer = sceneFramebuffer_;
+    info.renderPass = pass;
+    info.framebuffer = framebuffer;
     info.renderArea = {{0, 0}, extent_};
     info.clearValueCount = uint32_t(clear.size());
     info.pClearValues = clear.data();
@@ -212,6 +247,15 @@ void SceneTarget::begin(const fwui::Frame& frame) {
     const VkViewport all = viewport();
     vkCmdSetViewport(frame.commands, 0, 1, &all);
     vkCmdSetScissor(frame.commands, 0, 1, &info.renderArea);
+}
+
+void SceneTarget::begin(const fwui::Frame& frame) {
+    beginPass(frame, scenePass_, sceneFramebuffer_);
+}
+
+void SceneTarget::beginFlames(const fwui::Frame& frame) {
+    vkCmdEndRenderPass(frame.commands);
+    beginPass(frame, flamePass_, flameFramebuffer_);
 }
 
 void SceneTarget::end(const fwui::Frame& frame) {
@@ -271,15 +315,7 @@ void SceneTarget::restore(const fwui::Frame& frame) {
 }
 
 void SceneTarget::beginOver(const fwui::Frame& frame) {
-    VkRenderPassBeginInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
-    info.renderPass = overPass_;
-    info.framebuffer = overFramebuffer_;
-    info.renderArea = {{0, 0}, extent_};
-    vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
-    const VkViewport all = viewport();
-    vkCmdSetViewport(frame.commands, 0, 1, &all);
-    vkCmdSetScissor(frame.commands, 0, 1, &info.renderArea);
+    beginPass(frame, overPass_, overFramebuffer_);
 }
 
 void SceneTarget::endOver(const fwui::Frame& frame) { vkCmdEndRenderPass(frame.commands); }

@@ -1,9 +1,10 @@
-// A picture of a scene that the interface shows: drawn in linear light, with depth; then bloom,
-// film curve and display values as the samples have them. The host's side of a lent device, off
-// screen.
+// A picture of a scene that the interface shows: what is solid is drawn in linear light, with
+// depth, flames over it fade where they meet it; then bloom, film curve and display values as the
+// samples have them. The host's side of a lent device, off screen.
 #pragma once
 
 #include "common/stage.h"
+#include "flamewright/flamewright_vulkan.h"
 #include "shell/frames.h"
 #include "shell/ui_renderer.h"
 #include "viewport/picture_drawing.h"
@@ -20,6 +21,8 @@ class SceneTarget {
     // Pixels; nothing happens if it has that size. Waits for the device.
     void resize(uint32_t width, uint32_t height);
     void begin(const fwui::Frame& frame);
+    // After what is solid.
+    void beginFlames(const fwui::Frame& frame);
     void end(const fwui::Frame& frame);
     // After end: what it drew, for other frames to begin from instead of drawing the scene again.
     void keep(const fwui::Frame& frame);
@@ -28,8 +31,11 @@ class SceneTarget {
     void beginOver(const fwui::Frame& frame);
     void endOver(const fwui::Frame& frame);
     [[nodiscard]] sample::ScenePass pass() const;
+    // To be registered: for what is drawn after begin, and after beginFlames.
+    [[nodiscard]] FwVulkanTargetDef solids() const;
+    [[nodiscard]] FwVulkanTargetDef flames() const;
+    void lendDepth(FwVulkanFrame& frame) const;  // to who draws after beginFlames
     [[nodiscard]] VkRenderPass overPass() const { return overPass_; }
-    [[nodiscard]] VkFormat depthFormat() const { return depthFormat_; }
     [[nodiscard]] void* texture() const { return texture_; }  // for ImGui
     [[nodiscard]] VkImage shownImage() const {
         return shown_.image;
@@ -42,8 +48,14 @@ class SceneTarget {
     float bloom = 0.06f, vignette = 0.1f;
 
  private:
-    // Over: keeps what is there, depth included.
-    VkRenderPass makePass(VkFormat color, bool depth, VkImageLayout after, bool over = false) const;
+    enum class Depth { kNone, kWritten, kTested };
+    struct PassRequest {
+        VkFormat color;
+        Depth depth;
+        VkImageLayout before, after;  // of the colour; undefined before: what is there is dropped
+    };
+    VkRenderPass makePass(const PassRequest& request) const;
+    void beginPass(const fwui::Frame& frame, VkRenderPass pass, VkFramebuffer framebuffer) const;
     VkFramebuffer makeFramebuffer(VkRenderPass pass, std::initializer_list<VkImageView> views,
                                   uint32_t width, uint32_t height) const;
     void dropImages();
@@ -59,10 +71,12 @@ class SceneTarget {
     uint32_t mips_ = 1;
     VkFormat depthFormat_ = VK_FORMAT_UNDEFINED;
     sample::Image color_, depth_, spread_, shown_, kept_;
-    VkRenderPass scenePass_ = VK_NULL_HANDLE, spreadPass_ = VK_NULL_HANDLE,
-                 shownPass_ = VK_NULL_HANDLE, overPass_ = VK_NULL_HANDLE;
-    VkFramebuffer sceneFramebuffer_ = VK_NULL_HANDLE, spreadFramebuffer_ = VK_NULL_HANDLE,
-                  shownFramebuffer_ = VK_NULL_HANDLE, overFramebuffer_ = VK_NULL_HANDLE;
+    VkRenderPass scenePass_ = VK_NULL_HANDLE, flamePass_ = VK_NULL_HANDLE,
+                 spreadPass_ = VK_NULL_HANDLE, shownPass_ = VK_NULL_HANDLE,
+                 overPass_ = VK_NULL_HANDLE;
+    VkFramebuffer sceneFramebuffer_ = VK_NULL_HANDLE, flameFramebuffer_ = VK_NULL_HANDLE,
+                  spreadFramebuffer_ = VK_NULL_HANDLE, shownFramebuffer_ = VK_NULL_HANDLE,
+                  overFramebuffer_ = VK_NULL_HANDLE;
     PictureDrawing drawing_;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     VkPipeline shownPipeline_ = VK_NULL_HANDLE, spreadPipeline_ = VK_NULL_HANDLE;

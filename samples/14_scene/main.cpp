@@ -35,15 +35,22 @@ class Player {
     Player(const sample::VulkanHost& host, sample::Stage& stage, const std::filesystem::path& cache)
         : host_(host), stage_(stage), context_(sample::createContext(host, false)) {
         assets_.cache = cache;
-        FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-        def.renderPass = stage.scenePass;
-        def.colorFormat = stage.made.colorFormat;
-        def.depthFormat = stage.depthFormat;
-        def.samples = 1;
-        def.colorAttachmentCount = 1;
-        def.depthMode = FW_DEPTH_TEST;
-        def.encoding = FW_OUTPUT_LINEAR;
-        if (fwContext_RegisterTarget(context_, &def, &target_) < 0 ||
+        // Surfaces in the stage's pass; flames in one of ours over it, where they fade as they meet
+        // what is solid.
+        FwVulkanTargetDef solids = fwDefaultVulkanTargetDef();
+        solids.colorFormat = stage.made.colorFormat;
+        solids.depthFormat = stage.depthFormat;
+        solids.samples = 1;
+        solids.colorAttachmentCount = 1;
+        solids.encoding = FW_OUTPUT_LINEAR;
+        FwVulkanTargetDef flames = solids;
+        solids.renderPass = stage.scenePass;
+        solids.depthMode = FW_DEPTH_TEST;
+        solids.flags = FW_TARGET_NO_FLAMES;
+        flames.depthMode = FW_DEPTH_SAMPLED;
+        flames.flags = FW_TARGET_COMPOSITE;
+        if (fwContext_RegisterTarget(context_, &solids, &solids_) < 0 ||
+            fwContext_RegisterTarget(context_, &flames, &flames_) < 0 ||
             fwContext_Prepare(context_) < 0) {
             char text[512] = "";
             fwContext_GetLastMessage(context_, text, sizeof text);
@@ -107,8 +114,10 @@ class Player {
         studio_->draw(frame, frame.commands, view, {lights, count});
         const FwVulkanFrame described = describe(frame, step);
         check(*burn_,
-              fwWorld_RecordInside(burn_->world, &described, target_, &view, &frame.viewport));
+              fwWorld_RecordInside(burn_->world, &described, solids_, &view, &frame.viewport));
         stage_.endScene(frame);
+        const FwVulkanComposite over = sample::compositeOf(stage_.lendScene(frame), frame.extent);
+        check(*burn_, fwWorld_RecordComposite(burn_->world, &described, flames_, &view, &over));
         stage_.finish(frame);
     }
 
@@ -174,7 +183,7 @@ class Player {
     const sample::VulkanHost& host_;
     sample::Stage& stage_;
     FwContext* context_;
-    FwTargetId target_{};
+    FwTargetId solids_{}, flames_{};
     fwedit::Assets assets_;
     std::unique_ptr<fwedit::Burn> burn_, next_;  // next_: behind the picture
     fwlink::LinkedScene shown_;
@@ -319,6 +328,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
         sample::StageRequest request;
         request.title = "Flamewright: a scene";
         request.vignette = 0.1f;  // as the editor's picture has it
+        request.lendScene = true;
         Link link(wishes.port);
         const bool forEditor = options.headless && link.listens();
         sample::Stage stage(host, options, request,

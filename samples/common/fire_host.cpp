@@ -60,6 +60,26 @@ FwContext* createContext(const VulkanHost& host, bool prepares) {
     return context;
 }
 
+FwVulkanComposite compositeOf(const LentScene& scene, VkExtent2D extent) {
+    FwVulkanComposite images = fwDefaultVulkanComposite();
+    images.width = extent.width;
+    images.height = extent.height;
+    images.color.image = scene.color;
+    images.color.view = scene.colorView;
+    images.color.layoutBefore = images.color.layoutAfter = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    images.color.stageBefore = images.color.stageAfter = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    images.color.accessBefore = images.color.accessAfter = VK_ACCESS_TRANSFER_READ_BIT;
+    images.depth.image = scene.depth;
+    images.depth.view = scene.depthView;
+    images.depth.layoutBefore = images.depth.layoutAfter =
+        VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    images.depth.stageBefore = images.depth.stageAfter =
+        VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+    images.depth.accessBefore = images.depth.accessAfter =
+        VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    return images;
+}
+
 FireHost::FireHost(const VulkanHost& host, const FwWorldDef& worldDef)
     : context(createContext(host)), device_(host.device) {
     try {
@@ -132,22 +152,7 @@ void FireHost::recordOver(const StageFrame& frame, const FwView& view, const Len
     FwVulkanFrame described = describe(frame, VK_NULL_HANDLE);
     described.sampledColor = scene.copy;
     described.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    FwVulkanComposite images = fwDefaultVulkanComposite();
-    images.width = frame.extent.width;
-    images.height = frame.extent.height;
-    images.color.image = scene.color;
-    images.color.view = scene.colorView;
-    images.color.layoutBefore = images.color.layoutAfter = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    images.color.stageBefore = images.color.stageAfter = VK_PIPELINE_STAGE_TRANSFER_BIT;
-    images.color.accessBefore = images.color.accessAfter = VK_ACCESS_TRANSFER_READ_BIT;
-    images.depth.image = scene.depth;
-    images.depth.view = scene.depthView;
-    images.depth.layoutBefore = images.depth.layoutAfter =
-        VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-    images.depth.stageBefore = images.depth.stageAfter =
-        VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
-    images.depth.accessBefore = images.depth.accessAfter =
-        VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+    const FwVulkanComposite images = compositeOf(scene, frame.extent);
     const FwResult result = fwWorld_RecordComposite(world, &described, target, &view, &images);
     if (result != FW_NOT_READY) check(result, "fwWorld_RecordComposite");
 }

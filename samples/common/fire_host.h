@@ -21,6 +21,9 @@ void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool
 // the device.
 FwContext* createContext(const VulkanHost& host, bool prepares = true);
 
+// The images of a scene that is lent, for a pass of ours over it.
+FwVulkanComposite compositeOf(const LentScene& scene, VkExtent2D extent);
+
 class FireHost {
  public:
     // Lends the device, builds the pipelines, makes the world. Throws Failure with the reason.
