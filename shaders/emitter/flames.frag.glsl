@@ -217,10 +217,11 @@ void main() {
         alpha = 0.0;
     }
 #ifdef FW_SOFT
-    // A tongue is as deep as it is wide, a puff twice so.
+    // A tongue is as deep as it is wide, a puff twice so. Half of a tongue stands before its quad: a
+    // rail that is not as thick does not cut it.
     float gap = gapToScene();
-    float depthOf = (smoke ? 0.9 : 0.35) * inWidth;
-    float soft = smoothstep(0.0, 1.0, gap / depthOf);
+    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap)
+                       : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
     color *= soft;
     alpha *= soft;
 #endif

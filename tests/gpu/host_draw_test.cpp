@@ -92,7 +92,7 @@ double lightOf(const Picture& picture) {  // all but the host's blue and its str
 }
 
 // Flames against a depth that is sampled: hidden behind it, whole before it, and in between they
-// fade where a depth test cuts them off. However the host lends it, the picture is the same.
+// fade where a depth test cuts them off, by half where it would. However the host lends it, the picture is the same.
 TEST_F(HostDraw, SampledDepthIsSoft) {
     if (!device_) return;
     const float planes[4] = {2.0f, 2.44f, 2.47f, 4.0f};  // m from the eye; the fire is at 2.5
@@ -131,9 +131,9 @@ TEST_F(HostDraw, SampledDepthIsSoft) {
                 EXPECT_EQ(hardLight[0], 0);
                 EXPECT_GT(hardLight[3], 100);
                 EXPECT_NEAR(softLight[3], hardLight[3], 1e-3 * hardLight[3]) << "nothing near";
-                EXPECT_LT(softLight[2], 0.9 * hardLight[2]) << "a wall among the flames";
-                EXPECT_GT(softLight[2], 0.1 * hardLight[2]);
-                EXPECT_LT(softLight[1], softLight[2]);
+                EXPECT_LT(softLight[2], 0.9 * softLight[3]) << "a wall among the flames";
+                EXPECT_LT(softLight[1], 0.8 * softLight[2]);
+                EXPECT_GT(softLight[1], 1.1 * hardLight[1]) << "half of them stands before it";
                 if (reference.empty()) reference = all;
                 float most = 0;
                 for (size_t i = 0; i < all.size(); ++i)
