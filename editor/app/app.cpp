@@ -614,9 +614,12 @@ std::vector<Action> makeActions(App& app) {
          scene},
         {"Larger interface", "View", "Ctrl+Plus", nullptr,
          [at] { at->user.interfaceSize = std::min(2.0f, at->user.interfaceSize + 0.25f); },
-         [at] { return at->user.interfaceSize < 2; }, -2, true},
+         [at] { return at->user.interfaceSize < std::min(2.0f, at->mostInterfaceSize); }, -2, true},
         {"Smaller interface", "View", "Ctrl+Minus", nullptr,
-         [at] { at->user.interfaceSize = std::max(0.75f, at->user.interfaceSize - 0.25f); },
+         [at] {
+             const float seen = std::min(at->user.interfaceSize, at->mostInterfaceSize);
+             at->user.interfaceSize = std::max(0.75f, seen - 0.25f);
+         },
          [at] { return at->user.interfaceSize > 0.75f; }},
 
         {"Add heat source",

@@ -76,8 +76,9 @@ struct App {
     Cards cards;
     bool cardsCome = true;  // some are still to be loaded
     UserState user;
-    std::string device;  // as people call it
-    bool slow = false;   // a device of the CPU's: pictures that move are drawn smaller
+    float mostInterfaceSize = 2;  // that the window has room for
+    std::string device;           // as people call it
+    bool slow = false;            // a device of the CPU's: pictures that move are drawn smaller
 
     Page page = Page::kWelcome;
     Tool tool = Tool::kMove;

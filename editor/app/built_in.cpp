@@ -17,7 +17,7 @@ namespace {
 namespace icons = fwui::icons;
 
 constexpr BuiltIn kScenes[] = {
-    {"Burning crate", "One match, one box of boards. Start here.", icons::crate},
+    {"Burning crate", "Start here: a match and a crate", icons::crate},
     {"Campfire", "A flame of its own, by night", icons::firepit},
     {"Hand torch", "A small flame in the wind", icons::srcJet},
     {"Bonfire", "Tall, with smoke and sparks", icons::flame},

@@ -1110,7 +1110,7 @@ void paintAlong(FlamePage& page, fwedit::Dab dab, float fromX, float fromY) {
 void showCanvas(App& app, const Rect& rect) {
     FlamePage& page = *app.flame;
     ImDrawList* list = beginPanel("##canvas", rect, colors::gap);
-    const float top = rect.y0 + dp(18), bottom = rect.y1 - dp(78);
+    const float top = rect.y0 + dp(18), bottom = rect.y1 - dp(page.draft.curves ? 88 : 78);
     const float height = bottom - top;
     const float width = std::min(height * 0.82f, rect.width() - dp(110));
     const ImVec2 low(std::floor(rect.midX() - width * 0.5f + dp(12)), top);
@@ -1395,9 +1395,13 @@ void showPresets(App& app, const Rect& rect) {
     float x = rect.x0 + dp(10);
     const float gap = dp(10);  // all of them are there, however narrow
     const float card = std::min(dp(84), (end + dp(2) - x) / float(FW_FIRE_PRESET_COUNT) - gap);
-    const float inset = std::max(dp(1), 0.5f * (card - dp(56)));
+    bool twoLines = false;  // of a name, then
+    for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i)
+        twoLines |= textSize(fonts().small, tidy(fwFirePresetName(i)).c_str()).x > card + dp(6);
+    const float tall = dp(twoLines ? 46 : 58);
+    const float inset = std::max(dp(1), 0.5f * (card - (tall - dp(2))));
     for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i) {
-        const ImVec2 low(x, rect.y0 + dp(31)), high = low + ImVec2(card, dp(58));
+        const ImVec2 low(x, rect.y0 + dp(31)), high = low + ImVec2(card, tall);
         const std::string name = tidy(fwFirePresetName(i));
         ImGui::PushID(int(i));
         bool hovered = false;
@@ -1411,9 +1415,16 @@ void showPresets(App& app, const Rect& rect) {
                                   high - ImVec2(inset, dp(1)), {0, 0}, {1, 1}, colors::white,
                                   dp(3));
         if (here || hovered) drawBox(list, low, high, 0, 4, here ? colors::accent : colors::edge);
-        const float spare = std::max(0.0f, card + dp(6) - textSize(fonts().small, name.c_str()).x);
-        drawTextFit(list, fonts().small, low.x - dp(3) + 0.5f * spare, high.y + dp(12),
-                    card + dp(6), here ? colors::title : colors::dim, name.c_str());
+        const size_t space = twoLines ? name.find(' ') : std::string::npos;
+        float line = high.y + dp(12);
+        for (const std::string& words :
+             {name.substr(0, space), space == std::string::npos ? "" : name.substr(space + 1)}) {
+            const float width = textSize(fonts().small, words.c_str()).x;
+            const float spare = std::max(0.0f, card + dp(6) - width);
+            drawTextFit(list, fonts().small, low.x - dp(3) + 0.5f * spare, line, card + dp(6),
+                        here ? colors::title : colors::dim, words.c_str());
+            line += dp(14);
+        }
         x += card + gap;
     }
     endPanel();

@@ -44,6 +44,8 @@ struct Wishes {
     bool keys = false;    // prints them, then leaves
 };
 
+constexpr float kLeastWidth = 850, kLeastHeight = 470;  // design pixels that all pages need
+
 float monitorScale(GLFWwindow* window, VkExtent2D extent) {
     float x = 1, y = 1;
     if (window) glfwGetWindowContentScale(window, &x, &y);
@@ -313,7 +315,12 @@ class Program {
         const VkExtent2D extent = frames_.extent();
         GLFWwindow* window = frames_.window ? frames_.window->handle() : nullptr;
         const float monitor = wishes_.scale > 0 ? wishes_.scale : monitorScale(window, extent);
-        const float scale = std::clamp(monitor * app_->user.interfaceSize, 0.75f, 4.0f);
+        // Not so large that panels would lie over each other.
+        const float fits =
+            std::min(float(extent.width) / kLeastWidth, float(extent.height) / kLeastHeight);
+        const float most = std::clamp(std::floor(fits * 4) / 4, 1.0f, 4.0f);
+        app_->mostInterfaceSize = most / monitor;
+        const float scale = std::clamp(monitor * app_->user.interfaceSize, 0.75f, most);
         if (scale == scale_) return;
         scale_ = scale;
         fwui::theme().scale = scale;

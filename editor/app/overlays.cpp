@@ -190,9 +190,11 @@ void showPalette(App& app) {
     const float width = std::min(dp(580), app.screen.width() - dp(40));
     const ImVec2 low(std::floor(app.screen.midX() - width * 0.5f), app.screen.y0 + dp(84));
     const std::vector<Found> found = findAnything(app);
-    constexpr int kShown = 8;
+    // As many as there is room for above the status line.
+    const float room = app.screen.y1 - dp(metrics::status + 8) - low.y - dp(50 + 46);
+    const int most = std::clamp(int(room / dp(36)), 2, 8);
     const int count = int(found.size());
-    const int rows = std::clamp(count, 1, kShown);
+    const int rows = std::clamp(count, 1, most);
     const ImVec2 high(low.x + width, low.y + dp(50) + dp(36) * float(rows) + dp(46));
     drawCard(list, low, high);
     drawIcon(list, fonts().icon20, low + dp(24, 25), colors::dim, icons::search);
@@ -218,13 +220,13 @@ void showPalette(App& app) {
     app.paletteAt = std::clamp(app.paletteAt, 0, std::max(0, count - 1));
     drawRow(list, low.x + hairline(), high.x - hairline(), low.y + dp(50), colors::line);
     float y = low.y + dp(54);
-    const int first = std::clamp(app.paletteAt - kShown + 1, 0, std::max(0, count - kShown));
+    const int first = std::clamp(app.paletteAt - most + 1, 0, std::max(0, count - most));
     std::function<void()> chosen;
     if (count == 0) {
         drawTextCentred(list, fonts().body, (low.x + high.x) * 0.5f, y + dp(16), colors::dim,
                         ("Nothing called ‘" + app.paletteText + "’").c_str());
     }
-    for (int i = first; i < std::min(count, first + kShown); ++i) {
+    for (int i = first; i < std::min(count, first + most); ++i) {
         const Found& one = found[size_t(i)];
         bool hovered = false;
         ImGui::PushID(i);

@@ -75,29 +75,45 @@ void showTools(App& app, const Rect& rect) {
                                  {icons::srcRain, "Rain", "Add rain"},
                                  {icons::water, "Water", "Add water"},
                                  {icons::mesh, "Wall", "Add wall"}};
-    for (const Adder& adder : kAdders) {
-        look = {.icon = adder.icon, .label = adder.label};
-        if (toolButton(adder.action, {x, y}, look, adder.action)) act(adder.action);
-        x += toolButtonWidth(look) + dp(4);
+    const ToolLook why{.icon = icons::question, .label = "Why?", .active = app.tool == Tool::kWhy};
+    const ToolLook times{.icon = icons::timer, .label = "Burn times", .active = app.burnTimes};
+    const float apart = dp(4), light = dp(162), edge = rect.x1 - dp(8);
+    const float others = toolButtonWidth(why) + apart + toolButtonWidth(times) + dp(10) + light;
+    float all = 0;
+    for (const Adder& adder : kAdders)
+        all += toolButtonWidth({.icon = adder.icon, .label = adder.label}) + apart;
+    if (x + all + others <= edge) {
+        for (const Adder& adder : kAdders) {
+            look = {.icon = adder.icon, .label = adder.label};
+            if (toolButton(adder.action, {x, y}, look, adder.action)) act(adder.action);
+            x += toolButtonWidth(look) + apart;
+        }
+    } else {  // so that what the picture is seen by has room
+        look = {.icon = icons::add, .label = "More", .drops = true};
+        if (toolButton("more", {x, y}, look, "Add a flame, wind, rain, water or a wall"))
+            ImGui::OpenPopup("more menu");
+        if (beginMenu("more menu", {x, rect.y1 - dp(3)}, dp(180))) {
+            for (const Adder& adder : kAdders)
+                if (menuItem(adder.label, adder.icon, keysOf(app, adder.action))) act(adder.action);
+            endMenu();
+        }
+        x += toolButtonWidth(look) + apart;
     }
-    float right = rect.x1 - dp(8);
-    look = {.icon = icons::question, .label = "Why?"};
-    look.active = app.tool == Tool::kWhy;
-    right -= toolButtonWidth(look);
-    if (toolButton("why", {right, y}, look, "Ask a spot why it does not burn",
+    float right = edge - toolButtonWidth(why);
+    if (toolButton("why", {right, y}, why, "Ask a spot why it does not burn",
                    keysOf(app, "Why does it not burn?")))
         act("Why does it not burn?");
-    look = {.icon = icons::timer, .label = "Burn times"};
-    look.active = app.burnTimes;
-    right -= toolButtonWidth(look) + dp(4);
-    if (right > x && toolButton("burn times", {right, y}, look, "When each spot caught",
-                                keysOf(app, "Show burn times")))
-        act("Show burn times");
-    right -= dp(10);
-    int light = int(app.document.scene.settings.daylight);
-    if (right - dp(162) > x && segments("light", {right - dp(162), y + dp(2)}, dp(162, 24),
-                                        {"Night", "Dusk", "Day"}, light))
-        performSet(app, 0, "daylight", double(light));
+    if (right - dp(10) - light - apart - toolButtonWidth(times) > x) {
+        right -= toolButtonWidth(times) + apart;
+        if (toolButton("burn times", {right, y}, times, "When each spot caught",
+                       keysOf(app, "Show burn times")))
+            act("Show burn times");
+    }
+    right -= dp(10) + light;
+    int chosen = int(app.document.scene.settings.daylight);
+    if (right > x &&
+        segments("light", {right, y + dp(2)}, {light, dp(24)}, {"Night", "Dusk", "Day"}, chosen))
+        performSet(app, 0, "daylight", double(chosen));
     endPanel();
 }
 
