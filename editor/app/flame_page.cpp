@@ -9,6 +9,7 @@
 #include <glm/gtc/packing.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <numeric>
+#include <utility>
 
 #include "common/camera.h"
 #include "core/error.h"
@@ -225,7 +226,8 @@ void FlamePage::open() {
 // The fires anew, of the profile as it is.
 void FlamePage::relight() {
     vkDeviceWaitIdle(host.device);
-    studioSize = std::max(draft.diameter * 1.2f, 0.02f);
+    const float room = std::max(draft.diameter * 1.2f, 0.02f);
+    const bool sameRoom = room == std::exchange(studioSize, room);
     for (int i = 0; i < 3; ++i) {
         View& view = views[i];
         if (!view.world) continue;
@@ -258,13 +260,20 @@ void FlamePage::relight() {
         fwWorld_CreateVolumetricFire(view.world, &def, &view.fire);
         const float blown[3] = {i == 2 ? wind : 0, 0, 0};
         fwWorld_SetWind(view.world, blown);
-        if (view.studio && view.studioSize == studioSize) continue;
-        view.studio =
-            std::make_unique<sample::Studio>(host, view.target->pass(), glm::vec3(0), studioSize);
-        view.studioSize = studioSize;
+        if (!sameRoom) view.studio.reset();
     }
     changed = false;
     relitAt = time;
+}
+
+// The backdrop of a picture, so large that the eye stands in it.
+void FlamePage::standAround(View& view, float distance) {
+    constexpr float kInside = 6;  // sizes of it from its middle to where an eye may stand
+    if (view.studio && view.studioSize * kInside >= distance) return;
+    vkDeviceWaitIdle(host.device);
+    view.studioSize = std::max(studioSize, 1.2f * distance / kInside);
+    view.studio =
+        std::make_unique<sample::Studio>(host, view.target->pass(), glm::vec3(0), view.studioSize);
 }
 
 float FlamePage::height() const {
@@ -309,6 +318,7 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
         const float aspect = float(extent.width) / float(extent.height);
         const float wide = std::max(1.5f * tall, 1.7f * draft.diameter / std::max(0.2f, aspect));
         orbit.distance = 0.5f * wide / std::tan(0.5f * orbit.fieldOfView);
+        standAround(view, orbit.distance);
         sample::StageFrame stage;
         stage.commands = frame.commands;
         stage.slot = frame.slot;
@@ -1354,16 +1364,20 @@ void showPreview(App& app, Rect rect) {
                    page.paused ? "Go on" : "Freeze"))
         page.paused = !page.paused;
     rect.y0 += dp(2);
+    const float gap = dp(2);
+    const bool tall = !page.compares && rect.height() > 2 * rect.width();  // one above the others
     const Rect night =
-        rect.cutLeft(std::floor(rect.width() * (page.compares ? 0.5f : 0.6f)) - dp(1));
-    rect.cutLeft(dp(2));
+        tall ? rect.cutTop(std::floor(rect.height() * 0.6f) - dp(1))
+             : rect.cutLeft(std::floor(rect.width() * (page.compares ? 0.5f : 0.6f)) - dp(1));
+    tall ? rect.cutTop(gap) : rect.cutLeft(gap);
     if (page.compares) {
         showSides(page, list, {night, rect});
         endPanel();
         return;
     }
-    const Rect day = rect.cutTop(std::floor(rect.height() * 0.5f));
-    rect.cutTop(dp(2));
+    const Rect day = tall ? rect.cutLeft(std::floor(rect.width() * 0.5f) - dp(1))
+                          : rect.cutTop(std::floor(rect.height() * 0.5f));
+    tall ? rect.cutLeft(gap) : rect.cutTop(gap);
     const Rect windy = rect;
     const Rect rects[3] = {night, day, windy};
     char blown[32];
