@@ -2,7 +2,7 @@
 # Drives the editor as a hand does, with real keys and clicks in a window: imports a glTF, places a
 # heat source on it, plays, scrubs back, undoes and does again, paints on the mesh, paints a flame and
 # draws it by points, asks why, saves, writes the game's files, and opens what was saved; the scene is
-# the same to the byte.
+# the same to the byte, and the window's picture the one that is drawn without a window.
 # Under the validation layer, synchronization checks included.
 # Usage: editor_window.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
 set -euo pipefail
@@ -106,6 +106,15 @@ grep -q '"shape": "point"' "$work/first.fwscene" || grep -q '"point"' "$work/fir
 start "$binary" "$work/first.fwscene"
 await "did: Opened first.fwscene"
 await ready
+# ImageMagick takes the window's picture.
+if command -v import >/dev/null; then
+    xdotool mousemove 1100 480
+    sleep 2
+    import -window root "$work/window.png"
+    "$binary" --headless --page scene --size 1280x720 --scale 1 --shot "$work/headless.png" "$work/first.fwscene"
+    echo 'expect alike "window.png" "headless.png" 0.002' >"$work/alike.fws"
+    "$binary" --script "$work/alike.fws" --headless || { echo "the window shows another picture" && exit 1; }
+fi
 xdotool key ctrl+shift+s key ctrl+a type "$work/second.fwscene"
 xdotool key Return
 await "did: Saved second.fwscene"
