@@ -140,7 +140,9 @@ void showStatus(App& app, const Rect& rect, std::initializer_list<Hint> hints) {
         right -= textSize(font, text).x + dp(14);
     };
     char text[64];
-    word(fonts().small, colors::dim, app.device.c_str());
+    const bool tells = !app.result.empty() && app.now - app.resultTime < 20;
+    const bool brief = tells && rect.width() < dp(1100);  // what was done has room then
+    if (!brief) word(fonts().small, colors::dim, app.device.c_str());
     if (app.framesPerSecond > 0) {
         std::snprintf(text, sizeof text, "%.0f fps", double(app.framesPerSecond));
         word(fonts().small, colors::dim, text);
@@ -148,6 +150,8 @@ void showStatus(App& app, const Rect& rect, std::initializer_list<Hint> hints) {
     if (!app.costs.empty() && app.page != Page::kWelcome) {
         std::snprintf(text, sizeof text, "GPU %.1f ms", double(app.costs.back()));
         word(fonts().smallSemi, colors::title, text);
+    }
+    if (!app.costs.empty() && app.page != Page::kWelcome && !brief) {
         const size_t count = std::min<size_t>(app.costs.size(), 18);
         float most = 1;
         for (size_t i = app.costs.size() - count; i < app.costs.size(); ++i)
@@ -161,7 +165,7 @@ void showStatus(App& app, const Rect& rect, std::initializer_list<Hint> hints) {
         }
         right -= dp(4) * float(count) + dp(8);
     }
-    if (!app.result.empty() && app.now - app.resultTime < 20) {
+    if (tells) {
         const float from = rect.x0 + rect.width() * 0.58f;
         drawIcon(list, fonts().icon14, {from, y}, colors::ok, icons::checkOn);
         drawTextFit(list, fonts().small, from + dp(12), y, right - from - dp(16), colors::text,
