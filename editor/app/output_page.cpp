@@ -356,13 +356,14 @@ void showActs(App& app, const Rect& rect) {
     endPanel();
 }
 
-ImU32 codeColor(const std::string& line) {
-    const size_t first = line.find_first_not_of(' ');
-    if (first == std::string::npos) return colors::text;
-    const bool comment = line.compare(first, 2, "/*") == 0 || line.compare(first, 2, "* ") == 0 ||
-                         line.compare(first, 2, "//") == 0 || line.compare(first, 2, "*/") == 0;
-    if (comment || line[first] == '*') return colors::dim;
-    return line[first] == '#' ? colors::accent : colors::text;
+// `comment`: one that has begun above goes on; whether it goes on below.
+ImU32 codeColor(std::string_view line, bool& comment) {
+    const size_t first = std::min(line.find_first_not_of(' '), line.size());
+    const std::string_view words = line.substr(first);
+    const bool within = comment || words.starts_with("/*");
+    comment = within && words.find("*/") == words.npos;
+    if (within || words.starts_with("//")) return colors::dim;
+    return words.starts_with('#') ? colors::accent : colors::text;
 }
 
 void showCode(App& app, Rect rect) {
@@ -396,12 +397,14 @@ void showCode(App& app, Rect rect) {
     const float top = rect.y0 + dp(12) - ImGui::GetScrollY();
     float widest = 0;
     size_t at = 0;
+    bool comment = false;
     for (size_t i = 0; at < code.size(); ++i) {
         const size_t end = std::min(code.find('\n', at), code.size());
         const float y = top + row * (float(i) + 0.5f);
+        const std::string line = code.substr(at, end - at);
+        const ImU32 color = codeColor(line, comment);
         if (y > rect.y0 - row && y < rect.y1 + row && end > at) {
-            const std::string line = code.substr(at, end - at);
-            drawText(inner, fonts().mono, left, y, codeColor(line), line.c_str());
+            drawText(inner, fonts().mono, left, y, color, line.c_str());
             widest = std::max(widest, textSize(fonts().mono, line.c_str()).x);
         }
         at = end + 1;
