@@ -55,8 +55,8 @@ struct FlamePage {
     void keepStep(const char* name);
     void undo();
     void redo();
-    void open();     // worlds and targets, when the page is first seen
-    void relight();  // the fires anew, of the profile as it is
+    void open();                         // worlds and targets, when the page is first seen
+    void relight();                      // the fires anew, of the profile as it is
     [[nodiscard]] float height() const;  // m, of the flame at night
     void record(const fwui::Frame& frame, float deltaTime);
     [[nodiscard]] bool lively() const;

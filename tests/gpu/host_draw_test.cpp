@@ -92,7 +92,8 @@ double lightOf(const Picture& picture) {  // all but the host's blue and its str
 }
 
 // Flames against a depth that is sampled: hidden behind it, whole before it, and in between they
-// fade where a depth test cuts them off, by half where it would. However the host lends it, the picture is the same.
+// fade where a depth test cuts them off, by half where it would. However the host lends it, the
+// picture is the same.
 TEST_F(HostDraw, SampledDepthIsSoft) {
     if (!device_) return;
     const float planes[4] = {2.0f, 2.44f, 2.47f, 4.0f};  // m from the eye; the fire is at 2.5
