@@ -49,6 +49,8 @@ size_t put(village::Scene& scene, Kit model, const village::Frame& frame) {
 
 }  // namespace
 
+bool isHouse(int model) { return isOneOf(kHouseKits, model); }
+
 village::Vec2 metres(game::Point point) {
     return {0.001f * float(point.x), 0.001f * float(point.z)};
 }
@@ -85,7 +87,7 @@ Battlefield makeBattlefield(uint32_t seed) {
     });
     size_t house = 0;
     for (size_t i = 0; i < instances.size(); ++i) {
-        if (!isOneOf(kHouseKits, instances[i].model) || house == game::kHouses) continue;
+        if (!isHouse(instances[i].model) || house == game::kHouses) continue;
         const village::Vec3 at = instances[i].frame.origin;
         field.ground.houses[house] = millimetres({at.x, at.z});
         field.houses[house++] = i;

@@ -20,6 +20,8 @@ struct Battlefield {
 };
 
 Battlefield makeBattlefield(uint32_t seed);
+// One of those whose burning counts: with a room inside.
+bool isHouse(int model);
 
 // Where a plot is, m.
 village::Vec2 metres(game::Point point);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "battlefield.h"
 #include "common/options.h"
 #include "game/rules.h"
 #include "placed.h"
@@ -18,6 +19,9 @@ using village::Material;
 using village::Vec3;
 
 namespace {
+
+constexpr float kRoofIsGone = 0.2f;  // of a house's surface
+constexpr float kPartFalls = 1.5f;   // m^2
 
 void toMatrix(const village::Frame& f, float* m) {
     const Vec3 columns[4] = {f.x, f.y, f.z, f.origin};
@@ -233,8 +237,14 @@ void FireVillage::createObject(Thing& thing) {
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     // Until it catches, the host draws it: with its shadows, and for less.
     // LITE: what burns behind the front costs nothing, and a village full of fire runs in real
-    // time.
-    def.flags = FW_BURNABLE_HIDDEN | FW_BURNABLE_LITE;
+    // time. Houses alone have heat: what their rooms flash over by.
+    def.flags = FW_BURNABLE_HIDDEN;
+    if (isHouse(instance.model)) {
+        def.breakShare = kRoofIsGone;
+        def.breakArea = kPartFalls;
+    } else {
+        def.flags |= FW_BURNABLE_LITE;
+    }
     if (hasOpenSheets(instance.model)) def.flags |= FW_BURNABLE_TWO_SIDED;
     // Enemies end as black figures, not as nothing: the player must see what was felled.
     if (instance.roadMetres >= 0) def.flags |= FW_BURNABLE_NO_HOLES;
@@ -298,13 +308,14 @@ void FireVillage::move(size_t index, const village::Frame& frame) {
 void FireVillage::renew(size_t index) {
     Thing& thing = things[index];
     check(fwWorld_DestroyBurnableMesh(world_, thing.id), "fwWorld_DestroyBurnableMesh");
-    thing.lit = thing.over = false;
+    thing.lit = thing.over = thing.broken = false;
     thing.state = {};
     createObject(thing);
 }
 
 void FireVillage::observe() {
     FwEvent events[64];
+    broke_ = 0;
     while (const uint32_t count = fwWorld_PollEvents(world_, events, 64)) {
         for (const FwEvent& event : std::span(events, count)) {
             if (event.userData >= things.size()) continue;
@@ -318,6 +329,10 @@ void FireVillage::observe() {
             if (event.type == FW_EVENT_IGNITED) thing.over = false;
             if (event.type == FW_EVENT_BURNT_OUT || event.type == FW_EVENT_EXTINGUISHED)
                 thing.over = true;
+            if (event.type == FW_EVENT_STRUCTURE_BROKE && !thing.broken) {
+                thing.broken = true;
+                ++broke_;
+            }
         }
     }
     burning_ = 0;
@@ -331,7 +346,8 @@ void FireVillage::observe() {
 
 std::vector<uint8_t> FireVillage::flags() const {
     std::vector<uint8_t> flags;
-    for (const Thing& thing : things) flags.push_back(uint8_t(thing.lit | thing.over << 1));
+    for (const Thing& thing : things)
+        flags.push_back(uint8_t(thing.lit | thing.over << 1 | thing.broken << 2));
     return flags;
 }
 
@@ -339,7 +355,8 @@ void FireVillage::restore(std::span<const uint8_t> flags) {
     for (size_t i = 0; i < things.size(); ++i) {
         Thing& thing = things[i];
         thing.lit = flags[i] & 1;
-        thing.over = flags[i] >> 1;
+        thing.over = flags[i] >> 1 & 1;
+        thing.broken = flags[i] >> 2;
         thing.state = {};
         check(fwWorld_SetHidden(world_, thing.id, !thing.lit), "fwWorld_SetHidden");
     }

@@ -19,6 +19,7 @@ struct Thing {            // one instance that can burn
     village::Vec3 low, high;  // m, model space
     bool lit = false;         // has caught; from then on the library draws it
     bool over = false;        // burnt out
+    bool broken = false;      // of a house: its roof is gone, or a part of it hung on nothing
     FwObjectState state{};
     int32_t burnt() const {  // thousandths
         return state.texels ? int32_t(uint64_t{state.ignited} * 1000 / state.texels) : 0;
@@ -50,7 +51,7 @@ class FireVillage {
     void renew(size_t thing);
     // Reads events and states. After Step or RecordOutside of the frame before.
     void observe();
-    // What a world that has been loaded does not say: `lit` and `over` are as given.
+    // What a world that has been loaded does not say: `lit`, `over` and `broken` are as given.
     void restore(std::span<const uint8_t> flags);
     std::vector<uint8_t> flags() const;
     // The fires as the library reports them, strongest first. scale: intensity per watt.
@@ -58,6 +59,7 @@ class FireVillage {
 
     uint32_t burning() const { return burning_; }
     uint32_t caught() const { return caught_; }
+    uint32_t broke() const { return broke_; }  // in the last observe
 
  private:
     void makeMaterials();
@@ -77,7 +79,7 @@ class FireVillage {
     std::vector<size_t> thingOf_;                // by instance
     std::vector<village::Instance> instances_;
     std::vector<PointLight> lights_;
-    uint32_t burning_ = 0, caught_ = 0;
+    uint32_t burning_ = 0, caught_ = 0, broke_ = 0;
 };
 
 // Whether the model is worth burning at all: has fuel and stands in the play area.

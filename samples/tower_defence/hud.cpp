@@ -56,9 +56,10 @@ struct Board {
     ImDrawList* list;
     const Lens& lens;
     const Battlefield& field;
-    const game::State& state;
+    const Siege& siege;
     const FireNumbers& fires;
     Player& player;
+    const game::State& state = siege.state();
     Wishes wishes{};
     bool overPanel = false;  // the mouse is on one of them
 
@@ -90,6 +91,7 @@ struct Board {
     void healthBars();
     void wave();
     void villageBar();
+    void pip(float x, float y, size_t house);
     void purse();
     void cards();
     void speeds();
@@ -202,16 +204,31 @@ void Board::wave() {
 
 void Board::villageBar() {
     const float middle = lens.size.x / 2;
-    const Rect r{middle - dp(140), dp(10), middle + dp(140), dp(52)};
+    const Rect r{middle - dp(140), dp(10), middle + dp(140), dp(61)};
     panel(r);
     put(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(13), kDim, "VILLAGE");
     const int32_t stands = game::standing(state);
     fwui::drawTextRight(list, fonts().smallSemi, r.x1 - dp(14), r.y0 + dp(13), kInk,
                         text("%d %%   mill %d", (stands + 5) / 10, state.lives).c_str());
-    bar(r.x0 + dp(14), r.x1 - dp(14), r.y0 + dp(30), dp(3.5f), float(stands) / 1000,
+    bar(r.x0 + dp(14), r.x1 - dp(14), r.y0 + dp(27), dp(3.5f), float(stands) / 1000,
         stands > 700   ? kGreen
         : stands > 400 ? kOrange
                        : kRed);
+    // Each house: what is left of it; lit from within once it flashed over, and without its roof.
+    const float apart = (r.width() - dp(28)) / float(game::kHouses);
+    for (size_t house = 0; house < game::kHouses; ++house)
+        pip(r.x0 + dp(14) + apart * (float(house) + 0.5f), r.y0 + dp(41), house);
+}
+
+void Board::pip(float x, float y, size_t house) {
+    const int32_t burnt = state.houseBurnt[house];
+    const ImU32 walls = burnt >= game::kHouseIsLost ? kUnlit : burnt > 0 ? kOrange : kGreen;
+    const float half = dp(5), low = y + dp(6), eaves = y - dp(0.5f);
+    list->AddRectFilled({x - half, eaves}, {x + half, low}, walls);
+    if (!siege.broken(house))
+        list->AddTriangleFilled({x - half - dp(2), eaves}, {x, y - dp(6)},
+                                {x + half + dp(2), eaves}, walls);
+    if (state.flashed[house]) list->AddCircleFilled({x, y + dp(3)}, dp(2.5f), kRed);
 }
 
 void Board::purse() {
@@ -451,11 +468,11 @@ void Hud::takeInput(const sample::StageFrame& frame) {
 }
 
 Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
-                 const game::State& state, const FireNumbers& fires, Player& player) {
+                 const Siege& siege, const FireNumbers& fires, Player& player) {
     slot_ = frame.slot;
     shown_ = frame.extent.width >= kLeastWidth && frame.extent.height >= kLeastHeight;
     if (!shown_) {
-        Board blind{nullptr, lens, field, state, fires, player};
+        Board blind{nullptr, lens, field, siege, fires, player};
         keys(frame.input.keys, blind);
         return std::move(blind.wishes);
     }
@@ -468,7 +485,7 @@ Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battle
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground |
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoNav);
-    Board board{ImGui::GetWindowDrawList(), lens, field, state, fires, player};
+    Board board{ImGui::GetWindowDrawList(), lens, field, siege, fires, player};
     keys(frame.input.keys, board);
     board.ranges();
     board.healthBars();

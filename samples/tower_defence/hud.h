@@ -49,7 +49,7 @@ class Hud {
 
     // Lays out the frame, which the stage's overlay then draws.
     Wishes show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
-                const game::State& state, const FireNumbers& fires, Player& player);
+                const Siege& siege, const FireNumbers& fires, Player& player);
 
  private:
     void fit(VkExtent2D extent);

@@ -150,6 +150,8 @@ const char* wordsFor(const game::Happening& happening) {
     switch (happening.type) {
         case game::Happening::Type::kGotThrough:
             return "One has come to the mill!";
+        case game::Happening::Type::kFlashesOver:
+            return "A house flashes over!";
         case game::Happening::Type::kHouseLost:
             return "A house is lost";
         case game::Happening::Type::kWaveBegins:
@@ -298,7 +300,7 @@ int play(const sample::Options& options, const Choices& choices) {
             }
 
             // The player, by hand or by plan.
-            tower::Wishes wishes = hud.show(frame, lens, field, siege.state(),
+            tower::Wishes wishes = hud.show(frame, lens, field, siege,
                                             countFires(fires, fire.world, player.books), player);
             auto say = [&](const std::string& what) {
                 player.said = what;
@@ -349,6 +351,7 @@ int play(const sample::Options& options, const Choices& choices) {
                 report("second " + std::to_string(second + 1));
             for (const game::Happening& happening : siege.happened())
                 if (const char* words = wordsFor(happening)) say(words);
+            if (siege.housesBroke() > 0) say("A roof comes down");
             if (byHand && ticks > 0) rewind.remember();
             if (soak) soak->afterAdvance();
             day.follow(siege.state().wave, frame.deltaTime);

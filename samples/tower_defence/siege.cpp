@@ -26,6 +26,7 @@ constexpr float kEmberPower = 40;  // kW
 constexpr float kEmberSeconds = 44 * kTickSeconds;
 constexpr Vec3 kCoals{0, 1.12f, 0};  // of a brazier, in its model's space
 constexpr float kBrazierPower = 70;  // kW
+constexpr float kAirOfSide = 0.06f;  // m^3/s into a house, through each m^2 of its sides
 
 glm::vec3 onGround(game::Point point, float above) {
     const Vec2 place = metres(point);
@@ -54,6 +55,7 @@ Siege::Siege(FwWorld* world, FireVillage& fires, const Battlefield& field, const
         fires_.move(fires_.thingOf(instance), away());
     }
     makeEmitters();
+    makeRooms();
     moveEnemies();
     aimTowers();
 }
@@ -121,13 +123,34 @@ void Siege::makeEmitters() {
     }
 }
 
+// The inside of each house: it flashes over when its fire fills it.
+void Siege::makeRooms() {
+    for (size_t house = 0; house < game::kHouses; ++house) {
+        const Thing& thing = houseThing(house);
+        const Vec3 x = thing.frame.x, size = (thing.high - thing.low) * 0.5f;
+        const float scale = std::sqrt(x.x * x.x + x.y * x.y + x.z * x.z);
+        const glm::vec3 middle = toGlm(thing.frame.point((thing.high + thing.low) * 0.5f));
+        const float half[3] = {size.x * scale, size.y * scale, size.z * scale};
+        const float turned = std::atan2(-x.z, x.x);
+        FwRoomDef room = fwDefaultRoomDef();
+        std::copy_n(&middle[0], 3, room.position);
+        std::copy_n(half, 3, room.halfSize);
+        room.rotation[1] = std::sin(turned / 2);
+        room.rotation[3] = std::cos(turned / 2);
+        // Eaves, shutters and thatch let so much in that its fire finds air for long.
+        const float sides = 8 * (half[0] * half[1] + half[1] * half[2] + half[2] * half[0]);
+        room.vent = kAirOfSide * sides;
+        check(fwWorld_CreateRoom(world_, &room, &rooms_[house]), "fwWorld_CreateRoom");
+    }
+}
+
 const char* Siege::give(const game::Order& order) {
     const char* refused = game::give(state_, field_.ground, order);
     if (!refused) aimTowers();
     return refused;
 }
 
-game::Burning Siege::askBurning() const {
+game::Burning Siege::askBurning() {
     game::Burning burning;
     for (size_t i = 0; i < game::kEnemySlots; ++i) {
         const Thing& thing = fires_.things[fires_.thingOf(field_.enemies[i])];
@@ -135,9 +158,14 @@ game::Burning Siege::askBurning() const {
         burning.enemyAlight[i] = thing.state.burning > 0;
     }
     for (size_t i = 0; i < game::kHouses; ++i) {
-        const Thing& thing = fires_.things[fires_.thingOf(field_.houses[i])];
+        const Thing& thing = houseThing(i);
         burning.houseBurnt[i] = thing.burnt();
         burning.houseAlight[i] = thing.state.burning > 0;
+        // Its state, not its event: that is in saves, and none is missed by going back in time.
+        FwRoomState room{};
+        room.structSize = sizeof room;
+        check(fwWorld_GetRoomState(world_, rooms_[i], &room), "fwWorld_GetRoomState");
+        burning.houseFlashed[i] = room.flashedOver != 0;
     }
     return burning;
 }
@@ -283,8 +311,10 @@ void Siege::aimTowers() {
 
 void Siege::advance(int32_t ticks) {
     happened_.clear();
+    housesBroke_ = 0;
     if (ticks == 0) return;
     fires_.observe();
+    housesBroke_ = fires_.broke();
     const game::Burning burning = askBurning();
     for (int32_t i = 0; i < ticks; ++i) game::tick(state_, field_.ground, burning, happened_);
     for (const game::Happening& happening : happened_) carryOut(happening);

@@ -27,6 +27,9 @@ class Siege {
     const game::State& state() const { return state_; }
     // Of the last advance.
     std::span<const game::Happening> happened() const { return happened_; }
+    // Houses that the last advance heard to have broken; and whether one has, ever.
+    size_t housesBroke() const { return housesBroke_; }
+    bool broken(size_t house) const { return houseThing(house).broken; }
     std::span<const Placed> placed() const { return placed_; }
     const Wind& wind() const { return wind_; }
     // The jets and embers, which the library's own lights name too weakly for a night.
@@ -46,7 +49,11 @@ class Siege {
  private:
     void lightBrazier(const village::Frame& frame);
     void makeEmitters();
-    game::Burning askBurning() const;
+    void makeRooms();
+    const Thing& houseThing(size_t house) const {
+        return fires_.things[fires_.thingOf(field_.houses[house])];
+    }
+    game::Burning askBurning();
     void carryOut(const game::Happening& happening);
     void moveEnemies();
     void aimTowers();
@@ -64,10 +71,12 @@ class Siege {
     std::vector<game::Happening> happened_;
     std::vector<Placed> placed_;
     Wind wind_;
+    size_t housesBroke_ = 0;
     // One of each for every plot, whatever stands there: a save wants a world of the same things.
     std::array<FwFireEmitterId, game::kPlots> jets_{}, embers_{};
     std::array<FwParticleFieldId, game::kPlots> sprays_{};
     std::array<FwWindZoneId, game::kPlots> fans_{};
+    std::array<FwRoomId, game::kHouses> rooms_{};
 };
 
 }  // namespace tower

@@ -82,13 +82,21 @@ int32_t chooseEnemy(const State& state, const Ground& ground, const Tower& tower
     return best;
 }
 
-// What to water: of the houses that burn the one that has burnt the least: it can be saved.
+// What to water: of the houses that burn the one that has burnt the least, as it can be saved, and
+// one that has flashed over last of all.
 int32_t chooseHouse(const State& state, const Ground& ground, const Burning& burning,
                     const Tower& tower, Point from) {
     int32_t best = -1;
     for (size_t i = 0; i < kHouses; ++i) {
         if (!burning.houseAlight[i] || !inRange(tower, from, ground.houses[i])) continue;
-        if (best < 0 || state.houseBurnt[i] < state.houseBurnt[size_t(best)]) best = int32_t(i);
+        if (best >= 0) {
+            const auto other = size_t(best);
+            if (state.flashed[i] != state.flashed[other]
+                    ? state.flashed[i] != 0
+                    : state.houseBurnt[i] >= state.houseBurnt[other])
+                continue;
+        }
+        best = int32_t(i);
     }
     return best;
 }
@@ -268,10 +276,17 @@ void countHouses(State& state, const Burning& burning, std::vector<Happening>& h
     for (size_t i = 0; i < kHouses; ++i) {
         const int32_t before = state.houseBurnt[i];
         state.houseBurnt[i] = std::max(before, burning.houseBurnt[i]);
+        // A flashover lights all that is in it: what has not come down of its roof does so now.
+        const bool flashes = burning.houseFlashed[i] && state.flashed[i] == 0;
         for (int32_t beam = 0; beam < kBeams && burning.houseAlight[i]; ++beam) {
             const int32_t falls = kBeamsFallFrom + beam * kBeamsFallEvery;
-            if (before < falls && state.houseBurnt[i] >= falls)
+            const bool fell = before >= falls || state.flashed[i] != 0;
+            if (!fell && (flashes || state.houseBurnt[i] >= falls))
                 happened.push_back({Happening::Type::kBeamFalls, int32_t(i), {}, beam});
+        }
+        if (flashes) {
+            state.flashed[i] = 1;
+            happened.push_back({Happening::Type::kFlashesOver, int32_t(i), {}, 0});
         }
         if (before < kHouseIsLost && state.houseBurnt[i] >= kHouseIsLost)
             happened.push_back({Happening::Type::kHouseLost, int32_t(i), {}, 0});
@@ -383,8 +398,10 @@ int32_t standing(const State& state) {
 int32_t score(const State& state) {
     const auto stand = std::count_if(state.houseBurnt.begin(), state.houseBurnt.end(),
                                      [](int32_t burnt) { return burnt < kHouseIsLost; });
+    const auto flashed = std::count(state.flashed.begin(), state.flashed.end(), 1);
     return state.earned * kScorePerCoin + state.lives * kScorePerLife +
-           int32_t(stand) * kScorePerHouse + state.wave * kScorePerWave;
+           int32_t(stand) * kScorePerHouse + state.wave * kScorePerWave -
+           int32_t(flashed) * kScoreForFlash;
 }
 
 uint64_t hashOf(const State& state) {

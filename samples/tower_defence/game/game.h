@@ -60,6 +60,7 @@ struct State {
     int32_t born = 0;
     Point wind, wanted;  // mm/s; as it is without fans, and where it turns to
     std::array<int32_t, kHouses> houseBurnt{};  // thousandths
+    std::array<int32_t, kHouses> flashed{};     // 1: all that is in it has burnt at once
     std::array<Enemy, kEnemySlots> enemies;     // kindOf(slot) never changes
     std::array<Tower, kPlots> towers;
 };
@@ -73,18 +74,20 @@ struct Burning {
     std::array<bool, kEnemySlots> enemyAlight{};
     std::array<int32_t, kHouses> houseBurnt{};
     std::array<bool, kHouses> houseAlight{};
+    std::array<bool, kHouses> houseFlashed{};  // its room has flashed over, and still burns so
 };
 
 // What the world has to do or may show; all else is in the state.
 struct Happening {
     enum class Type : int32_t {
-        kBorn,        // an enemy: `slot` is new, whatever burnt there before is gone
-        kFell,        // an enemy burnt down
-        kGotThrough,  // an enemy came to the mill
-        kShot,        // a mortar's ember is in the air
-        kEmberLands,  // `place`, `strength` mm about it
-        kSprays,      // water at `place`, `strength` g/m^2
-        kBeamFalls,   // from a burning roof, the `strength`-th of its house
+        kBorn,         // an enemy: `slot` is new, whatever burnt there before is gone
+        kFell,         // an enemy burnt down
+        kGotThrough,   // an enemy came to the mill
+        kShot,         // a mortar's ember is in the air
+        kEmberLands,   // `place`, `strength` mm about it
+        kSprays,       // water at `place`, `strength` g/m^2
+        kBeamFalls,    // from a burning roof, the `strength`-th of its house
+        kFlashesOver,  // a house: what can still be saved of the village is elsewhere
         kHouseLost,
         kWaveBegins,
         kWaveOver,

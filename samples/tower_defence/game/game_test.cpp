@@ -211,6 +211,34 @@ TEST(GameRules, BeamsFallOnceEachWhileARoofBurns) {
     for (int32_t i = 0; i < kBeams; ++i) EXPECT_EQ(beams[size_t(i)], i);
 }
 
+TEST(GameRules, AFlashoverLightsTheWholeHouseOnceAndIsWateredLast) {
+    Play play;
+    ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 0, TowerKind::kWaterCannon}), nullptr);
+    play.burning.houseAlight[0] = play.burning.houseAlight[1] = true;
+    play.burning.houseBurnt[0] = kBeamsFallFrom;
+    play.burning.houseBurnt[1] = kHouseIsLost - 1;
+    play.run(1);
+    EXPECT_EQ(play.state.towers[0].target, 0);
+    const int32_t before = score(play.state);
+    play.happened.clear();
+    play.burning.houseFlashed[0] = true;
+    play.run(3);
+    EXPECT_EQ(play.count(Happening::Type::kFlashesOver), 1u);
+    EXPECT_EQ(play.count(Happening::Type::kBeamFalls), size_t(kBeams - 1)) << "one had fallen";
+    EXPECT_EQ(score(play.state), before - kScoreForFlash);
+    EXPECT_EQ(play.state.towers[0].target, 1) << "what can be saved comes first";
+    play.burning.houseFlashed[0] = false;  // and again: it is told once
+    play.run(1);
+    play.burning.houseFlashed[0] = true;
+    play.burning.houseBurnt[0] = 1000;
+    play.run(1);
+    EXPECT_EQ(play.count(Happening::Type::kFlashesOver), 1u);
+    EXPECT_EQ(play.count(Happening::Type::kBeamFalls), size_t(kBeams - 1));
+    play.burning.houseAlight[1] = false;  // alone it is watered all the same
+    play.run(1);
+    EXPECT_EQ(play.state.towers[0].target, 0);
+}
+
 TEST(GameRules, HousesAreLostOnceAndCount) {
     Play play;
     const int32_t before = score(play.state);

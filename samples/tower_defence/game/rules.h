@@ -88,7 +88,8 @@ constexpr int32_t kCoinsPerWave = 40;        // for each that is over
 // The score: what was felled, what of the village stands, who never came to the mill.
 constexpr int32_t kScorePerCoin = 10, kScorePerLife = 100, kScorePerHouse = 500,
                   kScorePerWave = 200;
-constexpr int32_t kHouseIsLost = 500;  // thousandths burnt
+constexpr int32_t kScoreForFlash = 150;  // taken for each house that flashed over
+constexpr int32_t kHouseIsLost = 500;    // thousandths burnt
 
 // A roof does not touch the walls that carry it: what falls from it lights them, piece by piece.
 constexpr int32_t kBeams = 32;                               // of a house
