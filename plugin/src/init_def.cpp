@@ -90,6 +90,11 @@ void defaults(FwWindGridDef& def) noexcept {
 }
 
 void defaults(FwGustDef& def) noexcept { def.size = 12; }
+void defaults(FwTimelineDef& def) noexcept {
+    def.interval = 2;
+    def.longest = 32;
+    def.bytes = uint64_t(64) << 20;
+}
 
 void defaults(FwRoomDef& def) noexcept {
     def.rotation[3] = 1;
@@ -220,6 +225,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwWindGridDef);
         case FW_DEF_GUSTS:
             return sizeof(FwGustDef);
+        case FW_DEF_TIMELINE:
+            return sizeof(FwTimelineDef);
         case FW_DEF_ROOM:
             return sizeof(FwRoomDef);
         case FW_DEF_FIRE_COLLIDER:
@@ -290,6 +297,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_GUSTS:
             write<FwGustDef>(def);
+            return true;
+        case FW_DEF_TIMELINE:
+            write<FwTimelineDef>(def);
             return true;
         case FW_DEF_ROOM:
             write<FwRoomDef>(def);

@@ -795,4 +795,30 @@ FwResult FW_CALL fwWorld_PlayLog(FwWorld* world, uint64_t untilTick, float* seco
     });
 }
 
+FwResult FW_CALL fwWorld_StartTimeline(FwWorld* world, const FwTimelineDef* given) {
+    return onWorld("fwWorld_StartTimeline", world, [&](world::World& w) {
+        w.startTimeline(edge::readDef(given, FW_DEF_TIMELINE, "FwTimelineDef"));
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_StopTimeline(FwWorld* world) {
+    return onWorld("fwWorld_StopTimeline", world, [&](world::World& w) {
+        w.stopTimeline();
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_Seek(FwWorld* world, uint64_t untilTick, float* seconds) {
+    return onWorld("fwWorld_Seek", world, [&](world::World& w) {
+        checkPointer(seconds, "seconds");
+        return w.seek(untilTick, *seconds) ? FW_OK : FW_NOT_READY;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetTimelineState(FwWorld* world, FwTimelineState* state) {
+    return fill("fwWorld_GetTimelineState", world, state, "FwTimelineState",
+                &world::World::timelineState);
+}
+
 }  // extern "C"

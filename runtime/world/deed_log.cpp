@@ -145,8 +145,12 @@ float World::playLog(uint64_t untilTick) {
     }
     if (!ahead.empty()) until = std::min(until, ahead.front().tick);
     until = std::min(until, clock_.tick + uint64_t(mostSteps()) * gpu::kStepTicks);
-    // Never a hair too short: the next call would find the step still ahead.
-    const double exact = secondsTo(until);
+    return secondsUpTo(until);
+}
+
+// The next call would find the step still ahead.
+float World::secondsUpTo(uint64_t tick) const noexcept {
+    const double exact = secondsTo(tick);
     const auto seconds = float(exact);
     return double(seconds) < exact ? std::nextafter(seconds, std::numeric_limits<float>::infinity())
                                    : seconds;

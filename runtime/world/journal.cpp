@@ -157,6 +157,7 @@ void World::mayChange() const {
 
 void World::note(const Deed& deed) noexcept {
     if (noted_) noted_->push({clock_.tick, false, deed});
+    noteInTimeline(deed);
     if (!journal_ || journal_->follows) return;
     try {
         journal_->deeds.push_back({clock_.tick, deed});
@@ -171,7 +172,7 @@ void World::noteSaveInLog() noexcept {
 
 void World::noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
                      uint32_t word) noexcept {
-    if (!journal_ && !noted_) return;
+    if (!notes()) return;
     Deed deed;
     deed.kind = kind;
     deed.slot = slot;

@@ -122,13 +122,19 @@ uint32_t World::windowOf(const Object& object) noexcept {
 
 // ---- saving ------------------------------------------------------------------------------------
 
-void World::requestSave(SaveFor who) {
+uint32_t World::unsavable() noexcept {
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
         if (auto* object = objects_.at(i);
             object && ((*object)->data.flags & FW_BURNABLE_PUBLISHED) && (*object)->touched)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be saved.",
-                       i + 1);
+            return i + 1;
+    return 0;
+}
+
+void World::requestSave(SaveFor who) {
+    if (const uint32_t object1 = unsavable())
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be saved.",
+                   object1);
     core::Owned<Save>& save = saves_[size_t(who)];
     if (!save) save = core::Owned<Save>::make(memory_, memory_);
     save->wished = true;
@@ -178,6 +184,7 @@ void World::commitSave(uint64_t frameIndex) noexcept {
             save.failed = true;
         }
         if (who == size_t(SaveFor::host)) noteSaveInLog();
+        if (who == size_t(SaveFor::timeline) && timeline_) timeline_->captured = timeline_->done;
         if (who != size_t(SaveFor::net) || !journal_) continue;
         journal_->captured = true;
         journal_->capturedAt = clock_.tick;
@@ -339,6 +346,7 @@ void World::takeSaves(const gpu::Readback& readback) noexcept {
             save->failed = true;
         }
     }
+    keepMoment();
 }
 
 void World::takeSave(Save& save, const gpu::Readback& readback) {
@@ -688,6 +696,11 @@ void World::applySaved(const SavedWorld& saved,
         if (!save || !save->pending) continue;
         save->pending = false;  // of the world that was
         save->wished = true;
+    }
+    if (timeline_) {
+        const bool anew = !timeline_->seeks;  // it begins here, or is in its own past
+        if (anew) timeline_->restart(clock_.tick);
+        saves_[size_t(SaveFor::timeline)]->wished = anew;
     }
     if (journal_) {
         journal_->loaded = true;

@@ -51,6 +51,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
         planSteps(time);
         planProbes();
         if (journal_) planHashes(time);
+        planTimeline(time.after.tick);
         planSave();
         planBreaks(time.after.tick);
     } catch (...) {
@@ -298,7 +299,9 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
                    static_cast<unsigned long long>(Clock::kLastTick / 4096));
     commitFires();
     commitFields(time.after.tick);
+    const uint64_t before = clock_.tick;
     clock_ = time.after;
+    commitTimeline(before);
     if (ran) steps_ += time.steps;
     lastFrame_ = frameIndex;
     ++frames_;

@@ -183,7 +183,7 @@ void World::setWindGrid(const FwWindGridDef& def) {
                 other |= units != (stays ? windGrid_.points[first + k][i] : 0);
                 deed.numbers[3 * k + i] = float(units) * fire::kWindUnit;
             }
-        if (other && (journal_ || noted_)) note(deed);
+        if (other && notes()) note(deed);
     }
     windGrid_.shape = grid.shape;
     windGrid_.points.swap(grid.points);

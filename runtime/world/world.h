@@ -28,12 +28,13 @@
 #include "world/governor.h"
 #include "world/journal.h"
 #include "world/played.h"
+#include "world/timeline.h"
 
 #include <array>
 
 namespace fw::world {
 
-enum class SaveFor : uint8_t { host, net, count };  // each has a save of its own
+enum class SaveFor : uint8_t { host, net, timeline, count };  // each has a save of its own
 
 enum class InnerSkin : uint8_t { unknown, none, there };
 struct MeshEntry {
@@ -455,6 +456,13 @@ class World {
     void openLog(std::span<const std::byte> bytes);
     // Does what comes before the next step; s that the world may go then. 0: `untilTick` is there.
     float playLog(uint64_t untilTick);
+    // timeline.cpp
+    void startTimeline(const FwTimelineDef& def);
+    void stopTimeline() noexcept;
+    // One piece of the way to a tick: `seconds` that the world may go then; 0: it is there. False:
+    // nothing to begin from is there yet.
+    bool seek(uint64_t untilTick, float& seconds);
+    void timelineState(FwTimelineState& state);
     // save_tiles.cpp. Of an object in a save, a hash for each block of its tiles; none: it is at
     // rest there. The blocks whose hashes are not `theirs`, of a save of the same tick: as bytes
     // (false: the object is at rest), and put into that other save.
@@ -470,6 +478,8 @@ class World {
     [[nodiscard]] double seconds() const noexcept;  // since its beginning
     // s from the present to the beginning of a later tick.
     [[nodiscard]] double secondsTo(uint64_t tick) const noexcept;
+    // As that, and never a hair too short.
+    [[nodiscard]] float secondsUpTo(uint64_t tick) const noexcept;
     [[nodiscard]] uint32_t mostSteps() const noexcept { return def_.maxStepsPerFrame; }
     // Of the rules, and of all that a save has to find here: worlds of one identity can follow
     // each other.
@@ -740,6 +750,12 @@ class World {
     void planSave();
     void commitSave(uint64_t frameIndex) noexcept;
     void takeSaves(const gpu::Readback& readback) noexcept;
+    [[nodiscard]] uint32_t unsavable() noexcept;  // a burning object's slot + 1; 0: there is none
+    // timeline.cpp
+    void planTimeline(uint64_t after) noexcept;
+    void commitTimeline(uint64_t before) noexcept;
+    void keepMoment() noexcept;
+    void noteInTimeline(const Deed& deed) noexcept;
     void noteSaved(SavedWorld& to);
     void noteObject(Object& object, SavedObject& saved) noexcept;
     void noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
@@ -747,12 +763,13 @@ class World {
     void takeSave(Save& save, const gpu::Readback& readback);
     // journal.cpp
     void mayChange() const;  // throws where another machine's deeds alone count
+    [[nodiscard]] bool notes() const noexcept { return journal_ || noted_ || timeline_; }
     void note(const Deed& deed) noexcept;
     void noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
                   uint32_t word = 0) noexcept;
     template <class Def>
     void noteDef(Deed::Kind kind, uint32_t slot, const Def& def) noexcept {
-        if (!journal_ && !noted_) return;
+        if (!notes()) return;
         Deed deed = deedOf(def);
         deed.kind = kind;
         deed.slot = slot;
@@ -895,6 +912,7 @@ class World {
     std::array<core::Owned<Save>, size_t(SaveFor::count)> saves_;  // once one was asked for
     core::Owned<Journal> journal_;                                 // null: nobody asks
     core::Owned<DeedLog> noted_, played_;                          // null: none
+    core::Owned<Timeline> timeline_;                               // null: none is kept
     uint64_t loadedFrame_ = 0;     // readbacks up to this frame are of another past
     uint64_t loadedTick_ = ~0ull;  // of the save that was loaded last
 

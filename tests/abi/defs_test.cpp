@@ -18,7 +18,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(135, calls);  // every function of the three headers
+    EXPECT_EQ(139, calls);  // every function of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -50,6 +50,7 @@ const DefCase kDefs[] = {
     {"wind zone", FW_DEF_WIND_ZONE, sizeof(FwWindZoneDef)},
     {"wind grid", FW_DEF_WIND_GRID, sizeof(FwWindGridDef)},
     {"gusts", FW_DEF_GUSTS, sizeof(FwGustDef)},
+    {"timeline", FW_DEF_TIMELINE, sizeof(FwTimelineDef)},
     {"room", FW_DEF_ROOM, sizeof(FwRoomDef)},
     {"fire", FW_DEF_VOLUMETRIC_FIRE, sizeof(FwVolumetricFireDef)},
     {"flipbook", FW_DEF_FLIPBOOK, sizeof(FwFlipbookDef)},
@@ -296,6 +297,10 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
     checkSizes<FwGustDef>(
         "FwGustDef", fwDefaultGustDef(),
         [&](const FwGustDef* def) { return fwWorld_SetGusts(w.world, def); }, worldMessage);
+    checkSizes<FwTimelineDef>(
+        "FwTimelineDef", fwDefaultTimelineDef(),
+        [&](const FwTimelineDef* def) { return fwWorld_StartTimeline(w.world, def); },
+        worldMessage);
     FwIgnitionDef ignition = fwDefaultIgnitionDef();
     ignition.radius = 0.05f;
     checkSizes<FwIgnitionDef>(

@@ -140,6 +140,10 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_FetchLog(NULL, NULL, NULL));
     REFUSES(fwWorld_OpenLog(NULL, NULL, 0));
     REFUSES(fwWorld_PlayLog(NULL, 0, NULL));
+    REFUSES(fwWorld_StartTimeline(NULL, NULL));
+    REFUSES(fwWorld_StopTimeline(NULL));
+    REFUSES(fwWorld_Seek(NULL, 0, NULL));
+    REFUSES(fwWorld_GetTimelineState(NULL, NULL));
     REFUSES(fwNet_Serve(NULL, NULL));
     REFUSES(fwNet_Join(NULL, NULL));
     REFUSES(fwNet_Leave(NULL));

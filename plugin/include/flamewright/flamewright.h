@@ -106,7 +106,7 @@ typedef enum FwDefType {
     FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
     FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23, FW_DEF_WIND_ZONE = 24, FW_DEF_ROOM = 25,
-    FW_DEF_WIND_GRID = 26, FW_DEF_GUSTS = 27,
+    FW_DEF_WIND_GRID = 26, FW_DEF_GUSTS = 27, FW_DEF_TIMELINE = 28,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -1235,6 +1235,47 @@ FW_API FwResult FW_CALL fwWorld_OpenLog(FwWorld*, const void* bytes, uint64_t si
  * there, is passed over; what the world refuses, too, and its log says so. Refused without a log, and while the world
  * follows a server's. [world] */
 FW_API FwResult FW_CALL fwWorld_PlayLog(FwWorld*, uint64_t untilTick, float* seconds);
+
+/* ---- a timeline: forth and back in a burn ------------------------------------------------------------------ */
+
+/* The world keeps saves of itself, some time apart, and what the host did since the first of them: any moment in between
+ * can be had again, bit by bit, in the same world. For scrubbing, replays, kill cams, undo. Baked burns, be it that they
+ * play or went live, are in it as any other fire. */
+typedef struct FwTimelineDef {
+    uint32_t structSize;
+    float interval;            /* s of the world's time from one save to the next, [1/32, 3600], default 2 */
+    float longest;             /* s, [interval, 3600], default 32: as far apart they may come to be, so that they fit */
+    uint32_t reserved;         /* 0 */
+    uint64_t bytes;            /* the most that saves and notes take, [65536, 2^64), default 67108864. Beyond that every second
+                                  save goes, as long as `longest` allows; then the oldest, and with it the timeline's
+                                  beginning. The newest save, and what was done since, stay whatever they take */
+} FwTimelineDef;
+static inline FwTimelineDef fwDefaultTimelineDef(void) {
+    FwTimelineDef d; fwInitDef(FW_DEF_TIMELINE, &d, (uint32_t)sizeof d); return d;
+}
+/* From the world as it is after the next frame; one that was kept before is dropped. A save costs what fwWorld_RequestSave says,
+ * in its frame. fwWorld_Load begins it anew. Refused while an object with FW_BURNABLE_PUBLISHED burns. [world] */
+FW_API FwResult FW_CALL fwWorld_StartTimeline(FwWorld*, const FwTimelineDef* def);
+FW_API FwResult FW_CALL fwWorld_StopTimeline(FwWorld*); /* the world stays where it is [world] */
+/* One piece of the way to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick), be that ahead or behind:
+ *     while (fwWorld_Seek(world, untilTick, &seconds) == FW_OK && seconds > 0) fwWorld_Step(world, seconds);
+ * or a recorded frame for each. Goes back, or leaps, to the nearest save by what fwWorld_Load does (events are dropped, what
+ * only shows begins anew), and does again what the host did from there on; *seconds: how far the world is to be moved before the
+ * next call; 0: it is there. Where it stops in the past, what the host did at that very tick is not done yet. Called with more
+ * and more it plays the past; events are raised again. Who moves the world on without it, or does anything to the burn, begins
+ * another future: what came after is forgotten. FW_ERROR_INVALID_ARGUMENT: it has no such time, see FwTimelineState; or there is none.
+ * FW_NOT_READY: its first save is not there yet. FW_ERROR_BAD_DATA: something was made or destroyed since, which is not on
+ * timelines: start another one then. Refused while the world follows a server's. [world] */
+FW_API FwResult FW_CALL fwWorld_Seek(FwWorld*, uint64_t untilTick, float* seconds);
+typedef struct FwTimelineState {
+    uint32_t structSize;
+    uint32_t moments;          /* saves that are kept; 0: it is not there yet, or none is kept */
+    uint64_t firstTick, endTick; /* where fwWorld_Seek may go; a tick is 2^-12 s */
+    uint64_t bytes;            /* that saves and notes take */
+    float interval;            /* s from one save to the next, now */
+    uint32_t reserved;
+} FwTimelineState;
+FW_API FwResult FW_CALL fwWorld_GetTimelineState(FwWorld*, FwTimelineState* state); /* [world] */
 
 /* ---- baked burns: fire that plays and goes live when disturbed ------------------------------------------------ */
 

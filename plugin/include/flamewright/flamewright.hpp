@@ -53,6 +53,10 @@ template <>
     return fwDefaultBurnableMeshDef();
 }
 template <>
+[[nodiscard]] inline FwTimelineDef def<FwTimelineDef>() noexcept {
+    return fwDefaultTimelineDef();
+}
+template <>
 [[nodiscard]] inline FwVolumetricFireDef def<FwVolumetricFireDef>() noexcept {
     return fwDefaultVolumetricFireDef();
 }
@@ -292,6 +296,21 @@ using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
     made.indexCount = uint32_t(indices.size());
     made.indexSize = 4;
     return made;
+}
+
+// ---- running
+// --------------------------------------------------------------------------------------
+
+// All the way to a moment of the world's timeline (see fwWorld_Seek), where the library steps: on
+// the cpu backend, or on a device of its own.
+[[nodiscard]] inline FwResult seek(const World& world, uint64_t untilTick) noexcept {
+    float seconds = 0;
+    FwResult result = fwWorld_Seek(world.get(), untilTick, &seconds);
+    while (result == FW_OK && seconds > 0) {
+        result = fwWorld_Step(world.get(), seconds);
+        if (result == FW_OK) result = fwWorld_Seek(world.get(), untilTick, &seconds);
+    }
+    return result;
 }
 
 // ---- what a game asks
