@@ -32,16 +32,6 @@ ObjectId addObject(Scene& scene, Kind kind) {
     return id;
 }
 
-ObjectId parentOf(const Scene& scene, ObjectId id) {
-    ObjectId parent = 0;
-    forEachList(scene, [&](Kind, const auto& list) {
-        for (const auto& object : list)
-            if constexpr (requires { object.sticksTo; })
-                if (object.id == id) parent = object.sticksTo;
-    });
-    return parent;
-}
-
 bool hasPosition(const Scene& scene, ObjectId id) {
     Kind kind{};
     return findObject(scene, id, &kind) && findField(kind, "position");
@@ -53,9 +43,9 @@ std::string whyNotAttached(const Scene& scene, ObjectId child, ObjectId parent) 
     const Object* object = findObject(scene, parent);
     if (!object) return "sticks_to is #" + std::to_string(parent) + ", which is not in the scene";
     if (!hasPosition(scene, parent)) return "\"" + object->name + "\" has no place to stick to";
-    for (ObjectId at = parent, hops = 0; at != 0; at = parentOf(scene, at), ++hops)
-        if (at == child || hops > 60)
-            return "\"" + object->name + "\" sticks to it already, directly or through others";
+    const std::vector<ObjectId> holders = holdersOf(scene, parent);
+    if (std::find(holders.begin(), holders.end(), child) != holders.end())
+        return "\"" + object->name + "\" sticks to it already, directly or through others";
     return "";
 }
 
@@ -74,7 +64,7 @@ std::string* nodeOf(Scene& scene, ObjectId id) {
 std::string whyNoNode(const Scene& scene, ObjectId child, std::string_view node,
                       const NodePoseOf& nodePose) {
     if (node.empty()) return "";
-    const Mesh* mesh = findIn(scene.meshes, parentOf(scene, child));
+    const Mesh* mesh = findIn(scene.meshes, holderOf(scene, child));
     std::string error;
     if (!mesh)
         error = "it takes a part of a mesh that \"" + findObject(scene, child)->name +
@@ -93,7 +83,7 @@ bool setFields(Scene& scene, Kind kind, ObjectId id, const std::vector<Assignmen
         const bool attaches = made.field == "sticks_to" || made.field == "sticks_to_node";
         const bool keeps = attaches && keepPlace && findField(kind, "position");
         const Pose before = keeps ? holderPose(scene, id, nodePose) : Pose{};
-        const ObjectId parent = attaches ? parentOf(scene, id) : 0;
+        const ObjectId parent = attaches ? holderOf(scene, id) : 0;
         if (const double* number = std::get_if<double>(&made.value)) {
             const auto to = static_cast<ObjectId>(std::clamp(*number, 0.0, 4294967295.0));
             if (made.field == "sticks_to") error = whyNotAttached(scene, id, to);
@@ -110,7 +100,7 @@ bool setFields(Scene& scene, Kind kind, ObjectId id, const std::vector<Assignmen
         if (!mended.empty() && repair.empty()) repair = mended;
         // A node is of the mesh that it was of.
         std::string* node = nodeOf(scene, id);
-        if (attaches && node && parentOf(scene, id) != parent) node->clear();
+        if (attaches && node && holderOf(scene, id) != parent) node->clear();
         if (keeps) keepInWorld(scene, id, before, holderPose(scene, id, nodePose));
     }
     return true;
@@ -139,10 +129,9 @@ void removeObject(Scene& scene, PaintImages& images, ObjectId id, const NodePose
 
 // Something that `id` sticks to, directly or through others, is among the targets.
 bool holdsAny(const Scene& scene, const std::vector<ObjectId>& targets, ObjectId id) {
-    for (ObjectId at = parentOf(scene, id), hops = 0; at != 0 && hops < 64;
-         at = parentOf(scene, at), ++hops)
-        if (std::find(targets.begin(), targets.end(), at) != targets.end()) return true;
-    return false;
+    const std::vector<ObjectId> holders = holdersOf(scene, holderOf(scene, id));
+    return std::find_first_of(holders.begin(), holders.end(), targets.begin(), targets.end()) !=
+           holders.end();
 }
 
 bool applyKey(Scene& scene, const Command& command, std::string& error) {

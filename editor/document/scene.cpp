@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace fwedit {
 namespace {
@@ -74,9 +75,8 @@ struct Root {
 
 Root rootOf(const Scene& scene, ObjectId parent, std::string_view node) {
     Root root;
-    // Each object is passed once at most, however a scene by another hand is knotted.
-    for (int hops = 0; parent != 0 && hops < 64; ++hops) {
-        const Place place = placeOf(scene, parent);
+    for (const ObjectId holder : holdersOf(scene, parent)) {
+        const Place place = placeOf(scene, holder);
         if (place.mesh) {
             root.mesh = place.mesh;
             root.node = node;
@@ -84,7 +84,6 @@ Root rootOf(const Scene& scene, ObjectId parent, std::string_view node) {
         }
         for (size_t k = 0; k < 3; ++k) root.offset[k] += place.position[k];
         node = place.node;
-        parent = place.sticksTo;
     }
     return root;
 }
@@ -192,6 +191,27 @@ Vec3 offsetWithin(const Pose& holder, const Vec3& world) {
     return {static_cast<float>(volume(away, m[1], m[2]) / whole),
             static_cast<float>(volume(m[0], away, m[2]) / whole),
             static_cast<float>(volume(m[0], m[1], away) / whole)};
+}
+
+ObjectId holderOf(const Scene& scene, ObjectId id) { return placeOf(scene, id).sticksTo; }
+
+std::vector<ObjectId> holdersOf(const Scene& scene, ObjectId parent) {
+    std::vector<ObjectId> holders;
+    if (parent == 0) return holders;
+    std::unordered_map<ObjectId, ObjectId> next;
+    forEachList(scene, [&](Kind, const auto& list) {
+        for (const auto& object : list)
+            if constexpr (requires { object.sticksTo; })
+                if (object.sticksTo != 0) next[object.id] = object.sticksTo;
+    });
+    holders.push_back(parent);
+    for (auto at = next.find(parent); at != next.end();) {
+        const ObjectId holder = at->second;
+        holders.push_back(holder);
+        next.erase(at);  // passed once: a knot ends where it closes
+        at = next.find(holder);
+    }
+    return holders;
 }
 
 Pose holderPose(const Scene& scene, ObjectId id, const NodePoseOf& nodePose) {

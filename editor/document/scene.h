@@ -248,6 +248,11 @@ using NodePoseOf =
 
 // What an object's own place is given in: what it sticks to, or the world.
 Pose holderPose(const Scene& scene, ObjectId id, const NodePoseOf& nodePose = {});
+// What an object sticks to; 0: nothing.
+ObjectId holderOf(const Scene& scene, ObjectId id);
+// `parent`, what that sticks to, and so on to what sticks to nothing, however long. A row that is
+// knotted (of a scene by another hand) ends with the first that is in it a second time.
+std::vector<ObjectId> holdersOf(const Scene& scene, ObjectId parent);
 Vec3 placedBy(const Pose& holder, const Vec3& position);
 Vec3 turnedBy(const Pose& holder, const Vec3& direction);  // as long as before
 // The other way; of a holder without volume: 0.

@@ -16,6 +16,7 @@
 #include <random>
 #include <sstream>
 
+#include "document/apply.h"
 #include "document/clipboard.h"
 #include "document/text.h"
 #include "editor/text_of.h"
@@ -911,6 +912,43 @@ TEST(EditorScene, ARowOfThingsEndsAtANode) {
     EXPECT_EQ(1u, placed.emitters[0].sticksTo);
     expectNear(place, worldPosition(placed, 3));
     expectNear({2, 0, 0}, placed.emitters[0].extent);
+}
+
+// A hundred in a row, each a tenth of a metre from the one before: all of them count.
+TEST(EditorScene, RowsOfThingsThatStickAreAsLongAsTheyAre) {
+    Document document = newDocument();
+    constexpr int kRow = 100;
+    for (int i = 0; i < kRow; ++i) {
+        const std::string name = "T" + std::to_string(i);
+        mustRun(document, "add source point name=" + name);
+        if (i > 0) mustRun(document, "set " + name + " sticks_to T" + std::to_string(i - 1));
+    }
+    const std::vector<HeatSource>& row = document.scene.sources;
+    ASSERT_EQ(size_t(kRow), row.size());
+    EXPECT_EQ(size_t(kRow - 1), holdersOf(document.scene, row.back().sticksTo).size());
+    for (HeatSource& one : document.scene.sources) one.position = {0.1f, 0, 0};
+    const auto near = [&](float x) {
+        EXPECT_NEAR(x, worldPosition(document.scene, row.back().id)[0], 1e-4f);
+    };
+    near(10);
+    const std::string last = "T" + std::to_string(kRow - 1);
+    mustRun(document, "move #" + std::to_string(row.front().id) + " #" +
+                          std::to_string(row.back().id) + " 1 0 0");  // it comes along, once
+    near(11);
+    EXPECT_THAT(refusal(document, "set T0 sticks_to " + last), HasSubstr("sticks to it"));
+    mustRun(document, "add source point name=Tail position 0 1 0");
+    mustRun(document, "set Tail sticks_to " + last);
+    mustRun(document, "remove Tail");
+    // A knot, as another hand may write one: only who is in it is told so.
+    Scene knotted = document.scene;
+    knotted.sources[2].sticksTo = knotted.sources[4].id;
+    const std::vector<ObjectId> holders = holdersOf(knotted, row.back().id);
+    EXPECT_EQ(size_t(kRow - 2) + 1, holders.size());
+    EXPECT_EQ(row[4].id, holders.back());
+    std::vector<std::string> repairs;
+    EXPECT_TRUE(mendReferences(knotted, &repairs));
+    ASSERT_EQ(1u, repairs.size());
+    EXPECT_THAT(repairs[0], HasSubstr("sources[2].sticks_to"));
 }
 
 TEST(EditorFile, WhatStuckInVersionOneKeepsItsWay) {
