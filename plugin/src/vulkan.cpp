@@ -220,11 +220,18 @@ void checkTarget(const FwVulkanTargetDef& def) {
                        high);
     };
     constexpr uint32_t kNothing = FW_TARGET_NO_FLAMES | FW_TARGET_NO_SURFACES;
-    constexpr uint32_t kKnown = FW_TARGET_COMPOSITE | kNothing | FW_TARGET_HAZE;
+    constexpr uint32_t kKnown =
+        FW_TARGET_COMPOSITE | kNothing | FW_TARGET_HAZE | FW_TARGET_HALF_EFFECTS;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
                    kKnown);
+    if ((def.flags & FW_TARGET_HALF_EFFECTS) &&
+        (def.depthMode != FW_DEPTH_SAMPLED || !(def.flags & FW_TARGET_COMPOSITE)))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::flags is 0x%x and depthMode is %u; FW_TARGET_HALF_EFFECTS "
+                   "needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED (3).",
+                   def.flags, def.depthMode);
     if ((def.flags & FW_TARGET_HAZE) && def.depthMode != FW_DEPTH_SAMPLED)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::flags has FW_TARGET_HAZE and depthMode is %u; haze needs "

@@ -130,6 +130,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: a burning box";
         stageRequest.samples = options.noMsaa ? VK_SAMPLE_COUNT_1_BIT : VK_SAMPLE_COUNT_4_BIT;
+        stageRequest.lendAs(options);
         const uint32_t frames = sample::framesOf(options, wishes.seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 0.8f);
@@ -150,7 +151,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
         worldDef.maxRefinedTriangles = 60000;
         if (!wishes.tongues) worldDef.maxFlames = 0;
         sample::FireHost fire(host, worldDef);
-        fire.registerTarget(stage);
+        fire.registerTarget(stage, true);
         const FwBurnableMeshDef def = describeBox(fire, box, wishes);
         // To the right, as the camera first stands.
         const glm::vec3 right(std::cos(table.orbit.yaw), 0, -std::sin(table.orbit.yaw));
@@ -227,6 +228,7 @@ int main(int argc, char** argv) {
         parser.addNumber("--wall", "thickness of the boards, m", wishes.wall, 0.001f, 0.1f);
         parser.addNumber("--distance", "of the camera, m", wishes.distance, 0.3f, 50.0f);
         parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
+        parser.addLending(options);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("one box\n");

@@ -60,6 +60,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: volumetric fires";
+        stageRequest.lendAs(options);
         stageRequest.lendScene = true;  // heat bends what is behind it
         sample::Stage stage(host, options, stageRequest, sample::framesOf(options, seconds));
         sample::Studio studio(host, stage, {0, 0, 0}, 1.6f);
@@ -153,6 +154,7 @@ int main(int argc, char** argv) {
         parser.addNumber("--haze", "how far heat bends what is behind it", haze, 0.0f, 8.0f);
         parser.addText("--profile", "FILE", "what burns where, a .fwprofile for all nine", profile);
         look.addTo(parser);
+        parser.addFlag("--half", "flames and smoke at half resolution", options.halfEffects);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             for (const Exhibit& exhibit : kExhibits)

@@ -155,6 +155,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: flamethrower";
+        stageRequest.lendAs(options);
         const auto count = static_cast<float>(cases().size());
         sample::Stage stage(host, options, stageRequest,
                             sample::framesOf(options, seconds * count));
@@ -163,7 +164,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         worldDef.seed = options.seed;
         worldDef.paceFactor = 12;
         sample::FireHost fire(host, worldDef);
-        fire.registerTarget(stage);
+        fire.registerTarget(stage, true);
         const FwMeshId cube = sample::makeCube(fire);
         FwMaterialId materials[2]{};
         for (int i = 0; i < 2; ++i) {
@@ -242,6 +243,7 @@ int main(int argc, char** argv) {
         sample::OptionParser parser("09_flamethrower", "a flamethrower against nine walls");
         parser.addNumber("--seconds", "of each wall", seconds, 0.2f, 60.0f);
         look.addTo(parser);
+        parser.addLending(options);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             for (const Case& what : cases()) std::printf("%s\n", what.name);

@@ -95,25 +95,33 @@ FireHost::~FireHost() {
     fwDestroyContext(context);
 }
 
-void FireHost::registerTarget(const Stage& stage) {
-    if (target.index1 != 0) check(fwContext_UnregisterTarget(context, target), "unregister");
+void FireHost::registerTarget(const Stage& stage, bool surfaces) {
+    for (FwTargetId* old : {&target, &overScene}) {
+        if (old->index1 != 0) check(fwContext_UnregisterTarget(context, *old), "unregister");
+        *old = {};
+    }
     FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-    if (!stage.made.lendScene) def.renderPass = stage.scenePass;
+    def.renderPass = stage.scenePass;
     def.subpass = 0;
     def.colorFormat = stage.made.colorFormat;
     def.depthFormat = stage.depthFormat;
     def.samples = static_cast<uint32_t>(stage.made.samples);
     def.colorAttachmentCount = 1;
     def.depthMode = FW_DEPTH_TEST;
-    if (stage.made.lendScene) {
-        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_HAZE;
-        def.depthMode = FW_DEPTH_SAMPLED;
-    }
     def.reversedDepth = stage.made.reversedDepth ? 1u : 0u;
     def.encoding = FW_OUTPUT_DISPLAY_UNORM;
     if (stage.made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB) def.encoding = FW_OUTPUT_SRGB_VIEW;
     if (stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT) def.encoding = FW_OUTPUT_LINEAR;
-    check(fwContext_RegisterTarget(context, &def, &target), "fwContext_RegisterTarget");
+    if (stage.made.lendScene) def.flags = FW_TARGET_NO_FLAMES;
+    if (!stage.made.lendScene || surfaces)
+        check(fwContext_RegisterTarget(context, &def, &target), "fwContext_RegisterTarget");
+    if (stage.made.lendScene) {
+        def.renderPass = VK_NULL_HANDLE;
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_HAZE;
+        if (stage.made.halfEffects) def.flags |= FW_TARGET_HALF_EFFECTS;
+        def.depthMode = FW_DEPTH_SAMPLED;
+        check(fwContext_RegisterTarget(context, &def, &overScene), "fwContext_RegisterTarget");
+    }
     check(fwContext_Prepare(context), "fwContext_Prepare");
 }
 
@@ -143,6 +151,7 @@ void FireHost::recordOutside(const StageFrame& frame, const FwView& view,
 
 void FireHost::recordInside(const StageFrame& frame, const FwView& view,
                             VkCommandBuffer secondary) {
+    if (target.index1 == 0) return;
     const FwVulkanFrame described = describe(frame, secondary);
     const FwResult result = fwWorld_RecordInside(world, &described, target, &view, &frame.viewport);
     if (result != FW_NOT_READY) check(result, "fwWorld_RecordInside");
@@ -153,7 +162,7 @@ void FireHost::recordOver(const StageFrame& frame, const FwView& view, const Len
     described.sampledColor = scene.copy;
     described.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     const FwVulkanComposite images = compositeOf(scene, frame.extent);
-    const FwResult result = fwWorld_RecordComposite(world, &described, target, &view, &images);
+    const FwResult result = fwWorld_RecordComposite(world, &described, overScene, &view, &images);
     if (result != FW_NOT_READY) check(result, "fwWorld_RecordComposite");
 }
 

@@ -33,12 +33,13 @@ class FireHost {
     FireHost& operator=(const FireHost&) = delete;
 
     // Tells the plugin about the stage's scene pass, or where the stage lends its scene about the
-    // pass that we make over it. Once, and again if the pass changes.
-    void registerTarget(const Stage& stage);
+    // pass that we make over it. Once, and again if the pass changes. `surfaces`: where the
+    // scene is lent, burning meshes are drawn in its pass before.
+    void registerTarget(const Stage& stage, bool surfaces = false);
     // Outside any pass, before it, once per frame: simulates. `secondary` may be null.
     void recordOutside(const StageFrame& frame, const FwView& view,
                        VkCommandBuffer secondary = VK_NULL_HANDLE);
-    // Inside the scene pass: draws.
+    // Inside the scene pass: draws; where the stage lends its scene the surfaces alone.
     void recordInside(const StageFrame& frame, const FwView& view,
                       VkCommandBuffer secondary = VK_NULL_HANDLE);
     // After the scene pass instead of recordInside, where the stage lends its scene: flames and
@@ -54,7 +55,8 @@ class FireHost {
 
     FwContext* context = nullptr;
     FwWorld* world = nullptr;
-    FwTargetId target{};
+    FwTargetId target{};      // of what is drawn in the scene pass; null: nothing is
+    FwTargetId overScene{};   // of what goes over a lent scene
     bool slotPacing = false;  // give slot and ring size instead of the completed frame's number
 
  private:

@@ -82,6 +82,12 @@ void OptionParser::addVector(const std::string& name, const std::string& help, f
                         }});
 }
 
+void OptionParser::addLending(Options& options) {
+    addFlag("--lend", "lend the scene's depth: flames fade where they meet things",
+            options.lendScene);
+    addFlag("--half", "the same, with flames and smoke at half resolution", options.halfEffects);
+}
+
 void OptionParser::printHelp() const {
     std::printf("%s: %s\n\nusage: %s [options] %s\n\n", name_.c_str(), about_.c_str(),
                 name_.c_str(), positional_.c_str());

@@ -25,6 +25,8 @@ struct Options {
     double fps = 30.0;          // (0, 240]; simulated rate headless, limit of the window's rate
     bool validate = false;      // Vulkan validation layers; any message makes the sample fail
     bool noMsaa = false;        // one sample a pixel, of samples that take four
+    bool lendScene = false;     // flames fade where they meet things: the scene's depth is lent
+    bool halfEffects = false;   // the same, drawn at half resolution
     bool list = false;          // the sample says what it can show, and ends
     std::filesystem::path out;  // folder of the pictures; default out/<name>
     std::vector<std::string> positional;
@@ -43,6 +45,9 @@ class OptionParser {
     // "x,y,z". `given`, if not null, says whether it was there.
     void addVector(const std::string& name, const std::string& help, float value[3],
                    bool* given = nullptr);
+
+    // --lend and --half, of samples that can.
+    void addLending(Options& options);
 
     // False: there was nothing more to do (--help was answered). Throws Failure.
     bool parse(int argc, char** argv, Options& options) const;

@@ -204,6 +204,12 @@ void Stage::makePost() {
     vkDestroyShaderModule(host_.device, request.fragment, nullptr);
 }
 
+void StageRequest::lendAs(const Options& options) {
+    lendScene = options.lendScene || options.halfEffects;
+    halfEffects = options.halfEffects;
+    if (lendScene) samples = VK_SAMPLE_COUNT_1_BIT;
+}
+
 void Stage::makeTargets() {
     const bool scenic = made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT;
     const bool multisampled = made.samples != VK_SAMPLE_COUNT_1_BIT;

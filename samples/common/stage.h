@@ -21,10 +21,13 @@ struct StageRequest {
     bool reversedDepth = false;                          // clear to 0, GREATER wins
     float clearColor[4] = {0.02f, 0.02f, 0.025f, 1.0f};  // linear
     uint32_t framesInFlight = 2;                         // [1, 4]
-    float bloom = 0.06f;     // [0, 1] share of light spread around; RGBA16F only
-    float exposure = 1.0f;   // multiplies RGBA16F before the film curve
-    float vignette = 0.15f;  // [0, 1]
-    bool lendScene = false;  // lendScene() may be called; RGBA16F and one sample only
+    float bloom = 0.06f;       // [0, 1] share of light spread around; RGBA16F only
+    float exposure = 1.0f;     // multiplies RGBA16F before the film curve
+    float vignette = 0.15f;    // [0, 1]
+    bool lendScene = false;    // lendScene() may be called; RGBA16F and one sample only
+    bool halfEffects = false;  // with it: flames and smoke go over it at half resolution
+    // Of the sample's command line; then the scene has one sample a pixel.
+    void lendAs(const Options& options);
 };
 
 // The scene after its pass, for who draws over it in a pass of its own.

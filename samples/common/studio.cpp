@@ -378,7 +378,7 @@ void showStudio(const StageFrame& frame, Stage& stage, Studio& studio, FireHost&
     stage.beginScene(frame);
     studio.draw(frame, frame.commands, view, {lights, lightCount});
     studio.drawBlocks(frame, frame.commands);
-    if (!stage.made.lendScene) fire.recordInside(frame, view);
+    fire.recordInside(frame, view);
     stage.endScene(frame);
     if (stage.made.lendScene) fire.recordOver(frame, view, stage.lendScene(frame));
     stage.finish(frame);

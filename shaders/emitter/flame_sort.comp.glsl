@@ -201,5 +201,9 @@ void main() {
         drawArgs[0] = 6u * count;  // vertices
         drawArgs[1] = 1u;
         drawArgs[2] = drawArgs[3] = 0u;
+        drawArgs[kFlameLightDraw] = 6u * lights;
+        drawArgs[kFlameLightDraw + 1u] = 1u;
+        drawArgs[kFlameLightDraw + 2u] = 6u * (push.tiles + push.particles);
+        drawArgs[kFlameLightDraw + 3u] = 0u;
     }
 }

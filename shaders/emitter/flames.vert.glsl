@@ -15,6 +15,8 @@ layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) readonly buffer ArgsBuffer 
 };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 
+layout(constant_id = 3) const uint kPart = kPartAll;
+
 layout(location = 0) out vec2 outPlace;        // x: -1..1, y: 0 foot .. 1 tip
 layout(location = 1) flat out vec4 outState;   // opacity, phase, kelvin, length over half width
 layout(location = 2) flat out uint outKind;
@@ -76,7 +78,8 @@ const float kRoot3 = 1.7320508;
 void main() {
     float perspective = view.forward.w;  // weighed with, not branched on, see ARCHITECTURE.md
     uint number = uint(gl_VertexIndex) / 6u, vertex = uint(gl_VertexIndex) % 6u;
-    FlameQuad quad = flameQuad[drawArgs[kFlameOrder + number]];
+    // Sparks add up in any order.
+    FlameQuad quad = flameQuad[kPart == kPartSparks ? number : drawArgs[kFlameOrder + number]];
     uint corner = vertex < 3u ? vertex : vertex - 2u;
     vec2 place = vec2((corner & 1u) == 0u ? -1.0 : 1.0, (corner & 2u) == 0u ? 0.0 : 1.0);
     if (vertex == 3u) place = vec2(-1.0, 1.0);
@@ -127,4 +130,6 @@ void main() {
     outKind = quad.kind;
     outWidth = quad.axisWidth.w;
     gl_Position = view.clip0 * at.x + view.clip1 * at.y + view.clip2 * at.z + view.clip3;
+    if (kPart != kPartAll && ((quad.kind & 3u) == kQuadSpark) != (kPart == kPartSparks))
+        gl_Position = vec4(-2.0, -2.0, 0.0, 1.0);  // not of this part
 }

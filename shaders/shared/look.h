@@ -217,10 +217,17 @@ FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // it hides nothing; of kQuadSpark 
 FW_SHARED_CONST uint kFlameTiles = 4u;       // word: quads of tiles that were wished for
 FW_SHARED_CONST uint kFlameParticles = 5u;   // word: of particles, that hide
 FW_SHARED_CONST uint kFlameLights = 6u;      // word: of those that emit alone
-FW_SHARED_CONST uint kFlameOrder = 8u;       // first word of the order
+FW_SHARED_CONST uint kFlameLightDraw = 8u;   // words: draw arguments of those that emit alone, by their places
+FW_SHARED_CONST uint kFlameOrder = 12u;      // first word of the order
 FW_SHARED_CONST uint kFlameCapacity = 4096u; // hard limit of tiles' quads drawn
 FW_SHARED_CONST uint kMostQuads = 65536u;    // of all
 FW_SHARED_CONST uint kMostFewQuads = 2048u;  // that the sort has room for in shared memory
+
+// Specialization constant 3 of what draws quads. A target of half resolution has all but sparks, which are as thin as a
+// pixel; they follow at the picture's.
+FW_SHARED_CONST uint kPartAll = 0u;
+FW_SHARED_CONST uint kPartSoft = 1u;
+FW_SHARED_CONST uint kPartSparks = 2u;
 
 struct SortPush {
     uint tiles;      // quads of tiles, at most

@@ -104,6 +104,8 @@ class EveryPass : public GpuTest {
         def.flags |= FW_TARGET_HAZE;
         def.depthMode = FW_DEPTH_SAMPLED;
         hazeTarget_ = rig_->context.registerTarget(def);
+        def.flags |= FW_TARGET_HALF_EFFECTS;
+        halfTarget_ = rig_->context.registerTarget(def);
         behind_ = device_->makeImage(def.colorFormat, {kSide, kSide}, 1,
                                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         color_ = device_->makeImage(
@@ -351,6 +353,7 @@ class EveryPass : public GpuTest {
         lends.sampledColor = behind_.view;
         lends.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         EXPECT_TRUE(rig_->backend.recordComposite(lends, hazeTarget_, view, images));
+        EXPECT_TRUE(rig_->backend.recordComposite(lends, halfTarget_, view, images));
     }
 
     // Flames and particles show flipbooks from now on.
@@ -461,7 +464,7 @@ class EveryPass : public GpuTest {
 
     std::unique_ptr<VkRig> rig_;
     const BurnScene* scene_ = nullptr;
-    FwTargetId target_{}, hazeTarget_{};
+    FwTargetId target_{}, hazeTarget_{}, halfTarget_{};
     TestImage color_, depth_, behind_;
     TestBuffer vertices_;
     std::set<std::string> passes_;  // that took time

@@ -91,6 +91,15 @@ double lightOf(const Picture& picture) {  // all but the host's blue and its str
     return sum;
 }
 
+// The same of light: a finer picture has less of what is stored.
+double linearLightOf(const Picture& picture) {
+    double sum = 0;
+    for (uint32_t y = 0; y < kHeight; ++y)
+        for (uint32_t x = 8; x < kWidth - 8; ++x)
+            for (int c = 0; c < 2; ++c) sum += std::pow(double(picture.at(x, y)[c]), 2.2);
+    return sum;
+}
+
 // Flames against a depth that is sampled: hidden behind it, whole before it, and in between they
 // fade where a depth test cuts them off, by half where it would. However the host lends it, the
 // picture is the same.
@@ -124,6 +133,14 @@ TEST_F(HostDraw, SampledDepthIsSoft) {
                         EXPECT_EQ(picture.unlike(kWidth - 8, kWidth, 0, 1, 0), 0u);
                     }
                     softLight[i] = lightOf(picture);
+                    if (composite && (samples > 1) == reversed) {
+                        Shot half = soft;
+                        half.flags = FW_TARGET_HALF_EFFECTS;
+                        // Tongues a few pixels wide: a rough sample.
+                        const double light = linearLightOf(picture);
+                        EXPECT_NEAR(linearLightOf(shoot(half)), light, 0.1 * light + 0.01)
+                            << planes[i] << " m, at half resolution";
+                    }
                     hardLight[i] = lightOf(shoot(hard));
                     for (uint32_t y = 0; y < kHeight; ++y)
                         all.insert(all.end(), picture.at(8, y), picture.at(kWidth - 8, y));
@@ -293,7 +310,19 @@ TEST_F(HostDraw, TargetsAreChecked) {
             d.depthSamples = 16;
         },
         "depthSamples is 16");
-    refused([](auto& d) { d.flags = 16; }, "flags is 16");
+    refused([](auto& d) { d.flags = 32; }, "flags is 32");
+    refused(
+        [](auto& d) {
+            d.flags = FW_TARGET_HALF_EFFECTS;
+            d.depthMode = FW_DEPTH_SAMPLED;
+        },
+        "FW_TARGET_HALF_EFFECTS needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED");
+    refused(
+        [](auto& d) {
+            d.flags = FW_TARGET_HALF_EFFECTS | FW_TARGET_COMPOSITE;
+            d.renderPass = VK_NULL_HANDLE;
+        },
+        "FW_TARGET_HALF_EFFECTS needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED");
     refused(
         [](auto& d) {
             d.flags = FW_TARGET_HAZE;

@@ -95,6 +95,12 @@ typedef enum FwTargetFlags {
     FW_TARGET_NO_SURFACES = 4, /* flames and smoke alone */
     FW_TARGET_HAZE = 8,      /* with FW_DEPTH_SAMPLED alone: hot gas in and above volumetric fires bends what is
                                 behind it, in frames that lend FwVulkanFrame::sampledColor */
+    FW_TARGET_HALF_EFFECTS = 16, /* with FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED alone: flames, smoke, particle fields
+                                and volumetric fires are drawn at half resolution and laid over the picture at once,
+                                along the edges of its depth. About a quarter of their pixels' time, and softer; sparks
+                                stay as fine as the picture, and are seen through smoke before them. 2 bytes of device
+                                memory a pixel, 3 of a float target, per world and size of target, from the first
+                                frame on that has any */
     FW_TARGET_FLAGS_FORCE32 = 0x7fffffff
 } FwTargetFlags;
 static inline FwVulkanTargetDef fwDefaultVulkanTargetDef(void) {

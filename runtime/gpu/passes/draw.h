@@ -2,6 +2,7 @@
 #pragma once
 #include "flamewright/flamewright.h"
 #include "gpu/passes/pass.h"
+#include "shared/half.h"
 #include "shared/heat.h"
 #include "shared/look.h"
 #include "shared/volume_draw.h"
@@ -109,6 +110,17 @@ constexpr uint32_t kBookVariants = 2;
 extern const DrawPass kFlamesPass, kBookFlamesPasses[kBookVariants];
 void recordFlames(DrawRecorder& recorder);
 
+// In a target of half resolution: sparks, which are drawn at the picture's. Without flipbooks,
+// with.
+extern const DrawPass kHalfSparksPasses[2];
+void recordHalfSparks(DrawRecorder& recorder);
+
+// In this order: depth as the quads are tested against it; all that is soft; which of its tiles
+// show anything; these, over the picture.
+extern const DrawPass kHalfDepthPass, kHalfTilesPass, kHalfCompositePass;
+// For a viewport that begins at `left`, `top` of the host's image.
+HalfPush halfPush(const ViewParams& view, int left, int top, uint32_t width, uint32_t height);
+
 struct VolumeItem {  // a volumetric flame that a view may show
     uint32_t flame = 0;
     VolumeDraw draw{};
@@ -122,6 +134,8 @@ extern const DrawPass kVolumePass;
 // Where the view shows it, in so many slabs; false: nowhere.
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
                 VolumeDraw& out, vec4* whole = nullptr);
+// VolumeDraw::clip: what tells how far something is from its depth.
+vec4 volumeClip(const ViewParams& view) noexcept;
 // How many samples each of them is worth where all are marched as they are drawn.
 void chooseVolumes(std::span<VolumeItem> items);
 // VolumeDraw::intervals for a curve.

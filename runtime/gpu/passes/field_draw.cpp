@@ -24,7 +24,8 @@ constexpr DrawPass variant(uint32_t number) {
             .pushBytes = 0,
             .variant = number,
             .softShader = "field_draw_soft.frag",
-            .softShaderMultisampled = "field_draw_soft_ms.frag"};
+            .softShaderMultisampled = "field_draw_soft_ms.frag",
+            .atHalf = AtHalf::soft};
 }
 
 }  // namespace

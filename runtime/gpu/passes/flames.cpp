@@ -42,7 +42,8 @@ constexpr DrawPass bookVariant(uint32_t pagesAlone) {
             .pushBytes = 0,
             .variant = pagesAlone,
             .softShader = "book_flames_soft.frag",
-            .softShaderMultisampled = "book_flames_soft_ms.frag"};
+            .softShaderMultisampled = "book_flames_soft_ms.frag",
+            .atHalf = AtHalf::soft};
 }
 
 }  // namespace
@@ -58,10 +59,39 @@ const DrawPass kFlamesPass{.name = "flames",
                            .writeDepth = false,
                            .pushBytes = 0,
                            .softShader = "flames_soft.frag",
-                           .softShaderMultisampled = "flames_soft_ms.frag"};
+                           .softShaderMultisampled = "flames_soft_ms.frag",
+                           .atHalf = AtHalf::soft};
 // Where the world has flipbooks: what is shown by none costs five texels more there, and where they
 // show all of it the noise is saved.
 const DrawPass kBookFlamesPasses[kBookVariants] = {bookVariant(0), bookVariant(1)};
+
+const DrawPass kHalfSparksPasses[2] = {{.name = "half sparks",
+                                        .vertexShader = "flames.vert",
+                                        .fragmentShader = nullptr,
+                                        .uses = kDrawUses,
+                                        .vertexInput = VertexInput::none,
+                                        .blend = Blend::premultiplied,
+                                        .writeDepth = false,
+                                        .pushBytes = 0,
+                                        .softShader = "flames_soft.frag",
+                                        .softShaderMultisampled = "flames_soft_ms.frag",
+                                        .atHalf = AtHalf::sparks},
+                                       {.name = "half sparks",
+                                        .vertexShader = "book_flames.vert",
+                                        .fragmentShader = nullptr,
+                                        .uses = kBookUses,
+                                        .vertexInput = VertexInput::none,
+                                        .blend = Blend::premultiplied,
+                                        .writeDepth = false,
+                                        .pushBytes = 0,
+                                        .variant = 1,
+                                        .softShader = "book_flames_soft.frag",
+                                        .softShaderMultisampled = "book_flames_soft_ms.frag",
+                                        .atHalf = AtHalf::sparks}};
+
+void recordHalfSparks(DrawRecorder& recorder) {
+    recorder.drawIndirect(FW_BIND_DRAW_ARGS, kFlameLightDraw * 4);
+}
 
 void recordFlames(DrawRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); }
 

@@ -37,31 +37,36 @@ constexpr const ComputePass* kComputePasses[] = {
     &kRoomsPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
-    &kSurfacePasses[0],  &kSurfacePasses[1],    &kSurfacePasses[2],   &kSurfacePasses[3],
-    &kSurfacePasses[4],  &kSurfacePasses[5],    &kSurfacePasses[6],   &kSurfacePasses[7],
-    &kSurfacePasses[8],  &kSurfacePasses[9],    &kSurfacePasses[10],  &kSurfacePasses[11],
-    &kSurfacePasses[12], &kSurfacePasses[13],   &kSurfacePasses[14],  &kSurfacePasses[15],
-    &kSurfacePasses[16], &kSurfacePasses[17],   &kSurfacePasses[18],  &kSurfacePasses[19],
-    &kSurfacePasses[20], &kSurfacePasses[21],   &kSurfacePasses[22],  &kSurfacePasses[23],
-    &kSurfacePasses[24], &kSurfacePasses[25],   &kSurfacePasses[26],  &kSurfacePasses[27],
-    &kSurfacePasses[28], &kSurfacePasses[29],   &kSurfacePasses[30],  &kSurfacePasses[31],
-    &kSurfacePasses[32], &kSurfacePasses[33],   &kSurfacePasses[34],  &kZPass,
-    &kFlamesPass,        &kVolumePass,          &kVolumeCardPass,     &kVolumeCompositePass,
-    &kVolumeSlicesPass,  &kFieldDrawPasses[0],  &kFieldDrawPasses[1], &kFieldDrawPasses[2],
-    &kVolumeHazePass,    &kBookFlamesPasses[0], &kBookFlamesPasses[1]};
+    &kSurfacePasses[0],  &kSurfacePasses[1],    &kSurfacePasses[2],    &kSurfacePasses[3],
+    &kSurfacePasses[4],  &kSurfacePasses[5],    &kSurfacePasses[6],    &kSurfacePasses[7],
+    &kSurfacePasses[8],  &kSurfacePasses[9],    &kSurfacePasses[10],   &kSurfacePasses[11],
+    &kSurfacePasses[12], &kSurfacePasses[13],   &kSurfacePasses[14],   &kSurfacePasses[15],
+    &kSurfacePasses[16], &kSurfacePasses[17],   &kSurfacePasses[18],   &kSurfacePasses[19],
+    &kSurfacePasses[20], &kSurfacePasses[21],   &kSurfacePasses[22],   &kSurfacePasses[23],
+    &kSurfacePasses[24], &kSurfacePasses[25],   &kSurfacePasses[26],   &kSurfacePasses[27],
+    &kSurfacePasses[28], &kSurfacePasses[29],   &kSurfacePasses[30],   &kSurfacePasses[31],
+    &kSurfacePasses[32], &kSurfacePasses[33],   &kSurfacePasses[34],   &kZPass,
+    &kFlamesPass,        &kVolumePass,          &kVolumeCardPass,      &kVolumeCompositePass,
+    &kVolumeSlicesPass,  &kFieldDrawPasses[0],  &kFieldDrawPasses[1],  &kFieldDrawPasses[2],
+    &kVolumeHazePass,    &kBookFlamesPasses[0], &kBookFlamesPasses[1], &kHalfDepthPass,
+    &kHalfTilesPass,     &kHalfCompositePass,   &kHalfSparksPasses[0], &kHalfSparksPasses[1]};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
 constexpr uint32_t kNumberOfVolumes = kNumberOfZPass + 2;
 constexpr uint32_t kNumberOfFields = kNumberOfZPass + 6;
 constexpr uint32_t kNumberOfHaze = kNumberOfFields + kFieldVariants;
 constexpr uint32_t kNumberOfBookFlames = kNumberOfHaze + 1;
-static_assert(std::size(kDrawPasses) == kNumberOfBookFlames + kBookVariants);
+constexpr uint32_t kNumberOfHalf = kNumberOfBookFlames + kBookVariants;
+constexpr uint32_t kNumberOfHalfComposite = kNumberOfHalf + 2;
+constexpr uint32_t kNumberOfHalfSparks = kNumberOfHalf + 3;
+static_assert(std::size(kDrawPasses) == kNumberOfHalfSparks + 2);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first. The variants of
 // fields are one step, in which they are drawn as they lie behind each other, and so are volumetric
-// flames of all tiers. Haze bends what is solid alone.
+// flames of all tiers. Haze bends what is solid alone. Where fields, quads and volumes are drawn at
+// half resolution, they come over the picture at the end, and sparks after them.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 7> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 10> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
@@ -73,6 +78,9 @@ constexpr auto kDrawSteps = [] {
     steps[2 * kSurfaceVariants + 4] = {kNumberOfBookFlames, false};
     steps[2 * kSurfaceVariants + 5] = {kNumberOfBookFlames + 1, false};
     steps[2 * kSurfaceVariants + 6] = {kNumberOfVolumes, false};
+    steps[2 * kSurfaceVariants + 7] = {kNumberOfHalfComposite, false};
+    steps[2 * kSurfaceVariants + 8] = {kNumberOfHalfSparks, false};
+    steps[2 * kSurfaceVariants + 9] = {kNumberOfHalfSparks + 1, false};
     return steps;
 }();
 
@@ -352,6 +360,8 @@ void recordDrawStep(const DrawStep& step, DrawRecorder& recorder, const DrawList
         recordSurface(recorder, step.pass, list.surfaces, step.afterZ, list.turned);
     else if (step.pass == kNumberOfZPass)
         recordZPass(recorder, list.surfaces);
+    else if (step.pass >= kNumberOfHalfSparks)
+        recordHalfSparks(recorder);
     else if (step.pass != kNumberOfFields && step.pass != kNumberOfVolumes)  // bind by themselves
         recordFlames(recorder);
 }
@@ -376,6 +386,9 @@ bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (kDrawPasses[step.pass] == &kFlamesPass) return list.flames && !list.books;
     if (step.pass >= kNumberOfBookFlames && step.pass < kNumberOfBookFlames + kBookVariants)
         return list.flames && list.books && list.pagesAlone == (step.pass > kNumberOfBookFlames);
+    if (step.pass == kNumberOfHalfComposite) return list.half;
+    if (step.pass >= kNumberOfHalfSparks)
+        return list.flames && list.books == (step.pass > kNumberOfHalfSparks);
     if (step.pass == kNumberOfHaze) return !list.hazes.empty();
     return !list.volumeRuns.empty();
 }

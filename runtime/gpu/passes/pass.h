@@ -63,12 +63,22 @@ enum class VertexInput : uint8_t {
 enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
 enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone };
 
+// What becomes of a pass in a target with FW_TARGET_HALF_EFFECTS.
+enum class AtHalf : uint8_t {
+    same,    // drawn as elsewhere
+    soft,    // drawn at half resolution
+    depth,   // only there: into the image of half resolution that holds depth, and tiles
+    sparks,  // only there: over the picture, of all quads the sparks
+    over,    // only there: over the picture
+};
+
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
-// 2 DrawPass::variant.
+// 2 DrawPass::variant, 3 which part of the quads (kPart...).
 // Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none), of `book
 // flames` the flipbooks, of `volume haze` the scene's colour that the host lends (sampler2D); 2
-// binding 0 the look textures, of `volume` the fire profiles (sampler2DArray); 3, with softShader
-// alone, binding 0 the depth that the host lends (sampler2D or sampler2DMS).
+// binding 0 the look textures, of `volume` the fire profiles (sampler2DArray), of `half composite`
+// depth and tiles of half resolution, whose colour is its set 1 and that of `half tiles`; 3, with
+// softShader alone, binding 0 the depth that the host lends (sampler2D or sampler2DMS).
 struct DrawPass {
     const char* name;
     const char* vertexShader;
@@ -87,6 +97,7 @@ struct DrawPass {
     const char* softShaderMultisampled = nullptr;
     // The three where `uses` has texels: instead, if the device has them.
     const char* const* texelShaders = nullptr;
+    AtHalf atHalf = AtHalf::same;
 };
 
 }  // namespace fw::gpu

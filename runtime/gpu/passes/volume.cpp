@@ -81,7 +81,17 @@ const DrawPass kVolumePass{.name = "volume",
                            .writeDepth = false,
                            .pushBytes = sizeof(VolumeDraw),
                            .softShader = "volume_soft.frag",
-                           .softShaderMultisampled = "volume_soft_ms.frag"};
+                           .softShaderMultisampled = "volume_soft_ms.frag",
+                           .atHalf = AtHalf::soft};
+
+vec4 volumeClip(const ViewParams& view) noexcept {
+    const vec3 forward(view.forward);
+    if (view.forward.w <= 0.5f) return {along(forward, view, 2), view.clip3.z, 0.0f, view.clip3.w};
+    const vec3 z(view.clip0.z, view.clip1.z, view.clip2.z),
+        w(view.clip0.w, view.clip1.w, view.clip2.w);
+    const float perDepth = along(forward, view, 3), a = glm::dot(z, w) / glm::dot(w, w);
+    return {a * perDepth, view.clip3.z - a * view.clip3.w, perDepth, 0.0f};
+}
 
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
                 VolumeDraw& out, vec4* whole) {
@@ -109,14 +119,12 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
         out.rayX = vec4(fromClip[0] * perDepth, 0.0f);
         out.rayY = vec4(fromClip[1] * perDepth, 0.0f);
         out.rayO = vec4(fromClip[2], 0.0f);
-        const float a = glm::dot(rows[2], rows[3]) / glm::dot(rows[3], rows[3]);
-        out.clip = vec4(a * perDepth, view.clip3.z - a * view.clip3.w, perDepth, 0.0f);
     } else {
         out.rayX = vec4(fromClip[0] * view.clip3.w, 0.0f);
         out.rayY = vec4(fromClip[1] * view.clip3.w, 0.0f);
         out.rayO = vec4(-fromClip[0] * view.clip3.x - fromClip[1] * view.clip3.y, 0.0f);
-        out.clip = vec4(along(forward, view, 2), view.clip3.z, 0.0f, view.clip3.w);
     }
+    out.clip = volumeClip(view);
     out.front = near;
     out.deep = (far - near) / float(slabs);
     out.slabs = slabs;

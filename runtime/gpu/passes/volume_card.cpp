@@ -43,7 +43,8 @@ const DrawPass kVolumeCardPass{.name = "volume card",
                                .pushBytes = sizeof(VolumeCard),
                                .softShader = "volume_card_soft.frag",
                                .softShaderMultisampled = "volume_card_soft_ms.frag",
-                               .texelShaders = kCardTexelShaders};
+                               .texelShaders = kCardTexelShaders,
+                               .atHalf = AtHalf::soft};
 
 bool cardFits(const VolumeItem& item) noexcept {
     return item.whole.x < item.whole.z && item.whole.y < item.whole.w && item.draw.front > 0.0f;

@@ -27,7 +27,8 @@ const DrawPass kVolumeCompositePass{.name = "volume composite",
                                     .pushBytes = sizeof(VolumeComposite),
                                     .softShader = "volume_composite_soft.frag",
                                     .softShaderMultisampled = "volume_composite_soft_ms.frag",
-                                    .texelShaders = kCompositeTexelShaders};
+                                    .texelShaders = kCompositeTexelShaders,
+                                    .atHalf = AtHalf::soft};
 
 void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes) {
     for (const MarchedVolume& one : volumes)

@@ -30,7 +30,8 @@ const DrawPass kVolumeSlicesPass{.name = "volume slices",
                                  .writeDepth = false,
                                  .pushBytes = sizeof(VolumeSlices),
                                  .softShader = "volume_slices_soft.frag",
-                                 .softShaderMultisampled = "volume_slices_soft_ms.frag"};
+                                 .softShaderMultisampled = "volume_slices_soft_ms.frag",
+                                 .atHalf = AtHalf::soft};
 
 bool slicesShow(uint32_t encoding) noexcept { return encoding == 0; }  // FW_OUTPUT_LINEAR
 

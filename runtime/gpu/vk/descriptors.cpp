@@ -107,7 +107,8 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     generation_ = planes.generation();
 }
 
-ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView view) {
+ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView view,
+                      VkSampler sampler) {
     ImageSet out;
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
     auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
@@ -128,7 +129,7 @@ ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView vi
         device.table.DestroyDescriptorPool(device.handle, out.pool, device.allocationCallbacks);
         device.check(result, "vkAllocateDescriptorSets");
     }
-    const VkDescriptorImageInfo image{pipelines.imageSampler(), view,
+    const VkDescriptorImageInfo image{sampler ? sampler : pipelines.imageSampler(), view,
                                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     auto write = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
     write.dstSet = out.set;

@@ -44,6 +44,8 @@ struct ImageSet {
     VkDescriptorPool pool = VK_NULL_HANDLE;
     VkDescriptorSet set = VK_NULL_HANDLE;
 };
-ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView view);
+// `sampler`: null for that of images with mips.
+ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView view,
+                      VkSampler sampler = VK_NULL_HANDLE);
 
 }  // namespace fw::gpu::vk

@@ -5,6 +5,7 @@
 #include "mesh/burn_domain.h"
 #include "shaders_embedded.h"
 #include "shared/deform.h"
+#include "shared/look.h"
 
 #include <array>
 #include <cstddef>
@@ -12,6 +13,13 @@
 
 namespace fw::gpu::vk {
 namespace {
+
+VkFormat halfColorFor(VkFormat color, uint32_t encoding) noexcept {
+    if (encoding == FW_OUTPUT_LINEAR || color == VK_FORMAT_R16G16B16A16_SFLOAT ||
+        color == VK_FORMAT_R32G32B32A32_SFLOAT || color == VK_FORMAT_B10G11R11_UFLOAT_PACK32)
+        return Pipelines::kHalfColors[0];
+    return Pipelines::kHalfColors[encoding == FW_OUTPUT_SRGB_VIEW ? 1 : 2];
+}
 
 bool hasStencil(VkFormat format) noexcept {
     return format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT ||
@@ -25,12 +33,18 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     };
     TargetKey key;
     key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
-    if (def.flags & ~15u) bad("flags", def.flags, "bits 0 to 3 are known");
+    if (def.flags & ~31u) bad("flags", def.flags, "bits 0 to 4 are known");
     key.haze = (def.flags & FW_TARGET_HAZE) != 0;
     if (key.haze && def.depthMode != FW_DEPTH_SAMPLED)
         bad("flags", def.flags, "FW_TARGET_HAZE needs depthMode FW_DEPTH_SAMPLED");
+    const bool half = (def.flags & FW_TARGET_HALF_EFFECTS) != 0;
+    if (half && (def.depthMode != FW_DEPTH_SAMPLED || !key.composite))
+        bad("flags", def.flags,
+            "FW_TARGET_HALF_EFFECTS needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED");
     key.surfaces = !(def.flags & FW_TARGET_NO_SURFACES) && def.depthMode != FW_DEPTH_SAMPLED;
     key.flames = !(def.flags & FW_TARGET_NO_FLAMES);
+    key.half = half && key.flames;
+    if (key.half) key.halfColor = halfColorFor(def.colorFormat, def.encoding);
     if (key.composite && def.renderPass)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::renderPass is given with FW_TARGET_COMPOSITE; that pass is "
@@ -133,6 +147,12 @@ void Pipelines::destroy() noexcept {
     vk.DestroyDescriptorSetLayout(device_.handle, imageLayout_, device_.allocationCallbacks);
     vk.DestroySampler(device_.handle, imageSampler_, device_.allocationCallbacks);
     vk.DestroySampler(device_.handle, depthSampler_, device_.allocationCallbacks);
+    for (VkRenderPass& pass : halfPasses_) {
+        vk.DestroyRenderPass(device_.handle, pass, device_.allocationCallbacks);
+        pass = VK_NULL_HANDLE;
+    }
+    vk.DestroyRenderPass(device_.handle, halfDepthPass_, device_.allocationCallbacks);
+    halfDepthPass_ = VK_NULL_HANDLE;
     imageLayout_ = VK_NULL_HANDLE;
     imageSampler_ = depthSampler_ = VK_NULL_HANDLE;
 }
@@ -155,6 +175,10 @@ void Pipelines::makeLayouts() {
     device_.check(
         vk.CreateSampler(device_.handle, &sampler, device_.allocationCallbacks, &depthSampler_),
         "vkCreateSampler");
+
+    for (size_t i = 0; i < kHalfColors.size(); ++i)
+        halfPasses_[i] = makeHalfPass(kHalfColors[i], true);
+    halfDepthPass_ = makeHalfPass(kHalfDepth, false);
 
     VkDescriptorSetLayoutBinding image{};
     image.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
@@ -338,15 +362,71 @@ VkRenderPass Pipelines::makePass(const TargetKey& key) const {
     return pass;
 }
 
+VkRenderPass Pipelines::halfPass(VkFormat color) const {
+    for (size_t i = 0; i < kHalfColors.size(); ++i)
+        if (kHalfColors[i] == color) return halfPasses_[i];
+    return VK_NULL_HANDLE;
+}
+
+VkRenderPass Pipelines::makeHalfPass(VkFormat format, bool clears) const {
+    VkAttachmentDescription image{};
+    image.format = format;
+    image.samples = VK_SAMPLE_COUNT_1_BIT;
+    image.loadOp = clears ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+    image.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    image.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    image.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    image.finalLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    image.initialLayout = clears ? VK_IMAGE_LAYOUT_UNDEFINED : image.finalLayout;
+    const VkAttachmentReference color{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &color;
+    // Who read it last has done so, in the frame before or in another view; who reads it next
+    // waits.
+    constexpr VkPipelineStageFlags kDraws = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+    constexpr VkPipelineStageFlags kReads =
+        VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+    constexpr VkAccessFlags kAccess =
+        VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    std::array<VkSubpassDependency, 2> waits{};
+    waits[0].srcSubpass = waits[1].dstSubpass = VK_SUBPASS_EXTERNAL;
+    waits[0].srcStageMask = kReads | kDraws;
+    waits[0].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    waits[0].dstStageMask = waits[1].srcStageMask = kDraws;
+    waits[0].dstAccessMask = kAccess;
+    waits[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    waits[1].dstStageMask = kReads;
+    waits[1].dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+    auto info = typed<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
+    info.attachmentCount = 1;
+    info.pAttachments = &image;
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
+    info.dependencyCount = uint32_t(waits.size());
+    info.pDependencies = waits.data();
+    VkRenderPass pass = VK_NULL_HANDLE;
+    device_.check(
+        device_.table.CreateRenderPass(device_.handle, &info, device_.allocationCallbacks, &pass),
+        "vkCreateRenderPass");
+    return pass;
+}
+
 VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass renderPass,
                                Modules& modules) const {
     const DrawPass& pass = *drawPasses()[number];
     const bool colors = pass.blend != Blend::depthAlone;  // else places are all it reads
     const struct {
-        uint32_t encoding, reversed, variant;
-    } constants{uint32_t(key.encoding), key.reversedDepth ? 1u : 0u, pass.variant};
-    const std::array<VkSpecializationMapEntry, 3> entries{{{0, 0, 4}, {1, 4, 4}, {2, 8, 4}}};
-    const VkSpecializationInfo special{3, entries.data(), sizeof constants, &constants};
+        uint32_t encoding, reversed, variant, part;
+    } constants{uint32_t(key.encoding), key.reversedDepth ? 1u : 0u, pass.variant,
+                pass.atHalf == AtHalf::sparks             ? kPartSparks
+                : key.half && pass.atHalf == AtHalf::soft ? kPartSoft
+                                                          : kPartAll};
+    const std::array<VkSpecializationMapEntry, 4> entries{
+        {{0, 0, 4}, {1, 4, 4}, {2, 8, 4}, {3, 12, 4}}};
+    const VkSpecializationInfo special{uint32_t(entries.size()), entries.data(), sizeof constants,
+                                       &constants};
 
     std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
     for (VkPipelineShaderStageCreateInfo& stage : stages) {
@@ -479,10 +559,21 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
         target->pipelines.reserve(drawPasses().size());
         Modules modules(*this);
         for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
+            const AtHalf atHalf = drawPasses()[pass]->atHalf;
             const bool surface = drawPasses()[pass]->vertexInput == VertexInput::mesh;
             const bool haze = drawPasses()[pass] == &kVolumeHazePass;
-            const bool drawn = surface ? key.surfaces : key.flames && (!haze || key.haze);
-            target->pipelines.push_back(drawn ? makeDraw(pass, key, renderPass, modules)
+            const bool always = atHalf == AtHalf::same || atHalf == AtHalf::soft;
+            const bool drawn =
+                surface ? key.surfaces : key.flames && (!haze || key.haze) && (always || key.half);
+            TargetKey drawnOn = key;
+            VkRenderPass in = renderPass;
+            if (key.half && (atHalf == AtHalf::soft || atHalf == AtHalf::depth)) {
+                drawnOn.samples = drawnOn.colorAttachments = 1;
+                if (atHalf == AtHalf::soft) drawnOn.depthSamples = 1;
+                drawnOn.subpass = 0;
+                in = atHalf == AtHalf::soft ? halfPass(key.halfColor) : halfDepthPass_;
+            }
+            target->pipelines.push_back(drawn ? makeDraw(pass, drawnOn, in, modules)
                                               : VK_NULL_HANDLE);
         }
         const std::lock_guard lock(mutex_);

@@ -7,6 +7,7 @@
 #include "gpu/passes/pass.h"
 #include "gpu/vk/device.h"
 
+#include <array>
 #include <atomic>
 #include <span>
 #include <vector>
@@ -27,6 +28,8 @@ struct TargetKey {
     FwDepthMode depthMode = FW_DEPTH_NONE;
     bool surfaces = true, flames = true;
     bool reversedDepth = false, composite = false, haze = false;
+    bool half = false;  // what is soft is drawn at half resolution
+    VkFormat halfColor = VK_FORMAT_UNDEFINED;
     FwOutputEncoding encoding = FW_OUTPUT_LINEAR;
     [[nodiscard]] bool samplesDepth() const noexcept { return depthMode == FW_DEPTH_SAMPLED; }
     [[nodiscard]] bool attachesDepth() const noexcept {
@@ -65,12 +68,22 @@ class Pipelines {
     [[nodiscard]] VkDescriptorSetLayout imageSetLayout() const { return imageLayout_; }
     [[nodiscard]] VkSampler imageSampler() const { return imageSampler_; }
     [[nodiscard]] VkSampler depthSampler() const { return depthSampler_; }
+    // Over images of half resolution (HalfImages): colour, which is cleared; depth, which is kept.
+    // Both leave them ready for our shaders.
+    [[nodiscard]] VkRenderPass halfPass(VkFormat color) const;
+    [[nodiscard]] VkRenderPass halfDepthPass() const { return halfDepthPass_; }
+    // In an image that ends at 1 what is brighter is lost before smoke is laid over it: the one of
+    // half resolution ends where its target does, or it would be brighter.
+    static constexpr std::array kHalfColors{VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_SRGB,
+                                            VK_FORMAT_R8G8B8A8_UNORM};
+    static constexpr VkFormat kHalfDepth = VK_FORMAT_R32_SFLOAT;
 
  private:
     void makeLayouts();
     class Modules;  // of the pipelines that are made together
     VkShaderModule module(const char* shader) const;
     VkRenderPass makePass(const TargetKey& key) const;
+    VkRenderPass makeHalfPass(VkFormat format, bool clears) const;
     VkPipeline makeDraw(size_t pass, const TargetKey& key, VkRenderPass renderPass,
                         Modules& modules) const;
     void destroyTarget(Target& target) noexcept;
@@ -81,6 +94,8 @@ class Pipelines {
     std::pmr::vector<PassObjects> compute_, draw_;
     VkDescriptorSetLayout imageLayout_ = VK_NULL_HANDLE;
     VkSampler imageSampler_ = VK_NULL_HANDLE, depthSampler_ = VK_NULL_HANDLE;
+    std::array<VkRenderPass, kHalfColors.size()> halfPasses_{};
+    VkRenderPass halfDepthPass_ = VK_NULL_HANDLE;
     std::mutex mutex_;  // of what follows
     core::HandlePool<FwTargetId, core::Owned<Target>> targets_;
     std::atomic<bool> ready_{false};

@@ -252,6 +252,14 @@ void RetireQueue::push(uint64_t lastFrame, VkDescriptorPool pool) noexcept {
     add(one);
 }
 
+void RetireQueue::pushFramebuffer(uint64_t lastFrame, VkFramebuffer framebuffer) noexcept {
+    if (!framebuffer) return;
+    Retired one;
+    one.frameIndex = lastFrame;
+    one.framebuffer = framebuffer;
+    add(one);
+}
+
 void RetireQueue::collect(uint64_t completedFrame) noexcept {
     size_t kept = 0;
     for (Retired& one : queue_) {
@@ -261,6 +269,9 @@ void RetireQueue::collect(uint64_t completedFrame) noexcept {
         }
         deviceMemory_.destroy(one.buffer);
         deviceMemory_.destroy(one.image);
+        if (one.framebuffer)
+            device_.table.DestroyFramebuffer(device_.handle, one.framebuffer,
+                                             device_.allocationCallbacks);
         if (one.pool)
             device_.table.DestroyDescriptorPool(device_.handle, one.pool,
                                                 device_.allocationCallbacks);

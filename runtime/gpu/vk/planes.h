@@ -118,6 +118,7 @@ struct Retired {
     Buffer buffer;
     Image image;
     VkDescriptorPool pool = VK_NULL_HANDLE;
+    VkFramebuffer framebuffer = VK_NULL_HANDLE;
 };
 
 class RetireQueue {
@@ -135,6 +136,7 @@ class RetireQueue {
     void push(uint64_t lastFrame, Buffer& buffer) noexcept;
     void push(uint64_t lastFrame, Image& image) noexcept;
     void push(uint64_t lastFrame, VkDescriptorPool pool) noexcept;
+    void pushFramebuffer(uint64_t lastFrame, VkFramebuffer framebuffer) noexcept;
     void collect(uint64_t completedFrame) noexcept;
 
  private:

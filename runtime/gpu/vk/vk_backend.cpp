@@ -119,6 +119,14 @@ VkBackend::State::~State() {
         vk.DestroyDescriptorPool(device.handle, slot.lentPool, callbacks);
     }
     destroyFramebuffers();
+    for (HalfImages& half : halves) {
+        deviceMemory.destroy(half.color);
+        deviceMemory.destroy(half.depth);
+        vk.DestroyDescriptorPool(device.handle, half.colorSet.pool, callbacks);
+        vk.DestroyDescriptorPool(device.handle, half.depthSet.pool, callbacks);
+        vk.DestroyFramebuffer(device.handle, half.colorBuffer, callbacks);
+        vk.DestroyFramebuffer(device.handle, half.depthBuffer, callbacks);
+    }
     deviceMemory.destroy(views);
     dropOffscreen();
     vk.DestroyRenderPass(device.handle, own.clearPass, callbacks);

@@ -175,22 +175,30 @@ constexpr VkPipelineStageFlags kDepthStages =
 
 }  // namespace
 
-void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
-                                   const Target& target, const FwView& view,
-                                   const VkViewport& viewport, const Lent& lent) {
-    if ((!drawVertices && !showsEmitters()) || !lookTextures.live || !limits.looks.viewParams)
-        return;
-    const Table& vk = device.table;
-    const uint32_t viewOffset = pushView(slot, view, viewport);
-    refine.height = std::fabs(viewport.height);
-    look(view, refine.height, slot.frameIndex);
-    vk.CmdSetViewport(commands, 0, 1, &viewport);
+void VkBackend::State::setViewport(VkCommandBuffer commands,
+                                   const VkViewport& viewport) const noexcept {
+    device.table.CmdSetViewport(commands, 0, 1, &viewport);
     VkRect2D scissor{};
     const float left = std::max(viewport.x, 0.0f), top = std::max(viewport.y, 0.0f);
     scissor.offset = {int32_t(left), int32_t(top)};
-    scissor.extent = {uint32_t(std::max(viewport.x + viewport.width - left, 0.0f)),
-                      uint32_t(std::max(viewport.y + viewport.height - top, 0.0f))};
-    vk.CmdSetScissor(commands, 0, 1, &scissor);
+    // Whole pixels: half of an odd number of them ends in one.
+    scissor.extent = {uint32_t(std::ceil(std::max(viewport.x + viewport.width - left, 0.0f))),
+                      uint32_t(std::ceil(std::max(viewport.y + viewport.height - top, 0.0f)))};
+    device.table.CmdSetScissor(commands, 0, 1, &scissor);
+}
+
+void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
+                                   const Target& target, const FwView& view,
+                                   const VkViewport& viewport, const Lent& lent, DrawPart part,
+                                   const HalfImages* half) {
+    if (!showsAnything()) return;
+    const Table& vk = device.table;
+    const uint32_t viewOffset = pushView(slot, view, viewport);
+    if (part != DrawPart::half) {
+        refine.height = std::fabs(viewport.height);
+        look(view, refine.height, slot.frameIndex);
+    }
+    setViewport(commands, viewport);
     std::array<VolumeItem, kMaxVolumeFlames> items;
     std::array<SlicedVolume, kMaxVolumeFlames> sliced;
     VolumeOrder order;
@@ -204,9 +212,11 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                   {},
                   {fieldItems.data(), orderFields(fieldItems)},
                   turnsFaces(view, viewport)};
+    list.half = half != nullptr;
     if (target.key.flames && !volumes.empty()) {
+        const float share = part == DrawPart::over ? 0.5f : 1.0f;
         const VolumeScreen screen =
-            screenOf(target.key, {viewport.width, std::fabs(viewport.height)});
+            screenOf(target.key, {share * viewport.width, share * std::fabs(viewport.height)});
         noteScreen(view, screen, slot.frameIndex);
         const bool made = marchedFor(view, screen);
         if (made) {
@@ -242,6 +252,8 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         const DrawPass& pass = *drawPasses()[i];
         const bool surface = pass.vertexInput == VertexInput::mesh;
         if (!target.pipelines[i] || !drawStepDraws(step, list)) continue;
+        if (part != DrawPart::all && (pass.atHalf == AtHalf::soft) != (part == DrawPart::half))
+            continue;
         if ((crossing & kSwitchNoZPass) && &pass == &kZPass) continue;
         if (&pass == &kVolumePass) {
             for (const VolumeRun& run : list.volumeRuns)
@@ -254,6 +266,11 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             continue;
         }
         slot.timers.begin(device, commands, pass.name);
+        if (&pass == &kHalfCompositePass) {
+            recordHalfComposite(commands, target, *half, viewport, lent);
+            slot.timers.end(device, commands);
+            continue;
+        }
         if (&pass == &kFieldDrawPasses[0]) {
             recordFieldDraws(commands, target, i, list.fields, viewOffset, lent.depth);
             slot.timers.end(device, commands);
@@ -268,7 +285,8 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                                  usesView ? 1 : 0, &viewOffset);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
                                  &lookTextures.set.set, 0, nullptr);
-        if (&pass == &kBookFlamesPasses[0] || &pass == &kBookFlamesPasses[1])
+        if (&pass == &kBookFlamesPasses[0] || &pass == &kBookFlamesPasses[1] ||
+            &pass == &kHalfSparksPasses[1])
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 1,
                                      &books.set.set, 0, nullptr);
         if (lent.depth)
@@ -486,13 +504,16 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     if (!before) before = VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT;
     if (!after) after = VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT;
     vk.CmdPipelineBarrier(commands, before, ours, 0, 0, nullptr, 0, nullptr, count, in.data());
+    const VkViewport viewport{0, 0, float(images.width), float(images.height), 0, 1};
+    const HalfImages* half =
+        target.key.half ? s.recordHalf(slot, commands, target, view, viewport, lent) : nullptr;
     auto begin = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
     begin.renderPass = target.ownPass;
     begin.framebuffer = framebuffer;
     begin.renderArea.extent = {images.width, images.height};
     vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    const VkViewport viewport{0, 0, float(images.width), float(images.height), 0, 1};
-    s.recordDraws(slot, commands, target, view, viewport, lent);
+    s.recordDraws(slot, commands, target, view, viewport, lent,
+                  target.key.half ? DrawPart::over : DrawPart::all, half);
     vk.CmdEndRenderPass(commands);
     vk.CmdPipelineBarrier(commands, ours, after, 0, 0, nullptr, 0, nullptr, count, out.data());
     return true;

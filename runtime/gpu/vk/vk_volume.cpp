@@ -105,8 +105,10 @@ bool sameView(const FwView& a, const FwView& b) noexcept {
 }  // namespace
 
 VolumeScreen VkBackend::State::screenOf(const TargetKey& target, vec2 size) const noexcept {
-    return {size, target.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs, limits.volumeCell,
-            volumeSteps(), uint32_t(target.encoding)};
+    // Cells are so many pixels of the picture.
+    const uint32_t cell = target.half ? std::max(limits.volumeCell / 2, 1u) : limits.volumeCell;
+    return {size, target.depthMode == FW_DEPTH_NONE ? 1 : kVolumeSlabs, cell, volumeSteps(),
+            uint32_t(target.encoding)};
 }
 
 void VkBackend::State::noteScreen(const FwView& view, const VolumeScreen& screen,

@@ -223,6 +223,21 @@ struct KeptFramebuffer {
     bool dropped = false;    // destroyed once that frame is done
 };
 
+// Of half resolution, for targets with FW_TARGET_HALF_EFFECTS of one size and kind.
+struct HalfImages {
+    VkFormat format = VK_FORMAT_UNDEFINED;       // of colour
+    uint32_t width = 0, height = 0, tilesY = 0;  // texels; 0: none
+    Image color;  // premultiplied, encoded as its target: what is soft of a view
+    Image depth;  // the host's, and below it by tile whether it shows anything
+    ImageSet colorSet, depthSet;
+    VkFramebuffer colorBuffer = VK_NULL_HANDLE, depthBuffer = VK_NULL_HANDLE;
+    uint64_t lastFrame = 0;  // that used it
+    bool fresh = true;       // depth has no layout yet
+};
+// What a draw draws of a view: all; or by turns what is soft, at half resolution, and the rest with
+// that over it.
+enum class DrawPart : uint8_t { all, half, over };
+
 struct OwnDevice {  // command pool and offscreen images of the own-device mode
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -406,6 +421,8 @@ struct VkBackend::State {
     std::pmr::vector<PassTime> times;
     float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
     std::array<KeptFramebuffer, 16> framebuffers{};
+    static constexpr size_t kHalfSizes = 4;  // of targets that a world draws into by turns
+    std::array<HalfImages, kHalfSizes> halves{};
     OwnDevice own;
 
     // vk_backend.cpp
@@ -485,6 +502,9 @@ struct VkBackend::State {
     [[nodiscard]] bool showsEmitters() const noexcept {
         return emitterGroups > 0 || sparkSources > 0;
     }
+    [[nodiscard]] bool showsAnything() const noexcept {
+        return (drawVertices || showsEmitters()) && lookTextures.live && limits.looks.viewParams;
+    }
     // Books show all quads but sparks.
     [[nodiscard]] bool pagesAlone() const noexcept;
     void makeEmitterRoom(const EmitterUpdate& update, uint64_t last);
@@ -503,8 +523,11 @@ struct VkBackend::State {
     void recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
                            const DrawList& list, const VolumeRun& run, uint32_t viewOffset,
                            const Lent& lent);
+    // `half`: with what was drawn at half resolution, or null.
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                     const FwView& view, const VkViewport& viewport, const Lent& lent);
+                     const FwView& view, const VkViewport& viewport, const Lent& lent,
+                     DrawPart part = DrawPart::all, const HalfImages* half = nullptr);
+    void setViewport(VkCommandBuffer commands, const VkViewport& viewport) const noexcept;
     Lent lentFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,
                  VkImageView depth, VkImageLayout depthLayout);
     [[nodiscard]] bool turnsFaces(const FwView& view, const VkViewport& viewport) const noexcept;
@@ -514,6 +537,16 @@ struct VkBackend::State {
     // Of targets that are gone, and of `forget`; what the device may still use goes later.
     void dropFramebuffers(FwTargetId forget) noexcept;
     void destroyFramebuffers() noexcept;
+    // vk_half.cpp
+    // Outside any pass: what is soft of a view, in images of half resolution. Null: nothing is.
+    HalfImages* recordHalf(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
+                           const FwView& view, const VkViewport& viewport, const Lent& lent);
+    // Over the picture; a view was pushed for it.
+    void recordHalfComposite(VkCommandBuffer commands, const Target& target, const HalfImages& half,
+                             const VkViewport& viewport, const Lent& lent) noexcept;
+    HalfImages& halfFor(VkFormat format, uint32_t width, uint32_t height, uint64_t frame);
+    void makeHalf(HalfImages& half, VkFormat format, uint32_t width, uint32_t height);
+    void dropHalf(HalfImages& half) noexcept;  // once its last frame is done
     // vk_own.cpp
     void beginOwn();
     void submitOwn();

@@ -1,0 +1,43 @@
+#version 450
+// What was drawn at half resolution, over the picture: of the four texels around a pixel those count
+// that were drawn against a depth like its own, so edges of what stands in flames and smoke are those
+// of full resolution. Premultiplied, as it was encoded and blended there: `over` is associative.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/half.h"
+
+layout(set = 1, binding = 0) uniform sampler2D halfColor;
+layout(set = 2, binding = 0) uniform sampler2D halfDepth;
+layout(push_constant) uniform Push { HalfPush push; };
+layout(location = 0) out vec4 outColor;
+
+#include "volume/scene_depth.glsl"
+
+void main() {
+    vec2 at = 0.5 * (gl_FragCoord.xy - vec2(push.left, push.top)) - 0.5;
+    ivec2 first = ivec2(floor(at)), last = ivec2(push.texelsX, push.texelsY) - 1;
+    vec2 part = at - vec2(first);
+    float away = depthOfScene(push.clip);
+    vec4 four[4];
+    float there[4], shares[4];
+    vec4 least = vec4(1e30), greatest = vec4(0.0);
+    FW_UNROLL
+    for (int i = 0; i < 4; ++i) {
+        ivec2 step = ivec2(i & 1, i >> 1), texel = clamp(first + step, ivec2(0), last);
+        vec2 share = mix(1.0 - part, part, vec2(step));
+        shares[i] = share.x * share.y;
+        there[i] = metresOf(push.clip, texelFetch(halfDepth, texel, 0).r);
+        four[i] = texelFetch(halfColor, texel, 0);
+        least = min(least, four[i]);
+        greatest = max(greatest, four[i]);
+    }
+    float alike = halfAlike(dot(greatest, vec4(1.0)), dot(least, vec4(1.0)));
+    vec4 color = vec4(0.0);
+    float sum = 0.0;
+    FW_UNROLL
+    for (int i = 0; i < 4; ++i) {
+        float weight = halfWeight(shares[i], away, there[i], alike);
+        color += weight * four[i];
+        sum += weight;
+    }
+    outColor = color / sum;
+}
