@@ -97,7 +97,7 @@ typedef enum FwTargetFlags {
                                 behind it, in frames that lend FwVulkanFrame::sampledColor */
     FW_TARGET_HALF_EFFECTS = 16, /* with FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED alone: flames, smoke, particle fields
                                 and volumetric fires are drawn at half resolution and laid over the picture at once,
-                                along the edges of its depth. About a quarter of their pixels' time, and softer; sparks
+                                along the edges of its depth. A third to two thirds of their time, and softer; sparks
                                 stay as fine as the picture, and are seen through smoke before them. 2 bytes of device
                                 memory a pixel, 3 of a float target, per world and size of target, from the first
                                 frame on that has any */
