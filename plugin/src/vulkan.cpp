@@ -42,6 +42,7 @@ void fillViewParams(const gpu::ViewInput& input, gpu::ViewParams& out) {
     inputs.lightCount = input.lightCount;
     inputs.flameCapacity = input.flameCapacity;
     inputs.seed = input.seed;
+    inputs.lastLight = input.lastLight;
     inputs.quadShare = input.quadShare;
     std::copy_n(input.up, 3, inputs.up);
     std::copy_n(input.wind, 3, inputs.wind);

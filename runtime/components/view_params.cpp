@@ -52,7 +52,7 @@ gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noe
     p.lightCount = inputs.lightCount;
     p.flameCapacity = std::min(inputs.flameCapacity, gpu::kFlameCapacity);
     p.seed = inputs.seed;
-    p.quads = vec4(inputs.quadShare, 1.0f / std::sqrt(inputs.quadShare), 0, 0);
+    p.quads = vec4(inputs.quadShare, 1.0f / std::sqrt(inputs.quadShare), inputs.lastLight, 0);
     p.viewport =
         vec4(inputs.viewport[0], inputs.viewport[1], inputs.viewport[2], inputs.viewport[3]);
     return p;

@@ -12,6 +12,7 @@ struct ViewInputs {          // what the host's view does not know
     uint32_t now = 0;        // tick after the last step
     float tickFraction = 0;  // [0, 1) into the next
     uint32_t lightCount = 16;
+    float lastLight = 1;  // (0, 1], share of its own fires that the last of them shines for
     uint32_t flameCapacity = gpu::kFlameCapacity;
     uint32_t seed = 1;
     float quadShare = 1;  // (0, 1]

@@ -73,6 +73,24 @@ vec3 cellPlace(uint slot) {
     return (vec3(cell) + within) * side;
 }
 
+vec3 placeOfLight(uint light) {
+    return vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u], lightPlace[light * 4u + 2u]);
+}
+
+// Power, release and area of a cell, or a part of them, to a light.
+void give(uint slot, uint light, uvec3 what) {
+    atomicAdd(lightPower[light], what.x);
+    atomicAdd(lightRelease[light], what.y);
+    float side = lightPlace[light * 4u + 3u];
+    vec3 d = cellPlace(slot) - placeOfLight(light);
+    if (dot(d, d) > 36.0 * side * side) return;  // it shines for it, but is not drawn to it
+    uint weight = max(what.x >> 4u, 1u);
+    ivec3 offset = ivec3(d / side * 64.0) * int(min(weight, 100000u));
+    atomicAdd(lightNear[light], weight);
+    atomicAdd(lightArea[light], what.z);
+    for (uint k = 0u; k < 3u; ++k) atomicAdd(lightOffset[light * 3u + k], offset[k]);
+}
+
 void main() {
     uint me = gl_LocalInvocationID.x;
     uint count = counters[kRowBurn + push.burnParity].runCount;
@@ -159,31 +177,28 @@ void main() {
         barrier();
     }
 
-    // Every cell gives its power to the nearest light.
+    // Every cell gives its power to the nearest light; a last one that comes or goes has a share of
+    // it, and the next nearest has the rest.
+    float lastShare = found == wanted && found > 1u ? view.quads.z : 1.0;
     for (uint i = me; i < competing; i += 128u) {
-        vec3 here = cellPlace(candidate[i]);
-        uint nearest = 0u;
-        float least = 1e30;
+        uint slot = candidate[i];
+        uint nearest = 0u, next = 0u;
+        float least = 1e30, leastNext = 1e30;
         for (uint light = 0u; light < found; ++light) {
-            vec3 d = here - vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u],
-                                 lightPlace[light * 4u + 2u]);
+            vec3 d = cellPlace(slot) - placeOfLight(light);
             float d2 = dot(d, d);
-            if (d2 < least) {
-                least = d2;
-                nearest = light;
-            }
+            bool last = light + 1u == found;
+            nearest = d2 < least ? light : nearest;
+            least = min(least, d2);
+            next = d2 < leastNext && !last ? light : next;
+            leastNext = last ? leastNext : min(leastNext, d2);
         }
-        atomicAdd(lightPower[nearest], cells[cellWord(candidate[i], 1u)]);
-        atomicAdd(lightRelease[nearest], cells[cellWord(candidate[i], 11u)]);
-        float side = lightPlace[nearest * 4u + 3u];
-        if (least > 36.0 * side * side) continue;  // it shines for it, but is not drawn to it
-        uint weight = max(cells[cellWord(candidate[i], 1u)] >> 4u, 1u);
-        vec3 d = here - vec3(lightPlace[nearest * 4u], lightPlace[nearest * 4u + 1u],
-                             lightPlace[nearest * 4u + 2u]);
-        ivec3 offset = ivec3(d / side * 64.0) * int(min(weight, 100000u));
-        atomicAdd(lightNear[nearest], weight);
-        atomicAdd(lightArea[nearest], cells[cellWord(candidate[i], 5u)]);
-        for (uint k = 0u; k < 3u; ++k) atomicAdd(lightOffset[nearest * 3u + k], offset[k]);
+        uvec3 all = uvec3(cells[cellWord(slot, 1u)], cells[cellWord(slot, 11u)],
+                          cells[cellWord(slot, 5u)]);
+        float share = nearest + 1u == found ? lastShare : 1.0;
+        uvec3 own = share < 1.0 ? min(uvec3(vec3(all) * share), all) : all;
+        give(slot, nearest, own);
+        if (share < 1.0) give(slot, next, all - own);
     }
     barrier();
     // There may have been more.
@@ -206,8 +221,7 @@ void main() {
             uint homeless = light == 0u ? homelessPower : 0u;
             float power = float(lightPower[light] + homeless);
             float len = flameLength(min(weight * 16.0, power), area);
-            vec3 at = vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u],
-                           lightPlace[light * 4u + 2u]) + mean + view.up.xyz * (0.25 * len);
+            vec3 at = placeOfLight(light) + mean + view.up.xyz * (0.25 * len);
             // Sines that never meet again: no lookup, no pop. What shines from afar is of many fires,
             // and steady.
             float t = view.ambientSky.w, p = 6.2832 * unit(key);

@@ -121,7 +121,8 @@ struct ViewParams {          // uniform block, one per view
     uint flameCapacity;      // most flame quads
     uint seed;
     vec4 viewport;           // px: x, y, width, height
-    vec4 quads;              // x: share that shows of flames and particles; y: how much wider that is; zw: 0
+    vec4 quads;              // x: share that shows of flames and particles; y: how much wider that is;
+                             // z: share of its own fires that the last light shines for
 };
 FW_SHARED_SIZE(ViewParams, 240)
 

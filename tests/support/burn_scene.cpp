@@ -326,6 +326,7 @@ gpu::LookSources testLooks() {
         std::copy_n(input.viewport, 4, inputs.viewport);
         inputs.now = input.now;
         inputs.lightCount = input.lightCount;
+        inputs.lastLight = input.lastLight;
         inputs.flameCapacity = input.flameCapacity;
         inputs.seed = input.seed;
         inputs.paceFactor = input.paceFactor;

@@ -25,6 +25,7 @@ struct ViewInput {
     float up[3] = {0, 1, 0};
     float paceFactor = 1;
     uint32_t lightCount = 0, flameCapacity = 0, seed = 0;
+    float lastLight = 1;  // share of its own fires that the last light shines for
     float quadShare = 1;  // of flames' quads and particles that show
 };
 

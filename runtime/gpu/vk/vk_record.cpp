@@ -12,6 +12,7 @@ namespace fw::gpu::vk {
 namespace {
 
 constexpr float kQuadsTurn = 1.0f / 32;  // a frame: none comes or goes at once
+constexpr float kLightsTurn = 1.0f / 16;
 
 void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingUpload& upload) {
     auto barrier = typed<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
@@ -375,7 +376,8 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
         input.up[i] = limits.up[i];
     }
     input.paceFactor = limits.paceFactor;
-    input.lightCount = lightCount;
+    input.lightCount = uint32_t(std::ceil(lightCount));
+    input.lastLight = lightCount > 0 ? lightCount - float(input.lightCount - 1) : 1;
     input.flameCapacity = std::min(limits.maxFlames, kFlameCapacity);
     input.quadShare = quadShare;
     input.seed = limits.seed;
@@ -397,9 +399,6 @@ void VkBackend::State::run(const FramePlan& plan) {
     softSteps =
         uint32_t(std::min<uint64_t>(softNow > softStep ? softNow - softStep : 0, kMostSoftSteps));
     softStep = softNow;
-    const uint32_t lightsWanted = lightsOf(plan.detail, limits.maxLights);
-    lightCount =
-        lightCount > lightsWanted ? lightCount - 1 : std::min(lightCount + 1, lightsWanted);
     const FrameNeeds needs = needsOf(*this, plan);
     open.planFrame = plan.frameIndex;
     open.endTick = plan.endTick;
@@ -412,6 +411,9 @@ void VkBackend::State::run(const FramePlan& plan) {
                       : std::min(march.steps + kStepsTurn, detail.volumeSteps);
     quadShare = quadShare > detail.quads ? std::max(quadShare - kQuadsTurn, detail.quads)
                                          : std::min(quadShare + kQuadsTurn, detail.quads);
+    const auto lights = float(lightsOf(detail, limits.maxLights));
+    lightCount = lightCount > lights ? std::max(lightCount - kLightsTurn, lights)
+                                     : std::min(lightCount + kLightsTurn, lights);
     crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
     if (!needs.work) {
         open.ran = true;

@@ -317,10 +317,10 @@ struct VkBackend::State {
     uint32_t links = 0, blockers = 0;      // of the last remote update
     float wind[3] = {};
     float tickFraction = 0;
-    Detail detail;                           // as of the frame's plan
-    float quadShare = 1;                     // on its way to detail's
-    uint32_t lightCount = limits.maxLights;  // the same, one a frame
-    uint32_t crossing = 0;                   // of kSwitchCrossing and kSwitchNoZPass
+    Detail detail;                               // as of the frame's plan
+    float quadShare = 1;                         // on its way to detail's
+    float lightCount = float(limits.maxLights);  // the same; its fraction is the last one's share
+    uint32_t crossing = 0;                       // of kSwitchCrossing and kSwitchNoZPass
     uint64_t softStep = 0;   // number of the step that sheets and springs have come to
     uint32_t softSteps = 0;  // that they take in the frame
     uint32_t softWay = 0;    // which arms the next one minds
