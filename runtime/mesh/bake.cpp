@@ -103,6 +103,7 @@ BurnDomain bake(const BakeInput& input, std::pmr::memory_resource* memory) {
     measureShapes(grid, domain, memory);
     buildTiles(grid, domain, memory);
     buildTileBounds(domain);
+    linkParts(domain, memory);
     bakeThickness(surface, grid, domain.thickness, memory);
     bakeSlowness(input, grid, surface.low, surface.extent, domain.slowness);
     buildDrawn(input, surface, domain, memory);

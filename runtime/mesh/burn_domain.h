@@ -81,6 +81,7 @@ struct BurnDomain {
           readers(memory),
           tiles(memory),
           tileBounds(memory),
+          partLinks(memory),
           vertices(memory),
           sources(memory),
           indices(memory) {}
@@ -106,6 +107,8 @@ struct BurnDomain {
     std::pmr::vector<uint32_t> readers;       // tiles, see TileStatic
     std::pmr::vector<TileStatic> tiles;       // tilesX * tilesY
     std::pmr::vector<TileBounds> tileBounds;  // per tile, for queries; not stored when cooked
+    std::pmr::vector<uint32_t> partLinks;     // 4 per tile, as gpu::RemoteTile::parts; not stored
+                                              // when cooked. Empty: no part is near another one
     std::pmr::vector<RenderVertex> vertices;  // what is drawn, split at chart borders
     std::pmr::vector<uint32_t> sources;       // per drawn vertex: the host's, for skinning
     std::pmr::vector<uint32_t> indices;       // 3 per triangle

@@ -312,6 +312,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     checkTiles(domain);
     checkDrawn(domain);
     buildTileBounds(domain);
+    linkParts(domain, memory);
     return domain;
 }
 

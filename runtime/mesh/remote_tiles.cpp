@@ -135,9 +135,14 @@ uint32_t remoteTiles(const BurnDomain& domain, std::pmr::vector<gpu::RemoteTile>
             const auto most =
                 uint32_t(std::max_element(std::begin(sum.materials), std::end(sum.materials)) -
                          std::begin(sum.materials));
-            made = {middle[0] | middle[1] << 16, middle[2] | number << 16 | most << 24,
-                    packSum(sum.normal), sum.texels};
+            made.xy = middle[0] | middle[1] << 16;
+            made.z = middle[2] | number << 16 | most << 24;
+            made.normal = packSum(sum.normal);
+            made.texels = sum.texels;
         }
+        made.parts = gpu::uvec4(kNone);
+        for (int block = 0; block < 4 && !domain.partLinks.empty(); ++block)
+            made.parts[block] = domain.partLinks[size_t(tile) * 4 + size_t(block)];
         out[tile] = made;
     }
     return std::max(cells, 1u);

@@ -113,6 +113,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
         for (size_t i = 0; i + 2 < out.indices.size(); i += 3)
             std::swap(out.indices[i + 1], out.indices[i + 2]);
     buildTileBounds(out);
+    linkParts(out, memory);
     return out;
 }
 

@@ -84,6 +84,8 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
                 std::pmr::memory_resource* memory);
 // Bounds of every tile's real texels, for queries.
 void buildTileBounds(BurnDomain& domain);
+// Where parts that share no edge come near each other: a roof on its walls, a cart's wheel.
+void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory);
 uint32_t packNormal(glm::dvec3 normal);  // signed 11:11:10; 1023, 1023, 511 are 1
 
 }  // namespace fw::mesh

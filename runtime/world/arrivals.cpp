@@ -78,6 +78,7 @@ void World::takeForecast(Object& object, const gpu::BurnMap& map,
     input.window = records.timing.window;
     input.state = map.ticks;
     input.now = readback.endTick;
+    input.parts = (remote_.flags & FW_WORLD_CONTACT) != 0;
     mesh::beginArrivals(forecast.arrivals, input);  // its room is there
     forecast.told = true;
     forecast.changes = forecast.pendingChanges;

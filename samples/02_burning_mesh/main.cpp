@@ -118,6 +118,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
                 std::clamp(subject.size() / (2.2f * rate * std::max(4.0f, seconds)), 1.0f, 400.0f);
         }
         FwWorldDef worldDef = fwDefaultWorldDef();
+        worldDef.flags = FW_WORLD_CONTACT;  // whatever it consists of burns down as one
         worldDef.paceFactor = pace;
         worldDef.seed = options.seed;
         worldDef.maxStepsPerFrame = 64;

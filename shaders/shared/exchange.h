@@ -69,8 +69,11 @@ struct RemoteTile {    // one tile of a mesh, as a place that gives and receives
     uint z;            // z | source cell << 16 | material << 24
     uint normal;       // their mean, signed 11:11:10
     uint texels;       // real ones; 0: the tile is empty
+    uvec4 parts;       // of each of its blocks, of 4 x 4 texels: where fire leaves it for another part of the mesh,
+                       // and to which texel; see partFrom. kNoneTexel: none is near
 };
-FW_SHARED_SIZE(RemoteTile, 16)
+FW_SHARED_SIZE(RemoteTile, 32)
+FW_SHARED_CONST uint kPartTexels = 1u << 28u;  // that such a link may lead to
 
 struct FireSource {    // what burns in one cell of an object
     uint power;        // 1/16 W, summed by `cells`
@@ -439,6 +442,26 @@ FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, u
     uint arrives = begins + delay;
     if (arrives > now || !flames(t, arrives, flameTicks)) return kNever;
     return arrives + kExchangeTicks < now ? now : arrives;
+}
+
+// A link between two parts of a mesh, of block `block` of a tile: lane that fire leaves from. It leads to
+// `link` % kPartTexels.
+FW_SHARED_FN uint partFrom(uint link, uint block) {
+    uint lane = link >> 28u;
+    return ((block >> 1u) * 4u + (lane >> 2u)) * 8u + (block & 1u) * 4u + (lane & 3u);
+}
+// Ticks that fire takes there: those of an ordinary link of that length, in position units, in still air.
+FW_SHARED_FN uint partDelay(FW_IN(BurnMaterial) to, ivec3 gap) {
+    return mulShift(to.sigma0, isqrtNear(squareSum(gap)) * 8u, 22u);
+}
+// Whether it is there. t: state of the texel that it leaves, lit before the last exchange, as of a contact.
+FW_SHARED_FN bool partCrossed(uint t, uint flameTicks, uint delay, uint now) {
+    return isSource(t) && t + kExchangeTicks < now && delay <= now - t && flames(t, now, flameTicks);
+}
+// The exchange at which it is found there.
+FW_SHARED_FN uint partArrives(uint t, uint delay) {
+    uint arrives = mostOf(t + delay, t + kExchangeTicks + 1u);
+    return (arrives + kExchangeTicks - 1u) / kExchangeTicks * kExchangeTicks;
 }
 
 // ---- embers

@@ -39,6 +39,68 @@ TEST(AbiSpread, ContactIsTheOnlyWayAcrossAGap) {
     }
 }
 
+// Two sheets of one mesh, side by side.
+FwMeshId makePair(Panels& p, float gap) {
+    Sheet both(0.4f, 0.2f);
+    const Sheet one = both;
+    for (size_t i = 0; i < one.positions.size() / 3; ++i) {
+        both.positions.insert(both.positions.end(),
+                              {one.positions[3 * i] + 0.4f + gap, one.positions[3 * i + 1],
+                               one.positions[3 * i + 2]});
+        both.uvs.insert(both.uvs.end(), {one.uvs[2 * i], one.uvs[2 * i + 1] + 1});
+    }
+    for (const uint32_t index : one.indices) both.indices.push_back(index + 4);
+    const FwMeshDef def = both.def(64);
+    FwMeshId mesh{};
+    EXPECT_EQ(FW_OK, fwWorld_CreateMesh(p.world, &def, &mesh)) << lastMessage(p.world);
+    return mesh;
+}
+
+// s until fire is there; < 0: never.
+double arrivalAt(Panels& p, float x) {
+    const float point[3] = {x, 0, 0.1f};
+    FwQueryId query{};
+    EXPECT_EQ(FW_OK, fwWorld_RequestArrival(p.world, p.ids[0], point, &query));
+    FwArrivalState state{};
+    state.structSize = sizeof state;
+    for (int i = 0; i < 200; ++i) {
+        if (fwWorld_FetchArrival(p.world, query, &state) == FW_OK) break;
+        EXPECT_EQ(FW_OK, fwWorld_Step(p.world, 0));
+    }
+    return state.kind == FW_ARRIVAL_NEVER ? -1 : double(state.seconds);
+}
+
+TEST(AbiSpread, PartsOfOneMeshLightEachOtherByContact) {
+    for (const uint32_t flags : {0u, uint32_t(FW_WORLD_CONTACT)})
+        for (const float gap : {0.002f, 0.01f, 0.06f}) {
+            // NO_SPREAD is about others, and no jump of it may fail.
+            FwWorldDef world = worldDef(flags);
+            world.spreadChance = 0;
+            Panels p(world);
+            FwBurnableMeshDef def = p.def(0, 0, 0);
+            def.mesh = makePair(p, gap);
+            def.flags |= FW_BURNABLE_NO_SPREAD;
+            p.add(def);
+            p.ignite(p.ids[0], 0, 0, 0.1f);
+            p.run(1);
+            const bool crosses = flags != 0 && gap < 0.05f;
+            const double told = arrivalAt(p, 0.6f);
+            const uint32_t all = p.state(p.ids[0]).texels;
+            p.run(16);
+            EXPECT_GT(all / 2, p.lit(0));
+            p.run(24);
+            EXPECT_NEAR(crosses ? all : all / 2, p.lit(0), crosses ? 0 : all / 40) << flags << gap;
+            EXPECT_EQ(0u, p.heard(FW_EVENT_SPREAD_TO));
+            if (!crosses) {
+                EXPECT_GT(0, told);
+                continue;
+            }
+            // As far as it is, a texel less, and an eighth of a second at the gap.
+            EXPECT_NEAR((0.6 + double(gap)) / 0.02 - 1, told, 1.2) << gap;
+            EXPECT_NEAR(told - 40, arrivalAt(p, 0.6f), 0.04) << gap;
+        }
+}
+
 TEST(AbiSpread, AGapThatIsTooWideIsNotCrossed) {
     Panels p(worldDef(FW_WORLD_CONTACT));
     p.add(0, 0, 0);

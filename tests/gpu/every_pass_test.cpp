@@ -33,7 +33,8 @@ class EveryPass : public GpuTest {
     }
     static BurnScene makeScene(bool published) {
         BurnScene scene;
-        const Mesh box = makeCube(0.5, 2, false, true);
+        Mesh box = makeCube(0.5, 2, false, true);
+        addTag(box);
         mesh::BakeInput input = box.input(24, 256);
         input.trustUvs = true;
         scene.domains.push_back(mesh::bake(input, std::pmr::get_default_resource()));
@@ -79,6 +80,19 @@ class EveryPass : public GpuTest {
         scene.objects.push_back(object);
         if (!published) scene.addHeat();
         return scene;
+    }
+
+    // A part of its own, a centimetre off a face.
+    static void addTag(Mesh& box) {
+        float right = 0;
+        for (size_t i = 0; i < box.uvs.size(); i += 2) right = std::max(right, box.uvs[i]);
+        const uint32_t base = box.vertexCount();
+        for (uint32_t i = 0; i < 4; ++i) {
+            const double u = 0.1 * (i & 1), v = 0.1 * (i >> 1);
+            box.addVertex(u, v, 0.26, double(right) + 0.1 + u, v);
+        }
+        box.addTriangle(base, base + 1, base + 2);
+        box.addTriangle(base + 2, base + 1, base + 3);
     }
 
     void makeRig(uint32_t shortBinding, bool published) {

@@ -320,6 +320,80 @@ TEST(Exchange, TilesKnowTheirMiddlesNormalsAndCells) {
     EXPECT_GT(seen, 10u);
 }
 
+// Two sheets of one mesh that face each other, and a third one far away.
+Mesh facing(double gap) {
+    Mesh mesh = makePlane(0.4, 0.3, 0, 1, 0, 3);
+    const auto add = [&](double z, double v) {
+        const uint32_t base = mesh.vertexCount();
+        const Mesh more = makePlane(0.4, 0.3, 0, 1, 0, 3);
+        for (size_t i = 0; i < more.vertexCount(); ++i)
+            mesh.addVertex(more.positions[3 * i], more.positions[3 * i + 1], z, more.uvs[2 * i],
+                           more.uvs[2 * i + 1] + v);
+        for (const uint32_t index : more.indices) mesh.indices.push_back(base + index);
+    };
+    add(gap, 0.5);
+    add(2, 1);
+    return mesh;
+}
+
+TEST(Exchange, PartsOfAMeshKnowWhereTheyAreNear) {
+    for (const double density : {24.0, 64.0, 200.0})
+        for (const double gap : {0.001, 0.02, 0.045, 0.06}) {
+            const Placed placed(facing(gap), density, {});
+            const mesh::BurnDomain& domain = placed.domain;
+            if (gap > 0.05) {
+                EXPECT_TRUE(domain.partLinks.empty()) << density;
+                continue;
+            }
+            ASSERT_EQ(domain.tileCount() * 4, domain.partLinks.size()) << density << " " << gap;
+            uint32_t links = 0, blocks = 0;
+            for (uint32_t at = 0; at < domain.partLinks.size(); ++at) {
+                const uint32_t tile = at / 4, block = at % 4;
+                const uint32_t corner =
+                    tile / domain.tilesX * 8 * domain.width + tile % domain.tilesX * 8;
+                bool near = false;
+                for (uint32_t lane = 0; lane < 16; ++lane) {
+                    const uint32_t texel = corner + (block / 2 * 4 + lane / 4) * domain.width +
+                                           block % 2 * 4 + lane % 4;
+                    near = near || (domain.real(texel) && placed.real({}, texel).z < 1000);
+                }
+                blocks += near ? 1 : 0;
+                const uint32_t link = domain.partLinks[at];
+                if (link == mesh::kNone) continue;
+                ++links;
+                const uint32_t lane = gpu::partFrom(link, block);
+                const uint32_t from = corner + lane / 8 * domain.width + lane % 8;
+                const uint32_t to = link % gpu::kPartTexels;
+                ASSERT_TRUE(domain.real(from) && domain.real(to));
+                EXPECT_EQ(block, lane % 8 / 4 + lane / 32 * 2);
+                const glm::dvec3 p = placed.real({}, from) / 1000.0,
+                                 q = placed.real({}, to) / 1000.0;
+                EXPECT_NEAR(gap, std::fabs(p.z - q.z), 2e-3);
+                EXPECT_LT(glm::length(p - q), gap + 0.5 / density + 2e-3) << density << " " << gap;
+            }
+            EXPECT_EQ(blocks, links) << density << " " << gap;  // every one of both sheets
+            EXPECT_GT(links, 15u);
+        }
+    // One part alone has nobody to light, however near its own sides are.
+    EXPECT_TRUE(Placed(makeCube(0.03, 2), 200, {}).domain.partLinks.empty());
+}
+
+TEST(Exchange, FireIsPastAGapOnceAnOrdinaryLinkWouldBe) {
+    const uint32_t now = 100 * gpu::kExchangeTicks;
+    EXPECT_FALSE(gpu::partCrossed(gpu::kNever, 9999, 10, now));
+    EXPECT_FALSE(gpu::partCrossed(now - gpu::kExchangeTicks, 9999, 10, now));  // lit too lately
+    EXPECT_TRUE(gpu::partCrossed(now - gpu::kExchangeTicks - 1, 9999, 10, now));
+    EXPECT_FALSE(gpu::partCrossed(now - 2000, 9999, 2001, now));
+    EXPECT_TRUE(gpu::partCrossed(now - 2000, 9999, 2000, now));
+    EXPECT_FALSE(gpu::partCrossed(now - 2000, 1999, 2000, now));  // out by then
+    for (const uint32_t delay : {0u, 1u, 511u, 512u, 513u, 5000u})
+        for (uint32_t lit = now; lit < now + 1024; lit += 37) {
+            uint32_t at = now;
+            while (!gpu::partCrossed(lit, 99999, delay, at)) at += gpu::kExchangeTicks;
+            EXPECT_EQ(at, gpu::partArrives(lit, delay)) << lit - now << " " << delay;
+        }
+}
+
 TEST(Exchange, ContactsAreNearestTexelsWithinTheGap) {
     std::mt19937 random(11);
     for (const float gap : {0.0f, 0.02f, 0.045f, 0.06f}) {

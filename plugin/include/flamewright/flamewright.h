@@ -172,7 +172,8 @@ FW_API uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRo
 typedef enum FwWorldFlags { /* how fire reaches other objects; none of them: it does not */
     FW_WORLD_RADIATION = 1, /* flames heat what they shine on until it catches */
     FW_WORLD_PLUME = 2,     /* hot gas heats what is above */
-    FW_WORLD_CONTACT = 4,   /* flames lick across gaps of up to 5 cm */
+    FW_WORLD_CONTACT = 4,   /* flames lick across gaps of up to 5 cm: to other objects, and from part to part of
+                               a mesh whose parts share no edge (a roof on its walls, a cart's wheels) */
     FW_WORLD_EMBERS = 8,    /* burning bits fly downwind and may light what they land on */
     /* For every object that is created while they are set, as if it had the flag of that name. */
     FW_WORLD_NO_SPREAD = 16,

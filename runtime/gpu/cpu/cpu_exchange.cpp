@@ -48,6 +48,7 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
     if (rules.warms != 0) warmAll(rules);
     askThen(rules.tilesMost, rules.now, [&] {
         if ((rules.flags & kRemoteContact) != 0) contacts(rules);
+        if ((rules.flags & kRemoteContact) != 0) parts(rules);
         if ((rules.flags & kRemoteEmbers) != 0) embers(rules);
     });
 }
@@ -254,6 +255,32 @@ void CpuBackend::State::contacts(const ExchangePush& rules) noexcept {
             (objects[slot]->remote.flags & kRemoteLive) == 0)
             continue;
         light(slot, texel, best, by, rules.now);
+    }
+}
+
+void CpuBackend::State::parts(const ExchangePush& rules) noexcept {
+    for (const BurnTile& burning : burnTiles) {
+        const CpuObject& object = *objects[burning.object];
+        if ((object.remote.flags & kRemoteLive) == 0 || object.domain->partLinks.empty()) continue;
+        const uvec4 links = remoteTiles[object.mesh][burning.tile].parts;
+        const uint32_t corner = burning.tile / object.domain->tilesX * 8 * object.domain->width +
+                                burning.tile % object.domain->tilesX * 8;
+        for (uint32_t block = 0; block < 4; ++block) {
+            const uint32_t link = links[int(block)];
+            if (link == kNoneTexel) continue;
+            const uint32_t lane = partFrom(link, block), to = link % kPartTexels;
+            const uint32_t from = corner + lane / 8 * object.domain->width + lane % 8;
+            const mesh::TexelPosition &a = object.domain->texels[from],
+                                      &b = object.domain->texels[to];
+            const BurnMaterial& its = object.materials[a.materialFlags & (kMaterialsPerObject - 1)];
+            const BurnMaterial& others =
+                object.materials[b.materialFlags & (kMaterialsPerObject - 1)];
+            const uint32_t delay =
+                partDelay(others, ivec3(int(b.x) - a.x, int(b.y) - a.y, int(b.z) - a.z));
+            if ((others.flags & 1) != 0 &&
+                partCrossed(object.state[from], its.flameTicks, delay, rules.now))
+                light(burning.object, to, rules.now, 0, rules.now);
+        }
     }
 }
 

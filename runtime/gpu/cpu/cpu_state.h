@@ -141,6 +141,7 @@ struct CpuBackend::State {
     void gatherSources(uint32_t slot, const ExchangePush& rules) noexcept;
     void warmTile(uint32_t slot, uint32_t local, const ExchangePush& rules) noexcept;
     void contacts(const ExchangePush& rules) noexcept;
+    void parts(const ExchangePush& rules) noexcept;
     void embers(const ExchangePush& rules) noexcept;
     bool light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by, uint32_t now) noexcept;
     uint32_t landsOn(const ivec3& at, uint32_t axis, int& top) const noexcept;

@@ -15,26 +15,34 @@ constexpr uint32_t kMaxGroups = 65535;  // of a dispatch at the floor; shaders s
 constexpr uint64_t kRowBytes = sizeof(IterationCounters);
 constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
 
-constexpr const ComputePass* kComputePasses[] = {
-    &kResetPass,       &kRestorePass,       &kEventsPass,
-    &kHeatPass,        &kWakePass,          &kSchedulePass,
-    &kGatherPass,      &kArrivalPass,       &kArrivalRimPass,
-    &kGrantPass,       &kCommitPass,        &kPublishedPass,
-    &kReduceClearPass, &kReduceFrontPass,   &kReducePass,
-    &kFireCellsPass,   &kFireSourcesPass,   &kReceiversPass,
-    &kExchangePass,    &kContactsPass,      &kEmbersPass,
-    &kPredictAnewPass, &kPredictGatherPass, &kPredictPass,
-    &kPredictRimPass,  &kSupportPass,       &kProbePass,
-    &kLightsPass,      &kFlameQuadsPass,    &kFlameSortPass,
-    &kRefineHeatPass,  &kRefineLevelsPass,  &kRefineScanPass,
-    &kRefineEmitPass,  &kRefinePlacePass,   &kRecedePass,
-    &kTiesPass,        &kSoftPass,          &kSpringsPass,
-    &kDrapePass,       &kInnerPass,         &kSkinPass,
-    &kSootPass,        &kRefineCutPass,     &kRefinePublishedPass,
-    &kVolumeProbePass, &kVolumeMarchPass,   &kVolumeSmokePass,
-    &kParticlesPass,   &kParticleQuadsPass, &kSparksPass,
-    &kFieldPass,       &kFieldMaskPass,     &kFieldShowPass,
-    &kRoomsPass};
+constexpr const ComputePass* kComputePasses[] = {&kResetPass,         &kRestorePass,
+                                                 &kEventsPass,        &kHeatPass,
+                                                 &kWakePass,          &kSchedulePass,
+                                                 &kGatherPass,        &kArrivalPass,
+                                                 &kArrivalRimPass,    &kGrantPass,
+                                                 &kCommitPass,        &kPublishedPass,
+                                                 &kReduceClearPass,   &kReduceFrontPass,
+                                                 &kReducePass,        &kFireCellsPass,
+                                                 &kFireSourcesPass,   &kReceiversPass,
+                                                 &kExchangePass,      &kContactsPass,
+                                                 &kPartsPass,         &kEmbersPass,
+                                                 &kPredictAnewPass,   &kPredictGatherPass,
+                                                 &kPredictPass,       &kPredictRimPass,
+                                                 &kSupportPass,       &kProbePass,
+                                                 &kLightsPass,        &kFlameQuadsPass,
+                                                 &kFlameSortPass,     &kRefineHeatPass,
+                                                 &kRefineLevelsPass,  &kRefineScanPass,
+                                                 &kRefineEmitPass,    &kRefinePlacePass,
+                                                 &kRecedePass,        &kTiesPass,
+                                                 &kSoftPass,          &kSpringsPass,
+                                                 &kDrapePass,         &kInnerPass,
+                                                 &kSkinPass,          &kSootPass,
+                                                 &kRefineCutPass,     &kRefinePublishedPass,
+                                                 &kVolumeProbePass,   &kVolumeMarchPass,
+                                                 &kVolumeSmokePass,   &kParticlesPass,
+                                                 &kParticleQuadsPass, &kSparksPass,
+                                                 &kFieldPass,         &kFieldMaskPass,
+                                                 &kFieldShowPass,     &kRoomsPass};
 
 constexpr const DrawPass* kDrawPasses[] = {
     &kSurfacePasses[0],  &kSurfacePasses[1],    &kSurfacePasses[2],    &kSurfacePasses[3],
@@ -147,14 +155,16 @@ void recordExchange(vk::FrameRecorder& recorder, const FrameLists& lists, const 
         recorder.dispatchRun(kExchangePass, &push, kRowExchange);
     }
     const bool touches = (push.flags & kRemoteContact) && step.links;
+    const bool parts = (push.flags & kRemoteContact) && step.parts;
     const bool throws = (push.flags & kRemoteEmbers) != 0;
     const auto light = [&] {
         push.count = step.links;
         if (touches) recorder.dispatch(kContactsPass, &push, (step.links + 63) / 64);
         push.count = step.objectSlots;
+        if (parts) recorder.dispatchRun(kPartsPass, &push, kRowBurn + lists.burnParity);
         if (throws) recorder.dispatch(kEmbersPass, &push, std::max(groupsOf(push.count), 1u));
     };
-    if (step.capped && (touches || throws)) {
+    if (step.capped && (touches || parts || throws)) {
         push.switches |= kSwitchAsks;
         light();
         push.switches &= ~kSwitchAsks;

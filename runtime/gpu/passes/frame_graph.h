@@ -24,7 +24,7 @@ struct SparkPush;     // shared/spark.h
 extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWakePass, kSchedulePass,
     kGatherPass, kArrivalPass, kArrivalRimPass, kGrantPass, kCommitPass, kPublishedPass,
     kReduceClearPass, kReduceFrontPass, kReducePass, kFireCellsPass, kFireSourcesPass,
-    kReceiversPass, kExchangePass, kContactsPass, kEmbersPass, kPredictAnewPass, kPredictGatherPass,
+    kReceiversPass, kExchangePass, kContactsPass, kPartsPass, kEmbersPass, kPredictAnewPass, kPredictGatherPass,
     kPredictPass, kPredictRimPass, kSupportPass, kProbePass, kLightsPass, kFlameQuadsPass,
     kFlameSortPass, kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass,
     kRefinePlacePass, kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass,
@@ -87,6 +87,7 @@ struct StepRecord {
     bool exchange = false;
     ExchangePush rules{};  // of the exchange, but for what the lists say
     uint32_t links = 0;    // contacts
+    bool parts = false;    // some mesh has parts that touch
 };
 
 // Makes counters row kRowIteration the front list's and zeroes the `iterations` rows after it.

@@ -50,6 +50,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     fresh.vertices = uint32_t(domain.vertices.size());
     fresh.indices = uint32_t(domain.indices.size());
     fresh.domain = &domain;
+    fresh.parts = !domain.partLinks.empty();
     measureDrawn(domain, fresh);
     std::pmr::vector<RemoteTile> remoteTiles(s.memory);
     fresh.sourceCells = mesh::remoteTiles(domain, remoteTiles);
@@ -120,6 +121,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
         throw;
     }
     entry = fresh;
+    if (entry.parts) ++s.partMeshes;
 }
 
 void VkBackend::createInnerSkin(uint32_t slot, const mesh::BurnDomain& domain,
@@ -150,6 +152,7 @@ void VkBackend::destroyMesh(uint32_t slot) noexcept {
     State& s = *state_;
     MeshEntry& entry = s.meshes[slot];
     if (!entry.live) return;
+    if (entry.parts) --s.partMeshes;
     // Ranges are reused at once: all our work is in one queue's order, behind barriers.
     s.planes.release(kSpaceMeshTiles, entry.meshTiles.first, entry.meshTiles.units);
     s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);

@@ -483,6 +483,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         step.rules = planned.rules;
         if (planned.remote) recordRemote(*this, *planned.remote, recorder, writer);
         step.links = links;
+        step.parts = partMeshes != 0;
         step.rules.blockers = blockers;
         recordMaterials(*this, planned.materials, recorder, writer);
         const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();

@@ -92,6 +92,7 @@ struct MeshEntry {
     uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
     RefineMesh refine[2 * (kRefineDepth + 1)];       // by refineKey
     uint32_t sourceCells = 1;                        // see mesh/remote_tiles.h
+    bool parts = false;                              // some touch
     float edge = 0;       // m at scale 1: side of a square as large as two mean triangles
     float texelEdge = 0;  // texels, longest edge in the map
     const mesh::BurnDomain* domain = nullptr;
@@ -315,6 +316,7 @@ struct VkBackend::State {
     uint32_t predictTick = 0;              // of the last round of predictions
     uint32_t shownTick = 0;                // tick of the state that draws show
     uint32_t links = 0, blockers = 0;      // of the last remote update
+    uint32_t partMeshes = 0;               // of parts that touch
     float wind[3] = {};
     float tickFraction = 0;
     Detail detail;                               // as of the frame's plan

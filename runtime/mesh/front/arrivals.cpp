@@ -2,6 +2,8 @@
 // run until none has news, each on what those before it have just written.
 #include "mesh/front/arrivals.h"
 
+#include "shared/exchange.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -55,6 +57,40 @@ void nextRound(Arrivals& a) noexcept {
     if (!a.whole) a.end = std::max(a.end + a.stride, soonest);
 }
 
+// Where fire of these lanes' texels goes over gaps.
+void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
+    const BurnDomain& d = *a.domain;
+    const uint32_t corner = tile / d.tilesX * 8 * d.width + tile % d.tilesX * 8;
+    for (uint32_t block = 0; block < 4; ++block) {
+        const uint32_t link = d.partLinks[size_t(tile) * 4 + block];
+        if (link == kNone) continue;
+        const uint32_t lane = gpu::partFrom(link, block), to = link % gpu::kPartTexels;
+        const uint32_t from = corner + lane / 8 * d.width + lane % 8;
+        const uint32_t t = a.ticks[from];
+        if ((lanes >> lane & 1) == 0 || !gpu::isSource(t)) continue;
+        const TexelPosition &p = d.texels[from], &q = d.texels[to];
+        const auto materialOf = [&](const TexelPosition& at) -> const gpu::BurnMaterial& {
+            return a.materials[at.materialFlags & (gpu::kMaterialsPerObject - 1)];
+        };
+        const uint32_t delay = gpu::partDelay(
+            materialOf(q), gpu::ivec3(int(q.x) - p.x, int(q.y) - p.y, int(q.z) - p.z));
+        if ((materialOf(q).flags & 1) == 0 || delay >= gpu::kLiveEnd - t) continue;
+        const uint32_t arrives = std::max(gpu::partArrives(t, delay), a.now);
+        const uint32_t was = a.ticks[to];
+        if (!gpu::flames(t, arrives, materialOf(p).flameTicks) ||
+            !(gpu::isReceptive(was) || (gpu::isSource(was) && was > a.now && was > arrives)))
+            continue;
+        a.ticks[to] = arrives;
+        const auto news = [&](uint32_t reader) { touch(a, reader, kTouched); };
+        const uint32_t other = to / d.width / 8 * d.tilesX + to % d.width / 8;
+        const uint64_t changed = uint64_t(1) << (to / d.width % 8 * 8 + to % d.width % 8);
+        news(other);
+        forEachTileBeside(d, other, changed, news);
+        for (const uint32_t reader : seamReaders(d, other, changed)) news(reader);
+        crossGaps(a, other, changed);
+    }
+}
+
 void runTile(Arrivals& a, uint32_t tile) noexcept {
     FrontPlanes planes;
     planes.state = a.ticks.data();
@@ -83,6 +119,7 @@ void runTile(Arrivals& a, uint32_t tile) noexcept {
     news(tile);
     forEachTileBeside(*a.domain, tile, result.changed, news);
     for (const uint32_t reader : seamReaders(*a.domain, tile, result.changed)) news(reader);
+    if (a.parts) crossGaps(a, tile, result.changed);
 }
 
 }  // namespace
@@ -115,10 +152,13 @@ void beginArrivals(Arrivals& a, const ArrivalInput& input) {
     a.slowness = input.slowness;
     std::copy_n(input.materials.begin(), a.materials.size(), a.materials.begin());
     a.window = input.window;
+    a.parts = input.parts && !a.domain->partLinks.empty();
     a.stride = strideOf(a);
+    a.now = input.now;
     a.end = input.now + a.stride;
     a.whole = false;
     for (uint32_t tile = 0; tile < tiles; ++tile) touch(a, tile, kTouched);
+    for (uint32_t tile = 0; tile < tiles && a.parts; ++tile) crossGaps(a, tile, ~0ull);
     findDue(a);
 }
 

@@ -16,6 +16,7 @@ struct ArrivalInput {                    // of one object
     uint32_t window = 0;                           // correction window, ticks
     std::span<const uint32_t> state;               // per texel, as of `now`
     uint32_t now = 0;                              // tick
+    bool parts = false;                            // fire crosses from part to part
 };
 
 struct Arrivals {
@@ -32,7 +33,9 @@ struct Arrivals {
     std::pmr::vector<uint32_t> list, due;  // tiles; `due` are those of the round, from `next` on
     size_t next = 0;
     uint32_t window = 0, stride = 0;  // ticks
+    uint32_t now = 0;                 // tick at which it begins
     uint32_t end = 0;                 // tick that the round works up to
+    bool parts = false;
     bool whole = true;                // nothing more will catch
 
     // Ticks below this one stay as they are.
