@@ -2,6 +2,8 @@
 // for in the states of objects that are read back twice a second of the world's time, in integers;
 // it changes nothing of the fire.
 #include "mesh/hold.h"
+#include "save/plane.h"
+#include "world/save.h"
 #include "world/world.h"
 
 #include <algorithm>
@@ -48,16 +50,16 @@ core::Owned<Breaks> World::makeBreaks(const FwBurnableMeshDef& def, MeshEntry& e
     return breaks;
 }
 
-// Whose turn it is: twice a second each, not all in the same frame. Of a frame that a save is made
-// of all, so that what is told is what went before it.
+// Whose turn it is: twice a second each, not all in the same frame.
 void World::planBreaks(uint64_t end) noexcept {
     frame_.breaks.clear();
     for (const Object* object : touched_) {
         const Breaks* breaks = object->breaks.get();
-        if (!breaks || breaks->pending || !(object->story.active || breaks->waits)) continue;
+        if (!breaks || breaks->lookCount == breaks->looks.size() ||
+            !(object->story.active || breaks->waits))
+            continue;
         const uint64_t off = uint64_t(object->slot) * gpu::kStepTicks;
-        const bool turn = (clock_.tick + off) / kBreaksTicks != (end + off) / kBreaksTicks;
-        if (!turn && frame_.images.empty()) continue;
+        if ((clock_.tick + off) / kBreaksTicks == (end + off) / kBreaksTicks) continue;
         const uint32_t slot = object->slot;  // room for all was found at their creation
         if (std::find(frame_.burnMaps.begin(), frame_.burnMaps.end(), slot) ==
             frame_.burnMaps.end())
@@ -69,8 +71,7 @@ void World::planBreaks(uint64_t end) noexcept {
 void World::commitBreaks(uint64_t frameIndex) noexcept {
     for (const uint32_t slot : frame_.breaks) {
         Breaks& breaks = *(*objects_.at(slot))->breaks;
-        breaks.pending = true;
-        breaks.frameIndex = frameIndex;
+        breaks.looks[breaks.lookCount++] = frameIndex;
     }
 }
 
@@ -182,18 +183,40 @@ void World::findBreaks(Object& object, std::span<const uint32_t> ticks,
 void World::takeBreaks(Object& object, const gpu::BurnMap& map,
                        const gpu::Readback& readback) noexcept {
     Breaks& breaks = *object.breaks;
-    if (!breaks.pending || readback.frameIndex < breaks.frameIndex) return;
-    breaks.pending = false;
+    const auto end = breaks.looks.begin() + breaks.lookCount;
+    const auto later = std::upper_bound(breaks.looks.begin(), end, readback.frameIndex);
+    if (later == breaks.looks.begin()) return;
+    breaks.lookCount = uint32_t(std::copy(later, end, breaks.looks.begin()) - breaks.looks.begin());
     findBreaks(object, map.ticks, map.heat, readback.endTick, &readback.frameIndex);
 }
 
-// As a save has it: what is gone in it was told before it was made.
-void World::settleBreaks(Object& object, std::span<const uint32_t> ticks,
-                         std::span<const gpu::uvec2> heat, uint32_t now) noexcept {
+// With the readback of a save's frame, after it was looked at for breaks.
+void World::noteBreaks(const Object& object, SavedBreaks& saved, PlaneScratch& scratch,
+                       std::pmr::vector<std::byte>& out) const {
+    const Breaks& breaks = *object.breaks;
+    const mesh::BurnDomain& domain = domainOf(object);
+    saved.share = breaks.share;
+    saved.area = breaks.area;
+    saved.shareTold = breaks.shareTold;
+    saved.waits = breaks.waits;
+    scratch.values.assign(breaks.lost.begin(), breaks.lost.end());
+    save::writePlane(scratch.values, domain.width, {}, out);
+}
+
+// Null, or of who asked for something else: what is gone by now passes for told.
+void World::restoreBreaks(Object& object, const SavedBreaks* saved, const ImageStore& store,
+                          uint32_t now) noexcept {
     Breaks& breaks = *object.breaks;
-    breaks.pending = breaks.shareTold = false;
+    breaks.lookCount = 0;
+    breaks.shareTold = breaks.waits = false;
+    if (saved && saved->share == breaks.share && saved->area == breaks.area) {
+        breaks.shareTold = saved->shareTold;
+        breaks.waits = saved->waits;
+        std::copy(store.lost.begin(), store.lost.end(), breaks.lost.begin());
+        return;
+    }
     std::fill(breaks.lost.begin(), breaks.lost.end(), false);
-    findBreaks(object, ticks, heat, now, nullptr);
+    findBreaks(object, store.ticks, store.heat, now, nullptr);
 }
 
 }  // namespace fw::world

@@ -5,20 +5,16 @@
 namespace fw::world {
 
 void EventQueue::push(const FwEvent& event) noexcept {
-    if (count_ == kCapacity) {
-        first_ = (first_ + 1) % kCapacity;
-        --count_;
+    if (pushed_ - polled_ == kCapacity) {
+        ++polled_;
         ++dropped_;
     }
-    ring_[(first_ + count_) % kCapacity] = event;
-    ++count_;
+    ring_[pushed_++ % kCapacity] = event;
 }
 
 uint32_t EventQueue::poll(std::span<FwEvent> out) noexcept {
-    const uint32_t given = std::min(count_, uint32_t(std::min<size_t>(out.size(), kCapacity)));
-    for (uint32_t i = 0; i < given; ++i) out[i] = ring_[(first_ + i) % kCapacity];
-    first_ = (first_ + given) % kCapacity;
-    count_ -= given;
+    const auto given = uint32_t(std::min<uint64_t>(pushed_ - polled_, out.size()));
+    for (uint32_t i = 0; i < given; ++i) out[i] = at(polled_++);
     return given;
 }
 

@@ -17,14 +17,24 @@ class EventQueue {
 
     void push(const FwEvent& event) noexcept;
     uint32_t poll(std::span<FwEvent> out) noexcept;
-    void clear() noexcept { count_ = 0; }
+    void clear() noexcept { polled_ = pushed_; }
     // Events lost since the last call.
     uint64_t takeDropped() noexcept;
 
+    // Events are numbered as they come. The next to be polled, and one past the last.
+    [[nodiscard]] uint64_t next() const noexcept { return polled_; }
+    [[nodiscard]] uint64_t end() const noexcept { return pushed_; }
+    // The first that is still in the ring, be it polled or not, and one from there on.
+    [[nodiscard]] uint64_t oldest() const noexcept {
+        return pushed_ > kCapacity ? pushed_ - kCapacity : 0;
+    }
+    [[nodiscard]] const FwEvent& at(uint64_t number) const noexcept {
+        return ring_[number % kCapacity];
+    }
+
  private:
     std::pmr::vector<FwEvent> ring_;
-    uint32_t first_ = 0, count_ = 0;
-    uint64_t dropped_ = 0;
+    uint64_t polled_ = 0, pushed_ = 0, dropped_ = 0;
 };
 
 }  // namespace fw::world

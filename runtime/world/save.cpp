@@ -5,6 +5,7 @@
 
 #include "components/sparks.h"
 #include "core/hash.h"
+#include "save/plane.h"
 #include "shared/field_draw.h"
 #include "shared/heat.h"
 
@@ -17,6 +18,8 @@ namespace {
 
 using components::checkValue;
 using components::checkValues;
+
+constexpr uint64_t kNoEvents = ~uint64_t(0);
 
 void hashMore(uint64_t& hash, const void* data, size_t bytes) noexcept {
     const auto* from = static_cast<const unsigned char*>(data);
@@ -180,6 +183,8 @@ void World::commitSave(uint64_t frameIndex) noexcept {
             noteSaved(save.saved);
             save.pending = true;
             save.frameIndex = frameIndex;
+            // A network's are for who was not there: they are of no past of theirs.
+            save.eventsFrom = who == size_t(SaveFor::net) ? kNoEvents : events_.next();
         } catch (...) {
             save.failed = true;
         }
@@ -363,13 +368,21 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         return;
     }
     save.planes.clear();
-    std::pmr::vector<size_t> ends(memory_);
+    struct Ends {
+        size_t image = 0, all = 0;
+        SavedBreaks breaks;
+    };
+    std::pmr::vector<Ends> ends(memory_);
     for (const gpu::ObjectImage& image : readback.images) {
         const Object& object = **objects_.at(image.object);
         writeImage(image, domainOf(object), readback.endTick, windowOf(object), save.scratch,
                    save.planes);
-        ends.push_back(save.planes.size());
+        Ends& end = ends.emplace_back();
+        end.image = save.planes.size();
+        if (object.breaks) noteBreaks(object, end.breaks, save.scratch, save.planes);
+        end.all = save.planes.size();
     }
+    noteEvents(save);
     size_t next = 0, from = 0;
     for (SavedObject& object : saved.objects) {
         if (!object.touched) continue;
@@ -378,8 +391,12 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
             save.wished = true;
             return;
         }
-        object.planes = std::span(save.planes).subspan(from, ends[next] - from);
-        from = ends[next++];
+        const Ends& end = ends[next++];
+        object.planes = std::span(save.planes).subspan(from, end.image - from);
+        object.asksBreaks = bool((*objects_.at(object.slot))->breaks);
+        object.breaks = end.breaks;
+        object.breaks.lost = std::span(save.planes).subspan(end.image, end.all - end.image);
+        from = end.all;
         object.counters = image.counters;
         object.counters.refined = 0;
         // Of what the backend alone knew at that frame.
@@ -397,6 +414,31 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         }
     writeSaved(saved, save.bytes);
     save.ready = true;
+}
+
+// What the host had not polled at the save's frame, and what came of that frame since.
+void World::noteEvents(Save& save) {
+    std::pmr::vector<SavedEvent>& to = save.saved.events;
+    to.clear();
+    std::pmr::vector<std::pair<uint64_t, uint64_t>> found(memory_);  // frame and number
+    for (uint64_t i = std::max(save.eventsFrom, events_.oldest()); i < events_.end(); ++i) {
+        const FwEvent& event = events_.at(i);
+        if (event.frameIndex > save.frameIndex) continue;
+        if (event.object.index1 != 0 && !objects_.find(event.object)) continue;
+        found.emplace_back(event.frameIndex, i);
+    }
+    std::sort(found.begin(), found.end());  // readbacks of a device are behind what is at hand
+    for (size_t k = found.size() - std::min<size_t>(found.size(), kMostSavedEvents);
+         k < found.size(); ++k) {
+        const FwEvent& event = events_.at(found[k].second);
+        SavedEvent& saved = to.emplace_back();
+        saved.type = event.type;
+        saved.tag = event.tag;
+        saved.object1 = event.object.index1;
+        saved.other1 = objects_.find(event.other) ? event.other.index1 : 0;
+        std::copy_n(event.position, 3, saved.position);
+        saved.value = event.value;
+    }
 }
 
 // ---- loading -----------------------------------------------------------------------------------
@@ -478,6 +520,21 @@ void World::checkSaved(const SavedWorld& saved) {
     for (const SavedPair& pair : saved.pairs) {
         checkTexel(pair.slots[0], 0, "a contact");
         checkTexel(pair.slots[1], 0, "a contact");
+    }
+    if (saved.events.size() > kMostSavedEvents)
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu events; the limit is %u.",
+                   saved.events.size(), kMostSavedEvents);
+    for (const SavedEvent& event : saved.events) {
+        if (event.type < FW_EVENT_IGNITED || event.type > FW_EVENT_STRUCTURE_BROKE)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has an event of type %u; the limits are [1, %u].", event.type,
+                       uint32_t(FW_EVENT_STRUCTURE_BROKE));
+        if (event.object1 != 0) checkTexel(event.object1 - 1, 0, "an event");
+        if (event.other1 != 0) checkTexel(event.other1 - 1, 0, "an event");
+        for (const float value : event.position)
+            if (!std::isfinite(value) || !std::isfinite(event.value))
+                core::fail(FW_ERROR_BAD_DATA, "The save has an event at %g m of value %g.",
+                           double(value), double(event.value));
     }
     for (const SavedBlocker& blocker : saved.blockers) {
         if (blocker.slot >= blockers_.slotCount() || !blockers_.at(blocker.slot))
@@ -636,6 +693,14 @@ void World::load(std::span<const std::byte> bytes) {
         ImageStore& store = stores.emplace_back(memory_);
         readImage(from.planes, domainOf(**objects_.at(from.slot)), uint32_t(saved.clock.tick),
                   made.window, made.heatSpan(), scratch, store);
+        if (from.asksBreaks && (*objects_.at(from.slot))->breaks) {
+            const mesh::BurnDomain& domain = domainOf(**objects_.at(from.slot));
+            store.lost.resize(domain.texelCount());
+            if (!save::readPlane(from.breaks.lost, domain.width, {}, store.lost))
+                core::fail(FW_ERROR_BAD_DATA,
+                           "The save's plane of what broke of burnable mesh %u is damaged.",
+                           from.slot + 1);
+        }
         gpu::RestoredObject& one = restored.emplace_back();
         one.image = {from.slot,   store.ticks,    store.heat,
                      store.tiles, store.tileHeat, from.counters};
@@ -657,9 +722,14 @@ void World::load(std::span<const std::byte> bytes) {
     windGrid_.shape = saved.windGrid.shape;
     windGrid_.points.swap(saved.windGrid.points);
     applySaved(saved, latches);
-    for (const gpu::RestoredObject& one : restored)
-        if (Object& object = **objects_.at(one.image.object); object.breaks)
-            settleBreaks(object, one.image.ticks, one.image.heat, uint32_t(clock_.tick));
+    size_t next = 0;
+    for (const SavedObject& from : saved.objects) {
+        if (!from.touched) continue;
+        const ImageStore& store = stores[next++];
+        if (Object& object = **objects_.at(from.slot); object.breaks)
+            restoreBreaks(object, from.asksBreaks ? &from.breaks : nullptr, store,
+                          uint32_t(clock_.tick));
+    }
     tags_.swap(tags);
     pending_.swap(saved.pending);
     for (SavedField& field : saved.fields)
@@ -713,6 +783,10 @@ void World::applySaved(const SavedWorld& saved,
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)
         if (Query* query = queries_.at(i); query && !query->ready) query->asked = false;
     events_.clear();
+    for (const SavedEvent& event : saved.events)
+        raise(event.type, event.object1 != 0 ? objects_.at(event.object1 - 1)->get() : nullptr,
+              event.tag, lastFrame_, event.position, event.value,
+              event.other1 != 0 ? objects_.idOf(event.other1 - 1) : FwBurnableMeshId{});
     lights_.clear();
     readbackTick_ = clock_.tick;
     // Awake it would see the wind from here on, and not from where its first fire begins.
@@ -805,7 +879,11 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
         again(object.forecast->wished, object.forecast->pending);
         object.forecast->told = false;
     }
-    if (object.breaks) settleBreaks(object, {}, {}, 0);  // it has not burnt, or is restored next
+    if (object.breaks) {  // it has not burnt, or is restored next
+        object.breaks->lookCount = 0;
+        object.breaks->shareTold = object.breaks->waits = false;
+        std::fill(object.breaks->lost.begin(), object.breaks->lost.end(), false);
+    }
     object.remote = {};
     object.remoteSent = false;
     object.remoteDue = from.due;

@@ -77,6 +77,19 @@ struct SavedTag {
     uint32_t object = 0, texel = 0, tag = 0;
 };
 
+struct SavedEvent {  // that was not polled yet
+    uint32_t type = 0, tag = 0;
+    uint32_t object1 = 0, other1 = 0;  // slot + 1; 0: none
+    float position[3] = {}, value = 0;
+};
+
+// Of an object whose host asks what breaks, see Breaks.
+struct SavedBreaks {
+    float share = 0, area = 0;
+    bool shareTold = false, waits = false;
+    std::span<const std::byte> lost;  // a plane, 1 by texel that hung on nothing
+};
+
 struct SavedPair {  // that touch, since when
     uint32_t slots[2] = {}, since = 0;
 };
@@ -95,6 +108,8 @@ struct SavedObject {
     components::Pose latched;
     Story story;  // as of its last readback
     gpu::ObjectCounters counters{};
+    bool asksBreaks = false;
+    SavedBreaks breaks;
     std::span<const std::byte> planes;  // of its image
 };
 
@@ -112,7 +127,8 @@ struct SavedWorld {
           rooms(memory),
           fires(memory),
           emitters(memory),
-          fields(memory) {}
+          fields(memory),
+          events(memory) {}
     // Rules, which must be the world's.
     float pace = 1, up[3] = {}, spreadChance = 1, timeToLive = 0;
     uint32_t seed = 0, maxHops = 0, maxBurningTiles = 0;
@@ -139,6 +155,7 @@ struct SavedWorld {
     std::pmr::vector<SavedFire> fires;
     std::pmr::vector<SavedEmitter> emitters;
     std::pmr::vector<SavedField> fields;
+    std::pmr::vector<SavedEvent> events;  // oldest first
 };
 
 // The planes of an image, which together are `planes` of a SavedObject.
@@ -153,11 +170,12 @@ void writeImage(const gpu::ObjectImage& image, const mesh::BurnDomain& domain, u
 
 struct ImageStore {  // what a read ObjectImage points to
     explicit ImageStore(std::pmr::memory_resource* memory)
-        : ticks(memory), heat(memory), tiles(memory), tileHeat(memory) {}
+        : ticks(memory), heat(memory), tiles(memory), tileHeat(memory), lost(memory) {}
     std::pmr::vector<uint32_t> ticks;
     std::pmr::vector<gpu::uvec2> heat;
     std::pmr::vector<gpu::TileState> tiles;
     std::pmr::vector<gpu::TileHeat> tileHeat;
+    std::pmr::vector<uint32_t> lost;  // of its breaks, apart from the image; empty: none are saved
 };
 // Throws where the planes are none of writeImage's. `heat`: of its materials; empty: it has none.
 void readImage(std::span<const std::byte> planes, const mesh::BurnDomain& domain, uint32_t tick,
@@ -179,13 +197,15 @@ struct Save {  // on its way, and the last one
         : saved(memory), scratch(memory), planes(memory), bytes(memory) {}
     bool wished = false, pending = false, ready = false, failed = false;
     uint64_t frameIndex = 0;  // whose state is taken
+    uint64_t eventsFrom = 0;  // number of the first that was not polled then
     SavedWorld saved;
     PlaneScratch scratch;
     std::pmr::vector<std::byte> planes, bytes;
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 6;
+constexpr uint32_t kSaveVersion = 7;
+constexpr uint32_t kMostSavedEvents = 256;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
 

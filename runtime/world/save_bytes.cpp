@@ -62,6 +62,10 @@ template <typename S, Is<SavedTag> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedPair> T>
 void put(S& s, T& value);
+template <typename S, Is<SavedEvent> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedBreaks> T>
+void put(S& s, T& value);
 template <typename S, Is<SavedBlocker> T>
 void put(S& s, T& value);
 template <typename S, Is<gpu::Blocker> T>
@@ -239,6 +243,26 @@ void put(S& s, T& o) {
         o.lastBurning, o.firstIgnition, o.ignitionPoint, o.litTold, o.spotsTold, o.mostIgnited,
         o.clampsTold, o.energy, o.heatSteps, o.power);
 }
+template <typename S, Is<SavedEvent> T>
+void put(S& s, T& e) {
+    all(s, e.type, e.tag, e.object1, e.other1, e.position, e.value);
+}
+// Bytes that are looked into elsewhere.
+template <typename S, typename T>
+void putBytes(S& s, T& bytes, const char* name) {
+    if constexpr (S::kReads) {
+        const uint32_t size = s.count(name, 1);
+        bytes = s.take(size);
+    } else {
+        s.number(uint32_t(bytes.size()));
+        s.bytes().insert(s.bytes().end(), bytes.begin(), bytes.end());
+    }
+}
+template <typename S, Is<SavedBreaks> T>
+void put(S& s, T& b) {
+    all(s, b.share, b.area, b.shareTold, b.waits);
+    putBytes(s, b.lost, "bytes of what is about to break");
+}
 template <typename S, Is<SavedObject> T>
 void put(S& s, T& o) {
     all(s, o.slot, o.asset, o.pose, o.firstEvent, o.play.burn1, o.placed, o.due);
@@ -249,13 +273,9 @@ void put(S& s, T& o) {
     if (!o.touched) return;
     all(s, o.filters, o.latched, o.story);
     putWords(s, o.counters);
-    if constexpr (S::kReads) {
-        const uint32_t size = s.count("bytes of an object's planes", 1);
-        o.planes = s.take(size);
-    } else {
-        s.number(uint32_t(o.planes.size()));
-        s.bytes().insert(s.bytes().end(), o.planes.begin(), o.planes.end());
-    }
+    all(s, o.asksBreaks);
+    if (o.asksBreaks) put(s, o.breaks);
+    putBytes(s, o.planes, "bytes of an object's planes");
 }
 
 // A list: its length and its entries, each of them `bytesEach` bytes or more.
@@ -338,6 +358,7 @@ void put(S& s, T& w) {
     list(s, w.fires, "volumetric fires", 24);
     list(s, w.emitters, "fire emitters", 36);
     list(s, w.fields, "particle fields", 53);
+    list(s, w.events, "events", 32);
 }
 
 // ---- planes ------------------------------------------------------------------------------------

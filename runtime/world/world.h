@@ -85,9 +85,9 @@ struct Breaks {
     uint32_t pinCount = 0;
     std::pmr::vector<bool> lost;  // by texel: it hung on nothing when it was last looked for
     bool shareTold = false;
-    bool waits = false;    // some of what caught is not gone yet
-    bool pending = false;  // its state as of that frame is on its way
-    uint64_t frameIndex = 0;
+    bool waits = false;               // some of what caught is not gone yet
+    std::array<uint64_t, 8> looks{};  // frames whose state of it is on its way, oldest first
+    uint32_t lookCount = 0;
 };
 
 // What happened to an object's fire, and what of it the host was told. In ticks.
@@ -323,6 +323,7 @@ struct SavedWorld;
 struct SavedObject;
 struct SavedEmitter;
 struct SavedRecords;
+struct SavedBreaks;
 struct ImageStore;
 struct PlaneScratch;
 struct Story;
@@ -741,8 +742,10 @@ class World {
                     std::span<const gpu::uvec2> heat, uint32_t now, const uint64_t* tells) noexcept;
     void takeBreaks(Object& object, const gpu::BurnMap& map,
                     const gpu::Readback& readback) noexcept;
-    void settleBreaks(Object& object, std::span<const uint32_t> ticks,
-                      std::span<const gpu::uvec2> heat, uint32_t now) noexcept;
+    void noteBreaks(const Object& object, SavedBreaks& saved, PlaneScratch& scratch,
+                    std::pmr::vector<std::byte>& out) const;
+    void restoreBreaks(Object& object, const SavedBreaks* saved, const ImageStore& store,
+                       uint32_t now) noexcept;
     // save.cpp
     [[nodiscard]] uint64_t meshHash(const Object& object) noexcept;
     [[nodiscard]] uint64_t assetOf(const Object& object) noexcept;
@@ -761,6 +764,7 @@ class World {
     void noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
                      std::pmr::vector<SavedEmitter>& to) const;
     void takeSave(Save& save, const gpu::Readback& readback);
+    void noteEvents(Save& save);
     // journal.cpp
     void mayChange() const;  // throws where another machine's deeds alone count
     [[nodiscard]] bool notes() const noexcept { return journal_ || noted_ || timeline_; }

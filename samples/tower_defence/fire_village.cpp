@@ -335,6 +335,10 @@ void FireVillage::observe() {
             }
         }
     }
+    look();
+}
+
+void FireVillage::look() {
     burning_ = 0;
     for (Thing& thing : things) {
         if (!thing.lit) continue;
@@ -362,7 +366,7 @@ void FireVillage::restore(std::span<const uint8_t> flags) {
     }
     caught_ = uint32_t(
         std::count_if(things.begin(), things.end(), [](const Thing& thing) { return thing.lit; }));
-    observe();
+    look();  // what happened at that frame waits in the world, for the next step of the game
 }
 
 std::span<const PointLight> FireVillage::lights(float scale) {

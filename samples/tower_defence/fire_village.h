@@ -62,6 +62,7 @@ class FireVillage {
     uint32_t broke() const { return broke_; }  // in the last observe
 
  private:
+    void look();
     void makeMaterials();
     void makeModel(size_t model, const village::Model& source, const PaintedModel* painted,
                    const std::vector<uint8_t>& cooked);

@@ -72,14 +72,18 @@ struct Board {
     void run(double seconds, float deltaTime = 1.0f / 32) {
         for (double t = 0; t < seconds - 1e-9; t += double(deltaTime)) {
             ok(fwWorld_Step(world, deltaTime));
+            ++steps;
             poll();
         }
     }
     void poll() {
         FwEvent some[16];
         const uint32_t count = fwWorld_PollEvents(world, some, 16);
-        for (uint32_t i = 0; i < count; ++i)
+        for (uint32_t i = 0; i < count; ++i) {
             if (some[i].type == FW_EVENT_STRUCTURE_BROKE) broke.push_back(some[i]);
+            heard.push_back({steps, some[i].type, some[i].tag, some[i].object.index1, some[i].value,
+                             some[i].position[1]});
+        }
     }
 
     Host host;
@@ -88,6 +92,13 @@ struct Board {
     FwWorld* world = nullptr;
     FwBurnableMeshId id{};
     std::vector<FwEvent> broke;
+    struct Heard {
+        uint32_t step, type, tag, object;
+        float value, height;
+        bool operator==(const Heard&) const = default;
+    };
+    std::vector<Heard> heard;  // of all types
+    uint32_t steps = 0;
 };
 
 constexpr float kRowArea = kWide * kHigh / kRows;
@@ -187,6 +198,72 @@ TEST(AbiBreak, BothBackendsTellTheSame) {
     cpu.ok(fwWorld_Load(cpu.world, save.data(), save.size()));
     cpu.run(kBurns);
     EXPECT_EQ(2u, cpu.broke.size());
+}
+
+// Whenever a save is made, and whoever loads it: each event comes once, at the step at which it
+// comes without; what was not polled yet, at once.
+TEST(AbiBreak, WhatIsDueComesAtItsStepThroughSaves) {
+    Board straight(FW_BACKEND_CPU, 0, 0.09f);
+    const auto begin = [](Board& board) {
+        board.light(11, kWide / 2, 0.02f);
+        board.light(4, 0, 0.02f);
+    };
+    begin(straight);
+    straight.run(kBurns);
+    ASSERT_LE(3u, straight.broke.size());
+    ASSERT_LE(5u, straight.heard.size());  // it caught, and burnt out
+    uint32_t told = 0;                     // the step of the first break
+    for (const Board::Heard& one : straight.heard)
+        if (told == 0 && one.type == FW_EVENT_STRUCTURE_BROKE) told = one.step;
+    ASSERT_LT(20u, told);
+    // Behind the step: 15 before, so that it was looked at again since; 2 before; of its very
+    // frame.
+    for (const uint32_t before : {15u, 2u, 0u}) {
+        Board saver(FW_BACKEND_CPU, 0, 0.09f), loader(FW_BACKEND_CPU, 0, 0.09f);
+        begin(saver);
+        saver.run((told - before - 1) / 32.0);
+        saver.ok(fwWorld_RequestSave(saver.world));
+        saver.ok(fwWorld_Step(saver.world, 1.0f / 32));
+        ++saver.steps;
+        const std::vector<Board::Heard> past = saver.heard;
+        uint64_t size = 0;
+        saver.ok(fwWorld_FetchSave(saver.world, nullptr, &size));
+        Bytes save(size);
+        saver.ok(fwWorld_FetchSave(saver.world, save.data(), &size));
+        for (const bool polled : {false, true}) {  // what is in a save stays in it
+            loader.ok(fwWorld_Load(loader.world, save.data(), save.size()));
+            if (!polled) {
+                EXPECT_EQ(save, saveOf(loader.world));
+            }
+            loader.heard = past;
+            loader.steps = saver.steps;
+            loader.poll();
+            EXPECT_EQ(before == 0, loader.heard.size() > past.size()) << before;
+            loader.run(kBurns - loader.steps / 32.0);
+            EXPECT_EQ(straight.heard, loader.heard) << before;
+        }
+        saver.poll();
+        saver.run(kBurns - saver.steps / 32.0);
+        EXPECT_EQ(straight.heard, saver.heard) << "the save changed it, " << before;
+    }
+}
+
+// Who asks for something else hears of nothing that was gone before.
+TEST(AbiBreak, OfSavesWhoseHostAskedOtherwiseWhatIsGoneIsTold) {
+    Board asks(FW_BACKEND_CPU, 0, 0.09f), none(FW_BACKEND_CPU, 0, 0, 0),
+        other(FW_BACKEND_CPU, 0, 0.02f);
+    asks.light(11);
+    asks.run(kBurns);
+    ASSERT_EQ(1u, asks.broke.size());
+    const Bytes save = saveOf(asks.world);
+    for (Board* board : {&none, &other}) {
+        board->ok(fwWorld_Load(board->world, save.data(), save.size()));
+        board->light(4);
+        board->run(kBurns);
+    }
+    EXPECT_TRUE(none.broke.empty());
+    ASSERT_EQ(1u, other.broke.size());  // neither the top nor its share, of 6 %
+    EXPECT_EQ(uint32_t(FW_BREAK_PART), other.broke[0].tag);
 }
 
 TEST(AbiBreak, NamesWhatIsWrong) {

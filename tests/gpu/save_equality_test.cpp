@@ -73,7 +73,15 @@ class AWorld {
         for (uint32_t i = from; i < to; ++i) {
             act(i);
             step(1 / 20.0f);
+            poll();
         }
+    }
+    // What the host has heard, but for when.
+    void poll() {
+        FwEvent events[16];
+        while (const uint32_t count = world_->pollEvents(events))
+            for (const FwEvent& event : std::span(events, count))
+                heard.push_back({event.type, event.tag, event.object.index1, event.value});
     }
     // Of the world as it is after the next frame, of no time.
     Bytes save() {
@@ -107,6 +115,12 @@ class AWorld {
     void load(const Bytes& bytes) { world_->load(bytes); }
     [[nodiscard]] uint64_t burnt() const { return burnt_; }
     world::World& world() { return *world_; }
+    struct Heard {
+        uint32_t type, tag, object;
+        float value;
+        bool operator==(const Heard&) const = default;
+    };
+    std::vector<Heard> heard;
 
  private:
     void act(uint32_t frame) {
@@ -177,6 +191,7 @@ TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
     AWorld device(device_.get()), plain(nullptr);
     device.run(0, 40);
     device.world().requestSave();
+    const std::vector<AWorld::Heard> past = device.heard;  // by some frames less than the save's
     device.run(40, 60);
     const Bytes* bytes = device.world().fetchSave();
     ASSERT_TRUE(bytes);
@@ -185,10 +200,19 @@ TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
     const uint64_t then = plain.hash();
     plain.run(41, 80);
     const uint64_t later = plain.hash();
+    device.run(60, 80);
+    for (int i = 0; i < 8; ++i) device.step(0);  // what is on its way
+    device.poll();
+    const std::vector<AWorld::Heard> all = device.heard;
     device.load(kept);
+    device.heard = past;
     EXPECT_EQ(then, device.hash());
     device.run(41, 80);
     EXPECT_EQ(later, device.hash());
+    for (int i = 0; i < 8; ++i) device.step(0);
+    device.poll();
+    EXPECT_LT(past.size() + 3, all.size());
+    EXPECT_EQ(all, device.heard);  // each of them once
 }
 
 }  // namespace

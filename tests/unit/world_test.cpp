@@ -61,6 +61,16 @@ TEST(EventQueue, KeepsTheNewestInOrder) {
     while (const uint32_t count = queue.poll(out))
         for (uint32_t i = 0; i < count; ++i) EXPECT_EQ(next++, out[i].tag);
     EXPECT_EQ(world::EventQueue::kCapacity + 10, next);
+    // What was polled is there until others take its place.
+    EXPECT_EQ(queue.end(), queue.next());
+    EXPECT_EQ(10u, queue.oldest());
+    EXPECT_EQ(10u, queue.at(10).tag);
+    queue.push(event);
+    queue.clear();
+    EXPECT_EQ(0u, queue.poll(out));
+    EXPECT_EQ(11u, queue.oldest());
+    queue.push(event);
+    EXPECT_EQ(1u, queue.poll(out));
 }
 
 TEST(Pose, GoesThereAndBack) {

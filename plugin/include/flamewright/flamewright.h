@@ -1195,9 +1195,10 @@ FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArriva
  * later, and nothing waits for them. One at a time: a second wish begins anew. In a save: every texel's state, temperature, fuel
  * and water; counters, clocks, wind, flags and what the wind's filters hold; transforms of objects and blockers; events
  * that wait, tags, contacts; what jets have in the air, what fires and jets are about to light, cells of fields that
- * wet. Not in it: what only shows (particles, flames, soot, sheets in motion), queries, events not yet polled, hidden,
+ * wet; what was told of what broke; the events up to that frame's that were not polled before it (the newest 256; with a device
+ * those that it tells later, too). Not in it: what only shows (particles, flames, soot, sheets in motion), queries, hidden,
  * and what the host made: meshes, materials, objects. Refused while an object with FW_BURNABLE_PUBLISHED burns. The bytes
- * are the same on every backend: little-endian, versioned, with a checksum, compressed. [world] */
+ * are the same on every backend, if as much was polled: little-endian, versioned, with a checksum, compressed. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestSave(FwWorld*);
 /* FW_NOT_READY until it is there. Call with buffer null for the size, or with enough room; *size is what is (or would
  * be) written, in bytes. The library keeps them until the next fwWorld_RequestSave. To keep them, write them to a new
@@ -1207,7 +1208,8 @@ FW_API FwResult FW_CALL fwWorld_FetchSave(FwWorld*, void* buffer, uint64_t* size
  * them has, if they hear the same calls. The world holds what the saved one did, made in the same order, so that the
  * ids' index1 are the same: burnable meshes of the same meshes and materials (by a hash of them and of their defs),
  * blockers, wind zones, rooms, fires, emitters and fields. Its FwWorldDef has the same paceFactor, up, seed and limits of spread. All in it
- * goes to where and what it was, also what has never burnt; ids stay valid. Unpolled events are dropped, queries that
+ * goes to where and what it was, also what has never burnt; ids stay valid. Unpolled events are the save's, as of the frame
+ * before the next: a host that knew by the save's frame what it had polled hears each event once. Queries that
  * wait are asked anew. FW_ERROR_BAD_DATA, and nothing is changed: the bytes are damaged, cut, of another version, or of
  * another world; the message says of what, with both values. Time is that of the save; frame indices go on growing.
  * Uploads with the next frame. [world] */
@@ -1260,7 +1262,7 @@ FW_API FwResult FW_CALL fwWorld_StartTimeline(FwWorld*, const FwTimelineDef* def
 FW_API FwResult FW_CALL fwWorld_StopTimeline(FwWorld*); /* the world stays where it is [world] */
 /* One piece of the way to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick), be that ahead or behind:
  *     while (fwWorld_Seek(world, untilTick, &seconds) == FW_OK && seconds > 0) fwWorld_Step(world, seconds);
- * or a recorded frame for each. Goes back, or leaps, to the nearest save by what fwWorld_Load does (events are dropped, what
+ * or a recorded frame for each. Goes back, or leaps, to the nearest save by what fwWorld_Load does (events that wait are the save's, what
  * only shows begins anew), and does again what the host did from there on; *seconds: how far the world is to be moved before the
  * next call; 0: it is there. Where it stops in the past, what the host did at that very tick is not done yet. Called with more
  * and more it plays the past; events are raised again. Who moves the world on without it, or does anything to the burn, begins
