@@ -81,7 +81,7 @@ class Fuzz {
     void run(int calls) {
         for (int i = 0; i < calls && !::testing::Test::HasFailure(); ++i) call();
     }
-    uint64_t accepted = 0, refused = 0, meshes = 0, objects = 0, fires = 0, flames = 0;
+    uint64_t accepted = 0, refused = 0, meshes = 0, objects = 0, fires = 0, flames = 0, sought = 0;
 
  private:
     void makeWorld() {
@@ -251,6 +251,35 @@ class Fuzz {
         if (random_.once(3)) bytes[random_.below(uint32_t(bytes.size()))] ^= 1u << random_.below(8);
         if (random_.once(5)) bytes.resize(random_.below(uint32_t(bytes.size())) + 1);
         check(fwWorld_Load(world_, bytes.data(), bytes.size()));
+    }
+
+    // Timelines of any size, and ticks within them or not, of which not all are reached.
+    void useTimeline() {
+        FwTimelineDef def = fwDefaultTimelineDef();
+        def.interval = 0.1f + random_.unit();
+        if (random_.once(3)) def.bytes = 65536 + random_.below(100000);
+        garble(def);
+        def.structSize = sizeof def;
+        FwTimelineState state{};
+        state.structSize = sizeof state;
+        check(fwWorld_GetTimelineState(world_, &state));
+        if (state.endTick == 0 || random_.once(20)) {
+            check(fwWorld_StartTimeline(world_, &def));
+            check(fwWorld_Step(world_, random_.unit()));
+        }
+        if (random_.once(30)) check(fwWorld_StopTimeline(world_));
+        const uint64_t most = std::max<uint64_t>(state.endTick - state.firstTick, 1);
+        const uint64_t tick =
+            random_.once(8) ? random_.next() : state.firstTick + random_.next() % most;
+        for (uint32_t pieces = random_.below(6); pieces > 0; --pieces) {
+            float seconds = 0;
+            const FwResult result = fwWorld_Seek(world_, tick, &seconds);
+            check(result);
+            if (result != FW_OK) break;
+            sought += seconds == 0;
+            if (seconds == 0) break;
+            check(fwWorld_Step(world_, random_.once(9) ? seconds / 2 : seconds));
+        }
     }
 
     void createEmitter() {
@@ -739,6 +768,7 @@ class Fuzz {
             }
             case 21: {
                 if (random_.once(4)) useSaves();
+                if (random_.once(2)) useTimeline();
                 FwLight lights[8];
                 EXPECT_GE(8u, fwWorld_GetLights(world_, lights, random_.below(9)));
                 break;
@@ -857,6 +887,7 @@ TEST_P(AbiFuzz, RandomHosts) {
     EXPECT_LT(20u, fuzz.objects);
     EXPECT_LT(20u, fuzz.flames);
     EXPECT_LT(3u, fuzz.fires);
+    EXPECT_LT(3u, fuzz.sought);
     std::printf(
         "           %llu accepted, %llu refused, %llu meshes, %llu objects, %llu fires\n",
         static_cast<unsigned long long>(fuzz.accepted),

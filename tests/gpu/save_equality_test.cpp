@@ -215,5 +215,36 @@ TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
     EXPECT_EQ(all, device.heard);  // each of them once
 }
 
+// A timeline on the host's own frames: its moments come while others are under way.
+TEST_F(SaveEquality, GoesToAnyMomentOfItsTimeline) {
+    if (!device_) return;
+    AWorld device(device_.get()), plain(nullptr);
+    FwTimelineDef def = fwDefaultTimelineDef();
+    def.interval = 0.5f;
+    device.world().startTimeline(def);
+    struct Moment {
+        uint64_t tick, hash;
+    };
+    std::vector<Moment> moments;
+    uint32_t at = 0;
+    for (const uint32_t next : {13u, 34u, 55u, 66u}) {
+        device.run(at, next);
+        plain.run(at, next);
+        moments.push_back({plain.world().tick(), plain.hash()});
+        ASSERT_EQ(moments.back().tick, device.world().tick());
+        at = next;
+    }
+    for (const size_t wanted : {2u, 0u, 3u, 1u}) {
+        float seconds = 0;
+        for (int i = 0; i < 400; ++i) {
+            ASSERT_TRUE(device.world().seek(moments[wanted].tick, seconds));
+            if (seconds == 0) break;
+            device.step(std::min(seconds, 0.1f));
+        }
+        EXPECT_EQ(moments[wanted].tick, device.world().tick());
+        EXPECT_EQ(moments[wanted].hash, device.hash()) << wanted;
+    }
+}
+
 }  // namespace
 }  // namespace fw::test
