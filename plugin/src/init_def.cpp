@@ -76,6 +76,11 @@ void defaults(FwBlockerDef& def) noexcept {
     set(def.halfSize, 0.5f, 0.5f, 0.5f);
 }
 
+void defaults(FwHeatShieldDef& def) noexcept {
+    def.counts[0] = def.counts[1] = def.counts[2] = 1;
+    def.cellSize = 0.25f;
+}
+
 void defaults(FwWindZoneDef& def) noexcept {
     set(def.axis, 1, 0, 0);
     set(def.size, 1, 1, 1);
@@ -221,6 +226,8 @@ size_t defSize(uint32_t type) noexcept {
             return sizeof(FwNetDef);
         case FW_DEF_WIND_ZONE:
             return sizeof(FwWindZoneDef);
+        case FW_DEF_HEAT_SHIELD:
+            return sizeof(FwHeatShieldDef);
         case FW_DEF_WIND_GRID:
             return sizeof(FwWindGridDef);
         case FW_DEF_GUSTS:
@@ -291,6 +298,9 @@ bool writeDefaults(uint32_t type, void* def) noexcept {
             return true;
         case FW_DEF_WIND_ZONE:
             write<FwWindZoneDef>(def);
+            return true;
+        case FW_DEF_HEAT_SHIELD:
+            write<FwHeatShieldDef>(def);
             return true;
         case FW_DEF_WIND_GRID:
             write<FwWindGridDef>(def);

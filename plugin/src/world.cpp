@@ -171,6 +171,16 @@ FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld* world, FwBlockerId id) {
     return destroyOf("fwWorld_RemoveBlocker", world, &world::World::removeBlocker, id);
 }
 
+FwResult FW_CALL fwWorld_SetHeatShield(FwWorld* world, const FwHeatShieldDef* given) {
+    return onWorld("fwWorld_SetHeatShield", world, [&](world::World& w) {
+        if (given)
+            w.setHeatShield(edge::readDef(given, FW_DEF_HEAT_SHIELD, "FwHeatShieldDef"));
+        else
+            w.setHeatShield({});
+        return FW_OK;
+    });
+}
+
 FwResult FW_CALL fwWorld_CreateWindZone(FwWorld* world, const FwWindZoneDef* given,
                                         FwWindZoneId* id) {
     return createOf("fwWorld_CreateWindZone", world, &world::World::createWindZone, given,

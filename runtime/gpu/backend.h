@@ -59,6 +59,20 @@ struct RemoteUpdate {
     std::span<const Blocker> blockers;     // all of them, at most kMaxBlockers
 };
 
+// All of the shield, in place of the one that was. See exchange.h.
+struct ShieldUpdate {
+    ivec3 origin{};                 // mm
+    uint32_t cell = 0, counts = 0;  // as ExchangePush has them; cell 0: there is none
+    std::span<const uint32_t> words;
+};
+inline void placeShield(const ShieldUpdate& shield, ExchangePush& rules) noexcept {
+    rules.shieldX = shield.origin.x;
+    rules.shieldY = shield.origin.y;
+    rules.shieldZ = shield.origin.z;
+    rules.shieldCell = shield.cell;
+    rules.shieldCounts = shield.counts;
+}
+
 struct StepPlan {               // one fixed step of 1/32 s
     uint32_t now = 0;           // tick at its start
     uint32_t substepShift = 0;  // log2 of its iterations: the largest of the objects that burn
@@ -70,8 +84,9 @@ struct StepPlan {               // one fixed step of 1/32 s
     bool capped = false;        // and how many tiles may burn
     bool plays = false;         // some object may play a baked burn
     ExchangePush rules{};       // of the exchange; what places things in lists is the backend's
-    const RemoteUpdate* remote = nullptr;       // null: nothing changed
-    std::span<const TexelEvent> events;         // sorted by (object, texel, order)
+    const RemoteUpdate* remote = nullptr;  // null: nothing changed
+    const ShieldUpdate* shield = nullptr;  // null: as it was; none at first, and after `restore`
+    std::span<const TexelEvent> events;    // sorted by (object, texel, order)
     std::span<const MaterialUpdate> materials;  // applied first; each object's tiles wake
 };
 

@@ -86,6 +86,13 @@ void putGrid(Way& way, Def& def) {
     way.number(def.fade);
 }
 
+template <class Way, class Def>
+void putShield(Way& way, Def& def) {
+    for (auto& count : def.counts) way.bits(count, 9);
+    for (auto& value : def.origin) way.number(value);
+    way.number(def.cellSize);
+}
+
 }  // namespace
 
 Deed deedOf(const FwWindZoneDef& def) noexcept {
@@ -130,6 +137,20 @@ FwWindGridDef windGridDefOf(const Deed& deed) noexcept {
     def.structSize = sizeof def;
     DeedReader reader{deed};
     putGrid(reader, def);
+    return def;
+}
+
+Deed deedOf(const FwHeatShieldDef& def) noexcept {
+    DeedWriter writer;
+    putShield(writer, def);
+    return writer.deed;
+}
+
+FwHeatShieldDef heatShieldDefOf(const Deed& deed) noexcept {
+    FwHeatShieldDef def{};
+    def.structSize = sizeof def;
+    DeedReader reader{deed};
+    putShield(reader, def);
     return def;
 }
 
@@ -235,6 +256,12 @@ void World::perform(const Deed& deed) {
             return takeWindGrid(deed);
         case Deed::Kind::windPoints:
             return takeWindPoints(deed);
+        case Deed::Kind::heatShield:
+            return takeShield(deed);
+        case Deed::Kind::shieldCells:
+            return takeShieldCells(deed);
+        case Deed::Kind::shieldObject:
+            return takeShieldObject(deed);
         case Deed::Kind::gusts: {
             FwGustDef def{};
             def.structSize = sizeof def;

@@ -35,13 +35,18 @@ struct Deed {
         windGrid,
         windPoints,
         gusts,
+        heatShield,
+        shieldCells,
+        shieldObject,
         count
     };
     Kind kind = Kind::count;
-    uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all; windPoints: the first
+    uint32_t slot = 0;  // of whom; ignite: slot + 1 of the object, 0: all; windPoints: the first;
+                        // shieldCells: which 288 of them; shieldObject: slot + 1, 0: none
     uint32_t tick = 0;  // ignite, playBurn: when it takes effect
     uint32_t word = 0;  // flags; ignite: FwIgnitionKind; moveEmitter: 1: with a direction;
-                        // windZone, room, windGrid: what of a def is no float, see deedOf;
+                        // windZone, room, windGrid, heatShield: what of a def is no float, see
+                        // deedOf; shieldObject: 1: the last one
                         // playBurn: slot + 1 of the burn
     std::array<float, 13> numbers{};
 };
@@ -70,6 +75,9 @@ constexpr DeedForm kDeedForms[] = {
     {false, false, true, 5},   // windGrid
     {true, false, false, 12},  // windPoints
     {false, false, false, 2},  // gusts
+    {false, false, true, 4},   // heatShield
+    {true, false, false, 12},  // shieldCells
+    {true, false, true, 0},    // shieldObject
 };
 static_assert(std::size(kDeedForms) == size_t(Deed::Kind::count));
 template <class S, class T>
@@ -84,7 +92,9 @@ void putDeed(S& s, T& deed) {
 // A def as a deed's word and numbers, and back. Its kind and slot are others' business.
 [[nodiscard]] Deed deedOf(const FwWindZoneDef& def) noexcept;
 [[nodiscard]] Deed deedOf(const FwRoomDef& def) noexcept;
-[[nodiscard]] Deed deedOf(const FwWindGridDef& def) noexcept;  // without its points
+[[nodiscard]] Deed deedOf(const FwWindGridDef& def) noexcept;    // without its points
+[[nodiscard]] Deed deedOf(const FwHeatShieldDef& def) noexcept;  // without its cells and objects
+[[nodiscard]] FwHeatShieldDef heatShieldDefOf(const Deed& deed) noexcept;
 [[nodiscard]] FwWindZoneDef windZoneDefOf(const Deed& deed) noexcept;
 [[nodiscard]] FwRoomDef roomDefOf(const Deed& deed) noexcept;
 [[nodiscard]] FwWindGridDef windGridDefOf(const Deed& deed) noexcept;

@@ -339,6 +339,7 @@ void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
         latchRemote(now);
         frame_.remoteLatched = true;
     }
+    planShield(step, awake);
     if (!awake || !remote_.unsent) return;
     if (frame_.remoteFlushed && now % gpu::kExchangeTicks != 0) return;
     findNeighbours();
@@ -388,6 +389,7 @@ void World::touchNear(uint32_t now) {
 }
 
 void World::commitRemote() noexcept {
+    if (frame_.shieldSent) shield_.unsent = false;
     if (frame_.remoteLatched) {
         for (const uint32_t slot : remote_.due) (*objects_.at(slot))->remoteDue = false;
         remote_.due.clear();

@@ -212,6 +212,9 @@ void World::noteSaved(SavedWorld& to) {
     std::copy_n(wind_, 3, to.wind);
     to.windGrid.shape = windGrid_.shape;
     to.windGrid.points.assign(windGrid_.points.begin(), windGrid_.points.end());
+    to.heatShield.shape = shield_.grid.shape;
+    to.heatShield.solid.assign(shield_.grid.solid.begin(), shield_.grid.solid.end());
+    to.heatShield.baked.assign(shield_.grid.baked.begin(), shield_.grid.baked.end());
     to.gusts = gusts_;
     to.flags = remote_.flags | remote_.objectFlags;
     to.warms = remote_.warms;
@@ -554,6 +557,8 @@ void World::checkSaved(const SavedWorld& saved) {
         saved.windGrid.shape.points() != saved.windGrid.points.size() ||
         !components::plausible(saved.gusts, clock.tick))
         core::fail(FW_ERROR_BAD_DATA, "The save has a grid of wind or gusts that none can be.");
+    for (const components::ShieldCell& cell : saved.heatShield.baked)
+        checkTexel(cell.what & gpu::kShieldSlot, cell.texel, "a cell of the shield");
     for (const SavedWindZone& zone : saved.windZones)
         if (zone.slot >= windPool_.slotCount() || !windPool_.at(zone.slot) ||
             !components::plausible(zone.zone))
@@ -721,6 +726,11 @@ void World::load(std::span<const std::byte> bytes) {
     // From here on nothing fails.
     windGrid_.shape = saved.windGrid.shape;
     windGrid_.points.swap(saved.windGrid.points);
+    shield_.grid.shape = saved.heatShield.shape;
+    shield_.grid.solid.swap(saved.heatShield.solid);
+    shield_.grid.baked.swap(saved.heatShield.baked);
+    shield_.told.clear();
+    shield_.unsent = shield_.unpacked = true;
     applySaved(saved, latches);
     size_t next = 0;
     for (const SavedObject& from : saved.objects) {

@@ -116,6 +116,7 @@ struct SavedObject {
 struct SavedWorld {
     explicit SavedWorld(std::pmr::memory_resource* memory)
         : windGrid(memory),
+          heatShield(memory),
           objects(memory),
           pending(memory),
           tags(memory),
@@ -137,6 +138,7 @@ struct SavedWorld {
     uint64_t steps = 0, droppedSteps = 0, order = 0;
     float wind[3] = {};
     components::WindGrid windGrid;
+    components::HeatShield heatShield;
     components::Gusts gusts;
     uint32_t flags = 0;
     bool warms = false, blockersDue = false;

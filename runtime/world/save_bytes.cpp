@@ -74,6 +74,8 @@ template <typename S, Is<SavedWindZone> T>
 void put(S& s, T& value);
 template <typename S, Is<components::WindGrid> T>
 void put(S& s, T& value);
+template <typename S, Is<components::HeatShield> T>
+void put(S& s, T& value);
 template <typename S, Is<components::Gusts> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedRoom> T>
@@ -224,6 +226,64 @@ void put(S& s, T& g) {
         }
     }
 }
+// A plane of whole numbers in rows of `width`, after how many bytes it takes.
+template <typename S, class Values>
+void putPlane(S& s, Values& values, uint32_t width) {
+    if constexpr (S::kReads) {
+        const uint32_t size = s.count("bytes of a heat shield", 1);
+        if (!save::readPlane(s.take(size), width, {}, values))
+            core::fail(FW_ERROR_BAD_DATA, "The save's heat shield is damaged.");
+    } else {
+        std::pmr::vector<std::byte> bytes(s.bytes().get_allocator());
+        save::writePlane(values, width, {}, bytes);
+        s.number(uint32_t(bytes.size()));
+        s.bytes().insert(s.bytes().end(), bytes.begin(), bytes.end());
+    }
+}
+// The host's cells as words; of those that objects fill, how far each is behind the one before, and
+// whose it is.
+template <typename S, Is<components::HeatShield> T>
+void put(S& s, T& g) {
+    all(s, g.shape.counts, g.shape.origin, g.shape.cell);
+    const auto absurd = [] {
+        core::fail(FW_ERROR_BAD_DATA, "The save has a heat shield that none can be.");
+    };
+    if constexpr (S::kReads) {
+        if (!components::plausible(g.shape)) absurd();
+        g.solid.assign(g.shape.words(), 0);
+    }
+    if (g.shape.cells() == 0) return;
+    putPlane(s, g.solid, (g.shape.counts[0] + 31) / 32);
+    if constexpr (S::kReads)
+        if (const uint32_t over = g.shape.cells() % 32; over != 0 && g.solid.back() >> over != 0)
+            absurd();
+    uint32_t count = uint32_t(g.baked.size());
+    s.number(count);
+    if constexpr (S::kReads) {
+        if (count > gpu::kShieldBaked) absurd();
+        g.baked.assign(count, {});
+    }
+    if (count == 0) return;
+    std::pmr::vector<uint32_t> plane(count, g.solid.get_allocator());
+    for (uint32_t of = 0; of < 3; ++of) {
+        if constexpr (!S::kReads)
+            for (uint32_t i = 0; i < count; ++i)
+                plane[i] = of == 0   ? g.baked[i].cell - (i != 0 ? g.baked[i - 1].cell : 0)
+                           : of == 1 ? g.baked[i].what
+                                     : g.baked[i].texel;
+        putPlane(s, plane, count);
+        if constexpr (S::kReads)
+            for (uint32_t i = 0; i < count; ++i) {
+                if (of == 0) {
+                    const uint64_t before = i != 0 ? g.baked[i - 1].cell : 0;
+                    if (before + plane[i] >= g.shape.cells() || (i != 0 && plane[i] == 0)) absurd();
+                    g.baked[i].cell = uint32_t(before + plane[i]);
+                } else {
+                    (of == 1 ? g.baked[i].what : g.baked[i].texel) = plane[i];
+                }
+            }
+    }
+}
 template <typename S, Is<components::Gusts> T>
 void put(S& s, T& g) {
     all(s, g.strength, g.size, g.drift, g.since);
@@ -352,6 +412,7 @@ void put(S& s, T& w) {
     list(s, w.blockers, "blockers", 64);
     list(s, w.latchedBlockers, "latched blockers", 64);
     put(s, w.windGrid);
+    put(s, w.heatShield);
     put(s, w.gusts);
     list(s, w.windZones, "wind zones", 108);
     list(s, w.rooms, "rooms", 156);

@@ -116,7 +116,7 @@ void World::planSteps(const ClockAdvance& time) {
     // Spans into it must hold. Who plays and is disturbed has one more.
     frame_.events.reserve(frame_.due.size() + gates + plays + frame_.plays.size());
     frame_.remoteUsed = 0;
-    frame_.remoteLatched = frame_.remoteFlushed = false;
+    frame_.remoteLatched = frame_.remoteFlushed = frame_.shieldSent = false;
     ++planStamp_;
     const bool awake = !idle_ || !frame_.due.empty() || plays > 0 ||
                        (switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;

@@ -99,6 +99,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       burns_("Baked burn", memory),
       windZones_(memory),
       windGrid_(memory),
+      shield_(memory),
       rooms_("Room", memory),
       fires_("Volumetric fire", memory),
       fields_("Particle field", memory),
@@ -510,6 +511,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     std::erase(playing_, &object);
     std::erase(forecasts_, slot);
     std::erase(remote_.due, slot);
+    dropFromShield(slot);
     texels_ -= object.texels;
     if (object.map.wished) --mapsWished_;
     if (object.forecast && object.forecast->wished) --mapsWished_;

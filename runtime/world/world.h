@@ -6,6 +6,7 @@
 #include "components/fire_emitter.h"
 #include "components/fire_flames.h"
 #include "components/gusts.h"
+#include "components/heat_shield.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
 #include "components/room.h"
@@ -286,6 +287,17 @@ struct RemoteBook {
     std::pmr::vector<gpu::Blocker> blockers;  // latched
 };
 
+struct ShieldBook {
+    explicit ShieldBook(std::pmr::memory_resource* memory)
+        : grid(memory), told(memory), words(memory) {}
+    components::HeatShield grid;
+    std::pmr::vector<uint32_t> told;   // slots that deeds named so far
+    std::pmr::vector<uint32_t> words;  // as the backend gets it
+    gpu::ShieldUpdate update;
+    bool unpacked = false;  // `words` are of another grid
+    bool unsent = false;    // the backend does not know the latest
+};
+
 struct RemoteTables {  // what a RemoteUpdate of a frame points to
     explicit RemoteTables(std::pmr::memory_resource* memory)
         : objects(memory), neighbours(memory), links(memory), blockers(memory) {}
@@ -339,7 +351,8 @@ class World {
     World& operator=(const World&) = delete;
 
     void setWind(const float wind[3]);
-    void setWindGrid(const FwWindGridDef& def);  // of structSize 0: none any more
+    void setHeatShield(const FwHeatShieldDef& def);  // of structSize 0: none any more
+    void setWindGrid(const FwWindGridDef& def);      // of structSize 0: none any more
     void setGusts(const FwGustDef& def);
     FwWindZoneId createWindZone(const FwWindZoneDef& def);
     void setWindZone(FwWindZoneId id, const FwWindZoneDef& def);
@@ -562,7 +575,7 @@ class World {
         std::pmr::vector<uint32_t> images;                   // slots of objects that a save takes
         std::pmr::vector<core::Owned<RemoteTables>> remote;  // the first `remoteUsed` of them
         size_t remoteUsed = 0;
-        bool remoteLatched = false, remoteFlushed = false;
+        bool remoteLatched = false, remoteFlushed = false, shieldSent = false;
         std::pmr::vector<gpu::FieldRun> fieldRuns;  // there is room for all of a frame
         std::pmr::vector<uint32_t> fieldRounds;
         std::pmr::vector<gpu::FieldDraw> fieldDraws;
@@ -681,6 +694,16 @@ class World {
                                                     uint64_t tick) const noexcept;
     [[nodiscard]] uint32_t zoneWindOf(const Object& object, uint64_t tick) const noexcept;
     void listWindZones() noexcept;
+    components::ShieldObject shieldObjectOf(uint32_t slot) noexcept;
+    void bakeHeatShield(const components::ShieldShape& shape, std::pmr::vector<uint32_t>& slots,
+                        std::pmr::vector<components::ShieldCell>& baked);
+    void noteShield(const FwHeatShieldDef& def, const components::HeatShield& made,
+                    std::span<const uint32_t> slots) noexcept;
+    void takeShield(const Deed& deed);
+    void takeShieldCells(const Deed& deed);
+    void takeShieldObject(const Deed& deed);
+    void dropFromShield(uint32_t slot) noexcept;
+    void planShield(gpu::StepPlan& step, bool awake);
     void takeWindGrid(const Deed& deed);
     void takeWindPoints(const Deed& deed);
     void windTurns() noexcept;
@@ -848,6 +871,7 @@ class World {
     core::HandlePool<FwBurnId, core::Owned<Burn>> burns_;
     std::pmr::vector<components::WindZone> windZones_;  // in the order in which they count
     components::WindGrid windGrid_;
+    ShieldBook shield_;
     components::Gusts gusts_;
     bool windDue_ = false;     // what objects keep of the wind is to be found anew
     uint64_t gustsShown_ = 0;  // tick of the gusts that objects keep

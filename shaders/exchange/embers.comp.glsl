@@ -22,10 +22,14 @@ layout(local_size_x = 64) in;
 #define FW_USE_REMOTE_TILES
 #define FW_USE_SOURCES readonly
 #define FW_USE_BLOCKERS
+#define FW_USE_SHIELD
+#define FW_USE_HEAT readonly
+#define FW_USE_MATERIALS readonly
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"
 #include "lib/change.glsl"
 #include "lib/light.glsl"
+#include "lib/shield.glsl"
 
 uint landsOn(ivec3 at, uint axis, out int top) {
     uint found = kNoneTexel;
@@ -83,6 +87,12 @@ void land(FireSource source) {
         if (blockerCuts(blockers[b], alongFlame(source, up, 8), ember.landing) ||
             blockerCuts(blockers[b], ember.landing, place))
             return;
+    if (push.shieldCell != 0u) {
+        ShieldEnds ends = emberEnds(source, object, push.shieldCell);
+        if (shieldCuts(ends, alongFlame(source, up, 8), ember.landing) ||
+            shieldCuts(ends, ember.landing, place))
+            return;
+    }
     uint chance = bothChances(emberLights(ember.energy, remoteObjects[object].catches),
                               bothChances(push.chance, remoteObjects[source.object].chance));
     if (!drawn(hash32(source.ember + 7u), chance)) return;

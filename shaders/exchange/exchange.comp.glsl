@@ -15,13 +15,20 @@ layout(local_size_x = 64) in;
 #define FW_USE_SOURCES readonly
 #define FW_USE_RECEIVERS readonly
 #define FW_USE_BLOCKERS
+#define FW_USE_SHIELD
+#define FW_USE_STATE readonly
+#define FW_USE_HEAT readonly
+#define FW_USE_MATERIALS readonly
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"
+#include "lib/shield.glsl"
 
-bool blocked(FireSource s, ivec3 up, ivec3 at) {
+bool blocked(FireSource s, ivec3 up, uint slot, ivec3 at, ivec3 normal) {
+    ivec3 flame = alongFlame(s, up, 4);
     for (uint b = 0u; b < push.blockers; ++b)
-        if (blockerCuts(blockers[b], alongFlame(s, up, 4), at)) return true;
-    return false;
+        if (blockerCuts(blockers[b], flame, at)) return true;
+    return push.shieldCell != 0u &&
+           shieldCuts(shieldEnds(s, flame, slot, at, normal, push.shieldCell), flame, at);
 }
 
 void warmTile(uint slot, uint local) {
@@ -39,7 +46,7 @@ void warmTile(uint slot, uint local) {
         uint entry = receivers[slot * kReceiverWords + 2u + i];
         FireSource s = sources[entry & 0xFFFFFFu];
         Received r = receivedFrom(s, push.flags, push.ambient, up, at, normal, both, entry >> 24u);
-        if ((r.flux | r.pilot) == 0u || blocked(s, up, at)) continue;
+        if ((r.flux | r.pilot) == 0u || blocked(s, up, slot, at, normal)) continue;
         flux = min(flux + r.flux, kFluxMost);
         pilot |= r.pilot;
         uint key = litBy(s.hops, s.object);

@@ -219,6 +219,9 @@ FW_BUFFER(FW_BIND_CONTACTS, readonly, ContactsBuffer, ContactLink, contacts);
 #ifdef FW_USE_BLOCKERS
 FW_BUFFER(FW_BIND_BLOCKERS, readonly, BlockersBuffer, Blocker, blockers);
 #endif
+#ifdef FW_USE_SHIELD
+FW_BUFFER(FW_BIND_SHIELD, readonly, ShieldBuffer, uint, shield);
+#endif
 #ifdef FW_USE_ROOMS
 #include "shared/room.h"
 FW_BUFFER(FW_BIND_ROOMS, readonly, RoomsBuffer, Room, rooms);

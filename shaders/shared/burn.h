@@ -64,6 +64,7 @@
 #define FW_BIND_DEFORM_GROUPS 52  // uvec2[]: object slot, first of 64 nodes or vertices
 #define FW_BIND_SOFT 53           // vec4[]: 3 per shown vertex of a sheet: place, place, normal and bend
 #define FW_BIND_ROOM_AIR 54          // RoomAir[kMaxRooms]
+#define FW_BIND_SHIELD 55     // uint[]: the shield as words, see exchange.h
 #define FW_BIND_SKIN_TEXELS 56    // uvec4[]: three vertices and two unorm16 weights per texel (per mesh)
 #define FW_BIND_SKIN_SOURCES 57   // uint[]: per drawn vertex the host's (per mesh)
 #define FW_BIND_SKIN_GIVEN 58     // uint[]: what hosts' vertex buffers held (per object)

@@ -20,6 +20,9 @@ FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
 FW_SHARED_CONST uint kSourceGrid = 4u;          // an object's sources: cells along its longest side
 FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most, so
 FW_SHARED_CONST uint kMaxBlockers = 64u;
+FW_SHARED_CONST uint kShieldSide = 256u;        // cells along an axis of the shield, at most
+FW_SHARED_CONST uint kShieldCells = 2097152u;   // all of them, at most
+FW_SHARED_CONST uint kShieldBaked = 262144u;    // of these what objects fill, at most
 FW_SHARED_CONST uint kReceiverWords = 66u;  // a slot; then its sources: how many, and
                                             // source | what is seen of it, of 255, << 24
 FW_SHARED_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
@@ -137,8 +140,16 @@ struct ExchangePush {  // push constants of the passes that exchange
     uint ambient;      // 1/16 K
     uint hotParity;
     uint warms;        // 1: some object may be warmed by others
+    int shieldX;       // low corner of the shield, mm
+    int shieldY;
+    int shieldZ;
+    uint shieldCell;   // side of its cells, mm; 0: there is none
+    uint shieldCounts; // cells along x | y << 10 | z << 20
+    uint reserved0;
+    uint reserved1;
+    uint reserved2;
 };
-FW_SHARED_SIZE(ExchangePush, 96)
+FW_SHARED_SIZE(ExchangePush, 128)
 
 // ---- places
 
@@ -194,6 +205,163 @@ FW_SHARED_FN bool blockerCuts(FW_IN(Blocker) k, ivec3 a, ivec3 b) {
     return absolute(o.y * h.z - o.z * h.y) <= ey * hz + ez * hy &&
            absolute(o.z * h.x - o.x * h.z) <= ez * hx + ex * hz &&
            absolute(o.x * h.y - o.y * h.x) <= ex * hy + ey * hx;
+}
+
+// ---- the shield: cells that fire does not see, blow or fly through
+//
+// As words: a bit per cell that is solid, in the cells' order (x fastest, then y, then z); then, per
+// 32 of them, the bits of those that objects fill, and how many such are before these; then two
+// words for each of those, what and which texel it is. A cell of an object is as solid as that texel.
+FW_SHARED_CONST uint kShieldStays = 0x80000000u;  // | slot | material << 24: it never gives way
+FW_SHARED_CONST uint kShieldSlot = 0xFFFFFFu;
+
+FW_SHARED_FN uint shieldSide(uint counts, uint axis) { return (counts >> (10u * axis)) & 0x3FFu; }
+FW_SHARED_FN uint shieldWords(uint counts) {  // of one bit per cell
+    return (shieldSide(counts, 0u) * shieldSide(counts, 1u) * shieldSide(counts, 2u) + 31u) >> 5u;
+}
+
+struct ShieldWalk {  // from cell to cell, through their faces: exactly those that a straight way meets
+    bool within;     // of the grid, and of the way
+    uint cell;       // where it is
+    uint whole;      // mm, all of the way
+    uint passed;     // of it, out of `of`, as the walk came into this cell
+    uint of;
+    ivec3 strides;   // to the next cell
+    ivec3 room;      // cells left in the grid
+    uvec3 ahead;     // mm along the axis from where it began to the next face
+    uvec3 way;       // mm along the axis, all of it
+};
+
+struct ShieldAxis {
+    int cell;
+    int stride;
+    int room;
+    uint ahead;
+};
+// begins, at: mm in the grid, where the way begins, and where it comes in.
+FW_SHARED_FN ShieldAxis shieldAxis(int begins, int at, int d, int cells, int side) {
+    ShieldAxis a;
+    int inside = at < 0 ? 0 : (at >= cells * side ? cells * side - 1 : at);
+    a.cell = int(divide(uint(inside), uint(side)));
+    a.stride = d > 0 ? 1 : (d < 0 ? -1 : 0);
+    a.room = d > 0 ? cells - 1 - a.cell : (d < 0 ? a.cell : 0);
+    int face = d > 0 ? (a.cell + 1) * side - begins : begins - a.cell * side;
+    a.ahead = d == 0 || face < 0 ? 1u : uint(face);
+    return a;
+}
+// Q14 of the way after which it is between the two faces of an axis; above 16384: never.
+FW_SHARED_FN uint shieldEnters(int begins, int d, int size) {
+    uint outside = begins < 0 ? uint(-begins) : (begins >= size ? uint(begins - size + 1) : 0u);
+    if (outside == 0u) return 0u;
+    bool comes = begins < 0 ? d > 0 : d < 0;
+    if (!comes || outside > absolute(d)) return 16385u;
+    return divide(outside << 14u, absolute(d));
+}
+
+FW_SHARED_FN ShieldWalk shieldWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
+    ShieldWalk w;
+    w.within = false;
+    w.cell = 0u;
+    w.whole = 0u;
+    w.passed = 0u;
+    w.of = 16384u;
+    w.strides = ivec3(0, 0, 0);
+    w.room = ivec3(0, 0, 0);
+    w.ahead = uvec3(1u, 1u, 1u);
+    w.way = uvec3(0u, 0u, 0u);
+    ivec3 d = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
+    if (g.shieldCell == 0u || !withinReach(d)) return w;
+    // Halves first: places and grid may be 3e9 mm apart.
+    ivec3 off = ivec3(a.x / 2 - g.shieldX / 2, a.y / 2 - g.shieldY / 2, a.z / 2 - g.shieldZ / 2);
+    uint far = mostOf(mostOf(absolute(off.x), absolute(off.y)), absolute(off.z));
+    if (far > 1500000u) return w;
+    ivec3 s = ivec3(a.x - g.shieldX, a.y - g.shieldY, a.z - g.shieldZ);
+    int side = int(g.shieldCell);
+    ivec3 n = ivec3(int(shieldSide(g.shieldCounts, 0u)), int(shieldSide(g.shieldCounts, 1u)),
+                    int(shieldSide(g.shieldCounts, 2u)));
+    uint enters = mostOf(mostOf(shieldEnters(s.x, d.x, n.x * side), shieldEnters(s.y, d.y, n.y * side)),
+                         shieldEnters(s.z, d.z, n.z * side));
+    if (enters > 16384u) return w;
+    int t = int(enters);
+    ShieldAxis x = shieldAxis(s.x, s.x + d.x * t / 16384, d.x, n.x, side);
+    ShieldAxis y = shieldAxis(s.y, s.y + d.y * t / 16384, d.y, n.y, side);
+    ShieldAxis z = shieldAxis(s.z, s.z + d.z * t / 16384, d.z, n.z, side);
+    w.whole = isqrtNear(squareSum(d));
+    w.passed = enters;
+    w.cell = uint((z.cell * n.y + y.cell) * n.x + x.cell);
+    w.strides = ivec3(x.stride, y.stride * n.x, z.stride * n.x * n.y);
+    w.room = ivec3(x.room, y.room, z.room);
+    w.ahead = uvec3(x.ahead, y.ahead, z.ahead);
+    w.way = uvec3(absolute(d.x), absolute(d.y), absolute(d.z));
+    // Beside the grid where it comes level with the last of its faces: it never is within.
+    ivec3 at = ivec3(s.x + d.x * t / 16384, s.y + d.y * t / 16384, s.z + d.z * t / 16384);
+    w.within = at.x >= -1 && at.y >= -1 && at.z >= -1 && at.x <= n.x * side && at.y <= n.y * side &&
+               at.z <= n.z * side;
+    return w;
+}
+
+// Into the next cell. Products of a way and what is ahead stay below 2^31.
+FW_SHARED_FN void shieldStep(FW_INOUT(ShieldWalk) w, uint side) {
+    bool alongX = w.ahead.x * w.way.y < w.ahead.y * w.way.x;
+    uint ahead = alongX ? w.ahead.x : w.ahead.y, way = alongX ? w.way.x : w.way.y;
+    bool alongZ = w.ahead.z * way < ahead * w.way.z;
+    uint axis = alongZ ? 2u : (alongX ? 0u : 1u);
+    w.passed = alongZ ? w.ahead.z : ahead;
+    w.of = alongZ ? w.way.z : way;
+    int room = axis == 0u ? w.room.x : (axis == 1u ? w.room.y : w.room.z);
+    w.within = room > 0 && w.passed < w.of;
+    if (axis == 0u) {
+        w.cell += uint(w.strides.x);
+        w.room.x -= 1;
+        w.ahead.x += side;
+    } else if (axis == 1u) {
+        w.cell += uint(w.strides.y);
+        w.room.y -= 1;
+        w.ahead.y += side;
+    } else {
+        w.cell += uint(w.strides.z);
+        w.room.z -= 1;
+        w.ahead.z += side;
+    }
+}
+
+struct ShieldEnds {  // whom a way is between, and how near to them what is their own does not count
+    uint from;       // slot
+    uint to;
+    uint fromSpare;  // mm
+    uint toSpare;
+};
+// Is the cell that the walk is in too near to an end? All are within a cell of it: what a fire
+// leans on is not in its way. slot: whose the cell is; kNoneTexel: the host's, everybody's own.
+FW_SHARED_FN bool shieldSpares(FW_IN(ShieldWalk) w, FW_IN(ShieldEnds) e, uint slot, uint side) {
+    uint at = (w.whole * divide(w.passed << 12u, w.of)) >> 12u;
+    uint from = slot == e.from || slot == kNoneTexel ? e.fromSpare : side;
+    uint to = slot == e.to || slot == kNoneTexel ? e.toSpare : side;
+    return at < from || w.whole < at + to + side / 2u;
+}
+// From a flame to a surface. Own walls: a source is somewhere among the texels that it sums up, and
+// what comes flat along a surface passes many of that surface's cells.
+FW_SHARED_FN ShieldEnds shieldEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at, ivec3 normal,
+                                   uint side) {
+    ShieldEnds e;
+    e.from = s.object;
+    e.to = to;
+    e.fromSpare = side * 2u + leastOf(s.diameter / 2u, 1000u);
+    ivec3 d = ivec3(flame.x - at.x, flame.y - at.y, flame.z - at.z);
+    e.toSpare = side * 2u;
+    if (!withinReach(d)) return e;
+    uint over = absolute((normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z) >> 10u;
+    uint leaves = divide(side * isqrtNear(squareSum(d)), mostOf(over, 1u));  // a cell over it
+    e.toSpare = mostOf(e.toSpare, leastOf(leaves + leaves / 2u, side * 6u));
+    return e;
+}
+FW_SHARED_FN ShieldEnds emberEnds(FW_IN(FireSource) s, uint to, uint side) {
+    ShieldEnds e;
+    e.from = s.object;
+    e.to = to;
+    e.fromSpare = side * 2u + leastOf(s.diameter / 2u, 1000u);
+    e.toSpare = side * 2u;
+    return e;
 }
 
 // ---- flames

@@ -30,7 +30,7 @@ inline Bytes saveOf(FwWorld* world) {
 
 // Much goes on at once in it: boxes and boards of several materials that light each other, wind
 // that turns, has gusts and a grid, water, a flamethrower, a fire that stands there, a field that
-// wets, a wall, a tag.
+// wets, a wall, a shield of cells and of an object, a tag.
 class BusyWorld {
  public:
     explicit BusyWorld(uint32_t backend, float pace = 12, uint32_t things = 10) {
@@ -201,6 +201,27 @@ class BusyWorld {
         grid.velocities = velocities;
         ok(fwWorld_SetWindGrid(world, &grid));
     }
+    // A post where none of the things is, a hill below some, and two of the things themselves.
+    void shield(uint32_t frame) {
+        FwHeatShieldDef cells = fwDefaultHeatShieldDef();
+        put(cells.origin, -0.5f, -0.6f, -0.5f);
+        cells.counts[0] = 60;
+        cells.counts[1] = 20;
+        cells.counts[2] = frame == 95 ? 31 : 33;
+        cells.cellSize = 0.05f;
+        std::vector<uint8_t> post(size_t{60} * 20 * cells.counts[2]);
+        for (size_t y = 0; y < 20; ++y) post[(size_t{14} * 20 + y) * 60 + 43] = 1;
+        cells.cells = post.data();
+        float low = frame == 50 ? -0.45f : -0.35f;
+        cells.distance = [](void* data, const float* place) {
+            return place[1] - *static_cast<const float*>(data);
+        };
+        cells.distanceData = &low;
+        const FwBurnableMeshId walls[] = {ids[1 % ids.size()], ids[7 % ids.size()]};
+        cells.objects = walls;
+        cells.objectCount = 2;
+        ok(fwWorld_SetHeatShield(world, &cells));
+    }
     void act(uint32_t frame) {
         FwIgnitionDef ball = fwDefaultIgnitionDef();
         uint32_t texels = 0;
@@ -233,6 +254,8 @@ class BusyWorld {
             ok(fwWorld_SetGusts(world, &gusts));
         }
         if (frame == 33 || frame == 80) blowGrid(frame);
+        if (frame == 28 || frame == 50 || frame == 95) shield(frame);
+        if (frame == 145) ok(fwWorld_SetHeatShield(world, nullptr));
         if (frame == 125) ok(fwWorld_SetWindGrid(world, nullptr));
         if (frame % 45 == 13) {
             const FwWindZoneDef fan = fanOf(frame);

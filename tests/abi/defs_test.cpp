@@ -49,6 +49,7 @@ const DefCase kDefs[] = {
     {"blocker", FW_DEF_BLOCKER, sizeof(FwBlockerDef)},
     {"wind zone", FW_DEF_WIND_ZONE, sizeof(FwWindZoneDef)},
     {"wind grid", FW_DEF_WIND_GRID, sizeof(FwWindGridDef)},
+    {"heat shield", FW_DEF_HEAT_SHIELD, sizeof(FwHeatShieldDef)},
     {"gusts", FW_DEF_GUSTS, sizeof(FwGustDef)},
     {"timeline", FW_DEF_TIMELINE, sizeof(FwTimelineDef)},
     {"room", FW_DEF_ROOM, sizeof(FwRoomDef)},
@@ -294,6 +295,10 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
     checkSizes<FwWindGridDef>(
         "FwWindGridDef", grid,
         [&](const FwWindGridDef* def) { return fwWorld_SetWindGrid(w.world, def); }, worldMessage);
+    checkSizes<FwHeatShieldDef>(
+        "FwHeatShieldDef", fwDefaultHeatShieldDef(),
+        [&](const FwHeatShieldDef* def) { return fwWorld_SetHeatShield(w.world, def); },
+        worldMessage);
     checkSizes<FwGustDef>(
         "FwGustDef", fwDefaultGustDef(),
         [&](const FwGustDef* def) { return fwWorld_SetGusts(w.world, def); }, worldMessage);

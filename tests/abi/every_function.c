@@ -51,6 +51,7 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_CreateWindZone(NULL, NULL, NULL));
     REFUSES(fwWorld_SetWindZone(NULL, zone, NULL));
     REFUSES(fwWorld_DestroyWindZone(NULL, zone));
+    REFUSES(fwWorld_SetHeatShield(NULL, NULL));
     REFUSES(fwWorld_SetWindGrid(NULL, NULL));
     REFUSES(fwWorld_SetGusts(NULL, NULL));
     REFUSES(fwWorld_GetWindAt(NULL, NULL, NULL));
@@ -183,6 +184,7 @@ int fwTestCallEverything(int* calls) {
     wrong += fwDefaultIgnitionDef().structSize == sizeof(FwIgnitionDef) ? 0 : 1;
     wrong += fwDefaultView().structSize == sizeof(FwView) ? 0 : 1;
     wrong += fwDefaultBlockerDef().structSize == sizeof(FwBlockerDef) ? 0 : 1;
+    wrong += fwDefaultHeatShieldDef().structSize == sizeof(FwHeatShieldDef) ? 0 : 1;
     wrong += fwDefaultVolumetricFireDef().structSize == sizeof(FwVolumetricFireDef) ? 0 : 1;
     wrong += fwDefaultFireEmitterDef().structSize == sizeof(FwFireEmitterDef) ? 0 : 1;
     wrong += fwDefaultFlipbookDef().structSize == sizeof(FwFlipbookDef) ? 0 : 1;

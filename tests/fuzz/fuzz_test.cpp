@@ -471,6 +471,23 @@ class Fuzz {
         grid.velocities = points <= 64 && !random_.once(8) ? velocities : nullptr;
         check(fwWorld_SetWindGrid(world_, random_.once(6) ? nullptr : &grid));
     }
+    void shapeShield() {
+        uint8_t solid[512];  // as many as a garbled count may ask for below
+        for (uint8_t& cell : solid) cell = uint8_t(random_.below(2));
+        FwHeatShieldDef shield = fwDefaultHeatShieldDef();
+        shield.cellSize = random_.number();
+        for (float& value : shield.origin) value = random_.number();
+        garble(shield);
+        shield.structSize = sizeof shield;
+        uint64_t cells = 1;
+        for (const uint32_t count : shield.counts) cells *= std::min(count, 257u);
+        shield.cells = cells <= 512 && !random_.once(8) ? solid : nullptr;
+        shield.distance = nullptr;
+        const FwBurnableMeshId one{1 + random_.below(4), 1};
+        shield.objects = random_.once(4) ? nullptr : &one;
+        shield.objectCount = std::min(shield.objectCount, 1u);
+        check(fwWorld_SetHeatShield(world_, random_.once(6) ? nullptr : &shield));
+    }
     void shapeWind() {
         FwWindZoneDef def = fwDefaultWindZoneDef();
         def.shape = random_.below(4);
@@ -486,6 +503,7 @@ class Fuzz {
             return;
         }
         shapeGrid();
+        shapeShield();
         FwWindZoneId id{};
         const FwResult result = fwWorld_CreateWindZone(world_, &def, &id);
         check(result);

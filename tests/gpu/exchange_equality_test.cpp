@@ -189,6 +189,22 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
             moved(transform, one(1.6f), one(0.6f), one(1.6f), one(6));
             both.each([&](world::World& w) { w.setTransform(both.ids[i], transform); });
         }
+        if (frame % 40 == 10) {  // as they stand then; some have burnt away, others move on
+            const FwBurnableMeshId walls[] = {both.ids[0], both.ids[2], both.ids[7], both.ids[9]};
+            uint8_t post[40 * 24 * 40] = {};
+            for (int y = 0; y < 24; ++y) post[(12 * 24 + y) * 40 + 20] = 1;
+            FwHeatShieldDef shield{};
+            shield.structSize = sizeof shield;
+            shield.counts[0] = shield.counts[2] = 40;
+            shield.counts[1] = 24;
+            shield.origin[0] = shield.origin[1] = shield.origin[2] = -0.2f;
+            shield.cellSize = 0.05f;
+            shield.cells = post;
+            shield.objects = walls;
+            shield.objectCount = frame % 80 == 10 ? 4 : 2;
+            if (frame % 160 == 130) shield = {};
+            both.each([&](world::World& w) { w.setHeatShield(shield); });
+        }
         if (random() % 15 == 0) {
             const float wind[3] = {one(6) - 3, 0, one(6) - 3};
             both.each([&](world::World& w) { w.setWind(wind); });

@@ -107,6 +107,7 @@ typedef enum FwDefType {
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
     FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23, FW_DEF_WIND_ZONE = 24, FW_DEF_ROOM = 25,
     FW_DEF_WIND_GRID = 26, FW_DEF_GUSTS = 27, FW_DEF_TIMELINE = 28,
+    FW_DEF_HEAT_SHIELD = 29,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
@@ -248,6 +249,40 @@ static inline FwBlockerDef fwDefaultBlockerDef(void) {
 FW_API FwResult FW_CALL fwWorld_AddBlocker(FwWorld*, const FwBlockerDef* def, FwBlockerId* id);
 FW_API FwResult FW_CALL fwWorld_MoveBlocker(FwWorld*, FwBlockerId id, const float transform[16]); /* [world] */
 FW_API FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld*, FwBlockerId id); /* [world] */
+
+typedef enum FwHeatShieldFlags {
+    FW_HEAT_SHIELD_ALL_OBJECTS = 1, /* all burnable meshes that are there fill cells, not `objects` alone */
+    FW_HEAT_SHIELD_FORCE32 = 0x7fffffff
+} FwHeatShieldFlags;
+/* A grid of solid cells that radiation, plumes and embers do not pass, for more than boxes give: terrain and houses of
+ * the host's, walls and fences that are burnable meshes. A cell is solid if any of the three below says so. */
+typedef struct FwHeatShieldDef {
+    uint32_t structSize, flags; /* FwHeatShieldFlags, default 0 */
+    uint32_t counts[3];         /* cells along the world's x, y, z, [1, 256] each, at most 2097152 in all; default 1 */
+    float origin[3];            /* m, world, within +-1e6: the grid's low corner. Rounded to mm */
+    float cellSize;             /* m, [0.05, 10], default 0.25. Not below what the gaps are that fire is to pass, nor
+                                   below the side of the objects' texels */
+    uint32_t objectCount;       /* default 0 */
+    const uint8_t* cells;       /* default null. A byte each, x fastest, then y, then z; not 0: solid. Copied */
+    float (FW_CALL* distance)(void* distanceData, const float place[3]); /* default null. m from a place (m, world) to the
+                                   nearest surface, negative inside: called once for each cell's middle, within
+                                   fwWorld_SetHeatShield alone. Below half of cellSize: solid, so that a wall of any
+                                   thickness has no gap. Give more where ground is to stay below what lies on it */
+    void* distanceData;
+    const FwBurnableMeshId* objects; /* default null. Those whose surface fills cells, as they stand now, at rest. A cell of
+                                   theirs opens as pictures and jets have it: with the hole at its middle */
+} FwHeatShieldDef;
+static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
+    FwHeatShieldDef d; fwInitDef(FW_DEF_HEAT_SHIELD, &d, (uint32_t)sizeof d); return d;
+}
+/* In place of the shield that was; null: none any more. Counts from the next exchange on (eight a second), beside blockers.
+ * What is within a cell of a flame or of what it warms is not between them; of the cells of the two's own, and of the
+ * host's, what is within some cells: nothing shades itself. What has burnt away lets fire pass by itself; what moved is
+ * where it was until the next call; what is destroyed is gone. At most 262144 cells are objects'. The same on every
+ * backend, in saves, logs and networks: these have 57 bytes for every 288 cells in a row of which one of the host's
+ * changed (all that are solid, where the grid is another), and 9 for each object. Takes some 20 ns per cell (with the
+ * callback: and its time) and per texel of the objects. [world] */
+FW_API FwResult FW_CALL fwWorld_SetHeatShield(FwWorld*, const FwHeatShieldDef* def);
 
 typedef enum FwWindShape { /* where a wind zone is; what lies in it is measured from its middle to its edge */
     FW_WIND_BOX = 0,           /* along the world's axes: size is half of its sides */
@@ -1317,7 +1352,7 @@ FW_API FwResult FW_CALL fwWorld_StopBurn(FwWorld*, FwBurnableMeshId id);
  * and changes nothing; the checksum finds damage, not malice: encrypt where that is to be feared. Nothing here waits.
  *
  * Sent by itself is: fwWorld_Ignite, PlayBurn, StopBurn, SetWind, SetWindGrid, SetGusts, SetWindZone, SetRoom, SetFlags,
- * SetTransform, MoveBlocker;
+ * SetTransform, MoveBlocker, SetHeatShield;
  * of volumetric fires with FW_FIRE_IGNITES and jets with FW_EMITTER_IGNITES where they are and their power, of fields with
  * FW_FIELD_WETS where they are and their amount. On a client these calls are refused, as fwWorld_Load is. What is made and
  * destroyed, and all else that changes what burns (colliders, points of fires, painted fields, vertices), each host does by

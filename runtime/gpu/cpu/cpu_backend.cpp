@@ -510,8 +510,10 @@ void CpuBackend::run(const FramePlan& plan) {
     store.fields.resize(s.fields.size());
     store.rooms.reserve(kMaxRooms);
 
-    for (const StepPlan& step : plan.steps)
+    for (const StepPlan& step : plan.steps) {
         if (step.remote) s.reserveRemote(*step.remote);
+        if (step.shield) s.reserveShield(*step.shield);
+    }
 
     s.switches = plan.switches;
     s.runTiles = 0;
@@ -519,6 +521,7 @@ void CpuBackend::run(const FramePlan& plan) {
     s.timed.fill(0);
     for (const StepPlan& step : plan.steps) {
         if (step.remote) s.placeRemote(*step.remote);
+        if (step.shield) s.placeShield(*step.shield);
         s.capped = step.capped;
         const uint32_t most = step.rules.tilesMost;
         if (!step.materials.empty()) {

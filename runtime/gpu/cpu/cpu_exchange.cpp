@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace fw::gpu::cpu {
 namespace {
@@ -32,6 +33,49 @@ void CpuBackend::State::placeRemote(const RemoteUpdate& update) noexcept {
     blockers.assign(update.blockers.begin(), update.blockers.end());
 }
 
+void CpuBackend::State::reserveShield(const ShieldUpdate& update) {
+    shieldCells.reserve(update.words.size());
+}
+
+void CpuBackend::State::placeShield(const ShieldUpdate& update) noexcept {
+    shieldCells.assign(update.words.begin(), update.words.end());
+    shield = update;
+    shield.words = shieldCells;
+}
+
+// As shaders/lib/shield.glsl.
+bool CpuBackend::State::shieldStands(uint32_t what, uint32_t texel, uint32_t now) const noexcept {
+    if ((what & kShieldStays) != 0) return true;
+    const uint32_t slot = what & kShieldSlot;
+    if (slot >= objects.size() || !objects[slot]) return true;
+    const CpuObject& object = *objects[slot];
+    const uint32_t holes = object.materials[what >> 24 & 7].holeTicks, t = object.state[texel];
+    if (!isSource(t) || t > now || now - t < holes) return true;
+    return !object.heat.empty() &&
+           !gateLets(kEventGate, holes, unpackHeat(object.heat[texel]), t, now);
+}
+
+bool CpuBackend::State::shieldCuts(const ShieldEnds& ends, const ivec3& a, const ivec3& b,
+                                   const ExchangePush& rules) const noexcept {
+    const uint32_t words = shieldWords(rules.shieldCounts), side = rules.shieldCell;
+    for (ShieldWalk w = shieldWalk(rules, a, b); w.within; shieldStep(w, side)) {
+        const uint32_t at = w.cell >> 5, bit = 1u << (w.cell & 31);
+        if ((shieldCells[at] & bit) == 0) continue;
+        const uint32_t baked = shieldCells[words + 2 * at];
+        if ((baked & bit) == 0) {
+            if (!shieldSpares(w, ends, kNoneTexel, side)) return true;
+            continue;
+        }
+        const uint32_t before = uint32_t(std::popcount(baked & (bit - 1)));
+        const uint32_t i = 3 * words + 2 * (shieldCells[words + 2 * at + 1] + before);
+        const uint32_t what = shieldCells[i];
+        if (!shieldSpares(w, ends, what & kShieldSlot, side) &&
+            shieldStands(what, shieldCells[i + 1], rules.now))
+            return true;
+    }
+    return false;
+}
+
 void CpuBackend::State::litFrom(CpuObject& object, uint32_t by) noexcept {
     if (object.counters.litTick == 0) object.counters.litBy = std::max(object.counters.litBy, by);
 }
@@ -43,6 +87,7 @@ void CpuBackend::State::disturb(CpuObject& object, uint32_t end) noexcept {
 void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexcept {
     ExchangePush rules = given;
     rules.now = now;
+    gpu::placeShield(shield, rules);
     sumSources();
     settleSources(rules);
     if (rules.warms != 0) warmAll(rules);
@@ -211,6 +256,10 @@ void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
         if (std::any_of(blockers.begin(), blockers.end(),
                         [&](const Blocker& b) { return blockerCuts(b, flame, at); }))
             continue;
+        if (rules.shieldCell != 0 &&
+            shieldCuts(shieldEnds(source, flame, slot, at, normal, rules.shieldCell), flame, at,
+                       rules))
+            continue;
         flux = std::min(flux + got.flux, kFluxMost);
         pilot |= got.pilot;
         const uint32_t key = litBy(source.hops, source.object);
@@ -336,6 +385,12 @@ void CpuBackend::State::landEmber(const FireSource& source, const Ember& ember, 
         if (blockerCuts(blocker, alongFlame(source, upOf(rules), 8), ember.landing) ||
             blockerCuts(blocker, ember.landing, place))
             return;
+    if (rules.shieldCell != 0) {
+        const ShieldEnds ends = emberEnds(source, target, rules.shieldCell);
+        if (shieldCuts(ends, alongFlame(source, upOf(rules), 8), ember.landing, rules) ||
+            shieldCuts(ends, ember.landing, place, rules))
+            return;
+    }
     const uint32_t chance =
         bothChances(emberLights(ember.energy, object.remote.catches),
                     bothChances(rules.chance, objects[source.object]->remote.chance));

@@ -84,6 +84,7 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t) {
     s.neighbours.clear();
     s.links.clear();
     s.blockers.clear();
+    s.shield = {};
     for (uint32_t slot = 0; slot < s.objects.size(); ++slot) {
         if (!s.objects[slot]) continue;
         s.rest(*s.objects[slot], slot);

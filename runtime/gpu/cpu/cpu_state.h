@@ -134,6 +134,11 @@ struct CpuBackend::State {
     // cpu_exchange.cpp
     void reserveRemote(const RemoteUpdate& update);  // throws std::bad_alloc
     void placeRemote(const RemoteUpdate& update) noexcept;
+    void reserveShield(const ShieldUpdate& update);  // throws std::bad_alloc
+    void placeShield(const ShieldUpdate& update) noexcept;
+    [[nodiscard]] bool shieldStands(uint32_t what, uint32_t texel, uint32_t now) const noexcept;
+    [[nodiscard]] bool shieldCuts(const ShieldEnds& ends, const ivec3& a, const ivec3& b,
+                                  const ExchangePush& rules) const noexcept;
     void exchange(const ExchangePush& given, uint32_t now) noexcept;
     void sumSources() noexcept;
     void settleSources(const ExchangePush& rules) noexcept;
@@ -195,6 +200,8 @@ struct CpuBackend::State {
     std::pmr::vector<uint32_t> neighbours{memory};
     std::pmr::vector<ContactLink> links{memory};
     std::pmr::vector<Blocker> blockers{memory};
+    ShieldUpdate shield;  // its words are these
+    std::pmr::vector<uint32_t> shieldCells{memory};
     std::array<Room, kMaxRooms> rooms{};
     std::array<RoomAir, kMaxRooms> roomAir{};
     bool airs = false;  // some step had rooms

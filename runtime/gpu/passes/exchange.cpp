@@ -12,6 +12,8 @@ constexpr Use kExchangeUses[] = {
     {FW_BIND_HOT_LISTS, Access::write},   {FW_BIND_REMOTE_OBJECTS, Access::read},
     {FW_BIND_REMOTE_TILES, Access::read}, {FW_BIND_SOURCES, Access::read},
     {FW_BIND_RECEIVERS, Access::read},    {FW_BIND_BLOCKERS, Access::read},
+    {FW_BIND_SHIELD, Access::read},       {FW_BIND_STATE, Access::read},
+    {FW_BIND_HEAT, Access::read},         {FW_BIND_MATERIALS, Access::read},
 };
 
 }  // namespace

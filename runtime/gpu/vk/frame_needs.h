@@ -58,6 +58,7 @@ struct FrameNeeds {
     uint64_t iterations = 0;              // of all steps
     uint32_t events = 0, wakeGroups = 0;  // of the largest step
     uint32_t neighbours = 0, links = 0;   // of the largest remote update
+    uint32_t shieldWords = 0;             // of the largest shield
     bool placing = false;                 // there is one
     bool exchanges = false;               // fire may come from other objects
     bool airs = false;                    // rooms have a step

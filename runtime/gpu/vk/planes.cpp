@@ -96,6 +96,7 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_CONTACTS, kSpaceContacts, sizeof(ContactLink), true, kComponentObjects, "contacts", 0},
     {FW_BIND_BLOCKERS, kSpaceFixed, sizeof(Blocker) * kMaxBlockers, true, kComponentObjects,
      "blockers", 0},
+    {FW_BIND_SHIELD, kSpaceShield, 4, true, kComponentObjects, "heat shield", 0},
     {FW_BIND_ROOMS, kSpaceFixed, sizeof(Room) * kMaxRooms, true, kComponentObjects, "rooms", 0},
     {FW_BIND_ROOM_AIR, kSpaceFixed, sizeof(RoomAir) * kMaxRooms, true, kComponentObjects,
      "rooms' air", 0},
@@ -166,7 +167,7 @@ constexpr uint32_t kInitialUnits[kSpaceCount] = {
     1024, 4096, 256,  256, 1,    1,    1,    1,     1,
     1,    1,    1,    1,   1,    1,    1,    1,     1024,
     1,    1,    1,    4,   1,    1,    1,    1,     1,
-    1,    1,    1,    1,   1};
+    1,    1,    1,    1,   1,    1};
 
 }  // namespace
 

@@ -64,6 +64,7 @@ enum Space : uint32_t {
     kSpaceFieldCells,       // 64 cells of particle fields
     kSpaceFieldRuns,        // per frame
     kSpaceFieldDraws,       // per frame
+    kSpaceShield,           // words, as of the last update
     kSpaceFixed,            // one unit
     kSpaceCount,
 };

@@ -105,6 +105,11 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
                                  uploaded(update.links.size_bytes()) +
                                  uploaded(update.blockers.size_bytes());
         }
+        if (step.shield) {
+            needs.placing = true;
+            needs.shieldWords = std::max(needs.shieldWords, uint32_t(step.shield->words.size()));
+            needs.uploadBytes += uploaded(step.shield->words.size_bytes());
+        }
         needs.exchanges |= step.exchange;
         needs.airs |= step.rooms;
         needs.events = std::max(needs.events, uint32_t(step.events.size()));
@@ -196,6 +201,7 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     s.planes.atLeast(kSpaceDeformGroups, needs.deformGroups(), last);
     s.planes.atLeast(kSpaceNeighbours, needs.neighbours, last);
     s.planes.atLeast(kSpaceContacts, needs.links, last);
+    s.planes.atLeast(kSpaceShield, needs.shieldWords, last);
     s.planes.atLeast(kSpaceFieldRuns, needs.fieldRuns, last);
     if (plan.fields) {
         s.planes.atLeast(kSpaceFieldDraws, uint32_t(plan.fields->drawn.size()), last);

@@ -226,6 +226,15 @@ void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder
     s.blockers = uint32_t(update.blockers.size());
 }
 
+void recordShield(VkBackend::State& s, const ShieldUpdate& update, FrameRecorder& recorder,
+                  UploadWriter& writer) {
+    s.shield = update;
+    s.shield.words = {};
+    if (update.words.empty()) return;
+    const Staged staged = writer.write(update.words);
+    recorder.copyIn(staged.at, FW_BIND_SHIELD, 0, update.words.size_bytes());
+}
+
 void recordRooms(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
     const Staged staged = writer.write(std::span<const Room>(s.rooms));
     recorder.copyIn(staged.at, FW_BIND_ROOMS, 0, sizeof s.rooms);
@@ -484,7 +493,9 @@ void VkBackend::State::run(const FramePlan& plan) {
         if (planned.remote) recordRemote(*this, *planned.remote, recorder, writer);
         step.links = links;
         step.parts = partMeshes != 0;
+        if (planned.shield) recordShield(*this, *planned.shield, recorder, writer);
         step.rules.blockers = blockers;
+        placeShield(shield, step.rules);
         recordMaterials(*this, planned.materials, recorder, writer);
         const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
         step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);

@@ -94,6 +94,7 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
     s.recordsDirty = s.restoreDue = true;
     s.shownTick = tick;
     s.links = s.blockers = 0;
+    s.shield = {};
     s.pendingCount = 0;
     for (FrameInFlight& slot : s.ring.slots()) slot.readbackPending = false;
     s.frontEmpty = s.burnEmpty = s.predictEmpty = s.hotEmpty = false;

@@ -317,6 +317,7 @@ struct VkBackend::State {
     uint32_t shownTick = 0;                // tick of the state that draws show
     uint32_t links = 0, blockers = 0;      // of the last remote update
     uint32_t partMeshes = 0;               // of parts that touch
+    ShieldUpdate shield;                   // the last one's place, without its words
     float wind[3] = {};
     float tickFraction = 0;
     Detail detail;                               // as of the frame's plan

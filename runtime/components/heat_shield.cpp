@@ -1,0 +1,164 @@
+#include "components/heat_shield.h"
+
+#include "components/pose.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::components {
+namespace {
+
+constexpr float kLeastShieldCell = 0.05f, kMostShieldCell = 10;  // m
+constexpr float kFarthestShield = 1e6f;                          // m
+constexpr uint32_t kEmpty = 0xFFFFFFFFu;
+
+int floorDiv(int value, int by) noexcept {
+    return value >= 0 ? value / by : -((-value + by - 1) / by);
+}
+
+}  // namespace
+
+ShieldShape makeShieldShape(const FwHeatShieldDef& def) {
+    ShieldShape shape;
+    if (def.flags & ~uint32_t(FW_HEAT_SHIELD_ALL_OBJECTS))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwHeatShieldDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
+                   uint32_t(FW_HEAT_SHIELD_ALL_OBJECTS));
+    for (uint32_t i = 0; i < 3; ++i)
+        if (def.counts[i] < 1 || def.counts[i] > gpu::kShieldSide)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwHeatShieldDef::counts[%u] is %u; the limits are [1, %u].", i,
+                       def.counts[i], gpu::kShieldSide);
+    std::copy_n(def.counts, 3, shape.counts.begin());
+    if (shape.cells() > gpu::kShieldCells)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwHeatShieldDef::counts makes %u x %u x %u = %u cells; the limit is %u.",
+                   def.counts[0], def.counts[1], def.counts[2], shape.cells(), gpu::kShieldCells);
+    checkValues(def.origin, 3, "FwHeatShieldDef::origin", -kFarthestShield, kFarthestShield);
+    checkValue(def.cellSize, "FwHeatShieldDef::cellSize", kLeastShieldCell, kMostShieldCell);
+    for (size_t i = 0; i < 3; ++i) shape.origin[i] = int32_t(millimetres(def.origin[i]));
+    shape.cell = uint32_t(millimetres(def.cellSize));
+    return shape;
+}
+
+void readShieldCells(const FwHeatShieldDef& def, const ShieldShape& shape,
+                     std::pmr::vector<uint32_t>& solid) {
+    solid.assign(shape.words(), 0);
+    if (!def.cells && !def.distance) return;
+    const double side = double(shape.cell) / 1000;
+    uint32_t cell = 0;
+    for (uint32_t z = 0; z < shape.counts[2]; ++z)
+        for (uint32_t y = 0; y < shape.counts[1]; ++y)
+            for (uint32_t x = 0; x < shape.counts[0]; ++x, ++cell) {
+                bool there = def.cells && def.cells[cell] != 0;
+                if (!there && def.distance) {
+                    const uint32_t at[3] = {x, y, z};
+                    float place[3];
+                    for (size_t i = 0; i < 3; ++i)
+                        place[i] = float(double(shape.origin[i]) / 1000 + (at[i] + 0.5) * side);
+                    there = double(def.distance(def.distanceData, place)) < side / 2;
+                }
+                if (there) solid[cell / 32] |= 1u << cell % 32;
+            }
+}
+
+bool plausible(const ShieldShape& shape) noexcept {
+    if (shape == ShieldShape{}) return true;
+    bool fine = shape.cell >= uint32_t(millimetres(kLeastShieldCell)) &&
+                shape.cell <= uint32_t(millimetres(kMostShieldCell));
+    const int64_t far = millimetres(kFarthestShield);
+    for (size_t i = 0; i < 3; ++i)
+        fine = fine && shape.counts[i] >= 1 && shape.counts[i] <= gpu::kShieldSide &&
+               shape.origin[i] >= -far && shape.origin[i] <= far;
+    return fine && shape.cells() <= gpu::kShieldCells;
+}
+
+void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
+                std::pmr::vector<ShieldCell>& out) {
+    out.clear();
+    if (objects.empty()) return;
+    std::pmr::vector<uint32_t> index(shape.cells(), kEmpty, out.get_allocator());
+    std::pmr::vector<uint64_t> nearest(out.get_allocator());
+    const int side = int(shape.cell);
+    for (const ShieldObject& object : objects) {
+        const mesh::BurnDomain& domain = *object.domain;
+        // Half of a texel, but no more than a cell and a half: larger ones leave gaps.
+        const double half = std::min(0.5 * object.texelSide, 1.5 * side);
+        for (uint32_t t = 0; t < domain.texelCount(); ++t) {
+            if (!domain.real(t)) continue;
+            const mesh::TexelPosition& p = domain.texels[t];
+            const gpu::ivec3 at = gpu::remotePlace(object.place, gpu::ivec3(p.x, p.y, p.z));
+            const gpu::ivec3 normal =
+                gpu::remoteTurn(object.place, gpu::decodeNormal(domain.normals[t]));
+            const uint32_t material = p.materialFlags & (gpu::kMaterialsPerObject - 1);
+            const uint32_t what = object.slot | material << 24 |
+                                  (object.stays >> material & 1 ? gpu::kShieldStays : 0u);
+            int low[3], high[3], middle[3];
+            bool within = true;
+            for (int i = 0; i < 3; ++i) {
+                // Along its surface, not through it.
+                const double n = std::min(std::abs(double(normal[i])) / 4096, 1.0);
+                const int reach = int(half * std::sqrt(1 - n * n));
+                const int64_t off = int64_t(at[i]) - shape.origin[size_t(i)];
+                const int64_t size = int64_t(shape.counts[size_t(i)]) * side;
+                within = within && off + reach >= 0 && off - reach < size;
+                if (!within) break;
+                middle[i] = int(off);
+                low[i] = std::max(floorDiv(middle[i] - reach, side), 0);
+                high[i] =
+                    std::min(floorDiv(middle[i] + reach, side), int(shape.counts[size_t(i)]) - 1);
+            }
+            if (!within) continue;
+            for (int z = low[2]; z <= high[2]; ++z)
+                for (int y = low[1]; y <= high[1]; ++y)
+                    for (int x = low[0]; x <= high[0]; ++x) {
+                        const int place[3] = {x, y, z};
+                        uint64_t distance = 0;
+                        for (int i = 0; i < 3; ++i) {
+                            const int64_t d = int64_t(place[i]) * side + side / 2 - middle[i];
+                            distance += uint64_t(d * d);
+                        }
+                        const uint32_t cell =
+                            (uint32_t(z) * shape.counts[1] + uint32_t(y)) * shape.counts[0] +
+                            uint32_t(x);
+                        uint32_t& entry = index[cell];
+                        if (entry == kEmpty) {
+                            if (out.size() >= gpu::kShieldBaked)
+                                core::fail(FW_ERROR_INVALID_ARGUMENT,
+                                           "Objects fill more than %u cells of the shield, which "
+                                           "is the limit: larger cells are fewer.",
+                                           gpu::kShieldBaked);
+                            entry = uint32_t(out.size());
+                            out.push_back({cell, what, t});
+                            nearest.push_back(distance);
+                        } else if (distance < nearest[entry]) {
+                            nearest[entry] = distance;
+                            out[entry] = {cell, what, t};
+                        }
+                    }
+        }
+    }
+    std::sort(out.begin(), out.end(),
+              [](const ShieldCell& a, const ShieldCell& b) { return a.cell < b.cell; });
+}
+
+void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words) {
+    const size_t count = shield.shape.words();
+    words.assign(3 * count + 2 * shield.baked.size(), 0);
+    std::copy(shield.solid.begin(), shield.solid.end(), words.begin());
+    size_t at = 0;
+    for (size_t word = 0; word < count; ++word) {
+        words[count + 2 * word + 1] = uint32_t(at);
+        for (; at < shield.baked.size() && shield.baked[at].cell / 32 == word; ++at) {
+            const ShieldCell& cell = shield.baked[at];
+            const uint32_t bit = 1u << cell.cell % 32;
+            words[word] |= bit;
+            words[count + 2 * word] |= bit;
+            words[3 * count + 2 * at] = cell.what;
+            words[3 * count + 2 * at + 1] = cell.texel;
+        }
+    }
+}
+
+}  // namespace fw::components

@@ -1,0 +1,63 @@
+// What stands between fires and what they would warm: a grid of solid cells, the host's and those
+// that objects fill. Whole numbers once the def is read. Not what a way between two places meets of
+// it (shared/exchange.h), nor whether an object's cell is still there (the backends).
+#pragma once
+#include "mesh/burn_domain.h"
+#include "shared/exchange.h"
+
+#include <array>
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace fw::components {
+
+struct ShieldShape {  // where its cells are; no counts: there is no shield
+    std::array<uint32_t, 3> counts{};
+    std::array<int32_t, 3> origin{};  // mm, low corner
+    uint32_t cell = 0;                // mm
+    [[nodiscard]] uint32_t cells() const noexcept { return counts[0] * counts[1] * counts[2]; }
+    [[nodiscard]] uint32_t words() const noexcept { return (cells() + 31) / 32; }
+    bool operator==(const ShieldShape&) const = default;
+};
+
+struct ShieldCell {     // one that an object fills
+    uint32_t cell = 0;  // x runs fastest, then y, then z
+    uint32_t what = 0;  // slot | material << 24 | kShieldStays
+    uint32_t texel = 0;
+    bool operator==(const ShieldCell&) const = default;
+};
+
+struct HeatShield {
+    explicit HeatShield(std::pmr::memory_resource* memory) : solid(memory), baked(memory) {}
+    ShieldShape shape;
+    std::pmr::vector<uint32_t> solid;    // a bit per cell: the host's
+    std::pmr::vector<ShieldCell> baked;  // sorted by cell, one each
+};
+
+// What these throw is a core::Error that names the field.
+[[nodiscard]] ShieldShape makeShieldShape(const FwHeatShieldDef& def);
+// Asks the def's callback of every cell, and reads its bytes.
+void readShieldCells(const FwHeatShieldDef& def, const ShieldShape& shape,
+                     std::pmr::vector<uint32_t>& solid);
+
+// Is it one that makeShieldShape may have made?
+[[nodiscard]] bool plausible(const ShieldShape& shape) noexcept;
+
+struct ShieldObject {  // that fills cells
+    uint32_t slot = 0;
+    const mesh::BurnDomain* domain = nullptr;
+    gpu::RemoteObject place{};
+    uint32_t texelSide = 0;  // mm
+    uint32_t stays = 0;      // bit i: its material i never gives way
+};
+// The cells that their texels reach into, each by the texel that is nearest to its middle. Replaces
+// `out`. Throws where they are too many.
+void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
+                std::pmr::vector<ShieldCell>& out);
+
+// As the backends read it.
+void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words);
+
+}  // namespace fw::components

@@ -1,0 +1,44 @@
+// What stands in the way of fire, cell by cell: shared/exchange.h, with the buffers. As
+// gpu/cpu/cpu_exchange.cpp.
+#ifndef FW_LIB_SHIELD_GLSL
+#define FW_LIB_SHIELD_GLSL
+#include "shared/heat.h"
+
+// Is the texel that fills a cell of the shield still there?
+bool shieldStands(uint what, uint texel) {
+    bool stands = (what & kShieldStays) != 0u;
+    for (bool asks = !stands; asks; asks = false) {
+        uint slot = what & kShieldSlot;
+        uint holes = materials[slot * kMaterialsPerObject + ((what >> 24u) & 7u)].holeTicks;
+        uint t = state[objects[slot].stateBase + texel];
+        bool gone = isSource(t) && t <= push.now && push.now - t >= holes;
+        if (gone && (objects[slot].flags & kObjectHeat) != 0u)
+            gone = gateLets(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t,
+                            push.now);
+        stands = !gone;
+    }
+    return stands;
+}
+
+bool shieldCuts(ShieldEnds ends, ivec3 a, ivec3 b) {
+    ShieldWalk w = shieldWalk(push, a, b);
+    uint words = shieldWords(push.shieldCounts);
+    bool cut = false;
+    while (w.within && !cut) {
+        uint at = w.cell >> 5u, bit = 1u << (w.cell & 31u);
+        for (bool solid = (shield[at] & bit) != 0u; solid; solid = false) {
+            uint baked = shield[words + 2u * at], what = kNoneTexel, texel = 0u;
+            if ((baked & bit) != 0u) {
+                uint i = shield[words + 2u * at + 1u] + uint(bitCount(baked & (bit - 1u)));
+                what = shield[3u * words + 2u * i];
+                texel = shield[3u * words + 2u * i + 1u];
+            }
+            uint slot = what == kNoneTexel ? kNoneTexel : what & kShieldSlot;
+            cut = !shieldSpares(w, ends, slot, push.shieldCell) &&
+                  (slot == kNoneTexel || shieldStands(what, texel));
+        }
+        shieldStep(w, push.shieldCell);
+    }
+    return cut;
+}
+#endif
