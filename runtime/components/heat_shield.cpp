@@ -1,6 +1,7 @@
 #include "components/heat_shield.h"
 
 #include "components/pose.h"
+#include "components/wind_zone.h"
 #include "core/error.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 // that objects fill. Whole numbers once the def is read. Not what a way between two places meets of
 // it (shared/exchange.h), nor whether an object's cell is still there (the backends).
 #pragma once
+#include "flamewright/flamewright.h"
 #include "mesh/burn_domain.h"
 #include "shared/exchange.h"
 
