@@ -2,6 +2,7 @@
 #include "components/look_table.h"
 #include "components/look_textures.h"
 #include "components/view_params.h"
+#include "gpu/passes/draw.h"
 
 #include <gtest/gtest.h>
 
@@ -149,6 +150,21 @@ TEST(ViewParamsTest, AViewThatLooksAlongPlusZ) {
     std::memcpy(view.projection, glm::value_ptr(projection), sizeof view.projection);
     const gpu::ViewParams p = makeViewParams(view, {});
     EXPECT_NEAR(p.forward.z, 1.0f, 1e-6);
+}
+
+// Its number lies where a draw's own flags are: a house in the second room is drawn as any other.
+TEST(SurfaceDrawTest, KnowsNothingOfTheRoomThatAnObjectIsIn) {
+    gpu::BurnObject object{};
+    const gpu::BurnMaterial material{};
+    const gpu::HeatMaterial heat{};
+    for (uint32_t room = 0; room <= 0xFF; ++room) {
+        object.flags = gpu::kObjectLive | gpu::kObjectTwoSided | room << gpu::kObjectRoomShift;
+        const gpu::SurfaceDraw draw =
+            gpu::surfaceDraw(object, material, heat, 1.0f, 0, false, false);
+        EXPECT_EQ(gpu::kObjectLive | gpu::kObjectTwoSided, draw.flags) << room;
+    }
+    EXPECT_EQ(gpu::kDrawVertexLight,
+              gpu::surfaceDraw({}, material, heat, 1e-3f, 0, false, false).flags);
 }
 
 }  // namespace

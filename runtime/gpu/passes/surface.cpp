@@ -143,7 +143,9 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     draw.look = material.look;
     draw.stateBase = object.stateBase;
     draw.size = object.width | object.height << 16;
-    draw.flags = object.flags | (edge < kSmallEdge ? kDrawVertexLight : 0);
+    // The room that it is in is where flags of draws are, and no draw asks for it.
+    draw.flags = object.flags & ((1u << kObjectRoomShift) - 1);
+    if (edge < kSmallEdge) draw.flags |= kDrawVertexLight;
     draw.places = places;
     const bool heated = (object.flags & kObjectHeat) != 0;
     draw.heatBase = object.heatBase;
