@@ -174,7 +174,7 @@ void setFirePosition(VolumetricFire& fire, const float position[3]) {
 }
 
 void setFireTier(VolumetricFire& fire, uint32_t tier, const char* name) {
-    checkWhole(tier, name, 0, FW_FIRE_TIER_SLICES);
+    checkWhole(tier, name, 0, FW_FIRE_TIER_FLIPBOOK);
     fire.tier = tier;
 }
 

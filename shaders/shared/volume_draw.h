@@ -116,14 +116,15 @@ FW_SHARED_CONST uint kCardWords = kCardTiles * (kVolumeTileWords + kVolumeTile *
 
 // Push constants of who shows it.
 struct VolumeCard {
-    vec4 place;           // x, y of the view: xy + zw * cells
+    vec4 place;           // x, y of the view: xy + zw * its cell's x + (upX, upY) * its y
     vec4 clip;            // as VolumeDraw's
     float front; float deep;
     float perX; float perY; // cells a pixel
     uint tilesX; uint tilesY;
     uint samples;         // first word of its cells
     float from; float to; // see volumeTurned
-    uint reserved0; uint reserved1; uint reserved2;
+    float upX; float upY;
+    uint reserved0;
 };
 FW_SHARED_SIZE(VolumeCard, 80)
 

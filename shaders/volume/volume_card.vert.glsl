@@ -1,5 +1,6 @@
 #version 450
-// A volumetric flame's card: what was marched of it, facing the camera, as large as it is now.
+// A volumetric flame's card: what was marched of it, or of one that is like it, facing the camera,
+// as large as it is now.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
 
@@ -24,7 +25,7 @@ void main() {
     outSlab = vec2(draw.front, 1.0 / draw.deep);
     vec2 side = vec2(corner & 1u, corner >> 1u);
     outCell = mix(-outHalf, vec2(cells) + outHalf, side);
-    vec2 place = draw.place.xy + draw.place.zw * outCell;
+    vec2 place = draw.place.xy + draw.place.zw * outCell.x + vec2(draw.upX, draw.upY) * outCell.y;
     float middle = draw.front + 0.5 * draw.deep;
     float w = draw.clip.z * middle + draw.clip.w;
     gl_Position = vec4(place * w, clamp(draw.clip.x * middle + draw.clip.y, 0.0, w), w);

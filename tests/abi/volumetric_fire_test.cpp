@@ -140,10 +140,10 @@ TEST(AbiVolumetricFire, TakesATierAtAnyTime) {
     FireWorld w;
     const FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId id = w.make(def);
-    for (uint32_t tier = FW_FIRE_TIER_AUTO; tier <= FW_FIRE_TIER_SLICES; ++tier)
+    for (uint32_t tier = FW_FIRE_TIER_AUTO; tier <= FW_FIRE_TIER_FLIPBOOK; ++tier)
         EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFireTier(w.world, id, tier));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFireTier(w.world, id, 5));
-    EXPECT_NE(std::string::npos, std::string(lastMessage(w.world)).find("tier is 5"));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFireTier(w.world, id, 6));
+    EXPECT_NE(std::string::npos, std::string(lastMessage(w.world)).find("tier is 6"));
     EXPECT_EQ(FW_OK, fwWorld_DestroyVolumetricFire(w.world, id));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetVolumetricFireTier(w.world, id, FW_FIRE_TIER_AUTO));
 }

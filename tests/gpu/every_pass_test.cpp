@@ -142,6 +142,9 @@ class EveryPass : public GpuTest {
         flames_[2] = flames_[1];
         flames_[2].record.tier = FW_FIRE_TIER_SLICES;
         flames_[2].record.key = 2;
+        flames_[3] = flames_[1];
+        flames_[3].record.tier = FW_FIRE_TIER_FLIPBOOK;
+        flames_[3].record.key = 3;
         FwFireEmitterDef jet = fwDefaultFireEmitterDef();
         jet.flags = FW_EMITTER_JET | FW_EMITTER_GROUND;
         jet.power = 20;
@@ -277,7 +280,7 @@ class EveryPass : public GpuTest {
         plan.steps = steps;
         plan.probes = probes;
         if (what.probes) plan.burnMaps = {&map, 1};
-        const gpu::VolumeUpdate volumes{flames_, 3};
+        const gpu::VolumeUpdate volumes{flames_, 4};
         plan.volumes = &volumes;
         const gpu::uvec2 group(0, 0);
         gpu::EmitterUpdate emitters;
@@ -486,7 +489,7 @@ class EveryPass : public GpuTest {
     gpu::RemoteUpdate remote_;
     std::vector<gpu::ContactLink> links_;
     gpu::Blocker blocker_{};
-    gpu::VolumeFlame flames_[3]{};
+    gpu::VolumeFlame flames_[4]{};
     std::unique_ptr<ParticleReference> emitter_;
     gpu::FieldDraw fieldDraws_[3]{};
     uint32_t fieldStep_ = 0;

@@ -4,6 +4,7 @@
 #include "book/picture.h"
 #include "components/particle_field.h"
 #include "components/volumetric_fire.h"
+#include "gpu/passes/volume_books.h"
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
 #include "support/world_defs.h"
@@ -1280,7 +1281,8 @@ TEST_F(Volume, AJetByNoiseIsLikeOneByBooks) {
 TEST_F(Volume, TheNearOneIsBeforeTheFarOne) {
     if (!device_) return;
     makeRig();
-    const uint32_t tiers[] = {FW_FIRE_TIER_MARCH_HIGH, FW_FIRE_TIER_IMPOSTOR, FW_FIRE_TIER_SLICES};
+    const uint32_t tiers[] = {FW_FIRE_TIER_MARCH_HIGH, FW_FIRE_TIER_IMPOSTOR, FW_FIRE_TIER_SLICES,
+                              FW_FIRE_TIER_FLIPBOOK};
     const float eye[3] = {0, 0.5f, 4}, at[3] = {0, 0.35f, 0};
     look(eye, at, 20);
     const auto flameAt = [&](float z, uint32_t seed) {
@@ -1342,16 +1344,20 @@ TEST_F(Volume, NoSwitchOfTiersPops) {
         const float stays = worstOf(kHigh, kHigh), cut = worstOf(kSlices, kSlices);
         const float card = worstOf(kHigh, FW_FIRE_TIER_IMPOSTOR);
         const float low = worstOf(kHigh, FW_FIRE_TIER_MARCH_LOW);
+        const float book = worstOf(kHigh, FW_FIRE_TIER_FLIPBOOK);
         const float slices = worstOf(kHigh, kSlices);
         std::printf(
-            "           %s: at most %.4f a frame, to a card %.4f, low %.4f, slices %.4f of %.4f\n",
-            components::firePresetName(preset), double(stays), double(card), double(low),
-            double(slices), double(cut));
+            "           %s: at most %.4f a frame, to a card %.4f, book %.4f, low %.4f, slices %.4f "
+            "of "
+            "%.4f\n",
+            components::firePresetName(preset), double(stays), double(card), double(book),
+            double(low), double(slices), double(cut));
         // Slices are a ray a pixel, of so few pixels a rough sample.
         EXPECT_LT(slices, std::max(stays, cut) + 0.015f) << components::firePresetName(preset);
         EXPECT_LT(low, stays + 0.02f) << components::firePresetName(preset);
         EXPECT_LT(card, stays + 0.015f) << components::firePresetName(preset);
         EXPECT_LT(card, 0.04f) << components::firePresetName(preset);
+        EXPECT_LT(book, stays + 0.02f) << components::firePresetName(preset);
     }
 }
 
@@ -1362,7 +1368,8 @@ TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
     if (!device_) return;
     makeRig();
     constexpr uint32_t kLegs[] = {FW_FIRE_TIER_MARCH_HIGH, FW_FIRE_TIER_MARCH_LOW,
-                                  FW_FIRE_TIER_SLICES, FW_FIRE_TIER_IMPOSTOR};
+                                  FW_FIRE_TIER_SLICES, FW_FIRE_TIER_FLIPBOOK,
+                                  FW_FIRE_TIER_IMPOSTOR};
     constexpr int kLeg = 18, kWay = kLeg * int(std::size(kLegs));  // frames
     gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
     const float tall = 1.5f * flame.record.high.w;
@@ -1417,6 +1424,145 @@ TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
         EXPECT_NEAR(cover, 1.0, slices ? 0.07 : 0.05) << kLegs[i];
         EXPECT_LT(through[i].pop, marched[i].pop + (i < 2 ? 0.02f : 0.04f)) << kLegs[i];
     }
+}
+
+// A fire shows another's pages as it is itself: smaller, and leaning otherwise. Of a fire that is
+// the other but for that, the pages are what it would show. While both burn it is as bright, covers
+// as much and reaches as far as where it is marched all the way, and changes from frame to frame as
+// that does, also where it becomes a card. A second view marches both, whatever the first shows.
+TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
+    if (!device_) return;
+    makeRig();
+    // A key whose pages are hardly late: what they show can be compared.
+    const auto shelf = std::make_unique<gpu::VolumeBookShelf>();
+    (*shelf)[0].used = true;
+    (*shelf)[0].written = gpu::kBookPages;
+    const auto isLate = [&](uint32_t key) {
+        gpu::BookReader reader;
+        reader.key = key;
+        reader.read(0, *shelf);
+        return reader.mirrored || reader.at + 3 < gpu::kBookPages;
+    };
+    uint32_t reads = 2001;
+    while (isLate(reads)) ++reads;
+    // `scale`, `lean`: of the one on the left; the other's pages they are.
+    const auto flameAt = [&](bool left, float seconds, float scale, float lean) {
+        FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+        def.flags = FW_FIRE_NO_SMOKE;
+        def.seed = 7;
+        gpu::VolumeFlame flame = flameAlone(def, seconds);
+        gpu::FlameRecord& r = flame.record;
+        r.key = left ? reads : 2000;
+        if (!left) scale = 1.001f, lean = 0;  // it covers most
+        const float c = std::cos(lean), s = std::sin(lean);
+        const vec3 to(left ? -0.8f : 0.8f, 0, 0);
+        const auto turn = [&](vec4& v) {
+            v = vec4(c * v.x + s * v.y, c * v.y - s * v.x, v.z, v.w);
+        };
+        const auto place = [&](vec4& v) {
+            v = vec4(scale * vec3(v), v.w);
+            turn(v);
+            v += vec4(to, 0.0f);
+        };
+        vec3 low(1e9f), high(-1e9f);
+        for (gpu::FlameNode& node : flame.nodes) {
+            place(node.centre);
+            node.centre.w *= scale, node.along.w *= scale;
+            turn(node.along), turn(node.side), turn(node.squeeze);
+        }
+        for (int corner = 0; corner < 8; ++corner) {
+            vec4 at(corner & 1 ? r.low.x : r.high.x, corner & 2 ? r.low.y : r.high.y,
+                    corner & 4 ? r.low.z : r.high.z, 0);
+            place(at);
+            low = glm::min(low, vec3(at)), high = glm::max(high, vec3(at));
+        }
+        r.low = vec4(low, scale * r.low.w), r.high = vec4(high, scale * r.high.w);
+        place(r.glow);
+        for (float* length : {&r.tauStart, &r.tauFree, &r.lambda, &r.lambdaWarp, &r.lambdaColumn})
+            *length *= scale;
+        r.soot /= scale;
+        return flame;
+    };
+    const float tall = 1.5f * flameAt(false, 1, 1, 0).record.high.w;
+    const auto film = [&](bool marched, int frames, float scale, float lean, float step,
+                          const auto& see) {
+        for (int frame = 0; frame < frames; ++frame) {
+            const float seconds = 1 + step * float(frame);
+            gpu::VolumeFlame flames[2] = {flameAt(true, seconds, scale, lean),
+                                          flameAt(false, seconds, scale, lean)};
+            for (gpu::VolumeFlame& flame : flames) {
+                flame.record.key += marched ? 100000 : 0;
+                flame.record.tier = marched       ? FW_FIRE_TIER_MARCH_HIGH
+                                    : frame >= 96 ? FW_FIRE_TIER_IMPOSTOR
+                                                  : FW_FIRE_TIER_FLIPBOOK;
+            }
+            const float away = 15 * tall;
+            const float eye[3] = {0, 0.5f * tall, away}, at[3] = {0, 0.5f * tall, 0};
+            look(eye, at, 24);
+            Mean picture = drawOnce(flames, FW_DEPTH_TEST, 0);
+            for (uint32_t i = 0; i < picture.size(); ++i)
+                if (i % kSide >= kSide / 2) picture[i] = vec4(0.0f);
+            see(frame, picture);
+        }
+    };
+    // 32 pages are a book, and then it turns.
+    constexpr int kStill = 56;
+    for (const float lean : {0.0f, 0.2f, -0.2f}) {
+        Mean stands, shown;
+        film(true, 3, 0.85f, lean, 0, [&](int, const Mean& picture) { stands = picture; });
+        film(false, kStill, 0.85f, lean, 0, [&](int, const Mean& picture) { shown = picture; });
+        const vec4 is = meanOf(shown), was = meanOf(stands);
+        const float light = glm::dot(is, kSeen) / glm::dot(was, kSeen);
+        const float size = sizeOff(shown, stands), off = differenceOf(shown, stands);
+        std::printf(
+            "[   FIGURE ] leaning by %.1f: light %.4f, cover %.4f, size and tip %.4f, pixels "
+            "differ "
+            "by %.3f\n",
+            double(lean), double(light), double(is.w / was.w), double(size), double(off));
+        EXPECT_NEAR(light, 1, 0.05f) << lean;
+        EXPECT_NEAR(is.w / was.w, 1, 0.05f) << lean;
+        // It is seen from 12 degrees aside, which is another outline.
+        EXPECT_LT(size, 0.12f) << lean;
+        EXPECT_GT(off, 1e-3f) << "it is marched";
+    }
+
+    struct Film {
+        double light = 0, cover = 0;
+        float most = 0, turning = 0, last = 0;  // change of light from one frame to the next
+        Mean mean = Mean(kSide * kSide, vec4(0.0f));
+    } films[2];
+    for (const bool marched : {false, true})
+        film(marched, 112, 1, 0, 0.1f, [&](int frame, const Mean& picture) {
+            Film& of = films[marched];
+            const vec4 mean = meanOf(picture);
+            const float light = glm::dot(mean, kSeen), change = std::abs(light / of.last - 1);
+            of.last = light;
+            if (frame < 53) return;
+            (frame > 96 ? of.turning : of.most) =
+                std::max(frame > 96 ? of.turning : of.most, change);
+            if (frame >= 96) return;
+            of.light += double(light), of.cover += double(mean.w);
+            for (size_t i = 0; i < picture.size(); ++i) of.mean[i] += picture[i];
+        });
+    const double light = films[0].light / films[1].light, cover = films[0].cover / films[1].cover;
+    const float size = sizeOff(films[0].mean, films[1].mean);
+    std::printf(
+        "[   FIGURE ] by another's pages: light %.4f, cover %.4f, size and tip %.4f; at most %.4f "
+        "a "
+        "frame of %.4f, as it turns to a card %.4f of %.4f\n",
+        light, cover, double(size), double(films[0].most), double(films[1].most),
+        double(films[0].turning), double(films[1].turning));
+    EXPECT_NEAR(light, 1, 0.05);
+    EXPECT_NEAR(cover, 1, 0.05);
+    EXPECT_LT(size, 0.03f);
+    EXPECT_LT(films[0].most, films[1].most + 0.03f);
+    EXPECT_LT(films[0].turning, films[1].turning + 0.05f);
+
+    gpu::VolumeFlame flames[2] = {flameAt(true, 2, 1, 0), flameAt(false, 2, 1, 0)};
+    for (gpu::VolumeFlame& flame : flames) flame.record.tier = FW_FIRE_TIER_FLIPBOOK;
+    const Mean second = drawDirect(flames, FW_DEPTH_TEST);
+    for (gpu::VolumeFlame& flame : flames) flame.record.tier = FW_FIRE_TIER_MARCH_HIGH;
+    EXPECT_EQ(second, drawDirect(flames, FW_DEPTH_TEST));
 }
 
 // As the host's scene is seen through hot gas: bent above a flame, and there alone; nothing that

@@ -2,12 +2,15 @@
 // as what a view shows each of them.
 #include "components/fire_flames.h"
 #include "gpu/passes/draw.h"
+#include "gpu/passes/volume_books.h"
 #include "gpu/passes/volume_tiers.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <set>
 #include <vector>
 
 namespace {
@@ -140,6 +143,128 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
     items[0].asked = FW_FIRE_TIER_IMPOSTOR;
     for (int k = 0; k < 40; ++k) gpu::chooseTiers(items, 0, {}, lives, places);
     EXPECT_TRUE(lives[places[0]].marched());
+}
+
+// Flames that are alike and too many to be marched, or of few pixels, show a book of one of them;
+// what has none, or alone, is as it was.
+TEST(VolumeTiers, FlamesAlikeShareABook) {
+    gpu::TierLives lives{};
+    std::vector<gpu::TierItem> items(64);
+    std::vector<uint32_t> places(items.size());
+    for (uint32_t i = 0; i < items.size(); ++i)
+        items[i] = {i + 1, FW_FIRE_TIER_AUTO, 60.0f, 2.0f - 0.01f * float(i), i % 2 == 0, true};
+    const auto count = [&](uint32_t tier) {
+        uint32_t sum = 0;
+        for (const uint32_t place : places) sum += lives[place].tier == tier;
+        return sum;
+    };
+    const auto frames = [&](int many) {
+        for (int k = 0; k < many; ++k)
+            gpu::chooseTiers(items, gpu::kMaxVolumeFlames, {}, lives, places);
+    };
+    frames(1);
+    EXPECT_EQ(16u, count(FW_FIRE_TIER_FLIPBOOK));
+    EXPECT_EQ(16u, count(FW_FIRE_TIER_IMPOSTOR));
+    EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_LOW));
+    // The device's budget is theirs, too.
+    for (int k = 0; k < 40; ++k)
+        gpu::chooseTiers(items, gpu::kMaxVolumeFlames, {4, 8}, lives, places);
+    EXPECT_EQ(28u, count(FW_FIRE_TIER_FLIPBOOK));
+
+    // By size: a book from 24 px on down, kept up to 31; a card below 10, kept up to 13.
+    items.resize(2);
+    const auto settle = [&](float wide) {
+        items[0].wide = items[1].wide = wide;
+        frames(40);
+        return lives[places[0]].tier;
+    };
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookInside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kBookInside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[1]].tier) << "it has none";
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kBookOutside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(gpu::kCardInside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(gpu::kCardOutside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kCardOutside + 1));
+    items[0].shared = false;  // it keeps what it has, and takes none anew
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kCardOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kCardOutside + 1));
+    // What asks for one gets it, or a card.
+    items[0].asked = FW_FIRE_TIER_FLIPBOOK;
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(100));
+    items[0].booked = false;
+    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(100));
+}
+
+// Which flames are alike, and how each reads its book: late by an amount of its own, page by page,
+// and over to another flame's pages little by little.
+TEST(VolumeTiers, ABookIsReadPageByPage) {
+    constexpr uint32_t kFlames = 12;
+    auto books = std::make_unique<gpu::VolumeBookShelf>();
+    std::vector<gpu::BookItem> items(kFlames);
+    std::vector<uint32_t> had(kFlames, gpu::kNoBook), out(kFlames);
+    std::vector<gpu::BookReader> readers(kFlames);
+    for (uint32_t i = 0; i < kFlames; ++i) {
+        items[i].kind = {i < 9 ? 7u : 8u, 0.5f + 0.01f * float(i), 2, 0.1f, true};
+        items[i].key = 100 + i;
+        items[i].covers = i == 3 ? 2.0f : 1.0f;
+        items[i].wants = items[i].fits = true;
+    }
+    items[8].kind.wide = 1;  // too wide
+    items[11].kind.plain = false;
+    const auto frame = [&] {
+        gpu::chooseBooks(items, had, 2, *books, out);
+        for (gpu::VolumeBook& book : *books)
+            if (book.used) book.pages[book.written++ % gpu::kBookPages].run = book.run;
+        for (uint32_t i = 0; i < items.size(); ++i) {
+            if (out[i] == gpu::kNoBook) continue;
+            readers[i].read(out[i], *books);
+            had[i] = out[i];
+        }
+    };
+    for (uint32_t i = 0; i < kFlames; ++i) readers[i].key = items[i].key;
+    frame();
+    EXPECT_EQ(103u, (*books)[0].key) << "the largest";
+    EXPECT_EQ(8u, (*books)[0].shares);
+    EXPECT_EQ(gpu::kNoBook, out[11]);
+    // Of two books the second goes to the first that has none.
+    EXPECT_EQ(108u, (*books)[1].key);
+    EXPECT_EQ(gpu::kNoBook, out[9]) << "there are but two";
+    for (int k = 0; k < 40; ++k) frame();
+    std::set<uint64_t> late;
+    for (uint32_t i = 0; i < 8; ++i) late.insert((*books)[0].written - 1 - readers[i].at);
+    EXPECT_GE(late.size(), 6u);
+    EXPECT_EQ((*books)[0].written - 1, readers[3].at) << "its own pages as they come";
+    EXPECT_LE(*late.rbegin() + gpu::kBookTurn, gpu::kBookPages);
+
+    // Another flame's pages: each of the others comes to them when it is its turn.
+    items[3].wants = false;
+    items[4].covers = 1.5f;
+    uint32_t turns = 0;
+    for (uint32_t k = 0; k < gpu::kBookPages; ++k) {
+        const std::vector<gpu::BookReader> last = readers;
+        frame();
+        EXPECT_NE(103u, (*books)[0].key);
+        for (uint32_t i = 0; i < 8; ++i) {
+            const gpu::BookReader& r = readers[i];
+            if (i == 3) continue;
+            if (r.turned == 1) {
+                ++turns;
+                EXPECT_EQ(last[i].at, r.before) << "from what it showed";
+            } else {
+                EXPECT_EQ(last[i].at + 1, r.at) << i;
+            }
+            EXPECT_LT((*books)[0].written - r.at, gpu::kBookPages);
+        }
+    }
+    EXPECT_EQ(7u, turns) << "each once";
+    items[0].kind.facing += 0.2f;  // seen from higher up; what has it keeps it for a while
+    frame();
+    EXPECT_EQ(0u, out[0]);
+    items[0].kind.facing += 0.2f;
+    frame();
+    EXPECT_NE(0u, out[0]);
 }
 
 TEST(FireFlames, AViewGivesItsSamplesToWhatCoversMost) {

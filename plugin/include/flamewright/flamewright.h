@@ -667,6 +667,13 @@ typedef enum FwFireTier { /* how a view shows it: the view that RecordOutside ge
                                     method, of use where little else may run before the pass. Layers may show.
                                     Where we tone map (FwOutputEncoding other than FW_OUTPUT_LINEAR) they would add
                                     up wrongly: there it is marched, low */
+    FW_FIRE_TIER_FLIPBOOK = 5,   /* a card as those are, of pages that flames alike share: of one of them a page is
+                                    marched in each frame, and the last 32 are a book. Each shows them up to 22
+                                    frames late, half of them mirrored, as wide, high and leaning as it is itself.
+                                    Alike: of the same look, nearly as wide, as high for that, and seen as steeply,
+                                    with nothing in their way. There are 4 books; until one is whole, and where
+                                    there is none, it is a card of its own. AUTO takes it for flames alike of 10
+                                    to 24 px across, and of any size for those beyond the 32 */
     FW_FIRE_TIER_FORCE32 = 0x7fffffff
 } FwFireTier;
 typedef struct FwFirePoint { /* of the line that a flame follows, its base first */

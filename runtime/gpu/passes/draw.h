@@ -127,6 +127,7 @@ struct VolumeItem {  // a volumetric flame that a view may show
     VolumeDraw draw{};
     vec4 whole{};  // VolumeDraw::rect as if the view had no edge; empty: it is around the eye
     vec3 middle{}, base{};    // m, world: of its bounds; where it stands
+    vec3 tip{};               // m, from there to where its mean height ends
     float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
     bool smokes = false;
     vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
@@ -157,7 +158,8 @@ struct MarchedVolume {  // one whose rays are marched before the drawing, and ho
     VolumeMarch march{};
     VolumeComposite composite{};
 };
-constexpr uint32_t kVolumeWorks = 3;  // of VolumeWork per flame: it, its card, where it burns
+// Of VolumeWork per flame: it, its card, where it burns, its book's page.
+constexpr uint32_t kVolumeWorks = 4;
 extern const DrawPass kVolumeCompositePass;
 struct VolumeScreen {     // what the marched view is shown on
     vec2 size{};          // px

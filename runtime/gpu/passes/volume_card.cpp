@@ -106,7 +106,8 @@ bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen
     const vec2 perMetre = 1.0f / metresAt(draw, at.z);
     const vec2 perCell = card.cell * perMetre;
     out = {};
-    out.place = vec4(vec2(at) + card.low * perMetre, perCell);
+    out.place = vec4(vec2(at) + card.low * perMetre, perCell.x, 0.0f);
+    out.upY = perCell.y;
     out.clip = draw.clip;
     out.front = draw.front;
     out.deep = draw.deep * float(draw.slabs);

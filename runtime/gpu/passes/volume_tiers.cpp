@@ -26,6 +26,12 @@ uint32_t lifeOf(uint32_t key, TierLives& lives) noexcept {
 
 }  // namespace
 
+bool wantsBook(uint32_t asked, float wide, const TierLife& life) noexcept {
+    if (asked == FW_FIRE_TIER_FLIPBOOK || life.shows(FW_FIRE_TIER_FLIPBOOK)) return true;
+    if (asked != FW_FIRE_TIER_AUTO || wide < kCardInside) return false;
+    return wide < kBookInside || life.tier == FW_FIRE_TIER_IMPOSTOR;
+}
+
 void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
                  TierLives& lives, std::span<uint32_t> places) noexcept {
     for (TierLife& life : lives) life.seen = false;
@@ -65,13 +71,20 @@ void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLim
         uint32_t tier = item.asked;
         uint32_t steps = kHighSteps;
         if (tier == FW_FIRE_TIER_AUTO) {
-            if (item.wide < border || rank >= limits.all) {
+            const bool hadBook = life.tier == FW_FIRE_TIER_FLIPBOOK;
+            const bool book = item.booked && (item.shared || hadBook);
+            if (item.wide < border) {
                 tier = FW_FIRE_TIER_IMPOSTOR;
+            } else if (rank >= limits.all) {
+                tier = book ? FW_FIRE_TIER_FLIPBOOK : FW_FIRE_TIER_IMPOSTOR;
+            } else if (book && item.wide < (hadBook ? kBookOutside : kBookInside)) {
+                tier = FW_FIRE_TIER_FLIPBOOK;
             } else {
                 tier = rank < limits.high ? FW_FIRE_TIER_MARCH_HIGH : FW_FIRE_TIER_MARCH_LOW;
                 ++rank;
             }
         }
+        if (tier == FW_FIRE_TIER_FLIPBOOK && !item.booked) tier = FW_FIRE_TIER_IMPOSTOR;
         if (tier == FW_FIRE_TIER_IMPOSTOR && place >= cards) tier = FW_FIRE_TIER_MARCH_LOW;
         if (tier == FW_FIRE_TIER_MARCH_LOW) steps = kLowSteps;
         if (life.tier == 0) {

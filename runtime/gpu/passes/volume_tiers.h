@@ -1,6 +1,6 @@
-// As what a view shows each volumetric flame: marched with many samples or few, or as a card. It is
-// chosen by size on the screen, and 32 are marched at most; a flame keeps what it has until it is
-// well beyond the border, and goes over pixel by pixel.
+// As what a view shows each volumetric flame: marched with many samples or few, from a book, or as
+// a card. It is chosen by size on the screen, and 32 are marched at most; a flame keeps what it has
+// until it is well beyond the border, and goes over pixel by pixel.
 #pragma once
 #include "flamewright/flamewright.h"
 #include "shared/volume_draw.h"
@@ -15,6 +15,7 @@ constexpr uint32_t kTierFrames = 16;  // of the way from one tier to the next
 constexpr uint32_t kStepsTurn = 2;    // a frame, from many samples to few
 constexpr uint32_t kMarchedHigh = 16, kMarchedFlames = 32;
 constexpr float kCardInside = 10.0f, kCardOutside = 13.0f;  // px across: below, above
+constexpr float kBookInside = 24.0f, kBookOutside = 31.0f;  // a book's pages are as fine
 // Of a cell: detail as fine as this is still sampled. What a pixel averages is many cells, and to
 // leave sheets out costs light where to sample them costs none.
 constexpr float kFinestDetail = 0.25f;
@@ -25,6 +26,8 @@ struct TierItem {        // a flame that a view shows
     uint32_t asked = 0;  // FwFireTier
     float wide = 0;      // px
     float covers = 0;    // of the view, any unit
+    // Has a book that it can show at once; others show it too, or it would save nothing.
+    bool booked = false, shared = false;
 };
 
 struct TierLife {  // of a flame, as long as the view shows it; its place is its card's
@@ -53,6 +56,9 @@ struct MarchLimits {  // flames of FW_FIRE_TIER_AUTO
 
 // One frame on. places[i]: the life of items[i]. `cards`: how many places have one; a flame beyond
 // them is marched.
+// Whether a flame would rather show a book than be marched or have a card of its own, by what it is
+// now.
+bool wantsBook(uint32_t asked, float wide, const TierLife& life) noexcept;
 void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
                  TierLives& lives, std::span<uint32_t> places) noexcept;
 

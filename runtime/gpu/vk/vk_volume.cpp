@@ -46,7 +46,10 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
                                         record.tier,
                                         record.smoke > 0.0f,
                                         {},
+                                        {},
+                                        {},
                                         {}};
+        box.kind = bookKind(record, flame.nodes, kFlameNodes, box.tip);
         volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
         volumeHazeBounds(record, flame.nodes, kFlameNodes, box.hazeLow, box.hazeHigh);
         s.volumes.push_back(box);
@@ -67,6 +70,7 @@ uint32_t VkBackend::State::orderVolumes(
             continue;
         item.middle = 0.5f * (vec3(volumes[i].flameLow) + vec3(volumes[i].flameHigh));
         item.base = volumes[i].base;
+        item.tip = volumes[i].tip;
         item.smokes = volumes[i].smokes;
         item.near = item.draw.front;
         item.far = item.draw.front + item.draw.deep * float(slabs);
@@ -128,8 +132,9 @@ void VkBackend::State::makeMarchRoom(uint32_t flames, uint64_t last) {
     if (!profiles.live) return;
     while (march.slots < flames) march.slots = std::max(2 * march.slots, kLeastCards);
     try {
-        planes.fit(kSpaceVolumeRays, march.slots * kPairWords + rayWords(), detail.memory < 1,
-                   last);
+        planes.fit(kSpaceVolumeRays,
+                   march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(),
+                   detail.memory < 1, last);
     } catch (const core::Error& error) {
         if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
     }
@@ -207,25 +212,102 @@ void VkBackend::State::showPair(const VolumeItem& item, uint32_t place) noexcept
     show(older, border, to);
 }
 
+void VkBackend::State::shareBooks(std::span<const VolumeItem> items, uint32_t room,
+                                  std::span<uint32_t> numbers) noexcept {
+    std::array<BookItem, kMaxVolumeFlames> asked;
+    std::array<uint32_t, kMaxVolumeFlames> had;
+    bool wanted = false;
+    for (size_t i = 0; i < items.size(); ++i) {
+        const VolumeBox& box = volumes[items[i].flame];
+        const TierLife* life = nullptr;
+        had[i] = kNoBook;
+        for (uint32_t at = 0; at < kMaxVolumeFlames && !life; ++at) {
+            if (!march.lives[at].used || march.lives[at].key != box.key) continue;
+            life = &march.lives[at];
+            if (march.readers[at].key == box.key) had[i] = march.readers[at].book;
+        }
+        const vec4& r = items[i].draw.rect;
+        BookItem& one = asked[i];
+        one.kind = box.kind;
+        one.kind.facing =
+            glm::dot(glm::normalize(box.tip), glm::normalize(items[i].middle - vec3(seen.eye)));
+        one.key = box.key;
+        one.covers = (r.z - r.x) * (r.w - r.y);
+        one.fits = cardFits(items[i]);
+        one.wants = one.kind.plain && wantsBook(box.tier, volumeWide(items[i].draw, march.screen),
+                                                life ? *life : TierLife{});
+        wanted = wanted || (one.wants && one.fits);
+    }
+    chooseBooks({asked.data(), items.size()}, {had.data(), items.size()}, room, march.books,
+                numbers);
+    // More where flames that want one have none: all are laid anew, so not one by one.
+    bool without = false;
+    for (size_t i = 0; i < items.size(); ++i)
+        without = without || (asked[i].wants && asked[i].fits && numbers[i] == kNoBook);
+    if (without && room == march.bookRoom) march.bookRoom = std::clamp(2 * room, 1u, kVolumeBooks);
+    if (!wanted) march.bookRoom = 0;
+}
+
+void VkBackend::State::showBook(const VolumeItem& item, uint32_t place, uint32_t number) noexcept {
+    BookReader& reader = march.readers[place];
+    const TierLife& life = march.lives[place];
+    reader.key = life.key;
+    if (number == kNoBook) number = reader.book;  // it is like none any more, and turns
+    if (number == kNoBook) return;
+    if (march.books[number].used) reader.read(number, march.books);
+    if (reader.at >= march.books[reader.book].written) return;  // its room is another's
+    float from = 0.0f, to = 1.0f;
+    setFade(life, life.tier == FW_FIRE_TIER_FLIPBOOK, from, to);
+    const float border = from + float(reader.turned) / float(kBookTurn) * (to - from);
+    const auto show = [&](uint32_t book, uint64_t at, bool mirrored, float first, float last) {
+        VolumeCard& card = march.cards[march.cardCount];
+        const auto page = uint32_t(at % kBookPages);
+        if (!(first < last) ||
+            !showPage(seen, item, march.screen, march.bookSlot + book * kBookPages + page,
+                      march.books[book].pages[page], mirrored, card))
+            return;
+        card.from = first, card.to = last;
+        march.order.add(kVolumeCardPass, march.cardCount++);
+    };
+    show(reader.book, reader.at, reader.mirrored, from, border);
+    if (border < to) show(reader.bookBefore, reader.before, reader.mirroredBefore, border, to);
+}
+
 void VkBackend::State::layMarch(std::span<const VolumeItem> items,
                                 FrameRecorder& recorder) noexcept {
     const uint32_t capacity = planes.capacity(kSpaceVolumeRays);
     if (capacity != march.capacity)
         for (VolumeCardPair& pair : march.pairs)
             for (VolumeCardShape& shape : pair.shapes) shape.there = false;
-    march.capacity = capacity;
-    ++march.passed;
     // Where memory is short there are none.
     const uint32_t rays = rayWords();
     const uint32_t slots =
         uint64_t{march.slots} * kPairWords + rays / 4 <= capacity ? march.slots : 0;
+    const uint64_t beside = uint64_t{slots} * kPairWords + rays / 4;
+    uint32_t bookRoom = slots > 0 ? march.bookRoom : 0;
+    while (bookRoom > 0 && beside + uint64_t{bookRoom} * kVolumeBookWords > capacity) --bookRoom;
+    if (capacity != march.capacity || march.bookSlot != 2 * slots ||
+        march.screen.encoding != march.bookEncoding)
+        for (VolumeBook& book : march.books) book.used = false, book.written = 0;
+    march.capacity = capacity;
+    march.bookSlot = 2 * slots;
+    march.bookEncoding = march.screen.encoding;
+    ++march.passed;
     std::array<TierItem, kMaxVolumeFlames> asked;
-    std::array<uint32_t, kMaxVolumeFlames> places{};
+    std::array<uint32_t, kMaxVolumeFlames> places{}, numbers;
+    shareBooks(items, bookRoom, {numbers.data(), items.size()});
     for (size_t i = 0; i < items.size(); ++i) {
         const VolumeBox& box = volumes[items[i].flame];
         const vec4& r = items[i].draw.rect;
-        asked[i] = {box.key, box.tier, volumeWide(items[i].draw, march.screen),
-                    (r.z - r.x) * (r.w - r.y)};
+        const VolumeBook* book = numbers[i] == kNoBook ? nullptr : &march.books[numbers[i]];
+        // Its newest page is this frame's.
+        const bool booked = book && (book->key == box.key || book->written + 1 >= kBookPages);
+        asked[i] = {box.key,
+                    box.tier,
+                    volumeWide(items[i].draw, march.screen),
+                    (r.z - r.x) * (r.w - r.y),
+                    booked,
+                    book && book->shares > 1};
         const bool slices = box.tier == FW_FIRE_TIER_SLICES;
         if (slices && !slicesShow(march.screen.encoding))
             asked[i].asked = FW_FIRE_TIER_MARCH_LOW;
@@ -237,6 +319,7 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
     // A place may have gone to another flame.
     for (size_t i = 0; i < march.pairs.size(); ++i) {
         const TierLife& life = march.lives[i];
+        if (!life.used || march.readers[i].key != life.key) march.readers[i] = {};
         for (VolumeCardShape& shape : march.pairs[i].shapes)
             shape.there = shape.there && life.used && shape.key == life.key &&
                           shape.encoding == march.screen.encoding &&
@@ -253,7 +336,7 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         lives[count++] = places[i];
     }
     // `seen` is a view of one pixel.
-    const uint32_t first = slots * kPairWords;
+    const uint32_t first = slots * kPairWords + bookRoom * kVolumeBookWords;
     LaidVolumes laid{first, 0};
     if (count > 0) {
         laid = layVolumes({marched.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
@@ -275,6 +358,24 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         if (places[i] != kMaxVolumeFlames)
             march.haze[items[i].flame] = hazeOf(march.lives[places[i]]);
 
+    uint32_t cards = 0;
+    for (uint32_t b = 0; b < kVolumeBooks; ++b) {
+        VolumeBook& book = march.books[b];
+        if (!book.used) continue;
+        for (size_t i = 0; i < items.size(); ++i) {
+            if (volumes[items[i].flame].key != book.key || numbers[i] != b) continue;
+            const auto at = uint32_t(book.written % kBookPages);
+            MarchedVolume& one = march.items[laid.count + cards++];
+            layPage(seen, items[i], march.screen, march.bookSlot + b * kBookPages + at,
+                    book.pages[at], one);
+            book.pages[at].run = book.run;
+            one.march.flame = 3 * uint32_t(volumes.size()) + one.flame;
+            ++book.written;
+            break;
+        }
+    }
+    const uint32_t cardsPerFrame = kCardsPerFrame - cards;
+
     // Those that have none, and of the others the oldest.
     std::array<uint32_t, kMaxVolumeFlames> due;
     uint32_t dues = 0;
@@ -292,14 +393,13 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
         const uint64_t x = age(a), y = age(b);
         return x != y ? x > y : a < b;
     });
-    uint32_t cards = 0;
     for (uint32_t k = 0; k < dues; ++k) {
         const uint32_t i = due[k];
-        if (k >= kCardsPerFrame && age(i) != ~uint64_t{0}) break;
+        if (k >= cardsPerFrame && age(i) != ~uint64_t{0}) break;
         MarchedVolume& one = march.items[laid.count + cards];
         VolumeCardPair& pair = march.pairs[places[i]];
         if (pair.shapes[pair.newest].there) pair.newest ^= 1u;
-        pair.over = (dues + kCardsPerFrame - 1) / kCardsPerFrame;
+        pair.over = (dues + cardsPerFrame - 1) / cardsPerFrame;
         VolumeCardShape& shape = pair.shapes[pair.newest];
         layCard(seen, items[i], march.screen, 2 * places[i] + pair.newest, shape, one);
         shape.key = march.lives[places[i]].key;
@@ -319,6 +419,10 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
             setFade(life, life.tier == FW_FIRE_TIER_SLICES, one.draw.from, one.draw.to);
             march.order.add(kVolumeSlicesPass, march.slicedCount++);
         }
+        if (life.shows(FW_FIRE_TIER_FLIPBOOK))
+            showBook(items[i], places[i], numbers[i]);
+        else
+            march.readers[places[i]] = {};
         if (life.shows(FW_FIRE_TIER_IMPOSTOR)) showPair(items[i], places[i]);
     }
     march.made = march.screen;
@@ -339,8 +443,10 @@ uint32_t VkBackend::State::leastRays(const FwView& view, const VolumeScreen& scr
 }
 
 uint64_t VkBackend::detailBytes() const noexcept {
-    const State& s = *state_;  // cards lie before the rays, and are as many as there are flames
-    const uint64_t cards = uint64_t(s.march.slots) * kPairWords * sizeof(uint32_t);
+    const State& s = *state_;  // cards and books lie before the rays; those are by flames
+    const uint64_t cards =
+        (uint64_t(s.march.slots) * kPairWords + s.march.bookRoom * kVolumeBookWords) *
+        sizeof(uint32_t);
     const uint64_t rays = s.planes.bytes(kSpaceVolumeRays);
     return rays - std::min(rays, cards) + s.planes.bytes(kSpaceFlames);
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include "gpu/passes/draw.h"
 #include "gpu/passes/frame_graph.h"
+#include "gpu/passes/volume_books.h"
 #include "gpu/passes/volume_tiers.h"
 #include "gpu/vk/recorder.h"
 #include "gpu/vk/vk_backend.h"
@@ -348,6 +349,8 @@ struct VkBackend::State {
         uint32_t key = 0, tier = 0;
         bool smokes = false;
         vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
+        BookKind kind;
+        vec3 tip{};  // as VolumeItem's
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
@@ -377,15 +380,20 @@ struct VkBackend::State {
         std::array<MarchedVolume, kVolumeWorks * kMaxVolumeFlames>
             items;  // cards that are marched behind them
         uint32_t cardCount = 0;
-        std::array<VolumeCard, 2 * kMaxVolumeFlames> cards;
+        std::array<VolumeCard, 4 * kMaxVolumeFlames> cards;  // a flame may turn from book to card
         uint32_t slicedCount = 0;
         std::array<SlicedVolume, kMaxVolumeFlames> sliced;
         VolumeOrder order;  // of all of them
         TierLives lives;
         std::array<VolumeCardPair, kMaxVolumeFlames> pairs;  // by life
-        uint32_t slots = 0;                        // pairs that there is room for, before all else
-        uint32_t capacity = 0;                     // of the plane when they were made
-        uint64_t passed = 0;                       // frames
+        VolumeBookShelf books;
+        std::array<BookReader, kMaxVolumeFlames> readers;  // by life
+        uint32_t bookRoom = 0;      // books that there is to be room for, behind pairs
+        uint32_t bookSlot = 0;      // of cards: the first of theirs
+        uint32_t bookEncoding = 0;  // of their pages
+        uint32_t slots = 0;         // pairs that there is room for, before all else
+        uint32_t capacity = 0;      // of the plane when they were made
+        uint64_t passed = 0;        // frames
         std::array<float, kMaxVolumeFlames> haze;  // by flame, [0, 1]: how much of it shows
         uint32_t steps = Detail{}.volumeSteps;     // on their way to detail's
     } march;
@@ -491,6 +499,10 @@ struct VkBackend::State {
     void layMarch(std::span<const VolumeItem> items, FrameRecorder& recorder) noexcept;
     // What a flame's card shows, of the last two marches of it.
     void showPair(const VolumeItem& item, uint32_t place) noexcept;
+    // Which of `room` books each item may show.
+    void shareBooks(std::span<const VolumeItem> items, uint32_t room,
+                    std::span<uint32_t> numbers) noexcept;
+    void showBook(const VolumeItem& item, uint32_t place, uint32_t number) noexcept;
     // Whether what is marched is for a view on a screen; else they are to be marched as they are
     // drawn.
     [[nodiscard]] bool marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept;
