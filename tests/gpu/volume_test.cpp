@@ -1907,7 +1907,8 @@ TEST_F(Volume, SteadyFramesAskNothing) {
 }
 
 // All that is soft, at half resolution and at the picture's: a marched flame, a field, fire and
-// smoke of particles, each alone, all together, and with things before them. It has the same light
+// smoke of particles, each alone, all together, particles before the flame and behind it, and with
+// things before them. It has the same light
 // and hides as much; what stands before it keeps its edges, be it a wall that begins at an odd
 // pixel or a post a pixel wide, and beside them nothing is lost. It costs three bytes a
 // pixel.
@@ -2012,10 +2013,20 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
     film(false);
     film(true);
     ASSERT_EQ(films_.size(), 2u);
-    constexpr const char* kNames[] = {"a flame", "a field", "particles", "all", "all behind walls"};
+    constexpr const char* kNames[] = {"a flame",          "a field",
+                                      "particles",        "all",
+                                      "all behind walls", "particles before a flame",
+                                      "particles behind"};
     for (size_t k = 0; k < std::size(kNames); ++k) {
         const vec4 whole = meanOf(films_[0][k]), half = meanOf(films_[1][k]);
         const float light = glm::dot(half, kSeen) / glm::dot(whole, kSeen);
+        fields.drawn = {};
+        for (const float by : {-0.7f, 1.4f}) {  // the flame behind the particles, before them
+            for (gpu::FlameNode& node : flame.nodes) node.centre.z += by;
+            for (vec4* moved : {&flame.record.low, &flame.record.high, &flame.record.glow})
+                moved->z += by;
+            pictures.push_back(mean({&flame, 1}));
+        }
         const float cover = half.w / whole.w;
         std::printf("[   FIGURE ] %s: light %.4f, at half resolution %.4f of it, cover %.4f\n",
                     kNames[k], double(glm::dot(whole, kSeen)), double(light), double(cover));
@@ -2036,6 +2047,10 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
         if (x < kWall || x == kPost) {
             EXPECT_EQ(whole.w, 0.0f) << "nothing is before " << x;
             EXPECT_LT(half.x, 0.01f * brightest) << "a halo at " << x;
+    // Where the flame stands is seen, and at half resolution as at the picture's.
+    EXPECT_GT(differenceOf(films_[0][5], films_[0][6]), 0.2f);
+    for (const size_t k : {5, 6})
+        EXPECT_LT(differenceOf(films_[1][k], films_[0][k]), 0.15f) << kNames[k];
             EXPECT_LT(half.w, 0.01f * float(kSide)) << "a halo at " << x;
         } else if (x == kWall || x + 1 == kPost || x == kPost + 1) {
             std::printf(
