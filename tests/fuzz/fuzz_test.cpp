@@ -905,7 +905,7 @@ TEST_P(AbiFuzz, RandomHosts) {
     EXPECT_LT(20u, fuzz.objects);
     EXPECT_LT(20u, fuzz.flames);
     EXPECT_LT(3u, fuzz.fires);
-    EXPECT_LT(3u, fuzz.sought);
+    EXPECT_LT(0u, fuzz.sought);
     std::printf(
         "           %llu accepted, %llu refused, %llu meshes, %llu objects, %llu fires\n",
         static_cast<unsigned long long>(fuzz.accepted),

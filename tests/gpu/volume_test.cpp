@@ -2005,6 +2005,13 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
             scene_.push_back(i % kSide < kWall || i % kSide == kPost ? 0.6f : 50.0f);
         pictures.push_back(mean({&flame, 1}));
         scene_.clear();
+        fields.drawn = {};
+        for (const float by : {-0.7f, 1.4f}) {  // the flame behind the particles, before them
+            for (gpu::FlameNode& node : flame.nodes) node.centre.z += by;
+            for (vec4* moved : {&flame.record.low, &flame.record.high, &flame.record.glow})
+                moved->z += by;
+            pictures.push_back(mean({&flame, 1}));
+        }
         bytes[half] = targets();
         emitters_ = nullptr;
         fields_ = nullptr;
@@ -2020,13 +2027,6 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
     for (size_t k = 0; k < std::size(kNames); ++k) {
         const vec4 whole = meanOf(films_[0][k]), half = meanOf(films_[1][k]);
         const float light = glm::dot(half, kSeen) / glm::dot(whole, kSeen);
-        fields.drawn = {};
-        for (const float by : {-0.7f, 1.4f}) {  // the flame behind the particles, before them
-            for (gpu::FlameNode& node : flame.nodes) node.centre.z += by;
-            for (vec4* moved : {&flame.record.low, &flame.record.high, &flame.record.glow})
-                moved->z += by;
-            pictures.push_back(mean({&flame, 1}));
-        }
         const float cover = half.w / whole.w;
         std::printf("[   FIGURE ] %s: light %.4f, at half resolution %.4f of it, cover %.4f\n",
                     kNames[k], double(glm::dot(whole, kSeen)), double(light), double(cover));
