@@ -5,6 +5,7 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace fw::components {
@@ -18,7 +19,89 @@ int floorDiv(int value, int by) noexcept {
     return value >= 0 ? value / by : -((-value + by - 1) / by);
 }
 
+gpu::ExchangePush rulesOf(const ShieldShape& shape) noexcept {
+    gpu::ExchangePush rules{};
+    rules.shieldX = shape.origin[0];
+    rules.shieldY = shape.origin[1];
+    rules.shieldZ = shape.origin[2];
+    rules.shieldCell = shape.cell;
+    rules.shieldCounts = countsOf(shape);
+    return rules;
+}
+
+gpu::ivec3 placeOf(const float place[3]) noexcept {  // mm
+    return {int(std::lround(std::clamp(double(place[0]), -2e6, 2e6) * 1000)),
+            int(std::lround(std::clamp(double(place[1]), -2e6, 2e6) * 1000)),
+            int(std::lround(std::clamp(double(place[2]), -2e6, 2e6) * 1000))};
+}
+
+// Cells that are filled so far, and how near to its middle the texel of each is.
+class ShieldFill {
+ public:
+    ShieldFill(const ShieldShape& shape, std::pmr::vector<ShieldCell>& out)
+        : shape_(shape),
+          out_(out),
+          index_(shape.cells(), kEmpty, out.get_allocator()),
+          nearest_(out.get_allocator()) {}
+
+    // half: mm that it reaches along its surface, not through it. normal: Q12.
+    void texel(const gpu::ivec3& at, const gpu::ivec3& normal, double half, uint32_t what,
+               uint32_t texel) {
+        const int side = int(shape_.cell);
+        int low[3], high[3], middle[3];
+        for (int i = 0; i < 3; ++i) {
+            const double n = std::min(std::abs(double(normal[i])) / 4096, 1.0);
+            const int reach = int(half * std::sqrt(1 - n * n));
+            const int64_t off = int64_t(at[i]) - shape_.origin[size_t(i)];
+            const int count = int(shape_.counts[size_t(i)]);
+            if (off + reach < 0 || off - reach >= int64_t(count) * side) return;
+            middle[i] = int(off);
+            low[i] = std::max(floorDiv(middle[i] - reach, side), 0);
+            high[i] = std::min(floorDiv(middle[i] + reach, side), count - 1);
+        }
+        for (int z = low[2]; z <= high[2]; ++z)
+            for (int y = low[1]; y <= high[1]; ++y)
+                for (int x = low[0]; x <= high[0]; ++x) {
+                    const int place[3] = {x, y, z};
+                    uint64_t distance = 0;
+                    for (int i = 0; i < 3; ++i) {
+                        const int64_t d = int64_t(place[i]) * side + side / 2 - middle[i];
+                        distance += uint64_t(d * d);
+                    }
+                    const uint32_t row = uint32_t(z) * shape_.counts[1] + uint32_t(y);
+                    take({row * shape_.counts[0] + uint32_t(x), what, texel}, distance);
+                }
+    }
+
+ private:
+    void take(const ShieldCell& cell, uint64_t distance) {
+        uint32_t& entry = index_[cell.cell];
+        if (entry == kEmpty) {
+            if (out_.size() >= gpu::kShieldBaked)
+                core::fail(FW_ERROR_INVALID_ARGUMENT,
+                           "Objects fill more than %u cells of the shield, which is the limit: "
+                           "larger cells are fewer.",
+                           gpu::kShieldBaked);
+            entry = uint32_t(out_.size());
+            out_.push_back(cell);
+            nearest_.push_back(distance);
+        } else if (distance < nearest_[entry]) {
+            out_[entry] = cell;
+            nearest_[entry] = distance;
+        }
+    }
+
+    const ShieldShape& shape_;
+    std::pmr::vector<ShieldCell>& out_;
+    std::pmr::vector<uint32_t> index_;    // by cell: into `out_`, or kEmpty
+    std::pmr::vector<uint64_t> nearest_;  // mm^2, as `out_`
+};
+
 }  // namespace
+
+uint32_t countsOf(const ShieldShape& shape) noexcept {
+    return shape.counts[0] | shape.counts[1] << 10 | shape.counts[2] << 20;
+}
 
 ShieldShape makeShieldShape(const FwHeatShieldDef& def) {
     ShieldShape shape;
@@ -79,65 +162,21 @@ void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
                 std::pmr::vector<ShieldCell>& out) {
     out.clear();
     if (objects.empty()) return;
-    std::pmr::vector<uint32_t> index(shape.cells(), kEmpty, out.get_allocator());
-    std::pmr::vector<uint64_t> nearest(out.get_allocator());
-    const int side = int(shape.cell);
+    ShieldFill fill(shape, out);
     for (const ShieldObject& object : objects) {
         const mesh::BurnDomain& domain = *object.domain;
         // Half of a texel, but no more than a cell and a half: larger ones leave gaps.
-        const double half = std::min(0.5 * object.texelSide, 1.5 * side);
-        for (uint32_t t = 0; t < domain.texelCount(); ++t) {
-            if (!domain.real(t)) continue;
-            const mesh::TexelPosition& p = domain.texels[t];
-            const gpu::ivec3 at = gpu::remotePlace(object.place, gpu::ivec3(p.x, p.y, p.z));
-            const gpu::ivec3 normal =
-                gpu::remoteTurn(object.place, gpu::decodeNormal(domain.normals[t]));
+        const double half = std::min(0.5 * object.texelSide, 1.5 * shape.cell);
+        for (uint32_t texel = 0; texel < domain.texelCount(); ++texel) {
+            if (!domain.real(texel)) continue;
+            const mesh::TexelPosition& p = domain.texels[texel];
             const uint32_t material = p.materialFlags & (gpu::kMaterialsPerObject - 1);
             const uint32_t what = object.slot | material << 24 |
                                   (object.stays >> material & 1 ? gpu::kShieldStays : 0u);
-            int low[3], high[3], middle[3];
-            bool within = true;
-            for (int i = 0; i < 3; ++i) {
-                // Along its surface, not through it.
-                const double n = std::min(std::abs(double(normal[i])) / 4096, 1.0);
-                const int reach = int(half * std::sqrt(1 - n * n));
-                const int64_t off = int64_t(at[i]) - shape.origin[size_t(i)];
-                const int64_t size = int64_t(shape.counts[size_t(i)]) * side;
-                within = within && off + reach >= 0 && off - reach < size;
-                if (!within) break;
-                middle[i] = int(off);
-                low[i] = std::max(floorDiv(middle[i] - reach, side), 0);
-                high[i] =
-                    std::min(floorDiv(middle[i] + reach, side), int(shape.counts[size_t(i)]) - 1);
-            }
-            if (!within) continue;
-            for (int z = low[2]; z <= high[2]; ++z)
-                for (int y = low[1]; y <= high[1]; ++y)
-                    for (int x = low[0]; x <= high[0]; ++x) {
-                        const int place[3] = {x, y, z};
-                        uint64_t distance = 0;
-                        for (int i = 0; i < 3; ++i) {
-                            const int64_t d = int64_t(place[i]) * side + side / 2 - middle[i];
-                            distance += uint64_t(d * d);
-                        }
-                        const uint32_t cell =
-                            (uint32_t(z) * shape.counts[1] + uint32_t(y)) * shape.counts[0] +
-                            uint32_t(x);
-                        uint32_t& entry = index[cell];
-                        if (entry == kEmpty) {
-                            if (out.size() >= gpu::kShieldBaked)
-                                core::fail(FW_ERROR_INVALID_ARGUMENT,
-                                           "Objects fill more than %u cells of the shield, which "
-                                           "is the limit: larger cells are fewer.",
-                                           gpu::kShieldBaked);
-                            entry = uint32_t(out.size());
-                            out.push_back({cell, what, t});
-                            nearest.push_back(distance);
-                        } else if (distance < nearest[entry]) {
-                            nearest[entry] = distance;
-                            out[entry] = {cell, what, t};
-                        }
-                    }
+            const gpu::ivec3 at = gpu::remotePlace(object.place, gpu::ivec3(p.x, p.y, p.z));
+            const gpu::ivec3 normal =
+                gpu::remoteTurn(object.place, gpu::decodeNormal(domain.normals[texel]));
+            fill.texel(at, normal, half, what, texel);
         }
     }
     std::sort(out.begin(), out.end(),
@@ -160,6 +199,44 @@ void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words) {
             words[3 * count + 2 * at + 1] = cell.texel;
         }
     }
+}
+
+float sweepShield(const HeatShield& shield, const float from[3], const float way[3],
+                  float most) noexcept {
+    if (shield.solid.empty()) return most;
+    const float far = std::min(most, 0.001f * float(gpu::kExchangeFar - 1));
+    float to[3];
+    for (int i = 0; i < 3; ++i) to[i] = from[i] + way[i] * far;
+    gpu::ShieldWalk w = gpu::shieldWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
+    for (bool open = w.passed > 0; w.within; gpu::shieldStep(w, shield.shape.cell)) {
+        const bool solid = shield.solid[w.cell / 32] >> w.cell % 32 & 1;
+        if (solid && open) return std::min(most, far * float(w.passed) / float(w.of));
+        open |= !solid;
+    }
+    return most;
+}
+
+bool shieldShades(const ShieldView& shield, const float from[3], const float to[3],
+                  float spare) noexcept {
+    if (shield.words.empty()) return false;
+    const uint32_t words = shield.shape.words(), side = shield.shape.cell;
+    gpu::ShieldEnds ends;
+    ends.from = ends.to = gpu::kNoneTexel;  // nobody's own: all cells are alike
+    ends.fromSpare = side + uint32_t(std::clamp(spare, 0.0f, 10.0f) * 1000);
+    ends.toSpare = side;
+    gpu::ShieldWalk w = gpu::shieldWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
+    for (; w.within; gpu::shieldStep(w, side)) {
+        const uint32_t at = w.cell / 32, bit = 1u << w.cell % 32;
+        if ((shield.words[at] & bit) == 0) continue;
+        if (gpu::shieldSpares(w, ends, gpu::kNoneTexel, side)) continue;
+        const uint32_t baked = shield.words[words + 2 * at];
+        if ((baked & bit) == 0) return true;
+        const uint32_t before = uint32_t(std::popcount(baked & (bit - 1)));
+        const uint32_t i = shield.words[words + 2 * at + 1] + before;
+        const uint32_t slot = shield.words[3 * words + 2 * i] & gpu::kShieldSlot;
+        if (slot >= shield.fallen.size() || shield.fallen[slot] == 0) return true;
+    }
+    return false;
 }
 
 }  // namespace fw::components

@@ -23,6 +23,8 @@ struct ShieldShape {  // where its cells are; no counts: there is no shield
     bool operator==(const ShieldShape&) const = default;
 };
 
+[[nodiscard]] uint32_t countsOf(const ShieldShape& shape) noexcept;  // as ExchangePush has them
+
 struct ShieldCell {     // one that an object fills
     uint32_t cell = 0;  // x runs fastest, then y, then z
     uint32_t what = 0;  // slot | material << 24 | kShieldStays
@@ -60,5 +62,19 @@ void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
 
 // As the backends read it.
 void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words);
+
+// m along a way until it comes into a cell of the host's from one that is open, or `most`. Places
+// in m; what begins in solid cells leaves them first.
+[[nodiscard]] float sweepShield(const HeatShield& shield, const float from[3], const float way[3],
+                                float most) noexcept;
+
+struct ShieldView {  // as who stands beside it sees it: for what only shows
+    ShieldShape shape;
+    std::span<const uint32_t> words;  // packed; empty: there is none
+    std::span<const uint8_t> fallen;  // by slot: 1: its cells are there no longer
+};
+// Is there a cell between two places, further than `spare` m from the first?
+[[nodiscard]] bool shieldShades(const ShieldView& shield, const float from[3], const float to[3],
+                                float spare) noexcept;
 
 }  // namespace fw::components

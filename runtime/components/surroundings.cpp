@@ -90,10 +90,11 @@ Surroundings surroundingsOf(std::span<const FireSource> sources, const Surroundi
         const float flux =
             kRadiant * 1000.0f * fire.power / (kSphere * std::max(glm::dot(to, to), near * near));
         const bool hidden =
-            flux > kLeastFlux &&
-            std::any_of(air.walls.begin(), air.walls.end(), [&](const volume::Collider& wall) {
-                return volume::shades(wall, middle, point);
-            });
+            flux > kLeastFlux && (std::any_of(air.walls.begin(), air.walls.end(),
+                                              [&](const volume::Collider& wall) {
+                                                  return volume::shades(wall, middle, point);
+                                              }) ||
+                                  shieldShades(air.shield, &middle.x, &point.x, fire.radius));
         if (!hidden) all.heatFlux += flux;
         all.heatFlux += kConvection * excess;
     }

@@ -2,6 +2,7 @@
 // game's damage, its characters' eyes and their ways. Cosmetic floats, from fires as a host sees
 // them.
 #pragma once
+#include "components/heat_shield.h"
 #include "volume/collide.h"
 
 #include <cfloat>
@@ -27,6 +28,7 @@ FireSource fireSource(vec3 base, float radius, float power, uint32_t id) noexcep
 struct SurroundingAir {
     vec3 up{0.0f, 1.0f, 0.0f}, wind{0.0f};    // unit; m/s
     std::span<const volume::Collider> walls;  // that shade heat
+    ShieldView shield;                        // as these
 };
 
 struct Surroundings {

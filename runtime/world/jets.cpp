@@ -1,7 +1,7 @@
 // What the jets of fire emitters strike: rays swept from the holder's side of the nozzle through
-// colliders, blockers and burnable meshes. What they strike first is heated and nothing behind it,
-// when the stream has flown there. By the host's numbers alone: events, the same on every backend.
-// Particles see the same hits.
+// colliders, blockers, cells of the host's shield and burnable meshes. What they strike first is
+// heated and nothing behind it, when the stream has flown there. By the host's numbers alone:
+// events, the same on every backend. Particles see the same hits.
 #include "mesh/bake.h"
 #include "shared/exchange.h"
 #include "world/world.h"
@@ -171,6 +171,11 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
     const vec3 from = volume::vecOf(start), along = volume::vecOf(way);
     vec3 normal(-along);
     float nearest = sweepShapes(walls(), from, along, most, normal);
+    if (const float cell = components::sweepShield(shield_.grid, start, way, nearest);
+        cell < nearest) {
+        nearest = cell;
+        normal = -along;
+    }
     hit = {};
     hit.met = nearest < most;
     for (const uint32_t slot : jetSlots_) {

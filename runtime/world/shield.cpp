@@ -170,15 +170,40 @@ void World::dropFromShield(uint32_t slot) noexcept {
     if (gone != 0) shield_.unsent = shield_.unpacked = true;
 }
 
+void World::packHeatShield() {
+    if (shield_.unpacked) components::packShield(shield_.grid, shield_.words);
+    shield_.unpacked = false;
+}
+
+// For who is asked at once, and hears of texels some frames later: an object's cells are there
+// until half of it has burnt.
+components::ShieldView World::shieldView() {
+    components::ShieldView view;
+    packHeatShield();
+    if (shield_.grid.shape.cells() == 0) return view;
+    shield_.fallen.assign(objects_.slotCount(), 0);
+    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot)
+        if (const auto* owned = objects_.at(slot)) {
+            const Object& object = **owned;
+            const gpu::ObjectCounters& now = object.counters;
+            const uint32_t burnt = now.ignited - std::min(now.ignited, now.burning);
+            const bool holes = !(object.data.flags & FW_BURNABLE_NO_HOLES);
+            shield_.fallen[slot] = holes && 2 * uint64_t{burnt} > object.texels ? 1 : 0;
+        }
+    view.shape = shield_.grid.shape;
+    view.words = shield_.words;
+    view.fallen = shield_.fallen;
+    return view;
+}
+
 // awake: the step will run.
 void World::planShield(gpu::StepPlan& step, bool awake) {
     if (!awake || !shield_.unsent || frame_.shieldSent) return;
-    if (shield_.unpacked) components::packShield(shield_.grid, shield_.words);
-    shield_.unpacked = false;
+    packHeatShield();
     const components::ShieldShape& shape = shield_.grid.shape;
     shield_.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
     shield_.update.cell = shape.cell;
-    shield_.update.counts = shape.counts[0] | shape.counts[1] << 10 | shape.counts[2] << 20;
+    shield_.update.counts = components::countsOf(shape);
     shield_.update.words = shield_.words;
     step.shield = &shield_.update;
     frame_.shieldSent = true;

@@ -22,6 +22,7 @@ components::SurroundingAir World::listSources() {
     fireShapes_.reserve(kMaxFireShapes);
     listFireColliders();  // as they stand now
     air.walls = walls();
+    air.shield = shieldView();
     sources_.clear();
     // A light stands a quarter of its flame above what burns (lights.comp).
     const auto add = [&](const FwLight& light) {

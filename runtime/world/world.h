@@ -289,10 +289,11 @@ struct RemoteBook {
 
 struct ShieldBook {
     explicit ShieldBook(std::pmr::memory_resource* memory)
-        : grid(memory), told(memory), words(memory) {}
+        : grid(memory), told(memory), words(memory), fallen(memory) {}
     components::HeatShield grid;
     std::pmr::vector<uint32_t> told;   // slots that deeds named so far
     std::pmr::vector<uint32_t> words;  // as the backend gets it
+    std::pmr::vector<uint8_t> fallen;  // scratch
     gpu::ShieldUpdate update;
     bool unpacked = false;  // `words` are of another grid
     bool unsent = false;    // the backend does not know the latest
@@ -703,6 +704,8 @@ class World {
     void takeShieldCells(const Deed& deed);
     void takeShieldObject(const Deed& deed);
     void dropFromShield(uint32_t slot) noexcept;
+    void packHeatShield();
+    components::ShieldView shieldView();
     void planShield(gpu::StepPlan& step, bool awake);
     void takeWindGrid(const Deed& deed);
     void takeWindPoints(const Deed& deed);

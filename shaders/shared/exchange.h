@@ -220,7 +220,7 @@ FW_SHARED_FN uint shieldWords(uint counts) {  // of one bit per cell
     return (shieldSide(counts, 0u) * shieldSide(counts, 1u) * shieldSide(counts, 2u) + 31u) >> 5u;
 }
 
-struct ShieldWalk {  // from cell to cell, through their faces: exactly those that a straight way meets
+struct ShieldWalk {  // from cell to cell, through their faces: those that a straight way meets, to 3 mm
     bool within;     // of the grid, and of the way
     uint cell;       // where it is
     uint whole;      // mm, all of the way

@@ -166,6 +166,50 @@ TEST(AbiHeatShield, TheHostsWallsShield) {
     EXPECT_TRUE(kilnCatches(bytes(21, 5)));  // a slot from z = 0 to 0.2
 }
 
+// Jets end at the host's cells, and who asks how hot it is stands in their shade.
+TEST(AbiHeatShield, JetsAndQuestionsHeedIt) {
+    for (const bool walled : {false, true}) {
+        Kiln kiln;
+        FwHeatShieldDef def = Kiln::cells();
+        std::vector<uint8_t> solid(40 * 60 * 40);
+        for (uint32_t i = 0; i < solid.size(); ++i) solid[i] = i % 40 == 21 ? 1 : 0;
+        def.cells = solid.data();
+        if (walled) kiln.shield(def);
+        FwFireEmitterDef jet = fwDefaultFireEmitterDef();
+        jet.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES;
+        jet.position[0] = -0.45f;
+        jet.position[1] = 0.2f;
+        jet.position[2] = 0.1f;
+        jet.direction[0] = 1;
+        jet.direction[1] = 0;
+        jet.power = 2000;
+        FwFireEmitterId id{};
+        ASSERT_EQ(FW_OK, fwWorld_CreateFireEmitter(kiln.world, &jet, &id));
+        kiln.run(3);
+        EXPECT_EQ(!walled, kiln.lit(1) > 0);
+        FwFireEmitterState state{};
+        state.structSize = sizeof state;
+        ASSERT_EQ(FW_OK, fwWorld_GetFireEmitterState(kiln.world, id, &state));
+        if (walled) {
+            EXPECT_NEAR(1.0f, state.freeWay, 0.06f);  // from -0.45 to 0.55 m
+        }
+        ASSERT_EQ(FW_OK, fwWorld_DestroyFireEmitter(kiln.world, id));
+    }
+    const auto heat = [](bool walled) {
+        Kiln kiln;
+        if (walled) kiln.bake({kiln.wall()});
+        (void)kiln.caught(2);
+        FwSurroundings at{};
+        at.structSize = sizeof at;
+        const float place[3] = {1.2f, 0.4f, 0.1f};
+        EXPECT_EQ(FW_OK, fwWorld_AskSurroundings(kiln.world, place, &at));
+        return at.heatFlux;
+    };
+    const float open = heat(false), shaded = heat(true);
+    EXPECT_LT(2000.0f, open);
+    EXPECT_LT(shaded, 0.2f * open);
+}
+
 TEST(AbiHeatShield, SaysWhatIsWrong) {
     Kiln kiln;
     const auto refused = [&](const std::function<void(FwHeatShieldDef&)>& change,

@@ -41,6 +41,13 @@ TEST(AbiWrapper, OwnersCloseInOrderAndFailuresSayWhy) {
         EXPECT_FALSE(object);
         EXPECT_TRUE(moved);
 
+        FwHeatShieldDef shield = fw::def<FwHeatShieldDef>();
+        shield.counts[0] = 3;
+        uint32_t asked = 0;
+        const auto ground = [&asked](const float* place) { return ++asked, place[1]; };
+        EXPECT_EQ(FW_OK, fw::setHeatShield(world, shield, ground)) << fw::lastMessage(world);
+        EXPECT_EQ(3u, asked);
+
         FwIgnitionDef ignition = fw::def<FwIgnitionDef>();
         ignition.object = moved.get();
         ignition.radius = 0.05f;

@@ -276,7 +276,7 @@ static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
     FwHeatShieldDef d; fwInitDef(FW_DEF_HEAT_SHIELD, &d, (uint32_t)sizeof d); return d;
 }
 /* In place of the shield that was; null: none any more. Counts from the next exchange on (eight a second), beside blockers.
- * What is within a cell of a flame or of what it warms is not between them; of the cells of the two's own, and of the
+ * Cells of the host's stop jets, too (which strike meshes by themselves). What is within a cell of a flame or of what it warms is not between them; of the cells of the two's own, and of the
  * host's, what is within some cells: nothing shades itself. What has burnt away lets fire pass by itself; what moved is
  * where it was until the next call; what is destroyed is gone. At most 262144 cells are objects'. The same on every
  * backend, in saves, logs and networks: these have 57 bytes for every 288 cells in a row of which one of the host's
@@ -1463,7 +1463,7 @@ FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t ca
 
 /* What fire does to a place: for damage, for what characters feel and see. Of burning meshes (their lights), fire
  * emitters and volumetric fires, as of the last frame; cosmetic. Plumes are McCaffrey's and lean with the wind;
- * blockers and colliders shade radiation. */
+ * blockers, colliders and the shield shade radiation (cells of a burnable mesh: until half of it has burnt). */
 typedef struct FwSurroundings {
     uint32_t structSize;
     float heatFlux;            /* W/m^2 on a small cold body there, by radiation and hot gas; at most 150 kW/m^2 */

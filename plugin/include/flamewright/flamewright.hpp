@@ -53,6 +53,10 @@ template <>
     return fwDefaultBurnableMeshDef();
 }
 template <>
+[[nodiscard]] inline FwHeatShieldDef def<FwHeatShieldDef>() noexcept {
+    return fwDefaultHeatShieldDef();
+}
+template <>
 [[nodiscard]] inline FwTimelineDef def<FwTimelineDef>() noexcept {
     return fwDefaultTimelineDef();
 }
@@ -296,6 +300,20 @@ using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
     made.indexCount = uint32_t(indices.size());
     made.indexSize = 4;
     return made;
+}
+
+// ---- walls
+// ----------------------------------------------------------------------------------------
+
+// A shield (see fwWorld_SetHeatShield) that asks `distance`, float(const float place[3]), of every
+// cell before it returns. It must not throw.
+template <std::invocable<const float*> Distance>
+FwResult setHeatShield(const World& world, FwHeatShieldDef made, Distance distance) noexcept {
+    made.distance = [](void* data, const float* place) -> float {
+        return (*static_cast<Distance*>(data))(place);
+    };
+    made.distanceData = std::addressof(distance);
+    return fwWorld_SetHeatShield(world.get(), &made);
 }
 
 // ---- running

@@ -1,0 +1,174 @@
+// The shield's cells: that a way between two places meets those that it goes through and no other,
+// and which an object fills.
+#include "components/heat_shield.h"
+
+#include "components/remote.h"
+#include "mesh/bake.h"
+#include "support/meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+namespace fw::test {
+namespace {
+
+using components::ShieldShape;
+using gpu::ivec3;
+
+ShieldShape shapeOf(uint32_t x, uint32_t y, uint32_t z, uint32_t cell) {
+    ShieldShape shape;
+    shape.counts = {x, y, z};
+    shape.origin = {-700, 300, 1000};
+    shape.cell = cell;
+    return shape;
+}
+
+gpu::ExchangePush rulesOf(const ShieldShape& shape) {
+    gpu::ExchangePush rules{};
+    rules.shieldX = shape.origin[0];
+    rules.shieldY = shape.origin[1];
+    rules.shieldZ = shape.origin[2];
+    rules.shieldCell = shape.cell;
+    rules.shieldCounts = components::countsOf(shape);
+    return rules;
+}
+
+std::vector<uint32_t> walked(const ShieldShape& shape, ivec3 a, ivec3 b) {
+    std::vector<uint32_t> cells;
+    for (gpu::ShieldWalk w = gpu::shieldWalk(rulesOf(shape), a, b); w.within;
+         gpu::shieldStep(w, shape.cell)) {
+        cells.push_back(w.cell);
+        if (cells.size() > 3 * gpu::kShieldSide) break;
+    }
+    return cells;
+}
+
+// To 3 mm, with which it knows where it comes into the grid: by points of the way that are well
+// within a cell.
+TEST(HeatShield, AWayMeetsTheCellsItGoesThrough) {
+    std::mt19937 random(7);
+    const auto below = [&](int most) { return int(random() % uint32_t(most)); };
+    uint32_t met = 0, missed = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const ShieldShape shape = shapeOf(1 + uint32_t(below(30)), 1 + uint32_t(below(12)),
+                                          1 + uint32_t(below(30)), 50 + uint32_t(below(300)));
+        ivec3 ends[2];
+        for (ivec3& end : ends)
+            for (int k = 0; k < 3; ++k) {
+                const int size = int(shape.counts[size_t(k)] * shape.cell);
+                end[k] = shape.origin[size_t(k)] - size / 2 + below(2 * size + 2);
+            }
+        if (i % 5 == 0) ends[1][i % 3] = ends[0][i % 3];  // along a plane of faces
+        const std::vector<uint32_t> cells = walked(shape, ends[0], ends[1]);
+        const std::set<uint32_t> all(cells.begin(), cells.end());
+        ASSERT_EQ(all.size(), cells.size()) << "twice, way " << i;
+        for (const uint32_t cell : cells) ASSERT_LT(cell, shape.cells());
+        std::set<uint32_t> sure;  // that some point is well within
+        for (int s = 0; s <= 4000; ++s) {
+            uint32_t cell = 0;
+            bool well = true;
+            for (int k = 2; k >= 0; --k) {
+                const double at = ends[0][k] + double(ends[1][k] - ends[0][k]) * s / 4000 -
+                                  shape.origin[size_t(k)];
+                const double c = std::floor(at / shape.cell);
+                well = well && c >= 0 && c < shape.counts[size_t(k)] && at - c * shape.cell > 3 &&
+                       (c + 1) * shape.cell - at > 3;
+                if (!well) break;
+                cell = cell * shape.counts[size_t(k)] + uint32_t(c);
+            }
+            if (well) sure.insert(cell);
+        }
+        for (const uint32_t cell : sure) {
+            ASSERT_TRUE(all.count(cell)) << "way " << i << ", cell " << cell;
+            ++met;
+        }
+        // What is met beside those are corners that it cuts.
+        missed += uint32_t(all.size() - sure.size());
+        for (size_t k = 1; k < cells.size(); ++k) {
+            const uint32_t d =
+                cells[k] > cells[k - 1] ? cells[k] - cells[k - 1] : cells[k - 1] - cells[k];
+            ASSERT_TRUE(d == 1 || d == shape.counts[0] || d == shape.counts[0] * shape.counts[1]);
+        }
+    }
+    EXPECT_GT(met, 10000u);
+    EXPECT_LT(missed, met / 5);
+}
+
+// Far from it, and at the ends of the world, nothing overflows (a sanitizer's business).
+TEST(HeatShield, WhatIsFarOffMeetsNothing) {
+    ShieldShape shape = shapeOf(256, 32, 256, 10000);
+    shape.origin = {1000000000, -1000000000, 0};
+    for (const int at : {-2000000000, -40000, 0, 40000, 2000000000})
+        EXPECT_TRUE(walked(shape, {at, at, -at / 2}, {at + 30000, at, -at / 2}).empty());
+    EXPECT_TRUE(walked(shapeOf(4, 4, 4, 100), {-600, 400, 1100}, {-600, 400, 1100}).size() <= 1);
+    EXPECT_TRUE(walked(ShieldShape{}, {0, 0, 0}, {100, 0, 0}).empty());
+}
+
+// A plane that lies askew has no gap, from whatever side: each way through it meets a cell of it.
+TEST(HeatShield, AnObjectFillsWhatItsTexelsReach) {
+    const Mesh plane = makePlane(2, 2, 0, 1, 90);  // along x and z
+    const mesh::BurnDomain domain = mesh::bake(plane.input(48), std::pmr::get_default_resource());
+    for (const float turn : {0.0f, 0.3f, 0.78f}) {
+        float transform[16] = {std::cos(turn),
+                               std::sin(turn),
+                               0,
+                               0,
+                               -std::sin(turn),
+                               std::cos(turn),
+                               0,
+                               0,
+                               0,
+                               0,
+                               1,
+                               0,
+                               0,
+                               0,
+                               0,
+                               1};
+        const components::Pose pose = components::makePose(transform, "transform");
+        components::ShieldObject object;
+        object.slot = 5;
+        object.domain = &domain;
+        components::placeRemote(pose, domain, object.place);
+        object.texelSide = uint32_t(domain.texelSide * 1000);
+        ShieldShape shape;
+        shape.counts = {60, 60, 60};
+        shape.origin = {-500, -500, -500};
+        shape.cell = 60;
+        components::HeatShield shield(std::pmr::get_default_resource());
+        shield.shape = shape;
+        shield.solid.assign(shape.words(), 0);
+        components::bakeShield(shape, {&object, 1}, shield.baked);
+        std::pmr::vector<uint32_t> words;
+        components::packShield(shield, words);
+        ASSERT_EQ(3 * shape.words() + 2 * shield.baked.size(), words.size());
+        for (size_t i = 0; i < shield.baked.size(); ++i) {
+            const uint32_t cell = shield.baked[i].cell;
+            ASSERT_TRUE(words[cell / 32] >> cell % 32 & 1);
+            ASSERT_EQ(5u, shield.baked[i].what & gpu::kShieldSlot);
+            ASSERT_TRUE(domain.real(shield.baked[i].texel));
+        }
+        // About its area in cells, and a half more where it lies askew.
+        EXPECT_LT(shield.baked.size(), size_t(2.2 * (2000.0 / 60) * (2000.0 / 60)));
+        components::ShieldView view{shape, words, {}};
+        std::mt19937 random(3);
+        for (int i = 0; i < 500; ++i) {
+            const auto within = [&] { return 0.2f + 1.4f * float(random() % 1000) / 1000; };
+            const float x = within(), z = within(), up = 0.3f;
+            const float on[3] = {x * std::cos(turn), x * std::sin(turn), z};
+            const float a[3] = {on[0] - up * std::sin(turn), on[1] + up * std::cos(turn), on[2]};
+            const float b[3] = {on[0] + up * std::sin(turn), on[1] - up * std::cos(turn), on[2]};
+            ASSERT_TRUE(components::shieldShades(view, a, b, 0)) << turn << ", " << i;
+        }
+        const uint8_t fallen[] = {0, 0, 0, 0, 0, 1};
+        view.fallen = fallen;
+        const float a[3] = {0.5f, 1.5f, 0.5f}, b[3] = {0.5f, -0.4f, 0.5f};
+        EXPECT_FALSE(components::shieldShades(view, a, b, 0));
+    }
+}
+
+}  // namespace
+}  // namespace fw::test
