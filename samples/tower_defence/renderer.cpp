@@ -70,6 +70,11 @@ const std::vector<VkVertexInputAttributeDescription> kCasterAttributes = {
 constexpr float kFineWithin = 36.0f;        // m; further off the fine parts of a model are left out
 constexpr uint32_t kMostTriangles = 20000;  // of a view
 
+bool isHerb(village::Kit model) {
+    return model == village::Kit::kDryGrass || model == village::Kit::kFlowers ||
+           model == village::Kit::kReeds;
+}
+
 // The sun looks at the whole play area; the map follows no camera, so shadows never swim.
 glm::mat4 sunClip(glm::vec3 toSun, float* texel) {
     const glm::vec3 centre(0.0f, 1.0f, -4.0f);
@@ -261,7 +266,7 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
         float away;  // m
         size_t placed;
     };
-    std::vector<Fine> fineWork;
+    std::vector<Fine> fineWork, herbs;
     uint32_t triangles = (surfaces_[ground_].indexCount + surfaces_[road_].indexCount +
                           surfaces_[water_].indexCount) /
                          3;
@@ -278,17 +283,27 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
         const float away = glm::length(middle - scene.camera.eye) - radius;
         const bool whole = !p.drawn || away < kFineWithin;
         if (p.drawn && whole) fineWork.push_back({away, seen.size()});
+        if (p.drawn && isHerb(village::Kit(p.model))) herbs.push_back({away, seen.size()});
         seen.push_back(!p.drawn ? kNot : whole ? kNear : kFar);
         triangles += (whole ? s.indexCount : s.farIndexCount) / 3;
     }
-    // Where a crowd is in view the farthest go without.
-    std::sort(fineWork.begin(), fineWork.end(),
-              [](const Fine& a, const Fine& b) { return a.away < b.away; });
+    // Where a crowd is in view the farthest go without; where much of it burns, herbs go, too.
+    const auto farthestLast = [](std::vector<Fine>& list) {
+        std::sort(list.begin(), list.end(),
+                  [](const Fine& a, const Fine& b) { return a.away < b.away; });
+    };
+    farthestLast(fineWork);
     for (; triangles > kMostTriangles && !fineWork.empty(); fineWork.pop_back()) {
         const size_t i = fineWork.back().placed;
         const Surface& s = surfaces_[size_t(scene.placed[i].model)];
         seen[i] = kFar;
         triangles -= (s.indexCount - s.farIndexCount) / 3;
+    }
+    farthestLast(herbs);
+    for (; triangles > kMostTriangles && !herbs.empty(); herbs.pop_back()) {
+        const size_t i = herbs.back().placed;
+        seen[i] = kNot;
+        triangles -= surfaces_[size_t(scene.placed[i].model)].farIndexCount / 3;
     }
     mostTriangles_ = std::max(mostTriangles_, triangles);
 
