@@ -276,12 +276,12 @@ static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
     FwHeatShieldDef d; fwInitDef(FW_DEF_HEAT_SHIELD, &d, (uint32_t)sizeof d); return d;
 }
 /* In place of the shield that was; null: none any more. Counts from the next exchange on (eight a second), beside blockers.
- * Cells of the host's stop jets, too (which strike meshes by themselves). What is within a cell of a flame or of what it warms is not between them; of the cells of the two's own, and of the
- * host's, what is within some cells: nothing shades itself. What has burnt away lets fire pass by itself; what moved is
- * where it was until the next call; what is destroyed is gone. At most 262144 cells are objects'. The same on every
- * backend, in saves, logs and networks: these have 57 bytes for every 288 cells in a row of which one of the host's
- * changed (all that are solid, where the grid is another), and 9 for each object. Takes some 20 ns per cell (with the
- * callback: and its time) and per texel of the objects. [world] */
+ * Cells of the host's stop jets, too, which strike meshes by themselves. What is within a cell of a flame or of what it
+ * warms is not between them; of the cells of the two's own, and of the host's, what is within some cells: nothing shades
+ * itself. What has burnt away lets fire pass by itself; what moved is where it was until the next call; what is destroyed
+ * is gone. At most 262144 cells are objects'. The same on every backend, in saves, logs and networks: these have 57 bytes
+ * for every 288 cells in a row of which one of the host's changed (all that are solid, where the grid is another), and 9
+ * for each object. Takes some 5 ns per cell, the callback's own time and some 40 ns per texel of the objects. [world] */
 FW_API FwResult FW_CALL fwWorld_SetHeatShield(FwWorld*, const FwHeatShieldDef* def);
 
 typedef enum FwWindShape { /* where a wind zone is; what lies in it is measured from its middle to its edge */
