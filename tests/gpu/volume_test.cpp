@@ -2047,10 +2047,10 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
         if (x < kWall || x == kPost) {
             EXPECT_EQ(whole.w, 0.0f) << "nothing is before " << x;
             EXPECT_LT(half.x, 0.01f * brightest) << "a halo at " << x;
-    // Where the flame stands is seen, and at half resolution as at the picture's.
-    EXPECT_GT(differenceOf(films_[0][5], films_[0][6]), 0.2f);
-    for (const size_t k : {5, 6})
-        EXPECT_LT(differenceOf(films_[1][k], films_[0][k]), 0.15f) << kNames[k];
+            // Where the flame stands is seen, and at half resolution as at the picture's.
+            EXPECT_GT(differenceOf(films_[0][5], films_[0][6]), 0.2f);
+            for (const size_t k : {5, 6})
+                EXPECT_LT(differenceOf(films_[1][k], films_[0][k]), 0.15f) << kNames[k];
             EXPECT_LT(half.w, 0.01f * float(kSide)) << "a halo at " << x;
         } else if (x == kWall || x + 1 == kPost || x == kPost + 1) {
             std::printf(

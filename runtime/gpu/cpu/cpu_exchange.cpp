@@ -311,11 +311,11 @@ void CpuBackend::State::parts(const ExchangePush& rules) noexcept {
     for (const BurnTile& burning : burnTiles) {
         const CpuObject& object = *objects[burning.object];
         if ((object.remote.flags & kRemoteLive) == 0 || object.domain->partLinks.empty()) continue;
-        const uvec4 links = remoteTiles[object.mesh][burning.tile].parts;
+        const uvec4 leads = remoteTiles[object.mesh][burning.tile].parts;
         const uint32_t corner = burning.tile / object.domain->tilesX * 8 * object.domain->width +
                                 burning.tile % object.domain->tilesX * 8;
         for (uint32_t block = 0; block < 4; ++block) {
-            const uint32_t link = links[int(block)];
+            const uint32_t link = leads[int(block)];
             if (link == kNoneTexel) continue;
             const uint32_t lane = partFrom(link, block), to = link % kPartTexels;
             const uint32_t from = corner + lane / 8 * object.domain->width + lane % 8;

@@ -36,7 +36,7 @@ struct Arrivals {
     uint32_t now = 0;                 // tick at which it begins
     uint32_t end = 0;                 // tick that the round works up to
     bool parts = false;
-    bool whole = true;                // nothing more will catch
+    bool whole = true;  // nothing more will catch
 
     // Ticks below this one stay as they are.
     [[nodiscard]] uint32_t settled() const noexcept;
