@@ -1,6 +1,5 @@
-// Embers: where each of them comes down, and whether it lights what it lies on. A thread an object
-// slot takes its sources in turn; embers are rare, so it looks through all objects for each, then
-// through the tiles of one.
+// Embers that nothing stopped on their way: whether each lights what it lies on. A thread an object
+// slot takes its sources in turn; embers are rare.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -21,29 +20,11 @@ layout(local_size_x = 64) in;
 #define FW_USE_TEXELS readonly
 #define FW_USE_REMOTE_TILES
 #define FW_USE_SOURCES readonly
-#define FW_USE_BLOCKERS
-#define FW_USE_SHIELD
-#define FW_USE_HEAT readonly
-#define FW_USE_MATERIALS readonly
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"
 #include "lib/change.glsl"
 #include "lib/light.glsl"
-#include "lib/shield.glsl"
-
-uint landsOn(ivec3 at, uint axis, out int top) {
-    uint found = kNoneTexel;
-    top = kNoTop;
-    for (uint slot = 0u; slot < push.count; ++slot) {
-        if ((remoteObjects[slot].flags & kRemoteLive) == 0u) continue;
-        int here = topBelow(remoteObjects[slot], at, axis);
-        if (here > top) {
-            top = here;
-            found = slot;
-        }
-    }
-    return found;
-}
+#include "lib/ember.glsl"
 
 uint nearestLane(uint object, uint corner, ivec3 at, uint axis) {
     uint nearest = kNoneTexel;
@@ -62,37 +43,11 @@ uint nearestLane(uint object, uint corner, ivec3 at, uint axis) {
 }
 
 void land(FireSource source) {
-    ivec3 up = ivec3(push.upX, push.upY, push.upZ);
-    uint axis = upAxis(up);
-    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) +
-                 unpackWind(uint(remoteObjects[source.object].high.w));
-    Ember ember = flyingEmber(source, source.ember, up, wind);
-    int top;
-    uint object = landsOn(ember.landing, axis, top);
-    if (object == kNoneTexel) return;
-    uint least = kMisses;
-    uint tile = kNoneTexel;
-    for (uint i = 0u; i < objects[object].tileCount; ++i) {
-        uint miss = landingMiss(remoteObjects[object], remoteTiles[objects[object].tileBase + i],
-                                ember.landing, top, axis);
-        if (miss < least) {
-            least = miss;
-            tile = i;
-        }
-    }
+    uint axis = upAxis(worldUp());
+    Ember ember = emberFrom(source);
+    uint tile;
+    uint object = landsOn(ember.landing, axis, tile);
     if (tile == kNoneTexel) return;
-    ivec3 place = remotePlace(remoteObjects[object],
-                              tileMiddle(remoteTiles[objects[object].tileBase + tile]));
-    for (uint b = 0u; b < push.blockers; ++b)
-        if (blockerCuts(blockers[b], alongFlame(source, up, 8), ember.landing) ||
-            blockerCuts(blockers[b], ember.landing, place))
-            return;
-    if (push.shieldCell != 0u) {
-        ShieldEnds ends = emberEnds(source, object, push.shieldCell);
-        if (shieldCuts(ends, alongFlame(source, up, 8), ember.landing) ||
-            shieldCuts(ends, ember.landing, place))
-            return;
-    }
     uint chance = bothChances(emberLights(ember.energy, remoteObjects[object].catches),
                               bothChances(push.chance, remoteObjects[source.object].chance));
     if (!drawn(hash32(source.ember + 7u), chance)) return;
@@ -115,10 +70,7 @@ void land(FireSource source) {
 void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= push.count) return;
-    bool burns = (remoteObjects[slot].flags & kRemoteLive) != 0u && objectCounters[slot].burning != 0u;
-    uint base = remoteObjects[slot].sourceBase;
-    uint end = burns ? base + remoteObjects[slot].sourceCount : base;
-    for (uint at = base; at < end; ++at)
-        for (bool sent = sources[at].ember != 0u && sources[at].watts != 0u; sent; sent = false)
-            land(sources[at]);
+    uvec2 range = sourcesOf(slot);
+    for (uint at = range.x; at < range.y; ++at)
+        for (bool sent = sendsEmber(at); sent; sent = false) land(sources[at]);
 }

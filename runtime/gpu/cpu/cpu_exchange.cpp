@@ -91,6 +91,7 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
     sumSources();
     settleSources(rules);
     if (rules.warms != 0) warmAll(rules);
+    if ((rules.flags & kRemoteEmbers) != 0) emberWays(rules);
     askThen(rules.tilesMost, rules.now, [&] {
         if ((rules.flags & kRemoteContact) != 0) contacts(rules);
         if ((rules.flags & kRemoteContact) != 0) parts(rules);
@@ -333,64 +334,82 @@ void CpuBackend::State::parts(const ExchangePush& rules) noexcept {
     }
 }
 
-// Object below a place with the highest top, or kNoneTexel.
-uint32_t CpuBackend::State::landsOn(const ivec3& at, uint32_t axis, int& top) const noexcept {
-    uint32_t found = kNoneTexel;
-    top = kNoTop;
+// The object below a place with the highest top, and its tile there.
+CpuBackend::State::Landing CpuBackend::State::landsOn(const ivec3& at,
+                                                      uint32_t axis) const noexcept {
+    Landing landing;
+    int top = kNoTop;
     for (uint32_t slot = 0; slot < objects.size(); ++slot) {
         if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
         const int here = topBelow(objects[slot]->remote, at, axis);
         if (here > top) {
             top = here;
-            found = slot;
+            landing.object = slot;
         }
     }
-    return found;
+    if (landing.object == kNoneTexel) return landing;
+    const CpuObject& object = *objects[landing.object];
+    const std::pmr::vector<RemoteTile>& its = remoteTiles[object.mesh];
+    uint32_t least = kMisses;
+    for (uint32_t i = 0; i < its.size(); ++i) {
+        const uint32_t miss = landingMiss(object.remote, its[i], at, top, axis);
+        if (miss < least) {
+            least = miss;
+            landing.tile = i;
+        }
+    }
+    return landing;
+}
+
+// Calls each(source, ember, landing); no tile: it falls on nothing.
+template <class Each>
+void CpuBackend::State::eachEmber(const ExchangePush& rules, Each&& each) noexcept {
+    const ivec3 up = upOf(rules), wind(rules.windX, rules.windY, rules.windZ);
+    for (uint32_t slot = 0; slot < objects.size(); ++slot) {
+        if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
+        CpuObject& from = *objects[slot];
+        if (from.counters.burning == 0) continue;
+        const ivec3 blows = wind + unpackWind(uint32_t(from.remote.high.w));
+        for (FireSource& source : from.sources) {
+            if (source.watts == 0 || source.ember == 0) continue;
+            const Ember ember = flyingEmber(source, source.ember, up, blows);
+            each(source, ember, landsOn(ember.landing, upAxis(up)));
+        }
+    }
+}
+
+// Those whose way a blocker or the shield crosses are none.
+void CpuBackend::State::emberWays(const ExchangePush& rules) noexcept {
+    const auto stopped = [&](const FireSource& source, const Ember& ember, const Landing& to) {
+        if (to.tile == kNoneTexel) return true;
+        const CpuObject& object = *objects[to.object];
+        const ivec3 flame = alongFlame(source, upOf(rules), 8);
+        const ivec3 place =
+            remotePlace(object.remote, tileMiddle(remoteTiles[object.mesh][to.tile]));
+        for (const Blocker& blocker : blockers)
+            if (blockerCuts(blocker, flame, ember.landing) ||
+                blockerCuts(blocker, ember.landing, place))
+                return true;
+        if (rules.shieldCell == 0) return false;
+        const ShieldEnds ends = emberEnds(source, to.object, rules.shieldCell);
+        return shieldCuts(ends, flame, ember.landing, rules) ||
+               shieldCuts(ends, ember.landing, place, rules);
+    };
+    eachEmber(rules, [&](FireSource& source, const Ember& ember, const Landing& to) {
+        if (stopped(source, ember, to)) source.ember = 0;
+    });
 }
 
 void CpuBackend::State::embers(const ExchangePush& rules) noexcept {
-    const ivec3 up = upOf(rules), wind(rules.windX, rules.windY, rules.windZ);
-    const uint32_t axis = upAxis(up);
-    for (uint32_t slot = 0; slot < objects.size(); ++slot) {
-        if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
-        const CpuObject& from = *objects[slot];
-        if (from.counters.burning == 0) continue;
-        const ivec3 blows = wind + unpackWind(uint32_t(from.remote.high.w));
-        for (const FireSource& source : from.sources) {
-            if (source.watts == 0 || source.ember == 0) continue;
-            const Ember ember = flyingEmber(source, source.ember, up, blows);
-            int top = kNoTop;
-            const uint32_t target = landsOn(ember.landing, axis, top);
-            if (target == kNoneTexel) continue;
-            landEmber(source, ember, target, top, axis, rules);
-        }
-    }
+    eachEmber(rules, [&](const FireSource& source, const Ember& ember, const Landing& to) {
+        if (to.tile != kNoneTexel) landEmber(source, ember, to, upAxis(upOf(rules)), rules);
+    });
 }
 
-void CpuBackend::State::landEmber(const FireSource& source, const Ember& ember, uint32_t target,
-                                  int top, uint32_t axis, const ExchangePush& rules) noexcept {
+void CpuBackend::State::landEmber(const FireSource& source, const Ember& ember, const Landing& to,
+                                  uint32_t axis, const ExchangePush& rules) noexcept {
+    const uint32_t target = to.object, tile = to.tile;
     CpuObject& object = *objects[target];
-    const std::pmr::vector<RemoteTile>& at = remoteTiles[object.mesh];
-    uint32_t least = kMisses, tile = kNoneTexel;
-    for (uint32_t i = 0; i < at.size(); ++i) {
-        const uint32_t miss = landingMiss(object.remote, at[i], ember.landing, top, axis);
-        if (miss < least) {
-            least = miss;
-            tile = i;
-        }
-    }
-    if (tile == kNoneTexel) return;
-    const ivec3 place = remotePlace(object.remote, tileMiddle(at[tile]));
-    for (const Blocker& blocker : blockers)
-        if (blockerCuts(blocker, alongFlame(source, upOf(rules), 8), ember.landing) ||
-            blockerCuts(blocker, ember.landing, place))
-            return;
-    if (rules.shieldCell != 0) {
-        const ShieldEnds ends = emberEnds(source, target, rules.shieldCell);
-        if (shieldCuts(ends, alongFlame(source, upOf(rules), 8), ember.landing, rules) ||
-            shieldCuts(ends, ember.landing, place, rules))
-            return;
-    }
     const uint32_t chance =
         bothChances(emberLights(ember.energy, object.remote.catches),
                     bothChances(rules.chance, objects[source.object]->remote.chance));

@@ -147,11 +147,17 @@ struct CpuBackend::State {
     void warmTile(uint32_t slot, uint32_t local, const ExchangePush& rules) noexcept;
     void contacts(const ExchangePush& rules) noexcept;
     void parts(const ExchangePush& rules) noexcept;
+    struct Landing {  // of an ember; kNoneTexel: it falls on none
+        uint32_t object = kNoneTexel, tile = kNoneTexel;
+    };
+    template <class Each>
+    void eachEmber(const ExchangePush& rules, Each&& each) noexcept;
+    void emberWays(const ExchangePush& rules) noexcept;
     void embers(const ExchangePush& rules) noexcept;
     bool light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by, uint32_t now) noexcept;
-    uint32_t landsOn(const ivec3& at, uint32_t axis, int& top) const noexcept;
-    void landEmber(const FireSource& source, const Ember& ember, uint32_t target, int top,
-                   uint32_t axis, const ExchangePush& rules) noexcept;
+    Landing landsOn(const ivec3& at, uint32_t axis) const noexcept;
+    void landEmber(const FireSource& source, const Ember& ember, const Landing& to, uint32_t axis,
+                   const ExchangePush& rules) noexcept;
     static uint32_t nearestLane(const CpuObject& object, uint32_t tile, const ivec3& at,
                                 uint32_t axis) noexcept;
     void litFrom(CpuObject& object, uint32_t by) noexcept;

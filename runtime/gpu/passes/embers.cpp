@@ -15,9 +15,7 @@ constexpr Use kEmbersUses[] = {
     {FW_BIND_PREDICT_LIST_B, Access::write},  {FW_BIND_PUBLISHED, Access::write},
     {FW_BIND_REMOTE_OBJECTS, Access::read},   {FW_BIND_TEXELS, Access::read},
     {FW_BIND_REMOTE_TILES, Access::read},     {FW_BIND_SOURCES, Access::read},
-    {FW_BIND_BLOCKERS, Access::read},         {FW_BIND_HOT_LISTS, Access::write},
-    {FW_BIND_SHIELD, Access::read},           {FW_BIND_HEAT, Access::read},
-    {FW_BIND_MATERIALS, Access::read},
+    {FW_BIND_HOT_LISTS, Access::write},
 };
 
 }  // namespace

@@ -24,13 +24,13 @@ struct SparkPush;     // shared/spark.h
 extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWakePass, kSchedulePass,
     kGatherPass, kArrivalPass, kArrivalRimPass, kGrantPass, kCommitPass, kPublishedPass,
     kReduceClearPass, kReduceFrontPass, kReducePass, kFireCellsPass, kFireSourcesPass,
-    kReceiversPass, kExchangePass, kContactsPass, kPartsPass, kEmbersPass, kPredictAnewPass,
-    kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass, kLightsPass,
-    kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass, kRefineScanPass,
-    kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass,
-    kSoftPass, kSpringsPass, kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass,
-    kVolumeMarchPass, kVolumeSmokePass, kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass,
-    kFieldMaskPass, kFieldShowPass, kRoomsPass;
+    kReceiversPass, kExchangePass, kContactsPass, kPartsPass, kEmberWaysPass, kEmbersPass,
+    kPredictAnewPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass, kProbePass,
+    kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
+    kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
+    kRecedePass, kTiesPass, kSoftPass, kSpringsPass, kDrapePass, kInnerPass, kSkinPass, kSootPass,
+    kVolumeProbePass, kVolumeMarchPass, kVolumeSmokePass, kParticlesPass, kParticleQuadsPass,
+    kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass, kRoomsPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();

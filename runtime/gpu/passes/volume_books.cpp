@@ -13,7 +13,7 @@ namespace {
 constexpr float kWider = 1.3f;      // at most, than the book's flame, or narrower
 constexpr float kTaller = 1.25f;    // the same of their heights in diameters
 constexpr float kFacing = 0.17f;    // of cosines: 10 degrees where it is seen from the side
-constexpr float kKeeps = 1.5f;      // as much further off is what has shown the book already
+constexpr float kKeepsBook = 1.5f;  // as much further off is what has shown the book already
 constexpr float kStraight = 0.4f;   // diameters off the line from its base to its tip
 constexpr float kWhole = 0.9f;      // of FlameRecord::air.w
 constexpr float kSeenAside = 0.3f;  // of its height: less is seen along its axis
@@ -85,7 +85,7 @@ void chooseBooks(std::span<const BookItem> items, std::span<const uint32_t> had,
         for (size_t i = 0; i < items.size(); ++i) {
             const BookItem& item = items[i];
             if (!item.wants || out[i] != kNoBook ||
-                !isAlike(item.kind, book.kind, had[i] == number ? kKeeps : 1.0f))
+                !isAlike(item.kind, book.kind, had[i] == number ? kKeepsBook : 1.0f))
                 continue;
             out[i] = number;
             ++book.shares;
@@ -107,15 +107,15 @@ void chooseBooks(std::span<const BookItem> items, std::span<const uint32_t> had,
     for (uint32_t b = 0; b < kVolumeBooks; ++b) {
         VolumeBook& book = books[b];
         if (!book.used) continue;
-        book.used =
-            b < room && (lead(book,
-                              [&](size_t i) {
-                                  return items[i].key == book.key &&
-                                         isAlike(items[i].kind, book.kind, kKeeps);
-                              }) ||
-                         lead(book, [&](size_t i) {
-                             return isAlike(items[i].kind, book.kind, had[i] == b ? kKeeps : 1.0f);
-                         }));
+        book.used = b < room &&
+                    (lead(book,
+                          [&](size_t i) {
+                              return items[i].key == book.key &&
+                                     isAlike(items[i].kind, book.kind, kKeepsBook);
+                          }) ||
+                     lead(book, [&](size_t i) {
+                         return isAlike(items[i].kind, book.kind, had[i] == b ? kKeepsBook : 1.0f);
+                     }));
         if (book.used) take(b);
     }
     for (uint32_t b = 0; b < std::min(room, kVolumeBooks); ++b) {

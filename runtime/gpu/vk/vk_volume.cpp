@@ -134,7 +134,8 @@ void VkBackend::State::makeMarchRoom(uint32_t flames, uint64_t last) {
     try {
         planes.fit(kSpaceVolumeRays,
                    march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(),
-                   detail.memory < 1, last);
+                   detail.memory < 1 || march.bookSpare, last);
+        march.bookSpare = false;
     } catch (const core::Error& error) {
         if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
     }
@@ -245,7 +246,10 @@ void VkBackend::State::shareBooks(std::span<const VolumeItem> items, uint32_t ro
     for (size_t i = 0; i < items.size(); ++i)
         without = without || (asked[i].wants && asked[i].fits && numbers[i] == kNoBook);
     if (without && room == march.bookRoom) march.bookRoom = std::clamp(2 * room, 1u, kVolumeBooks);
-    if (!wanted) march.bookRoom = 0;
+    march.bookIdle = wanted ? 0 : std::min(march.bookIdle + 1, kBookPages);
+    if (march.bookIdle < kBookPages || march.bookRoom == 0) return;
+    march.bookRoom = 0;
+    march.bookSpare = true;
 }
 
 void VkBackend::State::showBook(const VolumeItem& item, uint32_t place, uint32_t number) noexcept {

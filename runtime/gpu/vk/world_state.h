@@ -389,6 +389,8 @@ struct VkBackend::State {
         VolumeBookShelf books;
         std::array<BookReader, kMaxVolumeFlames> readers;  // by life
         uint32_t bookRoom = 0;      // books that there is to be room for, behind pairs
+        uint32_t bookIdle = 0;      // frames in which none was wanted
+        bool bookSpare = false;     // there is room for books that are gone
         uint32_t bookSlot = 0;      // of cards: the first of theirs
         uint32_t bookEncoding = 0;  // of their pages
         uint32_t slots = 0;         // pairs that there is room for, before all else

@@ -1,0 +1,44 @@
+// Embers whose way a blocker or the shield crosses are none. A thread an object slot.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_EXCHANGE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_STATE readonly
+#define FW_USE_OBJECT_COUNTERS readonly
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_REMOTE_TILES
+#define FW_USE_SOURCES FW_READ_WRITE
+#define FW_USE_BLOCKERS
+#define FW_USE_SHIELD
+#define FW_USE_HEAT readonly
+#define FW_USE_MATERIALS readonly
+#include "lib/buffers.glsl"
+#include "lib/ember.glsl"
+#include "lib/shield.glsl"
+
+bool stopped(FireSource source) {
+    Ember ember = emberFrom(source);
+    uint tile;
+    uint object = landsOn(ember.landing, upAxis(worldUp()), tile);
+    if (tile == kNoneTexel) return true;
+    ivec3 flame = alongFlame(source, worldUp(), 8);
+    ivec3 place = remotePlace(remoteObjects[object],
+                              tileMiddle(remoteTiles[objects[object].tileBase + tile]));
+    for (uint b = 0u; b < push.blockers; ++b)
+        if (blockerCuts(blockers[b], flame, ember.landing) ||
+            blockerCuts(blockers[b], ember.landing, place))
+            return true;
+    if (push.shieldCell == 0u) return false;
+    ShieldEnds ends = emberEnds(source, object, push.shieldCell);
+    return shieldCuts(ends, flame, ember.landing) || shieldCuts(ends, ember.landing, place);
+}
+
+void main() {
+    uint slot = gl_GlobalInvocationID.x;
+    if (slot >= push.count) return;
+    uvec2 range = sourcesOf(slot);
+    for (uint at = range.x; at < range.y; ++at)
+        for (bool sent = sendsEmber(at); sent; sent = false)
+            if (stopped(sources[at])) sources[at].ember = 0u;
+}

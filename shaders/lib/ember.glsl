@@ -1,0 +1,50 @@
+// Where embers come down. They are rare: each looks through all objects, then through the tiles of
+// one.
+#ifndef FW_LIB_EMBER_GLSL
+#define FW_LIB_EMBER_GLSL
+
+ivec3 worldUp() { return ivec3(push.upX, push.upY, push.upZ); }
+
+Ember emberFrom(FireSource source) {
+    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) +
+                 unpackWind(uint(remoteObjects[source.object].high.w));
+    return flyingEmber(source, source.ember, worldUp(), wind);
+}
+
+// The object, and its tile; that is kNoneTexel where it falls on none.
+uint landsOn(ivec3 at, uint axis, out uint tile) {
+    uint object = kNoneTexel;
+    tile = kNoneTexel;
+    int top = kNoTop;
+    for (uint slot = 0u; slot < push.count; ++slot) {
+        if ((remoteObjects[slot].flags & kRemoteLive) == 0u) continue;
+        int here = topBelow(remoteObjects[slot], at, axis);
+        if (here > top) {
+            top = here;
+            object = slot;
+        }
+    }
+    uint least = kMisses;
+    uint tiles = 0u, base = 0u;
+    for (bool found = object != kNoneTexel; found; found = false) {
+        tiles = objects[object].tileCount;
+        base = objects[object].tileBase;
+    }
+    for (uint i = 0u; i < tiles; ++i) {
+        uint miss = landingMiss(remoteObjects[object], remoteTiles[base + i], at, top, axis);
+        if (miss < least) {
+            least = miss;
+            tile = i;
+        }
+    }
+    return object;
+}
+
+// The sources of a slot that burns, from x on and before y.
+uvec2 sourcesOf(uint slot) {
+    bool burns = (remoteObjects[slot].flags & kRemoteLive) != 0u && objectCounters[slot].burning != 0u;
+    uint first = remoteObjects[slot].sourceBase;
+    return uvec2(first, burns ? first + remoteObjects[slot].sourceCount : first);
+}
+bool sendsEmber(uint at) { return sources[at].ember != 0u && sources[at].watts != 0u; }
+#endif
