@@ -1,4 +1,4 @@
-// The target of half resolution, in which what is soft of a view is drawn before it is laid over the
+// The target of half resolution: what is soft of a view is drawn into it, and it is laid over the
 // host's picture.
 // GLSL too, and laid out by hand.
 // clang-format off

@@ -1,6 +1,6 @@
 // The air of rooms: what fires take of its oxygen, what comes in from outside, how strongly fire
-// burns in what is left, and when a room flashes over. Integers only, one text for C++ and GLSL; it loads nothing. Not what
-// a texel makes of it (heat.h).
+// burns in what is left, and when a room flashes over. Integers only, one text for C++ and GLSL;
+// it loads nothing. Not what a texel makes of it (heat.h).
 // GLSL too, and laid out by hand.
 // clang-format off
 #ifndef FW_SHARED_ROOM_H
