@@ -26,10 +26,6 @@ layout(local_size_x = 64) in;
 #include "lib/change.glsl"
 #include "lib/light.glsl"
 
-ivec3 positionOf(uvec2 texel) {
-    return ivec3(int(texel.x & 0xFFFFu), int(texel.x >> 16u), int(texel.y & 0xFFFFu));
-}
-
 void lightFrom(uint object, uint tile, uint link, uint block) {
     uint width = objects[object].width;
     uint lane = partFrom(link, block);
@@ -40,7 +36,7 @@ void lightFrom(uint object, uint tile, uint link, uint block) {
     uvec2 b = texels[objects[object].texelBase + to];
     uint its = object * kMaterialsPerObject + ((a.y >> 16u) & (kMaterialsPerObject - 1u));
     uint others = object * kMaterialsPerObject + ((b.y >> 16u) & (kMaterialsPerObject - 1u));
-    uint delay = partDelay(materials[others], positionOf(b) - positionOf(a));
+    uint delay = partDelay(materials[others], decodePosition(b) - decodePosition(a));
     if ((materials[others].flags & 1u) != 0u &&
         partCrossed(state[objects[object].stateBase + from], materials[its].flameTicks, delay,
                     push.now))

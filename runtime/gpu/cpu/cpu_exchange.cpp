@@ -93,8 +93,10 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
     if (rules.warms != 0) warmAll(rules);
     if ((rules.flags & kRemoteEmbers) != 0) emberWays(rules);
     askThen(rules.tilesMost, rules.now, [&] {
-        if ((rules.flags & kRemoteContact) != 0) contacts(rules);
-        if ((rules.flags & kRemoteContact) != 0) parts(rules);
+        if ((rules.flags & kRemoteContact) != 0) {
+            contacts(rules);
+            parts(rules);
+        }
         if ((rules.flags & kRemoteEmbers) != 0) embers(rules);
     });
 }

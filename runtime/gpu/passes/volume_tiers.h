@@ -54,11 +54,11 @@ struct MarchLimits {  // flames of FW_FIRE_TIER_AUTO
     uint32_t high = kMarchedHigh, all = kMarchedFlames;
 };
 
-// One frame on. places[i]: the life of items[i]. `cards`: how many places have one; a flame beyond
-// them is marched.
 // Whether a flame would rather show a book than be marched or have a card of its own, by what it is
 // now.
 bool wantsBook(uint32_t asked, float wide, const TierLife& life) noexcept;
+// One frame on. places[i]: the life of items[i]. `cards`: how many places have one; a flame beyond
+// them is marched.
 void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
                  TierLives& lives, std::span<uint32_t> places) noexcept;
 
