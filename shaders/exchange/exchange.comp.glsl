@@ -1,5 +1,7 @@
 // What sources send to the tiles of the objects that they may warm, an eighth of the tiles each
-// time. A group a receiver, a thread a tile.
+// time. A group a receiver, a thread a tile. FW_SHIELD: a heat shield stands between some of them;
+// without one its code would be paid for all the same (a software device runs a loop's text once
+// where no thread enters it).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -15,20 +17,27 @@ layout(local_size_x = 64) in;
 #define FW_USE_SOURCES readonly
 #define FW_USE_RECEIVERS readonly
 #define FW_USE_BLOCKERS
+#ifdef FW_SHIELD
 #define FW_USE_SHIELD
 #define FW_USE_STATE readonly
 #define FW_USE_HEAT readonly
 #define FW_USE_MATERIALS readonly
+#endif
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"
+#ifdef FW_SHIELD
 #include "lib/shield.glsl"
+#endif
 
 bool blocked(FireSource s, ivec3 up, uint slot, ivec3 at, ivec3 normal) {
     ivec3 flame = alongFlame(s, up, 4);
     for (uint b = 0u; b < push.blockers; ++b)
         if (blockerCuts(blockers[b], flame, at)) return true;
-    return push.shieldCell != 0u &&
-           shieldCuts(shieldEnds(s, flame, slot, at, normal, push.shieldCell), flame, at);
+#ifdef FW_SHIELD
+    return shieldCuts(shieldEnds(s, flame, slot, at, normal, push.shieldCell), flame, at);
+#else
+    return false;
+#endif
 }
 
 void warmTile(uint slot, uint local) {

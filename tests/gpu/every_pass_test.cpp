@@ -3,6 +3,7 @@
 // second test proves that; without it the software device would never notice.
 #include "book/own.h"
 #include "book/picture.h"
+#include "components/heat_shield.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
 #include "components/sparks.h"
@@ -237,6 +238,20 @@ class EveryPass : public GpuTest {
         remote_.neighbours = {&self_, 1};
         remote_.links = links_;
         remote_.blockers = {&blocker_, 1};
+        // Its faces are in each other's way, and a wall of the host's is.
+        components::HeatShield shield(std::pmr::get_default_resource());
+        shield.shape.counts = {24, 24, 24};
+        shield.shape.origin = {-600, -600, -600};
+        shield.shape.cell = 50;
+        shield.solid.assign(shield.shape.words(), 0);
+        shield.solid.front() = 0xFFFFFFu;
+        const components::ShieldObject walls{0, &scene_->domains[0], o, 40, 0};
+        components::bakeShield(shield.shape, {&walls, 1}, shield.baked);
+        components::packShield(shield, shieldWords_);
+        shield_.origin = {shield.shape.origin[0], shield.shape.origin[1], shield.shape.origin[2]};
+        shield_.cell = shield.shape.cell;
+        shield_.counts = components::countsOf(shield.shape);
+        shield_.words = shieldWords_;
     }
     void frame(const Frame& what) {
         std::vector<gpu::StepPlan> steps(what.steps);
@@ -259,6 +274,8 @@ class EveryPass : public GpuTest {
                 if (what.latch) step.materials = {&update, 1};
                 if (what.exchange) step.remote = &remote_;
             }
+            // Without it until then.
+            if (what.exchange && &step == &steps[what.steps / 2]) step.shield = &shield_;
             if (what.exchange) {
                 step.exchange = step.governed = step.capped = true;
                 step.rules.flags = 15;
@@ -487,6 +504,8 @@ class EveryPass : public GpuTest {
     std::set<std::string> passes_;  // that took time
     gpu::RemoteUpdate::Placed placed_{};
     gpu::RemoteUpdate remote_;
+    gpu::ShieldUpdate shield_;
+    std::pmr::vector<uint32_t> shieldWords_;
     std::vector<gpu::ContactLink> links_;
     gpu::Blocker blocker_{};
     gpu::VolumeFlame flames_[4]{};
