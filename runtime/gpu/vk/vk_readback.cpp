@@ -60,7 +60,8 @@ const Readback* VkBackend::State::nextReadback() {
                 if (givenObjects[i].burning != 0 || givenObjects[i].frontTiles != 0)
                     noteFire(i, one.endTick);
             // The published scheme's lists are the host's.
-            for (uint32_t i = 0; i < std::min(layout.objects, uint32_t(objects.size())); ++i)
+            for (uint32_t i = 0;
+                 arp.users != 0 && i < std::min(layout.objects, uint32_t(objects.size())); ++i)
                 if (const uint32_t arpPlus1 = objects[i].refine.arpPlus1)
                     givenObjects[i].refined = uint32_t(arps[arpPlus1 - 1]->state.list.size());
             // What another object lit is drawn as one that burns, from now on.

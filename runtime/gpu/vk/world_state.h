@@ -121,16 +121,12 @@ struct ObjectEntry {
     bool forget = false;     // scratch of run
     uint32_t mesh = 0;
     BurnObject record{};
-    BurnMaterial materials[kMaterialsPerObject]{};
-    uint32_t images[kMaterialsPerObject] = {};  // slot + 1, 0: none
-    HeatMaterial heat[kMaterialsPerObject]{};   // with kObjectHeat
     RangeOf tiles, slowness, published, heatTiles, sources;
     RefineUse refine;
     bool publishedTouched = false;  // as-published mode: some event reached it
     uint32_t publishedParity = 0;
     // Deformation: none if `shown` is empty.
     RangeOf deformer, shown, soft;  // soft: sheets and springs
-    DeformObject deform{};
     bool deformDirty = false, deformReset = false;
     bool deformsNow = false;     // scratch of run
     uint32_t recedeTurn = 0;     // which groups of a sheet learn next what has burnt
@@ -141,6 +137,12 @@ struct ObjectEntry {
     uint64_t softUntil = 0;      // tick until which it is not yet at rest
     uint32_t skinPlus1 = 0;      // of a skinned object: its Skin
     float shape[3] = {1, 1, 1};  // what its mesh was stretched by
+    // What frames do not read of an object that rests stands behind all that they do: loops over
+    // objects cost what they fetch.
+    DeformObject deform{};
+    BurnMaterial materials[kMaterialsPerObject]{};
+    uint32_t images[kMaterialsPerObject] = {};  // slot + 1, 0: none
+    HeatMaterial heat[kMaterialsPerObject]{};   // with kObjectHeat
 };
 
 // Vertices that a host moves, as they go to the device with the next frame.
