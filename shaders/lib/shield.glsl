@@ -20,24 +20,32 @@ bool shieldStands(uint what, uint texel) {
     return stands;
 }
 
+// In two loops, or a software device would ask of every cell of every way, whether it is solid or
+// not, what only cells in the way need: it runs the text of a branch for all threads of its group.
 bool shieldCuts(ShieldEnds ends, ivec3 a, ivec3 b) {
     ShieldWalk w = shieldWalk(push, a, b);
     uint words = shieldWords(push.shieldCounts);
     bool cut = false;
     while (w.within && !cut) {
-        uint at = w.cell >> 5u, bit = 1u << (w.cell & 31u);
-        for (bool solid = (shield[at] & bit) != 0u; solid; solid = false) {
-            uint baked = shield[words + 2u * at], what = kNoneTexel, texel = 0u;
-            if ((baked & bit) != 0u) {
-                uint i = shield[words + 2u * at + 1u] + uint(bitCount(baked & (bit - 1u)));
-                what = shield[3u * words + 2u * i];
-                texel = shield[3u * words + 2u * i + 1u];
+        uint what = 0u, texel = 0u;
+        bool stops = false;  // what it is in, if that stands
+        while (w.within && !stops) {
+            uint at = w.cell >> 5u, bit = 1u << (w.cell & 31u);
+            for (bool solid = (shield[at] & bit) != 0u; solid; solid = false) {
+                uint baked = shield[words + 2u * at];
+                what = kShieldStays | kShieldSlot;
+                if ((baked & bit) != 0u) {
+                    uint i = shield[words + 2u * at + 1u] + uint(bitCount(baked & (bit - 1u)));
+                    what = shield[3u * words + 2u * i];
+                    texel = shield[3u * words + 2u * i + 1u];
+                }
+                uint slot = what & kShieldSlot;
+                stops = !shieldSpares(w, ends, slot == kShieldSlot ? kNoneTexel : slot,
+                                      push.shieldCell);
             }
-            uint slot = what == kNoneTexel ? kNoneTexel : what & kShieldSlot;
-            cut = !shieldSpares(w, ends, slot, push.shieldCell) &&
-                  (slot == kNoneTexel || shieldStands(what, texel));
+            shieldStep(w, push.shieldCell);
         }
-        shieldStep(w, push.shieldCell);
+        for (; stops; stops = false) cut = shieldStands(what, texel);
     }
     return cut;
 }

@@ -19,7 +19,7 @@ done < <(printf '%s\n' front/{dense,sparse3,published}/{128,256,512,1024} \
     bake/bunny31k/1024 houses100/{frame,budget} ground/{bump,parallax} surface/bunny31k/720p volume/{samework/360p,{delivered,15percent_screen,onequarter_screen,steps16,steps24,steps32,flames32,haze}/720p} selfcross/{none,product,published} \
     scene/tower_defence/{none,throwers10,throwers100} game/frame particles/{sim/{10k,100k},draw/2k,sort/10k} \
     field/64x64x64 field/draw_{ground,fire,smoke,water} \
-    server/burning100_step world/{burning300,idle1000}_step \
+    server/burning100_step world/{burning300,shielded300,idle1000}_step \
     query/eta record/idle save/burnt1024 load/burnt1024 net/{latejoin,delta}_bytes \
     editor/{stroke,scrub/1024,open_bunny31k,start})
 twice=$(sort <<<"$listed" | uniq -d)

@@ -51,6 +51,25 @@ class YardBench {
         for (uint32_t i = 0; i < count && i < 64; ++i)
             passes[times[i].name] += double(times[i].milliseconds);
     }
+    // A board as tall as a man between every third row, and the crates themselves.
+    void shield() {
+        const uint32_t rows = (uint32_t(yard_.crates.size()) + yard_.columns - 1) / yard_.columns;
+        FwHeatShieldDef def = fwDefaultHeatShieldDef();
+        def.cellSize = 0.15f;
+        def.counts[0] = 6 * yard_.columns;
+        def.counts[1] = 12;
+        def.counts[2] = 6 * rows;
+        for (float& origin : def.origin) origin = -0.45f;
+        def.origin[1] = 0;
+        std::vector<uint8_t> cells(size_t(def.counts[0]) * def.counts[1] * def.counts[2], 0);
+        for (uint32_t z = 0; z < def.counts[2]; z += 18)
+            for (uint32_t i = 0; i < def.counts[0] * def.counts[1]; ++i)
+                cells[size_t(z) * def.counts[0] * def.counts[1] + i] = 1;
+        def.cells = cells.data();
+        def.flags = FW_HEAT_SHIELD_ALL_OBJECTS;
+        if (fwWorld_SetHeatShield(world_, &def) != FW_OK)
+            throw std::runtime_error("the yard has no shield");
+    }
     [[nodiscard]] FwWorld* world() const { return world_; }
     void forget() { seconds.clear(), cpu.clear(), passes.clear(); }
     [[nodiscard]] uint32_t burning() { return stateOf(world_, yard_).burning; }
@@ -77,7 +96,7 @@ void show(benchmark::State& state, YardBench& bench) {
     state.counters["cpu_ms"] = mean(bench.cpu) * 1e3;
     state.counters["most_ms"] = *std::max_element(bench.seconds.begin(), bench.seconds.end()) * 1e3;
     state.counters["burning"] = double(bench.burning());
-    for (const char* pass : {"heat", "exchange", "reduce"})
+    for (const char* pass : {"heat", "exchange", "exchange shield", "reduce"})
         state.counters[pass] = bench.passes[pass] / double(bench.seconds.size());
     // What a step does for the eye alone.
     double looks = 0;
@@ -182,6 +201,24 @@ void idle(benchmark::State& state) {
     }
 }
 
+// Three hundred that burn, with and without a shield; in turns.
+void shielded(benchmark::State& state) {
+    try {
+        YardBench open(FW_BACKEND_VULKAN, kExchange, 300, 0);
+        YardBench walled(FW_BACKEND_VULKAN, kExchange, 300, 0);
+        walled.shield();
+        for (int i = 0; i < kWarm + kSteps; ++i)
+            for (YardBench* bench : {&open, &walled}) {
+                if (i == kWarm) bench->forget();
+                bench->step();
+            }
+        show(state, walled);
+        state.counters["cpu_ratio"] = mean(walled.cpu) / mean(open.cpu);
+    } catch (const std::exception& failure) {
+        state.SkipWithError(failure.what());
+    }
+}
+
 BENCHMARK_CAPTURE(burning, server, FW_BACKEND_CPU, 100)
     ->Name("server/burning100_step")
     ->UseManualTime()
@@ -194,6 +231,11 @@ BENCHMARK_CAPTURE(burning, device, FW_BACKEND_VULKAN, 300)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(shared, hundred, 100)
     ->Name("net/delta_bytes")
+    ->UseManualTime()
+    ->Iterations(kSteps)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(shielded)
+    ->Name("world/shielded300_step")
     ->UseManualTime()
     ->Iterations(kSteps)
     ->Unit(benchmark::kMillisecond);
