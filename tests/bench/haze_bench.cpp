@@ -3,220 +3,43 @@
 // its processor time over that of one without.
 #include <benchmark/benchmark.h>
 
-#include "bench/bench_device.h"
-
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
-
-#include <cstring>
+#include "bench/composite_host.h"
 
 namespace {
 
-constexpr VkExtent3D kSize{1280, 720, 1};
+const char* makeFire(fw::test::CompositeHost& host, FwTargetId& target) {
+    FwWorldDef worldDef = fwDefaultWorldDef();
+    worldDef.maxFlames = 0;
+    if (const char* why = host.make(worldDef)) return why;
+    FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
+    fwInitFirePreset(&fire, FW_FIRE_CAMP);
+    fire.flags = FW_FIRE_NO_SMOKE;
+    FwVolumetricFireId id{};
+    target = host.target(FW_TARGET_HAZE);
+    if (target.index1 == 0 || fwWorld_CreateVolumetricFire(host.world(), &fire, &id) != FW_OK)
+        return "no fire on a target with haze";
+    const glm::vec3 at(0, 0.6f, 0);
+    host.look(at + glm::vec3(0, 0, 5.5f), at, 4);
+    return nullptr;
+}
 
-struct Image {
-    VkImage image = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    VkImageView view = VK_NULL_HANDLE;
-};
-
-class HazeHost {
- public:
-    HazeHost() : device_(fw::test::benchDevice()) {}
-    HazeHost(const HazeHost&) = delete;
-    HazeHost& operator=(const HazeHost&) = delete;
-    ~HazeHost() {
-        fwDestroyWorld(world_);
-        fwDestroyContext(context_);
-        for (const Image& image : {color_, behind_, depth_}) {
-            vkDestroyImageView(device_.device, image.view, nullptr);
-            vkDestroyImage(device_.device, image.image, nullptr);
-            vkFreeMemory(device_.device, image.memory, nullptr);
-        }
-    }
-
-    const char* make() {
-        if (!device_.fence) return "no device";
-        color_ = imageOf(VK_FORMAT_R8G8B8A8_UNORM,
-                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-        behind_ = imageOf(VK_FORMAT_R8G8B8A8_UNORM,
-                          VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-        depth_ = imageOf(VK_FORMAT_D32_SFLOAT,
-                         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-        const FwVulkanHost host = device_.host();
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.vulkan = &host;
-        FwWorldDef worldDef = fwDefaultWorldDef();
-        worldDef.maxFlames = 0;
-        FwErrorInfo info{};
-        if (fwCreateContext(&contextDef, &context_, &info) != FW_OK ||
-            fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
-            return "no world";
-        FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_HAZE;
-        def.colorFormat = VK_FORMAT_R8G8B8A8_UNORM;
-        def.depthFormat = VK_FORMAT_D32_SFLOAT;
-        def.depthMode = FW_DEPTH_SAMPLED;
-        def.encoding = FW_OUTPUT_DISPLAY_UNORM;
-        FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
-        fwInitFirePreset(&fire, FW_FIRE_CAMP);
-        fire.flags = FW_FIRE_NO_SMOKE;
-        FwVolumetricFireId id{};
-        if (fwContext_RegisterTarget(context_, &def, &target_) != FW_OK ||
-            fwContext_Prepare(context_) != FW_OK ||
-            fwWorld_CreateVolumetricFire(world_, &fire, &id) != FW_OK)
-            return "no fire on a target with haze";
-        const glm::vec3 at(0, 0.6f, 0);
-        const glm::mat4 view = glm::lookAt(at + glm::vec3(0, 0, 5.5f), at, glm::vec3(0, 1, 0));
-        glm::mat4 projection(0.0f);
-        projection[0][0] = 4.0f * 9.0f / 16.0f;
-        projection[1][1] = -4.0f;
-        projection[2][2] = projection[2][3] = -1.0f;
-        projection[3][2] = -0.05f;
-        view_ = fwDefaultView();
-        std::memcpy(view_.view, glm::value_ptr(view), sizeof view_.view);
-        std::memcpy(view_.projection, glm::value_ptr(projection), sizeof view_.projection);
-        return nullptr;
-    }
-
-    // A frame: s, by the clock and of all threads. False: it was not drawn.
-    bool frame(float haze, double& wall, double& cpu) {
-        view_.haze = haze;
-        const auto start = fw::test::Clock::now();
-        const double before = fw::test::cpuSeconds();
-        VkCommandBufferBeginInfo begin{};
-        begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-        vkBeginCommandBuffer(device_.commands, &begin);
-        if (++index_ == 1) clear();
-        FwVulkanFrame frame = fwDefaultVulkanFrame();
-        frame.commandBuffer = device_.commands;
-        frame.frameIndex = index_;
-        frame.completedFrameIndex = index_ - 1;
-        frame.deltaTime = 1.0f / 30.0f;
-        const bool outside = fwWorld_RecordOutside(world_, &frame, &view_) == FW_OK;
-        frame.sampledColor = behind_.view;
-        frame.sampledColorLayout = VK_IMAGE_LAYOUT_GENERAL;
-        FwVulkanComposite images = fwDefaultVulkanComposite();
-        images.flags = FW_COMPOSITE_KEEP;
-        images.width = kSize.width;
-        images.height = kSize.height;
-        const auto lend = [](const Image& image) {
-            return FwVulkanImage{image.image,
-                                 image.view,
-                                 VK_IMAGE_LAYOUT_GENERAL,
-                                 VK_IMAGE_LAYOUT_GENERAL,
-                                 VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                                 VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                                 VK_ACCESS_MEMORY_WRITE_BIT,
-                                 VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
-        };
-        images.color = lend(color_);
-        images.depth = lend(depth_);
-        const bool drawn =
-            fwWorld_RecordComposite(world_, &frame, target_, &view_, &images) == FW_OK;
-        vkEndCommandBuffer(device_.commands);
-        VkSubmitInfo submit{};
-        submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-        submit.commandBufferCount = 1;
-        submit.pCommandBuffers = &device_.commands;
-        vkQueueSubmit(device_.queue, 1, &submit, device_.fence);
-        vkWaitForFences(device_.device, 1, &device_.fence, VK_TRUE, ~uint64_t{0});
-        vkResetFences(device_.device, 1, &device_.fence);
-        wall = fw::test::secondsSince(start);
-        cpu = fw::test::cpuSeconds() - before;
-        return outside && drawn;
-    }
-
- private:
-    Image imageOf(VkFormat format, VkImageUsageFlags usage) {
-        Image out;
-        VkImageCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = format;
-        info.extent = kSize;
-        info.mipLevels = info.arrayLayers = 1;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.usage = usage;
-        vkCreateImage(device_.device, &info, nullptr, &out.image);
-        VkMemoryRequirements needs{};
-        vkGetImageMemoryRequirements(device_.device, out.image, &needs);
-        VkMemoryAllocateInfo allocate{};
-        allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-        allocate.allocationSize = needs.size;
-        while (!(needs.memoryTypeBits >> allocate.memoryTypeIndex & 1u)) ++allocate.memoryTypeIndex;
-        vkAllocateMemory(device_.device, &allocate, nullptr, &out.memory);
-        vkBindImageMemory(device_.device, out.image, out.memory, 0);
-        VkImageViewCreateInfo viewInfo{};
-        viewInfo.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-        viewInfo.image = out.image;
-        viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        viewInfo.format = format;
-        viewInfo.subresourceRange = rangeOf(format);
-        vkCreateImageView(device_.device, &viewInfo, nullptr, &out.view);
-        return out;
-    }
-    static VkImageSubresourceRange rangeOf(VkFormat format) {
-        const bool depth = format == VK_FORMAT_D32_SFLOAT;
-        return {VkImageAspectFlags(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
-                0, 1, 0, 1};
-    }
-    // A grey scene far behind.
-    void clear() {
-        const VkImageSubresourceRange color = rangeOf(VK_FORMAT_R8G8B8A8_UNORM);
-        const VkImageSubresourceRange depth = rangeOf(VK_FORMAT_D32_SFLOAT);
-        VkImageMemoryBarrier barriers[3]{};
-        const VkImage all[3] = {color_.image, behind_.image, depth_.image};
-        for (int i = 0; i < 3; ++i) {
-            barriers[i].sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
-            barriers[i].dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-            barriers[i].newLayout = VK_IMAGE_LAYOUT_GENERAL;
-            barriers[i].srcQueueFamilyIndex = barriers[i].dstQueueFamilyIndex =
-                VK_QUEUE_FAMILY_IGNORED;
-            barriers[i].image = all[i];
-            barriers[i].subresourceRange = i == 2 ? depth : color;
-        }
-        vkCmdPipelineBarrier(device_.commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
-                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 3,
-                             barriers);
-        const VkClearColorValue grey{{0.4f, 0.4f, 0.4f, 1.0f}};
-        const VkClearDepthStencilValue far{1.0f, 0};
-        vkCmdClearColorImage(device_.commands, color_.image, VK_IMAGE_LAYOUT_GENERAL, &grey, 1,
-                             &color);
-        vkCmdClearColorImage(device_.commands, behind_.image, VK_IMAGE_LAYOUT_GENERAL, &grey, 1,
-                             &color);
-        vkCmdClearDepthStencilImage(device_.commands, depth_.image, VK_IMAGE_LAYOUT_GENERAL, &far,
-                                    1, &depth);
-        VkMemoryBarrier after{};
-        after.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-        after.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-        after.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-        vkCmdPipelineBarrier(device_.commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                             VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &after, 0, nullptr, 0,
-                             nullptr);
-    }
-
-    fw::test::DeviceWithoutLayers& device_;
-    Image color_, behind_, depth_;
-    FwContext* context_ = nullptr;
-    FwWorld* world_ = nullptr;
-    FwTargetId target_{};
-    FwView view_{};
-    uint64_t index_ = 0;
-};
+constexpr float kApart = 1 / 30.0f;  // s
 
 void drawHaze(benchmark::State& state) {
-    HazeHost host;
-    if (const char* why = host.make()) {
+    fw::test::CompositeHost host;
+    FwTargetId target{};
+    if (const char* why = makeFire(host, target)) {
         state.SkipWithError(why);
         return;
     }
     double with = 0, without = 0, cpuWith = 0, cpuWithout = 0;
     const auto both = [&] {
         double wall = 0, cpu = 0;
-        if (!host.frame(0, wall, cpu)) return false;
+        host.view().haze = 0;
+        if (!host.frame(target, kApart, wall, cpu)) return false;
         without = wall, cpuWithout += cpu;
-        if (!host.frame(1, wall, cpu)) return false;
+        host.view().haze = 1;
+        if (!host.frame(target, kApart, wall, cpu)) return false;
         with = wall, cpuWith += cpu;
         return true;
     };

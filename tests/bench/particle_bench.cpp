@@ -1,18 +1,13 @@
 // What particles of fire emitters cost on the own device: moving them (the `particles` pass of a
-// frame without a picture), a picture of them less one where they are hidden, and their order.
+// frame without a picture), a picture of them less one where they are hidden, and their order. And
+// what they cost a host that has them drawn at half resolution, beside the same at full.
 // cpu_ms: of all this process's threads, per frame. per_ns: of one particle.
 #include <benchmark/benchmark.h>
 
-#include "bench/bench_device.h"
-#include "flamewright/flamewright.h"
+#include "bench/composite_host.h"
 #include "flamewright/flamewright_debug.h"
 
-#include <glm/glm.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
-
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -22,6 +17,38 @@ using fw::test::Clock;
 using fw::test::cpuSeconds;
 using fw::test::secondsSince;
 
+FwWorldDef sparksWorld() {
+    FwWorldDef def = fwDefaultWorldDef();
+    def.maxParticles = 1u << 20;
+    def.maxFlames = 0;
+    return def;
+}
+
+bool makeSparks(FwWorld* world, uint32_t particles, bool books, FwFireEmitterId& emitter) {
+    FwFireEmitterDef def = fwDefaultFireEmitterDef();
+    def.flags = FW_EMITTER_GROUND;
+    def.shape = FW_EMITTER_DISC;
+    def.radius = 3;
+    def.life = 1;
+    def.size0 = 0.3f;
+    def.size1 = 0.5f;
+    def.speed = 2;
+    def.maxParticles = particles;
+    def.rate = float(particles) * 1.2f;  // all of them live, always
+    def.lifeVariance = 0;
+    def.smoke = 0.3f;
+    const auto open = [&](uint32_t preset, FwFlipbookId& book) {
+        FwFlipbookDef bookDef = fwDefaultFlipbookDef();
+        bookDef.preset = preset;
+        return fwWorld_CreateFlipbook(world, &bookDef, &book) == FW_OK;
+    };
+    if (books &&
+        !(open(FW_FLIPBOOK_FLAME, def.fireBooks[0]) && open(FW_FLIPBOOK_ROLL, def.fireBooks[1]) &&
+          open(FW_FLIPBOOK_SMOKE, def.smokeBooks[0])))
+        return false;
+    return fwWorld_CreateFireEmitter(world, &def, &emitter) == FW_OK;
+}
+
 class Sparks {
  public:
     Sparks(const Sparks&) = delete;
@@ -29,35 +56,12 @@ class Sparks {
     explicit Sparks(uint32_t particles, float away, bool books = false)
         : particles_(particles), pixels_(1280 * 720 * 4) {
         const FwContextDef contextDef = fwDefaultContextDef();
-        FwWorldDef worldDef = fwDefaultWorldDef();
-        worldDef.maxParticles = 1u << 20;
-        worldDef.maxFlames = 0;
+        const FwWorldDef worldDef = sparksWorld();
         FwErrorInfo info{};
         if (fwCreateContext(&contextDef, &context_, &info) != FW_OK ||
             fwCreateWorld(context_, &worldDef, &world_) != FW_OK)
             return;
-        FwFireEmitterDef def = fwDefaultFireEmitterDef();
-        def.flags = FW_EMITTER_GROUND;
-        def.shape = FW_EMITTER_DISC;
-        def.radius = 3;
-        def.life = 1;
-        def.size0 = 0.3f;
-        def.size1 = 0.5f;
-        def.speed = 2;
-        def.maxParticles = particles;
-        def.rate = float(particles) * 1.2f;  // all of them live, always
-        def.lifeVariance = 0;
-        def.smoke = 0.3f;
-        const auto open = [&](uint32_t preset, FwFlipbookId& book) {
-            FwFlipbookDef bookDef = fwDefaultFlipbookDef();
-            bookDef.preset = preset;
-            return fwWorld_CreateFlipbook(world_, &bookDef, &book) == FW_OK;
-        };
-        if (books && !(open(FW_FLIPBOOK_FLAME, def.fireBooks[0]) &&
-                       open(FW_FLIPBOOK_ROLL, def.fireBooks[1]) &&
-                       open(FW_FLIPBOOK_SMOKE, def.smokeBooks[0])))
-            return;
-        if (fwWorld_CreateFireEmitter(world_, &def, &emitter_) != FW_OK) return;
+        if (!makeSparks(world_, particles, books, emitter_)) return;
         for (int i = 0; i < 100; ++i) fwWorld_Step(world_, 1.0f / 60);
         glm::mat4 projection(0.0f);
         projection[0][0] = 2.0f * 9 / 16;
@@ -157,6 +161,47 @@ void sortQuads(benchmark::State& state, uint32_t particles) {
     state.counters["least_ms"] = 1e3 * least;
 }
 
+// One picture of particles that stand still, on a target at half resolution and on one at full by
+// turns, each less a frame at full without them. full_ms: at full. ratio: of processor time.
+void drawHalf(benchmark::State& state, uint32_t particles, float away) {
+    fw::test::CompositeHost host;
+    FwFireEmitterId emitter{};
+    if (const char* why = host.make(sparksWorld())) return state.SkipWithError(why);
+    const FwTargetId targets[2] = {host.target(0), host.target(FW_TARGET_HALF_EFFECTS)};
+    if (targets[0].index1 == 0 || targets[1].index1 == 0 ||
+        !makeSparks(host.world(), particles, false, emitter))
+        return state.SkipWithError("no particles at half resolution");
+    host.look({0, 2, away}, {0, 2, 0}, 2);
+    double wall = 0, cpu = 0;
+    for (int i = 0; i < 100; ++i)
+        if (!host.frame(targets[0], 1.0f / 60, wall, cpu))
+            return state.SkipWithError("a frame was not drawn");
+    double walls[2] = {}, busy[2] = {}, least[2] = {1e9, 1e9};
+    const auto both = [&] {
+        for (const int half : {0, 1}) {
+            double took[2], cpus[2];
+            for (const int hidden : {1, 0}) {
+                fwWorld_SetFireEmitterHidden(host.world(), emitter, uint32_t(hidden));
+                host.frame(targets[hidden ? 0 : half], 0, took[hidden], cpus[hidden]);
+            }
+            walls[half] = took[0] - took[1];
+            busy[half] += cpus[0] - cpus[1];
+            least[half] = std::min(least[half], walls[half]);
+        }
+    };
+    for (int i = 0; i < 3; ++i) both();  // pipelines are compiled at first use
+    for (const int half : {0, 1}) busy[half] = 0, least[half] = 1e9;
+    for (auto _ : state) {
+        both();
+        state.SetIterationTime(std::max(walls[1], 1e-6));
+    }
+    state.counters["least_ms"] = 1e3 * least[1];
+    state.counters["full_ms"] = 1e3 * least[0];
+    state.counters["cpu_ms"] = 1e3 * busy[1] / double(state.iterations());
+    state.counters["full_cpu_ms"] = 1e3 * busy[0] / double(state.iterations());
+    state.counters["ratio"] = busy[1] / busy[0];
+}
+
 #define FW_PARTICLE_ROW(function, name, row, ...)  \
     BENCHMARK_CAPTURE(function, name, __VA_ARGS__) \
         ->Name(row)                                \
@@ -167,6 +212,8 @@ FW_PARTICLE_ROW(simulate, sim10k, "particles/sim/10k", 10000);
 FW_PARTICLE_ROW(simulate, sim100k, "particles/sim/100k", 100000);
 FW_PARTICLE_ROW(drawQuads, draw2k, "particles/draw/2k", 2000, 60.0f, false);
 FW_PARTICLE_ROW(drawQuads, draw2kBooks, "particles/draw/2k_books", 2000, 60.0f, true);
+FW_PARTICLE_ROW(drawHalf, half2k, "particles/draw_half/2k", 2000, 60.0f);
+FW_PARTICLE_ROW(drawHalf, half2kNear, "particles/draw_half/2k_near", 2000, 12.0f);
 FW_PARTICLE_ROW(sortQuads, sort10k, "particles/sort/10k", 10000);
 
 }  // namespace
