@@ -6,6 +6,7 @@
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
 #include "gpu/passes/volume_books.h"
+#include "shared/spark.h"
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
 #include "support/spark_reference.h"
@@ -903,7 +904,8 @@ TEST_F(Volume, ASmallFlameKeepsItsLight) {
     }
 }
 
-// A card shows as bright a flame, as wide and as high, as the march that it takes turns with.
+// A card shows as bright a flame, as wide and as high, as the march that it takes turns with, and
+// so does a page of its own book, which is shown nearer.
 TEST_F(Volume, ACardIsTheSameFlame) {
     if (!device_) return;
     makeRig();
@@ -912,9 +914,10 @@ TEST_F(Volume, ACardIsTheSameFlame) {
                                   FW_FIRE_HOUSE, FW_FIRE_MAGIC_BLUE}) {
         gpu::VolumeFlame flame = flameOf(preset, 1.3f, FW_FIRE_NO_SMOKE);
         const float tall = 1.5f * flame.record.high.w;
-        float worst = 0, worstSize = 0, worstCover = 0;
-        // px across it, or as many as a whole flame leaves
-        for (const float wide : {13.0f, 10.0f, 7.0f, 4.0f}) {
+        float worst[2] = {}, worstSize[2] = {}, worstCover[2] = {};
+        // px across it, or as many as a whole flame leaves; the first as a page
+        for (const float wide : {24.0f, 13.0f, 10.0f, 7.0f, 4.0f}) {
+            const bool page = wide > 20;
             const float px = std::min(wide * tall / flame.record.low.w, 34.0f);
             const float away = tall * float(kSide) / (px * 2.0f * std::tan(0.2618f));
             const float at[3] = {0, 0.5f * tall, 0};
@@ -924,20 +927,26 @@ TEST_F(Volume, ACardIsTheSameFlame) {
             flame.record.tier = FW_FIRE_TIER_MARCH_HIGH;
             const std::vector<vec4> marched = draw({&flame, 1}, FW_DEPTH_TEST);
             flame.record.key = ++key_;
-            flame.record.tier = FW_FIRE_TIER_IMPOSTOR;
-            const std::vector<vec4> card = draw({&flame, 1}, FW_DEPTH_TEST);
+            flame.record.tier = page ? FW_FIRE_TIER_FLIPBOOK : FW_FIRE_TIER_IMPOSTOR;
+            std::vector<vec4> card = draw({&flame, 1}, FW_DEPTH_TEST);
+            // Until a book has turned to it.
+            for (uint32_t k = 0; page && k < gpu::kBookTurn; ++k)
+                card = drawOnce({&flame, 1}, FW_DEPTH_TEST, 0);
             const vec4 a = meanOf(card), b = meanOf(marched);
-            worst = std::max(worst, std::abs(glm::dot(a, seen) / glm::dot(b, seen) - 1));
-            worstCover = std::max(worstCover, std::abs(a.w / b.w - 1));
-            worstSize = std::max(worstSize, sizeOff(card, marched));
+            worst[page] =
+                std::max(worst[page], std::abs(glm::dot(a, seen) / glm::dot(b, seen) - 1));
+            worstCover[page] = std::max(worstCover[page], std::abs(a.w / b.w - 1));
+            worstSize[page] = std::max(worstSize[page], sizeOff(card, marched));
             EXPECT_GT(differenceOf(card, marched), 1e-3f) << "it is no card";
         }
-        std::printf("           %s: light within %.4f, cover %.4f, size and tip %.4f\n",
-                    components::firePresetName(preset), double(worst), double(worstCover),
-                    double(worstSize));
-        EXPECT_LT(worst, 0.05f) << components::firePresetName(preset);
-        EXPECT_LT(worstCover, 0.05f) << components::firePresetName(preset);
-        EXPECT_LT(worstSize, 0.03f) << components::firePresetName(preset);
+        for (const bool page : {false, true}) {
+            std::printf("           %s%s: light within %.4f, cover %.4f, size and tip %.4f\n",
+                        components::firePresetName(preset), page ? ", a page" : "",
+                        double(worst[page]), double(worstCover[page]), double(worstSize[page]));
+            EXPECT_LT(worst[page], 0.05f) << components::firePresetName(preset) << page;
+            EXPECT_LT(worstCover[page], 0.05f) << components::firePresetName(preset) << page;
+            EXPECT_LT(worstSize[page], 0.03f) << components::firePresetName(preset) << page;
+        }
     }
 }
 

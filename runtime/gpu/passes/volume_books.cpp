@@ -156,7 +156,8 @@ void BookReader::read(uint32_t number, const VolumeBookShelf& books) noexcept {
 void layPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
              uint32_t slot, BookPage& page, MarchedVolume& out) noexcept {
     layCard(view, item, screen, slot, page.card, out);
-    page.base = page.card.low + axesOf(item.draw, page.card.middle);
+    page.middle =
+        vec3(axesOf(item.draw, page.card.middle), glm::dot(page.card.middle, vec3(view.forward)));
     page.tip = axesOf(item.draw, item.tip);
     page.wide = item.draw.wide;
 }
@@ -170,24 +171,31 @@ bool showPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen
     const vec2 from = page.tip, ours(mirrored ? -from.x : from.x, from.y);
     const float length = glm::length(ours), now = glm::length(tip);
     vec2 x(side, 0.0f), y(0.0f, wider);
+    float deeper = wider;
     if (length > kSeenAside * page.wide && now > kSeenAside * item.draw.wide) {
         const vec2 a = ours / length, b = tip / now;
         const float taller = now / length;
+        deeper = taller;
         const auto turn = [&](vec2 p) {
             const float along = glm::dot(p, a), aside = p.x * a.y - p.y * a.x;
             return taller * along * b + wider * aside * vec2(b.y, -b.x);
         };
         x = turn({mirrored ? -1.0f : 1.0f, 0.0f}), y = turn({0.0f, 1.0f});
     }
+    // As far from the eye as its middle is: seen from above that is nearer than where it stands,
+    // and a page in the distance of its foot would be too small.
+    const vec2 aside = page.middle.x * x + page.middle.y * y;
     VolumeCardShape stands = page.card;
-    stands.middle = vec3(0.0f);
+    stands.middle = aside.x * glm::normalize(vec3(item.draw.rayX)) +
+                    aside.y * glm::normalize(vec3(item.draw.rayY)) +
+                    deeper * page.middle.z * vec3(view.forward);
     if (!showCard(view, item, screen, slot, stands, out)) return false;
     // showCard has cells as they lie in the page: by how much a metre is.
     const vec2 perMetre = vec2(out.place.z, out.upY) / page.card.cell;
-    const vec2 stand = vec2(out.place) - page.card.low * perMetre;
-    const vec2 first = page.base.x * x + page.base.y * y;
+    const vec2 middle = vec2(out.place) - page.card.low * perMetre;
+    const vec2 first = page.card.low.x * x + page.card.low.y * y;
     const vec2 cellX = page.card.cell * x * perMetre, cellY = page.card.cell * y * perMetre;
-    out.place = vec4(stand + first * perMetre, cellX);
+    out.place = vec4(middle + first * perMetre, cellX);
     out.upX = cellY.x, out.upY = cellY.y;
     out.perX = 2.0f / glm::length(screen.size * cellX);
     out.perY = 2.0f / glm::length(screen.size * cellY);

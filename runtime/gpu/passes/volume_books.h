@@ -37,8 +37,8 @@ struct BookItem {  // a flame that a view shows
 
 struct BookPage {
     VolumeCardShape card;
-    vec2 base{};  // m across the view, from where the flame stands to its first cell
-    vec2 tip{};   // m across the view, from where it stands
+    vec3 middle{};  // m across the view, and along it, from where the flame stands to its middle
+    vec2 tip{};     // m across the view, from where it stands
     float wide = 0;
     uint32_t run = 0;  // a number for all pages of one flame, one after the other
 };
