@@ -64,9 +64,11 @@ void main() {
 #endif
     FlameRay one = flameStep(FlameRay(vec3(0.0), vec3(1.0)), m, light, stride * part);
     outColor = flameShown(one, vec3(0.0), white * view.sunDirection.w, kEncoding);
-    // It hides what is behind it by one number for all colours: by what it takes of light like its own,
-    // for that is what is behind it most of all.
-    vec3 lit = vec3(0.2126, 0.7152, 0.0722) * one.radiance;
+    // It hides what is behind it by one number for all colours: half by what it takes of light like its
+    // own, for that is what is behind it most of all, and half by what it takes of white, for that is what
+    // the whole of them hides of a scene.
+    const vec3 seen = vec3(0.2126, 0.7152, 0.0722);
+    vec3 lit = seen * one.radiance;
     float all = lit.r + lit.g + lit.b;
-    if (all > 1e-9) outColor.a = 1.0 - dot(one.through, lit / all);
+    if (all > 1e-9) outColor.a = 1.0 - dot(one.through, 0.5 * (lit / all + seen));
 }
