@@ -92,7 +92,7 @@ class Volume : public GpuTest {
 
     FwTargetId targetOf(FwDepthMode mode) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-        def.flags = FW_TARGET_COMPOSITE;
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_NO_SURFACES;  // sooner made
         if (!backdrop_.empty()) def.flags |= FW_TARGET_HAZE;
         if (half_) def.flags |= FW_TARGET_HALF_EFFECTS;
         def.colorFormat = kColor;
