@@ -1,5 +1,6 @@
 #!/bin/bash
-# Checks the layering: which room may include which, who may name Vulkan, what no file may hold.
+# Checks the layering: which room may include which, who may name Vulkan, what no file may hold, and
+# whether each names the headers that it uses.
 # Before it trusts itself it breaks every rule once in a tree of its own and must notice each.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -77,6 +78,10 @@ check_tree() {
         sources "$tree/$room" | code_lines | grep -E '\bthread_local\b|\bdynamic_cast\b|\btypeid\b' |
             sed 's/$/   <- not in the library/' || true
     done
+    # The library's files name what they use of the standard library.
+    for room in runtime plugin/src plugin/include shaders/shared; do sources "$tree/$room"; done >"$listed"
+    awk -v list="$listed" -v roots="$tree/runtime:$tree/shaders:$tree/plugin/include:$tree/plugin/src" \
+        -f "$root/tests/abi/named_headers.awk"
     for room in plugin runtime shaders samples editor tests; do
         sources "$tree/$room" | while read -r file; do
             grep -H -n -E '\b(TO''DO|FIX''ME|XX''X)\b' "$file" || true
@@ -86,7 +91,8 @@ check_tree() {
 }
 
 broken=$(mktemp -d)
-trap 'rm -rf "$broken"' EXIT
+listed=$(mktemp)
+trap 'rm -rf "$broken" "$listed"' EXIT
 mkdir -p "$broken"/runtime/{core,fire,mesh,volume,field,components,world,gpu/cpu} "$broken"/plugin/{src,include/flamewright} \
     "$broken"/{shaders/shared,samples/a,editor/import}
 echo '#include "fire/law.h"' >"$broken/runtime/core/a.h"
@@ -105,7 +111,9 @@ echo '#include "core/hash.h"' >"$broken/shaders/shared/a.h"
 echo '#include "core/hash.h"' >"$broken/samples/a/main.cpp"
 echo '#include "../../runtime/core/hash.h"' >"$broken/editor/import/a.cpp"
 echo 'thread_local int x;' >"$broken/runtime/world/c.cpp"
-expected=16
+printf '%s\n' '#include "core/e.h"' 'std::vector<int> x = std::array<int, 1>();' >"$broken/runtime/core/d.cpp"
+echo '#include <vector>' >"$broken/runtime/core/e.h"
+expected=17
 noticed=$(check_tree "$broken" | wc -l)
 if [[ $noticed -ne $expected ]]; then
     check_tree "$broken"

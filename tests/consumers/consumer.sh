@@ -35,11 +35,10 @@ case $name in
     subdirectory)
         launcher=()
         command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-        # Without precompiled headers, so that a source that forgot an include of its own fails here;
-        # Debug without what debuggers read, as all of the library is compiled for it.
+        # Each source by itself, so that one that forgot an include of ours fails here; Debug without
+        # what debuggers read, as all of the library is compiled for it.
         build_project "-DFLAMEWRIGHT_SOURCE=$here/../.." -DCMAKE_BUILD_TYPE=Debug \
-            -DCMAKE_CXX_FLAGS_DEBUG=-O0 \
-            -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "${launcher[@]}"
+            -DCMAKE_CXX_FLAGS_DEBUG=-O0 "${launcher[@]}"
         "$work/build/consumer"
         ;;
     pkg_config)

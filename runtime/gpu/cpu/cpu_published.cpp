@@ -3,6 +3,7 @@
 #include "gpu/cpu/cpu_state.h"
 #include "shared/published.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace fw::gpu::cpu {
