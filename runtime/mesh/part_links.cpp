@@ -1,5 +1,7 @@
 // Parts of one mesh that share no edge but lie within a flame's lick of each other. Each block of
 // 4 x 4 texels knows the nearest place of another part, so that a tile's links have a fixed room.
+#include "mesh/part_links.h"
+
 #include "mesh/hold.h"
 #include "mesh/texels.h"
 #include "shared/exchange.h"
@@ -102,6 +104,27 @@ struct Blocks {
 };
 
 }  // namespace
+
+PartLink readPartLink(const BurnDomain& domain, uint32_t tile, uint32_t block,
+                      uint32_t link) noexcept {
+    const uint32_t corner =
+        tile / domain.tilesX * kTileSide * domain.width + tile % domain.tilesX * kTileSide;
+    const uint32_t lane = gpu::partFrom(link, block);
+    return {lane, corner + lane / kTileSide * domain.width + lane % kTileSide,
+            link % gpu::kPartTexels};
+}
+
+PartWay partWay(const BurnDomain& domain, std::span<const gpu::BurnMaterial> materials,
+                const PartLink& link) noexcept {
+    const TexelPosition &p = domain.texels[link.from], &q = domain.texels[link.to];
+    const auto materialOf = [&](const TexelPosition& at) {
+        return &materials[at.materialFlags & (gpu::kMaterialsPerObject - 1)];
+    };
+    PartWay way{materialOf(p), materialOf(q)};
+    const gpu::ivec3 gap(int(q.x) - p.x, int(q.y) - p.y, int(q.z) - p.z);
+    way.delay = (way.reached->flags & 1) != 0 ? gpu::partDelay(*way.reached, gap) : gpu::kNever;
+    return way;
+}
 
 void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory) {
     domain.partLinks.clear();

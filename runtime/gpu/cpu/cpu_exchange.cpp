@@ -1,6 +1,7 @@
 // Fire at a distance, every fourth step after `reduce`: the passes of shaders/exchange, on vectors.
 #include "core/error.h"
 #include "gpu/cpu/cpu_state.h"
+#include "mesh/part_links.h"
 #include "mesh/remote_tiles.h"
 
 #include <algorithm>
@@ -315,23 +316,14 @@ void CpuBackend::State::parts(const ExchangePush& rules) noexcept {
         const CpuObject& object = *objects[burning.object];
         if ((object.remote.flags & kRemoteLive) == 0 || object.domain->partLinks.empty()) continue;
         const uvec4 leads = remoteTiles[object.mesh][burning.tile].parts;
-        const uint32_t corner = burning.tile / object.domain->tilesX * 8 * object.domain->width +
-                                burning.tile % object.domain->tilesX * 8;
         for (uint32_t block = 0; block < 4; ++block) {
-            const uint32_t link = leads[int(block)];
-            if (link == kNoneTexel) continue;
-            const uint32_t lane = partFrom(link, block), to = link % kPartTexels;
-            const uint32_t from = corner + lane / 8 * object.domain->width + lane % 8;
-            const mesh::TexelPosition &a = object.domain->texels[from],
-                                      &b = object.domain->texels[to];
-            const BurnMaterial& its = object.materials[a.materialFlags & (kMaterialsPerObject - 1)];
-            const BurnMaterial& others =
-                object.materials[b.materialFlags & (kMaterialsPerObject - 1)];
-            const uint32_t delay =
-                partDelay(others, ivec3(int(b.x) - a.x, int(b.y) - a.y, int(b.z) - a.z));
-            if ((others.flags & 1) != 0 &&
-                partCrossed(object.state[from], its.flameTicks, delay, rules.now))
-                light(burning.object, to, rules.now, 0, rules.now);
+            const uint32_t word = leads[int(block)];
+            if (word == kNoneTexel) continue;
+            const mesh::PartLink link =
+                mesh::readPartLink(*object.domain, burning.tile, block, word);
+            const mesh::PartWay way = mesh::partWay(*object.domain, object.materials, link);
+            if (partCrossed(object.state[link.from], way.left->flameTicks, way.delay, rules.now))
+                light(burning.object, link.to, rules.now, 0, rules.now);
         }
     }
 }

@@ -2,6 +2,7 @@
 // run until none has news, each on what those before it have just written.
 #include "mesh/front/arrivals.h"
 
+#include "mesh/part_links.h"
 #include "shared/exchange.h"
 
 #include <algorithm>
@@ -60,24 +61,17 @@ void nextRound(Arrivals& a) noexcept {
 // Where fire of these lanes' texels goes over gaps.
 void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
     const BurnDomain& d = *a.domain;
-    const uint32_t corner = tile / d.tilesX * 8 * d.width + tile % d.tilesX * 8;
     for (uint32_t block = 0; block < 4; ++block) {
-        const uint32_t link = d.partLinks[size_t(tile) * 4 + block];
-        if (link == kNone) continue;
-        const uint32_t lane = gpu::partFrom(link, block), to = link % gpu::kPartTexels;
-        const uint32_t from = corner + lane / 8 * d.width + lane % 8;
-        const uint32_t t = a.ticks[from];
-        if ((lanes >> lane & 1) == 0 || !gpu::isSource(t)) continue;
-        const TexelPosition &p = d.texels[from], &q = d.texels[to];
-        const auto materialOf = [&](const TexelPosition& at) -> const gpu::BurnMaterial& {
-            return a.materials[at.materialFlags & (gpu::kMaterialsPerObject - 1)];
-        };
-        const uint32_t delay = gpu::partDelay(
-            materialOf(q), gpu::ivec3(int(q.x) - p.x, int(q.y) - p.y, int(q.z) - p.z));
-        if ((materialOf(q).flags & 1) == 0 || delay >= gpu::kLiveEnd - t) continue;
-        const uint32_t arrives = std::max(gpu::partArrives(t, delay), a.now);
+        const uint32_t word = d.partLinks[size_t(tile) * 4 + block];
+        if (word == kNone) continue;
+        const PartLink link = readPartLink(d, tile, block, word);
+        const uint32_t t = a.ticks[link.from], to = link.to;
+        if ((lanes >> link.lane & 1) == 0 || !gpu::isSource(t)) continue;
+        const PartWay way = partWay(d, a.materials, link);
+        if (way.delay >= gpu::kLiveEnd - t) continue;
+        const uint32_t arrives = std::max(gpu::partArrives(t, way.delay), a.now);
         const uint32_t was = a.ticks[to];
-        if (!gpu::flames(t, arrives, materialOf(p).flameTicks) ||
+        if (!gpu::flames(t, arrives, way.left->flameTicks) ||
             !(gpu::isReceptive(was) || (gpu::isSource(was) && was > a.now && was > arrives)))
             continue;
         a.ticks[to] = arrives;

@@ -1,0 +1,27 @@
+// Links between the parts of one mesh, as BurnDomain::partLinks has them: see linkParts.
+#pragma once
+#include "mesh/burn_domain.h"
+#include "shared/burn.h"
+
+#include <span>
+
+namespace fw::mesh {
+
+struct PartLink {
+    uint32_t lane = 0;          // of its tile, that fire leaves from
+    uint32_t from = 0, to = 0;  // texels
+};
+// `link`: of block `block` of the tile, another than kNone.
+[[nodiscard]] PartLink readPartLink(const BurnDomain& domain, uint32_t tile, uint32_t block,
+                                    uint32_t link) noexcept;
+
+struct PartWay {  // over such a link
+    const gpu::BurnMaterial *left = nullptr, *reached = nullptr;
+    uint32_t delay = 0;  // ticks; gpu::kNever: what it leads to does not burn
+};
+// `materials`: the object's, kMaterialsPerObject of them.
+[[nodiscard]] PartWay partWay(const BurnDomain& domain,
+                              std::span<const gpu::BurnMaterial> materials,
+                              const PartLink& link) noexcept;
+
+}  // namespace fw::mesh
