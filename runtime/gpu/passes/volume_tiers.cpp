@@ -11,20 +11,26 @@ bool marches(uint32_t tier) noexcept {
     return tier == FW_FIRE_TIER_MARCH_HIGH || tier == FW_FIRE_TIER_MARCH_LOW;
 }
 
-uint32_t lifeOf(uint32_t key, TierLives& lives) noexcept {
-    uint32_t free = kMaxVolumeFlames;
-    for (uint32_t i = 0; i < kMaxVolumeFlames; ++i) {
-        if (lives[i].used && lives[i].key == key && !lives[i].seen) return i;
-        if (!lives[i].used && free == kMaxVolumeFlames) free = i;
-    }
-    if (free < kMaxVolumeFlames) {
-        lives[free] = {};
-        lives[free].key = key;
-    }
-    return free;
+// The one that it has, or a place for a new one.
+uint32_t placeOf(uint32_t key, TierLives& lives) noexcept {
+    uint32_t at = lifeOf(key, lives);
+    if (at < kMaxVolumeFlames) return at;
+    at = 0;
+    while (at < kMaxVolumeFlames && lives[at].used) ++at;
+    if (at == kMaxVolumeFlames) return at;
+    lives[at] = {};
+    lives[at].key = key;
+    return at;
 }
 
 }  // namespace
+
+uint32_t lifeOf(uint32_t key, const TierLives& lives) noexcept {
+    uint32_t at = 0;
+    while (at < kMaxVolumeFlames && !(lives[at].used && !lives[at].seen && lives[at].key == key))
+        ++at;
+    return at;
+}
 
 bool wantsBook(uint32_t asked, float wide, const TierLife& life) noexcept {
     if (asked == FW_FIRE_TIER_FLIPBOOK || life.shows(FW_FIRE_TIER_FLIPBOOK)) return true;
@@ -34,12 +40,11 @@ bool wantsBook(uint32_t asked, float wide, const TierLife& life) noexcept {
 
 void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
                  TierLives& lives, std::span<uint32_t> places) noexcept {
-    for (TierLife& life : lives) life.seen = false;
     // Those that stay first: a new one takes no place from them.
     for (const bool stays : {true, false}) {
         for (size_t i = 0; i < items.size(); ++i) {
             if (!stays && places[i] < kMaxVolumeFlames) continue;
-            const uint32_t at = lifeOf(items[i].key, lives);
+            const uint32_t at = placeOf(items[i].key, lives);
             places[i] = kMaxVolumeFlames;
             if (at == kMaxVolumeFlames || lives[at].used != stays) continue;
             places[i] = at;
@@ -49,6 +54,7 @@ void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLim
         if (stays)
             for (TierLife& life : lives) life.used = life.used && life.seen;
     }
+    for (TierLife& life : lives) life.seen = false;
 
     std::array<uint32_t, kMaxVolumeFlames> order;
     std::array<float, kMaxVolumeFlames> weight;

@@ -32,7 +32,8 @@ struct TierItem {        // a flame that a view shows
 
 struct TierLife {  // of a flame, as long as the view shows it; its place is its card's
     uint32_t key = 0;
-    bool used = false, seen = false;
+    bool used = false;
+    bool seen = false;              // while a frame's lives are chosen: a flame of it has this one
     uint32_t tier = 0, before = 0;  // FwFireTier
     uint32_t turned = kTierFrames;  // frames since it was `before`
     uint32_t steps = kHighSteps;
@@ -57,6 +58,8 @@ struct MarchLimits {  // flames of FW_FIRE_TIER_AUTO
 // Whether a flame would rather show a book than be marched or have a card of its own, by what it is
 // now.
 bool wantsBook(uint32_t asked, float wide, const TierLife& life) noexcept;
+// The life that a flame of this key had in the frame before; kMaxVolumeFlames: none.
+uint32_t lifeOf(uint32_t key, const TierLives& lives) noexcept;
 // One frame on. places[i]: the life of items[i]. `cards`: how many places have one; a flame beyond
 // them is marched.
 void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,

@@ -220,13 +220,9 @@ void VkBackend::State::shareBooks(std::span<const VolumeItem> items, uint32_t ro
     bool wanted = false;
     for (size_t i = 0; i < items.size(); ++i) {
         const VolumeBox& box = volumes[items[i].flame];
-        const TierLife* life = nullptr;
-        had[i] = kNoBook;
-        for (uint32_t at = 0; at < kMaxVolumeFlames && !life; ++at) {
-            if (!march.lives[at].used || march.lives[at].key != box.key) continue;
-            life = &march.lives[at];
-            if (march.readers[at].key == box.key) had[i] = march.readers[at].book;
-        }
+        const uint32_t at = lifeOf(box.key, march.lives);
+        const TierLife* life = at < kMaxVolumeFlames ? &march.lives[at] : nullptr;
+        had[i] = life && march.readers[at].key == box.key ? march.readers[at].book : kNoBook;
         const vec4& r = items[i].draw.rect;
         BookItem& one = asked[i];
         one.kind = box.kind;
