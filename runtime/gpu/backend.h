@@ -152,8 +152,8 @@ struct Detail {
     uint32_t volumeSteps = 64;  // samples of a ray at most; see FwWorldDef
     float triangles = 1;        // share of FwWorldDef::maxRefinedTriangles
     float quads = 1;  // share of flames' quads and particles that show; what shows is larger for it
-    float lights =
-        1;  // share of FwWorldDef::maxLights: the fewer there are, the more each shines for
+    // Share of FwWorldDef::maxLights: the fewer there are, the more each shines for.
+    float lights = 1;
     float memory = 1;  // share of what marched flames and quads have otherwise; 1: it never shrinks
 
     [[nodiscard]] bool operator==(const Detail&) const = default;
