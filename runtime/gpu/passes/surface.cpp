@@ -40,6 +40,13 @@ constexpr DrawPass variant(uint32_t features, Cull cull) {
 constexpr uint32_t kFresh = 5, kBurning = 10;
 constexpr uint32_t kFirstCold = 2 * kFresh, kFirstBurning = 3 * kFresh;
 static_assert(kFirstBurning + 2 * kBurning == kSurfaceVariants);
+// Flags of draws stand where an object has the room that it is in, for which no draw asks; an
+// object's other flags stay below.
+constexpr uint32_t kObjectsOwn = (1u << kObjectRoomShift) - 1;
+static_assert(((kDrawVertexLight | kDrawPlaced | kDrawHeat | kDrawWet | kDrawThick | kDrawCut |
+                kDrawTold | kDrawInner) &
+               kObjectsOwn) == 0);
+static_assert((kObjectSkinned | kObjectZPass | kObjectUnseen | kObjectAnew) <= kObjectsOwn);
 
 constexpr uint32_t kPaint = kSurfaceWood | kSurfacePaint;
 constexpr uint32_t kHide = kSurfaceSheet | kSurfaceHide;
@@ -143,8 +150,7 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     draw.look = material.look;
     draw.stateBase = object.stateBase;
     draw.size = object.width | object.height << 16;
-    // The room that it is in is where flags of draws are, and no draw asks for it.
-    draw.flags = object.flags & ((1u << kObjectRoomShift) - 1);
+    draw.flags = object.flags & kObjectsOwn;
     if (edge < kSmallEdge) draw.flags |= kDrawVertexLight;
     draw.places = places;
     const bool heated = (object.flags & kObjectHeat) != 0;
