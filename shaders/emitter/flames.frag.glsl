@@ -44,6 +44,7 @@ vec4 showBook(vec2 uv) {
     return bookMix(bookTexel(inFrames.xy, before), bookTexel(inFrames.zw, after), inBetween.x);
 }
 const float kBookSpan = 600.0;  // K between a book's coldest and its hottest, about the quad's own
+const float kBookHides = 1.05;  // what it covers is as bright as where a volume burns
 #else
 const uint kPagesAlone = 0u;
 #endif
@@ -177,7 +178,7 @@ void main() {
         kelvin = inState.z + kBookSpan * (page.x - 0.5);
         white = kFlameWhite;
         soot *= sootLeft(kelvin);
-        hides = sootHides(kelvin) * page.z / max(page.y, 1e-4);
+        hides = kBookHides * sootHides(kelvin) * page.z / max(page.y, 1e-4);
     }
 #endif
     vec3 glow = sootRadiance(spark ? inState.z : kelvin);

@@ -84,6 +84,7 @@ class Volume : public GpuTest {
         for (int i = 0; i < 3; ++i)
             view.sunColor[i] = view.ambientSky[i] = view.ambientGround[i] = 0;
         view.time = 2;
+        looked_ = view;
     }
     void TearDown() override {
         rig_.reset();
@@ -506,6 +507,21 @@ class Volume : public GpuTest {
     static void addMoment(Mean& sum, const Mean& picture) {
         for (size_t k = 0; k < sum.size(); ++k) sum[k] += picture[k] / float(kMoments);
     }
+    // The view of a moment, a part of a pixel aside of what look() has it: which pixels' middles an
+    // edge takes in is no part of a fire's look.
+    void nudge(int moment) {
+        if (!nudges_) return;
+        const auto offset = [&](float part) {
+            return 2 / float(kSide) *
+                   (part * float(moment) - std::floor(part * float(moment)) - 0.5f);
+        };
+        float* projection = rig_->view.projection;
+        for (int column = 0; column < 4; ++column) {
+            const float w = looked_.projection[4 * column + 3];
+            projection[4 * column] = looked_.projection[4 * column] + offset(0.618f) * w;
+            projection[4 * column + 1] = looked_.projection[4 * column + 1] + offset(0.755f) * w;
+        }
+    }
     static float tallOf(float power) { return 0.235f * std::pow(power, 0.4f); }  // m, Heskestad
 
     // What emitters show: a flame, a roll and a puff.
@@ -532,6 +548,7 @@ class Volume : public GpuTest {
             def.seed = 7 + uint32_t(i);
             gpu::VolumeFlame flame = flameAlone(def, 2 + kApart * float(i));
             flame.record.key = ++key_;
+            nudge(i);
             addMoment(mean, draw({&flame, 1}, FW_DEPTH_TEST));
         }
     }
@@ -553,16 +570,31 @@ class Volume : public GpuTest {
         constexpr int kWarm = 60;
         for (int i = 0; i < kWarm + kMoments; ++i) {
             EXPECT_TRUE(emitter.step(i < kWarm ? 1 / 30.0f : kApart) || i < 3);
+            nudge(i);
             const Mean picture = drawOnce({}, FW_DEPTH_TEST, 0);
             if (i >= kWarm) addMoment(mean, picture);
         }
         emitters_ = nullptr;
     }
 
+    // A field that stands for a fire of so many kW, as integration.md has it.
+    static FwParticleFieldDef fieldOf(float power) {
+        FwParticleFieldDef def = fwDefaultParticleFieldDef();
+        components::setFieldPreset(def, FW_FIELD_FIRE);
+        const float tall = tallOf(power), tint[3] = {0.91f, 0.87f, 0.855f};
+        def.size[0] = 0.66f * tall, def.size[1] = 0.95f * tall;
+        def.amount = 1.6f;
+        def.life *= float(def.height) / 32;  // speeds are in cells
+        std::copy_n(tint, 3, def.tint);
+        return def;
+    }
+
     std::unique_ptr<VkRig> rig_;
-    bool other_ = false;  // the view that is drawn is not that of the outside part
-    bool half_ = false;   // a rig's targets draw at half resolution
-    float memory_ = 1;    // gpu::Detail::memory
+    FwView looked_{};      // as look() left it
+    bool nudges_ = false;  // moments are seen from a part of a pixel aside of it
+    bool other_ = false;   // the view that is drawn is not that of the outside part
+    bool half_ = false;    // a rig's targets draw at half resolution
+    float memory_ = 1;     // gpu::Detail::memory
     const gpu::EmitterUpdate* emitters_ = nullptr;  // beside the flames
     const gpu::FieldUpdate* fields_ = nullptr;
     std::vector<std::vector<Mean>> films_;
@@ -1016,6 +1048,7 @@ TEST_F(Volume, TiersAreTheSameFlame) {
 // where, is not the tier's.
 TEST_F(Volume, ThreeTiersOneLook) {
     if (!device_) return;
+    nudges_ = true;
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
     const auto asVolume = [&](float power, Mean& mean) { addVolume(power, mean); };
     const auto asFlipbooks = [&](float power, Mean& mean) {
@@ -1025,15 +1058,9 @@ TEST_F(Volume, ThreeTiersOneLook) {
         def.power = power;
         addEmitter(def, mean);
     };
-    // A card twice as wide as the fire's base.
     const auto asField = [&](float power, Mean& mean) {
-        FwParticleFieldDef def = fwDefaultParticleFieldDef();
-        components::setFieldPreset(def, uint32_t(field::FieldPreset::Fire));
-        def.life *= float(def.height) / 32;  // speeds are in cells
         components::ParticleField field(memory);
-        def.size[0] = 0.9f * tallOf(power);
-        def.size[1] = tallOf(power);
-        components::makeParticleField(def, 1, field);
+        components::makeParticleField(fieldOf(power), 1, field);
         const float calm[3] = {0, 0, 0};
         rig_->backend.createField(0, components::rulesOf(field, calm), field.masks);
         constexpr uint32_t kWarm = 60, kSteps = 5;
@@ -1048,6 +1075,7 @@ TEST_F(Volume, ThreeTiersOneLook) {
             fields.draws = &drawn;
             fields.drawn = {&slot, 1};
             fields_ = &fields;
+            nudge(int(i / kSteps));
             const Mean picture = drawOnce({}, FW_DEPTH_TEST, 0);
             if (i >= kWarm && i % kSteps == 0) addMoment(mean, picture);
         }
@@ -1061,15 +1089,18 @@ TEST_F(Volume, ThreeTiersOneLook) {
     struct Seen {
         float light[3] = {};
         float radiance = 0, green = 0, up = 0;  // means over the powers
+        vec4 reach{0.0f};
     } fires[3];
+    constexpr float kAway = 6, kDegrees = 22;  // heights of the fire
+    const float heightPx = float(kSide) / (2 * kAway * std::tan(glm::radians(0.5f * kDegrees)));
     for (int i = 0; i < 3; ++i) {
         // What a tier has drawn stays until it is told of a frame: none sees the one before.
         makeRig();
         layBooks();
         for (int k = 0; k < 3; ++k) {
             const float power = kPowers[k], tall = tallOf(power);
-            const float eye[3] = {0, 0.6f * tall, 6 * tall}, at[3] = {0, 0.6f * tall, 0};
-            look(eye, at, 22);
+            const float eye[3] = {0, 0.6f * tall, kAway * tall}, at[3] = {0, 0.6f * tall, 0};
+            look(eye, at, kDegrees);
             Mean mean(kSide * kSide, vec4(0.0f));
             tiers[i](power, mean);
             const vec4 m = meanOf(mean);
@@ -1083,20 +1114,29 @@ TEST_F(Volume, ThreeTiersOneLook) {
             seen.radiance += light / m.w / 3;
             seen.green += m.y / m.x / 3;
             seen.up += up / 3;
+            const vec4 reach = reachOf(mean) / heightPx;
+            seen.reach += reach / 3.0f;
             std::printf(
                 "[   FIGURE ] %g kW, %s: light %.4f, radiance of what it covers %.3f, at "
-                "%.2f px, green %.3f of red\n",
+                "%.2f px, green %.3f of red, %.3f wide and %.3f tall\n",
                 double(power), kNames[i], double(light), double(light / m.w), double(up),
-                double(m.y / m.x));
+                double(m.y / m.x), double(reach.z - reach.x), double(reach.w - reach.y));
         }
     }
     for (int i = 1; i < 3; ++i) {
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(fires[i].light[k] / fires[0].light[k], 1, 0.05)
                 << kNames[i] << ", " << kPowers[k] << " kW";
-        EXPECT_NEAR(fires[i].radiance / fires[0].radiance, 1, 0.08) << kNames[i];
-        EXPECT_NEAR(fires[i].green / fires[0].green, 1, 0.07) << kNames[i];
+        EXPECT_NEAR(fires[i].radiance / fires[0].radiance, 1, 0.05) << kNames[i];
+        EXPECT_NEAR(fires[i].green / fires[0].green, 1, 0.05) << kNames[i];
         EXPECT_NEAR(fires[i].up / fires[0].up, 1, 0.03) << kNames[i];
+        // Left, top, right and bottom, of the fire's height.
+        const vec4 off = glm::abs(fires[i].reach - fires[i - 1].reach);
+        const float bounds = std::max({off.x, off.y, off.z, off.w});
+        std::printf("[   FIGURE ] %s against %s: radiance of what it covers %.4f, bounds %.4f\n",
+                    kNames[i], kNames[i - 1], double(fires[i].radiance / fires[i - 1].radiance),
+                    double(bounds));
+        EXPECT_LT(bounds, i == 1 ? 0.035f : 0.03f) << kNames[i];  // books end a little lower
     }
 }
 
@@ -1162,13 +1202,8 @@ TEST_F(Volume, ADollyFromAVolumeOverFlipbooksToAFieldShowsOneFire) {
         return film;
     };
     const auto asField = [&] {
-        FwParticleFieldDef def = fwDefaultParticleFieldDef();
-        components::setFieldPreset(def, uint32_t(field::FieldPreset::Fire));
-        def.life *= float(def.height) / 32;  // speeds are in cells
         components::ParticleField field(memory);
-        def.size[0] = 0.75f * tall;
-        def.size[1] = tall;
-        components::makeParticleField(def, 1, field);
+        components::makeParticleField(fieldOf(kPower), 1, field);
         const float calm[3] = {0, 0, 0};
         rig_->backend.createField(0, components::rulesOf(field, calm), field.masks);
         Film film;
@@ -1242,8 +1277,8 @@ TEST_F(Volume, ADollyFromAVolumeOverFlipbooksToAFieldShowsOneFire) {
             kNames[near], kNames[near + 1], brighter, radiance, double(bounds),
             change[0] / light[0], change[1] / light[1], cut / light[0]);
         EXPECT_NEAR(brighter, 1, 0.05) << kNames[near + 1];
-        EXPECT_NEAR(radiance, 1, 0.1) << kNames[near + 1];
-        EXPECT_LT(bounds, 0.045f) << kNames[near + 1];
+        EXPECT_NEAR(radiance, 1, 0.05) << kNames[near + 1];
+        EXPECT_LT(bounds, near == 0 ? 0.035f : 0.03f) << kNames[near + 1];
         // It does not pop: no more than fires of these tiers flicker, and a quarter.
         EXPECT_LT(cut / light[0], 1.25 * std::max(change[0], change[1]) / light[0])
             << kNames[near + 1];
