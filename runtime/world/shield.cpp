@@ -69,9 +69,18 @@ void World::setHeatShield(const FwHeatShieldDef& def) {
     }
     bakeHeatShield(made.shape, slots, made.baked);
     noteShield(def, made, slots);
+    adoptShield(made);
+}
+
+void World::adoptShield(components::HeatShield& made) noexcept {
     shield_.grid.shape = made.shape;
     shield_.grid.solid.swap(made.solid);
     shield_.grid.baked.swap(made.baked);
+    shieldChanged();
+}
+
+// The host's cells are others: jets end there, too.
+void World::shieldChanged() noexcept {
     shield_.unsent = shield_.unpacked = true;
     ++geometry_;
 }
@@ -114,12 +123,8 @@ void World::takeShield(const Deed& deed) {
     components::HeatShield made(memory_);
     if (def.counts[0] != 0) made.shape = components::makeShieldShape(def);
     made.solid.assign(made.shape.words(), 0);
-    shield_.grid.shape = made.shape;
-    shield_.grid.solid.swap(made.solid);
-    shield_.grid.baked.clear();
+    adoptShield(made);
     shield_.told.clear();
-    shield_.unsent = shield_.unpacked = true;
-    ++geometry_;
     note(deed);
 }
 
@@ -141,8 +146,7 @@ void World::takeShieldCells(const Deed& deed) {
         const bool there = uint32_t(deed.numbers[i / kCellsOfNumber]) >> i % kCellsOfNumber & 1;
         grid.solid[cell / 32] = (grid.solid[cell / 32] & ~bit) | (there ? bit : 0u);
     }
-    shield_.unsent = shield_.unpacked = true;
-    ++geometry_;
+    shieldChanged();
     note(deed);
 }
 

@@ -703,6 +703,8 @@ class World {
     void takeShield(const Deed& deed);
     void takeShieldCells(const Deed& deed);
     void takeShieldObject(const Deed& deed);
+    void adoptShield(components::HeatShield& made) noexcept;  // takes its cells
+    void shieldChanged() noexcept;
     void dropFromShield(uint32_t slot) noexcept;
     void packHeatShield();
     components::ShieldView shieldView();
