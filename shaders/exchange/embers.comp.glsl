@@ -3,21 +3,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_EXCHANGE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_READERS readonly
-#define FW_USE_STATE FW_READ_WRITE
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_LISTS FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_BURN_LISTS FW_READ_WRITE
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#define FW_USE_HOT_LISTS FW_READ_WRITE
-#define FW_USE_PUBLISHED FW_READ_WRITE
-#define FW_USE_REMOTE_OBJECTS
-#define FW_USE_TEXELS readonly
+#include "lib/light_uses.glsl"
 #define FW_USE_REMOTE_TILES
 #define FW_USE_SOURCES readonly
 #include "lib/buffers.glsl"

@@ -1,0 +1,17 @@
+// Buffers that lightTexel (lib/light.glsl) needs, with what each pass that calls it is pushed: included
+// before lib/buffers.glsl, beside what a pass has of its own. gpu/passes/light_uses.h binds them.
+#define FW_USE_EXCHANGE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_TILES readonly
+#define FW_USE_READERS readonly
+#define FW_USE_STATE FW_READ_WRITE
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_LISTS FW_READ_WRITE
+#define FW_USE_COUNTERS FW_READ_WRITE
+#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
+#define FW_USE_BURN_LISTS FW_READ_WRITE
+#define FW_USE_PREDICT_LISTS FW_READ_WRITE
+#define FW_USE_HOT_LISTS FW_READ_WRITE
+#define FW_USE_PUBLISHED FW_READ_WRITE
+#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_TEXELS readonly
