@@ -45,12 +45,14 @@ constexpr DrawPass bookVariant(uint32_t pagesAlone) {
             .softShaderMultisampled = "book_flames_soft_ms.frag",
             .atHalf = AtHalf::soft};
 }
-
-}  // namespace
-
-const ComputePass kFlameQuadsPass{"flame quads", "flames.comp", kMakeUses, sizeof(StepPush)};
-const ComputePass kFlameSortPass{"flame sort", "flame_sort.comp", kSortUses, sizeof(SortPush)};
-const DrawPass kFlamesPass{.name = "flames",
+// Of `pass`: its sparks alone, over what was drawn at half resolution.
+constexpr DrawPass halfSparks(DrawPass pass) {
+    pass.name = "half sparks";
+    pass.fragmentShader = nullptr;
+    pass.atHalf = AtHalf::sparks;
+    return pass;
+}
+constexpr DrawPass kFlames{.name = "flames",
                            .vertexShader = "flames.vert",
                            .fragmentShader = "flames.frag",
                            .uses = kDrawUses,
@@ -61,33 +63,17 @@ const DrawPass kFlamesPass{.name = "flames",
                            .softShader = "flames_soft.frag",
                            .softShaderMultisampled = "flames_soft_ms.frag",
                            .atHalf = AtHalf::soft};
+
+}  // namespace
+
+const ComputePass kFlameQuadsPass{"flame quads", "flames.comp", kMakeUses, sizeof(StepPush)};
+const ComputePass kFlameSortPass{"flame sort", "flame_sort.comp", kSortUses, sizeof(SortPush)};
+const DrawPass kFlamesPass = kFlames;
 // Where the world has flipbooks: what is shown by none costs five texels more there, and where they
 // show all of it the noise is saved.
 const DrawPass kBookFlamesPasses[kBookVariants] = {bookVariant(0), bookVariant(1)};
 
-const DrawPass kHalfSparksPasses[2] = {{.name = "half sparks",
-                                        .vertexShader = "flames.vert",
-                                        .fragmentShader = nullptr,
-                                        .uses = kDrawUses,
-                                        .vertexInput = VertexInput::none,
-                                        .blend = Blend::premultiplied,
-                                        .writeDepth = false,
-                                        .pushBytes = 0,
-                                        .softShader = "flames_soft.frag",
-                                        .softShaderMultisampled = "flames_soft_ms.frag",
-                                        .atHalf = AtHalf::sparks},
-                                       {.name = "half sparks",
-                                        .vertexShader = "book_flames.vert",
-                                        .fragmentShader = nullptr,
-                                        .uses = kBookUses,
-                                        .vertexInput = VertexInput::none,
-                                        .blend = Blend::premultiplied,
-                                        .writeDepth = false,
-                                        .pushBytes = 0,
-                                        .variant = 1,
-                                        .softShader = "book_flames_soft.frag",
-                                        .softShaderMultisampled = "book_flames_soft_ms.frag",
-                                        .atHalf = AtHalf::sparks}};
+const DrawPass kHalfSparksPasses[2] = {halfSparks(kFlames), halfSparks(bookVariant(1))};
 
 void recordHalfSparks(DrawRecorder& recorder) {
     recorder.drawIndirect(FW_BIND_DRAW_ARGS, kFlameLightDraw * 4);
