@@ -15,6 +15,7 @@ using gpu::vec3;
 using gpu::vec4;
 
 constexpr float kAtOnce = 20.5f;     // particles that cover a fire with their sizes as written
+constexpr float kFireLift = 11.45f;  // m/s^2: flames end as high as a volumetric fire's
 constexpr float kStuckRates = 1.2f;  // most births where fuel sticks, of those of the stream
 
 float length3(const float v[3]) noexcept {
@@ -86,7 +87,7 @@ EmitterLook emitterLook(const FwFireEmitterDef& def) {
         const float tall = 0.235f * std::pow(power, 0.4f);
         const float height = std::max(tall - 1.02f * look.diameter, 0.35f * tall);
         const float rise = 1.93f * std::pow(power, 0.2f);
-        look.liftTorn = look.liftStream = 11 * def.buoyancy;
+        look.liftTorn = look.liftStream = kFireLift * def.buoyancy;
         look.dragStream = look.dragTorn = orElse(def.drag, 0.75f * rise / 11);
         look.speed = orElse(def.speed, 0.22f * rise);
         look.cone = orElse(def.cone, 0.30f);
