@@ -4,15 +4,12 @@
 layout(local_size_x = 64) in;
 #define FW_USE_EXCHANGE_PUSH
 #define FW_USE_OBJECTS readonly
-#define FW_USE_STATE readonly
 #define FW_USE_OBJECT_COUNTERS readonly
 #define FW_USE_REMOTE_OBJECTS
 #define FW_USE_REMOTE_TILES
 #define FW_USE_SOURCES FW_READ_WRITE
 #define FW_USE_BLOCKERS
-#define FW_USE_SHIELD
-#define FW_USE_HEAT readonly
-#define FW_USE_MATERIALS readonly
+#include "lib/shield_uses.glsl"
 #include "lib/buffers.glsl"
 #include "lib/ember.glsl"
 #include "lib/shield.glsl"

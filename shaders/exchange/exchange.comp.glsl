@@ -18,10 +18,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_RECEIVERS readonly
 #define FW_USE_BLOCKERS
 #ifdef FW_SHIELD
-#define FW_USE_SHIELD
-#define FW_USE_STATE readonly
-#define FW_USE_HEAT readonly
-#define FW_USE_MATERIALS readonly
+#include "lib/shield_uses.glsl"
 #endif
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"

@@ -184,36 +184,35 @@ void shared(benchmark::State& state, uint32_t crates) {
     }
 }
 
-// Ten that burn, with and without a thousand beside them that do not; in turns.
+// A step of each after the other; shows `with`, and what it takes of the processor for `without`'s.
+void inTurns(benchmark::State& state, YardBench& without, YardBench& with) {
+    for (int i = 0; i < kWarm + kSteps; ++i)
+        for (YardBench* bench : {&without, &with}) {
+            if (i == kWarm) bench->forget();
+            bench->step();
+        }
+    show(state, with);
+    state.counters["cpu_ratio"] = mean(with.cpu) / mean(without.cpu);
+}
+
+// Ten that burn, with and without a thousand beside them that do not.
 void idle(benchmark::State& state) {
     try {
         YardBench few(FW_BACKEND_VULKAN, 0, 10, 0), many(FW_BACKEND_VULKAN, 0, 10, 1000);
-        for (int i = 0; i < kWarm + kSteps; ++i)
-            for (YardBench* bench : {&few, &many}) {
-                if (i == kWarm) bench->forget();
-                bench->step();
-            }
-        show(state, many);
+        inTurns(state, few, many);
         state.counters["ratio"] = median(many.seconds) / median(few.seconds);
-        state.counters["cpu_ratio"] = mean(many.cpu) / mean(few.cpu);
     } catch (const std::exception& failure) {
         state.SkipWithError(failure.what());
     }
 }
 
-// Three hundred that burn, with and without a shield; in turns.
+// Three hundred that burn, with and without a shield.
 void shielded(benchmark::State& state) {
     try {
         YardBench open(FW_BACKEND_VULKAN, kExchange, 300, 0);
         YardBench walled(FW_BACKEND_VULKAN, kExchange, 300, 0);
         walled.shield();
-        for (int i = 0; i < kWarm + kSteps; ++i)
-            for (YardBench* bench : {&open, &walled}) {
-                if (i == kWarm) bench->forget();
-                bench->step();
-            }
-        show(state, walled);
-        state.counters["cpu_ratio"] = mean(walled.cpu) / mean(open.cpu);
+        inTurns(state, open, walled);
     } catch (const std::exception& failure) {
         state.SkipWithError(failure.what());
     }

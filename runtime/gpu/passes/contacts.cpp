@@ -6,10 +6,11 @@
 namespace fw::gpu {
 namespace {
 
-constexpr auto kContactsUses = withLight({
+constexpr Use kContactsOwn[] = {
     {FW_BIND_MATERIALS, Access::read},
     {FW_BIND_CONTACTS, Access::read},
-});
+};
+constexpr auto kContactsUses = joined(kLightUses, kContactsOwn);
 
 }  // namespace
 

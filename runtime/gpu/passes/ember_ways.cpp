@@ -1,22 +1,17 @@
 // What stops embers on their way.
 #include "gpu/passes/frame_graph.h"
+#include "gpu/passes/shield_uses.h"
 #include "shared/exchange.h"
 
 namespace fw::gpu {
 namespace {
 
-constexpr Use kEmberWaysUses[] = {
-    {FW_BIND_OBJECTS, Access::read},
-    {FW_BIND_STATE, Access::read},
-    {FW_BIND_OBJECT_COUNTERS, Access::read},
-    {FW_BIND_REMOTE_OBJECTS, Access::read},
-    {FW_BIND_REMOTE_TILES, Access::read},
-    {FW_BIND_SOURCES, Access::write},
-    {FW_BIND_BLOCKERS, Access::read},
-    {FW_BIND_SHIELD, Access::read},
-    {FW_BIND_HEAT, Access::read},
-    {FW_BIND_MATERIALS, Access::read},
+constexpr Use kEmberWaysOwn[] = {
+    {FW_BIND_OBJECTS, Access::read},        {FW_BIND_OBJECT_COUNTERS, Access::read},
+    {FW_BIND_REMOTE_OBJECTS, Access::read}, {FW_BIND_REMOTE_TILES, Access::read},
+    {FW_BIND_SOURCES, Access::write},       {FW_BIND_BLOCKERS, Access::read},
 };
+constexpr auto kEmberWaysUses = joined(kShieldUses, kEmberWaysOwn);
 
 }  // namespace
 

@@ -6,10 +6,11 @@
 namespace fw::gpu {
 namespace {
 
-constexpr auto kEmbersUses = withLight({
+constexpr Use kEmbersOwn[] = {
     {FW_BIND_REMOTE_TILES, Access::read},
     {FW_BIND_SOURCES, Access::read},
-});
+};
+constexpr auto kEmbersUses = joined(kLightUses, kEmbersOwn);
 
 }  // namespace
 

@@ -3,11 +3,6 @@
 #pragma once
 #include "gpu/passes/pass.h"
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <iterator>
-
 namespace fw::gpu {
 
 inline constexpr Use kLightUses[] = {
@@ -21,13 +16,5 @@ inline constexpr Use kLightUses[] = {
     {FW_BIND_PUBLISHED, Access::write},       {FW_BIND_REMOTE_OBJECTS, Access::read},
     {FW_BIND_TEXELS, Access::read},
 };
-
-// Those, and what a pass has of its own.
-template <std::size_t count>
-constexpr auto withLight(const Use (&own)[count]) {
-    std::array<Use, std::size(kLightUses) + count> uses{};
-    std::copy_n(own, count, std::copy(std::begin(kLightUses), std::end(kLightUses), uses.begin()));
-    return uses;
-}
 
 }  // namespace fw::gpu

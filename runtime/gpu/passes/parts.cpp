@@ -6,12 +6,13 @@
 namespace fw::gpu {
 namespace {
 
-constexpr auto kPartsUses = withLight({
+constexpr Use kPartsOwn[] = {
     {FW_BIND_MATERIALS, Access::read},
     {FW_BIND_REMOTE_TILES, Access::read},
     {FW_BIND_BURN_TILES, Access::read},
     {FW_BIND_COUNTERS, Access::indirect},
-});
+};
+constexpr auto kPartsUses = joined(kLightUses, kPartsOwn);
 
 }  // namespace
 

@@ -3,6 +3,9 @@
 #pragma once
 #include "shared/burn.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -41,6 +44,13 @@ struct Use {
     uint32_t resource;
     Access access;
 };
+// What a piece of shader text needs (light_uses.h, shield_uses.h), and a pass' own beside it.
+template <std::size_t a, std::size_t b>
+constexpr std::array<Use, a + b> joined(const Use (&some)[a], const Use (&others)[b]) {
+    std::array<Use, a + b> uses{};
+    std::copy_n(others, b, std::copy_n(some, a, uses.begin()));
+    return uses;
+}
 
 struct ComputePass {
     const char* name;    // label, timer
