@@ -145,6 +145,56 @@ TEST(AbiDrawn, EveryMaterialSlotHasItsPicture) {
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
 }
 
+// Frames skip what nothing happened to; whatever is done to it then is known when it burns.
+TEST(AbiDrawn, WhatRestedBurnsWhereItWasPut) {
+    FwWorldDef worldDef = fwDefaultWorldDef();
+    worldDef.paceFactor = 20;
+    DRAWN_WORLD_OR_SKIP(w, worldDef);
+    const host::Sheet sheet(1.0f, 0.5f, 4);
+    const FwMeshDef mesh = sheet.def(32);
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
+    def.materials[0] = w.material(FW_MATERIAL_PAPER);
+    def.baseColor = w.image(0xFF00FF00u);
+    def.flags = 0;  // what is refined along its border never rests
+    FwBurnableMeshId id{};
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    const auto wait = [&](int frames) {
+        for (int i = 0; i < frames; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
+    };
+    // Where its flames shine from, on average, once it burns at `x`; -1: nowhere.
+    const auto lit = [&](float x) {
+        FwIgnitionDef fire = fwDefaultIgnitionDef();
+        fire.position[0] = x;
+        fire.radius = 0.2f;
+        uint32_t texels = 0;
+        EXPECT_EQ(FW_OK, fwWorld_Ignite(w.world, &fire, &texels));
+        EXPECT_GT(texels, 0u);
+        wait(8);
+        FwLight lights[16];
+        const uint32_t count = fwWorld_GetLights(w.world, lights, 16);
+        float sum = 0;
+        for (uint32_t i = 0; i < count; ++i) sum += lights[i].position[0];
+        return count ? sum / float(count) : -1.0f;
+    };
+    wait(5);
+    const int all = count(w.look(), 0, 64, green);
+    EXPECT_GT(all, 1500);
+    def.transform[12] = 5;
+    ASSERT_EQ(FW_OK, fwWorld_SetTransform(w.world, id, def.transform));
+    wait(5);
+    EXPECT_EQ(0, count(w.look(), 0, 64, green));
+    EXPECT_NEAR(lit(5.2f), 5.2f, 0.4f);
+    // Another one in its slot, which fire has not reached.
+    ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
+    wait(5);
+    def.transform[12] = 0;
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    wait(5);
+    EXPECT_EQ(all, count(w.look(), 0, 64, green));
+    EXPECT_NEAR(lit(0.2f), 0.2f, 0.4f);
+}
+
 TEST(AbiDrawn, BothSidesOfAnOpenMeshBurnFromOneMap) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 20;

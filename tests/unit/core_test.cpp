@@ -5,11 +5,13 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/owned.h"
+#include "core/slot_set.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -110,6 +112,28 @@ TEST(Owned, OwnsOnceAndMoves) {
     EXPECT_EQ(0, miser.live);
     miser.left = 0;
     EXPECT_THROW((void)Owned<int>::make(&miser, 1), std::bad_alloc);
+}
+
+TEST(SlotSet, WalksInOrderAndLetsTheOneItIsAtGo) {
+    SlotSet set(std::pmr::new_delete_resource());
+    const auto walked = [&] {
+        std::vector<uint32_t> slots;
+        for (const uint32_t slot : set) slots.push_back(slot);
+        return slots;
+    };
+    EXPECT_TRUE(walked().empty());
+    EXPECT_FALSE(set.contains(3));
+    set.atLeast(1000);
+    EXPECT_TRUE(walked().empty());
+    for (const uint32_t slot : {999u, 0u, 63u, 64u, 640u, 64u}) set.insert(slot);
+    EXPECT_EQ((std::vector<uint32_t>{0, 63, 64, 640, 999}), walked());
+    set.atLeast(3);  // keeps what there is
+    EXPECT_TRUE(set.contains(999));
+    EXPECT_FALSE(set.contains(998));
+    EXPECT_FALSE(set.contains(100000));
+    for (const uint32_t slot : set)
+        if (slot != 64) set.erase(slot);
+    EXPECT_EQ((std::vector<uint32_t>{64}), walked());
 }
 
 TEST(Memory, CountsAndGivesBackWhatWasAskedFor) {

@@ -116,6 +116,10 @@ void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& wri
 // What deforms in this frame, in the order of DeformRecord.
 [[nodiscard]] Staged writeDeformGroups(VkBackend::State& s, UploadWriter& writer);
 
+// vk_refine.cpp
+// How far the last frame that refined an object has brought what draws show of it.
+void showRefined(const RefineUse& use, DrawItem& item) noexcept;
+
 // vk_field.cpp
 void addFieldNeeds(const VkBackend::State& s, const FramePlan& plan, FrameNeeds& needs);
 void recordFieldSteps(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,

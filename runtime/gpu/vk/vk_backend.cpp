@@ -28,6 +28,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       sets(device, contextState.pipelines, retired, pmr),
       meshes(pmr),
       objects(pmr),
+      awake(pmr),
       images(pmr),
       uploads(pmr),
       restores(pmr),

@@ -116,7 +116,8 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
 }
 
 void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
-    for (const ObjectEntry& object : s.objects) {
+    for (const uint32_t i : s.awake) {
+        const ObjectEntry& object = s.objects[i];
         if (!object.live || !object.skinPlus1) continue;
         Skin& skin = s.skins[object.skinPlus1 - 1];
         if (skin.givenDue) recordGiven(s, recorder, object, skin);
@@ -144,13 +145,15 @@ Staged writeDeformGroups(VkBackend::State& s, UploadWriter& writer) {
         }
     };
     for (const uint32_t tier : {~0u, kDeformShell, kDeformSprings})
-        for (const ObjectEntry& object : s.objects)
-            if (object.deformsNow && !object.skinPlus1 &&
+        for (const uint32_t i : s.awake)
+            if (const ObjectEntry& object = s.objects[i];
+                object.deformsNow && !object.skinPlus1 &&
                 (tier == ~0u || (object.deform.flags & tier)))
                 append(object, object.deform.nodeCount, tier == ~0u);
-    for (const ObjectEntry& object : s.objects)
-        if (object.deformsNow) append(object, object.deform.vertexCount);
-    for (ObjectEntry& object : s.objects) {
+    for (const uint32_t i : s.awake)
+        if (s.objects[i].deformsNow) append(s.objects[i], s.objects[i].deform.vertexCount);
+    for (const uint32_t i : s.awake) {
+        ObjectEntry& object = s.objects[i];
         if (!object.deformsNow) continue;
         if (object.inner) append(object, object.deform.vertexCount);
         object.deformReset = false;

@@ -157,12 +157,12 @@ void VkBackend::destroyImage(uint32_t slot) noexcept {
     ImageEntry& entry = s.images[slot];
     if (!entry.live) return;
     s.dropImage(entry);
-    for (ObjectEntry& object : s.objects) {  // back to their own base colour
-        for (uint32_t& image : object.images) {
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {  // back to their own base colour
+        for (uint32_t& image : s.objects[i].images) {
             if (image != slot + 1) continue;
             image = 0;
-            object.recordDirty = true;
-            s.recordsDirty = true;
+            s.objects[i].recordDirty = s.recordsDirty = true;
+            s.awake.insert(i);
         }
     }
 }

@@ -68,17 +68,18 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     needs.dense = (plan.switches & kSwitchDense) != 0;
     needs.never = (plan.switches & FW_DEBUG_NEVER_IDLE) != 0;
     uint64_t denseGroups = 0;
+    if (needs.dense)
+        for (const ObjectEntry& object : s.objects)
+            denseGroups += object.live ? wakeGroupsOf(object) : 0;
     s.published.clear();
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+    for (const uint32_t i : s.awake) {
         ObjectEntry& object = s.objects[i];
         if (object.recordDirty) needs.uploadBytes += uploaded(sizeof(BurnObject));
         if (object.materialsDirty)
             needs.uploadBytes += uploaded(sizeof object.materials) + uploaded(sizeof object.heat);
         if (object.deformDirty) needs.uploadBytes += uploaded(sizeof object.deform);
         addDeformNeeds(s, i, plan.endTick, needs);
-        if (!object.live) continue;
-        if (needs.dense) denseGroups += wakeGroupsOf(object);
-        if (object.record.flags & kObjectPublished)
+        if (object.live && (object.record.flags & kObjectPublished) != 0)
             s.published.push_back({i, publishedGroups(object.record), 0});
     }
     if (s.roomsDirty) needs.uploadBytes += uploaded(sizeof s.rooms);
@@ -133,7 +134,8 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     // that lost their fire would keep each other alive.
     bool forgets = false;
     uint64_t forgetGroups = 0;
-    for (ObjectEntry& object : s.objects) {
+    for (const uint32_t i : s.awake) {
+        ObjectEntry& object = s.objects[i];
         object.forget = object.live && object.lastDouse != 0 &&
                         object.lastDouse < s.open.ringFrame && (anyStep || s.frontEmpty) &&
                         (plan.endTick > object.douseEnds || s.frontEmpty);

@@ -107,7 +107,23 @@ void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
     }
 }
 
+// Has no frame anything to do for it, until somebody changes it or something reaches it?
+bool rests(const VkBackend::State& s, const ObjectEntry& object) noexcept {
+    if (object.recordDirty || object.materialsDirty || object.resetDue) return false;
+    if (!object.live) return true;
+    const bool reached = object.touched || object.warmed || object.charred;
+    const bool moves = object.deformDirty || object.deformReset || object.deformsNow ||
+                       object.soft.units != 0 || object.skinPlus1 != 0;
+    const bool refined = object.refine.arpPlus1 != 0 || object.refine.due || s.refines(object);
+    return !reached && !moves && !refined && (object.record.flags & kObjectPublished) == 0;
+}
+
 }  // namespace
+
+void VkBackend::State::settle() noexcept {
+    for (const uint32_t slot : awake)
+        if (rests(*this, objects[slot])) awake.erase(slot);
+}
 
 void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     State& s = *state_;
@@ -126,6 +142,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         s.published.reserve(s.liveObjects + 1);
         s.givenObjects.reserve(std::max<size_t>(slot + 1, s.objects.size()));
         (void)slotOf(s.objects, slot);
+        s.awake.atLeast(slot + 1);
         s.planes.atLeast(kSpaceObjects, slot + 1, last);
         s.freeQuarantine();
         fresh.tiles = {s.planes.allocate(kSpaceObjectTiles, mesh.tiles, last), mesh.tiles};
@@ -257,6 +274,8 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.deformReset = false;  // at rest already
     }
     s.objects[slot] = fresh;
+    s.awake.insert(slot);
+    s.seenFrame = std::max(s.seenFrame, last);
     s.recordsDirty = true;
     (fresh.refine.arpPlus1 ? s.arp.users : s.refine.users) += fresh.refine.on ? 1 : 0;
     ++s.liveObjects;
@@ -278,6 +297,7 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
     releaseRanges(s, entry);
     entry = {};
     entry.recordDirty = true;  // a record without kObjectLive: list entries fall out
+    s.awake.insert(slot);
     s.recordsDirty = true;
     --s.liveObjects;
     std::erase_if(s.drawItems, [slot](const DrawItem& item) { return item.object == slot; });
@@ -298,6 +318,7 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
     constexpr uint32_t kFixed = kObjectPublished | kObjectHeat | kObjectUnseen;
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
     entry.recordDirty = true;
+    s.awake.insert(slot);
     s.recordsDirty = true;
 }
 
@@ -305,6 +326,7 @@ void VkBackend::setObjectWind(uint32_t slot, uint32_t wind) {
     State& s = *state_;
     s.objects[slot].record.zoneWind = wind;
     s.objects[slot].recordDirty = s.recordsDirty = true;
+    s.awake.insert(slot);
 }
 
 void VkBackend::setRoom(uint32_t slot, const Room& room) noexcept {

@@ -51,7 +51,8 @@ uint64_t VkBackend::State::planArp() {
     arp.placeGroups = arp.nameGroups = 0;
     if (arp.users == 0 || open.unseen) return 0;
     uint64_t bytes = 0;
-    for (const ObjectEntry& object : objects) {
+    for (const uint32_t i : awake) {
+        const ObjectEntry& object = objects[i];
         if (!refinesAsPublished(object)) continue;
         arp.placeGroups += groupsOf(meshes[object.mesh].refine[object.refine.key].slotCount);
         arp.nameGroups += mostGroups(object);
@@ -93,7 +94,7 @@ void VkBackend::State::recordArp(FrameInFlight& slot, const FwView& view) {
     FrameRecorder recorder(recordTarget(slot, open.commands));
     UploadWriter writer(slot);
     const double now = double(shownTick) + double(tickFraction) * kStepTicks;
-    for (uint32_t i = 0; i < objects.size(); ++i) {
+    for (const uint32_t i : awake) {
         ObjectEntry& object = objects[i];
         if (!refinesAsPublished(object)) continue;
         const RefineMesh& refined = meshes[object.mesh].refine[object.refine.key];
@@ -114,7 +115,7 @@ void VkBackend::State::recordArp(FrameInFlight& slot, const FwView& view) {
     Staged groups = writer.begin();
     uint32_t places = 0;
     for (const bool naming : {false, true})
-        for (uint32_t i = 0; i < objects.size(); ++i) {
+        for (const uint32_t i : awake) {
             const ObjectEntry& object = objects[i];
             if (!refinesAsPublished(object)) continue;
             const auto count = naming

@@ -18,6 +18,29 @@ void VkBackend::State::pushPending(const PendingReadback& one) noexcept {
     ++pendingCount;
 }
 
+// What an object's counters say of how it is drawn from now on.
+void VkBackend::State::noteCounters(uint32_t slot, ObjectCounters& told, uint32_t tick) noexcept {
+    if (told.burning != 0 || told.frontTiles != 0) noteFire(slot, tick);
+    // What others lit or warm is found here; of what rests nothing more is read.
+    if (told.ignited != 0 || told.until != 0) awake.insert(slot);
+    if (!awake.contains(slot)) return;
+    ObjectEntry& object = objects[slot];
+    // The published scheme's lists are the host's.
+    if (const uint32_t arpPlus1 = object.refine.arpPlus1)
+        told.refined = uint32_t(arps[arpPlus1 - 1]->state.list.size());
+    // Of what burns little is left cold; what is warm may turn brown before it burns.
+    const bool known = object.live && !object.resetDue;
+    const bool lit = known && told.ignited != 0;
+    const bool warm = known && told.until != 0 && (object.record.flags & kObjectHeat) != 0;
+    const uint32_t all = object.record.width * object.record.height;
+    const bool charred = object.live && told.ignited > all / 4;
+    recordsDirty |=
+        (lit && !object.touched) || (warm && !object.warmed) || charred != object.charred;
+    object.touched |= lit;
+    object.warmed |= warm;
+    object.charred = charred;
+}
+
 const Readback* VkBackend::State::nextReadback() {
     while (pendingCount) {
         const PendingReadback one = pending[pendingFirst];
@@ -57,34 +80,7 @@ const Readback* VkBackend::State::nextReadback() {
                 std::memcpy(givenAnswers.data(), from + layout.answersAt,
                             uint64_t(layout.answers) * sizeof(ProbeAnswer));
             for (uint32_t i = 0; i < std::min(layout.objects, uint32_t(objects.size())); ++i)
-                if (givenObjects[i].burning != 0 || givenObjects[i].frontTiles != 0)
-                    noteFire(i, one.endTick);
-            // The published scheme's lists are the host's.
-            for (uint32_t i = 0;
-                 arp.users != 0 && i < std::min(layout.objects, uint32_t(objects.size())); ++i)
-                if (const uint32_t arpPlus1 = objects[i].refine.arpPlus1)
-                    givenObjects[i].refined = uint32_t(arps[arpPlus1 - 1]->state.list.size());
-            // What another object lit is drawn as one that burns, from now on.
-            for (size_t i = 0; i < objects.size() && i < givenObjects.size(); ++i) {
-                if (objects[i].touched || !objects[i].live || objects[i].resetDue ||
-                    givenObjects[i].ignited == 0)
-                    continue;
-                objects[i].touched = true;
-                recordsDirty = true;
-            }
-            // What others warm may turn brown before it burns; of what burns little is left cold.
-            for (size_t i = 0; i < objects.size() && i < givenObjects.size(); ++i) {
-                ObjectEntry& object = objects[i];
-                const uint32_t all = object.record.width * object.record.height;
-                const bool charred = object.live && givenObjects[i].ignited > all / 4;
-                recordsDirty |= charred != object.charred;
-                object.charred = charred;
-                if (object.warmed || !object.live || object.resetDue ||
-                    givenObjects[i].until == 0 || (object.record.flags & kObjectHeat) == 0)
-                    continue;
-                object.warmed = true;
-                recordsDirty = true;
-            }
+                noteCounters(i, givenObjects[i], one.endTick);
             uint64_t at = 0, heatAt = 0;
             for (uint32_t i = 0; i < layout.mapCount; ++i) {
                 const ReadbackLayout::MapAt& map = layout.maps[i];
@@ -125,9 +121,8 @@ const Readback* VkBackend::State::nextReadback() {
                 std::memcpy(&steps, from + layout.biasAt, sizeof steps);
                 refine.bias = float(steps) * kRefineBiasStep;
             }
-            const bool spreading =
-                std::any_of(objects.begin(), objects.end(),
-                            [](const ObjectEntry& object) { return object.publishedTouched; });
+            bool spreading = false;
+            for (const uint32_t i : awake) spreading |= objects[i].publishedTouched;
             if (one.ringFrame >= lastStimulus && !spreading) {
                 hotEmpty = given.hotTiles == 0;
                 frontEmpty = given.frontTiles == 0 && hotEmpty;

@@ -98,7 +98,7 @@ SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_
 
 // Records of objects that are new, moved or gone, and the list of what draws show.
 void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+    for (const uint32_t i : s.awake) {
         ObjectEntry& object = s.objects[i];
         if (object.resetDue ||
             (object.recordDirty && !object.live))  // until it is placed others do not see it
@@ -155,13 +155,10 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                                                    : mesh.innerVertices.first;
                 item.image = object.images[m];
                 chooseVariants(s, object, item);
-                item.refined = object.refine.started;
-                item.cut = object.refine.cut;
-                item.told = object.refine.told;
                 item.inner = object.refine.inner;
-                item.consumed = object.refine.arpPlus1 != 0;
                 item.zPass = zPassed(object);
                 item.draw = drawOf(s, object, m);
+                showRefined(object.refine, item);
                 s.drawItems.push_back(item);
             }
             first = end;
@@ -171,7 +168,8 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
 }
 
 void recordForgetting(VkBackend::State& s, FrameRecorder& recorder) {
-    for (ObjectEntry& object : s.objects) {
+    for (const uint32_t i : s.awake) {
+        ObjectEntry& object = s.objects[i];
         if (!object.forget) continue;
         recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
                              uint64_t(object.record.width) * object.record.height * 4);
@@ -258,8 +256,8 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
     if (!dense) {
         for (const MaterialUpdate& update : updates) append(update.object);
     }
-    for (uint32_t i = 0; findsAnew && i < s.objects.size(); ++i) {
-        if (s.objects[i].forget) append(i);
+    for (const uint32_t i : s.awake) {
+        if (findsAnew && s.objects[i].forget) append(i);
     }
     writer.end();
     return staged;
@@ -293,7 +291,8 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     constexpr uint32_t kMostTiles = 16384;
     uint32_t begin = kNoneTexel, end = 0;
     float latest = 0;
-    for (const ObjectEntry& object : s.objects) {
+    for (const uint32_t i : s.awake) {
+        const ObjectEntry& object = s.objects[i];
         if (!object.live || !object.touched) continue;
         begin = std::min(begin, object.record.worldTileBase);
         end = std::max(end, object.record.worldTileBase + object.record.tileCount);
@@ -545,6 +544,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         recordDeform(recorder, deform);
     }
     softWay = (softWay + softSteps) % kArmWays;
+    settle();
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }
 
@@ -598,7 +598,8 @@ void VkBackend::State::closeFrame(const FwView* view) {
         recordRefinement(slot, *view);
         recordArp(slot, *view);
     }
-    showRefined();
+    for (DrawItem& item : drawItems)
+        if (awake.contains(item.object)) showRefined(objects[item.object].refine, item);
     FrameRecorder recorder(target);
     if (open.readback && open.planFrame) {
         const ReadbackLayout& layout = slot.layout;

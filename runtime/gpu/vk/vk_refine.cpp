@@ -184,6 +184,7 @@ void RefineUse::release(Planes& planes) noexcept {
 }
 
 void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
+    awake.insert(object);
     RefineUse& use = objects[object].refine;
     if (!use.on) return;
     uint32_t opens = 0;  // what burns may open later than it goes out
@@ -221,7 +222,7 @@ void VkBackend::State::listRefined(bool all) {
     refine.push = {};
     uint64_t emitJobs = 0, placeJobs = 0;
     const auto each = [&](auto&& use) {
-        for (uint32_t i = 0; i < objects.size(); ++i) {
+        for (const uint32_t i : awake) {
             const ObjectEntry& object = objects[i];
             if (all ? refines(object) : object.refine.due)
                 use(i, meshes[object.mesh].refine[object.refine.key]);
@@ -255,7 +256,7 @@ void VkBackend::State::listRefined(bool all) {
     }
     // The budget is shared with those whose turn it is not.
     uint64_t full = 0;
-    for (uint32_t i = 0; i < objects.size(); ++i) {
+    for (const uint32_t i : awake) {
         if (!refines(objects[i])) continue;
         full += meshes[objects[i].mesh].refine[objects[i].refine.key].fullCount;
         push.objectEnd = i + 1;
@@ -271,13 +272,15 @@ void VkBackend::State::listRefined(bool all) {
 
 // Marks the objects that the frame refines; whether there are any.
 bool VkBackend::State::chooseDue(double now) noexcept {
+    bool any = false;
     const auto due = [&](const ObjectEntry& object) {
         return refines(object) && isDue(object, refineRecord(object, refine.full), now);
     };
-    if (std::none_of(objects.begin(), objects.end(), due)) return false;
+    for (const uint32_t i : awake) any = any || due(objects[i]);
+    if (!any) return false;
     // Full ones are compared with what has no turns.
-    for (ObjectEntry& object : objects)
-        object.refine.due = refines(object) && (refine.full || due(object));
+    for (const uint32_t i : awake)
+        objects[i].refine.due = refines(objects[i]) && (refine.full || due(objects[i]));
     return true;
 }
 
@@ -364,16 +367,13 @@ void VkBackend::State::lookFrom(const FwView& view) noexcept {
     refine.eye.w = params.forward.w > 0.5f ? refine.pixels : 0;
 }
 
-void VkBackend::State::showRefined() noexcept {
-    for (DrawItem& item : drawItems) {
-        const RefineUse& use = objects[item.object].refine;
-        item.refined = use.started;
-        item.cut = use.cut;
-        item.told = use.told;
-        item.consumed = use.arpPlus1 != 0;
-        item.draw.now = use.now;
-        item.draw.nearness = use.nearness;
-    }
+void showRefined(const RefineUse& use, DrawItem& item) noexcept {
+    item.refined = use.started;
+    item.cut = use.cut;
+    item.told = use.told;
+    item.consumed = use.arpPlus1 != 0;
+    item.draw.now = use.now;
+    item.draw.nearness = use.nearness;
 }
 
 // How many of the finest segments its mean edge would be where it is nearest to the eye: holes of

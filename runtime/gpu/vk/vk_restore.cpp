@@ -65,8 +65,10 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
     s.restores.assign(s.uploads.begin() + std::ptrdiff_t(uploadsBefore), s.uploads.end());
     s.uploads.resize(uploadsBefore);
     s.restoredObjects.clear();
-    for (ObjectEntry& object : s.objects) {
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+        ObjectEntry& object = s.objects[i];
         if (!object.live) continue;
+        s.awake.insert(i);
         object.resetDue = object.recordDirty = true;
         object.touched = object.doused = object.warmed = object.charred = object.lit = false;
         object.publishedTouched = false;

@@ -73,8 +73,12 @@ uint32_t ringsOf(const ObjectEntry& object) noexcept {
     return uint32_t(std::clamp(rings, 1.0, double(kRingsOfPicture)));
 }
 
+bool lately(uint64_t seenFrame, uint64_t frame) noexcept {
+    return seenFrame + kSeenFrames >= frame;
+}
+
 bool seenLately(const ObjectEntry& object, uint64_t frame) noexcept {
-    return object.seenFrame + kSeenFrames >= frame && (object.record.flags & kObjectHidden) == 0;
+    return lately(object.seenFrame, frame) && (object.record.flags & kObjectHidden) == 0;
 }
 
 }  // namespace
@@ -86,19 +90,24 @@ void VkBackend::State::look(const FwView& view, float height, uint64_t frame) no
     input.viewport[2] = input.viewport[3] = height > 0 ? height : kAnyHeight;
     ViewParams params{};
     limits.looks.viewParams(input, params);
-    for (size_t i = 0; i < objects.size(); ++i) {
-        ObjectEntry& object = objects[i];
-        if (!object.live || object.seenFrame == frame) continue;
-        if (!object.touched && (i + frame) % kIdleTurns != 0) continue;
+    const auto lookAt = [&](ObjectEntry& object) {
+        if (!object.live || object.seenFrame == frame) return;
         // A host moves the vertices of what is skinned where it likes.
-        if (object.skinPlus1 != 0 ||
-            shows(params, sphereOf(object, *meshes[object.mesh].domain, params.eye)))
-            object.seenFrame = frame;
-    }
+        if (object.skinPlus1 == 0 &&
+            !shows(params, sphereOf(object, *meshes[object.mesh].domain, params.eye)))
+            return;
+        object.seenFrame = frame;
+        if ((object.record.flags & kObjectHidden) == 0) seenFrame = frame;
+    };
+    for (const uint32_t i : awake)
+        if (objects[i].touched) lookAt(objects[i]);
+    for (size_t i = frame % kIdleTurns; i < objects.size(); i += kIdleTurns)
+        if (!objects[i].touched) lookAt(objects[i]);
 }
 
 void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
-    for (ObjectEntry& object : s.objects) {
+    for (const uint32_t i : s.awake) {
+        ObjectEntry& object = s.objects[i];
         const bool unseen = (object.record.flags & kObjectUnseen) != 0;
         const bool wanted = seenLately(object, s.open.ringFrame);
         object.turns = object.live && object.touched && unseen == wanted;
@@ -112,8 +121,9 @@ bool predictsNow(const VkBackend::State& s, const FrameNeeds& needs, uint32_t en
     const double shortOf = 1.0 - double(s.detail.triangles);
     if (shortOf <= 0 || needs.stimulus || needs.appears) return true;
     double pause = kLongestPause * shortOf;
-    for (const ObjectEntry& object : s.objects)
-        if (object.live && object.touched && (object.record.flags & kObjectUnseen) == 0)
+    for (const uint32_t i : s.awake)
+        if (const ObjectEntry& object = s.objects[i];
+            object.live && object.touched && (object.record.flags & kObjectUnseen) == 0)
             pause = std::min(pause, kCrossedInPause / std::max(paceOf(object), 1e-9));
     return double(endTick - s.predictTick) >= pause;  // of a save that was loaded: long ago
 }
@@ -129,8 +139,8 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
     s.predictTick = plan.endTick;
     const uint32_t most = plan.frameIndex == 0 ? kRingsOfPicture : kRingsOfFrame;
     uint32_t rings = 0;
-    bool seen = false;
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+    bool seen = lately(s.seenFrame, s.open.ringFrame);  // what others lit is known only later
+    for (const uint32_t i : s.awake) {
         ObjectEntry& object = s.objects[i];
         uint32_t& flags = object.record.flags;
         if (object.turns) {
@@ -145,16 +155,14 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
         if (object.catches && (flags & kObjectUnseen) == 0)
             rings = std::max(rings, std::min(ringsOf(object), kRingsOfFrame));
         object.catches = false;
-        // What was lit by others is known to burn only later.
-        seen |= object.live && (flags & kObjectUnseen) == 0 &&
-                (object.touched || seenLately(object, s.open.ringFrame));
+        seen |= object.live && object.touched && (flags & kObjectUnseen) == 0;
     }
     // A ring a round: long frames need more to stay ahead of a fast front.
     auto rounds = uint32_t(std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1);
     recordPredict(recorder, s.lists, plan.endTick, seen);
     if (rings > 0) {
         rounds += rings;
-        for (uint32_t i = 0; i < s.objects.size(); ++i)
+        for (const uint32_t i : s.awake)
             if (s.objects[i].turns && (s.objects[i].record.flags & kObjectUnseen) == 0)
                 tell(i, s.objects[i].record.flags);
     }

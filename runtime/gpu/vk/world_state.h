@@ -9,6 +9,7 @@
 #include "gpu/vk/vk_backend.h"
 
 #include "core/owned.h"
+#include "core/slot_set.h"
 #include "shared/deform.h"
 
 #include <optional>
@@ -286,6 +287,9 @@ struct VkBackend::State {
 
     std::pmr::vector<MeshEntry> meshes;
     std::pmr::vector<ObjectEntry> objects;
+    // Of these, what frames look at. The others rest: whoever changes an object, or finds that
+    // something reached it, inserts it here, and settle lets it go.
+    core::SlotSet awake;
     std::pmr::vector<ImageEntry> images;
     ImageEntry white, lookTextures, profiles;
     ImageEntry books;  // the flipbooks; not live: there are none
@@ -311,6 +315,7 @@ struct VkBackend::State {
     FrameLists lists;
     uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;
     uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
+    uint64_t seenFrame = 0;     // ring frame whose view last showed some object
     // Known from a readback. While a tile is hot, its front may move again.
     bool frontEmpty = true, burnEmpty = true, predictEmpty = true, hotEmpty = true;
     uint32_t supportUntil = 0;             // tick until which burnt pieces may still fall
@@ -445,6 +450,8 @@ struct VkBackend::State {
     PendingUpload& stage(uint64_t bytes, const char* name);
     void dropUploads(size_t kept) noexcept;  // all but the first
     void freeQuarantine() noexcept;
+    // vk_objects.cpp
+    void settle() noexcept;  // once a frame's records are written: what has nothing to do rests
     // vk_images.cpp
     void addImage(ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
                   uint32_t mips, VkFormat format, std::span<const std::byte> pixels,
@@ -474,7 +481,6 @@ struct VkBackend::State {
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
     float cutSegments(const ObjectEntry& object, const RefineObject& record) const noexcept;
     bool tellsByTexels(const ObjectEntry& object) const noexcept;
-    void showRefined() noexcept;
     void lookFrom(const FwView& view) noexcept;
     // vk_published.cpp
     [[nodiscard]] bool refinesAsPublished(const ObjectEntry& object) const noexcept;
@@ -484,6 +490,7 @@ struct VkBackend::State {
     void recordArp(FrameInFlight& slot, const FwView& view);
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
+    void noteCounters(uint32_t slot, ObjectCounters& told, uint32_t tick) noexcept;
     const Readback* nextReadback();
     // vk_volume.cpp
     // What the view that was last pushed shows of them, farthest first; how many.
