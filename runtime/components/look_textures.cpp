@@ -42,84 +42,134 @@ float smooth(float low, float high, float x) {
     return t * t * (3.0f - 2.0f * t);
 }
 
-float cornerGradient(int x, int y, int period, int seed, float dx, float dy) {
-    // Sixteen directions: as good as any angle here and free of sines.
-    static constexpr std::array<float, 16> kCos{
-        1.0f,  0.9239f,  0.7071f,  0.3827f,  0.0f, -0.3827f, -0.7071f, -0.9239f,
-        -1.0f, -0.9239f, -0.7071f, -0.3827f, 0.0f, 0.3827f,  0.7071f,  0.9239f};
-    const auto a = static_cast<size_t>(random(wrap(x, period), wrap(y, period), seed) * 16.0f);
-    return kCos[a] * dx + kCos[(a + 12) & 15] * dy;
+// Sixteen directions: as good as any angle here and free of sines.
+constexpr std::array<float, 16> kCos{1.0f,     0.9239f,  0.7071f, 0.3827f,  0.0f,     -0.3827f,
+                                     -0.7071f, -0.9239f, -1.0f,   -0.9239f, -0.7071f, -0.3827f,
+                                     0.0f,     0.3827f,  0.7071f, 0.9239f};
+
+// A number near [0, period), by one period at most: a division would cost more than all else here.
+int wrapNear(int value, int period) {
+    return value < 0 ? value + period : value >= period ? value - period : value;
 }
 
-float gradientNoise(float x, float y, int period, int seed) {
-    const float fx0 = std::floor(x), fy0 = std::floor(y);
-    const int ix = static_cast<int>(fx0), iy = static_cast<int>(fy0);
-    const float fx = x - fx0, fy = y - fy0;
-    const float u = fx * fx * fx * (fx * (fx * 6.0f - 15.0f) + 10.0f);
-    const float v = fy * fy * fy * (fy * (fy * 6.0f - 15.0f) + 10.0f);
-    return lerp(lerp(cornerGradient(ix, iy, period, seed, fx, fy),
-                     cornerGradient(ix + 1, iy, period, seed, fx - 1.0f, fy), u),
-                lerp(cornerGradient(ix, iy + 1, period, seed, fx, fy - 1.0f),
-                     cornerGradient(ix + 1, iy + 1, period, seed, fx - 1.0f, fy - 1.0f), u),
-                v);
-}
-
-float fractalNoise(float u, float v, int period, int octaves, int seed, bool ridged) {
-    float amplitude = 1.0f, sum = 0.0f, weight = 0.0f;
-    for (int i = 0; i < octaves; ++i) {
-        const float p = gradientNoise(u * static_cast<float>(period),
-                                      v * static_cast<float>(period), period, seed + i);
-        sum += amplitude * (ridged ? 1.0f - 2.2f * std::fabs(p) : p * 1.4f);
-        weight += amplitude;
-        amplitude *= 0.55f;
-        period *= 2;
+// Fractal noise over [0, 1)^2, tiling. Each octave has a lattice twice as fine as the one before,
+// whose random directions are drawn once.
+class Noise {
+ public:
+    Noise(int period, int octaves, int seed, bool ridged, std::pmr::memory_resource* memory)
+        : period_(period), octaves_(octaves), ridged_(ridged), directions_(memory) {
+        for (int i = 0; i < octaves; ++i, period *= 2)
+            for (int y = 0; y < period; ++y)
+                for (int x = 0; x < period; ++x)
+                    directions_.push_back(static_cast<uint8_t>(random(x, y, seed + i) * 16.0f));
     }
-    return ridged ? sum / weight : 0.5f + sum / weight;
-}
+    float at(float u, float v) const {
+        float amplitude = 1.0f, sum = 0.0f, weight = 0.0f;
+        const uint8_t* lattice = directions_.data();
+        for (int i = 0, period = period_; i < octaves_; ++i) {
+            const float p = gradientNoise(u * static_cast<float>(period),
+                                          v * static_cast<float>(period), period, lattice);
+            sum += amplitude * (ridged_ ? 1.0f - 2.2f * std::fabs(p) : p * 1.4f);
+            weight += amplitude;
+            amplitude *= 0.55f;
+            lattice += period * period;
+            period *= 2;
+        }
+        return ridged_ ? sum / weight : 0.5f + sum / weight;
+    }
 
-struct Cell {
-    float border = 0, id = 0;
+ private:
+    static float gradientNoise(float x, float y, int period, const uint8_t* lattice) {
+        const float fx0 = std::floor(x), fy0 = std::floor(y);
+        const int left = wrapNear(static_cast<int>(fx0), period);
+        const int right = wrapNear(left + 1, period);
+        const int below = wrapNear(static_cast<int>(fy0), period);
+        const int above = wrapNear(below + 1, period);
+        const float fx = x - fx0, fy = y - fy0;
+        const float u = fx * fx * fx * (fx * (fx * 6.0f - 15.0f) + 10.0f);
+        const float v = fy * fy * fy * (fy * (fy * 6.0f - 15.0f) + 10.0f);
+        const auto corner = [&](int column, int row, float dx, float dy) {
+            const size_t a = lattice[row * period + column];
+            return kCos[a] * dx + kCos[(a + 12) & 15] * dy;
+        };
+        return lerp(
+            lerp(corner(left, below, fx, fy), corner(right, below, fx - 1.0f, fy), u),
+            lerp(corner(left, above, fx, fy - 1.0f), corner(right, above, fx - 1.0f, fy - 1.0f), u),
+            v);
+    }
+
+    int period_, octaves_;
+    bool ridged_;
+    std::pmr::vector<uint8_t> directions_;  // octave by octave, row by row
 };
 
-// Voronoi cells: distance to the nearest border in cell sizes, and a random number per cell.
-Cell voronoi(float u, float v, int n, float spread, int seed, bool border) {
-    const float x = u * static_cast<float>(n), y = v * static_cast<float>(n);
-    const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
-    const auto offset = [&](int i, int j, float& dx, float& dy) {
-        const int a = wrap(i, n), b = wrap(j, n);
-        dx = static_cast<float>(i) + 0.5f + spread * (random(a, b, seed) - 0.5f) - x;
-        dy = static_cast<float>(j) + 0.5f + spread * (random(a, b, seed + 9) - 0.5f) - y;
+// Voronoi cells over [0, 1)^2, tiling, n on a side.
+class Voronoi {
+ public:
+    Voronoi(int n, float spread, int seed, std::pmr::memory_resource* memory)
+        : n_(n), seed_(seed), offsets_(memory) {
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x)
+                offsets_.push_back({spread * (random(x, y, seed) - 0.5f),
+                                    spread * (random(x, y, seed + 9) - 0.5f)});
+    }
+    struct Cell {
+        float dx = 0, dy = 0;  // from the place that is asked for to the cell's point
+        int x = 0, y = 0;
     };
-    float best = 1e9f, nearX = 0, nearY = 0;
-    int cellX = ix, cellY = iy;
-    for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) {
-            float dx, dy;
-            offset(ix + i, iy + j, dx, dy);
-            if (dx * dx + dy * dy < best) {
-                best = dx * dx + dy * dy;
-                nearX = dx;
-                nearY = dy;
-                cellX = ix + i;
-                cellY = iy + j;
+    Cell nearest(float u, float v) const {
+        const float x = u * static_cast<float>(n_), y = v * static_cast<float>(n_);
+        const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
+        float best = 1e9f;
+        Cell cell;
+        for (int j = iy - 1; j <= iy + 1; ++j) {
+            for (int i = ix - 1; i <= ix + 1; ++i) {
+                float dx, dy;
+                toPoint(i, j, x, y, dx, dy);
+                if (dx * dx + dy * dy < best) {
+                    best = dx * dx + dy * dy;
+                    cell = {dx, dy, i, j};
+                }
             }
         }
+        return cell;
     }
-    Cell cell{1e9f, random(wrap(cellX, n), wrap(cellY, n), seed + 33)};
-    for (int j = -2; border && j <= 2; ++j) {
-        for (int i = -2; i <= 2; ++i) {
-            if (i == 0 && j == 0) continue;
-            float dx, dy;
-            offset(cellX + i, cellY + j, dx, dy);
-            const float ex = dx - nearX, ey = dy - nearY;
-            const float length = std::sqrt(ex * ex + ey * ey);
-            if (length < 1e-3f) continue;
-            const float d = 0.5f * ((nearX + dx) * ex + (nearY + dy) * ey) / length;
-            cell.border = std::min(cell.border, d);
+    // Random, of the nearest cell.
+    float id(float u, float v) const {
+        const Cell cell = nearest(u, v);
+        return random(wrapNear(cell.x, n_), wrapNear(cell.y, n_), seed_ + 33);
+    }
+    // Distance to the nearest border, in cell sizes.
+    float border(float u, float v) const {
+        const float x = u * static_cast<float>(n_), y = v * static_cast<float>(n_);
+        const Cell cell = nearest(u, v);
+        float least = 1e9f;
+        for (int j = -2; j <= 2; ++j) {
+            for (int i = -2; i <= 2; ++i) {
+                if (i == 0 && j == 0) continue;
+                float dx, dy;
+                toPoint(cell.x + i, cell.y + j, x, y, dx, dy);
+                const float ex = dx - cell.dx, ey = dy - cell.dy;
+                const float length = std::sqrt(ex * ex + ey * ey);
+                if (length < 1e-3f) continue;
+                least =
+                    std::min(least, 0.5f * ((cell.dx + dx) * ex + (cell.dy + dy) * ey) / length);
+            }
         }
+        return least;
     }
-    return cell;
-}
+
+ private:
+    void toPoint(int i, int j, float x, float y, float& dx, float& dy) const {
+        const std::array<float, 2>& offset =
+            offsets_[static_cast<size_t>(wrapNear(j, n_) * n_ + wrapNear(i, n_))];
+        dx = static_cast<float>(i) + 0.5f + offset[0] - x;
+        dy = static_cast<float>(j) + 0.5f + offset[1] - y;
+    }
+
+    int n_, seed_;
+    std::pmr::vector<std::array<float, 2>> offsets_;
+};
 
 struct Block {
     float crack = 0;   // distance to the nearest crack over that crack's strength, [0, 1]
@@ -127,12 +177,21 @@ struct Block {
     float id = 0;
 };
 
+struct CharNoise {
+    explicit CharNoise(std::pmr::memory_resource* memory)
+        : splits(6, 2, 240, false, memory), sides(memory) {
+        for (int i = 0; i < kColumns; ++i) sides.emplace_back(4, 2, 210 + i, false, memory);
+    }
+    Noise splits;
+    std::pmr::vector<Noise> sides;  // by column
+};
+
 // Charred wood: columns with wandering sides, each split by tilted cracks of random strength.
-Block charBlock(float u, float v) {
+Block charBlock(const CharNoise& noise, float u, float v) {
     const auto side = [&](int i) {
         const int a = wrap(i, kColumns);
         return static_cast<float>(i) + 0.8f * (random(a, 1, 201) - 0.5f) +
-               0.3f * (fractalNoise(u, v, 4, 2, 210 + a, false) - 0.5f);
+               0.3f * (noise.sides[static_cast<size_t>(a)].at(u, v) - 0.5f);
     };
     const float x = u * kColumns;
     int i = static_cast<int>(std::floor(x)) - 1;
@@ -153,7 +212,7 @@ Block charBlock(float u, float v) {
     block.inside = std::min(l, r);
 
     const int splits = 5 + static_cast<int>(random(column, 5, 203) * 4.0f);
-    const float wander = 0.28f * (fractalNoise(u, v, 6, 2, 240, false) - 0.5f);
+    const float wander = 0.28f * (noise.splits.at(u, v) - 0.5f);
     const auto split = [&](int j) {
         const int b = wrap(j, splits);
         return static_cast<float>(j) + 0.85f * (random(column, b, 204) - 0.5f) +
@@ -173,30 +232,34 @@ Block charBlock(float u, float v) {
     return block;
 }
 
-void bakeNoise(Plane& plane) {
+void bakeNoise(Plane& plane, std::pmr::memory_resource* memory) {
+    const Noise broad(5, 5, 1, false, memory), ridges(8, 4, 21, true, memory),
+        fine(17, 4, 41, false, memory);
+    const Voronoi cells(14, 0.9f, 61, memory);
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
             const float u = (static_cast<float>(x) + 0.5f) / kSide;
             const float v = (static_cast<float>(y) + 0.5f) / kSide;
-            plane[static_cast<size_t>(y * kSide + x)] = {
-                {clamp01(fractalNoise(u, v, 5, 5, 1, false)),
-                 clamp01(fractalNoise(u, v, 8, 4, 21, true)),
-                 clamp01(fractalNoise(u, v, 17, 4, 41, false)),
-                 voronoi(u, v, 14, 0.9f, 61, false).id}};
+            plane[static_cast<size_t>(y * kSide + x)] = {{clamp01(broad.at(u, v)),
+                                                          clamp01(ridges.at(u, v)),
+                                                          clamp01(fine.at(u, v)), cells.id(u, v)}};
         }
     }
 }
 
-void bakeChar(Plane& plane) {
+void bakeChar(Plane& plane, std::pmr::memory_resource* memory) {
+    const Noise aside(8, 3, 81, false, memory), along(8, 3, 91, false, memory);
+    const CharNoise noise(memory);
+    const Voronoi cells(20, 0.85f, 72, memory);
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
             const float u = (static_cast<float>(x) + 0.5f) / kSide;
             const float v = (static_cast<float>(y) + 0.5f) / kSide;
-            const float wu = u + 0.012f * (fractalNoise(u, v, 8, 3, 81, false) - 0.5f);
-            const float wv = v + 0.012f * (fractalNoise(u, v, 8, 3, 91, false) - 0.5f);
-            const Block block = charBlock(wu, wv);
+            const float wu = u + 0.012f * (aside.at(u, v) - 0.5f);
+            const float wv = v + 0.012f * (along.at(u, v) - 0.5f);
+            const Block block = charBlock(noise, wu, wv);
             plane[static_cast<size_t>(y * kSide + x)] = {
-                {block.crack, clamp01(voronoi(wu, wv, 20, 0.85f, 72, true).border), block.id,
+                {block.crack, clamp01(cells.border(wu, wv)), block.id,
                  clamp01(1.0f - std::exp(-block.inside / 0.09f))}};
         }
     }
@@ -275,8 +338,8 @@ std::pmr::vector<std::byte> bakeLookTextures(std::pmr::memory_resource* memory) 
     std::pmr::vector<std::byte> bytes(lookTextureOffset(kLookTextureLayers, 0), memory);
     constexpr size_t kTexels = size_t{kSide} * kSide;
     Plane noise(kTexels, memory), charred(kTexels, memory), relief(kTexels, memory);
-    bakeNoise(noise);
-    bakeChar(charred);
+    bakeNoise(noise, memory);
+    bakeChar(charred, memory);
     bakeRelief(noise, charred, relief);
     store(noise, bytes.data() + lookTextureOffset(0, 0));
     store(charred, bytes.data() + lookTextureOffset(1, 0));
