@@ -70,7 +70,7 @@ FwVulkanTargetDef SceneTarget::solids() const {
     def.samples = 1;
     def.colorAttachmentCount = 1;
     def.depthMode = FW_DEPTH_TEST;
-    def.flags = FW_TARGET_NO_FLAMES;
+    def.flags = FW_TARGET_NO_FLAMES | FW_TARGET_AS_NEEDED;
     def.encoding = FW_OUTPUT_LINEAR;
     return def;
 }

@@ -116,7 +116,7 @@ class VulkanDevice final : public Device {
     gpu::vk::Context& context() noexcept { return context_; }
 
  private:
-    // A third of a second of work, so the first world pays, or who prepares: a program that has
+    // A sixth of a second of work, so the first world pays, or who prepares: a program that has
     // none yet shows its first picture without it. Worlds may be made on several threads.
     const std::pmr::vector<std::byte>& lookTextures() {
         const std::lock_guard lock(looksMutex_);
@@ -221,8 +221,8 @@ void checkTarget(const FwVulkanTargetDef& def) {
                        high);
     };
     constexpr uint32_t kNothing = FW_TARGET_NO_FLAMES | FW_TARGET_NO_SURFACES;
-    constexpr uint32_t kKnown =
-        FW_TARGET_COMPOSITE | kNothing | FW_TARGET_HAZE | FW_TARGET_HALF_EFFECTS;
+    constexpr uint32_t kKnown = FW_TARGET_COMPOSITE | kNothing | FW_TARGET_HAZE |
+                                FW_TARGET_HALF_EFFECTS | FW_TARGET_AS_NEEDED;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x%x.", def.flags,

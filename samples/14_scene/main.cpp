@@ -46,7 +46,7 @@ class Player {
         FwVulkanTargetDef flames = solids;
         solids.renderPass = stage.scenePass;
         solids.depthMode = FW_DEPTH_TEST;
-        solids.flags = FW_TARGET_NO_FLAMES;
+        solids.flags = FW_TARGET_NO_FLAMES | FW_TARGET_AS_NEEDED;
         flames.depthMode = FW_DEPTH_SAMPLED;
         flames.flags = FW_TARGET_COMPOSITE;
         if (fwContext_RegisterTarget(context_, &solids, &solids_) < 0 ||

@@ -112,12 +112,13 @@ void FireHost::registerTarget(const Stage& stage, bool surfaces) {
     def.encoding = FW_OUTPUT_DISPLAY_UNORM;
     if (stage.made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB) def.encoding = FW_OUTPUT_SRGB_VIEW;
     if (stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT) def.encoding = FW_OUTPUT_LINEAR;
-    if (stage.made.lendScene) def.flags = FW_TARGET_NO_FLAMES;
+    def.flags = FW_TARGET_AS_NEEDED;
+    if (stage.made.lendScene) def.flags |= FW_TARGET_NO_FLAMES;
     if (!stage.made.lendScene || surfaces)
         check(fwContext_RegisterTarget(context, &def, &target), "fwContext_RegisterTarget");
     if (stage.made.lendScene) {
         def.renderPass = VK_NULL_HANDLE;
-        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_HAZE;
+        def.flags = FW_TARGET_AS_NEEDED | FW_TARGET_COMPOSITE | FW_TARGET_HAZE;
         if (stage.made.halfEffects) def.flags |= FW_TARGET_HALF_EFFECTS;
         def.depthMode = FW_DEPTH_SAMPLED;
         check(fwContext_RegisterTarget(context, &def, &overScene), "fwContext_RegisterTarget");

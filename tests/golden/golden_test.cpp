@@ -137,7 +137,7 @@ class Golden : public GpuTest {
     FwTargetId makeTarget(bool reversed, uint32_t flags = 0) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         const bool composite = (flags & FW_TARGET_COMPOSITE) != 0;
-        def.flags = flags;
+        def.flags = flags | FW_TARGET_AS_NEEDED;
         def.renderPass = composite ? VK_NULL_HANDLE : pass_;
         def.colorFormat = kColor;
         def.depthFormat = kDepth;

@@ -125,7 +125,7 @@ class EveryPass : public GpuTest {
         rig_->backend.setRoom(
             0, {1u << 16, 1u << 20, gpu::kAirOutside, 1, /*flashes*/ 1u << 20, 0, 0, 0});
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-        def.flags = FW_TARGET_COMPOSITE;
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_AS_NEEDED;
         def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show
         def.depthFormat = VK_FORMAT_D32_SFLOAT;
         target_ = rig_->context.registerTarget(def);

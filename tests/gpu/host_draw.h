@@ -21,6 +21,7 @@ struct Shot {  // how the host draws
     uint32_t flags = 0;         // FwTargetFlags beyond FW_TARGET_COMPOSITE
     uint32_t depthSamples = 0;  // of a sampled depth, 0: as samples
     float depthValue = -1;  // everywhere in a composite's or a sampled depth; -1: as the mode says
+    bool asNeeded = true;   // FW_TARGET_AS_NEEDED
     [[nodiscard]] bool attachesDepth() const { return depth && depthMode != FW_DEPTH_SAMPLED; }
     [[nodiscard]] bool samplesDepth() const { return depth && depthMode == FW_DEPTH_SAMPLED; }
 };
@@ -115,6 +116,14 @@ class HostDraw : public GpuTest {
         endTick_ = now;
     }
 
+    // One of those that burn() lights.
+    [[nodiscard]] uint32_t litTexel() const {
+        std::pmr::vector<uint32_t> texels;
+        const float point[3] = {0, 0, 0.6f};
+        mesh::texelsNear(scene_.domains[0], point, 0.25f, texels);
+        return texels[0];
+    }
+
     // Colour (and depth, and a resolve with several samples); final layouts fit what follows.
     VkRenderPass makePass(const Shot& shot) {
         std::vector<VkAttachmentDescription> attachments;
@@ -173,7 +182,8 @@ class HostDraw : public GpuTest {
     FwTargetId registerTarget(const Shot& shot, VkRenderPass pass) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         def.renderPass = pass;
-        def.flags = shot.flags | (shot.composite ? FW_TARGET_COMPOSITE : 0);
+        def.flags = shot.flags | (shot.composite ? FW_TARGET_COMPOSITE : 0) |
+                    (shot.asNeeded ? FW_TARGET_AS_NEEDED : 0);
         def.depthSamples = shot.depthSamples;
         def.colorFormat = shot.color;
         def.depthFormat = shot.depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED;
@@ -191,7 +201,7 @@ class HostDraw : public GpuTest {
                 kept.shot.samples == shot.samples && kept.shot.composite == shot.composite &&
                 kept.shot.reversedDepth == shot.reversedDepth && kept.shot.depth == shot.depth &&
                 kept.shot.depthMode == shot.depthMode && kept.shot.flags == shot.flags &&
-                kept.shot.depthSamples == shot.depthSamples)
+                kept.shot.depthSamples == shot.depthSamples && kept.shot.asNeeded == shot.asNeeded)
                 return {kept.pass, kept.target};
         const VkRenderPass pass = shot.composite ? VK_NULL_HANDLE : makePass(shot);
         targets_.push_back({shot, pass, registerTarget(shot, pass)});

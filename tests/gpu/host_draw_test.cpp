@@ -280,6 +280,46 @@ TEST_F(HostDraw, KeptCompositesMakeNothing) {
     EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 0u);
 }
 
+// Pipelines of a kind of material are made with the first object of it, none while a frame is
+// recorded (shoot() asks), and the picture is that of a target that had them all.
+TEST_F(HostDraw, NewKindsOfMaterialComeWithTheirPipelines) {
+    if (!device_) return;
+    Shot late, all;
+    all.asNeeded = false;
+    const auto madeBy = [](const auto& call) {
+        (void)takeCounts();
+        call();
+        return takeCounts().pipelines;
+    };
+    const uint64_t some = madeBy([&] { (void)targetFor(late); });
+    EXPECT_EQ(madeBy([&] { (void)targetFor(all); }) - some, gpu::kSurfaceVariants - 5)
+        << "wood, as it is, cold beside fire and burning, from both sides";
+    const auto place = [&](uint32_t slot, FwMaterialPreset look, float x) {
+        gpu::ObjectInit init = scene_.init(0);
+        std::array<gpu::BurnMaterial, gpu::kMaterialsPerObject> materials =
+            scene_.objects[0].materials;
+        for (gpu::BurnMaterial& material : materials) material.look = look;
+        init.materials = materials;
+        init.record.worldRow0.w = x;
+        init.record.worldRow2.w = -1;
+        return madeBy([&] { rig_->backend.createObject(slot, init); });
+    };
+    EXPECT_EQ(place(1, FW_MATERIAL_PLYWOOD, -0.8f), 0u) << "wood it is";
+    EXPECT_EQ(shoot(late).rgb, shoot(all).rgb);
+    EXPECT_EQ(place(2, FW_MATERIAL_THATCH, 0.8f), 5u);
+    EXPECT_EQ(shoot(late).rgb, shoot(all).rgb);
+    gpu::StepPlan step;
+    step.now = endTick_;
+    const gpu::TexelEvent lit[] = {{2, litTexel(), gpu::kEventIgnite, endTick_ + 1}};
+    step.events = lit;
+    gpu::FramePlan plan;
+    plan.frameIndex = 50;
+    plan.steps = {&step, 1};
+    plan.endTick = endTick_ += gpu::kStepTicks;
+    EXPECT_EQ(madeBy([&] { rig_->run(plan); }), 0u);
+    EXPECT_EQ(shoot(late).rgb, shoot(all).rgb) << "it burns";
+}
+
 TEST_F(HostDraw, TargetsAreChecked) {
     if (!device_) return;
     const VkRenderPass pass = makePass({});
@@ -310,7 +350,7 @@ TEST_F(HostDraw, TargetsAreChecked) {
             d.depthSamples = 16;
         },
         "depthSamples is 16");
-    refused([](auto& d) { d.flags = 32; }, "flags is 32");
+    refused([](auto& d) { d.flags = 64; }, "flags is 64");
     refused(
         [](auto& d) {
             d.flags = FW_TARGET_HALF_EFFECTS;

@@ -321,6 +321,7 @@ HostWithState::Stage HostWithState::makeStage(const Case& one) {
     def.depthMode = FW_DEPTH_TEST;
     def.reversedDepth = one.reversed;
     def.encoding = one.srgb ? FW_OUTPUT_SRGB_VIEW : FW_OUTPUT_DISPLAY_UNORM;
+    def.flags = FW_TARGET_AS_NEEDED;
     EXPECT_EQ(fwContext_RegisterTarget(context_, &def, &stage.target), FW_OK);
     return stage;
 }

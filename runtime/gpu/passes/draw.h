@@ -92,6 +92,8 @@ extern const DrawPass kSurfacePasses[kSurfaceVariants];
 // The variant for a material of an object with an image there or not; `touched`: some event
 // reached the object.
 uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched);
+// A bit for each pass that may ever draw such a material.
+uint64_t surfacePasses(const BurnMaterial& material, bool image);
 // `edge`: m, mean edge of the object's triangles.
 // `places`: of the object's vertices among the refined ones.
 // `doused`: something wetted it or put it out, some day. `warmed`: others' fires sent heat to it.

@@ -132,6 +132,16 @@ uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched) 
     return i;
 }
 
+uint64_t surfacePasses(const BurnMaterial& material, bool image) {
+    const uint32_t fresh = surfaceVariant(material, image, false);
+    const uint32_t burning = surfaceVariant(material, image, true);
+    uint64_t passes = 0;
+    for (const uint32_t pass :
+         {fresh, fresh + kFresh, fresh + kFirstCold, burning, burning + kBurning})
+        passes |= uint64_t(1) << pass;
+    return passes;
+}
+
 SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
                         const HeatMaterial& heat, float edge, uint32_t places, bool doused,
                         bool warmed) {

@@ -33,7 +33,8 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     };
     TargetKey key;
     key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
-    if (def.flags & ~31u) bad("flags", def.flags, "bits 0 to 4 are known");
+    if (def.flags & ~63u) bad("flags", def.flags, "bits 0 to 5 are known");
+    key.asNeeded = (def.flags & FW_TARGET_AS_NEEDED) != 0;
     key.haze = (def.flags & FW_TARGET_HAZE) != 0;
     if (key.haze && def.depthMode != FW_DEPTH_SAMPLED)
         bad("flags", def.flags, "FW_TARGET_HAZE needs depthMode FW_DEPTH_SAMPLED");
@@ -111,6 +112,9 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     key.encoding = FwOutputEncoding(def.encoding);
     return key;
 }
+
+// What waits for objects that are drawn by it.
+constexpr PassSet kWaiting = (PassSet(1) << kSurfaceVariants) - 1;
 
 }  // namespace
 
@@ -549,33 +553,43 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     return pipeline;
 }
 
+// Those of `passes` that the target shows and has not got.
+void Pipelines::makePipelines(Target& target, PassSet passes) const {
+    const TargetKey& key = target.key;
+    const VkRenderPass renderPass = key.composite ? target.ownPass : target.hostPass;
+    Modules modules(*this);
+    for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
+        if (!(passes >> pass & 1) || target.pipelines[pass].load()) continue;
+        const AtHalf atHalf = drawPasses()[pass]->atHalf;
+        const bool surface = drawPasses()[pass]->vertexInput == VertexInput::mesh;
+        const bool haze = drawPasses()[pass] == &kVolumeHazePass;
+        const bool always = atHalf == AtHalf::same || atHalf == AtHalf::soft;
+        const bool drawn =
+            surface ? key.surfaces : key.flames && (!haze || key.haze) && (always || key.half);
+        if (!drawn) continue;
+        TargetKey drawnOn = key;
+        VkRenderPass in = renderPass;
+        if (key.half && (atHalf == AtHalf::soft || atHalf == AtHalf::depth)) {
+            drawnOn.samples = drawnOn.colorAttachments = 1;
+            if (atHalf == AtHalf::soft) drawnOn.depthSamples = 1;
+            drawnOn.subpass = 0;
+            in = atHalf == AtHalf::soft ? halfPass(key.halfColor) : halfDepthPass_;
+        }
+        target.pipelines[pass] = makeDraw(pass, drawnOn, in, modules);
+    }
+}
+
 FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
     const TargetKey key = checkedKey(device_, def);
-    auto target = core::Owned<Target>::make(memory_, memory_);
+    auto target = core::Owned<Target>::make(memory_, drawPasses().size(), memory_);
     target->key = key;
+    target->hostPass = def.renderPass;
     try {
         if (key.composite) target->ownPass = makePass(key);
-        const VkRenderPass renderPass = key.composite ? target->ownPass : def.renderPass;
-        target->pipelines.reserve(drawPasses().size());
-        Modules modules(*this);
-        for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
-            const AtHalf atHalf = drawPasses()[pass]->atHalf;
-            const bool surface = drawPasses()[pass]->vertexInput == VertexInput::mesh;
-            const bool haze = drawPasses()[pass] == &kVolumeHazePass;
-            const bool always = atHalf == AtHalf::same || atHalf == AtHalf::soft;
-            const bool drawn =
-                surface ? key.surfaces : key.flames && (!haze || key.haze) && (always || key.half);
-            TargetKey drawnOn = key;
-            VkRenderPass in = renderPass;
-            if (key.half && (atHalf == AtHalf::soft || atHalf == AtHalf::depth)) {
-                drawnOn.samples = drawnOn.colorAttachments = 1;
-                if (atHalf == AtHalf::soft) drawnOn.depthSamples = 1;
-                drawnOn.subpass = 0;
-                in = atHalf == AtHalf::soft ? halfPass(key.halfColor) : halfDepthPass_;
-            }
-            target->pipelines.push_back(drawn ? makeDraw(pass, drawnOn, in, modules)
-                                              : VK_NULL_HANDLE);
-        }
+        // Others may register meanwhile; what is needed meanwhile is little.
+        makePipelines(*target, key.asNeeded ? ~kWaiting | needed_ : ~PassSet(0));
+        const std::lock_guard making(makes_);
+        makePipelines(*target, needed_);
         const std::lock_guard lock(mutex_);
         return targets_.create(std::move(target));
     } catch (...) {
@@ -584,15 +598,26 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
     }
 }
 
+void Pipelines::need(PassSet passes) {
+    if ((passes & ~needed_) == 0) return;
+    // Nobody makes or destroys a target now, and who looks one up does not wait for this.
+    const std::lock_guard making(makes_);
+    for (uint32_t i = 0; i < targets_.slotCount(); ++i) {
+        if (auto* target = targets_.at(i)) makePipelines(**target, passes);
+    }
+    needed_ |= passes;
+}
+
 void Pipelines::destroyTarget(Target& target) noexcept {
-    for (VkPipeline pipeline : target.pipelines)
-        device_.table.DestroyPipeline(device_.handle, pipeline, device_.allocationCallbacks);
-    target.pipelines.clear();
+    for (std::atomic<VkPipeline>& pipeline : target.pipelines)
+        device_.table.DestroyPipeline(device_.handle, pipeline.exchange(VK_NULL_HANDLE),
+                                      device_.allocationCallbacks);
     device_.table.DestroyRenderPass(device_.handle, target.ownPass, device_.allocationCallbacks);
     target.ownPass = VK_NULL_HANDLE;
 }
 
 void Pipelines::unregisterTarget(FwTargetId id) {
+    const std::lock_guard making(makes_);
     const std::lock_guard lock(mutex_);
     destroyTarget(*targets_.get(id));
     targets_.destroy(id);

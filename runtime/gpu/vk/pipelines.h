@@ -1,6 +1,6 @@
 // Set layouts, pipeline layouts and pipelines of all passes. Compute pipelines are built by
-// prepare, graphics pipelines per registered target; none while recording. Shared by the worlds of
-// a context.
+// prepare, graphics pipelines per registered target: all of them then, or with FW_TARGET_AS_NEEDED
+// some as what they draw is made; none while recording. Shared by the worlds of a context.
 #pragma once
 #include "core/handle_pool.h"
 #include "core/owned.h"
@@ -29,6 +29,7 @@ struct TargetKey {
     bool surfaces = true, flames = true;
     bool reversedDepth = false, composite = false, haze = false;
     bool half = false;  // what is soft is drawn at half resolution
+    bool asNeeded = false;
     VkFormat halfColor = VK_FORMAT_UNDEFINED;
     FwOutputEncoding encoding = FW_OUTPUT_LINEAR;
     [[nodiscard]] bool samplesDepth() const noexcept { return depthMode == FW_DEPTH_SAMPLED; }
@@ -40,9 +41,14 @@ struct TargetKey {
 struct Target {
     TargetKey key;
     VkRenderPass ownPass = VK_NULL_HANDLE;   // composite
-    std::pmr::vector<VkPipeline> pipelines;  // by draw pass; null: not drawn here
-    explicit Target(std::pmr::memory_resource* memory) : pipelines(memory) {}
+    VkRenderPass hostPass = VK_NULL_HANDLE;  // else; with asNeeded alone it may be used again
+    // By draw pass; null: not drawn here, or not needed yet. Worlds draw while others need more.
+    std::pmr::vector<std::atomic<VkPipeline>> pipelines;
+    Target(size_t passes, std::pmr::memory_resource* memory) : pipelines(passes, memory) {}
 };
+
+// Draw passes, a bit for each by its number.
+using PassSet = uint64_t;
 
 class Pipelines {
  public:
@@ -56,6 +62,9 @@ class Pipelines {
 
     FwTargetId registerTarget(const FwVulkanTargetDef& def);  // [any]
     void unregisterTarget(FwTargetId id);                     // [any]
+    // From here on all targets have the pipelines of these passes, or it throws. Of the passes that
+    // wait for it: with FW_TARGET_AS_NEEDED those of kWaiting.
+    void need(PassSet passes);  // [any]
     // Throws FW_ERROR_STALE_ID. The pointer is good until the target is unregistered.
     const Target* findTarget(FwTargetId id);               // [any]
     [[nodiscard]] bool isTarget(FwTargetId id) noexcept {  // [any]
@@ -86,6 +95,7 @@ class Pipelines {
     VkRenderPass makeHalfPass(VkFormat format, bool clears) const;
     VkPipeline makeDraw(size_t pass, const TargetKey& key, VkRenderPass renderPass,
                         Modules& modules) const;
+    void makePipelines(Target& target, PassSet passes) const;
     void destroyTarget(Target& target) noexcept;
     void destroy() noexcept;
 
@@ -96,7 +106,9 @@ class Pipelines {
     VkSampler imageSampler_ = VK_NULL_HANDLE, depthSampler_ = VK_NULL_HANDLE;
     std::array<VkRenderPass, kHalfColors.size()> halfPasses_{};
     VkRenderPass halfDepthPass_ = VK_NULL_HANDLE;
-    std::mutex mutex_;  // of what follows
+    std::mutex makes_;  // taken before mutex_, by who makes targets or what they need
+    std::atomic<PassSet> needed_{0};
+    std::mutex mutex_;  // of what follows; held for no longer than a record call may wait
     core::HandlePool<FwTargetId, core::Owned<Target>> targets_;
     std::atomic<bool> ready_{false};
 };

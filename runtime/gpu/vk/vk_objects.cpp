@@ -136,6 +136,14 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     fresh.mesh = init.mesh;
     fresh.record = init.record;
     fresh.seenFrame = last;
+    PassSet passes = 0;
+    for (uint32_t m = 0, first = 0; m < kMaterialsPerObject; first = mesh.materialEnd[m++]) {
+        if (mesh.materialEnd[m] == first) continue;
+        const BurnMaterial material =
+            m < init.materials.size() ? init.materials[m] : BurnMaterial{};
+        passes |= surfacePasses(material, init.images[m] != 0);
+    }
+    s.context.pipelines.need(passes);
     try {
         s.quarantine.reserve(s.quarantine.size() + s.liveObjects + 1);
         s.drawItems.reserve((s.liveObjects + 1) * kMaterialsPerObject);

@@ -79,7 +79,7 @@ void VkBackend::State::makeOffscreen(uint32_t width, uint32_t height) {
         if (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT)
             own.depthFormat = VK_FORMAT_D32_SFLOAT;
         FwVulkanTargetDef def{};
-        def.flags = FW_TARGET_COMPOSITE;
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_AS_NEEDED;
         def.colorFormat = kColor;
         def.depthFormat = own.depthFormat;
         def.samples = 1;
