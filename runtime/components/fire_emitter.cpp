@@ -14,8 +14,10 @@ namespace {
 using gpu::vec3;
 using gpu::vec4;
 
-constexpr float kAtOnce = 20.5f;     // particles that cover a fire with their sizes as written
-constexpr float kFireLift = 11.45f;  // m/s^2: flames end as high as a volumetric fire's
+constexpr float kAtOnce = 20.5f;  // particles that cover a fire with their sizes as written
+// Of a fire's flames, m/s^2, and as a share of its rise the speed at which drag holds that lift:
+// with both they end as high as a volumetric fire's. A flame's drag follows from them.
+constexpr float kFireLift = 11.45f, kFireSpeed = 0.78f;
 constexpr float kStuckRates = 1.2f;  // most births where fuel sticks, of those of the stream
 
 float length3(const float v[3]) noexcept {
@@ -88,7 +90,7 @@ EmitterLook emitterLook(const FwFireEmitterDef& def) {
         const float height = std::max(tall - 1.02f * look.diameter, 0.35f * tall);
         const float rise = 1.93f * std::pow(power, 0.2f);
         look.liftTorn = look.liftStream = kFireLift * def.buoyancy;
-        look.dragStream = look.dragTorn = orElse(def.drag, 0.75f * rise / 11);
+        look.dragStream = look.dragTorn = orElse(def.drag, kFireSpeed * rise / kFireLift);
         look.speed = orElse(def.speed, 0.22f * rise);
         look.cone = orElse(def.cone, 0.30f);
         const float life = std::clamp(1.6f * height / (0.6f * rise), 0.25f, 3.0f);
