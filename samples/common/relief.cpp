@@ -180,6 +180,8 @@ Relief::Relief(const VulkanHost& host, const Stage& stage, std::span<const Relie
         std::memcpy(drawn.push, push, sizeof push);
         drawn.firstIndex = static_cast<uint32_t>(indices.size());
         drawn.indexCount = static_cast<uint32_t>(model.indices.size());
+        drawn.curved = std::any_of(model.vertices.begin(), model.vertices.end(),
+                                   [](const ReliefVertex& v) { return v.curve != 0; });
         const auto base = static_cast<uint32_t>(vertices.size());
         for (const uint32_t i : model.indices) indices.push_back(base + i);
         vertices.insert(vertices.end(), model.vertices.begin(), model.vertices.end());
@@ -206,21 +208,24 @@ Relief::Relief(const VulkanHost& host, const Stage& stage, std::span<const Relie
                           {3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(ReliefVertex, at)}};
     request.cull = VK_CULL_MODE_BACK_BIT;
     const VkBool32 linear = stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT;
-    for (const ReliefMode mode : {ReliefMode::kBump, ReliefMode::kParallax}) {
-        const VkBool32 constants[] = {mode == ReliefMode::kParallax, linear};
-        const VkSpecializationMapEntry entries[] = {{0, 0, sizeof(VkBool32)},
-                                                    {1, sizeof(VkBool32), sizeof(VkBool32)}};
-        const VkSpecializationInfo special{2, entries, sizeof constants, constants};
-        request.specialization = &special;
-        pipelines_[static_cast<int>(mode)] = makePipeline(host, request);
-    }
+    for (const ReliefMode mode : {ReliefMode::kBump, ReliefMode::kParallax})
+        for (const bool curved : {false, true}) {
+            const VkBool32 constants[] = {mode == ReliefMode::kParallax, linear, curved};
+            constexpr uint32_t kSize = sizeof(VkBool32);
+            const VkSpecializationMapEntry entries[] = {
+                {0, 0, kSize}, {1, kSize, kSize}, {2, 2 * kSize, kSize}};
+            const VkSpecializationInfo special{3, entries, sizeof constants, constants};
+            request.specialization = &special;
+            pipelines_[static_cast<int>(mode)][curved] = makePipeline(host, request);
+        }
     vkDestroyShaderModule(host.device, request.vertex, nullptr);
     vkDestroyShaderModule(host.device, request.fragment, nullptr);
 }
 
 Relief::~Relief() {
     vkDeviceWaitIdle(host_.device);
-    for (VkPipeline pipeline : pipelines_) vkDestroyPipeline(host_.device, pipeline, nullptr);
+    for (const auto& pair : pipelines_)
+        for (VkPipeline pipeline : pair) vkDestroyPipeline(host_.device, pipeline, nullptr);
     vkDestroyPipelineLayout(host_.device, layout_, nullptr);
     vkDestroyDescriptorPool(host_.device, pool_, nullptr);
     vkDestroyDescriptorSetLayout(host_.device, frameLayout_, nullptr);
@@ -258,14 +263,14 @@ void Relief::prepare(const StageFrame& frame, const FwView& view, std::span<cons
 
 void Relief::draw(const StageFrame& frame, ReliefMode mode, VkRect2D area) {
     VkCommandBuffer commands = frame.commands;
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                      pipelines_[static_cast<int>(mode)]);
     vkCmdSetViewport(commands, 0, 1, &frame.viewport);
     vkCmdSetScissor(commands, 0, 1, &area);
     const VkDeviceSize zero = 0;
     vkCmdBindVertexBuffers(commands, 0, 1, &vertices_.buffer, &zero);
     vkCmdBindIndexBuffer(commands, indices_.buffer, 0, VK_INDEX_TYPE_UINT32);
     for (const Drawn& drawn : models_) {
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                          pipelines_[static_cast<int>(mode)][drawn.curved]);
         const VkDescriptorSet sets[] = {sets_[frame.slot], drawn.set};
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 2, sets, 0,
                                 nullptr);

@@ -70,6 +70,7 @@ class Relief {
     struct Drawn {
         Image color, shape, horizon;
         uint32_t firstIndex = 0, indexCount = 0;
+        bool curved = false;
         VkDescriptorSet set = VK_NULL_HANDLE;
         float push[8] = {};
     };
@@ -82,7 +83,7 @@ class Relief {
     VkDescriptorSetLayout frameLayout_ = VK_NULL_HANDLE, modelLayout_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkPipeline pipelines_[2] = {};
+    VkPipeline pipelines_[2][2] = {};  // of a mode; of flat models, of those with round surfaces
 };
 
 }  // namespace sample

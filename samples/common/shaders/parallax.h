@@ -147,11 +147,9 @@ RELIEF_FN float reliefHitByCones(ReliefRay ray, float deepest, int steps) {
 // horizon: t / (1 + t) of its tangents t, along u, along v and against them (N. Max, Horizon
 // mapping, 1988). along, up: of the unit way to the light.
 RELIEF_FN float reliefLitByHorizon(vec4 horizon, vec2 along, float up, float softness) {
-    float flat_ = max(length(along), 1e-4f);
-    vec2 way = along / flat_;
-    vec4 facing = max(vec4(way, -way), vec4(0.0f));  // the squares of a unit way's parts are shares
-    float told = dot(facing * facing, horizon);
-    float over = told / max(1.0f - told, 0.02f) * flat_ - up;
+    vec4 ways = max(vec4(along, -along), vec4(0.0f));  // squares of a unit way's parts are shares
+    float square = max(dot(along, along), 1e-8f), told = dot(ways * ways, horizon);
+    float over = told / max(square - told, 0.02f * square) * sqrt(square) - up;
     return up > 0.0f ? 1.0f - clamp(over * softness, 0.0f, 1.0f) : 0.0f;
 }
 #endif

@@ -5,6 +5,7 @@
 #include "relief_block.glsl"
 layout(constant_id = 0) const bool kParallax = true;
 layout(constant_id = 1) const bool kLinear = true;  // else display values are written
+layout(constant_id = 2) const bool kCurved = true;  // else no surface of the model is round
 
 layout(set = 1, binding = 0) uniform sampler2D colorMap;  // a: roughness
 layout(set = 1, binding = 1) uniform sampler2D shapeMap;  // slopes, cone, height
@@ -25,15 +26,16 @@ layout(depth_greater) out float gl_FragDepth;
 
 const float kPi = 3.14159265;
 float reliefLod;  // a whole level: it is one read and not two
+vec2 perMetre;    // of the picture: a search asks often, and divisions are slow
 const float kWidestCone = 8.0;  // relief_maps.h
 
 vec4 shape;  // of the picture, where the relief was last asked for
 float reliefDepth(vec2 at) {
-    shape = textureLod(shapeMap, at / push.picture.xy, reliefLod);
+    shape = textureLod(shapeMap, at * perMetre, reliefLod);
     return 1.0 - shape.a;
 }
 vec2 reliefCone(vec2 at) {
-    vec2 told = textureLod(shapeMap, at / push.picture.xy, reliefLod).ba;
+    vec2 told = textureLod(shapeMap, at * perMetre, reliefLod).ba;
     return vec2(1.0 - told.y, kWidestCone * told.x * told.x);
 }
 #define RELIEF_CONES
@@ -58,7 +60,8 @@ void main() {
     float distance_ = length(toEye);
     toEye /= distance_;
     vec2 at = inRelief.xy;
-    vec2 pixel = max(abs(dFdx(at)), abs(dFdy(at))) / push.picture.xy * push.texels.xy;
+    perMetre = 1.0 / push.picture.xy;
+    vec2 pixel = max(abs(dFdx(at)), abs(dFdy(at))) * perMetre * push.texels.xy;
     reliefLod = floor(max(0.0, log2(max(pixel.x, pixel.y))));
 
     float way = 0.0, depth = 0.0;
@@ -68,26 +71,28 @@ void main() {
         ray.along = -vec2(dot(toEye, u), dot(toEye, v));
         ray.depth = inRelief.z;
         ray.down = dot(toEye, n);
-        ray.sag = 0.5 * inRelief.w * ray.along.x * ray.along.x;
+        ray.sag = kCurved ? 0.5 * inRelief.w * ray.along.x * ray.along.x : 0.0;
         ray.most = 1e3;
-        if (push.texels.z > 0.5) ray.most = toBorder(at, ray.along, push.picture.xy);
-        if (push.texels.w > 0.0 && inRelief.w > 0.0)
-            ray.most = toBorder(at, ray.along, vec2(1e3, push.texels.w));
+        bool bordered = push.texels.z > 0.5, round_ = kCurved && push.texels.w * inRelief.w > 0.0;
+        if (bordered || round_)
+            ray.most = toBorder(at, ray.along,
+                                bordered ? push.picture.xy : vec2(1e3, push.texels.w));
         way = reliefHitByCones(ray, scale, int(mix(10.0, 5.0, clamp(ray.down, 0.0, 1.0))));
         if (way < 0.0) discard;
         at += ray.along * way;
         depth = reliefBelow(ray, way);
-        // On a curved surface the way turns with it.
-        float turned = inRelief.w * ray.along.x * way;
-        n = normalize(n + u * turned);
-        u = normalize(u - n * dot(u, n));
-        v = cross(u, n);
+        if (kCurved) {  // the way turns with it, about v
+            float turned = inRelief.w * ray.along.x * way, unit = inversesqrt(1.0 + turned * turned);
+            vec3 level = n;
+            n = (level + u * turned) * unit;
+            u = (u - level * turned) * unit;
+        }
     }
     vec3 position = inPosition - toEye * way;
     vec4 clip = block.viewProjection * vec4(position, 1.0);
     gl_FragDepth = max(clip.z / clip.w, gl_FragCoord.z);
 
-    vec4 color = textureLod(colorMap, at / push.picture.xy, reliefLod);
+    vec4 color = textureLod(colorMap, at * perMetre, reliefLod);
     if (!kParallax) reliefDepth(at);
     vec3 albedo = color.rgb * color.rgb;
     vec2 slope = (shape.rg * 2.0 - 1.0) * push.picture.w;
@@ -97,7 +102,7 @@ void main() {
                  (0.45 + 0.55 * shape.a);
     vec4 horizon = vec4(0.0);
     if (kParallax)
-        horizon = textureLod(horizonMap, at / push.picture.xy, max(reliefLod - 1.0, 0.0));
+        horizon = textureLod(horizonMap, at * perMetre, max(reliefLod - 1.0, 0.0));
     vec3 gloss = vec3(0.0);
     // Not known before it runs: lavapipe would compile and keep one shader a frame.
     int fires = int(block.sunDirection.w) + (int(gl_FragCoord.x) >> 31);
