@@ -249,7 +249,9 @@ class Backend {
     // RGBA8 sRGB. The cpu backend keeps nothing.
     virtual void createImage(uint32_t slot, uint32_t width, uint32_t height,
                              std::span<const std::byte> pixels) = 0;
-    virtual void destroyImage(uint32_t slot) noexcept = 0;
+    // Objects that show it fall back to their base colour. Throws before anything changed, where
+    // they need pipelines for that.
+    virtual void destroyImage(uint32_t slot) = 0;
     // A fire profile of the host's, kProfileWidth x kProfileHeight pairs of halfs. Looks alone.
     virtual void setFireProfile(uint32_t /*slot*/, std::span<const uint32_t> /*texels*/) {}
     // All flipbooks, instead of those before: RGBA8, and words as shared/book.h has them; a width

@@ -206,8 +206,8 @@ FwImageId World::createImage(const FwImageDef& def) {
 
 void World::destroyImage(FwImageId id) {
     const uint32_t slot = images_.get(id).slot;
-    images_.destroy(id);
     backend_.destroyImage(slot);
+    images_.destroy(id);
     --imageUsers_[slot];  // not given out again while an object still names it
 }
 

@@ -108,6 +108,7 @@ int count(const std::vector<Color>& picture, int x0, int x1, const Test& test) {
 }
 bool red(const Color& c) { return c.r > 2 * c.g && c.r > 2 * c.b && c.r > 60; }
 bool green(const Color& c) { return 2 * c.g > 3 * c.r && c.g > 2 * c.b && c.g > 60; }
+bool wooden(const Color& c) { return c.r > c.g && c.g > c.b && c.b > 20; }
 bool blue(const Color& c) { return c.b > 2 * c.r && c.b > 2 * c.g && c.b > 60; }
 
 TEST(AbiDrawn, EveryMaterialSlotHasItsPicture) {
@@ -138,6 +139,7 @@ TEST(AbiDrawn, EveryMaterialSlotHasItsPicture) {
     ASSERT_EQ(FW_OK, fwWorld_DestroyImage(w.world, first));
     picture = w.look();
     EXPECT_EQ(0, count(picture, 0, 15, red));
+    EXPECT_EQ(15 * 32, count(picture, 0, 15, wooden));
     EXPECT_EQ(14 * 32, count(picture, 33, 47, green));
     // An id that is gone is refused and changes nothing.
     FwBurnableMeshId none{};

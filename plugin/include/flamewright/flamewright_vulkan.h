@@ -103,15 +103,16 @@ typedef enum FwTargetFlags {
                                 frame on that has any */
     FW_TARGET_AS_NEEDED = 32, /* not all pipelines for surfaces at once: registration makes those for the kinds of
                                 material that objects of the context had so far, and fwWorld_CreateBurnableMesh
-                                those for a kind that is new, about a seventh of all (0.2 s on a software device).
-                                Never a record call. renderPass must live until the target is unregistered */
+                                those for a kind that is new, about a seventh of all (0.2 s on a software device);
+                                fwWorld_DestroyImage, too, for objects that showed it. Never a record call.
+                                renderPass must live until the target is unregistered */
     FW_TARGET_FLAGS_FORCE32 = 0x7fffffff
 } FwTargetFlags;
 static inline FwVulkanTargetDef fwDefaultVulkanTargetDef(void) {
     FwVulkanTargetDef d; fwInitDef(FW_DEF_VULKAN_TARGET, &d, (uint32_t)sizeof d); return d;
 }
-/* Makes the target's pipelines, all of them or as FW_TARGET_AS_NEEDED says. Register again when the pass or sample count changes. [any, also
- * while recording: nothing is recorded] */
+/* Makes the target's pipelines, all of them or as FW_TARGET_AS_NEEDED says. Register again when the pass or sample
+ * count changes. [any, also while recording: nothing is recorded] */
 FW_API FwResult FW_CALL fwContext_RegisterTarget(FwContext*, const FwVulkanTargetDef* def, FwTargetId* id);
 FW_API FwResult FW_CALL fwContext_UnregisterTarget(FwContext*, FwTargetId id); /* the host has waited [any] */
 

@@ -92,7 +92,7 @@ extern const DrawPass kSurfacePasses[kSurfaceVariants];
 // The variant for a material of an object with an image there or not; `touched`: some event
 // reached the object.
 uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched);
-// A bit for each pass that may ever draw such a material.
+// A bit for each pass that may draw such a material, whatever becomes of it.
 uint64_t surfacePasses(const BurnMaterial& material, bool image);
 // `edge`: m, mean edge of the object's triangles.
 // `places`: of the object's vertices among the refined ones.

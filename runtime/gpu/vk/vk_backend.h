@@ -102,7 +102,7 @@ class VkBackend final : public Backend {
     [[nodiscard]] uint64_t fieldBytes(uint32_t slot) const noexcept override;
     void createImage(uint32_t slot, uint32_t width, uint32_t height,
                      std::span<const std::byte> pixels) override;
-    void destroyImage(uint32_t slot) noexcept override;
+    void destroyImage(uint32_t slot) override;
 
     void restore(std::span<const RestoredObject> objects, uint32_t tick) override;
 

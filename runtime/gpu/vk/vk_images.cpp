@@ -152,18 +152,23 @@ void VkBackend::setBooks(uint32_t width, uint32_t height, std::span<const std::b
 
 void VkBackend::setFlameBooks(uint32_t books) noexcept { state_->flameBooks = books; }
 
-void VkBackend::destroyImage(uint32_t slot) noexcept {
+void VkBackend::destroyImage(uint32_t slot) {
     State& s = *state_;
     ImageEntry& entry = s.images[slot];
     if (!entry.live) return;
+    const auto shows = [&](uint32_t image) { return image == slot + 1; };
+    PassSet passes = 0;
+    for (const ObjectEntry& object : s.objects)
+        for (uint32_t m = 0; m < kMaterialsPerObject; ++m)
+            if (shows(object.images[m])) passes |= surfacePasses(object.materials[m], false);
+    s.context.pipelines.need(passes);
     s.dropImage(entry);
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {  // back to their own base colour
-        for (uint32_t& image : s.objects[i].images) {
-            if (image != slot + 1) continue;
-            image = 0;
-            s.objects[i].recordDirty = s.recordsDirty = true;
-            s.awake.insert(i);
-        }
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+        ObjectEntry& object = s.objects[i];
+        if (std::none_of(std::begin(object.images), std::end(object.images), shows)) continue;
+        std::replace_if(std::begin(object.images), std::end(object.images), shows, 0u);
+        object.recordDirty = s.recordsDirty = true;
+        s.awake.insert(i);
     }
 }
 
