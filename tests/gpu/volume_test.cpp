@@ -828,6 +828,35 @@ TEST_F(Volume, TheEyeMayBeInside) {
     EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).w, 0.0f) << "behind the eye";
 }
 
+// Seen from inside a quarter of a step is many pixels, and edges that face the eye went from layer
+// to layer of samples as a comb.
+TEST_F(Volume, NoCombFromInside) {
+    if (!device_) return;
+    makeRig();
+    const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
+    const float eye[3] = {0.02f, 0.15f, 0.05f};
+    double comb = 0, all = 0;
+    for (const float aside : {-0.5f, 0.1f, 0.6f}) {
+        const float at[3] = {aside, 0.3f, -1};
+        look(eye, at, 10);
+        const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);
+        const std::vector<vec4> wanted = march(flame, FW_FIRE_CAMP, true, 128);
+        constexpr uint32_t kAround = 4;  // px
+        const auto off = [&](uint32_t i) { return drawn[i].x - wanted[i].x; };
+        for (uint32_t y = 0; y < kSide; ++y)
+            for (uint32_t x = kAround; x + kAround < kSide; ++x) {
+                const uint32_t i = y * kSide + x;
+                float mean = 0;
+                for (uint32_t k = 0; k <= 2 * kAround; ++k) mean += off(i + k - kAround);
+                comb += double(std::abs(off(i) - mean / float(2 * kAround + 1)));
+                all += double(wanted[i].x);
+            }
+    }
+    std::printf("           %.4f of the light\n", comb / all);
+    EXPECT_GT(all, 0);
+    EXPECT_LT(comb / all, 0.0013);
+}
+
 // The few samples of flames beyond the largest 32 show as bright a flame, as large.
 TEST_F(Volume, FewSamplesShowTheSameFlame) {
     if (!device_) return;

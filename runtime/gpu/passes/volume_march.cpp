@@ -24,8 +24,11 @@ constexpr uint32_t kMostPerPixel = 8;  // cells a side: a tile
 // A flame is as wide as so many cells, or sheets and tongues fall between rays: its light would
 // depend on where cells lie.
 constexpr float kCellsAcross = 16.0f;
-constexpr float kAllDetail = 96.0f;    // px across a flame from which its samples are as it says
-constexpr float kSmallSpacing = 0.5f;  // of small ones, of those
+constexpr float kAllDetail = 96.0f;  // px across a flame from which its samples are as it says
+// Cells across one from which those around a cell are narrower than a quarter of a step: layers of
+// samples would show as bands.
+constexpr float kNoLayers = 100.0f;
+constexpr float kLeastSpacing = 0.5f;  // of small and of large ones, of what they say
 constexpr float kSamplesPerStep = 2.75f;
 constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
 constexpr uint64_t kLeastTiles = 2048;      // of small flames, however small the screen
@@ -78,9 +81,11 @@ float cellOf(const VolumeDraw& draw, const VolumeScreen& screen) {
 }
 
 // m between samples. Where sheets are closer than samples thick flame is too dark; a small one,
-// which costs little, gets up to twice as many.
+// which costs little, gets up to twice as many, and so does one around the eye or near it.
 float spacingOf(const VolumeDraw& draw, const VolumeScreen& screen) {
-    return draw.spacing * std::clamp(volumeWide(draw, screen) / kAllDetail, kSmallSpacing, 1.0f);
+    const float wide = volumeWide(draw, screen);
+    const float few = std::min(wide / kAllDetail, kNoLayers * cellOf(draw, screen) / wide);
+    return draw.spacing * std::clamp(few, kLeastSpacing, 1.0f);
 }
 
 // Samples of a ray: of those with few steps as many as show the light of those with many.
