@@ -40,6 +40,7 @@ layout(location = 0) out vec4 outColor;
 const float kPeriod = 0.8;      // s, of the noise's two phases
 const float kTile = 44.0;       // cells that a tile of noise covers
 const float kFieldWhite = 1.25;  // of thin soot at 1600 K, in the host's units
+const float kFieldTip = 1370.0;  // K
 const vec2 kStretch = kVariant == 0u ? vec2(1.15, 0.62) : (kVariant == 1u ? vec2(0.8) : vec2(2.4, 0.42));
 
 struct Shown {
@@ -126,16 +127,18 @@ void main() {
     float alpha = 0.0;
 
     if (kVariant <= 1u) {  // emits
-        // Tongues: the higher the more of it the noise takes away.
-        float y = inPlace.y * float(inField.z) / (2.6 * inSize.y);
+        // Tongues: the higher the more of it the noise takes away, but for a thin tip, which still
+        // glows: cooler soot would only hide, and a flame end in a stump.
+        float y = inPlace.y * float(inField.z) / (2.6 * inSize.y), high = min(y, 1.0);
         float d = f.density * (1.0 + detail * (1.5 * rough + 0.6 * ridge)) -
-                  detail * (0.05 + 0.30 * min(y, 1.0));
+                  detail * (0.05 + 0.36 * (high - 0.48 * high * high * high));
         d = max(d, 0.0);
         // Dense is the flame's axis, thin its rim.
         float rho = clamp(1.10 - 1.25 * d, 0.02, 1.2);
         vec2 uv = vec2(rho * (1.0 / kProfileReach), y * 0.8 + 0.12);
         vec2 profile = textureLod(profiles, vec3(clamp(uv, 0.01, 0.99), 0.0), 0.0).xy;
         float kelvin = 1000.0 * profile.x + 260.0 * (min(d, 1.0) - 0.72) - 170.0 * y + 90.0 * detail * rough;
+        kelvin = max(kelvin, kFieldTip);
         float soot = smoothstep(0.03, 0.62, d) * (0.25 + profile.y);
         float thick = 1.0 - exp(-1.5 * soot * (0.25 + d));
         float share1 = clamp(1.0 - body, 0.0, 1.0) * strength * edge;

@@ -1117,7 +1117,7 @@ TEST_F(Volume, ThreeTiersOneLook) {
     constexpr float kPowers[] = {30, 100, 400};  // kW
     struct Seen {
         float light[3] = {};
-        float radiance = 0, green = 0, up = 0;  // means over the powers
+        float radiance = 0, green = 0, up = 0, tip = 0;  // means over the powers
         vec4 reach{0.0f};
     } fires[3];
     constexpr float kAway = 6, kDegrees = 22;  // heights of the fire
@@ -1134,22 +1134,27 @@ TEST_F(Volume, ThreeTiersOneLook) {
             tiers[i](power, mean);
             const vec4 m = meanOf(mean);
             const float light = glm::dot(m, kSeen);
-            float up = 0;  // px, where its light is
-            for (uint32_t p = 0; p < kSide * kSide; ++p)
-                up += glm::dot(mean[p], kSeen) / (light * kSide * kSide) *
-                      (float(kSide - 1 - p / kSide) + 0.5f);
+            float up = 0, tip = 0;  // px, where its light is; what is of it near its top
+            for (uint32_t p = 0; p < kSide * kSide; ++p) {
+                const float part = glm::dot(mean[p], kSeen) / (light * kSide * kSide);
+                const float at = float(kSide - 1 - p / kSide) + 0.5f;
+                up += part * at;
+                tip += at > 0.5f * float(kSide) ? part : 0;
+            }
             Seen& seen = fires[i];
             seen.light[k] = light;
             seen.radiance += light / m.w / 3;
             seen.green += m.y / m.x / 3;
             seen.up += up / 3;
+            seen.tip += tip / 3;
             const vec4 reach = reachOf(mean) / heightPx;
             seen.reach += reach / 3.0f;
             std::printf(
                 "[   FIGURE ] %g kW, %s: light %.4f, radiance of what it covers %.3f, at "
-                "%.2f px, green %.3f of red, %.3f wide and %.3f tall\n",
+                "%.2f px, %.4f in its tip, green %.3f of red, %.3f wide and %.3f tall\n",
                 double(power), kNames[i], double(light), double(light / m.w), double(up),
-                double(m.y / m.x), double(reach.z - reach.x), double(reach.w - reach.y));
+                double(tip), double(m.y / m.x), double(reach.z - reach.x),
+                double(reach.w - reach.y));
         }
     }
     for (int i = 1; i < 3; ++i) {
@@ -1159,6 +1164,9 @@ TEST_F(Volume, ThreeTiersOneLook) {
         EXPECT_NEAR(fires[i].radiance / fires[0].radiance, 1, 0.05) << kNames[i];
         EXPECT_NEAR(fires[i].green / fires[0].green, 1, 0.05) << kNames[i];
         EXPECT_NEAR(fires[i].up / fires[0].up, 1, 0.03) << kNames[i];
+        // It ends in a faint tip, not in a stump: what is above 0.6 of its height.
+        EXPECT_GT(fires[i].tip / fires[0].tip, 0.5f) << kNames[i];
+        EXPECT_LT(fires[i].tip / fires[0].tip, 2.0f) << kNames[i];
         // Left, top, right and bottom, of the fire's height.
         const vec4 off = glm::abs(fires[i].reach - fires[i - 1].reach);
         const float bounds = std::max({off.x, off.y, off.z, off.w});
