@@ -124,25 +124,7 @@ class EveryPass : public GpuTest {
         scene_->create(rig_->backend);
         rig_->backend.setRoom(
             0, {1u << 16, 1u << 20, gpu::kAirOutside, 1, /*flashes*/ 1u << 20, 0, 0, 0});
-        FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_AS_NEEDED;
-        def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show
-        def.depthFormat = VK_FORMAT_D32_SFLOAT;
-        target_ = rig_->context.registerTarget(def);
-        def.flags |= FW_TARGET_HAZE;
-        def.depthMode = FW_DEPTH_SAMPLED;
-        hazeTarget_ = rig_->context.registerTarget(def);
-        def.flags |= FW_TARGET_HALF_EFFECTS;
-        halfTarget_ = rig_->context.registerTarget(def);
-        behind_ = device_->makeImage(def.colorFormat, {kSide, kSide}, 1,
-                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-        color_ = device_->makeImage(
-            def.colorFormat, {kSide, kSide}, 1,
-            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-        depth_ =
-            device_->makeImage(def.depthFormat, {kSide, kSide}, 1,
-                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        if (shortBinding == kNoBinding) makeTargets();  // else nothing is drawn
         const float eye[3] = {0.9f, 0.7f, 1.1f}, at[3] = {0, 0, 0};
         rig_->view = testView(eye, at, 40, 1, false);
         if (published) makeVertices();
@@ -174,6 +156,28 @@ class EveryPass : public GpuTest {
         now_ = 4096;
         index_ = 0;
         passes_.clear();
+    }
+
+    void makeTargets() {
+        FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_AS_NEEDED;
+        def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show
+        def.depthFormat = VK_FORMAT_D32_SFLOAT;
+        target_ = rig_->context.registerTarget(def);
+        def.flags |= FW_TARGET_HAZE;
+        def.depthMode = FW_DEPTH_SAMPLED;
+        hazeTarget_ = rig_->context.registerTarget(def);
+        def.flags |= FW_TARGET_HALF_EFFECTS;
+        halfTarget_ = rig_->context.registerTarget(def);
+        behind_ = device_->makeImage(def.colorFormat, {kSide, kSide}, 1,
+                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        color_ = device_->makeImage(
+            def.colorFormat, {kSide, kSide}, 1,
+            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        depth_ =
+            device_->makeImage(def.depthFormat, {kSide, kSide}, 1,
+                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     }
 
     // The last of them is deep in the view, the others beside each other.
