@@ -1137,9 +1137,9 @@ TEST_F(Volume, ThreeTiersOneLook) {
             float up = 0, tip = 0;  // px, where its light is; what is of it near its top
             for (uint32_t p = 0; p < kSide * kSide; ++p) {
                 const float part = glm::dot(mean[p], kSeen) / (light * kSide * kSide);
-                const float at = float(kSide - 1 - p / kSide) + 0.5f;
-                up += part * at;
-                tip += at > 0.5f * float(kSide) ? part : 0;
+                const float above = float(kSide - 1 - p / kSide) + 0.5f;
+                up += part * above;
+                tip += above > 0.5f * float(kSide) ? part : 0;
             }
             Seen& seen = fires[i];
             seen.light[k] = light;
