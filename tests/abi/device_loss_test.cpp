@@ -47,6 +47,7 @@ struct Life {
 
     Life() {
         scene.picture = takePicture;
+        scene.calls = [] { return loader.vulkan->calls.load(); };
         FwContextDef def = fwDefaultContextDef();
         def.callbacks = host.callbacks();
         FwErrorInfo error{};
@@ -75,6 +76,7 @@ TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
     LosingVulkan& vulkan = *loader.vulkan;
     LossReference reference;
     int64_t calls = 0, frames = 0;
+    std::vector<int64_t> mirroredAt;
     vulkan.begin(-1);
     {
         Life whole;
@@ -82,11 +84,13 @@ TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
         ASSERT_EQ(FW_OK, whole.result) << whole.host.lastError;
         calls = vulkan.calls;
         frames = whole.frames;
+        mirroredAt = whole.scene.mirroredAt;
         ASSERT_GT(calls, 400) << "the library does not call through the table";
         ASSERT_EQ(reference.saves.rbegin()->second, whole.scene.mirror);
         EXPECT_EQ(reference.end, whole.scene.save());
     }
-    const std::vector<int64_t> losses = chooseLosses(vulkan, frames, calls, kApart, true);
+    const std::vector<int64_t> losses =
+        chooseLosses(vulkan, frames, calls, mirroredAt, kApart, true);
     std::map<uint32_t, uint32_t> mirrors;  // by frame, how often
     std::vector<Bytes> recovered;
     for (const int64_t call : losses) {

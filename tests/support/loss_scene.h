@@ -21,6 +21,9 @@ class LossScene {
     // Records a frame, or makes a picture; on a device of ours, of the host's, or on none.
     std::function<FwResult(FwWorld*, float seconds)> step = fwWorld_Step;
     std::function<FwResult(FwWorld*)> picture;  // null: none
+    // Calls of Vulkan so far, and at which of them each mirror was there; null: nobody counts.
+    std::function<int64_t()> calls;
+    std::vector<int64_t> mirroredAt;
 
     // Of a context that the caller destroys.
     FwResult make(FwContext* context) {
@@ -80,6 +83,7 @@ class LossScene {
         if (result != FW_OK) return result == FW_NOT_READY ? FW_OK : result;
         mirror.resize(size);
         result = fwWorld_FetchSave(world, mirror.data(), &size);
+        if (mirrored != wished && calls) mirroredAt.push_back(calls());
         mirrored = wished;
         return result;
     }
@@ -154,14 +158,16 @@ struct LossReference {
 
 // Which calls to lose the device at, of those that a whole run made. FLAMEWRIGHT_LOSE_EVERY in the
 // environment: that many calls apart, from the first on; 1: at each. Else every `apart`-th of those
-// from `frames` on, where the first frame begins, and of every other entry the last; `odd`: of the
-// other ones, so that two tests share them.
+// from `frames` on, where the first frame begins, those at which a mirror had come, and of every
+// other entry the last; `odd`: of the other ones, so that two tests share them.
 inline std::vector<int64_t> chooseLosses(const fw::test::LosingVulkan& vulkan, int64_t frames,
-                                         int64_t calls, int64_t apart, bool odd) {
+                                         int64_t calls, std::vector<int64_t> mirroredAt,
+                                         int64_t apart, bool odd) {
     const char* asked = std::getenv("FLAMEWRIGHT_LOSE_EVERY");
     const bool all = asked && *asked;
     if (all) apart = std::max<int64_t>(std::atoll(asked), 1);
     std::vector<int64_t> chosen;
+    if (!all) chosen = std::move(mirroredAt);
     for (int64_t i = all ? 0 : frames; i < calls; i += apart) chosen.push_back(i);
     if (all) return chosen;
     std::map<std::string, int64_t> last;
