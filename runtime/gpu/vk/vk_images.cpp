@@ -167,8 +167,7 @@ void VkBackend::destroyImage(uint32_t slot) {
         ObjectEntry& object = s.objects[i];
         if (std::none_of(std::begin(object.images), std::end(object.images), shows)) continue;
         std::replace_if(std::begin(object.images), std::end(object.images), shows, 0u);
-        object.recordDirty = s.recordsDirty = true;
-        s.awake.insert(i);
+        s.changed(i);
     }
 }
 

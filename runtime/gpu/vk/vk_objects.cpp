@@ -120,6 +120,11 @@ bool rests(const VkBackend::State& s, const ObjectEntry& object) noexcept {
 
 }  // namespace
 
+void VkBackend::State::changed(uint32_t slot) noexcept {
+    objects[slot].recordDirty = recordsDirty = true;
+    awake.insert(slot);
+}
+
 void VkBackend::State::settle() noexcept {
     for (const uint32_t slot : awake)
         if (rests(*this, objects[slot])) awake.erase(slot);
@@ -250,7 +255,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     for (size_t i = 0; i < kMaterialsPerObject && i < init.materials.size(); ++i)
         fresh.materials[i] = init.materials[i];
     std::copy(std::begin(init.images), std::end(init.images), std::begin(fresh.images));
-    fresh.recordDirty = fresh.materialsDirty = fresh.resetDue = true;
+    fresh.materialsDirty = fresh.resetDue = true;
     if (init.deform) {
         mesh.nodes = nodes;
         mesh.coats = coats;
@@ -282,9 +287,8 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.deformReset = false;  // at rest already
     }
     s.objects[slot] = fresh;
-    s.awake.insert(slot);
+    s.changed(slot);
     s.seenFrame = std::max(s.seenFrame, last);
-    s.recordsDirty = true;
     (fresh.refine.arpPlus1 ? s.arp.users : s.refine.users) += fresh.refine.on ? 1 : 0;
     ++s.liveObjects;
 }
@@ -304,9 +308,7 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
     entry.refine.release(s.planes);
     releaseRanges(s, entry);
     entry = {};
-    entry.recordDirty = true;  // a record without kObjectLive: list entries fall out
-    s.awake.insert(slot);
-    s.recordsDirty = true;
+    s.changed(slot);  // a record without kObjectLive: list entries fall out
     --s.liveObjects;
     std::erase_if(s.drawItems, [slot](const DrawItem& item) { return item.object == slot; });
 }
@@ -325,16 +327,13 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
     }
     constexpr uint32_t kFixed = kObjectPublished | kObjectHeat | kObjectUnseen;
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
-    entry.recordDirty = true;
-    s.awake.insert(slot);
-    s.recordsDirty = true;
+    s.changed(slot);
 }
 
 void VkBackend::setObjectWind(uint32_t slot, uint32_t wind) {
     State& s = *state_;
     s.objects[slot].record.zoneWind = wind;
-    s.objects[slot].recordDirty = s.recordsDirty = true;
-    s.awake.insert(slot);
+    s.changed(slot);
 }
 
 void VkBackend::setRoom(uint32_t slot, const Room& room) noexcept {

@@ -68,8 +68,8 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
         ObjectEntry& object = s.objects[i];
         if (!object.live) continue;
-        s.awake.insert(i);
-        object.resetDue = object.recordDirty = true;
+        s.changed(i);
+        object.resetDue = true;
         object.touched = object.doused = object.warmed = object.charred = object.lit = false;
         object.publishedTouched = false;
         object.publishedParity = 0;

@@ -451,6 +451,7 @@ struct VkBackend::State {
     void dropUploads(size_t kept) noexcept;  // all but the first
     void freeQuarantine() noexcept;
     // vk_objects.cpp
+    void changed(uint32_t slot) noexcept;  // its record goes to the device with the next frame
     void settle() noexcept;  // once a frame's records are written: what has nothing to do rests
     // vk_images.cpp
     void addImage(ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
