@@ -84,12 +84,21 @@ struct VolumeMarch {
     uint flame;           // of VolumeWork
     uint apart;           // cells from a ray of the probe to the next: 1, 2, 4
     uint perPixel;        // as VolumeComposite's
-    uint reserved0; uint reserved1; uint reserved2;
+    uint least;           // samples of a ray, see volumeCloser; 0: as many as are worth a march
+    uint reserved0; uint reserved1;
 };
 FW_SHARED_SIZE(VolumeMarch, 112)
 
 // n / d, exact below 2^22: software devices divide integers lane by lane.
 FW_SHARED_FN uint volumeQuotient(uint n, uint d) { return uint((float(n) + 0.5f) / float(d)); }
+
+// So many samples are taken for one where few (> 0) are worth a march: what is seen in few of them is thin,
+// and was a row of beads as it came near the samples of one cell after another and left them again.
+FW_SHARED_CONST uint kVolumeClosest = 4u;
+FW_SHARED_FN uint volumeCloser(uint few, uint least) {
+    uint closer = volumeQuotient(least + few / 2u, few);
+    return closer < 1u ? 1u : closer < kVolumeClosest ? closer : kVolumeClosest;
+}
 
 // Workgroups of the probe side by side; each sees as many cells as eight rays.
 FW_SHARED_FN uint volumeProbeBlocks(uint tiles, uint apart) { return (tiles + apart - 1u) / apart; }

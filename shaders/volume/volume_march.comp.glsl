@@ -73,6 +73,13 @@ void main() {
     begin = burns ? begin : all / 2u;
     end = burns ? end : begin + 1u;
 
+    uint closer = burns ? volumeCloser(end - begin, march.least) : 1u;
+    // Closer samples begin and end closer to what the probe has seen.
+    begin = begin * closer + (begin > 0u ? closer / 2u : 0u);
+    end = end * closer - (end < all ? closer / 2u : 0u);
+    all *= closer;
+    turns *= closer;
+
     uint row = volumeQuotient(tile, march.tilesX);
     uvec2 place = uvec2(tile - row * march.tilesX, row) * kVolumeTile + in_;
     uint cell = place.y * (march.tilesX * kVolumeTile) + place.x;
@@ -89,6 +96,8 @@ void main() {
     float phase = volumePhase(place.x, place.y);
     float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
+    float size = 0.35 * stride;  // of all alike, or it would be seen where they get closer
+    stride /= float(closer);
     // The curve is looked up as often as it is over the whole of the flame.
     uint intervals = min(volumeQuotient(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
     RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,
@@ -123,7 +132,7 @@ void main() {
         for (uint i = 1u; i < s; ++i) nothing(i, cell, 1.0 - before.a);
         bits = shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
     }
-    float size = 0.35 * stride, length_ = burns ? stride : 0.0;
+    float length_ = burns ? stride : 0.0;
     // Every loop turns as often for all of a quarter: those that end apart end late on a software device.
     do {
         uint to = min((s + 1u) * turns, end);

@@ -816,7 +816,7 @@ TEST_F(Volume, TheEyeMayBeInside) {
     const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
     const float eye[3] = {0.02f, 0.15f, 0.05f}, at[3] = {0, 0.2f, -1};
     look(eye, at, 70);
-    const std::vector<vec4> wanted = march(flame, FW_FIRE_CAMP);
+    const std::vector<vec4> wanted = march(flame, FW_FIRE_CAMP, true, 128);
     EXPECT_LT(differenceOf(draw({&flame, 1}, FW_DEPTH_NONE), wanted), 0.01f);
     EXPECT_LT(
         differenceOf(drawDirect({&flame, 1}, FW_DEPTH_NONE), march(flame, FW_FIRE_CAMP, false)),
@@ -855,6 +855,44 @@ TEST_F(Volume, NoCombFromInside) {
     std::printf("           %.4f of the light\n", comb / all);
     EXPECT_GT(all, 0);
     EXPECT_LT(comb / all, 0.0013);
+}
+
+// Tongues that come loose are thinner than samples are apart: they were rows of beads.
+TEST_F(Volume, ThinTonguesAreNoBeads) {
+    if (!device_) return;
+    makeRig();
+    constexpr int kViews = 12;
+    constexpr float kAcross = 170;   // px, of the flame
+    constexpr uint32_t kAround = 3;  // px
+    constexpr uint32_t kBox = 2 * kAround + 1;
+    double beads = 0;
+    for (int i = 0; i < kViews; ++i) {
+        const gpu::VolumeFlame flame =
+            flameOf(FW_FIRE_BONFIRE, 1.0f + 0.3f * float(i), FW_FIRE_NO_SMOKE);
+        const float wide = flame.record.low.w, high = flame.record.high.w;
+        const float aside = 0.35f * wide * (i % 2 ? 1.0f : -1.0f), away = 20 * high;
+        const float up = high * (0.3f + 0.1f * float(i / 2));
+        const float eye[3] = {aside, up, away}, at[3] = {aside, up, 0};
+        look(eye, at, glm::degrees(2 * std::atan(0.5f * wide * float(kSide) / kAcross / away)));
+        const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);
+        const std::vector<vec4> wanted = march(flame, FW_FIRE_BONFIRE, true, 400);
+        const auto off = [&](uint32_t x, uint32_t y) {
+            return drawn[y * kSide + x].x - wanted[y * kSide + x].x;
+        };
+        double rough = 0, light = 0;
+        for (uint32_t y = kAround; y + kAround < kSide; ++y)
+            for (uint32_t x = kAround; x + kAround < kSide; ++x) {
+                float mean = 0;
+                for (uint32_t k = 0; k < kBox * kBox; ++k)
+                    mean += off(x + k % kBox - kAround, y + k / kBox - kAround);
+                rough += double(std::abs(off(x, y) - mean / float(kBox * kBox)));
+                light += double(wanted[y * kSide + x].x);
+            }
+        EXPECT_GT(light, 0) << "view " << i;
+        beads += rough / std::max(light, 1e-9);
+    }
+    std::printf("           %.4f of the light\n", beads / kViews);
+    EXPECT_LT(beads / kViews, 0.045);
 }
 
 // The few samples of flames beyond the largest 32 show as bright a flame, as large.

@@ -93,6 +93,7 @@ void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen&
     march.samples = march.tiles + kCardTiles * kVolumeTileWords;
     march.encoding = screen.encoding;
     march.apart = 2;
+    march.least = 0;
     march.perPixel = kVolumeTile;  // rays go where the mean of many is the flame
     out.composite.tilesX = card.tilesX;
     out.composite.tilesY = card.tilesY;

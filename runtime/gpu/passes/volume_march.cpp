@@ -28,6 +28,9 @@ constexpr float kAllDetail = 96.0f;  // px across a flame from which its samples
 // Cells across one from which those around a cell are narrower than a quarter of a step: layers of
 // samples would show as bands.
 constexpr float kNoLayers = 100.0f;
+// Samples that a ray takes closer together rather than fewer, of a flame of that many cells; of
+// smaller ones, whose rays are fewer, up to so many times as many.
+constexpr float kLeastSamples = 20.0f, kLeastInSmall = 1.6f;
 constexpr float kLeastSpacing = 0.5f;  // of small and of large ones, of what they say
 constexpr float kSamplesPerStep = 2.75f;
 constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
@@ -98,6 +101,13 @@ uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     const float spacing = spacingOf(draw, screen);
     const uint32_t most = mostOf(draw, screen) / draw.slabs;
     return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
+}
+
+// VolumeMarch::least: of those with few steps no more than half of what they may take.
+uint32_t leastOf(const VolumeDraw& draw, const VolumeScreen& screen, float cell) {
+    const float small = kNoLayers * cell / volumeWide(draw, screen);
+    const float least = kLeastSamples * std::clamp(small, 1.0f, kLeastInSmall);
+    return std::min(uint32_t(least), mostOf(draw, screen) / 2);
 }
 
 float coarser(float cell) { return cell < 1.0f ? 2.0f * cell : cell + 1.0f; }
@@ -253,6 +263,7 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
         // Flames of few cells are probed more closely, or rays go past them.
         const float wide = volumeWide(draw, screen) / cell;
         march.apart = wide < 8.0f ? 1 : wide < 48.0f ? 2 : 4;
+        march.least = leastOf(draw, screen, cell);
         march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
         VolumeComposite& composite = one.composite;
         composite.place =
