@@ -45,8 +45,11 @@ void main() {
     for (int i = 0; i < fires; ++i) {
         vec3 to = block.firePlace[i].xyz - worldPosition;
         float squared = dot(to, to) + block.firePlace[i].w;
-        light += block.fireColor[i].rgb * (0.2 + 0.8 * max(0.0, dot(n, to) * inversesqrt(squared))) *
-                 mix(1.0, shade.y, 0.6) / squared;
+        float faces = dot(n, to) * inversesqrt(squared);
+        // The floor throws light back, on all but what lies above a fire and looks up.
+        float away = clamp(-4.0 * faces, 0.0, 1.0) * max(0.0, n.y);
+        faces = 0.8 * max(0.0, faces) + 0.2 * (1.0 - away);
+        light += block.fireColor[i].rgb * faces * mix(1.0, shade.y, 0.6) / squared;
     }
     vec3 c = albedo * light * block.sunDirection.w;
     if (displayValues != 0) c = display(c);
