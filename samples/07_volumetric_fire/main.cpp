@@ -80,6 +80,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
             FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
             fire.check(fwInitFirePreset(&def, kExhibits[i].preset), "fwInitFirePreset");
             def.profile = profile;
+            def.tier = FW_FIRE_TIER_MARCH_HIGH;  // they are what is looked at
             def.position[0] = placeOf(i);
             def.position[1] = kStone;
             def.diameter = kExhibits[i].diameter;

@@ -25,6 +25,7 @@ struct Case {
     float boxed;                                 // part of the picture that one fire's bounds take
     uint32_t cell = 2, steps = 64, octaves = 4;  // as FwWorldDef's
     uint32_t preset = FW_FIRE_CAMP;
+    uint32_t tier = FW_FIRE_TIER_AUTO;
 };
 
 class Fires {
@@ -52,6 +53,7 @@ class Fires {
             FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
             fwInitFirePreset(&def, case_.preset);
             def.flags = case_.flags;
+            def.tier = case_.tier;
             def.seed = 7 + i;
             def.position[0] = 1.1f * (float(i % 8) - 0.5f * float(std::min(case_.fires, 8u) - 1));
             def.position[1] = 2.4f * float(i / 8);
@@ -176,6 +178,8 @@ FW_VOLUME_ROW(samework, "volume/samework/360p", 640, 360, 1, FW_FIRE_NO_SMOKE, 0
 FW_VOLUME_ROW(delivered, "volume/delivered/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f);
 FW_VOLUME_ROW(quarter, "volume/onequarter_screen/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.25f);
 FW_VOLUME_ROW(small, "volume/15percent_screen/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.15f);
+FW_VOLUME_ROW(hero, "volume/hero/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.15f, 2, 64, 4,
+              FW_FIRE_CAMP, FW_FIRE_TIER_MARCH_HIGH);
 FW_VOLUME_ROW(steps16, "volume/steps16/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 16);
 FW_VOLUME_ROW(steps24, "volume/steps24/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 24);
 FW_VOLUME_ROW(steps32, "volume/steps32/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 32);

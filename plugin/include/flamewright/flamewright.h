@@ -658,7 +658,9 @@ typedef enum FwVolumetricFireFlags {
 } FwVolumetricFireFlags;
 typedef enum FwFireTier { /* how a view shows it: the view that RecordOutside gets; others march what they show */
     FW_FIRE_TIER_AUTO = 0,       /* by its size on the screen; 32 flames are marched at most, the 16 largest high */
-    FW_FIRE_TIER_MARCH_HIGH = 1, /* each frame, up to 64 samples a ray */
+    FW_FIRE_TIER_MARCH_HIGH = 1, /* each frame, up to 64 samples a ray. Of one that asks for it rays that meet little
+                                    flame take more than AUTO lets them: its thin tongues show the least grain,
+                                    and it costs half as much again */
     FW_FIRE_TIER_MARCH_LOW = 2,  /* each frame, two thirds of them */
     FW_FIRE_TIER_IMPOSTOR = 3,   /* a card that faces the camera, up to 24 cells across the flame: marched as those
                                     are, but twelve in a frame, in turn, however many there are. Meant for flames

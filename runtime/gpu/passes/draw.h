@@ -132,6 +132,7 @@ struct VolumeItem {  // a volumetric flame that a view may show
     vec3 tip{};               // m, from there to where its mean height ends
     float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
     bool smokes = false;
+    bool hero = false;  // FW_FIRE_TIER_MARCH_HIGH was asked for
     vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
 };
 extern const DrawPass kVolumePass;

@@ -29,8 +29,10 @@ constexpr float kAllDetail = 96.0f;  // px across a flame from which its samples
 // samples would show as bands.
 constexpr float kNoLayers = 100.0f;
 // Samples that a ray takes closer together rather than fewer, of a flame of that many cells; of
-// smaller ones, whose rays are fewer, up to so many times as many.
+// smaller ones, whose rays are fewer, up to so many times as many; of one that is to be as good as
+// can be so many for a cell, up to that: where it is small they are close already.
 constexpr float kLeastSamples = 20.0f, kLeastInSmall = 1.6f;
+constexpr float kLeastPerCell = 0.5f, kLeastOfHero = 48.0f;
 constexpr float kLeastSpacing = 0.5f;  // of small and of large ones, of what they say
 constexpr float kSamplesPerStep = 2.75f;
 constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
@@ -103,11 +105,12 @@ uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
 }
 
-// VolumeMarch::least: of those with few steps no more than half of what they may take.
-uint32_t leastOf(const VolumeDraw& draw, const VolumeScreen& screen, float cell) {
-    const float small = kNoLayers * cell / volumeWide(draw, screen);
-    const float least = kLeastSamples * std::clamp(small, 1.0f, kLeastInSmall);
-    return std::min(uint32_t(least), mostOf(draw, screen) / 2);
+// VolumeMarch::least: of those with few steps no more than three quarters of what they may take.
+uint32_t leastOf(const VolumeItem& item, const VolumeScreen& screen, float cell) {
+    const float cells = volumeWide(item.draw, screen) / cell;
+    float least = kLeastSamples * std::clamp(kNoLayers / cells, 1.0f, kLeastInSmall);
+    if (item.hero) least = std::max(least, std::min(kLeastPerCell * cells, kLeastOfHero));
+    return std::min(uint32_t(least), 3 * mostOf(item.draw, screen) / 4);
 }
 
 float coarser(float cell) { return cell < 1.0f ? 2.0f * cell : cell + 1.0f; }
@@ -263,7 +266,7 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
         // Flames of few cells are probed more closely, or rays go past them.
         const float wide = volumeWide(draw, screen) / cell;
         march.apart = wide < 8.0f ? 1 : wide < 48.0f ? 2 : 4;
-        march.least = leastOf(draw, screen, cell);
+        march.least = leastOf(item, screen, cell);
         march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
         VolumeComposite& composite = one.composite;
         composite.place =

@@ -72,6 +72,7 @@ uint32_t VkBackend::State::orderVolumes(
         item.base = volumes[i].base;
         item.tip = volumes[i].tip;
         item.smokes = volumes[i].smokes;
+        item.hero = volumes[i].tier == FW_FIRE_TIER_MARCH_HIGH;
         item.near = item.draw.front;
         item.far = item.draw.front + item.draw.deep * float(slabs);
         volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);
