@@ -484,6 +484,28 @@ class Volume : public GpuTest {
                          part(std::abs(ours.y - theirs.y), size.y)});
     }
 
+    // How far pixels are off those wanted, but for what all up to so many columns and rows from
+    // them are in the mean; and the light of those wanted. Pixels nearer to the border are left
+    // out.
+    struct Rough {
+        double off = 0, light = 0;
+    };
+    static Rough roughOf(const std::vector<vec4>& drawn, const std::vector<vec4>& wanted,
+                         uint32_t columns, uint32_t rows) {
+        const uint32_t wide = 2 * columns + 1, all = wide * (2 * rows + 1);
+        const auto off = [&](uint32_t i) { return drawn[i].x - wanted[i].x; };
+        Rough rough;
+        for (uint32_t y = rows; y + rows < kSide; ++y)
+            for (uint32_t x = columns; x + columns < kSide; ++x) {
+                const uint32_t i = y * kSide + x, first = i - rows * kSide - columns;
+                float sum = 0;
+                for (uint32_t k = 0; k < all; ++k) sum += off(first + k / wide * kSide + k % wide);
+                rough.off += double(std::abs(off(i) - sum / float(all)));
+                rough.light += double(wanted[i].x);
+            }
+        return rough;
+    }
+
     // How much pixels differ from the mean of their four neighbours, over the mean of all.
     static float grainOf(const std::vector<vec4>& picture) {
         double different = 0, all = 0;
@@ -841,16 +863,8 @@ TEST_F(Volume, NoCombFromInside) {
         look(eye, at, 10);
         const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);
         const std::vector<vec4> wanted = march(flame, FW_FIRE_CAMP, true, 128);
-        constexpr uint32_t kAround = 4;  // px
-        const auto off = [&](uint32_t i) { return drawn[i].x - wanted[i].x; };
-        for (uint32_t y = 0; y < kSide; ++y)
-            for (uint32_t x = kAround; x + kAround < kSide; ++x) {
-                const uint32_t i = y * kSide + x;
-                float mean = 0;
-                for (uint32_t k = 0; k <= 2 * kAround; ++k) mean += off(i + k - kAround);
-                comb += double(std::abs(off(i) - mean / float(2 * kAround + 1)));
-                all += double(wanted[i].x);
-            }
+        const Rough rough = roughOf(drawn, wanted, 4, 0);
+        comb += rough.off, all += rough.light;
     }
     std::printf("           %.4f of the light\n", comb / all);
     EXPECT_GT(all, 0);
@@ -863,10 +877,8 @@ TEST_F(Volume, ThinTonguesAreNoBeads) {
     if (!device_) return;
     makeRig();
     constexpr int kViews = 12;
-    constexpr float kAcross = 170;   // px, of the flame
-    constexpr uint32_t kAround = 3;  // px
-    constexpr uint32_t kBox = 2 * kAround + 1;
-    double beads[2] = {};  // where AUTO marches it, where it asks
+    constexpr float kAcross = 170;  // px, of the flame
+    double beads[2] = {};           // where AUTO marches it, where it asks
     for (int k = 0; k < 2 * kViews; ++k) {
         const int i = k / 2;
         gpu::VolumeFlame flame = flameOf(FW_FIRE_BONFIRE, 1.0f + 0.3f * float(i), FW_FIRE_NO_SMOKE);
@@ -879,20 +891,9 @@ TEST_F(Volume, ThinTonguesAreNoBeads) {
         look(eye, at, glm::degrees(2 * std::atan(0.5f * wide * float(kSide) / kAcross / away)));
         const std::vector<vec4> drawn = draw({&flame, 1}, FW_DEPTH_NONE);
         const std::vector<vec4> wanted = march(flame, FW_FIRE_BONFIRE, true, 400);
-        const auto off = [&](uint32_t x, uint32_t y) {
-            return drawn[y * kSide + x].x - wanted[y * kSide + x].x;
-        };
-        double rough = 0, light = 0;
-        for (uint32_t y = kAround; y + kAround < kSide; ++y)
-            for (uint32_t x = kAround; x + kAround < kSide; ++x) {
-                float mean = 0;
-                for (uint32_t p = 0; p < kBox * kBox; ++p)
-                    mean += off(x + p % kBox - kAround, y + p / kBox - kAround);
-                rough += double(std::abs(off(x, y) - mean / float(kBox * kBox)));
-                light += double(wanted[y * kSide + x].x);
-            }
-        EXPECT_GT(light, 0) << "view " << i;
-        beads[k % 2] += rough / std::max(light, 1e-9) / kViews;
+        const Rough rough = roughOf(drawn, wanted, 3, 3);
+        EXPECT_GT(rough.light, 0) << "view " << i;
+        beads[k % 2] += rough.off / std::max(rough.light, 1e-9) / kViews;
     }
     std::printf("           %.4f of the light, %.4f where it asks\n", beads[0], beads[1]);
     EXPECT_LT(beads[0], 0.045);

@@ -106,8 +106,7 @@ uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
 }
 
 // VolumeMarch::least: of those with few steps no more than three quarters of what they may take.
-uint32_t leastOf(const VolumeItem& item, const VolumeScreen& screen, float cell) {
-    const float cells = volumeWide(item.draw, screen) / cell;
+uint32_t leastOf(const VolumeItem& item, const VolumeScreen& screen, float cells) {
     float least = kLeastSamples * std::clamp(kNoLayers / cells, 1.0f, kLeastInSmall);
     if (item.hero) least = std::max(least, std::min(kLeastPerCell * cells, kLeastOfHero));
     return std::min(uint32_t(least), 3 * mostOf(item.draw, screen) / 4);
@@ -266,7 +265,7 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
         // Flames of few cells are probed more closely, or rays go past them.
         const float wide = volumeWide(draw, screen) / cell;
         march.apart = wide < 8.0f ? 1 : wide < 48.0f ? 2 : 4;
-        march.least = leastOf(item, screen, cell);
+        march.least = leastOf(item, screen, wide);
         march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
         VolumeComposite& composite = one.composite;
         composite.place =
