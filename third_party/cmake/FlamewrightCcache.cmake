@@ -4,7 +4,11 @@ if(PROJECT_IS_TOP_LEVEL)
     if(FW_CCACHE)
         foreach(language C CXX)
             if(NOT CMAKE_${language}_COMPILER_LAUNCHER)
-                set(CMAKE_${language}_COMPILER_LAUNCHER ${FW_CCACHE})
+                # ccache takes files that use a precompiled header only when both are set: its own
+                # sloppiness and GCC's option.
+                set(CMAKE_${language}_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+                    CCACHE_SLOPPINESS=pch_defines,time_macros ${FW_CCACHE})
+                add_compile_options($<$<COMPILE_LANG_AND_ID:${language},GNU>:-fpch-preprocess>)
             endif()
         endforeach()
     endif()
