@@ -132,13 +132,9 @@ uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows
                                            uint32_t capacity) {
     uint32_t count = 0;
     (void)onContext("fwContext_GetMemoryReport", context, [&](FwContext& c) {
-        // One row per component, summed over the worlds.
         std::pmr::vector<FwMemoryRow> sums(&c.memory);
         std::pmr::vector<gpu::MemoryRow> given(&c.memory);
-        const std::lock_guard lock(c.mutex);
-        for (FwWorld* world : c.worlds) {
-            given.clear();
-            world->backend->memoryRows(given);
+        const auto add = [&] {
             for (const gpu::MemoryRow& row : given) {
                 auto sum = std::find_if(sums.begin(), sums.end(), [&](const FwMemoryRow& known) {
                     return std::strncmp(known.name, row.name, sizeof known.name - 1) == 0;
@@ -150,6 +146,14 @@ uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows
                 sum->bytes += row.bytes;
                 sum->capacity += row.capacity;
             }
+            given.clear();
+        };
+        c.device->memoryRows(given);
+        add();
+        const std::lock_guard lock(c.mutex);
+        for (const FwWorld* world : c.worlds) {
+            world->backend->memoryRows(given);
+            add();
         }
         count = uint32_t(sums.size());
         if (rows) std::copy_n(sums.begin(), std::min(count, capacity), rows);

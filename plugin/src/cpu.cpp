@@ -23,6 +23,12 @@ class CpuDevice final : public Device {
         std::snprintf(info.deviceName, sizeof info.deviceName, "cpu");
         info.gpuTimers = 1;
     }
+    void memoryRows(std::pmr::vector<gpu::MemoryRow>&) const override {}
+    void checkTarget(FwTargetId) override {
+        core::fail(FW_ERROR_WRONG_BACKEND,
+                   "The context is on the cpu backend; the call needs FW_BACKEND_VULKAN.");
+    }
+    void unregisterTarget(FwTargetId id) override { checkTarget(id); }
     void prepare() override {}
     void step(gpu::Backend&, world::World& world, float deltaTime) override {
         const edge::Stopwatch time(world);

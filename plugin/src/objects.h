@@ -5,12 +5,39 @@
 #include "net/client.h"
 #include "net/server.h"
 
+#include <atomic>
 #include <mutex>
 #include <optional>
 
+namespace fw::edge {
+
+// What fwWorld_Read... give to any thread: a copy that each frame leaves.
+struct Snapshot {
+    explicit Snapshot(std::pmr::memory_resource* memory) : lights(memory), objects(memory) {}
+    std::atomic<bool> wanted{false};  // some thread reads
+    std::mutex mutex;                 // of what follows
+    bool there = false;
+    std::pmr::vector<FwLight> lights;
+    std::pmr::vector<world::StateCopy> objects;  // by slot
+};
+
+template <class What>
+struct Deferred {  // to be destroyed once the frame is complete
+    What what{};
+    uint64_t frameIndex = 0;
+};
+
+}  // namespace fw::edge
+
 struct FwContext {
     explicit FwContext(const FwCallbacks& given)
-        : callbacks(given), memory(given), log(given), worlds(&memory), cooked(&memory) {}
+        : callbacks(given),
+          memory(given),
+          log(given),
+          worlds(&memory),
+          deferredWorlds(&memory),
+          deferredTargets(&memory),
+          cooked(&memory) {}
 
     FwCallbacks callbacks;
     fw::core::Memory memory;
@@ -21,13 +48,16 @@ struct FwContext {
 
     std::mutex mutex;  // of what is below
     std::pmr::vector<FwWorld*> worlds;
+    std::pmr::vector<fw::edge::Deferred<FwWorld*>> deferredWorlds;  // of `worlds`
+    std::pmr::vector<fw::edge::Deferred<FwTargetId>> deferredTargets;
     // The last cooked mesh, between the call that asks for its size and the one that takes it.
     std::pmr::vector<std::byte> cooked;
     uint64_t cookedKey = 0;
 };
 
 struct FwWorld {
-    explicit FwWorld(FwContext* owner) : context(owner) {}
+    explicit FwWorld(FwContext* owner)
+        : context(owner), snapshot(&owner->memory), doomed(&owner->memory) {}
 
     FwContext* context;
     fw::edge::LastMessage message;
@@ -36,6 +66,12 @@ struct FwWorld {
     // At most one of them, while the world is shared.
     std::optional<fw::net::Server> server;
     std::optional<fw::net::Client> client;
+
+    // What other threads use while one steps or records the world.
+    std::atomic<uint64_t> newestFrame{0};  // that it has begun to step or record
+    fw::edge::Snapshot snapshot;
+    std::mutex doomedMutex;
+    std::pmr::vector<FwObjectRef> doomed;  // fwWorld_DestroyLater, in the order of the calls
 };
 
 namespace fw::edge {
@@ -70,6 +106,11 @@ inline void answerAtOnce(FwWorld* handle) {
     Device& device = *handle->context->device;
     if (device.answersAtOnce()) device.step(*handle->backend, *handle->world, 0.0f);
 }
+
+// Before a step: destroys what fwWorld_DestroyLater named, as far as nothing uses it. deferred.cpp
+void destroyDoomed(FwWorld& handle);
+// After a step: the copy for other threads, where one reads. snapshot.cpp
+void publish(FwWorld& handle) noexcept;
 
 template <class T>
 void checkPointer(T* pointer, const char* name) {

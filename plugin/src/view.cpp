@@ -18,6 +18,40 @@ void checkRange(const float* values, unsigned count, const char* name, const cha
     }
 }
 
+// A view that is given row by row, or a projection that was left empty, would show nothing.
+void checkMatrices(const FwView& view, const char* name) {
+    static constexpr unsigned kLastRow[4] = {3, 7, 11, 15};
+    for (unsigned i = 0; i < 4; ++i) {
+        const float wanted = i == 3 ? 1.0f : 0.0f, value = view.view[kLastRow[i]];
+        if (std::fabs(value - wanted) > 1e-3f)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%s.view[%u] is %g; the last row of a view matrix is 0 0 0 1, elements 3, 7, 11 "
+                       "and 15. Matrices are column-major.",
+                       name, kLastRow[i], double(value));
+    }
+    const auto at = [&](unsigned column, unsigned row) {
+        return double(view.view[column * 4 + row]);
+    };
+    const double determinant = at(0, 0) * (at(1, 1) * at(2, 2) - at(2, 1) * at(1, 2)) -
+                               at(1, 0) * (at(0, 1) * at(2, 2) - at(2, 1) * at(0, 2)) +
+                               at(2, 0) * (at(0, 1) * at(1, 2) - at(1, 1) * at(0, 2));
+    if (std::fabs(determinant) < 1e-12)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s.view has determinant %g; a view turns and moves the world, it does not flatten "
+                   "it.",
+                   name, determinant);
+    for (unsigned row : {0u, 1u, 3u}) {
+        bool empty = true;
+        for (unsigned column = 0; column < 4; ++column)
+            empty &= view.projection[column * 4 + row] == 0.0f;
+        if (empty)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%s.projection has zeros in all of row %u; nothing would show. Matrices are "
+                       "column-major.",
+                       name, row);
+    }
+}
+
 }  // namespace
 
 void checkView(const FwView& view, const char* name) {
@@ -25,6 +59,7 @@ void checkView(const FwView& view, const char* name) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.flags is 0x%x; it is zero.", name, view.flags);
     checkRange(view.view, 16, name, "view", -1e9f, 1e9f);
     checkRange(view.projection, 16, name, "projection", -1e9f, 1e9f);
+    checkMatrices(view, name);
     checkRange(view.sunDirection, 3, name, "sunDirection", -1.001f, 1.001f);
     const float* sun = view.sunDirection;
     const float length = std::sqrt(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]);

@@ -26,7 +26,7 @@ void defaults(FwVulkanTargetDef& def) noexcept {
     def.samples = 1;
     def.colorAttachmentCount = 1;
     def.depthMode = FW_DEPTH_TEST;
-    def.encoding = FW_OUTPUT_LINEAR;
+    def.encoding = FW_OUTPUT_AUTO;
 }
 void defaults(FwVulkanFrame&) noexcept {}
 void defaults(FwVulkanWishes& def) noexcept { def.minimumApiVersion = VK_API_VERSION_1_0; }
@@ -86,6 +86,14 @@ class VulkanDevice final : public Device {
             static_cast<gpu::vk::VkBackend*>(backend));
     }
     void fillInfo(FwContextInfo& info) const noexcept override { context_.fillInfo(info); }
+    void memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const override {
+        context_.memoryRows(out);
+    }
+    void checkTarget(FwTargetId id) override {
+        FwPipelineProgress unused{};
+        (void)context_.targetReady(id, unused);
+    }
+    void unregisterTarget(FwTargetId id) override { context_.unregisterTarget(id); }
     void prepare() override {
         lookTextures();
         context_.prepare();
@@ -175,6 +183,26 @@ void checkHost(const FwVulkanHost& host) {
           "FwVulkanHost::enabledInstanceExtensions");
 }
 
+void checkScissor(const VkRect2D& scissor) {
+    const auto check = [](int32_t offset, uint32_t extent, const char* axis, const char* size) {
+        if (offset < 0 || offset > 32768)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanFrame::scissor.offset.%s is %d; the limits are [0, 32768].", axis,
+                       offset);
+        if (extent > 32768)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanFrame::scissor.extent.%s is %u; the limits are [0, 32768].", size,
+                       extent);
+    };
+    check(scissor.offset.x, scissor.extent.width, "x", "width");
+    check(scissor.offset.y, scissor.extent.height, "y", "height");
+    if ((scissor.extent.width == 0) != (scissor.extent.height == 0))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanFrame::scissor.extent is %u x %u; both are 0 (no scissor) or neither. "
+                   "Where nothing is to be drawn leave out the call.",
+                   scissor.extent.width, scissor.extent.height);
+}
+
 FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
     const FwVulkanFrame frame = readDef(given, FW_DEF_VULKAN_FRAME, "FwVulkanFrame");
     constexpr uint32_t kKnown = FW_FRAME_SECONDARY | FW_FRAME_SLOT_PACING;
@@ -185,6 +213,7 @@ FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
     if (frame.reserved != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::reserved is %u; it is zero.",
                    frame.reserved);
+    checkScissor(frame.scissor);
     if (frame.frameIndex == 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::frameIndex is 0; it starts at 1.");
     if (frame.flags & FW_FRAME_SLOT_PACING) {
@@ -207,13 +236,60 @@ FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
     return frame;
 }
 
+// For fwWorld_DestroyAfterFrame, on whatever thread.
+void noteFrame(FwWorld& world, const FwVulkanFrame& frame) noexcept {
+    if (frame.frameIndex > world.newestFrame) world.newestFrame = frame.frameIndex;
+}
+
 FwView checkedView(const FwView* given) {
     const FwView view = readDef(given, FW_DEF_VIEW, "FwView");
     checkView(view, "FwView");
     return view;
 }
 
-void checkTarget(const FwVulkanTargetDef& def) {
+const char* encodingName(uint32_t encoding) noexcept {
+    return encoding == FW_OUTPUT_LINEAR      ? "FW_OUTPUT_LINEAR (0)"
+           : encoding == FW_OUTPUT_SRGB_VIEW ? "FW_OUTPUT_SRGB_VIEW (1)"
+                                             : "FW_OUTPUT_DISPLAY_UNORM (2)";
+}
+
+// A contradiction would show as a fire that is too dark or too bright, and nothing else.
+void checkEncoding(const FwVulkanTargetDef& def, const core::Log& log) {
+    const uint32_t asked = gpu::vk::Context::encodingOf(def.colorFormat);
+    if (def.encoding == FW_OUTPUT_AUTO || def.encoding == asked) return;
+    if (asked == FW_OUTPUT_AUTO) {
+        log.write(FW_LOG_WARNING,
+                  "FwVulkanTargetDef::colorFormat is %d, which is not known to be float, sRGB or "
+                  "UNORM; %s is used as given.",
+                  int(def.colorFormat), encodingName(def.encoding));
+        return;
+    }
+    core::fail(FW_ERROR_INVALID_ARGUMENT,
+               "FwVulkanTargetDef::encoding is %s and colorFormat is %d, %s; use %s or "
+               "FW_OUTPUT_AUTO (3).",
+               encodingName(def.encoding), int(def.colorFormat),
+               asked == FW_OUTPUT_LINEAR      ? "a float format"
+               : asked == FW_OUTPUT_SRGB_VIEW ? "an sRGB format, which encodes by itself"
+                                              : "a UNORM format, which ends at 1 and encodes nothing",
+               encodingName(asked));
+}
+
+// Surfaces hide what is behind them by the depth that they write.
+void checkSurfaces(const FwVulkanTargetDef& def, const core::Log& log) {
+    if (def.flags & FW_TARGET_NO_SURFACES) return;
+    if (def.depthMode == FW_DEPTH_TEST_ONLY)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthMode is FW_DEPTH_TEST_ONLY (2) and flags is 0x%x; "
+                   "surfaces that write no depth show their far sides. Use FW_DEPTH_TEST (1), or "
+                   "FW_TARGET_NO_SURFACES (4) and a target of another mode for them.",
+                   def.flags);
+    if (def.depthMode == FW_DEPTH_NONE)
+        log.write(FW_LOG_WARNING,
+                  "FwVulkanTargetDef::depthMode is FW_DEPTH_NONE without FW_TARGET_NO_SURFACES; "
+                  "meshes that overlap on the screen show their far sides.");
+}
+
+void checkTarget(const FwVulkanTargetDef& def, const core::Log& log) {
     const auto limit = [](uint32_t value, const char* field, uint32_t low, uint32_t high) {
         if (value < low || value > high)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -253,7 +329,8 @@ void checkTarget(const FwVulkanTargetDef& def) {
     limit(def.viewMask, "viewMask", 0, 0);
     limit(def.depthMode, "depthMode", 0, FW_DEPTH_SAMPLED);
     limit(def.reversedDepth, "reversedDepth", 0, 1);
-    limit(def.encoding, "encoding", 0, FW_OUTPUT_DISPLAY_UNORM);
+    limit(def.encoding, "encoding", 0, FW_OUTPUT_AUTO);
+    if (composite) limit(def.subpass, "subpass", 0, 0);
     if (def.depthMode == FW_DEPTH_SAMPLED && (def.flags & FW_TARGET_NO_FLAMES))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::flags has FW_TARGET_NO_FLAMES and depthMode is "
@@ -277,6 +354,8 @@ void checkTarget(const FwVulkanTargetDef& def) {
                    "FwVulkanTargetDef::depthMode is %u and depthFormat is %d; a format is given if "
                    "and only if there is depth.",
                    def.depthMode, int(def.depthFormat));
+    checkEncoding(def, log);
+    checkSurfaces(def, log);
 }
 
 void checkVertices(const FwVulkanVertices& def) {
@@ -391,7 +470,7 @@ FwResult FW_CALL fwContext_RegisterTarget(FwContext* context, const FwVulkanTarg
         auto& device = edge::vulkanOf(c);
         const FwVulkanTargetDef def =
             edge::readDef(given, FW_DEF_VULKAN_TARGET, "FwVulkanTargetDef");
-        edge::checkTarget(def);
+        edge::checkTarget(def, c.log);
         *id = device.context().registerTarget(def);
         return FW_OK;
     });
@@ -400,7 +479,21 @@ FwResult FW_CALL fwContext_RegisterTarget(FwContext* context, const FwVulkanTarg
 FwResult FW_CALL fwContext_UnregisterTarget(FwContext* context, FwTargetId id) {
     return onContext("fwContext_UnregisterTarget", context, [&](FwContext& c) {
         edge::vulkanOf(c).context().unregisterTarget(id);
+        const std::lock_guard lock(c.mutex);
+        std::erase_if(c.deferredTargets, [&](const auto& one) {
+            return one.what.index1 == id.index1 && one.what.generation == id.generation;
+        });
         return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwTarget_IsReady(FwContext* context, FwTargetId id, FwPipelineProgress* progress) {
+    return onContext("fwTarget_IsReady", context, [&](FwContext& c) {
+        const uint32_t size = progress ? edge::checkInfo(progress, "FwPipelineProgress") : 0;
+        FwPipelineProgress filled{};
+        const bool ready = edge::vulkanOf(c).context().targetReady(id, filled);
+        if (progress) edge::writeInfo(progress, size, filled);
+        return ready ? FW_OK : FW_NOT_READY;
     });
 }
 
@@ -419,6 +512,8 @@ FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* give
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(givenView);
         w.checkFrame(frame.frameIndex, frame.deltaTime);
+        edge::noteFrame(*world, frame);
+        edge::destroyDoomed(*world);
         if (!backend.beginOutside(frame)) return FW_NOT_READY;
         try {
             w.advance(frame.frameIndex, frame.deltaTime);
@@ -427,6 +522,7 @@ FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* give
             throw;
         }
         backend.endOutside(view);
+        edge::publish(*world);
         return FW_OK;
     });
 }
@@ -440,6 +536,7 @@ FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* given
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(givenView);
         if (!edge::checkViewport(viewport)) return FW_OK;
+        edge::noteFrame(*world, frame);
         return backend.recordInside(frame, target, view, *viewport) ? FW_OK : FW_NOT_READY;
     });
 }
@@ -473,6 +570,7 @@ FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* gi
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwVulkanFrame::flags has FW_FRAME_SECONDARY; a composite begins a render "
                        "pass, which needs a primary command buffer.");
+        edge::noteFrame(*world, frame);
         if (images.width == 0 || images.height == 0) return FW_OK;
         if (images.width > 32768 || images.height > 32768)
             core::fail(FW_ERROR_INVALID_ARGUMENT,

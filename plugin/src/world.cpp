@@ -127,6 +127,7 @@ void FW_CALL fwDestroyWorld(FwWorld* world) {
     {
         const std::lock_guard lock(context->mutex);
         std::erase(context->worlds, world);
+        std::erase_if(context->deferredWorlds, [&](const auto& one) { return one.what == world; });
     }
     freeWorld(world);
 }
@@ -560,7 +561,10 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
 
 FwResult FW_CALL fwWorld_Step(FwWorld* world, float deltaTime) {
     return onWorld("fwWorld_Step", world, [&](world::World& w) {
+        world->newestFrame = w.lastFrame() + 1;
+        edge::destroyDoomed(*world);
         world->context->device->step(*world->backend, w, deltaTime);
+        edge::publish(*world);
         return FW_OK;
     });
 }
@@ -714,6 +718,7 @@ FwResult FW_CALL fwWorld_Load(FwWorld* world, const void* bytes, uint64_t size) 
     return onWorld("fwWorld_Load", world, [&](world::World& w) {
         checkPointer(bytes, "bytes");
         w.load({static_cast<const std::byte*>(bytes), size_t(size)});
+        edge::publish(*world);
         return FW_OK;
     });
 }

@@ -5,6 +5,7 @@
 namespace fw::world {
 
 void EventQueue::push(const FwEvent& event) noexcept {
+    const std::lock_guard lock(mutex_);
     if (pushed_ - polled_ == kCapacity) {
         ++polled_;
         ++dropped_;
@@ -13,12 +14,24 @@ void EventQueue::push(const FwEvent& event) noexcept {
 }
 
 uint32_t EventQueue::poll(std::span<FwEvent> out) noexcept {
+    const std::lock_guard lock(mutex_);
     const auto given = uint32_t(std::min<uint64_t>(pushed_ - polled_, out.size()));
     for (uint32_t i = 0; i < given; ++i) out[i] = at(polled_++);
     return given;
 }
 
+void EventQueue::clear() noexcept {
+    const std::lock_guard lock(mutex_);
+    polled_ = pushed_;
+}
+
+uint64_t EventQueue::next() const noexcept {
+    const std::lock_guard lock(mutex_);
+    return polled_;
+}
+
 uint64_t EventQueue::takeDropped() noexcept {
+    const std::lock_guard lock(mutex_);
     const uint64_t dropped = dropped_;
     dropped_ = 0;
     return dropped;

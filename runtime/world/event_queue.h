@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <memory_resource>
+#include <mutex>
 #include <span>
 #include <vector>
 
 namespace fw::world {
 
+// One thread pushes, saves and clears; any other may poll meanwhile.
 class EventQueue {
  public:
     static constexpr uint32_t kCapacity = 4096;
@@ -17,12 +19,12 @@ class EventQueue {
 
     void push(const FwEvent& event) noexcept;
     uint32_t poll(std::span<FwEvent> out) noexcept;
-    void clear() noexcept { polled_ = pushed_; }
+    void clear() noexcept;
     // Events lost since the last call.
     uint64_t takeDropped() noexcept;
 
     // Events are numbered as they come. The next to be polled, and one past the last.
-    [[nodiscard]] uint64_t next() const noexcept { return polled_; }
+    [[nodiscard]] uint64_t next() const noexcept;
     [[nodiscard]] uint64_t end() const noexcept { return pushed_; }
     // The first that is still in the ring, be it polled or not, and one from there on.
     [[nodiscard]] uint64_t oldest() const noexcept {
@@ -33,6 +35,7 @@ class EventQueue {
     }
 
  private:
+    mutable std::mutex mutex_;
     std::pmr::vector<FwEvent> ring_;
     uint64_t polled_ = 0, pushed_ = 0, dropped_ = 0;
 };

@@ -109,6 +109,33 @@ void World::objectState(FwBurnableMeshId id, FwObjectState& state) {
     if (components::keepsBook(object.data)) state.energy = double(object.story.energy) / 1048576;
 }
 
+void World::copyStates(std::pmr::vector<StateCopy>& to) {
+    to.resize(objects_.slotCount());
+    const auto copy = [&](uint32_t slot, const Object& object) {
+        StateCopy& one = to[slot];
+        one.state = {};
+        one.touched = object.touched || object.play.burn1 != 0;
+        objectState(object.id, one.state);
+    };
+    for (uint32_t slot = 0; slot < to.size(); ++slot) {
+        StateCopy& one = to[slot];
+        const core::Owned<Object>* owned = objects_.at(slot);
+        const uint32_t generation = objects_.idOf(slot).generation;
+        const bool known = one.live && one.generation == generation;
+        one.live = owned != nullptr;
+        one.generation = generation;
+        if (!owned) continue;
+        if (!known || one.touched)
+            copy(slot, **owned);
+        else
+            one.state.frameIndex = readbackFrame_;
+    }
+    for (const Object* object : touched_)
+        if (!to[object->slot].touched) copy(object->slot, *object);
+    for (const Object* object : playing_)
+        if (!to[object->slot].touched) copy(object->slot, *object);
+}
+
 void World::energyBook(FwEnergyBook& book) noexcept {
     // Of what flames give off (fluxFrom has the same share), in parts that add up.
     constexpr uint64_t kRadiatedPercent = 33;

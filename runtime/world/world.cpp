@@ -204,6 +204,8 @@ FwImageId World::createImage(const FwImageDef& def) {
     }
 }
 
+bool World::showsImage(FwImageId id) { return imageUsers_[images_.get(id).slot] > 1; }
+
 void World::destroyImage(FwImageId id) {
     const uint32_t slot = images_.get(id).slot;
     backend_.destroyImage(slot);

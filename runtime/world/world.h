@@ -148,6 +148,13 @@ struct Object {
     bool skinMoved = false;  // else they are at rest
 };
 
+struct StateCopy {  // of the object in a slot
+    uint32_t generation = 0;  // of it; where there is none: of the next one there
+    bool live = false;
+    bool touched = false;  // its fire may change; else frameIndex is that of the last readback
+    FwObjectState state{};
+};
+
 struct Tag {
     FwBurnableMeshId object{};
     uint32_t texel = 0, tag = 0;
@@ -373,6 +380,7 @@ class World {
     void destroyMaterial(FwMaterialId id) { materials_.destroy(id); }
     FwImageId createImage(const FwImageDef& def);
     void destroyImage(FwImageId id);
+    [[nodiscard]] bool showsImage(FwImageId id);  // some object does
     FwMeshId createMesh(const FwMeshDef& def);
     void destroyMesh(FwMeshId id);
     void meshInfo(FwMeshId id, FwMeshInfo& info);
@@ -428,8 +436,12 @@ class World {
     // Takes readbacks that have come since; what memory refuses comes with the next frame.
     void collect() noexcept;
     [[nodiscard]] uint64_t lastFrame() const noexcept { return lastFrame_; }
+    [[nodiscard]] uint32_t maxLights() const noexcept { return def_.maxLights; }
 
-    uint32_t pollEvents(std::span<FwEvent> out);
+    uint32_t pollEvents(std::span<FwEvent> out);  // [any]
+    // Of all burnable meshes, by slot, as objectState has them. `to` is that of an earlier call, or
+    // empty: what never burnt is not read again.
+    void copyStates(std::pmr::vector<StateCopy>& to);
     void tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag);
     void objectState(FwBurnableMeshId id, FwObjectState& state);
     FwQueryId requestPoint(FwBurnableMeshId id, const float position[3]);

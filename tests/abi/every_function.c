@@ -43,6 +43,9 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwCreateWorld(NULL, NULL, NULL));
     RUNS(fwDestroyWorld(NULL));
     IS_ZERO(fwWorld_GetLastMessage(NULL, NULL, 0));
+    REFUSES(fwWorld_DestroyAfterFrame(NULL, 0));
+    IS_ZERO(fwContext_Collect(NULL, 0));
+    REFUSES(fwWorld_DestroyLater(NULL, NULL));
     REFUSES(fwWorld_SetWind(NULL, NULL));
     REFUSES(fwWorld_SetFlags(NULL, 0));
     REFUSES(fwWorld_AddBlocker(NULL, NULL, NULL));
@@ -122,11 +125,13 @@ int fwTestCallEverything(int* calls) {
     IS_ZERO(fwWorld_PollEvents(NULL, NULL, 0));
     REFUSES(fwWorld_TagPoint(NULL, object, NULL, 0));
     REFUSES(fwWorld_GetObjectState(NULL, object, NULL));
+    REFUSES(fwWorld_ReadObjectState(NULL, object, NULL));
     REFUSES(fwWorld_RequestPoint(NULL, object, NULL, NULL));
     REFUSES(fwWorld_FetchPoint(NULL, query, NULL));
     REFUSES(fwWorld_RequestArrival(NULL, object, NULL, NULL));
     REFUSES(fwWorld_FetchArrival(NULL, query, NULL));
     IS_ZERO(fwWorld_GetLights(NULL, NULL, 0));
+    REFUSES(fwWorld_ReadLights(NULL, NULL, NULL));
     REFUSES(fwWorld_RequestSave(NULL));
     REFUSES(fwWorld_FetchSave(NULL, NULL, NULL));
     REFUSES(fwWorld_Load(NULL, NULL, 0));
@@ -161,6 +166,8 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwQueryVulkanWishes(NULL));
     REFUSES(fwContext_RegisterTarget(NULL, NULL, NULL));
     REFUSES(fwContext_UnregisterTarget(NULL, target));
+    REFUSES(fwContext_UnregisterTargetAfterFrame(NULL, target, 0));
+    REFUSES(fwTarget_IsReady(NULL, target, NULL));
     REFUSES(fwWorld_RecordOutside(NULL, NULL, NULL));
     REFUSES(fwWorld_RecordInside(NULL, NULL, target, NULL, NULL));
     REFUSES(fwWorld_RecordComposite(NULL, NULL, target, NULL, NULL));

@@ -22,6 +22,7 @@ struct Shot {  // how the host draws
     uint32_t depthSamples = 0;  // of a sampled depth, 0: as samples
     float depthValue = -1;  // everywhere in a composite's or a sampled depth; -1: as the mode says
     bool asNeeded = true;   // FW_TARGET_AS_NEEDED
+    VkRect2D scissor{};     // FwVulkanFrame::scissor
     [[nodiscard]] bool attachesDepth() const { return depth && depthMode != FW_DEPTH_SAMPLED; }
     [[nodiscard]] bool samplesDepth() const { return depth && depthMode == FW_DEPTH_SAMPLED; }
 };
@@ -279,8 +280,10 @@ class HostDraw : public GpuTest {
         VulkanCounts inside;
         rig_->alsoRecord = [&](const FwVulkanFrame& frame) {
             const VkCommandBuffer commands = frame.commandBuffer;
+            FwVulkanFrame ours = frame;
+            ours.scissor = shot.scissor;
             if (shot.composite) {
-                recordComposite(shot, frame, target, view, color, depth, nearest, farthest);
+                recordComposite(shot, ours, target, view, color, depth, nearest, farthest);
             } else {
                 VkClearValue clears[2]{};
                 clears[0].color = {{0, 0, 1, 1}};
@@ -296,7 +299,6 @@ class HostDraw : public GpuTest {
                 vkCmdBeginRenderPass(commands, &begin,
                                      second ? VK_SUBPASS_CONTENTS_SECONDARY_COMMAND_BUFFERS
                                             : VK_SUBPASS_CONTENTS_INLINE);
-                FwVulkanFrame ours = frame;
                 if (shot.samplesDepth()) {
                     ours.sampledDepth = depth.view;
                     ours.sampledDepthLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;

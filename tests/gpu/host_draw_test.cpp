@@ -54,6 +54,11 @@ TEST_F(HostDraw, EncodingsAgree) {
         if (std::abs(a.rgb[i] - b.rgb[i]) > 2.5f / 255) ++differ;
         most = std::max(most, c.rgb[i]);
     }
+    for (const Shot* named : {&srgb, &unorm, &linear}) {
+        Shot automatic = *named;
+        automatic.encoding = FW_OUTPUT_AUTO;
+        EXPECT_EQ(shoot(automatic).rgb, shoot(*named).rgb) << "format " << named->color;
+    }
     // Flames blend in light over sRGB and in display values over UNORM.
     EXPECT_LT(differ, a.rgb.size() / 25) << "of " << a.rgb.size();
     EXPECT_GT(most, 1.0f) << "fire is brighter than white";
@@ -320,6 +325,38 @@ TEST_F(HostDraw, NewKindsOfMaterialComeWithTheirPipelines) {
     EXPECT_EQ(shoot(late).rgb, shoot(all).rgb) << "it burns";
 }
 
+// What lies in the scissor is as without it; outside is the host's. In a pass of the host's, in a
+// composite, and where what is soft is drawn at half resolution first.
+TEST_F(HostDraw, DrawsWithinTheScissorAlone) {
+    if (!device_) return;
+    Shot inPass, composite, half;
+    composite.composite = half.composite = true;
+    half.depthMode = FW_DEPTH_SAMPLED;
+    half.flags = FW_TARGET_HALF_EFFECTS;
+    half.depthValue = 1;
+    for (Shot* shot : {&inPass, &composite, &half}) {
+        const Picture whole = shoot(*shot);
+        shot->scissor = {{50, 20}, {14, 17}};
+        const Picture cut = shoot(*shot);
+        uint32_t inside = 0, differ = 0, outside = 0;
+        for (uint32_t y = 0; y < kHeight; ++y)
+            for (uint32_t x = 8; x < kWidth - 8; ++x) {  // the strips beside are the host's
+                const float *a = whole.at(x, y), *b = cut.at(x, y);
+                const bool shown = x >= 50 && x < 64 && y >= 20 && y < 37;
+                const bool drawn = std::abs(b[0]) + std::abs(b[1]) + std::abs(b[2] - 1) > 0.02f;
+                if (!shown) {
+                    outside += drawn;
+                    continue;
+                }
+                inside += drawn;
+                differ += a[0] != b[0] || a[1] != b[1] || a[2] != b[2];
+            }
+        EXPECT_EQ(outside, 0u);
+        EXPECT_EQ(differ, 0u);
+        EXPECT_GT(inside, shot == &half ? 10u : 100u) << "some of the fire lies in the scissor";
+    }
+}
+
 TEST_F(HostDraw, TargetsAreChecked) {
     if (!device_) return;
     const VkRenderPass pass = makePass({});
@@ -344,6 +381,7 @@ TEST_F(HostDraw, TargetsAreChecked) {
     refused([](auto& d) { d.depthMode = 17; }, "depthMode");
     refused([](auto& d) { d.depthFormat = VK_FORMAT_UNDEFINED; }, "depthFormat");
     refused([](auto& d) { d.colorFormat = VK_FORMAT_R32G32B32A32_UINT; }, "colorFormat");
+    refused([](auto& d) { d.depthFormat = VK_FORMAT_R32_SFLOAT; }, "depthFormat is 100");
     refused(
         [](auto& d) {
             d.depthMode = FW_DEPTH_SAMPLED;

@@ -2060,7 +2060,7 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
         layBooks();
         const auto targets = [&] {
             std::pmr::vector<gpu::MemoryRow> rows;
-            rig_->backend.memoryRows(rows);
+            rig_->context.memoryRows(rows);
             uint64_t sum = 0;
             for (const gpu::MemoryRow& row : rows)
                 if (std::string_view(row.name) == "targets") sum += row.bytes;

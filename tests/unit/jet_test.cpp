@@ -130,7 +130,7 @@ class HeatBook final : public gpu::Backend {
     }
     const gpu::Readback* nextReadback() override { return nullptr; }
     std::span<const gpu::PassTime> passTimes() override { return {}; }
-    void memoryRows(std::pmr::vector<gpu::MemoryRow>&) override {}
+    void memoryRows(std::pmr::vector<gpu::MemoryRow>&) const override {}
 
     // Every gate that it came through would have to be gone.
     static bool stands(std::span<const gpu::TexelEvent> batch, const gpu::TexelEvent& event) {

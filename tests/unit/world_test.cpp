@@ -162,7 +162,7 @@ class Recorder final : public gpu::Backend {
         return &current.readback;
     }
     std::span<const gpu::PassTime> passTimes() override { return {}; }
-    void memoryRows(std::pmr::vector<gpu::MemoryRow>&) override {}
+    void memoryRows(std::pmr::vector<gpu::MemoryRow>&) const override {}
 
     Answer current;
     gpu::BurnObject last{};

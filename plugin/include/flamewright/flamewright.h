@@ -161,11 +161,16 @@ FW_API size_t FW_CALL fwContext_GetLastMessage(FwContext* context, char* text, s
  * FW_OK when all is ready. Calling it is optional only on an own device. [any] */
 FW_API FwResult FW_CALL fwContext_Prepare(FwContext* context);
 
-typedef struct FwMemoryRow { /* one component's GPU memory */
-    char name[48];
+typedef struct FwMemoryRow {  /* memory of one component or of one buffer */
+    char name[48];            /* unique in a report */
     uint64_t bytes, capacity; /* in use, and reserved for it */
 } FwMemoryRow;
-/* Writes at most capacity rows, returns how many there are. [any] */
+/* Writes at most capacity rows, returns how many there are. On the Vulkan backend a row for each
+ * component comes first ("meshes" to "targets"), whatever the number of worlds. Row "blocks" follows:
+ * `bytes` is the sum of the components, `capacity` is FwContextInfo::gpuMemoryUsed. Then a row for
+ * each buffer of the worlds, summed over them; the components hold these bytes already.
+ * On the cpu backend: texel states, and tiles and lists, summed over the worlds.
+ * Waits for no step and no recording. [any] */
 FW_API uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows, uint32_t capacity);
 
 /* ---- world ------------------------------------------------------------------------------------- */
@@ -229,6 +234,34 @@ static inline FwWorldDef fwDefaultWorldDef(void) {
 FW_API FwResult FW_CALL fwCreateWorld(FwContext* context, const FwWorldDef* def, FwWorld** world); /* [any] */
 FW_API void FW_CALL fwDestroyWorld(FwWorld* world); /* null is fine [world] */
 FW_API size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t capacity); /* [any] */
+
+/* ---- deferred destruction: for scene-node destructors, which run while frames are in flight ------ */
+
+/* fwContext_Collect destroys the world once its completedFrameIndex is at least `frameIndex`. 0: the newest
+ * frame that the world has recorded or stepped, the one in progress included. May be called while
+ * another thread records with the world; no call that begins later may use it. A second call
+ * changes the frame. fwDestroyContext destroys what still waits. [any] */
+FW_API FwResult FW_CALL fwWorld_DestroyAfterFrame(FwWorld* world, uint64_t frameIndex);
+/* Destroys what waits for frames up to completedFrameIndex: the frame of the host's that the GPU has
+ * finished, with all before it. UINT64_MAX: everything, where the host has waited or the backend is the cpu's.
+ * Returns how many worlds and targets still wait. Call it once a frame. [any, while no call uses what it
+ * destroys: a frame that is complete has ended its calls] */
+FW_API uint32_t FW_CALL fwContext_Collect(FwContext* context, uint64_t completedFrameIndex);
+
+typedef enum FwObjectKind { /* of an id, for fwWorld_DestroyLater */
+    FW_OBJECT_MATERIAL = 1, FW_OBJECT_IMAGE = 2, FW_OBJECT_MESH = 3, FW_OBJECT_BURNABLE_MESH = 4,
+    FW_OBJECT_BLOCKER = 5, FW_OBJECT_VOLUMETRIC_FIRE = 6, FW_OBJECT_FIRE_PROFILE = 7,
+    FW_OBJECT_FIRE_COLLIDER = 8, FW_OBJECT_FIRE_EMITTER = 9, FW_OBJECT_FLIPBOOK = 10,
+    FW_OBJECT_PARTICLE_FIELD = 11, FW_OBJECT_WIND_ZONE = 12, FW_OBJECT_ROOM = 13, FW_OBJECT_BURN = 14,
+    FW_OBJECT_KIND_COUNT = 15, FW_OBJECT_KIND_FORCE32 = 0x7fffffff
+} FwObjectKind;
+typedef struct FwObjectRef { uint32_t kind, index1, generation, reserved; } FwObjectRef; /* FwObjectKind; the id's; 0 */
+/* As the fwWorld_Destroy... or fwWorld_Remove... function of that kind, at the beginning of the world's next
+ * fwWorld_Step or fwWorld_RecordOutside. In any order: what something still uses (a mesh, a profile, a
+ * flipbook, a baked burn) waits until its last user is gone. An id that is stale by then is a warning in the
+ * log. Frames in flight may still use the object; its memory waits for them. [any] */
+FW_API FwResult FW_CALL fwWorld_DestroyLater(FwWorld* world, const FwObjectRef* object);
+
 /* Uniform wind, m/s, world space, each component within +-120. Filtered over a material's link
  * time before it reaches a front. [world] */
 FW_API FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]);
@@ -1161,7 +1194,8 @@ typedef struct FwEvent {        /* 64 bytes for ever */
     uint64_t reserved;
 } FwEvent;
 /* Oldest first; returns how many were written, 0 when there are no more. At most 4096 wait; then
- * the oldest are dropped and the next one says so in the log. [world] */
+ * the oldest are dropped and the next one says so in the log. Each event is written once: poll from
+ * one place. Waits for no step and no recording. [any] */
 FW_API uint32_t FW_CALL fwWorld_PollEvents(FwWorld*, FwEvent* events, uint32_t capacity);
 /* Raises FW_EVENT_TAG_REACHED once when the texel nearest to `position` (m, world) burns. [world] */
 FW_API FwResult FW_CALL fwWorld_TagPoint(FwWorld*, FwBurnableMeshId id, const float position[3], uint32_t tag);
@@ -1183,6 +1217,11 @@ typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU
     uint32_t plays;            /* 1: a baked burn, see fwWorld_PlayBurn; 0: it is simulated */
 } FwObjectState;
 FW_API FwResult FW_CALL fwWorld_GetObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state); /* [world] */
+/* The same from any thread, as the last fwWorld_Step or fwWorld_RecordOutside left it, without waiting for one
+ * that runs. The first fwWorld_Read... call on a world begins this copying and returns FW_NOT_READY; so does
+ * an object that no frame has copied yet. Copying costs each frame some 0.1 us an object that ever burnt, and
+ * 2 ns an object that never did. FW_ERROR_STALE_ID: the object was gone by that frame. [any] */
+FW_API FwResult FW_CALL fwWorld_ReadObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state);
 
 typedef enum FwPointStateKind {
     FW_POINT_UNBURNT = 0, FW_POINT_BURNING = 1, FW_POINT_BURNT = 2, FW_POINT_WET = 3,
@@ -1462,6 +1501,10 @@ typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host'
  * have the highest bit set); fire emitters (the bit below it). At most FwWorldDef::maxLights; strongest first. Returns
  * how many were written. [world] */
 FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t capacity);
+/* The same from any thread, as the last fwWorld_Step or fwWorld_RecordOutside left it: see
+ * fwWorld_ReadObjectState. *count: room in `lights`, then how many were written. FW_NOT_READY: no frame has
+ * copied them yet, *count is 0. [any] */
+FW_API FwResult FW_CALL fwWorld_ReadLights(FwWorld*, FwLight* lights, uint32_t* count);
 
 /* What fire does to a place: for damage, for what characters feel and see. Of burning meshes (their lights), fire
  * emitters and volumetric fires, as of the last frame; cosmetic. Plumes are McCaffrey's and lean with the wind;

@@ -343,6 +343,54 @@ FwResult setHeatShield(const World& world, FwHeatShieldDef made, Distance distan
                                                      std::span<FwLight> room) noexcept {
     return room.first(fwWorld_GetLights(world.get(), room.data(), uint32_t(room.size())));
 }
+// From any thread: fwWorld_ReadLights. Empty until a frame has copied them.
+[[nodiscard]] inline std::span<const FwLight> readLights(const World& world,
+                                                         std::span<FwLight> room) noexcept {
+    auto count = uint32_t(room.size());
+    (void)fwWorld_ReadLights(world.get(), room.data(), &count);
+    return room.first(count);
+}
+
+// ---- deferred destruction, from any thread
+// ----------------------------------------------------------
+
+// The owner gives the world up; fwContext_Collect destroys it. See fwWorld_DestroyAfterFrame.
+inline void destroyAfterFrame(World& world, uint64_t frameIndex = 0) noexcept {
+    if (fwWorld_DestroyAfterFrame(world.get(), frameIndex) == FW_OK) (void)world.release();
+}
+
+[[nodiscard]] constexpr FwObjectKind kindOf(FwMaterialId) noexcept { return FW_OBJECT_MATERIAL; }
+[[nodiscard]] constexpr FwObjectKind kindOf(FwImageId) noexcept { return FW_OBJECT_IMAGE; }
+[[nodiscard]] constexpr FwObjectKind kindOf(FwMeshId) noexcept { return FW_OBJECT_MESH; }
+[[nodiscard]] constexpr FwObjectKind kindOf(FwBurnableMeshId) noexcept {
+    return FW_OBJECT_BURNABLE_MESH;
+}
+[[nodiscard]] constexpr FwObjectKind kindOf(FwBlockerId) noexcept { return FW_OBJECT_BLOCKER; }
+[[nodiscard]] constexpr FwObjectKind kindOf(FwVolumetricFireId) noexcept {
+    return FW_OBJECT_VOLUMETRIC_FIRE;
+}
+[[nodiscard]] constexpr FwObjectKind kindOf(FwFireProfileId) noexcept {
+    return FW_OBJECT_FIRE_PROFILE;
+}
+[[nodiscard]] constexpr FwObjectKind kindOf(FwFireColliderId) noexcept {
+    return FW_OBJECT_FIRE_COLLIDER;
+}
+[[nodiscard]] constexpr FwObjectKind kindOf(FwFireEmitterId) noexcept {
+    return FW_OBJECT_FIRE_EMITTER;
+}
+[[nodiscard]] constexpr FwObjectKind kindOf(FwFlipbookId) noexcept { return FW_OBJECT_FLIPBOOK; }
+[[nodiscard]] constexpr FwObjectKind kindOf(FwParticleFieldId) noexcept {
+    return FW_OBJECT_PARTICLE_FIELD;
+}
+[[nodiscard]] constexpr FwObjectKind kindOf(FwWindZoneId) noexcept { return FW_OBJECT_WIND_ZONE; }
+[[nodiscard]] constexpr FwObjectKind kindOf(FwRoomId) noexcept { return FW_OBJECT_ROOM; }
+[[nodiscard]] constexpr FwObjectKind kindOf(FwBurnId) noexcept { return FW_OBJECT_BURN; }
+// fwWorld_DestroyLater.
+template <GenerationalId Id>
+FwResult destroyLater(FwWorld* world, Id id) noexcept {
+    const FwObjectRef object{uint32_t(kindOf(id)), id.index1, id.generation, 0};
+    return fwWorld_DestroyLater(world, &object);
+}
 
 }  // namespace fw
 #endif

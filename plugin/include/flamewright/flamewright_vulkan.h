@@ -59,35 +59,46 @@ typedef struct FwVulkanWishes {
 FW_API FwResult FW_CALL fwQueryVulkanWishes(FwVulkanWishes* wishes);
 
 typedef enum FwDepthMode {
-    FW_DEPTH_NONE = 0,      /* the target has no depth */
+    FW_DEPTH_NONE = 0,      /* the target has no depth. Surfaces are drawn without one: right for flat sheets
+                               that do not overlap; anything else shows its far sides (a warning says so) */
     FW_DEPTH_TEST = 1,      /* tested and written in the host's pass */
-    FW_DEPTH_TEST_ONLY = 2, /* tested, never written by us */
+    FW_DEPTH_TEST_ONLY = 2, /* tested, never written by us: flames and smoke. Surfaces hide themselves by the
+                               depth that they write, so this mode needs FW_TARGET_NO_SURFACES */
     FW_DEPTH_SAMPLED = 3,   /* sampled, not attached: flames and smoke, which fade softly where they
                                meet what the image holds. Surfaces need an attached depth: draw them
                                first, by a target of another mode with FW_TARGET_NO_FLAMES. */
     FW_DEPTH_MODE_FORCE32 = 0x7fffffff
 } FwDepthMode;
 typedef enum FwOutputEncoding {
-    FW_OUTPUT_LINEAR = 0,  /* float target, linear, multiplied by FwView::exposure */
-    FW_OUTPUT_SRGB_VIEW = 1,   /* linear values into an sRGB view; tone mapped by us */
-    FW_OUTPUT_DISPLAY_UNORM = 2, /* UNORM target shown as it is: tone mapped and sRGB-encoded by us */
+    FW_OUTPUT_LINEAR = 0,  /* float format: scene-linear, times FwView::exposure; no tone mapping */
+    FW_OUTPUT_SRGB_VIEW = 1,   /* sRGB format: times exposure, tone mapped by us; the format encodes */
+    FW_OUTPUT_DISPLAY_UNORM = 2, /* UNORM format shown as it is: times exposure, tone mapped and sRGB-encoded by us */
+    FW_OUTPUT_AUTO = 3,    /* default: the one of the three that colorFormat asks for. Registration refuses a format
+                              that is not known to be float, sRGB or UNORM: name the encoding for it */
     FW_OUTPUT_ENCODING_FORCE32 = 0x7fffffff
 } FwOutputEncoding;
 
 typedef struct FwVulkanTargetDef {
     uint32_t structSize;
-    uint32_t subpass;
+    uint32_t subpass;              /* 0 with FW_TARGET_COMPOSITE */
     VkRenderPass renderPass;       /* the host's; null only with FW_TARGET_COMPOSITE */
-    VkFormat colorFormat, depthFormat; /* depthFormat UNDEFINED if none; that of the sampled image */
-    uint32_t samples;              /* 1, 2, 4, 8, 16 */
+    VkFormat colorFormat;          /* of the attachment's view that the subpass writes (in its pColorAttachments[0], not
+                                      of a resolve attachment) */
+    VkFormat depthFormat;          /* of the subpass's depth attachment, or with FW_DEPTH_SAMPLED of the sampled image's
+                                      view; UNDEFINED with FW_DEPTH_NONE */
+    uint32_t samples;              /* 1, 2, 4, 8, 16: of the attachments, not of what was asked for; see renderPassInfo */
     uint32_t colorAttachmentCount; /* of the subpass, [1, 8]; we write the first and mask the others off: above 1 needs independentBlend declared */
     uint32_t viewMask;             /* 0; anything else is refused in this version */
     uint32_t depthMode;            /* FwDepthMode */
     uint32_t reversedDepth;        /* 1: near is 1 */
-    uint32_t encoding;             /* FwOutputEncoding */
+    uint32_t encoding;             /* FwOutputEncoding, default FW_OUTPUT_AUTO; refused if it contradicts colorFormat */
     uint32_t flags;                /* FwTargetFlags */
     uint32_t depthSamples;         /* of an image for FW_DEPTH_SAMPLED: 0 (default): as samples, or 1..16
                                       (of several its first sample counts) */
+    const void* renderPassInfo;    /* default null. The VkRenderPassCreateInfo or VkRenderPassCreateInfo2 that made
+                                      renderPass, read during the call alone. Vulkan cannot be asked what a pass holds: with
+                                      this, registration checks subpass, colorFormat, depthFormat, samples and
+                                      colorAttachmentCount against it. Without it only validation layers find a wrong one */
 } FwVulkanTargetDef;
 typedef enum FwTargetFlags {
     FW_TARGET_COMPOSITE = 1, /* for fwWorld_RecordComposite: we make the pass */
@@ -115,6 +126,21 @@ static inline FwVulkanTargetDef fwDefaultVulkanTargetDef(void) {
  * count changes. [any, also while recording: nothing is recorded] */
 FW_API FwResult FW_CALL fwContext_RegisterTarget(FwContext*, const FwVulkanTargetDef* def, FwTargetId* id);
 FW_API FwResult FW_CALL fwContext_UnregisterTarget(FwContext*, FwTargetId id); /* the host has waited [any] */
+/* fwContext_Collect unregisters the target once its completedFrameIndex is at least `frameIndex`, the
+ * last frame that draws with it. [any] */
+FW_API FwResult FW_CALL fwContext_UnregisterTargetAfterFrame(FwContext*, FwTargetId id, uint64_t frameIndex);
+
+typedef struct FwPipelineProgress {
+    uint32_t structSize;
+    uint32_t made, total;    /* pipelines: there now, and needed. total grows as registrations begin and, with
+                                FW_TARGET_AS_NEEDED, as objects of new kinds of material are made */
+    uint32_t reserved;
+} FwPipelineProgress;
+/* FW_OK: record calls on the target draw. FW_NOT_READY: fwContext_Prepare is not through (they would record
+ * nothing), or pipelines that a target needs are still being made. `progress` may be null; it counts the pipelines of
+ * fwContext_Prepare and of the target. Null id: of the context and all its targets, registrations in progress included:
+ * for a loading bar, while workers prepare and register. FW_ERROR_STALE_ID. Waits for nobody. [any] */
+FW_API FwResult FW_CALL fwTarget_IsReady(FwContext*, FwTargetId id, FwPipelineProgress* progress);
 
 typedef enum FwFrameFlags {
     FW_FRAME_SECONDARY = 1,      /* commandBuffer is a secondary one */
@@ -124,7 +150,7 @@ typedef enum FwFrameFlags {
 typedef struct FwVulkanFrame {
     uint32_t structSize, flags;      /* FwFrameFlags */
     VkCommandBuffer commandBuffer;   /* recording */
-    uint64_t frameIndex;             /* starts at 1, grows by one for each frame */
+    uint64_t frameIndex;             /* starts at 1, grows by one for each frame; with FW_FRAME_SLOT_PACING, too */
     uint64_t completedFrameIndex;    /* the GPU is done with this one and all before: we may reuse */
     uint32_t frameSlot, framesInFlight; /* slot pacing: the slot's last use is done; 0 in flight is refused */
     float deltaTime;                 /* s, [0, 10]; RecordOutside only */
@@ -138,6 +164,8 @@ typedef struct FwVulkanFrame {
                                         (FW_FIRE_TIER_MARCH_HIGH) have it */
     VkImageLayout sampledColorLayout; /* of it: GENERAL or SHADER_READ_ONLY_OPTIMAL */
     uint32_t reserved;               /* 0 */
+    VkRect2D scissor;                /* RecordInside and RecordComposite: px of the target, drawn within it and the viewport
+                                        alone; offset within [0, 32768]. Default: no extent, which is all of the viewport */
 } FwVulkanFrame;
 static inline FwVulkanFrame fwDefaultVulkanFrame(void) {
     FwVulkanFrame d; fwInitDef(FW_DEF_VULKAN_FRAME, &d, (uint32_t)sizeof d); return d;

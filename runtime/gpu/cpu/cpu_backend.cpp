@@ -452,6 +452,9 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     object->live = true;
     s.rest(*object, slot);
     if (!object->published.empty()) ++s.publishedObjects;
+    s.counts.add(*object);
+    s.counts.tiles = s.tiles.size();
+    s.counts.tileCapacity = s.tiles.capacity();
     s.objects[slot] = std::move(object);
 }
 
@@ -467,6 +470,7 @@ void CpuBackend::destroyObject(uint32_t slot) noexcept {
     std::erase_if(s.burnTiles, [&](const BurnTile& tile) { return tile.object == slot; });
     if (!s.objects[slot]->published.empty()) --s.publishedObjects;
     s.releaseTiles(first, count);
+    s.counts.remove(*s.objects[slot]);
     s.objects[slot] = core::Owned<CpuObject>();
 }
 
@@ -634,24 +638,37 @@ std::span<const PassTime> CpuBackend::passTimes() {
     return {state_->times.data(), state_->timesCount};
 }
 
-void CpuBackend::memoryRows(std::pmr::vector<MemoryRow>& out) {
-    const State& s = *state_;
-    MemoryRow states{"cpu texel states", 0, 0};
-    for (const core::Owned<CpuObject>& object : s.objects) {
-        if (!object) continue;
-        states.bytes +=
-            object->state.size() * sizeof(uint32_t) + object->slowness.size() * sizeof(uint16_t) +
-            object->published.size() * sizeof(float) + object->heat.size() * sizeof(uvec2);
-        states.capacity += object->state.capacity() * sizeof(uint32_t) +
-                           object->slowness.capacity() * sizeof(uint16_t) +
-                           object->published.capacity() * sizeof(float) +
-                           object->heat.capacity() * sizeof(uvec2);
-    }
-    out.push_back(states);
+namespace {
+
+uint64_t stateBytes(const CpuObject& object) noexcept {
+    return object.state.size() * sizeof(uint32_t) + object.slowness.size() * sizeof(uint16_t) +
+           object.published.size() * sizeof(float) + object.heat.size() * sizeof(uvec2);
+}
+uint64_t stateCapacity(const CpuObject& object) noexcept {
+    return object.state.capacity() * sizeof(uint32_t) +
+           object.slowness.capacity() * sizeof(uint16_t) +
+           object.published.capacity() * sizeof(float) + object.heat.capacity() * sizeof(uvec2);
+}
+
+}  // namespace
+
+void CpuCounts::add(const CpuObject& object) noexcept {
+    this->stateBytes += cpu::stateBytes(object);
+    this->stateCapacity += cpu::stateCapacity(object);
+}
+
+void CpuCounts::remove(const CpuObject& object) noexcept {
+    this->stateBytes -= cpu::stateBytes(object);
+    this->stateCapacity -= cpu::stateCapacity(object);
+}
+
+void CpuBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const {
+    const CpuCounts& counts = state_->counts;
+    out.push_back({"cpu texel states", counts.stateBytes, counts.stateCapacity});
     const size_t perTile = sizeof(TileState) + 6 * sizeof(uint32_t) + sizeof(uvec4) +
                            sizeof(uint8_t) + sizeof(TileHeat) + sizeof(float) + sizeof(FrontTile) +
                            64 * sizeof(uint32_t) + sizeof(BurnTile);
-    out.push_back({"cpu tiles and lists", s.tiles.size() * perTile, s.tiles.capacity() * perTile});
+    out.push_back({"cpu tiles and lists", counts.tiles * perTile, counts.tileCapacity * perTile});
 }
 
 std::span<const uint32_t> CpuBackend::state(uint32_t slot) const {

@@ -39,7 +39,7 @@ class CpuBackend final : public Backend {
     void run(const FramePlan& plan) override;
     const Readback* nextReadback() override;
     std::span<const PassTime> passTimes() override;
-    void memoryRows(std::pmr::vector<MemoryRow>& out) override;
+    void memoryRows(std::pmr::vector<MemoryRow>& out) const override;
 
     // For tests and benches: the whole state of an object, one word per texel.
     [[nodiscard]] std::span<const uint32_t> state(uint32_t slot) const;

@@ -5,6 +5,7 @@
 #include "mesh/front/tile.h"
 
 #include <array>
+#include <atomic>
 
 namespace fw::gpu::cpu {
 
@@ -88,6 +89,14 @@ enum Timer : uint32_t {
     kTimerExchange,
     kTimerField,
     kTimerCount
+};
+
+// What memoryRows says, which any thread calls.
+struct CpuCounts {
+    std::atomic<uint64_t> stateBytes{0}, stateCapacity{0};  // of all objects' texels
+    std::atomic<uint64_t> tiles{0}, tileCapacity{0};        // world tiles
+    void add(const CpuObject& object) noexcept;
+    void remove(const CpuObject& object) noexcept;
 };
 
 struct CpuBackend::State {
@@ -201,6 +210,7 @@ struct CpuBackend::State {
     uint32_t random = 1;    // of the shuffle switch
     uint64_t runTiles = 0;
     uint32_t publishedObjects = 0;
+    CpuCounts counts;
     // Fire at a distance.
     std::pmr::vector<std::pmr::vector<RemoteTile>> remoteTiles{memory};  // by mesh
     std::pmr::vector<uint32_t> neighbours{memory};

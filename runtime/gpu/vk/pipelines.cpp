@@ -2,13 +2,17 @@
 
 #include "core/error.h"
 #include "gpu/passes/frame_graph.h"
+#include "gpu/vk/vk_backend.h"
 #include "mesh/burn_domain.h"
 #include "shaders_embedded.h"
 #include "shared/deform.h"
 #include "shared/look.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
+#include <cstring>
 #include <string_view>
 
 namespace fw::gpu::vk {
@@ -26,12 +30,83 @@ bool hasStencil(VkFormat format) noexcept {
            format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_S8_UINT;
 }
 
+bool hasDepthAspect(VkFormat format) noexcept {
+    return format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_X8_D24_UNORM_PACK32 ||
+           format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM_S8_UINT ||
+           format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+}
+
+// What the host says of its pass against what the pass was made with.
+template <class Info>
+void checkAgainst(const FwVulkanTargetDef& def, const Info& info) {
+    const auto differs = [](const char* field, uint32_t given, const char* where, uint32_t has) {
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::%s is %u and the pass of renderPassInfo has %u %s; give %u, "
+                   "or the info of the pass in renderPass.",
+                   field, given, has, where, has);
+    };
+    if (def.subpass >= info.subpassCount)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::subpass is %u and the pass of renderPassInfo has %u; it is "
+                   "below that.",
+                   def.subpass, info.subpassCount);
+    const auto& subpass = info.pSubpasses[def.subpass];
+    if (def.colorAttachmentCount != subpass.colorAttachmentCount)
+        differs("colorAttachmentCount", def.colorAttachmentCount, "colour attachments in the subpass",
+                subpass.colorAttachmentCount);
+    const uint32_t color = subpass.pColorAttachments[0].attachment;
+    if (color >= info.attachmentCount)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::renderPassInfo: subpass %u does not use its first colour "
+                   "attachment, the one that we write.",
+                   def.subpass);
+    const auto& image = info.pAttachments[color];
+    if (def.colorFormat != image.format)
+        differs("colorFormat", uint32_t(def.colorFormat), "as its first colour attachment's format",
+                uint32_t(image.format));
+    if (def.samples != uint32_t(image.samples))
+        differs("samples", def.samples, "samples in its first colour attachment",
+                uint32_t(image.samples));
+    const uint32_t depth = subpass.pDepthStencilAttachment
+                               ? subpass.pDepthStencilAttachment->attachment
+                               : VK_ATTACHMENT_UNUSED;
+    if (def.depthMode == FW_DEPTH_NONE || def.depthMode == FW_DEPTH_SAMPLED) return;
+    if (depth >= info.attachmentCount)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthMode is %u and subpass %u of renderPassInfo has no depth "
+                   "attachment; use FW_DEPTH_NONE (0) or FW_DEPTH_SAMPLED (3).",
+                   def.depthMode, def.subpass);
+    if (def.depthFormat != info.pAttachments[depth].format)
+        differs("depthFormat", uint32_t(def.depthFormat), "as its depth attachment's format",
+                uint32_t(info.pAttachments[depth].format));
+}
+
+void checkAgainstPass(const FwVulkanTargetDef& def) {
+    if (def.flags & FW_TARGET_COMPOSITE)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::renderPassInfo is given with FW_TARGET_COMPOSITE; that pass is "
+                   "ours, it is null there.");
+    VkStructureType type{};
+    std::memcpy(&type, def.renderPassInfo, sizeof type);
+    if (type == VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO)
+        checkAgainst(def, *static_cast<const VkRenderPassCreateInfo*>(def.renderPassInfo));
+    else if (type == VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO_2)
+        checkAgainst(def, *static_cast<const VkRenderPassCreateInfo2*>(def.renderPassInfo));
+    else
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::renderPassInfo has sType %d; it is a VkRenderPassCreateInfo "
+                   "(38) or a VkRenderPassCreateInfo2 (1000109004).",
+                   int(type));
+}
+
 TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     const auto bad = [](const char* name, unsigned value, const char* limit) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanTargetDef::%s is %u; %s.", name, value,
                    limit);
     };
     TargetKey key;
+    key.encoding = def.encoding == FW_OUTPUT_AUTO ? Context::encodingOf(def.colorFormat)
+                                                  : FwOutputEncoding(def.encoding);
     key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
     if (def.flags & ~63u) bad("flags", def.flags, "bits 0 to 5 are known");
     key.asNeeded = (def.flags & FW_TARGET_AS_NEEDED) != 0;
@@ -45,7 +120,7 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     key.surfaces = !(def.flags & FW_TARGET_NO_SURFACES) && def.depthMode != FW_DEPTH_SAMPLED;
     key.flames = !(def.flags & FW_TARGET_NO_FLAMES);
     key.half = half && key.flames;
-    if (key.half) key.halfColor = halfColorFor(def.colorFormat, def.encoding);
+    if (key.half) key.halfColor = halfColorFor(def.colorFormat, uint32_t(key.encoding));
     if (key.composite && def.renderPass)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::renderPass is given with FW_TARGET_COMPOSITE; that pass is "
@@ -63,7 +138,7 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     if (def.viewMask) bad("viewMask", def.viewMask, "multiview is not in this version: it is 0");
     if (def.samples == 0 || def.samples > 16 || (def.samples & (def.samples - 1)))
         bad("samples", def.samples, "1, 2, 4, 8 or 16 are possible");
-    if (def.encoding > FW_OUTPUT_DISPLAY_UNORM) bad("encoding", def.encoding, "the last one is 2");
+    if (def.encoding > FW_OUTPUT_AUTO) bad("encoding", def.encoding, "the last one is 3");
     if (def.depthMode > FW_DEPTH_SAMPLED) bad("depthMode", def.depthMode, "the last one is 3");
     if (def.reversedDepth > 1) bad("reversedDepth", def.reversedDepth, "it is 0 or 1");
     if (def.depthMode == FW_DEPTH_NONE && def.depthFormat != VK_FORMAT_UNDEFINED && key.composite)
@@ -89,7 +164,24 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
                        "FwVulkanTargetDef::depthFormat is %d; the device %s.", int(def.depthFormat),
                        samples ? "cannot sample it" : "has no such depth attachment");
     }
+    if (key.encoding == FW_OUTPUT_AUTO)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::encoding is FW_OUTPUT_AUTO (3) and colorFormat is %d, which is "
+                   "not known to be float, sRGB or UNORM; name the encoding: FW_OUTPUT_LINEAR (0), "
+                   "FW_OUTPUT_SRGB_VIEW (1) or FW_OUTPUT_DISPLAY_UNORM (2).",
+                   int(def.colorFormat));
+    if (def.depthMode != FW_DEPTH_NONE && !hasDepthAspect(def.depthFormat))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanTargetDef::depthFormat is %d, which has no depth; give a format with a "
+                   "depth aspect, as VK_FORMAT_D32_SFLOAT (126).",
+                   int(def.depthFormat));
     const VkPhysicalDeviceLimits& limits = device.properties.limits;
+    if (key.depthMode != FW_DEPTH_SAMPLED && def.depthMode != FW_DEPTH_NONE &&
+        !(limits.framebufferDepthSampleCounts & def.samples))
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                   "FwVulkanTargetDef::samples is %u; the device's depth sample counts are 0x%x.",
+                   def.samples, limits.framebufferDepthSampleCounts);
+    if (def.renderPassInfo) checkAgainstPass(def);
     if (!(limits.framebufferColorSampleCounts & def.samples))
         core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
                    "FwVulkanTargetDef::samples is %u; the device's colour sample counts are 0x%x.",
@@ -109,7 +201,6 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     key.colorAttachments = def.colorAttachmentCount;
     key.depthMode = FwDepthMode(def.depthMode);
     key.reversedDepth = def.reversedDepth != 0;
-    key.encoding = FwOutputEncoding(def.encoding);
     return key;
 }
 
@@ -302,7 +393,7 @@ class Pipelines::Modules {
 };
 
 void Pipelines::prepare() {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(prepares_);
     if (ready()) return;
     const Table& vk = device_.table;
     for (size_t i = 0; i < compute_.size(); ++i) {
@@ -324,6 +415,7 @@ void Pipelines::prepare() {
         if (result != VK_SUCCESS) objects.pipeline = VK_NULL_HANDLE;
         device_.check(result, "vkCreateComputePipelines");
         device_.name(VK_OBJECT_TYPE_PIPELINE, uint64_t(objects.pipeline), pass.name);
+        ++computeMade_;
     }
     ready_.store(true, std::memory_order_release);
 }
@@ -554,10 +646,10 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
 }
 
 // Those of `passes` that the target shows and has not got.
-void Pipelines::makePipelines(Target& target, PassSet passes) const {
+void Pipelines::makePipelines(Target& target, PassSet passes) {
     const TargetKey& key = target.key;
     const VkRenderPass renderPass = key.composite ? target.ownPass : target.hostPass;
-    Modules modules(*this);
+    PassSet due = 0;
     for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
         if (!(passes >> pass & 1) || target.pipelines[pass].load()) continue;
         const AtHalf atHalf = drawPasses()[pass]->atHalf;
@@ -566,7 +658,27 @@ void Pipelines::makePipelines(Target& target, PassSet passes) const {
         const bool always = atHalf == AtHalf::same || atHalf == AtHalf::soft;
         const bool drawn =
             surface ? key.surfaces : key.flames && (!haze || key.haze) && (always || key.half);
-        if (!drawn) continue;
+        if (drawn) due |= PassSet(1) << pass;
+    }
+    const auto count = uint32_t(std::popcount(due));
+    const uint32_t before = target.made;
+    target.total = before + count;
+    drawTotal_ += count;
+    Modules modules(*this);
+    try {
+        makeDue(target, due, renderPass, modules);
+    } catch (...) {  // what was made stays and counts
+        drawTotal_ -= before + count - target.made;
+        target.total = target.made.load();
+        throw;
+    }
+}
+
+void Pipelines::makeDue(Target& target, PassSet due, VkRenderPass renderPass, Modules& modules) {
+    const TargetKey& key = target.key;
+    for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
+        if (!(due >> pass & 1)) continue;
+        const AtHalf atHalf = drawPasses()[pass]->atHalf;
         TargetKey drawnOn = key;
         VkRenderPass in = renderPass;
         if (key.half && (atHalf == AtHalf::soft || atHalf == AtHalf::depth)) {
@@ -576,6 +688,8 @@ void Pipelines::makePipelines(Target& target, PassSet passes) const {
             in = atHalf == AtHalf::soft ? halfPass(key.halfColor) : halfDepthPass_;
         }
         target.pipelines[pass] = makeDraw(pass, drawnOn, in, modules);
+        ++target.made;
+        ++drawMade_;
     }
 }
 
@@ -612,6 +726,9 @@ void Pipelines::destroyTarget(Target& target) noexcept {
     for (std::atomic<VkPipeline>& pipeline : target.pipelines)
         device_.table.DestroyPipeline(device_.handle, pipeline.exchange(VK_NULL_HANDLE),
                                       device_.allocationCallbacks);
+    drawMade_ -= target.made;
+    drawTotal_ -= target.total;
+    target.made = target.total = 0;
     device_.table.DestroyRenderPass(device_.handle, target.ownPass, device_.allocationCallbacks);
     target.ownPass = VK_NULL_HANDLE;
 }
@@ -621,6 +738,19 @@ void Pipelines::unregisterTarget(FwTargetId id) {
     const std::lock_guard lock(mutex_);
     destroyTarget(*targets_.get(id));
     targets_.destroy(id);
+}
+
+bool Pipelines::targetReady(FwTargetId id, FwPipelineProgress& progress) {
+    uint32_t made = drawMade_, total = drawTotal_;
+    if (id.index1 != 0 || id.generation != 0) {
+        const std::lock_guard lock(mutex_);
+        const Target& target = *targets_.get(id);
+        made = target.made;
+        total = target.total;
+    }
+    progress.made = made + computeMade_;
+    progress.total = std::max(progress.made, total + uint32_t(compute_.size()));
+    return ready() && made >= total;
 }
 
 const Target* Pipelines::findTarget(FwTargetId id) {

@@ -44,6 +44,7 @@ struct Target {
     VkRenderPass hostPass = VK_NULL_HANDLE;  // else; with asNeeded alone it may be used again
     // By draw pass; null: not drawn here, or not needed yet. Worlds draw while others need more.
     std::pmr::vector<std::atomic<VkPipeline>> pipelines;
+    std::atomic<uint32_t> made{0}, total{0};  // of them: there now, and needed
     Target(size_t passes, std::pmr::memory_resource* memory) : pipelines(passes, memory) {}
 };
 
@@ -65,6 +66,8 @@ class Pipelines {
     // From here on all targets have the pipelines of these passes, or it throws. Of the passes that
     // wait for it: with FW_TARGET_AS_NEEDED those of kWaiting.
     void need(PassSet passes);  // [any]
+    // As fwTarget_IsReady. Throws FW_ERROR_STALE_ID.
+    bool targetReady(FwTargetId id, FwPipelineProgress& progress);  // [any]
     // Throws FW_ERROR_STALE_ID. The pointer is good until the target is unregistered.
     const Target* findTarget(FwTargetId id);               // [any]
     [[nodiscard]] bool isTarget(FwTargetId id) noexcept {  // [any]
@@ -95,7 +98,8 @@ class Pipelines {
     VkRenderPass makeHalfPass(VkFormat format, bool clears) const;
     VkPipeline makeDraw(size_t pass, const TargetKey& key, VkRenderPass renderPass,
                         Modules& modules) const;
-    void makePipelines(Target& target, PassSet passes) const;
+    void makePipelines(Target& target, PassSet passes);
+    void makeDue(Target& target, PassSet due, VkRenderPass renderPass, Modules& modules);
     void destroyTarget(Target& target) noexcept;
     void destroy() noexcept;
 
@@ -106,7 +110,10 @@ class Pipelines {
     VkSampler imageSampler_ = VK_NULL_HANDLE, depthSampler_ = VK_NULL_HANDLE;
     std::array<VkRenderPass, kHalfColors.size()> halfPasses_{};
     VkRenderPass halfDepthPass_ = VK_NULL_HANDLE;
-    std::mutex makes_;  // taken before mutex_, by who makes targets or what they need
+    std::mutex prepares_;  // of compute_, until ready_
+    std::atomic<uint32_t> computeMade_{0};
+    std::atomic<uint32_t> drawMade_{0}, drawTotal_{0};  // of all targets, those being made included
+    std::mutex makes_;                                  // taken before mutex_, by who makes targets or what they need
     std::atomic<PassSet> needed_{0};
     std::mutex mutex_;  // of what follows; held for no longer than a record call may wait
     core::HandlePool<FwTargetId, core::Owned<Target>> targets_;

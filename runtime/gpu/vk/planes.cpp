@@ -24,7 +24,7 @@ constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
 
 constexpr Plane kPlanes[] = {
     // resource, space, bytes of a unit, keep, component, name, usage
-    {FW_BIND_OBJECTS, kSpaceObjects, sizeof(BurnObject), true, kComponentObjects, "objects", 0},
+    {FW_BIND_OBJECTS, kSpaceObjects, sizeof(BurnObject), true, kComponentObjects, "object records", 0},
     {FW_BIND_MATERIALS, kSpaceObjects, sizeof(BurnMaterial) * kMaterialsPerObject, true,
      kComponentObjects, "materials", 0},
     {FW_BIND_OBJECT_COUNTERS, kSpaceObjects, sizeof(ObjectCounters), true, kComponentObjects,
@@ -54,7 +54,7 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_BURN_B, kSpaceObjectTiles, 4, true, kComponentLists, "burn list B", 0},
     {FW_BIND_BURN_TILES, kSpaceObjectTiles, sizeof(BurnTile), true, kComponentLists, "burn tiles",
      0},
-    {FW_BIND_PREDICT, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentPredict, "predict", 0},
+    {FW_BIND_PREDICT, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentPredict, "predicted arrivals", 0},
     {FW_BIND_GRADIENT, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentPredict, "gradient", 0},
     {FW_BIND_PREDICT_LIST_A, kSpaceObjectTiles, 4, true, kComponentPredict, "predict list A", 0},
     {FW_BIND_PREDICT_LIST_B, kSpaceObjectTiles, 4, true, kComponentPredict, "predict list B", 0},
@@ -66,7 +66,7 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_ANSWERS, kSpaceProbes, sizeof(ProbeAnswer), false, kComponentLists, "answers", 0},
     {FW_BIND_PUBLISHED, kSpacePublished, 3 * 4 * kTileTexels, true, kComponentObjects, "published",
      0},
-    {FW_BIND_HEAT, kSpaceHeat, 8 * kTileTexels, true, kComponentHeat, "heat", 0},
+    {FW_BIND_HEAT, kSpaceHeat, 8 * kTileTexels, true, kComponentHeat, "heat texels", 0},
     {FW_BIND_TILE_HEAT, kSpaceObjectTiles, sizeof(TileHeat), true, kComponentHeat, "tile heat", 0},
     {FW_BIND_HEAT_MATERIALS, kSpaceObjects, sizeof(HeatMaterial) * kMaterialsPerObject, true,
      kComponentHeat, "heat materials", 0},
@@ -103,7 +103,7 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_LIGHTS, kSpaceFixed, sizeof(BurnLight), true, kComponentFlames, "lights",
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
     {FW_BIND_LIGHT_CELLS, kSpaceFixed, 4, true, kComponentFlames, "light cells", 0},
-    {FW_BIND_FLAMES, kSpaceFlames, sizeof(FlameQuad), true, kComponentFlames, "flames", 0},
+    {FW_BIND_FLAMES, kSpaceFlames, sizeof(FlameQuad), true, kComponentFlames, "flame quads", 0},
     {FW_BIND_DRAW_ARGS, kSpaceFlames, 8, true, kComponentFlames, "draw arguments",
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_EMITTERS, kSpaceEmitters, sizeof(ParticleEmitter), false, kComponentFlames, "emitters",
@@ -365,6 +365,7 @@ void Planes::resize(Space space, uint32_t units, uint64_t lastFrame) {
         else
             retired_.push(lastFrame, slot.now);
         slot.now = fresh[i];
+        bytes_[i] = slot.now.size;
         slot.recorded = false;
         if (slot.before.handle) movesPending_ = true;
     }
@@ -372,6 +373,12 @@ void Planes::resize(Space space, uint32_t units, uint64_t lastFrame) {
 }
 
 uint32_t Planes::allocate(Space space, uint32_t units, uint64_t lastFrame) {
+    const uint32_t first = allocateIn(space, units, lastFrame);
+    usedUnits_[space] = spaces_[space].used();
+    return first;
+}
+
+uint32_t Planes::allocateIn(Space space, uint32_t units, uint64_t lastFrame) {
     const uint32_t first = spaces_[space].allocate(units);
     if (first != RangeAllocator::kNoRange) return first;
     const uint32_t capacity = spaces_[space].capacity();
@@ -398,6 +405,7 @@ uint32_t Planes::allocate(Space space, uint32_t units, uint64_t lastFrame) {
 
 void Planes::release(Space space, uint32_t first, uint32_t units) noexcept {
     spaces_[space].release(first, units);
+    usedUnits_[space] = spaces_[space].used();
 }
 
 void Planes::atLeast(Space space, uint32_t units, uint64_t lastFrame) {
@@ -448,12 +456,11 @@ bool Planes::recordMoves(const Table& table, VkCommandBuffer commands, uint64_t 
 }
 
 void Planes::rows(std::pmr::vector<MemoryRow>& out) const {
-    for (const Slot& slot : slots_) {
-        if (!slot.plane.unitBytes) continue;
-        const RangeAllocator& space = spaces_[slot.plane.space];
-        const uint64_t used =
-            space.used() ? uint64_t(space.used()) * slot.plane.unitBytes : slot.now.size;
-        out.push_back({slot.plane.name, used, slot.now.size});
+    for (uint32_t i = 0; i < kResourceCount; ++i) {
+        const Plane& plane = slots_[i].plane;  // written by the constructor alone
+        if (!plane.unitBytes) continue;
+        const uint64_t units = usedUnits_[plane.space], capacity = bytes_[i];
+        out.push_back({plane.name, units ? units * plane.unitBytes : capacity, capacity});
     }
 }
 

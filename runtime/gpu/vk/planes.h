@@ -7,6 +7,7 @@
 #include "shared/look.h"
 
 #include <array>
+#include <atomic>
 
 namespace fw::gpu::vk {
 
@@ -173,7 +174,7 @@ class Planes {
     // Records the copies that growth left over. True: something was recorded.
     bool recordMoves(const Table& table, VkCommandBuffer commands, uint64_t frameIndex);
     [[nodiscard]] bool movesPending() const noexcept { return movesPending_; }
-    void rows(std::pmr::vector<MemoryRow>& out) const;
+    void rows(std::pmr::vector<MemoryRow>& out) const;  // [any]
     [[nodiscard]] uint64_t bytes(Space space) const noexcept;
 
  private:
@@ -183,6 +184,7 @@ class Planes {
         Buffer before;          // holds the recorded content until the next frame moves it
         bool recorded = false;  // `now` was used by a recorded frame
     };
+    uint32_t allocateIn(Space space, uint32_t units, uint64_t lastFrame);
     // New buffers of so many units, more or fewer; fewer: the last ones are free.
     void resize(Space space, uint32_t units, uint64_t lastFrame);
     uint32_t limit(Space space) const noexcept;
@@ -193,6 +195,9 @@ class Planes {
     RetireQueue& retired_;
     std::array<Slot, kResourceCount> slots_{};
     std::pmr::vector<RangeAllocator> spaces_;
+    // For `rows`, which any thread calls: units in use by space, bytes by resource.
+    std::array<std::atomic<uint32_t>, kSpaceCount> usedUnits_{};
+    std::array<std::atomic<uint64_t>, kResourceCount> bytes_{};
     uint64_t generation_ = 1;
     bool exact_ = false;
     bool movesPending_ = false;

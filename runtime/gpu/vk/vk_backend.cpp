@@ -215,9 +215,6 @@ void VkBackend::renderOffscreen(const FwOffscreenDef& def) { state_->renderOffsc
 const Readback* VkBackend::nextReadback() { return state_->nextReadback(); }
 std::span<const PassTime> VkBackend::passTimes() { return state_->times; }
 
-void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) {
-    state_->deviceMemory.rows(out);
-    state_->planes.rows(out);
-}
+void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->planes.rows(out); }
 
 }  // namespace fw::gpu::vk

@@ -28,6 +28,14 @@ class Context {
     void notifyDeviceLost() noexcept;                         // [any]
     [[nodiscard]] bool deviceLost() const noexcept;           // [any]
 
+    // By component, of all worlds together, and "blocks". [any]
+    void memoryRows(std::pmr::vector<MemoryRow>& out) const;
+    // FW_OUTPUT_AUTO: it is not known what the format asks for. [any]
+    [[nodiscard]] static FwOutputEncoding encodingOf(VkFormat color) noexcept;
+    // As fwTarget_IsReady. Throws FW_ERROR_STALE_ID. [any]
+    bool targetReady(FwTargetId id, FwPipelineProgress& progress);
+    [[nodiscard]] bool isTarget(FwTargetId id) noexcept;  // [any]
+
     // All of FwContextInfo but backend and cpuMemoryUsed. [any]
     void fillInfo(FwContextInfo& info) const noexcept;
     [[nodiscard]] bool ownDevice() const noexcept;
@@ -128,7 +136,7 @@ class VkBackend final : public Backend {
 
     const Readback* nextReadback() override;
     std::span<const PassTime> passTimes() override;
-    void memoryRows(std::pmr::vector<MemoryRow>& out) override;
+    void memoryRows(std::pmr::vector<MemoryRow>& out) const override;
     [[nodiscard]] uint64_t detailBytes() const noexcept override;
 
     struct State;

@@ -23,6 +23,59 @@ void Context::unregisterTarget(FwTargetId id) { state_->pipelines.unregisterTarg
 void Context::notifyDeviceLost() noexcept { state_->device.notifyLost(); }
 bool Context::deviceLost() const noexcept { return state_->device.lost(); }
 bool Context::ownDevice() const noexcept { return state_->device.own; }
+bool Context::isTarget(FwTargetId id) noexcept { return state_->pipelines.isTarget(id); }
+bool Context::targetReady(FwTargetId id, FwPipelineProgress& progress) {
+    return state_->pipelines.targetReady(id, progress);
+}
+
+void Context::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->deviceMemory.rows(out); }
+
+FwOutputEncoding Context::encodingOf(VkFormat color) noexcept {
+    switch (color) {
+        case VK_FORMAT_R16_SFLOAT:
+        case VK_FORMAT_R16G16_SFLOAT:
+        case VK_FORMAT_R16G16B16_SFLOAT:
+        case VK_FORMAT_R16G16B16A16_SFLOAT:
+        case VK_FORMAT_R32_SFLOAT:
+        case VK_FORMAT_R32G32_SFLOAT:
+        case VK_FORMAT_R32G32B32_SFLOAT:
+        case VK_FORMAT_R32G32B32A32_SFLOAT:
+        case VK_FORMAT_B10G11R11_UFLOAT_PACK32:
+            return FW_OUTPUT_LINEAR;
+        case VK_FORMAT_R8_SRGB:
+        case VK_FORMAT_R8G8_SRGB:
+        case VK_FORMAT_R8G8B8_SRGB:
+        case VK_FORMAT_B8G8R8_SRGB:
+        case VK_FORMAT_R8G8B8A8_SRGB:
+        case VK_FORMAT_B8G8R8A8_SRGB:
+        case VK_FORMAT_A8B8G8R8_SRGB_PACK32:
+            return FW_OUTPUT_SRGB_VIEW;
+        case VK_FORMAT_R4G4_UNORM_PACK8:
+        case VK_FORMAT_R4G4B4A4_UNORM_PACK16:
+        case VK_FORMAT_B4G4R4A4_UNORM_PACK16:
+        case VK_FORMAT_R5G6B5_UNORM_PACK16:
+        case VK_FORMAT_B5G6R5_UNORM_PACK16:
+        case VK_FORMAT_R5G5B5A1_UNORM_PACK16:
+        case VK_FORMAT_B5G5R5A1_UNORM_PACK16:
+        case VK_FORMAT_A1R5G5B5_UNORM_PACK16:
+        case VK_FORMAT_R8_UNORM:
+        case VK_FORMAT_R8G8_UNORM:
+        case VK_FORMAT_R8G8B8_UNORM:
+        case VK_FORMAT_B8G8R8_UNORM:
+        case VK_FORMAT_R8G8B8A8_UNORM:
+        case VK_FORMAT_B8G8R8A8_UNORM:
+        case VK_FORMAT_A8B8G8R8_UNORM_PACK32:
+        case VK_FORMAT_A2R10G10B10_UNORM_PACK32:
+        case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
+        case VK_FORMAT_R16_UNORM:
+        case VK_FORMAT_R16G16_UNORM:
+        case VK_FORMAT_R16G16B16_UNORM:
+        case VK_FORMAT_R16G16B16A16_UNORM:
+            return FW_OUTPUT_DISPLAY_UNORM;
+        default:
+            return FW_OUTPUT_AUTO;
+    }
+}
 
 void Context::fillInfo(FwContextInfo& info) const noexcept {
     const Device& device = state_->device;

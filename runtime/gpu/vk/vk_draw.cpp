@@ -178,13 +178,21 @@ constexpr VkPipelineStageFlags kDepthStages =
 void VkBackend::State::setViewport(VkCommandBuffer commands,
                                    const VkViewport& viewport) const noexcept {
     device.table.CmdSetViewport(commands, 0, 1, &viewport);
-    VkRect2D scissor{};
     const float left = std::max(viewport.x, 0.0f), top = std::max(viewport.y, 0.0f);
-    scissor.offset = {int32_t(left), int32_t(top)};
+    VkRect2D shown{{int32_t(left), int32_t(top)}, {}};
     // Whole pixels: half of an odd number of them ends in one.
-    scissor.extent = {uint32_t(std::ceil(std::max(viewport.x + viewport.width - left, 0.0f))),
-                      uint32_t(std::ceil(std::max(viewport.y + viewport.height - top, 0.0f)))};
-    device.table.CmdSetScissor(commands, 0, 1, &scissor);
+    shown.extent = {uint32_t(std::ceil(std::max(viewport.x + viewport.width - left, 0.0f))),
+                    uint32_t(std::ceil(std::max(viewport.y + viewport.height - top, 0.0f)))};
+    if (scissor.extent.width != 0) {
+        const auto meet = [](int32_t& offset, uint32_t& extent, int32_t by, uint32_t byExtent) {
+            const int64_t end = std::min(int64_t(offset) + extent, int64_t(by) + byExtent);
+            offset = std::max(offset, by);
+            extent = uint32_t(std::max<int64_t>(end - offset, 0));
+        };
+        meet(shown.offset.x, shown.extent.width, scissor.offset.x, scissor.extent.width);
+        meet(shown.offset.y, shown.extent.height, scissor.offset.y, scissor.extent.height);
+    }
+    device.table.CmdSetScissor(commands, 0, 1, &shown);
 }
 
 void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
@@ -431,8 +439,16 @@ bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, co
                        double(viewport.minDepth), double(viewport.maxDepth));
     }
     checkLentColor(target, frame);
+    const VkPhysicalDeviceLimits& limits = s.device.properties.limits;
+    if (viewport.width > float(limits.maxViewportDimensions[0]) ||
+        viewport.height > float(limits.maxViewportDimensions[1]))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "viewport is %g x %g pixels; the device's maxViewportDimensions are %u x %u.",
+                   double(viewport.width), double(viewport.height), limits.maxViewportDimensions[0],
+                   limits.maxViewportDimensions[1]);
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
+    s.scissor = frame.scissor;
     s.recordDraws(slot, frame.commandBuffer, target, view, viewport,
                   s.lentFor(slot, target, frame, frame.sampledDepth, frame.sampledDepthLayout));
     return true;
@@ -457,18 +473,41 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanComposite::depth is null but the target has depth mode %u.",
                    uint32_t(target.key.depthMode));
-    if (hasDepth && target.key.samplesDepth() &&
-        images.depth.layoutBefore == VK_IMAGE_LAYOUT_UNDEFINED)
+    if (hasDepth && images.depth.layoutBefore == VK_IMAGE_LAYOUT_UNDEFINED)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanComposite::depth.layoutBefore is VK_IMAGE_LAYOUT_UNDEFINED; the image "
-                   "would lose the depth that is to be sampled.");
+                   "would lose the depth that is to be tested or sampled.");
+    const auto checkImage = [](const FwVulkanImage& image, const char* name) {
+        const auto refuse = [&](const char* field, uint32_t value, const char* why) {
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanComposite::%s.%s is %u; %s.", name, field,
+                       value, why);
+        };
+        if (image.layoutAfter == VK_IMAGE_LAYOUT_UNDEFINED ||
+            image.layoutAfter == VK_IMAGE_LAYOUT_PREINITIALIZED)
+            refuse("layoutAfter", uint32_t(image.layoutAfter),
+                   "no image can be brought to that layout; name the one of its next use");
+        if (image.stageBefore == 0)
+            refuse("stageBefore", 0, "name the stages that used the image last, or TOP_OF_PIPE (1)");
+        if (image.stageAfter == 0)
+            refuse("stageAfter", 0,
+                   "name the stages that use the image next, or BOTTOM_OF_PIPE (8192)");
+    };
+    checkImage(images.color, "color");
+    if (hasDepth) checkImage(images.depth, "depth");
     checkLentColor(target, frame);
     if (images.width == 0 || images.height == 0) return true;
+    const VkPhysicalDeviceLimits& limits = s.device.properties.limits;
+    if (images.width > limits.maxFramebufferWidth || images.height > limits.maxFramebufferHeight)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanComposite is %u x %u pixels; the device's largest framebuffer is %u x %u.",
+                   images.width, images.height, limits.maxFramebufferWidth,
+                   limits.maxFramebufferHeight);
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
     const State::Lent lent = s.lentFor(slot, target, frame, images.depth.view,
                                        VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
     const VkFramebuffer framebuffer = s.framebufferFor(slot, target, targetId, images);
+    s.scissor = frame.scissor;
 
     const Table& vk = s.device.table;
     const VkCommandBuffer commands = frame.commandBuffer;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace fw::gpu::vk {
 namespace {
@@ -106,6 +107,7 @@ HalfImages* VkBackend::State::recordHalf(FrameInFlight& slot, VkCommandBuffer co
     const bool shows = !burnEmpty || showsEmitters() || !fieldDraws.empty() || !volumes.empty();
     if (!showsAnything() || !shows) return nullptr;
     const HalfPush push = pushFor(seen, viewport);
+    const VkRect2D clip = std::exchange(scissor, {});  // of the picture that this goes over
     HalfImages& half = halfFor(target.key.halfColor, push.texelsX, push.texelsY, slot.frameIndex);
     const Table& vk = device.table;
     if (half.fresh) {
@@ -157,6 +159,7 @@ HalfImages* VkBackend::State::recordHalf(FrameInFlight& slot, VkCommandBuffer co
 
     fill(kHalfTilesPass, 1, half.colorSet.set,
          {0, float(half.height), float(push.tilesX), float(push.tilesY), 0, 1});
+    scissor = clip;
     return &half;
 }
 

@@ -554,6 +554,7 @@ struct VkBackend::State {
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
                      const FwView& view, const VkViewport& viewport, const Lent& lent,
                      DrawPart part = DrawPart::all, const HalfImages* half = nullptr);
+    VkRect2D scissor{};  // of the call that is recorded, px of the host's target; no extent: none
     void setViewport(VkCommandBuffer commands, const VkViewport& viewport) const noexcept;
     Lent lentFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,
                  VkImageView depth, VkImageLayout depthLayout);

@@ -1,0 +1,194 @@
+// Destruction that any thread may ask for while another one steps or records.
+#include "objects.h"
+
+#include <algorithm>
+
+using namespace fw;
+using edge::checkPointer;
+using edge::onContext;
+using edge::onWorld;
+
+namespace {
+
+template <class Id>
+Id idOf(const FwObjectRef& object) noexcept {
+    return {object.index1, object.generation};
+}
+
+void checkRef(const FwObjectRef& object) {
+    if (object.kind < 1 || object.kind >= FW_OBJECT_KIND_COUNT)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwObjectRef::kind is %u; the limits are [1, %u].",
+                   object.kind, uint32_t(FW_OBJECT_KIND_COUNT) - 1);
+    if (object.reserved != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwObjectRef::reserved is %u; it is zero.",
+                   object.reserved);
+    if (object.index1 == 0)
+        core::fail(FW_ERROR_STALE_ID, "FwObjectRef::index1 is 0; the id is null.");
+}
+
+// False: something still uses it, and nothing changed.
+bool destroyNow(world::World& w, const FwObjectRef& object) {
+    try {
+        switch (object.kind) {
+            case FW_OBJECT_MATERIAL:
+                w.destroyMaterial(idOf<FwMaterialId>(object));
+                break;
+            case FW_OBJECT_IMAGE:
+                if (w.showsImage(idOf<FwImageId>(object))) return false;
+                w.destroyImage(idOf<FwImageId>(object));
+                break;
+            case FW_OBJECT_MESH:
+                w.destroyMesh(idOf<FwMeshId>(object));
+                break;
+            case FW_OBJECT_BURNABLE_MESH:
+                w.destroyBurnableMesh(idOf<FwBurnableMeshId>(object));
+                break;
+            case FW_OBJECT_BLOCKER:
+                w.removeBlocker(idOf<FwBlockerId>(object));
+                break;
+            case FW_OBJECT_VOLUMETRIC_FIRE:
+                w.destroyVolumetricFire(idOf<FwVolumetricFireId>(object));
+                break;
+            case FW_OBJECT_FIRE_PROFILE:
+                w.destroyFireProfile(idOf<FwFireProfileId>(object));
+                break;
+            case FW_OBJECT_FIRE_COLLIDER:
+                w.removeFireCollider(idOf<FwFireColliderId>(object));
+                break;
+            case FW_OBJECT_FIRE_EMITTER:
+                w.destroyFireEmitter(idOf<FwFireEmitterId>(object));
+                break;
+            case FW_OBJECT_FLIPBOOK:
+                w.destroyFlipbook(idOf<FwFlipbookId>(object));
+                break;
+            case FW_OBJECT_PARTICLE_FIELD:
+                w.destroyParticleField(idOf<FwParticleFieldId>(object));
+                break;
+            case FW_OBJECT_WIND_ZONE:
+                w.destroyWindZone(idOf<FwWindZoneId>(object));
+                break;
+            case FW_OBJECT_ROOM:
+                w.destroyRoom(idOf<FwRoomId>(object));
+                break;
+            default:
+                w.destroyBurn(idOf<FwBurnId>(object));
+                break;
+        }
+    } catch (const core::Error& error) {
+        if (error.result == FW_ERROR_INVALID_ARGUMENT) return false;
+        throw;
+    }
+    return true;
+}
+
+template <class What>
+void defer(std::pmr::vector<edge::Deferred<What>>& list, const edge::Deferred<What>& one) {
+    const auto known = std::find_if(list.begin(), list.end(), [&](const edge::Deferred<What>& had) {
+        return std::memcmp(&had.what, &one.what, sizeof one.what) == 0;
+    });
+    if (known == list.end())
+        list.push_back(one);
+    else
+        known->frameIndex = one.frameIndex;
+}
+
+// Takes one that is due off the list.
+template <class What>
+bool takeDue(std::pmr::vector<edge::Deferred<What>>& list, uint64_t completed, What& what) noexcept {
+    const auto due = std::find_if(list.begin(), list.end(), [&](const edge::Deferred<What>& one) {
+        return one.frameIndex <= completed;
+    });
+    if (due == list.end()) return false;
+    what = due->what;
+    list.erase(due);
+    return true;
+}
+
+}  // namespace
+
+namespace fw::edge {
+
+void destroyDoomed(FwWorld& handle) {
+    const std::lock_guard lock(handle.doomedMutex);
+    for (bool again = !handle.doomed.empty(); again;) {
+        again = false;
+        for (size_t i = 0; i < handle.doomed.size();) {
+            const FwObjectRef object = handle.doomed[i];
+            try {
+                if (!destroyNow(*handle.world, object)) {
+                    ++i;
+                    continue;
+                }
+            } catch (const core::Error& error) {
+                handle.context->log.write(FW_LOG_WARNING, "fwWorld_DestroyLater: %s",
+                                          error.message);
+                if (error.result != FW_ERROR_STALE_ID) {  // the next step tries again
+                    ++i;
+                    continue;
+                }
+            }
+            handle.doomed.erase(handle.doomed.begin() + std::ptrdiff_t(i));
+            again = true;  // what it used may go now
+        }
+    }
+}
+
+}  // namespace fw::edge
+
+extern "C" {
+
+FwResult FW_CALL fwWorld_DestroyLater(FwWorld* world, const FwObjectRef* object) {
+    return onWorld("fwWorld_DestroyLater", world, [&](world::World&) {
+        checkPointer(object, "object");
+        checkRef(*object);
+        const std::lock_guard lock(world->doomedMutex);
+        world->doomed.push_back(*object);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_DestroyAfterFrame(FwWorld* world, uint64_t frameIndex) {
+    return onWorld("fwWorld_DestroyAfterFrame", world, [&](world::World&) {
+        const uint64_t frame = frameIndex ? frameIndex : world->newestFrame.load();
+        FwContext& context = *world->context;
+        const std::lock_guard lock(context.mutex);
+        defer(context.deferredWorlds, {world, frame});
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwContext_UnregisterTargetAfterFrame(FwContext* context, FwTargetId id,
+                                                      uint64_t frameIndex) {
+    return onContext("fwContext_UnregisterTargetAfterFrame", context, [&](FwContext& c) {
+        if (id.index1 == 0) core::fail(FW_ERROR_STALE_ID, "Target id is null.");
+        c.device->checkTarget(id);
+        const std::lock_guard lock(c.mutex);
+        defer(c.deferredTargets, {id, frameIndex});
+        return FW_OK;
+    });
+}
+
+uint32_t FW_CALL fwContext_Collect(FwContext* context, uint64_t completedFrameIndex) {
+    uint32_t waiting = 0;
+    (void)onContext("fwContext_Collect", context, [&](FwContext& c) {
+        for (;;) {
+            FwWorld* world = nullptr;
+            FwTargetId target{};
+            {
+                const std::lock_guard lock(c.mutex);
+                if (!takeDue(c.deferredWorlds, completedFrameIndex, world) &&
+                    !takeDue(c.deferredTargets, completedFrameIndex, target)) {
+                    waiting = uint32_t(c.deferredWorlds.size() + c.deferredTargets.size());
+                    return FW_OK;
+                }
+            }
+            if (world)
+                fwDestroyWorld(world);
+            else
+                c.device->unregisterTarget(target);
+        }
+    });
+    return waiting;
+}
+
+}  // extern "C"
