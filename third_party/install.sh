@@ -19,7 +19,8 @@ packages=(
 test_packages=(
     libgtest-dev libgmock-dev libbenchmark-dev
     spirv-tools
-    xvfb xdotool
+    xvfb xdotool imagemagick
+    debootstrap
 )
 
 case "${1:-}" in
