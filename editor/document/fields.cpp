@@ -349,6 +349,8 @@ template <typename... Fs>
 struct Overloaded : Fs... {
     using Fs::operator()...;
 };
+template <typename... Fs>
+Overloaded(Fs...) -> Overloaded<Fs...>;
 
 template <typename T>
 Value valueOf(const T& from, const Member<T>& member) {

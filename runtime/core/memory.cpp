@@ -19,7 +19,7 @@ void Memory::do_deallocate(void* memory, size_t size, size_t alignment) {
     if (callbacks_.release)
         callbacks_.release(callbacks_.userData, memory, size, alignment);
     else
-        ::operator delete(memory, size, std::align_val_t(alignment));
+        ::operator delete(memory, std::align_val_t(alignment));
 }
 
 }  // namespace fw::core
