@@ -5,6 +5,7 @@
 #include "core/hash.h"
 #include "core/stream.h"
 #include "mesh/texels.h"
+#include "shared/front.h"
 
 #include <bit>
 #include <cmath>
@@ -107,7 +108,7 @@ void checkTexels(const BurnDomain& d) {
         if ((flags & 0xFF) >= d.materialCount)
             refuse("Material of texel", i, flags & 0xFF, d.materialCount);
         require((d.slowness[i] != 0) == d.real(i), "Slowness of a texel", i);
-        require(std::isfinite(d.areas[i]) && d.areas[i] >= 0, "Area of a texel", i);
+        require(d.areas[i] >= 0 && d.areas[i] < 1e12f, "Area of a texel", i);
         if (d.real(i) ? d.triangleOf[i] >= d.indices.size() / 3 : d.triangleOf[i] != kNone)
             refuse("Triangle of texel", i, d.triangleOf[i], d.indices.size() / 3);
         if (!d.real(i) || (flags & kTexelRim)) continue;
@@ -147,6 +148,56 @@ void checkTiles(const BurnDomain& d) {
     }
 }
 
+// What the integer products of shaders/shared/front.h bear: a link of at most kLongest units, and a normal
+// that is not longer than one of unit length is after rounding.
+void checkFront(const BurnDomain& d) {
+    constexpr int64_t kLongest = 8191;
+    constexpr double kUnit = 16384 * 1.01;  // Q14
+    const auto checkLink = [&](uint32_t from, uint32_t to) {
+        const TexelPosition &a = d.texels[from], &b = d.texels[to];
+        const int64_t x = int64_t(a.x) - b.x, y = int64_t(a.y) - b.y, z = int64_t(a.z) - b.z;
+        const int64_t squared = x * x + y * y + z * z;
+        if (squared > kLongest * kLongest)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "Positions of texels %u and %u of the cooked mesh, which are neighbours, are %.0f "
+                       "units apart; the limit is %lld. Cook the mesh again.",
+                       from, to, std::sqrt(double(squared)), static_cast<long long>(kLongest));
+    };
+    uint32_t real = 0;
+    double area = 0;
+    for (uint32_t t = 0; t < d.tileCount(); ++t) {
+        uint32_t record = d.tiles[t].rimBase;
+        const uint32_t corner = t / d.tilesX * kTileSide * d.width + t % d.tilesX * kTileSide;
+        for (uint32_t lane = 0; lane < 64; ++lane) {
+            const uint32_t texel = corner + lane / kTileSide * d.width + lane % kTileSide;
+            if (!d.real(texel)) continue;
+            ++real;
+            area += double(d.areas[texel]);
+            const gpu::ivec3 n = gpu::decodeNormal(d.normals[texel]);
+            const double length = std::hypot(double(n.x), double(n.y), double(n.z));
+            if (length > kUnit)
+                core::fail(FW_ERROR_BAD_DATA,
+                           "The normal of texel %u of the cooked mesh has length %.3f; the limit is 1.01.",
+                           texel, length / 16384);
+            const bool isRim = (d.texels[texel].materialFlags & kTexelRim) != 0;
+            for (size_t k = 0; k < 8; ++k) {
+                const uint32_t to = isRim
+                                        ? d.links[size_t(record) * 8 + k]
+                                        : uint32_t(int(texel) + kRingY[k] * int(d.width) + kRingX[k]);
+                if (to != kNone) checkLink(texel, to);
+            }
+            record += isRim ? 1 : 0;
+        }
+    }
+    if (real != d.report.realTexels)
+        core::fail(FW_ERROR_BAD_DATA, "The cooked mesh has %u texels of the surface; its report says %u.",
+                   real, d.report.realTexels);
+    if (!(std::abs(area - d.report.texelArea) <= 0.001 * area))
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The texels of the cooked mesh have %g m^2 in all; its report says %g.", area,
+                   d.report.texelArea);
+}
+
 void checkDrawn(const BurnDomain& d) {
     for (size_t i = 0; i < d.indices.size(); ++i)
         if (d.indices[i] >= d.vertices.size()) refuse("Index", i, d.indices[i], d.vertices.size());
@@ -173,8 +224,8 @@ void checkScalars(const BurnDomain& d) {
                        "The cooked mesh's atlas is %u x %u texels; sides must be multiples of 8 in "
                        "[8, 4096].",
                        d.width, d.height);
-    const auto size = [](float v) { return std::isfinite(v) && v > 0; };
-    require(size(d.quantum) && size(d.texelSide) && size(d.linkShort), "Size of a texel", 0);
+    const auto size = [](float v) { return v > 0 && usable(v); };
+    require(size(d.quantum * 65535) && size(d.texelSide) && size(d.linkShort), "Size of a texel", 0);
     require(std::isfinite(d.linkMax) && d.linkMax >= 0 && d.linkMax <= 8191 * d.quantum,
             "Longest link", 0);
     require(d.materialCount >= 1 && d.materialCount <= 8, "Number of materials", d.materialCount);
@@ -310,6 +361,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     arrays(reader, domain);
     checkTexels(domain);
     checkTiles(domain);
+    checkFront(domain);
     checkDrawn(domain);
     buildTileBounds(domain);
     linkParts(domain, memory);

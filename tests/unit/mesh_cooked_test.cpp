@@ -141,6 +141,34 @@ TEST(MeshCooked, SaysWhatIsWrong) {
         EXPECT_NE("", refusalOf(std::span(good).first(size))) << size;
 }
 
+// The integer products of the front hold links of 8191 units and unit normals, and no more.
+TEST(MeshCooked, RefusesWhatTheFrontCannotCompute) {
+    const BurnDomain good = small();
+    uint32_t texel = 0;
+    while (!good.real(texel)) ++texel;
+    const auto refused = [&](auto&& spoil) {
+        BurnDomain bad = good;
+        spoil(bad);
+        return refusalOf(cook(bad, 7));
+    };
+    const auto saysOf = [](const std::string& message, const char* part) {
+        EXPECT_NE(std::string::npos, message.find(part)) << message;
+    };
+    saysOf(refused([&](BurnDomain& d) { d.texels[texel].x = d.texels[texel].x < 30000 ? 65535 : 0; }),
+           "units apart; the limit is 8191");
+    saysOf(refused([&](BurnDomain& d) {
+               for (mesh::TexelPosition& t : d.texels) t.z = uint16_t(t.z * 7919u);
+           }),
+           "units apart; the limit is 8191");
+    saysOf(refused([&](BurnDomain& d) { d.normals[texel] = 0x400u | 0x400u << 11 | 0x200u << 22; }),
+           "has length 1.73");
+    saysOf(refused([&](BurnDomain& d) { ++d.report.realTexels; }), "its report says");
+    saysOf(refused([&](BurnDomain& d) { d.report.texelArea = std::nan(""); }), "its report says nan");
+    saysOf(refused([&](BurnDomain& d) { d.areas[texel] = 1e30f; }), "Area of a texel");
+    saysOf(refused([&](BurnDomain& d) { d.quantum = 1e9f; }), "Size of a texel");
+    EXPECT_EQ("", refused([](BurnDomain&) {}));
+}
+
 // Reads everything a simulation or a drawing would read by index.
 uint64_t touch(const BurnDomain& d) {
     uint64_t sum = 0;
