@@ -15,7 +15,7 @@
 namespace fwlink {
 namespace {
 
-constexpr size_t kMostAtOnce = 16u << 20;  // bytes that a frame takes in
+constexpr size_t kMostAtOnce = 4u << 20;  // bytes that a frame takes in
 
 sockaddr_in loopback(uint16_t port) {
     sockaddr_in address{};
@@ -44,6 +44,7 @@ Channel& Channel::operator=(Channel&& other) noexcept {
     socket_ = std::exchange(other.socket_, -1);
     out_ = std::exchange(other.out_, {});
     sent_ = std::exchange(other.sent_, 0);
+    received_ = std::exchange(other.received_, 0);
     reader_ = std::exchange(other.reader_, {});
     problem_ = std::exchange(other.problem_, {});
     return *this;
@@ -101,13 +102,15 @@ void Channel::pump() {
         sent_ = 0;
     }
     std::array<uint8_t, 65536> room;
-    for (size_t taken = 0; open() && taken < kMostAtOnce;) {
+    // What is not read yet stays with the system, which then holds the other side back.
+    for (size_t taken = 0; open() && taken < kMostAtOnce && !reader_.full();) {
         const ssize_t came = ::recv(socket_, room.data(), room.size(), 0);
         if (came < 0 && triesAgain()) return;
         if (came < 0) return fail(systemWords("The other side is gone"));
         if (came == 0) return fail("The other side is gone");
         reader_.feed({room.data(), static_cast<size_t>(came)});
         taken += static_cast<size_t>(came);
+        received_ += static_cast<size_t>(came);
     }
 }
 

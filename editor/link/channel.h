@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "link/message.h"
 
@@ -22,20 +23,25 @@ class Channel {
     [[nodiscard]] bool open() const { return socket_ >= 0; }
     // Why it is not open any more; empty: it was closed here, or never open.
     [[nodiscard]] const std::string& problem() const { return problem_; }
+    // The same, once.
+    std::string takeProblem() { return std::exchange(problem_, {}); }
 
     void send(Kind kind, std::span<const uint8_t> body);
-    // All that was sent is with the system.
-    [[nodiscard]] bool drained() const { return sent_ == out_.size(); }
+    // Closes the link for a reason; what came whole before can still be read.
+    void fail(std::string problem);
+    // Bytes that the system has not taken yet.
+    [[nodiscard]] size_t unsent() const { return out_.size() - sent_; }
+    [[nodiscard]] bool drained() const { return unsent() == 0; }
     void pump();
+    [[nodiscard]] uint64_t received() const { return received_; }  // bytes
     // A message that came whole. What is none closes the link.
     bool next(Message& message);
 
  private:
-    void fail(std::string problem);
-
     int socket_ = -1;
     Bytes out_;
-    size_t sent_ = 0;  // of out_
+    size_t sent_ = 0;        // of out_
+    uint64_t received_ = 0;  // bytes
     MessageReader reader_;
     std::string problem_;
 };

@@ -38,6 +38,8 @@ class MessageReader {
     void feed(std::span<const uint8_t> bytes);
     // False: none is whole yet, or `error` says why there will never be one again.
     bool next(Message& message, std::string& error);
+    // At least one message waits whole, whatever its size: nothing more need be fed.
+    [[nodiscard]] bool full() const { return waiting_.size() - at_ >= kHeadSize + kMostBody; }
 
  private:
     Bytes waiting_;

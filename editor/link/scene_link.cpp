@@ -3,11 +3,17 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
+
+#include "document/apply.h"
 
 namespace fwlink {
 namespace {
 
-constexpr uint32_t kMostSide = 4096;  // px, of a layer
+constexpr uint32_t kMostSide = 4096;        // px, of a layer
+constexpr size_t kMostAnswer = 64u << 10;   // bytes
+constexpr size_t kMostUnsent = 1u << 20;    // bytes of answers
+constexpr uint32_t kMostScenesAtOnce = 16;  // that a frame reads of one caller
 constexpr size_t kTileSize = std::tuple_size_v<fwedit::PaintImage::Tile>;
 
 uint32_t tilesOf(uint32_t side) {
@@ -59,10 +65,11 @@ void SceneSender::follow(const fwedit::Document& document) {
         BodyReader body(message.body);
         const auto number = body.number<uint64_t>();
         const std::string answer = body.text();
-        if (message.kind != Kind::Taken || !body.whole() || number > sent_) {
-            channel_.close();
-            return;
-        }
+        if (message.kind != Kind::Taken || !body.whole() || number > sent_ ||
+            answer.size() > kMostAnswer)
+            return channel_.fail("The link is closed: an answer that is none, is to a scene that was not "
+                                 "sent, or is longer than " +
+                                 std::to_string(kMostAnswer) + " bytes");
         shown_ = number;
         answer_ = answer;
     }
@@ -94,47 +101,66 @@ bool SceneReader::take(const Message& message, bool& whole, std::string& error) 
 
 bool SceneReader::takePaint(BodyReader& body, std::string& error) {
     const auto layer = body.number<fwedit::ObjectId>();
-    fwedit::PaintImage image;
-    image.width = body.number<uint32_t>();
-    image.height = body.number<uint32_t>();
-    image.empty = body.number<uint8_t>();
-    const auto goesOn = body.number<uint8_t>();
+    LayerPaint head;
+    head.width = body.number<uint32_t>();
+    head.height = body.number<uint32_t>();
+    head.empty = body.number<uint8_t>();
+    const auto isUpdate = body.number<uint8_t>();
     const auto count = body.number<uint32_t>();
-    if (!body.good || image.width < 1 || image.width > kMostSide || image.height < 1 ||
-        image.height > kMostSide) {
-        error = "paint of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+    if (!body.good || head.width < 1 || head.width > kMostSide || head.height < 1 ||
+        head.height > kMostSide) {
+        error = "paint of " + std::to_string(head.width) + "x" + std::to_string(head.height) +
                 " px; sides are 1 to " + std::to_string(kMostSide);
         return false;
     }
-    image.tiles.resize(size_t{tilesOf(image.width)} * tilesOf(image.height));
-    if (goesOn) {
-        const auto before = images_.find(layer);
-        if (before == images_.end() || before->second.tiles.size() != image.tiles.size()) {
-            error = "paint that goes on from none that is here";
-            return false;
-        }
-        image.tiles = before->second.tiles;
+    const auto before = paint_.find(layer);
+    if (isUpdate && (before == paint_.end() || before->second.width != head.width ||
+                     before->second.height != head.height || before->second.empty != head.empty)) {
+        error = "an update of paint that is not here, or that has another size";
+        return false;
     }
+    if (before == paint_.end() && paint_.size() >= fwedit::kMostObjects) {
+        error = "paint for more than " + std::to_string(fwedit::kMostObjects) +
+                " layers; a scene has no more objects than that";
+        return false;
+    }
+    // The whole body is read before any of it counts.
+    const uint32_t most = tilesOf(head.width) * tilesOf(head.height);
+    std::vector<std::pair<uint32_t, std::span<const uint8_t>>> sent;
+    size_t made = 0;  // tiles
     for (uint32_t i = 0; i < count && body.good; ++i) {
         const auto at = body.number<uint32_t>();
         const auto there = body.number<uint8_t>();
         const auto values = body.bytes(there ? kTileSize : 0);
         if (!body.good) break;
-        if (at >= image.tiles.size()) {
-            error = "tile " + std::to_string(at) + " of " + std::to_string(image.tiles.size());
+        if (at >= most) {
+            error = "tile " + std::to_string(at) + " of " + std::to_string(most);
             return false;
         }
-        image.tiles[at] = nullptr;
-        if (!there) continue;
-        auto tile = std::make_shared<fwedit::PaintImage::Tile>();
-        std::copy(values.begin(), values.end(), tile->begin());
-        image.tiles[at] = std::move(tile);
+        sent.emplace_back(at, values);
+        made += there ? 1 : 0;
     }
     if (!body.whole()) {
         error = "paint that ends before its tiles do, or after them";
         return false;
     }
-    images_[layer] = std::move(image);
+    if ((tiles_ + made) * kTileSize > kMostPaint) {
+        error = "more than " + std::to_string(kMostPaint >> 20) + " MiB of paint";
+        return false;
+    }
+    LayerPaint& paint = paint_[layer];
+    tiles_ -= paint.tiles.size();
+    if (!isUpdate) paint = std::move(head);
+    for (const auto& [at, values] : sent) {
+        if (values.empty()) {
+            paint.tiles.erase(at);
+            continue;
+        }
+        auto tile = std::make_shared<fwedit::PaintImage::Tile>();
+        std::copy(values.begin(), values.end(), tile->begin());
+        paint.tiles[at] = std::move(tile);
+    }
+    tiles_ += paint.tiles.size();
     return true;
 }
 
@@ -149,48 +175,78 @@ bool SceneReader::takeScene(BodyReader& body, std::string& error) {
     }
     std::vector<std::string> ignored;  // the editor's own scenes need none
     if (!fwedit::readScene(text, "The scene of the link", made.scene, ignored, error)) return false;
-    std::erase_if(images_, [&](const auto& image) {
-        return !fwedit::findIn(made.scene.layers, image.first);
+    std::erase_if(paint_, [&](const auto& paint) {
+        return !fwedit::findIn(made.scene.layers, paint.first);
     });
-    made.images = images_;
+    tiles_ = 0;
+    for (const auto& [layer, paint] : paint_) {
+        fwedit::PaintImage& image = made.images[layer];
+        image.width = paint.width;
+        image.height = paint.height;
+        image.empty = paint.empty;
+        image.tiles.resize(size_t{tilesOf(paint.width)} * tilesOf(paint.height));
+        for (const auto& [at, tile] : paint.tiles) image.tiles[at] = tile;
+        tiles_ += paint.tiles.size();
+    }
     scene_ = std::move(made);
     return true;
 }
 
-bool SceneReceiver::poll(LinkedScene& scene, std::string& report) {
-    report.clear();
-    if (!channel_.open()) {
-        if (met_) report = channel_.problem();
-        met_ = false;
-        if (Channel caller = listener_.accept(); caller.open()) {
-            channel_ = std::move(caller);
-            reader_ = {};
-            met_ = true;
-        }
+void SceneReceiver::acceptCallers() {
+    for (size_t i = 0; i < kMostCallers; ++i) {
+        Channel channel = listener_.accept();
+        if (!channel.open()) break;
+        // With no place left, the caller that has sent least goes.
+        if (callers_.size() == kMostCallers)
+            callers_.erase(std::ranges::min_element(callers_, {}, [](const Caller& caller) {
+                return caller.channel.received();
+            }));
+        callers_.push_back({std::move(channel), {}});
     }
-    channel_.pump();
-    bool news = false;
-    for (Message message; channel_.next(message);) {
-        bool whole = false;
+}
+
+bool SceneReceiver::readCaller(Caller& caller, std::string& report) {
+    caller.channel.pump();
+    bool whole = false;
+    uint32_t scenes = 0;  // more than a few a frame are left for the next
+    for (Message message; scenes < kMostScenesAtOnce && caller.channel.next(message);) {
+        bool isScene = false;
         std::string error;
-        if (!reader_.take(message, whole, error)) {
-            channel_.close();
-            met_ = false;
-            report = "The link is closed: " + error;
+        if (!caller.reader.take(message, isScene, error)) {
+            caller.channel.fail("The link is closed: " + error);
+            whole = false;
             break;
         }
-        news |= whole;
+        whole |= isScene;
+        scenes += isScene ? 1 : 0;
     }
-    if (news) scene = reader_.scene();  // of several the last
-    return news;
+    if (!caller.channel.open()) report += caller.channel.takeProblem();
+    return whole;
+}
+
+bool SceneReceiver::poll(LinkedScene& scene, std::string& report) {
+    report.clear();
+    acceptCallers();
+    bool isNew = readCaller(editor_, report);
+    for (Caller& caller : callers_) {
+        if (!readCaller(caller, report)) continue;
+        if (editor_.channel.open()) report += "Another editor has taken over the link.";
+        editor_ = std::move(caller);  // leaves a closed channel, which goes below
+        isNew = true;
+    }
+    std::erase_if(callers_, [](const Caller& caller) { return !caller.channel.open(); });
+    if (isNew) scene = editor_.reader.scene();  // of several the last
+    return isNew;
 }
 
 void SceneReceiver::took(uint64_t number, const std::string& answer) {
     BodyWriter body;
     body.number(number);
-    body.text(answer);
-    channel_.send(Kind::Taken, body.body);
-    channel_.pump();
+    body.text(std::string_view(answer).substr(0, kMostAnswer));
+    if (editor_.channel.unsent() > kMostUnsent)
+        return editor_.channel.fail("The link is closed: the editor does not read its answers");
+    editor_.channel.send(Kind::Taken, body.body);
+    editor_.channel.pump();
 }
 
 }  // namespace fwlink

@@ -5,7 +5,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "document/document.h"
 #include "link/channel.h"
@@ -46,29 +49,45 @@ struct LinkedScene {
     std::filesystem::path folder;  // where its relative paths begin
 };
 
-// What the sample's side does with messages, without a socket.
+// What the sample's side does with messages, without a socket. It holds what was sent and no more: tiles
+// are kept one by one, and a layer's table of tiles is made only for layers that a scene names.
 class SceneReader {
  public:
+    static constexpr size_t kMostPaint = size_t{256} << 20;  // bytes of tiles held at a time
+
     // False: `error` says what is wrong with it, and nothing of it counts. `whole`: there is a
     // scene to be shown, in scene().
     bool take(const Message& message, bool& whole, std::string& error);
     [[nodiscard]] const LinkedScene& scene() const { return scene_; }
+    // Bytes of tiles held, and layers that have an entry.
+    [[nodiscard]] size_t paintBytes() const { return tiles_ * sizeof(fwedit::PaintImage::Tile); }
+    [[nodiscard]] size_t layers() const { return paint_.size(); }
 
  private:
+    struct LayerPaint {
+        uint32_t width = 0, height = 0;  // px
+        uint8_t empty = 0;
+        std::map<uint32_t, std::shared_ptr<const fwedit::PaintImage::Tile>> tiles;
+    };
+
     bool takePaint(BodyReader& body, std::string& error);
     bool takeScene(BodyReader& body, std::string& error);
 
     LinkedScene scene_;
-    fwedit::PaintImages images_;  // as they come; a scene says which of them count
+    std::map<fwedit::ObjectId, LayerPaint> paint_;  // as it came; a scene says which layers count
+    size_t tiles_ = 0;                              // of all layers
 };
 
-// The sample's side. One editor at a time; another may come when it has gone.
+// The sample's side. The editor whose scene came last is the one that is shown. Callers that have sent
+// no scene yet wait beside it, so that a silent one keeps nobody out.
 class SceneReceiver {
  public:
+    static constexpr size_t kMostCallers = 8;  // beside the editor that is shown
+
     // Listens; 0: on any port that is free. False: `error`.
     bool listen(uint16_t port, std::string& error) { return listener_.listen(port, error); }
     [[nodiscard]] uint16_t port() const { return listener_.port(); }
-    [[nodiscard]] bool connected() const { return channel_.open(); }
+    [[nodiscard]] bool connected() const { return editor_.channel.open(); }
     // Once a frame. True: there is a new scene. `report`: lines for people, empty if there are
     // none.
     bool poll(LinkedScene& scene, std::string& report);
@@ -76,10 +95,18 @@ class SceneReceiver {
     void took(uint64_t number, const std::string& answer);
 
  private:
+    struct Caller {
+        Channel channel;
+        SceneReader reader;
+    };
+
+    void acceptCallers();
+    // True: a scene came whole. What the caller did wrong closes its channel and is added to `report`.
+    bool readCaller(Caller& caller, std::string& report);
+
     Listener listener_;
-    Channel channel_;
-    SceneReader reader_;
-    bool met_ = false;  // an editor was there
+    Caller editor_;
+    std::vector<Caller> callers_;
 };
 
 }  // namespace fwlink

@@ -1,5 +1,6 @@
 // The live link: what is edited arrives, whole and no more of it than has changed; what is no
 // message is refused; either side may go at any moment.
+#include "document/apply.h"
 #include "link/scene_link.h"
 
 #include <gmock/gmock.h>
@@ -237,6 +238,126 @@ TEST(EditorLink, AStrangerOnThePortIsShownOutAndTheNextIsServed) {
     EXPECT_THAT(said, HasSubstr("a message that is for the editor"));
     yard.run("link " + std::to_string(receiver.port()) + "\n");
     EXPECT_TRUE(soon([&] { return receiver.poll(scene, report); }));
+}
+
+// A paint message's body of 18 bytes: no tile, for a layer of 4096 x 4096.
+Bytes emptyPaint(uint32_t layer) {
+    fwlink::BodyWriter body;
+    body.number(fwedit::ObjectId{layer});
+    body.number(uint32_t{4096});
+    body.number(uint32_t{4096});
+    body.number(uint8_t{0});
+    body.number(uint8_t{0});
+    body.number(uint32_t{0});
+    return body.body;
+}
+
+TEST(EditorLink, PaintForLayersOfNoSceneTakesMemoryOfWhatWasSentAndIsLimited) {
+    SceneReader reader;
+    bool whole = false;
+    std::string error;
+    for (uint32_t i = 0; i < fwedit::kMostObjects; ++i)
+        ASSERT_TRUE(reader.take({Kind::Paint, emptyPaint(1000 + i)}, whole, error)) << error;
+    EXPECT_EQ(fwedit::kMostObjects, reader.layers());
+    EXPECT_EQ(0u, reader.paintBytes());  // no tile came
+    EXPECT_FALSE(reader.take({Kind::Paint, emptyPaint(7)}, whole, error));
+    EXPECT_THAT(error, HasSubstr("paint for more than 4000 layers"));
+    // Again for a layer that is here is no new one.
+    EXPECT_TRUE(reader.take({Kind::Paint, emptyPaint(1000)}, whole, error)) << error;
+}
+
+TEST(EditorLink, TilesBeyondTheLimitAreRefusedAndTilesThatGoCountNoLonger) {
+    constexpr uint32_t kTiles = 4096;  // of a layer of 4096 x 4096: 16 MiB
+    const auto paint = [](uint32_t layer, bool update, bool there) {
+        fwlink::BodyWriter body;
+        body.number(fwedit::ObjectId{layer});
+        body.number(uint32_t{4096});
+        body.number(uint32_t{4096});
+        body.number(uint8_t{0});
+        body.number(uint8_t(update));
+        body.number(kTiles);
+        const Bytes tile(4096, 9);
+        for (uint32_t i = 0; i < kTiles; ++i) {
+            body.number(i);
+            body.number(uint8_t(there));
+            if (there) body.bytes(tile);
+        }
+        return Message{Kind::Paint, std::move(body.body)};
+    };
+    SceneReader reader;
+    bool whole = false;
+    std::string error;
+    const uint32_t layers = uint32_t(SceneReader::kMostPaint >> 24);
+    for (uint32_t i = 0; i < layers; ++i)
+        ASSERT_TRUE(reader.take(paint(i + 1, false, true), whole, error)) << error;
+    EXPECT_EQ(SceneReader::kMostPaint, reader.paintBytes());
+    EXPECT_FALSE(reader.take(paint(99, false, true), whole, error));
+    EXPECT_THAT(error, HasSubstr("more than 256 MiB of paint"));
+    ASSERT_TRUE(reader.take(paint(1, true, false), whole, error)) << error;
+    EXPECT_EQ(SceneReader::kMostPaint - (size_t{16} << 20), reader.paintBytes());
+    EXPECT_TRUE(reader.take(paint(99, false, true), whole, error)) << error;
+}
+
+TEST(EditorLink, SilentCallersKeepNobodyOutAndTheLastSceneWins) {
+    Yard yard;
+    yard.run(kPainted);
+    SceneReceiver receiver;
+    std::string error, report;
+    ASSERT_TRUE(receiver.listen(0, error)) << error;
+    LinkedScene scene;
+    std::vector<Channel> silent(3 * SceneReceiver::kMostCallers);
+    for (Channel& channel : silent) {
+        ASSERT_TRUE(channel.connect(receiver.port(), error)) << error;
+        EXPECT_FALSE(receiver.poll(scene, report)) << report;
+    }
+    EXPECT_FALSE(receiver.connected());
+    yard.run("link " + std::to_string(receiver.port()) + "\n");
+    ASSERT_TRUE(soon([&] { return receiver.poll(scene, report); })) << report;
+    EXPECT_TRUE(receiver.connected());
+    // An editor that hangs, or pretends to be one, is replaced by the next that sends a scene.
+    Yard other;
+    other.run(kPainted);
+    other.run("set settings wind 7 0 0\nlink " + std::to_string(receiver.port()) + "\n");
+    ASSERT_TRUE(soon([&] { return receiver.poll(scene, report); })) << report;
+    EXPECT_THAT(report, HasSubstr("Another editor has taken over the link"));
+    EXPECT_EQ(7, scene.scene.settings.wind[0]);
+}
+
+TEST(EditorLink, AnEditorThatReadsNoAnswersIsLetGo) {
+    Yard yard;
+    yard.run(kPainted);
+    SceneReceiver receiver;
+    std::string error, report;
+    ASSERT_TRUE(receiver.listen(0, error)) << error;
+    LinkedScene scene;
+    yard.run("link " + std::to_string(receiver.port()) + "\n");
+    ASSERT_TRUE(soon([&] { return receiver.poll(scene, report); })) << report;
+    const std::string answer(60000, 'a');
+    for (int i = 0; i < 1000 && receiver.connected(); ++i) receiver.took(scene.number, answer);
+    EXPECT_FALSE(receiver.connected());
+}
+
+TEST(EditorLink, AnAnswerThatIsTooLongOrToNoSceneEndsTheLinkInWords) {
+    for (const bool isLong : {true, false}) {
+        Yard yard;
+        yard.run(kPainted);
+        Listener listener;
+        std::string error;
+        ASSERT_TRUE(listener.listen(0, error)) << error;
+        SceneSender sender;
+        Channel channel;
+        (void)messagesOf(yard.host->document, sender, listener, channel);
+        fwlink::BodyWriter body;
+        body.number(uint64_t{isLong ? 1u : 77u});
+        body.text(std::string(isLong ? 100000 : 1, 'a'));
+        channel.send(Kind::Taken, body.body);
+        EXPECT_TRUE(soon([&] {
+            channel.pump();
+            sender.follow(yard.host->document);
+            return !sender.connected();
+        }));
+        EXPECT_THAT(sender.problem(), HasSubstr("65536 bytes"));
+    }
 }
 
 // ---- what a sample does with it
