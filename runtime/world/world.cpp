@@ -7,6 +7,7 @@
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
 #include "shared/spark.h"
+#include "world/material.h"
 #include "world/mesh_input.h"
 #include "world/save.h"
 
@@ -314,8 +315,11 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
     Object& object = *owned;
     object.data = components::makeBurnableMesh(def);
     components::checkDeform(def);
+    const bool named = std::ranges::any_of(def.materials, [](FwMaterialId id) { return id.index1 != 0; });
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
-        if (def.materials[i].index1 != 0)
+        if (!named)
+            components::setMaterial(object.data, i, presetDef(FW_MATERIAL_PINE));
+        else if (def.materials[i].index1 != 0)
             components::setMaterial(object.data, i, materials_.get(def.materials[i]));
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
         const FwImageId image = def.baseColors[i].index1 ? def.baseColors[i] : def.baseColor;

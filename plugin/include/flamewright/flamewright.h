@@ -593,7 +593,8 @@ typedef struct FwPin { /* holds the points of a sheet within radius m of a segme
 typedef struct FwBurnableMeshDef {
     uint32_t structSize, flags;       /* FwBurnableFlags */
     FwMeshId mesh;
-    FwMaterialId materials[8];        /* by triangle material; null: noncombustible */
+    FwMaterialId materials[8];        /* by triangle material, default all null: the object is pine.
+                                         Once one is named, null ones are noncombustible */
     FwImageId baseColor;              /* null: the material's base colour and procedural detail */
     float transform[16];              /* object to world: rotation, a scale per axis (the largest at most
                                          16 times the smallest), a mirror; no shear. Default identity.

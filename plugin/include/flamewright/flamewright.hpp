@@ -290,6 +290,15 @@ using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
     return {world.get(), id};
 }
 
+// Lights the texels within `radius` m of `place` (m, world) on every object. FW_OK: something was lit;
+// FW_NOTHING_THERE: nothing was, and lastMessage(world) says why; negative: refused.
+inline FwResult ignite(const World& world, const float (&place)[3], float radius) noexcept {
+    FwIgnitionDef match = fwDefaultIgnitionDef();
+    for (int i = 0; i < 3; ++i) match.position[i] = place[i];
+    match.radius = radius;
+    return fwWorld_Ignite(world.get(), &match, nullptr);
+}
+
 // A mesh def over the host's own arrays, which live until the def is used.
 [[nodiscard]] inline FwMeshDef meshDef(std::span<const float> positions,
                                        std::span<const uint32_t> indices) noexcept {
