@@ -82,7 +82,8 @@ void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
     vec3 x, z;
     def.up = volume::vecOf(air.up);
     across(def.up, x, z);
-    def.position = volume::vecOf(fire.position) + x * part.x + z * part.z;
+    f.stood = volume::vecOf(fire.position);
+    def.position = f.stood + x * part.x + z * part.z;
     def.power = part.power;
     def.diameter = part.diameter;
     def.look = fire.look;
@@ -153,6 +154,8 @@ void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
         if (f.split != fire.split) {
             f.leaving = true;
             f.flame.def.power = 0;
+            f.flame.def.position += volume::vecOf(fire.position) - f.stood;
+            f.stood = volume::vecOf(fire.position);
             continue;
         }
         there |= 1u << f.part;
@@ -186,6 +189,7 @@ void FireFlames::advance(const FireAir& air, float seconds) noexcept {
     others_.clear();
     for (FireFlame& f : next_) {
         volume::Flame& flame = f.flame;
+        volume::followTeleport(flame, double(seconds));  // colliders are sought where it is then
         const bool led = flame.def.driver == volume::FlameDriver::Host;
         if (led) {
             flame.given = f.fire->points;

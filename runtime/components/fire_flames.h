@@ -19,6 +19,7 @@ struct FireFlame {
     uint32_t trackVersion = 0;
     uint32_t key = 0;      // no other flame's
     bool leaving = false;  // its fire burns as others now
+    gpu::vec3 stood{0.0f};  // m, world: where its fire was when it was placed last
 };
 
 // A frame makes the next flames of the last ones, and they count once it is recorded.

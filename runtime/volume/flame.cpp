@@ -192,8 +192,24 @@ void startFlame(Flame& f, const FlameDef& def, const FlameAir& air) noexcept {
     finish(f, air, rules);
 }
 
+void carryFlame(Flame& f, vec3 by) noexcept {
+    carryMotion(f.motion, by);
+    f.bounds.low += by, f.bounds.high += by;
+    f.light.position += by;
+    for (gpu::FlameNode& node : f.nodes) node.centre += vec4(by, 0.0f);
+    // A track's points follow the base by themselves, the host's are the host's.
+    if (f.def.driver == FlameDriver::Live)
+        for (uint32_t k = 0; k < f.givenCount; ++k) f.given[k].position += by;
+}
+
+void followTeleport(Flame& f, double seconds) noexcept {
+    const vec3 by = f.def.position - f.motion.base;
+    if (glm::length(by) > kTeleport * float(std::max(seconds, 0.0))) carryFlame(f, by);
+}
+
 void advanceFlame(Flame& f, const FlameAir& air, double seconds) noexcept {
     const double dt = std::isfinite(seconds) ? std::clamp(seconds, 0.0, 1.0) : 0.0;
+    followTeleport(f, dt);
     f.age += dt;
     f.power += (clampPower(f.def.power) - f.power) * float(1.0 - std::exp(-dt / double(kPowerLag)));
     const bool has =

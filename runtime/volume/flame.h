@@ -64,6 +64,11 @@ struct FlameAir {              // around a flame, this frame
 
 void startFlame(Flame& flame, const FlameDef& def,
                 const FlameAir& air) noexcept;  // as if it had burnt for long
+// Moves all of it, its history included, by m in the world.
+void carryFlame(Flame& flame, vec3 by) noexcept;
+// A base that is farther off than kTeleport allows in these seconds takes the whole flame along:
+// gas that stayed behind would lie flat towards where the base was.
+void followTeleport(Flame& flame, double seconds) noexcept;
 void advanceFlame(Flame& flame, const FlameAir& air, double seconds) noexcept;
 
 // Whether anything of it is on the good side of all planes (xyz normal inward, w distance).

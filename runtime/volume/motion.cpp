@@ -139,6 +139,12 @@ void startMotion(FlameMotion& m, const MotionRules& r, vec3 base) noexcept {
         advanceMotion(m, r, base, {}, double(kMotionStep));
 }
 
+void carryMotion(FlameMotion& m, vec3 by) noexcept {
+    m.base += by;
+    for (uint32_t k = 0; k < m.count; ++k) m.particles[k].position += by;
+    m.contact += by;
+}
+
 void advanceMotion(FlameMotion& m, const MotionRules& r, vec3 base,
                    std::span<const Collider> colliders, double seconds) noexcept {
     const double dt = double(kMotionStep);
@@ -148,7 +154,7 @@ void advanceMotion(FlameMotion& m, const MotionRules& r, vec3 base,
     const vec3 from = m.base;
     if (seconds > 0.0) {
         const vec3 speed = (base - from) / float(seconds);
-        m.baseVelocity = glm::length(speed) < 100.0f ? speed : vec3(0.0f);  // further is a teleport
+        m.baseVelocity = glm::length(speed) <= kTeleport ? speed : vec3(0.0f);
     }
     const float life = lifeOf(r);
     const double interval = double(life / float(kMotionPieces));

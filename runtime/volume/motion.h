@@ -14,6 +14,7 @@ constexpr uint32_t kMostMotionSteps = 32;     // of a frame; a hitch drops the r
 constexpr uint32_t kMotionPieces = 14;        // control points above the base
 constexpr uint32_t kMotionParticles = 24;
 constexpr uint32_t kPulseParts = 16;  // of a puff, that contact is averaged over
+constexpr float kTeleport = 100.0f;   // m/s: a base that moves faster was put there
 constexpr float kAmbientKelvin = 293.0f, kFlameKelvin = 1300.0f;
 
 struct MotionRules {
@@ -54,6 +55,8 @@ struct FlameMotion {
 
 // As if it had burnt for long.
 void startMotion(FlameMotion& motion, const MotionRules& rules, vec3 base) noexcept;
+// Everything moves along, as if it had always burnt there.
+void carryMotion(FlameMotion& motion, vec3 by) noexcept;
 void advanceMotion(FlameMotion& motion, const MotionRules& rules, vec3 base,
                    std::span<const Collider> colliders, double seconds) noexcept;
 // The curve now: kMotionPieces + 1 points at fixed ages, so that nothing jumps when gas is born or

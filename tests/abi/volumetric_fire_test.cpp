@@ -83,6 +83,56 @@ TEST(AbiVolumetricFire, FollowsItsPowerItsPlaceAndTheWind) {
     EXPECT_LT(still.state(a).tip[0], place[0] - 0.1f);
 }
 
+// A floating origin, a portal, a respawn: beyond 100 m/s a fire was put there, it did not fly.
+TEST(AbiVolumetricFire, StandsAtOnceAsItDidWhenPutFarAway) {
+    for (const float way : {5.0f, 50.0f, 1000.0f}) {
+        FireWorld stays(2), moves(2);
+        FwVolumetricFireDef def = presetDef(FW_FIRE_CAMP);
+        def.seed = 7;
+        const FwVolumetricFireId a = stays.make(def), b = moves.make(def);
+        stays.run(5);
+        moves.run(5);
+        const float to[3] = {-way, 0, 0.5f * way};
+        ASSERT_EQ(FW_OK, fwWorld_MoveVolumetricFire(moves.world, b, to));
+        for (int frame = 0; frame < 32; ++frame) {
+            stays.run(1.0f / 32);
+            moves.run(1.0f / 32);
+            const FwVolumetricFireState here = stays.state(a), there = moves.state(b);
+            for (int i = 0; i < 3; ++i) {
+                EXPECT_NEAR(here.tip[i] + to[i], there.tip[i], 0.005f) << way << ", " << frame;
+                EXPECT_NEAR(here.boundsLow[i] + to[i], there.boundsLow[i], 0.02f) << way;
+                EXPECT_NEAR(here.boundsHigh[i] + to[i], there.boundsHigh[i], 0.02f) << way;
+            }
+            EXPECT_NEAR(here.lightIntensity, there.lightIntensity, 0.01f * here.lightIntensity);
+        }
+    }
+    // What moves as fast as something that flies trails behind.
+    FireWorld flies;
+    const FwVolumetricFireId id = flies.make(presetDef(FW_FIRE_CAMP));
+    flies.run(2);
+    const float near[3] = {-1, 0, 0};
+    ASSERT_EQ(FW_OK, fwWorld_MoveVolumetricFire(flies.world, id, near));
+    flies.run(1.0f / 32);
+    EXPECT_GT(flies.state(id).tip[0], near[0] + 0.2f);
+}
+
+// One that burns as other flames than before takes those that die down along.
+TEST(AbiVolumetricFire, LeavesNoFlameBehindWhenPutFarAway) {
+    FireWorld w;
+    FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+    def.diameter = 2;
+    def.power = 1500;
+    const FwVolumetricFireId id = w.make(def);
+    w.run(1);
+    ASSERT_EQ(FW_OK, fwWorld_SetVolumetricFirePower(w.world, id, 5));
+    w.run(1.0f / 16);
+    ASSERT_LT(1u, w.state(id).flames);
+    const float to[3] = {80, 0, 0};
+    ASSERT_EQ(FW_OK, fwWorld_MoveVolumetricFire(w.world, id, to));
+    w.run(1.0f / 32);
+    EXPECT_GT(w.state(id).boundsLow[0], to[0] - 5) << "nothing burns where it was";
+}
+
 TEST(AbiVolumetricFire, FollowsTheHostsPoints) {
     FireWorld w(3);
     FwFirePoint points[3] = {{{1, 0, 0}, 0.2f}, {{1.5f, 0.5f, 0}, 0.2f}, {{2.5f, 0.6f, 0}, 0.1f}};
