@@ -22,7 +22,7 @@ FwResult ask(const char* function, FwWorld* world,
         try {
             answerAtOnce(world);
         } catch (...) {
-            w.dropQuery(made);
+            w.cancelQuery(made);
             throw;
         }
         *query = made;
@@ -624,6 +624,28 @@ FwResult FW_CALL fwWorld_FetchPoint(FwWorld* world, FwQueryId query, FwPointStat
 FwResult FW_CALL fwWorld_RequestArrival(FwWorld* world, FwBurnableMeshId id,
                                         const float position[3], FwQueryId* query) {
     return ask("fwWorld_RequestArrival", world, &world::World::requestArrival, id, position, query);
+}
+
+FwResult FW_CALL fwWorld_CancelQuery(FwWorld* world, FwQueryId query) {
+    return destroyOf("fwWorld_CancelQuery", world, &world::World::cancelQuery, query);
+}
+
+FwResult FW_CALL fwWorld_CancelSave(FwWorld* world) {
+    return onWorld("fwWorld_CancelSave", world, [&](world::World& w) {
+        w.cancelSave();
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_CancelBurn(FwWorld* world, FwBurnableMeshId id) {
+    return destroyOf("fwWorld_CancelBurn", world, &world::World::cancelBurnMap, id);
+}
+
+FwResult FW_CALL fwWorld_UntagPoint(FwWorld* world, FwBurnableMeshId id, uint32_t tag) {
+    return onWorld("fwWorld_UntagPoint", world, [&](world::World& w) {
+        w.untagPoint(id, tag);
+        return FW_OK;
+    });
 }
 
 FwResult FW_CALL fwWorld_FetchArrival(FwWorld* world, FwQueryId query, FwArrivalState* state) {

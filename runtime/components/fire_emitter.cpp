@@ -247,12 +247,14 @@ float stuckBirths(const FireEmitter& emitter, gpu::ParticleEmitter& record) noex
 
 }  // namespace
 
-bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
+bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
                     gpu::ParticleEmitter& record) noexcept {
     const FwFireEmitterDef& def = emitter.def;
     const EmitterLook& look = emitter.look;
     FireEmitter::Births& births = emitter.next;
     births = emitter.births;
+    const float seconds = births.warms ? std::max(frame, emitterLasts(emitter)) : frame;
+    births.warms = false;
     if (!births.placed) std::copy_n(emitter.position, 3, births.position);
     float from[3], moved[3];
     for (int i = 0; i < 3; ++i) {

@@ -94,6 +94,7 @@ struct FireEmitter {
         double last = -1e9;  // s of the last birth
         float vigour = 1;    // of a mesh: how fast its fire rises and for how long, of all burning
         bool placed = false;
+        bool warms = false;  // its next frame makes all that would fly by then
         SparkHistory sparks;
     } births, next;
 };
@@ -112,8 +113,8 @@ EmitterLook emitterLook(const FwFireEmitterDef& def);
 // Particles that it needs at its power, and s that one of them lasts at most.
 uint32_t emitterNeeds(const FireEmitter& emitter);
 float emitterLasts(const FireEmitter& emitter);
-// Its next frame, of `seconds`, into `next` and the record. False: nothing of it is left to show.
-bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float seconds,
+// Its next frame, of so many seconds, into `next` and the record. False: nothing of it is left to show.
+bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
                     gpu::ParticleEmitter& record) noexcept;
 inline void commitEmitter(FireEmitter& emitter) noexcept { emitter.births = emitter.next; }
 FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t id,

@@ -198,7 +198,6 @@ struct Readback {  // valid until the next call of nextReadback
     uint32_t frontTiles = 0;                // length of the front list: 0 and no events = idle
     uint32_t runTiles = 0;                  // tiles run in the frame
     uint32_t burningTiles = 0;
-    uint32_t flames = 0;
     uint32_t hotTiles = 0;    // length of the hot list
     uint32_t receivers = 0;   // objects that others may warm
     float milliseconds = -1;  // of the frame's passes on the device; < 0: not known
@@ -289,6 +288,9 @@ class Backend {
     virtual void memoryRows(std::pmr::vector<MemoryRow>& out) const = 0;
     // Of device memory that follows a plan's Detail::memory.
     [[nodiscard]] virtual uint64_t detailBytes() const noexcept { return 0; }
+
+    // Quads of flames, smoke and particles that the last view showed, as far as that is known.
+    [[nodiscard]] virtual uint32_t quadsShown() const noexcept { return 0; }
 
     // Whether it draws: what only looks want is worth making.
     [[nodiscard]] virtual bool draws() const noexcept { return false; }

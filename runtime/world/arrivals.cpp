@@ -51,7 +51,7 @@ FwQueryId World::requestArrival(FwBurnableMeshId id, const float position[3]) {
 void World::wishForecasts() noexcept {
     for (uint32_t i = 0; i < queries_.slotCount(); ++i) {
         const Query* query = queries_.at(i);
-        if (!query || !query->isArrival || query->orphaned) continue;
+        if (!query || !query->isArrival) continue;
         const Object& object = *objects_.get(query->object);
         if (object.play.burn1 != 0) continue;  // its burn tells
         Forecast& forecast = *object.forecast;

@@ -82,6 +82,9 @@ FwFireEmitterId World::createFireEmitter(const FwFireEmitterDef& def) {
 
 void World::destroyFireEmitter(FwFireEmitterId id) {
     const FwFireEmitterDef def = emitters_.get(id).def;
+    for (ProbeFrame& frame : probeFrames_)  // what they answer would be another jet's in the slot
+        for (ProbeRef& ref : frame.refs)
+            if (ref.jet == id.index1) ref.object = {};
     emitters_.destroy(id);
     countBookUsers(def, -1);
 }
@@ -174,7 +177,10 @@ void World::planEmitters(float seconds) noexcept {
         const components::EmitterAir air = emitterAir(*emitter, seconds);
         const bool shows = components::advanceEmitter(*emitter, air, seconds, record);
         gpu::SparkSource source;
-        if (components::advanceSparks(*emitter, air, seconds, source)) {
+        // Another object may have the slot of a mesh that is gone.
+        const bool gone = emitter->def.shape == FW_EMITTER_MESH &&
+                          !objects_.find(emitter->def.object);
+        if (!gone && components::advanceSparks(*emitter, air, seconds, source)) {
             if (!(emitter->def.flags & FW_EMITTER_NO_COLLISION)) layGround(source);
             sparkSources_.push_back(source);
             sparks += components::sparkQuads(source);

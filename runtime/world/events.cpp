@@ -12,6 +12,7 @@ namespace {
 
 // Counters of `reduce` are at most 4 steps old; a fire is judged only well after its last event.
 constexpr uint64_t kSettleTicks = 6 * gpu::kStepTicks;
+constexpr uint64_t kWaterWorks = 2 * gpu::kTicksPerSecond;  // until it has put out what it hit
 constexpr uint32_t kClampsToTell = 32;
 
 }  // namespace
@@ -51,7 +52,6 @@ void World::collectReadbacks() {
         burningTiles_ = readback->burningTiles;
         hotTiles_ = readback->hotTiles;
         receivers_ = readback->receivers;
-        flames_ = readback->flames;
         if (readback->milliseconds >= 0 && !budgetMeasured_) spent_.gpu = readback->milliseconds;
         takeCounters(*readback);
         takeAnswers(*readback);
@@ -101,10 +101,7 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         tellSpread(object, readback);
         float place[3];
         if (now.burning > 0) object.story.lastBurning = readback.endTick;
-        if (now.burning > 0 && gpu::airStrength(now.air) < gpu::kAirFull / 2) {  // it chokes
-            object.story.lastDouse = readback.endTick;
-            object.story.doused = true;
-        }
+        countFlames(object, before, readback.endTick);
 
         const bool freshFire = now.ignited > before.ignited || now.burning > 0;
         if (!object.story.sawFire && now.ignited > 0 && freshFire) {
@@ -130,21 +127,42 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         if (settled && object.story.active) {
             object.story.active = false;
             if (object.story.sawFire) {
-                const bool byDousing =
-                    object.story.doused &&
-                    object.story.lastDouse + 2 * kSettleTicks >= object.story.lastBurning;
                 const float fraction =
                     object.texels ? float(object.story.mostIgnited) / float(object.texels) : 0.0f;
                 components::toWorld(object.data.pose, object.story.ignitionPoint, place);
-                raise(byDousing ? FW_EVENT_EXTINGUISHED : FW_EVENT_BURNT_OUT, &object, 0,
-                      readback.frameIndex, place, fraction);
+                // At least half of its last flames left fuel behind.
+                const Story& end = object.story;
+                const bool out = end.wentOut > 0 && end.wentOut >= end.flames - end.wentOut;
+                raise(out ? FW_EVENT_EXTINGUISHED : FW_EVENT_BURNT_OUT, &object,
+                      out ? end.outCause : 0u, readback.frameIndex, place, fraction);
             }
             object.story.sawFire = false;
             object.story.ignitionKnown = false;
-            object.story.doused = false;
+            object.story.flames = object.story.wentOut = object.story.outCause = 0;
         }
     }
     lateClamps_ = clamps;
+}
+
+// A texel that burnt out is a source for good; one that went out is none any more.
+void World::countFlames(Object& object, const gpu::ObjectCounters& before,
+                        uint32_t endTick) noexcept {
+    const gpu::ObjectCounters& now = object.counters;
+    Story& story = object.story;
+    const uint32_t out = before.ignited - std::min(before.ignited, now.ignited);
+    if (now.burning == 0 && before.burning == 0 && out == 0) return;
+    const uint64_t seconds = endTick / gpu::kTicksPerSecond -
+                             std::min<uint64_t>(endTick, story.halvedUntil) / gpu::kTicksPerSecond;
+    const uint64_t halvings = std::min<uint64_t>(seconds, 31);
+    story.halvedUntil = endTick;
+    story.wentOut = (story.wentOut >> halvings) + out;
+    story.flames = std::max({story.flames >> halvings, now.burning, story.wentOut});
+    if (out == 0) return;
+    const bool air = std::min(gpu::airStrength(now.air), gpu::airStrength(before.air)) < gpu::kAirFull;
+    if (story.lastDouse != 0 && endTick <= story.lastDouse + kWaterWorks)
+        story.outCause = story.douseCause;
+    else
+        story.outCause = air ? FW_EXTINGUISHED_BY_AIR : FW_EXTINGUISHED_BY_COLD;
 }
 
 // Without fuel per texel a texel has all of its own until it has burnt out, and none from then on.

@@ -77,6 +77,13 @@ void World::tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag)
     tags_.push_back({id, texel, tag});
 }
 
+void World::untagPoint(FwBurnableMeshId id, uint32_t tag) {
+    (void)objects_.get(id);
+    std::erase_if(tags_, [&](const Tag& one) {
+        return one.object.index1 == id.index1 && one.tag == tag;
+    });
+}
+
 float World::burningAreaOf(const Object& object) noexcept {
     const auto& report = meshes_.at(object.data.meshSlot)->domain->report;
     const float scale = object.data.pose.scale;
@@ -241,12 +248,6 @@ Query& World::openQuery(FwQueryId id, bool isArrival) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "Query %u asks for %s.", id.index1,
                    query.isArrival ? "an arrival; fwWorld_FetchArrival answers it"
                                    : "a point's state; fwWorld_FetchPoint answers it");
-    if (query.orphaned) {
-        queries_.destroy(id);
-        core::fail(FW_ERROR_STALE_ID,
-                   "Query %u asks about a burnable mesh that is already destroyed; it is closed.",
-                   id.index1);
-    }
     return query;
 }
 
@@ -269,7 +270,7 @@ void World::stats(FwWorldStats& stats) noexcept {
     stats.runTiles = runTiles_;
     stats.burningTiles = burningTiles_;
     stats.hotTiles = hotTiles_;
-    stats.flames = flames_;
+    stats.flames = backend_.quadsShown();
     stats.lateClamps = lateClamps_;
     stats.droppedSteps = uint32_t(droppedSteps_);
     for (const Object* object : touched_) {
@@ -312,6 +313,12 @@ void World::requestBurnMap(FwBurnableMeshId id) {
     if (!object.map.wished) ++mapsWished_;
     object.map.wished = true;
     object.map.ready = false;
+}
+
+void World::cancelBurnMap(FwBurnableMeshId id) {
+    Object& object = *objects_.get(id);
+    if (object.map.wished) --mapsWished_;
+    object.map = BurnMapCopy(memory_);
 }
 
 const BurnMapCopy* World::fetchBurnMap(FwBurnableMeshId id) {

@@ -145,6 +145,8 @@ void World::requestSave(SaveFor who) {
     save->ready = false;
 }
 
+void World::cancelSave() noexcept { saves_[size_t(SaveFor::host)] = {}; }
+
 const std::pmr::vector<std::byte>* World::fetchSave(SaveFor who) {
     const core::Owned<Save>& save = saves_[size_t(who)];
     if (!save || (!save->wished && !save->pending && !save->ready))
@@ -588,8 +590,10 @@ void World::checkSaved(const SavedWorld& saved) {
                        "The save has volumetric fire %u, which is none or another one here.",
                        fire.slot + 1);
         checkPlace(fire.position, "a volumetric fire");
-        if (!(fire.power >= 0 && fire.power <= 1e6f))
-            core::fail(FW_ERROR_BAD_DATA, "The save has a fire of %g kW.", double(fire.power));
+        if (!(fire.power >= 0 && fire.power <= components::kMostPower))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has a volumetric fire of %g kW; the limits are [0, %g].",
+                       double(fire.power), double(components::kMostPower));
         checkTouches(fire.touches);
     }
     for (const SavedEmitter& emitter : saved.emitters) {
@@ -722,6 +726,10 @@ void World::load(std::span<const std::byte> bytes) {
     playing_.reserve(objects_.slotCount());
     remote_.due.reserve(objects_.slotCount());
     remote_.blockers.reserve(saved.latchedBlockers.size());
+    uint32_t flames = 0;
+    for (const SavedFire& from : saved.fires)
+        flames += components::mostParts(from.power, (*fires_.at(from.slot))->data.diameter);
+    findFireRoom(flames);
     backend_.restore(restored, uint32_t(saved.clock.tick));
 
     // From here on nothing fails.
@@ -831,8 +839,14 @@ void World::applySaved(const SavedWorld& saved,
     };
     for (const SavedFire& from : saved.fires) {
         Fire& fire = **fires_.at(from.slot);
-        std::copy_n(from.position, 3, fire.data.position);
-        fire.data.power = from.power;
+        if (!std::equal(from.position, from.position + 3, fire.data.position) ||
+            from.power != fire.data.power) {  // as if it had always burnt so
+            burning_.drop(fire.data);
+            fire.data.state = {};
+            components::setFirePosition(fire.data, from.position);
+            components::setFirePower(fire.data, from.power);
+            foresee(fire.data);
+        }
         for (size_t k = 0; k < from.touches.size(); ++k) {
             FireTouch& touch = fire.touches[k];
             touch.object = idOf(from.touches[k].object1);
@@ -927,6 +941,7 @@ void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emit
     std::copy_n(from.direction, 3, emitter.direction);
     if (emitter.def.power != from.power) components::setEmitterPower(emitter, from.power);
     emitter.births = {};  // what flew belongs to another time
+    emitter.births.warms = true;
     emitter.lastShields = {};
     components::settleSparks(emitter, emitterTime_);
     emitter.swept = 0;

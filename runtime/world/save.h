@@ -206,7 +206,7 @@ struct Save {  // on its way, and the last one
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 7;
+constexpr uint32_t kSaveVersion = 8;
 constexpr uint32_t kMostSavedEvents = 256;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws

@@ -299,8 +299,8 @@ void put(S& s, T& f) {
 }
 template <typename S, Is<Story> T>
 void put(S& s, T& o) {
-    all(s, o.active, o.sawFire, o.doused, o.ignitionKnown, o.lastStimulus, o.lastDouse,
-        o.lastBurning, o.firstIgnition, o.ignitionPoint, o.litTold, o.spotsTold, o.mostIgnited,
+    all(s, o.active, o.sawFire, o.ignitionKnown, o.lastStimulus, o.lastDouse, o.douseCause,
+        o.flames, o.wentOut, o.halvedUntil, o.outCause, o.lastBurning, o.firstIgnition, o.ignitionPoint, o.litTold, o.spotsTold, o.mostIgnited,
         o.clampsTold, o.energy, o.heatSteps, o.power);
 }
 template <typename S, Is<SavedEvent> T>

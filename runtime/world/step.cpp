@@ -221,7 +221,7 @@ void World::planProbes() {
     }
     for (uint32_t i = 0; i < queries_.slotCount(); ++i) {
         const Query* query = queries_.at(i);
-        if (!query || query->asked || query->orphaned || query->isArrival) continue;
+        if (!query || query->asked || query->isArrival) continue;
         frame_.probes.push_back({query->object.index1 - 1, query->texel});
         known.refs.push_back({false, query->object, query->texel, 0, queries_.idOf(i), 0, 0, 0});
     }
@@ -268,7 +268,8 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
             }
         } else if (due.event.kind == FW_WET || due.event.kind == FW_EXTINGUISH) {
             object.story.lastDouse = due.event.tick;
-            object.story.doused = true;
+            object.story.douseCause =
+                due.event.kind == FW_WET ? FW_EXTINGUISHED_BY_WATER : FW_EXTINGUISHED_BY_CALL;
         }
     }
     commitPlays(frameIndex);

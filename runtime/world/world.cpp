@@ -511,8 +511,8 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     forgetGates(slot);
     std::erase_if(tags_, [&](const Tag& tag) { return tag.object.index1 == id.index1; });
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)
-        if (Query* query = queries_.at(i); query && query->object.index1 == id.index1)
-            query->orphaned = true;
+        if (const Query* query = queries_.at(i); query && query->object.index1 == id.index1)
+            queries_.destroy(queries_.idOf(i));
     std::erase(touched_, &object);
     std::erase(playing_, &object);
     std::erase(forecasts_, slot);

@@ -95,9 +95,15 @@ struct Breaks {
 struct Story {
     bool active = false;   // its front or flames may still move
     bool sawFire = false;  // since the last IGNITED
-    bool doused = false, ignitionKnown = false;
+    bool ignitionKnown = false;
     uint64_t lastStimulus = 0;    // tick of the last event or latch sent
     uint64_t lastDouse = 0;       // tick, 0: never
+    uint32_t douseCause = 0;      // FwExtinguishCause of that
+    // How it ends: flames as they are at most, and texels that went out with fuel left. Both halve
+    // with each second of the fire, so that its last flames decide.
+    uint32_t flames = 0, wentOut = 0;
+    uint64_t halvedUntil = 0;  // tick
+    uint32_t outCause = 0;     // FwExtinguishCause of the last that went out
     uint64_t lastBurning = 0;     // tick of the last readback with burning texels
     uint64_t firstIgnition = 0;   // tick of the ignition that started this fire
     float ignitionPoint[3] = {};  // m, object space
@@ -165,7 +171,7 @@ struct Query {
     uint32_t texel = 0;
     float distance = 0;  // m
     FwPointState answer{};
-    bool asked = false, ready = false, orphaned = false;
+    bool asked = false, ready = false;
     bool isArrival = false;
     uint64_t since = 0, sinceTick = 0;  // of an arrival: a forecast from there on answers it
 };
@@ -443,12 +449,13 @@ class World {
     // empty: what never burnt is not read again.
     void copyStates(std::pmr::vector<StateCopy>& to);
     void tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag);
+    void untagPoint(FwBurnableMeshId id, uint32_t tag);
     void objectState(FwBurnableMeshId id, FwObjectState& state);
     FwQueryId requestPoint(FwBurnableMeshId id, const float position[3]);
     bool fetchPoint(FwQueryId id, FwPointState& state);  // false: not ready
     FwQueryId requestArrival(FwBurnableMeshId id, const float position[3]);
     bool fetchArrival(FwQueryId id, FwArrivalState& state);  // false: not ready
-    void dropQuery(FwQueryId id) { queries_.destroy(id); }
+    void cancelQuery(FwQueryId id) { queries_.destroy(id); }
     uint32_t lights(std::span<FwLight> out);
     void askSurroundings(const float point[3], FwSurroundings& out);
     float askSight(const float from[3], const float to[3]);
@@ -464,10 +471,12 @@ class World {
     // has changed nothing.
     void requestSave(SaveFor who = SaveFor::host);
     const std::pmr::vector<std::byte>* fetchSave(SaveFor who = SaveFor::host);  // null: not ready
+    void cancelSave() noexcept;
     void load(std::span<const std::byte> bytes);
 
     // played.cpp. A burn is made of what requestBurnMap brings.
     const std::pmr::vector<std::byte>* fetchBurn(FwBurnableMeshId id);  // null: not ready
+    void cancelBurnMap(FwBurnableMeshId id);
     FwBurnId createBurn(std::span<const std::byte> bytes);
     void destroyBurn(FwBurnId id);
     void playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
@@ -756,6 +765,7 @@ class World {
     void collectReadbacks();  // throws std::bad_alloc; the readback then stays with the backend
     void takeCounters(const gpu::Readback& readback) noexcept;
     void takeEnergy(Object& object, uint32_t endTick) noexcept;
+    void countFlames(Object& object, const gpu::ObjectCounters& before, uint32_t endTick) noexcept;
     void takeBurnt(Object& object, uint32_t endTick) noexcept;
     void takeAnswers(const gpu::Readback& readback) noexcept;
     void takeLights(const gpu::Readback& readback) noexcept;
@@ -835,7 +845,7 @@ class World {
     void applyEmitter(const SavedEmitter& from, components::FireEmitter& emitter) noexcept;
     // queries.cpp
     Query makeQuery(FwBurnableMeshId id, const float position[3]);
-    Query& openQuery(FwQueryId id, bool isArrival);  // throws and closes it where it is orphaned
+    Query& openQuery(FwQueryId id, bool isArrival);
     FwPointState pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,
                             const gpu::Readback& readback) const noexcept;
     void texelPosition(const Object& object, uint32_t texel, float (&out)[3]) const noexcept;
@@ -963,7 +973,7 @@ class World {
 
     // As of the last readback.
     uint64_t readbackFrame_ = 0, readbackTick_ = 0;
-    uint32_t frontTiles_ = 0, runTiles_ = 0, burningTiles_ = 0, flames_ = 0, lateClamps_ = 0;
+    uint32_t frontTiles_ = 0, runTiles_ = 0, burningTiles_ = 0, lateClamps_ = 0;
     uint32_t hotTiles_ = 0;
     uint32_t receivers_ = 0;
     std::pmr::vector<FwLight> lights_, lightsBefore_;  // of burning meshes

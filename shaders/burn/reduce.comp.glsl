@@ -1,5 +1,6 @@
 // What burns, tile by tile: counts per object, a BurnTile for lights and flames, and the burn list
-// without the tiles that burnt out. 64 tiles of the list a group.
+// without the tiles that burnt out. 64 tiles of the list a group. With kSwitchShows only the
+// BurnTiles: after a load the first frame shows flames, and counts stay those of the save.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -35,6 +36,7 @@ void reduceTile(uint worldTile, uint parity) {
     uvec3 position = uvec3(0u);
     ivec3 normal = ivec3(0);
     float power = 0.0;
+    bool shows = (push.switches & kSwitchShows) != 0u;
     bool heats = (objects[object].flags & kObjectHeat) != 0u;
     uint heatBase = objects[object].heatBase;
     for (uint lane = 0u; tile.alive && lane < 64u; ++lane) {
@@ -50,7 +52,7 @@ void reduceTile(uint worldTile, uint parity) {
             burns = t <= push.now && phase != kPhaseBurnt;
             // Thick fuel's power is what it lost, once a heat step has met it; thin fuel's looks
             // want its mean.
-            nominal = phase != kPhaseBurning ||
+            nominal = shows || phase != kPhaseBurning ||
                       materials[material].burnTicks == materials[material].flameTicks;
         }
         if (!burns) continue;
@@ -62,22 +64,27 @@ void reduceTile(uint worldTile, uint parity) {
         power += nominal ? materials[material].powerPerArea : 0.0;
     }
     if (count == 0u) {
-        atomicAnd(tileState[worldTile].flag, ~kTileBurning);
+        if (!shows) atomicAnd(tileState[worldTile].flag, ~kTileBurning);
         return;
     }
-    uint slot = listSlot(kRowBurn + (parity ^ 1u), 64u);
-    if (parity == 0u) burnB[slot] = worldTile;
-    else burnA[slot] = worldTile;
-    atomicAdd(counters[kRowBurn + (parity ^ 1u)].runCount, 1u);
+    uint row = kRowBurn + (shows ? parity : parity ^ 1u), slot;
+    if (shows) {
+        slot = atomicAdd(counters[row].runCount, 1u);
+    } else {
+        slot = listSlot(row, 64u);
+        if (parity == 0u) burnB[slot] = worldTile;
+        else burnA[slot] = worldTile;
+        atomicAdd(counters[row].runCount, 1u);
+        atomicAdd(objectCounters[object].burning, count);
+        atomicAdd(objectCounters[object].burningTiles, 1u);
+    }
     if ((slot & 63u) == 0u) {
-        atomicMax(counters[kRowBurn + (parity ^ 1u)].runX, min(slot / 64u + 1u, kMaxGroups));
+        atomicMax(counters[row].runX, min(slot / 64u + 1u, kMaxGroups));
         if (slot == 0u) {
-            counters[kRowBurn + (parity ^ 1u)].runY = 1u;
-            counters[kRowBurn + (parity ^ 1u)].runZ = 1u;
+            counters[row].runY = 1u;
+            counters[row].runZ = 1u;
         }
     }
-    atomicAdd(objectCounters[object].burning, count);
-    atomicAdd(objectCounters[object].burningTiles, 1u);
     float area = objects[object].tint.w;
     vec4 rest = vec4(objects[object].originQuantum.xyz +
                          objects[object].originQuantum.w * vec3(position) / float(count),
@@ -100,7 +107,7 @@ void reduceTile(uint worldTile, uint parity) {
         vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
     power *= float(airStrength(objectCounters[object].air)) / float(kAirFull);
     b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0),
-                         power * area + (heats ? tileFire[worldTile] : 0.0));
+                         power * area + (heats && !shows ? tileFire[worldTile] : 0.0));
     b.object = object;
     b.tile = tile.local;
     b.texels = count;

@@ -180,6 +180,7 @@ FW_SHARED_CONST uint kSwitchCrossing = 128u;
 FW_SHARED_CONST uint kSwitchNoZPass = 256u;
 FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;  // ours: some object or the world limits its fire
 FW_SHARED_CONST uint kSwitchPlays = 0x80000u;     // ours: some object may play a baked burn
+FW_SHARED_CONST uint kSwitchShows = 0x100000u;    // ours: `reduce` makes BurnTiles and nothing else
 
 // TexelEvent::kind, as FwIgnitionKind
 FW_SHARED_CONST uint kEventIgnite = 0u;

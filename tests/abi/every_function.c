@@ -130,6 +130,10 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_FetchPoint(NULL, query, NULL));
     REFUSES(fwWorld_RequestArrival(NULL, object, NULL, NULL));
     REFUSES(fwWorld_FetchArrival(NULL, query, NULL));
+    REFUSES(fwWorld_CancelQuery(NULL, query));
+    REFUSES(fwWorld_CancelSave(NULL));
+    REFUSES(fwWorld_CancelBurn(NULL, object));
+    REFUSES(fwWorld_UntagPoint(NULL, object, 0));
     IS_ZERO(fwWorld_GetLights(NULL, NULL, 0));
     REFUSES(fwWorld_ReadLights(NULL, NULL, NULL));
     REFUSES(fwWorld_RequestSave(NULL));

@@ -98,7 +98,9 @@ TEST(AbiFire, DousingPutsItOutAndSaysSo) {
     w.ball(FW_WET, 0.5f, 0, 0.125f, 0.5f);
     w.run(2.0);
     const std::vector<FwEvent> events = w.events();
-    EXPECT_NE(nullptr, find(events, FW_EVENT_EXTINGUISHED));
+    const FwEvent* out = find(events, FW_EVENT_EXTINGUISHED);
+    ASSERT_NE(nullptr, out);
+    EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_WATER), out->tag);
     EXPECT_EQ(nullptr, find(events, FW_EVENT_BURNT_OUT));
     EXPECT_EQ(0u, w.state().burning);
     EXPECT_EQ(uint32_t(FW_POINT_EXTINGUISHED), w.point(0.5f, 0, 0.125f).kind);
@@ -109,6 +111,11 @@ TEST(AbiFire, DousingPutsItOutAndSaysSo) {
     w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.03f);
     w.run(1.0);
     EXPECT_NE(nullptr, find(w.events(), FW_EVENT_IGNITED));
+    w.ball(FW_EXTINGUISH, 0.5f, 0, 0.125f, 0.5f);
+    w.run(1.0);
+    const std::vector<FwEvent> last = w.events();
+    ASSERT_NE(nullptr, find(last, FW_EVENT_EXTINGUISHED));
+    EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_CALL), find(last, FW_EVENT_EXTINGUISHED)->tag);
 }
 
 TEST(AbiFire, IgnitionReachesOnlyWhatTheBallTouches) {

@@ -103,6 +103,16 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         EXPECT_EQ(FW_OK, fwWorld_GetStats(world_, &made));
         return made;
     }
+    // FwExtinguishCause of the last end of a fire since the last call; 0: it burnt out; kNoEnd.
+    static constexpr uint32_t kNoEnd = 77;
+    uint32_t endedBy() {
+        uint32_t last = kNoEnd;
+        FwEvent events[64];
+        for (uint32_t i = 0, count = fwWorld_PollEvents(world_, events, 64); i < count; ++i)
+            if (events[i].type == FW_EVENT_EXTINGUISHED || events[i].type == FW_EVENT_BURNT_OUT)
+                last = events[i].tag;
+        return last;
+    }
     static FwMaterialDef preset(uint32_t which) {
         FwMaterialDef def = fwDefaultMaterialDef();
         EXPECT_EQ(FW_OK, fwInitMaterialPreset(&def, which));
@@ -276,6 +286,7 @@ TEST_P(AbiHeat, P13_WaterPutsOutAndMustGoFirst) {
     EXPECT_GE(400.0f, wet.water) << "the surplus runs off";
     EXPECT_EQ(0u, state().burning);
     EXPECT_NEAR(before, wet.fuel, 0.1f);
+    EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_WATER), endedBy());
     // Not while it is wet.
     all(FW_IGNITE);
     run(1);
@@ -290,6 +301,8 @@ TEST_P(AbiHeat, P13_WaterPutsOutAndMustGoFirst) {
     EXPECT_GT(wet.fuel, point().fuel) << "on from the fuel it has";
     run(6);
     EXPECT_EQ(FW_POINT_BURNT, int(point().kind)) << "and so it ends earlier than a new one";
+    run(2);
+    EXPECT_EQ(0u, endedBy()) << "it burnt out";
 }
 
 TEST_P(AbiHeat, ALittleWaterBoilsOff) {
@@ -377,7 +390,22 @@ TEST_P(AbiHeat, StarvedOfItsFlamesHeatAPlankGoesOut) {
         run(50);
         EXPECT_EQ(feedback > 10000 ? FW_POINT_BURNING : FW_POINT_EXTINGUISHED, int(point().kind))
             << point().temperature << " K";
+        EXPECT_EQ(feedback > 10000 ? kNoEnd : uint32_t(FW_EXTINGUISHED_BY_COLD), endedBy());
     }
+}
+
+// What water put out of it early is another matter than how its last flames ended.
+TEST_P(AbiHeat, WhatBurnsOutAfterACornerWasPutOutIsBurntOut) {
+    make(preset(FW_MATERIAL_COTTON), 1);
+    all(FW_IGNITE);
+    run(2);
+    FwIgnitionDef corner = fwDefaultIgnitionDef();
+    corner.kind = FW_EXTINGUISH;
+    corner.radius = 0.02f;
+    ASSERT_EQ(FW_OK, fwWorld_Ignite(world_, &corner, nullptr));
+    run(20);
+    EXPECT_EQ(0u, state().burning);
+    EXPECT_EQ(0u, endedBy());
 }
 
 TEST_P(AbiHeat, LiteBurnsByItsTimeAlone) {

@@ -80,6 +80,74 @@ TEST(AbiObjects, EveryFunctionRefusesAStaleObject) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CreateBurnableMesh(w.world, &def, &made));
 }
 
+TEST(AbiObjects, QueriesEndWithTheirObjectAndFreeTheirSlots) {
+    SheetWorld w(host::evenMaterial(0.02f, 5));
+    const float point[3] = {};
+    FwQueryId query{};
+    for (int round = 0; round < 3; ++round) {
+        const FwBurnableMeshId id = w.add(1);
+        std::vector<FwQueryId> asked;
+        for (uint32_t i = 0; i < 1024; ++i) {
+            const FwResult result = i % 2 ? fwWorld_RequestPoint(w.world, id, point, &query)
+                                          : fwWorld_RequestArrival(w.world, id, point, &query);
+            ASSERT_EQ(FW_OK, result) << round << ", " << i << ": " << lastMessage(w.world);
+            asked.push_back(query);
+        }
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
+                  fwWorld_RequestPoint(w.world, w.object, point, &query));
+        ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
+        FwPointState state{};
+        state.structSize = sizeof state;
+        EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_FetchPoint(w.world, asked[1], &state));
+        EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CancelQuery(w.world, asked[0]));
+    }
+    w.run(0.1);
+}
+
+TEST(AbiObjects, EveryRequestCanBeCancelled) {
+    SheetWorld w(host::evenMaterial(0.02f, 5));
+    const float point[3] = {0.5f, 0, 0.1f};
+    FwQueryId query{};
+    for (int i = 0; i < 3000; ++i) {
+        ASSERT_EQ(FW_OK, fwWorld_RequestPoint(w.world, w.object, point, &query)) << i;
+        ASSERT_EQ(FW_OK, fwWorld_CancelQuery(w.world, query)) << i;
+    }
+    FwPointState state{};
+    state.structSize = sizeof state;
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_FetchPoint(w.world, query, &state));
+    ASSERT_EQ(FW_OK, fwWorld_RequestArrival(w.world, w.object, point, &query));
+    EXPECT_EQ(FW_OK, fwWorld_CancelQuery(w.world, query));
+
+    EXPECT_EQ(FW_OK, fwWorld_CancelSave(w.world)) << "none was requested";
+    EXPECT_EQ(FW_OK, fwWorld_CancelBurn(w.world, w.object));
+    uint64_t size = 0;
+    for (const bool comes : {false, true}) {
+        ASSERT_EQ(FW_OK, fwWorld_RequestSave(w.world));
+        ASSERT_EQ(FW_OK, fwWorld_RequestBurn(w.world, w.object));
+        if (comes) w.run(0.1);
+        EXPECT_EQ(FW_OK, fwWorld_CancelSave(w.world));
+        EXPECT_EQ(FW_OK, fwWorld_CancelBurn(w.world, w.object));
+        w.run(0.1);
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchSave(w.world, nullptr, &size));
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
+                  fwWorld_FetchBurn(w.world, w.object, nullptr, &size));
+    }
+    ASSERT_EQ(FW_OK, fwWorld_RequestSave(w.world));
+    w.run(0.1);
+    EXPECT_EQ(FW_OK, fwWorld_FetchSave(w.world, nullptr, &size)) << "the next one comes";
+
+    for (const uint32_t tag : {3u, 4u})
+        ASSERT_EQ(FW_OK, fwWorld_TagPoint(w.world, w.object, point, tag));
+    EXPECT_EQ(FW_OK, fwWorld_UntagPoint(w.world, w.object, 3));
+    EXPECT_EQ(FW_OK, fwWorld_UntagPoint(w.world, w.object, 99)) << "none has it";
+    w.ball(FW_IGNITE, 0.5f, 0, 0.1f, 0.05f);
+    w.run(1);
+    uint32_t reached = 0;
+    for (const FwEvent& event : w.events())
+        if (event.type == FW_EVENT_TAG_REACHED) reached |= 1u << event.tag;
+    EXPECT_EQ(1u << 4, reached);
+}
+
 TEST(AbiObjects, AMeshInUseStays) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_DestroyMesh(w.world, w.mesh));

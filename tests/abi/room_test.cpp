@@ -14,7 +14,7 @@ float volumeFor(double joules) { return float(joules * kTakes / (0.2095 - 0.15))
 
 // A sheet of paper on which fire runs, and how much there is in it.
 struct Paper {
-    explicit Paper(uint32_t backend) : sheet(0.6f, 0.6f) {
+    explicit Paper(uint32_t backend, uint32_t preset = FW_MATERIAL_PAPER) : sheet(0.6f, 0.6f) {
         FwContextDef contextDef = fwDefaultContextDef();
         contextDef.backend = backend;
         contextDef.callbacks = host.callbacks();
@@ -27,7 +27,7 @@ struct Paper {
         FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
         EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &made.mesh)) << lastMessage(world);
         FwMaterialDef material = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&material, FW_MATERIAL_PAPER));
+        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&material, preset));
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &material, &made.materials[0]));
         EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &made, &id)) << lastMessage(world);
         fuel = double(book().fuel) / 1048576;
@@ -91,6 +91,13 @@ struct Paper {
         return std::any_of(events.begin(), events.end(),
                            [&](const FwEvent& event) { return event.type == type; });
     }
+    // FwExtinguishCause of the last time that it went out; 0: it did not.
+    uint32_t cause() const {
+        uint32_t last = 0;
+        for (const FwEvent& event : events)
+            if (event.type == FW_EVENT_EXTINGUISHED) last = event.tag;
+        return last;
+    }
     uint64_t hash() {
         EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world, id)) << lastMessage(world);
         uint64_t made = 0;
@@ -132,12 +139,26 @@ TEST(AbiRoom, FireUsesUpItsAirAndGoesOut) {
     // Of the closet's, that which it had down to 15 %, and some more while it weakened.
     EXPECT_TRUE(shut.heard(FW_EVENT_EXTINGUISHED));
     EXPECT_FALSE(shut.heard(FW_EVENT_BURNT_OUT));
+    EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_AIR), shut.cause());
     EXPECT_GT(shut.released(), 0.3 * shut.fuel);
     EXPECT_LT(shut.released(), 0.46 * shut.fuel);
     EXPECT_GT(shut.air(closet).oxygen, 0.1199f);
     EXPECT_LT(shut.air(closet).oxygen, 0.1425f);
     EXPECT_LT(shut.air(closet).strength, 0.75f);
     EXPECT_EQ(0.0f, shut.air(closet).power);
+}
+
+// In air that lets it flame weakly wood gives too little heat back to itself.
+TEST(AbiRoom, WoodInLittleAirGoesOutWithFuelLeft) {
+    Paper wood(FW_BACKEND_CPU, FW_MATERIAL_PINE);
+    FwRoomDef def = wood.roomOf(100 * wood.fuel);
+    def.oxygen = 0.126f;  // a fifth of its strength
+    (void)wood.put(def);
+    wood.light(0.15f);
+    wood.run(300);
+    EXPECT_EQ(0u, wood.burning());
+    EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_AIR), wood.cause());
+    EXPECT_FALSE(wood.heard(FW_EVENT_BURNT_OUT));
 }
 
 // A door that opens on a dying fire brings it back.
@@ -191,6 +212,8 @@ TEST(AbiRoom, InertGasPutsOutAndWhoLeavesBurnsOn) {
     EXPECT_EQ(0u, carried.air(other).objects);
     for (Paper* paper : {&flooded, &carried}) paper->run(0.5);
     EXPECT_EQ(0u, flooded.burning());
+    EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_AIR), flooded.cause()) << "at once, with fuel left";
+    EXPECT_FALSE(flooded.heard(FW_EVENT_BURNT_OUT));
     EXPECT_NEAR(0.1f, flooded.air(room).oxygen, 1e-5f);
     EXPECT_EQ(0.0f, flooded.air(room).strength);
     EXPECT_LT(0u, carried.burning());

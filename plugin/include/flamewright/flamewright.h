@@ -1163,8 +1163,10 @@ FW_API FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld*, const FwOffscreenDef* 
 
 typedef enum FwEventType {
     FW_EVENT_IGNITED = 1,       /* the object's first texel burns; value: s since world start */
-    FW_EVENT_BURNT_OUT = 2,     /* nothing of it burns or waits to burn; value: burnt fraction */
-    FW_EVENT_EXTINGUISHED = 3,  /* as above, but by dousing, or for want of air */
+    FW_EVENT_BURNT_OUT = 2,     /* nothing of it burns or waits to burn: its last flames used up their fuel;
+                                   value: burnt fraction */
+    FW_EVENT_EXTINGUISHED = 3,  /* nothing of it burns or waits to burn, but its last flames went out with fuel
+                                   left; tag: FwExtinguishCause; value: burnt fraction */
     FW_EVENT_TAG_REACHED = 4,   /* the front reached a tagged point; value: s since world start */
     FW_EVENT_FRONT_LIMITED = 5, /* many arrivals come late: the front is faster than 8 substeps
                                    can follow; value: how many since the last such event */
@@ -1180,6 +1182,13 @@ typedef enum FwEventType {
                                    FwBreakKind; value: m^2 of its surface that are concerned */
     FW_EVENT_TYPE_FORCE32 = 0x7fffffff
 } FwEventType;
+typedef enum FwExtinguishCause {
+    FW_EXTINGUISHED_BY_WATER = 1, /* FW_WET, or a field with FW_FIELD_WETS */
+    FW_EXTINGUISHED_BY_CALL = 2,  /* FW_EXTINGUISH */
+    FW_EXTINGUISHED_BY_AIR = 3,   /* its room had too little oxygen */
+    FW_EXTINGUISHED_BY_COLD = 4,  /* it lost more heat than its flames gave back, as a lone plank does */
+    FW_EXTINGUISH_CAUSE_FORCE32 = 0x7fffffff
+} FwExtinguishCause;
 typedef enum FwBreakKind {
     FW_BREAK_PART = 1,          /* a part of what is left of it hangs on nothing any more; position: the middle of it */
     FW_BREAK_SHARE = 2,         /* so much of it is gone; position: of its box's middle */
@@ -1200,6 +1209,8 @@ typedef struct FwEvent {        /* 64 bytes for ever */
 FW_API uint32_t FW_CALL fwWorld_PollEvents(FwWorld*, FwEvent* events, uint32_t capacity);
 /* Raises FW_EVENT_TAG_REACHED once when the texel nearest to `position` (m, world) burns. [world] */
 FW_API FwResult FW_CALL fwWorld_TagPoint(FwWorld*, FwBurnableMeshId id, const float position[3], uint32_t tag);
+/* Cancels all points of the object with this tag that the front has not reached. None: FW_OK. [world] */
+FW_API FwResult FW_CALL fwWorld_UntagPoint(FwWorld*, FwBurnableMeshId id, uint32_t tag);
 
 typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU, now on the cpu */
     uint32_t structSize, reserved;
@@ -1242,10 +1253,14 @@ typedef struct FwPointState {
     float water;               /* g/m^2 on the surface */
 } FwPointState;
 /* Asks for the texel nearest to `position` (m, world). The answer comes with a later frame's
- * readback (at once on the cpu backend) and stays until fetched once; at most 1024 are open. [world] */
+ * readback (at once on the cpu backend) and stays until it is fetched once, or cancelled; at most 1024 are
+ * open. Destroying the object ends its queries: their ids are stale from then on. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestPoint(FwWorld*, FwBurnableMeshId id, const float position[3], FwQueryId* query);
 /* FW_NOT_READY until the answer is here; FW_OK writes it and frees the query. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchPoint(FwWorld*, FwQueryId query, FwPointState* state);
+
+/* Ends a query of fwWorld_RequestPoint or fwWorld_RequestArrival; its id is stale from then on. [world] */
+FW_API FwResult FW_CALL fwWorld_CancelQuery(FwWorld*, FwQueryId query);
 
 typedef enum FwArrivalKind {
     FW_ARRIVAL_AHEAD = 0,      /* fire will be there */
@@ -1288,6 +1303,8 @@ FW_API FwResult FW_CALL fwWorld_RequestSave(FwWorld*);
  * be) written, in bytes. The library keeps them until the next fwWorld_RequestSave. To keep them, write them to a new
  * file, and rename that over the old one: then a crash leaves the old one whole. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchSave(FwWorld*, void* buffer, uint64_t* size);
+/* Forgets a save that was requested, and frees one that is there. None: FW_OK. [world] */
+FW_API FwResult FW_CALL fwWorld_CancelSave(FwWorld*);
 /* The world as it was saved, on whatever backend: from here on both burn bit by bit alike, whatever frame rate each of
  * them has, if they hear the same calls. The world holds what the saved one did, made in the same order, so that the
  * ids' index1 are the same: burnable meshes of the same meshes and materials (by a hash of them and of their defs),
@@ -1373,6 +1390,8 @@ FW_API FwResult FW_CALL fwWorld_RequestBurn(FwWorld*, FwBurnableMeshId id);
  * be) written, in bytes: a .fwburn file, little-endian, versioned, with a checksum, compressed. Times count from the first
  * texel that caught. Refused where nothing has burnt. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchBurn(FwWorld*, FwBurnableMeshId id, void* buffer, uint64_t* size);
+/* Forgets what fwWorld_RequestBurn asked for, and frees it where it is there. Nothing requested: FW_OK. [world] */
+FW_API FwResult FW_CALL fwWorld_CancelBurn(FwWorld*, FwBurnableMeshId id);
 /* Bytes of fwWorld_FetchBurn, of this world or another one, to be played by any number of objects. FW_ERROR_BAD_DATA: they
  * are damaged, cut or of another version. Takes 8 bytes a texel. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateBurn(FwWorld*, const void* bytes, uint64_t size, FwBurnId* id);
@@ -1538,7 +1557,9 @@ typedef struct FwWorldStats {
     uint64_t readbackFrame;        /* newest frame whose readback has come */
     uint32_t objects, burningObjects, meshes, materials;
     uint32_t frontTiles, runTiles; /* waiting, and run in the last step */
-    uint32_t burningTiles, flames;
+    uint32_t burningTiles;
+    uint32_t flames;               /* quads of flames, smoke, particles and sparks that the last view showed, as of
+                                      the last readback; 0 on the cpu backend, which draws nothing */
     uint32_t lateClamps, droppedSteps;
     uint64_t texels;               /* of all objects' burn maps */
     uint32_t hotTiles;             /* whose temperature or water changes */

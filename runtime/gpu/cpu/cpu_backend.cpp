@@ -519,6 +519,7 @@ void CpuBackend::run(const FramePlan& plan) {
         if (step.shield) s.reserveShield(*step.shield);
     }
 
+    s.showRestored();
     s.switches = plan.switches;
     s.runTiles = 0;
     s.milliseconds.fill(0);

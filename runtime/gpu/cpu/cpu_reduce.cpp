@@ -30,6 +30,59 @@ uint64_t cellKey(const BurnTile& tile) {
 
 }  // namespace
 
+// What burns of a tile; of thick fuel its power is `fire` W. Its place, normal and age with it.
+BurnTile CpuBackend::State::burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
+                                       float fire) const noexcept {
+    const CpuObject& object = *objects[tiles[worldTile].object];
+    const mesh::BurnDomain& domain = *object.domain;
+    const uint32_t local = worldTile - object.record.worldTileBase;
+    const uint32_t corner = (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+    uint32_t count = 0, age = 0, position[3] = {};
+    int normal[3] = {};
+    const bool heats = !object.heat.empty();
+    float power = heats ? fire : 0;
+    const float strength = float(airStrength(object.counters.air)) / float(kAirFull);
+    for (uint32_t lane = 0; lane < 64; ++lane) {
+        const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+        const uint32_t t = object.state[texel];
+        if (!isSource(t)) continue;
+        const mesh::TexelPosition& at = domain.texels[texel];
+        const BurnMaterial& material = object.materials[at.materialFlags & 7];
+        const uint32_t phase = heats ? object.heat[texel].y >> 30 : kPhaseFresh;
+        const bool burns =
+            heats ? t <= now && phase != kPhaseBurnt : flames(t, now, material.flameTicks);
+        if (!burns) continue;
+        ++count;
+        age += std::min(now - t, 0xFFFFFFu) >> 2;
+        position[0] += at.x;
+        position[1] += at.y;
+        position[2] += at.z;
+        const ivec3 n = decodeNormal(domain.normals[texel]);
+        for (int i = 0; i < 3; ++i) normal[i] += n[i];
+        if (nominal || phase != kPhaseBurning || material.burnTicks == material.flameTicks)
+            power += material.powerPerArea * object.record.tint.w * strength;
+    }
+    BurnTile tile{};
+    tile.object = tiles[worldTile].object;
+    tile.tile = local;
+    tile.texels = count;
+    if (count == 0) return tile;
+    const float inverse = 1.0f / float(count);
+    const BurnObject& record = object.record;
+    vec4 rest(0, 0, 0, 1);
+    for (int i = 0; i < 3; ++i)
+        rest[i] = record.originQuantum[i] + record.originQuantum.w * inverse * float(position[i]);
+    const vec4 direction = {float(normal[0]), float(normal[1]), float(normal[2]), 0.0f};
+    const vec3 world(glm::dot(record.worldRow0, direction), glm::dot(record.worldRow1, direction),
+                     glm::dot(record.worldRow2, direction));
+    const float size = glm::length(world);
+    tile.positionArea = {glm::dot(record.worldRow0, rest), glm::dot(record.worldRow1, rest),
+                         glm::dot(record.worldRow2, rest), float(count) * record.tint.w};
+    tile.normalPower = vec4(size > 0 ? world / size : vec3(0), power);
+    tile.age = (age / count) << 2;
+    return tile;
+}
+
 void CpuBackend::State::reduce(uint32_t now) noexcept {
     for (core::Owned<CpuObject>& object : objects) {
         if (!object) continue;
@@ -41,63 +94,15 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
     goneBurning = 0;
     size_t kept = 0;
     for (uint32_t worldTile : burnList) {
-        CpuObject& object = *objects[tiles[worldTile].object];
-        const mesh::BurnDomain& domain = *object.domain;
-        const uint32_t local = worldTile - object.record.worldTileBase;
-        const uint32_t corner =
-            (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
-        uint32_t count = 0, age = 0, position[3] = {};
-        int normal[3] = {};
-        float power = 0;
-        const bool heats = !object.heat.empty();
-        if (heats) power = tileFire[worldTile];  // of thick fuel
-        const float strength = float(airStrength(object.counters.air)) / float(kAirFull);
-        for (uint32_t lane = 0; lane < 64; ++lane) {
-            const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
-            const uint32_t t = object.state[texel];
-            if (!isSource(t)) continue;
-            const mesh::TexelPosition& at = domain.texels[texel];
-            const BurnMaterial& material = object.materials[at.materialFlags & 7];
-            const uint32_t phase = heats ? object.heat[texel].y >> 30 : kPhaseFresh;
-            const bool burns =
-                heats ? t <= now && phase != kPhaseBurnt : flames(t, now, material.flameTicks);
-            if (!burns) continue;
-            ++count;
-            age += std::min(now - t, 0xFFFFFFu) >> 2;
-            position[0] += at.x;
-            position[1] += at.y;
-            position[2] += at.z;
-            const ivec3 n = decodeNormal(domain.normals[texel]);
-            for (int i = 0; i < 3; ++i) normal[i] += n[i];
-            if (phase != kPhaseBurning || material.burnTicks == material.flameTicks)
-                power += material.powerPerArea * object.record.tint.w * strength;
-        }
-        if (count == 0) {
+        const BurnTile tile = burnTileOf(worldTile, now, false, tileFire[worldTile]);
+        if (tile.texels == 0) {
             tiles[worldTile].flag &= ~kTileBurning;
             continue;
         }
         burnList[kept++] = worldTile;
-        object.counters.burning += count;
+        CpuObject& object = *objects[tile.object];
+        object.counters.burning += tile.texels;
         ++object.counters.burningTiles;
-        const float inverse = 1.0f / float(count);
-        const BurnObject& record = object.record;
-        vec4 rest(0, 0, 0, 1);
-        for (int i = 0; i < 3; ++i)
-            rest[i] =
-                record.originQuantum[i] + record.originQuantum.w * inverse * float(position[i]);
-        const vec4 direction = {float(normal[0]), float(normal[1]), float(normal[2]), 0.0f};
-        const vec3 world(glm::dot(record.worldRow0, direction),
-                         glm::dot(record.worldRow1, direction),
-                         glm::dot(record.worldRow2, direction));
-        const float size = glm::length(world);
-        BurnTile tile;
-        tile.positionArea = {glm::dot(record.worldRow0, rest), glm::dot(record.worldRow1, rest),
-                             glm::dot(record.worldRow2, rest), float(count) * record.tint.w};
-        tile.normalPower = vec4(size > 0 ? world / size : vec3(0), power);
-        tile.object = tiles[worldTile].object;
-        tile.tile = local;
-        tile.texels = count;
-        tile.age = (age / count) << 2;
         burnTiles.push_back(tile);
     }
     burnList.resize(kept);

@@ -74,7 +74,7 @@ void CpuBackend::State::rest(CpuObject& object, uint32_t slot) noexcept {
     }
 }
 
-void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t) {
+void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick) {
     State& s = *state_;
     for (auto* entries : {&s.list, &s.listOut, &s.runList, &s.burnList, &s.hotList, &s.hotOut})
         entries->clear();
@@ -110,6 +110,19 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t) {
             s.tiles[worldTile].flag |= kept;
         }
         object.counters = image.counters;
+    }
+    s.showsDue = true;  // once objects are where the save has them
+    s.showsTick = tick;
+}
+
+// Lights from the first frame on; counts stay those of the save until the next reduction.
+void CpuBackend::State::showRestored() noexcept {
+    if (!showsDue) return;
+    showsDue = false;
+    burnTiles.clear();
+    for (const uint32_t worldTile : burnList) {
+        const BurnTile tile = burnTileOf(worldTile, showsTick, true, 0);
+        if (tile.texels != 0) burnTiles.push_back(tile);
     }
 }
 

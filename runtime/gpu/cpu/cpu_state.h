@@ -140,6 +140,9 @@ struct CpuBackend::State {
                                      uint32_t& units) const noexcept;
     void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
     void reduce(uint32_t now) noexcept;         // cpu_reduce.cpp
+    [[nodiscard]] BurnTile burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
+                                      float fire) const noexcept;
+    void showRestored() noexcept;  // cpu_restore.cpp
     // cpu_exchange.cpp
     void reserveRemote(const RemoteUpdate& update);  // throws std::bad_alloc
     void placeRemote(const RemoteUpdate& update) noexcept;
@@ -229,6 +232,8 @@ struct CpuBackend::State {
     std::array<Warms, kSourcesPerReceiver> warms{};
     uint32_t warmCount = 0;
     uint32_t scheduledBurning = 0;  // burning tiles as an iteration begins
+    bool showsDue = false;  // after `restore`: BurnTiles as of a tick
+    uint32_t showsTick = 0;
     uint32_t goneBurning = 0;       // of destroyed objects, which count until the next reduce
     std::array<double, kTimerCount> milliseconds{};
     std::array<uint32_t, kTimerCount> timed{};

@@ -28,6 +28,7 @@ struct ReadbackLayout {  // where the pieces of a frame's readback lie, bytes
     uint32_t mapCount = 0;
     bool rooms = false;   // their air
     bool bias = false;    // of refinement
+    bool quads = false;   // a view's were made
     bool images = false;  // where they are is the world's: one frame's at a time
 };
 

@@ -138,6 +138,7 @@ class VkBackend final : public Backend {
     std::span<const PassTime> passTimes() override;
     void memoryRows(std::pmr::vector<MemoryRow>& out) const override;
     [[nodiscard]] uint64_t detailBytes() const noexcept override;
+    [[nodiscard]] uint32_t quadsShown() const noexcept override;
 
     struct State;
 

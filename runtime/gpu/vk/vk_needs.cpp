@@ -220,12 +220,12 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);
-    if (slot.upload.size < needs.uploadBytes ||
-        (needs.readback && slot.readback.size < readbackBytes))
+    const bool reads = needs.readback || plan.frameIndex == 0;  // a picture tells what it shows
+    if (slot.upload.size < needs.uploadBytes || (reads && slot.readback.size < readbackBytes))
         slot.readbackPending = false;
     ensure(s, slot.upload, needs.uploadBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryKind::upload,
            kComponentStaging, "frame upload");
-    if (needs.readback)
+    if (reads)
         ensure(s, slot.readback, readbackBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                MemoryKind::readback, kComponentReadback, "frame readback");
     s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last);

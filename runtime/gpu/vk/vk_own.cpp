@@ -163,6 +163,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
     const Target& target = *context.pipelines.findTarget(own.target);
     beginOwn();
     uint64_t ringFrame = 0;
+    bool recorded = false;
     try {
         // A frame without steps: brings what waits to the device, and what looks need for this
         // view.
@@ -178,6 +179,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         look(def.view, refine.height, open.ringFrame);
         run(plan);
         ringFrame = open.ringFrame;
+        recorded = open.recording;
         closeFrame(&def.view);
         const Table& vk = device.table;
         FrameInFlight& slot = ring.slotFor(ringFrame);
@@ -222,7 +224,9 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         throw;
     }
     submitOwn();
-    ring.slotFor(ringFrame).timers.read(device, 0, times);
+    FrameInFlight& done = ring.slotFor(ringFrame);
+    if (recorded) takeShown(done.layout, done.readback.mapped);
+    done.timers.read(device, 0, times);
     pictureTime = std::max(sumOf(times, 0), 0.0f);
     std::memcpy(def.pixels, own.pixels.mapped, size_t(def.width) * def.height * 4);
 }

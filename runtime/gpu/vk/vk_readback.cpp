@@ -41,6 +41,19 @@ void VkBackend::State::noteCounters(uint32_t slot, ObjectCounters& told, uint32_
     object.charred = charred;
 }
 
+// What a view told of itself.
+void VkBackend::State::takeShown(const ReadbackLayout& layout, const std::byte* from) noexcept {
+    if (layout.quads) {
+        uint32_t arguments[2];  // of VkDrawIndirectCommand: vertices, instances
+        std::memcpy(arguments, from + layout.flamesAt, sizeof arguments);
+        quadsShown = arguments[0] / 6 * arguments[1];
+    }
+    if (!layout.bias) return;
+    uint32_t steps = 0;
+    std::memcpy(&steps, from + layout.biasAt, sizeof steps);
+    refine.bias = float(steps) * kRefineBiasStep;
+}
+
 const Readback* VkBackend::State::nextReadback() {
     while (pendingCount) {
         const PendingReadback one = pending[pendingFirst];
@@ -113,14 +126,7 @@ const Readback* VkBackend::State::nextReadback() {
                 std::memcpy(&light, from + layout.lightsAt + i * sizeof light, sizeof light);
                 if (light.power > 0) givenLights.push_back(light);
             }
-            uint32_t arguments[4];
-            std::memcpy(arguments, from + layout.flamesAt, sizeof arguments);
-            given.flames = arguments[0] / 6 * arguments[1];  // of VkDrawIndirectCommand
-            if (layout.bias) {
-                uint32_t steps = 0;
-                std::memcpy(&steps, from + layout.biasAt, sizeof steps);
-                refine.bias = float(steps) * kRefineBiasStep;
-            }
+            takeShown(layout, from);
             bool spreading = false;
             for (const uint32_t i : awake) spreading |= objects[i].publishedTouched;
             if (one.ringFrame >= lastStimulus && !spreading) {

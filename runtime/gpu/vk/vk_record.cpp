@@ -552,6 +552,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
     if (view) {
         outside = *view;
         look(*view, refine.height, open.ringFrame);
+        if (burnEmpty && !showsEmitters()) quadsShown = 0;
     }
     if (!open.recording) {
         open = {};
@@ -601,8 +602,17 @@ void VkBackend::State::closeFrame(const FwView* view) {
     for (DrawItem& item : drawItems)
         if (awake.contains(item.object)) showRefined(objects[item.object].refine, item);
     FrameRecorder recorder(target);
-    if (open.readback && open.planFrame) {
-        const ReadbackLayout& layout = slot.layout;
+    const ReadbackLayout& layout = slot.layout;
+    const auto copyShown = [&] {
+        slot.layout.quads = view && (!burnEmpty || particles);
+        slot.layout.bias = open.refined;
+        if (layout.quads) recorder.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
+        if (layout.bias)
+            recorder.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
+    };
+    if (open.planFrame == 0) {
+        if (view) copyShown();  // a picture of an own device's
+    } else if (open.readback) {
         // Counters before the lists: rows that this frame used, and the one its list ended in.
         recorder.copyOut(FW_BIND_COUNTERS, 0, layout.countersAt,
                          uint64_t(layout.rows + 1) * sizeof(IterationCounters));
@@ -615,10 +625,7 @@ void VkBackend::State::closeFrame(const FwView* view) {
         if (layout.lights)
             recorder.copyOut(FW_BIND_LIGHTS, 0, layout.lightsAt,
                              uint64_t(layout.lights) * sizeof(BurnLight));
-        recorder.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
-        slot.layout.bias = open.refined;
-        if (layout.bias)
-            recorder.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
+        copyShown();
         if (layout.fields)
             recorder.copyOut(FW_BIND_FIELD_COUNTERS, 0, layout.fieldsAt,
                              layout.fields * sizeof(FieldCounters));

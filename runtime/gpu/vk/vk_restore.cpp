@@ -132,6 +132,9 @@ void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
         recorder.dispatch(kRestorePass, &push, std::max((object.record.tileCount + 63) / 64, 1u));
     }
     s.restoredObjects.clear();
+    push.now = s.shownTick;
+    push.switches = kSwitchShows;
+    recorder.dispatchList(kReducePass, &push, kRowBurn + s.lists.burnParity);
 }
 
 void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,

@@ -443,6 +443,8 @@ uint32_t VkBackend::State::leastRays(const FwView& view, const VolumeScreen& scr
     return kUnknownRays;
 }
 
+uint32_t VkBackend::quadsShown() const noexcept { return state_->quadsShown; }
+
 uint64_t VkBackend::detailBytes() const noexcept {
     const State& s = *state_;  // cards and books lie before the rays; those are by flames
     const uint64_t cards =

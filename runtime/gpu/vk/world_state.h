@@ -360,6 +360,7 @@ struct VkBackend::State {
         vec3 tip{};  // as VolumeItem's
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
+    uint32_t quadsShown = 0;              // by the last view whose readback came
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
     bool particlesByBook = false;         // books show all fire and smoke of them
     uint32_t sparkSources = 0;            // that throw sparks
@@ -491,6 +492,7 @@ struct VkBackend::State {
     void recordArp(FrameInFlight& slot, const FwView& view);
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
+    void takeShown(const ReadbackLayout& layout, const std::byte* from) noexcept;
     void noteCounters(uint32_t slot, ObjectCounters& told, uint32_t tick) noexcept;
     const Readback* nextReadback();
     // vk_volume.cpp
