@@ -62,7 +62,7 @@ class Importer {
         takeMeshes(part);
         if (model_.indices.empty()) {
             std::string why;
-            for (const std::string& line : model_.report) why += "\n - " + line;
+            for (const std::string& line : model_.notes) why += "\n - " + line;
             refuse("there is no triangle in it", why);
         }
         finish();
@@ -70,9 +70,9 @@ class Importer {
 
  private:
     void note(const std::string& line) {
-        if (std::find(model_.report.begin(), model_.report.end(), line) == model_.report.end() &&
-            model_.report.size() < 200) {
-            model_.report.push_back(line);
+        if (std::find(model_.notes.begin(), model_.notes.end(), line) == model_.notes.end() &&
+            model_.notes.size() < 200) {
+            model_.notes.push_back(line);
         }
     }
 
@@ -213,10 +213,7 @@ class Importer {
                 use.texCoord = pbr.baseColorTexture.texCoord;
                 readTransform(pbr.baseColorTexture, use);
             }
-            if (from.alphaMode != "OPAQUE" && !from.alphaMode.empty()) {
-                note(text("materials[", index, "].alphaMode ", from.alphaMode,
-                          " is left out: it is drawn opaque"));
-            }
+            readAlpha(from, material, text("materials[", index, "]"));
         } else {
             material.name = "default";
         }
@@ -225,6 +222,32 @@ class Importer {
         textureUses_.push_back(use);
         materials_[index] = result;
         return result;
+    }
+
+    // Alpha that a Mask cannot show becomes the nearest thing that it can, with a note.
+    void readAlpha(const tinygltf::Material& from, ImportedMaterial& material,
+                   const std::string& name) {
+        if (from.alphaMode == "MASK") {
+            material.alphaMode = AlphaMode::Mask;
+            if (std::isfinite(from.alphaCutoff))
+                material.alphaCutoff = static_cast<float>(std::clamp(from.alphaCutoff, 0.0, 1.0));
+            return;
+        }
+        if (from.alphaMode != "BLEND") return;
+        const bool holes =
+            material.image >= 0 && hasHoles(model_.images[static_cast<size_t>(material.image)]);
+        if (holes) material.alphaMode = AlphaMode::Mask;
+        note(text(name, ".alphaMode BLEND is shown ",
+                  holes ? "as a cut-out: what has less than half its alpha is not there"
+                        : "opaque"));
+    }
+
+    // True: some of it is more see-through than not, and some is not.
+    static bool hasHoles(const DecodedImage& image) {
+        bool hole = false, solid = false;
+        for (size_t i = 3; i < image.rgba.size(); i += 4)
+            (image.rgba[i] < 128 ? hole : solid) = true;
+        return hole && solid;
     }
 
     static void readTransform(const tinygltf::TextureInfo& info, TextureUse& use) {

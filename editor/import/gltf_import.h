@@ -17,11 +17,20 @@
 
 namespace fwimport {
 
+enum class AlphaMode : uint8_t {
+    Opaque,  // the picture's alpha means nothing
+    Mask,    // a point whose alpha is below alphaCutoff is not there
+};
+
 struct ImportedMaterial {
     std::string name;
     std::array<float, 4> baseColor{1, 1, 1, 1};  // linear factor
     float roughness = 1.0f;                      // [0, 1]
     int32_t image = -1;                          // into ImportedModel::images; -1: none
+    // glTF's BLEND is read as Mask at 0.5 where its picture has holes, else as Opaque; a note says
+    // so. A point's alpha: baseColor[3] x the picture's alpha x the vertex colour's alpha.
+    AlphaMode alphaMode = AlphaMode::Opaque;
+    float alphaCutoff = 0.5f;  // Mask only; [0, 1]
     bool doubleSided = false;
 };
 
@@ -40,11 +49,11 @@ struct ImportedModel {
     std::vector<uint32_t> indices;            // 3 per triangle, counter-clockwise outside
     std::vector<uint32_t> triangleMaterials;  // 1 per triangle, into `materials`
     std::vector<ImportedMaterial> materials;  // those that are used; at least one
-    std::vector<DecodedImage> images;         // base colours, those that are used
+    std::vector<DecodedImage> images;         // base colours, those that are used; straight alpha
     std::vector<ImportedNode> nodes;          // all of the file, by its numbers
     bool hasNormals = false, hasUvs = false, hasColors = false;  // for every vertex
     std::array<float, 3> low{}, high{};                          // m, bounds of the positions
-    std::vector<std::string> report;  // what was left out or mended, and why
+    std::vector<std::string> notes;  // what is left out or shown otherwise, and why
 
     size_t vertexCount() const { return positions.size() / 3; }
     size_t triangleCount() const { return indices.size() / 3; }

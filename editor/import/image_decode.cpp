@@ -56,7 +56,10 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
     }
     try {
         OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes.data()), bytes.size());
-        auto input = OIIO::ImageInput::open(name, nullptr, &memory);
+        // Colours as the file has them: by default they come multiplied by the alpha.
+        OIIO::ImageSpec config;
+        config.attribute("oiio:UnassociatedAlpha", 1);
+        auto input = OIIO::ImageInput::open(name, &config, &memory);
         if (!input) {
             error = "it cannot be decoded: " + OIIO::geterror();
             return false;

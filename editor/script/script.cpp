@@ -279,7 +279,7 @@ bool printReport(ScriptHost& host, std::string& error) {
     if (!cpu || !burnToPlayhead(host, cpu, error)) return false;
     for (const std::string& line : host.burn->report) host.say(line);
     for (const BurnMesh& mesh : host.burn->meshes)
-        for (const std::string& line : mesh.model->report) host.say(line);
+        for (const std::string& line : mesh.model->notes) host.say(line);
     return true;
 }
 
@@ -492,7 +492,7 @@ bool runLineAlone(ScriptHost& host, const std::string& line, std::string& error)
         mesh.file = command.file;
         const auto model = modelOf(mesh, baseFolder(host.document), host.assets, error);
         if (!model) return false;
-        for (const std::string& note : model->report) host.say(note);
+        for (const std::string& note : model->notes) host.say(note);
     }
     std::string message;
     const bool good = runLine(host.document, line, message);

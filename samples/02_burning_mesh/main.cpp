@@ -88,7 +88,7 @@ void touch(sample::FireHost& fire, glm::vec3 position, float radius, FwIgnitionK
 int run(const sample::Options& options, const Wishes& wishes) {
     const uint32_t preset = presetNamed(wishes.material);
     Subject subject = loadSubject(fileToBurn(options), wishes.size);
-    for (const std::string& line : subject.model.report) {
+    for (const std::string& line : subject.model.notes) {
         std::printf("%s: %s\n", subject.name.c_str(), line.c_str());
     }
     sample::ValidationLog validation;

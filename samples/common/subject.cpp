@@ -107,7 +107,7 @@ Subject loadSubject(const std::filesystem::path& file, float wantedSize) {
         subject.scale = 1.0f / size;
         char line[128];
         std::snprintf(line, sizeof line, "it is %.4g m large; scaled to 1 m", size);
-        model.report.emplace_back(line);
+        model.notes.emplace_back(line);
     }
     const float middleX = 0.5f * (model.low[0] + model.high[0]);
     const float middleZ = 0.5f * (model.low[2] + model.high[2]);

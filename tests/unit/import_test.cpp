@@ -230,7 +230,7 @@ TEST(Import, StripFanAndUnindexedBecomeTriangles) {
     plain.primitive = R"("attributes":{"POSITION":0})";
     ASSERT_TRUE(loads(plain.bytes(), model));
     EXPECT_EQ((std::vector<uint32_t>{0, 1, 2}), model.indices);
-    EXPECT_THAT(model.report, ::testing::Contains(HasSubstr("4 indices")));
+    EXPECT_THAT(model.notes, ::testing::Contains(HasSubstr("4 indices")));
 }
 
 TEST(Import, IndicesOfEveryWidth) {
@@ -419,7 +419,7 @@ TEST(Import, ImagesThatCannotBeDecodedAreReported) {
     ASSERT_TRUE(loads(quad.bytes(), model));
     EXPECT_TRUE(model.images.empty());
     EXPECT_EQ(-1, model.materials[0].image);
-    EXPECT_THAT(model.report, ::testing::Contains(HasSubstr("none of PNG, JPEG, EXR")));
+    EXPECT_THAT(model.notes, ::testing::Contains(HasSubstr("none of PNG, JPEG, EXR")));
 }
 
 // ---- the files of assimp-testmodels -----------------------------------------------------------
