@@ -286,13 +286,12 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
             break;
         }
         case FieldType::Choices: {
-            // Of a mesh the materials by slot: those that its file has.
+            // Of a mesh the materials by slot: those that its triangles use.
             const auto& list = std::get<std::vector<double>>(value);
             size_t slots = 1;
             if (app.live.burn()) {
                 for (const fwedit::BurnMesh& mesh : app.live.burn()->meshes)
-                    if (mesh.id == id && mesh.model)
-                        slots = std::clamp<size_t>(mesh.model->materials.size(), 1, 8);
+                    if (mesh.id == id) slots = mesh.slots;
             }
             std::vector<std::string> names;
             for (const char* word : field.choices) names.push_back(asWords(word));

@@ -14,15 +14,22 @@
 #include "document/flame_curve.h"
 #include "document/world_parts.h"
 #include "flamewright/flamewright_debug.h"
-#include "import/content_hash.h"
 #include "import/float_picture.h"
+#include "model/baked_map.h"
+#include "model/neutral_stage.h"
 
 namespace fwedit {
 
 struct BurnShared {
-    std::map<std::pair<uint32_t, float>, FwMaterialId> materials;
-    std::map<const fwimport::DecodedImage*, FwImageId> images;
-    std::map<std::string, FwMeshId> meshes;  // by bake
+    struct MaterialKey {
+        uint32_t preset;
+        float thickness;  // m; 0: the preset's
+        bool ownColors;
+        auto operator<=>(const MaterialKey&) const = default;
+    };
+    std::map<MaterialKey, FwMaterialId> materials;
+    std::map<std::pair<const fwimport::DecodedImage*, float>, FwImageId> images;  // and its cut-off
+    std::map<std::string, FwMeshId> meshes;                                       // by bake
     std::map<std::string, FwFireProfileId> profiles;
     FwFlipbookId books[FW_FLIPBOOK_PRESET_COUNT] = {};
 };
@@ -31,83 +38,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using fwimport::ImportedModel;
+using fwmodel::ModelSurfaces;
 
-// What the plugin's mesh is made of: materials of the file in its eight slots, and colours.
-struct Surfaces {
-    std::vector<uint8_t> triangleMaterials;
-    std::array<int32_t, 8> images;  // of the model by slot, -1: none
-    std::vector<uint32_t> colors;   // empty: the material's own
-};
-
-Surfaces surfacesOf(const ImportedModel& model) {
-    Surfaces result;
-    result.images.fill(-1);
-    bool own = model.hasColors || !model.images.empty();
-    for (size_t i = 0; i < model.materials.size(); ++i) {
-        const fwimport::ImportedMaterial& material = model.materials[i];
-        int32_t& image = result.images[std::min<size_t>(i, 7)];
-        if (image < 0) image = material.image;
-        const auto& color = material.baseColor;
-        own = own || color[0] != color[1] || color[1] != color[2];
-    }
-    for (const uint32_t material : model.triangleMaterials)
-        result.triangleMaterials.push_back(static_cast<uint8_t>(std::min<uint32_t>(material, 7)));
-    if (!own) return result;
-    result.colors = model.colors;
-    result.colors.resize(model.vertexCount(), 0xffffffffu);
-    std::vector<bool> done(model.vertexCount(), false);
-    for (size_t i = 0; i < model.indices.size(); ++i) {
-        const uint32_t vertex = model.indices[i];
-        if (done[vertex]) continue;
-        done[vertex] = true;
-        const auto& factor = model.materials[model.triangleMaterials[i / 3]].baseColor;
-        uint32_t packed = 0xff000000u;
-        for (uint32_t c = 0; c < 3; ++c) {
-            const auto before = static_cast<float>(result.colors[vertex] >> (8 * c) & 255);
-            packed |=
-                static_cast<uint32_t>(std::lround(std::clamp(factor[c] * before, 0.0f, 255.0f)))
-                << (8 * c);
-        }
-        result.colors[vertex] = packed;
-    }
-    return result;
-}
-
-FwMeshDef meshDefOf(const Mesh& mesh, const ImportedModel& model, const Surfaces& surfaces) {
-    FwMeshDef def = fwDefaultMeshDef();
-    def.positions = model.positions.data();
-    def.normals = model.hasNormals ? model.normals.data() : nullptr;
-    def.uvs = model.hasUvs || !model.images.empty() ? model.uvs.data() : nullptr;
-    def.colors = surfaces.colors.empty() ? nullptr : surfaces.colors.data();
-    def.indices = model.indices.data();
-    def.triangleMaterials = surfaces.triangleMaterials.data();
-    def.vertexCount = static_cast<uint32_t>(model.vertexCount());
-    def.indexCount = static_cast<uint32_t>(model.indices.size());
+FwMeshDef meshDefOf(const Mesh& mesh, const ImportedModel& model, const ModelSurfaces& surfaces) {
+    FwMeshDef def = fwmodel::meshDefOf(model, surfaces);
     def.mapSize = mesh.mapSize;
     def.texelsPerMetre = mesh.texelsPerMetre;
     return def;
-}
-
-std::string bakeKey(const FwMeshDef& def, const Surfaces& surfaces, const ImportedModel& model) {
-    fwimport::ContentHash hash;
-    hash.addValue(fwGetVersion());
-    hash.addValue(def.mapSize);
-    hash.addValue(def.texelsPerMetre);
-    hash.add(model.positions);
-    if (def.normals) hash.add(model.normals);
-    if (def.uvs) hash.add(model.uvs);
-    hash.add(surfaces.colors);
-    hash.add(model.indices);
-    hash.add(surfaces.triangleMaterials);
-    char name[40];
-    std::snprintf(name, sizeof name, "%016llx", static_cast<unsigned long long>(hash.value));
-    return name;
-}
-
-std::string contextMessage(FwContext* context) {
-    char text[1024] = "";
-    fwContext_GetLastMessage(context, text, sizeof text);
-    return text;
 }
 
 bool goOn(const Assets& assets, const std::string& stage, float share) {
@@ -115,20 +52,27 @@ bool goOn(const Assets& assets, const std::string& stage, float share) {
 }
 
 bool createMesh(FwWorld* world, const std::vector<char>& bake, FwMeshId& id) {
-    FwMeshDef cooked = fwDefaultMeshDef();
-    cooked.cooked = bake.data();
-    cooked.cookedSize = bake.size();
+    const FwMeshDef cooked = fwmodel::cookedDefOf(bake);
     return fwWorld_CreateMesh(world, &cooked, &id) == FW_OK;
 }
 
-FwMaterialId materialOf(Burn& burn, BurnShared& shared, uint32_t preset, float thickness) {
-    if (preset == FW_MATERIAL_NONCOMBUSTIBLE) return {};
-    FwMaterialId& id = shared.materials[{preset, thickness}];
+FwMaterialId materialOf(Burn& burn, BurnShared& shared, const BurnShared::MaterialKey& key) {
+    FwMaterialId& id = shared.materials[key];
     if (id.index1 != 0) return id;
-    FwMaterialDef def = fwDefaultMaterialDef();
-    fwInitMaterialPreset(&def, preset);
-    if (thickness > 0) def.thickness = thickness;
+    FwMaterialDef def = fwmodel::materialDefOf(key.preset, key.ownColors);
+    if (key.thickness > 0) def.thickness = key.thickness;
     fwWorld_CreateMaterial(burn.world, &def, &id);
+    return id;
+}
+
+FwImageId imageOf(Burn& burn, BurnShared& shared, const ImportedModel& model,
+                  const fwmodel::SlotPicture& picture) {
+    if (picture.image < 0) return {};
+    const auto& decoded = model.images[static_cast<size_t>(picture.image)];
+    FwImageId& id = shared.images[{&decoded, picture.alphaCutoff}];
+    if (id.index1 != 0) return id;
+    const FwImageDef def = fwmodel::imageDefOf(model, picture);
+    fwWorld_CreateImage(burn.world, &def, &id);
     return id;
 }
 
@@ -145,8 +89,7 @@ std::string addMesh(Burn& burn, BurnShared& shared, const Mesh& mesh, const Pain
     if (meshId.index1 == 0 && !createMesh(burn.world, *bake, meshId)) {
         // A bake on the disk that cannot be read is made again.
         assets.bakes.erase(made.bake);
-        std::error_code ignored;
-        if (!assets.cache.empty()) fs::remove(assets.cache / (made.bake + ".fwburn"), ignored);
+        fwmodel::dropBake(assets.cache, made.bake);
         const auto again = bakeOf(burn.context, mesh, *made.model, assets, made.bake, error);
         if (!again) return error;
         if (!createMesh(burn.world, *again, meshId)) return worldProblem(burn, FW_ERROR_BAD_DATA);
@@ -154,20 +97,13 @@ std::string addMesh(Burn& burn, BurnShared& shared, const Mesh& mesh, const Pain
     made.mesh = meshId;
     FwBurnableMeshDef def = burnableDefOf(mesh);
     def.mesh = meshId;
-    const Surfaces surfaces = surfacesOf(*made.model);
-    for (size_t slot = 0; slot < 8; ++slot) {
-        def.materials[slot] = materialOf(burn, shared, mesh.materials[slot], mesh.thickness);
-        if (surfaces.images[slot] < 0) continue;
-        const auto& decoded = made.model->images[static_cast<size_t>(surfaces.images[slot])];
-        FwImageId& image = shared.images[&decoded];
-        if (image.index1 == 0) {
-            FwImageDef imageDef = fwDefaultImageDef();
-            imageDef.width = decoded.width;
-            imageDef.height = decoded.height;
-            imageDef.pixels = decoded.rgba.data();
-            fwWorld_CreateImage(burn.world, &imageDef, &image);
-        }
-        def.baseColors[slot] = image;
+    const ModelSurfaces surfaces = fwmodel::surfacesOf(*made.model);
+    made.slots = surfaces.slotCount;
+    if (surfaces.twoSided) def.flags |= static_cast<uint32_t>(FW_BURNABLE_TWO_SIDED);
+    for (size_t slot = 0; slot < fwmodel::kSlots; ++slot) {
+        def.materials[slot] =
+            materialOf(burn, shared, {mesh.materials[slot], mesh.thickness, surfaces.ownColors()});
+        def.baseColors[slot] = imageOf(burn, shared, *made.model, surfaces.pictures[slot]);
     }
     std::vector<FwPin> pins;
     for (const auto& pin : mesh.pins) {
@@ -588,6 +524,7 @@ std::shared_ptr<const ImportedModel> modelOf(const Mesh& mesh, const fs::path& f
     }
     auto model = std::make_shared<ImportedModel>();
     if (!fwimport::importGltf(path, *model, error, mesh.node)) return nullptr;
+    for (const std::string& note : fwmodel::surfacesOf(*model).notes) model->notes.push_back(note);
     return assets.models[key] = model;
 }
 
@@ -618,51 +555,27 @@ NodePoseOf nodePosesOf(const Burn& burn) {
 std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& mesh,
                                                 const ImportedModel& model, Assets& assets,
                                                 std::string& key, std::string& error) {
-    const Surfaces surfaces = surfacesOf(model);
+    const ModelSurfaces surfaces = fwmodel::surfacesOf(model);
     const FwMeshDef def = meshDefOf(mesh, model, surfaces);
-    key = bakeKey(def, surfaces, model);
+    key = fwmodel::bakeKeyOf(def);
     if (const auto found = assets.bakes.find(key); found != assets.bakes.end())
         return found->second;
-    const fs::path file = assets.cache.empty() ? fs::path() : assets.cache / (key + ".fwburn");
     auto bytes = std::make_shared<std::vector<char>>();
-    if (!file.empty()) {
-        std::ifstream stream(file, std::ios::binary);
-        bytes->assign(std::istreambuf_iterator<char>(stream), {});
-        if (!bytes->empty()) return assets.bakes[key] = bytes;
-    }
+    if (fwmodel::readBake(assets.cache, key, *bytes)) return assets.bakes[key] = bytes;
     if (!goOn(assets, "Unwrapping " + mesh.name, 0)) {
         error = "stopped";
         return nullptr;
     }
-    uint64_t size = 0;
-    if (fwCookMesh(context, &def, nullptr, &size) < 0) {
-        error = contextMessage(context);
-        return nullptr;
-    }
-    bytes->resize(size);
-    if (fwCookMesh(context, &def, bytes->data(), &size) < 0) {
-        error = contextMessage(context);
-        return nullptr;
-    }
+    if (!fwmodel::cookMesh(context, def, *bytes, error)) return nullptr;
     goOn(assets, "Unwrapping " + mesh.name, 1);
-    if (!file.empty()) {
-        std::error_code ignored;
-        fs::create_directories(assets.cache, ignored);
-        const fs::path fresh = file.string() + ".new";
-        std::ofstream stream(fresh, std::ios::binary);
-        stream.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
-        stream.close();
-        if (stream) fs::rename(fresh, file, ignored);
-    }
+    fwmodel::keepBake(assets.cache, key, *bytes);
     return assets.bakes[key] = bytes;
 }
 
 std::string bakeKeyOf(const Mesh& mesh, const ImportedModel& model) {
-    const Surfaces surfaces = surfacesOf(model);
-    return bakeKey(meshDefOf(mesh, model, surfaces), surfaces, model);
+    const ModelSurfaces surfaces = fwmodel::surfacesOf(model);
+    return fwmodel::bakeKeyOf(meshDefOf(mesh, model, surfaces));
 }
-
-std::array<int32_t, 8> baseColorsOf(const ImportedModel& model) { return surfacesOf(model).images; }
 
 std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const PaintImages& images,
                                  const fs::path& folder, Assets& assets, std::string& error) {
@@ -765,25 +678,53 @@ bool reviseBurn(Burn& burn, const Scene& wanted, const fs::path& folder) {
     return true;
 }
 
+namespace {
+
+// Widens `low` and `high` by a model's box in its place.
+void addBounds(const Mesh& mesh, const ImportedModel& model, Vec3& low, Vec3& high) {
+    const std::array<float, 16> m = transformOf(mesh);
+    for (uint32_t corner = 0; corner < 8; ++corner) {
+        Vec3 p;
+        for (size_t k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? model.high[k] : model.low[k];
+        for (size_t r = 0; r < 3; ++r) {
+            const float at = m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
+            low[r] = std::min(low[r], at);
+            high[r] = std::max(high[r], at);
+        }
+    }
+}
+
+// False: no mesh is there.
+bool boundsOf(const Burn& burn, Vec3& low, Vec3& high) {
+    bool any = false;
+    low = {1e30f, 1e30f, 1e30f};
+    high = {-1e30f, -1e30f, -1e30f};
+    for (const BurnMesh& mesh : burn.meshes) {
+        const Mesh* object = findIn(burn.scene.meshes, mesh.id);
+        if (!object || !mesh.model) continue;
+        addBounds(*object, *mesh.model, low, high);
+        any = true;
+    }
+    return any;
+}
+
+}  // namespace
+
 Backdrop backdropOf(const Burn& burn) {
     Backdrop made;
     glm::vec3 low(-0.5f, 0, -0.5f), high(0.5f, 1, 0.5f);
+    Vec3 least, most;
+    made.any = boundsOf(burn, least, most);
+    for (int c = 0; c < 3 && made.any; ++c) {
+        low[c] = least[static_cast<size_t>(c)];
+        high[c] = most[static_cast<size_t>(c)];
+    }
     for (const BurnMesh& mesh : burn.meshes) {
         const Mesh* object = findIn(burn.scene.meshes, mesh.id);
         if (!object || !mesh.model) continue;
         const std::array<float, 16> values = transformOf(*object);
         glm::mat4 pose;
         std::memcpy(&pose[0][0], values.data(), sizeof pose);
-        for (int corner = 0; corner < 8; ++corner) {
-            glm::vec3 p;
-            for (int c = 0; c < 3; ++c)
-                p[c] = (corner >> c & 1) ? mesh.model->high[static_cast<size_t>(c)]
-                                         : mesh.model->low[static_cast<size_t>(c)];
-            p = glm::vec3(pose * glm::vec4(p, 1));
-            low = made.any ? glm::min(low, p) : p;
-            high = made.any ? glm::max(high, p) : p;
-            made.any = true;
-        }
         if (object->hidden) continue;
         const auto first = static_cast<uint32_t>(made.positions.size() / 3);
         for (size_t i = 0; i + 2 < mesh.model->positions.size(); i += 3) {
@@ -895,6 +836,36 @@ FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time) 
     return view;
 }
 
+namespace {
+
+bool renderBurn(Burn& burn, FwOffscreenDef& def, std::vector<uint8_t>& rgba, std::string& error) {
+    rgba.resize(size_t{def.width} * def.height * 4);
+    def.pixels = rgba.data();
+    const FwResult result = fwWorld_RenderOffscreen(burn.world, &def);
+    if (result < 0) error = worldProblem(burn, result);
+    return result >= 0;
+}
+
+}  // namespace
+
+bool shootNeutral(Burn& burn, const fwmodel::NeutralCamera& camera, uint32_t width, uint32_t height,
+                  std::vector<uint8_t>& rgba, std::string& error) {
+    Vec3 low, high;
+    if (!boundsOf(burn, low, high)) {
+        error = "there is no mesh to look at";
+        return false;
+    }
+    FwOffscreenDef def = fwDefaultOffscreenDef();
+    def.width = width;
+    def.height = height;
+    def.view = fwmodel::neutralView(low, high, camera, width, height);
+    def.view.time = static_cast<float>(burn.time);
+    std::copy(fwmodel::kNeutralBackground.begin(), fwmodel::kNeutralBackground.end(),
+              def.background);
+    def.background[3] = 1;
+    return renderBurn(burn, def, rgba, error);
+}
+
 bool shootBurn(Burn& burn, uint32_t width, uint32_t height, std::vector<uint8_t>& rgba,
                std::string& error) {
     FwOffscreenDef def = fwDefaultOffscreenDef();
@@ -906,11 +877,7 @@ bool shootBurn(Burn& burn, uint32_t width, uint32_t height, std::vector<uint8_t>
     const uint32_t light = std::min<uint32_t>(burn.scene.settings.daylight, 2);
     for (size_t c = 0; c < 3; ++c) def.background[c] = kBehind[light][c];
     def.background[3] = 1;
-    rgba.resize(size_t{width} * height * 4);
-    def.pixels = rgba.data();
-    const FwResult result = fwWorld_RenderOffscreen(burn.world, &def);
-    if (result < 0) error = worldProblem(burn, result);
-    return result >= 0;
+    return renderBurn(burn, def, rgba, error);
 }
 
 bool shapeOf(const Flame& flame, const fs::path& folder, FlameShape& shape, std::string& error) {
@@ -966,16 +933,7 @@ bool sceneBounds(const Scene& scene, const fs::path& folder, Assets& assets, Vec
         const auto model = modelOf(mesh, folder, assets, ignored);
         if (!model) continue;
         any = true;
-        const std::array<float, 16> m = transformOf(mesh);
-        for (uint32_t corner = 0; corner < 8; ++corner) {
-            Vec3 p;
-            for (size_t k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? model->high[k] : model->low[k];
-            for (size_t r = 0; r < 3; ++r) {
-                const float at = m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
-                low[r] = std::min(low[r], at);
-                high[r] = std::max(high[r], at);
-            }
-        }
+        addBounds(mesh, *model, low, high);
     }
     return any;
 }
@@ -991,7 +949,7 @@ std::shared_ptr<const PaintSurface> paintSurfaceOf(FwContext* context, const Mes
     if (const auto found = assets.surfaces.find(key); found != assets.surfaces.end())
         return found->second;
     auto surface = std::make_shared<PaintSurface>();
-    const std::vector<uint8_t> slots = surfacesOf(*model).triangleMaterials;
+    const std::vector<uint8_t> slots = fwmodel::surfacesOf(*model).triangleMaterials;
     if (!surfaceOfBake(context, *bake, *model, slots, *surface, error)) return nullptr;
     return assets.surfaces[key] = surface;
 }

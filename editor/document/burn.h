@@ -12,6 +12,8 @@
 #include "document/document.h"
 #include "flamewright/flamewright.h"
 #include "import/gltf_import.h"
+#include "model/model_surfaces.h"
+#include "model/neutral_stage.h"
 
 namespace fwedit {
 
@@ -33,7 +35,8 @@ struct BurnMesh {
     FwMeshId mesh{};
     FwBurnableMeshId object{};
     std::shared_ptr<const fwimport::ImportedModel> model;
-    std::string bake;  // key into Assets::bakes and surfaces
+    std::string bake;    // key into Assets::bakes and surfaces
+    uint32_t slots = 1;  // of Mesh::materials that its triangles use
 };
 struct BurnPart {  // a source, flame, emitter, collider or zone of wind at work
     ObjectId id = 0;
@@ -100,6 +103,9 @@ FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time);
 // Own device: RGBA8 sRGB, rows top first.
 bool shootBurn(Burn& burn, uint32_t width, uint32_t height, std::vector<uint8_t>& rgba,
                std::string& error);
+// As it is: on the neutral stage, all meshes in the picture. Own device.
+bool shootNeutral(Burn& burn, const fwmodel::NeutralCamera& camera, uint32_t width, uint32_t height,
+                  std::vector<uint8_t>& rgba, std::string& error);
 
 // What a flame has for a shape of its own: texels as FwFireProfileDef has them, or a cooked file.
 struct FlameShape {
@@ -135,8 +141,6 @@ std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& 
                                                 std::string& error);
 // The key alone. Meshes with the same one have the same burn map.
 std::string bakeKeyOf(const Mesh& mesh, const fwimport::ImportedModel& model);
-// Of the model's images, by triangle material; -1: none.
-std::array<int32_t, 8> baseColorsOf(const fwimport::ImportedModel& model);
 // The texels to paint on: bakes if need be.
 std::shared_ptr<const PaintSurface> paintSurfaceOf(FwContext* context, const Mesh& mesh,
                                                    const std::filesystem::path& folder,

@@ -112,8 +112,8 @@ bool planOutput(const OutputInput& input, OutputPlan& plan, std::string& error) 
         for (const auto& object : list)
             plan.identifiers[object.id] = names.unique(identifierOf(object.name, kindKey(kind)));
     });
-    std::map<std::string, const PlannedMesh*> maps;  // by the key of the bake
-    std::map<const void*, int32_t> images;
+    std::map<std::string, const PlannedMesh*> maps;             // by the key of the bake
+    std::map<std::pair<const void*, float>, int32_t> images;    // by picture and its cut-off
     std::map<ObjectId, const fwimport::ImportedModel*> models;  // the assets keep them
     plan.meshes.reserve(scene.meshes.size());
     for (const Mesh& mesh : scene.meshes) {
@@ -130,17 +130,21 @@ bool planOutput(const OutputInput& input, OutputPlan& plan, std::string& error) 
         if (!first) first = &planned;
         planned.paint = multiplierOf(scene, input.images, mesh.id, planned.width, planned.height);
         if (!planned.paint.empty()) planned.multiplier = name + ".multiplier.raw";
-        planned.images = baseColorsOf(*model);
-        for (int32_t& slot : planned.images) {
-            if (slot < 0) continue;
-            const auto& decoded = model->images[static_cast<size_t>(slot)];
-            const auto [found, fresh] =
-                images.try_emplace(&decoded, static_cast<int32_t>(plan.images.size()));
-            slot = found->second;
+        const fwmodel::ModelSurfaces surfaces = fwmodel::surfacesOf(*model);
+        planned.ownColors = surfaces.ownColors();
+        planned.twoSided = surfaces.twoSided;
+        planned.images.fill(-1);
+        for (size_t slot = 0; slot < planned.images.size(); ++slot) {
+            const fwmodel::SlotPicture& picture = surfaces.pictures[slot];
+            if (picture.image < 0) continue;
+            const auto& decoded = model->images[static_cast<size_t>(picture.image)];
+            const auto [found, fresh] = images.try_emplace(
+                {&decoded, picture.alphaCutoff}, static_cast<int32_t>(plan.images.size()));
+            planned.images[slot] = found->second;
             if (fresh)
                 plan.images.push_back(
                     {name + ".color" + std::to_string(plan.images.size()) + ".rgba", decoded.width,
-                     decoded.height, &decoded.rgba});
+                     decoded.height, &decoded.rgba, picture.alphaCutoff});
         }
     }
     std::vector<std::string> problems;

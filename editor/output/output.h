@@ -33,6 +33,7 @@ struct PlannedImage {
     std::string file;  // RGBA8, rows top first
     uint32_t width = 0, height = 0;
     const std::vector<uint8_t>* pixels = nullptr;  // of a model that the assets keep
+    float alphaCutoff = 0;                         // as FwImageDef's
 };
 struct PlannedMesh {
     ObjectId mesh = 0;
@@ -43,6 +44,8 @@ struct PlannedMesh {
     std::vector<uint8_t> paint;
     uint32_t width = 0, height = 0;   // of the paint
     std::array<int32_t, 8> images{};  // of OutputPlan, by material; -1: none
+    bool ownColors = false;           // its file's, in the burn map's vertices and in pictures
+    bool twoSided = false;            // its file has cut-outs that are seen from both sides
 };
 // What there is to write, and what it is called there and in code.
 struct OutputPlan {

@@ -255,21 +255,24 @@ class Writer {
     }
 
     void addShared() {
-        std::set<std::pair<uint32_t, float>> seen;
+        std::set<std::string> seen;
         std::string body;
-        for (const Mesh& mesh : scene_.meshes)
+        for (const PlannedMesh& planned : plan_.meshes) {
+            const Mesh& mesh = *findIn(scene_.meshes, planned.mesh);
             for (const uint32_t preset : mesh.materials) {
-                if (preset == FW_MATERIAL_NONCOMBUSTIBLE) continue;
-                if (!seen.insert({preset, mesh.thickness}).second) continue;
-                const std::string name = material(preset, mesh.thickness);
+                const std::string name = material(preset, mesh.thickness, planned.ownColors);
+                if (!seen.insert(name).second) continue;
                 member("FwMaterialId", name);
                 body +=
                     "    fwInitMaterialPreset(&def, " + std::string(presetWord(preset)) + ");\n";
+                if (planned.ownColors)
+                    body += "    def.baseColor[0] = def.baseColor[1] = def.baseColor[2] = 1.0f;\n";
                 if (mesh.thickness > 0)
                     body += "    def.thickness = " + literal(mesh.thickness) + ";\n";
                 body += "    if (result >= 0) result = fwWorld_CreateMaterial(" + world() +
                         ", &def, &" + in(name) + ");\n";
             }
+        }
         if (!seen.empty()) {
             open("add_materials", false, "What things are made of.");
             functions_ +=
@@ -306,12 +309,15 @@ class Writer {
             line("void* bytes;");
             line("uint64_t size;");
         }
+        const bool cutOuts = std::any_of(plan_.images.begin(), plan_.images.end(),
+                                         [](const auto& one) { return one.alphaCutoff > 0; });
         for (size_t i = 0; i < plan_.images.size(); ++i) {
             const PlannedImage& image = plan_.images[i];
             functions_ += openFile(image.file, i == 0, false);
             line("def.width = " + literal(image.width) + ";");
             line("def.height = " + literal(image.height) + ";");
             line(std::string("def.pixels = ") + (is_.cpp ? "bytes.data();" : "bytes;"));
+            if (cutOuts) line("def.alphaCutoff = " + literal(image.alphaCutoff) + ";");
             line("result = " + sizeIs(uint64_t{4} * image.width * image.height) +
                  " ? fwWorld_CreateImage(" + world() + ", &def, &" +
                  in("colors[" + std::to_string(i) + "]") + ") : FW_ERROR_BAD_DATA;");
@@ -339,9 +345,11 @@ class Writer {
         return std::string(is_.cpp ? "bytes.size()" : "size") + " == " + std::to_string(bytes);
     }
 
-    std::string material(uint32_t preset, float thickness) const {
+    // `colored`: with base colour 1, for meshes that bring colours.
+    std::string material(uint32_t preset, float thickness, bool colored) const {
         std::string name = presetWord(preset) + 12;  // without FW_MATERIAL_
         for (char& c : name) c = static_cast<char>(std::tolower(c));
+        if (colored) name += "_colored";
         if (thickness <= 0) return "material_" + name;
         std::string size = number(static_cast<double>(thickness));
         for (char& c : size)
@@ -377,14 +385,14 @@ class Writer {
         open("add_" + name, painted, mesh.name);
         FwBurnableMeshDef made = burnableDefOf(mesh);
         made.ground = scene_.settings.ground;
+        if (planned.twoSided) made.flags |= static_cast<uint32_t>(FW_BURNABLE_TWO_SIDED);
         def("BurnableMesh", made);
         line("FwResult result;");
         line("def.mesh = " + in(planned.mapIdentifier) + ";");
         for (size_t slot = 0; slot < 8; ++slot) {
             const std::string at = "[" + std::to_string(slot) + "] = ";
-            if (mesh.materials[slot] != FW_MATERIAL_NONCOMBUSTIBLE)
-                line("def.materials" + at + in(material(mesh.materials[slot], mesh.thickness)) +
-                     ";");
+            line("def.materials" + at +
+                 in(material(mesh.materials[slot], mesh.thickness, planned.ownColors)) + ";");
             if (planned.images[slot] >= 0)
                 line("def.baseColors" + at +
                      in("colors[" + std::to_string(planned.images[slot]) + "]") + ";");

@@ -69,10 +69,28 @@ bool play(ScriptHost& host, const Words& words, std::string& error) {
 }
 
 bool shot(ScriptHost& host, const Words& words, std::string& error) {
+    constexpr const char* kUsage = "shot FILE [WIDTHxHEIGHT] [neutral [YAW PITCH]]";
     uint32_t width = 640, height = 360;
-    if (!need(words, 2, 3, "shot FILE [WIDTHxHEIGHT]", error)) return false;
-    if (words.size() == 3 && !parseSize(words[2], width, height, error)) return false;
-    return writeShot(host, host.folder / words[1], width, height, error);
+    if (!need(words, 2, 6, kUsage, error)) return false;
+    size_t at = 2;
+    if (at < words.size() && words[at] != "neutral" &&
+        !parseSize(words[at++], width, height, error))
+        return false;
+    if (at == words.size()) return writeShot(host, host.folder / words[1], width, height, error);
+    fwmodel::NeutralCamera camera;
+    const bool turned = at + 3 == words.size();
+    double yaw = 0, pitch = 0;
+    if (words[at] != "neutral" || (!turned && at + 1 != words.size()) ||
+        (turned && (!numberOf(words[at + 1], yaw) || !numberOf(words[at + 2], pitch)))) {
+        error = std::string("it takes: ") + kUsage;
+        return false;
+    }
+    if (turned) camera = {static_cast<float>(yaw), static_cast<float>(pitch)};
+    FwContext* context = host.device(error);
+    std::vector<uint8_t> rgba;
+    return context && burnToPlayhead(host, context, error) &&
+           shootNeutral(*host.burn, camera, width, height, rgba, error) &&
+           writePixels(host.folder / words[1], width, height, rgba, error);
 }
 
 bool recorded(ScriptHost& host, std::string& error) {

@@ -3,6 +3,7 @@
 //   new                           open "yard.fwscene"            save ["yard.fwscene"]
 //   undo [3]    redo [3]          drag begin|end|cancel          play 12.5
 //   shot "yard.png" [640x360]     frame                          report
+//   shot "crate.png" 640x360 neutral [30 14]  as it is: in even light before grey, yaw and pitch
 //   why "Crate" 0 0.4 0.2         burn                           (the whole burn, for lit and why)
 //   expect count source 2         expect "Torch" output 18       expect unsaved yes
 //   expect step "Move Torch"      expect same "yard.fwscene"     expect lit "Crate" above 0.2

@@ -205,6 +205,14 @@ void LiveScene::adopt(Made made) {
     }
     vkDeviceWaitIdle(host_.device);
     report_.insert(report_.end(), made.burn->report.begin(), made.burn->report.end());
+    for (const fwedit::BurnMesh& mesh : made.burn->meshes) {
+        const auto shown = burn_
+                               ? std::any_of(burn_->meshes.begin(), burn_->meshes.end(),
+                                             [&](const auto& at) { return at.model == mesh.model; })
+                               : false;
+        if (shown) continue;
+        report_.insert(report_.end(), mesh.model->notes.begin(), mesh.model->notes.end());
+    }
     burn_ = std::move(made.burn);
     // The background has the assets; what it made is here.
     burn_->surfaceOf = [this](const fwedit::Mesh& mesh) { return surfaceOf(mesh.id); };

@@ -3,6 +3,7 @@
 #include "components/look_table.h"
 #include "core/error.h"
 #include "fire/presets.h"
+#include "mesh/bake.h"
 #include "shared/refine.h"
 
 #include <algorithm>
@@ -139,22 +140,135 @@ bool keepsBook(const BurnableMesh& object) noexcept {
     return (object.flags & FW_BURNABLE_PUBLISHED) == 0;
 }
 
+bool CutOut::at(int64_t x, int64_t y) const noexcept {
+    const auto wrapped = [](int64_t i, uint32_t side) {
+        const int64_t rest = i % int64_t(side);
+        return size_t(rest < 0 ? rest + side : rest);
+    };
+    const size_t column = wrapped(x, width), row = wrapped(y, height);
+    return (pixelBits[row * ((width + 7) / 8) + column / 8] >> (column & 7) & 1) != 0;
+}
+
+CutOut makeCutOut(const FwImageDef& def, std::pmr::memory_resource* memory) {
+    CutOut made(memory);
+    if (!(def.alphaCutoff > 0)) return made;
+    made.width = def.width;
+    made.height = def.height;
+    const size_t rowBytes = (def.width + 7) / 8;
+    made.pixelBits.resize(rowBytes * def.height);
+    const auto* pixels = static_cast<const uint8_t*>(def.pixels);
+    for (size_t y = 0; y < def.height; ++y)
+        for (size_t x = 0; x < def.width; ++x) {
+            const uint8_t alpha = pixels[(y * def.width + x) * 4 + 3];
+            if (float(alpha) >= def.alphaCutoff * 255)
+                made.pixelBits[y * rowBytes + x / 8] |= uint8_t(1u << (x & 7));
+        }
+    return made;
+}
+
+namespace {
+
+// Texture coordinates over the atlas within one triangle: at + du * x + dv * y.
+struct TextureFrame {
+    double at[2] = {}, perX[2] = {}, perY[2] = {};
+    TextureFrame(const mesh::BurnDomain& domain, uint32_t triangle) noexcept {
+        const mesh::RenderVertex* corners[3];
+        for (size_t k = 0; k < 3; ++k)
+            corners[k] = &domain.vertices[domain.indices[size_t(triangle) * 3 + k]];
+        const auto side = [&](size_t k, int c) {
+            return double(corners[k]->atlasUv[c]) - double(corners[0]->atlasUv[c]);
+        };
+        const double area = side(1, 0) * side(2, 1) - side(2, 0) * side(1, 1);
+        for (int c = 0; c < 2; ++c) {
+            const double base = double(corners[0]->textureUv[c]);
+            const double a = double(corners[1]->textureUv[c]) - base;
+            const double b = double(corners[2]->textureUv[c]) - base;
+            if (std::abs(area) > 1e-9) {
+                perX[c] = (a * side(2, 1) - b * side(1, 1)) / area;
+                perY[c] = (b * side(1, 0) - a * side(2, 0)) / area;
+            }
+            at[c] = base - perX[c] * double(corners[0]->atlasUv[0]) -
+                    perY[c] * double(corners[0]->atlasUv[1]);
+        }
+    }
+};
+
+// Is any part of a texel where the picture is? Pixels are looked at as far apart as they lie, no
+// more than kMost a side.
+bool isThere(const mesh::BurnDomain& domain, uint32_t texel, const CutOut& picture) {
+    constexpr int kMost = 16;
+    const uint32_t triangle = domain.triangleOf[texel];
+    if (triangle == mesh::kNone) return true;
+    const TextureFrame frame(domain, triangle);
+    const double sides[2] = {double(picture.width), double(picture.height)};
+    double middle[2] = {};
+    float weights[3];
+    mesh::texelWeights(domain, texel, weights);
+    const bool forced = (domain.texels[texel].materialFlags & mesh::kTexelForced) != 0;
+    int steps = 1;
+    for (int c = 0; c < 2; ++c) {
+        middle[c] = frame.at[c] + frame.perX[c] * (double(texel % domain.width) + 0.5) +
+                    frame.perY[c] * (double(texel / domain.width) + 0.5);
+        if (forced) {  // its middle is outside the triangle
+            middle[c] = 0;
+            for (size_t k = 0; k < 3; ++k)
+                middle[c] +=
+                    double(weights[k]) *
+                    double(domain.vertices[domain.indices[size_t(triangle) * 3 + k]].textureUv[c]);
+        }
+        const double pixels = std::max(std::abs(frame.perX[c]), std::abs(frame.perY[c])) * sides[c];
+        steps = std::max(steps, int(std::min(std::ceil(pixels), double(kMost))));
+    }
+    for (int j = 0; j < steps; ++j)
+        for (int i = 0; i < steps; ++i) {
+            const double x = (i + 0.5) / steps - 0.5, y = (j + 0.5) / steps - 0.5;
+            int64_t pixel[2];
+            for (int c = 0; c < 2; ++c) {
+                const double at = middle[c] + frame.perX[c] * x + frame.perY[c] * y;
+                // Coordinates of any size: whole turns fall away first.
+                pixel[c] = int64_t(std::floor((at - std::floor(at)) * sides[c]));
+            }
+            if (picture.at(pixel[0], pixel[1])) return true;
+        }
+    return false;
+}
+
+}  // namespace
+
+std::pmr::vector<uint8_t> makeGone(const mesh::BurnDomain& domain,
+                                   std::span<const CutOut* const, kMaterials> pictures,
+                                   std::pmr::memory_resource* memory) {
+    std::pmr::vector<uint8_t> gone(memory);
+    if (std::all_of(pictures.begin(), pictures.end(), [](const CutOut* one) { return !one; }))
+        return gone;
+    gone.resize(domain.texelCount());
+    for (uint32_t i = 0; i < domain.texelCount(); ++i) {
+        const CutOut* picture = pictures[domain.texels[i].materialFlags & (kMaterials - 1)];
+        if (domain.real(i) && picture) gone[i] = !isThere(domain, i, *picture);
+    }
+    return gone;
+}
+
 std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
                                         const mesh::BurnDomain& domain,
+                                        std::span<const uint8_t> gone,
                                         std::pmr::memory_resource* memory) {
     std::pmr::vector<uint16_t> slowness(memory);
+    if (!def.multiplier && gone.empty()) return slowness;
+    slowness.assign(domain.slowness.begin(), domain.slowness.end());
+    for (size_t i = 0; i < gone.size(); ++i)
+        if (gone[i]) slowness[i] = 0;
     if (!def.multiplier) return slowness;
-    slowness.resize(domain.texelCount());
     for (uint32_t y = 0; y < domain.height; ++y)
         for (uint32_t x = 0; x < domain.width; ++x) {
             const uint32_t texel = y * domain.width + x;
             const uint64_t fromX = uint64_t(x) * def.multiplierWidth / domain.width;
             const uint64_t fromY = uint64_t(y) * def.multiplierHeight / domain.height;
             const uint32_t speed = def.multiplier[fromY * def.multiplierWidth + fromX];
-            const uint32_t noise = domain.slowness[texel];
-            if (speed == 0 || noise == 0) continue;
-            const uint32_t slow = (noise * 128 + speed / 2) / speed;
-            slowness[texel] = uint16_t(std::clamp<uint32_t>(slow, 1, 65535));
+            const uint32_t noise = slowness[texel];
+            const uint32_t slow = speed == 0 ? 0 : (noise * 128 + speed / 2) / speed;
+            slowness[texel] =
+                noise == 0 || speed == 0 ? 0 : uint16_t(std::clamp<uint32_t>(slow, 1, 65535));
         }
     return slowness;
 }

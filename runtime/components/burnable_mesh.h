@@ -68,9 +68,26 @@ void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def)
 // Does the world know what of its fuel has burnt?
 [[nodiscard]] bool keepsBook(const BurnableMesh& object) noexcept;
 
-// Q7 slowness per texel with the host's speed multiplier in it; empty if there is none.
+// Where a picture is, as its alpha says.
+struct CutOut {
+    uint32_t width = 0, height = 0;       // pixels; 0: it is everywhere
+    std::pmr::vector<uint8_t> pixelBits;  // bit x & 7 of byte y * ceil(width / 8) + x / 8: there
+    explicit CutOut(std::pmr::memory_resource* memory) : pixelBits(memory) {}
+    [[nodiscard]] bool at(int64_t x, int64_t y) const noexcept;  // the picture is repeated
+};
+// `def` has been checked.
+CutOut makeCutOut(const FwImageDef& def, std::pmr::memory_resource* memory);
+// 1 for each real texel of which no part is there; empty: all are. By material index; null: no
+// picture, or one that is everywhere.
+std::pmr::vector<uint8_t> makeGone(const mesh::BurnDomain& domain,
+                                   std::span<const CutOut* const, kMaterials> pictures,
+                                   std::pmr::memory_resource* memory);
+
+// Q7 slowness per texel with the host's speed multiplier in it, 0 where the object is not; empty if
+// there is no multiplier and nothing is `gone`.
 std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
                                         const mesh::BurnDomain& domain,
+                                        std::span<const uint8_t> gone,
                                         std::pmr::memory_resource* memory);
 
 // A latch as if wind and pose had always been these.

@@ -245,9 +245,9 @@ class Backend {
     // object space, 3 each; normals 3 each or none. Never throws, needs no memory. Looks alone.
     virtual void setVertices(uint32_t slot, std::span<const float> positions,
                              std::span<const float> normals) noexcept = 0;
-    // RGBA8 sRGB. The cpu backend keeps nothing.
+    // RGBA8 sRGB, with alphaCutoff as FwImageDef's. The cpu backend keeps nothing.
     virtual void createImage(uint32_t slot, uint32_t width, uint32_t height,
-                             std::span<const std::byte> pixels) = 0;
+                             std::span<const std::byte> pixels, float alphaCutoff) = 0;
     // Objects that show it fall back to their base colour. Throws before anything changed, where
     // they need pipelines for that.
     virtual void destroyImage(uint32_t slot) = 0;

@@ -189,14 +189,17 @@ FwImageId World::createImage(const FwImageDef& def) {
     checkLimit(def.width, "FwImageDef::width", 1, 8192);
     checkLimit(def.height, "FwImageDef::height", 1, 8192);
     if (!def.pixels) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwImageDef::pixels is null.");
+    checkValue(def.alphaCutoff, "FwImageDef::alphaCutoff", 0.0f, 1.0f);
+    checkValue(def.reserved, "FwImageDef::reserved", 0.0f, 0.0f);
     uint32_t slot = 0;
     while (slot < imageUsers_.size() && imageUsers_[slot] != 0) ++slot;
     if (slot == imageUsers_.size()) imageUsers_.push_back(0);
     const size_t bytes = size_t(def.width) * def.height * 4;
+    ImageEntry entry{slot, components::makeCutOut(def, memory_)};
     backend_.createImage(slot, def.width, def.height,
-                         {static_cast<const std::byte*>(def.pixels), bytes});
+                         {static_cast<const std::byte*>(def.pixels), bytes}, def.alphaCutoff);
     try {
-        const FwImageId id = images_.create(ImageEntry{slot});
+        const FwImageId id = images_.create(std::move(entry));
         imageUsers_[slot] = 1;
         return id;
     } catch (...) {
@@ -335,6 +338,18 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
     }
 }
 
+std::pmr::vector<uint8_t> World::goneOf(const FwBurnableMeshDef& def,
+                                        const mesh::BurnDomain& domain) {
+    std::array<const components::CutOut*, gpu::kMaterialsPerObject> pictures{};
+    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
+        const FwImageId image = def.baseColors[i].index1 ? def.baseColors[i] : def.baseColor;
+        if (image.index1 == 0) continue;
+        const components::CutOut& cutOut = images_.get(image).cutOut;
+        if (cutOut.width != 0) pictures[i] = &cutOut;
+    }
+    return components::makeGone(domain, pictures, memory_);
+}
+
 FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
                                  core::Owned<Object> owned) {
     ++geometry_;
@@ -342,7 +357,8 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     MeshEntry& mesh = *meshes_.at(meshSlot);
     object.data.meshSlot = meshSlot;
     const mesh::BurnDomain& domain = *mesh.domain;
-    std::pmr::vector<uint16_t> slowness = components::makeSlowness(def, domain, memory_);
+    const std::pmr::vector<uint8_t> gone = goneOf(def, domain);
+    std::pmr::vector<uint16_t> slowness = components::makeSlowness(def, domain, gone, memory_);
     for (uint32_t i = 0; i < domain.texelCount(); ++i)
         if (domain.real(i) && (slowness.empty() ? domain.slowness[i] : slowness[i]) != 0 &&
             components::burns(object.data, domain.texels[i].materialFlags & 0xFF))
@@ -363,8 +379,13 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     init.slowness = slowness;
     std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
     std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat;
-    if (components::keepsBook(object.data))
-        object.fuel = components::fuelOf(object.data, domain, mesh.texelsOf, def_.paceFactor);
+    if (components::keepsBook(object.data)) {
+        std::array<uint32_t, gpu::kMaterialsPerObject> texelsOf = mesh.texelsOf;
+        for (uint32_t i = 0; i < gone.size(); ++i)
+            if (gone[i])
+                --texelsOf[domain.texels[i].materialFlags & (gpu::kMaterialsPerObject - 1)];
+        object.fuel = components::fuelOf(object.data, domain, texelsOf, def_.paceFactor);
+    }
     if (components::hasHeat(object.data)) {
         heat = components::makeHeatMaterials(object.data, domain, def_.paceFactor);
         init.heat = heat;

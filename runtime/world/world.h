@@ -57,6 +57,7 @@ struct MeshEntry {
 
 struct ImageEntry {
     uint32_t slot = 0;  // the backend's; outlives the id while an object uses it
+    components::CutOut cutOut;
 };
 
 struct BurnMapCopy {  // of fwDebug_RequestBurnMap
@@ -858,6 +859,8 @@ class World {
     uint32_t texelMaterial(const Object& object, uint32_t texel) const noexcept;
     [[nodiscard]] const mesh::BurnDomain& domainOf(const Object& object) const noexcept;
     // world.cpp
+    // Texels of which no part is there, as its pictures say; empty: all are.
+    std::pmr::vector<uint8_t> goneOf(const FwBurnableMeshDef& def, const mesh::BurnDomain& domain);
     FwBurnableMeshId createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
                               core::Owned<Object> owned);
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);

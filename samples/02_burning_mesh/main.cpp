@@ -1,5 +1,6 @@
 // Any glTF mesh burns in a studio: imported, given a burn map, set alight in front, filmed.
 // In a window: drag to turn, wheel to zoom, click to light; V makes the click pour water, F fire.
+// With --neutral: one picture of it as the file has it, on a stage that changes nothing.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -10,13 +11,14 @@
 #include "common/studio.h"
 #include "common/subject.h"
 #include "common/turntable.h"
+#include "model/neutral_stage.h"
 
 namespace {
 
 struct Wishes {
     std::string material = "pine";
     float ignite[3] = {0, 0, 0};  // m, in the studio; used if `igniteGiven`
-    bool igniteGiven = false, noCache = false, reversed = false, msaa = false;
+    bool igniteGiven = false, noCache = false, reversed = false, msaa = false, neutral = false;
     float pace = 0;      // 0: so that the run shows the whole burn
     float seconds = 10;  // of a headless run
     float turn = 0;      // degrees a second, turntable
@@ -54,21 +56,15 @@ FwBurnableMeshId placeSubject(sample::FireHost& fire, const Subject& subject, Fw
                               uint32_t preset) {
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = mesh;
-    FwMaterialDef material = fwDefaultMaterialDef();
-    fire.check(fwInitMaterialPreset(&material, preset), "fwInitMaterialPreset");
-    if (subject.ownColors) {
-        for (float& channel : material.baseColor) channel = 1.0f;
-    }
+    if (subject.surfaces.twoSided) def.flags |= static_cast<uint32_t>(FW_BURNABLE_TWO_SIDED);
+    const FwMaterialDef material = fwmodel::materialDefOf(preset, subject.surfaces.ownColors());
     FwMaterialId id{};
     fire.check(fwWorld_CreateMaterial(fire.world, &material, &id), "fwWorld_CreateMaterial");
     for (FwMaterialId& slot : def.materials) slot = id;
-    for (size_t slot = 0; slot < subject.pictures.size(); ++slot) {
-        if (subject.pictures[slot] < 0) continue;
-        const auto& picture = subject.model.images[static_cast<size_t>(subject.pictures[slot])];
-        FwImageDef image = fwDefaultImageDef();
-        image.width = picture.width;
-        image.height = picture.height;
-        image.pixels = picture.rgba.data();
+    for (size_t slot = 0; slot < fwmodel::kSlots; ++slot) {
+        const fwmodel::SlotPicture& picture = subject.surfaces.pictures[slot];
+        if (picture.image < 0) continue;
+        const FwImageDef image = fwmodel::imageDefOf(subject.model, picture);
         fire.check(fwWorld_CreateImage(fire.world, &image, &def.baseColors[slot]),
                    "fwWorld_CreateImage");
     }
@@ -85,12 +81,65 @@ void touch(sample::FireHost& fire, glm::vec3 position, float radius, FwIgnitionK
     fire.check(fwWorld_Ignite(fire.world, &def, nullptr), "fwWorld_Ignite");
 }
 
+BurnMapRequest mapRequestOf(const sample::Options& options, const Wishes& wishes, float size) {
+    BurnMapRequest request;
+    request.mapSize = static_cast<uint32_t>(wishes.mapSize);
+    request.texelsPerMetre =
+        std::clamp(0.5f * static_cast<float>(request.mapSize) / size, 32.0f, 512.0f);
+    if (!wishes.noCache) request.cache = options.out.parent_path() / "cache";
+    return request;
+}
+
+Subject loadAndReport(const sample::Options& options, const Wishes& wishes) {
+    Subject subject = loadSubject(fileToBurn(options), wishes.size, wishes.neutral);
+    for (const auto* notes : {&subject.model.notes, &subject.surfaces.notes})
+        for (const std::string& line : *notes)
+            std::printf("%s: %s\n", subject.name.c_str(), line.c_str());
+    return subject;
+}
+
+int showNeutral(sample::Options options, const Wishes& wishes) {
+    const uint32_t preset = presetNamed(wishes.material);
+    const Subject subject = loadAndReport(options, wishes);
+    options.headless = true;
+    sample::ValidationLog validation;
+    {
+        const sample::VulkanHost host(sample::hostRequest(options, validation));
+        sample::StageRequest request;
+        request.colorFormat = VK_FORMAT_R8G8B8A8_SRGB;
+        request.samples = wishes.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+        std::copy(fwmodel::kNeutralBackground.begin(), fwmodel::kNeutralBackground.end(),
+                  request.clearColor);
+        sample::Stage stage(host, options, request, 1);
+        sample::FireHost fire(host, fwDefaultWorldDef());
+        fire.registerTarget(stage);
+        std::string bakeNote;
+        const FwMeshId mesh =
+            createMesh(fire, subject, mapRequestOf(options, wishes, subject.size()), bakeNote);
+        placeSubject(fire, subject, mesh, preset);
+        const std::filesystem::path file = options.out / "neutral.png";
+        stage.onPicture = [&](uint32_t, sample::Picture&& picture) {
+            sample::writePng(file, picture);
+        };
+        const FwView view =
+            fwmodel::neutralView(subject.model.low, subject.model.high, {wishes.yaw, wishes.pitch},
+                                 stage.extent().width, stage.extent().height);
+        sample::StageFrame frame;
+        while (stage.next(frame)) {
+            fire.recordOutside(frame, view);
+            stage.beginScene(frame);
+            fire.recordInside(frame, view);
+            stage.endScene(frame);
+            stage.finish(frame);
+        }
+        std::printf("%s\n", file.string().c_str());
+    }
+    return validation.exitCode();
+}
+
 int run(const sample::Options& options, const Wishes& wishes) {
     const uint32_t preset = presetNamed(wishes.material);
-    Subject subject = loadSubject(fileToBurn(options), wishes.size);
-    for (const std::string& line : subject.model.notes) {
-        std::printf("%s: %s\n", subject.name.c_str(), line.c_str());
-    }
+    const Subject subject = loadAndReport(options, wishes);
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
@@ -125,13 +174,9 @@ int run(const sample::Options& options, const Wishes& wishes) {
         for (int c = 0; c < 3; ++c) worldDef.wind[c] = wishes.wind[c];
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
-        BurnMapRequest mapRequest;
-        mapRequest.mapSize = static_cast<uint32_t>(wishes.mapSize);
-        mapRequest.texelsPerMetre = std::clamp(
-            0.5f * static_cast<float>(mapRequest.mapSize) / subject.size(), 32.0f, 512.0f);
-        if (!wishes.noCache) mapRequest.cache = options.out.parent_path() / "cache";
         std::string bakeNote;
-        const FwMeshId mesh = createMesh(fire, subject, mapRequest, bakeNote);
+        const FwMeshId mesh =
+            createMesh(fire, subject, mapRequestOf(options, wishes, subject.size()), bakeNote);
         const FwBurnableMeshId object = placeSubject(fire, subject, mesh, preset);
 
         studio.castShadow(subject.model.positions, subject.model.indices, glm::mat4(1.0f),
@@ -229,6 +274,10 @@ int main(int argc, char** argv) {
         parser.addFlag("--no-cache", "bake anew", wishes.noCache);
         parser.addFlag("--msaa", "four samples", wishes.msaa);
         parser.addFlag("--reversed", "reversed depth", wishes.reversed);
+        parser.addFlag("--neutral",
+                       "one picture of it as the file has it, in even light before grey, into "
+                       "neutral.png",
+                       wishes.neutral);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("materials:");
@@ -240,6 +289,6 @@ int main(int argc, char** argv) {
             std::printf("\n");
             return 0;
         }
-        return run(options, wishes);
+        return wishes.neutral ? showNeutral(options, wishes) : run(options, wishes);
     });
 }

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 
 #include "common/toy.h"
-#include "import/content_hash.h"
+#include "model/baked_map.h"
 
 namespace {
 
@@ -17,90 +16,10 @@ glm::vec3 vertexOf(const fwimport::ImportedModel& model, uint32_t index) {
             model.positions[index * 3 + 2]};
 }
 
-// Mean colour of a picture, linear.
-glm::vec3 meanColor(const fwimport::DecodedImage& image) {
-    glm::dvec3 sum(0);
-    const size_t count = image.rgba.size() / 4, step = std::max<size_t>(1, count / 4096);
-    size_t taken = 0;
-    for (size_t i = 0; i < count; i += step, ++taken) {
-        for (int c = 0; c < 3; ++c) {
-            sum[c] += std::pow(image.rgba[i * 4 + static_cast<size_t>(c)] / 255.0, 2.2);
-        }
-    }
-    return glm::vec3(sum / static_cast<double>(std::max<size_t>(1, taken)));
-}
-
-// Every picture gets a material slot of the burn map to itself; colours, and pictures that find no
-// slot, are folded into the vertex colours.
-void foldColors(Subject& subject) {
-    fwimport::ImportedModel& model = subject.model;
-    bool plain = true, unpictured = false;
-    for (const fwimport::ImportedMaterial& material : model.materials) {
-        const auto& factor = material.baseColor;
-        plain = plain && factor[0] == factor[1] && factor[1] == factor[2];
-        unpictured = unpictured || material.image < 0;
-    }
-    const size_t pictures = model.images.size();
-    const size_t most = pictures + (unpictured ? 1 : 0) > subject.pictures.size()
-                            ? subject.pictures.size() - 1
-                            : pictures;
-    subject.pictures.fill(-1);
-    for (size_t i = 0; i < most; ++i) subject.pictures[i] = static_cast<int32_t>(i);
-    const auto pictured = [&](const fwimport::ImportedMaterial& material) {
-        return material.image >= 0 && static_cast<size_t>(material.image) < most;
-    };
-    for (const fwimport::ImportedMaterial& material : model.materials) {
-        const size_t slot = pictured(material) ? static_cast<size_t>(material.image) : most;
-        subject.slots.push_back(static_cast<uint8_t>(std::min<size_t>(slot, 7)));
-    }
-    subject.ownColors = !plain || model.hasColors || !model.images.empty();
-    if (!subject.ownColors) return;
-    std::vector<bool> done(model.vertexCount(), false);
-    for (size_t i = 0; i < model.indices.size(); ++i) {
-        const uint32_t vertex = model.indices[i];
-        if (done[vertex]) continue;
-        done[vertex] = true;
-        const auto& material = model.materials[model.triangleMaterials[i / 3]];
-        glm::vec3 color(material.baseColor[0], material.baseColor[1], material.baseColor[2]);
-        if (material.image >= 0 && !pictured(material)) {
-            color *= meanColor(model.images[static_cast<size_t>(material.image)]);
-        }
-        uint32_t packed = 0xff000000u;
-        for (int c = 0; c < 3; ++c) {
-            const uint32_t own = model.colors.empty() ? 255 : model.colors[vertex] >> (8 * c) & 255;
-            const float value = color[c] * static_cast<float>(own);
-            packed |= static_cast<uint32_t>(std::lround(std::clamp(value, 0.0f, 255.0f)))
-                      << (8 * c);
-        }
-        if (model.colors.empty()) model.colors.assign(model.vertexCount(), 0xffffffffu);
-        model.colors[vertex] = packed;
-    }
-}
-
-}  // namespace
-
-float Subject::size() const {
-    float side = 0;
-    for (size_t c = 0; c < 3; ++c) side = std::max(side, model.high[c] - model.low[c]);
-    return side;
-}
-
-float Subject::height() const { return model.high[1] - model.low[1]; }
-
-Subject loadSubject(const std::filesystem::path& file, float wantedSize) {
-    Subject subject;
-    if (file.empty()) {
-        subject.name = "wooden toy";
-        subject.model = makeToy();
-    } else {
-        subject.name = file.filename().string();
-        std::string error;
-        if (!fwimport::importGltf(file, subject.model, error)) throw sample::Failure(error);
-    }
+// On the floor, in the middle, and of a size that burns in a minute or two.
+void bringIntoStudio(Subject& subject, float size, float wantedSize) {
     fwimport::ImportedModel& model = subject.model;
     // Burning is a matter of metres: what is far from the size of things is brought to one metre.
-    const float size = subject.size();
-    if (!(size > 0)) throw sample::Failure(subject.name + " has no extent");
     if (wantedSize > 0) {
         subject.scale = wantedSize / size;
     } else if (size < 0.05f || size > 10.0f) {
@@ -119,7 +38,32 @@ Subject loadSubject(const std::filesystem::path& file, float wantedSize) {
         model.low[c] = (model.low[c] - offset[c]) * subject.scale;
         model.high[c] = (model.high[c] - offset[c]) * subject.scale;
     }
-    foldColors(subject);
+}
+
+}  // namespace
+
+float Subject::size() const {
+    float side = 0;
+    for (size_t c = 0; c < 3; ++c) side = std::max(side, model.high[c] - model.low[c]);
+    return side;
+}
+
+float Subject::height() const { return model.high[1] - model.low[1]; }
+
+Subject loadSubject(const std::filesystem::path& file, float wantedSize, bool asItStands) {
+    Subject subject;
+    if (file.empty()) {
+        subject.name = "wooden toy";
+        subject.model = makeToy();
+    } else {
+        subject.name = file.filename().string();
+        std::string error;
+        if (!fwimport::importGltf(file, subject.model, error)) throw sample::Failure(error);
+    }
+    const float size = subject.size();
+    if (!(size > 0)) throw sample::Failure(subject.name + " has no extent");
+    if (!asItStands) bringIntoStudio(subject, size, wantedSize);
+    subject.surfaces = fwmodel::surfacesOf(subject.model);
     return subject;
 }
 
@@ -221,67 +165,28 @@ sample::OrbitCamera orbitAround(const Subject& subject, float yaw, float pitch,
 
 FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMapRequest& request,
                     std::string& note) {
-    const fwimport::ImportedModel& model = subject.model;
-    std::vector<uint8_t> triangleMaterials(model.triangleCount());
-    for (size_t i = 0; i < triangleMaterials.size(); ++i) {
-        triangleMaterials[i] = subject.slots[model.triangleMaterials[i]];
-    }
-    FwMeshDef def = fwDefaultMeshDef();
-    def.positions = model.positions.data();
-    def.normals = model.hasNormals ? model.normals.data() : nullptr;
-    // Parts without UVs have none that a picture needs.
-    def.uvs = model.hasUvs || !model.images.empty() ? model.uvs.data() : nullptr;
-    def.colors = subject.ownColors ? model.colors.data() : nullptr;
-    def.indices = model.indices.data();
-    def.triangleMaterials = triangleMaterials.data();
-    def.vertexCount = static_cast<uint32_t>(model.vertexCount());
-    def.indexCount = static_cast<uint32_t>(model.indices.size());
+    FwMeshDef def = fwmodel::meshDefOf(subject.model, subject.surfaces);
     def.mapSize = request.mapSize;
     def.texelsPerMetre = request.texelsPerMetre;
+    const std::string key = fwmodel::bakeKeyOf(def);
+    std::vector<char> bytes;
     FwMeshId id{};
-    if (request.cache.empty()) {
-        fire.check(fwWorld_CreateMesh(fire.world, &def, &id), "fwWorld_CreateMesh");
-        note = "baked";
-        return id;
-    }
-
-    fwimport::ContentHash hash;
-    hash.addValue(fwGetVersion());
-    hash.addValue(def.mapSize);
-    hash.addValue(def.texelsPerMetre);
-    hash.add(model.positions);
-    if (def.normals) hash.add(model.normals);
-    if (def.uvs) hash.add(model.uvs);
-    if (def.colors) hash.add(model.colors);
-    hash.add(model.indices);
-    hash.add(triangleMaterials);
-    char name[64];
-    std::snprintf(name, sizeof name, "%016llx.fwburn", static_cast<unsigned long long>(hash.value));
-    const std::filesystem::path path = request.cache / name;
-    FwMeshDef cooked = fwDefaultMeshDef();
-    if (std::ifstream file(path, std::ios::binary | std::ios::ate); file) {
-        std::vector<char> bytes(static_cast<size_t>(file.tellg()));
-        file.seekg(0);
-        file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        cooked.cooked = bytes.data();
-        cooked.cookedSize = bytes.size();
-        if (file && fwWorld_CreateMesh(fire.world, &cooked, &id) == FW_OK) {
-            note = "read from " + path.string();
+    if (fwmodel::readBake(request.cache, key, bytes)) {
+        const FwMeshDef cooked = fwmodel::cookedDefOf(bytes);
+        if (fwWorld_CreateMesh(fire.world, &cooked, &id) == FW_OK) {
+            note = "read from " + (request.cache / (key + ".fwburn")).string();
             return id;
         }
         // A cache that cannot be read is made again.
     }
-    uint64_t size = 0;
-    fire.check(fwCookMesh(fire.context, &def, nullptr, &size), "fwCookMesh");
-    std::vector<char> bytes(size);
-    fire.check(fwCookMesh(fire.context, &def, bytes.data(), &size), "fwCookMesh");
-    cooked.cooked = bytes.data();
-    cooked.cookedSize = size;
+    std::string error;
+    if (!fwmodel::cookMesh(fire.context, def, bytes, error)) throw sample::Failure(error);
+    const FwMeshDef cooked = fwmodel::cookedDefOf(bytes);
     fire.check(fwWorld_CreateMesh(fire.world, &cooked, &id), "fwWorld_CreateMesh");
-    std::error_code ignored;
-    std::filesystem::create_directories(request.cache, ignored);
-    std::ofstream file(path, std::ios::binary);
-    file.write(bytes.data(), static_cast<std::streamsize>(size));
-    note = file ? "baked, kept in " + path.string() : "baked (the cache cannot be written)";
+    note = "baked";
+    if (!request.cache.empty())
+        note += fwmodel::keepBake(request.cache, key, bytes)
+                    ? ", kept in " + (request.cache / (key + ".fwburn")).string()
+                    : " (the cache cannot be written)";
     return id;
 }

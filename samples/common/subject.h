@@ -2,7 +2,6 @@
 // the answers about its surface that the sample needs, and its burn map from the cache.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
@@ -10,23 +9,22 @@
 
 #include "common/fire_host.h"
 #include "import/gltf_import.h"
+#include "model/model_surfaces.h"
 
 struct Subject {
     std::string name;
-    fwimport::ImportedModel model;  // m, standing on y = 0, centred on the vertical axis
-    bool ownColors = false;         // it brings colours; else the material's own are used
-    float scale = 1.0f;             // that was applied to the file's units
-    // Materials by slot of the burn map: those with a picture have a slot to themselves as long as
-    // there are slots; the others share the last and bring their colour in the vertices.
-    std::vector<uint8_t> slots;         // by model material
-    std::array<int32_t, 8> pictures{};  // by slot: of model.images, -1: none
-    float size() const;                 // m, largest side
-    float height() const;               // m
-    float radius() const;               // m, of the ball around its middle
+    fwimport::ImportedModel model;  // m, standing on y = 0, centred on the vertical axis unless it
+                                    // was left as it stands
+    fwmodel::ModelSurfaces surfaces;
+    float scale = 1.0f;    // that was applied to the file's units
+    float size() const;    // m, largest side
+    float height() const;  // m
+    float radius() const;  // m, of the ball around its middle
 };
 
-// `file` empty: the wooden toy. Throws sample::Failure with the importer's message.
-Subject loadSubject(const std::filesystem::path& file, float wantedSize);
+// `file` empty: the wooden toy. `asItStands`: neither moved nor scaled. Throws sample::Failure with
+// the importer's message.
+Subject loadSubject(const std::filesystem::path& file, float wantedSize, bool asItStands = false);
 
 struct SurfacePoint {
     glm::vec3 position{0}, normal{0};

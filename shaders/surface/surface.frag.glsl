@@ -346,9 +346,12 @@ void main() {
                        : vec2(grownAt.x, grownAt.y / look.drip);
     vec4 grown = noiseAt(grownAt, kHasWood ? 2.6 : look.holeTiles, max(pixel, look.blur));
     vec3 color = draw.colorRough.rgb;
+    bool cutOut = false;  // the picture is not here; decided below, where no differences are needed
     Base fresh;
     if (kImage) {
-        color = texture(baseImage, inTexture.zw).rgb;
+        vec4 texel = texture(baseImage, inTexture.zw);
+        color = texel.rgb;
+        cutOut = texel.a < 0.5;
         fresh.factor = vec3(1.0);
         fresh.rough = draw.colorRough.w;
         fresh.delay = (fine.b - 0.5) * 1.2;
@@ -369,6 +372,7 @@ void main() {
     float delay = clamp(fresh.delay, -1.5, 1.5);
     float later = holeDelay(grown, fine, delay, look) + look.jitter * delay;
     vec3 laterSlope = r1 * dFdx(later) + r2 * dFdy(later);
+    if (cutOut) discard;
 
     Site site;
     site.d = d;

@@ -147,6 +147,48 @@ TEST(AbiDrawn, EveryMaterialSlotHasItsPicture) {
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
 }
 
+// The sheet in a picture of discs, 8 pixels apart, that are there by their alpha; share of the
+// 64 x 32 pixels in which the sheet is drawn.
+double shareDrawn(DrawnWorld& w, float alphaCutoff, int radius, bool below = false) {
+    std::vector<uint32_t> pixels;
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 256; ++x) {
+            const int dx = x % 32 - 16, dy = y % 32 - 16;
+            pixels.push_back(dx * dx + dy * dy < radius * radius ? 0xFF0000FFu : 0x00FF0000u);
+        }
+    FwImageDef image = fwDefaultImageDef();
+    image.width = image.height = 256;
+    image.pixels = pixels.data();
+    image.alphaCutoff = alphaCutoff;
+    const host::Sheet sheet(1.0f, 0.5f, 4);
+    const FwMeshDef mesh = sheet.def(32);
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    EXPECT_EQ(FW_OK, fwWorld_CreateImage(w.world, &image, &def.baseColor)) << lastMessage(w.world);
+    EXPECT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
+    def.materials[0] = w.material(FW_MATERIAL_PINE);
+    def.flags = FW_BURNABLE_TWO_SIDED;
+    FwBurnableMeshId id{};
+    EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
+    const std::vector<Color> picture = w.look(below);
+    EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
+    const int drawn = count(picture, 0, 64, [](const Color& c) { return c.r + c.g + c.b > 60; });
+    // Where there is a colour it is the picture's: nothing of what lies around comes through.
+    if (alphaCutoff > 0) EXPECT_EQ(drawn, count(picture, 0, 64, red));
+    return drawn / (64.0 * 32);
+}
+
+TEST(AbiDrawn, CutOutsAreDrawnWhereTheirAlphaIsAboveTheCutOff) {
+    DRAWN_WORLD_OR_SKIP(w);
+    EXPECT_EQ(1, shareDrawn(w, 0, 12)) << "alpha is ignored";
+    // Four pixels of the picture to one of the screen: mips keep the share of what is there.
+    for (const int radius : {4, 8, 12, 15}) {
+        const double share = 3.14159 * radius * radius / (32.0 * 32.0);
+        EXPECT_NEAR(share, shareDrawn(w, 0.5f, radius), 0.06) << radius;
+        EXPECT_NEAR(share, shareDrawn(w, 0.5f, radius, true), 0.06) << radius << " from below";
+    }
+}
+
 // Frames skip what nothing happened to; whatever is done to it then is known when it burns.
 TEST(AbiDrawn, WhatRestedBurnsWhereItWasPut) {
     FwWorldDef worldDef = fwDefaultWorldDef();

@@ -118,7 +118,7 @@ class HeatBook final : public gpu::Backend {
     void setVertices(uint32_t, std::span<const float>, std::span<const float>) noexcept override {}
     void setRoom(uint32_t, const gpu::Room&) noexcept override {}
     void setObjectPose(uint32_t, const gpu::vec4*, const gpu::vec4&, uint32_t) override {}
-    void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>) override {}
+    void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>, float) override {}
     void destroyImage(uint32_t) noexcept override {}
     void run(const gpu::FramePlan& plan) override {
         for (const gpu::StepPlan& step : plan.steps)

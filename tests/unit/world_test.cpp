@@ -135,7 +135,7 @@ class Recorder final : public gpu::Backend {
     void setObjectPose(uint32_t, const gpu::vec4*, const gpu::vec4&, uint32_t flags) override {
         lastFlags = flags;
     }
-    void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>) override {
+    void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>, float) override {
         ++images;
     }
     void destroyImage(uint32_t) noexcept override { --images; }

@@ -502,6 +502,11 @@ typedef struct FwImageDef {
     uint32_t structSize, flags; /* flags: 0 */
     uint32_t width, height;     /* [1, 8192] */
     const void* pixels;         /* RGBA8, rows top first, tightly packed; sRGB colour, linear alpha */
+    float alphaCutoff;          /* [0, 1], default 0: alpha is ignored. Above 0 the image is a cut-out: where its
+                                   alpha is below this, objects that show it are not there. They are not drawn
+                                   there, and hold no fuel that burns: fire goes around. A texel of the burn map
+                                   burns if any part of it is there */
+    float reserved;             /* 0 */
 } FwImageDef;
 static inline FwImageDef fwDefaultImageDef(void) {
     FwImageDef d; fwInitDef(FW_DEF_IMAGE, &d, (uint32_t)sizeof d); return d;

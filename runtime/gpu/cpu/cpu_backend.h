@@ -25,7 +25,7 @@ class CpuBackend final : public Backend {
     void setRoom(uint32_t slot, const Room& room) noexcept override;
     void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                        uint32_t flags) override;
-    void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>) override {}
+    void createImage(uint32_t, uint32_t, uint32_t, std::span<const std::byte>, float) override {}
     void destroyImage(uint32_t) override {}
 
     void createField(uint32_t slot, const FieldRules& rules,

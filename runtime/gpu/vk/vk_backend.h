@@ -109,7 +109,7 @@ class VkBackend final : public Backend {
     void setFieldMasks(uint32_t slot, std::span<const uint8_t> masks) override;
     [[nodiscard]] uint64_t fieldBytes(uint32_t slot) const noexcept override;
     void createImage(uint32_t slot, uint32_t width, uint32_t height,
-                     std::span<const std::byte> pixels) override;
+                     std::span<const std::byte> pixels, float alphaCutoff) override;
     void destroyImage(uint32_t slot) override;
 
     void restore(std::span<const RestoredObject> objects, uint32_t tick) override;

@@ -3,6 +3,7 @@
 #include "gpu/vk/world_state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -31,8 +32,9 @@ struct SrgbTable {
     }
 };
 
+// `byAlpha`: what is not there has no say in the colour.
 void halveSrgb(const SrgbTable& table, const std::byte* from, uint32_t width, uint32_t height,
-               std::byte* to) {
+               std::byte* to, bool byAlpha) {
     const uint32_t w = std::max(width / 2, 1u), h = std::max(height / 2, 1u);
     for (uint32_t y = 0; y < h; ++y) {
         for (uint32_t x = 0; x < w; ++x) {
@@ -42,15 +44,52 @@ void halveSrgb(const SrgbTable& table, const std::byte* from, uint32_t width, ui
                 from + (size_t(y0) * width + x0) * 4, from + (size_t(y0) * width + x1) * 4,
                 from + (size_t(y1) * width + x0) * 4, from + (size_t(y1) * width + x1) * 4};
             std::byte* out = to + (size_t(y) * w + x) * 4;
+            uint32_t alpha = 0;
+            for (const std::byte* tap : taps) alpha += uint8_t(tap[3]);
+            const bool weighted = byAlpha && alpha > 0;
             for (int c = 0; c < 3; ++c) {
                 float sum = 0;
-                for (const std::byte* tap : taps) sum += table.toLinear[uint8_t(tap[c])];
-                out[c] = SrgbTable::fromLinear(sum * 0.25f);
+                for (const std::byte* tap : taps)
+                    sum += table.toLinear[uint8_t(tap[c])] *
+                           (weighted ? float(uint8_t(tap[3])) / float(alpha) : 0.25f);
+                out[c] = SrgbTable::fromLinear(sum);
             }
-            uint32_t alpha = 2;
-            for (const std::byte* tap : taps) alpha += uint8_t(tap[3]);
-            out[3] = std::byte(alpha / 4);
+            out[3] = std::byte((alpha + 2) / 4);
         }
+    }
+}
+
+// Pixels that are not there take the colour of the next coarser level, so that what lies around a
+// cut-out does not shine through its edge.
+void fillGone(std::byte* pixels, uint32_t width, uint32_t height, const std::byte* coarser) {
+    const uint32_t w = std::max(width / 2, 1u), h = std::max(height / 2, 1u);
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x) {
+            std::byte* pixel = pixels + (size_t(y) * width + x) * 4;
+            if (pixel[3] != std::byte(0)) continue;
+            const size_t at = size_t(std::min(y / 2, h - 1)) * w + std::min(x / 2, w - 1);
+            std::copy_n(coarser + at * 4, 3, pixel);
+        }
+}
+
+// Alpha in units in which 128 is where the picture begins: of `share` of the pixels it is so much
+// or more. Mips would else lose thin leaves, or grow them together (Castano 2010, "Computing alpha
+// mipmaps").
+void centreAlpha(std::byte* pixels, size_t count, double share) {
+    size_t histogram[256] = {};
+    for (size_t i = 0; i < count; ++i) ++histogram[uint8_t(pixels[i * 4 + 3])];
+    const double wanted = share * double(count);
+    uint32_t cutoff = 255;
+    double above = double(histogram[255]);
+    while (cutoff > 1 &&
+           std::abs(above + double(histogram[cutoff - 1]) - wanted) <= std::abs(above - wanted))
+        above += double(histogram[--cutoff]);
+    for (size_t i = 0; i < count; ++i) {
+        const uint32_t alpha = uint8_t(pixels[i * 4 + 3]);
+        const uint32_t centred = alpha >= cutoff
+                                     ? 128 + 127 * (alpha - cutoff) / std::max(255 - cutoff, 1u)
+                                     : 127 * alpha / cutoff;
+        pixels[i * 4 + 3] = std::byte(std::min(centred, 255u));
     }
 }
 
@@ -92,7 +131,7 @@ void VkBackend::State::addImage(ImageEntry& entry, uint32_t width, uint32_t heig
 }
 
 void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
-                            std::span<const std::byte> pixels) {
+                            std::span<const std::byte> pixels, float alphaCutoff) {
     State& s = *state_;
     const uint32_t most = s.device.properties.limits.maxImageDimension2D;
     if (width > most || height > most)
@@ -106,12 +145,32 @@ void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
         bytes += size_t(std::max(width >> mip, 1u)) * std::max(height >> mip, 1u) * 4;
     std::pmr::vector<std::byte> all(bytes, s.memory);
     std::memcpy(all.data(), pixels.data(), size_t(width) * height * 4);
+    const bool cutOut = alphaCutoff > 0;
     const SrgbTable table;
-    size_t at = 0;
+    std::array<size_t, 32> starts{};  // of each mip
+    const auto sizeOf = [&](uint32_t mip) {
+        return std::pair(std::max(width >> mip, 1u), std::max(height >> mip, 1u));
+    };
     for (uint32_t mip = 0; mip + 1 < mips; ++mip) {
-        const uint32_t w = std::max(width >> mip, 1u), h = std::max(height >> mip, 1u);
-        halveSrgb(table, all.data() + at, w, h, all.data() + at + size_t(w) * h * 4);
-        at += size_t(w) * h * 4;
+        const auto [w, h] = sizeOf(mip);
+        starts[mip + 1] = starts[mip] + size_t(w) * h * 4;
+        halveSrgb(table, all.data() + starts[mip], w, h, all.data() + starts[mip + 1], cutOut);
+    }
+    if (cutOut) {
+        for (uint32_t mip = mips - 1; mip-- > 0;) {
+            const auto [w, h] = sizeOf(mip);
+            fillGone(all.data() + starts[mip], w, h, all.data() + starts[mip + 1]);
+        }
+        const size_t count = size_t(width) * height;
+        size_t there = 0;
+        for (size_t i = 0; i < count; ++i)
+            there += float(uint8_t(pixels[i * 4 + 3])) >= alphaCutoff * 255;
+        for (uint32_t mip = 0; mip < mips; ++mip) {
+            const auto [w, h] = sizeOf(mip);
+            centreAlpha(all.data() + starts[mip], size_t(w) * h, double(there) / double(count));
+        }
+    } else {
+        for (size_t i = 3; i < bytes; i += 4) all[i] = std::byte(255);
     }
     s.addImage(entry, width, height, 1, mips, VK_FORMAT_R8G8B8A8_SRGB, all, "base colour");
 }

@@ -1,0 +1,221 @@
+// See model_surfaces.h.
+#include "model/model_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <numeric>
+
+namespace fwmodel {
+namespace {
+
+using fwimport::ImportedMaterial;
+using fwimport::ImportedModel;
+
+struct Appearance {
+    SlotPicture picture;
+    glm::vec3 factor{1};
+    bool operator==(const Appearance&) const = default;
+};
+
+Appearance appearanceOf(const ImportedMaterial& material) {
+    Appearance result;
+    result.factor = {material.baseColor[0], material.baseColor[1], material.baseColor[2]};
+    result.picture.image = material.image;
+    // The file's cut-off is of the picture's alpha times the factor's.
+    if (material.image >= 0 && material.alphaMode == fwimport::AlphaMode::Mask)
+        result.picture.alphaCutoff =
+            std::clamp(material.alphaCutoff / std::max(material.baseColor[3], 1e-3f), 0.0f, 1.0f);
+    return result;
+}
+
+std::string nameOf(const ImportedModel& model, size_t material) {
+    const std::string& name = model.materials[material].name;
+    return name.empty() ? "material " + std::to_string(material + 1) : "\"" + name + "\"";
+}
+
+// Linear, of up to 65,536 pixels that are spread over the whole picture; holes do not count.
+glm::vec3 meanColor(const fwimport::DecodedImage& image, float alphaCutoff) {
+    std::array<double, 256> linear{};
+    for (size_t i = 0; i < linear.size(); ++i) {
+        const double s = static_cast<double>(i) / 255;
+        linear[i] = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+    }
+    const size_t count = image.rgba.size() / 4;
+    size_t step = std::max<size_t>(1, count / 65536);
+    // Has no divisor in common with the width: else some columns would never be looked at.
+    while (step > 1 && std::gcd(step, size_t{image.width}) != 1) ++step;
+    glm::dvec3 sum(0);
+    size_t taken = 0;
+    for (size_t i = 0; i < count; i += step) {
+        const uint8_t* pixel = &image.rgba[i * 4];
+        if (static_cast<float>(pixel[3]) < alphaCutoff * 255) continue;
+        for (int c = 0; c < 3; ++c) sum[c] += linear[pixel[c]];
+        ++taken;
+    }
+    return taken == 0 ? glm::vec3(1) : glm::vec3(sum / static_cast<double>(taken));
+}
+
+// Gives each material the first slot that `share` lets it share, else the next one. Returns how
+// many there are.
+template <typename Share>
+size_t groupMaterials(const std::vector<Appearance>& looks, std::vector<size_t>& groups,
+                      Share&& share) {
+    std::vector<size_t> first;  // material of each group
+    groups.resize(looks.size());
+    for (size_t i = 0; i < looks.size(); ++i) {
+        const auto same = std::find_if(first.begin(), first.end(),
+                                       [&](size_t other) { return share(looks[i], looks[other]); });
+        groups[i] = static_cast<size_t>(same - first.begin());
+        if (same == first.end()) first.push_back(i);
+    }
+    return first.size();
+}
+
+// Seven pictures keep a slot, those with cut-outs before others; all else shares the last one.
+void foldPictures(const ImportedModel& model, std::vector<Appearance>& looks,
+                  std::vector<size_t>& groups, size_t count, std::vector<std::string>& notes) {
+    std::vector<SlotPicture> pictures(count);
+    for (size_t i = 0; i < looks.size(); ++i) pictures[groups[i]] = looks[i].picture;
+    std::vector<size_t> order(count), slots(count, kSlots - 1);
+    std::iota(order.begin(), order.end(), size_t{0});
+    const auto rank = [&](size_t group) {
+        return pictures[group].image < 0 ? 2 : pictures[group].alphaCutoff > 0 ? 0 : 1;
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t a, size_t b) { return rank(a) < rank(b); });
+    for (size_t i = 0; i + 1 < kSlots; ++i)
+        if (pictures[order[i]].image >= 0) slots[order[i]] = i;
+
+    constexpr size_t kNamed = 8;
+    std::string names;
+    size_t lost = 0;
+    bool holes = false;
+    std::vector<std::pair<SlotPicture, glm::vec3>> means;
+    for (size_t i = 0; i < looks.size(); ++i) {
+        groups[i] = slots[groups[i]];
+        SlotPicture& picture = looks[i].picture;
+        if (groups[i] != kSlots - 1 || picture.image < 0) continue;
+        auto mean = std::find_if(means.begin(), means.end(),
+                                 [&](const auto& known) { return known.first == picture; });
+        if (mean == means.end())
+            mean = means.insert(
+                means.end(), {picture, meanColor(model.images[static_cast<size_t>(picture.image)],
+                                                 picture.alphaCutoff)});
+        looks[i].factor *= mean->second;
+        holes = holes || picture.alphaCutoff > 0;
+        picture = {};
+        if (++lost <= kNamed) names += (lost > 1 ? ", " : "") + nameOf(model, i);
+    }
+    if (lost > kNamed) names += " and " + std::to_string(lost - kNamed) + " more";
+    notes.push_back(
+        "a burnable mesh shows at most 8 pictures, or 7 beside plain colours; the file has " +
+        std::to_string(model.images.size()) +
+        ". Each of these materials shows its picture's mean colour instead" +
+        (holes ? ", without cut-outs: " : ": ") + names +
+        ". To keep them, split the file or put pictures together");
+}
+
+// The file's colour of each vertex: its own times its material's.
+std::vector<uint32_t> colorsOf(const ImportedModel& model, const std::vector<Appearance>& looks) {
+    std::vector<uint32_t> colors = model.colors;
+    colors.resize(model.vertexCount(), 0xffffffffu);
+    std::vector<bool> done(model.vertexCount(), false);
+    for (size_t i = 0; i < model.indices.size(); ++i) {
+        const uint32_t vertex = model.indices[i];
+        if (done[vertex]) continue;
+        done[vertex] = true;
+        const glm::vec3& factor = looks[model.triangleMaterials[i / 3]].factor;
+        uint32_t packed = 0xff000000u;
+        for (int c = 0; c < 3; ++c) {
+            const auto own = static_cast<float>(colors[vertex] >> (8 * c) & 255);
+            packed |= static_cast<uint32_t>(std::lround(std::clamp(factor[c] * own, 0.0f, 255.0f)))
+                      << (8 * c);
+        }
+        colors[vertex] = packed;
+    }
+    return colors;
+}
+
+}  // namespace
+
+ModelSurfaces surfacesOf(const ImportedModel& model) {
+    ModelSurfaces result;
+    std::vector<Appearance> looks;
+    bool gray = true;
+    for (size_t i = 0; i < model.materials.size(); ++i) {
+        const ImportedMaterial& material = model.materials[i];
+        looks.push_back(appearanceOf(material));
+        const bool cutOut = looks.back().picture.alphaCutoff > 0;
+        result.twoSided = result.twoSided || (cutOut && material.doubleSided);
+        if (!cutOut && material.alphaMode == fwimport::AlphaMode::Mask &&
+            material.baseColor[3] < material.alphaCutoff)
+            result.notes.push_back(nameOf(model, i) + " is wholly cut out (its alpha, " +
+                                   std::to_string(material.baseColor[3]) +
+                                   ", is below its cut-off), and is shown whole");
+        const glm::vec3& factor = looks.back().factor;
+        gray = gray && factor[0] == factor[1] && factor[1] == factor[2];
+    }
+    const bool colored = !gray || model.hasColors || !model.images.empty();
+
+    std::vector<size_t> groups(looks.size());
+    std::iota(groups.begin(), groups.end(), size_t{0});
+    size_t count = looks.size();
+    if (count > kSlots) count = groupMaterials(looks, groups, std::equal_to<>());
+    if (count > kSlots)
+        count = groupMaterials(looks, groups, [](const Appearance& a, const Appearance& b) {
+            return a.picture == b.picture;
+        });
+    if (count > kSlots) {
+        foldPictures(model, looks, groups, count, result.notes);
+        count = kSlots;
+    } else if (looks.size() > kSlots) {
+        result.notes.push_back("a burnable mesh has 8 material slots; the file's " +
+                               std::to_string(looks.size()) + " materials share " +
+                               std::to_string(count) + ", by what they show");
+    }
+    result.slotCount = static_cast<uint32_t>(std::max<size_t>(1, count));
+    for (size_t i = 0; i < groups.size(); ++i) {
+        result.slots.push_back(static_cast<uint8_t>(groups[i]));
+        result.pictures[groups[i]] = looks[i].picture;
+    }
+    result.triangleMaterials.reserve(model.triangleCount());
+    for (const uint32_t material : model.triangleMaterials)
+        result.triangleMaterials.push_back(result.slots[material]);
+    if (colored) result.colors = colorsOf(model, looks);
+    return result;
+}
+
+FwMeshDef meshDefOf(const ImportedModel& model, const ModelSurfaces& surfaces) {
+    FwMeshDef def = fwDefaultMeshDef();
+    def.positions = model.positions.data();
+    def.normals = model.hasNormals ? model.normals.data() : nullptr;
+    // Parts without UVs have none that a picture needs.
+    def.uvs = model.hasUvs || !model.images.empty() ? model.uvs.data() : nullptr;
+    def.colors = surfaces.ownColors() ? surfaces.colors.data() : nullptr;
+    def.indices = model.indices.data();
+    def.triangleMaterials = surfaces.triangleMaterials.data();
+    def.vertexCount = static_cast<uint32_t>(model.vertexCount());
+    def.indexCount = static_cast<uint32_t>(model.indices.size());
+    return def;
+}
+
+FwMaterialDef materialDefOf(uint32_t preset, bool ownColors) {
+    FwMaterialDef def = fwDefaultMaterialDef();
+    fwInitMaterialPreset(&def, preset);
+    if (ownColors)
+        for (float& channel : def.baseColor) channel = 1;
+    return def;
+}
+
+FwImageDef imageDefOf(const ImportedModel& model, const SlotPicture& picture) {
+    const fwimport::DecodedImage& image = model.images[static_cast<size_t>(picture.image)];
+    FwImageDef def = fwDefaultImageDef();
+    def.width = image.width;
+    def.height = image.height;
+    def.pixels = image.rgba.data();
+    def.alphaCutoff = picture.alphaCutoff;
+    return def;
+}
+
+}  // namespace fwmodel
