@@ -1,0 +1,73 @@
+// Why a match lights nothing, in words for a host's log. Runs only then.
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace fw::world {
+
+namespace {
+
+// m, between a point and an object's surface: first to its box, which is cheap, then to its texels.
+struct Nearest {
+    const Object* object = nullptr;
+    float metres = 0;
+
+    [[nodiscard]] bool beats(float distance) const noexcept { return object && metres <= distance; }
+};
+
+float distanceToBox(const float point[3], const mesh::BurnDomain& domain) noexcept {
+    float squared = 0;
+    for (int i = 0; i < 3; ++i) {
+        const float outside =
+            std::max({0.0f, domain.boundsLow[i] - point[i], point[i] - domain.boundsHigh[i]});
+        squared += outside * outside;
+    }
+    return std::sqrt(squared);
+}
+
+}  // namespace
+
+void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
+                                std::span<char> text) const noexcept {
+    const float* at = def.position;
+    char ball[96];
+    std::snprintf(ball, sizeof ball, "The ball of %g m at (%g, %g, %g)", double(def.radius),
+                  double(at[0]), double(at[1]), double(at[2]));
+    if (texels > 0) {
+        std::snprintf(text.data(), text.size(),
+                      "%s lights nothing: none of the %u texels in it can burn. Their material is "
+                      "noncombustible or too moist, their multiplier is 0, or water is on its way to them. "
+                      "Give them a material with a spreadRate above 0, or dry them (FW_DRY).",
+                      ball, texels);
+        return;
+    }
+    Nearest nearest;
+    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
+        const core::Owned<Object>* owned = objects_.at(slot);
+        if (!owned || (def.object.index1 != 0 && def.object.index1 != slot + 1)) continue;
+        const Object& object = **owned;
+        float point[3];
+        components::toObject(object.data.pose, at, point);
+        if (!object.skinMoved &&
+            nearest.beats(distanceToBox(point, domainOf(object)) * object.data.pose.scale))
+            continue;
+        const uint32_t texel = nearestTexel(object, point, 1e18f);
+        if (texel == mesh::kNone) continue;
+        float place[3], squared = 0;
+        texelPosition(object, texel, place);
+        for (int i = 0; i < 3; ++i) squared += (place[i] - at[i]) * (place[i] - at[i]);
+        if (!nearest.beats(std::sqrt(squared))) nearest = {&object, std::sqrt(squared)};
+    }
+    if (!nearest.object)
+        std::snprintf(text.data(), text.size(), "%s reaches nothing: the world has no burnable mesh.",
+                      ball);
+    else
+        std::snprintf(text.data(), text.size(),
+                      "%s reaches nothing: the nearest burnable mesh, %u, is %g m away. Move the ball there, "
+                      "or give it a radius of that much.",
+                      ball, nearest.object->id.index1, double(nearest.metres));
+}
+
+}  // namespace fw::world
