@@ -368,6 +368,14 @@ void checkVertices(const FwVulkanVertices& def) {
     };
     limit(def.stride, "stride");
     if (def.normalOffset) limit(def.normalOffset, "normalOffset");
+    const auto stages = [](VkPipelineStageFlags given, const char* field, const char* which) {
+        if (given == 0)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "FwVulkanVertices::%s is 0; name the stages that %s the buffer.", field,
+                       which);
+    };
+    stages(def.stageBefore, "stageBefore", "wrote");
+    stages(def.stageAfter, "stageAfter", "use");
     if (def.offset % 4 != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanVertices::offset is %llu; it is a multiple of 4.",

@@ -35,12 +35,17 @@ class Targets : public GpuTest {
         GpuTest::TearDown();
     }
 
-    // A composite that draws flames alone, so that it is quickly made.
-    static FwVulkanTargetDef flamesOver(VkFormat color) {
+    // Surfaces alone, as needed: no object needs any, so it is quickly made.
+    static FwVulkanTargetDef surfacesOver(VkFormat color) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_NO_SURFACES | FW_TARGET_AS_NEEDED;
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_NO_FLAMES | FW_TARGET_AS_NEEDED;
         def.colorFormat = color;
-        def.depthMode = FW_DEPTH_NONE;
+        def.depthFormat = VK_FORMAT_D32_SFLOAT;
+        return def;
+    }
+    static FwVulkanTargetDef flamesOver(VkFormat color) {
+        FwVulkanTargetDef def = surfacesOver(color);
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_NO_SURFACES;
         return def;
     }
     // Its message, or nothing where it is registered; it is unregistered at once.
@@ -80,7 +85,7 @@ TEST_F(Targets, EncodingMustFitTheFormat) {
                    {VK_FORMAT_B10G11R11_UFLOAT_PACK32, FW_OUTPUT_LINEAR}};
     for (const auto& format : formats) {
         if (!blends(format.color)) continue;
-        FwVulkanTargetDef def = flamesOver(format.color);
+        FwVulkanTargetDef def = surfacesOver(format.color);
         EXPECT_EQ(uint32_t(FW_OUTPUT_AUTO), def.encoding) << "the default";
         EXPECT_EQ("", refusal(def)) << format.color;
         for (uint32_t encoding = 0; encoding < 3; ++encoding) {
@@ -95,7 +100,7 @@ TEST_F(Targets, EncodingMustFitTheFormat) {
     }
     EXPECT_EQ("", warnings_);
     // A format that is not known: named by the host, and said.
-    FwVulkanTargetDef odd = flamesOver(VK_FORMAT_R8G8B8A8_SNORM);
+    FwVulkanTargetDef odd = surfacesOver(VK_FORMAT_R8G8B8A8_SNORM);
     if (!blends(odd.colorFormat)) return;
     EXPECT_THAT(refusal(odd), HasSubstr("is not known to be float, sRGB or UNORM; name the encoding"));
     odd.encoding = FW_OUTPUT_LINEAR;
@@ -107,9 +112,9 @@ TEST_F(Targets, SurfacesNeedDepthThatTheyWrite) {
     if (!device_) return;
     FwVulkanTargetDef def = flamesOver(VK_FORMAT_R8G8B8A8_UNORM);
     def.depthMode = FW_DEPTH_TEST_ONLY;
-    def.depthFormat = VK_FORMAT_D32_SFLOAT;
     EXPECT_EQ("", refusal(def)) << "flames alone";
-    def.flags &= ~uint32_t(FW_TARGET_NO_SURFACES);
+    def = surfacesOver(VK_FORMAT_R8G8B8A8_UNORM);
+    def.depthMode = FW_DEPTH_TEST_ONLY;
     EXPECT_THAT(refusal(def), HasSubstr("surfaces that write no depth show their far sides"));
     EXPECT_EQ("", warnings_);
     // Flat sheets are right without a depth, so that is said and not refused.
@@ -146,7 +151,7 @@ TEST_F(Targets, PassInfoFindsWrongFields) {
     ASSERT_EQ(VK_SUCCESS, vkCreateRenderPass(device_->device, &info, nullptr, &pass_));
 
     FwVulkanTargetDef right = fwDefaultVulkanTargetDef();
-    right.flags = FW_TARGET_NO_SURFACES | FW_TARGET_AS_NEEDED;
+    right.flags = FW_TARGET_NO_FLAMES | FW_TARGET_AS_NEEDED;
     right.renderPass = pass_;
     right.renderPassInfo = &info;
     right.colorFormat = VK_FORMAT_R8G8B8A8_UNORM;
@@ -171,7 +176,7 @@ TEST_F(Targets, PassInfoFindsWrongFields) {
     VkApplicationInfo other{};
     EXPECT_THAT(wrong([&](auto& d) { d.renderPassInfo = &other; }), HasSubstr("has sType 0"));
     // A composite's pass is ours: nothing of a subpass can be given.
-    FwVulkanTargetDef composite = flamesOver(VK_FORMAT_R8G8B8A8_UNORM);
+    FwVulkanTargetDef composite = surfacesOver(VK_FORMAT_R8G8B8A8_UNORM);
     composite.subpass = 1;
     EXPECT_THAT(refusal(composite), HasSubstr("FwVulkanTargetDef::subpass is 1"));
 }
