@@ -580,6 +580,8 @@ FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld* world, const FwOffscreenDef* g
         checkPointer(def.pixels, "FwOffscreenDef::pixels");
         components::checkValues(def.background, 4, "FwOffscreenDef::background", 0.0f, 1e6f);
         edge::checkView(def.view, "FwOffscreenDef::view");
+        if (world->world->shifted())
+            world->context->device->step(*world->backend, *world->world, 0.0f);
         world->context->device->renderOffscreen(*world->backend, def);
         return FW_OK;
     });
@@ -624,6 +626,29 @@ FwResult FW_CALL fwWorld_FetchPoint(FwWorld* world, FwQueryId query, FwPointStat
 FwResult FW_CALL fwWorld_RequestArrival(FwWorld* world, FwBurnableMeshId id,
                                         const float position[3], FwQueryId* query) {
     return ask("fwWorld_RequestArrival", world, &world::World::requestArrival, id, position, query);
+}
+
+FwResult FW_CALL fwWorld_TransferBurn(FwWorld* world, FwBurnableMeshId from, FwBurnableMeshId to) {
+    return onWorld("fwWorld_TransferBurn", world, [&](world::World& w) {
+        w.transferBurn(from, to);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_ShiftOrigin(FwWorld* world, const float* offset, float* applied) {
+    return onWorld("fwWorld_ShiftOrigin", world, [&](world::World& w) {
+        checkPointer(offset, "offset");
+        w.shiftOrigin(offset, applied);
+        return FW_OK;
+    });
+}
+
+FwResult FW_CALL fwWorld_GetOrigin(FwWorld* world, double* origin) {
+    return onWorld("fwWorld_GetOrigin", world, [&](world::World& w) {
+        checkPointer(origin, "origin");
+        w.origin(origin);
+        return FW_OK;
+    });
 }
 
 FwResult FW_CALL fwWorld_CancelQuery(FwWorld* world, FwQueryId query) {

@@ -436,7 +436,7 @@ void poseRows(const Pose& pose, gpu::vec4 (&rows)[3]) noexcept {
         rows[r] =
             gpu::vec4(pose.rotation[r][0] * pose.scale * pose.stretch[0],
                       pose.rotation[r][1] * pose.scale * pose.stretch[1],
-                      pose.rotation[r][2] * pose.scale * pose.stretch[2], pose.translation[r]);
+                      pose.rotation[r][2] * pose.scale * pose.stretch[2], float(pose.translation[r]));
 }
 
 gpu::vec4 objectTint(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept {

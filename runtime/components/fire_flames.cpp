@@ -73,6 +73,14 @@ void FireFlames::drop(const VolumetricFire& fire) noexcept {
     std::erase_if(now_, [&](const FireFlame& f) { return f.fire == &fire; });
 }
 
+void FireFlames::carry(vec3 by) noexcept {
+    for (FireFlame& f : now_) {
+        volume::carryFlame(f.flame, by);
+        f.flame.def.position += by;
+        f.stood += by;
+    }
+}
+
 // What is asked of a flame by its fire, and the height that a line gives it.
 void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
     const VolumetricFire& fire = *f.fire;

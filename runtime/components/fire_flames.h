@@ -31,6 +31,7 @@ class FireFlames {
     // So that frames need no memory: for so many flames beside those that burn. Throws. How many.
     size_t findRoom(size_t more);
     void drop(const VolumetricFire& fire) noexcept;  // of a fire that goes
+    void carry(gpu::vec3 by) noexcept;               // all of them, m
 
     // What its first frame will nearly say of a fire that has not been through one.
     FireState foresee(VolumetricFire& fire, const FireAir& air) const noexcept;

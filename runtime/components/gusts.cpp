@@ -16,6 +16,7 @@ constexpr float kLeastGust = 0.5f, kMostGust = 1000;  // m
 constexpr int64_t kMostGustWind = fire::kMostWindUnits;
 // Units of drift in a metre.
 constexpr int64_t kDriftMetre = 128 * int64_t(gpu::kTicksPerSecond);
+constexpr int64_t kMostMoved = 1000000000;  // m that an origin may move, see moveGusts
 
 int64_t floorDivide(int64_t a, int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
 
@@ -64,7 +65,7 @@ Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
 
 bool plausible(const Gusts& gusts, uint64_t tick) noexcept {
     if (gusts.since > tick || gusts.strength < 0 || gusts.strength > kGustOne) return false;
-    const int64_t most = kMostGustWind * int64_t(gusts.since);
+    const int64_t most = kMostGustWind * int64_t(gusts.since) + kMostMoved * kDriftMetre;
     for (const int64_t way : gusts.drift)
         if (way < -most || way > most) return false;
     return gusts.strength == 0 ||
@@ -77,6 +78,10 @@ void windChanges(Gusts& gusts, const fire::WindVector& wind, uint64_t tick) noex
     gusts.since = uint32_t(tick);
 }
 
+void moveGusts(Gusts& gusts, const double by[3]) noexcept {
+    for (size_t i = 0; i < 3; ++i) gusts.drift[i] += int64_t(by[i]) * kDriftMetre;
+}
+
 fire::WindVector gustOf(const Gusts& gusts, uint32_t seed, const fire::WindVector& wind,
                         const fire::WindVector& here, const WindPlace& place,
                         uint64_t tick) noexcept {
@@ -84,7 +89,7 @@ fire::WindVector gustOf(const Gusts& gusts, uint32_t seed, const fire::WindVecto
     const int64_t ticks = int64_t(tick - tick % fire::kWindLatchTicks) - int64_t(gusts.since);
     std::array<int64_t, 3> off{place.x, place.y, place.z};
     for (size_t i = 0; i < 3; ++i)
-        off[i] -= (gusts.drift[i] + wind[i] * ticks) * 1000 / kDriftMetre;
+        off[i] -= floorDivide((gusts.drift[i] + wind[i] * ticks) * 1000, kDriftMetre);
     const int64_t both = (2 * noise(off, gusts.size, seed) + noise(off, gusts.size / 2, ~seed)) / 3;
     const int64_t gain = kGustOne + gusts.strength * both / kGustOne;
     fire::WindVector out;

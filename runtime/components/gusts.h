@@ -26,6 +26,8 @@ void windChanges(Gusts& gusts, const fire::WindVector& wind, uint64_t tick) noex
 
 // `here`, as gusts have it at a place; `wind`: with which they drift. The same for a quarter of a
 // second, as fronts hear of wind no more often.
+// They go along with a world whose places all move by whole metres.
+void moveGusts(Gusts& gusts, const double by[3]) noexcept;
 [[nodiscard]] fire::WindVector gustOf(const Gusts& gusts, uint32_t seed,
                                       const fire::WindVector& wind, const fire::WindVector& here,
                                       const WindPlace& place, uint64_t tick) noexcept;

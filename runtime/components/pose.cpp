@@ -89,7 +89,7 @@ Pose makePose(const float transform[16], const char* field) {
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)
             pose.rotation[r][c] = float((c == 0 ? turn : 1) * column[c][r] / length[c]);
-        pose.translation[r] = transform[12 + r];
+        pose.translation[r] = double(transform[12 + r]);
     }
     return pose;
 }
@@ -99,16 +99,22 @@ bool uniform(const Pose& pose) noexcept {
 }
 
 void toWorld(const Pose& pose, const float point[3], float (&out)[3]) noexcept {
+    double place[3];
+    toWorld(pose, point, place);
+    for (int i = 0; i < 3; ++i) out[i] = float(place[i]);
+}
+
+void toWorld(const Pose& pose, const float point[3], double (&out)[3]) noexcept {
     for (int r = 0; r < 3; ++r) {
         float sum = 0;
         for (int c = 0; c < 3; ++c) sum += pose.rotation[r][c] * (pose.stretch[c] * point[c]);
-        out[r] = pose.scale * sum + pose.translation[r];
+        out[r] = double(pose.scale * sum) + pose.translation[r];
     }
 }
 
 void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept {
     float from[3];
-    for (int i = 0; i < 3; ++i) from[i] = (point[i] - pose.translation[i]) / pose.scale;
+    for (int i = 0; i < 3; ++i) from[i] = float(double(point[i]) - pose.translation[i]) / pose.scale;
     directionToObject(pose, from, out);
     for (int i = 0; i < 3; ++i) out[i] /= pose.stretch[i];
 }

@@ -9,7 +9,7 @@ struct Pose {
     float rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // rows, object to world, no scale
     float scale = 1;               // mean of the three axes, [1e-3, 1e3]
     float stretch[3] = {1, 1, 1};  // of each object axis, beyond scale; x < 0: mirrored
-    float translation[3] = {};     // m, within +-1e6
+    double translation[3] = {};    // m, within +-1e6: exact however far the origin moved
     bool operator==(const Pose&) const = default;
 };
 
@@ -21,6 +21,7 @@ constexpr float kMostStretch = 16;  // longest axis over shortest
 Pose makePose(const float transform[16], const char* field);
 
 void toWorld(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
+void toWorld(const Pose& pose, const float point[3], double (&out)[3]) noexcept;
 void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
 [[nodiscard]] bool uniform(const Pose& pose) noexcept;  // and not mirrored
 // Directions: rotation only.

@@ -45,7 +45,7 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
     gpu::ivec4* turns[3] = {&out.turn0, &out.turn1, &out.turn2};
     gpu::ivec4 turned[3]{};
     turn(pose, turned);
-    float origin[3];
+    double origin[3];
     toWorld(pose, domain.origin, origin);
     uint16_t low[3], high[3];
     for (int i = 0; i < 3; ++i) {
@@ -59,7 +59,7 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
         for (int c = 0; c < 3; ++c)
             (*rows[i])[c] = whole(double(pose.rotation[i][c]) * double(pose.stretch[c]) * unit *
                                   double(1u << out.shift));
-        (*rows[i])[3] = whole(double(origin[i]) * kMillimetres);
+        (*rows[i])[3] = whole(origin[i] * kMillimetres);
         *turns[i] = turned[i];
     }
     int boxLow[3], boxHigh[3];
@@ -114,7 +114,7 @@ void placeBlocker(const Pose& pose, const float halfSize[3], gpu::Blocker& out) 
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)  // transposed: world to box
             (*turns[r])[c] = whole(double(pose.rotation[c][r]) * 4096);
-        (*turns[r])[3] = whole(double(pose.translation[r]) * kMillimetres);
+        (*turns[r])[3] = whole(pose.translation[r] * kMillimetres);
         out.size[r] = uint32_t(std::clamp(double(halfSize[r]) * double(pose.scale) *
                                               std::fabs(double(pose.stretch[r])) * kMillimetres,
                                           0.0, 30000.0));

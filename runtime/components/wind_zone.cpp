@@ -160,6 +160,11 @@ WindPlace windPlace(const float place[3]) noexcept {
     return {millimetres(place[0]), millimetres(place[1]), millimetres(place[2])};
 }
 
+WindPlace windPlace(const double place[3]) noexcept {
+    return {std::llround(place[0] * 1000), std::llround(place[1] * 1000),
+            std::llround(place[2] * 1000)};
+}
+
 fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector& wind,
                         const WindPlace& place) noexcept {
     Vector sum{wind[0], wind[1], wind[2]};

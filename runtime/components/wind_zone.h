@@ -37,6 +37,7 @@ void sortWindZones(std::span<WindZone> zones) noexcept;
 // m to mm.
 [[nodiscard]] int64_t millimetres(float metres) noexcept;
 [[nodiscard]] WindPlace windPlace(const float place[3]) noexcept;
+[[nodiscard]] WindPlace windPlace(const double place[3]) noexcept;
 
 // What blows at a place where `wind` blows around all zones; these are in the order in which they
 // count. Within +-120 m/s along each axis.

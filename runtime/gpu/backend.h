@@ -261,6 +261,9 @@ class Backend {
     // That show burning meshes' flames, from the next frame on: byte 0 fire's + 1, byte 1 smoke's.
     virtual void setFlameBooks(uint32_t /*books*/) noexcept {}
 
+    // All places move by whole metres. Poses and what others see of objects come by themselves.
+    virtual void moveWorld(const double (&/*by*/)[3]) noexcept {}
+
     // From the next frame on; its objects say in their flags that they are in it.
     virtual void setRoom(uint32_t slot, const Room& room) noexcept = 0;
 

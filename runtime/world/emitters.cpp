@@ -6,6 +6,7 @@
 #include "shared/spark.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fw::world {
 
@@ -16,8 +17,10 @@ components::EmitterAir World::emitterAir(const FireEmitter& emitter, float ahead
     // That of a mesh is where its mesh is.
     const core::Owned<Object>* object =
         emitter.def.shape == FW_EMITTER_MESH ? objects_.find(emitter.def.object) : nullptr;
-    const std::array<float, 3> wind =
-        windAt(object ? (*object)->data.pose.translation : emitter.position, clock_.tick);
+    float place[3];
+    std::copy_n(emitter.position, 3, place);
+    for (int i = 0; object && i < 3; ++i) place[i] = float((*object)->data.pose.translation[i]);
+    const std::array<float, 3> wind = windAt(place, clock_.tick);
     std::copy_n(wind.data(), 3, air.wind);
     std::copy_n(def_.up, 3, air.up);
     air.now = emitterTime_ + double(ahead);
@@ -176,6 +179,8 @@ void World::planEmitters(float seconds) noexcept {
         if (!emitter) continue;
         const components::EmitterAir air = emitterAir(*emitter, seconds);
         const bool shows = components::advanceEmitter(*emitter, air, seconds, record);
+        const auto eddies = [&](int k) { return float(std::fmod(origin_[k], gpu::kEddyField)); };
+        record.heat.w = eddies(0), record.stuck.z = eddies(1), record.stuck.w = eddies(2);
         gpu::SparkSource source;
         // Another object may have the slot of a mesh that is gone.
         const bool gone = emitter->def.shape == FW_EMITTER_MESH &&

@@ -34,6 +34,8 @@ class EventQueue {
         return ring_[number % kCapacity];
     }
 
+    [[nodiscard]] FwEvent& at(uint64_t number) noexcept { return ring_[number % kCapacity]; }
+
  private:
     mutable std::mutex mutex_;
     std::pmr::vector<FwEvent> ring_;

@@ -46,6 +46,10 @@ void World::collectReadbacks() {
     while (const gpu::Readback* readback = backend_.nextReadback()) {
         if (readback->frameIndex <= loadedFrame_) continue;
         readbackFrame_ = readback->frameIndex;
+        while (shiftCount_ > 0 && shifts_[0].frame < readbackFrame_) {
+            std::copy(shifts_.begin() + 1, shifts_.begin() + shiftCount_, shifts_.begin());
+            --shiftCount_;
+        }
         readbackTick_ = readback->endTick;
         frontTiles_ = readback->frontTiles;
         runTiles_ = readback->runTiles;
@@ -188,7 +192,10 @@ void World::takeEnergy(Object& object, uint32_t endTick) noexcept {
     const uint64_t steps = heatStepsBefore(endTick);
     if (steps == object.story.heatSteps) return;
     const double seconds = double(steps - object.story.heatSteps) * gpu::kHeatSteps / 32;
-    object.story.power = now.burning == 0 ? 0.0f
+    if (object.carried && endTick >= object.carryEnd)
+        object.carried = false;
+    else
+        object.story.power = now.burning == 0 ? 0.0f
                                           : float(double(energy - object.story.energy) / 1048576 /
                                                   seconds / double(def_.paceFactor));
     object.story.energy = energy;

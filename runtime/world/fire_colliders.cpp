@@ -173,7 +173,7 @@ void World::listFireColliders() noexcept {
         if (!entry) continue;
         volume::Collider box;
         box.kind = volume::ColliderKind::Box;
-        box.place = volume::vecOf(entry->pose.translation);
+        for (int k = 0; k < 3; ++k) box.place[k] = float(entry->pose.translation[k]);
         box.extent = volume::vecOf(entry->halfSize) * entry->pose.scale;
         box.rotation = quaternion(entry->pose.rotation);
         fireShapes_.push_back(box);

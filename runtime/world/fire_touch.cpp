@@ -126,13 +126,15 @@ void World::touchByFire(Fire& fire, uint32_t now) {
         if (!touch) continue;  // its flame is among more than it can mind
         touch->seen = true;
         const bool same = touch->object.index1 != 0;
+        float stands[3];
+        for (int i = 0; i < 3; ++i) stands[i] = float(pose.translation[i]);
         if (!same || moved(touch->fireAt, balls[0].place, 0.5f * radius) ||
-            moved(touch->objectAt, pose.translation, 0.5f * radius)) {
+            moved(touch->objectAt, stands, 0.5f * radius)) {
             touch->object = object.id;
             touch->since = now;
             touch->lit = false;
             std::copy_n(balls[0].place, 3, touch->fireAt);
-            std::copy_n(pose.translation, 3, touch->objectAt);
+            std::copy_n(stands, 3, touch->objectAt);
         }
         const FwMaterialDef& of = object.data.materials[material];
         uint64_t wait =

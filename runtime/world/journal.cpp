@@ -262,6 +262,10 @@ void World::perform(const Deed& deed) {
             return takeShieldCells(deed);
         case Deed::Kind::shieldObject:
             return takeShieldObject(deed);
+        case Deed::Kind::transferBurn:
+            return transferBurn(idAt(objects_, deed.word - 1), idAt(objects_, deed.slot));
+        case Deed::Kind::shiftOrigin:
+            return shiftOrigin(numbers, nullptr);
         case Deed::Kind::gusts: {
             FwGustDef def{};
             def.structSize = sizeof def;

@@ -38,6 +38,8 @@ struct Deed {
         heatShield,
         shieldCells,
         shieldObject,
+        shiftOrigin,
+        transferBurn,
         count
     };
     Kind kind = Kind::count;
@@ -48,6 +50,7 @@ struct Deed {
                         // windZone, room, windGrid, heatShield: what of a def is no float, see
                         // deedOf; shieldObject: 1: the last one
                         // playBurn: slot + 1 of the burn
+                        // transferBurn: slot + 1 of whose burn it is
     std::array<float, 13> numbers{};
 };
 
@@ -78,6 +81,8 @@ constexpr DeedForm kDeedForms[] = {
     {false, false, true, 4},   // heatShield
     {true, false, false, 12},  // shieldCells
     {true, false, true, 0},    // shieldObject
+    {false, false, false, 3},  // shiftOrigin
+    {true, false, true, 0},    // transferBurn
 };
 static_assert(std::size(kDeedForms) == size_t(Deed::Kind::count));
 template <class S, class T>

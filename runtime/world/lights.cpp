@@ -19,6 +19,7 @@ void World::takeLights(const gpu::Readback& readback) noexcept {
             light.position[i] = given.positionRadius[i];
             light.color[i] = given.colorIntensity[i];
         }
+        movePlace(light.position, readback.frameIndex);
         light.radius = given.positionRadius.w;
         light.intensity = given.power * (components::kLightShare / components::kSphere);
         light.power = given.release;

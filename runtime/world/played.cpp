@@ -191,7 +191,9 @@ void World::endPlay(Object& object, uint64_t frameIndex) noexcept {
     object.play = {};
     ++object.changes;
     std::erase(playing_, &object);
-    raise(FW_EVENT_WENT_LIVE, &object, 0, frameIndex, object.data.pose.translation,
+    float place[3];
+    for (int i = 0; i < 3; ++i) place[i] = float(object.data.pose.translation[i]);
+    raise(FW_EVENT_WENT_LIVE, &object, 0, frameIndex, place,
           float(seconds()));
 }
 

@@ -51,7 +51,7 @@ void checkPose(const components::Pose& pose, uint32_t object) {
         const float size = std::abs(value);
         good &= size >= 1.0f / 64 && size <= 64;
     }
-    for (const float value : pose.translation) good &= std::abs(value) <= 1e6f;
+    for (const double value : pose.translation) good &= std::abs(value) <= 1e6;
     if (!good)
         core::fail(FW_ERROR_BAD_DATA,
                    "The save has a transform that none can be for burnable mesh %u.", object + 1);
@@ -219,6 +219,7 @@ void World::noteSaved(SavedWorld& to) {
     to.heatShield.solid.assign(shield_.grid.solid.begin(), shield_.grid.solid.end());
     to.heatShield.baked.assign(shield_.grid.baked.begin(), shield_.grid.baked.end());
     to.gusts = gusts_;
+    std::copy_n(origin_, 3, to.origin);
     to.flags = remote_.flags | remote_.objectFlags;
     to.warms = remote_.warms;
     to.blockersDue = remote_.blockersDue;
@@ -443,6 +444,9 @@ void World::noteEvents(Save& save) {
         saved.object1 = event.object.index1;
         saved.other1 = objects_.find(event.other) ? event.other.index1 : 0;
         std::copy_n(event.position, 3, saved.position);
+        for (int i = 0; event.type != FW_EVENT_TIME_DROPPED && i < 3; ++i)  // moved since
+            saved.position[i] =
+                float(double(saved.position[i]) + save.saved.origin[i] - origin_[i]);
         saved.value = event.value;
     }
 }
@@ -466,6 +470,10 @@ void World::checkSaved(const SavedWorld& saved) {
         if (!(std::abs(value) <= fire::kMostWind))
             core::fail(FW_ERROR_BAD_DATA, "The save's wind is %g m/s; the limits are [%g, %g].",
                        double(value), double(-fire::kMostWind), double(fire::kMostWind));
+    for (const double metres : saved.origin)
+        if (!(std::abs(metres) <= 1e9) || metres != std::floor(metres))
+            core::fail(FW_ERROR_BAD_DATA, "The save's origin has moved by %g m; it moves by whole "
+                       "metres, to +-1e9 m.", metres);
     if ((saved.flags & ~kWorldFlags) != 0)
         core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
                    saved.flags, kWorldFlags);
@@ -513,7 +521,9 @@ void World::checkSaved(const SavedWorld& saved) {
                    saved.pending.size(), kMaxPending);
     for (const PendingTexel& event : saved.pending) {
         checkTexel(event.object, event.texel, "an event");
-        if (event.kind > gpu::kEventHeat)
+        if (gpu::eventKind(event.kind) == gpu::kEventCarry)
+            checkTexel((event.kind >> gpu::kEventKindBits) - 1, event.water, "a burn to carry");
+        else if (event.kind > gpu::kEventHeat)
             core::fail(FW_ERROR_BAD_DATA, "The save has an event of kind %u; the limit is %u.",
                        event.kind, gpu::kEventHeat);
         for (uint32_t g = 0; g < event.gateCount; ++g)
@@ -751,12 +761,17 @@ void World::load(std::span<const std::byte> bytes) {
     }
     tags_.swap(tags);
     pending_.swap(saved.pending);
+    settleCarries();
     for (SavedField& field : saved.fields)
         if (field.wets) (*fields_.at(field.slot))->cells->cells.swap(field.cells);
 }
 
 void World::applySaved(const SavedWorld& saved,
                        std::span<const components::Latch> latches) noexcept {
+    double by[3];  // what is in no save goes along
+    for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - origin_[i];
+    shiftBy(by);
+    shiftCount_ = 0;
     clock_ = saved.clock;
     steps_ = saved.steps;
     droppedSteps_ = saved.droppedSteps;

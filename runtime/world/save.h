@@ -140,6 +140,7 @@ struct SavedWorld {
     components::WindGrid windGrid;
     components::HeatShield heatShield;
     components::Gusts gusts;
+    double origin[3] = {};  // m, see World::origin_
     uint32_t flags = 0;
     bool warms = false, blockersDue = false;
     uint64_t fades = 0;

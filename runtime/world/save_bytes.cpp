@@ -414,6 +414,7 @@ void put(S& s, T& w) {
     put(s, w.windGrid);
     put(s, w.heatShield);
     put(s, w.gusts);
+    put(s, w.origin);
     list(s, w.windZones, "wind zones", 108);
     list(s, w.rooms, "rooms", 156);
     list(s, w.fires, "volumetric fires", 24);

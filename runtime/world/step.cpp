@@ -100,6 +100,7 @@ void World::planSteps(const ClockAdvance& time) {
     frame_.latches.clear();
     frame_.due.clear();
     const uint64_t end = time.after.tick;
+    waitForCarries();
     for (const PendingTexel& event : pending_) {
         if (event.tick >= end) continue;
         const uint64_t at = std::max<uint64_t>(event.tick, clock_.tick);
@@ -145,7 +146,7 @@ void World::planSteps(const ClockAdvance& time) {
             const PendingTexel& event = frame_.due[nextDue].event;
             frame_.events.push_back(
                 {event.object, event.texel, event.kind,
-                 event.kind == FW_WET || event.kind == gpu::kEventHeat ? event.water : event.tick});
+                 event.kind == FW_WET || event.kind >= gpu::kEventHeat ? event.water : event.tick});
         }
         const auto due = std::span(frame_.due).subspan(firstDue, nextDue - firstDue);
         plan.plays = !frame_.plays.empty();

@@ -69,7 +69,8 @@ void World::windAtPoint(const float point[3], float wind[3]) const {
 // The middle of its box, at rest.
 WindPlace World::windPlaceOf(const components::Pose& pose,
                              const mesh::BurnDomain& domain) noexcept {
-    float middle[3], place[3];
+    float middle[3];
+    double place[3];
     for (int i = 0; i < 3; ++i) middle[i] = 0.5f * (domain.boundsLow[i] + domain.boundsHigh[i]);
     components::toWorld(pose, middle, place);
     return components::windPlace(place);

@@ -518,8 +518,13 @@ mesh::ArpSettings World::arpSettings(const FwBurnableMeshDef& def, const mesh::A
 }
 
 void World::destroyBurnableMesh(FwBurnableMeshId id) {
-    ++geometry_;
     Object& object = *objects_.get(id);
+    if (gives(object.slot))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Burnable mesh %u gives its burn to another one with the next step; destroy it after "
+                   "that.",
+                   id.index1);
+    ++geometry_;
     const uint32_t slot = object.slot;
     countImages(object.data, false);
     const uint32_t meshSlot = object.data.meshSlot;

@@ -31,6 +31,7 @@
 #include "world/played.h"
 #include "world/timeline.h"
 
+#include <algorithm>
 #include <array>
 
 namespace fw::world {
@@ -148,6 +149,10 @@ struct Object {
     core::Owned<Forecast> forecast;  // null: never asked for
     core::Owned<Breaks> breaks;      // null: not asked for
     uint64_t changes = 0;            // of what its fire will do, that we know of
+    // A burn is carried from or to it: its other events wait until the end of that step; then what
+    // it was given counts as no power of its own.
+    uint32_t carryEnd = 0;  // tick
+    bool carried = false;
     Play play;                       // the baked burn that it plays
     // Of a skinned object: the host's vertices, m, in its mesh's shape; 3 each. Normals are
     // scratch.
@@ -366,6 +371,13 @@ class World {
     World& operator=(const World&) = delete;
 
     void setWind(const float wind[3]);
+    // Every place of the world moves by whole metres; `applied`: those, or null.
+    void shiftOrigin(const float offset[3], float applied[3]);
+    void origin(double* moved) const noexcept { std::copy_n(origin_, 3, moved); }
+    // It moved since the last frame: what the backend shows stands where it was.
+    [[nodiscard]] bool shifted() const noexcept {
+        return shiftCount_ > 0 && shifts_[shiftCount_ - 1].frame == lastFrame_;
+    }
     void setHeatShield(const FwHeatShieldDef& def);  // of structSize 0: none any more
     void setWindGrid(const FwWindGridDef& def);      // of structSize 0: none any more
     void setGusts(const FwGustDef& def);
@@ -401,6 +413,7 @@ class World {
                             uint32_t count);
     void setHidden(FwBurnableMeshId id, bool hidden);
     uint32_t ignite(const FwIgnitionDef& def);  // texels addressed
+    void transferBurn(FwBurnableMeshId from, FwBurnableMeshId to);
 
     FwVolumetricFireId createVolumetricFire(const FwVolumetricFireDef& def);
     void destroyVolumetricFire(FwVolumetricFireId id);
@@ -611,6 +624,11 @@ class World {
         bool emittersDue = false;
     };
 
+    // shift.cpp
+    void shiftBy(const double (&by)[3]) noexcept;
+    void noteShift(const double by[3]) noexcept;
+    // As a frame's readback says, to where it is now.
+    void movePlace(float (&place)[3], uint64_t frame) const noexcept;
     // step.cpp
     void planSteps(const ClockAdvance& time);
     void planProbes();
@@ -776,6 +794,10 @@ class World {
                                             components::vec3 point) const noexcept;
     void raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
                const float position[3], float value, FwBurnableMeshId other = {}) noexcept;
+    // carry.cpp
+    void waitForCarries() noexcept;
+    [[nodiscard]] bool gives(uint32_t slot) const noexcept;  // its burn is about to be carried
+    void settleCarries() noexcept;                           // after a load
     // arrivals.cpp
     [[nodiscard]] uint64_t changesOf(const Object& object) const noexcept {
         return object.changes + driveChanges_;
@@ -887,6 +909,14 @@ class World {
     const core::Log& log_;
     FwWorldDef def_;
     float wind_[3] = {};        // m/s, world
+    double origin_[3] = {};     // m that all places moved since the world's beginning
+    struct Shift {
+        uint64_t frame = 0;  // the last one before it
+        double by[3] = {};   // m
+    };
+    std::array<Shift, 8> shifts_{};  // of which readbacks are still on their way, oldest first
+    uint32_t shiftCount_ = 0;
+    uint64_t carriesUntil_ = 0;  // tick: until then burns are carried
     FrameCost budget_, spent_;  // gpu: as of the last readback
     Governor governor_;
     bool budgetMeasured_ = false;  // the host tells spent_.gpu

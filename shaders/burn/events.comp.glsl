@@ -104,12 +104,64 @@ void applyRun(uint first) {
     texelChanged(object, texel, p, isSource(now));
 }
 
+// What its fuel lost elsewhere counts as its own loss, of which its room has had its share.
+void bookCarried(uint object, uint had, uint has, uint energy) {
+    uint high, low;
+    umulExtended(had > has ? had - has : has - had, energy, high, low);
+    if (had < has) {  // it has more fuel than it had
+        high = ~high + (low == 0u ? 1u : 0u);
+        low = ~low + 1u;
+    }
+    if ((low | high) == 0u) return;
+    uint before = atomicAdd(objectCounters[object].energyLow, low);
+    atomicAdd(objectCounters[object].energyHigh, high + (before + low < low ? 1u : 0u));
+    before = atomicAdd(objectCounters[object].drawnLow, low);
+    atomicAdd(objectCounters[object].drawnHigh, high + (before + low < low ? 1u : 0u));
+}
+
+void carryTexel(uint i) {
+    uint object = events[i].object, texel = events[i].texel;
+    uint from = (events[i].kind >> kEventKindBits) - 1u;
+    uint at = objects[object].stateBase + texel;
+    uint before = state[at], now = state[objects[from].stateBase + events[i].tick];
+    if (asksOnly() || !carries(now, before)) return;
+    TexelPlace p = placeOfTexel(object, texel);
+    if ((objects[object].flags & kObjectHeat) != 0u) {
+        uint heatAt = objects[object].heatBase + texel;
+        uint kind = texels[objects[object].texelBase + texel].y >> 16u;
+        HeatMaterial m = heatMaterial(object * kMaterialsPerObject + (kind & 7u));
+        uvec2 had = heat[heatAt];
+        HeatTexel x = heatCarried(unpackHeat(heat[objects[from].heatBase + events[i].tick]), m);
+        now = wetState(now, heatClosed(x, m));
+        uvec2 has = packHeat(x);
+        if (has == had && now == before) return;
+        bookCarried(object, unpackHeat(had).fuel, x.fuel, m.energy);
+        heat[heatAt] = has;
+        hotTouch(push.hotParity, p.worldTile);
+    }
+    if (now == before) return;
+    state[at] = now;
+    if (isSource(now) != isSource(before))
+        atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
+    if (isSource(now)) {
+        nowBurns(object, p.worldTile, push.now + kStepTicks);
+        atomicMax(objectCounters[object].litBy, objectCounters[from].litBy);
+        atomicMax(objectCounters[object].litTick, objectCounters[from].litTick);
+        atomicMax(objectCounters[object].stopTick, objectCounters[from].stopTick);
+    }
+    texelChanged(object, texel, p, isSource(now));
+}
+
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.count) return;
     uint object = events[i].object;
     uint texel = events[i].texel;
     if (eventKind(events[i].kind) == kEventGate) return;
+    if (eventKind(events[i].kind) == kEventCarry) {
+        carryTexel(i);
+        return;
+    }
     if (eventKind(events[i].kind) == kEventPlays) {
         // Never both in a step.
         if (events[i].tick == kNever) atomicMax(objectCounters[object].playsUntil, kNever);

@@ -35,7 +35,7 @@ void reduceTile(uint worldTile, uint parity) {
     uint age = 0u, anchor = 0u;
     uvec3 position = uvec3(0u);
     ivec3 normal = ivec3(0);
-    float power = 0.0;
+    float power = 0.0, whole = 0.0;
     bool shows = (push.switches & kSwitchShows) != 0u;
     bool heats = (objects[object].flags & kObjectHeat) != 0u;
     uint heatBase = objects[object].heatBase;
@@ -52,7 +52,7 @@ void reduceTile(uint worldTile, uint parity) {
             burns = t <= push.now && phase != kPhaseBurnt;
             // Thick fuel's power is what it lost, once a heat step has met it; thin fuel's looks
             // want its mean.
-            nominal = shows || phase != kPhaseBurning ||
+            nominal = phase != kPhaseBurning ||
                       materials[material].burnTicks == materials[material].flameTicks;
         }
         if (!burns) continue;
@@ -62,6 +62,7 @@ void reduceTile(uint worldTile, uint parity) {
         position += uvec3(packedTexel.x & 0xFFFFu, packedTexel.x >> 16u, packedTexel.y & 0xFFFFu);
         normal += decodeNormal(normals[texelBase + texel]);
         power += nominal ? materials[material].powerPerArea : 0.0;
+        whole += materials[material].powerPerArea;
     }
     if (count == 0u) {
         if (!shows) atomicAnd(tileState[worldTile].flag, ~kTileBurning);
@@ -105,9 +106,11 @@ void reduceTile(uint worldTile, uint parity) {
     BurnTile b;
     b.positionArea =
         vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
+    float fire = heats ? tileFire[worldTile] : 0.0;
+    power = shows && fire == 0.0 ? whole : power;  // before its first heat step
     power *= float(airStrength(objectCounters[object].air)) / float(kAirFull);
     b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0),
-                         power * area + (heats && !shows ? tileFire[worldTile] : 0.0));
+                         power * area + fire);
     b.object = object;
     b.tile = tile.local;
     b.texels = count;

@@ -34,6 +34,7 @@ ParticleEmitter emitterOf(uint i) {
     e.size = emitters[i].size;
     e.life = emitters[i].life;
     e.heat = emitters[i].heat;
+    e.stuck = emitters[i].stuck;
     e.first = emitters[i].first;
     e.ring = emitters[i].ring;
     e.head = emitters[i].head;
@@ -132,6 +133,7 @@ Flight flightOf(ParticleEmitter e, uint slot) {
     f.seed = particleSeed(e.seed, e.serial - 1u - births);
     f.traits = particleTraits(e, f.seed);
     f.p = particleUnpacked(keptAt(f.at, stops(e), grows(e)));
+    if (births >= e.fresh) f.p.placeAge.xyz += push.moved.xyz;
     float lived = livedOf(e, births);
     f.now = e.wind.w - lived;
     f.dt = lived / float(max(e.steps, 1u));

@@ -196,6 +196,9 @@ FW_SHARED_CONST uint kEventGate = 5u;
 // kNoneTexel): from now on (tick: kNever), or until a tick at most.
 FW_SHARED_CONST uint kEventPlay = 6u;
 FW_SHARED_CONST uint kEventPlays = 7u;
+// A texel takes over what has become of one of another object; tick: that texel. Its object's slot
+// plus 1 stands above kEventKindBits. No other event of the step is of either object.
+FW_SHARED_CONST uint kEventCarry = 8u;
 FW_SHARED_CONST uint kEventKindBits = 8u;
 FW_SHARED_CONST uint kGateShut = 0x100u;  // of a gate's kind: it must still stand, else be gone
 FW_SHARED_CONST uint kGateMore = 0x200u;  // of a gate's kind: the next must let it too

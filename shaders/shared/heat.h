@@ -356,6 +356,15 @@ FW_SHARED_FN bool gateLets(uint gateKind, uint holeTicks, FW_IN(HeatTexel) x, ui
     return gone == ((gateKind & kGateShut) == 0u);
 }
 
+// Takes over what has become of a texel of another object; the material is its own.
+FW_SHARED_FN HeatTexel heatCarried(FW_IN(HeatTexel) from, FW_IN(HeatMaterial) m) {
+    HeatTexel x = from;
+    x.film = leastOf(x.film, leastOf(m.filmMost, kFilmMost));
+    return x;
+}
+// Both can burn, or do not.
+FW_SHARED_FN bool carries(uint from, uint to) { return from != kInert && to != kInert; }
+
 // What one event makes of texel and state. Water does not put out by itself: heat steps do, when it
 // takes more than the fire gives. tick: as TexelEvent, W/m^2 of kEventHeat; now: start of the step.
 FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind,

@@ -35,6 +35,7 @@ FW_SHARED_CONST uint kMaxEmitters = 256u;
 FW_SHARED_CONST float kMostParticleStep = 0.0334f;  // s; longer frames take several
 FW_SHARED_CONST uint kMostParticleSteps = 32u;
 
+FW_SHARED_CONST float kEddyField = 4096.0f;  // m: of a world whose origin moves eddies go along, modulo this
 FW_SHARED_CONST uint kNoBurnRow = 0xFFFFFFFFu;
 FW_SHARED_CONST uint kTileTries = 32u;  // tiles that a birth looks at, at most, and
 FW_SHARED_CONST uint kTileChoice = 6u;  // of its mesh among them, from which it chooses by power
@@ -57,7 +58,7 @@ struct ParticleEmitter {  // one frame of one emitter
     vec4 turbulence; // m/s, 1/m, m/s that eddies travel along `direction`, rad wander of a stream
     vec4 size;       // m width at birth, m per m of path, m per s, length over width at birth
     vec4 life;       // s, its variance, smoke's life in fire's, share that leave smoke
-    vec4 heat;       // K at birth, K at the end, how thick smoke is, unused
+    vec4 heat;       // K at birth, K at the end, how thick smoke is, m along x that eddies moved
     uint first;      // particle
     uint ring;       // of them, at most
     uint head;       // of the next one that will be born, in the ring
@@ -76,7 +77,8 @@ struct ParticleEmitter {  // one frame of one emitter
     uint reserved0;
     vec4 waves0;     // rad, rad, share: how a stream swings and pulses, at the frame's start
     vec4 waves1;     // and at its end
-    vec4 stuck;       // share of births that are of fuel that sticks somewhere; its places
+    vec4 stuck;       // share of births that are of fuel that sticks somewhere; its places; m along y and z
+                      // that eddies moved
     vec4 shields[64]; // m, world, and radius; unit normal: what stops a jet
     vec4 patches[32]; // m, world, and the share of it and all before; unit normal: where fuel sticks
 };
@@ -103,8 +105,9 @@ struct ParticlePush {
     uint firstQuad;  // of them
     uint lights;     // that may be shown behind those, of what emits alone
     uint burnRow;    // counters row that says how many burning tiles there are; kNoBurnRow: none
+    vec4 moved;      // m that all places moved since the last time: those that fly go along
 };
-FW_SHARED_SIZE(ParticlePush, 16)
+FW_SHARED_SIZE(ParticlePush, 32)
 
 FW_SHARED_FN float particleUnit(float x) { return clamp(x, 0.0f, 1.0f); }
 FW_SHARED_FN uint particleBits(uint x) {
@@ -315,7 +318,8 @@ FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle
     vec3 next = settled + (v - settled) * keep;
     float amp = e.turbulence.x * smoothstep(0.08f, 0.7f, a) * (a > 1.0f ? 0.55f : 1.0f);
     vec3 d = vec3(e.direction.x, e.direction.y, e.direction.z);
-    vec3 c = particleEddies((at - d * (e.turbulence.z * now)) * e.turbulence.y);
+    vec3 field = at - vec3(e.heat.w, e.stuck.z, e.stuck.w);
+    vec3 c = particleEddies((field - d * (e.turbulence.z * now)) * e.turbulence.y);
     c -= n * (min(0.0f, dot(c, n)) * struck);
     next -= n * (min(0.0f, dot(next, n)) * struck);
     vec3 moved = ((v + next) * 0.5f + c * amp) * dt;

@@ -131,6 +131,9 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RequestArrival(NULL, object, NULL, NULL));
     REFUSES(fwWorld_FetchArrival(NULL, query, NULL));
     REFUSES(fwWorld_CancelQuery(NULL, query));
+    REFUSES(fwWorld_TransferBurn(NULL, object, object));
+    REFUSES(fwWorld_ShiftOrigin(NULL, NULL, NULL));
+    REFUSES(fwWorld_GetOrigin(NULL, NULL));
     REFUSES(fwWorld_CancelSave(NULL));
     REFUSES(fwWorld_CancelBurn(NULL, object));
     REFUSES(fwWorld_UntagPoint(NULL, object, 0));

@@ -739,7 +739,12 @@ class Fuzz {
                 check(fwWorld_SetWind(world_, values));
                 break;
             case 16:
-                check(fwWorld_TagPoint(world_, object, values, random_.next()));
+                if (random_.once(3)) {
+                    check(fwWorld_UntagPoint(world_, object, random_.below(4)));
+                    check(fwWorld_ShiftOrigin(world_, values, nullptr));
+                    check(fwWorld_TransferBurn(world_, object, objects_.any(random_)));
+                }
+                check(fwWorld_TagPoint(world_, object, values, random_.below(4)));
                 break;
             case 17: {
                 FwQueryId id{};
@@ -751,6 +756,11 @@ class Fuzz {
                 break;
             }
             case 18: {
+                if (random_.once(5)) {
+                    check(fwWorld_CancelQuery(world_, queries_.any(random_)));
+                    check(fwWorld_CancelBurn(world_, object));
+                    if (random_.once(9)) check(fwWorld_CancelSave(world_));
+                }
                 if (random_.once(2)) {
                     FwArrivalState arrival{};
                     arrival.structSize = sizeof arrival;

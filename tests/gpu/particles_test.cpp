@@ -83,10 +83,18 @@ class ParticlePass : public GpuTest {
             if (!one->step(seconds)) continue;
             for (uint32_t at = 0; at < one->record.ring; at += gpu::kParticleGroup)
                 rig_->of<gpu::uvec2>(FW_BIND_EMITTER_GROUPS)[groups_++] = {records, at};
-            rig_->of<gpu::ParticleEmitter>(FW_BIND_EMITTERS)[records++] = one->record;
+            gpu::ParticleEmitter& record =
+                rig_->of<gpu::ParticleEmitter>(FW_BIND_EMITTERS)[records++];
+            record = one->record;
+            record.from += gpu::vec4(moved_, 0);
+            record.place += gpu::vec4(moved_, 0);
+            record.heat.w = moved_.x, record.stuck.z = moved_.y, record.stuck.w = moved_.z;
         }
         dispatch(false);
+        moves_ = vec3(0.0f);
     }
+    // All places of the device's, from the next frame on; the library's stay.
+    void move(vec3 by) { moved_ += by, moves_ += by; }
     void dispatch(bool still) {
         std::fill_n(rig_->of<uint32_t>(FW_BIND_DRAW_ARGS).begin(), gpu::kFlameOrder, 0u);
         gpu::ParticlePush push{};
@@ -94,6 +102,7 @@ class ParticlePass : public GpuTest {
         push.firstQuad = room_.tiles;
         push.lights = room_.lights;
         push.burnRow = 0;
+        push.moved = gpu::vec4(moves_, 0);
         device_->run([&](VkCommandBuffer commands) {
             rig_->begin(commands);
             if (groups_ && !still) rig_->dispatch(commands, particles_, &push, groups_);
@@ -145,8 +154,10 @@ class ParticlePass : public GpuTest {
     FwView view_{};
 
     gpu::SortPush room_{};
+    vec3 moved_{0.0f};
 
  private:
+    vec3 moves_{0.0f};
     uint32_t particles_ = 0, quads_ = 0, sort_ = 0, groups_ = 0;
 };
 
@@ -208,6 +219,27 @@ TEST_P(ParticleWays, MoveThemAsTheLibrarySays) {
     const uint32_t shown = quads();
     dispatch(true);
     EXPECT_EQ(shown, quads());
+}
+
+// Where the world's origin moves none is lost, and each goes on as it would have.
+TEST_P(ParticleWays, GoAlongWhenAllPlacesMove) {
+    add(emitterDef(FW_EMITTER_JET | FW_EMITTER_GROUND, 500));
+    add(emitterDef(0, 80));
+    makeRig(512, GetParam());
+    for (int i = 0; i < 40; ++i) {
+        if (i == 20 || i == 33) move(vec3(512, 0, -1024));
+        frame(0.02f);
+    }
+    uint32_t alive = 0;
+    for (const auto& one : references_)
+        for (uint32_t i = 0; i < one->record.ring; ++i) {
+            if (!one->alive(i)) continue;
+            ++alive;
+            const gpu::Particle p = particle(one->emitter.first + i);
+            ASSERT_NEAR(one->particles[i].placeAge.w, p.placeAge.w, 1e-4f) << i;
+            ASSERT_LT(glm::length(one->place(i) + moved_ - vec3(p.placeAge)), 0.02f) << i;
+        }
+    EXPECT_LT(60u, alive);
 }
 
 // Of two meshes' tiles only its own; the strong ones as much more often as they have power.

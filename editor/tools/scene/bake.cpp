@@ -30,7 +30,7 @@ const char* eventName(uint32_t type) {
         case FW_EVENT_BURNT_OUT:
             return "has burnt out";
         case FW_EVENT_EXTINGUISHED:
-            return "is put out";
+            return "has gone out";
         case FW_EVENT_SPREAD_TO:
             return "is lit by another";
         case FW_EVENT_SPOT_FIRE:

@@ -269,6 +269,18 @@ FW_API FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]);
  * they say of objects counts for those created from now on. [world] */
 FW_API FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags);
 
+/* Moves all places of the world by `offset` m, each within +-2e6 and rounded to whole metres: a place p is p + offset from
+ * here on. For hosts that move their origin in large worlds. Everything goes along: objects, what burns and what they
+ * give each other, blockers, shields, rooms, wind, gusts, fires with their history, emitters with their particles,
+ * fields, colliders, lights, answers and events that wait; the fire burns on and looks as if nothing had moved.
+ * Callbacks of the host's (FwFireColliderDef::distance) are asked in the new places. Saves keep the origin, and loading or
+ * seeking goes back to theirs: see fwWorld_GetOrigin. In logs, timelines and networks. *applied (may be null) gets the
+ * whole metres. Exact for what burns, but for what jets and FW_FIRE_IGNITES strike, which is found in floats: to the tenth
+ * of a millimetre at 1000 m. FW_ERROR_INVALID_ARGUMENT, and nothing moved: something would be beyond +-1e6 m. [world] */
+FW_API FwResult FW_CALL fwWorld_ShiftOrigin(FwWorld*, const float offset[3], float applied[3]);
+/* m that fwWorld_ShiftOrigin has moved all places since the world was created, in all. [world] */
+FW_API FwResult FW_CALL fwWorld_GetOrigin(FwWorld*, double origin[3]);
+
 typedef struct FwBlockerDef { /* a box that radiation, plumes and embers do not pass: a wall, a door */
     uint32_t structSize, flags; /* 0 */
     float transform[16];        /* box to world, rigid and uniform scale; default identity */
@@ -680,6 +692,17 @@ static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
  * gets how many texels it addresses; zero is fine and not an error. [world] */
 FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint32_t* texels);
 
+/* The burn of `from` goes on on `to`, an object of another mesh of the same shape: a level of detail. With the next step each
+ * texel of `to` gets the state, fuel, temperature and water that the nearest texel of `from` has, in object space with both
+ * at rest, of those that face the same way (within 60 degrees) before others; none, where none is within 5 % of the
+ * diagonal of its box and two texels. So the share of the area that burnt stays what it is, to a texel along its edge. What
+ * cannot burn stays as it is. Events and FwObjectState of `to` go on from those of `from`; tags and queries stay with their
+ * object. `from` keeps its burn: hide it and put it out, or destroy it, from the next step on. Bit by bit the same on every
+ * backend, in logs, timelines and networks. Refused: unless both have heat or both FW_BURNABLE_LITE; with
+ * FW_BURNABLE_PUBLISHED; while either plays a baked burn or is part of another transfer; where less than half of `to` has
+ * such a texel (FW_ERROR_BAD_DATA). [world] */
+FW_API FwResult FW_CALL fwWorld_TransferBurn(FwWorld*, FwBurnableMeshId from, FwBurnableMeshId to);
+
 /* ---- volumetric fires: flames without fuel ----------------------------------------------------------------- */
 
 typedef enum FwFirePreset {
@@ -763,7 +786,8 @@ FW_API const char* FW_CALL fwFirePresetName(uint32_t preset); /* static, never n
 /* At most 256 at a time in a world, as at most 256 flames. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateVolumetricFire(FwWorld*, const FwVolumetricFireDef* def, FwVolumetricFireId* id);
 FW_API FwResult FW_CALL fwWorld_DestroyVolumetricFire(FwWorld*, FwVolumetricFireId id); /* [world] */
-/* Where its base is from the next frame on; it trails behind a motion. [world] */
+/* Where its base is from the next frame on; it trails behind a motion. Beyond 100 m/s it was put there: the whole flame
+ * stands there at once as it stood before. [world] */
 FW_API FwResult FW_CALL fwWorld_MoveVolumetricFire(FwWorld*, FwVolumetricFireId id, const float position[3]);
 /* kW; the flame follows within a second. [world] */
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFirePower(FwWorld*, FwVolumetricFireId id, float power);
@@ -1314,7 +1338,8 @@ FW_API FwResult FW_CALL fwWorld_CancelSave(FwWorld*);
  * them has, if they hear the same calls. The world holds what the saved one did, made in the same order, so that the
  * ids' index1 are the same: burnable meshes of the same meshes and materials (by a hash of them and of their defs),
  * blockers, wind zones, rooms, fires, emitters and fields. Its FwWorldDef has the same paceFactor, up, seed and limits of spread. All in it
- * goes to where and what it was, also what has never burnt; ids stay valid. Unpolled events are the save's, as of the frame
+ * goes to where and what it was, also what has never burnt; ids stay valid. The first frame shows flames and particles as if
+ * they had long burnt so. Unpolled events are the save's, as of the frame
  * before the next: a host that knew by the save's frame what it had polled hears each event once. Queries that
  * wait are asked anew. FW_ERROR_BAD_DATA, and nothing is changed: the bytes are damaged, cut, of another version, or of
  * another world; the message says of what, with both values. Time is that of the save; frame indices go on growing.

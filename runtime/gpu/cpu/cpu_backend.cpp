@@ -140,11 +140,62 @@ void CpuBackend::State::touchReaders(const CpuObject& object, uint32_t local,
         touch(base + ((switches & kSwitchWrongReaders) != 0 ? 0 : reader), kTileTouched);
 }
 
+// As events.comp has it.
+void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexcept {
+    CpuObject& object = *objects[event.object];
+    const CpuObject& from = *objects[(event.kind >> kEventKindBits) - 1];
+    uint32_t& state = object.state[event.texel];
+    const uint32_t before = state;
+    uint32_t after = from.state[event.tick];
+    if (asksOnly || !carries(after, before)) return;
+    const uint32_t x = event.texel % object.domain->width, y = event.texel / object.domain->width;
+    const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
+    const uint32_t worldTile = object.record.worldTileBase + local;
+    if (!object.heat.empty()) {
+        const HeatMaterial& m =
+            object.heatMaterials[object.domain->texels[event.texel].materialFlags & 7];
+        const HeatTexel has = heatCarried(unpackHeat(from.heat[event.tick]), m);
+        after = wetState(after, heatClosed(has, m));
+        const uvec2 had = object.heat[event.texel], packed = packHeat(has);
+        if (packed == had && after == before) return;
+        // What its fuel lost elsewhere counts as its own loss, of which its room has had its share.
+        const uint64_t lost =
+            uint64_t(int64_t(unpackHeat(had).fuel) - int64_t(has.fuel)) * m.energy;
+        ObjectCounters& c = object.counters;
+        const uint64_t energy = (uint64_t(c.energyHigh) << 32 | c.energyLow) + lost;
+        const uint64_t drawn = (uint64_t(c.drawnHigh) << 32 | c.drawnLow) + lost;
+        c.energyLow = uint32_t(energy);
+        c.energyHigh = uint32_t(energy >> 32);
+        c.drawnLow = uint32_t(drawn);
+        c.drawnHigh = uint32_t(drawn >> 32);
+        object.heat[event.texel] = packed;
+        hot(worldTile);
+    }
+    if (after == before) return;
+    state = after;
+    if (isSource(after) != isSource(before))
+        object.counters.ignited += isSource(after) ? 1u : ~0u;
+    if (isSource(after)) {
+        object.counters.lastIgnition = std::max(object.counters.lastIgnition, now + kStepTicks);
+        burning(worldTile);
+        object.counters.litBy = std::max(object.counters.litBy, from.counters.litBy);
+        object.counters.litTick = std::max(object.counters.litTick, from.counters.litTick);
+        object.counters.stopTick = std::max(object.counters.stopTick, from.counters.stopTick);
+    }
+    tiles[worldTile].lastChange = now;
+    touchReaders(object, local, 1ull << ((y & 7) * 8 + (x & 7)));
+}
+
 void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
     for (size_t i = 0; i < step.events.size();) {
         const TexelEvent& first = step.events[i];
         if (eventKind(first.kind) == kEventGate) break;  // the rest are
         CpuObject& object = *objects[first.object];
+        if (eventKind(first.kind) == kEventCarry) {
+            carryTexel(first, step.now);
+            ++i;
+            continue;
+        }
         if (eventKind(first.kind) == kEventPlays) {
             if (first.tick == kNever)
                 object.counters.playsUntil = kNever;

@@ -34,6 +34,7 @@ class CpuBackend final : public Backend {
     void setFieldRules(uint32_t slot, const FieldRules& rules) noexcept override;
     void setFieldMasks(uint32_t slot, std::span<const uint8_t> masks) override;
     [[nodiscard]] uint64_t fieldBytes(uint32_t slot) const noexcept override;
+    void moveWorld(const double (&by)[3]) noexcept override;
 
     void restore(std::span<const RestoredObject> objects, uint32_t tick) override;
     void run(const FramePlan& plan) override;

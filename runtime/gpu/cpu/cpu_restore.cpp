@@ -115,6 +115,12 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
     s.showsTick = tick;
 }
 
+void CpuBackend::moveWorld(const double (&by)[3]) noexcept {
+    for (BurnTile& tile : state_->burnTiles)
+        for (int i = 0; i < 3; ++i)
+            tile.positionArea[i] = float(double(tile.positionArea[i]) + by[i]);
+}
+
 // Lights from the first frame on; counts stay those of the save until the next reduction.
 void CpuBackend::State::showRestored() noexcept {
     if (!showsDue) return;

@@ -139,6 +139,7 @@ struct CpuBackend::State {
                                      const TileHeat& comes, uint32_t now, HeatTexel& x,
                                      uint32_t& units) const noexcept;
     void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
+    void carryTexel(const TexelEvent& event, uint32_t now) noexcept;
     void reduce(uint32_t now) noexcept;         // cpu_reduce.cpp
     [[nodiscard]] BurnTile burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
                                       float fire) const noexcept;

@@ -100,6 +100,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
                        UploadWriter& writer);
 
 // vk_restore.cpp
+void recordMovedTiles(VkBackend::State& s, FrameRecorder& recorder);
 void recordRestores(VkBackend::State& s, FrameRecorder& recorder);
 // Where the images of a frame will lie; throws.
 void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,

@@ -139,6 +139,7 @@ class VkBackend final : public Backend {
     void memoryRows(std::pmr::vector<MemoryRow>& out) const override;
     [[nodiscard]] uint64_t detailBytes() const noexcept override;
     [[nodiscard]] uint32_t quadsShown() const noexcept override;
+    void moveWorld(const double (&by)[3]) noexcept override;
 
     struct State;
 

@@ -270,9 +270,12 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     object.lastEvent = std::max<uint64_t>(object.lastEvent, now + kStepTicks);
     const uint32_t kind = eventKind(event.kind);
     const bool douses =
-        (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish) && !object.doused;
-    object.catches |= kind == kEventIgnite && !object.lit;
-    object.lit |= kind == kEventIgnite;
+        (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish ||
+         kind == kEventCarry) &&
+        !object.doused;
+    const bool lights = kind == kEventIgnite || kind == kEventCarry;
+    object.catches |= lights && !object.lit;
+    object.lit |= lights;
     if (object.touched && !douses) return;
     object.touched = true;
     object.doused = object.doused || douses;
@@ -459,6 +462,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     if (recordsDirty) recordObjects(*this, recorder, writer);
     if (roomsDirty) recordRooms(*this, recorder, writer);
     recordRestores(*this, recorder);
+    recordMovedTiles(*this, recorder);
     recordForgetting(*this, recorder);
     drawVertices = planes.buffer(kResourceVertices).handle;
     drawIndices = planes.buffer(kResourceIndices).handle;
@@ -584,7 +588,11 @@ void VkBackend::State::closeFrame(const FwView* view) {
             push.firstQuad = room.tiles;
             push.lights = room.lights;
             push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
-            if (emittersMove && emitterGroups > 0) recordParticles(looks, push, emitterGroups);
+            push.moved = vec4(particlesMove, 0.0f);
+            if (emittersMove && emitterGroups > 0) {
+                recordParticles(looks, push, emitterGroups);
+                particlesMove = vec3(0.0f);
+            }
             if (view && burnEmpty) recordNoQuads(looks);
             if (view && emitterGroups > 0) recordParticleQuads(looks, push, emitterGroups);
             if (view && sparkSources > 0)

@@ -102,6 +102,43 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
     s.frontEmpty = s.burnEmpty = s.predictEmpty = s.hotEmpty = false;
 }
 
+void VkBackend::moveWorld(const double (&by)[3]) noexcept {
+    State& s = *state_;
+    const vec3 metres{float(by[0]), float(by[1]), float(by[2])};
+    const vec3 up{s.limits.up[0], s.limits.up[1], s.limits.up[2]};
+    s.particlesMove += metres;
+    s.tilesMoved = true;
+    for (uint32_t i = 0; i < s.objects.size(); ++i) {
+        ObjectEntry& object = s.objects[i];
+        if (!object.live || (object.deform.flags & kDeformShell) == 0) continue;
+        object.deform.ground += glm::dot(metres, up);
+        object.deformDirty = true;
+        s.changed(i);
+    }
+}
+
+namespace {
+
+// BurnTiles of the burn list as it is: see kSwitchShows.
+void recordShown(VkBackend::State& s, FrameRecorder& recorder) {
+    const uint32_t row = kRowBurn + s.lists.burnParity;
+    recorder.fillZero(FW_BIND_COUNTERS,
+                      row * sizeof(IterationCounters) + offsetof(IterationCounters, runX),
+                      4 * sizeof(uint32_t));
+    StepPush push{};
+    push.burnParity = s.lists.burnParity;
+    push.now = s.shownTick;
+    push.switches = kSwitchShows;
+    recorder.dispatchList(kReducePass, &push, row);
+    s.tilesMoved = false;
+}
+
+}  // namespace
+
+void recordMovedTiles(VkBackend::State& s, FrameRecorder& recorder) {
+    if (s.tilesMoved && !s.burnEmpty) recordShown(s, recorder);
+}
+
 void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
     if (!s.restoreDue) return;
     s.restoreDue = false;
@@ -132,9 +169,7 @@ void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
         recorder.dispatch(kRestorePass, &push, std::max((object.record.tileCount + 63) / 64, 1u));
     }
     s.restoredObjects.clear();
-    push.now = s.shownTick;
-    push.switches = kSwitchShows;
-    recorder.dispatchList(kReducePass, &push, kRowBurn + s.lists.burnParity);
+    recordShown(s, recorder);
 }
 
 void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,

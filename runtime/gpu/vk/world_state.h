@@ -361,6 +361,8 @@ struct VkBackend::State {
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t quadsShown = 0;              // by the last view whose readback came
+    vec3 particlesMove{0.0f};             // m, with the next dispatch that moves particles
+    bool tilesMoved = false;              // BurnTiles stand where they were before all places moved
     uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
     bool particlesByBook = false;         // books show all fire and smoke of them
     uint32_t sparkSources = 0;            // that throw sparks

@@ -1,0 +1,114 @@
+// A burn that goes on on another object: what each of its texels gets is found here, once; the step
+// that begins next copies it, on whatever backend.
+#include "mesh/carry.h"
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+namespace {
+
+constexpr float kReachOfBox = 0.05f, kReachOfTexel = 2;  // of its diagonal, and of a texel's side
+
+bool isCarry(const PendingTexel& event) noexcept {
+    return gpu::eventKind(event.kind) == gpu::kEventCarry;
+}
+uint32_t carriedFrom(const PendingTexel& event) noexcept {
+    return (event.kind >> gpu::kEventKindBits) - 1;
+}
+uint32_t endOfStep(uint32_t tick) noexcept {
+    return (tick / gpu::kStepTicks + 1) * gpu::kStepTicks;
+}
+
+}  // namespace
+
+void World::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
+    mayChange();
+    Object &from = *objects_.get(fromId), &to = *objects_.get(toId);
+    if (&from == &to)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "Burnable mesh %u gives its burn to itself.",
+                   fromId.index1);
+    if ((from.data.flags | to.data.flags) & FW_BURNABLE_PUBLISHED)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Burnable mesh %u or %u has FW_BURNABLE_PUBLISHED; such burns are not carried.",
+                   fromId.index1, toId.index1);
+    if (components::hasHeat(from.data) != components::hasHeat(to.data))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Burnable mesh %u %s FW_BURNABLE_LITE and %u %s; both have it or neither.",
+                   fromId.index1, components::hasHeat(from.data) ? "lacks" : "has", toId.index1,
+                   components::hasHeat(to.data) ? "lacks" : "has");
+    for (const Object* one : {&from, &to}) {
+        if (one->play.burn1 != 0)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "Burnable mesh %u plays a baked burn; fwWorld_StopBurn makes it live.",
+                       one->id.index1);
+        if (one->carryEnd > clock_.tick)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "Burnable mesh %u is part of another transfer until the next step.",
+                       one->id.index1);
+    }
+    const mesh::BurnDomain &source = domainOf(from), &target = domainOf(to);
+    float diagonal = 0;
+    for (int i = 0; i < 3; ++i) {
+        const float side = target.boundsHigh[i] - target.boundsLow[i];
+        diagonal += side * side;
+    }
+    const float reach = kReachOfBox * std::sqrt(diagonal) +
+                        kReachOfTexel * std::max(source.texelSide, target.texelSide);
+    std::pmr::vector<uint32_t> match(memory_);
+    const uint32_t matched = mesh::matchTexels(source, target, reach, match);
+    if (matched * 2 < target.report.realTexels)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "%u of %u texels of burnable mesh %u have one of %u within %g m; at least half "
+                   "of them must. The meshes are of one shape.",
+                   matched, target.report.realTexels, toId.index1, fromId.index1, double(reach));
+    findPendingRoom(matched);
+    const auto now = uint32_t(clock_.tick);
+    const uint32_t kind = gpu::kEventCarry | (from.slot + 1) << gpu::kEventKindBits;
+    for (uint32_t i = 0; i < match.size(); ++i)
+        if (match[i] != mesh::kNone)
+            pending_.push_back({to.slot, i, kind, now, match[i], order_++});
+    to.firstEvent = std::min(to.firstEvent, now);
+    from.carryEnd = to.carryEnd = endOfStep(now);
+    carriesUntil_ = std::max<uint64_t>(carriesUntil_, to.carryEnd);
+    to.carried = true;
+    // Its fire is the other's.
+    Story& story = to.story;
+    const Story before = story;
+    story = from.story;
+    story.mostIgnited = before.mostIgnited;
+    story.clampsTold = before.clampsTold;
+    story.spotsTold = before.spotsTold;
+    story.energy = before.energy;
+    story.heatSteps = before.heatSteps;
+    story.flames = story.wentOut = 0;
+    note({Deed::Kind::transferBurn, to.slot, 0, from.slot + 1, {}});
+}
+
+// Within a step no other event may be of a texel that is copied.
+void World::waitForCarries() noexcept {
+    if (clock_.tick >= carriesUntil_) return;
+    for (PendingTexel& event : pending_)
+        if (const auto* object = objects_.at(event.object);
+            object && (*object)->carryEnd > event.tick && !isCarry(event))
+            event.tick = (*object)->carryEnd;
+}
+
+bool World::gives(uint32_t slot) const noexcept {
+    return clock_.tick < carriesUntil_ &&
+           std::any_of(pending_.begin(), pending_.end(), [&](const PendingTexel& event) {
+        return isCarry(event) && carriedFrom(event) == slot;
+    });
+}
+
+void World::settleCarries() noexcept {
+    for (const PendingTexel& event : pending_)
+        if (isCarry(event))
+            for (const uint32_t slot : {event.object, carriedFrom(event)}) {
+                (*objects_.at(slot))->carryEnd = endOfStep(event.tick);
+                carriesUntil_ = std::max<uint64_t>(carriesUntil_, endOfStep(event.tick));
+            }
+}
+
+}  // namespace fw::world

@@ -1,0 +1,198 @@
+// fwWorld_TransferBurn: a burn goes on on another mesh of the same shape.
+#include "abi/busy_world.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace host;
+using ::testing::HasSubstr;
+
+// A fine and a coarse board of the same shape, the coarse one from other triangles.
+struct Boards {
+    explicit Boards(uint32_t backend, uint32_t preset = FW_MATERIAL_PAPER, uint32_t flags = 0)
+        : fine(0.6f, 0.4f, 6), coarse(0.6f, 0.4f, 1) {
+        FwContextDef contextDef = fwDefaultContextDef();
+        contextDef.backend = backend;
+        contextDef.callbacks = host.callbacks();
+        FwErrorInfo error{};
+        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        FwWorldDef def = fwDefaultWorldDef();
+        def.paceFactor = preset == FW_MATERIAL_PAPER ? 1.0f : 10.0f;
+        ok(fwCreateWorld(context, &def, &world));
+        FwMaterialDef material = fwDefaultMaterialDef();
+        ok(fwInitMaterialPreset(&material, preset));
+        FwMaterialId materialId{};
+        ok(fwWorld_CreateMaterial(world, &material, &materialId));
+        for (const bool isFine : {true, false}) {
+            FwMeshDef meshDef = (isFine ? fine : coarse).def(isFine ? 96.0f : 40.0f);
+            FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
+            ok(fwWorld_CreateMesh(world, &meshDef, &made.mesh));
+            made.materials[0] = materialId;
+            made.flags = flags;
+            ok(fwWorld_CreateBurnableMesh(world, &made, isFine ? &from : &to));
+        }
+    }
+    Boards(const Boards&) = delete;
+    Boards& operator=(const Boards&) = delete;
+    ~Boards() {
+        fwDestroyContext(context);
+        EXPECT_EQ(0, host.blocks);
+    }
+    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
+    void ball(uint32_t kind, FwBurnableMeshId id, float x, float z, float radius) {
+        FwIgnitionDef def = fwDefaultIgnitionDef();
+        def.kind = kind;
+        def.object = id;
+        def.position[0] = x;
+        def.position[2] = z;
+        def.radius = radius;
+        ok(fwWorld_Ignite(world, &def, nullptr));
+    }
+    void run(float seconds) {
+        for (float t = 0; t < seconds - 1e-6f; t += 1.0f / 32) ok(fwWorld_Step(world, 1.0f / 32));
+    }
+    FwObjectState state(FwBurnableMeshId id) {
+        FwObjectState made{};
+        made.structSize = sizeof made;
+        ok(fwWorld_GetObjectState(world, id, &made));
+        return made;
+    }
+    FwPointState point(FwBurnableMeshId id, float x, float z) {
+        const float place[3] = {x, 0, z};
+        FwQueryId query{};
+        ok(fwWorld_RequestPoint(world, id, place, &query));
+        FwPointState made{};
+        made.structSize = sizeof made;
+        come(world, [&] { return fwWorld_FetchPoint(world, query, &made); });
+        return made;
+    }
+    FwEnergyBook book() {
+        FwEnergyBook made{};
+        made.structSize = sizeof made;
+        ok(fwWorld_GetEnergyBook(world, &made));
+        return made;
+    }
+    uint64_t hash(FwBurnableMeshId id) {
+        ok(fwDebug_RequestBurnMap(world, id));
+        uint64_t made = 0, tick = 0;
+        come(world,
+             [&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &made, &tick); });
+        return made + tick;
+    }
+
+    Host host;
+    Sheet fine, coarse;
+    FwContext* context = nullptr;
+    FwWorld* world = nullptr;
+    FwBurnableMeshId from{}, to{};
+};
+
+// The share that burnt, what burns, what is left of the fuel and what is wet are as they were; and
+// the fire goes on from there.
+void goesOn(uint32_t preset, uint32_t flags, float before) {
+    Boards w(FW_BACKEND_CPU, preset, flags);
+    w.ball(FW_IGNITE, w.from, 0.15f, 0.2f, 0.05f);
+    w.ball(FW_WET, w.from, 0.5f, 0.2f, 0.06f);
+    w.run(before);
+    const FwObjectState was = w.state(w.from);
+    ASSERT_GT(was.burntFraction, 0.05f);
+    ASSERT_LT(was.burntFraction, 0.9f);
+    const FwEnergyBook all = w.book();
+    FwEvent events[64];
+    (void)fwWorld_PollEvents(w.world, events, 64);
+    w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
+    w.run(1.0f / 32);
+    w.ok(fwWorld_DestroyBurnableMesh(w.world, w.from));
+    w.run(0.25f);
+    const FwObjectState now = w.state(w.to);
+    EXPECT_NEAR(was.burntFraction, now.burntFraction, 0.03f);
+    EXPECT_NEAR(was.burningArea, now.burningArea, 0.1f * was.burningArea + 0.002f);
+    EXPECT_EQ(uint32_t(FW_POINT_WET), w.point(w.to, 0.5f, 0.2f).kind);
+    EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(w.to, 0.59f, 0.01f).kind);
+    EXPECT_NE(uint32_t(FW_POINT_UNBURNT), w.point(w.to, 0.15f, 0.2f).kind);
+    if (!(flags & FW_BURNABLE_LITE)) {
+        const FwEnergyBook left = w.book();
+        const double share = double(all.radiated + all.convected) / (0.5 * double(all.fuel));
+        EXPECT_NEAR(share, double(left.radiated + left.convected) / double(left.fuel), 0.02);
+        EXPECT_EQ(left.fuel, left.unburnt + left.radiated + left.convected);
+        EXPECT_LT(now.power, 2 * was.power + 1) << "what it was given is no power of its own";
+    }
+    w.run(2);
+    EXPECT_GT(w.state(w.to).ignited, now.ignited) << "the front moves on";
+    const uint32_t count = fwWorld_PollEvents(w.world, events, 64);
+    for (uint32_t i = 0; i < count; ++i) EXPECT_NE(uint32_t(FW_EVENT_IGNITED), events[i].type);
+}
+TEST(TransferBurn, PaperGoesOnOnTheOtherMesh) { goesOn(FW_MATERIAL_PAPER, 0, 8); }
+TEST(TransferBurn, WoodGoesOnOnTheOtherMesh) { goesOn(FW_MATERIAL_PINE, 0, 20); }
+TEST(TransferBurn, LiteGoesOnOnTheOtherMesh) { goesOn(FW_MATERIAL_PAPER, FW_BURNABLE_LITE, 8); }
+
+// Bit by bit the same on every backend, in saves taken before its step, and in logs.
+TEST(TransferBurn, BothBackendsAgree) {
+    uint64_t hashes[2] = {};
+    for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
+        Boards w(backend);
+        if (!w.world) GTEST_SKIP() << "there is no such backend here";
+        w.ball(FW_IGNITE, w.from, 0.15f, 0.2f, 0.05f);
+        w.ball(FW_WET, w.from, 0.5f, 0.2f, 0.06f);
+        w.run(6);
+        w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
+        w.ball(FW_IGNITE, w.to, 0.55f, 0.05f, 0.03f);  // waits until the burn is there
+        w.run(3);
+        hashes[backend == FW_BACKEND_VULKAN] = w.hash(w.to) * 31 + w.hash(w.from);
+    }
+    EXPECT_EQ(hashes[1], hashes[0]);
+}
+
+TEST(TransferBurn, IsInSavesAndLogs) {
+    Boards w(FW_BACKEND_CPU), loaded(FW_BACKEND_CPU), played(FW_BACKEND_CPU);
+    w.ball(FW_IGNITE, w.from, 0.15f, 0.2f, 0.05f);
+    w.run(5);
+    const Bytes start = saveOf(w.world);
+    w.ok(fwWorld_StartLog(w.world));
+    w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
+    const Bytes between = saveOf(w.world);  // by frames of no time: the step is still to come
+    w.run(2);
+    const uint64_t end = w.hash(w.to);
+    uint64_t size = 0;
+    w.ok(fwWorld_FetchLog(w.world, nullptr, &size));
+    Bytes log(size);
+    w.ok(fwWorld_FetchLog(w.world, log.data(), &size));
+    loaded.ok(fwWorld_Load(loaded.world, between.data(), between.size()));
+    loaded.run(2);
+    EXPECT_EQ(end, loaded.hash(loaded.to));
+    FwWorldStats stats{};
+    stats.structSize = sizeof stats;
+    w.ok(fwWorld_GetStats(w.world, &stats));
+    played.ok(fwWorld_Load(played.world, start.data(), start.size()));
+    played.ok(fwWorld_OpenLog(played.world, log.data(), log.size()));
+    float seconds = 0;
+    while (fwWorld_PlayLog(played.world, stats.tick, &seconds) == FW_OK && seconds > 0)
+        played.ok(fwWorld_Step(played.world, seconds));
+    EXPECT_EQ(end, played.hash(played.to));
+}
+
+TEST(TransferBurn, NamesWhatCannotBe) {
+    Boards w(FW_BACKEND_CPU);
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_TransferBurn(w.world, w.from, w.from));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_TransferBurn(w.world, w.from, FwBurnableMeshId{}));
+    w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_TransferBurn(w.world, w.to, w.from));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("part of another transfer"));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_DestroyBurnableMesh(w.world, w.from));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("with the next step"));
+    w.run(1.0f / 32);
+    w.ok(fwWorld_DestroyBurnableMesh(w.world, w.from));
+    const Sheet other(3, 3);
+    const FwMeshDef meshDef = other.def(16);
+    FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
+    w.ok(fwWorld_CreateMesh(w.world, &meshDef, &made.mesh));
+    FwBurnableMeshId large{};
+    w.ok(fwWorld_CreateBurnableMesh(w.world, &made, &large));
+    EXPECT_EQ(FW_ERROR_BAD_DATA, fwWorld_TransferBurn(w.world, w.to, large));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("at least half of them must"));
+}
+
+}  // namespace
