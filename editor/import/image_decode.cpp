@@ -59,6 +59,9 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
         // Colours as the file has them: by default they come multiplied by the alpha.
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);
+        // A configured reader asks its configuration alone where its bytes come from.
+        OIIO::Filesystem::IOProxy* proxy = &memory;
+        config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
         auto input = OIIO::ImageInput::open(name, &config, &memory);
         if (!input) {
             error = "it cannot be decoded: " + OIIO::geterror();
