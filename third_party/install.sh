@@ -10,14 +10,15 @@ packages=(
     libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
     libglm-dev
     libglfw3-dev
-    libtinygltf-dev nlohmann-json3-dev
+    nlohmann-json3-dev
     libimgui-dev libstb-dev libfreetype-dev
     fonts-inter fonts-material-design-icons-iconfont fonts-dejavu-core
     libopenimageio-dev libimath-dev zlib1g-dev
+    libdraco-dev libmeshoptimizer-dev
     assimp-testmodels
 )
 test_packages=(
-    libgtest-dev libgmock-dev libbenchmark-dev
+    libgtest-dev libgmock-dev libbenchmark-dev libtinygltf-dev
     spirv-tools
     xvfb xdotool imagemagick
     debootstrap

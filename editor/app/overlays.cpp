@@ -454,8 +454,8 @@ void showAbout(App& app) {
     const float used = drawTextWrapped(
         list, fonts().body, low + dp(24, 88), size.x - dp(48), colors::text,
         "Fire for games: what is made here burns the same in the game, by the same library.\n"
-        "Made with Dear ImGui (MIT), GLFW (Zlib), FreeType (FTL), GLM (MIT), tinygltf (MIT), "
-        "OpenImageIO (BSD-3).");
+        "Made with Dear ImGui (MIT), GLFW (Zlib), FreeType (FTL), GLM (MIT), JSON for "
+        "Modern C++ (MIT), OpenImageIO (BSD-3), Draco (Apache 2.0), meshoptimizer (MIT).");
     drawTextWrapped(list, fonts().small, low + ImVec2(dp(24), dp(100) + used), size.x - dp(48),
                     colors::dim,
                     "Letters: Inter, SIL Open Font License 1.1 "

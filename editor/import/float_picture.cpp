@@ -95,6 +95,7 @@ bool writePicture(const std::filesystem::path& path, const FloatPicture& picture
                              picture.whole ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::FLOAT);
         if (picture.names.size() == picture.channels)
             spec.channelnames.assign(picture.names.begin(), picture.names.end());
+        spec["oiio:UnassociatedAlpha"] = 1;  // as readPicture takes them: straight alpha
         const bool good = output->open(fresh.string(), spec) &&
                           output->write_image(OIIO::TypeDesc::FLOAT, picture.values.data());
         const std::string why = good ? std::string() : reasonOf(output->geterror());

@@ -5,43 +5,47 @@
 #include <cstring>
 
 #include "import/gltf_import.h"
+#include "import/gltf_uri.h"
 
 namespace fwimport {
 namespace {
+
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+              kUnsignedInt = 5125, kFloat = 5126;
 
 uint32_t little32(const uint8_t* at) {
     return uint32_t{at[0]} | uint32_t{at[1]} << 8 | uint32_t{at[2]} << 16 | uint32_t{at[3]} << 24;
 }
 
-uint64_t componentSize(int type) {
+uint64_t componentSize(int64_t type) {
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        case kByte:
+        case kUnsignedByte:
             return 1;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case kShort:
+        case kUnsignedShort:
             return 2;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        case kUnsignedInt:
+        case kFloat:
             return 4;
         default:
             return 0;
     }
 }
 
-uint64_t componentCount(int type) {
-    switch (type) {
-        case TINYGLTF_TYPE_SCALAR:
-            return 1;
-        case TINYGLTF_TYPE_VEC2:
-            return 2;
-        case TINYGLTF_TYPE_VEC3:
-            return 3;
-        case TINYGLTF_TYPE_VEC4:
-            return 4;
-        default:
-            return 0;
-    }
+uint64_t componentCount(const std::string& type) {
+    if (type == "SCALAR") return 1;
+    if (type == "VEC2") return 2;
+    if (type == "VEC3") return 3;
+    if (type == "VEC4") return 4;
+    return type == "MAT4" ? 16 : 0;
+}
+
+// [0, most]
+uint64_t sizeOf(const Field& field, const char* name, int64_t otherwise) {
+    const int64_t value = field.integer(name, otherwise);
+    if (value < 0) refuse(field.path(), ".", name, " is ", value, "; 0 is the least");
+    return static_cast<uint64_t>(value);
 }
 
 // `count` elements of `element` bytes from `offset`, proved to lie within the view.
@@ -59,26 +63,26 @@ Bytes rangeBytes(const Bytes& view, uint64_t offset, uint64_t count, uint64_t el
     return {view.data + offset, needed, stride};
 }
 
-double readComponent(const uint8_t* at, int type, bool normalized) {
+double readComponent(const uint8_t* at, int64_t type, bool normalized) {
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: {
+        case kByte: {
             int8_t v;
             std::memcpy(&v, at, 1);
             return normalized ? std::max(v / 127.0, -1.0) : v;
         }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        case kUnsignedByte:
             return normalized ? *at / 255.0 : *at;
-        case TINYGLTF_COMPONENT_TYPE_SHORT: {
+        case kShort: {
             int16_t v;
             std::memcpy(&v, at, 2);
             return normalized ? std::max(v / 32767.0, -1.0) : v;
         }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
+        case kUnsignedShort: {
             uint16_t v;
             std::memcpy(&v, at, 2);
             return normalized ? v / 65535.0 : v;
         }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: {
+        case kUnsignedInt: {
             uint32_t v;
             std::memcpy(&v, at, 4);
             return v;
@@ -93,26 +97,66 @@ double readComponent(const uint8_t* at, int type, bool normalized) {
 
 }  // namespace
 
-void checkNesting(std::span<const uint8_t> json) {
-    constexpr int kDeepest = 64;
-    int depth = 0;
-    bool quoted = false;
-    for (size_t i = 0; i < json.size(); ++i) {
-        const uint8_t c = json[i];
-        if (quoted) {
-            if (c == '\\') ++i;
-            if (c == '"') quoted = false;
-        } else if (c == '"') {
-            quoted = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > kDeepest) refuse("the JSON nests deeper than ", kDeepest, " levels");
-        } else if (c == ']' || c == '}') {
-            --depth;
-        }
-    }
+void Notes::add(const std::string& line) {
+    constexpr size_t kMost = 200;
+    if (std::find(lines_.begin(), lines_.end(), line) != lines_.end()) return;
+    if (lines_.size() < kMost)
+        lines_.push_back(line);
+    else
+        ++unlisted_;
 }
 
-std::span<const uint8_t> checkGlb(std::span<const uint8_t> bytes) {
+void Notes::leaveOut(const std::string& what, const std::string& where, const std::string& how) {
+    auto group = std::find_if(groups_.begin(), groups_.end(), [&](const Group& one) {
+        return one.what == what && one.how == how;
+    });
+    constexpr size_t kMost = 400;
+    if (group == groups_.end() && groups_.size() >= kMost) {
+        ++unlisted_;
+        return;
+    }
+    if (group == groups_.end())
+        group = groups_.insert(group, Group{what, how, where, where, 0});
+    else if (group->last == where)
+        return;
+    group->last = where;
+    ++group->count;
+}
+
+void Notes::finish() {
+    for (const Group& group : groups_) {
+        std::string where = group.first;
+        if (group.count > 1) where += text(" and ", group.count - 1, " more");
+        add(text(group.what, " ", group.how, where.empty() ? "" : " (" + where + ")"));
+    }
+    groups_.clear();
+    if (unlisted_) lines_.push_back(text("and ", unlisted_, " more notes"));
+    unlisted_ = 0;
+}
+
+GltfFile::GltfFile(std::span<const uint8_t> bytes, std::filesystem::path folder, Notes& notes)
+    : folder_(std::move(folder)), notes_(notes) {
+    if (bytes.empty()) refuse("it is empty");
+    std::span<const uint8_t> words = bytes;
+    if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
+        readContainer(bytes);
+        words = bytes.subspan(20, little32(&bytes[12]));
+    }
+    bool repaired = false;
+    json_ = parseJson(words, repaired);
+    if (!json_.is_object()) refuse("it is not glTF: its JSON is no object");
+    if (repaired) notes_.add("the JSON is not all UTF-8: bytes of names are read as ?");
+    const Field asset = root().object("asset");
+    const std::string version = asset.string("version");
+    if (version.rfind("2.", 0) != 0)
+        refuse("asset.version is \"", version.substr(0, 40),
+               "\"; 2.x is read (Blender, for one, reads glTF 1.0 and writes 2.0)");
+    const std::string least = asset.string("minVersion", "2.0");
+    if (least != "2.0") refuse("asset.minVersion is \"", least.substr(0, 40), "\"; 2.0 is read");
+}
+
+// Header and chunks. Chunks of other kinds than JSON and BIN are skipped, as the standard asks.
+void GltfFile::readContainer(std::span<const uint8_t> bytes) {
     if (bytes.size() < 20) {
         refuse("the GLB is ", bytes.size(), " bytes; its header and first chunk need 20");
     }
@@ -127,91 +171,164 @@ std::span<const uint8_t> checkGlb(std::span<const uint8_t> bytes) {
     if (20 + jsonSize > length) {
         refuse("the GLB's JSON chunk is ", jsonSize, " bytes; ", length - 20, " are left");
     }
-    const uint64_t next = 20 + (jsonSize + 3) / 4 * 4;
-    if (next + 8 <= length) {
-        const uint64_t binarySize = little32(&bytes[next]);
-        if (next + 8 + binarySize > length) {
-            refuse("the GLB's binary chunk is ", binarySize, " bytes; ", length - next - 8,
-                   " are left");
+    constexpr uint32_t kBinary = 0x004e4942u;
+    for (uint64_t next = 20 + jsonSize; next + 8 <= length;) {
+        // A length is a multiple of four. Some writers pad and do not count it, some do not pad.
+        if (next % 4 != 0 && little32(&bytes[next + 4]) != kBinary) next = (next + 3) / 4 * 4;
+        if (next + 8 > length) break;
+        const uint64_t size = little32(&bytes[next]);
+        const bool binary = little32(&bytes[next + 4]) == kBinary;
+        next += 8;
+        if (next + size > length) {
+            if (!binary) break;
+            refuse("the GLB's binary chunk is ", size, " bytes; ", length - next, " are left");
+        }
+        if (binary && !hasBinary_) {
+            binary_ = bytes.subspan(next, size);
+            hasBinary_ = true;
+        }
+        next += size;
+    }
+}
+
+Field GltfFile::item(const char* name, int index) const {
+    return root().list(name).at(static_cast<size_t>(index));
+}
+
+std::vector<uint8_t> GltfFile::uri(const std::string& uri, const std::string& field) {
+    UriBytes read = readUri(uri, folder_, field);
+    if (read.outside)
+        notes_.add(text(field, " \"", uri.substr(0, 80), "\" lies outside the file's folder"));
+    return std::move(read.bytes);
+}
+
+std::span<const uint8_t> GltfFile::buffer(int index) {
+    const Field buffer = item("buffers", index);
+    const uint64_t wanted = sizeOf(buffer, "byteLength", INT32_MAX);
+    std::span<const uint8_t> bytes;
+    if (buffer.has("uri")) {
+        auto found = buffers_.find(index);
+        if (found == buffers_.end())
+            found = buffers_.emplace(index, uri(buffer.string("uri"), buffer.path() + ".uri")).first;
+        bytes = found->second;
+    } else if (index == 0 && hasBinary_) {
+        bytes = binary_;
+    } else {
+        refuse(buffer.path(), " has no uri",
+               index == 0 ? ", and the file has no binary chunk" : "");
+    }
+    return bytes.first(std::min<uint64_t>(bytes.size(), wanted));
+}
+
+Bytes GltfFile::range(const Field& field, const char* name) {
+    const int index = field.index("buffer", count("buffers"));
+    if (index < 0) refuse(field.path(), ".buffer is missing");
+    const std::span<const uint8_t> bytes = buffer(index);
+    const uint64_t offset = sizeOf(field, "byteOffset", 0), size = sizeOf(field, "byteLength", 0);
+    if (offset > bytes.size() || size > bytes.size() - offset) {
+        refuse(name, " is ", size, " bytes from ", offset, "; buffers[", index, "] has ",
+               bytes.size());
+    }
+    return {bytes.data() + offset, size, 0};
+}
+
+Bytes GltfFile::view(int index, const std::string& who) {
+    if (index < 0 || static_cast<size_t>(index) >= count("bufferViews"))
+        refuse(who, ".bufferView is ", index, "; there are ", count("bufferViews"));
+    const Field view = item("bufferViews", index);
+    const uint64_t stride = sizeOf(view, "byteStride", 0);
+    if (stride > 255) refuse(view.path(), ".byteStride is ", stride, "; 252 is the most");
+    Field packed;
+    for (const char* name : {"KHR_meshopt_compression", "EXT_meshopt_compression"})
+        if (!packed.present()) packed = view.extension(name);
+    if (packed.present()) {
+        // A buffer that stands in for readers without the codec may hold the plain bytes.
+        const int plain = view.index("buffer", count("buffers"));
+        const bool usable = plain >= 0 && (item("buffers", plain).has("uri") ||
+                                           (plain == 0 && hasBinary_)) &&
+                            plain != packed.index("buffer", count("buffers"));
+        if (readsMeshopt() || !usable) {
+            auto found = unpacked_.find(index);
+            if (found == unpacked_.end()) {
+                MeshoptView wanted;
+                wanted.count = sizeOf(packed, "count", 0);
+                wanted.stride = sizeOf(packed, "byteStride", 0);
+                wanted.mode = packed.string("mode");
+                wanted.filter = packed.string("filter", "NONE");
+                const Bytes from = range(packed, packed.path().c_str());
+                found = unpacked_.emplace(index, readMeshopt(from.span(), wanted, packed.path()))
+                            .first;
+            }
+            return {found->second.data(), found->second.size(), stride};
         }
     }
-    return bytes.subspan(20, jsonSize);
+    Bytes bytes = range(view, view.path().c_str());
+    bytes.stride = stride;
+    return bytes;
 }
 
-Bytes viewBytes(const tinygltf::Model& model, int index, const std::string& who) {
-    if (index < 0 || static_cast<size_t>(index) >= model.bufferViews.size()) {
-        refuse(who, ".bufferView is ", index, "; there are ", model.bufferViews.size());
-    }
-    const tinygltf::BufferView& view = model.bufferViews[static_cast<size_t>(index)];
-    const std::string name = text("bufferViews[", index, "]");
-    if (view.buffer < 0 || static_cast<size_t>(view.buffer) >= model.buffers.size()) {
-        refuse(name, ".buffer is ", view.buffer, "; there are ", model.buffers.size());
-    }
-    const std::vector<unsigned char>& buffer = model.buffers[static_cast<size_t>(view.buffer)].data;
-    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
-        refuse(name, " is ", view.byteLength, " bytes from ", view.byteOffset, "; buffers[",
-               view.buffer, "] has ", buffer.size());
-    }
-    if (view.byteStride > 255)
-        refuse(name, ".byteStride is ", view.byteStride, "; 252 is the most");
-    return {buffer.data() + view.byteOffset, view.byteLength, view.byteStride};
+bool GltfFile::accessorHasData(int index) const {
+    const Field accessor = item("accessors", index);
+    return accessor.has("bufferView") || accessor.has("sparse");
 }
 
-Values readAccessor(const tinygltf::Model& model, int index, const std::string& who) {
-    if (index < 0 || static_cast<size_t>(index) >= model.accessors.size()) {
-        refuse(who, " is accessor ", index, "; there are ", model.accessors.size());
+Values GltfFile::accessor(int64_t index, const std::string& who) {
+    if (index < 0 || static_cast<size_t>(index) >= count("accessors")) {
+        refuse(who, " is accessor ", index, "; there are ", count("accessors"));
     }
-    const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
-    const std::string name = text("accessors[", index, "] (", who, ")");
-    const uint64_t size = componentSize(accessor.componentType);
-    if (size == 0) refuse(name, ".componentType is ", accessor.componentType, ", which is unknown");
+    const Field accessor = item("accessors", static_cast<int>(index));
+    const std::string name = text(accessor.path(), " (", who, ")");
+    const int64_t type = accessor.integer("componentType", 0);
+    const uint64_t size = componentSize(type);
+    if (size == 0) refuse(name, ".componentType is ", type, ", which is unknown");
     Values values;
-    values.count = accessor.count;
-    values.components = componentCount(accessor.type);
-    if (values.components == 0) refuse(name, ".type is neither SCALAR nor VEC2 to VEC4");
+    values.count = sizeOf(accessor, "count", 0);
+    values.components = componentCount(accessor.string("type"));
+    if (values.components == 0) refuse(name, ".type is none of SCALAR, VEC2 to VEC4 and MAT4");
     if (values.count == 0) refuse(name, ".count is 0; 1 is the least");
     if (values.count > 4 * kMaxVertices) {
         refuse(name, ".count is ", values.count, "; the limit is ", 4 * kMaxVertices);
     }
+    // One file may name the same numbers many times over.
+    constexpr uint64_t kMostRead = 1ull << 31;
+    if ((valuesRead_ += values.count * values.components) > kMostRead)
+        refuse(name, " brings what is read to ", valuesRead_, " numbers; the limit is ", kMostRead);
     const uint64_t element = size * values.components;
-    values.data.assign(values.count * values.components, 0.0);
+    const bool normalized = accessor.flag("normalized", false);
+    const Field sparse = accessor.object("sparse");
+    const int viewIndex = static_cast<int>(accessor.integer("bufferView", -1));
     auto readInto = [&](double* to, const uint8_t* from) {
-        for (uint64_t c = 0; c < values.components; ++c) {
-            to[c] = readComponent(from + c * size, accessor.componentType, accessor.normalized);
-        }
+        for (uint64_t c = 0; c < values.components; ++c)
+            to[c] = readComponent(from + c * size, type, normalized);
     };
-    if (accessor.bufferView >= 0) {
-        const Bytes bytes = rangeBytes(viewBytes(model, accessor.bufferView, name),
-                                       accessor.byteOffset, values.count, element, name);
+    if (accessor.has("bufferView")) {
+        const Bytes bytes = rangeBytes(view(viewIndex, name), sizeOf(accessor, "byteOffset", 0),
+                                       values.count, element, name);
+        values.data.resize(values.count * values.components);
         for (uint64_t i = 0; i < values.count; ++i) {
             readInto(&values.data[i * values.components], bytes.data + i * bytes.stride);
         }
-    } else if (!accessor.sparse.isSparse) {
-        refuse(name, " has neither a bufferView nor sparse values");
+    } else {
+        values.data.assign(values.count * values.components, 0.0);
     }
-    if (!accessor.sparse.isSparse) return values;
+    if (!sparse.present()) return values;
 
-    const auto& sparse = accessor.sparse;
-    if (sparse.count < 1 || static_cast<uint64_t>(sparse.count) > values.count) {
-        refuse(name, ".sparse.count is ", sparse.count, "; it goes from 1 to ", values.count);
+    const uint64_t count = sizeOf(sparse, "count", 0);
+    if (count < 1 || count > values.count) {
+        refuse(name, ".sparse.count is ", count, "; it goes from 1 to ", values.count);
     }
-    const int indexType = sparse.indices.componentType;
-    if (indexType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-        indexType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-        indexType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    const Field indices = sparse.object("indices"), replaced = sparse.object("values");
+    const int64_t indexType = indices.integer("componentType", 0);
+    if (indexType != kUnsignedByte && indexType != kUnsignedShort && indexType != kUnsignedInt) {
         refuse(name, ".sparse.indices.componentType is ", indexType, "; 5121, 5123, 5125 are read");
     }
-    if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
-        refuse(name, ".sparse has a negative byteOffset");
-    }
-    const auto count = static_cast<uint64_t>(sparse.count);
-    const Bytes places =
-        rangeBytes(viewBytes(model, sparse.indices.bufferView, name + ".sparse.indices"),
-                   static_cast<uint64_t>(sparse.indices.byteOffset), count,
-                   componentSize(indexType), name + ".sparse.indices");
-    const Bytes replacements = rangeBytes(
-        viewBytes(model, sparse.values.bufferView, name + ".sparse.values"),
-        static_cast<uint64_t>(sparse.values.byteOffset), count, element, name + ".sparse.values");
+    const auto part = [&](const Field& field, uint64_t each) {
+        const std::string whole = text(name, ".sparse.", &field == &indices ? "indices" : "values");
+        return rangeBytes(view(static_cast<int>(field.integer("bufferView", -1)), whole),
+                          sizeOf(field, "byteOffset", 0), count, each, whole);
+    };
+    const Bytes places = part(indices, componentSize(indexType));
+    const Bytes replacements = part(replaced, element);
     for (uint64_t i = 0; i < count; ++i) {
         const auto place =
             static_cast<uint64_t>(readComponent(places.data + i * places.stride, indexType, false));

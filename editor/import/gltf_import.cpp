@@ -1,66 +1,54 @@
-// See gltf_import.h. What the file holds, as meshes; gltf_access.h reads and checks its numbers.
+// See gltf_import.h. The scene of a file as one mesh: nodes, instances, skins, morph targets;
+// gltf_access.h reads and checks its numbers, gltf_material.h its materials.
 #include "import/gltf_import.h"
-
-#include "import/gltf_access.h"
-#include "import/gltf_types.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
+#include <new>
+#include <set>
+
+#include "import/gltf_access.h"
+#include "import/gltf_left_out.h"
+#include "import/gltf_material.h"
 
 namespace fwimport {
 namespace {
 
-// Keeps the bytes of images that came by URI; those in a buffer are fetched later, with checks,
-// because tinygltf hands out their range without any.
-bool keepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int,
-               const unsigned char* bytes, int size, void*) {
-    if (image->bufferView < 0 && bytes && size > 0) image->image.assign(bytes, bytes + size);
-    return true;
-}
-
-struct TextureUse {
-    int texCoord = 0;
-    glm::dvec2 offset{0}, scale{1};
-    double rotation = 0;
-    bool transformed = false;
+// A primitive in its own space, as triangles.
+struct Shape {
+    std::string name;  // "meshes[0].primitives[1]"
+    uint32_t material = 0;
+    uint64_t vertices = 0;
+    std::vector<double> positions, normals;  // 3 per vertex; no normals: empty
+    std::vector<float> uvs;                  // 2 per vertex, or empty
+    std::vector<uint32_t> colors;            // RGBA8 per vertex, or empty
+    std::vector<uint32_t> joints;            // `influences` per vertex, into the skin's joints
+    std::vector<double> weights;
+    size_t influences = 0;
+    std::vector<uint32_t> corners;  // 3 per triangle
 };
-
-double numberOf(const tinygltf::Value& value, double otherwise) {
-    return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
-}
-
-void checkExtensions(const tinygltf::Model& source) {
-    for (const std::string& extension : source.extensionsRequired) {
-        static const char* const kKnown[] = {"KHR_texture_transform", "KHR_mesh_quantization",
-                                             "KHR_materials_unlit"};
-        const bool known = std::any_of(std::begin(kKnown), std::end(kKnown),
-                                       [&](const char* name) { return extension == name; });
-        if (!known) refuse("extensionsRequired names ", extension, ", which is not read");
-    }
-}
 
 class Importer {
  public:
-    Importer(const tinygltf::Model& source, ImportedModel& model)
-        : source_(source), model_(model), visited_(source.nodes.size(), false) {
-        model_.nodes.resize(source.nodes.size());
-        for (size_t i = 0; i < source.nodes.size(); ++i)
-            model_.nodes[i].name = source.nodes[i].name;
+    Importer(GltfFile& file, ImportedModel& model, Notes& notes)
+        : file_(file), model_(model), notes_(notes), materials_(file, model, notes) {
+        const Field nodes = file.root().list("nodes");
+        model_.nodes.resize(nodes.size());
+        for (size_t i = 0; i < nodes.size(); ++i) model_.nodes[i].name = nodes.at(i).string("name");
+        hidden_.assign(nodes.size(), false);
     }
 
     void run(std::string_view part) {
-        if (!source_.animations.empty()) note("animations are left out: the rest pose is used");
-        if (!source_.skins.empty()) note("skins are left out: the bind pose is used");
-        for (int root : roots()) place(root, -1, glm::dmat4(1.0), 0);
+        placeNodes();
         takeMeshes(part);
         if (model_.indices.empty()) {
+            notes_.finish();
             std::string why;
             for (const std::string& line : model_.notes) why += "\n - " + line;
             refuse("there is no triangle in it", why);
@@ -69,400 +57,491 @@ class Importer {
     }
 
  private:
-    void note(const std::string& line) {
-        if (std::find(model_.notes.begin(), model_.notes.end(), line) == model_.notes.end() &&
-            model_.notes.size() < 200) {
-            model_.notes.push_back(line);
-        }
-    }
-
-    std::vector<int> roots() {
-        if (!source_.scenes.empty()) {
-            const int scene = source_.defaultScene < 0 ? 0 : source_.defaultScene;
-            if (static_cast<size_t>(scene) >= source_.scenes.size()) {
-                refuse("scene is ", scene, "; there are ", source_.scenes.size());
-            }
-            if (source_.scenes.size() > 1) {
-                note(text("scenes[", scene, "] is read, the other ", source_.scenes.size() - 1,
-                          " are left out"));
-            }
-            return source_.scenes[static_cast<size_t>(scene)].nodes;
-        }
-        note("there is no scene: every root node is read");
-        std::vector<bool> child(source_.nodes.size(), false);
-        for (const tinygltf::Node& node : source_.nodes) {
-            for (int index : node.children) {
-                if (index >= 0 && static_cast<size_t>(index) < child.size()) {
-                    child[static_cast<size_t>(index)] = true;
-                }
-            }
-        }
+    std::vector<int> childrenOf(const Field& from, const char* list) const {
         std::vector<int> result;
-        for (size_t i = 0; i < child.size(); ++i) {
-            if (!child[i]) result.push_back(static_cast<int>(i));
+        const Field items = from.list(list);
+        for (size_t i = 0; i < items.size(); ++i) {
+            const int64_t index = items.at(i).asInteger();
+            if (index < 0 || static_cast<size_t>(index) >= model_.nodes.size())
+                refuse(from.path(), " names the child ", index, "; there are ",
+                       model_.nodes.size());
+            result.push_back(static_cast<int>(index));
         }
-        if (result.empty() && !source_.nodes.empty()) refuse("every node has a parent: a cycle");
         return result;
     }
 
-    static glm::dmat4 localTransform(const tinygltf::Node& node, const std::string& name) {
-        auto take = [&](const std::vector<double>& values, size_t size, const char* field) {
-            if (!values.empty() && values.size() != size) {
-                refuse(name, ".", field, " has ", values.size(), " numbers; it takes ", size);
+    std::vector<int> roots(const std::vector<std::vector<int>>& children) {
+        const Field scenes = file_.root().list("scenes");
+        if (scenes.size()) {
+            const int scene = std::max(file_.root().index("scene", scenes.size()), 0);
+            if (scenes.size() > 1) {
+                notes_.add(text("scenes[", scene, "] is read, the other ", scenes.size() - 1,
+                                " are left out"));
             }
-            for (double value : values) {
+            return childrenOf(scenes.at(static_cast<size_t>(scene)), "nodes");
+        }
+        notes_.add("there is no scene: every root node is read");
+        std::vector<bool> child(children.size(), false);
+        for (const std::vector<int>& list : children)
+            for (const int index : list) child[static_cast<size_t>(index)] = true;
+        std::vector<int> result;
+        for (size_t i = 0; i < child.size(); ++i)
+            if (!child[i]) result.push_back(static_cast<int>(i));
+        if (result.empty() && !children.empty()) refuse("every node has a parent: a cycle");
+        return result;
+    }
+
+    static glm::dmat4 localTransform(const Field& node) {
+        const auto take = [&](const char* name, size_t size) {
+            std::vector<double> values = node.numbers(name, size);
+            for (const double value : values) {
                 if (!std::isfinite(value) || std::abs(value) > 1e12) {
-                    refuse(name, ".", field, " holds ", value, ", which is no usable number");
+                    refuse(node.path(), ".", name, " holds ", value, ", which is no usable number");
                 }
             }
-            return !values.empty();
+            return values;
         };
-        if (take(node.matrix, 16, "matrix")) return glm::make_mat4(node.matrix.data());
+        if (const auto matrix = take("matrix", 16); !matrix.empty())
+            return glm::make_mat4(matrix.data());
         glm::dmat4 result(1.0);
-        if (take(node.translation, 3, "translation")) {
-            result[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1.0);
-        }
-        if (take(node.rotation, 4, "rotation")) {
-            const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1],
-                               node.rotation[2]);
-            if (glm::length(q) > 1e-9) result = result * glm::mat4_cast(glm::normalize(q));
-        }
-        if (take(node.scale, 3, "scale")) {
-            for (int i = 0; i < 3; ++i) result[i] *= node.scale[static_cast<size_t>(i)];
-        }
+        if (const auto values = take("translation", 3); !values.empty())
+            result[3] = glm::dvec4(glm::make_vec3(values.data()), 1.0);
+        if (const auto q = take("rotation", 4); !q.empty())
+            result = result * rotationOf({q[3], q[0], q[1], q[2]});
+        if (const auto values = take("scale", 3); !values.empty())
+            for (int i = 0; i < 3; ++i) result[i] *= values[static_cast<size_t>(i)];
         return result;
     }
 
-    // Finds where a node and all below it stand.
-    void place(int index, int parent, const glm::dmat4& above, int depth) {
-        if (index < 0 || static_cast<size_t>(index) >= source_.nodes.size()) {
-            refuse("a node names the child ", index, "; there are ", source_.nodes.size());
-        }
-        if (depth > 256) refuse("nodes[", index, "] is more than 256 levels deep");
-        // A node may stand in one place only; a second visit is a cycle or a shared child.
-        if (visited_[static_cast<size_t>(index)]) {
-            refuse("nodes[", index, "] has more than one parent, or is its own ancestor");
-        }
-        visited_[static_cast<size_t>(index)] = true;
-        order_.push_back(static_cast<size_t>(index));
-        const tinygltf::Node& node = source_.nodes[static_cast<size_t>(index)];
-        const glm::dmat4 world = above * localTransform(node, text("nodes[", index, "]"));
-        ImportedNode& placed = model_.nodes[static_cast<size_t>(index)];
-        placed.parent = parent;
-        placed.inScene = true;
-        std::copy_n(glm::value_ptr(world), 16, placed.pose.begin());
-        for (int child : node.children) place(child, index, world, depth + 1);
+    static glm::dmat4 rotationOf(const glm::dquat& q) {
+        return glm::length(q) > 1e-9 ? glm::mat4_cast(glm::normalize(q)) : glm::dmat4(1.0);
     }
+
+    // Finds where every node stands. Joints may stand outside the scene: they have a pose, too.
+    void placeNodes() {
+        const Field nodes = file_.root().list("nodes");
+        std::vector<std::vector<int>> children(nodes.size());
+        std::vector<bool> hasParent(nodes.size(), false);
+        for (size_t i = 0; i < nodes.size(); ++i) {
+            children[i] = childrenOf(nodes.at(i), "children");
+            for (const int child : children[i]) hasParent[static_cast<size_t>(child)] = true;
+        }
+        std::vector<bool> visited(nodes.size(), false);
+        const auto walk = [&](int root, bool inScene) {
+            struct Step {
+                int node, parent;
+            };
+            std::vector<Step> open{{root, -1}};
+            while (!open.empty()) {
+                const auto [index, parent] = open.back();
+                open.pop_back();
+                const auto at = static_cast<size_t>(index);
+                // A node may stand in one place only; a second visit is a cycle or a shared child.
+                if (visited[at])
+                    refuse("nodes[", index, "] has more than one parent, or is its own ancestor");
+                visited[at] = true;
+                const Field node = nodes.at(at);
+                glm::dmat4 world = localTransform(node);
+                ImportedNode& placed = model_.nodes[at];
+                placed.parent = parent;
+                placed.inScene = inScene;
+                hidden_[at] = !node.extension("KHR_node_visibility").flag("visible", true);
+                if (parent >= 0) {
+                    const auto above = static_cast<size_t>(parent);
+                    world = glm::make_mat4(model_.nodes[above].pose.data()) * world;
+                    hidden_[at] = hidden_[at] || hidden_[above];
+                }
+                std::copy_n(glm::value_ptr(world), 16, placed.pose.begin());
+                if (inScene) order_.push_back(at);
+                for (size_t i = children[at].size(); i-- > 0;)
+                    open.push_back({children[at][i], index});
+            }
+        };
+        for (const int root : roots(children)) walk(root, true);
+        for (size_t i = 0; i < nodes.size(); ++i) {
+            if (visited[i] || hasParent[i]) continue;
+            if (file_.root().list("scenes").size() == 1 && nodes.at(i).has("mesh"))
+                notes_.leaveOut("node", nodes.at(i).path(), "is left out: no scene holds it");
+            walk(static_cast<int>(i), false);
+        }
+    }
+
+    glm::dmat4 poseOf(size_t node) const { return glm::make_mat4(model_.nodes[node].pose.data()); }
 
     // Of all nodes that are in the scene, or of one and what is below it.
     void takeMeshes(std::string_view part) {
         std::string problem;
         const int32_t top = part.empty() ? -1 : findNode(model_.nodes, part, problem);
         if (!part.empty() && top < 0) refuse(problem);
+        const Field nodes = file_.root().list("nodes");
+        std::map<int, size_t> users;
+        for (const size_t index : order_)
+            ++users[nodes.at(index).index("mesh", file_.count("meshes"))];
         std::vector<bool> taken(model_.nodes.size(), top < 0);
         for (const size_t index : order_) {  // parents come before their children
             const int32_t parent = model_.nodes[index].parent;
             if (static_cast<int32_t>(index) == top ||
                 (parent >= 0 && taken[static_cast<size_t>(parent)]))
                 taken[index] = true;
-            const int which = source_.nodes[index].mesh;
+            const Field node = nodes.at(index);
+            const int which = node.index("mesh", file_.count("meshes"));
             if (which < 0 || !taken[index]) continue;
-            if (static_cast<size_t>(which) >= source_.meshes.size()) {
-                refuse("nodes[", index, "].mesh is ", which, "; there are ", source_.meshes.size());
+            if (hidden_[index]) {
+                notes_.leaveOut("node", node.path(),
+                                "is left out: KHR_node_visibility hides it");
+                continue;
             }
-            const tinygltf::Mesh& mesh = source_.meshes[static_cast<size_t>(which)];
-            const glm::dmat4 world = glm::make_mat4(model_.nodes[index].pose.data());
-            for (size_t i = 0; i < mesh.primitives.size(); ++i) {
-                addPrimitive(mesh.primitives[i], world,
-                             text("meshes[", which, "].primitives[", i, "]"));
+            takeNode(index, which, users[which] > 1);
+        }
+    }
+
+    void takeNode(size_t index, int which, bool keep) {
+        const Field node = file_.item("nodes", static_cast<int>(index));
+        const Field mesh = file_.item("meshes", which);
+        const int skin = node.index("skin", file_.count("skins"));
+        const bool ownWeights = node.has("weights");
+        const std::vector<double> weights = (ownWeights ? node : mesh).numbers("weights", 0);
+        std::vector<glm::dmat4> places{poseOf(index)};
+        const Field instances = node.extension("EXT_mesh_gpu_instancing");
+        if (instances.present() && skin >= 0)
+            notes_.leaveOut("EXT_mesh_gpu_instancing of a skinned mesh", node.path());
+        else if (instances.present())
+            places = instancesOf(instances, places[0]);
+        const Field primitives = mesh.list("primitives");
+        for (size_t i = 0; i < primitives.size(); ++i) {
+            const auto key = std::make_pair(which, i);
+            const Shape* shape = nullptr;
+            Shape own;
+            if (const auto found = shapes_.find(key); found != shapes_.end() && !ownWeights) {
+                shape = &found->second;
+            } else if (keep && !ownWeights) {
+                shape = &(shapes_[key] = readShape(primitives.at(i), weights));
+            } else {
+                own = readShape(primitives.at(i), weights);
+                shape = &own;
+            }
+            if (shape->corners.empty()) continue;
+            if (skin >= 0 && shape->influences) {
+                addShape(*shape, skinOf(skin, *shape), places[0]);
+            } else {
+                for (const glm::dmat4& place : places) addShape(*shape, {}, place);
             }
         }
     }
 
-    int attribute(const tinygltf::Primitive& primitive, const std::string& name) const {
-        const auto found = primitive.attributes.find(name);
-        return found == primitive.attributes.end() ? -1 : found->second;
-    }
-
-    // Which of our materials this is; decodes its image the first time.
-    uint32_t materialIndex(int index, const std::string& name) {
-        if (const auto found = materials_.find(index); found != materials_.end()) {
-            return found->second;
-        }
-        ImportedMaterial material;
-        TextureUse use;
-        if (index >= 0) {
-            if (static_cast<size_t>(index) >= source_.materials.size()) {
-                refuse(name, ".material is ", index, "; there are ", source_.materials.size());
-            }
-            const tinygltf::Material& from = source_.materials[static_cast<size_t>(index)];
-            material.name = from.name;
-            material.doubleSided = from.doubleSided;
-            const auto& pbr = from.pbrMetallicRoughness;
-            for (size_t i = 0; i < 4 && i < pbr.baseColorFactor.size(); ++i) {
-                const double value = pbr.baseColorFactor[i];
-                material.baseColor[i] =
-                    std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : 1.0f;
-            }
-            if (std::isfinite(pbr.roughnessFactor)) {
-                material.roughness = static_cast<float>(std::clamp(pbr.roughnessFactor, 0.0, 1.0));
-            }
-            if (pbr.baseColorTexture.index >= 0) {
-                material.image = imageIndex(pbr.baseColorTexture.index,
-                                            text("materials[", index, "].baseColorTexture"));
-                use.texCoord = pbr.baseColorTexture.texCoord;
-                readTransform(pbr.baseColorTexture, use);
-            }
-            readAlpha(from, material, text("materials[", index, "]"));
-        } else {
-            material.name = "default";
-        }
-        const auto result = static_cast<uint32_t>(model_.materials.size());
-        model_.materials.push_back(material);
-        textureUses_.push_back(use);
-        materials_[index] = result;
-        return result;
-    }
-
-    // Alpha that a Mask cannot show becomes the nearest thing that it can, with a note.
-    void readAlpha(const tinygltf::Material& from, ImportedMaterial& material,
-                   const std::string& name) {
-        if (from.alphaMode == "MASK") {
-            material.alphaMode = AlphaMode::Mask;
-            if (std::isfinite(from.alphaCutoff))
-                material.alphaCutoff = static_cast<float>(std::clamp(from.alphaCutoff, 0.0, 1.0));
-            return;
-        }
-        if (from.alphaMode != "BLEND") return;
-        const bool holes =
-            material.image >= 0 && hasHoles(model_.images[static_cast<size_t>(material.image)]);
-        if (holes) material.alphaMode = AlphaMode::Mask;
-        note(text(name, ".alphaMode BLEND is shown ",
-                  holes ? "as a cut-out: what has less than half its alpha is not there"
-                        : "opaque"));
-    }
-
-    // True: some of it is more see-through than not, and some is not.
-    static bool hasHoles(const DecodedImage& image) {
-        bool hole = false, solid = false;
-        for (size_t i = 3; i < image.rgba.size(); i += 4)
-            (image.rgba[i] < 128 ? hole : solid) = true;
-        return hole && solid;
-    }
-
-    static void readTransform(const tinygltf::TextureInfo& info, TextureUse& use) {
-        const auto found = info.extensions.find("KHR_texture_transform");
-        if (found == info.extensions.end() || !found->second.IsObject()) return;
-        const tinygltf::Value& value = found->second;
-        auto pair = [&](const char* key, glm::dvec2 otherwise) {
-            if (!value.Has(key)) return otherwise;
-            const tinygltf::Value& list = value.Get(key);
-            if (!list.IsArray() || list.ArrayLen() < 2) return otherwise;
-            const glm::dvec2 both(numberOf(list.Get(0), otherwise.x),
-                                  numberOf(list.Get(1), otherwise.y));
-            return std::isfinite(both.x) && std::isfinite(both.y) ? both : otherwise;
-        };
-        use.transformed = true;
-        use.offset = pair("offset", glm::dvec2(0));
-        use.scale = pair("scale", glm::dvec2(1));
-        if (value.Has("rotation")) use.rotation = numberOf(value.Get("rotation"), 0.0);
-        if (!std::isfinite(use.rotation)) use.rotation = 0;
-        if (value.Has("texCoord")) {
-            use.texCoord = static_cast<int>(numberOf(value.Get("texCoord"), use.texCoord));
-        }
-    }
-
-    // Our image for a texture, or -1 with a note: a missing picture is no reason to refuse a mesh.
-    int32_t imageIndex(int texture, const std::string& name) {
-        if (static_cast<size_t>(texture) >= source_.textures.size()) {
-            refuse(name, ".index is ", texture, "; there are ", source_.textures.size());
-        }
-        const int index = source_.textures[static_cast<size_t>(texture)].source;
-        if (index < 0) {
-            note(text("textures[", texture, "] has no image that can be read"));
-            return -1;
-        }
-        if (static_cast<size_t>(index) >= source_.images.size()) {
-            refuse("textures[", texture, "].source is ", index, "; there are ",
-                   source_.images.size());
-        }
-        if (const auto found = images_.find(index); found != images_.end()) return found->second;
-        const tinygltf::Image& image = source_.images[static_cast<size_t>(index)];
-        std::span<const uint8_t> bytes(image.image);
-        if (image.bufferView >= 0) {
-            const Bytes view = viewBytes(source_, image.bufferView, text("images[", index, "]"));
-            bytes = {view.data, static_cast<size_t>(view.size)};
-        }
-        int32_t result = -1;
-        DecodedImage decoded;
-        std::string error = "its file is missing";
-        if (!bytes.empty() && decodeImage(bytes, decoded, error)) {
-            result = static_cast<int32_t>(model_.images.size());
-            model_.images.push_back(std::move(decoded));
-        } else {
-            note(text("images[", index, "] is left out: ", error));
-        }
-        images_[index] = result;
-        return result;
-    }
-
-    void addPrimitive(const tinygltf::Primitive& primitive, const glm::dmat4& world,
-                      const std::string& name) {
-        if (primitive.mode >= 0 && primitive.mode <= 3) {
-            note(text(name, " is left out: points and lines do not burn (mode ", primitive.mode,
-                      ")"));
-            return;
-        }
-        if (primitive.mode < 0 || primitive.mode > 6) {
-            // tinygltf gives -1 where the field is absent, which means triangles.
-            if (primitive.mode != -1) refuse(name, ".mode is ", primitive.mode, "; 0 to 6 exist");
-        }
-        if (!primitive.targets.empty()) note("morph targets are left out: the base shape is used");
-        const int positionAccessor = attribute(primitive, "POSITION");
-        if (positionAccessor < 0) {
-            note(text(name, " is left out: it has no POSITION"));
-            return;
-        }
-        const Values positions = readAccessor(source_, positionAccessor, name + ".POSITION");
-        if (positions.components != 3) {
-            refuse(name, ".POSITION has ", positions.components, " components; it takes 3");
-        }
-        const size_t base = model_.vertexCount();
-        if (base + positions.count > kMaxVertices) {
-            refuse(name, " brings the model to ", base + positions.count,
-                   " vertices; the limit is ", kMaxVertices);
-        }
-        const uint32_t material = materialIndex(primitive.material, name);
-        addVertices(primitive, positions, world, material, name);
-        addTriangles(primitive, positions.count, base, material,
-                     glm::determinant(glm::dmat3(world)) < 0, name);
-    }
-
-    void addVertices(const tinygltf::Primitive& primitive, const Values& positions,
-                     const glm::dmat4& world, uint32_t material, const std::string& name) {
-        // An attribute of another length than the positions cannot be matched to them.
-        auto optional = [&](const std::string& key, uint64_t least, uint64_t most) {
+    std::vector<glm::dmat4> instancesOf(const Field& instances, const glm::dmat4& world) {
+        const Field attributes = instances.object("attributes");
+        uint64_t count = 0;
+        const auto take = [&](const char* name, uint64_t components) {
             Values values;
-            const int accessor = attribute(primitive, key);
-            if (accessor < 0) return values;
-            values = readAccessor(source_, accessor, name + "." + key);
-            if (values.components < least || values.components > most) {
-                refuse(name, ".", key, " has ", values.components, " components; it takes ", least,
-                       least == most ? "" : " or more");
-            }
-            if (values.count != positions.count) {
-                refuse(name, ".", key, " has ", values.count, " elements; POSITION has ",
-                       positions.count);
-            }
+            if (!attributes.has(name)) return values;
+            values = file_.accessor(attributes.integer(name, -1), attributes.path() + "." + name);
+            if (values.components != components)
+                refuse(attributes.path(), ".", name, " has ", values.components,
+                       " components; it takes ", components);
+            if (count && values.count != count)
+                refuse(attributes.path(), ".", name, " has ", values.count,
+                       " elements; the others have ", count);
+            for (const double value : values.data)
+                if (!std::isfinite(value) || std::abs(value) > 1e12)
+                    refuse(attributes.path(), ".", name, " holds ", value,
+                           ", which is no usable number");
+            count = values.count;
             return values;
         };
-        const TextureUse& use = textureUses_[material];
-        const Values normals = optional("NORMAL", 3, 3);
-        const Values uvs = optional(text("TEXCOORD_", use.texCoord), 2, 2);
-        const Values colors = optional("COLOR_0", 3, 4);
-        const glm::dmat3 linear(world);
-        const bool invertible = std::abs(glm::determinant(linear)) > 1e-30;
-        const glm::dmat3 normalMatrix =
-            invertible ? glm::transpose(glm::inverse(linear)) : glm::dmat3(1.0);
-        const double cosine = std::cos(use.rotation), sine = std::sin(use.rotation);
-        uint64_t badNormals = 0;
-        for (uint64_t i = 0; i < positions.count; ++i) {
-            const glm::dvec3 local = glm::make_vec3(&positions.data[i * 3]);
-            const glm::dvec3 p(world * glm::dvec4(local, 1.0));
-            for (int c = 0; c < 3; ++c) {
-                if (!std::isfinite(p[c]) || std::abs(p[c]) > 1e9) {
-                    refuse(name, ".POSITION[", i, "] is ", local.x, ", ", local.y, ", ", local.z,
-                           "; a position is finite and within 1e9 m");
-                }
-                model_.positions.push_back(static_cast<float>(p[c]));
+        const Values moves = take("TRANSLATION", 3), turns = take("ROTATION", 4),
+                     sizes = take("SCALE", 3);
+        if (count == 0) return {world};
+        if (count > kMaxVertices / 3)
+            refuse(attributes.path(), " makes ", count, " instances; the limit is ",
+                   kMaxVertices / 3);
+        std::vector<glm::dmat4> result;
+        result.reserve(count);
+        for (uint64_t i = 0; i < count; ++i) {
+            glm::dmat4 local(1.0);
+            if (moves.count) local[3] = glm::dvec4(glm::make_vec3(&moves.data[i * 3]), 1.0);
+            if (turns.count) {
+                const double* q = &turns.data[i * 4];
+                local = local * rotationOf({q[3], q[0], q[1], q[2]});
             }
-            glm::dvec3 n(0);
-            if (normals.count) {
-                n = normalMatrix * glm::dvec3(glm::make_vec3(&normals.data[i * 3]));
-                const double length = glm::length(n);
-                if (std::isfinite(length) && length > 1e-12) {
-                    n /= length;
-                } else {
-                    n = glm::dvec3(0);
-                    ++badNormals;
-                }
-            } else {
-                everyNormal_ = false;
-            }
-            for (int c = 0; c < 3; ++c) model_.normals.push_back(static_cast<float>(n[c]));
-            glm::dvec2 uv(0);
-            if (uvs.count) {
-                uv = glm::make_vec2(&uvs.data[i * 2]);
-                if (!std::isfinite(uv.x) || !std::isfinite(uv.y) || std::abs(uv.x) > 1e6 ||
-                    std::abs(uv.y) > 1e6) {
-                    refuse(name, ".TEXCOORD_", use.texCoord, "[", i, "] is ", uv.x, ", ", uv.y,
-                           "; it is finite and within 1e6");
-                }
-                if (use.transformed) {
-                    uv *= use.scale;
-                    uv = glm::dvec2(cosine * uv.x + sine * uv.y, cosine * uv.y - sine * uv.x) +
-                         use.offset;
-                }
-            } else {
-                everyUv_ = false;
-            }
-            model_.uvs.push_back(static_cast<float>(uv.x));
-            model_.uvs.push_back(static_cast<float>(uv.y));
-            uint32_t color = 0xffffffffu;
-            if (colors.count) {
-                color = 0;
-                for (uint64_t c = 0; c < 4; ++c) {
-                    double value =
-                        c < colors.components ? colors.data[i * colors.components + c] : 1;
-                    value = std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 1.0;
-                    color |= static_cast<uint32_t>(std::lround(value * 255.0)) << (8 * c);
-                }
-                anyColor_ = true;
-            }
-            model_.colors.push_back(color);
+            if (sizes.count)
+                for (int c = 0; c < 3; ++c) local[c] *= sizes.data[i * 3 + static_cast<size_t>(c)];
+            result.push_back(world * local);
         }
-        if (badNormals) {
-            note(text(name, ": ", badNormals,
-                      " normals have no length; all normals are computed instead"));
-            everyNormal_ = false;
+        return result;
+    }
+
+    // By joint: from the shape's space to the model's, in the pose in which the nodes stand.
+    std::vector<glm::dmat4> skinOf(int index, const Shape& shape) {
+        const Field skin = file_.item("skins", index);
+        const Field joints = skin.list("joints");
+        Values inverse;
+        if (skin.has("inverseBindMatrices")) {
+            inverse = file_.accessor(skin.integer("inverseBindMatrices", -1),
+                                     skin.path() + ".inverseBindMatrices");
+            if (inverse.components != 16)
+                refuse(skin.path(), ".inverseBindMatrices has ", inverse.components,
+                       " components; it takes 16");
+            if (inverse.count < joints.size())
+                refuse(skin.path(), ".inverseBindMatrices has ", inverse.count,
+                       " elements; there are ", joints.size(), " joints");
+        }
+        std::vector<glm::dmat4> result;
+        for (size_t i = 0; i < joints.size(); ++i) {
+            const int64_t node = joints.at(i).asInteger();
+            if (node < 0 || static_cast<size_t>(node) >= model_.nodes.size())
+                refuse(joints.path(), "[", i, "] is ", node, "; there are ", model_.nodes.size());
+            glm::dmat4 pose = poseOf(static_cast<size_t>(node));
+            if (inverse.count) pose = pose * glm::make_mat4(&inverse.data[i * 16]);
+            result.push_back(pose);
+        }
+        for (const uint32_t joint : shape.joints)
+            if (joint >= result.size())
+                refuse(shape.name, ".JOINTS names joint ", joint, "; ", skin.path(), " has ",
+                       result.size());
+        return result;
+    }
+
+    // The attributes of a primitive, from its Draco data or its accessors.
+    struct Attributes {
+        Field primitive, names;
+        std::map<std::string, Values> unpacked;
+        std::vector<uint32_t> corners;  // of Draco
+        bool draco = false;
+    };
+
+    Attributes openPrimitive(const Field& primitive) {
+        Attributes result;
+        result.primitive = primitive;
+        result.names = primitive.object("attributes");
+        const Field draco = primitive.extension("KHR_draco_mesh_compression");
+        if (!draco.present()) return result;
+        const int position = result.names.has("POSITION")
+                                 ? result.names.index("POSITION", file_.count("accessors"))
+                                 : -1;
+        if (!readsDraco() && position >= 0 && file_.accessorHasData(position)) return result;
+        const Field ids = draco.object("attributes");
+        std::map<std::string, DracoAttribute> wanted;
+        for (const std::string& name : ids.names()) {
+            if (!result.names.has(name.c_str())) continue;
+            const int accessor = result.names.index(name.c_str(), file_.count("accessors"));
+            wanted[name] = {ids.integer(name.c_str(), -1),
+                            file_.item("accessors", accessor).flag("normalized", false)};
+        }
+        const Bytes bytes =
+            file_.view(draco.index("bufferView", file_.count("bufferViews")), draco.path());
+        DracoMesh mesh = readDraco(bytes.span(), wanted, primitive.path());
+        result.unpacked = std::move(mesh.attributes);
+        result.corners = std::move(mesh.indices);
+        result.draco = true;
+        return result;
+    }
+
+    // An attribute with the primitive's morph targets applied; empty: it has none. One of another
+    // length than the positions cannot be matched to them.
+    Values readAttribute(const Attributes& from, const std::string& key, uint64_t least,
+                         uint64_t most, uint64_t count, const std::vector<double>& weights) {
+        const std::string name = from.primitive.path() + "." + key;
+        Values values;
+        if (const auto found = from.unpacked.find(key); found != from.unpacked.end())
+            values = found->second;
+        else if (from.names.has(key.c_str()))
+            values = file_.accessor(from.names.integer(key.c_str(), -1), name);
+        else
+            return values;
+        const auto check = [&](const Values& one, const std::string& of) {
+            if (one.components < least || one.components > most) {
+                refuse(of, " has ", one.components, " components; it takes ", least,
+                       least == most ? "" : " or more");
+            }
+            if (count && one.count != count)
+                refuse(of, " has ", one.count, " elements; POSITION has ", count);
+        };
+        check(values, name);
+        const Field targets = from.primitive.list("targets");
+        for (size_t i = 0; i < targets.size() && i < weights.size(); ++i) {
+            const Field target = targets.at(i);
+            if (weights[i] == 0 || !std::isfinite(weights[i]) || !target.has(key.c_str())) continue;
+            const std::string of = target.path() + "." + key;
+            const Values delta = file_.accessor(target.integer(key.c_str(), -1), of);
+            if (delta.components != values.components || delta.count != values.count)
+                refuse(of, " has ", delta.count, " elements of ", delta.components,
+                       " components; ", key, " has ", values.count, " of ", values.components);
+            for (size_t k = 0; k < delta.data.size(); ++k)
+                values.data[k] += weights[i] * delta.data[k];
+        }
+        return values;
+    }
+
+    Shape readShape(const Field& primitive, const std::vector<double>& weights) {
+        Shape shape;
+        shape.name = primitive.path();
+        const int64_t mode = primitive.integer("mode", 4);
+        if (mode >= 0 && mode <= 3) {
+            notes_.leaveOut(text("primitive of mode ", mode), shape.name,
+                            "is left out: points and lines do not burn");
+            return shape;
+        }
+        if (mode < 0 || mode > 6) refuse(shape.name, ".mode is ", mode, "; 0 to 6 exist");
+        const Attributes from = openPrimitive(primitive);
+        if (!from.names.has("POSITION")) {
+            notes_.leaveOut("primitive", shape.name, "is left out: it has no POSITION");
+            return shape;
+        }
+        if (!from.draco) {
+            const int64_t accessor = from.names.integer("POSITION", -1);
+            if (accessor >= 0 && static_cast<size_t>(accessor) < file_.count("accessors") &&
+                !file_.accessorHasData(static_cast<int>(accessor)))
+                refuse("accessors[", accessor, "] (", shape.name,
+                       ".POSITION) has neither a bufferView nor sparse values");
+        }
+        Values positions = readAttribute(from, "POSITION", 3, 3, 0, weights);
+        shape.vertices = positions.count;
+        if (shape.vertices > kMaxVertices)
+            refuse(shape.name, " has ", shape.vertices, " vertices; the limit is ", kMaxVertices);
+        const int material = primitive.index("material", file_.count("materials"));
+        shape.material = materials_.indexOf(material);
+        shape.positions = std::move(positions.data);
+        shape.normals =
+            readAttribute(from, "NORMAL", 3, 3, shape.vertices, weights).data;
+        readUvs(from, shape, weights);
+        readColors(from, shape, weights);
+        readInfluences(from, shape);
+        noteAttributes(from, shape);
+        readCorners(from, shape, mode);
+        const ImportedMaterial& made = model_.materials[shape.material];
+        if (made.alphaMode == AlphaMode::Mask && made.image < 0 &&
+            made.baseColor[3] < made.alphaCutoff) {
+            notes_.leaveOut("primitive", shape.name,
+                            "is left out: its material's alpha is below its alphaCutoff");
+            shape.corners.clear();
+        }
+        return shape;
+    }
+
+    void readUvs(const Attributes& from, Shape& shape, const std::vector<double>& weights) {
+        const TextureUse& use = materials_.use(shape.material);
+        const std::string key = text("TEXCOORD_", use.texCoord);
+        const Values uvs = readAttribute(from, key, 2, 2, shape.vertices, weights);
+        const bool pictured = model_.materials[shape.material].image >= 0;
+        if (!uvs.count && pictured)
+            notes_.leaveOut("picture", shape.name, text("is left out: there is no ", key));
+        bool outside[2] = {false, false};
+        for (uint64_t i = 0; i < uvs.count; ++i) {
+            const glm::dvec2 raw = glm::make_vec2(&uvs.data[i * 2]);
+            if (!std::isfinite(raw.x) || !std::isfinite(raw.y) || std::abs(raw.x) > 1e6 ||
+                std::abs(raw.y) > 1e6) {
+                refuse(shape.name, ".", key, "[", i, "] is ", raw.x, ", ", raw.y,
+                       "; it is finite and within 1e6");
+            }
+            const glm::dvec2 uv = use.apply(raw);
+            for (int c = 0; c < 2; ++c) {
+                outside[c] = outside[c] || uv[c] < -0.001 || uv[c] > 1.001;
+                shape.uvs.push_back(static_cast<float>(uv[c]));
+            }
+        }
+        for (int c = 0; c < 2 && pictured; ++c) {
+            const int64_t wrap = use.wrap[c];
+            if (!outside[c] || wrap == 10497) continue;
+            notes_.leaveOut(text(use.sampler, c == 0 ? ".wrapS " : ".wrapT ",
+                                 wrap == 33071   ? "CLAMP_TO_EDGE"
+                                 : wrap == 33648 ? "MIRRORED_REPEAT"
+                                                 : text(wrap)),
+                            shape.name, "is shown as REPEAT");
         }
     }
 
-    void addTriangles(const tinygltf::Primitive& primitive, uint64_t vertexCount, size_t base,
-                      uint32_t material, bool mirrored, const std::string& name) {
+    void readColors(const Attributes& from, Shape& shape, const std::vector<double>& weights) {
+        const Values colors = readAttribute(from, "COLOR_0", 3, 4, shape.vertices, weights);
+        for (uint64_t i = 0; i < colors.count; ++i) {
+            uint32_t color = 0;
+            for (uint64_t c = 0; c < 4; ++c) {
+                double value = c < colors.components ? colors.data[i * colors.components + c] : 1;
+                value = std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 1.0;
+                color |= static_cast<uint32_t>(std::lround(value * 255.0)) << (8 * c);
+            }
+            shape.colors.push_back(color);
+        }
+    }
+
+    void readInfluences(const Attributes& from, Shape& shape) {
+        std::vector<Values> joints, weights;
+        for (int set = 0; from.names.has(text("JOINTS_", set).c_str()) &&
+                          from.names.has(text("WEIGHTS_", set).c_str());
+             ++set) {
+            joints.push_back(
+                readAttribute(from, text("JOINTS_", set), 4, 4, shape.vertices, {}));
+            weights.push_back(
+                readAttribute(from, text("WEIGHTS_", set), 4, 4, shape.vertices, {}));
+        }
+        shape.influences = 4 * joints.size();
+        for (uint64_t i = 0; i < shape.vertices && shape.influences; ++i) {
+            double sum = 0;
+            const size_t first = shape.weights.size();
+            for (size_t set = 0; set < joints.size(); ++set) {
+                for (uint64_t c = 0; c < 4; ++c) {
+                    const double weight = weights[set].data[i * 4 + c];
+                    const double joint = joints[set].data[i * 4 + c];
+                    const bool used = std::isfinite(weight) && weight > 0;
+                    // A joint of no weight may be any number.
+                    shape.joints.push_back(used && joint >= 0 && joint < 65536
+                                               ? static_cast<uint32_t>(joint)
+                                               : 0);
+                    shape.weights.push_back(used ? weight : 0);
+                    sum += shape.weights.back();
+                }
+            }
+            if (sum <= 0) shape.weights[first] = sum = 1;
+            for (size_t k = first; k < shape.weights.size(); ++k) shape.weights[k] /= sum;
+        }
+    }
+
+    void noteAttributes(const Attributes& from, const Shape& shape) {
+        const std::string uv = text("TEXCOORD_", materials_.use(shape.material).texCoord);
+        const bool pictured = model_.materials[shape.material].image >= 0;
+        for (const std::string& name : from.names.names()) {
+            if (name == "POSITION" || name == "NORMAL" || name == "COLOR_0" || name == uv) continue;
+            if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) continue;
+            // Coordinates of no picture are nothing that could be seen.
+            if (name.starts_with("TEXCOORD_") && !pictured) continue;
+            notes_.leaveOut("attribute " + name, shape.name);
+        }
+    }
+
+    void readCorners(const Attributes& from, Shape& shape, int64_t mode) {
         std::vector<uint32_t> order;
-        if (primitive.indices >= 0) {
-            const Values values = readAccessor(source_, primitive.indices, name + ".indices");
-            const int type =
-                source_.accessors[static_cast<size_t>(primitive.indices)].componentType;
-            if (values.components != 1 || (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-                                           type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-                                           type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)) {
-                refuse(name, ".indices are of type ", type,
+        if (from.draco) {
+            order = from.corners;
+            mode = 4;
+        } else if (from.primitive.has("indices")) {
+            const int64_t accessor = from.primitive.integer("indices", -1);
+            const Values values = file_.accessor(accessor, shape.name + ".indices");
+            const int64_t type = file_.item("accessors", static_cast<int>(accessor))
+                                     .integer("componentType", 0);
+            if (values.components != 1 || (type != 5121 && type != 5123 && type != 5125)) {
+                refuse(shape.name, ".indices are of type ", type,
                        "; unsigned scalars (5121, 5123, 5125) are read");
             }
             order.reserve(values.count);
             for (uint64_t i = 0; i < values.count; ++i) {
-                if (values.data[i] >= static_cast<double>(vertexCount)) {
-                    refuse(name, ".indices[", i, "] is ", static_cast<uint64_t>(values.data[i]),
-                           "; there are ", vertexCount, " vertices");
+                if (values.data[i] >= static_cast<double>(shape.vertices)) {
+                    refuse(shape.name, ".indices[", i, "] is ",
+                           static_cast<uint64_t>(values.data[i]), "; there are ", shape.vertices,
+                           " vertices");
                 }
                 order.push_back(static_cast<uint32_t>(values.data[i]));
             }
         } else {
-            order.resize(vertexCount);
-            for (uint64_t i = 0; i < vertexCount; ++i) order[i] = static_cast<uint32_t>(i);
+            order.resize(shape.vertices);
+            for (uint64_t i = 0; i < shape.vertices; ++i) order[i] = static_cast<uint32_t>(i);
         }
         const size_t count = order.size();
-        const bool strip = primitive.mode == 5, fan = primitive.mode == 6;
+        const bool strip = mode == 5, fan = mode == 6;
         const size_t triangles = strip || fan ? (count < 3 ? 0 : count - 2) : count / 3;
         if (!strip && !fan && count % 3 != 0) {
-            note(text(name, ": its ", count, " indices are no whole number of triangles; the last ",
-                      count % 3, " are left out"));
-        }
-        if (model_.triangleCount() + triangles > kMaxTriangles) {
-            refuse(name, " brings the model to ", model_.triangleCount() + triangles,
-                   " triangles; the limit is ", kMaxTriangles);
+            notes_.add(text(shape.name, ": its ", count,
+                            " indices are no whole number of triangles; the last ", count % 3,
+                            " are left out"));
         }
         for (size_t t = 0; t < triangles; ++t) {
             uint32_t corner[3];
@@ -478,22 +557,138 @@ class Importer {
             } else {
                 std::copy_n(&order[3 * t], 3, corner);
             }
+            if (corner[0] >= shape.vertices || corner[1] >= shape.vertices ||
+                corner[2] >= shape.vertices)
+                refuse(shape.name, ": a triangle names a vertex beyond the ", shape.vertices,
+                       " that there are");
             // Strips turn corners with triangles that have no area.
             if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
                 repeatedCorners_ += strip ? 0 : 1;
                 continue;
             }
-            if (mirrored) std::swap(corner[1], corner[2]);
+            shape.corners.insert(shape.corners.end(), corner, corner + 3);
+        }
+    }
+
+    // True: it squeezes everything onto a line or a point.
+    static bool isFlattened(const glm::dmat3& linear) {
+        double most = 0, area = 0;
+        for (int c = 0; c < 3; ++c) {
+            most = std::max(most, glm::length(linear[c]));
+            area = std::max(area, glm::length(glm::cross(linear[c], linear[(c + 1) % 3])));
+        }
+        return area <= 1e-14 * most * most;
+    }
+
+    static glm::dmat3 normalMatrixOf(const glm::dmat3& linear) {
+        return std::abs(glm::determinant(linear)) > 1e-30
+                   ? glm::transpose(glm::inverse(linear))
+                   : glm::dmat3(1.0);
+    }
+
+    // `skin` by joint; empty: all of it stands at `place`.
+    void addShape(const Shape& shape, const std::vector<glm::dmat4>& skin,
+                  const glm::dmat4& place) {
+        if (skin.empty() && isFlattened(glm::dmat3(place))) {
+            notes_.leaveOut("primitive", shape.name,
+                            "is left out: the scale of its node squeezes it onto a line");
+            return;
+        }
+        if (shape.corners.empty()) return;
+        ++model_.parts;
+        const size_t base = model_.vertexCount();
+        if (base + shape.vertices > kMaxVertices) {
+            refuse(shape.name, " brings the model to ", base + shape.vertices,
+                   " vertices; the limit is ", kMaxVertices);
+        }
+        if (model_.triangleCount() + shape.corners.size() / 3 > kMaxTriangles) {
+            refuse(shape.name, " brings the model to ",
+                   model_.triangleCount() + shape.corners.size() / 3, " triangles; the limit is ",
+                   kMaxTriangles);
+        }
+        glm::dmat4 world = place;
+        glm::dmat3 normalMatrix = normalMatrixOf(glm::dmat3(place));
+        std::vector<bool> mirrored(1, glm::determinant(glm::dmat3(place)) < 0);
+        if (!skin.empty()) mirrored.assign(shape.vertices, false);
+        for (uint64_t i = 0; i < shape.vertices; ++i) {
+            if (!skin.empty()) {
+                world = glm::dmat4(0.0);
+                for (size_t k = i * shape.influences; k < (i + 1) * shape.influences; ++k)
+                    if (shape.weights[k] > 0) world += shape.weights[k] * skin[shape.joints[k]];
+                normalMatrix = normalMatrixOf(glm::dmat3(world));
+                mirrored[i] = glm::determinant(glm::dmat3(world)) < 0;
+            }
+            const glm::dvec3 local = glm::make_vec3(&shape.positions[i * 3]);
+            const glm::dvec3 p(world * glm::dvec4(local, 1.0));
+            for (int c = 0; c < 3; ++c) {
+                if (!std::isfinite(p[c]) || std::abs(p[c]) > 1e9) {
+                    refuse(shape.name, ".POSITION[", i, "] is ", local.x, ", ", local.y, ", ",
+                           local.z, "; a position is finite and within 1e9 m");
+                }
+                model_.positions.push_back(static_cast<float>(p[c]));
+            }
+            glm::dvec3 n(0);
+            if (!shape.normals.empty()) {
+                n = normalMatrix * glm::dvec3(glm::make_vec3(&shape.normals[i * 3]));
+                const double length = glm::length(n);
+                const bool good = std::isfinite(length) && length > 1e-12;
+                n = good ? n / length : glm::dvec3(0);
+                anyNormal_ = anyNormal_ || good;
+                badNormals_ += good ? 0 : 1;
+            }
+            for (int c = 0; c < 3; ++c) model_.normals.push_back(static_cast<float>(n[c]));
+        }
+        if (shape.normals.empty()) missingNormals_ += 1;
+        if (shape.uvs.empty()) everyUv_ = false;
+        model_.uvs.insert(model_.uvs.end(), shape.uvs.begin(), shape.uvs.end());
+        model_.uvs.resize(2 * model_.vertexCount(), 0.0f);
+        if (!shape.colors.empty()) anyColor_ = true;
+        model_.colors.insert(model_.colors.end(), shape.colors.begin(), shape.colors.end());
+        model_.colors.resize(model_.vertexCount(), 0xffffffffu);
+        for (size_t i = 0; i < shape.corners.size(); i += 3) {
+            uint32_t corner[3];
+            std::copy_n(&shape.corners[i], 3, corner);
+            if (mirrored[skin.empty() ? 0 : corner[0]]) std::swap(corner[1], corner[2]);
             for (uint32_t k : corner) model_.indices.push_back(static_cast<uint32_t>(base) + k);
-            model_.triangleMaterials.push_back(material);
+            model_.triangleMaterials.push_back(shape.material);
+        }
+    }
+
+    // Vertices without a normal get one from their triangles, weighted by area.
+    void computeMissingNormals() {
+        const auto at = [&](const std::vector<float>& values, size_t i) {
+            return glm::dvec3(glm::make_vec3(&values[i * 3]));
+        };
+        std::map<uint32_t, glm::dvec3> sums;
+        for (uint32_t i = 0; i < model_.vertexCount(); ++i)
+            if (at(model_.normals, i) == glm::dvec3(0)) sums[i] = glm::dvec3(0);
+        for (size_t i = 0; i < model_.indices.size(); i += 3) {
+            const uint32_t* corner = &model_.indices[i];
+            const glm::dvec3 a = at(model_.positions, corner[0]);
+            const glm::dvec3 area =
+                glm::cross(at(model_.positions, corner[1]) - a, at(model_.positions, corner[2]) - a);
+            for (int k = 0; k < 3; ++k)
+                if (const auto found = sums.find(corner[k]); found != sums.end())
+                    found->second += area;
+        }
+        for (const auto& [i, sum] : sums) {
+            const double length = glm::length(sum);
+            const glm::dvec3 n = length > 0 ? sum / length : glm::dvec3(0, 1, 0);
+            for (int c = 0; c < 3; ++c) model_.normals[i * 3 + size_t(c)] = float(n[c]);
         }
     }
 
     void finish() {
-        if (repeatedCorners_) {
-            note(text(repeatedCorners_, " triangles with a repeated corner are left out"));
-        }
-        model_.hasNormals = everyNormal_;
+        if (repeatedCorners_)
+            notes_.add(text(repeatedCorners_, " triangles with a repeated corner are left out"));
+        if (badNormals_)
+            notes_.add(text(badNormals_, " normals have no length: they are computed"));
+        if (missingNormals_ && anyNormal_)
+            notes_.add(text(missingNormals_, " primitives have no normals: they are computed"));
+        if (anyNormal_ && (badNormals_ || missingNormals_)) computeMissingNormals();
+        materials_.noteUnusedImages();
+        notes_.finish();
+        model_.hasNormals = anyNormal_;
         model_.hasUvs = everyUv_;
         model_.hasColors = anyColor_;
         for (size_t c = 0; c < 3; ++c) model_.low[c] = model_.high[c] = model_.positions[c];
@@ -503,15 +698,15 @@ class Importer {
         }
     }
 
-    const tinygltf::Model& source_;
+    GltfFile& file_;
     ImportedModel& model_;
-    std::vector<bool> visited_;
-    std::vector<size_t> order_;  // of the nodes as they were found
-    std::map<int, uint32_t> materials_;
-    std::map<int, int32_t> images_;
-    std::vector<TextureUse> textureUses_;
-    uint64_t repeatedCorners_ = 0;
-    bool everyNormal_ = true, everyUv_ = true, anyColor_ = false;
+    Notes& notes_;
+    Materials materials_;
+    std::vector<bool> hidden_;
+    std::vector<size_t> order_;  // of the scene's nodes: parents before their children
+    std::map<std::pair<int, size_t>, Shape> shapes_;  // of meshes that several nodes use
+    uint64_t repeatedCorners_ = 0, badNormals_ = 0, missingNormals_ = 0;
+    bool anyNormal_ = false, everyUv_ = true, anyColor_ = false;
 };
 
 }  // namespace
@@ -549,43 +744,22 @@ bool importGltfBytes(std::span<const uint8_t> bytes, const std::string& name,
         if (bytes.size() > kMaxFileBytes) {
             refuse("it is ", bytes.size(), " bytes; the limit is ", kMaxFileBytes);
         }
-        if (bytes.empty()) refuse("it is empty");
-        const bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
-        const std::span<const uint8_t> json = binary ? checkGlb(bytes) : bytes;
-        checkNesting(json);
-        const std::string wrongType = findWrongType(json);
-
-        tinygltf::TinyGLTF loader;
-        loader.SetImageLoader(keepImage, nullptr);
-        tinygltf::Model source;
-        std::string problem, warning;
-        const auto size = static_cast<unsigned int>(bytes.size());
-        const bool good =
-            binary ? loader.LoadBinaryFromMemory(&source, &problem, &warning, bytes.data(), size,
-                                                 folder.string())
-                   : loader.LoadASCIIFromString(&source, &problem, &warning,
-                                                reinterpret_cast<const char*>(bytes.data()), size,
-                                                folder.string());
-        if (!good) {
-            while (!problem.empty() && problem.back() == '\n') problem.pop_back();
-            // A required extension is the likelier cause of whatever looked odd to the parser.
-            checkExtensions(source);
-            if (!wrongType.empty()) refuse(wrongType);
-            refuse(problem.empty() ? "it is not glTF" : problem);
-        }
-        if (source.asset.version.rfind("2.", 0) != 0) {
-            refuse("asset.version is \"", source.asset.version, "\"; 2.x is read");
-        }
-        checkExtensions(source);
-        if (!wrongType.empty()) refuse(wrongType);
         ImportedModel result;
-        Importer(source, result).run(part);
+        Notes notes(result.notes);
+        GltfFile file(bytes, folder, notes);
+        checkRequired(file);
+        noteLeftOut(file, notes);
+        Importer(file, result, notes).run(part);
         model = std::move(result);
         return true;
+    } catch (const Refusal& refusal) {
+        error = name + ": " + refusal.what();
+    } catch (const std::bad_alloc&) {
+        error = name + ": there is not enough memory to read it";
     } catch (const std::exception& failure) {
-        error = name + ": " + failure.what();
-        return false;
+        error = name + ": it cannot be read (" + failure.what() + ")";
     }
+    return false;
 }
 
 bool importGltf(const std::filesystem::path& path, ImportedModel& model, std::string& error,

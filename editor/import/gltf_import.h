@@ -1,8 +1,7 @@
 // glTF 2.0 (.gltf and .glb) into plain arrays in world space, ready to be baked.
-// Geometry, base colours and the nodes they hang on: no animation, skins, morph targets, cameras or
-// lights.
-// Every range is checked before it is read; what cannot be used is refused by name. An optional
-// field of the wrong type counts as absent.
+// Geometry, base colours and the nodes they hang on; skins, morph targets and instances as the file
+// puts them at rest. No animation, cameras or lights: what is not shown has a note.
+// Every range is checked before it is read; what cannot be used is refused by name.
 #pragma once
 
 #include <array>
@@ -53,6 +52,7 @@ struct ImportedModel {
     std::vector<ImportedNode> nodes;          // all of the file, by its numbers
     bool hasNormals = false, hasUvs = false, hasColors = false;  // for every vertex
     std::array<float, 3> low{}, high{};                          // m, bounds of the positions
+    size_t parts = 0;  // primitives that are in it, each instance counted
     std::vector<std::string> notes;  // what is left out or shown otherwise, and why
 
     size_t vertexCount() const { return positions.size() / 3; }

@@ -46,12 +46,28 @@ void encodeSrgb(std::span<const float> linear, size_t channels, std::span<uint8_
     }
 }
 
+// Straight alpha; `most` is a value's whole.
+template <typename T>
+void divideByAlpha(std::span<T> values, size_t channels, float most) {
+    for (size_t i = 0; i + channels <= values.size(); i += channels) {
+        const auto alpha = static_cast<float>(values[i + channels - 1]) / most;
+        for (size_t c = 0; c + 1 < channels && alpha > 0; ++c)
+            values[i + c] =
+                static_cast<T>(std::min(static_cast<float>(values[i + c]) / alpha, most));
+    }
+}
+
 }  // namespace
 
 bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error) {
     const char* name = nameFor(bytes);
     if (!name) {
-        error = "it is none of PNG, JPEG, EXR, TIFF, HDR, DDS and WebP";
+        using namespace std::string_view_literals;
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        const bool ktx = text.starts_with("\xabKTX"sv);
+        error = ktx             ? "it is KTX; convert it to PNG or JPEG"
+                : bytes.empty() ? "it is empty"
+                                : "it is none of PNG, JPEG, EXR, TIFF, HDR, DDS and WebP";
         return false;
     }
     try {
@@ -59,9 +75,9 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
         // Colours as the file has them: by default they come multiplied by the alpha.
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);
-        // A configured reader asks its configuration alone where its bytes come from.
+        // Together with a configuration the memory must come in it.
         OIIO::Filesystem::IOProxy* proxy = &memory;
-        config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+        config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
         auto input = OIIO::ImageInput::open(name, &config, &memory);
         if (!input) {
             error = "it cannot be decoded: " + OIIO::geterror();
@@ -91,6 +107,14 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
             error = "it cannot be decoded: " + input->geterror();
             return false;
         }
+        // EXR has its colours multiplied by alpha, TIFF may have.
+        const std::string_view kind = input->format_name();
+        const bool multiplied =
+            channels % 2 == 0 &&
+            (kind == "openexr" ||
+             (kind == "tiff" && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0));
+        if (multiplied && light) divideByAlpha<float>(linear, stride, 1.0f);
+        if (multiplied && !light) divideByAlpha<uint8_t>(raw, stride, 255.0f);
         if (light) encodeSrgb(linear, stride, raw);
         DecodedImage result;
         result.width = static_cast<uint32_t>(spec.width);

@@ -1,4 +1,5 @@
 // fw-info: what a file holds.
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -11,6 +12,7 @@ namespace {
 constexpr const char* kHelp =
     "fw-info FILE [--json] [--quiet]\n"
     "  FILE  a .fwscene, a glTF file, or a .fwburn: a cooked burn map, or a baked burn\n"
+    "Of meshes: their size, what they are made of, and what of their file is left out.\n"
     "Exit code: 0 fine, 1 refused (the reason is told), 2 the command line is wrong.\n";
 
 }  // namespace
@@ -22,6 +24,9 @@ int main(int count, char** words) {
     int code = 0;
     if (!parseOptions(count, words, kHelp, options, code)) return code;
     ScriptHost host(std::filesystem::current_path());
+    // Notes are part of what is printed here.
+    ToolOptions quiet = options;
+    quiet.quiet = true;
     std::string error;
     JsonLine json;
     std::string plain;
@@ -73,21 +78,49 @@ int main(int count, char** words) {
         row("area", static_cast<double>(info.area));
         row("texels_per_metre", static_cast<double>(info.texelsPerMetre));
     } else {
-        if (!openInput(host, options, error)) return refuse(options, error);
+        if (!openInput(host, quiet, error)) return refuse(options, error);
         const Scene& scene = host.document.scene;
         forEachList(scene, [&](Kind kind, const auto& list) {
             row(kindKey(kind), static_cast<double>(list.size()));
         });
-        size_t triangles = 0, vertices = 0;
+        size_t nodes = 0, parts = 0, materials = 0, pictures = 0, triangles = 0, vertices = 0;
+        std::vector<std::string> notes;
+        std::string sizes;
+        const bool several = scene.meshes.size() > 1;
         for (const Mesh& mesh : scene.meshes) {
             const auto model = modelOf(mesh, baseFolder(host.document), host.assets, error);
             if (!model) return refuse(options, error);
+            nodes += static_cast<size_t>(std::count_if(
+                model->nodes.begin(), model->nodes.end(), [](const auto& n) { return n.inScene; }));
+            parts += model->parts;
+            materials += model->materials.size();
+            pictures += model->images.size();
             triangles += model->triangleCount();
             vertices += model->vertexCount();
+            const std::string from = several ? mesh.name + ": " : "";
+            for (const std::string& note : model->notes) notes.push_back(from + note);
+            char text[96];
+            std::snprintf(text, sizeof text, "%.6g x %.6g x %.6g m",
+                          static_cast<double>(model->high[0] - model->low[0]),
+                          static_cast<double>(model->high[1] - model->low[1]),
+                          static_cast<double>(model->high[2] - model->low[2]));
+            sizes += "size                 " + from + text + "\n";
+            if (several) continue;
+            for (size_t c = 0; c < 3; ++c) {
+                constexpr const char* kSizes[] = {"size_x", "size_y", "size_z"};
+                json.number(kSizes[c], static_cast<double>(model->high[c] - model->low[c]));
+            }
         }
+        plain += sizes;
+        row("nodes", static_cast<double>(nodes));
+        row("parts", static_cast<double>(parts));
+        row("mesh_materials", static_cast<double>(materials));
+        row("mesh_pictures", static_cast<double>(pictures));
         row("vertices", static_cast<double>(vertices));
         row("triangles", static_cast<double>(triangles));
         row("duration", static_cast<double>(scene.settings.duration));
+        json.list("notes", notes);
+        for (const std::string& note : notes) plain += "note: " + note + "\n";
     }
     std::printf("%s", options.json ? (json.done() + "\n").c_str() : plain.c_str());
     return ExitFine;

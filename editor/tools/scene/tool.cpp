@@ -101,6 +101,15 @@ void JsonLine::text(const char* name, std::string_view value) {
     key(name);
     body_ += fwedit::inQuotes(fwedit::cleanText(value, 1 << 20));
 }
+void JsonLine::list(const char* name, const std::vector<std::string>& values) {
+    key(name);
+    std::string items;
+    for (const std::string& value : values) {
+        if (!items.empty()) items += ", ";
+        items += fwedit::inQuotes(fwedit::cleanText(value, 1 << 20));
+    }
+    body_ += "[" + items + "]";
+}
 void JsonLine::number(const char* name, double value) {
     key(name);
     body_ += std::isfinite(value) ? fwedit::printNumber(value) : "null";

@@ -40,6 +40,7 @@ class JsonLine {
  public:
     void text(const char* key, std::string_view value);
     void number(const char* key, double value);
+    void list(const char* key, const std::vector<std::string>& values);
     [[nodiscard]] std::string done() const { return "{" + body_ + "}"; }
 
  private:

@@ -1,0 +1,15 @@
+// What a glTF file holds besides what is read: extensions, animations, cameras.
+#pragma once
+
+#include "import/gltf_access.h"
+
+namespace fwimport {
+
+// Refuses a file whose shapes cannot be read without an extension that is not read. What only
+// changes how a surface looks or what a scene does besides is no reason to refuse.
+void checkRequired(const GltfFile& file);
+
+// Notes every extension that is in the file and is not read, and whole kinds of things.
+void noteLeftOut(const GltfFile& file, Notes& notes);
+
+}  // namespace fwimport

@@ -1,0 +1,289 @@
+// See gltf_material.h.
+#include "import/gltf_material.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fwimport {
+namespace {
+
+double unit(double value, double otherwise) {
+    return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
+}
+
+void readColor(const std::vector<double>& from, std::array<float, 4>& to) {
+    for (size_t i = 0; i < from.size() && i < 4; ++i)
+        to[i] = static_cast<float>(unit(from[i], 1));
+}
+
+double toLinear(double value) {
+    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+uint8_t toSrgb(double value) {
+    value = value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
+    return static_cast<uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
+}
+
+double brightness(const glm::dvec3& c) { return 0.299 * c.x + 0.587 * c.y + 0.114 * c.z; }
+
+// How far a specular-glossiness surface is a metal, which is black in diffuse light and has its
+// colour in the reflection. [0, 1]
+double metalShare(const glm::dvec3& diffuse, const glm::dvec3& specular) {
+    const double dark = std::clamp(1 - 10 * brightness(diffuse), 0.0, 1.0);
+    return dark * std::clamp((brightness(specular) - 0.04) / 0.06, 0.0, 1.0);
+}
+
+// True: some of it is more see-through than not, and some is not.
+bool hasHoles(const DecodedImage& image) {
+    bool hole = false, solid = false;
+    for (size_t i = 3; i < image.rgba.size(); i += 4) (image.rgba[i] < 128 ? hole : solid) = true;
+    return hole && solid;
+}
+
+// The picture of diffuse colours with those of metals put in, where both pictures are dark there.
+void addMetal(DecodedImage& diffuse, const std::array<float, 4>& factor,
+              const DecodedImage& specular, const glm::dvec3& specularFactor) {
+    std::array<double, 256> linear;
+    for (size_t i = 0; i < 256; ++i) linear[i] = toLinear(double(i) / 255);
+    for (uint32_t y = 0; y < diffuse.height; ++y) {
+        for (uint32_t x = 0; x < diffuse.width; ++x) {
+            uint8_t* to = &diffuse.rgba[(size_t{y} * diffuse.width + x) * 4];
+            const size_t column = size_t{x} * specular.width / diffuse.width;
+            const size_t row = size_t{y} * specular.height / diffuse.height;
+            const uint8_t* from = &specular.rgba[(row * specular.width + column) * 4];
+            glm::dvec3 base, metal;
+            for (int c = 0; c < 3; ++c) {
+                base[c] = linear[to[c]] * double(factor[size_t(c)]);
+                metal[c] = linear[from[c]] * specularFactor[c];
+            }
+            const double share = metalShare(base, metal);
+            if (share <= 0) continue;
+            for (int c = 0; c < 3; ++c) {
+                const double wanted = glm::mix(base[c], metal[c], share);
+                to[c] = toSrgb(wanted / std::max(double(factor[size_t(c)]), 1e-3));
+            }
+        }
+    }
+}
+
+}  // namespace
+
+glm::dvec2 TextureUse::apply(glm::dvec2 uv) const {
+    if (!transformed) return uv;
+    const double cosine = std::cos(rotation), sine = std::sin(rotation);
+    uv *= scale;
+    return glm::dvec2(cosine * uv.x + sine * uv.y, cosine * uv.y - sine * uv.x) + offset;
+}
+
+uint32_t Materials::indexOf(int index) {
+    if (const auto found = materials_.find(index); found != materials_.end()) return found->second;
+    ImportedMaterial material;
+    TextureUse use;
+    if (index >= 0)
+        readMaterial(file_.item("materials", index), material, use);
+    else
+        material.name = "default";
+    const auto result = static_cast<uint32_t>(model_.materials.size());
+    model_.materials.push_back(material);
+    uses_.push_back(use);
+    materials_[index] = result;
+    return result;
+}
+
+void Materials::readMaterial(const Field& from, ImportedMaterial& material, TextureUse& use) {
+    material.name = from.string("name");
+    material.doubleSided = from.flag("doubleSided", false);
+    const bool glossy = from.extension("KHR_materials_pbrSpecularGlossiness").present();
+    if (glossy) {
+        readSpecularGlossiness(from, material, use);
+    } else if (const Field pbr = from.object("pbrMetallicRoughness"); pbr.present()) {
+        readColor(pbr.numbers("baseColorFactor", 4), material.baseColor);
+        material.roughness = static_cast<float>(unit(pbr.number("roughnessFactor", 1), 1));
+        material.image = textureImage(pbr.object("baseColorTexture"), use);
+    }
+    readAlpha(from, material);
+    noteChannels(from, glossy);
+}
+
+void Materials::readSpecularGlossiness(const Field& from, ImportedMaterial& material,
+                                       TextureUse& use) {
+    const Field glossy = from.extension("KHR_materials_pbrSpecularGlossiness");
+    readColor(glossy.numbers("diffuseFactor", 4), material.baseColor);
+    material.roughness = static_cast<float>(1 - unit(glossy.number("glossinessFactor", 1), 1));
+    material.image = textureImage(glossy.object("diffuseTexture"), use);
+    std::array<float, 4> specular{1, 1, 1, 1};
+    const std::vector<double> factor = glossy.numbers("specularFactor", 3);
+    readColor(factor, specular);
+    const Field map = glossy.object("specularGlossinessTexture");
+    // A file that says nothing of the reflection has no metal in mind.
+    if (factor.empty() && !map.present()) return;
+    const glm::dvec3 metal(specular[0], specular[1], specular[2]);
+    if (material.image < 0) {
+        const glm::dvec3 base(material.baseColor[0], material.baseColor[1], material.baseColor[2]);
+        const double share = metalShare(base, metal);
+        for (int c = 0; c < 3; ++c)
+            material.baseColor[size_t(c)] = static_cast<float>(glm::mix(base[c], metal[c], share));
+        return;
+    }
+    if (!map.present()) return;
+    TextureUse mapUse;
+    std::string error;
+    const int texture = map.index("index", file_.count("textures"));
+    if (texture < 0) return;
+    const int image = file_.item("textures", texture).index("source", file_.count("images"));
+    DecodedImage reflected;
+    if (image < 0 || !decode(image, reflected, error)) return;
+    DecodedImage mixed = model_.images[static_cast<size_t>(material.image)];
+    addMetal(mixed, material.baseColor, reflected, metal);
+    if (mixed.rgba == model_.images[static_cast<size_t>(material.image)].rgba) return;
+    material.image = static_cast<int32_t>(model_.images.size());
+    model_.images.push_back(std::move(mixed));
+}
+
+// Alpha that a Mask cannot show becomes the nearest thing that it can, with a note.
+void Materials::readAlpha(const Field& from, ImportedMaterial& material) {
+    const std::string mode = from.string("alphaMode", "OPAQUE");
+    if (mode == "MASK") {
+        material.alphaMode = AlphaMode::Mask;
+        material.alphaCutoff = static_cast<float>(unit(from.number("alphaCutoff", 0.5), 0.5));
+    } else if (mode == "BLEND") {
+        const bool holes =
+            material.image >= 0 && hasHoles(model_.images[static_cast<size_t>(material.image)]);
+        if (holes) material.alphaMode = AlphaMode::Mask;
+        notes_.leaveOut("alphaMode BLEND", from.path(),
+                        holes ? "is shown as a cut-out at alpha 0.5" : "is shown opaque");
+    } else if (mode != "OPAQUE") {
+        notes_.add(text(from.path(), ".alphaMode is \"", mode.substr(0, 40),
+                        "\", which glTF has not; it is shown opaque"));
+    }
+}
+
+void Materials::noteChannels(const Field& from, bool glossy) {
+    for (const char* name : {"normalTexture", "occlusionTexture", "emissiveTexture"})
+        if (from.has(name)) notes_.leaveOut(name, from.path());
+    const std::vector<double> glow = from.numbers("emissiveFactor", 3);
+    if (std::any_of(glow.begin(), glow.end(), [](double value) { return value > 0; }))
+        notes_.leaveOut("emissiveFactor", from.path());
+    if (glossy) {
+        const Field one = from.extension("KHR_materials_pbrSpecularGlossiness");
+        if (one.has("specularGlossinessTexture"))
+            notes_.leaveOut("glossiness of specularGlossinessTexture", from.path());
+        return;
+    }
+    const Field pbr = from.object("pbrMetallicRoughness");
+    if (!pbr.present()) return;
+    if (pbr.has("metallicRoughnessTexture"))
+        notes_.leaveOut("metallicRoughnessTexture", from.path());
+    if (pbr.number("metallicFactor", 1) > 0)
+        notes_.leaveOut("metallicFactor", from.path(), "is left out: no surface is shown as metal");
+}
+
+void Materials::readTransform(const Field& info, TextureUse& use) const {
+    const Field transform = info.extension("KHR_texture_transform");
+    if (!transform.present()) return;
+    const auto pair = [&](const char* name, glm::dvec2 otherwise) {
+        const std::vector<double> both = transform.numbers(name, 2);
+        const bool good = both.size() == 2 && std::isfinite(both[0]) && std::isfinite(both[1]);
+        return good ? glm::dvec2(both[0], both[1]) : otherwise;
+    };
+    use.transformed = true;
+    use.offset = pair("offset", glm::dvec2(0));
+    use.scale = pair("scale", glm::dvec2(1));
+    use.rotation = transform.number("rotation", 0);
+    if (!std::isfinite(use.rotation)) use.rotation = 0;
+    use.texCoord = static_cast<int>(transform.integer("texCoord", use.texCoord));
+}
+
+void Materials::readSampler(const Field& texture, TextureUse& use) {
+    const int index = texture.index("sampler", file_.count("samplers"));
+    if (index < 0) return;
+    const Field sampler = file_.item("samplers", index);
+    use.sampler = sampler.path();
+    use.wrap[0] = sampler.integer("wrapS", 10497);
+    use.wrap[1] = sampler.integer("wrapT", 10497);
+    if (sampler.integer("magFilter", 9729) == 9728)
+        notes_.leaveOut("magFilter NEAREST", sampler.path(), "is shown as LINEAR");
+}
+
+int32_t Materials::textureImage(const Field& info, TextureUse& use) {
+    if (!info.present()) return -1;
+    const int index = info.index("index", file_.count("textures"));
+    if (index < 0) refuse(info.path(), ".index is missing");
+    use.texCoord = static_cast<int>(info.integer("texCoord", 0));
+    readTransform(info, use);
+    const Field texture = file_.item("textures", index);
+    readSampler(texture, use);
+    const size_t images = file_.count("images");
+    std::vector<int> candidates;  // the first that can be decoded is shown
+    for (const char* name : {"EXT_texture_webp", "MSFT_texture_dds"})
+        candidates.push_back(texture.extension(name).index("source", images));
+    candidates.push_back(texture.index("source", images));
+    for (const char* name : {"EXT_texture_avif", "KHR_texture_basisu"})
+        candidates.push_back(texture.extension(name).index("source", images));
+    std::string why;
+    for (const int image : candidates) {
+        if (image < 0) continue;
+        std::string error;
+        if (const int32_t result = imageIndex(image, error); result >= 0) return result;
+        why += text("\nimages[", image, "] is left out: ", error);
+    }
+    if (why.empty()) notes_.add(text(texture.path(), " has no image that can be read"));
+    for (size_t from = 1; from < why.size();) {
+        const size_t end = std::min(why.find('\n', from), why.size());
+        notes_.add(why.substr(from, end - from));
+        from = end + 1;
+    }
+    return -1;
+}
+
+int32_t Materials::imageIndex(int image, std::string& error) {
+    if (const auto found = images_.find(image); found != images_.end()) {
+        error = imageErrors_[image];
+        return found->second;
+    }
+    int32_t result = -1;
+    DecodedImage decoded;
+    constexpr uint64_t kMostBytes = 4ull << 30;
+    if (decode(image, decoded, error) &&
+        (pictureBytes_ += decoded.rgba.size()) > kMostBytes) {
+        error = text("with it the pictures have ", pictureBytes_, " bytes; the limit is ",
+                     kMostBytes);
+    } else if (!decoded.rgba.empty()) {
+        result = static_cast<int32_t>(model_.images.size());
+        model_.images.push_back(std::move(decoded));
+    }
+    imageErrors_[image] = error;
+    return images_[image] = result;
+}
+
+bool Materials::decode(int index, DecodedImage& decoded, std::string& error) {
+    const Field image = file_.item("images", index);
+    try {
+        if (image.has("bufferView")) {
+            const Bytes view =
+                file_.view(static_cast<int>(image.integer("bufferView", -1)), image.path());
+            return decodeImage(view.span(), decoded, error);
+        }
+        if (!image.has("uri")) {
+            error = "it has neither a uri nor a bufferView";
+            return false;
+        }
+        const std::vector<uint8_t> bytes =
+            file_.uri(image.string("uri"), image.path() + ".uri");
+        return decodeImage(bytes, decoded, error);
+    } catch (const Refusal& refusal) {
+        error = refusal.what();
+        return false;
+    }
+}
+
+void Materials::noteUnusedImages() {
+    const Field images = file_.root().list("images");
+    for (size_t i = 0; i < images.size(); ++i)
+        if (!images_.contains(static_cast<int>(i)))
+            notes_.leaveOut("image", images.at(i).path(),
+                            "is left out: no base colour that is shown uses it");
+}
+
+}  // namespace fwimport
