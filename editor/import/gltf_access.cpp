@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iomanip>
 
 #include "import/gltf_import.h"
 #include "import/gltf_uri.h"
@@ -147,7 +148,12 @@ GltfFile::GltfFile(std::span<const uint8_t> bytes, std::filesystem::path folder,
     if (!json_.is_object()) refuse("it is not glTF: its JSON is no object");
     if (repaired) notes_.add("the JSON is not all UTF-8: bytes of names are read as ?");
     const Field asset = root().object("asset");
-    const std::string version = asset.string("version");
+    // Some writers make it a number.
+    const bool number = asset.present() && json_["asset"].contains("version") &&
+                        json_["asset"]["version"].is_number();
+    const std::string version =
+        number ? text(std::fixed, std::setprecision(1), asset.number("version", 0))
+               : asset.string("version");
     if (version.rfind("2.", 0) != 0)
         refuse("asset.version is \"", version.substr(0, 40),
                "\"; 2.x is read (Blender, for one, reads glTF 1.0 and writes 2.0)");

@@ -426,7 +426,6 @@ class Importer {
         const bool pictured = model_.materials[shape.material].image >= 0;
         if (!uvs.count && pictured)
             notes_.leaveOut("picture", shape.name, text("is left out: there is no ", key));
-        bool outside[2] = {false, false};
         for (uint64_t i = 0; i < uvs.count; ++i) {
             const glm::dvec2 raw = glm::make_vec2(&uvs.data[i * 2]);
             if (!std::isfinite(raw.x) || !std::isfinite(raw.y) || std::abs(raw.x) > 1e6 ||
@@ -435,19 +434,7 @@ class Importer {
                        "; it is finite and within 1e6");
             }
             const glm::dvec2 uv = use.apply(raw);
-            for (int c = 0; c < 2; ++c) {
-                outside[c] = outside[c] || uv[c] < -0.001 || uv[c] > 1.001;
-                shape.uvs.push_back(static_cast<float>(uv[c]));
-            }
-        }
-        for (int c = 0; c < 2 && pictured; ++c) {
-            const int64_t wrap = use.wrap[c];
-            if (!outside[c] || wrap == 10497) continue;
-            notes_.leaveOut(text(use.sampler, c == 0 ? ".wrapS " : ".wrapT ",
-                                 wrap == 33071   ? "CLAMP_TO_EDGE"
-                                 : wrap == 33648 ? "MIRRORED_REPEAT"
-                                                 : text(wrap)),
-                            shape.name, "is shown as REPEAT");
+            for (int c = 0; c < 2; ++c) shape.uvs.push_back(static_cast<float>(uv[c]));
         }
     }
 
@@ -686,6 +673,7 @@ class Importer {
         if (missingNormals_ && anyNormal_)
             notes_.add(text(missingNormals_, " primitives have no normals: they are computed"));
         if (anyNormal_ && (badNormals_ || missingNormals_)) computeMissingNormals();
+        materials_.unwrapPictures();
         materials_.noteUnusedImages();
         notes_.finish();
         model_.hasNormals = anyNormal_;

@@ -194,6 +194,7 @@ int Field::index(const char* name, size_t count) const {
     const json* value = find(name);
     if (!value) return -1;
     const int64_t number = integerOf(*value, pathOf(name));
+    if (number == -1) return -1;  // as some writers say "none"
     if (number < 0 || static_cast<uint64_t>(number) >= count)
         refuse(pathOf(name), " is ", number, "; there are ", count);
     return static_cast<int>(number);

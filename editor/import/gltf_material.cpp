@@ -200,8 +200,15 @@ void Materials::readSampler(const Field& texture, TextureUse& use) {
     if (index < 0) return;
     const Field sampler = file_.item("samplers", index);
     use.sampler = sampler.path();
-    use.wrap[0] = sampler.integer("wrapS", 10497);
-    use.wrap[1] = sampler.integer("wrapT", 10497);
+    for (size_t c = 0; c < 2; ++c) {
+        const char* name = c == 0 ? "wrapS" : "wrapT";
+        use.wrap[c] = sampler.integer(name, kRepeat);
+        if (use.wrap[c] != kRepeat && use.wrap[c] != kClamp && use.wrap[c] != kMirror) {
+            notes_.add(text(sampler.path(), ".", name, " is ", use.wrap[c],
+                            ", which glTF has not; it is shown as REPEAT"));
+            use.wrap[c] = kRepeat;
+        }
+    }
     if (sampler.integer("magFilter", 9729) == 9728)
         notes_.leaveOut("magFilter NEAREST", sampler.path(), "is shown as LINEAR");
 }
@@ -209,7 +216,10 @@ void Materials::readSampler(const Field& texture, TextureUse& use) {
 int32_t Materials::textureImage(const Field& info, TextureUse& use) {
     if (!info.present()) return -1;
     const int index = info.index("index", file_.count("textures"));
-    if (index < 0) refuse(info.path(), ".index is missing");
+    if (index < 0) {
+        notes_.leaveOut("picture without an index", info.path());
+        return -1;
+    }
     use.texCoord = static_cast<int>(info.integer("texCoord", 0));
     readTransform(info, use);
     const Field texture = file_.item("textures", index);
@@ -275,6 +285,101 @@ bool Materials::decode(int index, DecodedImage& decoded, std::string& error) {
     } catch (const Refusal& refusal) {
         error = refusal.what();
         return false;
+    }
+}
+
+void Materials::unwrapPictures() {
+    // One axis of a picture: `from` to `from + length` of its texels are laid out.
+    struct Axis {
+        int64_t wrap = kRepeat, from = 0, length = 0;
+    };
+    constexpr float kFar = 1e30f;
+    const size_t vertices = model_.vertexCount();
+    std::vector<uint32_t> materialOf(vertices, UINT32_MAX);
+    std::vector<std::array<float, 4>> ranges(uses_.size(), {kFar, kFar, -kFar, -kFar});
+    for (size_t i = 0; i < model_.indices.size(); ++i) {
+        const uint32_t vertex = model_.indices[i], material = model_.triangleMaterials[i / 3];
+        materialOf[vertex] = material;
+        for (size_t c = 0; c < 2; ++c) {
+            const float uv = model_.uvs[2 * size_t{vertex} + c];
+            ranges[material][c] = std::min(ranges[material][c], uv);
+            ranges[material][2 + c] = std::max(ranges[material][2 + c], uv);
+        }
+    }
+    struct Layout {
+        double offset[2] = {0, 0}, scale[2] = {1, 1};
+        bool changed = false;
+    };
+    std::vector<Layout> layouts(uses_.size());
+    std::map<int32_t, size_t> users;
+    for (const ImportedMaterial& material : model_.materials) ++users[material.image];
+    for (size_t m = 0; m < uses_.size(); ++m) {
+        ImportedMaterial& material = model_.materials[m];
+        if (material.image < 0 || ranges[m][0] > ranges[m][2]) continue;
+        const DecodedImage& image = model_.images[static_cast<size_t>(material.image)];
+        Axis axes[2];
+        Layout layout;
+        for (size_t c = 0; c < 2; ++c) {
+            Axis& axis = axes[c];
+            const auto texels = static_cast<int64_t>(c == 0 ? image.width : image.height);
+            axis.length = texels;
+            const double low = double(ranges[m][c]), high = double(ranges[m][2 + c]);
+            if (low >= -0.001 && high <= 1.001) continue;
+            axis.wrap = uses_[m].wrap[c];
+            if (axis.wrap == kRepeat) continue;
+            layout.changed = true;
+            if (axis.wrap == kMirror) {
+                axis.length = 2 * texels;
+            } else {
+                // One texel more on both sides for those that are mixed at the edge.
+                const auto size = double(texels);
+                axis.from = std::min<int64_t>(0, int64_t(std::floor(low * size)) - 1);
+                axis.length =
+                    std::max<int64_t>(texels, int64_t(std::ceil(high * size)) + 1) - axis.from;
+            }
+            layout.scale[c] = double(texels) / double(axis.length);
+            layout.offset[c] = -double(axis.from) / double(axis.length);
+        }
+        if (!layout.changed) continue;
+        constexpr uint64_t kMostBytes = 256ull << 20;
+        const uint64_t bytes = 4 * static_cast<uint64_t>(axes[0].length * axes[1].length);
+        if (axes[0].length > int64_t{kMaxImageSide} || axes[1].length > int64_t{kMaxImageSide} ||
+            bytes > kMostBytes) {
+            notes_.leaveOut(text("wrapS and wrapT of ", uses_[m].sampler), material.name,
+                            "are shown as REPEAT: the UVs reach too far beyond the picture");
+            continue;
+        }
+        DecodedImage laid;
+        laid.width = static_cast<uint32_t>(axes[0].length);
+        laid.height = static_cast<uint32_t>(axes[1].length);
+        laid.rgba.resize(bytes);
+        const auto source = [](const Axis& axis, int64_t at, int64_t texels) {
+            if (axis.wrap == kMirror) return at < texels ? at : 2 * texels - 1 - at;
+            return std::clamp<int64_t>(axis.from + at, 0, texels - 1);
+        };
+        for (int64_t y = 0; y < axes[1].length; ++y) {
+            const int64_t row = source(axes[1], y, image.height);
+            for (int64_t x = 0; x < axes[0].length; ++x) {
+                const int64_t column = source(axes[0], x, image.width);
+                std::copy_n(&image.rgba[static_cast<size_t>(row * image.width + column) * 4], 4,
+                            &laid.rgba[static_cast<size_t>(y * axes[0].length + x) * 4]);
+            }
+        }
+        if (--users[material.image] == 0) {
+            model_.images[static_cast<size_t>(material.image)] = std::move(laid);
+        } else {
+            material.image = static_cast<int32_t>(model_.images.size());
+            model_.images.push_back(std::move(laid));
+        }
+        layouts[m] = layout;
+    }
+    for (size_t v = 0; v < vertices; ++v) {
+        if (materialOf[v] == UINT32_MAX || !layouts[materialOf[v]].changed) continue;
+        const Layout& layout = layouts[materialOf[v]];
+        for (size_t c = 0; c < 2; ++c) {
+            float& uv = model_.uvs[2 * v + c];
+            uv = static_cast<float>(double(uv) * layout.scale[c] + layout.offset[c]);
+        }
     }
 }
 

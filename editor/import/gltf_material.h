@@ -2,6 +2,7 @@
 // What a material has besides goes to the notes.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <map>
 #include <string>
@@ -12,13 +13,16 @@
 
 namespace fwimport {
 
+// glTF's numbers for what is beyond a picture's edge.
+constexpr int64_t kRepeat = 10497, kClamp = 33071, kMirror = 33648;
+
 // How a material's picture is laid on.
 struct TextureUse {
     int texCoord = 0;
     glm::dvec2 offset{0}, scale{1};
     double rotation = 0;  // rad
     bool transformed = false;
-    int64_t wrap[2] = {10497, 10497};  // of glTF: REPEAT
+    std::array<int64_t, 2> wrap{kRepeat, kRepeat};
     std::string sampler;               // "samplers[0]", for notes
 
     [[nodiscard]] glm::dvec2 apply(glm::dvec2 uv) const;
@@ -33,6 +37,9 @@ class Materials {
     // the first time.
     uint32_t indexOf(int material);
     [[nodiscard]] const TextureUse& use(uint32_t index) const { return uses_[index]; }
+    // All pictures repeat here. Those that the file does not repeat beyond their edge are laid out
+    // as far as the surfaces reach, and the model's UVs with them.
+    void unwrapPictures();
     // Notes what is wrong with pictures that nothing above used.
     void noteUnusedImages();
 

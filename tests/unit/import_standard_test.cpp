@@ -311,20 +311,50 @@ TEST(ImportMaterial, EveryChannelThatIsNotShownHasOneNote) {
                     "cameras (1) are left out"));
 }
 
-TEST(ImportMaterial, SamplersThatAreNotShownAreNotedWhereTheyMatter) {
-    const auto picture = pictureOf("s.png", repeated({1, 0.5f, 0, 1}, 4), 2, 2);
-    Quad quad = pictured(picture, kTextured, R"({"source":0,"sampler":0})");
-    quad.extra += R"(,"samplers":[{"wrapS":33071,"wrapT":33648,"magFilter":9728}])";
-    ImportedModel model;
-    ASSERT_TRUE(loads(quad.bytes(), model));
+TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
+    // Four columns: 0, 80, 160, 240 of red.
+    std::vector<float> columns;
+    for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 4; ++x) columns.insert(columns.end(), {float(80 * x) / 255, 0, 0, 1});
+    const auto picture = pictureOf("s.png", columns, 4, 2);
+    const auto read = [&](const std::string& sampler, float from, float to) {
+        Quad quad = pictured(picture, kTextured, R"({"source":0,"sampler":0})");
+        quad.extra += R"(,"samplers":[{)" + sampler + "}]";
+        const float uvs[] = {from, 0, to, 0, to, 1, from, 1};
+        std::memcpy(quad.glb.binary.data() + 60, uvs, sizeof uvs);
+        ImportedModel model;
+        EXPECT_TRUE(loads(quad.bytes(), model));
+        return model;
+    };
+    // What a repeated picture shows at a place of the file's own, nearest texel.
+    const auto redAt = [](const ImportedModel& model, double u, double from, double to) {
+        const double share = (u - from) / (to - from);
+        const double own = double(model.uvs[0]) + share * double(model.uvs[2] - model.uvs[0]);
+        const auto& image = model.images.at(0);
+        const double column = (own - std::floor(own)) * image.width;
+        return int(image.rgba[4 * size_t(column)]);
+    };
+    ImportedModel model = read(R"("wrapS":33071,"wrapT":33648)", 0, 1);
+    EXPECT_EQ(4u, model.images[0].width) << "nothing lies beyond the edge";
+    model = read(R"("wrapS":33071)", -1, 3);
+    EXPECT_EQ(0, redAt(model, -0.9, -1, 3));
+    EXPECT_EQ(80, redAt(model, 0.3, -1, 3));
+    EXPECT_EQ(240, redAt(model, 2.9, -1, 3));
+    EXPECT_EQ(2u, model.images[0].height);
+    model = read(R"("wrapS":33648)", 0, 6);
+    EXPECT_EQ(8u, model.images[0].width);
+    EXPECT_EQ(80, redAt(model, 0.3, 0, 6));
+    EXPECT_EQ(160, redAt(model, 1.3, 0, 6));
+    EXPECT_EQ(80, redAt(model, 2.3, 0, 6));
+    EXPECT_EQ(160, redAt(model, 5.3, 0, 6));
+    EXPECT_THAT(model.notes, IsEmpty());
+    model = read(R"("wrapS":33071)", 0, 1e5f);
+    EXPECT_THAT(model.notes, Contains(HasSubstr("are shown as REPEAT")));
+    model = read(R"("magFilter":9728)", 0, 1);
     EXPECT_THAT(model.notes, ::testing::ElementsAre("magFilter NEAREST is shown as LINEAR "
                                                     "(samplers[0])"));
-    const float wide[] = {0, 0, 3, 0, 3, 1, 0, 1};
-    std::memcpy(quad.glb.binary.data() + 60, wide, sizeof wide);
-    ASSERT_TRUE(loads(quad.bytes(), model));
-    EXPECT_THAT(model.notes, Contains("samplers[0].wrapS CLAMP_TO_EDGE is shown as REPEAT "
-                                      "(meshes[0].primitives[0])"));
-    EXPECT_THAT(model.notes, Each(Not(HasSubstr("wrapT"))));
+    model = read(R"("wrapS":7)", 0, 1);
+    EXPECT_THAT(model.notes, Contains(HasSubstr("samplers[0].wrapS is 7")));
 }
 
 TEST(ImportMaterial, TextureTransformScalesThenTurnsThenMoves) {
@@ -407,7 +437,8 @@ TEST(ImportNumbers, WholeNumbersMayHaveAFractionOfZero) {
     Quad quad;
     quad.indexAccessor = R"({"bufferView":1.0,"componentType":5123.0,"count":6e0,"type":"SCALAR"})";
     ImportedModel model;
-    ASSERT_TRUE(loads(quad.bytes(), model));
+    quad.node = R"({"mesh":0,"skin":-1})";
+    ASSERT_TRUE(loads(quad.bytes(), model)) << "-1 is no skin";
     EXPECT_EQ(2u, model.triangleCount());
 }
 
