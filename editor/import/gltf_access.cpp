@@ -108,9 +108,8 @@ void Notes::add(const std::string& line) {
 }
 
 void Notes::leaveOut(const std::string& what, const std::string& where, const std::string& how) {
-    auto group = std::find_if(groups_.begin(), groups_.end(), [&](const Group& one) {
-        return one.what == what && one.how == how;
-    });
+    auto group = std::find_if(groups_.begin(), groups_.end(),
+                              [&](const Group& one) { return one.what == what && one.how == how; });
     constexpr size_t kMost = 400;
     if (group == groups_.end() && groups_.size() >= kMost) {
         ++unlisted_;
@@ -215,7 +214,8 @@ std::span<const uint8_t> GltfFile::buffer(int index) {
     if (buffer.has("uri")) {
         auto found = buffers_.find(index);
         if (found == buffers_.end())
-            found = buffers_.emplace(index, uri(buffer.string("uri"), buffer.path() + ".uri")).first;
+            found =
+                buffers_.emplace(index, uri(buffer.string("uri"), buffer.path() + ".uri")).first;
         bytes = found->second;
     } else if (index == 0 && hasBinary_) {
         bytes = binary_;
@@ -250,8 +250,8 @@ Bytes GltfFile::view(int index, const std::string& who) {
     if (packed.present()) {
         // A buffer that stands in for readers without the codec may hold the plain bytes.
         const int plain = view.index("buffer", count("buffers"));
-        const bool usable = plain >= 0 && (item("buffers", plain).has("uri") ||
-                                           (plain == 0 && hasBinary_)) &&
+        const bool usable = plain >= 0 &&
+                            (item("buffers", plain).has("uri") || (plain == 0 && hasBinary_)) &&
                             plain != packed.index("buffer", count("buffers"));
         if (readsMeshopt() || !usable) {
             auto found = unpacked_.find(index);
@@ -262,8 +262,8 @@ Bytes GltfFile::view(int index, const std::string& who) {
                 wanted.mode = packed.string("mode");
                 wanted.filter = packed.string("filter", "NONE");
                 const Bytes from = range(packed, packed.path().c_str());
-                found = unpacked_.emplace(index, readMeshopt(from.span(), wanted, packed.path()))
-                            .first;
+                found =
+                    unpacked_.emplace(index, readMeshopt(from.span(), wanted, packed.path())).first;
             }
             return {found->second.data(), found->second.size(), stride};
         }
@@ -315,6 +315,9 @@ Values GltfFile::accessor(int64_t index, const std::string& who) {
             readInto(&values.data[i * values.components], bytes.data + i * bytes.stride);
         }
     } else {
+        if (values.count > kMaxVertices)
+            refuse(name, ".count is ", values.count, "; without a bufferView the limit is ",
+                   kMaxVertices);
         values.data.assign(values.count * values.components, 0.0);
     }
     if (!sparse.present()) return values;

@@ -15,7 +15,7 @@
 
 namespace fwimport {
 
-// What the user is told, each line once, at most so many; and things that are left out, counted.
+// Lines for the user, each once, at most so many; and things that are left out, counted.
 class Notes {
  public:
     explicit Notes(std::vector<std::string>& lines) : lines_(lines) {}

@@ -187,8 +187,7 @@ class Importer {
             const int which = node.index("mesh", file_.count("meshes"));
             if (which < 0 || !taken[index]) continue;
             if (hidden_[index]) {
-                notes_.leaveOut("node", node.path(),
-                                "is left out: KHR_node_visibility hides it");
+                notes_.leaveOut("node", node.path(), "is left out: KHR_node_visibility hides it");
                 continue;
             }
             takeNode(index, which, users[which] > 1);
@@ -251,6 +250,9 @@ class Importer {
         };
         const Values moves = take("TRANSLATION", 3), turns = take("ROTATION", 4),
                      sizes = take("SCALE", 3);
+        for (const std::string& name : attributes.names())
+            if (name != "TRANSLATION" && name != "ROTATION" && name != "SCALE")
+                notes_.leaveOut("attribute " + name + " of instances", instances.path());
         if (count == 0) return {world};
         if (count > kMaxVertices / 3)
             refuse(attributes.path(), " makes ", count, " instances; the limit is ",
@@ -365,8 +367,8 @@ class Importer {
             const std::string of = target.path() + "." + key;
             const Values delta = file_.accessor(target.integer(key.c_str(), -1), of);
             if (delta.components != values.components || delta.count != values.count)
-                refuse(of, " has ", delta.count, " elements of ", delta.components,
-                       " components; ", key, " has ", values.count, " of ", values.components);
+                refuse(of, " has ", delta.count, " elements of ", delta.components, " components; ",
+                       key, " has ", values.count, " of ", values.components);
             for (size_t k = 0; k < delta.data.size(); ++k)
                 values.data[k] += weights[i] * delta.data[k];
         }
@@ -402,8 +404,7 @@ class Importer {
         const int material = primitive.index("material", file_.count("materials"));
         shape.material = materials_.indexOf(material);
         shape.positions = std::move(positions.data);
-        shape.normals =
-            readAttribute(from, "NORMAL", 3, 3, shape.vertices, weights).data;
+        shape.normals = readAttribute(from, "NORMAL", 3, 3, shape.vertices, weights).data;
         readUvs(from, shape, weights);
         readColors(from, shape, weights);
         readInfluences(from, shape);
@@ -456,10 +457,8 @@ class Importer {
         for (int set = 0; from.names.has(text("JOINTS_", set).c_str()) &&
                           from.names.has(text("WEIGHTS_", set).c_str());
              ++set) {
-            joints.push_back(
-                readAttribute(from, text("JOINTS_", set), 4, 4, shape.vertices, {}));
-            weights.push_back(
-                readAttribute(from, text("WEIGHTS_", set), 4, 4, shape.vertices, {}));
+            joints.push_back(readAttribute(from, text("JOINTS_", set), 4, 4, shape.vertices, {}));
+            weights.push_back(readAttribute(from, text("WEIGHTS_", set), 4, 4, shape.vertices, {}));
         }
         shape.influences = 4 * joints.size();
         for (uint64_t i = 0; i < shape.vertices && shape.influences; ++i) {
@@ -471,9 +470,8 @@ class Importer {
                     const double joint = joints[set].data[i * 4 + c];
                     const bool used = std::isfinite(weight) && weight > 0;
                     // A joint of no weight may be any number.
-                    shape.joints.push_back(used && joint >= 0 && joint < 65536
-                                               ? static_cast<uint32_t>(joint)
-                                               : 0);
+                    shape.joints.push_back(
+                        used && joint >= 0 && joint < 65536 ? static_cast<uint32_t>(joint) : 0);
                     shape.weights.push_back(used ? weight : 0);
                     sum += shape.weights.back();
                 }
@@ -503,8 +501,8 @@ class Importer {
         } else if (from.primitive.has("indices")) {
             const int64_t accessor = from.primitive.integer("indices", -1);
             const Values values = file_.accessor(accessor, shape.name + ".indices");
-            const int64_t type = file_.item("accessors", static_cast<int>(accessor))
-                                     .integer("componentType", 0);
+            const int64_t type =
+                file_.item("accessors", static_cast<int>(accessor)).integer("componentType", 0);
             if (values.components != 1 || (type != 5121 && type != 5123 && type != 5125)) {
                 refuse(shape.name, ".indices are of type ", type,
                        "; unsigned scalars (5121, 5123, 5125) are read");
@@ -568,9 +566,8 @@ class Importer {
     }
 
     static glm::dmat3 normalMatrixOf(const glm::dmat3& linear) {
-        return std::abs(glm::determinant(linear)) > 1e-30
-                   ? glm::transpose(glm::inverse(linear))
-                   : glm::dmat3(1.0);
+        return std::abs(glm::determinant(linear)) > 1e-30 ? glm::transpose(glm::inverse(linear))
+                                                          : glm::dmat3(1.0);
     }
 
     // `skin` by joint; empty: all of it stands at `place`.
@@ -652,8 +649,8 @@ class Importer {
         for (size_t i = 0; i < model_.indices.size(); i += 3) {
             const uint32_t* corner = &model_.indices[i];
             const glm::dvec3 a = at(model_.positions, corner[0]);
-            const glm::dvec3 area =
-                glm::cross(at(model_.positions, corner[1]) - a, at(model_.positions, corner[2]) - a);
+            const glm::dvec3 area = glm::cross(at(model_.positions, corner[1]) - a,
+                                               at(model_.positions, corner[2]) - a);
             for (int k = 0; k < 3; ++k)
                 if (const auto found = sums.find(corner[k]); found != sums.end())
                     found->second += area;

@@ -52,7 +52,7 @@ struct ImportedModel {
     std::vector<ImportedNode> nodes;          // all of the file, by its numbers
     bool hasNormals = false, hasUvs = false, hasColors = false;  // for every vertex
     std::array<float, 3> low{}, high{};                          // m, bounds of the positions
-    size_t parts = 0;  // primitives that are in it, each instance counted
+    size_t parts = 0;                // primitives that are in it, each instance counted
     std::vector<std::string> notes;  // what is left out or shown otherwise, and why
 
     size_t vertexCount() const { return positions.size() / 3; }

@@ -16,17 +16,18 @@ bool among(const char* const (&names)[N], std::string_view name) {
 
 // Read, or as good as read.
 constexpr const char* kRead[] = {
-    "KHR_texture_transform",   "KHR_mesh_quantization",   "KHR_draco_mesh_compression",
-    "EXT_meshopt_compression", "KHR_meshopt_compression", "EXT_mesh_gpu_instancing",
-    "KHR_node_visibility",     "EXT_texture_webp",        "MSFT_texture_dds",
-    "KHR_materials_pbrSpecularGlossiness"};
+    "KHR_texture_transform",      "KHR_mesh_quantization",
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+    "KHR_meshopt_compression",    "EXT_mesh_gpu_instancing",
+    "KHR_node_visibility",        "EXT_texture_webp",
+    "MSFT_texture_dds",           "KHR_materials_pbrSpecularGlossiness"};
 
 // On primitives and meshes, without any say in their shape.
 constexpr const char* kHarmless[] = {
-    "KHR_materials_variants",   "EXT_mesh_features",       "EXT_structural_metadata",
-    "EXT_feature_metadata",     "EXT_instance_features",   "CESIUM_primitive_outline",
-    "EXT_mesh_manifold",        "FB_geometry_metadata",    "KHR_xmp",
-    "KHR_xmp_json_ld",          "KHR_materials_unlit"};
+    "KHR_materials_variants", "EXT_mesh_features",     "EXT_structural_metadata",
+    "EXT_feature_metadata",   "EXT_instance_features", "CESIUM_primitive_outline",
+    "EXT_mesh_manifold",      "FB_geometry_metadata",  "KHR_xmp",
+    "KHR_xmp_json_ld",        "KHR_materials_unlit"};
 
 struct Found {
     std::string name, where;
@@ -97,8 +98,9 @@ void noteLeftOut(const GltfFile& file, Notes& notes) {
         const auto list = file.json().find(kind);
         const size_t count = list != file.json().end() && list->is_array() ? list->size() : 0;
         if (count)
-            notes.add(text(kind, " (", count, ") are left out",
-                           std::string_view(kind) == "animations" ? ": the rest pose is shown" : ""));
+            notes.add(
+                text(kind, " (", count, ") are left out",
+                     std::string_view(kind) == "animations" ? ": the rest pose is shown" : ""));
     }
 }
 

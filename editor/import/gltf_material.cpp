@@ -7,13 +7,14 @@
 namespace fwimport {
 namespace {
 
+constexpr const char* kOwnShine = "is left out: surfaces shine as what they burn as does";
+
 double unit(double value, double otherwise) {
     return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
 }
 
 void readColor(const std::vector<double>& from, std::array<float, 4>& to) {
-    for (size_t i = 0; i < from.size() && i < 4; ++i)
-        to[i] = static_cast<float>(unit(from[i], 1));
+    for (size_t i = 0; i < from.size() && i < 4; ++i) to[i] = static_cast<float>(unit(from[i], 1));
 }
 
 double toLinear(double value) {
@@ -167,12 +168,15 @@ void Materials::noteChannels(const Field& from, bool glossy) {
         notes_.leaveOut("emissiveFactor", from.path());
     if (glossy) {
         const Field one = from.extension("KHR_materials_pbrSpecularGlossiness");
+        if (one.has("glossinessFactor"))
+            notes_.leaveOut("glossinessFactor", from.path(), kOwnShine);
         if (one.has("specularGlossinessTexture"))
             notes_.leaveOut("glossiness of specularGlossinessTexture", from.path());
         return;
     }
     const Field pbr = from.object("pbrMetallicRoughness");
     if (!pbr.present()) return;
+    if (pbr.has("roughnessFactor")) notes_.leaveOut("roughnessFactor", from.path(), kOwnShine);
     if (pbr.has("metallicRoughnessTexture"))
         notes_.leaveOut("metallicRoughnessTexture", from.path());
     if (pbr.number("metallicFactor", 1) > 0)
@@ -255,10 +259,9 @@ int32_t Materials::imageIndex(int image, std::string& error) {
     int32_t result = -1;
     DecodedImage decoded;
     constexpr uint64_t kMostBytes = 4ull << 30;
-    if (decode(image, decoded, error) &&
-        (pictureBytes_ += decoded.rgba.size()) > kMostBytes) {
-        error = text("with it the pictures have ", pictureBytes_, " bytes; the limit is ",
-                     kMostBytes);
+    if (decode(image, decoded, error) && (pictureBytes_ += decoded.rgba.size()) > kMostBytes) {
+        error =
+            text("with it the pictures have ", pictureBytes_, " bytes; the limit is ", kMostBytes);
     } else if (!decoded.rgba.empty()) {
         result = static_cast<int32_t>(model_.images.size());
         model_.images.push_back(std::move(decoded));
@@ -279,8 +282,7 @@ bool Materials::decode(int index, DecodedImage& decoded, std::string& error) {
             error = "it has neither a uri nor a bufferView";
             return false;
         }
-        const std::vector<uint8_t> bytes =
-            file_.uri(image.string("uri"), image.path() + ".uri");
+        const std::vector<uint8_t> bytes = file_.uri(image.string("uri"), image.path() + ".uri");
         return decodeImage(bytes, decoded, error);
     } catch (const Refusal& refusal) {
         error = refusal.what();

@@ -23,7 +23,7 @@ struct TextureUse {
     double rotation = 0;  // rad
     bool transformed = false;
     std::array<int64_t, 2> wrap{kRepeat, kRepeat};
-    std::string sampler;               // "samplers[0]", for notes
+    std::string sampler;  // "samplers[0]", for notes
 
     [[nodiscard]] glm::dvec2 apply(glm::dvec2 uv) const;
 };

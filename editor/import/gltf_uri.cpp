@@ -97,8 +97,8 @@ std::string decodePercent(const std::string& uri) {
     for (size_t i = 0; i < uri.size(); ++i) {
         const bool code = uri[i] == '%' && i + 2 < uri.size() && hexDigit(uri[i + 1]) >= 0 &&
                           hexDigit(uri[i + 2]) >= 0;
-        result += code ? static_cast<char>(hexDigit(uri[i + 1]) * 16 + hexDigit(uri[i + 2]))
-                       : uri[i];
+        result +=
+            code ? static_cast<char>(hexDigit(uri[i + 1]) * 16 + hexDigit(uri[i + 2])) : uri[i];
         if (code) i += 2;
     }
     return result;

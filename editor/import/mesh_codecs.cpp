@@ -90,8 +90,10 @@ DracoMesh readDraco(std::span<const uint8_t> bytes,
 
 DracoMesh readDraco(std::span<const uint8_t>, const std::map<std::string, DracoAttribute>&,
                     const std::string& name) {
-    refuse(name, " is compressed with Draco (KHR_draco_mesh_compression), which this build does "
-           "not read", kConvertMesh);
+    refuse(name,
+           " is compressed with Draco (KHR_draco_mesh_compression), which this build does "
+           "not read",
+           kConvertMesh);
 }
 
 #endif
@@ -113,8 +115,8 @@ void decodeColor(Unsigned* data, uint64_t count) {
         const int alpha = (data[3] << 1 & scale) | (data[3] & 1);
         const int values[4] = {luma + orange - green, luma + green, luma - orange - green, alpha};
         for (int c = 0; c < 4; ++c) {
-            const float value = static_cast<float>(values[c]) * most /
-                                static_cast<float>(std::max(scale, 1));
+            const float value =
+                static_cast<float>(values[c]) * most / static_cast<float>(std::max(scale, 1));
             data[c] = static_cast<Unsigned>(std::lround(std::clamp(value, 0.0f, most)));
         }
     }
@@ -149,8 +151,10 @@ std::vector<uint8_t> readMeshopt(std::span<const uint8_t> bytes, const MeshoptVi
                "\"; ATTRIBUTES, TRIANGLES and INDICES exist");
     }
     if (failure)
-        refuse(name, ": its meshopt data cannot be decoded (it is damaged, or of a later version "
-               "than the library reads)", kConvertMesh);
+        refuse(name,
+               ": its meshopt data cannot be decoded (it is damaged, or of a later version "
+               "than the library reads)",
+               kConvertMesh);
     const std::string& filter = view.filter;
     const auto needs = [&](bool good, const char* takes) {
         if (!attributes || !good)

@@ -66,8 +66,8 @@ struct Quad {
     }
     // Appends an accessor with a view of its own; returns its number.
     template <typename T>
-    int add(const std::vector<T>& values, int componentType, const std::string& type,
-            size_t count, const std::string& rest = "") {
+    int add(const std::vector<T>& values, int componentType, const std::string& type, size_t count,
+            const std::string& rest = "") {
         const size_t offset = glb.put(values);
         const std::string number = std::to_string(2 + added);
         views += R"(,{"buffer":0,"byteOffset":)" + std::to_string(offset) + R"(,"byteLength":)" +
@@ -78,17 +78,17 @@ struct Quad {
         return 2 + added++;
     }
     std::vector<uint8_t> bytes() const {
-        return glb.pack(
-            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + roots +
-            R"(]}],"nodes":[)" + node +
-            R"(],"meshes":[{"primitives":[{)" + primitive + R"(}]}],"accessors":[)" +
-            positionAccessor + "," + indexAccessor + accessors + R"(],"bufferViews":[)" +
-            positionView + "," + indexView + views + R"(],"buffers":[{"byteLength":)" +
-            std::to_string(glb.binary.size()) + "}" + buffers + "]" + extra + "}");
+        return glb.pack(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + roots +
+                        R"(]}],"nodes":[)" + node + R"(],"meshes":[{"primitives":[{)" + primitive +
+                        R"(}]}],"accessors":[)" + positionAccessor + "," + indexAccessor +
+                        accessors + R"(],"bufferViews":[)" + positionView + "," + indexView +
+                        views + R"(],"buffers":[{"byteLength":)" +
+                        std::to_string(glb.binary.size()) + "}" + buffers + "]" + extra + "}");
     }
 };
 
-inline ::testing::AssertionResult loads(const std::vector<uint8_t>& bytes, fwimport::ImportedModel& model) {
+inline ::testing::AssertionResult loads(const std::vector<uint8_t>& bytes,
+                                        fwimport::ImportedModel& model) {
     std::string error;
     if (fwimport::importGltfBytes(bytes, "test.glb", "", model, error)) {
         return ::testing::AssertionSuccess();

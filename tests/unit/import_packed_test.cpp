@@ -49,19 +49,19 @@ std::vector<uint8_t> packVertices(const std::vector<T>& values, size_t count) {
 
 Quad packedQuad(const std::string& extension = "EXT_meshopt_compression") {
     Quad quad;
-    const auto positions =
-        packVertices(std::vector<float>{0, 0, 5, 1, 0, 5, 1, 1, 5, 0, 1, 5}, 4);
+    const auto positions = packVertices(std::vector<float>{0, 0, 5, 1, 0, 5, 1, 1, 5, 0, 1, 5}, 4);
     const unsigned int order[] = {0, 1, 2, 0, 2, 3};
     std::vector<uint8_t> indices(meshopt_encodeIndexBufferBound(6, 4));
     indices.resize(meshopt_encodeIndexBuffer(indices.data(), indices.size(), order, 6));
     const size_t p = quad.glb.put(positions), i = quad.glb.put(indices);
-    quad.positionView = packedView(p, positions.size(),
-                                   R"(,"byteStride":12,"count":4,"mode":"ATTRIBUTES")", 48);
+    quad.positionView =
+        packedView(p, positions.size(), R"(,"byteStride":12,"count":4,"mode":"ATTRIBUTES")", 48);
     quad.indexView =
         packedView(i, indices.size(), R"(,"byteStride":2,"count":6,"mode":"TRIANGLES")", 12);
     quad.extra = R"(,"extensionsRequired":[")" + extension + R"("])";
     // The second buffer stands in for readers without the codec and has no bytes.
-    quad.buffers = R"(,{"byteLength":60,"extensions":{"EXT_meshopt_compression":{"fallback":true}}})";
+    quad.buffers =
+        R"(,{"byteLength":60,"extensions":{"EXT_meshopt_compression":{"fallback":true}}})";
     return quad;
 }
 
@@ -93,12 +93,16 @@ TEST(ImportMeshopt, FiltersAreApplied) {
     const auto packedColor = packVertices(color, 4);
     Quad quad = packedQuad();
     const size_t at = quad.glb.put(packed), colorAt = quad.glb.put(packedColor);
-    quad.views = "," + packedView(at, packed.size(),
-                                  R"(,"byteStride":4,"count":4,"mode":"ATTRIBUTES","filter":)"
-                                  R"("OCTAHEDRAL")", 16) +
-                 "," + packedView(colorAt, packedColor.size(),
-                                  R"(,"byteStride":4,"count":4,"mode":"ATTRIBUTES","filter":)"
-                                  R"("COLOR")", 16);
+    quad.views = "," +
+                 packedView(at, packed.size(),
+                            R"(,"byteStride":4,"count":4,"mode":"ATTRIBUTES","filter":)"
+                            R"("OCTAHEDRAL")",
+                            16) +
+                 "," +
+                 packedView(colorAt, packedColor.size(),
+                            R"(,"byteStride":4,"count":4,"mode":"ATTRIBUTES","filter":)"
+                            R"("COLOR")",
+                            16);
     quad.accessors =
         R"(,{"bufferView":2,"componentType":5120,"normalized":true,"count":4,"type":"VEC3"})"
         R"(,{"bufferView":3,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"})";
@@ -146,7 +150,8 @@ Quad dracoQuad(const std::vector<uint8_t>& data, const std::string& attributes) 
     quad.positionAccessor = R"({"componentType":5126,"count":4,"type":"VEC3"})";
     quad.indexAccessor = R"({"componentType":5123,"count":6,"type":"SCALAR"})";
     quad.primitive += R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":2,)"
-                      R"("attributes":{)" + attributes + "}}}";
+                      R"("attributes":{)" +
+                      attributes + "}}}";
     quad.extra = R"(,"extensionsRequired":["KHR_draco_mesh_compression"])";
     return quad;
 }

@@ -131,7 +131,8 @@ TEST(ImportAlpha, MaskAndBlendReachTheMaterial) {
         EXPECT_TRUE(loads(pictured(picture, kTextured + mode).bytes(), model));
         return model;
     };
-    ImportedModel model = read(holes, R"(,"alphaMode":"MASK","alphaCutoff":0.3,"doubleSided":true)");
+    ImportedModel model =
+        read(holes, R"(,"alphaMode":"MASK","alphaCutoff":0.3,"doubleSided":true)");
     EXPECT_EQ(AlphaMode::Mask, model.materials[0].alphaMode);
     EXPECT_FLOAT_EQ(0.3f, model.materials[0].alphaCutoff);
     EXPECT_TRUE(model.materials[0].doubleSided);
@@ -154,7 +155,8 @@ TEST(ImportAlpha, WhatIsWhollyCutOutIsLeftOut) {
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
     EXPECT_EQ(2u, model.triangleCount());
-    EXPECT_THAT(model.notes, Contains(HasSubstr("below its alphaCutoff (meshes[0].primitives[0])")));
+    EXPECT_THAT(model.notes,
+                Contains(HasSubstr("below its alphaCutoff (meshes[0].primitives[0])")));
 }
 
 // ---- skins, morph targets, instances ------------------------------------------------------------
@@ -178,8 +180,9 @@ TEST(ImportSkin, FigureStandsAsItsJointsPutIt) {
                         {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
     const float corners[] = {-20, 0, 0, 20, 0, 0, 20, 0, 180, -20, 0, 180};
     std::memcpy(quad.glb.binary.data(), corners, sizeof corners);
-    quad.node = R"({"children":[1],"rotation":[-0.70710678,0,0,0.70710678],"scale":[0.01,0.01,0.01]},)"
-                R"({"name":"Root"},{"mesh":0,"skin":0,"translation":[7,7,7]})";
+    quad.node =
+        R"({"children":[1],"rotation":[-0.70710678,0,0,0.70710678],"scale":[0.01,0.01,0.01]},)"
+        R"({"name":"Root"},{"mesh":0,"skin":0,"translation":[7,7,7]})";
     quad.roots = "0,2";
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
@@ -194,9 +197,9 @@ TEST(ImportSkin, WeightsMixJointsAndAreNormalised) {
     std::vector<float> matrices{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     matrices.insert(matrices.end(), matrices.begin(), matrices.end());
     matrices[16 + 12] = -5;  // the second joint's inverse
-    Quad quad = skinned(
-        R"("joints":[1,2])", matrices, {0, 9, 9, 9, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0},
-        {1, 0, 0, 0, 1, 0, 0, 0, 2, 2, 0, 0, 0, 0, 0, 0});
+    Quad quad =
+        skinned(R"("joints":[1,2])", matrices, {0, 9, 9, 9, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0},
+                {1, 0, 0, 0, 1, 0, 0, 0, 2, 2, 0, 0, 0, 0, 0, 0});
     quad.node = R"({"mesh":0,"skin":0,"children":[1,2]},{"translation":[0,0,1]},)"
                 R"({"translation":[15,0,0]})";
     ImportedModel model;
@@ -215,8 +218,8 @@ TEST(ImportSkin, WeightsMixJointsAndAreNormalised) {
 
 TEST(ImportMorph, DefaultWeightsShapeTheMesh) {
     Quad quad;
-    const int delta = quad.add(std::vector<float>{0, 0, 4, 0, 0, 4, 0, 0, 4, 0, 0, 4}, 5126,
-                               "VEC3", 4);
+    const int delta =
+        quad.add(std::vector<float>{0, 0, 4, 0, 0, 4, 0, 0, 4, 0, 0, 4}, 5126, "VEC3", 4);
     quad.primitive += R"(,"targets":[{"POSITION":)" + std::to_string(delta) + "}]";
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
@@ -238,8 +241,9 @@ TEST(ImportInstancing, EveryInstanceIsThere) {
     const int t = quad.add(places, 5126, "VEC3", 125), r = quad.add(turns, 5126, "VEC4", 125);
     const int s = quad.add(sizes, 5126, "VEC3", 125);
     quad.node = R"({"mesh":0,"translation":[0,10,0],"extensions":{"EXT_mesh_gpu_instancing":)"
-                R"({"attributes":{"TRANSLATION":)" + std::to_string(t) + R"(,"ROTATION":)" +
-                std::to_string(r) + R"(,"SCALE":)" + std::to_string(s) + "}}}}";
+                R"({"attributes":{"TRANSLATION":)" +
+                std::to_string(t) + R"(,"ROTATION":)" + std::to_string(r) + R"(,"SCALE":)" +
+                std::to_string(s) + "}}}}";
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
     EXPECT_EQ(125u, model.parts);
@@ -255,8 +259,9 @@ TEST(ImportInstancing, EveryInstanceIsThere) {
     Quad odd;
     const int three = odd.add(std::vector<float>(9), 5126, "VEC3", 3);
     const int two = odd.add(std::vector<float>(6), 5126, "VEC3", 2);
-    odd.node = R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":)" +
-               std::to_string(three) + R"(,"SCALE":)" + std::to_string(two) + "}}}}";
+    odd.node =
+        R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":)" +
+        std::to_string(three) + R"(,"SCALE":)" + std::to_string(two) + "}}}}";
     EXPECT_THAT(importRefusal(odd.bytes()), HasSubstr("SCALE has 2 elements; the others have 3"));
 }
 
@@ -267,7 +272,8 @@ TEST(ImportMaterial, SpecularGlossinessBecomesBaseColourAndRoughness) {
         Quad quad;
         quad.primitive += R"(,"material":0)";
         quad.extra = R"(,"materials":[{"extensions":{"KHR_materials_pbrSpecularGlossiness":{)" +
-                     fields + R"(}}}],"extensionsRequired":["KHR_materials_pbrSpecularGlossiness"])";
+                     fields +
+                     R"(}}}],"extensionsRequired":["KHR_materials_pbrSpecularGlossiness"])";
         ImportedModel model;
         EXPECT_TRUE(loads(quad.bytes(), model));
         return model.materials.at(0);
@@ -276,7 +282,8 @@ TEST(ImportMaterial, SpecularGlossinessBecomesBaseColourAndRoughness) {
     EXPECT_FLOAT_EQ(0.05f, made.baseColor[0]);
     EXPECT_FLOAT_EQ(0.6f, made.baseColor[1]);
     EXPECT_FLOAT_EQ(0, made.roughness);
-    made = read(R"("diffuseFactor":[0,0,0,1],"specularFactor":[0.9,0.6,0.2],"glossinessFactor":0.7)");
+    made =
+        read(R"("diffuseFactor":[0,0,0,1],"specularFactor":[0.9,0.6,0.2],"glossinessFactor":0.7)");
     EXPECT_FLOAT_EQ(0.9f, made.baseColor[0]) << "a metal has its colour in the reflection";
     EXPECT_FLOAT_EQ(0.3f, made.roughness);
     made = read(R"("diffuseFactor":[0.4,0.5,0.6,1],"specularFactor":[0.04,0.04,0.04])");
@@ -301,14 +308,13 @@ TEST(ImportMaterial, EveryChannelThatIsNotShownHasOneNote) {
                  R"("extensions":{"KHR_lights_punctual":{"lights":[]}})";
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
-    EXPECT_THAT(model.notes,
-                ::testing::UnorderedElementsAre(
-                    "normalTexture is left out (materials[0] and 1 more)",
-                    "emissiveFactor is left out (materials[0])",
-                    "KHR_materials_clearcoat is left out (materials[1])",
-                    "KHR_lights_punctual is left out",
-                    "animations (2) are left out: the rest pose is shown",
-                    "cameras (1) are left out"));
+    EXPECT_THAT(
+        model.notes,
+        ::testing::UnorderedElementsAre(
+            "normalTexture is left out (materials[0] and 1 more)",
+            "emissiveFactor is left out (materials[0])",
+            "KHR_materials_clearcoat is left out (materials[1])", "KHR_lights_punctual is left out",
+            "animations (2) are left out: the rest pose is shown", "cameras (1) are left out"));
 }
 
 TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
@@ -359,10 +365,10 @@ TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
 
 TEST(ImportMaterial, TextureTransformScalesThenTurnsThenMoves) {
     const auto picture = pictureOf("t.png", repeated({1, 0.5f, 0, 1}, 4), 2, 2);
-    Quad quad = pictured(
-        picture, R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":3,)"
-                 R"("extensions":{"KHR_texture_transform":{"offset":[10,20],"scale":[2,4],)"
-                 R"("rotation":1.5707963267948966,"texCoord":0}}}})");
+    Quad quad = pictured(picture,
+                         R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":3,)"
+                         R"("extensions":{"KHR_texture_transform":{"offset":[10,20],"scale":[2,4],)"
+                         R"("rotation":1.5707963267948966,"texCoord":0}}}})");
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
     // (1, 1) scaled is (2, 4), a quarter turn makes it (4, -2).
@@ -373,21 +379,22 @@ TEST(ImportMaterial, TextureTransformScalesThenTurnsThenMoves) {
 TEST(ImportMaterial, TheImageThatCanBeDecodedIsShown) {
     const auto picture = pictureOf("w.png", repeated({1, 0.5f, 0, 1}, 4), 2, 2);
     ImportedModel model;
-    for (const char* texture :
-         {R"({"extensions":{"EXT_texture_webp":{"source":0}}})",
-          R"({"source":0,"extensions":{"KHR_texture_basisu":{"source":1}}})",
-          R"({"source":0,"extensions":{"EXT_texture_webp":{"source":1}}})"}) {
+    for (const char* texture : {R"({"extensions":{"EXT_texture_webp":{"source":0}}})",
+                                R"({"source":0,"extensions":{"KHR_texture_basisu":{"source":1}}})",
+                                R"({"source":0,"extensions":{"EXT_texture_webp":{"source":1}}})"}) {
         Quad quad = pictured(picture, kTextured, texture);
         quad.extra.insert(quad.extra.size() - 1, R"(,{"uri":"data:image/webp;base64,AAAA"})");
         ASSERT_TRUE(loads(quad.bytes(), model));
         EXPECT_EQ(0, model.materials[0].image) << texture;
     }
-    Quad quad = pictured(picture, kTextured, R"({"extensions":{"KHR_texture_basisu":{"source":1}}})");
+    Quad quad =
+        pictured(picture, kTextured, R"({"extensions":{"KHR_texture_basisu":{"source":1}}})");
     quad.extra.insert(quad.extra.size() - 1,
                       R"(,{"uri":"data:image/ktx2;base64,q0tUWCAyMLsNChoK"})");
     ASSERT_TRUE(loads(quad.bytes(), model));
     EXPECT_EQ(-1, model.materials[0].image);
-    EXPECT_THAT(model.notes, Contains("images[1] is left out: it is KTX; convert it to PNG or JPEG"));
+    EXPECT_THAT(model.notes,
+                Contains("images[1] is left out: it is KTX; convert it to PNG or JPEG"));
 }
 
 // ---- extensions ---------------------------------------------------------------------------------
@@ -405,8 +412,8 @@ TEST(ImportExtensions, RequiredOnesThatDoNotShapeTheMeshAreNoReasonToRefuse) {
         ImportedModel model;
         ASSERT_TRUE(loads(quad.bytes(), model)) << name;
         EXPECT_EQ(2u, model.triangleCount());
-        const bool read = std::string(name).ends_with("Glossiness") ||
-                          std::string(name).ends_with("webp");
+        const bool read =
+            std::string(name).ends_with("Glossiness") || std::string(name).ends_with("webp");
         if (!read) {
             EXPECT_THAT(model.notes, Contains(HasSubstr(name)));
         }
@@ -446,8 +453,9 @@ TEST(ImportNumbers, QuantizedPositionsAndNormalsAreScaled) {
     Quad quad;
     const int p = quad.add(std::vector<int16_t>{-32768, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0},
                            5122, "VEC3", 4, R"(,"normalized":true)");
-    const int n = quad.add(std::vector<int8_t>{0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0},
-                           5120, "VEC3", 4, R"(,"normalized":true)");
+    const int n =
+        quad.add(std::vector<int8_t>{0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0}, 5120,
+                 "VEC3", 4, R"(,"normalized":true)");
     const std::string stride = R"(,"byteStride":4)";
     quad.views.insert(quad.views.size() - 1, stride);
     quad.primitive = R"("attributes":{"POSITION":)" + std::to_string(p) + R"(,"NORMAL":)" +
@@ -618,7 +626,8 @@ TEST(Import, AnImageThatIsAFolderIsLeftOut) {
     quad = pictured({1, 2, 3, 4}, kTextured);
     quad.extra = quad.extra.substr(0, quad.extra.find(R"("images")")) + R"("images":[{"uri":"."}])";
     ASSERT_TRUE(loads(quad.bytes(), model));
-    EXPECT_THAT(model.notes, Contains(HasSubstr("images[0] is left out: images[0].uri \".\" is a folder")));
+    EXPECT_THAT(model.notes,
+                Contains(HasSubstr("images[0] is left out: images[0].uri \".\" is a folder")));
 }
 
 }  // namespace

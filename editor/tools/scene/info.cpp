@@ -13,7 +13,7 @@ constexpr const char* kHelp =
     "fw-info FILE [--json] [--quiet]\n"
     "  FILE  a .fwscene, a glTF file, or a .fwburn: a cooked burn map, or a baked burn\n"
     "Of meshes: their size, what they are made of, and what of their file is left out.\n"
-    "Exit code: 0 fine, 1 refused (the reason is told), 2 the command line is wrong.\n";
+    "Exit code: 0 fine, 1 refused (with the reason), 2 the command line is wrong.\n";
 
 }  // namespace
 
@@ -90,8 +90,8 @@ int main(int count, char** words) {
         for (const Mesh& mesh : scene.meshes) {
             const auto model = modelOf(mesh, baseFolder(host.document), host.assets, error);
             if (!model) return refuse(options, error);
-            nodes += static_cast<size_t>(std::count_if(
-                model->nodes.begin(), model->nodes.end(), [](const auto& n) { return n.inScene; }));
+            nodes += static_cast<size_t>(std::count_if(model->nodes.begin(), model->nodes.end(),
+                                                       [](const auto& n) { return n.inScene; }));
             parts += model->parts;
             materials += model->materials.size();
             pictures += model->images.size();
