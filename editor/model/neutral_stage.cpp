@@ -47,8 +47,8 @@ FwView neutralView(const std::array<float, 3>& low, const std::array<float, 3>& 
     view.projection[14] = near * far / (near - far);
     for (size_t c = 0; c < 3; ++c) {
         view.sunColor[c] = 0;
-        view.ambientSky[c] = 0.9f;
-        view.ambientGround[c] = 0.75f;  // a little less from below: forms show
+        view.ambientSky[c] = 1.1f;
+        view.ambientGround[c] = 0.95f;  // a little less from below: forms show
     }
     view.exposure = 1;
     view.emissionScale = 1;

@@ -202,9 +202,9 @@ bool isThere(const mesh::BurnDomain& domain, uint32_t texel, const CutOut& pictu
     const TextureFrame frame(domain, triangle);
     const double sides[2] = {double(picture.width), double(picture.height)};
     double middle[2] = {};
-    float weights[3];
-    mesh::texelWeights(domain, texel, weights);
+    float weights[3] = {};
     const bool forced = (domain.texels[texel].materialFlags & mesh::kTexelForced) != 0;
+    if (forced) mesh::texelWeights(domain, texel, weights);
     int steps = 1;
     for (int c = 0; c < 2; ++c) {
         middle[c] = frame.at[c] + frame.perX[c] * (double(texel % domain.width) + 0.5) +

@@ -338,16 +338,31 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
     }
 }
 
-std::pmr::vector<uint8_t> World::goneOf(const FwBurnableMeshDef& def,
-                                        const mesh::BurnDomain& domain) {
+std::span<const uint8_t> World::goneOf(const FwBurnableMeshDef& def, MeshEntry& mesh) {
     std::array<const components::CutOut*, gpu::kMaterialsPerObject> pictures{};
+    std::array<FwImageId, gpu::kMaterialsPerObject> images{};
+    bool any = false;
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
         const FwImageId image = def.baseColors[i].index1 ? def.baseColors[i] : def.baseColor;
         if (image.index1 == 0) continue;
         const components::CutOut& cutOut = images_.get(image).cutOut;
-        if (cutOut.width != 0) pictures[i] = &cutOut;
+        if (cutOut.width == 0) continue;
+        pictures[i] = &cutOut;
+        images[i] = image;
+        any = true;
     }
-    return components::makeGone(domain, pictures, memory_);
+    if (!any) return {};
+    const auto same = [](const FwImageId& a, const FwImageId& b) {
+        return a.index1 == b.index1 && a.generation == b.generation;
+    };
+    if (!mesh.gone ||
+        !std::equal(images.begin(), images.end(), mesh.gone->images.begin(), same)) {
+        auto gone = core::Owned<GoneTexels>::make(memory_, memory_);
+        gone->images = images;
+        gone->texels = components::makeGone(*mesh.domain, pictures, memory_);
+        mesh.gone = std::move(gone);
+    }
+    return mesh.gone->texels;
 }
 
 FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
@@ -357,7 +372,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     MeshEntry& mesh = *meshes_.at(meshSlot);
     object.data.meshSlot = meshSlot;
     const mesh::BurnDomain& domain = *mesh.domain;
-    const std::pmr::vector<uint8_t> gone = goneOf(def, domain);
+    const std::span<const uint8_t> gone = goneOf(def, mesh);
     std::pmr::vector<uint16_t> slowness = components::makeSlowness(def, domain, gone, memory_);
     for (uint32_t i = 0; i < domain.texelCount(); ++i)
         if (domain.real(i) && (slowness.empty() ? domain.slowness[i] : slowness[i]) != 0 &&

@@ -39,6 +39,11 @@ namespace fw::world {
 enum class SaveFor : uint8_t { host, net, timeline, count };  // each has a save of its own
 
 enum class InnerSkin : uint8_t { unknown, none, there };
+struct GoneTexels {  // of objects that show these cut-outs
+    std::array<FwImageId, gpu::kMaterialsPerObject> images{};  // by material; null: no cut-out
+    std::pmr::vector<uint8_t> texels;                          // as components::makeGone
+    explicit GoneTexels(std::pmr::memory_resource* memory) : texels(memory) {}
+};
 struct MeshEntry {
     core::Owned<mesh::BurnDomain> domain;
     core::Owned<mesh::DeformModel> deform;                      // once an object deforms
@@ -48,6 +53,7 @@ struct MeshEntry {
     uint32_t parentPlus1 = 0;  // its slot + 1; 0: a mesh of the host's
     float shape[3] = {1, 1, 1};
     uint64_t hash = 0;                         // of the domain, once a save asked; 0: not yet
+    core::Owned<GoneTexels> gone;              // of the last object with cut-outs: most are alike
     InnerSkin innerSkin = InnerSkin::unknown;  // that the backend has
     float innerWall = 0;                       // m, how deep that is
     core::Owned<mesh::Pieces> pieces;          // once an object asks what breaks
@@ -881,8 +887,8 @@ class World {
     uint32_t texelMaterial(const Object& object, uint32_t texel) const noexcept;
     [[nodiscard]] const mesh::BurnDomain& domainOf(const Object& object) const noexcept;
     // world.cpp
-    // Texels of which no part is there, as its pictures say; empty: all are.
-    std::pmr::vector<uint8_t> goneOf(const FwBurnableMeshDef& def, const mesh::BurnDomain& domain);
+    // As components::makeGone. Stands until the mesh's next object with other pictures is made.
+    std::span<const uint8_t> goneOf(const FwBurnableMeshDef& def, MeshEntry& mesh);
     FwBurnableMeshId createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
                               core::Owned<Object> owned);
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);

@@ -21,15 +21,16 @@ runtime/gpu|gpu/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/
 plugin/src|flamewright/|world/|net/|components/|core/|gpu/backend.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
 plugin/include|flamewright/
 shaders/shared|shared/
-samples|flamewright/|common/|import/|shell/|document/|link/
+samples|flamewright/|common/|import/|model/|shell/|document/|link/
 editor/import|flamewright/|import/
+editor/model|flamewright/|import/|model/
 editor/shell|common/|shell/
 editor/viewport|flamewright/|common/|import/|shell/|document/|viewport/
 editor/link|import/|document/|link/
 editor/app|flamewright/|common/|import/|shell/|document/|link/|output/|script/|viewport/|app/|tools/|profile/|volume/|core/error.h
-editor/document|flamewright/|import/|document/
-editor/output|flamewright/|import/|document/|output/|tools/
-editor/script|flamewright/|import/|document/|link/|output/|tools/|script/
+editor/document|flamewright/|import/|model/|document/
+editor/output|flamewright/|import/|model/|document/|output/|tools/
+editor/script|flamewright/|import/|model/|document/|link/|output/|tools/|script/
 editor/tools|flamewright/|import/|document/|link/|output/|script/|scene/|tools/|book/|core/|volume/|shared/
 '
 

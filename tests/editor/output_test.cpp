@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 
+#include "editor/boards.h"
 #include "editor/text_of.h"
 #include "editor/yard.h"
 #include "flamewright/flamewright_debug.h"
@@ -182,8 +183,12 @@ TEST(EditorOutput, SnippetsOfSmallScenesCompileToo) {
                             "add wind velocity 1 0 0\n",
                             "add source flamethrower keys 0:0 1:1\n",
                             "add collider box\n",
-                            "add source match name=\"/* a */ \\\\\" start 2\n"};
+                            "add source match name=\"/* a */ \\\\\" start 2\n",
+                            "import leaves.gltf materials dry_leaf noncombustible\n"};
     Yard yard;
+    writeBoardRow(yard.folder, "leaves",
+                  {{{1, 1, 1}, leavesPng(), ",\"alphaMode\":\"MASK\",\"doubleSided\":true", ""},
+                   {{1, 0, 0}, {}, "", ""}});
     std::string c, cpp;
     int number = 0;
     for (const char* scene : scenes) {
