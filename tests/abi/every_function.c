@@ -76,6 +76,7 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_CreateBurnableMesh(NULL, NULL, NULL));
     REFUSES(fwWorld_DestroyBurnableMesh(NULL, object));
     REFUSES(fwWorld_SetTransform(NULL, object, NULL));
+    REFUSES(fwWorld_SetVertexPositions(NULL, object, NULL, NULL, 0));
     REFUSES(fwWorld_SetHidden(NULL, object, 1));
     REFUSES(fwInitFirePreset(NULL, 0));
     RUNS(fwFirePresetName(0));
@@ -178,6 +179,7 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwWorld_RecordOutside(NULL, NULL, NULL));
     REFUSES(fwWorld_RecordInside(NULL, NULL, target, NULL, NULL));
     REFUSES(fwWorld_RecordComposite(NULL, NULL, target, NULL, NULL));
+    REFUSES(fwWorld_SetVertexBuffer(NULL, object, NULL));
     RUNS((fwContext_NotifyDeviceLost(NULL), 0));
 
     IS_ZERO(fwDebug_GetPassTimes(NULL, NULL, 0));

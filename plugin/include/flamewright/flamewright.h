@@ -1165,7 +1165,7 @@ typedef struct FwView { /* what a camera and its light are; all lengths m */
     float sunDirection[3];            /* towards the sun, unit */
     float sunColor[3];                /* radiance x pi/2 into a Lambert/pi surface; cd/m^2-like */
     float ambientSky[3], ambientGround[3]; /* hemisphere about world up */
-    float exposure;                   /* pre-exposure multiplied into linear output, > 0, default 1 */
+    float exposure;                   /* times all light, before any tone mapping; [1e-6, 1e6], default 1 */
     float emissionScale;              /* of glow and flames against the scene's light, default 1 */
     float time;                       /* s, for flicker and breathing only */
     float haze;                       /* how far heat haze bends what is behind a fire, where a target has it
