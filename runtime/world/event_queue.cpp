@@ -20,6 +20,15 @@ uint32_t EventQueue::poll(std::span<FwEvent> out) noexcept {
     return given;
 }
 
+void EventQueue::move(const double (&by)[3]) noexcept {
+    const std::lock_guard lock(mutex_);
+    for (uint64_t number = oldest(); number < pushed_; ++number) {
+        FwEvent& event = ring_[number % kCapacity];
+        for (int i = 0; event.type != FW_EVENT_TIME_DROPPED && i < 3; ++i)
+            event.position[i] = float(double(event.position[i]) + by[i]);
+    }
+}
+
 void EventQueue::clear() noexcept {
     const std::lock_guard lock(mutex_);
     polled_ = pushed_;

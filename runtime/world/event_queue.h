@@ -20,6 +20,8 @@ class EventQueue {
     void push(const FwEvent& event) noexcept;
     uint32_t poll(std::span<FwEvent> out) noexcept;
     void clear() noexcept;
+    // Those with a place are raised so many m further on.
+    void move(const double (&by)[3]) noexcept;
     // Events lost since the last call.
     uint64_t takeDropped() noexcept;
 
@@ -33,8 +35,6 @@ class EventQueue {
     [[nodiscard]] const FwEvent& at(uint64_t number) const noexcept {
         return ring_[number % kCapacity];
     }
-
-    [[nodiscard]] FwEvent& at(uint64_t number) noexcept { return ring_[number % kCapacity]; }
 
  private:
     mutable std::mutex mutex_;

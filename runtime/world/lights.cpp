@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace fw::world {
 
@@ -48,6 +49,31 @@ void World::takeLights(const gpu::Readback& readback) noexcept {
         }
         lights_.push_back(light);
     }
+    if (lightsDue_) shownLights_.assign(lights_.begin(), lights_.end());
+    lightsDue_ = false;
+}
+
+// One for each mesh that burns, in its middle.
+void World::showSavedLights() noexcept {
+    lights_.clear();
+    for (const Object* object : touched_) {
+        if (object->counters.burning == 0 || lights_.size() == def_.maxLights) continue;
+        const mesh::BurnDomain& domain = domainOf(*object);
+        float middle[3];
+        for (int i = 0; i < 3; ++i) middle[i] = 0.5f * (domain.boundsLow[i] + domain.boundsHigh[i]);
+        FwLight light{};
+        components::toWorld(object->data.pose, middle, light.position);
+        light.color[0] = 1.717f, light.color[1] = 0.858f, light.color[2] = 0.292f;
+        light.radius = std::sqrt(burningAreaOf(*object) / 3.14159265f);
+        light.power = powerOf(*object);
+        light.intensity = light.power * (components::kLightShare / components::kSphere);
+        light.id = nextLight_++;
+        if (nextLight_ == 0) nextLight_ = 1;
+        light.frameIndex = lastFrame_;
+        lights_.push_back(light);
+    }
+    shownLights_.assign(lights_.begin(), lights_.end());  // room for more was found at the start
+    lightsDue_ = true;
 }
 
 // Once a frame: meshes' lights come with readbacks, a few times a second.

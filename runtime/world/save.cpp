@@ -743,6 +743,10 @@ void World::load(std::span<const std::byte> bytes) {
     backend_.restore(restored, uint32_t(saved.clock.tick));
 
     // From here on nothing fails.
+    double by[3];  // what is in no save goes along
+    for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - origin_[i];
+    shiftBy(by);
+    shiftCount_ = 0;
     windGrid_.shape = saved.windGrid.shape;
     windGrid_.points.swap(saved.windGrid.points);
     shield_.grid.shape = saved.heatShield.shape;
@@ -768,10 +772,6 @@ void World::load(std::span<const std::byte> bytes) {
 
 void World::applySaved(const SavedWorld& saved,
                        std::span<const components::Latch> latches) noexcept {
-    double by[3];  // what is in no save goes along
-    for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - origin_[i];
-    shiftBy(by);
-    shiftCount_ = 0;
     clock_ = saved.clock;
     steps_ = saved.steps;
     droppedSteps_ = saved.droppedSteps;
@@ -821,7 +821,6 @@ void World::applySaved(const SavedWorld& saved,
         raise(event.type, event.object1 != 0 ? objects_.at(event.object1 - 1)->get() : nullptr,
               event.tag, lastFrame_, event.position, event.value,
               event.other1 != 0 ? objects_.idOf(event.other1 - 1) : FwBurnableMeshId{});
-    lights_.clear();
     readbackTick_ = clock_.tick;
     // Awake it would see the wind from here on, and not from where its first fire begins.
     idle_ = saved.idle;
@@ -841,6 +840,7 @@ void World::applySaved(const SavedWorld& saved,
     playing_.clear();
     for (size_t i = 0; i < saved.objects.size(); ++i)
         applyObject(saved.objects[i], latches[i], **objects_.at(saved.objects[i].slot));
+    showSavedLights();
     remote_.pairs.clear();
     for (const SavedPair& from : saved.pairs) {
         PairContacts pair{{from.slots[0], from.slots[1]}};

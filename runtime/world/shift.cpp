@@ -188,7 +188,7 @@ void World::shiftBy(const double (&by)[3]) noexcept {
     for (uint32_t i = 0; i < windPool_.slotCount(); ++i)
         if (components::WindZone* zone = windPool_.at(i)) moveMillimetres(zone->middle, by);
     for (components::WindZone& zone : windZones_) moveMillimetres(zone.middle, by);
-    moveMillimetres(windGrid_.shape.origin, by);
+    if (!windGrid_.points.empty()) moveMillimetres(windGrid_.shape.origin, by);
     components::moveGusts(gusts_, by);
     // Fires, emitters, fields, and what is in their way.
     for (uint32_t i = 0; i < fires_.slotCount(); ++i) {
@@ -223,9 +223,7 @@ void World::shiftBy(const double (&by)[3]) noexcept {
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)
         if (Query* query = queries_.at(i); query && query->ready)
             moveBy(query->answer.position, by);
-    for (uint64_t i = events_.oldest(); i < events_.end(); ++i)
-        if (FwEvent& event = events_.at(i); event.type != FW_EVENT_TIME_DROPPED)
-            moveBy(event.position, by);
+    events_.move(by);
 }
 
 }  // namespace fw::world

@@ -794,6 +794,7 @@ class World {
     void takeBurnt(Object& object, uint32_t endTick) noexcept;
     void takeAnswers(const gpu::Readback& readback) noexcept;
     void takeLights(const gpu::Readback& readback) noexcept;
+    void showSavedLights() noexcept;  // after a load, until a readback comes
     void followLights(float seconds);
     components::SurroundingAir listSources();
     components::Surroundings surroundingsAt(const components::SurroundingAir& air,
@@ -1017,6 +1018,7 @@ class World {
     uint32_t receivers_ = 0;
     std::pmr::vector<FwLight> lights_, lightsBefore_;  // of burning meshes
     uint32_t nextLight_ = 1;
+    bool lightsDue_ = false;  // a load: the next that come show at once
     std::pmr::vector<FwLight> shownLights_;   // those, smooth from frame to frame
     std::pmr::vector<uint32_t> keptLights_;   // ids of those that the last frame chose
     std::pmr::vector<FwLight> lightSources_;  // scratch

@@ -697,7 +697,7 @@ FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint3
  * at rest, of those that face the same way (within 60 degrees) before others; none, where none is within 5 % of the
  * diagonal of its box and two texels. So the share of the area that burnt stays what it is, to a texel along its edge. What
  * cannot burn stays as it is. Events and FwObjectState of `to` go on from those of `from`; tags and queries stay with their
- * object. `from` keeps its burn: hide it and put it out, or destroy it, from the next step on. Bit by bit the same on every
+ * object. `from` keeps its burn: destroy it from the next step on (fwWorld_DestroyLater waits for that), or hide it and put it out. Bit by bit the same on every
  * backend, in logs, timelines and networks. Refused: unless both have heat or both FW_BURNABLE_LITE; with
  * FW_BURNABLE_PUBLISHED; while either plays a baked burn or is part of another transfer; where less than half of `to` has
  * such a texel (FW_ERROR_BAD_DATA). [world] */
