@@ -153,6 +153,7 @@ uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows
         const std::lock_guard lock(c.mutex);
         for (const FwWorld* world : c.worlds) {
             world->backend->memoryRows(given);
+            world->world->memoryRows(given);
             add();
         }
         count = uint32_t(sums.size());

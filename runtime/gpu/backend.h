@@ -53,10 +53,17 @@ struct RemoteUpdate {
         uint32_t object = 0;
         RemoteObject record;  // sources are the backend's to fill
     };
-    std::span<const Placed> objects;       // that changed
-    std::span<const uint32_t> neighbours;  // all of them: slot | what is seen of it, of 255, << 24
-    std::span<const ContactLink> links;    // all of them
-    std::span<const Blocker> blockers;     // all of them, at most kMaxBlockers
+    struct Range {
+        uint32_t first = 0, count = 0;
+    };
+    std::span<const Placed> objects;  // that changed
+    // All lists, in one array that never gets shorter: slot | what is seen of it, of 255, << 24.
+    std::span<const uint32_t> neighbours;
+    std::span<const Range> neighbourRanges;  // of it, that changed
+    // The same of links. Those of one (object, texel) are side by side; kNoneTexel: of no object.
+    std::span<const ContactLink> links;
+    std::span<const Range> linkRanges;
+    std::span<const Blocker> blockers;  // all of them, at most kMaxBlockers
 };
 
 // All of the shield, in place of the one that was. See exchange.h.

@@ -9,29 +9,43 @@
 namespace fw::mesh {
 namespace {
 
-struct Units {  // int64: 2^20 units away is far outside any mesh, squares fit easily
-    int64_t at[3];
+// A point in units of 2^shift position units. Points near the mesh have a shift of 0; those so far
+// away that a square would not fit into 64 bits have a larger one, which is still finer than the
+// float that they came as.
+struct Units {
+    int64_t at[3];  // position units
+    uint32_t shift;
 };
 
+constexpr double kMostDistance = 2305843009213693952.0;  // 2^61
+constexpr int64_t kMostUnits = int64_t(1) << 30;     // three squares of these fit into 63 bits
+
 int64_t toUnits(double metres, double quantum) {
-    return int64_t(std::floor(std::clamp(metres / quantum, -1048576.0, 1048576.0) + 0.5));
+    const double units = metres / quantum;
+    if (std::isnan(units)) return 0;
+    return int64_t(std::floor(std::clamp(units, -kMostDistance, kMostDistance) + 0.5));
 }
 Units unitsOf(const BurnDomain& domain, const float point[3]) {
     Units units{};
+    int64_t most = 0;
     for (int k = 0; k < 3; ++k) {
         const double d = double(point[k]) - double(domain.origin[k]);
-        units.at[k] = std::isfinite(d) ? toUnits(d, double(domain.quantum)) : 1048576;
+        units.at[k] = toUnits(d, double(domain.quantum));
+        most = std::max(most, std::abs(units.at[k]));
     }
+    while (most >> units.shift > kMostUnits) ++units.shift;
     return units;
 }
 int64_t squareTo(const TexelPosition& p, const Units& u) {
-    const int64_t x = p.x - u.at[0], y = p.y - u.at[1], z = p.z - u.at[2];
+    const int64_t x = (p.x - u.at[0]) >> u.shift, y = (p.y - u.at[1]) >> u.shift,
+                  z = (p.z - u.at[2]) >> u.shift;
     return x * x + y * y + z * z;
 }
 int64_t squareTo(const TileBounds& b, const Units& u) {
     int64_t sum = 0;
     for (int k = 0; k < 3; ++k) {
-        const int64_t d = std::max({b.low[k] - u.at[k], u.at[k] - b.high[k], int64_t(0)});
+        const int64_t d =
+            std::max({b.low[k] - u.at[k], u.at[k] - b.high[k], int64_t(0)}) >> u.shift;
         sum += d * d;
     }
     return sum;
@@ -64,18 +78,19 @@ uint32_t nearestWithin(const BurnDomain& domain, const Units& point, int64_t lim
     return best;
 }
 
-int64_t squareOf(const BurnDomain& domain, float metres) {
-    if (!(metres >= 0)) return 0;  // also NaN
-    const int64_t units = toUnits(double(metres), double(domain.quantum));
-    return units * units;
+int64_t unitsOf(const BurnDomain& domain, float metres) {
+    return metres >= 0 ? toUnits(double(metres), double(domain.quantum)) : 0;  // also of NaN
 }
 
 }  // namespace
 
 uint32_t nearestTexel(const BurnDomain& domain, const float point[3], float maxDistance) {
+    const Units units = unitsOf(domain, point);
+    // No texel is farther away than kMostUnits twice, in its units.
+    const int64_t reach = unitsOf(domain, maxDistance) >> units.shift;
+    const int64_t coarse = std::min(reach + (units.shift > 0 ? 1 : 0), 2 * kMostUnits);
     // Half a unit of rounding on each side must not lose a texel that is just in reach.
-    const int64_t reach = squareOf(domain, maxDistance);
-    return nearestWithin(domain, unitsOf(domain, point), reach + 2);
+    return nearestWithin(domain, units, coarse * coarse + 2);
 }
 
 void texelsNear(const BurnDomain& domain, const float point[3], float radius,
@@ -85,8 +100,8 @@ void texelsNear(const BurnDomain& domain, const float point[3], float radius,
         nearestWithin(domain, unitsOf(domain, point), std::numeric_limits<int64_t>::max());
     if (centre == kNone) return;
     const TexelPosition& p = domain.texels[centre];
-    const int64_t limit = squareOf(domain, radius);
-    visitWithin(domain, {{p.x, p.y, p.z}}, limit,
+    const int64_t reach = std::min(unitsOf(domain, radius), kMostUnits);  // the mesh ends before
+    visitWithin(domain, {{p.x, p.y, p.z}, 0}, reach * reach,
                 [&](uint32_t texel, int64_t) { out.push_back(texel); });
     std::sort(out.begin(), out.end());
 }

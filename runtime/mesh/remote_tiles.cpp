@@ -69,14 +69,59 @@ uint32_t packSum(const int64_t (&sum)[3]) noexcept {
            (part(2, 511) & 0x3FFu) << 22;
 }
 
-uint64_t keyOf(int x, int y, int z) noexcept {
-    const auto part = [](int v) { return uint64_t(uint32_t(v + (1 << 20)) & 0x1FFFFFu); };
-    return part(x) << 42 | part(y) << 21 | part(z);
-}
 int cellOf(int mm) noexcept {
     constexpr int kSide = int(gpu::kContactGap);
     return mm >= 0 ? mm / kSide : -((kSide - 1 - mm) / kSide);
 }
+
+gpu::ivec3 cellAt(const gpu::ivec3& p) noexcept { return {cellOf(p.x), cellOf(p.y), cellOf(p.z)}; }
+
+// mm from a place, `within` its cell along an axis, to the cell beside it; 0: its own.
+uint32_t wayTo(int beside, int within) noexcept {
+    return uint32_t(beside == 0 ? 0 : beside < 0 ? within + 1 : int(gpu::kContactGap) - within);
+}
+
+// The cells of places that one object has near another: numbers of their own, wherever in the world
+// that is.
+struct ContactCells {
+    static constexpr size_t kMostListed = 4096;
+    gpu::ivec3 low{0}, high{-1};
+    bool listed = false;                           // they are few enough for `starts`
+    std::array<uint32_t, kMostListed + 1> starts;  // by cell: its first place
+
+    void add(const gpu::ivec3& cell) noexcept {
+        const bool first = high.x < low.x;
+        low = first ? cell : glm::min(low, cell);
+        high = first ? cell : glm::max(high, cell);
+    }
+    [[nodiscard]] uint64_t keyOf(int x, int y, int z) const noexcept {
+        const auto side = [&](int axis) { return uint64_t(high[axis] - low[axis]) + 1; };
+        return (uint64_t(x - low.x) * side(1) + uint64_t(y - low.y)) * side(2) +
+               uint64_t(z - low.z);
+    }
+    // Of places that are in the order of their keys.
+    void list(std::span<const ContactPlace> places) noexcept {
+        const uint64_t cells = keyOf(high.x, high.y, high.z) + 1;
+        listed = cells <= kMostListed;
+        if (!listed) return;
+        size_t at = 0;
+        for (uint64_t key = 0; key <= cells; ++key) {
+            while (at < places.size() && places[at].key < key) ++at;
+            starts[key] = uint32_t(at);
+        }
+    }
+    // The places in three cells of a row.
+    [[nodiscard]] std::span<const ContactPlace> around(std::span<const ContactPlace> places, int x,
+                                                       int y, int z) const noexcept {
+        const int first = std::max(z - 1, low.z), last = std::min(z + 1, high.z);
+        if (x < low.x || x > high.x || y < low.y || y > high.y || first > last) return {};
+        const uint64_t from = keyOf(x, y, first), end = keyOf(x, y, last) + 1;
+        if (listed) return places.subspan(starts[from], starts[end] - starts[from]);
+        const auto before = [](const ContactPlace& a, uint64_t key) { return a.key < key; };
+        const auto at = std::lower_bound(places.begin(), places.end(), from, before);
+        return {at, std::lower_bound(at, places.end(), end, before)};
+    }
+};
 
 bool inside(const gpu::ivec3& p, const Box& box, int more) noexcept {
     for (int i = 0; i < 3; ++i)
@@ -194,7 +239,8 @@ void findContacts(const ContactSide& to, const ContactSide& from,
     constexpr int kGap = int(gpu::kContactGap);
     if (gapOf(wholeBox(to), wholeBox(from)) > kGap) return;
     placed.clear();
-    const Box toBox = wholeBox(to);
+    ContactCells cells;
+    const Box toBox = wholeBox(to), fromBox = wholeBox(from);
     nearTiles(from, toBox, [&](uint32_t tile, const Box&) {
         const uint32_t corner = tile / from.domain->tilesX * kTileSide * from.domain->width +
                                 tile % from.domain->tilesX * kTileSide;
@@ -203,16 +249,19 @@ void findContacts(const ContactSide& to, const ContactSide& from,
             if (!burnsAt(from, texel)) continue;
             const gpu::ivec3 p = placeOf(from, texel);
             if (!inside(p, toBox, kGap)) continue;
-            placed.push_back(
-                {keyOf(cellOf(p.x), cellOf(p.y), cellOf(p.z)), {p.x, p.y, p.z}, texel});
+            cells.add(cellAt(p));
+            placed.push_back({0, {p.x, p.y, p.z}, texel});
         }
     });
     if (placed.empty()) return;
+    for (ContactPlace& one : placed)
+        one.key = cells.keyOf(cellOf(one.place[0]), cellOf(one.place[1]), cellOf(one.place[2]));
     std::sort(placed.begin(), placed.end(), [](const ContactPlace& a, const ContactPlace& b) {
         return a.key != b.key ? a.key < b.key : a.texel < b.texel;
     });
+    cells.list(placed);
     const size_t most = out.size() + kMostContacts;
-    nearTiles(to, wholeBox(from), [&](uint32_t tile, const Box&) {
+    nearTiles(to, fromBox, [&](uint32_t tile, const Box&) {
         const uint32_t corner = tile / to.domain->tilesX * kTileSide * to.domain->width +
                                 tile % to.domain->tilesX * kTileSide;
         for (uint32_t block = 0; block < 4 && out.size() < most; ++block) {
@@ -223,20 +272,21 @@ void findContacts(const ContactSide& to, const ContactSide& from,
                 const uint32_t texel = corner + y * to.domain->width + x;
                 if (!burnsAt(to, texel)) continue;
                 const gpu::ivec3 p = placeOf(to, texel);
-                const int cell[3] = {cellOf(p.x), cellOf(p.y), cellOf(p.z)};
+                if (!inside(p, fromBox, kGap)) continue;
+                const gpu::ivec3 cell = cellAt(p);
                 for (int around = 0; around < 9; ++around) {
-                    const int cx = cell[0] + around / 3 - 1, cy = cell[1] + around % 3 - 1;
-                    const uint64_t last = keyOf(cx, cy, cell[2] + 1);
-                    auto entry = std::lower_bound(
-                        placed.begin(), placed.end(), keyOf(cx, cy, cell[2] - 1),
-                        [](const ContactPlace& a, uint64_t key) { return a.key < key; });
-                    for (; entry != placed.end() && entry->key <= last; ++entry) {
-                        const gpu::ivec3 d(entry->place[0] - p.x, entry->place[1] - p.y,
-                                           entry->place[2] - p.z);
+                    const int cx = around / 3 - 1, cy = around % 3 - 1;
+                    const uint32_t x1 = wayTo(cx, p.x - cell.x * kGap),
+                                   y1 = wayTo(cy, p.y - cell.y * kGap);
+                    if (x1 * x1 + y1 * y1 >= bestSquare) continue;  // so is all of the row
+                    for (const ContactPlace& entry :
+                         cells.around(placed, cell.x + cx, cell.y + cy, cell.z)) {
+                        const gpu::ivec3 d(entry.place[0] - p.x, entry.place[1] - p.y,
+                                           entry.place[2] - p.z);
                         const uint32_t square = gpu::squareSum(d);
                         if (square >= bestSquare) continue;
                         bestSquare = square;
-                        best = {texel, entry->texel, gpu::isqrtNear(square)};
+                        best = {texel, entry.texel, gpu::isqrtNear(square)};
                     }
                 }
             }

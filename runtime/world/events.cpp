@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace fw::world {
 namespace {
@@ -14,6 +15,13 @@ namespace {
 constexpr uint64_t kSettleTicks = 6 * gpu::kStepTicks;
 constexpr uint64_t kWaterWorks = 2 * gpu::kTicksPerSecond;  // until it has put out what it hit
 constexpr uint32_t kClampsToTell = 32;
+
+// Fire may come to it, and none has: its counters say what they said before.
+bool waitsForFire(const Object& object, const gpu::ObjectCounters& now) noexcept {
+    return now.ignited == 0 && now.burning == 0 && !object.story.active && !object.story.sawFire &&
+           object.play.began == 0 && object.story.power == 0 &&
+           std::memcmp(&now, &object.counters, sizeof now) == 0;
+}
 
 }  // namespace
 
@@ -93,6 +101,13 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         const uint32_t slot = object.slot;
         if (slot >= readback.objects.size() || object.firstFrame > readback.frameIndex) continue;
         const gpu::ObjectCounters& now = readback.objects[slot];
+        if (waitsForFire(object, now)) {
+            object.countersFrame = readback.frameIndex;
+            if (components::hasHeat(object.data))
+                object.story.heatSteps = heatStepsBefore(readback.endTick);
+            clamps += now.lateClamps;
+            continue;
+        }
         const gpu::ObjectCounters before = object.counters;
         object.counters = now;
         object.countersFrame = readback.frameIndex;

@@ -43,10 +43,9 @@ void World::touchByField(Field& field, uint32_t now) {
     def.radius = std::max(0.75f * std::max(card ? wide : 3.1415927f * wide, tall),
                           card ? kDepth * data.size[0] : 0.0f);
     const float reach = std::sqrt(far) + def.radius;
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
-        auto* owned = objects_.at(slot);
-        if (!owned || (*owned)->texels == 0) continue;
-        Object& object = **owned;
+    for (const uint32_t slot : objectsNear(middle, reach)) {
+        Object& object = **objects_.at(slot);
+        if (object.texels == 0) continue;
         const components::Pose& pose = object.data.pose;
         const float least =
             pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});

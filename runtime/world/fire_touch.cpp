@@ -99,10 +99,18 @@ void World::touchByFire(Fire& fire, uint32_t now) {
         fire.data.power > 0
             ? ballsOf(fire.data, def_.up, windAt(fire.data.position, now).data(), balls)
             : 0;
-    for (uint32_t slot = 0; count > 0 && slot < objects_.slotCount(); ++slot) {
-        auto* owned = objects_.at(slot);
-        if (!owned || (*owned)->texels == 0) continue;
-        Object& object = **owned;
+    float span = 0;  // from the first ball's middle, around all of them
+    for (uint32_t k = 0; k < count; ++k) {
+        float sum = 0;
+        for (int i = 0; i < 3; ++i)
+            sum +=
+                (balls[k].place[i] - balls[0].place[i]) * (balls[k].place[i] - balls[0].place[i]);
+        span = std::max(span, 1.001f * std::sqrt(sum) + balls[k].radius);
+    }
+    for (const uint32_t slot :
+         count > 0 ? objectsNear(balls[0].place, span) : std::span<const uint32_t>()) {
+        Object& object = **objects_.at(slot);
+        if (object.texels == 0) continue;
         const components::Pose& pose = object.data.pose;
         const float shrink =
             pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});

@@ -144,10 +144,8 @@ float mostScale(const components::Pose& pose) noexcept {
 // The objects that rays from there may meet, for the sweeps that follow.
 void World::listJetTargets(const float from[3], float reach) noexcept {
     jetSlots_.clear();  // room was found with each object
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
-        const auto* owned = objects_.at(slot);
-        if (!owned) continue;
-        const Object& object = **owned;
+    for (const uint32_t slot : objectsNear(from, reach + kFarStep)) {
+        const Object& object = **objects_.at(slot);
         const components::Pose& pose = object.data.pose;
         const mesh::BurnDomain& domain = domainOf(object);
         float middle[3], at[3], away = 0, wide = 0;

@@ -6,6 +6,12 @@
 
 namespace fw::world {
 
+void World::addLatch(Object& object, const components::Latch& latch, bool due) noexcept {
+    object.planStamp = planStamp_;
+    object.latchIndex = frame_.latches.size();
+    frame_.latches.push_back({&object, latch, due});  // room was found at its creation
+}
+
 void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
     const auto sendRecords = [&](Object& object, const components::DriveInput& drive,
                                  components::Latch& latch) {
@@ -24,12 +30,10 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         const uint32_t slot = frame_.events[i].object;
         if (i > firstEvent && frame_.events[i - 1].object == slot) continue;
         Object& object = **objects_.at(slot);
-        const auto known =
-            std::find_if(frame_.latches.begin(), frame_.latches.end(),
-                         [&](const Frame::LatchOf& entry) { return entry.object == &object; });
-        if (known != frame_.latches.end()) {
-            known->due = true;
-            if (!known->latch.sent) sendRecords(object, driveInput(object, now), known->latch);
+        if (object.planStamp == planStamp_) {
+            Frame::LatchOf& known = frame_.latches[object.latchIndex];
+            known.due = true;
+            if (!known.latch.sent) sendRecords(object, driveInput(object, now), known.latch);
             continue;
         }
         components::Latch latch = object.latch;
@@ -37,10 +41,10 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         components::resetLatch(object.data, drive, latch);
         latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
         if (!latch.sent) sendRecords(object, drive, latch);
-        frame_.latches.push_back({&object, latch, true});
-        object.planStamp = planStamp_;
+        addLatch(object, latch, true);
     }
     const bool fresh = firstEvent < frame_.events.size();
+    remote_.spreadKnown &= remoteOn() || !fresh;
     if (remoteOn()) {
         if (fresh || placed) touchNear(now);
         // Nobody knows which of them the fire reaches first.

@@ -1,5 +1,6 @@
 #include "world/played.h"
 
+#include "core/growth.h"
 #include "core/hash.h"
 #include "core/stream.h"
 #include "save/plane.h"
@@ -154,7 +155,7 @@ void World::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick, floa
     play.first = std::max(tick, uint32_t(clock_.tick) + gpu::kStepTicks);
     play.rate = playRate(speed);
     play.most = mostAtOnce(burn, play, def_.maxStepsPerFrame);
-    playing_.reserve(objects_.slotCount());
+    core::growTo(playing_, playing_.size() + 1);
     reservePlays(play.most);
     if (object.play.burn1 == 0) startPlay(object);
     object.play = play;
@@ -174,10 +175,10 @@ void World::stopBurn(FwBurnableMeshId id) {
 
 // Room for the events of a frame in which all that play have the most, and `more`.
 void World::reservePlays(size_t more) {
-    frame_.plays.reserve(playing_.size() + 1);
+    core::growTo(frame_.plays, playing_.size() + 1);
     size_t events = pending_.size() + more;
     for (const Object* object : playing_) events += object->play.most;
-    frame_.events.reserve(events + 2 * (playing_.size() + 1));
+    core::growTo(frame_.events, events + 2 * (playing_.size() + 1));
 }
 
 void World::startPlay(Object& object) noexcept {  // there is room

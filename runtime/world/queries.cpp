@@ -147,19 +147,17 @@ void World::energyBook(FwEnergyBook& book) noexcept {
     // Of what flames give off (fluxFrom has the same share), in parts that add up.
     constexpr uint64_t kRadiatedPercent = 33;
     book.frameIndex = readbackFrame_;
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
-        const core::Owned<Object>* owned = objects_.at(slot);
-        if (!owned) continue;
-        const Object& object = **owned;
+    book.objects = ledgers_;
+    book.fuel = book.unburnt = fuel_;
+    for (const Object* touched : touched_) {  // the others have all of theirs
+        const Object& object = *touched;
         book.burningArea += burningAreaOf(object);
         book.power += powerOf(object);
         if (!components::keepsBook(object.data)) continue;
-        ++book.objects;
         const uint64_t released = object.story.energy;
         const uint64_t radiated =
             released / 100 * kRadiatedPercent + released % 100 * kRadiatedPercent / 100;
-        book.fuel += object.fuel.energy;
-        book.unburnt += object.fuel.energy - released;
+        book.unburnt -= released;
         book.radiated += radiated;
         book.convected += released - radiated;
     }

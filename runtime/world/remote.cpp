@@ -1,6 +1,7 @@
 // Who is where, as others see it: poses become integers at fixed ticks, neighbours and contacts are
 // found when something moved, and all of it goes to the backend with the step that begins there.
 // What fire does with it is the backend's.
+#include "core/growth.h"
 #include "fire/heat.h"
 #include "mesh/remote_tiles.h"
 #include "world/world.h"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <tuple>
 
 namespace fw::world {
@@ -21,7 +23,6 @@ static_assert(FW_WORLD_RADIATION == gpu::kRemoteRadiation && FW_WORLD_PLUME == g
 
 constexpr double kGapSpeed = 0.05;        // m/s at which flames lick across a gap
 constexpr double kBrandsPerJoule = 2e-6;  // embers that matter
-constexpr uint32_t kMaxNeighbourSlot = 0xFFFFFFu;
 
 mesh::Box boxOf(const gpu::RemoteObject& o) noexcept {
     mesh::Box box;
@@ -37,7 +38,10 @@ bool sameRecord(const gpu::RemoteObject& a, const gpu::RemoteObject& b) noexcept
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-uint64_t pairOf(uint32_t a, uint32_t b) noexcept { return uint64_t(a) << 32 | b; }
+bool before(const gpu::ContactLink& a, const gpu::ContactLink& b) noexcept {
+    return std::tie(a.texel, a.fromObject, a.fromTexel) <
+           std::tie(b.texel, b.fromObject, b.fromTexel);
+}
 
 }  // namespace
 
@@ -49,6 +53,7 @@ void World::setFlags(uint32_t given) {
     const uint32_t flags = given & kWaysOfFire;
     remote_.objectFlags = given & ~kWaysOfFire;
     remote_.unsent |= flags != 0 && flags != remote_.flags;
+    remote_.spreadKnown &= flags == remote_.flags;
     constexpr uint32_t kWarm = FW_WORLD_RADIATION | FW_WORLD_PLUME;
     remote_.warms |= (flags & kWarm) != 0;
     if (remote_.flags & ~flags & kWarm)
@@ -56,6 +61,23 @@ void World::setFlags(uint32_t given) {
     remote_.flags = flags;
     note({Deed::Kind::flags, 0, 0, given, {}});
 }
+
+namespace {
+
+// Their integers hold so much and no more; a larger one would stop less than the host sees of it.
+void checkBlocker(const components::Pose& pose, const float halfSize[3], const char* field) {
+    for (int i = 0; i < 3; ++i) {
+        const float half = halfSize[i] * pose.scale * std::abs(pose.stretch[i]);
+        if (half > 30.0f * 1.0001f)
+            core::fail(
+                FW_ERROR_INVALID_ARGUMENT,
+                "%s makes the blocker %g m to each side along its axis %d; the limit is 30 m. "
+                "Put several side by side.",
+                field, double(half), i);
+    }
+}
+
+}  // namespace
 
 FwBlockerId World::addBlocker(const FwBlockerDef& def) {
     ++geometry_;
@@ -66,6 +88,7 @@ FwBlockerId World::addBlocker(const FwBlockerDef& def) {
     BlockerEntry entry;
     entry.pose = components::makePose(def.transform, "FwBlockerDef::transform");
     checkValues(def.halfSize, 3, "FwBlockerDef::halfSize", 0.0f, 30.0f);
+    checkBlocker(entry.pose, def.halfSize, "FwBlockerDef::transform");
     std::copy_n(def.halfSize, 3, entry.halfSize);
     if (blockers_.live() >= gpu::kMaxBlockers)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u blockers are in place; the limit is %u.",
@@ -79,7 +102,9 @@ void World::moveBlocker(FwBlockerId id, const float transform[16]) {
     mayChange();
     ++geometry_;
     BlockerEntry& entry = blockers_.get(id);
-    entry.pose = components::makePose(transform, "transform");
+    const components::Pose pose = components::makePose(transform, "transform");
+    checkBlocker(pose, entry.halfSize, "transform");
+    entry.pose = pose;
     remote_.blockersDue = true;
     notePose(Deed::Kind::moveBlocker, id.index1 - 1, transform);
 }
@@ -118,8 +143,28 @@ gpu::ExchangePush World::exchangeRules() const noexcept {
 void World::takeRemoteWind(Object& object, int wind) noexcept {
     if (object.remoteVersion == 0 || wind == object.remote.high.w) return;
     object.remote.high.w = wind;
-    object.remoteSent = false;
+    markUnsent(object);
+}
+
+void World::markUnsent(Object& object) noexcept {
     remote_.unsent = true;
+    if (!object.remoteSent) return;
+    object.remoteSent = false;
+    remote_.unsentSlots.push_back(object.slot);  // room was found at its creation
+}
+
+// An update that the frame has planned points to lists that are about to change.
+void World::keepPlanned() {
+    if (frame_.remoteUsed == 0) return;
+    RemoteTables& tables = *frame_.remote[frame_.remoteUsed - 1];
+    if (tables.update.neighbours.data() == remote_.neighbours.pool().all().data()) {
+        tables.neighbours.assign(tables.update.neighbours.begin(), tables.update.neighbours.end());
+        tables.update.neighbours = tables.neighbours;
+    }
+    if (tables.update.links.data() == remote_.links.all().data()) {
+        tables.links.assign(tables.update.links.begin(), tables.update.links.end());
+        tables.update.links = tables.links;
+    }
 }
 
 // Poses and blockers as they are now.
@@ -136,13 +181,27 @@ void World::latchRemote(uint32_t now) {
         record.neighbourCount = object.remote.neighbourCount;
         takeRemoteWind(object, record.high.w);
         if (object.remoteVersion != 0 && sameRecord(record, object.remote)) continue;
+        keepPlanned();
         object.remote = record;
         object.reach = components::remoteReach(object.data, domain,
                                                meshes_.at(object.data.meshSlot)->texelsOf);
+        // Room for these was found at its creation.
+        if (object.remoteVersion == 0 && !object.touched) remote_.waiting.push_back(slot);
         object.remoteVersion = ++remote_.version;
-        object.remoteSent = false;
-        remote_.unsent = true;
+        markUnsent(object);
+        if (!(record.flags & gpu::kRemoteLive) || slot > Neighbours::kSlot) continue;
+        if (!object.contactsDue) remote_.contactsDue.push_back(slot);
+        object.contactsDue = true;
+        if (def_.visibility && !object.seenDue) remote_.seenDue.push_back(slot);
+        object.seenDue = def_.visibility != nullptr;
+        try {
+            remote_.neighbours.place(slot, boxOf(record), object.reach);
+        } catch (...) {
+            remote_.rebuild = true;
+            throw;
+        }
     }
+    remote_.unsent |= !remote_.neighbours.changed().empty();
     for (uint32_t slot = 0; gusty() && slot < objects_.slotCount(); ++slot)
         if (auto* owned = objects_.at(slot)) takeRemoteWind(**owned, int(zoneWindOf(**owned, now)));
     if (!remote_.blockersDue) return;
@@ -156,75 +215,74 @@ void World::latchRemote(uint32_t now) {
     remote_.unsent = true;
 }
 
-// Objects whose boxes come within the reach of one of the two, both ways, by slot.
-void World::findNeighbours() {
+// All of it from the latched records and the pairs that are known: the lists are those of another
+// world, or memory ended while they changed.
+void World::rebuildRemote() {
     RemoteBook& book = remote_;
-    book.order.clear();
-    for (uint32_t slot = 0; slot < objects_.slotCount() && slot <= kMaxNeighbourSlot; ++slot)
-        if (auto* owned = objects_.at(slot);
-            owned && (*owned)->remoteVersion != 0 && (*owned)->remote.flags & gpu::kRemoteLive)
-            book.order.push_back(slot);
-    const auto from = [&](uint32_t slot) {
-        const Object& object = **objects_.at(slot);
-        return int64_t(object.remote.turn0.w) - object.reach;
-    };
-    std::sort(book.order.begin(), book.order.end(), [&](uint32_t a, uint32_t b) {
-        const int64_t x = from(a), y = from(b);
-        return x != y ? x < y : a < b;
-    });
-    book.near.clear();
-    for (size_t i = 0; i < book.order.size(); ++i) {
-        const Object& a = **objects_.at(book.order[i]);
-        const mesh::Box box = boxOf(a.remote);
-        const int64_t end = int64_t(box.high[0]) + a.reach;
-        for (size_t j = i + 1; j < book.order.size() && from(book.order[j]) <= end; ++j) {
-            const Object& b = **objects_.at(book.order[j]);
-            if (mesh::gapOf(box, boxOf(b.remote)) > int(std::max(a.reach, b.reach))) continue;
-            book.near.push_back(pairOf(a.slot, b.slot));
-            book.near.push_back(pairOf(b.slot, a.slot));
-        }
-    }
-    std::sort(book.near.begin(), book.near.end());
+    keepPlanned();
+    book.unsent = true;
+    book.spreadKnown = false;
     book.neighbours.clear();
-    size_t at = 0;
+    book.close.clear();
+    book.links.clear();
+    for (auto* lists : {&book.closeOf, &book.linksOf}) {
+        core::growTo(*lists, objects_.slotCount());
+        lists->assign(objects_.slotCount(), {});
+    }
+    for (auto* slots : {&book.unsentSlots, &book.contactsDue, &book.seenDue, &book.waiting})
+        slots->clear();  // each keeps its room for all objects
     for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
         auto* owned = objects_.at(slot);
-        if (!owned || (*owned)->remoteVersion == 0) continue;
+        if (!owned) continue;
         Object& object = **owned;
-        const auto first = uint32_t(book.neighbours.size());
-        while (at < book.near.size() && book.near[at] >> 32 < slot) ++at;
-        for (; at < book.near.size() && book.near[at] >> 32 == slot; ++at)
-            book.neighbours.push_back(uint32_t(book.near[at]) |
-                                      seenOf(uint32_t(book.near[at]), slot) << 24);
-        const uint32_t count = uint32_t(book.neighbours.size()) - first;
-        if (object.remote.neighbourFirst == first && object.remote.neighbourCount == count)
-            continue;
-        object.remote.neighbourFirst = first;
-        object.remote.neighbourCount = count;
-        object.remoteSent = false;
+        const bool placed = object.remoteVersion != 0;
+        const bool meets =
+            placed && object.remote.flags & gpu::kRemoteLive && slot <= Neighbours::kSlot;
+        object.remoteSent = !placed;
+        object.contactsDue = meets;
+        object.seenDue = meets && def_.visibility;
+        if (placed) book.unsentSlots.push_back(slot);
+        if (placed && !object.touched) book.waiting.push_back(slot);
+        if (object.contactsDue) book.contactsDue.push_back(slot);
+        if (object.seenDue) book.seenDue.push_back(slot);
+        if (meets) book.neighbours.place(slot, boxOf(object.remote), object.reach);
     }
-    std::erase_if(book.seen, [](const Seen& seen) { return !seen.used; });
-    for (Seen& seen : book.seen) seen.used = false;
+    std::erase_if(book.pairs, [&](const PairContacts& pair) {
+        for (int k = 0; k < 2; ++k) {
+            const auto* owned = objects_.at(pair.slots[k]);
+            if (!owned || (*owned)->id.generation != pair.ids[k].generation) return true;
+        }
+        return false;
+    });
+    for (uint32_t i = 0; i < book.pairs.size(); ++i) {
+        PairContacts& pair = book.pairs[i];
+        pair.versions[0] = pair.versions[1] = 0;
+        pair.stamp = 0;
+        for (int k = 0; k < 2; ++k) addClose(pair.slots[k], pair.slots[1 - k], i);
+    }
+    book.rebuild = false;
 }
 
 // What a fire of `from` sees of `to`, of 255.
-uint32_t World::seenOf(uint32_t from, uint32_t to) {
-    if (!def_.visibility) return 255;
-    const Object &a = **objects_.at(from), &b = **objects_.at(to);
-    const uint64_t key = pairOf(from, to);
-    auto known =
-        std::lower_bound(remote_.seen.begin(), remote_.seen.end(), key,
-                         [](const Seen& seen, uint64_t wanted) { return seen.pair < wanted; });
-    if (known == remote_.seen.end() || known->pair != key)
-        known = remote_.seen.insert(known, Seen{key, {}, 255, true});
-    known->used = true;
-    if (known->versions[0] != a.remoteVersion || known->versions[1] != b.remoteVersion) {
-        const float told = def_.visibility(def_.visibilityData, a.id, b.id);
-        known->part = told > 0 ? uint32_t(std::lround(std::min(told, 1.0f) * 255)) : 0u;
-        known->versions[0] = a.remoteVersion;
-        known->versions[1] = b.remoteVersion;
+uint32_t World::seenPart(const Object& from, const Object& to) const {
+    const float told = def_.visibility(def_.visibilityData, from.id, to.id);
+    return told > 0 ? uint32_t(std::lround(std::min(told, 1.0f) * 255)) : 0u;
+}
+
+// Both ways between objects that are elsewhere and all their neighbours.
+void World::askVisibility() {
+    RemoteBook& book = remote_;
+    for (const uint32_t slot : book.seenDue) {
+        const Object& object = **objects_.at(slot);
+        for (const uint32_t entry : book.neighbours.of(slot)) {
+            const Object& other = **objects_.at(entry & Neighbours::kSlot);
+            if (other.seenDue && other.slot < slot) continue;  // asked with that one
+            book.neighbours.see(slot, other.slot, seenPart(other, object));
+            book.neighbours.see(other.slot, slot, seenPart(object, other));
+        }
     }
-    return known->part;
+    for (const uint32_t slot : book.seenDue) (*objects_.at(slot))->seenDue = false;
+    book.seenDue.clear();
 }
 
 namespace {
@@ -265,72 +323,167 @@ void World::linkPair(const Object& to, const Object& from, uint32_t since,
     }
 }
 
+// Of objects that were latched since the last time. What memory refuses comes with the next call.
 void World::findLinks(uint32_t now) {
     RemoteBook& book = remote_;
-    book.links.clear();
     if (!(book.flags & FW_WORLD_CONTACT)) return;
-    try {
-        linkPairs(now);
-    } catch (...) {  // what links they have is not known: all are found anew
-        for (PairContacts& pair : book.pairs) pair.versions[0] = pair.versions[1] = 0;
-        throw;
-    }
-    book.pairLinks.swap(book.nextLinks);
-    book.links.assign(book.pairLinks.begin(), book.pairLinks.end());
-    std::erase_if(book.pairs, [](const PairContacts& pair) { return !pair.used; });
-    for (PairContacts& pair : book.pairs) pair.used = false;
-    std::sort(book.links.begin(), book.links.end(),
-              [](const gpu::ContactLink& a, const gpu::ContactLink& b) {
-                  return std::tie(a.object, a.texel, a.fromObject, a.fromTexel) <
-                         std::tie(b.object, b.texel, b.fromObject, b.fromTexel);
-              });
+    for (auto* lists : {&book.closeOf, &book.linksOf})
+        if (lists->size() < objects_.slotCount()) {
+            core::growTo(*lists, objects_.slotCount());
+            lists->resize(objects_.slotCount());
+        }
+    for (const uint32_t slot : book.contactsDue) linkClose(**objects_.at(slot), now);
+    for (const uint32_t slot : book.contactsDue) (*objects_.at(slot))->contactsDue = false;
+    book.contactsDue.clear();
 }
 
-// Contacts of all pairs into nextLinks. One list has those of all: lists of their own, for pairs
-// that come and go, would each grow to the largest that ever was in it.
-void World::linkPairs(uint32_t now) {
+// The contacts of one object with all that are so near.
+void World::linkClose(Object& object, uint32_t now) {
     RemoteBook& book = remote_;
-    book.nextLinks.clear();
-    for (const uint64_t pair : book.near) {
-        const auto first = uint32_t(pair >> 32), second = uint32_t(pair);
-        if (first > second) continue;
-        const Object &a = **objects_.at(first), &b = **objects_.at(second);
-        if (mesh::gapOf(boxOf(a.remote), boxOf(b.remote)) > int(gpu::kContactGap)) continue;
-        auto known = std::find_if(book.pairs.begin(), book.pairs.end(), [&](const auto& entry) {
-            return entry.slots[0] == first && entry.slots[1] == second;
-        });
-        if (known == book.pairs.end()) {
-            book.pairs.push_back({{first, second}});
-            known = book.pairs.end() - 1;
+    const uint64_t stamp = ++book.contactStamp;
+    for (const uint32_t entry : book.neighbours.of(object.slot)) {
+        const uint32_t other = entry & Neighbours::kSlot;
+        if (mesh::gapOf(boxOf(object.remote), boxOf((*objects_.at(other))->remote)) >
+            int(gpu::kContactGap))
+            continue;
+        const Object& a = object.slot < other ? object : **objects_.at(other);
+        const Object& b = object.slot < other ? **objects_.at(other) : object;
+        PairContacts& pair = book.pairs[closePair(a.slot, b.slot)];
+        pair.stamp = stamp;
+        if (pair.versions[0] == a.remoteVersion && pair.versions[1] == b.remoteVersion) continue;
+        pair.versions[0] = pair.versions[1] = 0;  // until all of it is there
+        // Who only shifted while they touch has touched since then.
+        const bool same = pair.ids[0].index1 != 0 && pair.ids[0].generation == a.id.generation &&
+                          pair.ids[1].generation == b.id.generation;
+        const uint32_t since = same && pair.touches ? pair.since : now;
+        dropLinks(a.slot, b.slot);
+        dropLinks(b.slot, a.slot);
+        size_t found = 0;
+        for (const bool first : {true, false}) {
+            book.pairLinks.clear();
+            linkPair(first ? a : b, first ? b : a, since, book.pairLinks);
+            found += book.pairLinks.size();
+            addLinks(first ? a.slot : b.slot, book.pairLinks);
         }
-        known->used = true;
-        const auto begin = uint32_t(book.nextLinks.size());
-        if (known->versions[0] != a.remoteVersion || known->versions[1] != b.remoteVersion) {
-            // Who only shifted while they touch has touched since then.
-            const bool same = known->ids[0].index1 != 0 &&
-                              known->ids[0].generation == a.id.generation &&
-                              known->ids[1].generation == b.id.generation;
-            const uint32_t since = same && known->touches ? known->since : now;
-            linkPair(a, b, since, book.nextLinks);
-            linkPair(b, a, since, book.nextLinks);
-            known->since = since;
-            known->touches = book.nextLinks.size() != begin;
-            known->versions[0] = a.remoteVersion;
-            known->versions[1] = b.remoteVersion;
-            known->ids[0] = a.id;
-            known->ids[1] = b.id;
-        } else {
-            const auto kept = book.pairLinks.begin() + std::ptrdiff_t(known->first);
-            book.nextLinks.insert(book.nextLinks.end(), kept, kept + std::ptrdiff_t(known->count));
-        }
-        known->first = begin;
-        known->count = uint32_t(book.nextLinks.size()) - begin;
+        pair.since = since;
+        pair.touches = found != 0;
+        pair.ids[0] = a.id;
+        pair.ids[1] = b.id;
+        pair.versions[0] = a.remoteVersion;
+        pair.versions[1] = b.remoteVersion;
     }
+    const ListPlace& close = book.closeOf[object.slot];
+    for (uint32_t i = close.count; i-- > 0;)
+        if (const uint32_t pair = book.close.of(close)[i].pair; book.pairs[pair].stamp != stamp)
+            dropPair(pair);
+}
+
+namespace {
+
+uint32_t closeIndex(std::span<const CloseObject> list, uint32_t slot) noexcept {
+    const auto at =
+        std::lower_bound(list.begin(), list.end(), slot,
+                         [](const CloseObject& one, uint32_t wanted) { return one.slot < wanted; });
+    return uint32_t(at - list.begin());
+}
+
+}  // namespace
+
+void World::addClose(uint32_t slot, uint32_t other, uint32_t pair) {
+    ListPlace& list = remote_.closeOf[slot];
+    remote_.close.reserve(list, list.count + 1);
+    remote_.close.insert(list, closeIndex(remote_.close.of(list), other), {other, pair});
+}
+
+// Their pair, which may be new.
+uint32_t World::closePair(uint32_t a, uint32_t b) {
+    RemoteBook& book = remote_;
+    const std::span<const CloseObject> list = book.close.of(book.closeOf[a]);
+    if (const uint32_t at = closeIndex(list, b); at < list.size() && list[at].slot == b)
+        return list[at].pair;
+    const auto pair = uint32_t(book.pairs.size());
+    book.close.reserve(book.closeOf[b], book.closeOf[b].count + 1);  // the second then finds room
+    core::growTo(book.pairs, pair + 1);
+    addClose(a, b, pair);
+    addClose(b, a, pair);
+    book.pairs.push_back({{a, b}});
+    return pair;
+}
+
+// They are apart, or one of them is gone.
+void World::dropPair(uint32_t pair) noexcept {
+    RemoteBook& book = remote_;
+    const auto entryOf = [&](const PairContacts& of, int k) {
+        return closeIndex(book.close.of(book.closeOf[of.slots[k]]), of.slots[1 - k]);
+    };
+    const PairContacts gone = book.pairs[pair];
+    for (int k = 0; k < 2; ++k) {
+        dropLinks(gone.slots[k], gone.slots[1 - k]);
+        book.close.erase(book.closeOf[gone.slots[k]], entryOf(gone, k));
+    }
+    const PairContacts& last = book.pairs.back();  // takes its place
+    if (pair + 1 != book.pairs.size())
+        for (int k = 0; k < 2; ++k)
+            book.close.of(book.closeOf[last.slots[k]])[entryOf(last, k)].pair = pair;
+    book.pairs[pair] = last;
+    book.pairs.pop_back();
+}
+
+void World::dropLinks(uint32_t to, uint32_t from) noexcept {
+    ListPlace& place = remote_.linksOf[to];
+    const std::span<gpu::ContactLink> list = remote_.links.of(place);
+    const auto end = std::remove_if(list.begin(), list.end(), [&](const gpu::ContactLink& link) {
+        return link.fromObject == from;
+    });
+    if (end == list.end()) return;
+    std::fill(end, list.end(), RemoteBook::noLink());
+    remote_.links.mark(place.first, place.count);
+    place.count = uint32_t(end - list.begin());
+}
+
+void World::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
+    if (fresh.empty()) return;
+    RemoteBook& book = remote_;
+    ListPlace& place = book.linksOf[to];
+    std::sort(fresh.begin(), fresh.end(), before);
+    const std::span<const gpu::ContactLink> list = book.links.of(place);
+    book.mergedLinks.clear();
+    std::merge(list.begin(), list.end(), fresh.begin(), fresh.end(),
+               std::back_inserter(book.mergedLinks), before);
+    book.links.reserve(place, uint32_t(book.mergedLinks.size()));
+    book.links.assign(place, book.mergedLinks);
+}
+
+void World::forgetRemote(const Object& object) noexcept {
+    RemoteBook& book = remote_;
+    const uint32_t slot = object.slot;
+    const auto leave = [&](std::pmr::vector<uint32_t>& slots, bool in) {
+        if (in || book.rebuild) std::erase(slots, slot);
+    };
+    leave(book.due, object.remoteDue);
+    leave(book.unsentSlots, !object.remoteSent);
+    leave(book.waiting, object.remoteVersion != 0);
+    leave(book.contactsDue, object.contactsDue);
+    leave(book.seenDue, object.seenDue);
+    if (book.rebuild) {  // its lists are none
+        std::erase_if(book.pairs, [&](const PairContacts& pair) {
+            return pair.slots[0] == slot || pair.slots[1] == slot;
+        });
+        return;
+    }
+    if (slot < book.closeOf.size()) {
+        const ListPlace& close = book.closeOf[slot];
+        while (close.count != 0) dropPair(book.close.of(close).back().pair);
+        book.close.drop(book.closeOf[slot]);
+        book.links.drop(book.linksOf[slot]);
+    }
+    book.neighbours.remove(slot);
 }
 
 // awake: the step will run.
 void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
     if (!remoteOn()) return;
+    if (remote_.rebuild) rebuildRemote();
     step.rules = exchangeRules();
     step.exchange = step.reduce;
     step.governed = remote_.governed;
@@ -342,20 +495,33 @@ void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
     planShield(step, awake);
     if (!awake || !remote_.unsent) return;
     if (frame_.remoteFlushed && now % gpu::kExchangeTicks != 0) return;
-    findNeighbours();
+    keepPlanned();
+    askVisibility();
     findLinks(now);
+    for (const uint32_t slot : remote_.neighbours.changed()) {
+        auto* owned = objects_.at(slot);
+        if (!owned) continue;
+        Object& object = **owned;
+        const ListPlace list = remote_.neighbours.listOf(slot);
+        if (object.remote.neighbourFirst == list.first &&
+            object.remote.neighbourCount == list.count)
+            continue;
+        object.remote.neighbourFirst = list.first;
+        object.remote.neighbourCount = list.count;
+        if (object.remoteVersion != 0) markUnsent(object);
+    }
     if (frame_.remoteUsed == frame_.remote.size())
         frame_.remote.push_back(core::Owned<RemoteTables>::make(memory_, memory_));
     RemoteTables& tables = *frame_.remote[frame_.remoteUsed];
     tables.objects.clear();
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot)
-        if (auto* object = objects_.at(slot);
-            object && (*object)->remoteVersion != 0 && !(*object)->remoteSent)
-            tables.objects.push_back({slot, (*object)->remote});
-    tables.neighbours.assign(remote_.neighbours.begin(), remote_.neighbours.end());
-    tables.links.assign(remote_.links.begin(), remote_.links.end());
+    for (const uint32_t slot : remote_.unsentSlots)
+        tables.objects.push_back({slot, (*objects_.at(slot))->remote});
+    remote_.neighbours.pool().listChanges(tables.neighbourRanges);
+    remote_.links.listChanges(tables.linkRanges);
     tables.blockers.assign(remote_.blockers.begin(), remote_.blockers.end());
-    tables.update = {tables.objects, tables.neighbours, tables.links, tables.blockers};
+    tables.update = {tables.objects,         remote_.neighbours.pool().all(),
+                     tables.neighbourRanges, remote_.links.all(),
+                     tables.linkRanges,      tables.blockers};
     step.remote = &tables.update;
     ++frame_.remoteUsed;
     frame_.remoteFlushed = true;
@@ -368,26 +534,35 @@ void World::touchNear(uint32_t now) {
         auto* owned = objects_.at(slot);
         if (!owned || (*owned)->planStamp == planStamp_ || (*owned)->touched) return;
         Object& object = **owned;
-        object.planStamp = planStamp_;
         components::Latch latch = object.latch;
         components::resetLatch(object.data, driveInput(object, now), latch);
         latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
-        frame_.latches.push_back({&object, latch, true});
+        addLatch(object, latch, true);
     };
     if (remote_.flags & FW_WORLD_EMBERS) {
-        for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot)
-            if (auto* object = objects_.at(slot); object && (*object)->remoteVersion != 0)
-                add(slot);
+        for (const uint32_t slot : remote_.waiting) add(slot);
+        frame_.waitersTouched = true;
         return;
     }
     const auto addNear = [&](const Object& object) {
-        for (uint32_t i = 0; i < object.remote.neighbourCount; ++i)
-            add(remote_.neighbours[object.remote.neighbourFirst + i] & kMaxNeighbourSlot);
+        for (const uint32_t entry : remote_.neighbours.of(object.slot))
+            add(entry & Neighbours::kSlot);
     };
-    for (const Object* object : touched_) addNear(*object);
-    for (size_t i = 0; i < frame_.latches.size(); ++i) addNear(*frame_.latches[i].object);
+    // Once all neighbours of touched objects are touched, only other lists and other objects can
+    // bring more.
+    if (!remote_.spreadKnown)
+        for (const Object* object : touched_) addNear(*object);
+    else
+        for (const uint32_t slot : remote_.neighbours.changed())
+            if (const auto* owned = objects_.at(slot);
+                owned && ((*owned)->touched || (*owned)->planStamp == planStamp_))
+                addNear(**owned);
+    for (; frame_.spreadFrom < frame_.latches.size(); ++frame_.spreadFrom)
+        addNear(*frame_.latches[frame_.spreadFrom].object);
+    frame_.spreadFound = true;
 }
 
+// After all that the frame reached was touched.
 void World::commitRemote() noexcept {
     if (frame_.shieldSent) shield_.unsent = false;
     if (frame_.remoteLatched) {
@@ -395,10 +570,15 @@ void World::commitRemote() noexcept {
         remote_.due.clear();
         remote_.blockersDue = false;
     }
+    remote_.spreadKnown |= frame_.spreadFound;
+    if (frame_.waitersTouched)
+        std::erase_if(remote_.waiting,
+                      [&](uint32_t slot) { return (*objects_.at(slot))->touched; });
     if (!frame_.remoteFlushed) return;
-    for (size_t i = 0; i < frame_.remoteUsed; ++i)
-        for (const gpu::RemoteUpdate::Placed& placed : frame_.remote[i]->objects)
-            (*objects_.at(placed.object))->remoteSent = true;
+    for (const uint32_t slot : remote_.unsentSlots) (*objects_.at(slot))->remoteSent = true;
+    remote_.unsentSlots.clear();
+    remote_.neighbours.settle();
+    remote_.links.settle();
     remote_.unsent = false;
 }
 

@@ -15,6 +15,18 @@ constexpr uint64_t kRoomsSettle = 4 * uint64_t(gpu::kRoomPeriod);
 // How often a room has flashed over since its air began.
 uint32_t flashesOf(const gpu::RoomAir& air) noexcept { return (air.flash + 1) / 2; }
 
+// It fits in, however it is turned.
+mesh::Box boxOf(const components::Room& room) noexcept {
+    constexpr int64_t kFarthest = 2000000000;
+    const int64_t reach = room.half[0] + room.half[1] + room.half[2] + 1;
+    mesh::Box box;
+    for (size_t i = 0; i < 3; ++i) {
+        box.low[i] = int(std::clamp(room.middle[i] - reach, -kFarthest, kFarthest));
+        box.high[i] = int(std::clamp(room.middle[i] + reach, -kFarthest, kFarthest));
+    }
+    return box;
+}
+
 }  // namespace
 
 bool World::roomsRest() const noexcept {
@@ -33,15 +45,14 @@ uint32_t World::roomOf(const Object& object) const noexcept {
     return 0;
 }
 
-// Everyone is where the rooms are now.
-void World::roomsTurn() noexcept {
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
-        auto* owned = objects_.at(slot);
-        if (!owned) continue;
-        const uint32_t room1 = roomOf(**owned);
-        if (room1 == (*owned)->room1) continue;
-        (*owned)->room1 = room1;
-        sendPose(**owned);
+// Who is where a room was, or is now, may be in another one.
+void World::roomTurns(const components::Room& room) noexcept {
+    for (const uint32_t slot : objectsNear(boxOf(room), 0)) {
+        Object& object = **objects_.at(slot);
+        const uint32_t room1 = roomOf(object);
+        if (room1 == object.room1) continue;
+        object.room1 = room1;
+        sendPose(object);
     }
     stirRooms();
 }
@@ -70,24 +81,27 @@ FwRoomId World::createRoom(const FwRoomDef& def) {
     const FwRoomId id = rooms_.create(entry);
     roomsMet_ = true;
     sendRoom(id.index1 - 1);
-    roomsTurn();
+    roomTurns(entry.room);
     return id;
 }
 
 void World::setRoom(FwRoomId id, const FwRoomDef& def) {
     mayChange();
     RoomEntry& entry = rooms_.get(id);
+    const components::Room before = entry.room;
     entry.room = components::makeRoom(def);
     if ((def.flags & FW_ROOM_REFILL) != 0) fillRoom(entry, entry.room.oxygen);
     sendRoom(id.index1 - 1);
-    roomsTurn();
+    roomTurns(before);
+    roomTurns(entry.room);
     noteDef(Deed::Kind::room, id.index1 - 1, def);
 }
 
 void World::destroyRoom(FwRoomId id) {
+    const components::Room before = rooms_.get(id).room;
     rooms_.destroy(id);
     backend_.setRoom(id.index1 - 1, {});
-    roomsTurn();
+    roomTurns(before);
 }
 
 // Of a readback of beginnings that still count.
@@ -112,8 +126,8 @@ void World::takeRooms(const gpu::Readback& readback) noexcept {
 void World::roomState(FwRoomId id, FwRoomState& state) {
     const RoomEntry& entry = rooms_.get(id);
     state.frameIndex = readbackFrame_;
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot)
-        if (auto* owned = objects_.at(slot)) state.objects += (*owned)->room1 == id.index1 ? 1 : 0;
+    for (const uint32_t slot : objectsNear(boxOf(entry.room), 0))
+        state.objects += (*objects_.at(slot))->room1 == id.index1 ? 1 : 0;
     state.oxygen = float(double(entry.air.oxygen) / 4294967296.0);
     state.strength = float(gpu::roomStrength(entry.air.oxygen)) / float(gpu::kAirFull);
     // J of a period, at pace 1.

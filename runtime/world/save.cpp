@@ -166,13 +166,8 @@ void World::planSave() {
     for (uint32_t i = 0; i < objects_.slotCount(); ++i) {
         auto* owned = objects_.at(i);
         if (!owned) continue;
-        const Object& object = **owned;
-        const bool due =
-            std::any_of(frame_.due.begin(), frame_.due.end(),
-                        [&](const Frame::Due& one) { return one.event.object == i; }) ||
-            std::any_of(frame_.latches.begin(), frame_.latches.end(),
-                        [&](const Frame::LatchOf& one) { return one.object == &object; });
-        if (object.touched || due) frame_.images.push_back(i);
+        // All objects that an event of the frame addresses are among its latches.
+        if ((*owned)->touched || (*owned)->planStamp == planStamp_) frame_.images.push_back(i);
     }
 }
 
@@ -520,7 +515,7 @@ void World::checkSaved(const SavedWorld& saved) {
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu events that wait; the limit is %zu.",
                    saved.pending.size(), kMaxPending);
     for (const PendingTexel& event : saved.pending) {
-        checkTexel(event.object, event.texel, "an event");
+        checkTexel(event.object, event.texel == kAllTexels ? 0 : event.texel, "an event");
         if (gpu::eventKind(event.kind) == gpu::kEventCarry)
             checkTexel((event.kind >> gpu::kEventKindBits) - 1, event.water, "a burn to carry");
         else if (event.kind > gpu::kEventHeat)
@@ -740,6 +735,7 @@ void World::load(std::span<const std::byte> bytes) {
     for (const SavedFire& from : saved.fires)
         flames += components::mostParts(from.power, (*fires_.at(from.slot))->data.diameter);
     findFireRoom(flames);
+    places_.reserveMoves(objects_.live());
     backend_.restore(restored, uint32_t(saved.clock.tick));
 
     // From here on nothing fails.
@@ -780,6 +776,8 @@ void World::applySaved(const SavedWorld& saved,
     gusts_ = saved.gusts;
     for (const SavedWindZone& zone : saved.windZones) *windPool_.at(zone.slot) = zone.zone;
     listWindZones();
+    windKept_ = true;  // objects find theirs below, one by one
+    windTurns();
     roomsMet_ = !saved.rooms.empty();
     for (const SavedRoom& from : saved.rooms) {
         RoomEntry& entry = *rooms_.at(from.slot);
@@ -829,7 +827,7 @@ void World::applySaved(const SavedWorld& saved,
     remote_.unsent = true;
     remote_.blockersDue = saved.blockersDue;
     remote_.blockers.assign(saved.latchedBlockers.begin(), saved.latchedBlockers.end());
-    remote_.seen.clear();
+    remote_.rebuild = true;
     remote_.due.clear();
     for (const SavedBlocker& blocker : saved.blockers) {
         BlockerEntry& entry = *blockers_.at(blocker.slot);
@@ -897,6 +895,8 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
     object.data.pose = from.pose;
     object.zoneWind = zoneWindOf(object, clock_.tick);
     backend_.setObjectWind(object.slot, object.zoneWind);
+    placeNow(object);
+    object.restsUnder = 0;
     object.room1 = roomOf(object);
     roomsMet_ |= from.counters.air != 0;
     sendPose(object);

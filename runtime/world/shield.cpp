@@ -24,6 +24,17 @@ uint32_t cellsFrom(std::span<const uint32_t> solid, uint32_t first) noexcept {
     return uint32_t(two >> shift) & ((1u << kCellsOfNumber) - 1);
 }
 
+// Where it is, and as far around it as texels fill cells of it.
+mesh::Box boxOf(const components::ShieldShape& shape) noexcept {
+    mesh::Box box;
+    for (size_t i = 0; i < 3; ++i) {
+        const int64_t low = shape.origin[i], cell = shape.cell;
+        box.low[i] = int(std::max<int64_t>(low - 3 * cell, -2000000000));
+        box.high[i] = int(std::min<int64_t>(low + (shape.counts[i] + 3) * cell, 2000000000));
+    }
+    return box;
+}
+
 }  // namespace
 
 components::ShieldObject World::shieldObjectOf(uint32_t slot) noexcept {
@@ -62,9 +73,10 @@ void World::setHeatShield(const FwHeatShieldDef& def) {
                        "FwHeatShieldDef::objects is null, and objectCount is %u.", def.objectCount);
         for (uint32_t i = 0; i < def.objectCount; ++i)
             slots.push_back((*objects_.get(def.objects[i])).slot);
-        for (uint32_t i = 0; def.flags & FW_HEAT_SHIELD_ALL_OBJECTS && i < objects_.slotCount();
-             ++i)
-            if (objects_.at(i)) slots.push_back(i);
+        if (def.flags & FW_HEAT_SHIELD_ALL_OBJECTS) {
+            const std::span<const uint32_t> near = objectsNear(boxOf(made.shape), 0);
+            slots.insert(slots.end(), near.begin(), near.end());
+        }
         components::readShieldCells(def, made.shape, made.solid);
     }
     bakeHeatShield(made.shape, slots, made.baked);
@@ -186,14 +198,12 @@ components::ShieldView World::shieldView() {
     packHeatShield();
     if (shield_.grid.shape.cells() == 0) return view;
     shield_.fallen.assign(objects_.slotCount(), 0);
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot)
-        if (const auto* owned = objects_.at(slot)) {
-            const Object& object = **owned;
-            const gpu::ObjectCounters& now = object.counters;
-            const uint32_t burnt = now.ignited - std::min(now.ignited, now.burning);
-            const bool holes = !(object.data.flags & FW_BURNABLE_NO_HOLES);
-            shield_.fallen[slot] = holes && 2 * uint64_t{burnt} > object.texels ? 1 : 0;
-        }
+    for (const Object* object : touched_) {  // nothing of the others has burnt
+        const gpu::ObjectCounters& now = object->counters;
+        const uint32_t burnt = now.ignited - std::min(now.ignited, now.burning);
+        const bool holes = !(object->data.flags & FW_BURNABLE_NO_HOLES);
+        shield_.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
+    }
     view.shape = shield_.grid.shape;
     view.words = shield_.words;
     view.fallen = shield_.fallen;

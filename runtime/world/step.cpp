@@ -1,5 +1,6 @@
 // One frame: what is due becomes a plan, the backend runs it, then the world takes it over. Nothing
 // persistent changes before the backend is through, so a failure leaves the world as it was.
+#include "core/growth.h"
 #include "world/world.h"
 
 #include <algorithm>
@@ -9,6 +10,12 @@ namespace fw::world {
 namespace {
 
 constexpr size_t kMaxBurnMapsPerFrame = 64;
+
+uint32_t firstReal(const mesh::BurnDomain& domain) noexcept {
+    uint32_t texel = 0;
+    while (texel + 1 < domain.texelCount() && !domain.real(texel)) ++texel;
+    return texel;
+}
 
 // Does it want the state of this frame? One that runs still answers what was asked before.
 bool startsForecast(const Object& object) noexcept {
@@ -107,29 +114,31 @@ void World::planSteps(const ClockAdvance& time) {
         frame_.due.push_back({event, uint32_t((at - clock_.tick) / gpu::kStepTicks)});
         frame_.due.back().event.tick = uint32_t(at);  // never before its step
     }
-    std::sort(frame_.due.begin(), frame_.due.end(), [](const Frame::Due& a, const Frame::Due& b) {
-        return std::tie(a.step, a.event.object, a.event.texel, a.event.order) <
-               std::tie(b.step, b.event.object, b.event.texel, b.event.order);
-    });
+    sortDue();
     size_t gates = 0;
     for (const Frame::Due& due : frame_.due) gates += due.event.gateCount;
     const size_t plays = beginPlays(end);
     // Spans into it must hold. Who plays and is disturbed has one more.
-    frame_.events.reserve(frame_.due.size() + gates + plays + frame_.plays.size());
+    core::growTo(frame_.events, frame_.due.size() + gates + plays + frame_.plays.size());
     frame_.remoteUsed = 0;
     frame_.remoteLatched = frame_.remoteFlushed = frame_.shieldSent = false;
+    frame_.spreadFound = frame_.waitersTouched = false;
     ++planStamp_;
     const bool awake = !idle_ || !frame_.due.empty() || plays > 0 ||
                        (switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;
     for (Object* object : touched_) {
         // Where fire goes from object to object, many wait for it under a wind that they know.
-        if (remoteOn() && !gusty() &&
-            components::atRest(object->data, domainOf(*object), driveInput(*object, clock_.tick),
-                               object->latch))
-            continue;
-        frame_.latches.push_back({object, object->latch, false});
-        object->planStamp = planStamp_;
+        if (remoteOn() && !gusty()) {
+            if (object->restsUnder == driveChanges_ + 1) continue;
+            if (components::atRest(object->data, domainOf(*object),
+                                   driveInput(*object, clock_.tick), object->latch)) {
+                object->restsUnder = driveChanges_ + 1;
+                continue;
+            }
+        }
+        addLatch(*object, object->latch, false);
     }
+    frame_.spreadFrom = frame_.latches.size();
 
     // Updates of all steps share one vector; its room is known only when all are there.
     size_t firstUpdate[kMaxSteps + 1] = {};
@@ -174,6 +183,42 @@ void World::planSteps(const ClockAdvance& time) {
             std::span<const gpu::MaterialUpdate>(frame_.updates)
                 .subspan(firstUpdate[step], firstUpdate[step + 1] - firstUpdate[step]);
     }
+}
+
+// By step, object and texel. An event of all texels stays one only where no other event of the step
+// is of some of them: their order is by texel.
+void World::sortDue() {
+    auto& due = frame_.due;
+    const auto sort = [&] {
+        std::sort(due.begin(), due.end(), [](const Frame::Due& a, const Frame::Due& b) {
+            return std::tie(a.step, a.event.object, a.event.texel, a.event.order) <
+                   std::tie(b.step, b.event.object, b.event.texel, b.event.order);
+        });
+    };
+    sort();
+    bool spread = false;
+    for (size_t first = 0, end = 0, count = due.size(); first < count; first = end) {
+        while (end < count && due[end].step == due[first].step &&
+               due[end].event.object == due[first].event.object)
+            ++end;
+        if (due[first].event.texel == kAllTexels || due[end - 1].event.texel != kAllTexels)
+            continue;
+        const mesh::BurnDomain& domain = domainOf(**objects_.at(due[first].event.object));
+        for (size_t i = first; i < end; ++i) {
+            if (due[i].event.texel != kAllTexels) continue;
+            Frame::Due one = due[i];
+            due[i].step = kMaxSteps;  // to be erased
+            for (uint32_t texel = 0; texel < domain.texelCount(); ++texel) {
+                if (!domain.real(texel)) continue;
+                one.event.texel = texel;
+                due.push_back(one);
+            }
+            spread = true;
+        }
+    }
+    if (!spread) return;
+    std::erase_if(due, [](const Frame::Due& one) { return one.step == kMaxSteps; });
+    sort();
 }
 
 // What a batch's heat came through, after its events: once for those that came the same way.
@@ -242,21 +287,25 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     for (const ProbeRef& ref : known.refs)
         if (!ref.isTag)
             if (Query* query = queries_.find(ref.query)) query->asked = true;
-    for (const Frame::LatchOf& entry : frame_.latches) entry.object->latch = entry.latch;
-    const auto touch = [&](Object& object) {
-        if (object.touched) return;  // room for every object was found at its creation
+    for (const Frame::LatchOf& entry : frame_.latches) {
+        entry.object->latch = entry.latch;
+        entry.object->restsUnder = 0;
+    }
+    // All objects that an event addresses are among the latches.
+    const size_t touchedBefore = touched_.size();
+    for (const Frame::LatchOf& entry : frame_.latches) {
+        Object& object = *entry.object;
+        if (object.touched) continue;  // room for every object was found at its creation
         object.touched = true;
         object.story.heatSteps = heatStepsBefore(clock_.tick);
-        touched_.insert(
-            std::lower_bound(touched_.begin(), touched_.end(), &object,
-                             [](const Object* a, const Object* b) { return a->slot < b->slot; }),
-            &object);
-    };
-    for (const Frame::LatchOf& entry : frame_.latches) touch(*entry.object);
+        touched_.push_back(&object);
+    }
+    if (touched_.size() != touchedBefore)
+        std::sort(touched_.begin(), touched_.end(),
+                  [](const Object* a, const Object* b) { return a->slot < b->slot; });
     commitRemote();
     for (const Frame::Due& due : frame_.due) {
         Object& object = **objects_.at(due.event.object);
-        touch(object);
         ++object.changes;
         object.story.active = true;
         object.story.lastStimulus = std::max<uint64_t>(object.story.lastStimulus, due.event.tick);
@@ -264,7 +313,9 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
             if (!object.story.ignitionKnown && !object.story.sawFire) {
                 object.story.ignitionKnown = true;
                 object.story.firstIgnition = due.event.tick;
-                texelPlace(object, due.event.texel, object.story.ignitionPoint);
+                const uint32_t texel =
+                    due.event.texel == kAllTexels ? firstReal(domainOf(object)) : due.event.texel;
+                texelPlace(object, texel, object.story.ignitionPoint);
                 backend_.startBoundary(object.slot, object.story.ignitionPoint, due.event.tick);
             }
         } else if (due.event.kind == FW_WET || due.event.kind == FW_EXTINGUISH) {
@@ -306,6 +357,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     commitTimeline(before);
     if (ran) steps_ += time.steps;
     lastFrame_ = frameIndex;
+    countMemory();
     ++frames_;
     if (time.dropped > 0) {
         droppedSteps_ += time.dropped;

@@ -101,7 +101,24 @@ void World::listWindZones() noexcept {
         if (const WindZone* zone = windPool_.at(i)) windZones_.push_back(*zone);
     components::sortWindZones(windZones_);
     ++driveChanges_;
-    windTurns();
+}
+
+// What is where a zone was, or is now, gets the wind that blows there now.
+void World::zoneTurns(const WindZone& zone) noexcept {
+    if (windDue_ || gusty()) {  // all do, and at another time
+        windTurns();
+        return;
+    }
+    gustsShown_ = clock_.tick;
+    sendFieldRules();
+    constexpr int64_t kFarthest = 2000000000;
+    const int64_t reach = zone.size[0] + zone.size[1] + zone.size[2] + 1;  // whatever its shape
+    mesh::Box box;
+    for (size_t i = 0; i < 3; ++i) {
+        box.low[i] = int(std::clamp(zone.middle[i] - reach, -kFarthest, kFarthest));
+        box.high[i] = int(std::clamp(zone.middle[i] + reach, -kFarthest, kFarthest));
+    }
+    for (const uint32_t slot : objectsNear(box, 0)) takeZoneWind(**objects_.at(slot));
 }
 
 // Whoever keeps a wind gets the one that blows now.
@@ -109,6 +126,8 @@ void World::windTurns() noexcept {
     windDue_ = false;
     gustsShown_ = clock_.tick;
     sendFieldRules();
+    if (evenWind() && !windKept_) return;
+    windKept_ = !evenWind();
     for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot)
         if (auto* owned = objects_.at(slot)) takeZoneWind(**owned);
 }
@@ -118,6 +137,7 @@ void World::takeZoneWind(Object& object) noexcept {
     // In gusts others hear of it with each exchange; after the last one, once more.
     const bool heard = gusty() || object.remoteVersion == 0 || int(wind) == object.remote.high.w;
     if (wind == object.zoneWind && heard) return;
+    windKept_ |= wind != 0;
     object.zoneWind = wind;
     backend_.setObjectWind(object.slot, wind);
     if (object.remoteDue) return;  // at most once each: room was found at its creation
@@ -133,6 +153,7 @@ FwWindZoneId World::createWindZone(const FwWindZoneDef& def) {
     windZones_.reserve(windPool_.live() + 1);
     const FwWindZoneId id = windPool_.create(zone);
     listWindZones();
+    zoneTurns(zone);
     return id;
 }
 
@@ -141,8 +162,10 @@ void World::setWindZone(FwWindZoneId id, const FwWindZoneDef& def) {
     WindZone& zone = windPool_.get(id);
     const WindZone made = components::makeWindZone(def);
     if (!(zone == made)) {
-        zone = made;
+        const WindZone before = std::exchange(zone, made);
         listWindZones();
+        zoneTurns(before);
+        zoneTurns(made);
     }
     noteDef(Deed::Kind::windZone, id.index1 - 1, def);
 }
@@ -221,8 +244,10 @@ void World::takeWindPoints(const Deed& deed) {
 }
 
 void World::destroyWindZone(FwWindZoneId id) {
+    const WindZone before = windPool_.get(id);
     windPool_.destroy(id);
     listWindZones();
+    zoneTurns(before);
 }
 
 }  // namespace fw::world

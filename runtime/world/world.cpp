@@ -4,6 +4,7 @@
 #include "components/deform.h"
 #include "components/lights.h"
 #include "components/look_table.h"
+#include "core/growth.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
 #include "shared/spark.h"
@@ -63,9 +64,29 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     return def;
 }
 
-template <class Vector>
-void findRoom(Vector& vector, size_t count) {
-    if (vector.capacity() < count) vector.reserve(std::max(count, vector.capacity() * 2));
+constexpr double kFarthest = 2.0e9;  // mm
+
+// Whole mm around points of the world, where the same place may come out otherwise in another sum.
+mesh::Box boxAround(const double (&low)[3], const double (&high)[3]) noexcept {
+    mesh::Box box;
+    for (int i = 0; i < 3; ++i) {
+        const double loose = 2 + 1e-6 * std::max(std::abs(low[i]), std::abs(high[i]));
+        box.low[i] = int(std::clamp(std::floor(low[i] - loose), -kFarthest, kFarthest));
+        box.high[i] = int(std::clamp(std::ceil(high[i] + loose), -kFarthest, kFarthest));
+    }
+    return box;
+}
+
+// Whether a ball holds the whole of a box; all in object space, radius along the stretched axes.
+bool ballHolds(const float point[3], float radius, const components::Pose& pose,
+               const mesh::BurnDomain& domain) noexcept {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double far = std::max(std::abs(double(domain.boundsLow[i]) - double(point[i])),
+                                    std::abs(double(domain.boundsHigh[i]) - double(point[i])));
+        sum += far * far * double(pose.stretch[i]) * double(pose.stretch[i]);
+    }
+    return sum <= double(radius) * double(radius);
 }
 
 bool nearBounds(const float point[3], const mesh::BurnDomain& domain, float reach) {
@@ -117,6 +138,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       emitterRings_(memory),
       sparkSources_(memory),
       remote_(memory),
+      places_(memory),
+      nearSlots_(memory),
       imageUsers_(memory),
       touched_(memory),
       playing_(memory),
@@ -220,6 +243,12 @@ void World::destroyImage(FwImageId id) {
 void World::countImages(const components::BurnableMesh& object, bool more) noexcept {
     for (const uint32_t plus1 : object.imagesPlus1)
         if (plus1 != 0) imageUsers_[plus1 - 1] += more ? 1u : ~0u;
+}
+
+void World::countFuel(const Object& object, bool more) noexcept {
+    if (!components::keepsBook(object.data)) return;
+    ledgers_ += more ? 1u : ~0u;
+    fuel_ += more ? object.fuel.energy : 0 - object.fuel.energy;
 }
 
 // ---- meshes -----------------------------------------------------------------------------------
@@ -444,23 +473,33 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     object.slot = id.index1 - 1;
     try {
         // So that a warmed-up frame finds its room: one latch and update per object.
-        findRoom(frame_.latches, objects_.slotCount());
-        findRoom(frame_.updates, objects_.slotCount());
-        findRoom(frame_.burnMaps, objects_.slotCount());
-        findRoom(frame_.breaks, objects_.slotCount());
-        findRoom(touched_, objects_.slotCount());
-        findRoom(jetSlots_, objects_.slotCount());
-        findRoom(remote_.due, objects_.slotCount());
+        const size_t slots = objects_.slotCount();
+        core::growTo(frame_.latches, slots);
+        core::growTo(frame_.updates, slots);
+        core::growTo(touched_, slots);
+        for (auto* perObject :
+             {&frame_.burnMaps, &frame_.breaks, &jetSlots_, &nearSlots_, &remote_.due,
+              &remote_.unsentSlots, &remote_.waiting, &remote_.contactsDue, &remote_.seenDue})
+            core::growTo(*perObject, slots);
+        placeNow(object);
         backend_.createObject(object.slot, init);
     } catch (...) {
+        places_.remove(object.slot);
         objects_.destroy(id);
         throw;
     }
+    object.latch.sent = true;  // it was created with these records
     ++mesh.users;
     remote_.due.push_back(object.slot);  // room was found above
     remote_.capped |= object.governance.tilesMost != 0;
     remote_.governed |= remote_.capped || object.governance.life > 0;
     texels_ += burnable;
+    countFuel(object, true);
+    object.memoryBytes = sizeof(Object) + object.slowness.capacity() * sizeof(uint16_t) +
+                         (object.skin.capacity() + object.skinNormals.capacity()) * sizeof(float);
+    memoryCounts_.objects += object.memoryBytes;
+    countMemory();
+    windKept_ |= object.zoneWind != 0;
     countImages(object.data, true);
     return id;
 }
@@ -557,9 +596,12 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     std::erase(touched_, &object);
     std::erase(playing_, &object);
     std::erase(forecasts_, slot);
-    std::erase(remote_.due, slot);
+    places_.remove(slot);
+    forgetRemote(object);
     dropFromShield(slot);
     texels_ -= object.texels;
+    countFuel(object, false);
+    memoryCounts_.objects -= object.memoryBytes;
     if (object.map.wished) --mapsWished_;
     if (object.forecast && object.forecast->wished) --mapsWished_;
     backend_.destroyObject(slot);
@@ -578,8 +620,11 @@ void World::sendPose(const Object& object) noexcept {
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
     mayChange();
     Object& object = *objects_.get(id);
+    places_.reserveMoves(1);
     const components::Pose before = object.data.pose;
     components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
+    placeNow(object);
+    object.restsUnder = 0;
     if (!(object.data.pose == before)) {
         ++geometry_;
         ++object.changes;
@@ -629,7 +674,9 @@ void World::setVertexPositions(FwBurnableMeshId id, const float* positions, cons
         const float scale = sum > 0 ? 1 / std::sqrt(sum) : 0;
         for (unsigned k = 0; k < 3; ++k) object.skinNormals[i + k] *= scale;
     }
+    places_.reserveMoves(1);
     object.skinMoved = true;
+    placeNow(object);
     backend_.setVertices(object.slot, object.skin, object.skinNormals);
 }
 
@@ -638,6 +685,29 @@ void World::setHidden(FwBurnableMeshId id, bool hidden) {
     object.data.flags = (object.data.flags & ~uint32_t(FW_BURNABLE_HIDDEN)) |
                         (hidden ? uint32_t(FW_BURNABLE_HIDDEN) : 0u);
     sendPose(object);
+}
+
+void World::countMemory() noexcept {
+    memoryCounts_.frames = frame_.latches.capacity() * sizeof(Frame::LatchOf) +
+                           frame_.updates.capacity() * sizeof(gpu::MaterialUpdate) +
+                           frame_.due.capacity() * sizeof(Frame::Due) +
+                           frame_.events.capacity() * sizeof(gpu::TexelEvent) +
+                           pending_.capacity() * sizeof(PendingTexel);
+    uint64_t near = remote_.neighbours.bytes() + places_.bytes();
+    for (const auto& tables : frame_.remote)
+        near += tables->objects.capacity() * sizeof(gpu::RemoteUpdate::Placed) +
+                tables->neighbours.capacity() * sizeof(uint32_t);
+    memoryCounts_.neighbours = near;
+    memoryCounts_.contacts = remote_.links.bytes() + remote_.close.bytes() +
+                             remote_.pairs.capacity() * sizeof(PairContacts);
+}
+
+void World::memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const {
+    const auto row = [&](const char* name, uint64_t bytes) { out.push_back({name, bytes, bytes}); };
+    row("world objects", memoryCounts_.objects);
+    row("world frames", memoryCounts_.frames);
+    row("world neighbours", memoryCounts_.neighbours);
+    row("world contacts", memoryCounts_.contacts);
 }
 
 // ---- ball events -> texels --------------------------------------------------------------------
@@ -653,8 +723,52 @@ void World::findPendingRoom(size_t more) {
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "%zu texel events wait and %zu more come; the limit is %zu.", pending_.size(),
                    more, kMaxPending);
-    pending_.reserve(
-        std::max(pending_.size() + more, std::min(pending_.capacity() * 2, size_t(65536))));
+    core::growTo(pending_, pending_.size() + more);
+}
+
+void World::placeNow(const Object& object) {
+    const mesh::BurnDomain& domain = domainOf(object);
+    const components::Pose& pose = object.data.pose;
+    double low[3], high[3];
+    // The host has moved its vertices: they may be anywhere.
+    for (int i = 0; i < 3; ++i) low[i] = -(high[i] = object.skinMoved ? kFarthest : -kFarthest);
+    float longest = 0, shortest = components::kMostStretch;
+    for (const float stretch : pose.stretch) {
+        longest = std::max(longest, std::abs(stretch));
+        shortest = std::min(shortest, std::abs(stretch));
+    }
+    // Beyond the box: as far as a ball reaches at least that touches none of its texels.
+    const double around = 1000.0 * double(pose.scale) * double(longest) *
+                          std::max(4.0 * double(domain.texelSide), double(domain.linkMax));
+    for (uint32_t corner = 0; corner < 8 && !object.skinMoved; ++corner) {
+        float point[3], at[3];
+        for (uint32_t i = 0; i < 3; ++i)
+            point[i] = (corner >> i & 1 ? domain.boundsHigh : domain.boundsLow)[i];
+        components::toWorld(pose, point, at);
+        for (int i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], 1000.0 * double(at[i]) - around);
+            high[i] = std::max(high[i], 1000.0 * double(at[i]) + around);
+        }
+    }
+    // Balls are as wide as along the shortest axis, in object space.
+    if (longest > 1.001f * shortest)
+        for (int i = 0; i < 3; ++i) low[i] = -(high[i] = kFarthest);
+    places_.place(object.slot, boxAround(low, high), 0);
+}
+
+std::span<const uint32_t> World::objectsNear(const mesh::Box& box, float margin) noexcept {
+    nearSlots_.clear();  // room was found with each object
+    const double most = std::ceil(1000.0 * std::max(double(margin), 0.0)) + 2;
+    places_.each(box, uint32_t(std::min(most, 2 * kFarthest)),
+                 [&](uint32_t slot) { nearSlots_.push_back(slot); });
+    std::sort(nearSlots_.begin(), nearSlots_.end());
+    return nearSlots_;
+}
+
+std::span<const uint32_t> World::objectsNear(const float point[3], float margin) noexcept {
+    double at[3];
+    for (int i = 0; i < 3; ++i) at[i] = 1000.0 * double(point[i]);
+    return objectsNear(boxAround(at, at), margin);
 }
 
 void World::addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
@@ -680,6 +794,19 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
     // A doused band holds only when it is thicker than the longest link across it.
     if (def.kind != FW_IGNITE && def.radius > 0)
         radius = std::max({radius, 1.5f * domain.texelSide, domain.linkMax});
+    const uint32_t water =
+        def.water > 0 ? std::max(uint32_t(std::lround(def.water)), 1u) : gpu::kFilmMost;
+    const auto wet = [&] {
+        if (def.kind == FW_WET || def.kind == FW_EXTINGUISH)
+            wetPatches(object, def, def.kind == FW_WET ? water : components::kPatchDrowned, tick);
+    };
+    // As one operation, whatever it has of texels.
+    if (!object.skinMoved && ballHolds(point, radius * stretched, pose, domain)) {
+        const uint32_t all[] = {kAllTexels};
+        addPending(object, def.kind, tick, water, all);
+        wet();
+        return domain.report.realTexels;
+    }
     const float reach = std::max(radius, domain.texelSide);
     const uint32_t nearest = nearTexel(object, point, reach);
     if (nearest == mesh::kNone) return 0;
@@ -698,11 +825,8 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
         return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reached * reached;
     });
     if (found_.empty()) found_.push_back(nearest);
-    const uint32_t water =
-        def.water > 0 ? std::max(uint32_t(std::lround(def.water)), 1u) : gpu::kFilmMost;
     addPending(object, def.kind, tick, water, found_);
-    if (def.kind == FW_WET || def.kind == FW_EXTINGUISH)
-        wetPatches(object, def, def.kind == FW_WET ? water : components::kPatchDrowned, tick);
+    wet();
     return uint32_t(found_.size());
 }
 
@@ -724,9 +848,11 @@ uint32_t World::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
     const size_t before = pending_.size();
     try {
         uint32_t texels = 0;
-        if (def.object.index1 != 0) texels = igniteObject(*objects_.get(def.object), def, tick);
-        for (uint32_t i = 0; def.object.index1 == 0 && i < objects_.slotCount(); ++i)
-            if (auto* object = objects_.at(i)) texels += igniteObject(**object, def, tick);
+        if (def.object.index1 != 0)
+            texels = igniteObject(*objects_.get(def.object), def, tick);
+        else
+            for (const uint32_t slot : objectsNear(def.position, def.radius))
+                texels += igniteObject(**objects_.at(slot), def, tick);
         if (pending_.size() > before)
             note({Deed::Kind::ignite,
                   def.object.index1,

@@ -28,13 +28,18 @@
 #include "world/event_queue.h"
 #include "world/governor.h"
 #include "world/journal.h"
+#include "world/neighbours.h"
 #include "world/played.h"
 #include "world/timeline.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 namespace fw::world {
+
+// PendingTexel::texel of an event that addresses all texels of an object.
+constexpr uint32_t kAllTexels = 0xFFFFFFFFu;
 
 enum class SaveFor : uint8_t { host, net, timeline, count };  // each has a save of its own
 
@@ -135,6 +140,7 @@ struct Object {
     components::Fuel fuel;                // when it was made; none: it keeps no book
     uint64_t firstFrame = 0;              // readbacks of older frames speak of another object
     std::pmr::vector<uint16_t> slowness;  // per texel, Q7; empty: the mesh's own
+    uint64_t memoryBytes = 0;             // of it in World::memoryCounts_
     bool touched = false;                 // an event ever addressed it: it filters wind and latches
     uint32_t firstEvent = 0xFFFFFFFFu;    // tick of the first event ever
     Story story;
@@ -144,10 +150,14 @@ struct Object {
     uint32_t reach = 0;          // mm
     uint32_t remoteVersion = 0;  // grows with every latch; 0: never placed
     uint64_t planStamp = 0;      // of the plan whose latches hold it
-    bool remoteDue = false;      // pose or def changed since its latch: it is in remote_.due
-    bool remoteSent = true;      // the backend has the latched record
-    uint32_t zoneWind = 0;       // that zones add where it is, packed
-    uint32_t room1 = 0;          // slot + 1 of the room that it is in; 0: none
+    size_t latchIndex = 0;       // of frame_.latches, in that plan
+    uint64_t restsUnder = 0;   // driveChanges_ + 1 under which its latch, as it is, rests; 0: none
+    bool remoteDue = false;    // pose or def changed since its latch: it is in remote_.due
+    bool remoteSent = true;    // the backend has the latched record; else it is in remote_.unsent
+    bool contactsDue = false;  // it is in remote_.contactsDue
+    bool seenDue = false;      // it is in remote_.seenDue
+    uint32_t zoneWind = 0;     // that zones add where it is, packed
+    uint32_t room1 = 0;        // slot + 1 of the room that it is in; 0: none
     // As of the last readback.
     gpu::ObjectCounters counters{};
     uint64_t countersFrame = 0;
@@ -260,35 +270,42 @@ struct FireColliderEntry {
 struct PairContacts {
     uint32_t slots[2] = {}, versions[2] = {};
     FwBurnableMeshId ids[2] = {};
-    uint32_t first = 0, count = 0;  // of RemoteBook::pairLinks, of these versions
-    uint32_t since = 0;             // tick, while they touch
+    uint32_t since = 0;  // tick, while they touch
     bool touches = false;
-    bool used = true;
+    uint64_t stamp = 0;  // RemoteBook::contactStamp when it was last found near
 };
 
-struct Seen {  // what the host said of a pair
-    uint64_t pair = 0;
-    uint32_t versions[2] = {};
-    uint32_t part = 255;  // of 255
-    bool used = true;
+// An object whose box is so near that the two may touch.
+struct CloseObject {
+    uint32_t slot = 0xFFFFFFFFu;
+    uint32_t pair = 0;  // of RemoteBook::pairs
 };
 
 // What the frame plans of who is where. Kept across frames, so that what did not move is not sought
-// again; a frame that fails leaves it stale at worst, and `unsent` makes the next one send anew.
+// again; a frame that fails leaves it stale at worst, and the next one sends it once more.
 struct RemoteBook {
     explicit RemoteBook(std::pmr::memory_resource* memory)
         : due(memory),
+          unsentSlots(memory),
           neighbours(memory),
-          order(memory),
-          near(memory),
-          seen(memory),
+          waiting(memory),
+          contactsDue(memory),
+          seenDue(memory),
+          close(memory, {}),
+          closeOf(memory),
           pairs(memory),
-          pairLinks(memory),
-          nextLinks(memory),
+          links(memory, noLink()),
+          linksOf(memory),
           contacts(memory),
           contactPlaces(memory),
-          links(memory),
+          pairLinks(memory),
+          mergedLinks(memory),
           blockers(memory) {}
+    [[nodiscard]] static gpu::ContactLink noLink() noexcept {
+        gpu::ContactLink link{};
+        link.object = gpu::kNoneTexel;
+        return link;
+    }
     uint32_t flags = 0;        // FwWorldFlags that open ways
     uint32_t objectFlags = 0;  // and those that objects are created under
     components::Governance governance;
@@ -296,20 +313,30 @@ struct RemoteBook {
     bool capped = false;    // and how many tiles may burn
     bool unsent = false;    // the backend does not know the latest
     bool blockersDue = false;
-    bool warms = false;                     // flags ever let fire shine or blow on others
-    uint64_t fades = 0;                     // tick until which what they received is taken back
-    std::pmr::vector<uint32_t> due;         // slots to latch
-    std::pmr::vector<uint32_t> neighbours;  // flat, by RemoteObject::neighbourFirst
-    uint32_t version = 0;                   // of the last latched object
-    std::pmr::vector<uint32_t> order;       // scratch
-    std::pmr::vector<uint64_t> near;        // pairs of slots, both ways, sorted
-    std::pmr::vector<Seen> seen;            // by pair
+    bool warms = false;                      // flags ever let fire shine or blow on others
+    uint64_t fades = 0;                      // tick until which what they received is taken back
+    std::pmr::vector<uint32_t> due;          // slots to latch
+    std::pmr::vector<uint32_t> unsentSlots;  // whose records the backend does not have
+    uint32_t version = 0;                    // of the last latched object
+    Neighbours neighbours;                   // of latched boxes
+    bool rebuild = false;                    // all but `pairs` is of another world
+    // Placed objects that no event ever touched, and some that one did since; and whether the
+    // neighbours of all touched objects have been touched, but for `neighbours.changed()`.
+    std::pmr::vector<uint32_t> waiting;
+    bool spreadKnown = false;
+    // Objects that were latched since their contacts were found, and since the host was asked what
+    // they see of their neighbours.
+    std::pmr::vector<uint32_t> contactsDue, seenDue;
+    ListPool<CloseObject> close;
+    std::pmr::vector<ListPlace> closeOf;  // by slot: of `close`, by the other's slot
     std::pmr::vector<PairContacts> pairs;
-    std::pmr::vector<gpu::ContactLink> pairLinks, nextLinks;  // of all pairs; the latter is scratch
-    std::pmr::vector<mesh::Contact> contacts;                 // scratch
-    std::pmr::vector<mesh::ContactPlace> contactPlaces;       // scratch
-    std::pmr::vector<gpu::ContactLink> links;
-    std::pmr::vector<gpu::Blocker> blockers;  // latched
+    ListPool<gpu::ContactLink> links;
+    std::pmr::vector<ListPlace> linksOf;  // by slot that they lead to: of `links`, by texel
+    uint64_t contactStamp = 0;
+    std::pmr::vector<mesh::Contact> contacts;                   // scratch
+    std::pmr::vector<mesh::ContactPlace> contactPlaces;         // scratch
+    std::pmr::vector<gpu::ContactLink> pairLinks, mergedLinks;  // scratch
+    std::pmr::vector<gpu::Blocker> blockers;                    // latched
 };
 
 struct ShieldBook {
@@ -326,15 +353,22 @@ struct ShieldBook {
 
 struct RemoteTables {  // what a RemoteUpdate of a frame points to
     explicit RemoteTables(std::pmr::memory_resource* memory)
-        : objects(memory), neighbours(memory), links(memory), blockers(memory) {}
+        : objects(memory),
+          neighbourRanges(memory),
+          linkRanges(memory),
+          neighbours(memory),
+          links(memory),
+          blockers(memory) {}
     std::pmr::vector<gpu::RemoteUpdate::Placed> objects;
+    std::pmr::vector<gpu::RemoteUpdate::Range> neighbourRanges, linkRanges;
+    // As they were, where they change again in the same frame; else the world's own.
     std::pmr::vector<uint32_t> neighbours;
     std::pmr::vector<gpu::ContactLink> links;
     std::pmr::vector<gpu::Blocker> blockers;
     gpu::RemoteUpdate update;
 };
 
-struct PendingTexel {  // an event that waits for its step
+struct PendingTexel {  // an event that waits for its step; texel kAllTexels: of all of the object
     uint32_t object = 0, texel = 0, kind = 0, tick = 0, water = 0;  // g/m^2; of heat: W/m^2
     uint64_t order = 0;
     // Of heat that came through holes, if they are there: the last gate may have to be shut.
@@ -542,6 +576,11 @@ class World {
     [[nodiscard]] uint64_t identity() noexcept;
     [[nodiscard]] const core::Log& log() const noexcept { return log_; }
 
+    // Appends what the world keeps of objects in this machine's memory, as the last step left it. [any]
+    void memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const;
+    // Boxes of objects that were compared to find neighbours, since the world was made.
+    [[nodiscard]] uint64_t pairsExamined() const noexcept { return remote_.neighbours.examined(); }
+
     // flamewright_debug.h
     void requestBurnMap(FwBurnableMeshId id);
     const BurnMapCopy* fetchBurnMap(FwBurnableMeshId id);  // null: not ready
@@ -610,6 +649,9 @@ class World {
         std::pmr::vector<gpu::TexelEvent> events;
         std::pmr::vector<gpu::MaterialUpdate> updates;
         std::pmr::vector<LatchOf> latches;  // of touched objects, as they are at the frame's end
+        size_t spreadFrom = 0;              // of those, the first whose neighbours are not touched
+        bool spreadFound = false;           // touchNear ran, and went through neighbours
+        bool waitersTouched = false;        // or through all that waited
         std::pmr::vector<PlayOf> plays;     // of those that play a baked burn
         std::pmr::vector<gpu::Probe> probes;
         std::pmr::vector<uint32_t> burnMaps;
@@ -637,6 +679,7 @@ class World {
     void movePlace(float (&place)[3], uint64_t frame) const noexcept;
     // step.cpp
     void planSteps(const ClockAdvance& time);
+    void sortDue();
     void planProbes();
     void commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept;
     // fires.cpp
@@ -758,13 +801,14 @@ class World {
     void takeWindGrid(const Deed& deed);
     void takeWindPoints(const Deed& deed);
     void windTurns() noexcept;
+    void zoneTurns(const components::WindZone& zone) noexcept;
     void settleWind() noexcept;
     void takeZoneWind(Object& object) noexcept;
     // rooms.cpp
     [[nodiscard]] bool roomsRest() const noexcept;
     void stirRooms() noexcept;
     [[nodiscard]] uint32_t roomOf(const Object& object) const noexcept;
-    void roomsTurn() noexcept;
+    void roomTurns(const components::Room& room) noexcept;
     void sendRoom(uint32_t slot) noexcept;
     void fillRoom(RoomEntry& entry, uint32_t oxygen, uint32_t power = 0,
                   uint32_t flash = 0) noexcept;
@@ -776,12 +820,22 @@ class World {
     void planRemote(gpu::StepPlan& step, uint32_t now, bool awake);
     void latchRemote(uint32_t now);
     void takeRemoteWind(Object& object, int wind) noexcept;
-    void findNeighbours();
+    void markUnsent(Object& object) noexcept;  // its record
+    void rebuildRemote();
+    void keepPlanned();
+    void askVisibility();
+    uint32_t seenPart(const Object& from, const Object& to) const;
     void findLinks(uint32_t now);
-    void linkPairs(uint32_t now);
+    void linkClose(Object& object, uint32_t now);
+    void addClose(uint32_t slot, uint32_t other, uint32_t pair);
+    uint32_t closePair(uint32_t a, uint32_t b);
+    void dropPair(uint32_t pair) noexcept;
+    void dropLinks(uint32_t to, uint32_t from) noexcept;
+    void addLinks(uint32_t to, std::span<gpu::ContactLink> fresh);
+    void forgetRemote(const Object& object) noexcept;  // it is destroyed
     gpu::ExchangePush exchangeRules() const noexcept;
     void touchNear(uint32_t now);
-    uint32_t seenOf(uint32_t from, uint32_t to);
+    void addLatch(Object& object, const components::Latch& latch, bool due) noexcept;
     void linkPair(const Object& to, const Object& from, uint32_t since,
                   std::pmr::vector<gpu::ContactLink>& out);
     void commitRemote() noexcept;
@@ -894,6 +948,11 @@ class World {
                               core::Owned<Object> owned);
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
     void findPendingRoom(size_t more);  // throws
+    // Boxes of objects as their poses are now, for what asks who is somewhere.
+    void placeNow(const Object& object);  // throws std::bad_alloc
+    // Slots of the objects that come within `margin` m of a box, in order; until the next call.
+    std::span<const uint32_t> objectsNear(const mesh::Box& box, float margin) noexcept;
+    std::span<const uint32_t> objectsNear(const float point[3], float margin) noexcept;
     void addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                     std::span<const uint32_t> texels);
     uint32_t igniteAt(const FwIgnitionDef& def, uint32_t tick);
@@ -904,6 +963,7 @@ class World {
     uint32_t shapedSlot(uint32_t slot, const float shape[3]);
     void releaseShape(uint32_t slot) noexcept;
     void countImages(const components::BurnableMesh& object, bool more) noexcept;
+    void countFuel(const Object& object, bool more) noexcept;
     bool innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object);
     void refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
                     const components::BurnableMesh& object);
@@ -928,6 +988,13 @@ class World {
     Governor governor_;
     bool budgetMeasured_ = false;  // the host tells spent_.gpu
 
+    void countMemory() noexcept;
+
+    // Bytes, for memoryRows, which any thread may call.
+    struct MemoryCounts {
+        std::atomic<uint64_t> objects{0}, frames{0}, neighbours{0}, contacts{0};
+    };
+    MemoryCounts memoryCounts_;
     core::HandlePool<FwMaterialId, FwMaterialDef> materials_;
     core::HandlePool<FwImageId, ImageEntry> images_;
     core::HandlePool<FwMeshId, MeshEntry> meshes_;
@@ -941,6 +1008,7 @@ class World {
     ShieldBook shield_;
     components::Gusts gusts_;
     bool windDue_ = false;     // what objects keep of the wind is to be found anew
+    bool windKept_ = false;    // some may keep another than the world's own
     uint64_t gustsShown_ = 0;  // tick of the gusts that objects keep
     core::HandlePool<FwRoomId, RoomEntry> rooms_;
     uint32_t roomEpoch_ = 0;     // of their airs' beginnings, the last one
@@ -972,12 +1040,16 @@ class World {
     uint32_t fieldsMade_ = 0;                                       // since ever
     uint32_t fieldsShown_ = 0;                                      // that the backend draws
     RemoteBook remote_;
+    BoxGrid places_;                         // of all objects, as their poses are now
+    std::pmr::vector<uint32_t> nearSlots_;   // scratch of objectsNear
     std::pmr::vector<uint32_t> imageUsers_;  // by backend slot: objects + 1 for a live id; 0: free
     std::pmr::vector<Object*> touched_;      // in slot order: idle objects cost a frame nothing
     std::pmr::vector<Object*> playing_;      // baked burns, in slot order
     std::pmr::vector<std::byte> burnBytes_;  // of the last fetchBurn
     uint32_t shapes_ = 0;                    // entries of meshes_ that are shapes
     uint64_t texels_ = 0;                    // of all objects, that can burn
+    uint64_t fuel_ = 0;                      // of all objects when they were made
+    uint32_t ledgers_ = 0;                   // objects that keep account of theirs
     uint32_t mapsWished_ = 0;                // wishes for objects' states that are still to be sent
     uint64_t driveChanges_ = 0;              // of the wind
     std::pmr::vector<uint32_t> forecasts_;   // slots of objects that were asked when fire arrives

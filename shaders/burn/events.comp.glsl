@@ -1,5 +1,6 @@
 // Applies a step's texel events, 64 a group: each texel's run of events by the thread of its first,
-// in order. Not a solver: the front kernel answers in the same step.
+// in order. FW_ALL_TEXELS: of runs that address all texels of an object, a thread for each of those.
+// Not a solver: the front kernel answers in the same step.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -41,9 +42,15 @@ bool gatesLet(uint kind) {
     return lets;
 }
 
-void applyRun(uint first) {
+bool goesOn(uint i, uint object, uint texel) {
+    return i < push.count && events[i].object == object && events[i].texel == texel &&
+           eventKind(events[i].kind) != kEventPlays;
+}
+
+// The run of events that begins there, on one of its texels.
+void applyRun(uint first, uint texel) {
     uint object = events[first].object;
-    uint texel = events[first].texel;
+    uint addressed = events[first].texel;
     uint at = objects[object].stateBase + texel;
     uint before = state[at];
     uint now = before;
@@ -68,8 +75,7 @@ void applyRun(uint first) {
                                 push.now);
             byFlame = isSource(was) ? byFlame : isSource(now) && eventKind(kind_) == kEventHeat;
             ++last;
-        } while (last < push.count && events[last].object == object &&
-                 events[last].texel == texel);
+        } while (goesOn(last, object, addressed));
         has = packHeat(x);
         warms = has != had || now != before;
     } else {
@@ -77,8 +83,7 @@ void applyRun(uint first) {
             now = applyEvent(now, playedKind(events[last].kind, plays, push.now), events[last].tick,
                              push.now);
             ++last;
-        } while (last < push.count && events[last].object == object &&
-                 events[last].texel == texel);
+        } while (goesOn(last, object, addressed));
     }
     if (now == before && !warms) return;
 
@@ -152,6 +157,29 @@ void carryTexel(uint i) {
     texelChanged(object, texel, p, isSource(now));
 }
 
+bool addressesAll(uint i) {
+    uint kind = eventKind(events[i].kind);
+    return events[i].texel == kNoneTexel && kind != kEventGate && kind != kEventPlays;
+}
+
+#ifdef FW_ALL_TEXELS
+// Tiles by group, an event a row; push.object: the event of the first row.
+void main() {
+    uint i = push.object + gl_WorkGroupID.y;
+    if (i >= push.count || !addressesAll(i)) return;
+    uint object = events[i].object;
+    if (i > 0u && addressesAll(i - 1u) && events[i - 1u].object == object) return;
+    uint tilesX = objects[object].tilesX;
+    uint lane = gl_LocalInvocationID.x;
+    for (uint tile = gl_WorkGroupID.x; tile < objects[object].tileCount;
+         tile += gl_NumWorkGroups.x) {
+        uint row = tile / tilesX * 8u + (lane >> 3u);
+        uint texel = row * objects[object].width + tile % tilesX * 8u + (lane & 7u);
+        uint flags = texels[objects[object].texelBase + texel].y >> 16u;
+        if ((flags & kTexelReal) != 0u) applyRun(i, texel);
+    }
+}
+#else
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.count) return;
@@ -168,6 +196,8 @@ void main() {
         else atomicMin(objectCounters[object].playsUntil, events[i].tick);
         return;
     }
+    if (texel == kNoneTexel) return;  // all of the object's: see above
     if (i > 0u && events[i - 1u].object == object && events[i - 1u].texel == texel) return;
-    applyRun(i);
+    applyRun(i, texel);
 }
+#endif

@@ -36,6 +36,7 @@ void main() {
     if (first >= push.count) return;
     uint object = contacts[first].object;
     uint texel = contacts[first].texel;
+    if (object == kNoneTexel) return;  // between two objects' links
     if (first > 0u && contacts[first - 1u].object == object && contacts[first - 1u].texel == texel)
         return;
     if ((remoteObjects[object].flags & kRemoteLive) == 0u) return;

@@ -279,7 +279,8 @@ FW_SHARED_SIZE(IterationCounters, 64)
 
 struct TexelEvent {   // sorted by (object, texel, order); one batch per step
     uint object;      // slot
-    uint texel;       // index in the object's map
+    uint texel;       // index in the object's map; kNoneTexel: all of its texels, and then no
+                      // other event of the step is of one of them
     uint kind;
     uint tick;        // of an ignition; of a wetting: g/m^2 of water; of heat: W/m^2
 };

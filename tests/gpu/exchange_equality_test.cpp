@@ -137,6 +137,55 @@ Mesh twoBoxes() {
     return both;
 }
 
+// A ball that holds objects is one event for each of them, beside events of texels of others.
+TEST_F(ExchangeEquality, BallsThatHoldWholeObjects) {
+    if (!device_) return;
+    for (const uint32_t tilesMost : {0u, 6u}) {
+        FwWorldDef def = worldDef(FW_WORLD_RADIATION);
+        def.maxBurningTiles = tilesMost;
+        Both both(*device_, def);
+        const Mesh board = makePlane(0.5, 0.3), box = twoBoxes();
+        both.add(board, FW_MATERIAL_PINE, 0, 0, 0, 0.3f, 0);
+        both.add(box, FW_MATERIAL_PAPER, 0.5f, 0, 0, 1, 0);
+        both.add(box, FW_MATERIAL_COTTON, 1, 0, 0, 2, FW_BURNABLE_LITE);
+        both.add(board, FW_MATERIAL_PLYWOOD, 3, 0, 0, 0, 0);
+        both.cpu.setSwitches(FW_DEBUG_SHUFFLE);
+        const auto ball = [&](uint32_t kind, float x, float radius, float delay) {
+            both.each([&](world::World& w) {
+                FwIgnitionDef event{};
+                event.structSize = sizeof event;
+                event.kind = kind;
+                event.position[0] = x;
+                event.radius = radius;
+                event.delay = delay;
+                event.water = kind == FW_WET ? 40.0f : 0.0f;
+                (void)w.ignite(event);
+            });
+        };
+        const auto steps = [&](int frames) {
+            for (int i = 0; i < frames; ++i) both.step(1.0f / 24);
+        };
+        ball(FW_IGNITE, 0.1f, 0.05f, 0);
+        ball(FW_IGNITE, 3.1f, 0.05f, 0);
+        steps(30);
+        ball(FW_WET, 0.5f, 1.6f, 0);  // all but the last
+        steps(3);
+        both.compare("after rain, of tiles at most " + std::to_string(tilesMost));
+        ball(FW_DRY, 0.5f, 1.6f, 0.05f);
+        ball(FW_IGNITE, 0.5f, 1.6f, 0.05f);  // in order, in one step
+        steps(8);
+        both.compare("dried and lit");
+        ball(FW_IGNITE, 1, 0.1f, 0.02f);
+        ball(FW_EXTINGUISH, 1, 50, 0.02f);  // with texels of some of the same objects
+        ball(FW_IGNITE, 3, 0.1f, 0.02f);
+        steps(4);
+        both.compare("put out");
+        steps(40);
+        both.compare("and left");
+        EXPECT_GT(both.wet, 0u);
+    }
+}
+
 TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
     if (!device_) return;
     FwWorldDef def = worldDef(15);

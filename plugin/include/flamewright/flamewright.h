@@ -284,7 +284,7 @@ FW_API FwResult FW_CALL fwWorld_GetOrigin(FwWorld*, double origin[3]);
 typedef struct FwBlockerDef { /* a box that radiation, plumes and embers do not pass: a wall, a door */
     uint32_t structSize, flags; /* 0 */
     float transform[16];        /* box to world, rigid and uniform scale; default identity */
-    float halfSize[3];          /* m, each [0, 30]; 0: a quad. Default 0.5 */
+    float halfSize[3];          /* m, each [0, 30], also times the transform's scale; 0: a quad. Default 0.5 */
     uint32_t reserved;          /* 0 */
 } FwBlockerDef;
 static inline FwBlockerDef fwDefaultBlockerDef(void) {

@@ -3,6 +3,7 @@
 #include "gpu/cpu/cpu_backend.h"
 
 #include "core/error.h"
+#include "core/growth.h"
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_state.h"
@@ -186,6 +187,30 @@ void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexce
     touchReaders(object, local, 1ull << ((y & 7) * 8 + (x & 7)));
 }
 
+// How many events from `first` on are of the same object and texel, all texels being one.
+size_t CpuBackend::State::runOf(std::span<const TexelEvent> events, size_t first) noexcept {
+    size_t end = first;
+    while (end < events.size() && events[end].object == events[first].object &&
+           events[end].texel == events[first].texel && eventKind(events[end].kind) != kEventGate &&
+           eventKind(events[end].kind) != kEventPlays &&
+           eventKind(events[end].kind) != kEventCarry)
+        ++end;
+    return end - first;
+}
+
+// What a run of events makes of a texel, in `heated` what of its heat.
+uint32_t CpuBackend::State::afterEvents(const CpuObject& object, uint32_t texel,
+                                        std::span<const TexelEvent> batch,
+                                        std::span<const TexelEvent> run, uint32_t now,
+                                        HeatTexel& heated, bool& byFlame) const noexcept {
+    if (!object.heat.empty()) return heatEvents(object, texel, batch, run, now, heated, byFlame);
+    uint32_t after = object.state[texel];
+    for (const TexelEvent& event : run)
+        after = applyEvent(after, playedKind(event.kind, object.counters.playsUntil, now),
+                           event.tick, now);
+    return after;
+}
+
 void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
     for (size_t i = 0; i < step.events.size();) {
         const TexelEvent& first = step.events[i];
@@ -204,22 +229,18 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             ++i;
             continue;
         }
+        const auto run = step.events.subspan(i, runOf(step.events, i));
+        i += run.size();
+        if (first.texel == kNoneTexel) {
+            applyToAll(object, run, step);
+            continue;
+        }
         uint32_t& texel = object.state[first.texel];
         const uint32_t before = texel;
-        const size_t begin = i;
-        while (i < step.events.size() && step.events[i].object == first.object &&
-               step.events[i].texel == first.texel && eventKind(step.events[i].kind) != kEventGate)
-            ++i;
-        const auto events = step.events.subspan(begin, i - begin);
-        uint32_t now = before;
         HeatTexel heated{};
         bool byFlame = false;  // lit by heat that came; what the host lights needs no leave
-        if (!object.heat.empty())
-            now = heatEvents(object, step.events, events, step.now, heated, byFlame);
-        else
-            for (const TexelEvent& event : events)
-                now = applyEvent(now, playedKind(event.kind, object.counters.playsUntil, step.now),
-                                 event.tick, step.now);
+        const uint32_t now =
+            afterEvents(object, first.texel, step.events, run, step.now, heated, byFlame);
         const uint32_t x = first.texel % object.domain->width;
         const uint32_t y = first.texel / object.domain->width;
         const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
@@ -253,6 +274,65 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
         }
         tiles[worldTile].lastChange = step.now;
         touchReaders(object, local, 1ull << ((y & 7) * 8 + (x & 7)));
+    }
+}
+
+// As for its texels one by one. The host's own events: none needs leave to burn.
+void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent> run,
+                                   const StepPlan& step) noexcept {
+    const mesh::BurnDomain& domain = *object.domain;
+    const bool heats = !object.heat.empty();
+    // Texels at rest are alike: what the last one became is what the next one does.
+    uint32_t knownBefore = 0, knownAfter = 0, knownMaterial = kNoneTexel;
+    uvec2 knownHad(0), knownHeat(0);
+    for (uint32_t local = 0; local < object.record.tileCount; ++local) {
+        const uint32_t worldTile = object.record.worldTileBase + local;
+        const uint32_t corner =
+            (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+        uint64_t changed = 0;
+        bool heated = false, burns = false;
+        for (uint32_t lane = 0; lane < 64; ++lane) {
+            const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+            const uint32_t flags = domain.texels[texel].materialFlags;
+            if ((flags & kTexelReal) == 0) continue;
+            const uint32_t before = object.state[texel];
+            const uvec2 had = heats ? object.heat[texel] : uvec2(0);
+            if (before != knownBefore || had != knownHad || (flags & 7) != knownMaterial) {
+                HeatTexel x{};
+                bool byFlame = false;
+                knownAfter = afterEvents(object, texel, step.events, run, step.now, x, byFlame);
+                knownHeat = heats ? packHeat(x) : uvec2(0);
+                knownBefore = before;
+                knownHad = had;
+                knownMaterial = flags & 7;
+            }
+            const uint32_t now = knownAfter;
+            if (asksOnly) {
+                burns |= isSource(now) && !isSource(before);
+                continue;
+            }
+            if (heats) {
+                object.heat[texel] = knownHeat;
+                heated |= now != before || knownHeat != had;
+            }
+            if (now == before) continue;
+            object.state[texel] = now;
+            changed |= 1ull << lane;
+            if (isSource(now) != isSource(before))
+                object.counters.ignited += isSource(now) ? 1u : ~0u;
+            burns |= isSource(now);
+            if (isSource(now) && !isSource(before)) litFrom(object, kLitByHand);
+            if (!object.published.empty()) publishedEvent(object, texel, isSource(now));
+        }
+        if (heated) hot(worldTile);
+        if (burns) burning(worldTile);
+        if (changed == 0) continue;
+        if (burns)
+            object.counters.lastIgnition =
+                std::max(object.counters.lastIgnition, step.now + kStepTicks);
+        if (!object.published.empty()) continue;
+        tiles[worldTile].lastChange = step.now;
+        touchReaders(object, local, changed);
     }
 }
 
@@ -492,7 +572,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     if ((init.record.flags & kObjectPublished) != 0) createPublished(*object);
     object->sources.resize(mesh::sourceCells(domain));
     if (slot >= s.objects.size()) s.objects.resize(slot + 1);
-    s.freeTiles.reserve(s.objects.size() + s.freeTiles.size() + 1);
+    core::growTo(s.freeTiles, s.objects.size() + s.freeTiles.size() + 1);
     const uint32_t first = s.allocateTiles(domain.tileCount());
     object->record.worldTileBase = first;
     object->record.width = domain.width;
@@ -504,8 +584,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     s.rest(*object, slot);
     if (!object->published.empty()) ++s.publishedObjects;
     s.counts.add(*object);
-    s.counts.tiles = s.tiles.size();
-    s.counts.tileCapacity = s.tiles.capacity();
+    s.countLists();
     s.objects[slot] = std::move(object);
 }
 
@@ -701,22 +780,43 @@ uint64_t stateCapacity(const CpuObject& object) noexcept {
            object.slowness.capacity() * sizeof(uint16_t) +
            object.published.capacity() * sizeof(float) + object.heat.capacity() * sizeof(uvec2);
 }
+uint64_t objectBytes(const CpuObject& object) noexcept {
+    return sizeof(CpuObject) + object.sources.capacity() * sizeof(FireSource);
+}
 
 }  // namespace
 
 void CpuCounts::add(const CpuObject& object) noexcept {
     this->stateBytes += cpu::stateBytes(object);
     this->stateCapacity += cpu::stateCapacity(object);
+    objects += objectBytes(object);
 }
 
 void CpuCounts::remove(const CpuObject& object) noexcept {
     this->stateBytes -= cpu::stateBytes(object);
     this->stateCapacity -= cpu::stateCapacity(object);
+    objects -= objectBytes(object);
+}
+
+void CpuBackend::State::countLists() noexcept {
+    counts.exchange =
+        neighbours.capacity() * sizeof(uint32_t) + links.capacity() * sizeof(ContactLink);
+    uint64_t bytes = 0;
+    for (const ReadbackStore& store : readbacks)
+        bytes += store.objects.capacity() * sizeof(ObjectCounters) +
+                 store.mapTicks.capacity() * sizeof(uint32_t) +
+                 store.mapHeat.capacity() * sizeof(uvec2);
+    counts.readbacks = bytes;
+    counts.tiles = tiles.size();
+    counts.tileCapacity = tiles.capacity();
 }
 
 void CpuBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const {
     const CpuCounts& counts = state_->counts;
     out.push_back({"cpu texel states", counts.stateBytes, counts.stateCapacity});
+    out.push_back({"cpu objects", counts.objects, counts.objects});
+    out.push_back({"cpu neighbours and contacts", counts.exchange, counts.exchange});
+    out.push_back({"cpu readbacks", counts.readbacks, counts.readbacks});
     const size_t perTile = sizeof(TileState) + 6 * sizeof(uint32_t) + sizeof(uvec4) +
                            sizeof(uint8_t) + sizeof(TileHeat) + sizeof(float) + sizeof(FrontTile) +
                            64 * sizeof(uint32_t) + sizeof(BurnTile);

@@ -1,5 +1,6 @@
 // Fire at a distance, every fourth step after `reduce`: the passes of shaders/exchange, on vectors.
 #include "core/error.h"
+#include "core/growth.h"
 #include "gpu/cpu/cpu_state.h"
 #include "mesh/part_links.h"
 #include "mesh/remote_tiles.h"
@@ -20,17 +21,29 @@ uint32_t powerOf(const RemoteObject& object, uint32_t material) noexcept {
 }  // namespace
 
 void CpuBackend::State::reserveRemote(const RemoteUpdate& update) {
-    neighbours.reserve(update.neighbours.size());
-    links.reserve(update.links.size());
+    core::growTo(neighbours, update.neighbours.size());
+    core::growTo(links, update.links.size());
     blockers.reserve(update.blockers.size());
 }
+
+namespace {
+
+template <class T>
+void copyRanges(std::span<const T> from, std::span<const RemoteUpdate::Range> ranges,
+                std::pmr::vector<T>& to) noexcept {
+    to.resize(from.size());  // its room is there
+    for (const RemoteUpdate::Range& range : ranges)
+        std::copy_n(from.begin() + range.first, range.count, to.begin() + range.first);
+}
+
+}  // namespace
 
 void CpuBackend::State::placeRemote(const RemoteUpdate& update) noexcept {
     for (const RemoteUpdate::Placed& placed : update.objects)
         if (placed.object < objects.size() && objects[placed.object])
             objects[placed.object]->remote = placed.record;
-    neighbours.assign(update.neighbours.begin(), update.neighbours.end());
-    links.assign(update.links.begin(), update.links.end());
+    copyRanges(update.neighbours, update.neighbourRanges, neighbours);
+    copyRanges(update.links, update.linkRanges, links);
     blockers.assign(update.blockers.begin(), update.blockers.end());
 }
 
@@ -104,13 +117,16 @@ void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexce
 
 void CpuBackend::State::sumSources() noexcept {
     for (core::Owned<CpuObject>& object : objects)
-        if (object && (object->remote.flags & kRemoteLive) != 0)
+        if (object && object->gives) {
             std::fill(object->sources.begin(), object->sources.end(), FireSource{});
+            object->gives = false;
+        }
     for (const BurnTile& burning : burnTiles) {
         CpuObject& object = *objects[burning.object];
         if ((object.remote.flags & kRemoteLive) == 0) continue;
         const RemoteTile& tile = remoteTiles[object.mesh][burning.tile];
         FireSource& source = object.sources[tileCell(tile)];
+        object.gives = true;
         const ivec3 middle = tileMiddle(tile);
         source.power += burning.texels * powerOf(object.remote, tileMaterial(tile));
         source.texels += burning.texels;
@@ -283,6 +299,10 @@ void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
 void CpuBackend::State::contacts(const ExchangePush& rules) noexcept {
     for (size_t i = 0; i < links.size();) {
         const uint32_t slot = links[i].object, texel = links[i].texel;
+        if (slot == kNoneTexel) {  // between two objects' links
+            ++i;
+            continue;
+        }
         uint32_t best = kNever, by = 0;
         for (; i < links.size() && links[i].object == slot && links[i].texel == texel; ++i) {
             const ContactLink& link = links[i];

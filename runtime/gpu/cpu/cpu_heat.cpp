@@ -36,10 +36,10 @@ bool CpuBackend::State::gatesLet(std::span<const TexelEvent> batch, uint32_t kin
     }
 }
 
-uint32_t CpuBackend::State::heatEvents(CpuObject& object, std::span<const TexelEvent> batch,
+uint32_t CpuBackend::State::heatEvents(const CpuObject& object, uint32_t texel,
+                                       std::span<const TexelEvent> batch,
                                        std::span<const TexelEvent> events, uint32_t now,
-                                       HeatTexel& x, bool& byFlame) noexcept {
-    const uint32_t texel = events[0].texel;
+                                       HeatTexel& x, bool& byFlame) const noexcept {
     const mesh::BurnDomain& domain = *object.domain;
     const HeatMaterial& m = object.heatMaterials[domain.texels[texel].materialFlags & 7];
     uint32_t after = object.state[texel];

@@ -66,6 +66,7 @@ void CpuBackend::State::rest(CpuObject& object, uint32_t slot) noexcept {
     }
     object.counters = {};
     std::fill(object.sources.begin(), object.sources.end(), FireSource{});
+    object.gives = false;
     const uint32_t first = object.record.worldTileBase;
     for (uint32_t worldTile = first; worldTile < first + object.record.tileCount; ++worldTile) {
         tiles[worldTile] = {kNever, 0, kFarPast, slot};

@@ -29,6 +29,7 @@ struct CpuObject {
     uint32_t publishedParity = 0;
     RemoteObject remote{};                 // without kRemoteLive until its first update
     std::pmr::vector<FireSource> sources;  // by cell, see mesh/remote_tiles.h
+    bool gives = false;                    // some of those are not as they rest
 };
 
 // cpu_heat.cpp; after the states are there, which become as wet as their texels.
@@ -95,6 +96,7 @@ enum Timer : uint32_t {
 struct CpuCounts {
     std::atomic<uint64_t> stateBytes{0}, stateCapacity{0};  // of all objects' texels
     std::atomic<uint64_t> tiles{0}, tileCapacity{0};        // world tiles
+    std::atomic<uint64_t> objects{0}, exchange{0}, readbacks{0};  // bytes
     void add(const CpuObject& object) noexcept;
     void remove(const CpuObject& object) noexcept;
 };
@@ -118,6 +120,7 @@ struct CpuBackend::State {
     void hot(uint32_t worldTile) noexcept;
     // Another flux comes to it, at one of its turns.
     void heatComes(uint32_t worldTile, uint32_t flux) noexcept;
+    void countLists() noexcept;  // for memoryRows, which any thread may call
     void applyEvents(const StepPlan& step) noexcept;
     void wake(const StepPlan& step) noexcept;
     void iterate(const StepPlan& step, uint32_t iteration) noexcept;
@@ -126,9 +129,16 @@ struct CpuBackend::State {
                       bool dense) noexcept;
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
     bool gatesLet(std::span<const TexelEvent> batch, uint32_t kind, uint32_t now) const noexcept;
-    uint32_t heatEvents(CpuObject& object, std::span<const TexelEvent> batch,
+    // cpu_heat.cpp: the texel's state after them.
+    uint32_t heatEvents(const CpuObject& object, uint32_t texel, std::span<const TexelEvent> batch,
                         std::span<const TexelEvent> events, uint32_t now, HeatTexel& x,
-                        bool& byFlame) noexcept;  // cpu_heat.cpp: the texel's state after them
+                        bool& byFlame) const noexcept;
+    static size_t runOf(std::span<const TexelEvent> events, size_t first) noexcept;
+    uint32_t afterEvents(const CpuObject& object, uint32_t texel, std::span<const TexelEvent> batch,
+                         std::span<const TexelEvent> run, uint32_t now, HeatTexel& heated,
+                         bool& byFlame) const noexcept;
+    void applyToAll(CpuObject& object, std::span<const TexelEvent> run,
+                    const StepPlan& step) noexcept;
     void airRooms(uint32_t now) noexcept;
     void askHeat(uint32_t now) noexcept;
     void heatStep(uint32_t now) noexcept;

@@ -20,5 +20,6 @@ constexpr Use kEventsUses[] = {
 }  // namespace
 
 const ComputePass kEventsPass{"events", "events.comp", kEventsUses, sizeof(StepPush)};
+const ComputePass kEventsAllPass{"events_all", "events_all.comp", kEventsUses, sizeof(StepPush)};
 
 }  // namespace fw::gpu

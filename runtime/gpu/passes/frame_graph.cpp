@@ -30,7 +30,7 @@ constexpr const ComputePass* kComputePasses[] = {
     &kSkinPass,          &kSootPass,          &kRefineCutPass,    &kRefinePublishedPass,
     &kVolumeProbePass,   &kVolumeMarchPass,   &kVolumeSmokePass,  &kParticlesPass,
     &kParticleQuadsPass, &kSparksPass,        &kFieldPass,        &kFieldMaskPass,
-    &kFieldShowPass,     &kRoomsPass,
+    &kFieldShowPass,     &kRoomsPass,         &kEventsAllPass,
 };
 
 constexpr const DrawPass* kDrawPasses[] = {
@@ -203,7 +203,14 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         recorder.copyIn(step.events.at, FW_BIND_EVENTS, 0,
                         uint64_t(step.events.count) * sizeof(TexelEvent));
         push.count = step.events.count;
-        askThen([&] { recorder.dispatch(kEventsPass, &push, (push.count + 63) / 64); });
+        askThen([&] {
+            recorder.dispatch(kEventsPass, &push, (push.count + 63) / 64);
+            for (uint32_t first = step.allFirst; first < step.allEnd; first += kMaxGroups) {
+                push.object = first;
+                recorder.dispatch(kEventsAllPass, &push, std::min(step.allTiles, kMaxGroups),
+                                  std::min(step.allEnd - first, kMaxGroups));
+            }
+        });
     }
     if (step.rooms) {
         push = pushNow();

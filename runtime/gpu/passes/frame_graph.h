@@ -21,16 +21,17 @@ class FrameRecorder;
 struct ParticlePush;  // shared/particle.h
 struct SparkPush;     // shared/spark.h
 
-extern const ComputePass kResetPass, kRestorePass, kEventsPass, kHeatPass, kWakePass, kSchedulePass,
-    kGatherPass, kArrivalPass, kArrivalRimPass, kGrantPass, kCommitPass, kPublishedPass,
-    kReduceClearPass, kReduceFrontPass, kReducePass, kFireCellsPass, kFireSourcesPass,
-    kReceiversPass, kExchangePass, kExchangeShieldPass, kContactsPass, kPartsPass, kEmberWaysPass,
-    kEmbersPass, kPredictAnewPass, kPredictGatherPass, kPredictPass, kPredictRimPass, kSupportPass,
-    kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass,
-    kRefineScanPass, kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass,
-    kRecedePass, kTiesPass, kSoftPass, kSpringsPass, kDrapePass, kInnerPass, kSkinPass, kSootPass,
-    kVolumeProbePass, kVolumeMarchPass, kVolumeSmokePass, kParticlesPass, kParticleQuadsPass,
-    kSparksPass, kFieldPass, kFieldMaskPass, kFieldShowPass, kRoomsPass;
+extern const ComputePass kResetPass, kRestorePass, kEventsPass, kEventsAllPass, kHeatPass,
+    kWakePass, kSchedulePass, kGatherPass, kArrivalPass, kArrivalRimPass, kGrantPass, kCommitPass,
+    kPublishedPass, kReduceClearPass, kReduceFrontPass, kReducePass, kFireCellsPass,
+    kFireSourcesPass, kReceiversPass, kExchangePass, kExchangeShieldPass, kContactsPass, kPartsPass,
+    kEmberWaysPass, kEmbersPass, kPredictAnewPass, kPredictGatherPass, kPredictPass,
+    kPredictRimPass, kSupportPass, kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass,
+    kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass, kRefinePlacePass,
+    kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass, kSpringsPass,
+    kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass,
+    kVolumeSmokePass, kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass,
+    kFieldShowPass, kRoomsPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();
@@ -80,6 +81,9 @@ struct StepRecord {
     bool heat = false;
     bool rooms = false;  // their air, before heat
     Staged events;
+    // The first and behind the last of those that address all texels of an object, and the tiles of
+    // the largest such object.
+    uint32_t allFirst = 0, allEnd = 0, allTiles = 0;
     Staged wakeGroups;  // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;
     std::span<const PublishedStep> published;

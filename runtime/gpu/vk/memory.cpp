@@ -1,6 +1,7 @@
 #include "gpu/vk/memory.h"
 
 #include "core/error.h"
+#include "core/growth.h"
 
 #include <algorithm>
 
@@ -49,7 +50,7 @@ bool DeviceMemory::cut(Block& block, const VkMemoryRequirements& needs, Piece& p
         const VkDeviceSize start = alignUp(range.offset, needs.alignment);
         const VkDeviceSize end = start + needs.size;
         if (end > range.offset + range.size) continue;
-        block.free.reserve(block.pieces + 3);
+        core::growTo(block.free, block.pieces + 3);
         const Range before{range.offset, start - range.offset};
         const Range after{end, range.offset + range.size - end};
         block.free.erase(block.free.begin() + std::ptrdiff_t(i));

@@ -174,7 +174,7 @@ constexpr uint32_t kInitialUnits[kSpaceCount] = {
 // --- RangeAllocator ---
 
 void RangeAllocator::addCapacity(uint32_t units) {
-    free_.reserve(pieces_ + 3);
+    core::growTo(free_, pieces_ + 3);
     if (!free_.empty() && free_.back().first + free_.back().units == capacity_)
         free_.back().units += units;
     else
@@ -191,7 +191,7 @@ void RangeAllocator::dropCapacity(uint32_t units) noexcept {
 uint32_t RangeAllocator::allocate(uint32_t units) {
     for (size_t i = 0; i < free_.size(); ++i) {
         if (free_[i].units < units) continue;
-        free_.reserve(pieces_ + 3);
+        core::growTo(free_, pieces_ + 3);
         const uint32_t first = free_[i].first;
         free_[i].first += units;
         free_[i].units -= units;

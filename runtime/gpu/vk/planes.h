@@ -2,6 +2,7 @@
 // tiles, vertices ...). A space that is full doubles all of its planes: new buffers now, their old
 // content is copied when the next frame is recorded. Not staging, not readback.
 #pragma once
+#include "core/growth.h"
 #include "gpu/passes/pass.h"
 #include "gpu/vk/memory.h"
 #include "shared/look.h"
@@ -132,7 +133,7 @@ class RetireQueue {
     RetireQueue& operator=(const RetireQueue&) = delete;
     // Every push is promised before, where throwing is still allowed; push itself never throws.
     void promise(size_t count) {
-        queue_.reserve(queue_.size() + promised_ + count);
+        core::growTo(queue_, queue_.size() + promised_ + count);
         promised_ += count;
     }
     void push(uint64_t lastFrame, Buffer& buffer) noexcept;

@@ -24,9 +24,10 @@ void FrameRecorder::bind(const ComputePass& pass, const void* push) {
                             pass.pushBytes, push);
 }
 
-void FrameRecorder::dispatch(const ComputePass& pass, const void* push, uint32_t groups) {
+void FrameRecorder::dispatch(const ComputePass& pass, const void* push, uint32_t groups,
+                             uint32_t rows) {
     bind(pass, push);
-    t_.device->table.CmdDispatch(t_.commands, groups, 1, 1);
+    t_.device->table.CmdDispatch(t_.commands, groups, rows, 1);
     t_.slot->timers.end(*t_.device, t_.commands);
 }
 

@@ -28,7 +28,7 @@ class FrameRecorder {
  public:
     explicit FrameRecorder(const RecordTarget& target) : t_(target) {}
 
-    void dispatch(const ComputePass& pass, const void* push, uint32_t groups);
+    void dispatch(const ComputePass& pass, const void* push, uint32_t groups, uint32_t rows = 1);
     // Groups from a row of the counters: its work, rim, run or list part.
     void dispatchWork(const ComputePass& pass, const void* push, uint32_t row);
     void dispatchRim(const ComputePass& pass, const void* push, uint32_t row);

@@ -1,6 +1,7 @@
 #include "gpu/vk/vk_backend.h"
 
 #include "core/error.h"
+#include "core/growth.h"
 #include "gpu/vk/world_state.h"
 #include "shared/volume.h"
 
@@ -141,7 +142,7 @@ void VkBackend::State::failIfLost() const {
 }
 
 PendingUpload& VkBackend::State::stage(uint64_t bytes, const char* name) {
-    uploads.reserve(uploads.size() + 1);
+    core::growTo(uploads, uploads.size() + 1);
     retired.promise(1);
     PendingUpload upload;
     upload.staging = deviceMemory.createBuffer(bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,

@@ -102,9 +102,11 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
             needs.neighbours = std::max(needs.neighbours, uint32_t(update.neighbours.size()));
             needs.links = std::max(needs.links, uint32_t(update.links.size()));
             needs.uploadBytes += update.objects.size() * uploaded(sizeof(RemoteObject)) +
-                                 uploaded(update.neighbours.size_bytes()) +
-                                 uploaded(update.links.size_bytes()) +
                                  uploaded(update.blockers.size_bytes());
+            for (const RemoteUpdate::Range& range : update.neighbourRanges)
+                needs.uploadBytes += uploaded(range.count * sizeof(uint32_t));
+            for (const RemoteUpdate::Range& range : update.linkRanges)
+                needs.uploadBytes += uploaded(range.count * sizeof(ContactLink));
         }
         if (step.shield) {
             needs.placing = true;

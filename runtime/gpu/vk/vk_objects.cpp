@@ -1,5 +1,6 @@
 // Objects as they come and go, and where hosts move them. What becomes of them within a frame is
 // vk_record.cpp's.
+#include "core/growth.h"
 #include "gpu/vk/drawn_order.h"
 #include "gpu/vk/world_state.h"
 
@@ -150,10 +151,10 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     }
     s.context.pipelines.need(passes);
     try {
-        s.quarantine.reserve(s.quarantine.size() + s.liveObjects + 1);
-        s.drawItems.reserve((s.liveObjects + 1) * kMaterialsPerObject);
-        s.published.reserve(s.liveObjects + 1);
-        s.givenObjects.reserve(std::max<size_t>(slot + 1, s.objects.size()));
+        core::growTo(s.quarantine, s.quarantine.size() + s.liveObjects + 1);
+        core::growTo(s.drawItems, (s.liveObjects + 1) * kMaterialsPerObject);
+        core::growTo(s.published, s.liveObjects + 1);
+        core::growTo(s.givenObjects, std::max<size_t>(slot + 1, s.objects.size()));
         (void)slotOf(s.objects, slot);
         s.awake.atLeast(slot + 1);
         s.planes.atLeast(kSpaceObjects, slot + 1, last);

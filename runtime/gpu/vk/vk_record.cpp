@@ -96,6 +96,16 @@ SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_
     return draw;
 }
 
+// They are listed object by object.
+std::span<DrawItem> drawItemsOf(VkBackend::State& s, uint32_t object) noexcept {
+    const auto first =
+        std::lower_bound(s.drawItems.begin(), s.drawItems.end(), object,
+                         [](const DrawItem& item, uint32_t slot) { return item.object < slot; });
+    auto end = first;
+    while (end != s.drawItems.end() && end->object == object) ++end;
+    return {first, end};
+}
+
 // Records of objects that are new, moved or gone, and the list of what draws show.
 void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
     for (const uint32_t i : s.awake) {
@@ -186,9 +196,8 @@ void recordMaterials(VkBackend::State& s, std::span<const MaterialUpdate> update
                   std::begin(object.materials));
         object.record.window = update.window;
         object.record.substepShift = update.substepShift;
-        for (DrawItem& item : s.drawItems) {
-            if (item.object == update.object) item.draw = drawOf(s, object, item.material);
-        }
+        for (DrawItem& item : drawItemsOf(s, update.object))
+            item.draw = drawOf(s, object, item.material);
         const Staged materials = writer.write(std::span<const BurnMaterial>(object.materials));
         recorder.copyIn(materials.at, FW_BIND_MATERIALS,
                         uint64_t(update.object) * sizeof object.materials, sizeof object.materials);
@@ -212,14 +221,16 @@ void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder
         recorder.copyIn(staged.at, FW_BIND_REMOTE_OBJECTS, uint64_t(placed.object) * sizeof record,
                         sizeof record);
     }
-    const auto copy = [&](auto data, uint32_t resource) {
+    const auto copy = [&](auto data, uint32_t resource, uint32_t first) {
         if (data.empty()) return;
         const Staged staged = writer.write(data);
-        recorder.copyIn(staged.at, resource, 0, data.size_bytes());
+        recorder.copyIn(staged.at, resource, first * sizeof(data[0]), data.size_bytes());
     };
-    copy(update.neighbours, FW_BIND_NEIGHBOURS);
-    copy(update.links, FW_BIND_CONTACTS);
-    copy(update.blockers, FW_BIND_BLOCKERS);
+    for (const RemoteUpdate::Range& range : update.neighbourRanges)
+        copy(update.neighbours.subspan(range.first, range.count), FW_BIND_NEIGHBOURS, range.first);
+    for (const RemoteUpdate::Range& range : update.linkRanges)
+        copy(update.links.subspan(range.first, range.count), FW_BIND_CONTACTS, range.first);
+    copy(update.blockers, FW_BIND_BLOCKERS, 0);
     s.links = uint32_t(update.links.size());
     s.blockers = uint32_t(update.blockers.size());
 }
@@ -263,6 +274,12 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
     return staged;
 }
 
+// All texels of its object.
+bool addressesAll(const TexelEvent& event) noexcept {
+    const uint32_t kind = eventKind(event.kind);
+    return event.texel == kNoneTexel && kind != kEventGate && kind != kEventPlays;
+}
+
 // An object that an event reaches is drawn as one that may burn from now on.
 void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     ObjectEntry& object = s.objects[event.object];
@@ -279,8 +296,7 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     if (object.touched && !douses) return;
     object.touched = true;
     object.doused = object.doused || douses;
-    for (DrawItem& item : s.drawItems) {
-        if (item.object != event.object) continue;
+    for (DrawItem& item : drawItemsOf(s, event.object)) {
         chooseVariants(s, object, item);
         item.zPass = zPassed(object);
         item.draw = drawOf(s, object, item.material);
@@ -503,7 +519,14 @@ void VkBackend::State::run(const FramePlan& plan) {
         const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
         step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);
         step.events = writer.write(planned.events);
-        for (const TexelEvent& event : planned.events) noteEvent(*this, event, planned.now);
+        for (uint32_t i = 0; i < planned.events.size(); ++i) {
+            const TexelEvent& event = planned.events[i];
+            noteEvent(*this, event, planned.now);
+            if (!addressesAll(event)) continue;
+            if (step.allEnd == 0) step.allFirst = i;
+            step.allEnd = i + 1;
+            step.allTiles = std::max(step.allTiles, objects[event.object].record.tileCount);
+        }
         if (needs.publishedRuns) {
             for (PublishedStep& one : published) {
                 one.parity = objects[one.object].publishedParity;

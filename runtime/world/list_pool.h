@@ -1,0 +1,155 @@
+// Lists of their own for many owners, in one array that a backend keeps a copy of. A list that
+// outgrows its place moves to a larger one; places that are left are given out again.
+#pragma once
+#include "core/growth.h"
+#include "gpu/backend.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace fw::world {
+
+struct ListPlace {
+    uint32_t first = 0, count = 0;
+    uint32_t room = 0;  // entries from first on; 0: it has no place
+};
+
+template <class T>
+class ListPool {
+ public:
+    // none: what the entries are that belong to no list.
+    ListPool(std::pmr::memory_resource* memory, const T& none)
+        : all_(memory), sizes_(memory), changed_(memory), none_(none) {}
+
+    [[nodiscard]] std::span<T> of(const ListPlace& list) noexcept {
+        return std::span(all_).subspan(list.first, list.count);
+    }
+    [[nodiscard]] std::span<const T> of(const ListPlace& list) const noexcept {
+        return std::span(all_).subspan(list.first, list.count);
+    }
+    [[nodiscard]] std::span<const T> all() const noexcept { return all_; }
+
+    // Room for `count` entries; throws std::bad_alloc, and then nothing has changed.
+    void reserve(ListPlace& list, uint32_t count) {
+        if (count <= list.room) return;
+        const uint32_t size = sizeOf(count), room = roomOf(size);
+        while (sizes_.size() <= size) sizes_.emplace_back();
+        Size& of = sizes_[size];
+        uint32_t first = 0;
+        if (of.free.empty()) {
+            core::growTo(of.free, of.made + 1);  // giving the place back needs no memory
+            first = uint32_t(all_.size());
+            changed_.resize(((all_.size() + room) / kBlock + 64) / 64);
+            all_.resize(all_.size() + room, none_);
+            ++of.made;
+        } else {
+            first = of.free.back();
+            of.free.pop_back();
+        }
+        std::copy_n(all_.begin() + list.first, list.count, all_.begin() + first);
+        mark(first, room);
+        release(list);
+        list.first = first;
+        list.room = room;
+    }
+    // The place goes, and the entries with it.
+    void drop(ListPlace& list) noexcept {
+        release(list);
+        list = {};
+    }
+    // Before entry `at`, where reserve has found room.
+    void insert(ListPlace& list, uint32_t at, const T& value) noexcept {
+        T* data = all_.data() + list.first;
+        std::memmove(data + at + 1, data + at, (list.count - at) * sizeof(T));
+        data[at] = value;
+        ++list.count;
+        mark(list.first + at, list.count - at);
+    }
+    void erase(ListPlace& list, uint32_t at) noexcept {
+        T* data = all_.data() + list.first;
+        std::memmove(data + at, data + at + 1, (list.count - at - 1) * sizeof(T));
+        mark(list.first + at, list.count - at);
+        data[--list.count] = none_;
+    }
+    // Other entries, for which reserve has found room.
+    void assign(ListPlace& list, std::span<const T> values) noexcept {
+        T* data = all_.data() + list.first;
+        mark(list.first, std::max(list.count, uint32_t(values.size())));
+        std::fill_n(data, list.count, none_);
+        std::copy(values.begin(), values.end(), data);
+        list.count = uint32_t(values.size());
+    }
+    void clear() noexcept {
+        all_.clear();
+        changed_.clear();
+        for (Size& size : sizes_) {
+            size.free.clear();
+            size.made = 0;
+        }
+    }
+
+    // What has changed since `settle`; who writes into a list says so.
+    void mark(uint32_t first, uint32_t count) noexcept {
+        if (count == 0) return;
+        for (uint32_t block = first / kBlock; block <= (first + count - 1) / kBlock; ++block)
+            changed_[block / 64] |= uint64_t(1) << block % 64;
+    }
+    void listChanges(std::pmr::vector<gpu::RemoteUpdate::Range>& out) const {
+        out.clear();
+        for (uint32_t word = 0; word < changed_.size(); ++word)
+            for (uint64_t bits = changed_[word]; bits != 0; bits &= bits - 1) {
+                const uint32_t first = (word * 64 + uint32_t(std::countr_zero(bits))) * kBlock;
+                const uint32_t count = std::min(kBlock, uint32_t(all_.size()) - first);
+                if (!out.empty() && out.back().first + out.back().count + kBlock >= first)
+                    out.back().count = first + count - out.back().first;
+                else
+                    out.push_back({first, count});
+            }
+    }
+    void settle() noexcept { std::fill(changed_.begin(), changed_.end(), 0); }
+
+    [[nodiscard]] uint64_t bytes() const noexcept {
+        uint64_t sum = all_.capacity() * sizeof(T);
+        for (const Size& size : sizes_) sum += size.free.capacity() * sizeof(uint32_t);
+        return sum;
+    }
+
+ private:
+    static constexpr uint32_t kBlock = 64;  // entries that count as changed together
+
+    struct Size {
+        std::pmr::vector<uint32_t> free;  // first entries of places
+        uint32_t made = 0;                // places of this size in all
+        using allocator_type = std::pmr::polymorphic_allocator<>;
+        explicit Size(const allocator_type& a) : free(a) {}
+        Size(Size&& other, const allocator_type& a)
+            : free(std::move(other.free), a), made(other.made) {}
+        Size(Size&&) = default;
+    };
+
+    // Rooms of 4, 6, 8, 12, 16, 24 ...: at most a third of one is empty.
+    static uint32_t roomOf(uint32_t size) noexcept { return (size % 2 == 0 ? 4u : 6u) << size / 2; }
+    static uint32_t sizeOf(uint32_t count) noexcept {
+        uint32_t size = 0;
+        while (roomOf(size) < count) ++size;
+        return size;
+    }
+    void release(const ListPlace& list) noexcept {
+        if (list.room == 0) return;
+        std::fill_n(all_.begin() + list.first, list.room, none_);
+        mark(list.first, list.count);
+        sizes_[sizeOf(list.room)].free.push_back(list.first);
+    }
+
+    std::pmr::vector<T> all_;
+    std::pmr::vector<Size> sizes_;
+    std::pmr::vector<uint64_t> changed_;  // a bit a block
+    T none_;
+};
+
+}  // namespace fw::world
