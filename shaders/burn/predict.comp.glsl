@@ -1,6 +1,6 @@
-// Arrival ahead of the front, for looks: one ring further each frame, up to the object's horizon,
-// and its gradient. One thread per gathered row, along which a ring moves, as in `arrival`.
-// Cosmetic: in place, plain hops, no pairs.
+// Arrival ahead of the front, for looks: one ring further each frame, up to the object's horizon. One
+// thread per gathered row, along which a ring moves, as in `arrival`; predict_commit writes the times.
+// Cosmetic: plain hops, no pairs.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -16,9 +16,9 @@ layout(local_size_x = 64) in;
 #define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_SCRATCH readonly
+#define FW_USE_SCRATCH writeonly
 #define FW_USE_SCRATCH_QUADS readonly
-#define FW_USE_PREDICT FW_READ_WRITE
+#define FW_USE_PREDICT readonly
 #define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
@@ -49,7 +49,7 @@ uint hop(uint time, uvec2 place, ivec3 mine, FrontPrep p) {
 
 void predictRow(uint work) {
     uvec4 item = scratchQuads[work];
-    uint chosen = item.y;
+    uint chosen = item.y & 0xFFu;
     if (chosen == 0u) return;
     uvec4 bases = objectBases(item.w);
     uint latest = push.now + objectTimes(item.w).z;
@@ -61,7 +61,7 @@ void predictRow(uint work) {
     BurnMaterial m;
     Column left = columnAt(item.z + x - 1u, bases);
     Column middle = columnAt(item.z + x, bases);
-    uint changed = 0u;  // to a time
+    uint changed = 0u;
     uint spread = 0u;
     bool beyond = false;
     do {
@@ -90,8 +90,9 @@ void predictRow(uint work) {
                 }
             }
             if (now != before || anew) {
-                predict[bases.y + texel] = now;
-                if (hasTime(now)) changed |= 1u << x;
+                uint at = bases.y + texel;
+                gradient[at] = packTimeNext(gradient[at], now);
+                changed |= 1u << x;
                 if (concernsOthers(before, now) || (anew && hasTime(now))) spread |= 1u << x;
             }
         }
@@ -101,12 +102,7 @@ void predictRow(uint work) {
     } while (x <= last);
     uint y = divide(item.z, bases.w);
     uint x0 = item.z - y * bases.w;
-    uint height = objectSizes(item.w).y;
-    for (; changed != 0u; changed &= changed - 1u) {
-        uint i = uint(findLSB(changed));
-        uint at = bases.y + item.z + i;
-        gradient[at] = gradientOf(at, x0 + i, y, bases.w, height, predict[at]);
-    }
+    if (changed != 0u) scratch[work * 4u + 1u] = item.y | changed << 8u;
     uint worldTile = item.x >> 3u;
     if (spread != 0u) {
         uint bits = spread << ((item.x & 3u) * 8u);

@@ -1,9 +1,8 @@
 // Finds the texels of the predict list's tiles whose shown arrival may change, and lists their rows
-// for `predict`, rim texels for `predict_rim`. States that are no arrival (wet, put out, ...) are
-// passed on here, of wet ones how near the fire is. What has an arrival already is gone over in
-// about every eighth frame only. Of an object that no view shows, what burns or was put out is passed
-// on and nothing is looked for; what is found anew forgets what was predicted before. One thread per
-// row.
+// for `predict`, rim texels for `predict_rim`; of wet ones how near the fire is. What has an arrival
+// already is gone over in about every eighth frame only. Of an object that no view shows nothing is
+// looked for. Reads what neighbours show and writes no more than what the next round reads. One thread
+// per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -19,7 +18,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_COUNTERS FW_READ_WRITE
 #define FW_USE_SCRATCH writeonly
 #define FW_USE_SCRATCH_QUADS writeonly
-#define FW_USE_PREDICT FW_READ_WRITE
+#define FW_USE_PREDICT readonly
 #define FW_USE_PREDICT_QUADS
 #define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
@@ -48,7 +47,7 @@ vec2 wetAhead(uint at, ivec2 place, uvec4 sizes, uint stride) {
         uint time = predict[n];
         bool wet = time == kWet;
         uint word = gradient[n];
-        if ((!hasTime(time) && !wet) || (wet && (word & ~0xFFu) == kAheadFar)) continue;
+        if ((!hasTime(time) && !wet) || (wet && isAheadFar(word))) continue;
         int wait = wet ? 0 : max(int(time - push.now), 0);
         float pace = max(length(unpackGradient(word)), 1e-3);  // s/texel
         float far = wet ? unpackAhead(word) : float(wait) * (1.0 / 4096.0) / pace;
@@ -90,7 +89,6 @@ void gatherRow(uint slot, uint row) {
     uint lit = 0u;   // so, and is not shown so
     uint open = 0u;  // unburnt: an arrival may be predicted
     uint known = 0u; // of these: with a time
-    uint passed = 0u;
     uint wet = 0u;
     FW_UNROLL for (int i = 0; i < 8; ++i) {
         uint bit = 1u << uint(i);
@@ -100,31 +98,11 @@ void gatherRow(uint slot, uint row) {
         open |= t[i] == kNever ? bit : 0u;
         known |= t[i] == kNever && hasTime(p[i]) ? bit : 0u;
         wet |= t[i] == kWet ? bit : 0u;
-        passed |= !isSource(t[i]) && t[i] != kNever && differs ? bit : 0u;
     }
     bool unseen = (places.w & kObjectUnseen) != 0u;
     bool anew = (places.w & kObjectAnew) != 0u;
-    bool marks = (lit | known | passed) != 0u;
-    for (; passed != 0u; passed &= passed - 1u) {
-        uint i = at + uint(findLSB(passed));
-        uint code = state[i];
-        uint time = predict[i];
-        // What was put out keeps the look of the age it had: its gradient is that age. What was
-        // not seen to burn before had none to speak of; 0 would say nothing is known.
-        if (code == kWet) gradient[i] = kAheadFar | (gradient[i] & 0xFFu);
-        else if (hasTime(time)) gradient[i] = time < push.now ? push.now - time : 1u;
-        else if (time == kNever || time == kWet) gradient[i] = 1u;
-        predict[i] = code;
-    }
-    for (uint stale = anew ? known : unseen ? lit : 0u; stale != 0u; stale &= stale - 1u) {
-        uint i = at + uint(findLSB(stale));
-        predict[i] = state[i];
-    }
-    if (anew) known = 0u;
-    if (unseen) {
-        if (marks && (flag & kTileMarked) == 0u) atomicOr(tileState[worldTile].flag, kTileMarked);
-        return;
-    }
+    bool marks = (lit | known) != 0u;
+    if (unseen) return;
     // About every fourth frame: water does not hurry.
     bool soon = wet != 0u;
     if (((hash32((push.now >> 7u) * 3u + worldTile) & 3u) != 0u)) wet = 0u;
@@ -137,7 +115,7 @@ void gatherRow(uint slot, uint row) {
         float before = min(unpackAhead(word), 2.0 * kWetReach);
         soon = soon || ahead.y > 0.0;
         if (ahead.x < 0.0 || ahead.x > before - 0.3) continue;
-        gradient[at + i] = packAhead(ahead.x) | (word & 0xFFu);
+        gradient[at + i] = packAheadNext(word, ahead.x);
         nearer |= 1u << i;
     }
     if (nearer != 0u) {
@@ -172,14 +150,14 @@ void gatherRow(uint slot, uint row) {
     }
     if ((marks || (chosen & ~rim) != 0u) && (flag & kTileMarked) == 0u)
         atomicOr(tileState[worldTile].flag, kTileMarked);
-    if (chosen == 0u) return;
+    if ((chosen | nearer) == 0u) return;
     uint item = atomicAdd(counters[counterRow].workCount, 1u);
     if ((item & 63u) == 0u) {
         atomicMax(counters[counterRow].workX, min(item / 64u + 1u, kMaxGroups));
         counters[counterRow].workY = 1u;
         counters[counterRow].workZ = 1u;
     }
-    scratchQuads[item] = uvec4(worldTile * 8u + row, chosen & ~rim, texel, object);
+    scratchQuads[item] = uvec4(worldTile * 8u + row, (chosen & ~rim) | nearer << 16u, texel, object);
     rim &= chosen;
     if (rim == 0u) return;
     uint count = uint(bitCount(rim));

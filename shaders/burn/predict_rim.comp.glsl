@@ -15,9 +15,8 @@ layout(local_size_x = 64) in;
 #define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_SCRATCH readonly
-#define FW_USE_SCRATCH_QUADS readonly
-#define FW_USE_PREDICT FW_READ_WRITE
+#define FW_USE_SCRATCH FW_READ_WRITE
+#define FW_USE_PREDICT readonly
 #define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
@@ -27,11 +26,12 @@ layout(local_size_x = 64) in;
 
 void predictTexel(uint rimWork) {
     uint packedTexel = scratch[rimItem(rimWork)];
-    uvec4 item = scratchQuads[packedTexel >> 3u];
-    uint object = item.w;
-    uint texel = item.z + (packedTexel & 7u);
-    uint lane = (item.x & 7u) * 8u + (packedTexel & 7u);
-    uint worldTile = item.x >> 3u;
+    uint item = (packedTexel >> 3u) * 4u;
+    uint object = scratch[item + 3u];
+    uint texel = scratch[item + 2u] + (packedTexel & 7u);
+    uint row = scratch[item];
+    uint lane = (row & 7u) * 8u + (packedTexel & 7u);
+    uint worldTile = row >> 3u;
     uvec4 bases = objectBases(object);
     uvec4 sizes = objectSizes(object);
     uint at = bases.y + texel;
@@ -70,8 +70,8 @@ void predictTexel(uint rimWork) {
     uint x = texel - y * bases.w;
     bool anew = (objectPlaces(object).w & kObjectAnew) != 0u;
     if (now != before || anew) {
-        predict[at] = now;
-        if (hasTime(now)) gradient[at] = gradientOf(at, x, y, bases.w, sizes.y, now);
+        gradient[at] = packTimeNext(gradient[at], now);
+        atomicOr(scratch[item + 1u], 0x100u << (packedTexel & 7u));
         spread = concernsOthers(before, now) || (anew && hasTime(now));
     }
     if (spread) {

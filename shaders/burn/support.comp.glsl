@@ -1,6 +1,8 @@
 // What holds what, for looks: a tile's distance, over tiles that are there, to something that stays:
 // unburnt texels, or the ground. A piece without such a way falls to ash: its shown age runs ahead.
-// One thread per tile; the distance heals itself, a tile a frame, and loops count up to the limit.
+// One thread per tile, in two phases: 0 finds, from what neighbours had, what 1 writes, or the device's
+// order of threads would decide when a piece falls. The distance heals itself, a tile a frame, and
+// loops count up to the limit.
 // Not the simulation: that knows no gravity.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -14,6 +16,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_TILES readonly
 #define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_SCRATCH FW_READ_WRITE
 #define FW_USE_PREDICT FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
@@ -66,24 +69,30 @@ uint offer(uint worldTile) {
     return (flag & kTileSolid) != 0u ? distanceOf(flag) : kFar;
 }
 
-void supportTile(uint worldTile) {
+// Whether anything of it may fall.
+bool concerns(uint worldTile, TileRef ref) {
+    return ref.alive && tileState[worldTile].lastChange != kFarPast &&
+           (objectPlaces(ref.object).w & (kObjectNoHoles | kObjectPublished)) == 0u;
+}
+
+uint materialOf(uint object, uint flag) {
+    return object * kMaterialsPerObject + ((flag >> kTileMaterialShift) & 7u);
+}
+
+// Its flags from now on.
+uint supported(uint worldTile, TileRef ref) {
     uint last = tileState[worldTile].lastChange;
-    if (last == kFarPast) return;
-    TileRef ref = tileRef(worldTile);
-    if (!ref.alive) return;
     uint flag = tileState[worldTile].flag;
     uint object = ref.object;
     uvec4 bases = objectBases(object);
     uvec4 places = objectPlaces(object);
     uvec4 sizes = objectSizes(object);
-    if ((places.w & (kObjectNoHoles | kObjectPublished)) != 0u) return;
     uvec2 tile = uvec2(ref.local % sizes.z, ref.local / sizes.z);
     bool falls = (flag & kTileFalling) != 0u;
     // Eight tiles at once, the width of a software device.
     bool looks = !falls && hash32((worldTile >> 3u) + (push.now >> 7u)) % kLookEvery == 0u;
     if (looks) flag = (flag & ~kTileFacts) | lookAt(object, bases, sizes, tile);
-    uint material = object * kMaterialsPerObject + ((flag >> kTileMaterialShift) & 7u);
-    uint holeTicks = materials[material].holeTicks;
+    uint holeTicks = materials[materialOf(object, flag)].holeTicks;
     bool spent = (flag & kTileSpent) != 0u;
     bool solid = !falls && holeTicks != 0u && (!spent || push.now - last < holeTicks);
     if (holeTicks == 0u) solid = true;
@@ -104,11 +113,19 @@ void supportTile(uint worldTile) {
     uint limit = min(uint(4.0 * sqrt(float(sizes.w))) + 48u, kFar - 8u);
     if (spent && holeTicks != 0u && found >= limit) falls = true;
     flag &= ~(kTileSolid | kTileFalling | (kFar << kTileDistanceShift));
-    flag |= (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) |
-            (min(found, kFar) << kTileDistanceShift);
-    tileState[worldTile].flag = flag;
-    float fallTicks = materials[material].baseColor.w;
-    if (!falls || float(push.now - last) > 1.2 * fallTicks) return;
+    return flag | (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) |
+           (min(found, kFar) << kTileDistanceShift);
+}
+
+// A piece that falls shows an age that runs ahead.
+void fall(uint worldTile, TileRef ref, uint flag) {
+    float fallTicks = materials[materialOf(ref.object, flag)].baseColor.w;
+    if ((flag & kTileFalling) == 0u ||
+        float(push.now - tileState[worldTile].lastChange) > 1.2 * fallTicks)
+        return;
+    uvec4 bases = objectBases(ref.object);
+    uvec4 sizes = objectSizes(ref.object);
+    uvec2 tile = uvec2(ref.local % sizes.z, ref.local / sizes.z);
     // `count`: ticks since this tile was last seen to.
     uint step = uint(min(float(push.count) * (fallTicks / (kFallTime * 4096.0)), 1e8));
     uint corner = (tile.y * bases.w + tile.x) * 8u;
@@ -121,7 +138,16 @@ void supportTile(uint worldTile) {
 }
 
 void main() {
-    // `object`: the first tile; `iteration`: how many.
-    for (uint i = gl_GlobalInvocationID.x; i < push.iteration; i += gl_NumWorkGroups.x * 64u)
-        supportTile(push.object + i);
+    // `object`: the first tile; `iteration`: how many; `row`: the phase.
+    for (uint i = gl_GlobalInvocationID.x; i < push.iteration; i += gl_NumWorkGroups.x * 64u) {
+        uint worldTile = push.object + i;
+        TileRef ref = tileRef(worldTile);
+        if (!concerns(worldTile, ref)) continue;
+        if (push.row == 0u) {
+            scratch[i] = supported(worldTile, ref);
+        } else {
+            tileState[worldTile].flag = scratch[i];
+            fall(worldTile, ref, scratch[i]);
+        }
+    }
 }

@@ -32,6 +32,17 @@ float depthOf(uint place) {
     return clamp(dot(d, view.forward.xyz), 0.0, 1e6);
 }
 
+// Which of two quads of one depth is drawn first: their places are those of threads that happened to be
+// first, and would change the picture from run to run.
+bool before(uint a, uint b) {
+    uint kindA = flameQuad[a].kind, kindB = flameQuad[b].kind;
+    if (kindA != kindB) return kindA < kindB;
+    uvec3 at = floatBitsToUint(flameQuad[a].baseHeight.xyz);
+    uvec3 other = floatBitsToUint(flameQuad[b].baseHeight.xyz);
+    if (at.x != other.x) return at.x < other.x;
+    return at.y != other.y ? at.y < other.y : at.z < other.z;
+}
+
 void sortFew(uint me, uint count, uint tiles) {
     uint size = 2u;
     while (size < count) size <<= 1u;
@@ -59,8 +70,13 @@ void sortFew(uint me, uint count, uint tiles) {
             barrier();
         }
     }
-    for (uint i = me; i < count; i += kThreads)
-        drawArgs[kFlameOrder + i] = placeOf(keys[i] & 0xFFFu, tiles);
+    for (uint i = me; i < count; i += kThreads) {
+        uint depth = keys[i] >> 12u, place = placeOf(keys[i] & 0xFFFu, tiles), first = i, at = 0u;
+        while (first > 0u && keys[first - 1u] >> 12u == depth) --first;
+        for (uint k = first; k < count && keys[k] >> 12u == depth; ++k)
+            at += k != i && before(placeOf(keys[k] & 0xFFFu, tiles), place) ? 1u : 0u;
+        drawArgs[kFlameOrder + first + at] = place;
+    }
 }
 
 // Of the depths that there are 16 bits, but no more than 12 of a mantissa, or quads in one place would
@@ -128,9 +144,24 @@ void sortMany(uint me, uint count, uint tiles) {
             uint at = (key >> shift & 15u) * kThreads + me;
             uint place = keys[at];
             keys[at] = place + 1u;
-            drawArgs[to + place] = turn == 3u ? placeOf(key & 0xFFFFu, tiles) : key;
+            drawArgs[to + place] = key;
         }
     }
+    memoryBarrierBuffer();
+    barrier();
+    for (uint i = me; i < count; i += kThreads) {
+        uint key = drawArgs[kFlameOrder + i], depth = key >> kDepthBits;
+        uint place = placeOf(key & 0xFFFFu, tiles), first = i, at = 0u;
+        while (first > 0u && drawArgs[kFlameOrder + first - 1u] >> kDepthBits == depth) --first;
+        for (uint k = first; k < count && drawArgs[kFlameOrder + k] >> kDepthBits == depth; ++k)
+            at += k != i && before(placeOf(drawArgs[kFlameOrder + k] & 0xFFFFu, tiles), place)
+                      ? 1u : 0u;
+        drawArgs[kFlameOrder + other + first + at] = place;
+    }
+    memoryBarrierBuffer();
+    barrier();
+    for (uint i = me; i < count; i += kThreads)
+        drawArgs[kFlameOrder + i] = drawArgs[kFlameOrder + other + i];
 }
 
 // What emits alone goes before all that hide from no farther away than itself: after those behind it,

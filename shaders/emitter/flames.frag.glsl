@@ -11,7 +11,7 @@ layout(constant_id = 0) const uint kEncoding = 0u;
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 
-layout(location = 0) in vec2 inPlace;
+layout(location = 0) centroid in vec2 inPlace;
 layout(location = 1) flat in vec4 inState;
 layout(location = 2) flat in uint inKind;
 layout(location = 3) flat in float inWidth;

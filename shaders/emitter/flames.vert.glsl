@@ -17,7 +17,7 @@ layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; 
 
 layout(constant_id = 3) const uint kPart = kPartAll;
 
-layout(location = 0) out vec2 outPlace;        // x: -1..1, y: 0 foot .. 1 tip
+layout(location = 0) centroid out vec2 outPlace;        // x: -1..1, y: 0 foot .. 1 tip
 layout(location = 1) flat out vec4 outState;   // opacity, phase, kelvin, length over half width
 layout(location = 2) flat out uint outKind;
 layout(location = 3) flat out float outWidth;  // m, half of it

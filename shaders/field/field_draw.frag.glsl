@@ -20,10 +20,10 @@ layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; 
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 
-layout(location = 0) in vec2 inPlace;
-layout(location = 1) in vec3 inNormal;
-layout(location = 2) in vec3 inToEye;
-layout(location = 3) in vec3 inAlong;
+layout(location = 0) centroid in vec2 inPlace;
+layout(location = 1) centroid in vec3 inNormal;
+layout(location = 2) centroid in vec3 inToEye;
+layout(location = 3) centroid in vec3 inAlong;
 layout(location = 4) flat in vec4 inLook;
 layout(location = 5) flat in vec4 inTint;
 layout(location = 6) flat in uvec4 inField;

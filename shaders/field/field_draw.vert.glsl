@@ -14,10 +14,10 @@ layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) readonly buffer FieldShow
 };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 
-layout(location = 0) out vec2 outPlace;          // over the field, [0, 1]
-layout(location = 1) out vec3 outNormal;         // of the body
-layout(location = 2) out vec3 outToEye;          // m
-layout(location = 3) out vec3 outAlong;          // where x of the field goes
+layout(location = 0) centroid out vec2 outPlace;          // over the field, [0, 1]
+layout(location = 1) centroid out vec3 outNormal;         // of the body
+layout(location = 2) centroid out vec3 outToEye;          // m
+layout(location = 3) centroid out vec3 outAlong;          // where x of the field goes
 layout(location = 4) flat out vec4 outLook;      // detail, body, time s, opacity
 layout(location = 5) flat out vec4 outTint;      // w: steps a second
 layout(location = 6) flat out uvec4 outField;    // first cell, width, height, 1: round

@@ -18,26 +18,43 @@ void main() {
     vec2 part = at - vec2(first);
     float away = depthOfScene(push.clip);
     vec4 four[4];
-    float there[4], shares[4];
+    float apart[4], shares[4], nearest = 1e30;
     vec4 least = vec4(1e30), greatest = vec4(0.0);
     FW_UNROLL
     for (int i = 0; i < 4; ++i) {
         ivec2 step = ivec2(i & 1, i >> 1), texel = clamp(first + step, ivec2(0), last);
         vec2 share = mix(1.0 - part, part, vec2(step));
         shares[i] = share.x * share.y;
-        there[i] = metresOf(push.clip, texelFetch(halfDepth, texel, 0).r);
+        apart[i] = halfApart(away, metresOf(push.clip, texelFetch(halfDepth, texel, 0).r));
         four[i] = texelFetch(halfColor, texel, 0);
         least = min(least, four[i]);
         greatest = max(greatest, four[i]);
+        nearest = min(nearest, apart[i]);
+    }
+    // All four beyond an edge, as around a thin thing: one of those around them may not be. Else the
+    // darkest stands in: what glows behind a thing does not show before it.
+    vec4 other = least;
+    float best = kHalfEdge;
+    int around = nearest > kHalfEdge ? 12 : 0;
+    for (int i = 0; i < around; ++i) {
+        ivec2 step = ivec2(i < 4 ? i - 1 : i < 6 ? 2 : i < 10 ? 8 - i : -1,
+                           i < 4 ? -1 : i < 6 ? i - 4 : i < 10 ? 2 : 11 - i);
+        ivec2 texel = clamp(first + step, ivec2(0), last);
+        float off = halfApart(away, metresOf(push.clip, texelFetch(halfDepth, texel, 0).r));
+        if (off < best) {
+            best = off;
+            other = texelFetch(halfColor, texel, 0);
+        }
     }
     float alike = halfAlike(dot(greatest, vec4(1.0)), dot(least, vec4(1.0)));
     vec4 color = vec4(0.0);
     float sum = 0.0;
     FW_UNROLL
     for (int i = 0; i < 4; ++i) {
-        float weight = halfWeight(shares[i], away, there[i], alike);
+        float weight = halfWeight(shares[i], apart[i], nearest, alike);
         color += weight * four[i];
         sum += weight;
     }
-    outColor = color / sum;
+    color /= sum;
+    outColor = around > 0 ? other : color;
 }

@@ -120,8 +120,8 @@ uint rimItem(uint i) { return uint(scratch.length()) - 1u - i; }
 #endif
 #ifdef FW_USE_SCRATCH_QUADS
 // A gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel, object). Of
-// the prediction: (world tile * 8 + row, chosen texels, first texel, object). The scratch's end lists
-// rim texels, see rimItem.
+// the prediction: (world tile * 8 + row, chosen texels | changed ones << 8 | wet ones << 16, first
+// texel, object). The scratch's end lists rim texels, see rimItem.
 FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH_QUADS, ScratchQuadsBuffer, uvec4, scratchQuads);
 #endif
 #ifdef FW_USE_MASKS

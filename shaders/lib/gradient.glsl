@@ -12,9 +12,13 @@ vec2 unpackGradient(uint word) {
     return unpackHalf2x16((word & 0xFFF00000u) | ((word >> 4u) & 0xFFF0u));
 }
 
+// Of a wet texel: 12 bits that are read, in 64ths of a texel, and below them 12 that the next round
+// reads, see predict_commit.
 const uint kAheadFar = 0xFFFFFF00u;  // the fire is out of sight
-uint packAhead(float texels) { return floatBitsToUint(texels) & ~0xFFu; }
-float unpackAhead(uint word) {
-    return (word & ~0xFFu) == kAheadFar ? 1e3 : min(uintBitsToFloat(word & ~0xFFu), 1e3);
+bool isAheadFar(uint word) { return (word & 0xFFF00000u) == (kAheadFar & 0xFFF00000u); }
+uint packAheadNext(uint word, float texels) {
+    return (word & 0xFFF000FFu) | min(uint(texels * 64.0 + 0.5), 0xFFEu) << 8u;
 }
+uint aheadTurned(uint word) { return (word & 0xFFFFFu) | (word << 12u & 0xFFF00000u); }
+float unpackAhead(uint word) { return isAheadFar(word) ? 1e3 : float(word >> 20u) * (1.0 / 64.0); }
 #endif

@@ -1,5 +1,5 @@
-// What the passes of the shown arrival share: gradients, and whom a change concerns. Include after
-// lists.glsl.
+// What the passes of the shown arrival share: times and gradients, and whom a change concerns. With
+// FW_USE_PREDICT_LISTS include after lists.glsl.
 #ifndef FW_LIB_PREDICT_GLSL
 #define FW_LIB_PREDICT_GLSL
 
@@ -35,6 +35,19 @@ uint gradientOf(uint at, uint x, uint y, uint width, uint height, uint now) {
            (gradient[at] & 0xFFu);
 }
 
+// A round reads the times of the one before and nothing that it writes itself, so that a picture does
+// not depend on the order in which a device runs its threads. A changed texel's new time waits in its
+// gradient, which is found anew afterwards: 24 bits, ticks from `push.now` on.
+const uint kNoTimeNext = 0x80000000u;
+uint packTimeNext(uint word, uint time) {
+    int ticks = clamp(int(time - push.now), -0x7FFFFF, 0x7FFFFF);
+    return (word & 0xFFu) | (hasTime(time) ? uint(ticks) << 8u : kNoTimeNext);
+}
+uint unpackTimeNext(uint word) {
+    if ((word & ~0xFFu) == kNoTimeNext) return kNever;
+    return min(push.now + uint(int(word) >> 8), kLiveEnd - 1u);
+}
+
 // Is this change worth a neighbour's while? Rings would chase rounding for ever; and the farther
 // ahead, the less small changes matter.
 bool concernsOthers(uint before, uint now) {
@@ -42,6 +55,7 @@ bool concernsOthers(uint before, uint now) {
     return !(hasTime(now) && hasTime(before) && abs(int(now - before)) <= 64 + ahead / 8);
 }
 
+#ifdef FW_USE_PREDICT_LISTS
 // Lists the tile, and who reads its texels of `mask` (lane = y * 8 + x), for the next frame.
 void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY) {
     uint parity = push.predictParity ^ 1u;
@@ -58,4 +72,5 @@ void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY
     for (uint r = 0u; r < seam.w; ++r)
         predictTouch(parity, places.x + readers[places.z + seam.z + r]);
 }
+#endif
 #endif

@@ -36,12 +36,20 @@ FW_SHARED_FN float halfAlike(float greatest, float least) {
     return 1.0f - apart * apart * (3.0f - 2.0f * apart);
 }
 
-// What a texel weighs of which a bilinear filter would take `share`, `away` and `there` m along the view: of the pixel
-// and of the texel. A twentieth of the way nearer or farther is half of it, so that slopes are filtered and the other
-// side of an edge does not count unless there is nothing else.
-FW_SHARED_FN float halfWeight(float share, float away, float there, float alike) {
-    float off = (away - there) / max(min(away, there), 1e-3f) * 20.0f;
-    float near = 1.0f / (1.0f + off * off);
+// How far apart two depths are, m along the view, as a part of the nearer one.
+FW_SHARED_FN float halfApart(float a, float b) {
+    float d = a - b;
+    return (d < 0.0f ? -d : d) / max(min(a, b), 1e-3f);
+}
+// Farther apart than this a pixel and a texel are on two sides of an edge.
+FW_SHARED_CONST float kHalfEdge = 0.03f;
+
+// What a texel weighs of which a bilinear filter would take `share`; `apart`: of the pixel, and `least` of the texel
+// that is nearest to it. A hundredth farther than that one is half of it: slopes are filtered, and what stands a step
+// behind does not shine onto the edge of what is before it.
+FW_SHARED_FN float halfWeight(float share, float apart, float least, float alike) {
+    float off = (apart - least) * 100.0f;
+    float near = 1.0f / (1.0f + off * off * off * off);
     return share * (near + alike * (1.0f - near));
 }
 FW_SHARED_END

@@ -32,16 +32,43 @@ layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 layout(push_constant) uniform Push { SurfaceDraw draw; };
 
 // See surface.vert.
-layout(location = 0) in vec4 inPositionFire;
-layout(location = 1) in vec4 inRestFire;
-layout(location = 2) in vec4 inNormalFire;
-layout(location = 3) in vec4 inTexture;
-layout(location = 4) in vec4 inDetail;
-layout(location = 5) in vec4 inTint;
+layout(location = 0) centroid in vec4 inPositionFire;
+layout(location = 1) centroid in vec4 inRestFire;
+layout(location = 2) centroid in vec4 inNormalFire;
+layout(location = 3) centroid in vec4 inTexture;
+layout(location = 4) centroid in vec4 inDetail;
+layout(location = 5) centroid in vec4 inTint;
 
-layout(location = 6) in vec2 inSootLead;
+layout(location = 6) centroid in vec2 inSootLead;
 
 layout(location = 0) out vec4 outColor;
+
+#ifdef FW_MULTISAMPLED
+layout(location = 7) in vec3 inMiddle;
+layout(location = 8) in vec4 inMiddleUv;
+#define FW_POSITION inMiddle
+#define FW_ATLAS inMiddleUv.xy
+#define FW_DETAIL inMiddleUv.zw
+#else
+#define FW_POSITION inPositionFire.xyz
+#define FW_ATLAS inTexture.xy
+#define FW_DETAIL inDetail.xy
+#endif
+
+#if FW_MULTISAMPLED == 2
+// Of the target. The rims of holes are as smooth as the edges of triangles: each sample is in a hole
+// or not. Alpha to coverage would leave its alpha in the picture, and has no say in which samples.
+layout(constant_id = 4) const uint kSamples = 4u;
+// Vulkan's standard places of 2, 4, 8 and 16 samples, in sixteenths of a pixel from its middle.
+const ivec2 kSamplePlaces[30] = ivec2[30](
+    ivec2(4, 4), ivec2(-4, -4),
+    ivec2(-2, -6), ivec2(6, -2), ivec2(-6, 2), ivec2(2, 6),
+    ivec2(1, -3), ivec2(-1, 3), ivec2(5, 1), ivec2(-3, -5), ivec2(-5, 5), ivec2(-7, -1),
+    ivec2(3, 7), ivec2(7, -7),
+    ivec2(1, 1), ivec2(-1, -3), ivec2(-3, 2), ivec2(4, -1), ivec2(-5, -2), ivec2(2, 5), ivec2(5, 3),
+    ivec2(3, -5), ivec2(-2, 6), ivec2(0, -7), ivec2(-4, -6), ivec2(-6, 4), ivec2(-8, 0), ivec2(7, -4),
+    ivec2(6, 7), ivec2(-7, -8));
+#endif
 
 #include "lib/colour.glsl"
 #include "lib/gradient.glsl"
@@ -272,8 +299,15 @@ void main() {
 
     // The tangent plane: how atlas and detail coordinates move along the surface.
     vec3 normal = normalize(inNormalFire.xyz);
-    vec3 px = dFdx(inPosition), py = dFdy(inPosition);
+    vec3 px = dFdx(FW_POSITION), py = dFdy(FW_POSITION);
     vec3 toEye = view.forward.w > 0.5 ? normalize(-inPosition) : -view.forward.xyz;
+    // Where a surface turns away a pixel's middle may lie beyond its horizon, and differences are of
+    // any size, or none.
+    float depth = view.forward.w > 0.5 ? dot(inPosition, view.forward.xyz) : 1.0;
+    float span = 100.0 * view.eye.w * depth;
+    bool known = dot(px, px) + dot(py, py) < span * span;
+    px = known ? px : normalize(cross(toEye, normal.zxy + 1e-3));
+    py = known ? py : cross(toEye, px);
     vec3 face = cross(px, py);
     face *= dot(face, toEye) < 0.0 ? -1.0 : 1.0;
     // Walls of holes that were cut and of open borders have no normals of their own.
@@ -284,12 +318,13 @@ void main() {
     bool back = dot(face, normal) < 0.0;
     vec3 r1 = cross(py, normal), r2 = cross(normal, px);
     float det = dot(px, r1);
-    float inverse = abs(det) > 1e-16 ? 1.0 / det : 0.0;
+    float inverse = known && abs(det) > 1e-16 ? 1.0 / det : 0.0;
     r1 *= inverse;
     r2 *= inverse;
-    vec2 ux = dFdx(inAtlas), uy = dFdy(inAtlas);
+    vec2 ux = dFdx(FW_ATLAS), uy = dFdy(FW_ATLAS);
+    ux = known ? ux : vec2(0.0);
+    uy = known ? uy : vec2(0.0);
     vec3 gradU = r1 * ux.x + r2 * uy.x, gradV = r1 * ux.y + r2 * uy.y;  // texels/m
-    float depth = view.forward.w > 0.5 ? dot(inPosition, view.forward.xyz) : 1.0;
     float facing = max(abs(dot(normal, toEye)), 0.2);
     float pixel = view.eye.w * depth * inversesqrt(facing);
 
@@ -310,7 +345,9 @@ void main() {
     vec3 axisX = facesX ? ez : ex, axisY = facesY ? ez : ey;
     if (detailed) {
         d = inDetail.xy;
-        vec2 dx = dFdx(d), dy = dFdy(d);
+        vec2 dx = dFdx(FW_DETAIL), dy = dFdy(FW_DETAIL);
+        dx = known ? dx : vec2(0.0);
+        dy = known ? dy : vec2(0.0);
         axisX = r1 * dx.x + r2 * dy.x;
         axisY = r1 * dx.y + r2 * dy.y;
         axisX /= max(length(axisX), 1e-4);
@@ -324,12 +361,14 @@ void main() {
     float rate = max(look.spreadRate, 1e-5);
     // A long shift could leave the chart: what is beyond half a texel goes the linear way.
     vec2 near = clamp(shift, -0.5, 0.5);
+    // Where the tangent plane is not known slopes are not believed.
+    float perMetre = inverse != 0.0 ? max(length(gradU), 1.0) : 1e9;
     Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3, inSootLead.x);
     Warmth warmth = Warmth(300.0, 0.0);
     vec2 coat = vec2(0.0);
     if (kBurns) {
         arrival =
-            arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * max(length(gradU), 1.0)),
+            arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * perMetre),
                       (1.3 * look.scorchWidth / rate + 1.5 * look.jitter) / draw.timeScale);
         arrival.age -= dot(arrival.gradient, shift - near);
         warmth = warmthAt(inAtlas + near);
@@ -432,6 +471,9 @@ void main() {
     bool cold = !kBurns || look.spreadRate <= 0.0 ||
                 (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;
+#if FW_MULTISAMPLED == 2
+    int covered = -1;
+#endif
     vec3 position = inPosition;
     // Refined faces recede as they burn, at a wall's thickness in its time (until kRefineRecede of it
     // is gone): they lean towards what caught first.
@@ -455,13 +497,35 @@ void main() {
             vec2 bump = fine.rb - 0.5;
             facingNormal = normalize(normal + 0.8 * (axisX * bump.x + axisY * bump.y));
         }
+        vec3 ray = vec3(dot(-toEye, axisX), dot(-toEye, axisY), -abs(dot(toEye, normal)));
+        vec2 rise = uneven;
+        rise = site.ahead + rise * min(1.0, 1.2 * inversesqrt(max(dot(rise, rise), 1e-8)));
+        // A wall thinner than a pixel would be there in some.
+        bool walled = look.thickness > pixel;
+        if (edge < 0.0) deep = walled ? rimHit(edge, rise, look.thickness, ray) : -1.0;
+#if FW_MULTISAMPLED == 2
+        // m that the edge is farther, a pixel to the right and one below; of a slope no more.
+        vec3 farther = axisX * rise.x + axisY * rise.y;
+        vec2 perPixel = clamp(vec2(dot(farther, px), dot(farther, py)), -4.0 * pixel, 4.0 * pixel);
+        int standing = 0;
+        for (uint i = 0u; i < kSamples; ++i) {
+            // 2, 4, 8 and 16 begin where the smaller ones end.
+            vec2 off = vec2(kSamplePlaces[kSamples - 2u + i]) * (1.0 / 16.0);
+            float there = edge + dot(perPixel, off);
+            bool stands = there >= 0.0 || (walled && rimHit(there, rise, look.thickness, ray) >= 0.0);
+            standing |= stands ? 1 << i : 0;
+        }
+        if (site.left < 0.0) covered = standing;  // a cut mesh ends at its rim
+        if (covered == 0) discard;
+        // Samples that stand in a pixel whose middle does not are at the rim.
+        if (edge < 0.0 && deep < 0.0) {
+            site.age += edge * site.slow;
+            edge = 0.0;
+        }
+#else
+        if (edge < 0.0 && deep < 0.0) discard;
+#endif
         if (edge < 0.0) {
-            vec3 ray = vec3(dot(-toEye, axisX), dot(-toEye, axisY), -abs(dot(toEye, normal)));
-            vec2 rise = uneven;
-            rise = site.ahead + rise * min(1.0, 1.2 * inversesqrt(max(dot(rise, rise), 1e-8)));
-            // A wall thinner than a pixel would be there in some.
-            if (look.thickness > pixel) deep = rimHit(edge, rise, look.thickness, ray);
-            if (deep < 0.0) discard;
             vec2 move = ray.xy * deep;
             site.d += move;
             site.age -= site.slow * dot(rise, move);
@@ -496,4 +560,7 @@ void main() {
     vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, soot,
                         (1.0 - charred) * (0.6 + 0.5 * coarse.r));
     outColor = vec4(encodeOutput(min(linear, vec3(60000.0)) * view.sunDirection.w, kEncoding), 1.0);
+#if FW_MULTISAMPLED == 2
+    gl_SampleMask[0] = covered;
+#endif
 }

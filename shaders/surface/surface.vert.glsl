@@ -30,15 +30,22 @@ layout(location = 6) in uint inSlot;   // of refined vertices
 layout(location = 7) in float inLead;  // look seconds that holes come earlier
 layout(location = 8) in vec3 inRest;   // m, object space: where the material is as it was
 
-layout(location = 0) out vec4 outPosition;  // m, world, from the eye; w: flames' light, red
-layout(location = 1) out vec4 outRest;      // m, object axes, world scale; w: green
-layout(location = 2) out vec4 outNormal;    // w: blue
-layout(location = 3) out vec4 outTexture;   // xy: texels of the atlas; zw: UV
-layout(location = 4) out vec4 outDetail;    // xy: m; zw and ...
-layout(location = 5) out vec4 outTint;      // w: ... mean direction to the flames
-layout(location = 6) out vec2 outSootLead;  // soot of flames below; look seconds, see inLead; with
+// At a pixel whose middle lies beside the triangle, values of that middle would be of a place that
+// the mesh has not got: outlines of burnt-away triangles would stay.
+layout(location = 0) centroid out vec4 outPosition;  // m, world, from the eye; w: flames' light, red
+layout(location = 1) centroid out vec4 outRest;      // m, object axes, world scale; w: green
+layout(location = 2) centroid out vec4 outNormal;    // w: blue
+layout(location = 3) centroid out vec4 outTexture;   // xy: texels of the atlas; zw: UV
+layout(location = 4) centroid out vec4 outDetail;    // xy: m; zw and ...
+layout(location = 5) centroid out vec4 outTint;      // w: ... mean direction to the flames
+layout(location = 6) centroid out vec2 outSootLead;  // soot of flames below; look seconds, see inLead; with
                                             // kDrawCut the last word of a cut vertex, in s; with
                                             // kSurfaceCold x: 1 by what fire left
+#ifdef FW_MULTISAMPLED
+// Again, at pixels' middles: they lie on a grid, so that differences between them are safe.
+layout(location = 7) out vec3 outMiddle;    // as outPosition
+layout(location = 8) out vec4 outMiddleUv;  // as outTexture and outDetail: xy
+#endif
 
 #include "lib/turn.glsl"
 #include "surface/place.glsl"
@@ -114,6 +121,10 @@ void main() {
     outTexture = vec4(inAtlas, inTexture);
     outDetail = vec4(inDetail * scale, towards.xy);
     outTint = vec4(inTint.rgb * vec3(draw.tintR, draw.tintG, draw.tintB), towards.z);
+#ifdef FW_MULTISAMPLED
+    outMiddle = position;
+    outMiddleUv = vec4(outTexture.xy, outDetail.xy);
+#endif
     gl_Position = clipPlace(position);
     // Beyond the far plane: triangles with three such corners are clipped away, fragments of those
     // with one or two are discarded, and what is left of them at a sample lies behind what burns.

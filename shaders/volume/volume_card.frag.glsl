@@ -7,7 +7,7 @@
 
 layout(push_constant) uniform Push { VolumeCard draw; };
 
-layout(location = 0) in vec2 inCell;
+layout(location = 0) centroid in vec2 inCell;
 layout(location = 1) flat in vec2 inSlab;
 layout(location = 2) flat in ivec4 inTaps;
 layout(location = 3) flat in vec2 inHalf;

@@ -6,7 +6,7 @@
 
 layout(push_constant) uniform Push { VolumeCard draw; };
 
-layout(location = 0) out vec2 outCell;
+layout(location = 0) centroid out vec2 outCell;
 layout(location = 1) flat out vec2 outSlab;    // m along the view: from; 1/m: its depth
 layout(location = 2) flat out ivec4 outTaps;   // cells around a pixel, then all
 layout(location = 3) flat out vec2 outHalf;    // cells, of what a pixel averages

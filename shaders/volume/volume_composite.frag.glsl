@@ -8,7 +8,7 @@
 
 layout(push_constant) uniform Push { VolumeComposite draw; };
 
-layout(location = 0) in vec2 inCell;
+layout(location = 0) centroid in vec2 inCell;
 layout(location = 1) flat in uint inWords;
 layout(location = 2) flat in vec2 inSlab;
 layout(location = 3) flat in ivec4 inCells;

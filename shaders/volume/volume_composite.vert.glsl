@@ -8,7 +8,7 @@
 layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) readonly buffer Rays { uint rays[]; };
 layout(push_constant) uniform Push { VolumeComposite draw; };
 
-layout(location = 0) out vec2 outCell;        // of the flame, from the middle of its first
+layout(location = 0) centroid out vec2 outCell;        // of the flame, from the middle of its first
 layout(location = 1) flat out uint outWords;  // the slab's first
 layout(location = 2) flat out vec2 outSlab;   // m along the view: from; 1/m: its depth
 layout(location = 3) flat out ivec4 outCells; // first and last that there are

@@ -11,8 +11,8 @@ layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; 
 layout(set = 1, binding = 0) uniform sampler2D sceneColor;
 layout(push_constant) uniform Push { VolumeHaze draw; };
 
-layout(location = 0) in vec3 inRay;
-layout(location = 1) in vec4 inBend;
+layout(location = 0) centroid in vec3 inRay;
+layout(location = 1) centroid in vec4 inBend;
 
 layout(location = 0) out vec4 outColor;
 

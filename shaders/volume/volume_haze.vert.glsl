@@ -11,8 +11,8 @@ layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; 
 layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
 layout(push_constant) uniform Push { VolumeHaze draw; };
 
-layout(location = 0) out vec3 outRay;   // m, see VolumeDraw
-layout(location = 1) out vec4 outBend;  // how it is bent, per m behind the column; m along the ray to that
+layout(location = 0) centroid out vec3 outRay;   // m, see VolumeDraw
+layout(location = 1) centroid out vec4 outBend;  // how it is bent, per m behind the column; m along the ray to that
 
 #define FW_FLAME_NODE(i) flame.nodes[i]
 #include "shared/volume_march.h"

@@ -12,12 +12,12 @@ layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame 
 layout(set = 2, binding = 0) uniform sampler2DArray profiles;
 layout(push_constant) uniform Push { VolumeSlices draw; };
 
-layout(location = 0) in vec4 inPlace;
-layout(location = 1) in vec3 inOff;
+layout(location = 0) centroid in vec4 inPlace;
+layout(location = 1) centroid in vec3 inOff;
 layout(location = 2) flat in vec2 inShows;
 layout(location = 3) flat in float inDepth;
 layout(location = 4) flat in uint inZero;
-layout(location = 5) in vec4 inSlope;
+layout(location = 5) centroid in vec4 inSlope;
 
 layout(location = 0) out vec4 outColor;
 

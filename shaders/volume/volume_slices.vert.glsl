@@ -13,12 +13,12 @@ layout(push_constant) uniform Push { VolumeSlices draw; };
 #define FW_FLAME_NODE(i) flame.nodes[i]
 #include "shared/volume_slices.h"
 
-layout(location = 0) out vec4 outPlace;        // m: off the axis, along it, the tube's radius
-layout(location = 1) out vec3 outOff;          // m, from the eye
+layout(location = 0) centroid out vec4 outPlace;        // m: off the axis, along it, the tube's radius
+layout(location = 1) centroid out vec3 outOff;          // m, from the eye
 layout(location = 2) flat out vec2 outShows;
 layout(location = 3) flat out float outDepth;  // m along the view
 layout(location = 4) flat out uint outZero;
-layout(location = 5) out vec4 outSlope;        // of outPlace, per m along the view
+layout(location = 5) centroid out vec4 outSlope;        // of outPlace, per m along the view
 
 void main() {
     uint vertex = uint(gl_VertexIndex);

@@ -375,9 +375,9 @@ class Golden : public GpuTest {
 };
 
 // Half of the picture is fire: a mean over it shows a wrong look, outliers a wrong shape.
-constexpr PictureTolerance kTolerance{1.5, 0.02, 40};
+constexpr PictureTolerance kTolerance{0.5, 0.005, 40};
 // What moves on floats moves a little otherwise elsewhere.
-constexpr PictureTolerance kMoving{4, 0.06, 40};
+constexpr PictureTolerance kMoving{1.5, 0.02, 40};
 
 TEST_F(Golden, PineSheetByDay) {
     FwWorld* world = makeWorld(40);

@@ -23,6 +23,7 @@ struct Shot {  // how the host draws
     float depthValue = -1;  // everywhere in a composite's or a sampled depth; -1: as the mode says
     bool asNeeded = true;   // FW_TARGET_AS_NEEDED
     VkRect2D scissor{};     // FwVulkanFrame::scissor
+    float shift[2] = {0, 0};  // px, of what lies beneath a pixel: a supersampled picture's parts
     [[nodiscard]] bool attachesDepth() const { return depth && depthMode != FW_DEPTH_SAMPLED; }
     [[nodiscard]] bool samplesDepth() const { return depth && depthMode == FW_DEPTH_SAMPLED; }
 };
@@ -64,13 +65,13 @@ class HostDraw : public GpuTest {
         // A ball that fills the middle of the picture.
         mesh::BakeInput input;
         const Mesh ball = makeCube(1.0, 6, true, false);
-        input = ball.input(48, 512);
+        input = ball.input(texelsPerMetre_, 1024);
         input.trustUvs = true;
         scene_.domains.push_back(mesh::bake(input, std::pmr::get_default_resource()));
         SceneObject object;
         for (auto& material : object.materials) {
             material = plainMaterial(scene_.domains[0], 0.05);
-            material.look = FW_MATERIAL_PINE;
+            material.look = look_;
             material.baseColor = {0.8f, 0.1f, 0.6f, 0};  // nothing of the host's is purple
         }
         scene_.objects.push_back(object);
@@ -87,15 +88,15 @@ class HostDraw : public GpuTest {
         GpuTest::TearDown();
     }
 
-    // Two seconds of a fire on the side that we look at.
+    // `burnFrames_` eighths of a second of a fire on the side that we look at.
     void burn() {
         uint32_t now = 4096;
-        for (uint64_t f = 1; f <= 16; ++f) {
+        for (uint64_t f = 1; f <= burnFrames_; ++f) {
             std::vector<gpu::TexelEvent> events;
             if (f == 1) {
                 std::pmr::vector<uint32_t> texels;
                 const float point[3] = {0, 0, 0.6f};
-                mesh::texelsNear(scene_.domains[0], point, 0.25f, texels);
+                mesh::texelsNear(scene_.domains[0], point, litRadius_, texels);
                 for (uint32_t texel : texels) events.push_back({0, texel, gpu::kEventIgnite, 4097});
                 std::sort(events.begin(), events.end(),
                           [](const auto& a, const auto& b) { return a.texel < b.texel; });
@@ -276,7 +277,7 @@ class HostDraw : public GpuTest {
         const FwView& view = shot.reversedDepth ? reversed_ : normal_;
         const float nearest = shot.reversedDepth ? 1.0f : 0.0f;
         const float farthest = 1.0f - nearest;
-        const VkViewport viewport{0, 0, float(kWidth), float(kHeight), 0, 1};
+        const VkViewport viewport{-shot.shift[0], -shot.shift[1], float(kWidth), float(kHeight), 0, 1};
         VulkanCounts inside;
         rig_->alsoRecord = [&](const FwVulkanFrame& frame) {
             const VkCommandBuffer commands = frame.commandBuffer;
@@ -346,7 +347,7 @@ class HostDraw : public GpuTest {
                                  VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &toHost, 0, nullptr, 0, nullptr);
         };
         gpu::FramePlan plan;
-        plan.frameIndex = 100;
+        plan.frameIndex = burnFrames_ + 84;
         plan.endTick = endTick_;
         rig_->view = view;
         rig_->run(plan);
@@ -471,6 +472,10 @@ class HostDraw : public GpuTest {
         VkRenderPass pass;
         FwTargetId target;
     };
+    uint32_t look_ = FW_MATERIAL_PINE;
+    uint32_t burnFrames_ = 16;
+    float texelsPerMetre_ = 48;
+    float litRadius_ = 0.25f;  // m
     std::vector<Kept> targets_;
     std::unique_ptr<VkRig> rig_;
     BurnScene scene_;

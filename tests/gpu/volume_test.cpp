@@ -2043,6 +2043,53 @@ TEST_F(Volume, SteadyFramesAskNothing) {
     EXPECT_EQ(after.work + after.barriers, 0u) << "no fire is left";
 }
 
+// A post whose edges are slanted and thin, before a flame with a wall close behind: of light that is
+// behind the post none shows on any of its pixels, as none does at full resolution.
+TEST_F(Volume, AtHalfResolutionNoLightLeaksOntoEdges) {
+    if (!device_) return;
+    std::vector<Mean> pictures;
+    std::vector<bool> post(kSide * kSide);
+    for (const bool half : {false, true}) {
+        half_ = half;
+        makeRig();
+        const float eye[3] = {0.3f, 0.6f, 2.0f}, at[3] = {0, 0.45f, 0};
+        look(eye, at, 30);
+        FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+        components::setFirePreset(def, FW_FIRE_CAMP);
+        def.diameter = 0.6f;
+        def.power = 150;
+        def.tier = FW_FIRE_TIER_MARCH_HIGH;
+        gpu::VolumeFlame flame = flameAlone(def, 1.3f);
+        flame.record.key = 1;
+        // The post is before the flame, the wall within it or behind it.
+        for (const float behind : {1.26f, 2.0f}) {
+            for (uint32_t i = 0; i < kSide * kSide; ++i) {
+                const uint32_t x = i % kSide, y = i / kSide;
+                const float slant = float(x) - 0.45f * float(kSide) - 0.13f * float(y);
+                const bool thin = (x + kSide - y) % kSide == kSide / 3;
+                post[i] = std::abs(slant) < 3.3f || thin;
+                scene_.push_back(post[i] ? 1.55f : 1.55f * behind);
+            }
+            pictures.push_back(draw({&flame, 1}, FW_DEPTH_SAMPLED));
+            scene_.clear();
+        }
+    }
+    ASSERT_EQ(pictures.size(), 4u);
+    for (const size_t k : {size_t{0}, size_t{1}}) {
+        float brightest = 0, leaks = 0, missing = 0;
+        for (uint32_t i = 0; i < kSide * kSide; ++i) {
+            const float off = pictures[k + 2][i].x - pictures[k][i].x;
+            brightest = std::max(brightest, pictures[k][i].x);
+            if (post[i]) leaks = std::max(leaks, off);
+            missing = std::max(missing, -off);
+        }
+        std::printf("[   FIGURE ] at most %.4f of the brightest leaks onto the post, %.4f is missing\n",
+                    double(leaks / brightest), double(missing / brightest));
+        EXPECT_GT(brightest, 0.05f);
+        EXPECT_LT(leaks, 0.05f * brightest) << k;
+    }
+}
+
 // All that is soft, at half resolution and at the picture's: a marched flame, a field, fire and
 // smoke of particles, each alone, all together, particles before the flame and behind it, and with
 // things before them. It has the same light

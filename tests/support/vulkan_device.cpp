@@ -43,9 +43,11 @@ VKAPI_ATTR VkBool32 VKAPI_CALL TestDevice::listen(VkDebugUtilsMessageSeverityFla
                                                   VkDebugUtilsMessageTypeFlagsEXT type,
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data,
                                                   void* user) {
-    // The loader's own remarks about drivers are no concern of ours.
+    // The loader's own remarks about drivers are no concern of ours; the drivers' about our shaders
+    // are.
     if (!(type & (VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
-                  VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT)))
+                  VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT)) &&
+        data->pMessageIdName && std::strstr(data->pMessageIdName, "Loader"))
         return VK_FALSE;
     // Said by the layers about themselves when they instrument shaders.
     if (data->pMessageIdName && std::strstr(data->pMessageIdName, "UNASSIGNED-GPU-Assisted") &&

@@ -55,6 +55,26 @@ TEST(EmbeddedShaders, NeedNoDeviceFeature) {
     }
 }
 
+// Drivers warn of each when they make a pipeline, though the validator allows some of them.
+TEST(EmbeddedShaders, DecorateStructMembersAsDriversExpect) {
+    // SpecId, Block, BufferBlock, ArrayStride, GLSLShared, GLSLPacked, CPacked, Invariant, Restrict,
+    // Aliased, Constant, Index, Binding, DescriptorSet, LinkageAttributes, NoContraction,
+    // InputAttachmentIndex
+    const std::set<std::uint32_t> kOfWholes{1,  2,  3,  6,  8,  9,  10, 18, 19,
+                                            20, 22, 32, 33, 34, 41, 42, 43};
+    constexpr std::uint32_t kOpMemberDecorate = 72;
+    for (const ShaderCode& shader : embeddedShaders()) {
+        for (std::size_t at = kHeaderWords; at < shader.words.size();) {
+            const std::uint32_t op = shader.words[at] & 0xffffu, size = shader.words[at] >> 16;
+            ASSERT_GT(size, 0u) << shader.name;
+            if (op == kOpMemberDecorate)
+                EXPECT_FALSE(kOfWholes.contains(shader.words[at + 3]))
+                    << shader.name << " has decoration " << shader.words[at + 3] << " on a member";
+            at += size;
+        }
+    }
+}
+
 TEST(EmbeddedShaders, PassTheValidator) {
     if (embeddedShaders().empty()) GTEST_SKIP() << "no shader is embedded";
     if (std::system("command -v spirv-val >/dev/null") != 0)

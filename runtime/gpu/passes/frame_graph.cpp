@@ -30,7 +30,8 @@ constexpr const ComputePass* kComputePasses[] = {
     &kSkinPass,          &kSootPass,          &kRefineCutPass,    &kRefinePublishedPass,
     &kVolumeProbePass,   &kVolumeMarchPass,   &kVolumeSmokePass,  &kParticlesPass,
     &kParticleQuadsPass, &kSparksPass,        &kFieldPass,        &kFieldMaskPass,
-    &kFieldShowPass,     &kRoomsPass,         &kEventsAllPass,
+    &kFieldShowPass,     &kRoomsPass,         &kPredictStatesPass, &kPredictCommitPass,
+    &kEventsAllPass,
 };
 
 constexpr const DrawPass* kDrawPasses[] = {
@@ -280,10 +281,14 @@ void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endT
     push.now = endTick;
     push.predictParity = lists.predictParity;
     zeroRow(recorder, kRowPredict + (lists.predictParity ^ 1));
-    recorder.dispatchList(kPredictGatherPass, &push, kRowPredict + lists.predictParity);
+    const uint32_t row = kRowPredict + lists.predictParity;
+    recorder.dispatchList(kPredictStatesPass, &push, row);
+    recorder.dispatchList(kPredictGatherPass, &push, row);
     if (seen) {
-        recorder.dispatchWork(kPredictPass, &push, kRowPredict + lists.predictParity);
-        recorder.dispatchRim(kPredictRimPass, &push, kRowPredict + lists.predictParity);
+        recorder.dispatchWork(kPredictPass, &push, row);
+        recorder.dispatchRim(kPredictRimPass, &push, row);
+        for (push.iteration = 0; push.iteration < 2; ++push.iteration)
+            recorder.dispatchWork(kPredictCommitPass, &push, row);
     }
     lists.predictParity ^= 1;
 }
@@ -295,7 +300,8 @@ void recordSupport(vk::FrameRecorder& recorder, uint32_t endTick, uint32_t ticks
     push.count = ticks;
     push.object = first;
     push.iteration = count;
-    recorder.dispatch(kSupportPass, &push, groupsOf(count));
+    for (push.row = 0; push.row < 2; ++push.row)
+        recorder.dispatch(kSupportPass, &push, groupsOf(count));
 }
 
 void recordSoot(vk::FrameRecorder& recorder, uint32_t ticks, uint32_t first, uint32_t count) {

@@ -83,7 +83,7 @@ enum class AtHalf : uint8_t {
 };
 
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
-// 2 DrawPass::variant, 3 which part of the quads (kPart...).
+// 2 DrawPass::variant, 3 which part of the quads (kPart...), 4 the target's samples.
 // Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none), of `book
 // flames` the flipbooks, of `volume haze` the scene's colour that the host lends (sampler2D); 2
 // binding 0 the look textures, of `volume` the fire profiles (sampler2DArray), of `half composite`
@@ -108,6 +108,9 @@ struct DrawPass {
     // The three where `uses` has texels: instead, if the device has them.
     const char* const* texelShaders = nullptr;
     AtHalf atHalf = AtHalf::same;
+    // Instead of vertexShader and fragmentShader in a target of several samples; null: the same.
+    const char* multisampledVertex = nullptr;
+    const char* multisampledFragment = nullptr;
 };
 
 }  // namespace fw::gpu

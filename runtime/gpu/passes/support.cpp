@@ -9,6 +9,7 @@ constexpr Use kSupportUses[] = {
     {FW_BIND_TEXELS, Access::read},   {FW_BIND_READERS, Access::read},
     {FW_BIND_TILES, Access::read},    {FW_BIND_STATE, Access::read},
     {FW_BIND_PREDICT, Access::write}, {FW_BIND_TILE_STATE, Access::write},
+    {FW_BIND_SCRATCH, Access::write},
 };
 
 }  // namespace

@@ -21,17 +21,21 @@ constexpr Use kSurfaceUses[] = {
 };
 
 constexpr DrawPass variant(uint32_t features, Cull cull) {
-    return {"surface",
-            "surface.vert",
-            "surface.frag",
-            kSurfaceUses,
-            VertexInput::mesh,
-            Blend::opaque,
-            true,
-            sizeof(SurfaceDraw),
-            features,
-            cull,
-            (features & kSurfaceBurns) != 0};
+    const bool burns = (features & kSurfaceBurns) != 0;
+    DrawPass pass{"surface",
+                  "surface.vert",
+                  "surface.frag",
+                  kSurfaceUses,
+                  VertexInput::mesh,
+                  Blend::opaque,
+                  true,
+                  sizeof(SurfaceDraw),
+                  features,
+                  cull,
+                  burns};
+    pass.multisampledVertex = "surface_ms.vert";
+    pass.multisampledFragment = burns ? "surface_ms_holes.frag" : "surface_ms.frag";
+    return pass;
 }
 // All is drawn in two goes, so that the depth test drops the inside, which only holes show. Where
 // the host's faces turn the other way the goes swap, and the picture is the same. Of what burns,

@@ -514,13 +514,14 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     const DrawPass& pass = *drawPasses()[number];
     const bool colors = pass.blend != Blend::depthAlone;  // else places are all it reads
     const struct {
-        uint32_t encoding, reversed, variant, part;
+        uint32_t encoding, reversed, variant, part, samples;
     } constants{uint32_t(key.encoding), key.reversedDepth ? 1u : 0u, pass.variant,
                 pass.atHalf == AtHalf::sparks             ? kPartSparks
                 : key.half && pass.atHalf == AtHalf::soft ? kPartSoft
-                                                          : kPartAll};
-    const std::array<VkSpecializationMapEntry, 4> entries{
-        {{0, 0, 4}, {1, 4, 4}, {2, 8, 4}, {3, 12, 4}}};
+                                                          : kPartAll,
+                key.samples};
+    const std::array<VkSpecializationMapEntry, 5> entries{
+        {{0, 0, 4}, {1, 4, 4}, {2, 8, 4}, {3, 12, 4}, {4, 16, 4}}};
     const VkSpecializationInfo special{uint32_t(entries.size()), entries.data(), sizeof constants,
                                        &constants};
 
@@ -626,9 +627,11 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     info.layout = draw_[number].layout;
     info.renderPass = renderPass;
     info.subpass = key.subpass;
-    stages[0].module = modules.get(pass.vertexShader);
+    const bool several = key.samples > 1 && pass.multisampledVertex;
+    stages[0].module = modules.get(several ? pass.multisampledVertex : pass.vertexShader);
     if (colors) {
-        const char* const words[3] = {pass.fragmentShader, pass.softShader,
+        const char* const words[3] = {several ? pass.multisampledFragment : pass.fragmentShader,
+                                      pass.softShader,
                                       pass.softShaderMultisampled};
         const char* const* shaders =
             device_.texels && pass.texelShaders ? pass.texelShaders : words;

@@ -1,0 +1,51 @@
+// Ends a round of prediction: first the new times of its gathered rows, and how far the fire is from
+// what is wet; then, from times that no thread writes any more, the gradients. One thread per row.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_OBJECT_QUADS
+#define FW_USE_STATE readonly
+#define FW_USE_COUNTERS readonly
+#define FW_USE_SCRATCH_QUADS readonly
+#define FW_USE_PREDICT FW_READ_WRITE
+#define FW_USE_GRADIENT FW_READ_WRITE
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+#include "lib/predict.glsl"
+
+void writeTimes(uint at, uint changed, uint wet) {
+    for (; changed != 0u; changed &= changed - 1u) {
+        uint i = at + uint(findLSB(changed));
+        uint known = state[i];
+        predict[i] = known == kNever ? unpackTimeNext(gradient[i]) : known;
+    }
+    for (; wet != 0u; wet &= wet - 1u) {
+        uint i = at + uint(findLSB(wet));
+        gradient[i] = aheadTurned(gradient[i]);
+    }
+}
+
+void main() {
+    uint count = counters[kRowPredict + push.predictParity].workCount;
+    for (uint work = gl_GlobalInvocationID.x; work < count; work += gl_NumWorkGroups.x * 64u) {
+        uvec4 item = scratchQuads[work];
+        uint changed = item.y >> 8u & 0xFFu, wet = item.y >> 16u & 0xFFu;
+        if ((changed | wet) == 0u) continue;
+        uvec4 bases = objectBases(item.w);
+        uint at = bases.y + item.z;
+        if (push.iteration == 0u) {
+            writeTimes(at, changed, wet);
+            continue;
+        }
+        uint y = divide(item.z, bases.w), x = item.z - y * bases.w;
+        uint height = objectSizes(item.w).y;
+        for (; changed != 0u; changed &= changed - 1u) {
+            uint i = uint(findLSB(changed)), time = predict[at + i];
+            gradient[at + i] = hasTime(time)
+                                   ? gradientOf(at + i, x + i, y, bases.w, height, time)
+                                   : gradient[at + i] & 0xFFu;
+        }
+    }
+}

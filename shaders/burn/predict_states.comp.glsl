@@ -1,0 +1,64 @@
+// Passes states that are no arrival (wet, put out, ...) on to what is shown of the predict list's
+// tiles. Of an object that no view shows what burns is passed on, too; one that a view shows again
+// forgets what was predicted of it. Touches a row's own texels alone. One thread per row.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_OBJECT_QUADS
+#define FW_USE_STATE readonly
+#define FW_USE_STATE_QUADS
+#define FW_USE_TILE_STATE FW_READ_WRITE
+#define FW_USE_COUNTERS readonly
+#define FW_USE_PREDICT FW_READ_WRITE
+#define FW_USE_GRADIENT FW_READ_WRITE
+#define FW_USE_PREDICT_LISTS readonly
+#include "lib/buffers.glsl"
+#include "lib/gradient.glsl"
+#include "shared/front.h"
+
+void passRow(uint worldTile, uint row) {
+    uint flag = tileState[worldTile].flag;
+    if ((flag & kTileFalling) != 0u) return;  // what it shows is the support pass's
+    uint object = tileState[worldTile].object;
+    uvec4 places = objectPlaces(object);
+    uvec4 sizes = objectSizes(object);
+    uint local = worldTile - places.x;
+    if ((places.w & kObjectLive) == 0u || local >= sizes.w) return;
+    uvec4 bases = objectBases(object);
+    uint tileY = divide(local, sizes.z);
+    uint at = bases.y + (tileY * bases.w + local - tileY * sizes.z) * 8u + row * bases.w;
+    uvec4 a = stateQuads[at >> 2u], b = stateQuads[(at >> 2u) + 1u];
+    uint codes[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
+    bool unseen = (places.w & kObjectUnseen) != 0u, anew = (places.w & kObjectAnew) != 0u;
+    bool marks = false;
+    for (uint x = 0u; x < 8u; ++x) {
+        uint i = at + x, code = codes[x], time = predict[i];
+        if (code == time) continue;
+        bool open = code == kNever, source = isSource(code);
+        if (open || source) {
+            // Of what is seen `predict` decides.
+            bool forgets = anew ? open && time < kLiveEnd : unseen && source;
+            if (forgets) predict[i] = code;
+            marks = marks || forgets;
+            continue;
+        }
+        // What was put out keeps the look of the age it had: its gradient is that age. What was not
+        // seen to burn before had none to speak of; 0 would say nothing is known.
+        if (code == kWet) gradient[i] = kAheadFar | (gradient[i] & 0xFFu);
+        else if (time < kLiveEnd) gradient[i] = time < push.now ? push.now - time : 1u;
+        else if (time == kNever || time == kWet) gradient[i] = 1u;
+        predict[i] = code;
+        marks = true;
+    }
+    if (marks && (flag & kTileMarked) == 0u) atomicOr(tileState[worldTile].flag, kTileMarked);
+}
+
+void main() {
+    uint count = counters[kRowPredict + push.predictParity].listCount;
+    uint row = gl_LocalInvocationID.x & 7u;
+    uint slot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
+    for (; slot < count; slot += gl_NumWorkGroups.x * 8u)
+        passRow(push.predictParity == 0u ? predictA[slot] : predictB[slot], row);
+}

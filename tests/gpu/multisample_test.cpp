@@ -1,0 +1,78 @@
+// Burning surfaces in a target of four samples.
+#include "host_draw.h"
+
+namespace fw::test::host_draw {
+namespace {
+
+constexpr float kPlaces[4][2] = {  // of Vulkan's standard samples, px from a pixel's middle
+    {-0.125f, -0.375f}, {0.375f, -0.125f}, {-0.375f, 0.125f}, {0.125f, 0.375f}};
+
+class Multisampled : public HostDraw {
+ protected:
+    Multisampled() { look_ = FW_MATERIAL_NEWSPAPER; }
+    static Shot surfaces(uint32_t samples) {
+        Shot shot;
+        shot.samples = samples;
+        shot.flags = FW_TARGET_NO_FLAMES;
+        return shot;
+    }
+};
+
+class BurntAway : public Multisampled {
+ protected:
+    BurntAway() {
+        litRadius_ = 9;  // all of it
+        burnFrames_ = 200;
+    }
+};
+
+// A pixel's middle may lie beside a triangle that covers some of its samples: looked up there, it
+// had not burnt, and outlines stayed in the air.
+TEST_F(BurntAway, LeavesNoPixelAtFourSamples) {
+    if (!device_) return;
+    for (const uint32_t samples : {1u, 4u}) {
+        const Picture picture = shoot(surfaces(samples));
+        EXPECT_EQ(picture.unlike(8, kWidth - 8, 0, 0, 1), 0u) << "at " << samples;
+    }
+}
+
+class Rim : public Multisampled {
+ protected:
+    Rim() {
+        litRadius_ = 0.2f;
+        burnFrames_ = 44;
+    }
+};
+
+double toLight(double stored) {
+    return stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
+}
+
+// Against the mean of four pictures, of what lies beneath each sample.
+TEST_F(Rim, OfAHoleIsAsSmoothAsFourPictures) {
+    if (!device_) return;
+    std::vector<double> parts(size_t{kWidth} * kHeight * 3);
+    for (const auto& place : kPlaces) {
+        Shot shot = surfaces(1);
+        shot.shift[0] = place[0];
+        shot.shift[1] = place[1];
+        const Picture picture = shoot(shot);
+        for (size_t i = 0; i < parts.size(); ++i) parts[i] += 0.25 * toLight(double(picture.rgb[i]));
+    }
+    const Picture single = shoot(surfaces(1)), several = shoot(surfaces(4));
+    // Inside of the ball's outline, right of the host's own occluder.
+    double singleOff = 0, severalOff = 0;
+    for (uint32_t y = 18; y < 46; ++y) {
+        for (uint32_t x = 50; x < 59; ++x) {
+            for (uint32_t c = 0; c < 3; ++c) {
+                const size_t i = (size_t{y} * kWidth + x) * 3 + c;
+                singleOff += std::pow(toLight(double(single.rgb[i])) - parts[i], 2);
+                severalOff += std::pow(toLight(double(several.rgb[i])) - parts[i], 2);
+            }
+        }
+    }
+    EXPECT_LT(severalOff, 0.35 * singleOff);
+}
+
+}  // namespace
+}  // namespace fw::test::host_draw
