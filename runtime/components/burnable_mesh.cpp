@@ -369,6 +369,7 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
     records.timing = fire::frontTiming(defs, f, winds, records.materials);
     for (uint32_t i = 0; i < kMaterials; ++i) latch.flameTicks[i] = records.materials[i].flameTicks;
     latch.substepShift = records.timing.substepShift;
+    latch.window = records.timing.window;
     return records;
 }
 

@@ -40,6 +40,7 @@ struct Latch {  // the drive that an object's front sees, and the filters before
     Pose pose;                                      // latched; translation is of no account
     std::array<uint32_t, kMaterials> flameTicks{};  // of the latched records; kNoneTexel: no end
     uint32_t substepShift = 0;                      // of the latched records
+    uint32_t window = 0;                            // ticks, of the latched records
     bool sent = true;                               // the backend has the records of this latch
 };
 

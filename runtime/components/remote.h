@@ -12,6 +12,8 @@ struct Governance {          // of spread, for an object or a world
     uint32_t tilesMost = 0;  // burning tiles of 8 x 8 texels; 0: no limit
     float life = 0;          // s that a front advances after the object caught, 0: no limit
 };
+[[nodiscard]] constexpr bool caps(const Governance& g) noexcept { return g.tilesMost != 0; }
+[[nodiscard]] constexpr bool governs(const Governance& g) noexcept { return caps(g) || g.life > 0; }
 
 // Rotation, place and box of a mesh in the world.
 void placeRemote(const Pose& pose, const mesh::BurnDomain& domain, gpu::RemoteObject& out) noexcept;

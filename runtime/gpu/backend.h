@@ -149,6 +149,7 @@ struct RestoredObject {
     ObjectImage image;
     BurnMaterial materials[kMaterialsPerObject];
     uint32_t window = 0, substepShift = 0;
+    bool rests = false;  // nothing of it burnt: of its image there are the counters alone
 };
 
 // How much of what only shows a frame may have. Never of what burns: hashes are alike at all

@@ -42,7 +42,7 @@ FwQueryId World::requestArrival(FwBurnableMeshId id, const float position[3]) {
         });
     query.since = changesOf(object) + (waits ? 1 : 0);
     // What the front cannot know of, water that dries above all, is looked at anew every second.
-    if (object.story.active && clock_.tick > gpu::kTicksPerSecond)
+    if (isActive(object) && clock_.tick > gpu::kTicksPerSecond)
         query.sinceTick = clock_.tick - gpu::kTicksPerSecond;
     return queries_.create(query);
 }

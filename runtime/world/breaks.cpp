@@ -56,7 +56,7 @@ void World::planBreaks(uint64_t end) noexcept {
     for (const Object* object : touched_) {
         const Breaks* breaks = object->breaks.get();
         if (!breaks || breaks->lookCount == breaks->looks.size() ||
-            !(object->story.active || breaks->waits))
+            !(isActive(*object) || breaks->waits))
             continue;
         const uint64_t off = uint64_t(object->slot) * gpu::kStepTicks;
         if ((clock_.tick + off) / kBreaksTicks == (end + off) / kBreaksTicks) continue;

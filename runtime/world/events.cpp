@@ -3,6 +3,7 @@
 #include "world/world.h"
 
 #include "core/hash.h"
+#include "world/save.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,17 +54,22 @@ void World::collect() noexcept {
 void World::collectReadbacks() {
     while (const gpu::Readback* readback = backend_.nextReadback()) {
         if (readback->frameIndex <= loadedFrame_) continue;
+        takeStimuli(readback->frameIndex);
         readbackFrame_ = readback->frameIndex;
         while (shiftCount_ > 0 && shifts_[0].frame < readbackFrame_) {
             std::copy(shifts_.begin() + 1, shifts_.begin() + shiftCount_, shifts_.begin());
             --shiftCount_;
         }
         readbackTick_ = readback->endTick;
-        frontTiles_ = readback->frontTiles;
         runTiles_ = readback->runTiles;
-        burningTiles_ = readback->burningTiles;
-        hotTiles_ = readback->hotTiles;
-        receivers_ = readback->receivers;
+        // Of a save it is known how many there were, until they are counted again.
+        if (lastReduced(readback->endTick) > loadedTick_) loadedReceivers_ = loadedBurning_ = 0;
+        if (readback->endTick > loadedTick_) loadedFront_ = 0;
+        if (heatStepsBefore(readback->endTick) > heatStepsBefore(loadedTick_)) loadedHot_ = 0;
+        frontTiles_ = readback->frontTiles + loadedFront_;
+        hotTiles_ = readback->hotTiles + loadedHot_;
+        burningTiles_ = std::max(readback->burningTiles, loadedBurning_);
+        receivers_ = std::max(readback->receivers, loadedReceivers_);
         if (readback->milliseconds >= 0 && !budgetMeasured_) spent_.gpu = readback->milliseconds;
         takeCounters(*readback);
         takeAnswers(*readback);
@@ -87,11 +93,99 @@ void World::collectReadbacks() {
             copy.pending = false;
             copy.ready = true;
         }
+        const bool rests =
+            frontTiles_ == 0 && burningTiles_ == 0 && hotTiles_ == 0 && receivers_ == 0;
+        seenIdle_ = seenIdle_ || (rests && readback->endTick >= seenStimulus_ + kSettleTicks);
+        if (rests && readback->endTick >= lastStimulus_ + kSettleTicks) idle_ = true;
         takeSaves(*readback);
-        if (frontTiles_ == 0 && burningTiles_ == 0 && hotTiles_ == 0 && receivers_ == 0 &&
-            readback->endTick >= lastStimulus_ + kSettleTicks)
-            idle_ = true;
     }
+}
+
+// ---- what frames did, taken in their order
+// --------------------------------------------------------
+
+// Before a frame is committed: one for each object that it may address.
+void World::reserveStimuli() {
+    const size_t most = std::min<size_t>(
+        frame_.due.size() + frame_.latches.size() + frame_.plays.size(), objects_.live());
+    if (const size_t all = stimuli_.size() + most; stimuli_.capacity() < all)
+        stimuli_.reserve(std::max(all, stimuli_.capacity() * 2));
+    if (frameNotes_.capacity() == frameNotes_.size())
+        frameNotes_.reserve(std::max<size_t>(frameNotes_.size() * 2, kFramesInFlight));
+}
+
+// The one of the frame that is being committed.
+Stimulus& World::stimulusOf(Object& object, uint64_t frameIndex) noexcept {
+    if (object.stimulusAt == mesh::kNone) {
+        object.stimulusAt = uint32_t(stimuli_.size());
+        ++object.stimuli;
+        stimuli_.push_back({frameIndex, object.slot});  // room is there
+    }
+    return stimuli_[object.stimulusAt];
+}
+
+// The first of a frame.
+void World::noteIgnition(Object& object, Stimulus& stimulus, uint32_t texel,
+                         uint32_t tick) noexcept {
+    if (stimulus.ignites) return;
+    stimulus.ignites = true;
+    stimulus.ignition = tick;
+    texelPlace(object, texel, stimulus.ignitionPoint);
+    if (!object.story.ignitionKnown && !object.story.sawFire && !object.ignites)
+        backend_.startBoundary(object.slot, stimulus.ignitionPoint, tick);
+    object.ignites = true;
+}
+
+void World::commitStimuli(const ClockAdvance& time, uint64_t frameIndex) noexcept {
+    for (size_t i = stimuli_.size(); i-- > 0 && stimuli_[i].frameIndex == frameIndex;)
+        (*objects_.at(stimuli_[i].slot))->stimulusAt = mesh::kNone;
+    FrameNote note;
+    note.frameIndex = frameIndex;
+    note.end = time.after.tick;
+    note.roomsStirred = roomsStirred_;
+    note.steps = time.steps;
+    note.stirs = !frame_.events.empty();
+    note.never = (switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE)) != 0;
+    frameNotes_.push_back(note);  // room is there
+}
+
+// With the readback of a frame, before anything else of it.
+void World::takeStimuli(uint64_t frameIndex) noexcept {
+    size_t frames = 0;
+    for (const FrameNote& note : frameNotes_) {
+        if (note.frameIndex > frameIndex) break;
+        ++frames;
+        seenRoomsStirred_ = std::max(seenRoomsStirred_, note.roomsStirred);
+        if (!seenIdle_ || note.stirs || note.never || !roomsRest(seenRoomsStirred_))
+            steps_ += note.steps;
+        if (!note.stirs) continue;
+        seenIdle_ = false;
+        seenStimulus_ = note.end;
+    }
+    frameNotes_.erase(frameNotes_.begin(), frameNotes_.begin() + std::ptrdiff_t(frames));
+    size_t taken = 0;
+    for (const Stimulus& one : stimuli_) {
+        if (one.frameIndex > frameIndex) break;
+        ++taken;
+        Object& object = **objects_.at(one.slot);
+        Story& story = object.story;
+        if (--object.stimuli == 0) object.ignites = false;
+        if (one.first) story.heatSteps = one.heatSteps;
+        if (one.starts) {
+            story.active = true;
+            story.lastStimulus = std::max(story.lastStimulus, one.latest);
+        }
+        if (one.ignites && !story.ignitionKnown && !story.sawFire) {
+            story.ignitionKnown = true;
+            story.firstIgnition = one.ignition;
+            std::copy_n(one.ignitionPoint, 3, story.ignitionPoint);
+        }
+        if (one.douses) {
+            story.lastDouse = one.douse;
+            story.douseCause = one.douseCause;
+        }
+    }
+    stimuli_.erase(stimuli_.begin(), stimuli_.begin() + std::ptrdiff_t(taken));
 }
 
 void World::takeCounters(const gpu::Readback& readback) noexcept {
@@ -115,7 +209,7 @@ void World::takeCounters(const gpu::Readback& readback) noexcept {
         clamps += now.lateClamps;
         if (object.play.began != 0 && readback.endTick >= object.play.began &&
             !gpu::playsAt(now.playsUntil, readback.endTick))
-            endPlay(object, readback.frameIndex);  // others' fire came
+            endPlay(object, readback.frameIndex, now.playsUntil);  // others' fire came
         takeEnergy(object, readback.endTick);
         tellSpread(object, readback);
         float place[3];
@@ -177,7 +271,8 @@ void World::countFlames(Object& object, const gpu::ObjectCounters& before,
     story.wentOut = (story.wentOut >> halvings) + out;
     story.flames = std::max({story.flames >> halvings, now.burning, story.wentOut});
     if (out == 0) return;
-    const bool air = std::min(gpu::airStrength(now.air), gpu::airStrength(before.air)) < gpu::kAirFull;
+    const bool air =
+        std::min(gpu::airStrength(now.air), gpu::airStrength(before.air)) < gpu::kAirFull;
     if (story.lastDouse != 0 && endTick <= story.lastDouse + kWaterWorks)
         story.outCause = story.douseCause;
     else
@@ -211,8 +306,8 @@ void World::takeEnergy(Object& object, uint32_t endTick) noexcept {
         object.carried = false;
     else
         object.story.power = now.burning == 0 ? 0.0f
-                                          : float(double(energy - object.story.energy) / 1048576 /
-                                                  seconds / double(def_.paceFactor));
+                                              : float(double(energy - object.story.energy) /
+                                                      1048576 / seconds / double(def_.paceFactor));
     object.story.energy = energy;
     object.story.heatSteps = steps;
 }
@@ -244,6 +339,8 @@ void World::takeAnswers(const gpu::Readback& readback) noexcept {
                        t.tag == ref.tag;
             });
             if (tag == tags_.end()) continue;  // an older frame said so already
+            for (core::Owned<Save>& save : saves_)
+                if (save && save->pending) forgetTag(*save, *tag, readback.frameIndex);
             tags_.erase(tag);
             float place[3];
             texelPosition(object, ref.texel, place);

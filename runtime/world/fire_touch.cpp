@@ -92,6 +92,27 @@ void World::touchByFires(uint64_t end) {
     }
 }
 
+// Its place among those that fires, jets and sticking fuel are at is free at once.
+void World::forgetTouches(FwBurnableMeshId id) noexcept {
+    const auto forget = [&](auto& entries) {
+        for (auto& entry : entries)
+            if (entry.object.index1 == id.index1) entry = {};
+    };
+    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
+        if (auto* fire = fires_.at(i)) forget((*fire)->touches);
+    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
+        components::FireEmitter* emitter = emitters_.at(i);
+        if (!emitter) continue;
+        forget(emitter->touches);
+        if (!emitter->stream) continue;
+        forget(emitter->stream->patches);
+        forget(emitter->stream->before);
+        for (components::JetParcel& parcel : emitter->stream->parcels)
+            for (components::JetRay& ray : parcel.rays)
+                if (ray.hit.object.index1 == id.index1) ray.hit = {};
+    }
+}
+
 void World::touchByFire(Fire& fire, uint32_t now) {
     for (FireTouch& touch : fire.touches) touch.seen = false;
     std::array<Ball, volume::kMaxControlPoints> balls;

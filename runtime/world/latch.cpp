@@ -12,6 +12,17 @@ void World::addLatch(Object& object, const components::Latch& latch, bool due) n
     frame_.latches.push_back({&object, latch, due});  // room was found at its creation
 }
 
+// May other records change anything of an object that no event addresses? A readback may be late,
+// so who is surely at rest by one of them must need none for as long as another may still be on its
+// way: beyond the window nothing is corrected, and what is warm or wet goes by its records, too.
+bool World::needsRecords(const Object& object, uint32_t now) const noexcept {
+    if (isActive(object)) return true;
+    if (hotTiles_ != 0 && components::hasHeat(object.data)) return true;
+    const uint64_t last =
+        std::max<uint64_t>(object.counters.lastIgnition, object.story.lastStimulus);
+    return last != 0 && now <= last + 2 * (uint64_t(object.latch.window) + gpu::kStepTicks);
+}
+
 void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
     const auto sendRecords = [&](Object& object, const components::DriveInput& drive,
                                  components::Latch& latch) {
@@ -48,7 +59,7 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
     if (remoteOn()) {
         if (fresh || placed) touchNear(now);
         // Nobody knows which of them the fire reaches first.
-        if (fresh)
+        if (fresh || placed)
             for (Frame::LatchOf& entry : frame_.latches)
                 if (!entry.latch.sent)
                     sendRecords(*entry.object, driveInput(*entry.object, now), entry.latch);
@@ -63,7 +74,8 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
         if (!latchNow || !components::latchDrive(object.data, entry.latch)) continue;
         entry.latch.sent = false;
         turnPlay(object);
-        if (object.story.active || entry.due || anyActive) sendRecords(object, drive, entry.latch);
+        if (needsRecords(object, now) || entry.due || anyActive)
+            sendRecords(object, drive, entry.latch);
     }
 }
 

@@ -188,14 +188,14 @@ void World::startPlay(Object& object) noexcept {  // there is room
         &object);
 }
 
-void World::endPlay(Object& object, uint64_t frameIndex) noexcept {
+void World::endPlay(Object& object, uint64_t frameIndex, uint32_t tick) noexcept {
     object.play = {};
     ++object.changes;
     std::erase(playing_, &object);
     float place[3];
     for (int i = 0; i < 3; ++i) place[i] = float(object.data.pose.translation[i]);
     raise(FW_EVENT_WENT_LIVE, &object, 0, frameIndex, place,
-          float(seconds()));
+          float(double(tick) / gpu::kTicksPerSecond));
 }
 
 // Those that play; how many events that makes up to a tick, at most.
@@ -245,6 +245,7 @@ void World::planPlays(uint32_t now, std::span<const Frame::Due> due) {
         if (!ends) continue;
         push(gpu::kNoneTexel, gpu::kEventPlays, end);  // of a burn that it played before, too
         play = {};
+        entry.ended = end;
     }
 }
 
@@ -284,20 +285,17 @@ void World::commitPlays(uint64_t frameIndex) noexcept {
     for (const Frame::PlayOf& entry : frame_.plays) {
         Object& object = *entry.object;
         if (object.play.began == 0 && entry.play.began != 0) {
-            object.story.active = true;
-            object.story.lastStimulus =
-                std::max<uint64_t>(object.story.lastStimulus, entry.play.began);
+            Stimulus& stimulus = stimulusOf(object, frameIndex);
+            stimulus.starts = true;
+            stimulus.latest = std::max<uint64_t>(stimulus.latest, entry.play.began);
         }
-        if (entry.lit != mesh::kNone && !object.story.ignitionKnown && !object.story.sawFire) {
+        if (entry.lit != mesh::kNone) {
             const Burn& burn = **burns_.at(object.play.burn1 - 1);
-            object.story.ignitionKnown = true;
-            object.story.firstIgnition = object.play.tickOf(burn.ticks[entry.lit]);
-            texelPlace(object, entry.lit, object.story.ignitionPoint);
-            backend_.startBoundary(object.slot, object.story.ignitionPoint,
-                                   uint32_t(object.story.firstIgnition));
+            noteIgnition(object, stimulusOf(object, frameIndex), entry.lit,
+                         uint32_t(object.play.tickOf(burn.ticks[entry.lit])));
         }
         object.play = entry.play;
-        if (object.play.burn1 == 0) endPlay(object, frameIndex);
+        if (object.play.burn1 == 0) endPlay(object, frameIndex, entry.ended);
     }
 }
 

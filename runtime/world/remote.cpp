@@ -260,7 +260,51 @@ void World::rebuildRemote() {
         pair.stamp = 0;
         for (int k = 0; k < 2; ++k) addClose(pair.slots[k], pair.slots[1 - k], i);
     }
+    seeAsLoaded();
     book.rebuild = false;
+}
+
+// What the host said of pairs before they were saved holds; of others it is asked now.
+void World::seeAsLoaded() {
+    RemoteBook& book = remote_;
+    const auto before = [](const Seen& a, const Seen& b) {
+        return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
+    };
+    for (const uint32_t slot : book.seenDue) {
+        Object& object = **objects_.at(slot);
+        for (const uint32_t entry : book.neighbours.of(slot)) {
+            const uint32_t other = entry & Neighbours::kSlot;
+            const Seen wanted{{slot, other}};
+            const auto known = std::lower_bound(book.loadedSeen.begin(), book.loadedSeen.end(),
+                                                wanted, before);
+            const bool holds = known != book.loadedSeen.end() && !before(wanted, *known);
+            book.neighbours.see(slot, other,
+                                holds ? known->part : seenPart(**objects_.at(other), object));
+        }
+        object.seenDue = false;
+    }
+    book.seenDue.clear();
+    book.loadedSeen.clear();
+}
+
+// Pairs of which the host has been asked since one of them was elsewhere, by slots.
+void World::noteSeen(std::pmr::vector<SavedSeen>& to) const {
+    const RemoteBook& book = remote_;
+    if (!def_.visibility) return;
+    if (book.rebuild) {
+        for (const Seen& seen : book.loadedSeen)
+            if (objects_.at(seen.slots[0]) && objects_.at(seen.slots[1]))
+                to.push_back({{seen.slots[0], seen.slots[1]}, seen.part});
+        return;
+    }
+    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
+        const auto* owned = objects_.at(slot);
+        if (!owned || (*owned)->seenDue) continue;
+        for (const uint32_t entry : book.neighbours.of(slot)) {
+            const uint32_t other = entry & Neighbours::kSlot;
+            if (!(*objects_.at(other))->seenDue) to.push_back({{slot, other}, entry >> 24});
+        }
+    }
 }
 
 // What a fire of `from` sees of `to`, of 255.
@@ -454,8 +498,11 @@ void World::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
     book.links.assign(place, book.mergedLinks);
 }
 
+// Whoever has its slot next has no part in what it touched, and the backend hears of that before the next
+// exchange.
 void World::forgetRemote(const Object& object) noexcept {
     RemoteBook& book = remote_;
+    book.unsent |= object.remoteVersion != 0;
     const uint32_t slot = object.slot;
     const auto leave = [&](std::pmr::vector<uint32_t>& slots, bool in) {
         if (in || book.rebuild) std::erase(slots, slot);
@@ -468,6 +515,9 @@ void World::forgetRemote(const Object& object) noexcept {
     if (book.rebuild) {  // its lists are none
         std::erase_if(book.pairs, [&](const PairContacts& pair) {
             return pair.slots[0] == slot || pair.slots[1] == slot;
+        });
+        std::erase_if(book.loadedSeen, [&](const Seen& seen) {
+            return seen.slots[0] == slot || seen.slots[1] == slot;
         });
         return;
     }
@@ -582,13 +632,23 @@ void World::commitRemote() noexcept {
     remote_.unsent = false;
 }
 
+// The world is governed while one who asks for it is there.
+void World::countGoverned(const Object& object, bool more) noexcept {
+    remote_.cappedObjects += components::caps(object.governance) ? (more ? 1u : ~0u) : 0u;
+    remote_.governedObjects += components::governs(object.governance) ? (more ? 1u : ~0u) : 0u;
+    remote_.capped = remote_.cappedObjects != 0 || components::caps(remote_.governance);
+    remote_.governed = remote_.governedObjects != 0 || components::governs(remote_.governance);
+}
+
 void World::tellSpread(Object& object, const gpu::Readback& readback) noexcept {
     const gpu::ObjectCounters& now = object.counters;
     if (now.litTick != object.story.litTold) {
         object.story.litTold = now.litTick;
         ++object.changes;
         const uint32_t giver = gpu::giverOf(now.litBy);
-        if (now.litTick != 0 && giver < objects_.slotCount() && objects_.at(giver)) {
+        // A slot may be another's since.
+        const auto* by = giver < objects_.slotCount() ? objects_.at(giver) : nullptr;
+        if (now.litTick != 0 && by && (*by)->firstFrame <= readback.frameIndex) {
             const gpu::RemoteObject& box = object.remote;
             const int low[3] = {box.turn0.w, box.turn1.w, box.turn2.w};
             float middle[3];

@@ -29,8 +29,8 @@ mesh::Box boxOf(const components::Room& room) noexcept {
 
 }  // namespace
 
-bool World::roomsRest() const noexcept {
-    return !roomsMet_ || readbackTick_ >= roomsStirred_ + kRoomsSettle;
+bool World::roomsRest(uint64_t stirred) const noexcept {
+    return !roomsMet_ || readbackTick_ >= stirred + kRoomsSettle;
 }
 
 void World::stirRooms() noexcept { roomsStirred_ = clock_.tick; }
@@ -110,9 +110,9 @@ void World::takeRooms(const gpu::Readback& readback) noexcept {
     bool stirs = hotTiles_ != 0 || burningTiles_ != 0;
     for (uint32_t slot = 0; slot < count; ++slot) {
         RoomEntry* entry = rooms_.at(slot);
-        if (!entry || entry->air.epoch != readback.rooms[slot].epoch) continue;
+        if (!entry) continue;
         const uint32_t told = flashesOf(entry->air);
-        entry->air = readback.rooms[slot];
+        if (entry->air.epoch == readback.rooms[slot].epoch) entry->air = readback.rooms[slot];
         stirs = stirs || entry->air.stirs != 0;
         if (flashesOf(entry->air) == told) continue;
         float middle[3];
@@ -120,7 +120,9 @@ void World::takeRooms(const gpu::Readback& readback) noexcept {
         raise(FW_EVENT_FLASHED_OVER, nullptr, slot + 1, readback.frameIndex, middle,
               float(double(entry->air.flashTick) / gpu::kTicksPerSecond));
     }
-    if (stirs) roomsStirred_ = std::max<uint64_t>(roomsStirred_, readback.endTick);
+    if (!stirs) return;
+    roomsStirred_ = std::max<uint64_t>(roomsStirred_, readback.endTick);
+    seenRoomsStirred_ = std::max<uint64_t>(seenRoomsStirred_, readback.endTick);
 }
 
 void World::roomState(FwRoomId id, FwRoomState& state) {

@@ -204,7 +204,6 @@ void World::noteSaved(SavedWorld& to) {
     to.maxHops = def_.maxHops;
     to.maxBurningTiles = def_.maxBurningTiles;
     to.clock = clock_;
-    to.steps = steps_;
     to.droppedSteps = droppedSteps_;
     to.order = order_;
     std::copy_n(wind_, 3, to.wind);
@@ -219,8 +218,7 @@ void World::noteSaved(SavedWorld& to) {
     to.warms = remote_.warms;
     to.blockersDue = remote_.blockersDue;
     to.fades = remote_.fades;
-    to.idle = idle_;
-    to.lastStimulus = lastStimulus_;
+    to.gustsShown = gustsShown_;
     to.objects.clear();
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
         if (auto* owned = objects_.at(i)) noteObject(**owned, to.objects.emplace_back());
@@ -233,6 +231,8 @@ void World::noteSaved(SavedWorld& to) {
     std::sort(to.pairs.begin(), to.pairs.end(), [](const SavedPair& a, const SavedPair& b) {
         return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
     });
+    to.seen.clear();
+    noteSeen(to.seen);
     to.blockers.clear();
     for (uint32_t i = 0; i < blockers_.slotCount(); ++i)
         if (const BlockerEntry* entry = blockers_.at(i)) {
@@ -249,7 +249,8 @@ void World::noteSaved(SavedWorld& to) {
     for (uint32_t i = 0; i < rooms_.slotCount(); ++i)
         if (const RoomEntry* entry = rooms_.at(i))
             to.rooms.push_back({i, entry->room, entry->air.oxygen, entry->air.power,
-                                entry->air.flash, entry->air.epoch});
+                                entry->air.flash, entry->air.drawn, entry->air.stirs,
+                                entry->air.epoch});
     to.fires.clear();
     for (uint32_t i = 0; i < fires_.slotCount(); ++i)
         if (const auto* fire = fires_.at(i)) {
@@ -258,10 +259,10 @@ void World::noteSaved(SavedWorld& to) {
             saved.flags = (*fire)->data.flags & FW_FIRE_IGNITES;
             std::copy_n((*fire)->data.position, 3, saved.position);
             saved.power = (*fire)->data.power;
-            for (size_t k = 0; k < saved.touches.size(); ++k) {
+            saved.pointCount = (*fire)->data.pointCount;
+            saved.points = (*fire)->data.points;
+            for (size_t k = 0; k < saved.touches.size(); ++k)
                 saved.touches[k] = savedTouch((*fire)->touches[k]);
-                if (!objects_.find((*fire)->touches[k].object)) saved.touches[k] = {};
-            }
         }
     to.emitters.clear();
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
@@ -296,6 +297,7 @@ void World::noteObject(Object& object, SavedObject& saved) noexcept {
     saved.firstEvent = object.firstEvent;
     saved.play = object.play;
     if (object.play.burn1 != 0) saved.burnHash = (*burns_.at(object.play.burn1 - 1))->hash;
+    saved.zoneWind = object.zoneWind;
     saved.placed = object.remoteVersion != 0;
     saved.due = object.remoteDue;
     saved.remote = object.remote;
@@ -315,7 +317,6 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
     std::copy_n(emitter.direction, 3, saved.direction);
     saved.power = emitter.def.power;
     for (size_t k = 0; k < saved.touches.size(); ++k) {
-        if (!objects_.find(emitter.touches[k].object)) continue;
         saved.touches[k].object1 = emitter.touches[k].object.index1;
         saved.touches[k].since = emitter.touches[k].since;
         saved.touches[k].flag = emitter.touches[k].seen;
@@ -324,10 +325,7 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
     if (!saved.streams) return;
     saved.kept = emitter.stream->kept;
     saved.patchedAt = emitter.stream->patchedAt;
-    for (size_t i = 0; i < saved.patches.size(); ++i) {
-        const components::JetPatch& patch = emitter.stream->patches[i];
-        if (patch.object.index1 == 0 || objects_.find(patch.object)) saved.patches[i] = patch;
-    }
+    saved.patches = emitter.stream->patches;
     for (uint32_t place = 0; place < components::kJetParcels; ++place) {
         const components::JetParcel& parcel = emitter.stream->parcels[place];
         if (parcel.launched == components::kJetNever) continue;
@@ -337,7 +335,6 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
             const bool swept = ray.version == geometry_;
             saved.swept.push_back(swept ? 1 : 0);
             if (!swept) ray.hit = {};  // it is sought anew, and may be of what is gone
-            if (!objects_.find(ray.hit.object)) ray.hit.object = {};
         }
     }
 }
@@ -362,7 +359,8 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
     bool whole = readback.frameIndex == save.frameIndex;
     for (const SavedObject& object : saved.objects) {
         touched += object.touched ? 1 : 0;
-        whole = whole && object.slot < objects_.slotCount() && objects_.at(object.slot);
+        const auto* now = object.slot < objects_.slotCount() ? objects_.at(object.slot) : nullptr;
+        whole = whole && now && (*now)->firstFrame <= save.frameIndex;
     }
     // What came is of less than was noted: objects went since. The next frame tries again.
     if (!whole || touched != readback.images.size()) {
@@ -387,7 +385,11 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
     noteEvents(save);
     size_t next = 0, from = 0;
     for (SavedObject& object : saved.objects) {
-        if (!object.touched) continue;
+        if (!object.touched) {
+            if (object.slot < readback.objects.size())
+                object.air = readback.objects[object.slot].air;
+            continue;
+        }
         const gpu::ObjectImage& image = readback.images[next];
         if (image.object != object.slot) {
             save.wished = true;
@@ -406,6 +408,7 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
             !gpu::playsAt(image.counters.playsUntil, uint32_t(saved.clock.tick)))
             object.play = {};
         object.story = (*objects_.at(object.slot))->story;
+        object.carried = (*objects_.at(object.slot))->carried;
     }
     for (SavedRoom& room : saved.rooms)  // its air goes on from what the frame left
         if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.epoch) {
@@ -413,9 +416,26 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
             room.oxygen = air.oxygen;
             room.power = air.power;
             room.flash = air.flash;
+            room.drawn = air.drawn;
+            room.stirs = air.stirs;
         }
+    saved.steps = steps_;
+    saved.idle = seenIdle_;
+    saved.lastStimulus = seenStimulus_;
+    saved.roomsStirred = seenRoomsStirred_;
+    saved.stats = {frontTiles_, burningTiles_, hotTiles_, receivers_, lateClamps_};
     writeSaved(saved, save.bytes);
     save.ready = true;
+}
+
+// A tag that the readback of a frame says is reached: its event is in the save, it is not.
+void World::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept {
+    if (frameIndex > save.frameIndex) return;
+    std::pmr::vector<SavedTag>& tags = save.saved.tags;
+    const auto same = std::find_if(tags.begin(), tags.end(), [&](const SavedTag& one) {
+        return one.object == tag.object.index1 - 1 && one.texel == tag.texel && one.tag == tag.tag;
+    });
+    if (same != tags.end()) tags.erase(same);
 }
 
 // What the host had not polled at the save's frame, and what came of that frame since.
@@ -467,8 +487,10 @@ void World::checkSaved(const SavedWorld& saved) {
                        double(value), double(-fire::kMostWind), double(fire::kMostWind));
     for (const double metres : saved.origin)
         if (!(std::abs(metres) <= 1e9) || metres != std::floor(metres))
-            core::fail(FW_ERROR_BAD_DATA, "The save's origin has moved by %g m; it moves by whole "
-                       "metres, to +-1e9 m.", metres);
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save's origin has moved by %g m; it moves by whole "
+                       "metres, to +-1e9 m.",
+                       metres);
     if ((saved.flags & ~kWorldFlags) != 0)
         core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
                    saved.flags, kWorldFlags);
@@ -532,6 +554,15 @@ void World::checkSaved(const SavedWorld& saved) {
         checkTexel(pair.slots[0], 0, "a contact");
         checkTexel(pair.slots[1], 0, "a contact");
     }
+    uint64_t before = 0;
+    for (const SavedSeen& seen : saved.seen) {
+        checkTexel(seen.slots[0], 0, "what is seen");
+        checkTexel(seen.slots[1], 0, "what is seen");
+        const uint64_t pair = (uint64_t(seen.slots[0]) << 32 | seen.slots[1]) + 1;
+        if (pair <= before || seen.part > 255)
+            core::fail(FW_ERROR_BAD_DATA, "The save has sights of objects that none can be.");
+        before = pair;
+    }
     if (saved.events.size() > kMostSavedEvents)
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu events; the limit is %u.",
                    saved.events.size(), kMostSavedEvents);
@@ -582,12 +613,13 @@ void World::checkSaved(const SavedWorld& saved) {
         for (const SavedTouch& touch : touches)
             if (touch.object1 != 0) checkTexel(touch.object1 - 1, 0, "a flame");
     };
-    const auto checkPlace = [](const float(&place)[3], const char* what) {
+    const auto checkPlace = [](const float(&place)[3], const char* what, float most = 1e6f) {
         for (const float value : place)
-            if (!(std::abs(value) <= 1e6f))
-                core::fail(FW_ERROR_BAD_DATA, "The save has %s at %g m; the limits are +-1e6.",
-                           what, double(value));
+            if (!(std::abs(value) <= most))
+                core::fail(FW_ERROR_BAD_DATA, "The save has %s at %g m; the limits are +-%g.", what,
+                           double(value), double(most));
     };
+    constexpr float kReached = 4e6f;  // m: a jet, or a mesh, reaches beyond where it stands
     for (const SavedFire& fire : saved.fires) {
         const auto* mine = fire.slot < fires_.slotCount() ? fires_.at(fire.slot) : nullptr;
         if (!mine || ((*mine)->data.flags & FW_FIRE_IGNITES) != fire.flags)
@@ -599,6 +631,14 @@ void World::checkSaved(const SavedWorld& saved) {
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has a volumetric fire of %g kW; the limits are [0, %g].",
                        double(fire.power), double(components::kMostPower));
+        for (uint32_t i = 0; i < fire.pointCount; ++i) {
+            const volume::ControlPoint& point = fire.points[i];
+            checkPlace({point.position.x, point.position.y, point.position.z}, "a fire's point");
+            if (!(point.radius >= 0 && point.radius <= 100))
+                core::fail(FW_ERROR_BAD_DATA,
+                           "The save has a fire's point of radius %g m; the limits are [0, 100].",
+                           double(point.radius));
+        }
         checkTouches(fire.touches);
     }
     for (const SavedEmitter& emitter : saved.emitters) {
@@ -619,7 +659,7 @@ void World::checkSaved(const SavedWorld& saved) {
         checkTouches(emitter.touches);
         for (const components::JetPatch& patch : emitter.patches) {
             if (patch.left == 0) continue;
-            checkPlace(patch.place, "fuel that sticks");
+            checkPlace(patch.place, "fuel that sticks", kReached);
             checkPlace(patch.normal, "fuel that sticks");
             if (patch.fuel > components::kPatchMost || patch.water > components::kPatchMost)
                 core::fail(FW_ERROR_BAD_DATA, "The save has fuel that sticks and is too much.");
@@ -633,7 +673,7 @@ void World::checkSaved(const SavedWorld& saved) {
                 core::fail(FW_ERROR_BAD_DATA, "The save has a jet's stream that none can be.");
             for (const components::JetRay& ray : parcel.rays) {
                 checkPlace(ray.way, "a ray");
-                checkPlace(ray.hit.place, "a ray");
+                checkPlace(ray.hit.place, "a ray", kReached);
                 checkPlace(ray.hit.normal, "a ray");
                 if (!(std::abs(ray.hit.distance) <= 1e6f))
                     core::fail(FW_ERROR_BAD_DATA, "The save has a ray that none can be.");
@@ -704,6 +744,12 @@ void World::load(std::span<const std::byte> bytes) {
     PlaneScratch scratch(memory_);
     for (const SavedObject& from : saved.objects) {
         const SavedRecords made = recordsOf(saved, from, latches.emplace_back());
+        if (!from.touched && from.air != 0) {
+            gpu::RestoredObject& one = restored.emplace_back();
+            one.image.object = from.slot;
+            one.image.counters.air = from.air;
+            one.rests = true;
+        }
         if (!from.touched) continue;
         ImageStore& store = stores.emplace_back(memory_);
         readImage(from.planes, domainOf(**objects_.at(from.slot)), uint32_t(saved.clock.tick),
@@ -724,6 +770,7 @@ void World::load(std::span<const std::byte> bytes) {
         one.substepShift = made.records.timing.substepShift;
     }
     remote_.pairs.reserve(saved.pairs.size());
+    remote_.loadedSeen.reserve(saved.seen.size());
     std::pmr::vector<Tag> tags(memory_);
     for (const SavedTag& tag : saved.tags)
         tags.push_back({objects_.idOf(tag.object), tag.texel, tag.tag});
@@ -743,6 +790,13 @@ void World::load(std::span<const std::byte> bytes) {
     for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - origin_[i];
     shiftBy(by);
     shiftCount_ = 0;
+    loadedFront_ = saved.stats.frontTiles;
+    loadedHot_ = saved.stats.hotTiles;
+    for (const ImageStore& store : stores)
+        for (const gpu::TileState& tile : store.tiles) {
+            loadedFront_ -= (tile.flag & gpu::kTileListed) != 0 && loadedFront_ > 0 ? 1u : 0u;
+            loadedHot_ -= (tile.flag & gpu::kTileHot) != 0 && loadedHot_ > 0 ? 1u : 0u;
+        }
     windGrid_.shape = saved.windGrid.shape;
     windGrid_.points.swap(saved.windGrid.points);
     shield_.grid.shape = saved.heatShield.shape;
@@ -761,6 +815,7 @@ void World::load(std::span<const std::byte> bytes) {
     }
     tags_.swap(tags);
     pending_.swap(saved.pending);
+    carriesUntil_ = 0;
     settleCarries();
     for (SavedField& field : saved.fields)
         if (field.wets) (*fields_.at(field.slot))->cells->cells.swap(field.cells);
@@ -778,14 +833,17 @@ void World::applySaved(const SavedWorld& saved,
     listWindZones();
     windKept_ = true;  // objects find theirs below, one by one
     windTurns();
+    gustsShown_ = saved.gustsShown;
     roomsMet_ = !saved.rooms.empty();
     for (const SavedRoom& from : saved.rooms) {
         RoomEntry& entry = *rooms_.at(from.slot);
         entry.room = from.room;
         fillRoom(entry, from.oxygen, from.power, from.flash);
+        entry.air.drawn = from.drawn;
+        entry.air.stirs = from.stirs;
         sendRoom(from.slot);
     }
-    stirRooms();
+    roomsStirred_ = seenRoomsStirred_ = saved.roomsStirred;
     remote_.flags = saved.flags & kWaysOfFire;
     remote_.objectFlags = saved.flags & ~kWaysOfFire;
     remote_.warms = saved.warms;
@@ -821,8 +879,16 @@ void World::applySaved(const SavedWorld& saved,
               event.other1 != 0 ? objects_.idOf(event.other1 - 1) : FwBurnableMeshId{});
     readbackTick_ = clock_.tick;
     // Awake it would see the wind from here on, and not from where its first fire begins.
-    idle_ = saved.idle;
-    lastStimulus_ = saved.lastStimulus;
+    idle_ = seenIdle_ = saved.idle;
+    lastStimulus_ = seenStimulus_ = saved.lastStimulus;
+    stimuli_.clear();
+    frameNotes_.clear();
+    frontTiles_ = saved.stats.frontTiles;
+    runTiles_ = 0;
+    burningTiles_ = loadedBurning_ = saved.stats.burningTiles;
+    hotTiles_ = saved.stats.hotTiles;
+    receivers_ = loadedReceivers_ = saved.stats.receivers;
+    lateClamps_ = saved.stats.lateClamps;
     // Who is where.
     remote_.unsent = true;
     remote_.blockersDue = saved.blockersDue;
@@ -847,15 +913,26 @@ void World::applySaved(const SavedWorld& saved,
         pair.touches = true;
         remote_.pairs.push_back(pair);
     }
+    remote_.loadedSeen.clear();
+    for (const SavedSeen& from : saved.seen)
+        remote_.loadedSeen.push_back({{from.slots[0], from.slots[1]}, from.part});
     const auto idOf = [&](uint32_t plus1) {
         return plus1 != 0 ? objects_.idOf(plus1 - 1) : FwBurnableMeshId{};
     };
     for (const SavedFire& from : saved.fires) {
         Fire& fire = **fires_.at(from.slot);
-        if (!std::equal(from.position, from.position + 3, fire.data.position) ||
+        const auto same = [](const volume::ControlPoint& a, const volume::ControlPoint& b) {
+            return a.position == b.position && a.radius == b.radius;
+        };
+        const bool led = from.pointCount == fire.data.pointCount &&
+                         std::equal(from.points.begin(), from.points.begin() + from.pointCount,
+                                    fire.data.points.begin(), same);
+        if (!led || !std::equal(from.position, from.position + 3, fire.data.position) ||
             from.power != fire.data.power) {  // as if it had always burnt so
             burning_.drop(fire.data);
             fire.data.state = {};
+            fire.data.points = from.points;
+            fire.data.pointCount = from.pointCount;
             components::setFirePosition(fire.data, from.position);
             components::setFirePower(fire.data, from.power);
             foresee(fire.data);
@@ -893,12 +970,12 @@ void World::applySaved(const SavedWorld& saved,
 void World::applyObject(const SavedObject& from, const components::Latch& latch,
                         Object& object) noexcept {
     object.data.pose = from.pose;
-    object.zoneWind = zoneWindOf(object, clock_.tick);
+    object.zoneWind = from.zoneWind;
     backend_.setObjectWind(object.slot, object.zoneWind);
     placeNow(object);
     object.restsUnder = 0;
     object.room1 = roomOf(object);
-    roomsMet_ |= from.counters.air != 0;
+    roomsMet_ |= (from.touched ? from.counters.air : from.air) != 0;
     sendPose(object);
     object.latch = latch;
     object.firstEvent = from.firstEvent;
@@ -943,6 +1020,10 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
                                                meshes_.at(object.data.meshSlot)->texelsOf);
     }
     object.story = from.story;
+    object.carried = from.carried;
+    object.carryEnd = 0;  // what the save carries is settled with its events
+    object.stimuli = 0;
+    object.ignites = false;
     object.counters = from.counters;
     if (!from.touched) return;
     touched_.push_back(&object);

@@ -16,6 +16,8 @@ struct SavedTouch {        // of a fire or a jet
 struct SavedFire {
     uint32_t slot = 0, flags = 0;
     float position[3] = {}, power = 0;
+    uint32_t pointCount = 0;
+    std::array<volume::ControlPoint, volume::kMaxControlPoints> points{};
     std::array<SavedTouch, 8> touches{};
 };
 
@@ -69,7 +71,7 @@ struct SavedRoom {
     uint32_t slot = 0;
     components::Room room;
     uint32_t oxygen = 0;  // of its air, as power and flash
-    uint32_t power = 0, flash = 0;
+    uint32_t power = 0, flash = 0, drawn = 0, stirs = 0;
     uint32_t epoch = 0;  // which beginning's; not in files
 };
 
@@ -94,6 +96,15 @@ struct SavedPair {  // that touch, since when
     uint32_t slots[2] = {}, since = 0;
 };
 
+struct SavedSeen {  // what the host said of a pair, see Seen
+    uint32_t slots[2] = {}, part = 0;
+};
+
+struct SavedStats {  // as of the readback
+    uint32_t frontTiles = 0, burningTiles = 0, hotTiles = 0, receivers = 0;
+    uint32_t lateClamps = 0;
+};
+
 struct SavedObject {
     uint32_t slot = 0;
     uint64_t asset = 0;  // of its mesh, materials and rules
@@ -101,9 +112,12 @@ struct SavedObject {
     uint32_t firstEvent = 0;
     Play play;
     uint64_t burnHash = 0;
+    uint32_t zoneWind = 0;             // that zones and gusts add where it is, packed
     bool placed = false, due = false;  // as others see it; it is to be seen anew
     gpu::RemoteObject remote{};        // where it is due; else its wind alone
-    bool touched = false;              // the rest is of those alone
+    bool touched = false;
+    uint32_t air = 0;      // of its room, if it is not touched; the rest is of those
+    bool carried = false;  // another's burn, which its power does not count yet
     std::array<fire::WindFilter, components::kMaterials> filters{};
     components::Pose latched;
     Story story;  // as of its last readback
@@ -121,6 +135,7 @@ struct SavedWorld {
           pending(memory),
           tags(memory),
           pairs(memory),
+          seen(memory),
           blockers(memory),
           latchedBlockers(memory),
           windZones(memory),
@@ -146,10 +161,14 @@ struct SavedWorld {
     uint64_t fades = 0;
     bool idle = true;  // nothing burns, and nobody has to hear of who moves
     uint64_t lastStimulus = 0;
+    uint64_t gustsShown = 0;    // tick of the gusts that objects keep
+    uint64_t roomsStirred = 0;  // tick
+    SavedStats stats;
     std::pmr::vector<SavedObject> objects;
     std::pmr::vector<PendingTexel> pending;
     std::pmr::vector<SavedTag> tags;
     std::pmr::vector<SavedPair> pairs;
+    std::pmr::vector<SavedSeen> seen;
     std::pmr::vector<SavedBlocker> blockers;
     std::pmr::vector<gpu::Blocker> latchedBlockers;
     std::pmr::vector<SavedWindZone> windZones;
@@ -208,7 +227,7 @@ struct Save {  // on its way, and the last one
 
 // The whole file: a header, and what it sums up.
 constexpr uint32_t kSaveVersion = 8;
-constexpr uint32_t kMostSavedEvents = 256;
+constexpr uint32_t kMostSavedEvents = EventQueue::kCapacity;
 void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
 void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
 

@@ -62,6 +62,10 @@ template <typename S, Is<SavedTag> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedPair> T>
 void put(S& s, T& value);
+template <typename S, Is<SavedSeen> T>
+void put(S& s, T& value);
+template <typename S, Is<SavedStats> T>
+void put(S& s, T& value);
 template <typename S, Is<SavedEvent> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedBreaks> T>
@@ -180,6 +184,14 @@ template <typename S, Is<SavedPair> T>
 void put(S& s, T& p) {
     all(s, p.slots, p.since);
 }
+template <typename S, Is<SavedSeen> T>
+void put(S& s, T& seen) {
+    all(s, seen.slots, seen.part);
+}
+template <typename S, Is<SavedStats> T>
+void put(S& s, T& t) {
+    all(s, t.frontTiles, t.burningTiles, t.hotTiles, t.receivers, t.lateClamps);
+}
 template <typename S, Is<SavedBlocker> T>
 void put(S& s, T& b) {
     all(s, b.slot, b.pose, b.halfSize);
@@ -291,17 +303,26 @@ void put(S& s, T& g) {
 template <typename S, Is<SavedRoom> T>
 void put(S& s, T& r) {
     all(s, r.slot, r.room.middle, r.room.half, r.room.axes, r.room.volume, r.room.vent,
-        r.room.oxygen, r.oxygen, r.power, r.flash);
+        r.room.oxygen, r.oxygen, r.power, r.flash, r.drawn, r.stirs);
 }
 template <typename S, Is<SavedFire> T>
 void put(S& s, T& f) {
-    all(s, f.slot, f.flags, f.position, f.power, f.touches);
+    all(s, f.slot, f.flags, f.position, f.power, f.touches, f.pointCount);
+    if constexpr (S::kReads)
+        if (f.pointCount == 1 || f.pointCount > volume::kMaxControlPoints)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "Volumetric fire %u of the save has %u points; it has 0 or [2, %u].",
+                       f.slot + 1, f.pointCount, volume::kMaxControlPoints);
+    for (uint32_t i = 0; i < f.pointCount; ++i)
+        all(s, f.points[i].position.x, f.points[i].position.y, f.points[i].position.z,
+            f.points[i].radius);
 }
 template <typename S, Is<Story> T>
 void put(S& s, T& o) {
     all(s, o.active, o.sawFire, o.ignitionKnown, o.lastStimulus, o.lastDouse, o.douseCause,
-        o.flames, o.wentOut, o.halvedUntil, o.outCause, o.lastBurning, o.firstIgnition, o.ignitionPoint, o.litTold, o.spotsTold, o.mostIgnited,
-        o.clampsTold, o.energy, o.heatSteps, o.power);
+        o.flames, o.wentOut, o.halvedUntil, o.outCause, o.lastBurning, o.firstIgnition,
+        o.ignitionPoint, o.litTold, o.spotsTold, o.mostIgnited, o.clampsTold, o.energy, o.heatSteps,
+        o.power);
 }
 template <typename S, Is<SavedEvent> T>
 void put(S& s, T& e) {
@@ -325,13 +346,16 @@ void put(S& s, T& b) {
 }
 template <typename S, Is<SavedObject> T>
 void put(S& s, T& o) {
-    all(s, o.slot, o.asset, o.pose, o.firstEvent, o.play.burn1, o.placed, o.due);
+    all(s, o.slot, o.asset, o.pose, o.firstEvent, o.play.burn1, o.zoneWind, o.placed, o.due);
     if (o.play.burn1 != 0) all(s, o.burnHash, o.play.first, o.play.rate, o.play.began, o.play.ends);
     if (o.placed && o.due) putWords(s, o.remote);
     if (o.placed && !o.due) put(s, o.remote.high.w);
     all(s, o.touched);
-    if (!o.touched) return;
-    all(s, o.filters, o.latched, o.story);
+    if (!o.touched) {
+        put(s, o.air);
+        return;
+    }
+    all(s, o.carried, o.filters, o.latched, o.story);
     putWords(s, o.counters);
     all(s, o.asksBreaks);
     if (o.asksBreaks) put(s, o.breaks);
@@ -404,11 +428,13 @@ template <typename S, Is<SavedWorld> T>
 void put(S& s, T& w) {
     all(s, w.pace, w.up, w.spreadChance, w.timeToLive, w.seed, w.maxHops, w.maxBurningTiles);
     all(s, w.clock.tick, w.clock.fraction, w.steps, w.droppedSteps, w.order, w.wind, w.flags,
-        w.warms, w.blockersDue, w.fades, w.idle, w.lastStimulus);
+        w.warms, w.blockersDue, w.fades, w.idle, w.lastStimulus, w.gustsShown, w.roomsStirred,
+        w.stats);
     list(s, w.objects, "burnable meshes", 64);
     list(s, w.pending, "events that wait", 32);
     list(s, w.tags, "tags", 12);
     list(s, w.pairs, "pairs that touch", 12);
+    list(s, w.seen, "pairs whose sight is known", 12);
     list(s, w.blockers, "blockers", 64);
     list(s, w.latchedBlockers, "latched blockers", 64);
     put(s, w.windGrid);
@@ -416,8 +442,8 @@ void put(S& s, T& w) {
     put(s, w.gusts);
     put(s, w.origin);
     list(s, w.windZones, "wind zones", 108);
-    list(s, w.rooms, "rooms", 156);
-    list(s, w.fires, "volumetric fires", 24);
+    list(s, w.rooms, "rooms", 164);
+    list(s, w.fires, "volumetric fires", 28);
     list(s, w.emitters, "fire emitters", 36);
     list(s, w.fields, "particle fields", 53);
     list(s, w.events, "events", 32);
@@ -599,8 +625,10 @@ void readSaved(std::span<const std::byte> bytes, SavedWorld& saved) {
                    magic, kMagic);
     if (version != kSaveVersion)
         core::fail(FW_ERROR_BAD_DATA,
-                   "The save has format version %u; this library reads version %u.", version,
-                   kSaveVersion);
+                   "The save has format version %u; this library reads version %u alone. %s",
+                   version, kSaveVersion,
+                   version < kSaveVersion ? "Load it with the older library that wrote it."
+                                          : "Load it with the newer library that wrote it.");
     const auto content = bytes.subspan(kHeaderBytes);
     if (size != content.size())
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu bytes of content; its header says %llu.",

@@ -61,6 +61,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
         planTimeline(time.after.tick);
         planSave();
         planBreaks(time.after.tick);
+        reserveStimuli();
     } catch (...) {
         pending_.resize(waiting);
         throw;
@@ -70,7 +71,8 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     planFields(time);
 
     // Nothing listed, nothing new: time passes without the device.
-    const bool skip = idle_ && roomsRest() && frame_.events.empty() && frame_.updates.empty() &&
+    const bool skip = idle_ && roomsRest(roomsStirred_) && frame_.events.empty() &&
+                      frame_.updates.empty() &&
                       !(switches_ & (FW_DEBUG_NEVER_IDLE | FW_DEBUG_DENSE));
     gpu::FramePlan plan;
     plan.frameIndex = frameIndex;
@@ -92,7 +94,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
     if (!(budget_.bytes > 0)) plan.detail.memory = 1;
     backend_.run(plan);
 
-    commitFrame(frameIndex, time, !skip);
+    commitFrame(frameIndex, time);
     commitEmitters(deltaTime);
     followLights(deltaTime);
     commitSave(frameIndex);
@@ -175,7 +177,7 @@ void World::planSteps(const ClockAdvance& time) {
     for (const Object* object : touched_)
         if (others) shift = std::max(shift, object->latch.substepShift);
     for (const Frame::LatchOf& entry : frame_.latches)
-        if (others || entry.object->story.active || entry.due)
+        if (others || isActive(*entry.object) || entry.due)
             shift = std::max({shift, entry.latch.substepShift, entry.object->latch.substepShift});
     for (uint32_t step = 0; step < time.steps; ++step) {
         frame_.steps[step].substepShift = shift;
@@ -281,7 +283,7 @@ void World::planProbes() {
             frame_.burnMaps.push_back(i);  // the others wait for the next frame
 }
 
-void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept {
+void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time) noexcept {
     ProbeFrame& known = probeFrames_[frames_ % kFramesInFlight];
     known.frameIndex = frameIndex;
     for (const ProbeRef& ref : known.refs)
@@ -297,7 +299,9 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
         Object& object = *entry.object;
         if (object.touched) continue;  // room for every object was found at its creation
         object.touched = true;
-        object.story.heatSteps = heatStepsBefore(clock_.tick);
+        Stimulus& stimulus = stimulusOf(object, frameIndex);
+        stimulus.first = true;
+        stimulus.heatSteps = heatStepsBefore(clock_.tick);
         touched_.push_back(&object);
     }
     if (touched_.size() != touchedBefore)
@@ -307,24 +311,22 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     for (const Frame::Due& due : frame_.due) {
         Object& object = **objects_.at(due.event.object);
         ++object.changes;
-        object.story.active = true;
-        object.story.lastStimulus = std::max<uint64_t>(object.story.lastStimulus, due.event.tick);
+        Stimulus& stimulus = stimulusOf(object, frameIndex);
+        stimulus.starts = true;
+        stimulus.latest = std::max<uint64_t>(stimulus.latest, due.event.tick);
         if (due.event.kind == FW_IGNITE) {
-            if (!object.story.ignitionKnown && !object.story.sawFire) {
-                object.story.ignitionKnown = true;
-                object.story.firstIgnition = due.event.tick;
-                const uint32_t texel =
-                    due.event.texel == kAllTexels ? firstReal(domainOf(object)) : due.event.texel;
-                texelPlace(object, texel, object.story.ignitionPoint);
-                backend_.startBoundary(object.slot, object.story.ignitionPoint, due.event.tick);
-            }
+            const uint32_t texel =
+                due.event.texel == kAllTexels ? firstReal(domainOf(object)) : due.event.texel;
+            noteIgnition(object, stimulus, texel, due.event.tick);
         } else if (due.event.kind == FW_WET || due.event.kind == FW_EXTINGUISH) {
-            object.story.lastDouse = due.event.tick;
-            object.story.douseCause =
+            stimulus.douses = true;
+            stimulus.douse = due.event.tick;
+            stimulus.douseCause =
                 due.event.kind == FW_WET ? FW_EXTINGUISHED_BY_WATER : FW_EXTINGUISHED_BY_CALL;
         }
     }
     commitPlays(frameIndex);
+    commitStimuli(time, frameIndex);
     commitBreaks(frameIndex);
     for (uint32_t slot : frame_.burnMaps) {
         Object& object = **objects_.at(slot);
@@ -341,12 +343,10 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     }
     const uint64_t end = time.after.tick;
     std::erase_if(pending_, [&](const PendingTexel& p) { return p.tick < end; });
-    if (!frame_.events.empty() || !frame_.updates.empty()) {
+    if (!frame_.events.empty()) {
         idle_ = false;
         lastStimulus_ = end;
     }
-    for (const gpu::MaterialUpdate& update : frame_.updates)
-        (*objects_.at(update.object))->story.lastStimulus = end;
     if (clock_.tick < Clock::kWarnTick && time.after.tick >= Clock::kWarnTick)
         log_.write(FW_LOG_WARNING, "A world has a day left: it simulates at most %llu s.",
                    static_cast<unsigned long long>(Clock::kLastTick / 4096));
@@ -355,7 +355,6 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran)
     const uint64_t before = clock_.tick;
     clock_ = time.after;
     commitTimeline(before);
-    if (ran) steps_ += time.steps;
     lastFrame_ = frameIndex;
     countMemory();
     ++frames_;

@@ -155,6 +155,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
       events_(memory),
       probeFrames_(memory),
       frame_(memory),
+      stimuli_(memory),
+      frameNotes_(memory),
       lights_(memory),
       lightsBefore_(memory),
       shownLights_(memory),
@@ -165,8 +167,8 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
     std::copy_n(def_.wind, 3, wind_);
     setFlags(def_.flags);
     remote_.governance = {def_.spreadChance, def_.maxHops, def_.maxBurningTiles, def_.timeToLive};
-    remote_.capped = def_.maxBurningTiles != 0;
-    remote_.governed = remote_.capped || def_.timeToLive > 0;
+    remote_.capped = components::caps(remote_.governance);
+    remote_.governed = components::governs(remote_.governance);
     frame_.steps.reserve(kMaxSteps);
     lights_.reserve(components::kMostLights);
     lightsBefore_.reserve(components::kMostLights);
@@ -491,8 +493,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     object.latch.sent = true;  // it was created with these records
     ++mesh.users;
     remote_.due.push_back(object.slot);  // room was found above
-    remote_.capped |= object.governance.tilesMost != 0;
-    remote_.governed |= remote_.capped || object.governance.life > 0;
+    countGoverned(object, true);
     texels_ += burnable;
     countFuel(object, true);
     object.memoryBytes = sizeof(Object) + object.slowness.capacity() * sizeof(uint16_t) +
@@ -598,6 +599,9 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
     std::erase(forecasts_, slot);
     places_.remove(slot);
     forgetRemote(object);
+    std::erase_if(stimuli_, [&](const Stimulus& one) { return one.slot == slot; });
+    forgetTouches(id);
+    countGoverned(object, false);
     dropFromShield(slot);
     texels_ -= object.texels;
     countFuel(object, false);

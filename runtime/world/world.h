@@ -104,19 +104,44 @@ struct Breaks {
     uint32_t lookCount = 0;
 };
 
-// What happened to an object's fire, and what of it the host was told. In ticks.
+// What a frame did to an object's fire. The object's Story takes it with the readback of that
+// frame, so that events and saves are alike however late readbacks come.
+struct Stimulus {
+    uint64_t frameIndex = 0;
+    uint32_t slot = 0;
+    bool first = false;   // the first that ever addressed the object
+    bool starts = false;  // its front or flames may move
+    bool ignites = false, douses = false;
+    uint64_t heatSteps = 0;  // of `first`: steps of heat before it
+    uint64_t latest = 0;     // of `starts`: tick of the last event
+    uint64_t ignition = 0;   // of `ignites`: tick, and m in object space
+    float ignitionPoint[3] = {};
+    uint64_t douse = 0;       // of `douses`: tick
+    uint32_t douseCause = 0;  // FwExtinguishCause of that
+};
+
+// A frame whose readback is on its way, as the count of steps and sleep follow from it.
+struct FrameNote {
+    uint64_t frameIndex = 0, end = 0;  // tick
+    uint64_t roomsStirred = 0;         // tick
+    uint32_t steps = 0;
+    bool stirs = false;  // some event came
+    bool never = false;  // it may not sleep
+};
+
+// What happened to an object's fire, and what of it the host was told, as of a readback. In ticks.
 struct Story {
     bool active = false;   // its front or flames may still move
     bool sawFire = false;  // since the last IGNITED
     bool ignitionKnown = false;
-    uint64_t lastStimulus = 0;    // tick of the last event or latch sent
-    uint64_t lastDouse = 0;       // tick, 0: never
-    uint32_t douseCause = 0;      // FwExtinguishCause of that
+    uint64_t lastStimulus = 0;  // tick of the last event
+    uint64_t lastDouse = 0;     // tick, 0: never
+    uint32_t douseCause = 0;    // FwExtinguishCause of that
     // How it ends: flames as they are at most, and texels that went out with fuel left. Both halve
     // with each second of the fire, so that its last flames decide.
     uint32_t flames = 0, wentOut = 0;
-    uint64_t halvedUntil = 0;  // tick
-    uint32_t outCause = 0;     // FwExtinguishCause of the last that went out
+    uint64_t halvedUntil = 0;     // tick
+    uint32_t outCause = 0;        // FwExtinguishCause of the last that went out
     uint64_t lastBurning = 0;     // tick of the last readback with burning texels
     uint64_t firstIgnition = 0;   // tick of the ignition that started this fire
     float ignitionPoint[3] = {};  // m, object space
@@ -144,6 +169,9 @@ struct Object {
     bool touched = false;                 // an event ever addressed it: it filters wind and latches
     uint32_t firstEvent = 0xFFFFFFFFu;    // tick of the first event ever
     Story story;
+    uint32_t stimuli = 0;               // of World::stimuli_ that it has
+    uint32_t stimulusAt = mesh::kNone;  // of those, the one of the frame that is committed
+    bool ignites = false;               // some of those ignite it
     // Fire at a distance: as others see it, latched every kRemoteLatchTicks.
     components::Governance governance;
     gpu::RemoteObject remote{};
@@ -169,14 +197,14 @@ struct Object {
     // it was given counts as no power of its own.
     uint32_t carryEnd = 0;  // tick
     bool carried = false;
-    Play play;                       // the baked burn that it plays
+    Play play;  // the baked burn that it plays
     // Of a skinned object: the host's vertices, m, in its mesh's shape; 3 each. Normals are
     // scratch.
     std::pmr::vector<float> skin, skinNormals;
     bool skinMoved = false;  // else they are at rest
 };
 
-struct StateCopy {  // of the object in a slot
+struct StateCopy {            // of the object in a slot
     uint32_t generation = 0;  // of it; where there is none: of the next one there
     bool live = false;
     bool touched = false;  // its fire may change; else frameIndex is that of the last readback
@@ -281,6 +309,11 @@ struct CloseObject {
     uint32_t pair = 0;  // of RemoteBook::pairs
 };
 
+struct Seen {  // what the host said that a fire of slots[1] sees of slots[0]
+    uint32_t slots[2] = {};
+    uint32_t part = 255;  // of 255
+};
+
 // What the frame plans of who is where. Kept across frames, so that what did not move is not sought
 // again; a frame that fails leaves it stale at worst, and the next one sends it once more.
 struct RemoteBook {
@@ -288,6 +321,7 @@ struct RemoteBook {
         : due(memory),
           unsentSlots(memory),
           neighbours(memory),
+          loadedSeen(memory),
           waiting(memory),
           contactsDue(memory),
           seenDue(memory),
@@ -311,7 +345,8 @@ struct RemoteBook {
     components::Governance governance;
     bool governed = false;  // some object or the world limits its fire
     bool capped = false;    // and how many tiles may burn
-    bool unsent = false;    // the backend does not know the latest
+    uint32_t governedObjects = 0, cappedObjects = 0;
+    bool unsent = false;  // the backend does not know the latest
     bool blockersDue = false;
     bool warms = false;                      // flags ever let fire shine or blow on others
     uint64_t fades = 0;                      // tick until which what they received is taken back
@@ -319,6 +354,7 @@ struct RemoteBook {
     std::pmr::vector<uint32_t> unsentSlots;  // whose records the backend does not have
     uint32_t version = 0;                    // of the last latched object
     Neighbours neighbours;                   // of latched boxes
+    std::pmr::vector<Seen> loadedSeen;       // of a save, by slots, until the lists are rebuilt
     bool rebuild = false;                    // all but `pairs` is of another world
     // Placed objects that no event ever touched, and some that one did since; and whether the
     // neighbours of all touched objects have been touched, but for `neighbours.changed()`.
@@ -394,6 +430,7 @@ void checkWorldDef(const FwWorldDef& def);  // throws
 struct SavedWorld;
 struct SavedObject;
 struct SavedEmitter;
+struct SavedSeen;
 struct SavedRecords;
 struct SavedBreaks;
 struct ImageStore;
@@ -643,6 +680,7 @@ class World {
             Object* object = nullptr;
             Play play;                   // as it is at the frame's end
             uint32_t lit = mesh::kNone;  // the first texel that catches by it
+            uint32_t ended = 0;          // tick at which it went live
         };
         std::pmr::vector<gpu::StepPlan> steps;
         std::pmr::vector<Due> due;
@@ -681,7 +719,7 @@ class World {
     void planSteps(const ClockAdvance& time);
     void sortDue();
     void planProbes();
-    void commitFrame(uint64_t frameIndex, const ClockAdvance& time, bool ran) noexcept;
+    void commitFrame(uint64_t frameIndex, const ClockAdvance& time) noexcept;
     // fires.cpp
     void findFireRoom(uint32_t more);
     void foresee(components::VolumetricFire& fire) noexcept;
@@ -754,6 +792,7 @@ class World {
     // fire_touch.cpp
     void touchByFires(uint64_t end);  // events up to a tick
     void touchByFire(Fire& fire, uint32_t now);
+    void forgetTouches(FwBurnableMeshId id) noexcept;  // of an object that goes
     // field_touch.cpp
     void stepCells(Field& field, uint64_t tick) noexcept;
     void touchByField(Field& field, uint32_t now);
@@ -761,7 +800,7 @@ class World {
     void playBurnAt(FwBurnableMeshId id, FwBurnId burn, uint32_t tick, float speed);
     void reservePlays(size_t more);
     void startPlay(Object& object) noexcept;
-    void endPlay(Object& object, uint64_t frameIndex) noexcept;
+    void endPlay(Object& object, uint64_t frameIndex, uint32_t tick) noexcept;
     size_t beginPlays(uint64_t end);
     void planPlays(uint32_t now, std::span<const Frame::Due> due);
     void turnPlay(const Object& object) noexcept;
@@ -805,7 +844,7 @@ class World {
     void settleWind() noexcept;
     void takeZoneWind(Object& object) noexcept;
     // rooms.cpp
-    [[nodiscard]] bool roomsRest() const noexcept;
+    [[nodiscard]] bool roomsRest(uint64_t stirred) const noexcept;
     void stirRooms() noexcept;
     [[nodiscard]] uint32_t roomOf(const Object& object) const noexcept;
     void roomTurns(const components::Room& room) noexcept;
@@ -839,10 +878,23 @@ class World {
     void linkPair(const Object& to, const Object& from, uint32_t since,
                   std::pmr::vector<gpu::ContactLink>& out);
     void commitRemote() noexcept;
+    void countGoverned(const Object& object, bool more) noexcept;
+    void noteSeen(std::pmr::vector<SavedSeen>& to) const;
+    void seeAsLoaded();
     void tellSpread(Object& object, const gpu::Readback& readback) noexcept;
     // events.cpp
     void collectReadbacks();  // throws std::bad_alloc; the readback then stays with the backend
     void takeCounters(const gpu::Readback& readback) noexcept;
+    void reserveStimuli();
+    Stimulus& stimulusOf(Object& object, uint64_t frameIndex) noexcept;
+    void noteIgnition(Object& object, Stimulus& stimulus, uint32_t texel, uint32_t tick) noexcept;
+    void commitStimuli(const ClockAdvance& time, uint64_t frameIndex) noexcept;
+    void takeStimuli(uint64_t frameIndex) noexcept;
+    // As of the last readback, or by what came since.
+    [[nodiscard]] static bool isActive(const Object& object) noexcept {
+        return object.story.active || object.stimuli > 0;
+    }
+    [[nodiscard]] bool needsRecords(const Object& object, uint32_t now) const noexcept;
     void takeEnergy(Object& object, uint32_t endTick) noexcept;
     void countFlames(Object& object, const gpu::ObjectCounters& before, uint32_t endTick) noexcept;
     void takeBurnt(Object& object, uint32_t endTick) noexcept;
@@ -899,6 +951,7 @@ class World {
                      std::pmr::vector<SavedEmitter>& to) const;
     void takeSave(Save& save, const gpu::Readback& readback);
     void noteEvents(Save& save);
+    static void forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept;
     // journal.cpp
     void mayChange() const;  // throws where another machine's deeds alone count
     [[nodiscard]] bool notes() const noexcept { return journal_ || noted_ || timeline_; }
@@ -975,8 +1028,8 @@ class World {
     gpu::Backend& backend_;
     const core::Log& log_;
     FwWorldDef def_;
-    float wind_[3] = {};        // m/s, world
-    double origin_[3] = {};     // m that all places moved since the world's beginning
+    float wind_[3] = {};     // m/s, world
+    double origin_[3] = {};  // m that all places moved since the world's beginning
     struct Shift {
         uint64_t frame = 0;  // the last one before it
         double by[3] = {};   // m
@@ -984,7 +1037,7 @@ class World {
     std::array<Shift, 8> shifts_{};  // of which readbacks are still on their way, oldest first
     uint32_t shiftCount_ = 0;
     uint64_t carriesUntil_ = 0;  // tick: until then burns are carried
-    FrameCost budget_, spent_;  // gpu: as of the last readback
+    FrameCost budget_, spent_;   // gpu: as of the last readback
     Governor governor_;
     bool budgetMeasured_ = false;  // the host tells spent_.gpu
 
@@ -1074,6 +1127,12 @@ class World {
     uint64_t frames_ = 0;
     uint64_t lastStimulus_ = 0;  // tick
     bool idle_ = true;
+    std::pmr::vector<Stimulus> stimuli_;  // of frames whose readback is on its way
+    std::pmr::vector<FrameNote> frameNotes_;
+    // The same as of the last readback.
+    uint64_t seenStimulus_ = 0;
+    bool seenIdle_ = true;
+    uint64_t seenRoomsStirred_ = 0;
     uint32_t switches_ = 0;
     uint64_t planStamp_ = 0;
     std::array<core::Owned<Save>, size_t(SaveFor::count)> saves_;  // once one was asked for
@@ -1088,6 +1147,8 @@ class World {
     uint32_t frontTiles_ = 0, runTiles_ = 0, burningTiles_ = 0, lateClamps_ = 0;
     uint32_t hotTiles_ = 0;
     uint32_t receivers_ = 0;
+    uint32_t loadedReceivers_ = 0, loadedBurning_ = 0;  // of a save; until the next count
+    uint32_t loadedFront_ = 0, loadedHot_ = 0;  // of what was gone by then; until the next walk
     std::pmr::vector<FwLight> lights_, lightsBefore_;  // of burning meshes
     uint32_t nextLight_ = 1;
     bool lightsDue_ = false;  // a load: the next that come show at once

@@ -18,7 +18,6 @@ layout(local_size_x = 64) in;
 #define FW_USE_SCRATCH_QUADS readonly
 #define FW_USE_MASK_WORDS
 #define FW_USE_COUNTERS readonly
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
 #define FW_USE_PENDING writeonly
 #define FW_USE_SETTLED FW_READ_WRITE
 #include "lib/buffers.glsl"
@@ -62,7 +61,7 @@ void arriveRow(uint work) {
     Column middle = columnAt(item.z + x, bases, materialBase, held, m.burnTicks);
     uint changed = 0u;
     uint lit = 0u;
-    uint lateCount = 0u;
+    uint lateBits = 0u;
     uint wake = kNever;
     bool ahead = false;  // is more than arrivals waited for?
     bool uneven = false;
@@ -111,7 +110,7 @@ void arriveRow(uint work) {
                 changed |= 1u << x;
                 if (isReceptive(t)) lit |= 1u << x;
                 uneven = uneven || !isReceptive(t) || decided <= end - window;
-                lateCount += late;
+                lateBits |= late << x;
             } else {
                 uint next = isReceptive(t) ? pending : future;
                 ahead = ahead || next < known;
@@ -130,12 +129,11 @@ void arriveRow(uint work) {
     uint at = (bases.y + item.z) >> 3u;
     settledRows[at] = (settledRows[at] & ~chosen) | settled;
     if (changed == 0u) return;
-    scratch[work * 4u + 1u] = chosen | (changed << 8u);
+    scratch[work * 4u + 1u] = chosen | (changed << 8u) | (lateBits << 16u);
     uint row = item.x & 7u;
     uint word = (item.x >> 3u) * 4u + (row >> 2u);
     atomicOr(maskWords[word], changed << ((row & 3u) * 8u));
     if (lit != 0u) atomicOr(maskWords[word + 2u], lit << ((row & 3u) * 8u));
-    if (lateCount != 0u) atomicAdd(objectCounters[item.w].lateClamps, lateCount);
 }
 
 void main() {

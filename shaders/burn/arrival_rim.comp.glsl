@@ -19,7 +19,6 @@ layout(local_size_x = 64) in;
 #define FW_USE_SCRATCH_QUADS readonly
 #define FW_USE_MASK_WORDS
 #define FW_USE_COUNTERS readonly
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
 #define FW_USE_PENDING writeonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
@@ -86,13 +85,12 @@ void arrive(uint rimWork) {
     }
     if (decided != t) {
         pendingTick[bases.y + texel] = decided;
-        atomicOr(scratch[work * 4u + 1u], 0x100u << x);
+        atomicOr(scratch[work * 4u + 1u], (0x100u | (late << 16u)) << x);
         uint word = slot * 4u + (lane >> 5u);
         atomicOr(maskWords[word], 1u << (lane & 31u));
         if (isReceptive(t)) atomicOr(maskWords[word + 2u], 1u << (lane & 31u));
         if (!isReceptive(t) || decided <= end - windowTicks(push.stepShift, times.y))
             atomicOr(tileState[tile.x].flag, kTileUneven);
-        if (late != 0u) atomicAdd(objectCounters[object].lateClamps, 1u);
     } else {
         uint next = isReceptive(t) ? pending : future;
         if (next != kNever) atomicMin(tileState[tile.x].wake, next);

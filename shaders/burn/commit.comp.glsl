@@ -90,10 +90,12 @@ void commitTile(uint slot) {
 void commitRow(uint work) {
     uvec4 item = scratchQuads[work];
     uint at = objectBases(item.w).y + item.z;
-    uint changed = item.y >> 8u;
+    uint changed = (item.y >> 8u) & 0xFFu;
     for (bool capped = (push.switches & kSwitchCapped) != 0u; capped; capped = false)
         if (refused(item.x >> 3u)) return;
     if (changed == 0u) return;
+    uint late = uint(bitCount(item.y >> 16u));
+    if (late != 0u) atomicAdd(objectCounters[item.w].lateClamps, late);
     do {
         uint i = at + uint(findLSB(changed));
         state[i] = pendingTick[i];

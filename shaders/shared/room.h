@@ -69,14 +69,13 @@ FW_SHARED_FN void roomFlashes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joul
 
 // One period of a room, up to `now`, in which fires gave off so many J.
 FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
-    uint before = air.oxygen, power = air.power;
-    bool begins = air.epoch != room.epoch;
-    if (begins) {
+    if (air.epoch != room.epoch) {  // it begins
         air.oxygen = room.starts;
         air.power = room.power;
         air.flash = room.flash;
     }
     air.epoch = room.epoch;
+    uint before = air.oxygen, power = air.power;
     uint high, low;
     umulExtended(joules, room.takes, high, low);
     uint taken = (high >> 20u) != 0u ? 0xFFFFFFFFu : (high << 12u) | (low >> 20u);
@@ -88,7 +87,7 @@ FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint jou
     air.oxygen = less ? air.oxygen + comes : air.oxygen - comes;
     air.drawn = joules;
     roomFlashes(air, room, joules, now);
-    air.stirs = begins || joules != 0u || air.oxygen != before || air.power != power ? 1u : 0u;
+    air.stirs = joules != 0u || air.oxygen != before || air.power != power ? 1u : 0u;
 }
 
 // How strongly fire burns in it, Q8.

@@ -64,7 +64,7 @@ TEST(Room, FireTakesItsOxygen) {
         gpu::roomBreathes(air, room, 0, 0);
         EXPECT_EQ(gpu::kAirOutside, air.oxygen);
         EXPECT_EQ(7u, air.epoch);
-        EXPECT_EQ(1u, air.stirs);
+        EXPECT_EQ(0u, air.stirs);
         gpu::roomBreathes(air, room, 0, 0);
         EXPECT_EQ(0u, air.stirs);
         const auto joules = uint32_t(1e5f * volume);

@@ -593,10 +593,13 @@ void CpuBackend::destroyObject(uint32_t slot) noexcept {
     if (slot >= s.objects.size() || !s.objects[slot]) return;
     const uint32_t first = s.objects[slot]->record.worldTileBase;
     const uint32_t count = s.objects[slot]->record.tileCount;
-    s.goneBurning += uint32_t(std::count_if(s.burnList.begin(), s.burnList.end(),
-                                            [&](uint32_t tile) { return tile - first < count; }));
-    for (auto* entries : {&s.list, &s.burnList, &s.hotList})
-        std::erase_if(*entries, [&](uint32_t tile) { return tile - first < count; });
+    const auto drop = [&](std::pmr::vector<uint32_t>& entries) {
+        return uint32_t(
+            std::erase_if(entries, [&](uint32_t tile) { return tile - first < count; }));
+    };
+    s.goneListed += drop(s.list);
+    s.goneBurning += drop(s.burnList);
+    s.goneHot += drop(s.hotList);
     std::erase_if(s.burnTiles, [&](const BurnTile& tile) { return tile.object == slot; });
     if (!s.objects[slot]->published.empty()) --s.publishedObjects;
     s.releaseTiles(first, count);
@@ -671,11 +674,13 @@ void CpuBackend::run(const FramePlan& plan) {
             Stopwatch watch(s, kTimerRooms);
             s.airRooms(step.now);
         }
+        if (step.heat) s.goneHot = 0;
         if (step.heat && !s.hotList.empty()) {
             Stopwatch watch(s, kTimerHeat);
             if (s.capped) s.askHeat(step.now), s.grant(most, step.now);
             s.heatStep(step.now);
         }
+        s.goneListed = 0;
         if (!s.list.empty() || (s.switches & kSwitchDense) != 0)
             for (uint32_t k = 0; k < 1u << step.substepShift; ++k) s.iterate(step, k);
         if (s.publishedObjects != 0) {
@@ -738,10 +743,10 @@ void CpuBackend::run(const FramePlan& plan) {
     store.readback.fields = store.fields;
     store.rooms.assign(s.roomAir.begin(), s.airs ? s.roomAir.end() : s.roomAir.begin());
     store.readback.rooms = store.rooms;
-    store.readback.frontTiles = uint32_t(s.list.size());
+    store.readback.frontTiles = uint32_t(s.list.size()) + s.goneListed;
     store.readback.runTiles = uint32_t(std::min<uint64_t>(s.runTiles, 0xFFFFFFFFu));
-    store.readback.burningTiles = uint32_t(s.burnTiles.size());
-    store.readback.hotTiles = uint32_t(s.hotList.size());
+    store.readback.burningTiles = s.reducedBurning;
+    store.readback.hotTiles = uint32_t(s.hotList.size()) + s.goneHot;
     store.readback.receivers = s.receivers;
     ++s.waiting;
 

@@ -106,6 +106,7 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
         burnTiles.push_back(tile);
     }
     burnList.resize(kept);
+    reducedBurning = uint32_t(kept);
 }
 
 void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {

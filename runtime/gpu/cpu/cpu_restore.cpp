@@ -80,7 +80,8 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
     for (auto* entries : {&s.list, &s.listOut, &s.runList, &s.burnList, &s.hotList, &s.hotOut})
         entries->clear();
     s.burnTiles.clear();
-    s.goneBurning = s.scheduledBurning = s.receivers = 0;
+    s.goneBurning = s.goneListed = s.goneHot = 0;
+    s.scheduledBurning = s.reducedBurning = s.receivers = 0;
     s.head = s.waiting = 0;
     s.neighbours.clear();
     s.links.clear();
@@ -94,6 +95,8 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
     for (const RestoredObject& one : restored) {
         const ObjectImage& image = one.image;
         CpuObject& object = *s.objects[image.object];
+        object.counters = image.counters;
+        if (one.rests) continue;
         std::copy_n(one.materials, kMaterialsPerObject, object.materials.begin());
         object.record.window = one.window;
         object.record.substepShift = one.substepShift;
@@ -110,7 +113,6 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
             if ((kept & kTileHot) != 0) s.hotList.push_back(worldTile);
             s.tiles[worldTile].flag |= kept;
         }
-        object.counters = image.counters;
     }
     s.showsDue = true;  // once objects are where the save has them
     s.showsTick = tick;

@@ -150,7 +150,7 @@ struct CpuBackend::State {
                                      uint32_t& units) const noexcept;
     void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
     void carryTexel(const TexelEvent& event, uint32_t now) noexcept;
-    void reduce(uint32_t now) noexcept;         // cpu_reduce.cpp
+    void reduce(uint32_t now) noexcept;  // cpu_reduce.cpp
     [[nodiscard]] BurnTile burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
                                       float fire) const noexcept;
     void showRestored() noexcept;  // cpu_restore.cpp
@@ -243,9 +243,11 @@ struct CpuBackend::State {
     std::array<Warms, kSourcesPerReceiver> warms{};
     uint32_t warmCount = 0;
     uint32_t scheduledBurning = 0;  // burning tiles as an iteration begins
-    bool showsDue = false;  // after `restore`: BurnTiles as of a tick
+    bool showsDue = false;          // after `restore`: BurnTiles as of a tick
     uint32_t showsTick = 0;
-    uint32_t goneBurning = 0;       // of destroyed objects, which count until the next reduce
+    uint32_t reducedBurning = 0;  // as of the last reduce
+    // Of destroyed objects, which count until their list is walked again, as on a device.
+    uint32_t goneBurning = 0, goneListed = 0, goneHot = 0;
     std::array<double, kTimerCount> milliseconds{};
     std::array<uint32_t, kTimerCount> timed{};
     std::array<PassTime, kTimerCount> times{};

@@ -11,8 +11,7 @@ constexpr Use kArrivalUses[] = {
     {FW_BIND_STATE, Access::read},        {FW_BIND_PENDING, Access::write},
     {FW_BIND_TILE_STATE, Access::write},  {FW_BIND_RUN, Access::read},
     {FW_BIND_SCRATCH, Access::write},     {FW_BIND_MASKS, Access::write},
-    {FW_BIND_COUNTERS, Access::read},     {FW_BIND_OBJECT_COUNTERS, Access::write},
-    {FW_BIND_SETTLED, Access::write},
+    {FW_BIND_COUNTERS, Access::read},     {FW_BIND_SETTLED, Access::write},
 };
 
 }  // namespace

@@ -81,6 +81,7 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
         if (object.shown.units != 0 && object.skinPlus1 == 0) object.deformReset = true;
     }
     for (const RestoredObject& one : restored) {
+        if (one.rests) continue;
         ObjectEntry& object = s.objects[one.image.object];
         std::copy_n(one.materials, kMaterialsPerObject, object.materials);
         object.record.window = one.window;

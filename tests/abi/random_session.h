@@ -1,0 +1,635 @@
+// Sessions of a host drawn by a seed: what each frame does is known before any world runs, so that
+// several worlds can live through the same. Things have names, which are numbers; what is created
+// and destroyed can be done apart from all else, as a host does that builds a world to load into.
+#pragma once
+#include "abi/busy_world.h"
+
+#include <map>
+#include <utility>
+
+namespace host {
+
+struct Act {
+    enum Kind : uint32_t {
+        // What builds a world.
+        makeObject,
+        dropObject,
+        makeZone,
+        dropZone,
+        makeRoom,
+        dropRoom,
+        makeBlocker,
+        dropBlocker,
+        makeFire,
+        dropFire,
+        makeJet,
+        dropJet,
+        makeField,
+        dropField,
+        lastOfBuilding = dropField,
+        // What a save holds.
+        ignite,
+        moveObject,
+        wind,
+        gusts,
+        grid,
+        flags,
+        shield,
+        setZone,
+        setRoom,
+        moveBlocker,
+        moveFire,
+        firePower,
+        firePoints,
+        moveJet,
+        jetPower,
+        moveField,
+        fieldAmount,
+        tag,
+        play,
+        stopPlay,
+        kinds
+    };
+    Kind kind = ignite;
+    uint32_t name = 0, other = 0;
+    float numbers[12] = {};
+};
+
+struct Session {
+    FwWorldDef world = fwDefaultWorldDef();
+    bool sees = false;  // the host says what sees what
+    std::vector<std::vector<Act>> frames;
+    std::vector<float> times;  // s of each frame
+    std::vector<bool> polls;   // after each frame
+};
+
+class SessionDraw {
+ public:
+    explicit SessionDraw(uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 1) {}
+
+    Session draw(uint32_t frames) {
+        Session made;
+        FwWorldDef& def = made.world;
+        def.flags = below(4) ? 15 : below(16);
+        def.paceFactor = float(4 + below(16));
+        def.seed = below(1000);
+        def.wind[0] = between(-3, 3);
+        if (once(3)) def.maxBurningTiles = 15 + below(40);
+        if (once(4)) def.timeToLive = between(1, 5);
+        if (once(4)) def.spreadChance = between(0.4f, 1);
+        if (once(4)) def.maxHops = 1 + below(2);
+        made.sees = once(3);
+        made.frames.resize(frames);
+        for (uint32_t frame = 0; frame < frames; ++frame) {
+            std::vector<Act>& acts = made.frames[frame];
+            now_ = &acts;
+            if (frame == 0) begin();
+            for (uint32_t i = below(4); i-- > 0;) one();
+            const uint32_t kind = below(12);
+            made.times.push_back(kind == 0   ? 0.0f
+                                 : kind == 1 ? 1.0f / 60
+                                 : kind == 2 ? between(0, 0.3f)
+                                             : float(1 + below(4)) / 32);
+            made.polls.push_back(once(2));
+        }
+        return made;
+    }
+
+ private:
+    uint32_t next() {
+        state_ ^= state_ << 13, state_ ^= state_ >> 7, state_ ^= state_ << 17;
+        return uint32_t(state_ >> 32);
+    }
+    uint32_t below(uint32_t most) { return uint32_t((uint64_t(next()) * most) >> 32); }
+    bool once(uint32_t in) { return below(in) == 0; }
+    float between(float low, float high) { return low + (high - low) * float(below(4096)) / 4096; }
+    Act& act(Act::Kind kind, uint32_t name = 0) {
+        now_->push_back({kind, name, 0, {}});
+        return now_->back();
+    }
+    uint32_t make(std::vector<uint32_t>& alive) {
+        alive.push_back(++names_);
+        return names_;
+    }
+    uint32_t any(const std::vector<uint32_t>& alive) {
+        return alive[below(uint32_t(alive.size()))];
+    }
+    uint32_t drop(std::vector<uint32_t>& alive) {
+        const uint32_t at = below(uint32_t(alive.size()));
+        const uint32_t name = alive[at];
+        alive.erase(alive.begin() + at);
+        return name;
+    }
+    // Close together, so that things touch; seldom at the limits of space.
+    void place(float* at, bool far = true) {
+        at[0] = 0.31f * float(below(5)) + (once(3) ? between(0, 0.2f) : 0.0f);
+        at[1] = once(3) ? between(0, 0.4f) : 0.0f;
+        at[2] = 0.31f * float(below(3)) + (once(3) ? between(0, 0.2f) : 0.0f);
+        if (far && once(24)) at[below(3)] = once(2) ? 1e6f : -1e6f;
+    }
+    static void aside(float* at) {
+        if (std::abs(at[2]) < 100) at[2] -= 0.8f;
+    }
+    void object() {
+        Act& made = act(Act::makeObject, make(objects_));
+        place(made.numbers);
+        made.other = below(4096);  // its kind
+        made.numbers[3] = once(3) ? between(-1, 1) : 0.0f;
+    }
+    void begin() {
+        for (int i = 0; i < 6; ++i) object();
+        Act& fire = act(Act::ignite, objects_[0]);
+        fire.numbers[3] = 0.4f;
+        std::copy_n((*now_)[0].numbers, 3, fire.numbers);
+    }
+    void one() {
+        const uint32_t kind = below(48);
+        if (kind < 8) {
+            Act& ball = act(Act::ignite, once(2) && !objects_.empty() ? any(objects_) : 0);
+            place(ball.numbers);
+            ball.numbers[3] = between(0, 0.4f);
+            ball.numbers[4] = once(3) ? between(0, 0.6f) : 0.0f;  // delay
+            const uint32_t what = below(8);
+            ball.other = what < 5 ? FW_IGNITE : what == 5 ? FW_EXTINGUISH : FW_WET;
+            if (ball.other == FW_WET) ball.numbers[5] = between(0, 300);
+        } else if (kind < 14 && !objects_.empty()) {
+            Act& move = act(Act::moveObject, any(objects_));
+            place(move.numbers);
+            move.numbers[3] = once(2) ? between(-1, 1) : 0.0f;
+        } else if (kind < 17) {
+            if (objects_.size() > 3) act(Act::dropObject, drop(objects_));
+            if (objects_.size() < 8 && once(2)) object();
+        } else if (kind == 17) {
+            if (objects_.size() < 8) object();
+        } else if (kind < 20) {
+            Act& blow = act(Act::wind);
+            for (int i = 0; i < 3; ++i) blow.numbers[i] = between(-5, 5);
+        } else if (kind == 20) {
+            Act& gusts = act(Act::gusts);
+            gusts.numbers[0] = once(2) ? between(0, 1) : 0.0f;
+            gusts.numbers[1] = between(1, 10);
+        } else if (kind == 21) {
+            Act& grid = act(Act::grid);
+            grid.other = once(4) ? 0 : 1 + below(100);
+        } else if (kind == 22) {
+            act(Act::flags).other = once(4) ? below(16) : 15;
+        } else if (kind == 23) {
+            Act& cells = act(Act::shield, objects_.empty() || once(2) ? 0 : any(objects_));
+            cells.other = once(4) ? 0 : 1 + below(100);
+        } else if (kind < 26) {
+            if (zones_.empty() || (zones_.size() < 3 && once(2)))
+                place(act(Act::makeZone, make(zones_)).numbers);
+            else if (once(3))
+                act(Act::dropZone, drop(zones_));
+            else
+                place(act(Act::setZone, any(zones_)).numbers);
+        } else if (kind < 28) {
+            if (rooms_.empty() || (rooms_.size() < 2 && once(2)))
+                place(act(Act::makeRoom, make(rooms_)).numbers);
+            else if (once(3))
+                act(Act::dropRoom, drop(rooms_));
+            else
+                place(act(Act::setRoom, any(rooms_)).numbers);
+        } else if (kind < 30) {
+            if (blockers_.empty() || (blockers_.size() < 3 && once(2)))
+                place(act(Act::makeBlocker, make(blockers_)).numbers);
+            else if (once(3))
+                act(Act::dropBlocker, drop(blockers_));
+            else
+                place(act(Act::moveBlocker, any(blockers_)).numbers);
+        } else if (kind < 34) {
+            fire();
+        } else if (kind < 38) {
+            jet();
+        } else if (kind < 41) {
+            if (fields_.empty())
+                place(act(Act::makeField, make(fields_)).numbers, false);
+            else if (once(5))
+                act(Act::dropField, drop(fields_));
+            else if (once(2))
+                place(act(Act::moveField, any(fields_)).numbers);
+            else
+                act(Act::fieldAmount, any(fields_)).numbers[0] = between(0, 4);
+        } else if (kind < 45 && !objects_.empty()) {
+            Act& tag = act(Act::tag, any(objects_));
+            place(tag.numbers);
+            tag.other = below(50);
+        } else if (!objects_.empty()) {
+            Act& play = act(once(4) ? Act::stopPlay : Act::play, any(objects_));
+            play.numbers[0] = once(2) ? between(0, 0.5f) : 0.0f;
+            play.numbers[1] = between(0.5f, 4);
+        }
+    }
+    void fire() {
+        if (fires_.empty() || (fires_.size() < 2 && once(2))) {
+            Act& made = act(Act::makeFire, make(fires_));
+            place(made.numbers);
+            made.numbers[3] = between(1, 200);
+            return;
+        }
+        if (once(4)) {
+            act(Act::dropFire, drop(fires_));
+        } else if (once(3)) {
+            place(act(Act::moveFire, any(fires_)).numbers);
+        } else if (once(2)) {
+            act(Act::firePower, any(fires_)).numbers[0] = between(0, 200);
+        } else {
+            Act& points = act(Act::firePoints, any(fires_));
+            points.other = once(3) ? 0 : 2;
+            place(points.numbers);
+            place(points.numbers + 3);
+        }
+    }
+    void jet() {
+        if (jets_.empty() || (jets_.size() < 2 && once(2))) {
+            Act& made = act(Act::makeJet, make(jets_));
+            place(made.numbers);
+            aside(made.numbers);
+            made.numbers[3] = once(8) ? 100000.0f : between(50, 800);
+            made.numbers[4] = once(2) ? between(0.2f, 1) : 0.0f;  // sticks
+            return;
+        }
+        if (once(5)) {
+            act(Act::dropJet, drop(jets_));
+        } else if (once(2)) {
+            Act& move = act(Act::moveJet, any(jets_));
+            place(move.numbers);
+            aside(move.numbers);
+            move.numbers[3] = between(-0.5f, 0.5f);
+        } else {
+            act(Act::jetPower, any(jets_)).numbers[0] = once(3) ? 0 : between(50, 800);
+        }
+    }
+
+    uint64_t state_;
+    uint32_t names_ = 0;
+    std::vector<Act>* now_ = nullptr;
+    std::vector<uint32_t> objects_, zones_, rooms_, blockers_, fires_, jets_, fields_;
+};
+
+// A world that lives through a session, or through what of it builds a world.
+class SessionWorld {
+ public:
+    SessionWorld(FwContext* context, const Session& given, const Bytes& burn = {})
+        : session(given) {
+        FwWorldDef def = given.world;
+        if (given.sees) def.visibility = sees;
+        ok(fwCreateWorld(context, &def, &world));
+        makeMeshes();
+        if (!burn.empty()) ok(fwWorld_CreateBurn(world, burn.data(), burn.size(), &burn_));
+    }
+    SessionWorld(const SessionWorld&) = delete;
+    SessionWorld& operator=(const SessionWorld&) = delete;
+    ~SessionWorld() { fwDestroyWorld(world); }
+
+    void build(uint32_t frame) {
+        for (const Act& act : session.frames[frame])
+            if (act.kind <= Act::lastOfBuilding) doOne(act);
+    }
+    void act(uint32_t frame) {
+        for (const Act& act : session.frames[frame]) doOne(act);
+    }
+    void step(uint32_t frame) { ok(fwWorld_Step(world, session.times[frame])); }
+    // Another life than the session's, so that nothing is as it was when it was made.
+    void liveOtherwise(uint32_t frames) {
+        const float wind[3] = {3, 1, -2};
+        ok(fwWorld_SetWind(world, wind));
+        FwIgnitionDef ball = fwDefaultIgnitionDef();
+        ball.radius = 3;
+        ok(fwWorld_Ignite(world, &ball, nullptr));
+        ball.delay = 40;  // still waits when it loads
+        ok(fwWorld_Ignite(world, &ball, nullptr));
+        for (uint32_t i = 0; i < frames; ++i) {
+            for (const auto& [name, id] : objects) {
+                float at[16];
+                pose(at, 0.3f * float(name % 4), 0.02f * float(i), 0.3f * float(name / 4 % 4),
+                     0.1f * float(i));
+                ok(fwWorld_SetTransform(world, id, at));
+                if (i == 0) ok(fwWorld_TagPoint(world, id, at + 12, 99));
+            }
+            ok(fwWorld_Step(world, 1.0f / 16));
+        }
+    }
+    // What came since the last poll, without what depends on the frame's number.
+    std::vector<std::string> poll() {
+        std::vector<std::string> told;
+        FwEvent events[64];
+        for (uint32_t count; (count = fwWorld_PollEvents(world, events, 64)) != 0;)
+            for (uint32_t i = 0; i < count; ++i) {
+                const FwEvent& e = events[i];
+                // What is told of things that are gone is in no save.
+                if (e.object.index1 != 0 && nameOf(e.object) == 0) continue;
+                char text[200];
+                std::snprintf(text, sizeof text,
+                              "type %u tag %u of %u by %u at %.9g %.9g %.9g: %.9g", e.type, e.tag,
+                              nameOf(e.object), nameOf(e.other), double(e.position[0]),
+                              double(e.position[1]), double(e.position[2]), double(e.value));
+                told.emplace_back(text);
+            }
+        return told;
+    }
+    // What a host reads of the world's state, in words.
+    std::string figures() {
+        char text[400];
+        FwWorldStats s{};
+        s.structSize = sizeof s;
+        ok(fwWorld_GetStats(world, &s));
+        std::snprintf(text, sizeof text,
+                      "steps %llu tick %llu front %u burning %u of %u objects hot %u late %u "
+                      "dropped %u\n",
+                      static_cast<unsigned long long>(s.steps),
+                      static_cast<unsigned long long>(s.tick), s.frontTiles, s.burningTiles,
+                      s.burningObjects, s.hotTiles, s.lateClamps, s.droppedSteps);
+        std::string all = text;
+        FwEnergyBook b{};
+        b.structSize = sizeof b;
+        ok(fwWorld_GetEnergyBook(world, &b));
+        std::snprintf(text, sizeof text, "fuel %llu left %llu radiated %llu power %.9g\n",
+                      static_cast<unsigned long long>(b.fuel),
+                      static_cast<unsigned long long>(b.unburnt),
+                      static_cast<unsigned long long>(b.radiated), double(b.power));
+        all += text;
+        for (const auto& [name, id] : objects) {
+            FwObjectState o{};
+            o.structSize = sizeof o;
+            ok(fwWorld_GetObjectState(world, id, &o));
+            std::snprintf(text, sizeof text,
+                          "object %u: ignited %u burning %u front %u power %.9g energy %.17g "
+                          "plays %u\n",
+                          name, o.ignited, o.burning, o.frontTiles, double(o.power), o.energy,
+                          o.plays);
+            all += text;
+        }
+        for (const auto& [name, id] : rooms) {
+            FwRoomState r{};
+            r.structSize = sizeof r;
+            ok(fwWorld_GetRoomState(world, id, &r));
+            std::snprintf(text, sizeof text, "room %u: oxygen %.9g strength %.9g\n", name,
+                          double(r.oxygen), double(r.strength));
+            all += text;
+        }
+        return all;
+    }
+    FwResult load(const Bytes& bytes) { return fwWorld_Load(world, bytes.data(), bytes.size()); }
+
+    const Session& session;
+    FwWorld* world = nullptr;
+    std::map<uint32_t, FwBurnableMeshId> objects;
+    std::map<uint32_t, FwRoomId> rooms;
+
+ private:
+    void ok(FwResult result) { ASSERT_LE(0, result) << lastMessage(world); }
+    static float FW_CALL sees(void*, FwBurnableMeshId from, FwBurnableMeshId to) {
+        return float((from.index1 * 7 + to.index1 * 3) % 5) / 4;
+    }
+    uint32_t nameOf(FwBurnableMeshId id) const {
+        for (const auto& [name, mine] : objects)
+            if (mine.index1 == id.index1 && mine.generation == id.generation) return name;
+        return 0;
+    }
+    static void pose(float (&at)[16], float x, float y, float z, float turn) {
+        std::fill(std::begin(at), std::end(at), 0.0f);
+        at[0] = at[10] = std::cos(turn);
+        at[8] = std::sin(turn);
+        at[2] = -at[8];
+        at[5] = at[15] = 1;
+        at[12] = x, at[13] = y, at[14] = z;
+    }
+    void makeMeshes() {
+        const Sheet sheets[2] = {Sheet(0.3f, 0.3f, 2), Sheet(0.3f, 0.2f, 1)};
+        for (int i = 0; i < 2; ++i) {
+            const FwMeshDef def = sheets[i].def(40);
+            ok(fwWorld_CreateMesh(world, &def, &meshes_[i]));
+        }
+        static const uint32_t presets[3] = {FW_MATERIAL_PAPER, FW_MATERIAL_COTTON,
+                                            FW_MATERIAL_PLYWOOD};
+        for (int i = 0; i < 3; ++i) {
+            FwMaterialDef material = fwDefaultMaterialDef();
+            ok(fwInitMaterialPreset(&material, presets[i]));
+            ok(fwWorld_CreateMaterial(world, &material, &materials_[i]));
+        }
+    }
+    template <class Id>
+    static Id idOf(const std::map<uint32_t, Id>& all, uint32_t name) {
+        const auto found = all.find(name);
+        return found == all.end() ? Id{} : found->second;
+    }
+    FwWindZoneDef zoneOf(const Act& act) const {
+        FwWindZoneDef def = fwDefaultWindZoneDef();
+        def.shape = act.name % 2 ? FW_WIND_SPHERE : FW_WIND_BOX;
+        std::copy_n(act.numbers, 3, def.position);
+        def.axis[0] = 1, def.axis[1] = def.axis[2] = 0;
+        for (float& size : def.size) size = 0.8f;
+        def.speed = 4;
+        def.priority = int32_t(act.name % 3);
+        return def;
+    }
+    FwRoomDef roomOf(const Act& act) const {
+        FwRoomDef def = fwDefaultRoomDef();
+        for (int i = 0; i < 3; ++i)  // rooms are not at the limits of space
+            def.position[i] = std::abs(act.numbers[i]) > 100 ? 0.5f : act.numbers[i];
+        for (float& half : def.halfSize) half = 0.7f;
+        def.volume = 0.4f;
+        def.vent = act.name % 2 ? 0.05f : 0.0f;
+        return def;
+    }
+    void doOne(const Act& act) {
+        const float* n = act.numbers;
+        float at[16];
+        switch (act.kind) {
+            case Act::makeObject: {
+                FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+                def.mesh = meshes_[act.other % 2];
+                def.materials[0] = materials_[act.other / 2 % 3];
+                if (act.other / 6 % 3 == 0) def.flags |= FW_BURNABLE_LITE;
+                if (act.other / 18 % 4 == 0) def.maxBurningTiles = 4;
+                if (act.other / 72 % 4 == 0) def.timeToLive = 2;
+                if (act.other / 288 % 3 == 0) def.breakShare = 0.3f, def.breakArea = 0.002f;
+                pose(def.transform, n[0], n[1], n[2], n[3]);
+                return ok(fwWorld_CreateBurnableMesh(world, &def, &objects[act.name]));
+            }
+            case Act::dropObject:
+                ok(fwWorld_DestroyBurnableMesh(world, objects[act.name]));
+                objects.erase(act.name);
+                return;
+            case Act::makeZone: {
+                const FwWindZoneDef def = zoneOf(act);
+                return ok(fwWorld_CreateWindZone(world, &def, &zones_[act.name]));
+            }
+            case Act::setZone: {
+                const FwWindZoneDef def = zoneOf(act);
+                return ok(fwWorld_SetWindZone(world, zones_[act.name], &def));
+            }
+            case Act::dropZone:
+                return ok(fwWorld_DestroyWindZone(world, zones_[act.name]));
+            case Act::makeRoom: {
+                const FwRoomDef def = roomOf(act);
+                return ok(fwWorld_CreateRoom(world, &def, &rooms[act.name]));
+            }
+            case Act::setRoom: {
+                const FwRoomDef def = roomOf(act);
+                return ok(fwWorld_SetRoom(world, rooms[act.name], &def));
+            }
+            case Act::dropRoom:
+                ok(fwWorld_DestroyRoom(world, rooms[act.name]));
+                rooms.erase(act.name);
+                return;
+            case Act::makeBlocker: {
+                FwBlockerDef def = fwDefaultBlockerDef();
+                pose(def.transform, n[0], n[1], n[2], 0);
+                for (float& half : def.halfSize) half = 0.1f;
+                return ok(fwWorld_AddBlocker(world, &def, &blockers_[act.name]));
+            }
+            case Act::moveBlocker:
+                pose(at, n[0], n[1], n[2], 0.3f);
+                return ok(fwWorld_MoveBlocker(world, blockers_[act.name], at));
+            case Act::dropBlocker:
+                return ok(fwWorld_RemoveBlocker(world, blockers_[act.name]));
+            case Act::makeFire: {
+                FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
+                def.flags |= FW_FIRE_IGNITES;
+                std::copy_n(n, 3, def.position);
+                def.power = n[3];
+                return ok(fwWorld_CreateVolumetricFire(world, &def, &fires_[act.name]));
+            }
+            case Act::moveFire:
+                return ok(fwWorld_MoveVolumetricFire(world, fires_[act.name], n));
+            case Act::firePower:
+                return ok(fwWorld_SetVolumetricFirePower(world, fires_[act.name], n[0]));
+            case Act::firePoints: {
+                FwFirePoint points[2] = {};
+                for (int i = 0; i < 2; ++i) {
+                    std::copy_n(n + 3 * i, 3, points[i].position);
+                    points[i].radius = 0.15f;
+                }
+                return ok(
+                    fwWorld_SetVolumetricFirePoints(world, fires_[act.name], points, act.other));
+            }
+            case Act::dropFire:
+                return ok(fwWorld_DestroyVolumetricFire(world, fires_[act.name]));
+            case Act::makeJet: {
+                FwFireEmitterDef def = fwDefaultFireEmitterDef();
+                def.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES;
+                std::copy_n(n, 3, def.position);
+                def.direction[0] = def.direction[1] = 0;
+                def.direction[2] = 1;
+                def.power = n[3];
+                def.stick = n[4];
+                def.stickTime = 2;
+                def.maxParticles = 16;
+                return ok(fwWorld_CreateFireEmitter(world, &def, &jets_[act.name]));
+            }
+            case Act::moveJet: {
+                const float way[3] = {n[3], 0.1f, 1};
+                return ok(fwWorld_MoveFireEmitter(world, jets_[act.name], n, way));
+            }
+            case Act::jetPower:
+                return ok(fwWorld_SetFireEmitterPower(world, jets_[act.name], n[0]));
+            case Act::dropJet:
+                return ok(fwWorld_DestroyFireEmitter(world, jets_[act.name]));
+            case Act::makeField: {
+                FwParticleFieldDef def = fwDefaultParticleFieldDef();
+                ok(fwInitFieldPreset(&def, FW_FIELD_WATER));
+                def.flags |= FW_FIELD_WETS;
+                std::copy_n(n, 3, def.position);
+                def.width = def.height = 32;
+                return ok(fwWorld_CreateParticleField(world, &def, &fields_[act.name]));
+            }
+            case Act::moveField:
+                return ok(fwWorld_MoveParticleField(world, fields_[act.name], n, nullptr));
+            case Act::fieldAmount:
+                return ok(fwWorld_SetParticleFieldAmount(world, fields_[act.name], n[0]));
+            case Act::dropField:
+                return ok(fwWorld_DestroyParticleField(world, fields_[act.name]));
+            case Act::ignite: {
+                FwIgnitionDef def = fwDefaultIgnitionDef();
+                def.kind = act.other;
+                def.object = idOf(objects, act.name);
+                std::copy_n(n, 3, def.position);
+                def.radius = n[3];
+                def.delay = n[4];
+                def.water = n[5];
+                return ok(fwWorld_Ignite(world, &def, nullptr));
+            }
+            case Act::moveObject:
+                pose(at, n[0], n[1], n[2], n[3]);
+                return ok(fwWorld_SetTransform(world, objects[act.name], at));
+            case Act::wind:
+                return ok(fwWorld_SetWind(world, n));
+            case Act::gusts: {
+                FwGustDef def = fwDefaultGustDef();
+                def.strength = n[0];
+                def.size = n[1];
+                return ok(fwWorld_SetGusts(world, &def));
+            }
+            case Act::grid: {
+                if (act.other == 0) return ok(fwWorld_SetWindGrid(world, nullptr));
+                FwWindGridDef def = fwDefaultWindGridDef();
+                def.counts[0] = 3, def.counts[1] = def.counts[2] = 2;
+                for (float& value : def.origin) value = -0.3f;
+                float velocities[36];
+                for (uint32_t i = 0; i < 36; ++i) velocities[i] = float((i * act.other) % 9) - 4;
+                def.velocities = velocities;
+                return ok(fwWorld_SetWindGrid(world, &def));
+            }
+            case Act::flags:
+                return ok(fwWorld_SetFlags(world, act.other));
+            case Act::shield: {
+                if (act.other == 0) return ok(fwWorld_SetHeatShield(world, nullptr));
+                FwHeatShieldDef def = fwDefaultHeatShieldDef();
+                for (uint32_t& count : def.counts) count = 8;
+                for (float& value : def.origin) value = -0.2f;
+                def.cellSize = 0.2f;
+                uint8_t cells[512];
+                for (uint32_t i = 0; i < 512; ++i) cells[i] = (i * act.other) % 97 == 3;
+                def.cells = cells;
+                const FwBurnableMeshId own = idOf(objects, act.name);
+                def.objects = &own;
+                def.objectCount = own.index1 != 0 ? 1 : 0;
+                return ok(fwWorld_SetHeatShield(world, &def));
+            }
+            case Act::tag:
+                (void)fwWorld_TagPoint(world, objects[act.name], n, act.other);  // too far: none
+                return;
+            case Act::play:  // refused on another mesh
+                if (burn_.index1 != 0)
+                    (void)fwWorld_PlayBurn(world, objects[act.name], burn_, n[0], n[1]);
+                return;
+            case Act::stopPlay:
+                return ok(fwWorld_StopBurn(world, objects[act.name]));
+            case Act::kinds:
+                break;
+        }
+    }
+
+    FwMeshId meshes_[2] = {};
+    FwMaterialId materials_[3] = {};
+    FwBurnId burn_{};
+    std::map<uint32_t, FwWindZoneId> zones_;
+    std::map<uint32_t, FwBlockerId> blockers_;
+    std::map<uint32_t, FwVolumetricFireId> fires_;
+    std::map<uint32_t, FwFireEmitterId> jets_;
+    std::map<uint32_t, FwParticleFieldId> fields_;
+};
+
+// A baked burn of the first mesh of every session.
+inline Bytes burnOfSession(FwContext* context) {
+    Session alone;
+    alone.world.paceFactor = 10;
+    alone.frames.resize(1);
+    alone.frames[0].push_back({Act::makeObject, 1, 0, {}});
+    SessionWorld w(context, alone);
+    w.build(0);
+    FwIgnitionDef ball = fwDefaultIgnitionDef();
+    ball.object = w.objects[1];
+    EXPECT_EQ(FW_OK, fwWorld_Ignite(w.world, &ball, nullptr));
+    for (int i = 0; i < 60; ++i) EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 1.0f / 32));
+    EXPECT_EQ(FW_OK, fwWorld_RequestBurn(w.world, w.objects[1]));
+    uint64_t size = 0;
+    come(w.world, [&] { return fwWorld_FetchBurn(w.world, w.objects[1], nullptr, &size); });
+    Bytes bytes(size);
+    EXPECT_EQ(FW_OK, fwWorld_FetchBurn(w.world, w.objects[1], bytes.data(), &size));
+    return bytes;
+}
+
+}  // namespace host
