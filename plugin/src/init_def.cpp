@@ -403,6 +403,8 @@ uint32_t FW_CALL fwGetVersion(void) {
 
 const char* FW_CALL fwResultName(int32_t result) {
     switch (result) {
+        case FW_NOTHING_THERE:
+            return "FW_NOTHING_THERE";
         case FW_NOT_READY:
             return "FW_NOT_READY";
         case FW_OK:

@@ -551,9 +551,20 @@ FwResult FW_CALL fwWorld_GetParticleFieldState(FwWorld* world, FwParticleFieldId
 FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
     return onWorld("fwWorld_Ignite", world, [&](world::World& w) {
         const FwIgnitionDef def = edge::readDef(given, FW_DEF_IGNITION, "FwIgnitionDef");
-        const uint32_t count = w.ignite(def);
+        bool acts = false;
+        const uint32_t count = w.ignite(def, acts);
         if (texels) *texels = count;
-        return FW_OK;
+        if (acts) return FW_OK;
+        // Water that meets nothing is a jet's ordinary day; a match that lights nothing is a surprise.
+        if (def.kind == FW_IGNITE) {
+            char reason[sizeof FwErrorInfo::message];
+            w.explainNothingThere(def, count, reason);
+            char text[sizeof FwErrorInfo::message];
+            edge::composeMessage(text, reason, "fwWorld_Ignite");
+            world->message.set(text);
+            world->context->log.write(FW_LOG_INFO, "%s", text);
+        }
+        return FW_NOTHING_THERE;
     });
 }
 

@@ -1,4 +1,4 @@
-// Why a match lights nothing, in words for a host's log. Runs only then.
+// Whether a match lights anything, and if not, why, in words for a host's log.
 #include "world/world.h"
 
 #include <algorithm>
@@ -28,6 +28,34 @@ float distanceToBox(const float point[3], const mesh::BurnDomain& domain) noexce
 }
 
 }  // namespace
+
+// Of the events from `first` on, which a match just added: whether one is of a texel that can burn and to
+// which no water is on its way.
+bool World::lightsSomething(size_t first) const noexcept {
+    const auto getsWet = [&](const PendingTexel& match) {
+        bool wet = false;
+        for (size_t i = 0; i < first; ++i) {
+            const PendingTexel& one = pending_[i];
+            if (one.object != match.object || one.tick > match.tick ||
+                (one.texel != match.texel && one.texel != kAllTexels))
+                continue;
+            wet = one.kind == FW_WET || (wet && one.kind != FW_DRY);
+        }
+        return wet;
+    };
+    constexpr uint32_t kMostAsked = 64;  // of more texels that can burn one is taken to be dry
+    uint32_t asked = 0;
+    for (size_t i = first; i < pending_.size(); ++i) {
+        const PendingTexel& match = pending_[i];
+        const Object& object = **objects_.at(match.object);
+        if (match.texel == kAllTexels
+                ? object.texels == 0
+                : !components::burns(object.data, texelMaterial(object, match.texel)))
+            continue;
+        if (++asked > kMostAsked || !getsWet(match)) return true;
+    }
+    return false;
+}
 
 void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
                                 std::span<char> text) const noexcept {

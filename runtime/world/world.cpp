@@ -834,10 +834,13 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
     return uint32_t(found_.size());
 }
 
-uint32_t World::ignite(const FwIgnitionDef& def) {
+uint32_t World::ignite(const FwIgnitionDef& def, bool& acts) {
     mayChange();
     checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
-    return igniteAt(def, eventTick(def.delay));
+    const size_t before = pending_.size();
+    const uint32_t texels = igniteAt(def, eventTick(def.delay));
+    acts = texels > 0 && (def.kind != FW_IGNITE || lightsSomething(before));
+    return texels;
 }
 
 uint32_t World::igniteAt(const FwIgnitionDef& def, uint32_t tick) {

@@ -489,7 +489,11 @@ class World {
     void setVertexPositions(FwBurnableMeshId id, const float* positions, const float* normals,
                             uint32_t count);
     void setHidden(FwBurnableMeshId id, bool hidden);
-    uint32_t ignite(const FwIgnitionDef& def);  // texels addressed
+    // Texels addressed. `acts`: one of them, or of a match one that can burn.
+    uint32_t ignite(const FwIgnitionDef& def, bool& acts);
+    // Why a match that addressed so many texels lights nothing, for people.
+    void explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
+                             std::span<char> text) const noexcept;
     void transferBurn(FwBurnableMeshId from, FwBurnableMeshId to);
 
     FwVolumetricFireId createVolumetricFire(const FwVolumetricFireDef& def);
@@ -1009,6 +1013,7 @@ class World {
     void addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
                     std::span<const uint32_t> texels);
     uint32_t igniteAt(const FwIgnitionDef& def, uint32_t tick);
+    [[nodiscard]] bool lightsSomething(size_t first) const noexcept;
     uint32_t eventTick(float delay) const;
     MeshEntry makeEntry(core::Owned<mesh::BurnDomain> domain) const;
     FwMeshId createEntry(MeshEntry entry);

@@ -168,7 +168,7 @@ void FireHost::recordOver(const StageFrame& frame, const FwView& view, const Len
 }
 
 void FireHost::check(FwResult result, const char* what) const {
-    if (result == FW_OK) return;
+    if (result == FW_OK || result == FW_NOTHING_THERE) return;
     // The world knows best what went wrong in it; creation has only the context to ask.
     char text[1024] = "";
     if (world) fwWorld_GetLastMessage(world, text, sizeof text);

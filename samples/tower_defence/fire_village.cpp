@@ -147,7 +147,7 @@ bool canBurn(int model) {
 }
 
 void checkFire(FwWorld* world, FwResult result, const char* what) {
-    if (result == FW_OK) return;
+    if (result == FW_OK || result == FW_NOTHING_THERE) return;
     char text[1024] = "";
     fwWorld_GetLastMessage(world, text, sizeof text);
     throw sample::Failure(std::string(what) + ": " + (text[0] ? text : fwResultName(result)));

@@ -60,6 +60,7 @@ typedef struct FwBurnId { uint32_t index1, generation; } FwBurnId;
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
 typedef enum FwResult {
+    FW_NOTHING_THERE = 2, /* the call is right and changes nothing: no texel is there for it */
     FW_NOT_READY = 1, /* pipelines or readback still on their way; nothing was recorded */
     FW_OK = 0,
     FW_ERROR_INVALID_ARGUMENT = -1,
@@ -688,8 +689,11 @@ typedef struct FwIgnitionDef { /* a ball against one object or all of them */
 static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
     FwIgnitionDef d; fwInitDef(FW_DEF_IGNITION, &d, (uint32_t)sizeof d); return d;
 }
-/* Queued; takes effect in the simulation step whose window holds its time. *texels (may be null)
- * gets how many texels it addresses; zero is fine and not an error. [world] */
+/* Queued; takes effect in the simulation step whose window holds its time. *texels (may be null) gets how
+ * many texels it addresses. FW_NOTHING_THERE: it addresses none, or as FW_IGNITE none that can burn
+ * (noncombustible, or water that was queued before it waits for them). Then the log (FW_LOG_INFO) and
+ * fwWorld_GetLastMessage say why FW_IGNITE lights nothing: the nearest object and its distance, or the
+ * material. What earlier steps made wet is not known here: see FW_POINT_WET of fwWorld_RequestPoint. [world] */
 FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint32_t* texels);
 
 /* The burn of `from` goes on on `to`, an object of another mesh of the same shape: a level of detail. With the next step each

@@ -1,0 +1,103 @@
+// What a host is told of a match: that it lit something, or why not.
+#include "abi/abi_support.h"
+
+#include <gmock/gmock.h>
+
+namespace {
+
+using host::lastMessage;
+using host::SheetWorld;
+using ::testing::HasSubstr;
+
+FwIgnitionDef matchAt(float x, float y, float z, float radius) {
+    FwIgnitionDef def = fwDefaultIgnitionDef();
+    def.position[0] = x;
+    def.position[1] = y;
+    def.position[2] = z;
+    def.radius = radius;
+    return def;
+}
+
+TEST(Ignite, AnObjectWithoutMaterialsIsPineAndBurns) {
+    SheetWorld w(fwDefaultMaterialDef());
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.mesh = w.mesh;
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &w.object)) << lastMessage(w.world);
+    FwIgnitionDef match = matchAt(0.5f, 0, 0.125f, 0.05f);
+    match.object = w.object;
+    uint32_t texels = 0;
+    EXPECT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels)) << lastMessage(w.world);
+    EXPECT_GT(texels, 0u);
+    w.run(2);
+    EXPECT_GT(w.state().burning, 0u);
+    EXPECT_GT(w.state().texels, 0u);
+}
+
+TEST(Ignite, OnceAMaterialIsNamedTheOthersAreNoncombustible) {
+    SheetWorld w(fwDefaultMaterialDef());
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.mesh = w.mesh;
+    def.materials[3] = w.materialId;  // of no triangle
+    FwBurnableMeshId id{};
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    FwIgnitionDef match = matchAt(0.5f, 0, 0.125f, 0.05f);
+    match.object = id;
+    uint32_t texels = 0;
+    EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &match, &texels));
+    EXPECT_GT(texels, 0u);
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("noncombustible"));
+}
+
+TEST(Ignite, AMatchBesideEverythingNamesTheNearestObjectAndItsDistance) {
+    SheetWorld w(fwDefaultMaterialDef());
+    const FwIgnitionDef match = matchAt(0.5f, 3.0f, 0.125f, 0.05f);
+    uint32_t texels = 7;
+    EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &match, &texels));
+    EXPECT_EQ(0u, texels);
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("the nearest burnable mesh, 1, is 3 m away"));
+    EXPECT_TRUE(w.host.errors.empty());
+    EXPECT_STREQ("FW_NOTHING_THERE", fwResultName(FW_NOTHING_THERE));
+}
+
+TEST(Ignite, AWorldWithoutObjectsSaysSo) {
+    SheetWorld w(fwDefaultMaterialDef());
+    ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, w.object));
+    const FwIgnitionDef match = matchAt(0, 0, 0, 1);
+    EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &match, nullptr));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("no burnable mesh"));
+}
+
+TEST(Ignite, WaterThatWasQueuedBeforeKeepsAMatchFromLighting) {
+    for (const float radius : {0.05f, 5.0f}) {  // some texels, and the object as a whole
+        SheetWorld w(fwDefaultMaterialDef());
+        FwIgnitionDef ball = matchAt(0.5f, 0, 0.125f, radius);
+        ball.kind = FW_WET;
+        ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &ball, nullptr)) << lastMessage(w.world);
+        ball.kind = FW_IGNITE;
+        EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &ball, nullptr));
+        EXPECT_THAT(lastMessage(w.world), HasSubstr("water is on its way"));
+        w.run(1);
+        EXPECT_EQ(0u, w.state().burning);
+        // Water elsewhere hinders nothing.
+        ball.kind = FW_WET;
+        ball.position[0] = 0;
+        ball.radius = 0.05f;
+        ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &ball, nullptr));
+        ball.kind = FW_IGNITE;
+        ball.position[0] = 0.9f;
+        EXPECT_EQ(FW_OK, fwWorld_Ignite(w.world, &ball, nullptr)) << lastMessage(w.world);
+    }
+}
+
+TEST(Ignite, WaterAndExtinguishingBesideEverythingReachNothing) {
+    SheetWorld w(fwDefaultMaterialDef());
+    for (const uint32_t kind : {FW_WET, FW_DRY, FW_EXTINGUISH}) {
+        FwIgnitionDef ball = matchAt(0.5f, 3.0f, 0.125f, 0.05f);
+        ball.kind = kind;
+        EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &ball, nullptr));
+        ball.position[1] = 0;
+        EXPECT_EQ(FW_OK, fwWorld_Ignite(w.world, &ball, nullptr));
+    }
+}
+
+}  // namespace
