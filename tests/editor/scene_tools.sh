@@ -29,7 +29,8 @@ exits() {
 }
 json() {
     [[ -s out.txt ]] || fail "$1 wrote no JSON"
-    ! grep -v -q -E '^\{("[a-z_]+": ("[^"]*"|-?[0-9][0-9.e+-]*)(, )?)+\}$' out.txt ||
+    ! grep -v -q -E \
+        '^\{("[a-z_]+": ("[^"]*"|-?[0-9][0-9.e+-]*|\[("[^"]*"(, )?)*\])(, )?)+\}$' out.txt ||
         fail "$1 wrote a line that is no JSON"
 }
 
@@ -55,6 +56,25 @@ exits 2 "$tools/fw-cook" two.fwscene --part 3/2
 
 exits 0 "$tools/fw-info" two.fwscene --json
 json fw-info
+# Of a glTF file: its size, its parts, and what of it is left out.
+cat >board.gltf <<'TEXT'
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "animations": [{}],
+ "extensionsRequired": ["KHR_lights_punctual"],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "buffers": [{"byteLength": 36, "uri":
+  "data:;base64,AAAAAAAAAAAAAAAAAAAAQAAAAAAAAAAAAAAAAAAAAEAAAAAA"}]}
+TEXT
+exits 0 "$tools/fw-info" board.gltf
+for line in 'size                 2 x 2 x 0 m' 'parts                1' 'triangles            1' \
+    'note: animations (1) are left out: the rest pose is shown' \
+    'note: KHR_lights_punctual is left out (extensionsRequired)'; do
+    grep -q -x -F "$line" out.txt || fail "fw-info does not say: $line"
+done
+exits 0 "$tools/fw-info" board.gltf --json
+json fw-info
+grep -q -F '"size_x": 2, "size_y": 2, "size_z": 0' out.txt || fail "fw-info has no size in JSON"
 # shares TOOL OPTION...: all at once, then in two shares, each as if on a machine of its own.
 shares() {
     exits 0 "$tools/fw-$1" two.fwscene --json --out "$1_all" "${@:2}"

@@ -21,6 +21,7 @@
 #include <meshoptimizer.h>
 #endif
 
+namespace import_packed {
 namespace {
 
 using fw::test::importRefusal;
@@ -224,3 +225,4 @@ TEST(ImportPacked, WhereACodecIsMissingTheRefusalSaysHowToConvert) {
 }
 
 }  // namespace
+}  // namespace import_packed

@@ -16,6 +16,7 @@
 #include "import/gltf_uri.h"
 #include "unit/gltf_maker.h"
 
+namespace import_standard {
 namespace {
 
 namespace fs = std::filesystem;
@@ -631,3 +632,4 @@ TEST(Import, AnImageThatIsAFolderIsLeftOut) {
 }
 
 }  // namespace
+}  // namespace import_standard

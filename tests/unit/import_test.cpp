@@ -16,6 +16,7 @@
 #include "support/sanitized.h"
 #include "unit/gltf_maker.h"
 
+namespace import_files {
 namespace {
 
 using fw::test::importRefusal;
@@ -497,3 +498,4 @@ TEST(ImportFuzz, TruncatedAndFlippedTestModel) {
 }
 
 }  // namespace
+}  // namespace import_files
