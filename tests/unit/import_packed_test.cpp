@@ -217,6 +217,7 @@ TEST(ImportPacked, WhereACodecIsMissingTheRefusalSaysHowToConvert) {
                     HasSubstr("export the file again without mesh compression"));
     }
     Quad quad;
+    quad.buffers = R"(,{"byteLength":48})";  // without bytes
     quad.positionView = packedView(0, 48, R"(,"byteStride":12,"count":4,"mode":"ATTRIBUTES")", 48);
     if (!fwimport::readsMeshopt()) {
         EXPECT_THAT(importRefusal(quad.bytes()),
