@@ -127,6 +127,7 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     if (!windGrid_.points.empty()) checkMillimetres(windGrid_.shape.origin, by, "wind grid", 0);
     if (shield_.grid.shape.cells() != 0)
         checkMillimetres(shield_.grid.shape.origin, by, "heat shield", 0);
+    places_.reserveMoves(objects_.live());
     shiftBy(by);
     float whole[3];
     for (int i = 0; i < 3; ++i) whole[i] = float(by[i]);
@@ -166,11 +167,10 @@ void World::shiftBy(const double (&by)[3]) noexcept {
         moveBy(object.data.pose.translation, by);
         moveBy(object.latch.pose.translation, by);
         sendPose(object);
-        if (object.remoteVersion == 0) continue;
-        moveRecord(object.remote, by);
-        object.remoteSent = false;
-        remote_.unsent = true;
+        placeNow(object);
+        if (object.remoteVersion != 0) moveRecord(object.remote, by);
     }
+    remote_.rebuild = remote_.unsent = true;  // its grid is of the places before
     for (uint32_t i = 0; i < blockers_.slotCount(); ++i)
         if (BlockerEntry* blocker = blockers_.at(i)) moveBy(blocker->pose.translation, by);
     for (gpu::Blocker& blocker : remote_.blockers) {
