@@ -7,11 +7,12 @@
 namespace fw::net {
 namespace {
 
-constexpr double kStuckAfter = 3;            // s without a piece of a state
-constexpr double kTilesPatience = 6;         // s: then the whole state is asked for
-constexpr double kRepairTrust = 20;          // s: who is astray again by then needs all of it
-constexpr double kRetryAfter = 1;            // s
-constexpr size_t kMarks = 64;                // of how far the server was, that wait for records
+constexpr double kStuckAfter = 20;       // s without a piece of a state that has begun
+constexpr uint32_t kContradictions = 8;  // newest packets in a row
+constexpr double kTilesPatience = 6;     // s: then the whole state is asked for
+constexpr double kRepairTrust = 20;      // s: a client that is wrong again by then needs all of it
+constexpr double kRetryAfter = 1;        // s
+constexpr size_t kMarks = 64;            // of how far the server was, that wait for records
 constexpr uint64_t kHashAge = 10ull * 4096;  // ticks that a hash waits for its like
 constexpr double kLeast = 1e-7;              // s: less is nothing
 constexpr double kLate = 0.5;                // s: beyond it a client hurries
@@ -38,19 +39,32 @@ Client::Client(const FwNetDef& def, world::World& world, std::pmr::memory_resour
 // ---- what comes ---------------------------------------------------------------------------------
 
 void Client::read(std::span<const std::byte> packet) {
+    try {
+        readPacket(packet);
+    } catch (const core::Error&) {
+        ++traffic_.refused;
+        throw;
+    }
+}
+
+void Client::readPacket(std::span<const std::byte> packet) {
     core::Reader reader(packet, "packet");
     const PacketHead head = openPacket(packet, reader);
+    const bool welcomesAgain = head.kind == PacketKind::welcome && loads_ == 0;
     if (head.client != def_.token || head.session == 0 ||
-        (session_ != 0 && head.session != session_))
+        (session_ != 0 && head.session != session_ && !welcomesAgain))
         core::fail(FW_ERROR_BAD_DATA,
                    "The packet is for token 0x%08X of session 0x%08X; this client has 0x%08X in "
                    "session 0x%08X.",
                    head.client, head.session, def_.token, session_);
     const bool early = session_ == 0 && head.kind != PacketKind::welcome;  // that one comes again
+    if (!early && !came_.isNew(head.sequence) && silent_ > kSilentMost && head.sequence > 0)
+        came_.restartAt(head.sequence);
     if (early || !came_.isNew(head.sequence)) {
         ++traffic_.ignored;
         return;
     }
+    const bool newest = came_.isNewest(head.sequence);
     if (head.kind == PacketKind::welcome) {
         uint64_t identity = 0;
         reader.number(identity);
@@ -61,9 +75,9 @@ void Client::read(std::span<const std::byte> packet) {
         theirs_ = identity;
         welcome_ = true;
     } else if (head.kind == PacketKind::stream) {
-        readStream(reader, head.sequence);
+        readStream(reader, newest);
     } else if (head.kind == PacketKind::chunk) {
-        readPiece(reader);
+        readPiece(reader, newest);
     } else {
         core::fail(FW_ERROR_BAD_DATA, "The packet is of kind %u, which a client sends.",
                    uint32_t(head.kind));
@@ -74,42 +88,76 @@ void Client::read(std::span<const std::byte> packet) {
     ++traffic_.packetsIn;
 }
 
-void Client::readStream(core::Reader& reader, uint32_t sequence) {
-    uint32_t anew = 0, first = 0;
+// Newer packets say no less than older ones did; where they keep doing so, an older one was wrong.
+void Client::checkProgress(const Reached& mark) {
+    if (mark.step >= heard_ && mark.records >= received_) {
+        contradictions_ = 0;
+        return;
+    }
+    if (++contradictions_ >= kContradictions && asked_ != Request::state) {
+        contradictions_ = 0;
+        ask(Request::state);
+    }
+    core::fail(FW_ERROR_BAD_DATA,
+               "The packet says that the server is at step %u with %u records; another one said "
+               "step %u and %u.",
+               mark.step, mark.records, heard_, received_);
+}
+
+void Client::readStream(core::Reader& reader, bool newest) {
+    uint32_t outdated = 0, first = 0;
     Reached mark;
-    uint16_t count = 0;
-    reader.number(anew), reader.number(mark.step), reader.number(mark.records);
-    reader.number(first), reader.number(count);
-    if (mark.step > world::Clock::kLastTick / gpu::kStepTicks ||
-        uint64_t(first) + count > 0xFFFFFFFFu)
-        core::fail(FW_ERROR_BAD_DATA, "The packet is of step %u and record %u, which none can be.",
-                   mark.step, first);
-    // What was sent before the state may be of another past.
-    const bool counts = loads_ > 0 && sequence > streamsAfter_;
+    uint16_t count = 0, flags = 0;
+    reader.number(outdated), reader.number(mark.step), reader.number(mark.records);
+    reader.number(first), reader.number(count), reader.number(flags);
+    if (mark.step > world::Clock::kLastTick / gpu::kStepTicks || flags > kStreamFlags)
+        core::fail(FW_ERROR_BAD_DATA, "The packet is of step %u and has flags 0x%04X.", mark.step,
+                   uint32_t(flags));
+    const bool counts = loads_ > 0 && (outdated == 0 || outdated == loaded_);
+    const uint32_t before = received_;
     // All of it is looked at before any of it counts.
     const std::span<const std::byte> rest = reader.take(reader.left());
     for (const bool keeps : {false, true}) {
+        if (keeps && newest && counts && outdated == 0) checkProgress(mark);
         core::Reader records(rest, "packet");
+        uint64_t at = first;
+        uint32_t step = 0;
         for (uint32_t i = 0; i < count; ++i) {
             uint16_t size = 0;
             records.number(size);
             const std::span<const std::byte> bytes = records.take(size);
-            if (!keeps) {
-                readRecord(bytes, record_);
+            readRecord(bytes, record_);
+            const bool skipped = record_.kind == RecordKind::skipped;
+            const bool hashes = record_.kind == RecordKind::hashes;
+            const auto record = uint32_t(at);
+            at += skipped ? record_.tick : 1;
+            if (keeps) {
+                if (counts) keep(record, bytes);
                 continue;
             }
-            const uint32_t at = first + i - next_;
-            if (!counts || first + i < next_ || at >= kAhead) continue;
-            if (at >= waiting_.size()) waiting_.resize(at + 1);
-            if (waiting_[at].empty()) waiting_[at].assign(bytes.begin(), bytes.end());
+            if (at > mark.records)
+                core::fail(FW_ERROR_BAD_DATA, "The packet has record %llu; the server has %u.",
+                           static_cast<unsigned long long>(at - 1), mark.records);
+            if (skipped || outdated != 0) continue;
+            if (record_.step < step || record_.step > mark.step ||
+                (hashes && record_.tick / gpu::kStepTicks > mark.step))
+                core::fail(FW_ERROR_BAD_DATA,
+                           "The packet has a record of step %u behind one of step %u, and the "
+                           "server is at step %u.",
+                           record_.step, step, mark.step);
+            step = record_.step;
         }
         if (records.left() != 0)
             core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the records of the packet.",
                        records.left());
     }
-    while (ready_ < waiting_.size() && !waiting_[ready_].empty()) ++ready_;
-    if (loads_ > 0 && anew == loads_ + 1 && wish_ != Wish::state) wish(Wish::state);
-    if (!counts || anew != 0) return;
+    countReceived(before);
+    if (!counts) return;
+    if (newest) overloaded_ = (flags & kStreamOverloaded) != 0;
+    // Until the state is there the world burns on without the changes that are left out.
+    if (outdated != 0 && asked_ != Request::state) ask(Request::state);
+    // What was said before the state was saved may be of another past.
+    if (mark.records < loadedAt_) return;
     heard_ = std::max(heard_, mark.step);
     if (mark.step <= reached_) return;
     if (marks_.size() == kMarks) marks_.pop_back();
@@ -117,69 +165,175 @@ void Client::readStream(core::Reader& reader, uint32_t sequence) {
     settleMarks();
 }
 
+// A record, or a run of skipped ones, in record_.
+void Client::keep(uint32_t record, std::span<const std::byte> bytes) {
+    const bool skipped = record_.kind == RecordKind::skipped;
+    const uint32_t count = skipped ? uint32_t(record_.tick) : 1;
+    if (record + count <= next_) return;
+    if (waiting_.size() >= kWaitingMost && record > received_) return;
+    Waiting waiting{count, std::pmr::vector<std::byte>(memory_)};
+    if (!skipped) waiting.bytes.assign(bytes.begin(), bytes.end());
+    auto at = waiting_.find(record);
+    // A run goes on behind the records of it that came before.
+    for (; skipped && at != waiting_.end() && !at->second.bytes.empty();
+         at = waiting_.find(record)) {
+        if (--waiting.count == 0) return;
+        ++record;
+    }
+    if (at == waiting_.end())
+        waiting_.emplace(record, std::move(waiting));
+    else if (skipped)
+        at->second.count = std::max(at->second.count, waiting.count);
+    else
+        return;
+    if (record <= received_) received_ = std::max(received_, record + waiting.count);
+}
+
+// Entries before `from` do not reach beyond what has been received.
+void Client::countReceived(uint32_t from) noexcept {
+    for (auto at = waiting_.lower_bound(from); at != waiting_.end() && at->first <= received_; ++at)
+        received_ = std::max(received_, at->first + at->second.count);
+}
+
+// The records that wait behind a gap, so that they are not sent again: gaps and runs, in turn.
+void Client::writeRuns(core::Writer& writer) {
+    const size_t countAt = writer.bytes().size();
+    uint16_t count = 0;
+    writer.number(count);
+    uint32_t end = received_;
+    for (auto at = waiting_.upper_bound(received_); at != waiting_.end() && count < kRunsMost;) {
+        const uint32_t first = at->first;
+        uint32_t last = first + at->second.count;
+        for (++at; at != waiting_.end() && at->first <= last; ++at)
+            last = std::max(last, at->first + at->second.count);
+        if (first - end > 0xFFFF || last - first > 0xFFFF) break;
+        writer.number(uint16_t(first - end));
+        writer.number(uint16_t(last - first));
+        end = last;
+        ++count;
+    }
+    writer.numberAt(countAt, count);
+}
+
+// The record to be done next, or the run of skipped ones that it is in; next_ < received_.
+const Client::Waiting& Client::front(uint32_t& end) const noexcept {
+    auto at = waiting_.find(next_);
+    if (at == waiting_.end())
+        for (at = waiting_.begin(); at->first + at->second.count <= next_;) ++at;
+    end = at->first + at->second.count;
+    return at->second;
+}
+
+void Client::advance(uint32_t record) noexcept {
+    next_ = record;
+    for (auto at = waiting_.begin(); at != waiting_.end() && at->first < next_;)
+        at = at->first + at->second.count <= next_ ? waiting_.erase(at) : std::next(at);
+}
+
 void Client::settleMarks() noexcept {
     for (const Reached& mark : marks_)
-        if (mark.records <= next_ + ready_) reached_ = std::max(reached_, mark.step);
+        if (mark.records <= received_) reached_ = std::max(reached_, mark.step);
     std::erase_if(marks_, [&](const Reached& mark) { return mark.step <= reached_; });
 }
 
-void Client::readPiece(core::Reader& reader) {
+void Client::readPiece(core::Reader& reader, bool newest) {
     ChunkHead head;
     const std::span<const std::byte> piece = readChunk(reader, head);
-    const Wish brings = head.state.id % 2 != 0 ? Wish::tiles : Wish::state;
-    if (wish_ != brings || !joined_ || retryIn_ > 0) return;
-    const uint32_t base = state_.base();
-    const uint64_t came = state_.came();
-    if (!state_.take(head, piece)) return forgetState();
-    if (state_.base() != base || state_.came() != came) stuck_ = 0;
+    const Request brings = head.state.id % 2 != 0 ? Request::tiles : Request::state;
+    if (asked_ != brings || !joined_ || retryIn_ > 0) return;
+    if (!state_.take(head, piece, newest)) return forgetState();
+    stuck_ = 0;
 }
 
 // ---- what is done -------------------------------------------------------------------------------
 
-// The server begins it again when the wish comes again.
+// The server begins it again when it is asked for again.
 void Client::forgetState() noexcept {
     state_.forget();
     retryIn_ = kRetryAfter;
     stuck_ = 0;
 }
 
-void Client::wish(Wish what) noexcept {
-    wish_ = what;
+void Client::ask(Request what) noexcept {
+    asked_ = what;
     state_.forget();
-    retryIn_ = stuck_ = wishing_ = 0;
+    retryIn_ = stuck_ = asking_ = 0;
     ownNumber_ = 0;
     ownBlocks_.clear();
     tilesDue_ = false;
 }
 
-void Client::goAstray(const world::World& world, const char* why, uint32_t slot) {
-    if (wish_ != Wish::nothing) return;
+void Client::goWrong(const world::World& world, const char* why, uint32_t slot) {
+    if (asked_ != Request::nothing) return;
     // Where tiles alone did not help, all of it is asked for.
     const bool tiles = slot != kNoSlot && repaired_ > kRepairTrust;
-    wish(tiles ? Wish::tiles : Wish::state);
-    astraySlot_ = slot;
+    ask(tiles ? Request::tiles : Request::state);
+    wrongSlot_ = slot;
     ++strays_;
-    world.log().write(FW_LOG_WARNING, "%s %s asked for anew.", why,
-                      tiles ? "Its tiles are" : "The state is");
+    world.log().write(FW_LOG_WARNING, "%s The client asks for %s.", why,
+                      tiles ? "the tiles that differ" : "the server's state");
 }
 
 // The server saved its state where this world is now: what differs is found between two saves.
 void Client::takeOwn(world::World& world) {
-    if (wish_ != Wish::tiles || ownNumber_ == 0 || !ownBlocks_.empty()) return;
-    const std::pmr::vector<std::byte>* bytes = world.fetchSave(world::SaveFor::net);
-    if (!bytes) return;
-    own_.assign(bytes->begin(), bytes->end());
-    ownBlocks_ = world.hashBlocks(own_, astraySlot_);
-    if (ownBlocks_.empty()) wish(Wish::state);  // at rest here, and not there
+    if (asked_ != Request::tiles || ownNumber_ == 0 || !ownBlocks_.empty()) return;
+    try {
+        const std::pmr::vector<std::byte>* bytes = world.fetchSave(world::SaveFor::net);
+        if (!bytes) return;
+        own_.assign(bytes->begin(), bytes->end());
+        ownBlocks_ = world.hashBlocks(own_, wrongSlot_);
+    } catch (const core::Error& error) {
+        world.log().write(FW_LOG_WARNING, "The client's own state cannot be compared: %s",
+                          error.message);
+    }
+    if (ownBlocks_.empty()) ask(Request::state);  // at rest here, and not there
     tilesDue_ = true;
 }
 
+// Messages behind the record that a state is of come with that state's records.
+bool Client::holdsMessages() const noexcept {
+    if (asked_ == Request::state) return state_.state().id == 0 || next_ >= state_.state().record;
+    return asked_ == Request::tiles && ownNumber_ != 0 && next_ >= ownRecord_;
+}
+
+void Client::handMessage(FwNetTurn& turn) noexcept {
+    turn.kind = FW_TURN_MESSAGE;
+    turn.messageSize = uint32_t(record_.message.size());
+    std::transform(record_.message.begin(), record_.message.end(), turn.message,
+                   [](std::byte b) { return (unsigned char)b; });
+    messagesEnd_ = next_ + 1;
+}
+
+bool Client::reachState(const world::World& world, FwNetTurn& turn) {
+    const StateHead& state = state_.state();
+    if (loads_ == 0 || state.id % 2 != 0) return true;
+    if (state.record < messagesEnd_) {
+        world.log().write(FW_LOG_WARNING,
+                          "The server's state is older than a message that was handed on. The "
+                          "client asks for a newer one.");
+        forgetState();
+        return false;
+    }
+    while (next_ < state.record && next_ < received_) {
+        uint32_t end = 0;
+        const Waiting& waiting = front(end);
+        if (!waiting.bytes.empty()) {
+            readRecord(waiting.bytes, record_);
+            if (record_.kind == RecordKind::message) handMessage(turn);
+        }
+        advance(std::min(end, state.record));
+        if (turn.kind == FW_TURN_MESSAGE) return false;
+    }
+    return next_ >= state.record;
+}
+
 void Client::load(world::World& world) {
-    const bool tiles = state_.state().id % 2 != 0;
+    const StateHead head = state_.state();
+    const bool tiles = head.id % 2 != 0;
     try {
         if (tiles) {
             std::pmr::vector<std::byte> merged(memory_);
-            if (state_.state().id / 2 != ownNumber_)
+            if (head.id / 2 != ownNumber_ || head.record != ownRecord_)
                 core::fail(FW_ERROR_BAD_DATA, "The tiles are of another state.");
             world.mergeBlocks(own_, state_.bytes(), merged);
             world.performLoad(merged);
@@ -188,21 +342,22 @@ void Client::load(world::World& world) {
         }
     } catch (const core::Error& error) {
         world.log().write(FW_LOG_WARNING, "The server's state cannot be taken: %s", error.message);
-        if (tiles) return wish(Wish::state);
+        if (tiles) return ask(Request::state);
         forgetState();
         refused_ = true;
         return;
     }
-    next_ = state_.state().record;
-    reached_ = heard_ = state_.state().step;
-    streamsAfter_ = came_.newest();
     ++loads_;
+    loaded_ = head.id;
+    loadedAt_ = received_ = head.record;
+    advance(head.record);
+    countReceived(0);
+    reached_ = heard_ = head.step;
+    contradictions_ = 0;
     repairs_ += tiles ? 1 : 0;
     repaired_ = tiles ? 0 : 1e9;
-    wish(Wish::nothing);
+    ask(Request::nothing);
     refused_ = false;
-    waiting_.clear();
-    ready_ = 0;
     marks_.clear();
     theirHashes_.clear();
     ourHashes_.clear();
@@ -224,13 +379,13 @@ void Client::compare(world::World& world) {
             });
         if (ours == ourHashes_.end()) return theirs.tick + kHashAge < now;
         ++compared_;
-        if (ours->hash != theirs.hash && alike && wish_ == Wish::nothing) {
+        if (ours->hash != theirs.hash && alike && asked_ == Request::nothing) {
             alike = false;
             char why[160];
             std::snprintf(why, sizeof why,
                           "Burnable mesh %u differs from the server's at tick %llu.",
                           theirs.slot + 1, static_cast<unsigned long long>(theirs.tick));
-            goAstray(world, why, theirs.slot);
+            goWrong(world, why, theirs.slot);
         }
         return true;
     });
@@ -240,21 +395,28 @@ void Client::compare(world::World& world) {
 
 void Client::takeTurn(world::World& world, FwNetTurn& turn) {
     turn.kind = FW_TURN_WAIT;
-    if (state_.whole()) load(world);
-    if (loads_ == 0) return;
+    if (state_.whole() && reachState(world, turn)) load(world);
+    if (loads_ == 0 || turn.kind != FW_TURN_WAIT) return;
     compare(world);
     takeOwn(world);
     const auto now = uint32_t(world.tick() / gpu::kStepTicks);
-    while (ready_ > 0) {
-        readRecord(waiting_.front(), record_);
+    while (next_ < received_) {
+        uint32_t end = 0;
+        const Waiting& waiting = front(end);
+        if (waiting.bytes.empty()) {  // the server has a state instead
+            advance(end);
+            if (asked_ != Request::state) ask(Request::state);
+            continue;
+        }
+        readRecord(waiting.bytes, record_);
         if (record_.step > now) break;
-        if (record_.step < now)
-            goAstray(world, "A record of the server's comes too late.", kNoSlot);
+        if (record_.kind == RecordKind::message && holdsMessages()) break;
+        if (record_.step < now) goWrong(world, "A record of the server's comes too late.", kNoSlot);
         if (record_.kind == RecordKind::deed) {
             try {
                 world.perform(record_.deed);
             } catch (const core::Error& error) {
-                goAstray(world, error.message, kNoSlot);
+                goWrong(world, error.message, kNoSlot);
             }
         } else if (record_.kind == RecordKind::hashes) {
             for (uint32_t i = 0; i < record_.hashCount; ++i)
@@ -262,25 +424,22 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
                     theirHashes_.push_back({record_.first + i * record_.stride, record_.stride,
                                             record_.tick, record_.hashes[i]});
         } else if (record_.kind == RecordKind::capture) {
-            if (wish_ == Wish::tiles && ownNumber_ == 0) {
+            if (asked_ == Request::tiles && ownNumber_ == 0) {
                 world.requestSave(world::SaveFor::net);
                 ownNumber_ = uint32_t(record_.tick);
+                ownRecord_ = end;
                 turn.kind = FW_TURN_STEP;  // of no time: a save is of the next frame
             }
         } else {
-            turn.kind = FW_TURN_MESSAGE;
-            turn.messageSize = uint32_t(record_.message.size());
-            std::transform(record_.message.begin(), record_.message.end(), turn.message,
-                           [](std::byte b) { return (unsigned char)b; });
+            handMessage(turn);
         }
-        waiting_.pop_front();
-        --ready_;
-        ++next_;
+        advance(end);
         if (turn.kind != FW_TURN_WAIT) return;
     }
     // As far as nothing has to be done and no hash is due.
     uint32_t until = std::min(reached_, (now / world::kHashSteps + 1) * world::kHashSteps);
-    if (ready_ > 0) until = std::min(until, record_.step);
+    // Messages that are held come with the state: the world burns on meanwhile.
+    if (next_ < received_ && record_.step > now) until = std::min(until, record_.step);
     until = std::min(until, now + world.mostSteps());
     if (until <= now) {
         owed_ = 0;
@@ -301,10 +460,13 @@ void Client::update(world::World& world, float seconds) {
     silent_ += double(seconds);
     retryIn_ = std::max(retryIn_ - double(seconds), 0.0);
     stuck_ += double(seconds);
-    wishing_ += double(seconds);
+    asking_ += double(seconds);
     repaired_ += double(seconds);
-    if (wish_ == Wish::state && joined_ && stuck_ > kStuckAfter) forgetState();
-    if (wish_ == Wish::tiles && wishing_ > kTilesPatience) wish(Wish::state);
+    const bool takes = state_.state().id != 0 && !state_.whole();
+    if (asked_ == Request::state && takes && stuck_ > kStuckAfter) forgetState();
+    // A welcome of a session that nobody is in has no packets after it.
+    if (joined_ && loads_ == 0 && silent_ > kSilentMost) joined_ = false;
+    if (asked_ == Request::tiles && asking_ > kTilesPatience) ask(Request::state);
     untilDue_ -= double(seconds);
     if (untilDue_ <= 1e-4) {
         const double interval =
@@ -345,16 +507,18 @@ bool Client::write(world::World& world, std::span<std::byte> room, uint32_t& siz
     (due_ ? due_ : tilesDue_) = false;
     core::Writer writer = beginPacket(packet_, {kind, joined_ ? session_ : 0, def_.token, ++sent_});
     if (kind == PacketKind::status) {
-        writer.number(uint16_t(retryIn_ <= 0 ? wish_ : Wish::nothing));
-        writer.number(loads_);
-        writer.number(next_ + ready_);
+        writer.number(uint16_t(retryIn_ <= 0 ? asked_ : Request::nothing));
+        writer.number(loaded_);
+        writer.number(received_);
         writer.number(uint32_t(world.tick() / gpu::kStepTicks));
+        writer.number(came_.newest());
         writer.number(state_.state().id);
         writer.number(state_.base());
         writer.number(state_.came());
+        writeRuns(writer);
     } else if (kind == PacketKind::tiles) {
         writer.number(ownNumber_);
-        writer.number(astraySlot_);
+        writer.number(wrongSlot_);
         for (const uint32_t hash : ownBlocks_) writer.number(hash);
     }
     sealPacket(packet_);
@@ -382,6 +546,7 @@ void Client::fillState(world::World& world, FwNetState& state) const {
     state.hashes = compared_;
     state.strays = strays_;
     state.repairs = repairs_;
+    state.overloaded = overloaded_ ? 1 : 0;
 }
 
 }  // namespace fw::net

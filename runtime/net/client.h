@@ -1,13 +1,14 @@
 // A client's side of a shared burn: it does what the server's host did, before the same steps, and
 // goes no further than it has heard of. Hashes of objects tell whether both burn alike; if not, or
-// if it has no state yet, it asks for one.
+// if it has no state yet, it asks for one. Messages of the server's host are handed on in order and
+// once each, even where a state stands for the records between them.
 #pragma once
 #include "net/packet.h"
 #include "net/records.h"
 #include "net/transfer.h"
 #include "world/world.h"
 
-#include <deque>
+#include <map>
 
 namespace fw::net {
 
@@ -24,23 +25,37 @@ class Client {
 
  private:
     static constexpr uint32_t kNoSlot = 0xFFFFFFFFu;
-    static constexpr uint32_t kAhead = 1u << 14;  // records that may wait
+    static constexpr size_t kWaitingMost = 1u << 14;  // records that may wait for those before them
 
-    using Bytes = std::pmr::vector<std::byte>;
+    struct Waiting {  // one record, or a run of skipped ones
+        uint32_t count = 1;
+        std::pmr::vector<std::byte> bytes;
+    };
     struct Reached {  // the server, when it had so many records
         uint32_t step = 0, records = 0;
     };
 
-    void readStream(core::Reader& reader, uint32_t sequence);
-    void readPiece(core::Reader& reader);
+    void readPacket(std::span<const std::byte> packet);
+    void readStream(core::Reader& reader, bool newest);
+    void readPiece(core::Reader& reader, bool newest);
+    void checkProgress(const Reached& mark);
+    void keep(uint32_t record, std::span<const std::byte> bytes);
+    void countReceived(uint32_t from) noexcept;
+    void writeRuns(core::Writer& writer);
+    [[nodiscard]] const Waiting& front(uint32_t& end) const noexcept;
+    void advance(uint32_t record) noexcept;
     void load(world::World& world);
-    void wish(Wish what) noexcept;
+    void ask(Request what) noexcept;
     void takeOwn(world::World& world);
     void forgetState() noexcept;
     void compare(world::World& world);
     // slot: of the object that differs; kNoSlot: more than one may.
-    void goAstray(const world::World& world, const char* why, uint32_t slot);
+    void goWrong(const world::World& world, const char* why, uint32_t slot);
     void settleMarks() noexcept;
+    void handMessage(FwNetTurn& turn) noexcept;
+    [[nodiscard]] bool holdsMessages() const noexcept;
+    // Hands on the messages before the state that came. True: they are all handed on.
+    bool reachState(const world::World& world, FwNetTurn& turn);
 
     FwNetDef def_;
     std::pmr::memory_resource* memory_;
@@ -51,23 +66,28 @@ class Client {
     bool refused_ = false;  // and it is another one
     bool joined_ = false;   // it is this one
     uint64_t theirs_ = 0;   // the server's identity
-    Wish wish_ = Wish::state;
-    uint32_t loads_ = 0;
-    uint32_t streamsAfter_ = 0;  // sequence
+    Request asked_ = Request::state;
+    uint32_t loads_ = 0;     // states and tiles so far
+    uint32_t loaded_ = 0;    // id of the last of them
+    uint32_t loadedAt_ = 0;  // its record
     ChunkReceiver state_;
     // For tiles: the object, and this world's own save of where the server saved its.
-    uint32_t astraySlot_ = 0;
+    uint32_t wrongSlot_ = 0;
     uint32_t ownNumber_ = 0;  // of the server's capture; 0: there is none yet
+    uint32_t ownRecord_ = 0;  // the first behind it
     std::pmr::vector<std::byte> own_;
     std::pmr::vector<uint32_t> ownBlocks_;
     bool tilesDue_ = false;
-    double wishing_ = 0, repaired_ = 1e9;  // s since then
+    double asking_ = 0, repaired_ = 1e9;  // s since then
     uint32_t repairs_ = 0;
-    double stuck_ = 0;                // s since a piece of it came
-    double retryIn_ = 0;              // s until a state is asked for again
-    uint32_t next_ = 0;               // record to be done next
-    std::pmr::deque<Bytes> waiting_;  // from next_ on; empty: it did not come yet
-    uint32_t ready_ = 0;              // of those, that came without a gap
+    double stuck_ = 0;                          // s since a piece of it came
+    double retryIn_ = 0;                        // s until a state is asked for again
+    uint32_t next_ = 0;                         // record to be done next
+    uint32_t received_ = 0;                     // the records before it are done or wait
+    uint32_t messagesEnd_ = 0;                  // behind the last message that was handed on
+    std::pmr::map<uint32_t, Waiting> waiting_;  // by record
+    uint32_t contradictions_ = 0;  // newest packets, in a row, against what others said
+    bool overloaded_ = false;      // the server says that its rate cannot carry the changes
     std::pmr::vector<Reached> marks_;
     uint32_t reached_ = 0;  // steps below it have all their records here
     uint32_t heard_ = 0;    // step of the server's that it told last

@@ -67,6 +67,7 @@ void addTraffic(const Traffic& traffic, FwNetState& state) noexcept {
     state.packetsOut += traffic.packetsOut;
     state.packetsIn += traffic.packetsIn;
     state.packetsIgnored += traffic.ignored;
+    state.packetsRefused += traffic.refused;
 }
 
 }  // namespace fw::net

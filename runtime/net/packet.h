@@ -29,7 +29,7 @@ struct PacketHead {
     uint32_t sequence = 0;  // from 1 on, of all packets that went this way
 };
 
-constexpr uint32_t kPacketVersion = 1;
+constexpr uint32_t kPacketVersion = 2;
 constexpr size_t kPacketHead = 24;                        // bytes
 constexpr size_t kPacketLeast = 512, kPacketMost = 1400;  // that packets have at most
 
@@ -39,6 +39,10 @@ core::Writer beginPacket(std::pmr::vector<std::byte>& out, const PacketHead& hea
 void sealPacket(std::span<std::byte> packet) noexcept;
 // Throws where it is none; the reader goes on behind the head.
 PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader);
+
+// s without a packet that counts: then one that seems old may be of a sequence whose newest number
+// was wrong.
+constexpr double kSilentMost = 3;
 
 // What of a sequence came already. Packets that are far behind the newest count as if they had.
 class SequenceWindow {
@@ -50,6 +54,11 @@ class SequenceWindow {
     }
     [[nodiscard]] bool isNewest(uint32_t sequence) const noexcept { return sequence > newest_; }
     [[nodiscard]] uint32_t newest() const noexcept { return newest_; }
+    // Sequences go on from this one, which is new.
+    void restartAt(uint32_t sequence) noexcept {
+        newest_ = sequence - 1;
+        seen_ = 0;
+    }
     // Is it the newest? It is new.
     bool take(uint32_t sequence) noexcept {
         if (sequence <= newest_) {
@@ -70,7 +79,8 @@ class SequenceWindow {
 
 struct Traffic {  // one way and the other
     uint64_t bytesOut = 0, bytesIn = 0, packetsOut = 0, packetsIn = 0;
-    uint64_t ignored = 0;  // that came again, or much too late
+    uint64_t ignored = 0;  // that came again, much too late, or faster than a peer may send
+    uint64_t refused = 0;  // damaged, or with a number that cannot be
 };
 void addTraffic(const Traffic& traffic, FwNetState& state) noexcept;
 

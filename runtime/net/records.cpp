@@ -21,7 +21,7 @@ void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
         writer.number(record.first);
         writer.number(record.stride);
         for (uint32_t i = 0; i < record.hashCount; ++i) writer.number(record.hashes[i]);
-    } else if (record.kind == RecordKind::capture) {
+    } else if (record.kind == RecordKind::capture || record.kind == RecordKind::skipped) {
         writer.number(record.tick);
     } else {
         out.insert(out.end(), record.message.begin(), record.message.end());
@@ -52,8 +52,11 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
                        record.stride);
         record.hashCount = uint32_t(count);
         for (size_t i = 0; i < count; ++i) reader.number(record.hashes[i]);
-    } else if (record.kind == RecordKind::capture) {
+    } else if (record.kind == RecordKind::capture || record.kind == RecordKind::skipped) {
         reader.number(record.tick);
+        if (record.tick == 0 || record.tick > 0xFFFFFFFFu)
+            core::fail(FW_ERROR_BAD_DATA, "The packet has a record of kind %u and number %llu.",
+                       kind, static_cast<unsigned long long>(record.tick));
     } else {
         if (reader.left() > kMessageMost)
             core::fail(FW_ERROR_BAD_DATA, "The packet has a message of %zu bytes; the limit is %u.",
@@ -64,28 +67,76 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
         core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow a record of the packet.", reader.left());
 }
 
-void RecordLog::push(const Record& record) {
+uint32_t RecordLog::recordBeforeLast(size_t most) const noexcept {
+    const size_t from = bytes_.size() - std::min(most, bytes());
+    const auto after = std::upper_bound(marks_.begin() + std::ptrdiff_t(gone_), marks_.end(), from,
+                                        [](size_t at, const Mark& mark) { return at < mark.end; });
+    const auto before = uint32_t(after - marks_.begin()) - uint32_t(gone_);
+    const bool begins = markBefore(first_ + before).end >= from;
+    return first_ + before + (begins || after == marks_.end() ? 0 : 1);
+}
+
+void RecordLog::push(const Record& record, double now) {
     const size_t before = bytes_.size();
-    if (ends_.size() == ends_.capacity()) ends_.reserve(2 * ends_.size() + 64);
+    if (marks_.size() == marks_.capacity()) marks_.reserve(2 * marks_.size() + 64);
     try {
         writeRecord(record, bytes_);
     } catch (...) {
         bytes_.resize(before);
         throw;
     }
-    ends_.push_back(bytes_.size());
+    Mark mark = markBefore(end());
+    if (record.kind != RecordKind::message) mark.skippable += bytes_.size() - before;
+    mark.end = bytes_.size();
+    mark.at = now;
+    marks_.push_back(mark);
 }
 
-void RecordLog::dropBefore(uint32_t record) noexcept {
-    gone_ += record - first_;
-    first_ = record;
+void RecordLog::dropBefore(uint32_t record, uint32_t messagesFrom) {
+    for (; first_ < record; ++first_, ++gone_) {
+        if (first_ < messagesFrom || !isMessage(first_)) continue;
+        const std::span<const std::byte> bytes = at(first_);
+        kept_.push_back({first_, {bytes.begin(), bytes.end(), kept_.get_allocator()}});
+        keptBytes_ += bytes.size();
+    }
     // Room is made now and then.
-    if (gone_ < 64 || gone_ * 2 < ends_.size()) return;
-    const size_t from = ends_[gone_ - 1];
-    bytes_.erase(bytes_.begin(), bytes_.begin() + std::ptrdiff_t(from));
-    ends_.erase(ends_.begin(), ends_.begin() + std::ptrdiff_t(gone_));
-    for (size_t& end : ends_) end -= from;
+    if (gone_ < 64 || gone_ * 2 < marks_.size()) return;
+    const Mark from = marks_[gone_ - 1];
+    bytes_.erase(bytes_.begin(), bytes_.begin() + std::ptrdiff_t(from.end));
+    marks_.erase(marks_.begin(), marks_.begin() + std::ptrdiff_t(gone_));
+    for (Mark& mark : marks_) {
+        mark.end -= from.end;
+        mark.skippable -= from.skippable;
+    }
     gone_ = 0;
+}
+
+void RecordLog::dropMessagesBefore(uint32_t record) noexcept {
+    while (!kept_.empty() && kept_.front().record < record) (void)dropOldestMessage();
+}
+
+uint32_t RecordLog::dropOldestMessage() noexcept {
+    const uint32_t record = kept_.front().record;
+    keptBytes_ -= kept_.front().bytes.size();
+    kept_.pop_front();
+    return record;
+}
+
+RecordLog::Entry RecordLog::entryAt(uint32_t record, uint32_t skipsBefore) const noexcept {
+    constexpr uint32_t kMostScanned = 4096;
+    uint32_t end = record;
+    if (record < first_) {
+        const auto next =
+            std::lower_bound(kept_.begin(), kept_.end(), record,
+                             [](const Kept& kept, uint32_t at) { return kept.record < at; });
+        if (next != kept_.end() && next->record == record) return {next->bytes, 1};
+        end = next != kept_.end() ? next->record : first_;
+        if (end < first_) return {{}, end - record};
+    }
+    for (uint32_t i = 0; i < kMostScanned && end < std::min(skipsBefore, this->end()); ++i, ++end)
+        if (isMessage(end)) break;
+    if (end == record) return {at(record), 1};
+    return {{}, end - record};
 }
 
 }  // namespace fw::net

@@ -1,11 +1,13 @@
-// What a server tells its clients in order, none left out: deeds, hashes of objects, the host's own
-// messages, where a state was saved; each with the step before which it belongs.
+// What a server sends its clients in order: deeds, hashes of objects, the host's own messages,
+// where a state was saved; each with the step before which it belongs. To a client that gets a
+// whole state instead, runs of records are sent as skipped, but never a message.
 #pragma once
 #include "core/stream.h"
 #include "world/journal.h"
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -14,11 +16,22 @@ namespace fw::net {
 constexpr uint32_t kMessageMost = 1024;  // bytes of a host's message
 static_assert(kMessageMost == sizeof FwNetTurn::message);
 
+// Of a packet of records: the server says that its rate cannot carry its changes.
+constexpr uint16_t kStreamOverloaded = 1;
+constexpr uint16_t kStreamFlags = kStreamOverloaded;  // all of them
+
+// Runs of records that a client has behind a gap, at most so many in a status.
+constexpr size_t kRunsMost = 64;
+struct RecordRun {
+    uint32_t first = 0, end = 0;
+};
+
 enum class RecordKind : uint8_t {
     deed,
     hashes,
     message,
     capture,  // the server saved its state here, as number `tick`
+    skipped,  // `tick` records from this one on are not sent: a state stands for them
     count
 };
 
@@ -38,28 +51,75 @@ void writeRecord(const Record& record, std::pmr::vector<std::byte>& out);
 // Throws where the bytes are none of writeRecord's; a message lies in them.
 void readRecord(std::span<const std::byte> bytes, Record& record);
 
-// Those that some client still needs, by their number since the beginning.
+// Records by their number since the beginning: those from begin() on, and of those before it the
+// messages that some client still needs.
 class RecordLog {
  public:
-    explicit RecordLog(std::pmr::memory_resource* memory) : ends_(memory), bytes_(memory) {}
+    explicit RecordLog(std::pmr::memory_resource* memory)
+        : marks_(memory), bytes_(memory), kept_(memory) {}
     [[nodiscard]] uint32_t begin() const noexcept { return first_; }
-    [[nodiscard]] uint32_t end() const noexcept { return first_ + uint32_t(ends_.size() - gone_); }
+    [[nodiscard]] uint32_t end() const noexcept { return first_ + uint32_t(marks_.size() - gone_); }
     [[nodiscard]] std::span<const std::byte> at(uint32_t record) const noexcept {
         const size_t i = record - first_ + gone_;
-        const size_t from = i == 0 ? 0 : ends_[i - 1];
-        return std::span(bytes_).subspan(from, ends_[i] - from);
+        const size_t from = i == 0 ? 0 : marks_[i - 1].end;
+        return std::span(bytes_).subspan(from, marks_[i].end - from);
     }
-    [[nodiscard]] size_t bytes() const noexcept {
-        return bytes_.size() - (gone_ == 0 ? 0 : ends_[gone_ - 1]);
+    [[nodiscard]] bool isMessage(uint32_t record) const noexcept {
+        return at(record)[0] == std::byte(RecordKind::message);
     }
-    void push(const Record& record);            // unchanged when it throws
-    void dropBefore(uint32_t record) noexcept;  // in [begin, end]
+    // When it was pushed, s.
+    [[nodiscard]] double pushedAt(uint32_t record) const noexcept {
+        return marks_[record - first_ + gone_].at;
+    }
+    // Of records from this one on; `record` in [begin, end].
+    [[nodiscard]] size_t bytesFrom(uint32_t record) const noexcept {
+        return bytes_.size() - markBefore(record).end;
+    }
+    // Of those, the bytes that are no messages, for which a state can stand.
+    [[nodiscard]] size_t skippableFrom(uint32_t record) const noexcept {
+        return marks_.empty() ? 0 : marks_.back().skippable - markBefore(record).skippable;
+    }
+    [[nodiscard]] size_t bytes() const noexcept { return bytesFrom(first_); }
+    [[nodiscard]] size_t keptBytes() const noexcept { return keptBytes_; }
+    // The first record that at most `most` bytes follow.
+    [[nodiscard]] uint32_t recordBeforeLast(size_t most) const noexcept;
+
+    void push(const Record& record, double now);  // unchanged when it throws
+    // Messages from `messagesFrom` on are kept; where memory for that ends it throws, with those
+    // before the one at fault dropped.
+    void dropBefore(uint32_t record, uint32_t messagesFrom);
+    void dropMessagesBefore(uint32_t record) noexcept;
+    // Of the oldest message that is kept behind begin().
+    uint32_t dropOldestMessage() noexcept;
+
+    struct Entry {
+        std::span<const std::byte> bytes;  // empty: `count` records are skipped
+        uint32_t count = 1;
+    };
+    // What to send at `record`, in [0, end): records before `skipsBefore` are skipped unless they
+    // are messages, and those that are gone are skipped in any case.
+    [[nodiscard]] Entry entryAt(uint32_t record, uint32_t skipsBefore) const noexcept;
 
  private:
+    struct Mark {
+        size_t end = 0, skippable = 0;  // bytes up to the end of a record, and those of no message
+        double at = 0;                  // s
+    };
+    struct Kept {
+        uint32_t record = 0;
+        std::pmr::vector<std::byte> bytes;
+    };
+    [[nodiscard]] Mark markBefore(uint32_t record) const noexcept {
+        const size_t i = record - first_ + gone_;
+        return i == 0 ? Mark{} : marks_[i - 1];
+    }
+
     uint32_t first_ = 0;  // number of the first that is kept
     size_t gone_ = 0;     // entries before it that still lie here
-    std::pmr::vector<size_t> ends_;
+    std::pmr::vector<Mark> marks_;
     std::pmr::vector<std::byte> bytes_;
+    std::pmr::deque<Kept> kept_;  // messages before first_
+    size_t keptBytes_ = 0;
 };
 
 }  // namespace fw::net

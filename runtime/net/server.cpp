@@ -7,10 +7,25 @@
 namespace fw::net {
 namespace {
 
-constexpr double kCaptureAge = 10;                    // s that a state may be given away for
-constexpr size_t kLogMost = size_t(8) * 1024 * 1024;  // bytes that wait for who does not answer
-constexpr double kIdentityAge = 0.5;                  // s
-constexpr size_t kStreamHead = 18, kRecordHead = 2;   // bytes
+constexpr double kCaptureAge = 10;  // s that a state may be given to a client that joins
+// Saves for the sake of one peer: so many at once, then one each so many seconds.
+constexpr double kCapturesAtOnce = 3, kCaptureEvery = 5;
+constexpr double kCaptureRetry = 1;                    // s after a save that failed
+constexpr size_t kCapturesMost = 4;                    // at a time
+constexpr size_t kLogMost = size_t(8) * 1024 * 1024;   // bytes of records
+constexpr size_t kKeptMost = size_t(4) * 1024 * 1024;  // bytes of messages before these
+constexpr double kIdentityAge = 0.5;                   // s
+constexpr size_t kStreamHead = 20, kRecordHead = 2;    // bytes
+constexpr size_t kHashHead = 22, kSkipBytes = 14;  // bytes of a record of hashes, of skipped ones
+constexpr double kChunkAgain = 0.25;               // s, where the rate has room to spare
+// A peer whose oldest unanswered record is this old, and so many timeouts, is behind (s); where a
+// state is less to send than what waits, it gets that.
+constexpr double kBehind = 3, kBehindTimeouts = 3, kFallen = 5, kFallenTimeouts = 4;
+constexpr size_t kFallenLeast = 16 * 1024;  // bytes
+constexpr double kFallEvery = 10;           // s
+constexpr uint32_t kReordered = 3;          // packets by which one may overtake another
+constexpr double kReportEvery = 30;         // s between two log lines about the same peer's rate
+constexpr double kPacketsPerSecond = 512, kPacketsMost = 8192;  // from one peer
 
 }  // namespace
 
@@ -36,9 +51,10 @@ Server::Server(const FwNetDef& def, world::World& world, std::pmr::memory_resour
       peers_("Peer", memory),
       journal_(world.keepJournal(false)),
       log_(memory),
-      captured_(memory),
+      captures_(memory),
       packet_(memory) {
     packet_.reserve(kPacketMost);
+    captures_.reserve(kCapturesMost + 1);
     step_ = uint32_t(world.tick() / gpu::kStepTicks);
 }
 
@@ -46,26 +62,79 @@ FwPeerId Server::addPeer() {
     if (peers_.live() >= kMostPeers)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u peers are there; the limit is %u.", peers_.live(),
                    kMostPeers);
-    return peers_.create(memory_);
+    const FwPeerId id = peers_.create(memory_);
+    peers_.get(id).packets = kPacketsMost;
+    peers_.get(id).captures = kCapturesAtOnce;
+    return id;
+}
+
+// ---- phases -------------------------------------------------------------------------------------
+
+// The event is one that the phase has: packets are checked before.
+void Server::move(Peer& peer, PeerEvent event) noexcept {
+    const PeerPhase next = phaseAfter(peer.phase, event);
+    if (next == peer.phase || next == kRefused) return;
+    peer.phase = next;
+    const PeerRule& rule = ruleOf(next);
+    if (!rule.takes) {
+        peer.chunks.end();
+        peer.head = {};
+        peer.tiles.clear();
+        peer.capture = 0;
+    }
+    if (rule.waits) peer.requestedAt = peer.acknowledged;
+}
+
+// The records do not go on from its state: messages alone are sent until it has another one.
+void Server::fall(Peer& peer) noexcept {
+    if (ruleOf(peer.phase).hasState) peer.skips = true;
+    move(peer, PeerEvent::falls);
+    peer.fellAt = now_;
 }
 
 // ---- records ------------------------------------------------------------------------------------
 
+void Server::endCapture() noexcept {
+    capturing_ = captureNoted_ = false;
+    eachPeer([](Peer& peer, uint32_t) {
+        if (peer.phase == PeerPhase::waitsForTiles) peer.capture = 0;
+    });
+}
+
+// Messages from this record on may still be needed.
+uint32_t Server::messagesFrom() noexcept {
+    uint32_t from = log_.end();
+    eachPeer([&](const Peer& peer, uint32_t) {
+        if (ruleOf(peer.phase).hasState) from = std::min(from, peer.acknowledged);
+        if (ruleOf(peer.phase).takes) from = std::min(from, peer.head.record);
+    });
+    for (const Capture& capture : captures_) from = std::min(from, capture.head.record);
+    if (captureNoted_) from = std::min(from, noted_.record);
+    return from;
+}
+
+void Server::dropLog(uint32_t record) noexcept {
+    try {
+        log_.dropBefore(record, messagesFrom());
+    } catch (...) {
+        eachPeer([](Peer& peer, uint32_t) {
+            if (ruleOf(peer.phase).hasState) ++peer.messagesLost;
+        });
+        log_.dropBefore(record, log_.end());  // which needs no memory
+    }
+}
+
 void Server::loseAll() noexcept {
-    log_.dropBefore(log_.end());
-    capture_ = {};
-    captureNoted_ = capturing_ = false;
-    for (uint32_t i = 0; i < peers_.slotCount(); ++i)
-        if (Peer* peer = peers_.at(i)) {
-            peer->chunks.end();
-            peer->anew = peer->token != 0;
-            peer->streams = false;
-        }
+    eachPeer([&](Peer& peer, uint32_t) { fall(peer); });
+    endCapture();
+    captures_.clear();
+    dropLog(log_.end());
 }
 
 void Server::push(const Record& record) {
     try {
-        log_.push(record);
+        log_.push(record, now_);
+        pushed_ += log_.at(log_.end() - 1).size();
     } catch (...) {
         loseAll();
     }
@@ -84,11 +153,15 @@ void Server::drain(world::World& world) {
         if (!capturing_) return;
         record_.kind = RecordKind::capture;
         record_.step = uint32_t(journal_.capturedAt / gpu::kStepTicks);
-        record_.tick = ++captures_;
+        record_.tick = ++captureCount_;
         push(record_);
-        noted_.id = 2 * captures_;
+        noted_.id = 2 * captureCount_;
         noted_.step = record_.step;
         noted_.record = log_.end();
+        eachPeer([&](Peer& peer, uint32_t) {
+            if (peer.phase == PeerPhase::waitsForTiles && peer.capture == 0)
+                peer.capture = captureCount_;
+        });
     };
     for (size_t i = 0; i < journal_.deeds.size(); ++i) {
         if (journal_.captured && i == journal_.capturedBehind) noteCapture();
@@ -99,8 +172,11 @@ void Server::drain(world::World& world) {
     }
     if (journal_.captured) noteCapture();
     journal_.deeds.clear();
-    // Hashes of one tick are of one round; those of slots without an object are 0.
+    // Hashes of one tick are of one round; those of slots without an object are 0. A record is no
+    // longer than a packet.
     const std::pmr::vector<world::ObjectHash>& hashes = journal_.hashes;
+    const size_t room = def_.packetBytes - kPacketHead - kStreamHead - kRecordHead - kHashHead;
+    const size_t most = std::min(record_.hashes.size(), room / sizeof(uint64_t));
     for (size_t i = 0; i < hashes.size();) {
         record_.kind = RecordKind::hashes;
         record_.step = now;
@@ -111,7 +187,7 @@ void Server::drain(world::World& world) {
         record_.hashes.fill(0);
         for (; i < hashes.size() && hashes[i].tick == record_.tick; ++i) {
             const uint32_t at = (hashes[i].slot - record_.first) / record_.stride;
-            if (hashes[i].slot < record_.first || at >= record_.hashes.size()) break;
+            if (hashes[i].slot < record_.first || at >= most) break;
             record_.hashes[at] = hashes[i].hash;
             record_.hashCount = std::max(record_.hashCount, at + 1);
         }
@@ -132,145 +208,309 @@ void Server::tell(world::World& world, std::span<const std::byte> message) {
     record_.kind = RecordKind::message;
     record_.step = step_;
     record_.message = message;
-    log_.push(record_);
+    log_.push(record_, now_);
+    pushed_ += log_.at(log_.end() - 1).size();
     stepEnd_ = log_.end();
+}
+
+// Drops the records that nobody needs any more. Where too many wait, those go as well, and the
+// peers that have not got them need a state.
+void Server::trim(const world::World& world) noexcept {
+    uint32_t needed = log_.end();
+    eachPeer([&](const Peer& peer, uint32_t) {
+        if (ruleOf(peer.phase).hasState && !peer.skips)
+            needed = std::min(needed, peer.acknowledged);
+        if (ruleOf(peer.phase).takes) needed = std::min(needed, peer.head.record);
+    });
+    for (const Capture& capture : captures_) needed = std::min(needed, capture.head.record);
+    if (captureNoted_) needed = std::min(needed, noted_.record);
+    if (log_.bytes() > kLogMost) needed = std::max(needed, log_.recordBeforeLast(kLogMost / 2));
+    dropLog(std::max(needed, log_.begin()));
+    eachPeer([&](Peer& peer, uint32_t) {
+        if (!ruleOf(peer.phase).hasState || peer.skips || peer.acknowledged >= log_.begin()) return;
+        fall(peer);
+        ++peer.resyncs;
+    });
+    log_.dropMessagesBefore(messagesFrom());
+    while (log_.keptBytes() > kKeptMost) {
+        const uint32_t lost = log_.dropOldestMessage();
+        eachPeer([&](Peer& peer, uint32_t name) {
+            if (!ruleOf(peer.phase).hasState || peer.acknowledged > lost) return;
+            if (peer.messagesLost++ == 0)
+                world.log().write(FW_LOG_WARNING,
+                                  "Peer %u has not answered for %.1f s: of messages that wait, the "
+                                  "server keeps %zu bytes, and this peer misses the others. Remove "
+                                  "it, or tell it in another way what it missed.",
+                                  name, peer.silent, kKeptMost);
+        });
+    }
+}
+
+// Age of the oldest record that a peer has not got.
+double Server::backlogOf(const Peer& peer) const noexcept {
+    const uint32_t record = std::max(peer.acknowledged, log_.begin());
+    if (!ruleOf(peer.phase).hasState || record >= log_.end()) return 0;
+    return now_ - log_.pushedAt(record);
+}
+
+void Server::watchBacklog(const world::World& world, Peer& peer, uint32_t name) noexcept {
+    const double backlog = backlogOf(peer), timeout = peer.trip.timeout();
+    const double behind = kBehind + kBehindTimeouts * timeout;
+    if (!peer.skips && backlog < behind / 2) peer.overloaded = false;
+    if (!ruleOf(peer.phase).hasState || peer.skips || backlog < behind) return;
+    const size_t bytes = log_.bytesFrom(peer.acknowledged);
+    const bool silent = peer.silent > behind;
+    if (!peer.overloaded && !silent) {
+        peer.overloaded = true;
+        if (now_ - peer.reportedAt < kReportEvery) return;
+        peer.reportedAt = now_;
+        world.log().write(
+            FW_LOG_WARNING,
+            "Peer %u is %.1f s behind and %zu bytes wait for it: its rate cannot carry "
+            "the changes, which took %.0f bytes/s in the last seconds; "
+            "FwNetDef::bytesPerSecond is %u. Change less, or raise the rate.",
+            name, backlog, bytes, changeRate_, def_.bytesPerSecond);
+    }
+    const size_t least = std::max(kFallenLeast, std::min(2 * stateBytes_, kLogMost / 4));
+    if (backlog < kFallen + kFallenTimeouts * timeout || now_ - peer.fellAt < kFallEvery ||
+        log_.skippableFrom(peer.acknowledged) < least)
+        return;
+    fall(peer);
+    ++peer.resyncs;
 }
 
 // ---- states -------------------------------------------------------------------------------------
 
-void Server::takeCapture(world::World& world) {
-    const auto each = [&](const auto& visit) {
-        for (uint32_t i = 0; i < peers_.slotCount(); ++i)
-            if (Peer* peer = peers_.at(i)) visit(*peer);
-    };
-    bool wished = false, given = false, stale = false;
-    each([&](const Peer& peer) {
-        wished |= peer.wish == Wish::state && !peer.chunks.active();
-        stale |= peer.wish == Wish::tiles && peer.stale;
-        given |= peer.chunks.active() && peer.tilesHead.id == 0;
-    });
-    if (capturing_ && captureNoted_)
-        if (const std::pmr::vector<std::byte>* bytes = world.fetchSave(world::SaveFor::net)) {
-            captured_.assign(bytes->begin(), bytes->end());
-            capture_ = noted_;
-            capture_.size = uint32_t(captured_.size());
-            capturedAt_ = now_;
-            capturing_ = captureNoted_ = false;
-        }
-    const bool old = now_ - capturedAt_ > kCaptureAge;
-    if (capture_.id != 0 && old && !given) capture_.id = 0;
-    if ((wished && capture_.id == 0) || (stale && !given)) {
-        if (!capturing_) {
-            world.requestSave(world::SaveFor::net);
-            capturing_ = true;
-            captureNoted_ = false;
-        }
-        if (!captureNoted_) each([](Peer& peer) { peer.stale = false; });
+Server::Capture* Server::captureOf(uint32_t number) noexcept {
+    for (Capture& capture : captures_)
+        if (capture.number() == number) return &capture;
+    return nullptr;
+}
+
+void Server::fetchCapture(world::World& world) {
+    if (!capturing_ || !captureNoted_) return;
+    try {
+        const std::pmr::vector<std::byte>* bytes = world.fetchSave(world::SaveFor::net);
+        if (!bytes) return;
+        if (bytes->size() > kStateMost)
+            core::fail(FW_ERROR_OUT_OF_MEMORY, "The state has %zu bytes; the limit is %u.",
+                       bytes->size(), kStateMost);
+        captures_.push_back({noted_, {bytes->begin(), bytes->end(), memory_}, now_});
+        captures_.back().head.size = uint32_t(bytes->size());
+        stateBytes_ = bytes->size();
+        capturing_ = captureNoted_ = false;
+    } catch (const core::Error& error) {
+        failCapture(world, error.message);
+    } catch (const std::bad_alloc&) {
+        failCapture(world, "Memory does not suffice.");
     }
-    if (capture_.id == 0 || old || capturing_) return;
-    const size_t room = def_.packetBytes - kPacketHead - kChunkHead;
-    each([&](Peer& peer) {
-        if (peer.wish != Wish::state || peer.chunks.active()) return;
-        peer.tilesHead = {};
-        peer.chunks.begin(uint32_t((captured_.size() + room - 1) / room));
+}
+
+void Server::failCapture(const world::World& world, const char* why) noexcept {
+    endCapture();
+    captureFailedAt_ = now_;
+    world.log().write(FW_LOG_WARNING, "Peers wait for the state, which cannot be saved: %s", why);
+}
+
+// Keeps those that a peer takes, and the newest as long as it may be given away.
+void Server::dropCaptures() noexcept {
+    const auto isUsed = [&](const Capture& capture) {
+        bool used = false;
+        eachPeer([&](const Peer& peer, uint32_t) { used |= peer.capture == capture.number(); });
+        return used;
+    };
+    while (captures_.size() > kCapturesMost) {
+        const uint32_t number = captures_.front().number();
+        eachPeer([&](Peer& peer, uint32_t) {
+            if (peer.capture != number) return;
+            peer.capture = 0;
+            if (peer.phase != PeerPhase::waitsForTiles) move(peer, PeerEvent::falls);
+        });
+        captures_.erase(captures_.begin());
+    }
+    const uint32_t newest = captures_.empty() ? 0 : captures_.back().number();
+    std::erase_if(captures_, [&](const Capture& capture) {
+        const bool young = capture.number() == newest && now_ - capture.at <= kCaptureAge;
+        return !young && !isUsed(capture);
     });
 }
 
-// Records that nobody needs any more go; who lets too many wait needs a state.
-void Server::trim() noexcept {
-    if (log_.bytes() > kLogMost) {
-        if (capture_.id != 0 || capturing_) capture_.id = 0, capturing_ = captureNoted_ = false;
-        for (uint32_t i = 0; i < peers_.slotCount(); ++i)
-            if (Peer* peer = peers_.at(i); peer && peer->token != 0) {
-                peer->chunks.end();
-                if (peer->streams && peer->acknowledged >= log_.end() - 64) continue;
-                peer->streams = false;
-                peer->anew = true;
+// Gives states to the peers that wait for one, and has the world save where there is none for them.
+void Server::takeCaptures(world::World& world) {
+    fetchCapture(world);
+    dropCaptures();
+    bool needed = false;
+    eachPeer([&](Peer& peer, uint32_t) {
+        if (!ruleOf(peer.phase).waits || peer.capture != 0) return;
+        if (peer.phase != PeerPhase::waitsForTiles)
+            for (size_t i = captures_.size(); i-- > 0;) {
+                const Capture& capture = captures_[i];
+                const uint32_t least = peer.skips ? peer.sentEnd : peer.requestedAt;
+                if (peer.loaded == 0 ? now_ - capture.at > kCaptureAge
+                                     : capture.head.record < least)
+                    continue;
+                begin(peer, capture.head, capture.bytes.size());
+                peer.capture = capture.number();
+                return;
             }
+        needed |= peer.captures >= 1;
+    });
+    if (!needed || capturing_ || now_ - captureFailedAt_ < kCaptureRetry) return;
+    try {
+        world.requestSave(world::SaveFor::net);
+        capturing_ = true;
+    } catch (const core::Error& error) {
+        failCapture(world, error.message);
+    } catch (const std::bad_alloc&) {
+        failCapture(world, "Memory does not suffice.");
     }
-    uint32_t needed = log_.end();
-    if (capture_.id != 0) needed = std::min(needed, capture_.record);
-    if (captureNoted_) needed = std::min(needed, noted_.record);
-    for (uint32_t i = 0; i < peers_.slotCount(); ++i) {
-        const Peer* peer = peers_.at(i);
-        if (peer && peer->streams) needed = std::min(needed, peer->acknowledged);
-        if (peer && peer->chunks.active() && peer->tilesHead.id != 0)
-            needed = std::min(needed, std::max(peer->tilesHead.record, log_.begin()));
-    }
-    if (needed > log_.begin()) log_.dropBefore(needed);
+    eachPeer([&](Peer& peer, uint32_t) {
+        if (ruleOf(peer.phase).waits && peer.capture == 0)
+            peer.captures = std::max(peer.captures - 1, 0.0);
+    });
+}
+
+void Server::begin(Peer& peer, const StateHead& head, size_t bytes) {
+    move(peer, PeerEvent::begins);
+    peer.head = head;
+    const size_t room = def_.packetBytes - kPacketHead - kChunkHead;
+    peer.chunks.begin(uint32_t((bytes + room - 1) / room));
+    for (const Given& given : peer.given)
+        if (given.id == head.id) return;
+    std::rotate(peer.given.begin(), peer.given.begin() + 1, peer.given.end());
+    peer.given.back() = {head.id, head.record, false};
 }
 
 // ---- packets ------------------------------------------------------------------------------------
 
+double Server::budgetMost() const noexcept {
+    return std::max(0.25 * def_.bytesPerSecond, 2.0 * def_.packetBytes);
+}
+
+// Then what has no answer yet may be sent again before it counts as lost.
+bool Server::hasSpareRate(const Peer& peer) const noexcept {
+    return peer.budget > budgetMost() / 2;
+}
+
 void Server::update(world::World& world, float seconds) {
-    now_ += double(seconds);
+    const auto passed = double(seconds);
+    now_ += passed;
     drain(world);
     if (now_ - identityAt_ > kIdentityAge || identityAt_ < 0) {
         identity_ = world.identity();
         identityAt_ = now_;
     }
-    takeCapture(world);
-    trim();
-    for (uint32_t i = 0; i < peers_.slotCount(); ++i) {
-        Peer* peer = peers_.at(i);
-        if (!peer || peer->token == 0) continue;
-        peer->silent += double(seconds);
-        peer->budget = std::min(peer->budget + double(seconds) * def_.bytesPerSecond,
-                                std::max(0.25 * def_.bytesPerSecond, 2.0 * def_.packetBytes));
-        peer->untilDue -= double(seconds);
-        if (peer->untilDue > 1e-4) continue;
-        peer->untilDue = std::max(peer->untilDue + double(def_.interval), 0.0);
-        peer->due = true;
-        if (peer->cursor >= log_.end() || peer->cursor < peer->acknowledged)
-            peer->cursor = peer->acknowledged;
+    if (now_ - changeRateAt_ >= 1) {
+        const double rate = double(pushed_ - pushedBefore_) / (now_ - changeRateAt_);
+        changeRate_ += (rate - changeRate_) / 2;
+        pushedBefore_ = pushed_;
+        changeRateAt_ = now_;
     }
+    takeCaptures(world);
+    trim(world);
+    eachPeer([&](Peer& peer, uint32_t name) {
+        peer.packets = std::min(peer.packets + passed * kPacketsPerSecond, kPacketsMost);
+        peer.captures = std::min(peer.captures + passed / kCaptureEvery, kCapturesAtOnce);
+        if (peer.token == 0) return;
+        peer.silent += passed;
+        peer.budget = std::min(peer.budget + passed * def_.bytesPerSecond, budgetMost());
+        watchBacklog(world, peer, name);
+        peer.untilDue -= passed;
+        if (peer.untilDue > 1e-4) return;
+        peer.untilDue = std::max(peer.untilDue + double(def_.interval), 0.0);
+        peer.due = true;
+        const double spare = std::max(double(def_.interval), peer.trip.seconds() / 4) - 1e-4;
+        if (now_ >= peer.resendAt ||
+            (peer.cursor >= streamEnd(peer) && hasSpareRate(peer) && now_ - peer.resentAt >= spare))
+            peer.cursor = peer.acknowledged;
+    });
 }
 
-PacketHead Server::headOf(Peer& peer, PacketKind kind) const noexcept {
-    return {kind, def_.token, peer.token, ++peer.sent};
+PacketHead Server::headOf(Peer& peer, PacketKind kind) noexcept {
+    peer.trip.sent(++peer.sent, now_);
+    return {kind, def_.token, peer.token, peer.sent};
+}
+
+// Of a peer that fell, records behind its next state come with that.
+uint32_t Server::streamEnd(const Peer& peer) const noexcept {
+    if (!peer.skips) return log_.end();
+    if (ruleOf(peer.phase).takes) return std::min(peer.head.record, log_.end());
+    return captureNoted_ ? noted_.record : log_.end();
+}
+
+// The record, or the first behind the run that the peer has it in.
+uint32_t Server::pastRun(const Peer& peer, uint32_t record) noexcept {
+    const auto end = peer.runs.begin() + peer.runCount;
+    const auto run = std::find_if(peer.runs.begin(), end,
+                                  [&](const RecordRun& one) { return record < one.end; });
+    return run != end && run->first <= record ? run->end : record;
 }
 
 // The first of a turn says how far the server is, even without a record.
-bool Server::writeStream(Peer& peer) {
-    const bool more = peer.streams && peer.cursor < log_.end() && peer.budget > 0;
-    if (!peer.due && !more) return false;
-    if (!peer.due && peer.cursor == peer.acknowledged) return false;  // of the next turn
+bool Server::writeStream(Peer& peer, bool pieceDue) {
+    const PeerRule& rule = ruleOf(peer.phase);
+    const uint32_t end = streamEnd(peer);
+    const uint32_t skipsBefore = peer.skips ? end : 0;
+    peer.cursor = pastRun(peer, peer.cursor);
+    const bool records =
+        rule.hasState && peer.budget > 0 && peer.cursor < end && !(pieceDue && peer.pieceNext);
+    if (!peer.due && !records) return false;
+    if (!peer.due && !pieceDue && peer.cursor == peer.acknowledged)
+        return false;  // of the next turn
     core::Writer writer = beginPacket(packet_, headOf(peer, PacketKind::stream));
-    const uint32_t first = peer.streams ? peer.cursor : 0;
-    uint16_t count = 0;
-    size_t bytes = kPacketHead + kStreamHead;
-    if (peer.streams)
-        while (first + count < log_.end()) {
-            const size_t next = log_.at(first + count).size() + kRecordHead;
-            if (bytes + next > def_.packetBytes) break;
-            bytes += next;
-            ++count;
-        }
-    writer.number(peer.anew ? peer.loads + 1 : 0);  // a state: whose number it will be
+    const bool outdated = rule.hasState && rule.shown != FW_NET_FOLLOWING;
+    writer.number(outdated ? peer.loaded : 0);
     writer.number(step_);
     writer.number(stepEnd_);
-    writer.number(first);
+    writer.number(rule.hasState ? peer.cursor : 0);
+    const size_t countAt = packet_.size();
+    uint16_t count = 0;
     writer.number(count);
-    for (uint32_t i = first; i < first + count; ++i) {
-        const std::span<const std::byte> record = log_.at(i);
-        writer.number(uint16_t(record.size()));
-        packet_.insert(packet_.end(), record.begin(), record.end());
+    writer.number(uint16_t(peer.overloaded ? kStreamOverloaded : 0));
+    if (records && peer.cursor == peer.acknowledged) {
+        peer.resendAt = now_ + peer.trip.timeout();
+        peer.resentAt = now_;
     }
-    if (peer.streams) peer.cursor += count;
+    while (records && peer.cursor < end && pastRun(peer, peer.cursor) == peer.cursor) {
+        const RecordLog::Entry entry = log_.entryAt(peer.cursor, skipsBefore);
+        const bool skips = entry.bytes.empty();
+        const size_t size = skips ? kSkipBytes : entry.bytes.size();
+        if (packet_.size() + kRecordHead + size > def_.packetBytes) break;
+        writer.number(uint16_t(size));
+        if (skips) {
+            Record skipped;
+            skipped.kind = RecordKind::skipped;
+            skipped.tick = std::min(entry.count, end - peer.cursor);
+            writeRecord(skipped, packet_);
+            peer.cursor += uint32_t(skipped.tick);
+        } else {
+            packet_.insert(packet_.end(), entry.bytes.begin(), entry.bytes.end());
+            ++peer.cursor;
+        }
+        ++count;
+    }
+    writer.numberAt(countAt, count);
+    peer.sentEnd = std::max(peer.sentEnd, peer.cursor);
+    if (count > 0) {
+        peer.pieceNext = true;
+        peer.sentIn = peer.sent;
+    }
     peer.due = false;
     return true;
 }
 
-bool Server::writeChunks(Peer& peer) {
-    if (!peer.chunks.active() || peer.budget <= 0) return false;
-    const uint32_t piece = peer.chunks.next(now_);
+bool Server::writePiece(Peer& peer, uint32_t piece) {
     if (piece == peer.chunks.count()) return false;
+    const Capture* capture = captureOf(peer.capture);
+    const bool tiles = peer.phase == PeerPhase::takesTiles;
+    if (!tiles && !capture) return false;
     core::Writer writer = beginPacket(packet_, headOf(peer, PacketKind::chunk));
     const auto each = uint16_t(def_.packetBytes - kPacketHead - kChunkHead);
-    const bool tiles = peer.tilesHead.id != 0;
-    writeChunk(writer, {tiles ? peer.tilesHead : capture_, piece, each},
-               tiles ? peer.tiles : captured_);
-    peer.chunks.sent(piece, now_);
+    writeChunk(writer, {peer.head, piece, each}, tiles ? peer.tiles : capture->bytes);
+    peer.chunks.sent(piece, now_, peer.sent);
+    for (Given& given : peer.given)
+        if (given.id == peer.head.id) given.whole |= peer.chunks.allSent();
+    peer.pieceNext = false;
     return true;
 }
 
@@ -284,8 +524,14 @@ bool Server::write(FwPeerId to, std::span<std::byte> room, uint32_t& size) {
         core::Writer writer = beginPacket(packet_, headOf(peer, PacketKind::welcome));
         writer.number(identity_);
         peer.welcome = false;
-    } else if (!writeStream(peer) && !writeChunks(peer)) {
-        return false;
+    } else {
+        const double timeout = peer.trip.timeout();
+        const double again =
+            hasSpareRate(peer) ? std::min(timeout, std::max(kChunkAgain, timeout / 4)) : timeout;
+        const bool pieces = peer.chunks.active() && peer.budget > 0;
+        const uint32_t piece = pieces ? peer.chunks.next(now_, again) : peer.chunks.count();
+        if (!writeStream(peer, piece != peer.chunks.count()) && !writePiece(peer, piece))
+            return false;
     }
     sealPacket(packet_);
     std::copy(packet_.begin(), packet_.end(), room.begin());
@@ -298,13 +544,35 @@ bool Server::write(FwPeerId to, std::span<std::byte> room, uint32_t& size) {
 
 void Server::read(world::World& world, FwPeerId from, std::span<const std::byte> packet) {
     Peer& peer = peers_.get(from);
+    if (peer.packets < 1) {
+        ++peer.traffic.ignored;
+        return;
+    }
+    peer.packets -= 1;
+    try {
+        readPacket(world, peer, from.index1, packet);
+    } catch (const core::Error& error) {
+        const uint64_t refused = ++peer.traffic.refused;
+        if ((refused & (refused - 1)) == 0)  // the 1st, 2nd, 4th, 8th...
+            world.log().write(FW_LOG_WARNING, "Packet %llu of peer %u is refused: %s",
+                              static_cast<unsigned long long>(refused), from.index1, error.message);
+        throw;
+    }
+}
+
+void Server::readPacket(world::World& world, Peer& peer, uint32_t name,
+                        std::span<const std::byte> packet) {
     core::Reader reader(packet, "packet");
     const PacketHead head = openPacket(packet, reader);
-    if (head.client == 0 || (peer.token != 0 && head.client != peer.token))
+    // Until a status has come, a greeting may have been of another token that nobody has.
+    const bool greetsAgain = head.kind == PacketKind::hello && peer.phase == PeerPhase::joining;
+    if (head.client == 0 || (peer.token != 0 && head.client != peer.token && !greetsAgain))
         core::fail(FW_ERROR_BAD_DATA,
                    "The packet is of a client with token 0x%08X; peer %u has 0x%08X. Remove the "
                    "peer if another one came in its place.",
-                   head.client, from.index1, peer.token);
+                   head.client, name, peer.token);
+    if (!peer.came.isNew(head.sequence) && peer.silent > kSilentMost && head.sequence > 0)
+        peer.came.restartAt(head.sequence);
     if (!peer.came.isNew(head.sequence)) {
         ++peer.traffic.ignored;
         return;
@@ -315,6 +583,7 @@ void Server::read(world::World& world, FwPeerId from, std::span<const std::byte>
                        reader.left(), head.session);
         peer.token = head.client;
         peer.welcome = true;
+        move(peer, PeerEvent::greets);
     } else if ((head.kind != PacketKind::status && head.kind != PacketKind::tiles) ||
                head.session != def_.token || peer.token == 0) {
         core::fail(FW_ERROR_BAD_DATA,
@@ -324,7 +593,7 @@ void Server::read(world::World& world, FwPeerId from, std::span<const std::byte>
     } else if (head.kind == PacketKind::tiles) {
         readTiles(world, peer, reader);
     } else {
-        readStatus(world, peer, reader, head.sequence);
+        readStatus(world, peer, reader, peer.came.isNewest(head.sequence));
     }
     (void)peer.came.take(head.sequence);
     peer.silent = 0;
@@ -332,38 +601,122 @@ void Server::read(world::World& world, FwPeerId from, std::span<const std::byte>
     ++peer.traffic.packetsIn;
 }
 
-void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, uint32_t sequence) {
-    uint16_t wish = 0;
-    uint32_t loads = 0, next = 0, step = 0, state = 0, base = 0;
-    uint64_t came = 0;
-    reader.number(wish), reader.number(loads), reader.number(next), reader.number(step);
-    reader.number(state), reader.number(base), reader.number(came);
-    if (reader.left() != 0 || wish >= uint16_t(Wish::count))
-        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow a status in the packet, with wish %u.",
-                   reader.left(), uint32_t(wish));
+const Server::Given* Server::givenOf(const Peer& peer, uint32_t id) noexcept {
+    for (const Given& given : peer.given)
+        if (given.whole && given.id == id) return &given;  // only one that was sent is whole
+    return nullptr;
+}
+
+PeerEvent Server::eventOf(uint16_t request) noexcept {
+    constexpr PeerEvent events[] = {PeerEvent::asksNothing, PeerEvent::asksState,
+                                    PeerEvent::asksTiles};
+    return events[request];
+}
+
+// Every number against what the server knows. An older packet may say less than is known by now.
+void Server::checkStatus(const Peer& peer, const Status& status, bool newest) const {
+    const auto check = [](const char* name, uint32_t value, uint32_t low, uint32_t high) {
+        if (value < low || value > high)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The packet's status has %s %u; by what was sent it is in [%u, %u].", name,
+                       value, low, high);
+    };
+    check("request", status.request, 0, uint32_t(Request::count) - 1);
+    check("newest packet", status.answered, 0, peer.sent);
+    uint32_t newestGiven = 0;
+    for (const Given& given : peer.given) newestGiven = std::max(newestGiven, given.id);
+    check("a state of number", status.state, 0, newestGiven);
+    const bool taking = peer.chunks.active() && status.state == peer.head.id;
+    if (status.state == 0 ? status.base != 0 || status.came != 0
+                          : taking && !peer.chunks.canHave(status.base, status.came))
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The packet's status has the pieces before %u, and 0x%016llX behind them, of "
+                   "state %u, of which %u were sent.",
+                   status.base, static_cast<unsigned long long>(status.came), status.state,
+                   taking ? peer.chunks.sentEnd() : 0);
+    const Given* given = givenOf(peer, status.loaded);
+    const bool same = status.loaded == peer.loaded;
+    const bool older = !newest && status.loaded < peer.loaded;
+    if (!same && !given && !older)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The packet's status has loaded state %u, which was not sent.", status.loaded);
+    uint32_t low = 0, high = peer.sentEnd;
+    if (newest && same) low = peer.acknowledged;
+    if (!same && given) {
+        low = given->record;
+        high = std::max(high, low);
+    }
+    if (status.loaded == 0) high = 0;
+    check("the next record", status.next, low, high);
+    if (status.runCount > 0)
+        check("records up to", status.runs[status.runCount - 1u].end, 0,
+              status.loaded == 0 ? 0 : high);
+    // A client goes no further than the server said, unless the server's world went back. One that
+    // asks for a state may have gone wrong in this as well.
+    if (status.loaded != 0 && newest && !(peer.skips && same) &&
+        Request(status.request) != Request::state)
+        check("step", status.step, 0, step_);
+    if (newest &&
+        phaseAfter(same ? peer.phase : PeerPhase::follows, eventOf(status.request)) == kRefused)
+        core::fail(FW_ERROR_BAD_DATA, "The packet's status has request %u of a peer that is %s.",
+                   uint32_t(status.request), ruleOf(peer.phase).name);
+}
+
+Server::Status Server::statusOf(core::Reader& reader) {
+    Status status;
+    reader.number(status.request), reader.number(status.loaded), reader.number(status.next);
+    reader.number(status.step), reader.number(status.answered);
+    reader.number(status.state), reader.number(status.base), reader.number(status.came);
+    reader.number(status.runCount);
+    if (status.runCount > kRunsMost || reader.left() != status.runCount * 2 * sizeof(uint16_t))
+        core::fail(FW_ERROR_BAD_DATA, "The packet's status has %u runs of records in %zu bytes.",
+                   uint32_t(status.runCount), reader.left());
+    uint32_t at = status.next;
+    for (uint16_t i = 0; i < status.runCount; ++i) {
+        uint16_t gap = 0, count = 0;
+        reader.number(gap), reader.number(count);
+        if (gap == 0 || count == 0 || uint64_t(at) + gap + count > 0xFFFFFFFFu)
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The packet's status has a run of %u records, %u behind record %u.",
+                       uint32_t(count), uint32_t(gap), at);
+        status.runs[i] = {at + gap, at + gap + count};
+        at = status.runs[i].end;
+    }
+    return status;
+}
+
+void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, bool newest) {
+    const Status status = statusOf(reader);
     drain(world);
-    const uint32_t given = peer.tilesHead.id != 0 ? peer.tilesHead.id : capture_.id;
-    if (peer.chunks.active() && state == given && !peer.chunks.acknowledge(base, came))
-        core::fail(FW_ERROR_BAD_DATA, "The packet acknowledges piece %u of a state of %u.", base,
-                   peer.chunks.count());
-    if (!peer.came.isNewest(sequence)) return;  // it knows less
-    if (loads != peer.loads) {                  // it has another state, and goes on from there
-        peer.loads = loads;
-        peer.anew = false;
-        peer.cursor = std::min(next, log_.end());
-        peer.chunks.end();
+    checkStatus(peer, status, newest);
+    peer.trip.answered(status.answered, now_);
+    // Packets before this one came, or they are lost.
+    const uint32_t settled = std::max(status.answered, kReordered) - kReordered;
+    if (status.state != 0 && peer.chunks.active() && status.state == peer.head.id)
+        peer.chunks.acknowledge(status.base, status.came, settled);
+    if (!newest) return;
+    if (status.loaded != peer.loaded) {
+        move(peer, PeerEvent::loads);
+        peer.loaded = status.loaded;
+        ++peer.states;
+        peer.skips = false;
+        peer.acknowledged = peer.cursor = status.next;
+        peer.sentEnd = std::max(peer.sentEnd, peer.cursor);
+        if (peer.acknowledged < log_.begin()) fall(peer);
+    } else if (status.next > peer.acknowledged) {
+        peer.acknowledged = status.next;
+        peer.cursor = std::max(peer.cursor, peer.acknowledged);
+        peer.resendAt = now_ + peer.trip.timeout();
     }
-    // Of what never was, or is gone: it needs all of it anew.
-    peer.anew |= loads > 0 && (next < log_.begin() || next > log_.end());
-    peer.streams = loads > 0 && !peer.anew;
-    if (peer.streams) peer.acknowledged = next;
-    peer.step = step;
-    const Wish before = peer.wish;
-    peer.wish = Wish(wish);
-    if (peer.wish != before) {
-        peer.chunks.end();
-        peer.stale = peer.wish == Wish::tiles;
-    }
+    peer.runs = status.runs;
+    peer.runCount = status.runCount;
+    if (peer.sentIn < settled) peer.cursor = peer.acknowledged;
+    peer.step = status.step;
+    // It has forgotten what it had of the state, and begins again.
+    const bool forgot = Request(status.request) == Request::state && status.state == 0 &&
+                        peer.chunks.base() > 0 && peer.phase != PeerPhase::takesTiles;
+    if (peer.chunks.active() && forgot) move(peer, PeerEvent::falls);
+    move(peer, eventOf(status.request));
 }
 
 // It has a save of its own of the tick that the capture is of.
@@ -378,36 +731,53 @@ void Server::readTiles(world::World& world, Peer& peer, core::Reader& reader) {
     for (size_t i = 0; i < count; ++i) reader.number(hashes[i]);
     if (reader.left() != 0)
         core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the hashes in the packet.", reader.left());
-    if (peer.wish != Wish::tiles || capture_.id != 2 * number || number == 0 ||
-        peer.tilesOf == number)
+    if (number == 0 || number > captureCount_)
+        core::fail(FW_ERROR_BAD_DATA, "The packet has hashes of state %u; there were %u.", number,
+                   captureCount_);
+    if (!ruleOf(peer.phase).hasState)
+        core::fail(FW_ERROR_BAD_DATA, "The packet has hashes of a peer that is %s.",
+                   ruleOf(peer.phase).name);
+    const Capture* capture = captureOf(number);
+    if (peer.phase != PeerPhase::waitsForTiles || peer.capture != number || !capture ||
+        peer.compared == number)
         return;  // not yet, not any more, or they are on their way
-    peer.tilesOf = number;
-    if (!world.writeBlocks(captured_, slot, std::span(hashes).first(count), peer.tiles)) return;
-    peer.tilesHead = capture_;
-    peer.tilesHead.id = capture_.id + 1;
-    peer.tilesHead.size = uint32_t(peer.tiles.size());
-    const size_t room = def_.packetBytes - kPacketHead - kChunkHead;
-    peer.chunks.begin(uint32_t((peer.tiles.size() + room - 1) / room));
+    peer.compared = number;
+    try {
+        if (!world.writeBlocks(capture->bytes, slot, std::span(hashes).first(count), peer.tiles))
+            return;
+    } catch (const core::Error&) {  // of objects that are gone: the client asks for the state next
+        return;
+    }
+    StateHead head = capture->head;
+    head.id += 1;
+    head.size = uint32_t(peer.tiles.size());
+    begin(peer, head, peer.tiles.size());
+    peer.capture = 0;
 }
 
 void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
     state.role = FW_NET_SERVER;
     state.step = world.tick() / gpu::kStepTicks;
+    state.changeRate = float(changeRate_);
     const auto add = [&](const Peer& peer) {
         ++state.peers;
         addTraffic(peer.traffic, state);
-        state.states += peer.loads;
-        if (peer.streams) state.records = std::max(state.records, log_.end() - peer.acknowledged);
+        state.states += peer.states;
+        state.resyncs += peer.resyncs;
+        state.messagesLost += peer.messagesLost;
+        state.overloaded += peer.overloaded ? 1 : 0;
+        state.backlog = std::max(state.backlog, float(backlogOf(peer)));
+        if (ruleOf(peer.phase).hasState)
+            state.records = std::max(state.records, log_.end() - peer.acknowledged);
     };
     if (id.index1 != 0) {
         const Peer& peer = peers_.get(id);
         add(peer);
-        state.phase = peer.token == 0 ? FW_NET_CALLING
-                      : peer.streams  ? FW_NET_FOLLOWING
-                                      : FW_NET_LOADING;
+        state.phase = ruleOf(peer.phase).shown;
         state.heardStep = peer.step;
         state.behind = float(double(state.step - std::min<uint64_t>(state.step, peer.step)) / 32);
         state.silent = float(peer.silent);
+        state.roundTrip = float(peer.trip.seconds());
         return;
     }
     for (uint32_t i = 0; i < peers_.slotCount(); ++i)

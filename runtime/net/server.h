@@ -1,11 +1,14 @@
 // The server's side of a shared burn: its world is the truth. What its host does to it becomes
-// records, which every client gets all of, in order, with the step that each came before; who
-// comes late or has gone astray gets the whole state. It moves no packet itself and knows no clock
-// but what the host says has passed.
+// records, which every client gets in order, with the step that each came before; a client that
+// comes late, falls too far behind or has gone wrong gets the whole state. The server moves no
+// packet itself and knows no clock but what the host says has passed. It checks every number of a
+// packet against what it sent, and all of them before it uses one.
 #pragma once
 #include "core/handle_pool.h"
 #include "net/packet.h"
+#include "net/protocol.h"
 #include "net/records.h"
+#include "net/round_trip.h"
 #include "net/transfer.h"
 #include "world/world.h"
 
@@ -20,7 +23,7 @@ class Server {
     FwPeerId addPeer();
     void removePeer(FwPeerId id) { peers_.destroy(id); }
     void update(world::World& world, float seconds);
-    // A state is wished, which a frame of the world's brings, be it of no time.
+    // A save is requested, which the next frame of the world brings, even one of no time.
     [[nodiscard]] bool awaitsFrame() const noexcept { return capturing_ && !captureNoted_; }
     // False: nothing is due.
     bool write(FwPeerId to, std::span<std::byte> room, uint32_t& size);
@@ -30,40 +33,107 @@ class Server {
 
  private:
     static constexpr uint32_t kMostPeers = 256;
+    struct Given {  // a state or tiles that a peer was sent
+        uint32_t id = 0, record = 0;
+        bool whole = false;  // every piece was sent at least once
+    };
+    struct Status {
+        uint16_t request = 0;
+        uint32_t loaded = 0;    // id of the state that it loaded last; 0: none
+        uint32_t next = 0;      // it has all records before this one
+        uint32_t step = 0;      // of its world
+        uint32_t answered = 0;  // sequence of the newest packet that it has
+        // What it has of a state: the id, all pieces before `base`, and those of the bits behind
+        // it.
+        uint32_t state = 0, base = 0;
+        uint64_t came = 0;
+        std::array<RecordRun, kRunsMost> runs;  // of records that it has behind `next`
+        uint16_t runCount = 0;
+    };
     struct Peer {
         explicit Peer(std::pmr::memory_resource* memory) : tiles(memory) {}
         uint32_t token = 0;  // its own; 0: it has not spoken
+        PeerPhase phase = PeerPhase::calling;
         SequenceWindow came;
-        uint32_t sent = 0;                      // sequence of the last packet to it
-        bool welcome = false;                   // it is due one
-        bool streams = false;                   // it has a state that records go on from
-        bool anew = false;                      // it needs one, as the server knows
-        Wish wish = Wish::nothing;              // what it needs, as it says
-        bool due = false;                       // packets, in this turn
-        uint32_t loads = 0;                     // states it has taken
-        uint32_t acknowledged = 0, cursor = 0;  // records
-        uint32_t step = 0;                      // that it has come to
-        double budget = 0;                      // bytes
-        double untilDue = 0;                    // s
-        double silent = 0;                      // s
-        bool stale = false;   // its tiles are to be of a capture that is still to come
-        ChunkSender chunks;   // of the capture, or of its tiles
-        StateHead tilesHead;  // 0: of the capture
+        uint32_t sent = 0;       // sequence of the last packet to it
+        bool welcome = false;    // it is due one
+        bool due = false;        // packets, in this turn
+        bool skips = false;      // it fell: of records before its next state it gets messages alone
+        bool pieceNext = false;  // where both are due, records and pieces alternate
+        bool overloaded = false;      // the rate cannot carry the changes
+        uint32_t loaded = 0;          // id of the state that it has
+        std::array<Given, 16> given;  // newest last
+        uint32_t states = 0;          // that it has loaded
+        uint32_t resyncs = 0;         // states because it was too far behind
+        uint64_t messagesLost = 0;
+        // Records: acknowledged <= cursor <= sentEnd, the end of those that were ever sent to it.
+        uint32_t acknowledged = 0, cursor = 0, sentEnd = 0;
+        std::array<RecordRun, kRunsMost> runs;  // of records that it has behind these
+        uint32_t runCount = 0;
+        uint32_t sentIn = 0;  // number of the last packet with records
+        double resendAt = 0;  // s: then records without an answer count as lost
+        double resentAt = 0;  // s
+        RoundTrip trip;
+        uint32_t step = 0;         // that it has come to
+        double budget = 0;         // bytes
+        double untilDue = 0;       // s
+        double silent = 0;         // s
+        double packets = 0;        // that it may send at once
+        uint32_t requestedAt = 0;  // the state that it waits for is not before this record
+        uint32_t capture = 0;      // number of the capture that it takes or compares with
+        uint32_t compared = 0;     // number of the capture that its hashes were compared with
+        double captures = 0;       // saves that the server makes for its sake at once
+        double fellAt = -1e9;      // s
+        double reportedAt = -1e9;  // s: when the log last said that its rate is too low
+        ChunkSender chunks;        // of the state or of its tiles
+        StateHead head;
         std::pmr::vector<std::byte> tiles;
-        uint32_t tilesOf = 0;  // number of the capture that it got tiles of
         Traffic traffic;
     };
+    struct Capture {
+        StateHead head;
+        std::pmr::vector<std::byte> bytes;
+        double at = 0;  // s
+        [[nodiscard]] uint32_t number() const noexcept { return head.id / 2; }
+    };
 
+    template <class Visit>
+    void eachPeer(const Visit& visit) {
+        for (uint32_t i = 0; i < peers_.slotCount(); ++i)
+            if (Peer* peer = peers_.at(i)) visit(*peer, i + 1);
+    }
     void drain(world::World& world);
     void push(const Record& record);
+    [[nodiscard]] uint32_t messagesFrom() noexcept;
+    void dropLog(uint32_t record) noexcept;
     void loseAll() noexcept;
-    void takeCapture(world::World& world);
-    void readStatus(world::World& world, Peer& peer, core::Reader& reader, uint32_t sequence);
+    void trim(const world::World& world) noexcept;
+    void move(Peer& peer, PeerEvent event) noexcept;
+    void fall(Peer& peer) noexcept;
+    [[nodiscard]] double backlogOf(const Peer& peer) const noexcept;
+    void watchBacklog(const world::World& world, Peer& peer, uint32_t name) noexcept;
+    [[nodiscard]] Capture* captureOf(uint32_t number) noexcept;
+    void endCapture() noexcept;
+    void failCapture(const world::World& world, const char* why) noexcept;
+    void fetchCapture(world::World& world);
+    void dropCaptures() noexcept;
+    void takeCaptures(world::World& world);
+    void begin(Peer& peer, const StateHead& head, size_t bytes);
+    [[nodiscard]] double budgetMost() const noexcept;
+    [[nodiscard]] bool hasSpareRate(const Peer& peer) const noexcept;
+    [[nodiscard]] PacketHead headOf(Peer& peer, PacketKind kind) noexcept;
+    [[nodiscard]] uint32_t streamEnd(const Peer& peer) const noexcept;
+    [[nodiscard]] static uint32_t pastRun(const Peer& peer, uint32_t record) noexcept;
+    bool writeStream(Peer& peer, bool pieceDue);
+    bool writePiece(Peer& peer, uint32_t piece);
+    void readPacket(world::World& world, Peer& peer, uint32_t name,
+                    std::span<const std::byte> packet);
+    [[nodiscard]] static const Given* givenOf(const Peer& peer, uint32_t id) noexcept;
+    [[nodiscard]] static PeerEvent eventOf(uint16_t request) noexcept;
+    void checkStatus(const Peer& peer, const Status& status, bool newest) const;
+    [[nodiscard]] static Status statusOf(core::Reader& reader);
+    void readStatus(world::World& world, Peer& peer, core::Reader& reader, bool newest);
     void readTiles(world::World& world, Peer& peer, core::Reader& reader);
-    void trim() noexcept;
-    bool writeStream(Peer& peer);
-    bool writeChunks(Peer& peer);
-    [[nodiscard]] PacketHead headOf(Peer& peer, PacketKind kind) const noexcept;
 
     FwNetDef def_;
     std::pmr::memory_resource* memory_;
@@ -74,14 +144,15 @@ class Server {
     double now_ = 0;                   // s
     uint64_t identity_ = 0;
     double identityAt_ = -1;
-    // The state that is given to who needs one.
-    StateHead capture_;
-    std::pmr::vector<std::byte> captured_;
-    double capturedAt_ = 0;
-    bool capturing_ = false;     // one is on its way
-    bool captureNoted_ = false;  // it is of what is in `noted_`
+    uint64_t pushed_ = 0, pushedBefore_ = 0;  // bytes of records
+    double changeRate_ = 0, changeRateAt_ = 0;
+    std::pmr::vector<Capture> captures_;  // oldest first
+    size_t stateBytes_ = 0;               // of the newest
+    bool capturing_ = false;              // one is on its way
+    bool captureNoted_ = false;           // it is of what is in `noted_`
+    double captureFailedAt_ = -1e9;       // s
     StateHead noted_;
-    uint32_t captures_ = 0;               // noted so far
+    uint32_t captureCount_ = 0;           // noted so far
     std::pmr::vector<std::byte> packet_;  // scratch
     Record record_;                       // scratch
 };

@@ -6,7 +6,6 @@
 namespace fw::net {
 namespace {
 
-constexpr double kResendAfter = 0.25;  // s
 constexpr double kNeverSent = -1e9;
 
 // A head's fields, written or read: the order is that of the packet.
@@ -43,27 +42,32 @@ std::span<const std::byte> readChunk(core::Reader& reader, ChunkHead& head) {
 
 void ChunkSender::begin(uint32_t count) noexcept {
     count_ = count;
-    base_ = 0;
+    base_ = sentEnd_ = 0;
     came_ = 0;
     sentAt_.fill(kNeverSent);
 }
 
-bool ChunkSender::acknowledge(uint32_t base, uint64_t came) noexcept {
-    if (base > count_ || base < base_) return base <= count_;  // an old one says less
-    const uint32_t rest = count_ - base;
-    if (rest < 64 && (came >> rest) != 0) return false;
+bool ChunkSender::canHave(uint32_t base, uint64_t came) const noexcept {
+    if (base > sentEnd_) return false;
+    const uint32_t rest = sentEnd_ - base;
+    return rest >= 64 || (came >> rest) == 0;
+}
+
+void ChunkSender::acknowledge(uint32_t base, uint64_t came, uint32_t answered) noexcept {
+    if (base < base_) return;  // an old one says less
     for (uint32_t piece = base_; piece < std::min(base, base_ + kChunkWindow); ++piece)
         sentAt_[piece % kChunkWindow] = kNeverSent;  // its place is another's now
     came_ = base == base_ ? came_ | came : came;
     base_ = base;
-    return true;
+    for (uint32_t piece = base_; piece < std::min(sentEnd_, base_ + kChunkWindow); ++piece)
+        if ((came_ >> (piece - base_) & 1) == 0 && sentIn_[piece % kChunkWindow] < answered)
+            sentAt_[piece % kChunkWindow] = kNeverSent;
 }
 
-uint32_t ChunkSender::next(double now) const noexcept {
+uint32_t ChunkSender::next(double now, double after) const noexcept {
     const uint32_t end = std::min(count_, base_ + kChunkWindow);
     for (uint32_t piece = base_; piece < end; ++piece)
-        if ((came_ >> (piece - base_) & 1) == 0 &&
-            now - sentAt_[piece % kChunkWindow] >= kResendAfter)
+        if ((came_ >> (piece - base_) & 1) == 0 && now - sentAt_[piece % kChunkWindow] >= after)
             return piece;
     return count_;
 }
@@ -75,9 +79,9 @@ void ChunkReceiver::forget() noexcept {
     bytes_.clear();
 }
 
-bool ChunkReceiver::take(const ChunkHead& head, std::span<const std::byte> piece) {
-    if (head.state.id < state_.id) return true;  // of one before
-    if (head.state.id > state_.id) {
+bool ChunkReceiver::take(const ChunkHead& head, std::span<const std::byte> piece, bool newest) {
+    if (head.state.id != state_.id) {
+        if (state_.id != 0 && !newest) return true;  // of one before
         forget();
         state_ = head.state;
         chunkBytes_ = head.bytes;

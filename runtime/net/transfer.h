@@ -13,8 +13,8 @@ constexpr uint32_t kChunkWindow = 64;                // pieces on their way at m
 constexpr uint32_t kStateMost = 256u * 1024 * 1024;  // bytes of a state
 constexpr size_t kChunkLeast = 256;                  // bytes of a piece
 
-// What a client says that it needs.
-enum class Wish : uint16_t { nothing, state, tiles, count };
+// What a client asks for.
+enum class Request : uint16_t { nothing, state, tiles, count };
 
 struct StateHead {        // of a state
     uint32_t id = 0;      // twice the number of the capture; and 1: tiles of it. 0: none
@@ -39,17 +39,29 @@ class ChunkSender {
     void begin(uint32_t count) noexcept;
     [[nodiscard]] bool active() const noexcept { return count_ != 0; }
     void end() noexcept { count_ = 0; }
-    // All before `base` came, and those behind it that have a bit. False: there are none such.
-    bool acknowledge(uint32_t base, uint64_t came) noexcept;
-    // A piece to send at `now` s; count: none is due. One that is lost is due again.
-    [[nodiscard]] uint32_t next(double now) const noexcept;
-    void sent(uint32_t piece, double now) noexcept { sentAt_[piece % kChunkWindow] = now; }
+    // May the other side have all before `base`, and those behind it that have a bit? Only pieces
+    // that were sent can have come.
+    [[nodiscard]] bool canHave(uint32_t base, uint64_t came) const noexcept;
+    // canHave. Packets before number `answered` came or are lost: pieces in them that did not come
+    // are due again.
+    void acknowledge(uint32_t base, uint64_t came, uint32_t answered) noexcept;
+    // A piece to send at `now` s; count: none is due. One that was sent is due again `after` s.
+    [[nodiscard]] uint32_t next(double now, double after) const noexcept;
+    void sent(uint32_t piece, double now, uint32_t packet) noexcept {
+        sentAt_[piece % kChunkWindow] = now;
+        sentIn_[piece % kChunkWindow] = packet;
+        if (piece >= sentEnd_) sentEnd_ = piece + 1;
+    }
+    [[nodiscard]] bool allSent() const noexcept { return sentEnd_ == count_; }
+    [[nodiscard]] uint32_t base() const noexcept { return base_; }
     [[nodiscard]] uint32_t count() const noexcept { return count_; }
+    [[nodiscard]] uint32_t sentEnd() const noexcept { return sentEnd_; }
 
  private:
-    uint32_t count_ = 0, base_ = 0;
+    uint32_t count_ = 0, base_ = 0, sentEnd_ = 0;
     uint64_t came_ = 0;  // bit i: base_ + i
     std::array<double, kChunkWindow> sentAt_{};
+    std::array<uint32_t, kChunkWindow> sentIn_{};  // number of the packet
 };
 
 // The receiver's side.
@@ -57,8 +69,9 @@ class ChunkReceiver {
  public:
     explicit ChunkReceiver(std::pmr::memory_resource* memory) : bytes_(memory) {}
     void forget() noexcept;
-    // False: it is none of the state that the others are of.
-    bool take(const ChunkHead& head, std::span<const std::byte> piece);
+    // False: it is none of the state that the others are of. A piece of another state counts only
+    // in the `newest` packet: the sender is at one state at a time.
+    bool take(const ChunkHead& head, std::span<const std::byte> piece, bool newest);
     [[nodiscard]] const StateHead& state() const noexcept { return state_; }
     [[nodiscard]] bool whole() const noexcept { return state_.id != 0 && base_ == count_; }
     [[nodiscard]] uint32_t base() const noexcept { return base_; }

@@ -120,14 +120,13 @@ class Side {
         check(fwNet_GetState(world_, {}, &state));
         return state;
     }
-    // Packets that came in, those that are due out. A stranger's, or a spoilt one, is refused.
-    template <class PeerOf>
-    void exchange(double now, const PeerOf& peerOf) {
+    // Packets that came in: take(port, bytes, size).
+    template <class Take>
+    void exchange(double now, const Take& take) {
         unsigned char room[1400];
         uint16_t from = 0;
         while (const size_t came = wire_.receive(room, sizeof room, from))
-            if (const FwPeerId* peer = peerOf(from))
-                (void)fwNet_Read(world_, *peer, room, uint32_t(came));
+            take(from, room, uint32_t(came));
         check(fwNet_Update(world_, float(std::min(now - before_, 10.0))));
         before_ = now;
     }
@@ -199,12 +198,18 @@ class Server : public Side {
                 leave(told);
                 heard = now;
             }
-            exchange(now, [&](uint16_t from) {
+            exchange(now, [&](uint16_t from, const void* packet, uint32_t size) {
                 if (client_ == 0) {
                     check(fwNet_AddPeer(world_, &peer_));
                     client_ = from;
                 }
-                return from == client_ ? &peer_ : nullptr;
+                if (from != client_) return;
+                if (fwNet_Read(world_, peer_, packet, size) == FW_OK) {
+                    greeted_ = true;
+                } else if (!greeted_) {  // a stranger's packet: the place stays free
+                    check(fwNet_RemovePeer(world_, peer_));
+                    client_ = 0;
+                }
             });
             if (client_ != 0) send(peer_, client_, now);
             if (!told.empty() && state().records == 0) return true;
@@ -246,6 +251,7 @@ class Server : public Side {
 
     FwPeerId peer_{};
     uint16_t client_ = 0;
+    bool greeted_ = false;  // it has sent a packet that is a client's
 };
 
 class Client : public Side {
@@ -260,8 +266,10 @@ class Client : public Side {
         double doneAt = 0;
         for (;;) {
             const double now = seconds();
-            const FwPeerId server{};
-            exchange(now, [&](uint16_t from) { return from == wishes_.port ? &server : nullptr; });
+            // A damaged packet is refused, and comes again.
+            exchange(now, [&](uint16_t from, const void* packet, uint32_t size) {
+                if (from == wishes_.port) (void)fwNet_Read(world_, {}, packet, size);
+            });
             FwNetTurn turn{};
             turn.structSize = sizeof turn;
             for (;;) {
@@ -285,7 +293,7 @@ class Client : public Side {
                             static_cast<unsigned long long>(at.step));
             }
             if (at.step != step || !followed) step = at.step, progress = now;
-            send(server, wishes_.port, now);
+            send({}, wishes_.port, now);
             // A little longer, so that the server hears that all has come.
             if (done && now - doneAt > 2) return equal;
             if (!done && (now - progress > kPatience || double(at.silent) > kPatience))

@@ -66,10 +66,12 @@ void Wire::flush(double now) {
 }
 
 size_t Wire::receive(void* room, size_t size, uint16_t& from) {
-    sockaddr_in address{};
-    socklen_t length = sizeof address;
-    const ssize_t came =
-        recvfrom(socket_, room, size, 0, reinterpret_cast<sockaddr*>(&address), &length);
-    from = ntohs(address.sin_port);
-    return came > 0 ? size_t(came) : 0;
+    for (;;) {  // an empty packet is not the end of them
+        sockaddr_in address{};
+        socklen_t length = sizeof address;
+        const ssize_t came =
+            recvfrom(socket_, room, size, 0, reinterpret_cast<sockaddr*>(&address), &length);
+        from = ntohs(address.sin_port);
+        if (came != 0) return came > 0 ? size_t(came) : 0;
+    }
 }

@@ -46,6 +46,15 @@ inline FwNetDef netDef(uint32_t token) {
     return def;
 }
 
+// The sum in a packet's head, so that what is behind it is looked at.
+inline void signPacket(Bytes& packet) {
+    uint64_t hash = 1469598103934665603ull;
+    for (size_t i = 0; i < packet.size(); ++i)
+        if (i < 8 || i >= 12) hash = (hash ^ packet[i]) * 1099511628211ull;
+    const uint32_t sum = uint32_t(hash) ^ uint32_t(hash >> 32);
+    std::memcpy(&packet[8], &sum, 4);
+}
+
 // World: with a context, a world, a host's log, hash() and messages it takes.
 template <class World>
 class NetSession {
@@ -58,7 +67,8 @@ class NetSession {
         std::function<void(const std::string&)> hears;
         bool goes = true;  // else its host has forgotten it
         bool oneFrame = false;
-        bool spoils = false;  // its wires do: refusals are in order
+        bool spoils = false;                           // its wires do: refusals are in order
+        std::function<void(Bytes&)> bendUp, bendDown;  // what a wire does to a packet's bytes
     };
 
     explicit NetSession(std::unique_ptr<World> given, uint32_t seed = 1)
@@ -92,12 +102,14 @@ class NetSession {
             const int frames = seconds > 0.03 ? 3 : 1;  // a client's are shorter
             for (int i = 0; i < frames; ++i) {
                 const double then = now + seconds * (i + 1) / frames;
-                client->down.deliver(then, [&](const Bytes& bytes) {
+                client->down.deliver(then, [&](Bytes bytes) {
+                    if (client->bendDown) client->bendDown(bytes);
                     read(client->world->world, {}, bytes, client->spoils);
                 });
                 if (client->goes) go(*client, seconds / frames);
                 take(client->world->world, {}, client->up, then);
-                client->up.deliver(then, [&](const Bytes& bytes) {
+                client->up.deliver(then, [&](Bytes bytes) {
+                    if (client->bendUp) client->bendUp(bytes);
                     read(server->world, client->peer, bytes, client->spoils);
                 });
             }

@@ -369,15 +369,6 @@ TEST(Net, TenThousandFuzzedPacketsChangeNothing) {
     EXPECT_EQ(0u, Busy::stateOf(client.world->world).strays);
 }
 
-// The sum in a packet's head, so that what is behind it is looked at.
-void signPacket(Bytes& packet) {
-    uint64_t hash = 1469598103934665603ull;
-    for (size_t i = 0; i < packet.size(); ++i)
-        if (i < 8 || i >= 12) hash = (hash ^ packet[i]) * 1099511628211ull;
-    const uint32_t sum = uint32_t(hash) ^ uint32_t(hash >> 32);
-    std::memcpy(&packet[8], &sum, 4);
-}
-
 // One in twenty is spoilt behind its head and has a right sum all the same. Clients may be led
 // astray by that, but it is found, and they find back.
 TEST(Net, DamageThatIsNotFoundAtOnceHeals) {

@@ -1,7 +1,9 @@
 // What packets are made of: heads that tell damage, numbers that came before, records that come
 // back as they were, states in pieces over a way that loses them.
 #include "net/packet.h"
+#include "net/protocol.h"
 #include "net/records.h"
+#include "net/round_trip.h"
 #include "net/transfer.h"
 
 #include <gtest/gtest.h>
@@ -62,8 +64,8 @@ TEST(NetRecords, ComeBackAsTheyWere) {
         record.stride = 16;
         record.hashCount = i % 5;
         record.hashes.fill(i);
-        log.push(record);
-        if (i % 7 == 6) log.dropBefore(i - 5);
+        log.push(record, i);
+        if (i % 7 == 6) log.dropBefore(i - 5, i);
     }
     EXPECT_EQ(500u, log.end());
     for (uint32_t i = log.begin(); i < log.end(); ++i) {
@@ -79,7 +81,7 @@ TEST(NetRecords, ComeBackAsTheyWere) {
             EXPECT_EQ(record.kind == net::RecordKind::hashes ? i % 5 : 0, record.hashCount);
         }
     }
-    log.dropBefore(log.end());
+    log.dropBefore(log.end(), log.end());
     EXPECT_EQ(0u, log.bytes());
     net::Record record;
     const Bytes cut(5);
@@ -99,9 +101,9 @@ TEST(NetTransfer, AStateComesWhole) {
     uint32_t sent = 0;
     for (double now = 0; now < 30 && !receiver.whole(); now += 0.05) {
         for (int i = 0; i < 16; ++i) {
-            const uint32_t piece = sender.next(now);
+            const uint32_t piece = sender.next(now, 0.25);
             if (piece == sender.count()) break;
-            sender.sent(piece, now);
+            sender.sent(piece, now, sent);
             ++sent;
             if (random() % 5 == 0) continue;
             Bytes packet;
@@ -110,16 +112,142 @@ TEST(NetTransfer, AStateComesWhole) {
             core::Reader reader(packet, "packet");
             net::ChunkHead head;
             const std::span<const std::byte> bytes = net::readChunk(reader, head);
-            EXPECT_TRUE(receiver.take(head, bytes));
+            EXPECT_TRUE(receiver.take(head, bytes, true));
         }
         if (random() % 5 != 0) {
-            EXPECT_TRUE(sender.acknowledge(receiver.base(), receiver.came()));
+            EXPECT_TRUE(sender.canHave(receiver.base(), receiver.came()));
+            sender.acknowledge(receiver.base(), receiver.came(), 0);
         }
     }
     ASSERT_TRUE(receiver.whole());
     EXPECT_TRUE(std::equal(state.begin(), state.end(), receiver.bytes().begin()));
     EXPECT_LT(sent, 2 * count);
-    EXPECT_FALSE(sender.acknowledge(count + 1, 0));
+    EXPECT_FALSE(sender.canHave(count + 1, 0));
+}
+
+// Only pieces that were sent can be acknowledged.
+TEST(NetTransfer, OnlySentPiecesCanHaveCome) {
+    net::ChunkSender sender;
+    sender.begin(100);
+    EXPECT_TRUE(sender.canHave(0, 0));
+    EXPECT_FALSE(sender.canHave(1, 0));
+    EXPECT_FALSE(sender.canHave(0, 1));
+    for (uint32_t piece = 0; piece < 5; ++piece) sender.sent(piece, 0, 10 + piece);
+    EXPECT_TRUE(sender.canHave(0, 0x1F));
+    EXPECT_TRUE(sender.canHave(2, 0x7));
+    EXPECT_TRUE(sender.canHave(5, 0));
+    EXPECT_FALSE(sender.canHave(2, 0x8));
+    EXPECT_FALSE(sender.canHave(6, 0));
+    EXPECT_FALSE(sender.canHave(0xFFFFFFFFu, 0));
+    // Pieces 0 and 2 did not come; packets before number 12 are settled.
+    EXPECT_EQ(5u, sender.next(0.1, 1));
+    sender.acknowledge(0, 0x1A, 12);
+    EXPECT_EQ(0u, sender.next(0.1, 1));
+    sender.sent(0, 0.1, 15);
+    EXPECT_EQ(5u, sender.next(0.2, 1));
+    sender.acknowledge(0, 0x1A, 13);
+    EXPECT_EQ(2u, sender.next(0.2, 1));
+}
+
+net::Record messageOf(std::span<const std::byte> text) {
+    net::Record record;
+    record.kind = net::RecordKind::message;
+    record.message = text;
+    return record;
+}
+
+// A client that gets a state instead of records gets each message between them all the same.
+TEST(NetRecords, MessagesOutliveTheRecordsAroundThem) {
+    net::RecordLog log(std::pmr::get_default_resource());
+    const Bytes text(3);
+    net::Record capture;
+    capture.kind = net::RecordKind::capture;
+    capture.tick = 1;
+    for (uint32_t i = 0; i < 1000; ++i) log.push(i % 100 == 50 ? messageOf(text) : capture, i);
+    const auto walk = [&](uint32_t from, uint32_t skipsBefore) {
+        std::vector<uint32_t> messages;
+        for (uint32_t at = from; at < log.end();) {
+            const net::RecordLog::Entry entry = log.entryAt(at, skipsBefore);
+            EXPECT_GT(entry.count, 0u);
+            if (!entry.bytes.empty()) {
+                EXPECT_EQ(1u, entry.count);
+                net::Record record;
+                net::readRecord(entry.bytes, record);
+                if (record.kind == net::RecordKind::message) messages.push_back(at);
+            }
+            at += entry.count;
+        }
+        return messages;
+    };
+    const std::vector<uint32_t> all = {50, 150, 250, 350, 450, 550, 650, 750, 850, 950};
+    EXPECT_EQ(all, walk(0, 0));
+    EXPECT_EQ(all, walk(0, 1000));
+    log.dropBefore(700, 200);
+    EXPECT_EQ(700u, log.begin());
+    EXPECT_EQ((std::vector<uint32_t>{250, 350, 450, 550, 650, 750, 850, 950}), walk(0, 0));
+    EXPECT_EQ((std::vector<uint32_t>{450, 550, 650, 750, 850, 950}), walk(450, 800));
+    log.dropMessagesBefore(500);
+    EXPECT_EQ((std::vector<uint32_t>{550, 650, 750, 850, 950}), walk(0, 0));
+    EXPECT_EQ(550u, log.dropOldestMessage());
+    log.dropBefore(1000, 900);
+    EXPECT_EQ((std::vector<uint32_t>{650, 950}), walk(0, 0));
+    EXPECT_EQ(0u, log.bytes());
+}
+
+TEST(NetRecords, CountBytesAndWhatAStateCanStandFor) {
+    net::RecordLog log(std::pmr::get_default_resource());
+    const Bytes text(10);
+    net::Record capture;
+    capture.kind = net::RecordKind::capture;
+    capture.tick = 1;
+    for (uint32_t i = 0; i < 10; ++i) log.push(i == 4 ? messageOf(text) : capture, 0.5 * i);
+    EXPECT_EQ(9u * 14 + 16, log.bytes());
+    EXPECT_EQ(6u * 14 + 16, log.bytesFrom(3));
+    EXPECT_EQ(6u * 14, log.skippableFrom(3));
+    EXPECT_EQ(1.5, log.pushedAt(3));
+    EXPECT_EQ(8u, log.recordBeforeLast(28));
+    EXPECT_EQ(9u, log.recordBeforeLast(27));
+    EXPECT_EQ(10u, log.recordBeforeLast(0));
+    EXPECT_EQ(0u, log.recordBeforeLast(10000));
+    log.dropBefore(5, 10);
+    EXPECT_EQ(5u, log.recordBeforeLast(10000));
+    EXPECT_EQ(5u * 14, log.bytes());
+}
+
+// The table is the protocol: phases that send records have a state, and whoever takes or waits can
+// fall back.
+TEST(NetProtocol, PhasesLeadToPhases) {
+    using net::PeerEvent, net::PeerPhase;
+    for (uint32_t i = 0; i < uint32_t(PeerPhase::count); ++i) {
+        const auto phase = PeerPhase(i);
+        const net::PeerRule& rule = net::ruleOf(phase);
+        EXPECT_FALSE(rule.waits && rule.takes) << rule.name;
+        EXPECT_NE(net::kRefused, net::phaseAfter(phase, PeerEvent::greets)) << rule.name;
+        const PeerPhase fallen = net::phaseAfter(phase, PeerEvent::falls);
+        ASSERT_NE(net::kRefused, fallen) << rule.name;
+        EXPECT_EQ(rule.hasState, net::ruleOf(fallen).hasState) << rule.name;
+        EXPECT_FALSE(net::ruleOf(fallen).takes) << rule.name;
+        if (rule.waits) {
+            EXPECT_NE(net::kRefused, net::phaseAfter(phase, PeerEvent::begins)) << rule.name;
+        }
+        if (!rule.hasState) {
+            EXPECT_EQ(net::kRefused, net::phaseAfter(phase, PeerEvent::asksTiles)) << rule.name;
+        }
+    }
+    EXPECT_EQ(net::kRefused, net::phaseAfter(PeerPhase::calling, PeerEvent::loads));
+}
+
+TEST(NetRoundTrip, FollowsTheWayAndWaitsLonger) {
+    net::RoundTrip trip;
+    EXPECT_EQ(0.5, trip.timeout());
+    double now = 0;
+    for (uint32_t i = 1; i < 200; ++i, now += 0.1) {
+        trip.sent(i, now);
+        if (i > 20) trip.answered(i - 20, now);  // 2 s later
+    }
+    EXPECT_NEAR(2.0, trip.seconds(), 0.2);
+    EXPECT_GT(trip.timeout(), trip.seconds());
+    EXPECT_LT(trip.timeout(), 3.0);
 }
 
 }  // namespace

@@ -1464,7 +1464,9 @@ typedef struct FwNetDef {
     uint32_t token;             /* [1, 2^32): a number of the host's by chance, another one each time: of the session, or of
                                    this client. Packets of others are refused */
     uint32_t packetBytes;       /* [512, 1400], default 1200: the most that a packet has */
-    uint32_t bytesPerSecond;    /* [4000, 100000000], default 262144: of a server, to each client at most */
+    uint32_t bytesPerSecond;    /* [4000, 100000000], default 262144: of a server, to each client at most: what a connection
+                                   carries. A client that falls too far behind gets the whole state; see
+                                   FwNetState::overloaded */
     float interval;             /* s between packets, [1/64, 1], default 1/16; more are sent where there is more to say */
     float delay;                /* s, [0, 10], default 0.15: of a client, how far it stays behind the newest that it has heard
                                    of. Below what packets need on their way, and again where one is lost, its fire stutters */
@@ -1488,10 +1490,13 @@ FW_API FwResult FW_CALL fwNet_Update(FwWorld*, float deltaTime);
 /* The next packet for a peer; of a client: for the server, with a null id. *size: room for FwNetDef::packetBytes, then what
  * was written. FW_NOT_READY: there is none before the next fwNet_Update. [world] */
 FW_API FwResult FW_CALL fwNet_Write(FwWorld*, FwPeerId to, void* packet, uint32_t* size);
-/* A packet that came. FW_ERROR_BAD_DATA, FW_ERROR_VERSION: it is none of theirs. [world] */
+/* A packet that came. FW_ERROR_BAD_DATA, FW_ERROR_VERSION: it is damaged, of another session, or has a number that cannot be
+ * by what this side has sent. Such a packet changes nothing; FwNetState::packetsRefused counts it, and a server's log says the
+ * first, second, fourth, eighth... of each peer. Of one peer a server looks at 512 packets a second. [world] */
 FW_API FwResult FW_CALL fwNet_Read(FwWorld*, FwPeerId from, const void* packet, uint32_t size);
 /* Of a server: bytes of the host's own, [0, 1024] and at most FwNetDef::packetBytes less 64, that each client gets between
- * the same calls and before the same step as here, in order, none left out. Clients that join later do not get it: their
+ * the same calls and before the same step as here, in order, none left out; a client that gets the whole state, as it fell
+ * behind or went wrong, gets those before that state right before it. Clients that join later do not get it: their
  * host has to know by another way what has been made since. [world] */
 FW_API FwResult FW_CALL fwNet_Tell(FwWorld*, const void* message, uint32_t size);
 
@@ -1534,7 +1539,15 @@ typedef struct FwNetState {
     uint32_t repairs;          /* of a client: of its states, those of which only tiles that differed came */
     uint64_t hashes;           /* of a client: that were compared */
     uint64_t bytesOut, bytesIn, packetsOut, packetsIn; /* without what the way adds */
-    uint64_t packetsIgnored;   /* that had come before, or came much too late */
+    uint64_t packetsIgnored;   /* that had come before, came much too late, or faster than 512 a second from one peer */
+    uint64_t packetsRefused;   /* that were damaged or had a number that cannot be; of a server's peer: those of this peer */
+    uint64_t messagesLost;     /* of a server: messages of fwNet_Tell that peers miss, since more than 4 MB of them waited */
+    uint32_t resyncs;          /* of a server: how often a peer fell so far behind that it needs the whole state */
+    uint32_t overloaded;       /* of a server: peers whose rate cannot carry the changes; of a client: 1 if its server says so */
+    float changeRate;          /* bytes/s, of a server: what its changes of the last seconds take */
+    float backlog;             /* s, of a server: age of the oldest change that a peer has not got */
+    float roundTrip;           /* s, of a server's peer: from a packet to its answer; 0: not known yet */
+    uint32_t reserved;         /* 0 */
 } FwNetState;
 /* Of a server: peer null: of all of them. [world] */
 FW_API FwResult FW_CALL fwNet_GetState(FwWorld*, FwPeerId peer, FwNetState* state);

@@ -1,0 +1,58 @@
+#!/bin/bash
+# Runs the checks that are too long for every change: one row for each script in tests/long, whose
+# first comment is its title, and whose line "# build: TARGET..." says what is built for it. A row
+# has 20 minutes, and a folder in FW_LONG_FOLDER for results of its parts. Rows that are through for
+# this tree are not run again; one that was stopped goes on with what it kept. Called by
+# tests/run --long [ROW]; a row that is named runs again.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=../../third_party/setup.sh
+source "$here/../third_party/setup.sh"
+
+named=${1:-}
+[[ -z $named || -f $here/long/$named.sh ]] ||
+    fw_usage_error "--long \"$named\" is none of: $(basename -s .sh "$here"/long/*.sh | paste -s -d ' ')"
+"$fw_root/third_party/install.sh"
+results="$fw_root/build/long"
+tree=$(cd "$fw_root" && { git rev-parse HEAD && git diff HEAD; } 2>/dev/null | sha256sum)
+if [[ ! -f $results/tree || $(cat "$results/tree") != "$tree" ]]; then
+    rm -rf "$results"
+    mkdir -p "$results"
+    echo "$tree" >"$results/tree"
+fi
+
+passed=0 failed=0 skipped=0 table=
+for script in "$here"/long/${named:-*}.sh; do
+    row=$(basename -s .sh "$script")
+    folder="$results/$row"
+    [[ -z $named || ! -f $folder/verdict ]] || rm -rf "$folder"
+    mkdir -p "$folder"
+    if [[ ! -f $folder/verdict ]]; then
+        echo "== $row: $(sed -n '2s/^# //p' "$script")"
+        read -r -a targets < <(sed -n 's/^# build: //p' "$script") || true
+        status=0 start=$SECONDS
+        { [[ ${#targets[@]} -eq 0 ]] || fw_build release "${targets[@]}"; } || status=$?
+        [[ $status -ne 0 ]] || FW_BUILD_FOLDER="$fw_root/build/release" FW_LONG_FOLDER="$folder" \
+            timeout --kill-after=10 1200 bash "$script" 2>&1 | tee "$folder/log" || status=$?
+        case $status in
+            0) verdict=passed ;;
+            77) verdict=skipped ;;
+            124 | 137) verdict="failed (stopped after 1200 s)" ;;
+            *) verdict="failed (status $status)" ;;
+        esac
+        printf '%s|%d s\n' "$verdict" $((SECONDS - start)) >"$folder/verdict"
+    fi
+    verdict=$(cat "$folder/verdict")
+    # A row that failed is run again; its parts that passed are kept.
+    case $verdict in
+        passed*) passed=$((passed + 1)) ;;
+        skipped*) skipped=$((skipped + 1)) ;;
+        *) failed=$((failed + 1)) && rm "$folder/verdict" ;;
+    esac
+    table+=$(printf '%-20s %-32s %8s  %s' "$row" "${verdict%|*}" "${verdict#*|}" \
+        "$(sed -n '2s/^# //p' "$script")")$'\n'
+done
+echo
+printf '%s' "$table"
+echo "$passed passed, $failed failed, $skipped skipped"
+[[ $failed -eq 0 ]]
