@@ -14,7 +14,7 @@ named=${1:-}
     fw_usage_error "--long \"$named\" is none of: $(basename -s .sh "$here"/long/*.sh | paste -s -d ' ')"
 "$fw_root/third_party/install.sh"
 results="$fw_root/build/long"
-tree=$(cd "$fw_root" && { git rev-parse HEAD && git diff HEAD; } 2>/dev/null | sha256sum)
+tree=$(cd "$fw_root" && { git rev-parse HEAD && git diff HEAD || true; } 2>/dev/null | sha256sum)
 if [[ ! -f $results/tree || $(cat "$results/tree") != "$tree" ]]; then
     rm -rf "$results"
     mkdir -p "$results"
