@@ -385,6 +385,8 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
     noteEvents(save);
     size_t next = 0, from = 0;
     for (SavedObject& object : saved.objects) {
+        object.carried = (*objects_.at(object.slot))->carried;
+        object.story = (*objects_.at(object.slot))->story;
         if (!object.touched) {
             if (object.slot < readback.objects.size())
                 object.air = readback.objects[object.slot].air;
@@ -407,8 +409,6 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         if (object.play.began != 0 &&
             !gpu::playsAt(image.counters.playsUntil, uint32_t(saved.clock.tick)))
             object.play = {};
-        object.story = (*objects_.at(object.slot))->story;
-        object.carried = (*objects_.at(object.slot))->carried;
     }
     for (SavedRoom& room : saved.rooms)  // its air goes on from what the frame left
         if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.epoch) {

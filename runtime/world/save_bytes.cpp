@@ -350,12 +350,13 @@ void put(S& s, T& o) {
     if (o.play.burn1 != 0) all(s, o.burnHash, o.play.first, o.play.rate, o.play.began, o.play.ends);
     if (o.placed && o.due) putWords(s, o.remote);
     if (o.placed && !o.due) put(s, o.remote.high.w);
-    all(s, o.touched);
+    all(s, o.touched, o.carried);
     if (!o.touched) {
         put(s, o.air);
+        if (o.carried) put(s, o.story);  // of the burn that it gets with the next step
         return;
     }
-    all(s, o.carried, o.filters, o.latched, o.story);
+    all(s, o.filters, o.latched, o.story);
     putWords(s, o.counters);
     all(s, o.asksBreaks);
     if (o.asksBreaks) put(s, o.breaks);

@@ -48,6 +48,7 @@ struct Act {
         tag,
         play,
         stopPlay,
+        carry,
         kinds
     };
     Kind kind = ignite;
@@ -91,6 +92,7 @@ class SessionDraw {
                                  : kind == 2 ? between(0, 0.3f)
                                              : float(1 + below(4)) / 32);
             made.polls.push_back(once(2));
+            carries_ = carries_ && made.times.back() < 1.0f / 32;
         }
         return made;
     }
@@ -143,7 +145,7 @@ class SessionDraw {
         std::copy_n((*now_)[0].numbers, 3, fire.numbers);
     }
     void one() {
-        const uint32_t kind = below(48);
+        const uint32_t kind = below(50);
         if (kind < 8) {
             Act& ball = act(Act::ignite, once(2) && !objects_.empty() ? any(objects_) : 0);
             place(ball.numbers);
@@ -157,7 +159,7 @@ class SessionDraw {
             place(move.numbers);
             move.numbers[3] = once(2) ? between(-1, 1) : 0.0f;
         } else if (kind < 17) {
-            if (objects_.size() > 3) act(Act::dropObject, drop(objects_));
+            if (objects_.size() > 3 && !carries_) act(Act::dropObject, drop(objects_));
             if (objects_.size() < 8 && once(2)) object();
         } else if (kind == 17) {
             if (objects_.size() < 8) object();
@@ -214,6 +216,10 @@ class SessionDraw {
             Act& tag = act(Act::tag, any(objects_));
             place(tag.numbers);
             tag.other = below(50);
+        } else if (kind == 48 && !objects_.empty()) {
+            Act& carry = act(Act::carry, any(objects_));
+            carry.other = any(objects_);
+            carries_ = true;
         } else if (!objects_.empty()) {
             Act& play = act(once(4) ? Act::stopPlay : Act::play, any(objects_));
             play.numbers[0] = once(2) ? between(0, 0.5f) : 0.0f;
@@ -263,6 +269,7 @@ class SessionDraw {
 
     uint64_t state_;
     uint32_t names_ = 0;
+    bool carries_ = false;  // who gives a burn stays until the step that takes it
     std::vector<Act>* now_ = nullptr;
     std::vector<uint32_t> objects_, zones_, rooms_, blockers_, fires_, jets_, fields_;
 };
@@ -312,21 +319,21 @@ class SessionWorld {
     }
     // What came since the last poll, without what depends on the frame's number.
     std::vector<std::string> poll() {
-        std::vector<std::string> told;
+        std::vector<std::string> reported;
         FwEvent events[64];
         for (uint32_t count; (count = fwWorld_PollEvents(world, events, 64)) != 0;)
             for (uint32_t i = 0; i < count; ++i) {
                 const FwEvent& e = events[i];
-                // What is told of things that are gone is in no save.
+                // What is reported of things that are gone is in no save.
                 if (e.object.index1 != 0 && nameOf(e.object) == 0) continue;
                 char text[200];
                 std::snprintf(text, sizeof text,
                               "type %u tag %u of %u by %u at %.9g %.9g %.9g: %.9g", e.type, e.tag,
                               nameOf(e.object), nameOf(e.other), double(e.position[0]),
                               double(e.position[1]), double(e.position[2]), double(e.value));
-                told.emplace_back(text);
+                reported.emplace_back(text);
             }
-        return told;
+        return reported;
     }
     // What a host reads of the world's state, in words.
     std::string figures() {
@@ -597,6 +604,9 @@ class SessionWorld {
                 return;
             case Act::stopPlay:
                 return ok(fwWorld_StopBurn(world, objects[act.name]));
+            case Act::carry:  // refused where the two are not alike
+                (void)fwWorld_TransferBurn(world, objects[act.name], objects[act.other]);
+                return;
             case Act::kinds:
                 break;
         }

@@ -11,7 +11,7 @@ using namespace host;
 
 struct Kept {  // of a frame
     Bytes save;
-    std::vector<std::string> told;
+    std::vector<std::string> reported;
     std::string figures;
 };
 
@@ -26,7 +26,7 @@ Kept live(SessionWorld& w, uint32_t frame) {
     kept.save.resize(size);
     EXPECT_EQ(FW_OK, fwWorld_FetchSave(w.world, kept.save.data(), &size));
     kept.figures = w.figures();
-    if (w.session.polls[frame]) kept.told = w.poll();
+    if (w.session.polls[frame]) kept.reported = w.poll();
     return kept;
 }
 
@@ -44,7 +44,7 @@ bool goesOn(SessionWorld& w, const std::vector<Kept>& original, uint32_t frame, 
     if (::testing::Test::HasFailure()) return false;
     EXPECT_EQ(original[frame].figures, w.figures()) << which << ", as loaded at " << frame;
     if (w.session.polls[frame]) {
-        EXPECT_EQ(original[frame].told, w.poll()) << which << ", as loaded at " << frame;
+        EXPECT_EQ(original[frame].reported, w.poll()) << which << ", as loaded at " << frame;
     }
     const auto end = uint32_t(std::min<size_t>(frame + 1 + frames, original.size()));
     for (uint32_t next = frame + 1; next < end; ++next) {
@@ -55,7 +55,7 @@ bool goesOn(SessionWorld& w, const std::vector<Kept>& original, uint32_t frame, 
             << "; they differ at " << differsAt(original[next].save, kept.save);
         EXPECT_EQ(original[next].figures, kept.figures)
             << which << ", loaded at " << frame << ", frame " << next;
-        EXPECT_EQ(original[next].told, kept.told)
+        EXPECT_EQ(original[next].reported, kept.reported)
             << which << ", loaded at " << frame << ", frame " << next;
         if (::testing::Test::HasFailure()) return false;
     }
@@ -74,7 +74,7 @@ void savesOfEveryFrame(uint64_t seed, uint32_t frames, uint32_t goes) {
         SessionWorld first(context, session, burn);
         for (uint32_t frame = 0; frame < frames; ++frame) {
             original.push_back(live(first, frame));
-            events += uint32_t(original.back().told.size());
+            events += uint32_t(original.back().reported.size());
         }
     }
     for (uint32_t frame = 0; frame < frames && !::testing::Test::HasFailure(); ++frame)
@@ -288,9 +288,9 @@ bool drops(const Session& session, uint32_t frame) {
                        });
 }
 
-// A device tells of frames some frames later. What is told of them, figures and saves are alike
+// A device tells of frames some frames later. What is reported of them, figures and saves are alike
 // once all of them are here; things are moved and dropped only then, as the places of events are
-// those at which things are when they are told.
+// those at which things are when they are reported.
 void backendsAgree(uint64_t seed, uint32_t frames) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Host hosts[2];
@@ -306,14 +306,14 @@ void backendsAgree(uint64_t seed, uint32_t frames) {
         for (uint32_t frame = 0; frame < frames && !::testing::Test::HasFailure(); ++frame) {
             const bool saves = frame % 8 == 7;
             Bytes bytes[2];
-            std::vector<std::string> told[2];
+            std::vector<std::string> reported[2];
             std::string figures[2];
             SessionWorld* const both[2] = {&cpu, &device};
             for (int k = 0; k < 2; ++k) {
                 SessionWorld& w = *both[k];
                 if (drops(session, frame)) {
                     settle(w);
-                    told[k] = w.poll();
+                    reported[k] = w.poll();
                 }
                 w.act(frame);
                 if (saves) {
@@ -328,10 +328,10 @@ void backendsAgree(uint64_t seed, uint32_t frames) {
                 EXPECT_EQ(FW_OK, fwWorld_FetchSave(w.world, bytes[k].data(), &size));
                 figures[k] = w.figures();
                 const std::vector<std::string> more = w.poll();
-                told[k].insert(told[k].end(), more.begin(), more.end());
+                reported[k].insert(reported[k].end(), more.begin(), more.end());
             }
-            for (std::vector<std::string>& all : told) std::sort(all.begin(), all.end());
-            EXPECT_EQ(told[0], told[1]) << "frame " << frame;
+            for (std::vector<std::string>& all : reported) std::sort(all.begin(), all.end());
+            EXPECT_EQ(reported[0], reported[1]) << "frame " << frame;
             EXPECT_EQ(figures[0], figures[1]) << "frame " << frame;
             EXPECT_TRUE(bytes[0] == bytes[1])
                 << "frame " << frame << ": saves of " << bytes[0].size() << " and "

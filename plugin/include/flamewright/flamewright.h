@@ -1232,7 +1232,8 @@ typedef struct FwEvent {        /* 64 bytes for ever */
     uint64_t userData;          /* the object's */
     FwBurnableMeshId object;
     uint64_t frameIndex;        /* the frame whose work raised it */
-    float position[3], value;
+    float position[3], value;   /* position: with the object where it stands when the event is reported, which with a
+                                   device is up to 3 frames after `frameIndex` */
     FwBurnableMeshId other;     /* FW_EVENT_SPREAD_TO: who lit it; else null */
     uint64_t reserved;
 } FwEvent;
@@ -1327,10 +1328,13 @@ FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArriva
  * later, and nothing waits for them. One at a time: a second wish begins anew. In a save: every texel's state, temperature, fuel
  * and water; counters, clocks, wind, flags and what the wind's filters hold; transforms of objects and blockers; events
  * that wait, tags, contacts; what jets have in the air, what fires and jets are about to light, cells of fields that
- * wet; what was told of what broke; the events up to that frame's that were not polled before it (the newest 256; with a device
- * those that it tells later, too). Not in it: what only shows (particles, flames, soot, sheets in motion), queries, hidden,
+ * wet; points of volumetric fires; what FwWorldDef::visibility answered; which breaks were reported; all events up to that
+ * frame's that were not polled before it (with a device those that it reports later, too), but for those about objects that
+ * are destroyed by then. Not in it: what only shows (particles, flames, soot, sheets in motion), queries, hidden,
  * and what the host made: meshes, materials, objects. Refused while an object with FW_BURNABLE_PUBLISHED burns. The bytes
- * are the same on every backend, if as much was polled: little-endian, versioned, with a checksum, compressed. [world] */
+ * are the same on every backend, if as much was polled and nothing moved since (positions of events are those of the poll):
+ * little-endian, versioned, with a checksum, compressed. A loaded world goes on as its original does: state, events and
+ * later saves are alike. FwWorldStats::runTiles and flames alone are not: they count work. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestSave(FwWorld*);
 /* FW_NOT_READY until it is there. Call with buffer null for the size, or with enough room; *size is what is (or would
  * be) written, in bytes. The library keeps them until the next fwWorld_RequestSave. To keep them, write them to a new
