@@ -727,13 +727,15 @@ Backdrop backdropOf(const Burn& burn) {
         std::memcpy(&pose[0][0], values.data(), sizeof pose);
         if (object->hidden) continue;
         const auto first = static_cast<uint32_t>(made.positions.size() / 3);
-        for (size_t i = 0; i + 2 < mesh.model->positions.size(); i += 3) {
-            const glm::vec4 at(mesh.model->positions[i], mesh.model->positions[i + 1],
-                               mesh.model->positions[i + 2], 1);
+        const fwmodel::SolidTriangles solid =
+            fwmodel::solidTrianglesOf(*mesh.model, fwmodel::surfacesOf(*mesh.model));
+        for (size_t i = 0; i + 2 < solid.positions.size(); i += 3) {
+            const glm::vec4 at(solid.positions[i], solid.positions[i + 1], solid.positions[i + 2],
+                               1);
             const glm::vec3 p(pose * at);
             made.positions.insert(made.positions.end(), {p.x, p.y, p.z});
         }
-        for (const uint32_t index : mesh.model->indices) made.indices.push_back(first + index);
+        for (const uint32_t index : solid.indices) made.indices.push_back(first + index);
     }
     for (const Flame& flame : burn.scene.flames) {
         if (made.any) break;  // flames alone are as large as they burn

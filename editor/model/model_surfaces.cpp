@@ -208,6 +208,75 @@ FwMaterialDef materialDefOf(uint32_t preset, bool ownColors) {
     return def;
 }
 
+namespace {
+
+// Is the picture there? The place may be any number of turns away.
+bool isThere(const fwimport::DecodedImage& image, float alphaCutoff, glm::vec2 uv) {
+    const glm::vec2 turn = uv - glm::floor(uv);
+    const auto pixel = [](float share, uint32_t side) {
+        return std::min(static_cast<size_t>(share * static_cast<float>(side)), size_t{side} - 1);
+    };
+    const size_t at = pixel(turn.y, image.height) * image.width + pixel(turn.x, image.width);
+    return static_cast<float>(image.rgba[at * 4 + 3]) >= alphaCutoff * 255;
+}
+
+// Splits each side of a triangle into `parts`, and adds those of the small ones that are there.
+void addParts(const ImportedModel& model, const SlotPicture& picture, size_t triangle, int parts,
+              SolidTriangles& result) {
+    const auto& image = model.images[static_cast<size_t>(picture.image)];
+    glm::vec3 places[3];
+    glm::vec2 uvs[3];
+    for (size_t k = 0; k < 3; ++k) {
+        const size_t vertex = model.indices[triangle * 3 + k];
+        for (int c = 0; c < 3; ++c)
+            places[k][c] = model.positions[vertex * 3 + static_cast<size_t>(c)];
+        uvs[k] = {model.uvs[vertex * 2], model.uvs[vertex * 2 + 1]};
+    }
+    const auto add = [&](glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
+        const auto mix = [&](const auto(&of)[3], glm::vec2 at) {
+            return of[0] + (of[1] - of[0]) * at.x + (of[2] - of[0]) * at.y;
+        };
+        const auto steps = static_cast<float>(parts);
+        const glm::vec2 corners[3] = {glm::vec2(a) / steps, glm::vec2(b) / steps,
+                                      glm::vec2(c) / steps};
+        const glm::vec2 middle = (corners[0] + corners[1] + corners[2]) / 3.0f;
+        if (!isThere(image, picture.alphaCutoff, mix(uvs, middle))) return;
+        for (const glm::vec2& corner : corners) {
+            const glm::vec3 p = mix(places, corner);
+            result.indices.push_back(static_cast<uint32_t>(result.positions.size() / 3));
+            result.positions.insert(result.positions.end(), {p.x, p.y, p.z});
+        }
+    };
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; i + j < parts; ++j) {
+            add({i, j}, {i + 1, j}, {i, j + 1});
+            if (i + j + 1 < parts) add({i + 1, j}, {i + 1, j + 1}, {i, j + 1});
+        }
+}
+
+}  // namespace
+
+SolidTriangles solidTrianglesOf(const ImportedModel& model, const ModelSurfaces& surfaces) {
+    constexpr size_t kMostParts = 1u << 20;
+    const auto pictureOf = [&](size_t triangle) {
+        return surfaces.pictures[surfaces.triangleMaterials[triangle]];
+    };
+    size_t cutOut = 0;
+    for (size_t t = 0; t < model.triangleCount(); ++t) cutOut += pictureOf(t).alphaCutoff > 0;
+    int parts = 24;
+    while (parts > 1 && cutOut * static_cast<size_t>(parts * parts) > kMostParts) --parts;
+    SolidTriangles result{model.positions, {}};
+    for (size_t t = 0; t < model.triangleCount(); ++t) {
+        if (pictureOf(t).alphaCutoff > 0) {
+            addParts(model, pictureOf(t), t, parts, result);
+            continue;
+        }
+        const auto from = model.indices.begin() + static_cast<std::ptrdiff_t>(t * 3);
+        result.indices.insert(result.indices.end(), from, from + 3);
+    }
+    return result;
+}
+
 FwImageDef imageDefOf(const ImportedModel& model, const SlotPicture& picture) {
     const fwimport::DecodedImage& image = model.images[static_cast<size_t>(picture.image)];
     FwImageDef def = fwDefaultImageDef();

@@ -24,9 +24,9 @@ struct ModelSurfaces {
     std::vector<uint8_t> slots;              // by ImportedModel::materials
     std::vector<uint8_t> triangleMaterials;  // slot by triangle
     std::array<SlotPicture, kSlots> pictures;
-    uint32_t slotCount = 1;        // slots that triangles use: [0, slotCount)
-    std::vector<uint32_t> colors;  // RGBA8 linear by vertex; empty: the file says no colour, and
-                                   // the material's own base colour shows
+    uint32_t slotCount = 1;          // slots that triangles use: [0, slotCount)
+    std::vector<uint32_t> colors;    // RGBA8 linear by vertex; empty: the file says no colour, and
+                                     // the material's own base colour shows
     bool twoSided = false;           // it has cut-outs that are seen from both sides
     std::vector<std::string> notes;  // what is shown otherwise than the file says, and why
 
@@ -42,6 +42,14 @@ ModelSurfaces surfacesOf(const fwimport::ImportedModel& model);
 FwMeshDef meshDefOf(const fwimport::ImportedModel& model, const ModelSurfaces& surfaces);
 // A preset. Where the file has colours the base colour is 1: unburnt, the file's colours show.
 FwMaterialDef materialDefOf(uint32_t preset, bool ownColors);
+// What casts a shadow: the model's triangles, and of those with cut-outs parts that are there, as
+// fine as a soft shadow shows them.
+struct SolidTriangles {
+    std::vector<float> positions;   // 3 per vertex, m
+    std::vector<uint32_t> indices;  // 3 per triangle
+};
+SolidTriangles solidTrianglesOf(const fwimport::ImportedModel& model,
+                                const ModelSurfaces& surfaces);
 // Of a slot with a picture; points into `model`.
 FwImageDef imageDefOf(const fwimport::ImportedModel& model, const SlotPicture& picture);
 

@@ -179,7 +179,9 @@ int run(const sample::Options& options, const Wishes& wishes) {
             createMesh(fire, subject, mapRequestOf(options, wishes, subject.size()), bakeNote);
         const FwBurnableMeshId object = placeSubject(fire, subject, mesh, preset);
 
-        studio.castShadow(subject.model.positions, subject.model.indices, glm::mat4(1.0f),
+        const fwmodel::SolidTriangles solid =
+            fwmodel::solidTrianglesOf(subject.model, subject.surfaces);
+        studio.castShadow(solid.positions, solid.indices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
         const float matchRadius = 0.03f * subject.size();
         glm::vec3 match(wishes.ignite[0], wishes.ignite[1], wishes.ignite[2]);

@@ -74,9 +74,11 @@ struct BoardMaterial {
 };
 
 // Boards of 0.2 x 0.6 m, 0.25 m apart along x, upright, towards +z. `grid`: quads along each side
-// of the last one. Writes NAME.gltf, NAME.bin and its pictures.
+// of the last one. `ofNode`: of the node's JSON, with its comma.
+// Writes NAME.gltf, NAME.bin and its pictures.
 inline void writeBoardRow(const std::filesystem::path& folder, const std::string& name,
-                          const std::vector<BoardMaterial>& materials, uint32_t grid = 1) {
+                          const std::vector<BoardMaterial>& materials, uint32_t grid = 1,
+                          const std::string& ofNode = "") {
     std::vector<float> data;
     std::vector<uint32_t> indices;
     std::string views, accessors, primitives, texts, images, textures;
@@ -143,7 +145,7 @@ inline void writeBoardRow(const std::filesystem::path& folder, const std::string
     }
     std::ofstream file(folder / (name + ".gltf"));
     file << "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-         << "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[" << primitives
+         << "\"nodes\":[{\"mesh\":0" << ofNode << "}],\"meshes\":[{\"primitives\":[" << primitives
          << "]}],\"accessors\":[" << accessors << "],\"bufferViews\":[" << views
          << "],\"buffers\":[{\"uri\":\"" << name << ".bin\",\"byteLength\":" << bytes << "}]";
     if (!images.empty()) file << ",\"images\":[" << images << "],\"textures\":[" << textures << "]";

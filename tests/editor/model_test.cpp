@@ -134,6 +134,26 @@ TEST(ModelSurfaces, MasksCutOutAndAFactorsAlphaMovesTheirCutOff) {
     EXPECT_TRUE(surfaces.twoSided);
 }
 
+TEST(ModelSurfaces, ShadowsAreThoseOfWhatIsThere) {
+    const Yard yard;
+    const auto model = modelOfRow(yard, {{{1, 1, 1}, leavesPng(), ",\"alphaMode\":\"MASK\"", ""},
+                                         {{1, 1, 1}, leavesPng(), "", ""}});
+    const auto solid = fwmodel::solidTrianglesOf(model, fwmodel::surfacesOf(model));
+    double areas[2] = {};
+    for (size_t i = 0; i < solid.indices.size(); i += 3) {
+        const float* corners[3];
+        for (size_t k = 0; k < 3; ++k)
+            corners[k] = &solid.positions[size_t{solid.indices[i + k]} * 3];
+        const auto side = [&](size_t k, size_t c) {
+            return static_cast<double>(corners[k][c] - corners[0][c]);
+        };
+        areas[corners[0][0] > 0.22f] += 0.5 * (side(1, 0) * side(2, 1) - side(2, 0) * side(1, 1));
+    }
+    const double share = 3.14159 * 24 * 24 / (64 * 64);
+    EXPECT_NEAR(share * 0.12, areas[0], 0.005);
+    EXPECT_NEAR(0.12, areas[1], 1e-6);
+}
+
 TEST(ModelSurfaces, CookedScenesHaveTheColoursOfTheirFiles) {
     Yard yard;
     writeBoardRow(yard.folder, "ten", tenMaterials());
@@ -223,6 +243,7 @@ TEST(NeutralStage, SampleAndEditorShowEveryFileAlike) {
     struct Case {
         const char* name;
         std::vector<BoardMaterial> row;
+        std::string ofNode{};
     };
     const std::vector<uint8_t> half = plainPng(200, 60, 30, 128), none = plainPng(200, 60, 30, 0);
     const Case cases[] = {
@@ -240,12 +261,22 @@ TEST(NeutralStage, SampleAndEditorShowEveryFileAlike) {
         {"cut_outs",
          {{{1, 1, 1}, leavesPng(), ",\"alphaMode\":\"MASK\",\"doubleSided\":true", ""},
           {{0.5f, 0.7f, 1}, leavesPng(), "", ""}}},
+        {"specular_glossiness",
+         {{{1, 1, 1},
+           {},
+           ",\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":"
+           "[0.1,0.7,0.2,1]}}",
+           ""}}},
+        // Each position of the first board's corners carries all of the boards.
+        {"instances",
+         {{{1, 0.2f, 0.2f}, {}, "", ""}, {{0.2f, 0.2f, 1}, {}, "", ""}},
+         ",\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":0}}}"},
         {"grey", {{{0.8f, 0.8f, 0.8f}, {}, "", ""}}},
     };
     double worst = 0;
     for (const Case& one : cases) {
         const std::string name = one.name;
-        writeBoardRow(yard.folder, name, one.row);
+        writeBoardRow(yard.folder, name, one.row, 1, one.ofNode);
         yard.run("new\nimport " + name + ".gltf materials pine\nshot " + name +
                  "_editor.png 320x180 neutral 20 10\n");
         const fs::path out = yard.folder / (name + "_sample");
