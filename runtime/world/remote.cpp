@@ -385,16 +385,15 @@ void World::findLinks(uint32_t now) {
 void World::linkClose(Object& object, uint32_t now) {
     RemoteBook& book = remote_;
     const uint64_t stamp = ++book.contactStamp;
-    for (const uint32_t entry : book.neighbours.of(object.slot)) {
-        const uint32_t other = entry & Neighbours::kSlot;
+    const auto meet = [&](uint32_t other) {
         if (mesh::gapOf(boxOf(object.remote), boxOf((*objects_.at(other))->remote)) >
             int(gpu::kContactGap))
-            continue;
+            return;
         const Object& a = object.slot < other ? object : **objects_.at(other);
         const Object& b = object.slot < other ? **objects_.at(other) : object;
         PairContacts& pair = book.pairs[closePair(a.slot, b.slot)];
         pair.stamp = stamp;
-        if (pair.versions[0] == a.remoteVersion && pair.versions[1] == b.remoteVersion) continue;
+        if (pair.versions[0] == a.remoteVersion && pair.versions[1] == b.remoteVersion) return;
         pair.versions[0] = pair.versions[1] = 0;  // until all of it is there
         // Who only shifted while they touch has touched since then.
         const bool same = pair.ids[0].index1 != 0 && pair.ids[0].generation == a.id.generation &&
@@ -415,6 +414,20 @@ void World::linkClose(Object& object, uint32_t now) {
         pair.ids[1] = b.id;
         pair.versions[0] = a.remoteVersion;
         pair.versions[1] = b.remoteVersion;
+    };
+    // Where all objects are latched as they stand now, the few that are so near are found among
+    // all; else among its neighbours, which are many.
+    if (book.due.empty() || frame_.remoteLatched) {
+        const mesh::Box box = boxOf(object.remote);
+        for (const uint32_t other : objectsNear(box, 0.001f * float(gpu::kContactGap))) {
+            const Object& o = **objects_.at(other);
+            if (other != object.slot && o.remoteVersion != 0 && o.remote.flags & gpu::kRemoteLive &&
+                other <= Neighbours::kSlot)
+                meet(other);
+        }
+    } else {
+        for (const uint32_t entry : book.neighbours.of(object.slot))
+            meet(entry & Neighbours::kSlot);
     }
     const ListPlace& close = book.closeOf[object.slot];
     for (uint32_t i = close.count; i-- > 0;)
@@ -564,6 +577,7 @@ void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
         frame_.remote.push_back(core::Owned<RemoteTables>::make(memory_, memory_));
     RemoteTables& tables = *frame_.remote[frame_.remoteUsed];
     tables.objects.clear();
+    core::growTo(tables.objects, remote_.unsentSlots.size());
     for (const uint32_t slot : remote_.unsentSlots)
         tables.objects.push_back({slot, (*objects_.at(slot))->remote});
     remote_.neighbours.pool().listChanges(tables.neighbourRanges);

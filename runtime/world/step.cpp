@@ -304,9 +304,10 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time) noexcept 
         stimulus.heatSteps = heatStepsBefore(clock_.tick);
         touched_.push_back(&object);
     }
-    if (touched_.size() != touchedBefore)
-        std::sort(touched_.begin(), touched_.end(),
-                  [](const Object* a, const Object* b) { return a->slot < b->slot; });
+    const auto bySlot = [](const Object* a, const Object* b) { return a->slot < b->slot; };
+    if (touched_.size() != touchedBefore &&
+        !std::is_sorted(touched_.begin(), touched_.end(), bySlot))
+        std::sort(touched_.begin(), touched_.end(), bySlot);
     commitRemote();
     for (const Frame::Due& due : frame_.due) {
         Object& object = **objects_.at(due.event.object);

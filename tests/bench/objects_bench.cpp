@@ -1,6 +1,7 @@
 // Ten thousand crates in one scene, of which ten burn, on the cpu backend: what a step costs while
 // nothing moves, while one or a thousand of them walk, while crates come and go, when the first
-// match is struck, and when it rains on all of them. Time: of this process's threads. Counters:
+// match is struck, and when it rains on all of them. Where a row leaves crates elsewhere, the next
+// finds them settled there. Time: of this process's threads. Counters:
 // texels of a crate; burning: crates; slowest_ms: of all steps; bytes of a crate, in every pool of
 // the memory report (objects10k/memory).
 #include "bench/bench_device.h"
@@ -118,30 +119,32 @@ Square* lit(uint32_t count, benchmark::State& state) {
 }
 
 template <class Moves>
-void steps(benchmark::State& state, uint32_t count, const Moves& moves) {
-    Square* square = lit(count, state);
-    if (!square) return;
-    square->step(4);
+void run(benchmark::State& state, Square& square, const Moves& moves) {
+    square.step(8);
     uint32_t i = 0;
     double slowest = 0;
     for (auto _ : state) {
         const double start = cpuSeconds();
-        moves(*square, i++);
-        square->step();
+        moves(square, i++);
+        square.step();
         const double seconds = cpuSeconds() - start;
         state.SetIterationTime(seconds);
         slowest = std::max(slowest, seconds);
     }
     state.counters["slowest_ms"] = 1e3 * slowest;
-    state.counters["burning"] = square->burning();
-    state.counters["texels"] = square->texels;
+    state.counters["burning"] = square.burning();
+    state.counters["texels"] = square.texels;
 }
 
-// At 1.5 m/s: out along a row, and back.
-float shiftOf(uint32_t step) {
-    constexpr uint32_t kWay = 64;
-    const uint32_t at = step % (2 * kWay);
-    return 1.5f * kStep * float(std::min(at, 2 * kWay - at));
+template <class Moves>
+void steps(benchmark::State& state, uint32_t count, const Moves& moves) {
+    if (Square* square = lit(count, state)) run(state, *square, moves);
+}
+
+// m along a row at 1.5 m/s: so many steps out, and back. Four stay in the gap between two crates.
+float shiftOf(uint32_t step, uint32_t way = 4) {
+    const uint32_t at = step % (2 * way);
+    return 1.5f * kStep * float(std::min(at, 2 * way - at));
 }
 
 void rest(benchmark::State& state) {
@@ -149,13 +152,46 @@ void rest(benchmark::State& state) {
 }
 
 void oneWalks(benchmark::State& state) {
-    steps(state, 10000, [](Square& s, uint32_t i) { s.move(0, -1 - shiftOf(i)); });
+    // By exchanges of four steps, in which it walks and does not in turns: how much that is of a
+    // step at rest.
+    Square* square = lit(10000, state);
+    if (!square) return;
+    square->step(8);
+    double walks = 0, rests = 0;
+    uint32_t i = 0;
+    for (auto _ : state) {
+        const double start = cpuSeconds();
+        for (uint32_t k = 0; k < 4; ++k) {
+            square->move(0, -1 - shiftOf(i++, 64));
+            square->step();
+        }
+        const double walked = cpuSeconds();
+        square->step(4);
+        rests += cpuSeconds() - walked;
+        walks += walked - start;
+        state.SetIterationTime((walked - start) / 4);
+    }
+    state.counters["of_rest"] = walks / rests;
+    state.counters["burning"] = square->burning();
+    state.counters["texels"] = square->texels;
 }
 
 void thousandWalk(benchmark::State& state) {
     steps(state, 10000, [](Square& s, uint32_t i) {
         for (uint32_t k = 0; k < kWalking; ++k)
             s.move(k * (uint32_t(s.ids.size()) / kWalking), shiftOf(i));
+    });
+}
+
+// The same, but through each other: all of them are about to touch, touch, or part.
+void thousandTouch(benchmark::State& state) {
+    Square square;  // of its own: links stay where crates have met
+    const char* why = square.make(10000);
+    if (!why) why = square.lightTen();
+    if (why) return state.SkipWithError(why);
+    run(state, square, [](Square& s, uint32_t i) {
+        for (uint32_t k = 0; k < kWalking; ++k)
+            s.move(k * (uint32_t(s.ids.size()) / kWalking), shiftOf(i, 64));
     });
 }
 
@@ -256,8 +292,9 @@ void row(const char* name, void (*run)(benchmark::State&), int iterations) {
 
 const bool rows = [] {
     row("objects10k/rest", rest, 128);
-    row("objects10k/one_walks", oneWalks, 128);
+    row("objects10k/one_walks", oneWalks, 32);
     row("objects10k/thousand_walk", thousandWalk, 64);
+    row("objects10k/thousand_touch", thousandTouch, 64);
     row("objects10k/spawn", spawn, 64);
     row("objects10k/first_match", firstMatch, 3);
     row("objects10k/rain", rain, 3);

@@ -1,8 +1,11 @@
 // Cost that follows what moves and what burns: boxes found by where they are, lists kept object by
 // object, balls over whole objects. Work is counted, never timed.
+#include "components/remote.h"
+#include "core/error.h"
 #include "core/growth.h"
 #include "fire/presets.h"
 #include "gpu/cpu/cpu_backend.h"
+#include "mesh/remote_tiles.h"
 #include "support/world_defs.h"
 #include "world/box_grid.h"
 #include "world/list_pool.h"
@@ -432,6 +435,42 @@ TEST(World, BurnsOnAsALoadedWorldWhileCratesMoveComeAndGo) {
         }
         EXPECT_GT(caught, 3u);
     }
+}
+
+// 2^20 cells of 50 mm from the origin, where a cell's number has one bit more.
+TEST(Contacts, AreFoundWhereverInTheWorldObjectsTouch) {
+    Square square(1, 0);
+    const mesh::BurnDomain& domain = square.world->objectDomain(square.ids[0]);
+    const auto count = [&](float at) {
+        gpu::RemoteObject places[2] = {};
+        for (int i = 0; i < 2; ++i) {
+            components::Pose pose;
+            pose.translation[0] = at + 0.42f * float(i);
+            pose.translation[1] = pose.translation[2] = at;
+            components::placeRemote(pose, domain, places[i]);
+        }
+        std::pmr::vector<mesh::ContactPlace> scratch(memory());
+        std::pmr::vector<mesh::Contact> found(memory());
+        mesh::findContacts({&domain, &places[0], 1}, {&domain, &places[1], 1}, scratch, found);
+        return found.size();
+    };
+    const size_t here = count(0);
+    EXPECT_GT(here, 0u);
+    for (const float at : {-52428.8f, 52428.8f, 104857.6f, -900000.0f})
+        EXPECT_NEAR(double(here), double(count(at)), 0.5 * double(here)) << at;
+}
+
+TEST(World, RefusesABlockerThatItsScaleMakesTooLarge) {
+    Square square(1, 0);
+    FwBlockerDef def{};
+    def.structSize = sizeof def;
+    for (const int i : {0, 5, 10}) def.transform[i] = 4;
+    def.transform[15] = 1;
+    for (float& half : def.halfSize) half = 7;
+    const FwBlockerId id = square.world->addBlocker(def);  // 28 m
+    for (const int i : {0, 5, 10}) def.transform[i] = 5;
+    EXPECT_THROW((void)square.world->addBlocker(def), core::Error);
+    EXPECT_THROW(square.world->moveBlocker(id, def.transform), core::Error);
 }
 
 TEST(World, DestroyedNeighboursAreForgotten) {

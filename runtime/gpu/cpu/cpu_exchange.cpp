@@ -31,9 +31,14 @@ namespace {
 template <class T>
 void copyRanges(std::span<const T> from, std::span<const RemoteUpdate::Range> ranges,
                 std::pmr::vector<T>& to) noexcept {
-    to.resize(from.size());  // its room is there
+    const size_t known = std::min(to.size(), from.size());
+    to.resize(known);
+    to.insert(to.end(), from.begin() + std::ptrdiff_t(known), from.end());  // its room is there
     for (const RemoteUpdate::Range& range : ranges)
-        std::copy_n(from.begin() + range.first, range.count, to.begin() + range.first);
+        if (range.first < known)
+            std::copy_n(from.begin() + range.first,
+                        std::min<size_t>(range.count, known - range.first),
+                        to.begin() + range.first);
 }
 
 }  // namespace
