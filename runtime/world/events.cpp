@@ -63,12 +63,13 @@ void World::collectReadbacks() {
         readbackTick_ = readback->endTick;
         runTiles_ = readback->runTiles;
         // Of a save it is known how many there were, until they are counted again.
-        if (lastReduced(readback->endTick) > loadedTick_) loadedReceivers_ = loadedBurning_ = 0;
+        const bool counted = loadedTick_ == ~0ull || lastReduced(readback->endTick) > loadedTick_;
+        if (counted) loadedReceivers_ = loadedBurning_ = 0;
         if (readback->endTick > loadedTick_) loadedFront_ = 0;
         if (heatStepsBefore(readback->endTick) > heatStepsBefore(loadedTick_)) loadedHot_ = 0;
         frontTiles_ = readback->frontTiles + loadedFront_;
         hotTiles_ = readback->hotTiles + loadedHot_;
-        burningTiles_ = std::max(readback->burningTiles, loadedBurning_);
+        burningTiles_ = counted ? readback->burningTiles : loadedBurning_;
         receivers_ = std::max(readback->receivers, loadedReceivers_);
         if (readback->milliseconds >= 0 && !budgetMeasured_) spent_.gpu = readback->milliseconds;
         takeCounters(*readback);
