@@ -184,7 +184,7 @@ TEST(EditorOutput, SnippetsOfSmallScenesCompileToo) {
                             "add source flamethrower keys 0:0 1:1\n",
                             "add collider box\n",
                             "add source match name=\"/* a */ \\\\\" start 2\n",
-                            "import leaves.gltf materials dry_leaf noncombustible\n"};
+                            "import leaves.gltf materials dry_leaf\n"};
     Yard yard;
     writeBoardRow(yard.folder, "leaves",
                   {{{1, 1, 1}, leavesPng(), ",\"alphaMode\":\"MASK\",\"doubleSided\":true", ""},
