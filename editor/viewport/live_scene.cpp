@@ -206,11 +206,8 @@ void LiveScene::adopt(Made made) {
     vkDeviceWaitIdle(host_.device);
     report_.insert(report_.end(), made.burn->report.begin(), made.burn->report.end());
     for (const fwedit::BurnMesh& mesh : made.burn->meshes) {
-        const auto shown = burn_
-                               ? std::any_of(burn_->meshes.begin(), burn_->meshes.end(),
-                                             [&](const auto& at) { return at.model == mesh.model; })
-                               : false;
-        if (shown) continue;
+        const auto isOfMesh = [&](const fwedit::BurnMesh& at) { return at.model == mesh.model; };
+        if (burn_ && std::ranges::any_of(burn_->meshes, isOfMesh)) continue;  // said before
         report_.insert(report_.end(), mesh.model->notes.begin(), mesh.model->notes.end());
     }
     burn_ = std::move(made.burn);

@@ -552,7 +552,7 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
     return onWorld("fwWorld_Ignite", world, [&](world::World& w) {
         const FwIgnitionDef def = edge::readDef(given, FW_DEF_IGNITION, "FwIgnitionDef");
         bool acts = false;
-        const uint32_t count = w.ignite(def, acts);
+        const uint32_t count = w.ignite(def, &acts);
         if (texels) *texels = count;
         if (acts) return FW_OK;
         // Water that meets nothing is a jet's ordinary day; a match that lights nothing is a surprise.

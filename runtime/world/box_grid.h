@@ -4,6 +4,7 @@
 #pragma once
 #include "mesh/remote_tiles.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory_resource>

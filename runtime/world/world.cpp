@@ -834,12 +834,12 @@ uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t 
     return uint32_t(found_.size());
 }
 
-uint32_t World::ignite(const FwIgnitionDef& def, bool& acts) {
+uint32_t World::ignite(const FwIgnitionDef& def, bool* acts) {
     mayChange();
     checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
     const size_t before = pending_.size();
     const uint32_t texels = igniteAt(def, eventTick(def.delay));
-    acts = texels > 0 && (def.kind != FW_IGNITE || lightsSomething(before));
+    if (acts) *acts = texels > 0 && (def.kind != FW_IGNITE || lightsSomething(before));
     return texels;
 }
 

@@ -490,7 +490,7 @@ class World {
                             uint32_t count);
     void setHidden(FwBurnableMeshId id, bool hidden);
     // Texels addressed. `acts`: one of them, or of a match one that can burn.
-    uint32_t ignite(const FwIgnitionDef& def, bool& acts);
+    uint32_t ignite(const FwIgnitionDef& def, bool* acts = nullptr);
     // Why a match that addressed so many texels lights nothing, for people.
     void explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
                              std::span<char> text) const noexcept;

@@ -67,9 +67,10 @@ TEST(EmbeddedShaders, DecorateStructMembersAsDriversExpect) {
         for (std::size_t at = kHeaderWords; at < shader.words.size();) {
             const std::uint32_t op = shader.words[at] & 0xffffu, size = shader.words[at] >> 16;
             ASSERT_GT(size, 0u) << shader.name;
-            if (op == kOpMemberDecorate)
-                EXPECT_FALSE(kOfWholes.contains(shader.words[at + 3]))
-                    << shader.name << " has decoration " << shader.words[at + 3] << " on a member";
+            const bool isWrong =
+                op == kOpMemberDecorate && kOfWholes.contains(shader.words[at + 3]);
+            EXPECT_FALSE(isWrong) << shader.name << " has decoration " << shader.words[at + 3]
+                                  << " on a member";
             at += size;
         }
     }
